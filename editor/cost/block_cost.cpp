@@ -115,7 +115,8 @@ std::vector<CostPoint> cost_curve(const std::string& text, const std::string& fi
                                   const RegisterModels& register_models,
                                   const world::WorldField& field, core::BlockCoord around,
                                   const synthesis::CostModel* learnt,
-                                  const std::function<bool()>& go_on) {
+                                  const std::function<bool()>& go_on,
+                                  const world::FilesBeside* files) {
   std::vector<CostPoint> curve;
   if (!has_cost_curve(field)) return curve;
   int number = 0;
@@ -123,7 +124,7 @@ std::vector<CostPoint> cost_curve(const std::string& text, const std::string& fi
     if (!go_on()) return {};
     CostPoint point{value, {}, {}};
     const auto changed = world::with_value(text, field.path, toml_of(field, value));
-    const auto parsed = changed ? parse_world_text(*changed, file, register_models)
+    const auto parsed = changed ? parse_world_text(*changed, file, register_models, files)
                                 : tl::make_unexpected(changed.error());
     if (parsed) {
       point.cost = block_cost(**parsed, around, learnt, number++ % kMeasuredEvery == 0);

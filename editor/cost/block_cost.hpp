@@ -51,11 +51,12 @@ struct CostPoint {
 
 // Costs over the soft range of a field of numbers, evenly on its scale; of ranges the highest end
 // varies. Some values are measured. Empty for other kinds of fields. `go_on` is asked between
-// values. Some milliseconds a value.
+// values. `files` as for parse_world_text(). Some milliseconds a value.
 std::vector<CostPoint> cost_curve(const std::string& text, const std::string& file,
                                   const RegisterModels& register_models,
                                   const world::WorldField& field, core::BlockCoord around,
                                   const synthesis::CostModel* learnt,
-                                  const std::function<bool()>& go_on);
+                                  const std::function<bool()>& go_on,
+                                  const world::FilesBeside* files = nullptr);
 
 }  // namespace psygen::editor

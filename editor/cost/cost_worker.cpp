@@ -31,11 +31,12 @@ CostWorker::~CostWorker() {
 }
 
 void CostWorker::ask(std::string text, std::string file, std::vector<world::WorldField> fields,
-                     core::BlockCoord around, std::shared_ptr<const synthesis::CostModel> learnt) {
+                     core::BlockCoord around, std::shared_ptr<const synthesis::CostModel> learnt,
+                     handmade::FilesPtr files) {
   {
     const std::lock_guard lock(mutex_);
-    next_ = Job{std::move(text), std::move(file),   std::move(fields),
-                around,          std::move(learnt), newest_.load() + 1};
+    next_ = Job{std::move(text),   std::move(file),  std::move(fields), around,
+                std::move(learnt), std::move(files), newest_.load() + 1};
     newest_.store(next_->number);
   }
   asked_.notify_all();
@@ -87,14 +88,14 @@ void CostWorker::work(const Job& job) {
     return newest_.load() == job.number;
   };
   work_on_impact();
-  if (const auto parsed = parse_world_text(job.text, job.file, register_models_)) {
+  if (const auto parsed = parse_world_text(job.text, job.file, register_models_, job.files.get())) {
     const BlockCost cost = block_cost(**parsed, job.around, job.learnt.get(), true);
     QMetaObject::invokeMethod(this, [this, cost] { Q_EMIT world_cost(cost); });
   }
   for (const world::WorldField& field : job.fields) {
     if (!wanted()) return;
     auto points = cost_curve(job.text, job.file, register_models_, field, job.around,
-                             job.learnt.get(), wanted);
+                             job.learnt.get(), wanted, job.files.get());
     if (points.empty()) continue;
     QMetaObject::invokeMethod(this, [this, path = field.path.text(), points = std::move(points)] {
       Q_EMIT curve(path, points);

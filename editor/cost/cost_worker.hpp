@@ -12,6 +12,7 @@
 
 #include "editor/cost/block_cost.hpp"
 #include "editor/cost/world_impact.hpp"
+#include "engine/handmade/files.hpp"
 
 namespace psygen::editor {
 
@@ -23,9 +24,10 @@ class CostWorker final : public QObject {
   ~CostWorker() override;
 
   // Curves of these fields in this text, and the cost of the text itself, of blocks around one.
-  // Replaces what was asked before. `learnt` may be null.
+  // `files` reads those beside it. Replaces what was asked before. `learnt` may be null.
   void ask(std::string text, std::string file, std::vector<world::WorldField> fields,
-           core::BlockCoord around, std::shared_ptr<const synthesis::CostModel> learnt);
+           core::BlockCoord around, std::shared_ptr<const synthesis::CostModel> learnt,
+           handmade::FilesPtr files);
   // What `after` changes of a cache that has meshes of `before`. Goes before curves, and replaces
   // only the impact that was asked before.
   void ask_impact(ParsedWorldPtr before, ParsedWorldPtr after, core::BlockCoord around,
@@ -42,6 +44,7 @@ class CostWorker final : public QObject {
     std::vector<world::WorldField> fields;
     core::BlockCoord around;
     std::shared_ptr<const synthesis::CostModel> learnt;
+    handmade::FilesPtr files;
     std::uint64_t number = 0;
   };
   struct ImpactJob {

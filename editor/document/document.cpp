@@ -78,7 +78,8 @@ core::Result<ParsedWorldPtr> Document::parse(const std::string& text) const {
     return core::fail(core::ErrorCode::kOverBudget,
                       fmt::format("{}: the file would be too large (allowed: {} bytes)", name(),
                                   world::kMaxFileBytes));
-  return parse_world_text(text, name(), options_.register_models);
+  return parse_world_text(text, name(), options_.register_models,
+                          handmade::files_with(name(), pictures_).get());
 }
 
 core::Result<std::unique_ptr<RecoverySession>> Document::session_of(
@@ -98,18 +99,20 @@ core::Result<void> Document::open(const std::filesystem::path& file, bool share)
   return {};
 }
 
-core::Result<void> Document::make_new(std::string text) {
+core::Result<void> Document::make_new(std::string text, handmade::MemoryPicturesPtr pictures) {
   if (text.empty()) text = kNewWorld;
-  auto parsed = parse_world_text(text, "the new world", options_.register_models);
+  const handmade::FilesPtr files = handmade::files_with({}, pictures);
+  auto parsed = parse_world_text(text, "the new world", options_.register_models, files.get());
   if (!parsed) return tl::unexpected(std::move(parsed.error()));
   auto session = session_of({}, false);
   if (!session) return tl::unexpected(std::move(session.error()));
-  adopt({}, std::move(text), *std::move(parsed), *std::move(session));
+  adopt({}, std::move(text), *std::move(parsed), *std::move(session), std::move(pictures));
   return {};
 }
 
 void Document::adopt(const std::filesystem::path& file, std::string text, ParsedWorldPtr parsed,
-                     std::unique_ptr<RecoverySession> session) {
+                     std::unique_ptr<RecoverySession> session,
+                     handmade::MemoryPicturesPtr pictures) {
   save_locks();
   autosave_timer_.stop();
   session_ = std::move(session);
@@ -122,6 +125,9 @@ void Document::adopt(const std::filesystem::path& file, std::string text, Parsed
   text_ = std::make_shared<const std::string>(std::move(text));
   parsed_ = std::move(parsed);
   sections_.reset();
+  pictures_ = std::move(pictures);
+  disk_pictures_.clear();
+  refused_pictures_.clear();
   undo_.clear();
   watch_.watch(file_);
   note_saved(*text_);
@@ -132,7 +138,7 @@ void Document::adopt(const std::filesystem::path& file, std::string text, Parsed
 void Document::note_saved(std::string text) {
   saved_ = std::move(text);
   seen_ = saved_;
-  if (*text_ == saved_) undo_.setClean();
+  if (!is_modified()) undo_.setClean();
   note_modified();
 }
 
@@ -157,7 +163,7 @@ core::Result<void> Document::save() {
   if (file_.empty())
     return core::fail(core::ErrorCode::kInvalidArgument, "this world has no file yet");
   if (auto known = require_known_disk(); !known) return known;
-  if (auto written = write_whole(file_, *text_); !written) return written;
+  if (auto written = write_all(file_); !written) return written;
   note_saved(*text_);
   autosave();
   save_locks();
@@ -165,15 +171,20 @@ core::Result<void> Document::save() {
   return {};
 }
 
+core::Result<void> Document::write_all(const std::filesystem::path& file) {
+  return write_pictures(file).and_then([&] { return write_whole(file, *text_); });
+}
+
 core::Result<void> Document::save_as(const std::filesystem::path& file, bool share) {
   if (file.empty())
     return core::fail(core::ErrorCode::kInvalidArgument, "a file to write must have a name");
   if (same_file(file, file_)) {
-    if (auto written = write_whole(file_, *text_); !written) return written;
+    if (auto written = write_all(file_); !written) return written;
   } else {
     auto session = RecoverySession::start(options_.state_folder, file, share);
     if (!session) return tl::unexpected(std::move(session.error()));
-    if (auto written = write_whole(file, *text_); !written) return written;
+    if (auto taken = take_along_pictures(file); !taken) return taken;
+    if (auto written = write_all(file); !written) return written;
     session_ = *std::move(session);
     file_ = file;
     Q_EMIT file_changed();
@@ -186,7 +197,11 @@ core::Result<void> Document::save_as(const std::filesystem::path& file, bool sha
 }
 
 core::Result<void> Document::revert() {
-  return set_text(saved_, tr("Revert"));
+  if (unsaved_pictures().empty()) return set_text(saved_, tr("Revert"));
+  std::vector<PaintChange> changes;
+  for (const auto& [name, painted] : pictures_->in_place)
+    changes.emplace_back(name, painted, nullptr);
+  return paint(tr("Revert"), std::move(changes), saved_);
 }
 
 bool Document::is_read_only() const {
@@ -197,7 +212,10 @@ bool Document::is_read_only() const {
 }
 
 std::string Document::unsaved_diff() const {
-  return unified_diff(saved_, *text_, name(), name() + " (not saved)");
+  std::string diff = unified_diff(saved_, *text_, name(), name() + " (not saved)");
+  for (const std::string& picture : unsaved_pictures())
+    diff += fmt::format("Binary files {0} and {0} (not saved) differ\n", picture);
+  return diff;
 }
 
 DiskState Document::check_disk() {
@@ -269,7 +287,13 @@ core::Result<void> Document::write_recovery() {
     session_->clear();
     return {};
   }
-  return session_->write({file_, *text_, saved_, undo_.index(), {}, {}});
+  return session_->write({file_,
+                          *text_,
+                          saved_,
+                          undo_.index(),
+                          {},
+                          {},
+                          pictures_ ? pictures_->in_place : handmade::NamedPictures()});
 }
 
 void Document::autosave() {
@@ -285,13 +309,24 @@ void Document::save_locks() const {
 }
 
 core::Result<void> Document::recover(const Recovery& recovery) {
-  if (auto parsed = parse(recovery.text); !parsed) return tl::unexpected(std::move(parsed.error()));
+  const auto pictures = std::make_shared<const handmade::MemoryPictures>(
+      handmade::MemoryPictures{recovery.pictures, recovery.pictures});
+  const auto parsed =
+      parse_world_text(recovery.text, recovery.world_file.string(), options_.register_models,
+                       handmade::files_with(recovery.world_file, pictures).get());
+  if (!parsed) return tl::unexpected(parsed.error());
   if (recovery.world_file.empty() || !open(recovery.world_file)) {
-    if (auto made = make_new(recovery.text); !made) return made;
+    if (auto made = make_new(recovery.text, pictures); !made) return made;
     saved_ = recovery.world_file.empty() ? recovery.saved_text : "";
     note_modified();
-  } else if (auto set = set_text(recovery.text, tr("Recover unsaved changes")); !set) {
-    return set;
+  } else {
+    std::vector<PaintChange> changes;
+    for (const auto& [name, picture] : recovery.pictures)
+      changes.emplace_back(name, nullptr, picture);
+    const QString step = tr("Recover unsaved changes");
+    auto set = changes.empty() ? set_text(recovery.text, step)
+                               : paint(step, std::move(changes), recovery.text);
+    if (!set) return set;
   }
   if (auto written = write_recovery(); !written) return written;
   discard_recovery(recovery);

@@ -10,6 +10,7 @@
 #include <QUndoStack>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <random>
@@ -18,11 +19,13 @@
 #include <vector>
 
 #include "editor/document/disk_watch.hpp"
+#include "editor/document/paint_change.hpp"
 #include "editor/document/parsed_world.hpp"
 #include "editor/document/recovery.hpp"
 #include "editor/document/text_command.hpp"
 #include "editor/document/variation.hpp"
 #include "engine/core/error.hpp"
+#include "engine/handmade/files.hpp"
 #include "engine/world/files/world_schema.hpp"
 
 namespace psygen::editor {
@@ -55,8 +58,8 @@ class Document : public QObject {
   // Opens a world file; the undo steps end. Fails like world::load_world(), and with
   // kInvalidArgument where another editor has it open, unless `share`.
   core::Result<void> open(const std::filesystem::path& file, bool share = false);
-  // A new world: the text, or a small one.
-  core::Result<void> make_new(std::string text = {});
+  // A new world: the text with its pictures, or a small one.
+  core::Result<void> make_new(std::string text = {}, handmade::MemoryPicturesPtr pictures = {});
   // Writes the file as a whole: after a crash or on a full disk it is the old or the new one. Fails
   // with kIo; with kInvalidArgument without a file, and where the file was changed by others since
   // it was read (reload(), or keep_mine() and save again).
@@ -68,8 +71,9 @@ class Document : public QObject {
   // The file; empty: none. Whether it, or its folder, cannot be written.
   const std::filesystem::path& file() const { return file_; }
   bool is_read_only() const;
-  // Whether the text differs from the file as it was last read or saved.
-  bool is_modified() const { return *text_ != saved_; }
+  // Whether the text differs from the file as it was last read or saved, or a picture is painted
+  // that is not written.
+  bool is_modified() const { return *text_ != saved_ || !unsaved_pictures().empty(); }
   // What save() would change, as `diff -u` shows it.
   std::string unsaved_diff() const;
 
@@ -121,6 +125,19 @@ class Document : public QObject {
   // Makes the edit that waits, as it would have been made at first. Without one, nothing.
   core::Result<void> apply_asked();
   void drop_asked() { ask(std::nullopt, {}); }
+
+  // --- Pictures beside the file, such as masks. They are painted in memory; save() writes them as
+  // PNG files, before the text, each as a whole. It fails with kIo, and with kInvalidArgument where
+  // another program has put another picture there (save() again replaces it).
+
+  // What the world shows under a name; null where it names no such picture.
+  PicturePtr picture(const std::string& name) const;
+  // Shows a picture in place of what is there, without an undo step: while a stroke is painted.
+  core::Result<void> preview_picture(const std::string& name, const PicturePtr& picture);
+  // One undo step: pictures change, and with them the text. Fails like the edits.
+  core::Result<void> paint(const QString& step, std::vector<PaintChange> changes, std::string text);
+  // What is not written yet, for others that read the text; null: nothing.
+  const handmade::MemoryPicturesPtr& pictures() const { return pictures_; }
 
   // Edits between these two are one step: a drag, or several values at once.
   void begin_drag();
@@ -174,7 +191,7 @@ class Document : public QObject {
   core::Result<std::unique_ptr<RecoverySession>> session_of(const std::filesystem::path& file,
                                                             bool share);
   void adopt(const std::filesystem::path& file, std::string text, ParsedWorldPtr parsed,
-             std::unique_ptr<RecoverySession> session);
+             std::unique_ptr<RecoverySession> session, handmade::MemoryPicturesPtr pictures = {});
   void note_saved(std::string text);
   core::Result<void> require_known_disk() const;
   core::Result<ParsedWorldPtr> parse(const std::string& text) const;
@@ -185,6 +202,7 @@ class Document : public QObject {
     QString step;
     std::optional<FieldLocks> locks;
     int drag = 0;
+    std::vector<PaintChange> paint = {};
   };
   core::Result<void> push(std::string text, const QString& step,
                           std::optional<FieldLocks> locks = {}, bool guarded = true);
@@ -192,6 +210,17 @@ class Document : public QObject {
   void ask(std::optional<Edit> edit, const QString& question);
   void show(const TextPtr& text);
   void note_modified();
+  std::vector<std::string> unsaved_pictures() const;  // by name
+  handmade::MemoryPicturesPtr with_picture(const std::string& name,
+                                           const PicturePtr& picture) const;
+  // Makes the next world, of this text with these pictures.
+  core::Result<void> show_pictures(handmade::MemoryPicturesPtr pictures, const std::string& text);
+  void note_on_disk(const std::string& name);
+  void apply(const std::vector<PaintChange>& changes, bool done);
+  core::Result<void> require_known_pictures(const std::filesystem::path& file);
+  core::Result<void> write_pictures(const std::filesystem::path& file);
+  core::Result<void> write_all(const std::filesystem::path& file);
+  core::Result<void> take_along_pictures(const std::filesystem::path& file) const;
   void autosave();
   void save_locks() const;
 
@@ -199,9 +228,13 @@ class Document : public QObject {
   std::filesystem::path file_;
   TextPtr text_;
   ParsedWorldPtr parsed_;
-  ParsedWorldPtr next_parsed_;       // of the text that an edit is about to show
-  std::string saved_;                // the file as it was last read or saved
-  std::optional<std::string> seen_;  // the text of the disk that was told last; none: no file
+  ParsedWorldPtr next_parsed_;            // of the text that an edit is about to show
+  std::string saved_;                     // the file as it was last read or saved
+  std::optional<std::string> seen_;       // the text of the disk that was told last; none: no file
+  handmade::MemoryPicturesPtr pictures_;  // null: none was painted
+  // Hashes of pictures: as files had them when they were read or written, by name; and as saving
+  // was refused for them, by file.
+  std::map<std::string, std::uint64_t> disk_pictures_, refused_pictures_;
   bool was_modified_ = false;
   bool autosave_told_ = false;
   int drag_ = 0, last_drag_ = 0;

@@ -54,14 +54,20 @@ core::Result<void> Document::push(std::string text, const QString& step,
 void Document::make(Edit edit, ParsedWorldPtr parsed) {
   next_parsed_ = std::move(parsed);
   const TextPtr before = text_;
-  auto show_text = [this](const TextPtr& shown_text) { show(shown_text); };
-  auto show_both = [this, before, undone = locks_, done = edit.locks](const TextPtr& shown_text) {
-    locks_ = shown_text == before ? undone : *done;
-    show(shown_text);
-  };
-  undo_.push(new TextCommand(
-      edit.step, before, std::make_shared<const std::string>(std::move(edit.text)), edit.drag,
-      edit.locks ? std::function<void(const TextPtr&)>(show_both) : show_text));
+  std::function<void(const TextPtr&)> show_step = [this](const TextPtr& shown) { show(shown); };
+  if (edit.locks)
+    show_step = [this, before, undone = locks_, done = edit.locks](const TextPtr& shown) {
+      locks_ = shown == before ? undone : *done;
+      show(shown);
+    };
+  if (!edit.paint.empty())
+    show_step = [this, before, paint = std::move(edit.paint)](const TextPtr& shown) {
+      apply(paint, shown != before);
+      show(shown);
+    };
+  undo_.push(new TextCommand(edit.step, before,
+                             std::make_shared<const std::string>(std::move(edit.text)), edit.drag,
+                             std::move(show_step)));
 }
 
 void Document::ask(std::optional<Edit> edit, const QString& question) {

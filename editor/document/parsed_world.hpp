@@ -10,6 +10,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/models/registry.hpp"
+#include "engine/world/files/files_beside.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::editor {
@@ -25,9 +26,11 @@ struct ParsedWorld {
 using ParsedWorldPtr = std::shared_ptr<const ParsedWorld>;
 
 // Reads a text as a session does, with a registry of its own. Fails like world::parse_world(), and
-// like `register_models`, which may be empty.
+// like `register_models`, which may be empty. `files` reads those beside it; null:
+// handmade::files().
 core::Result<ParsedWorldPtr> parse_world_text(const std::string& text, const std::string& file_name,
-                                              const RegisterModels& register_models);
+                                              const RegisterModels& register_models,
+                                              const world::FilesBeside* files = nullptr);
 
 // What differs between two texts and their worlds.
 enum class Change : unsigned {

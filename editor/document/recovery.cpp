@@ -10,9 +10,11 @@
 #include <QUuid>
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 
 #include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/image/image_io.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -20,9 +22,45 @@ namespace {
 constexpr int kRecoveryFormat = 1;
 constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 20;
 constexpr const char* kEnding = ".recovery";
+constexpr const char* kPictureEnding = ".png";
 
 QString q(const std::filesystem::path& path) {
   return QString::fromStdString(path.string());
+}
+
+// The pictures of a recovery file: ID.HASH.png.
+std::filesystem::path picture_file(const std::filesystem::path& recovery_file,
+                                   const world::GreyPicture& picture) {
+  return recovery_file.parent_path() /
+         fmt::format("{}.{:016x}.png", recovery_file.stem().string(), picture.hash);
+}
+
+// Removes those that are not in `kept`.
+void remove_pictures(const std::filesystem::path& recovery_file,
+                     const std::set<std::filesystem::path>& kept) {
+  const std::string start = recovery_file.stem().string() + ".";
+  std::vector<std::filesystem::path> gone;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(recovery_file.parent_path(), error), end;
+       !error && it != end; it.increment(error)) {
+    const bool is_one = it->path().filename().string().starts_with(start) &&
+                        it->path().extension() == kPictureEnding;
+    if (is_one && !kept.contains(it->path())) gone.push_back(it->path());
+  }
+  for (const std::filesystem::path& file : gone)
+    std::filesystem::remove(file, error);
+}
+
+// Names of pictures and of their files. Those that cannot be read are left out.
+handmade::NamedPictures read_pictures(const std::filesystem::path& folder,
+                                      const QJsonObject& names) {
+  handmade::NamedPictures pictures;
+  for (auto it = names.begin(); it != names.end(); ++it) {
+    const auto name = std::filesystem::path(it.value().toString().toStdString()).filename();
+    if (auto picture = handmade::files().read_grey(folder / name))
+      pictures[it.key().toStdString()] = *std::move(picture);
+  }
+  return pictures;
 }
 
 QString lock_name(const std::filesystem::path& recovery_file) {
@@ -61,6 +99,8 @@ std::optional<Recovery> read_recovery(const std::filesystem::path& file) {
   recovery.undo_index = read[QStringLiteral("undo_index")].toInt();
   recovery.time = QDateTime::fromString(read[QStringLiteral("time")].toString(), Qt::ISODateWithMs);
   recovery.file = file;
+  recovery.pictures =
+      read_pictures(file.parent_path(), read[QStringLiteral("pictures")].toObject());
   return recovery;
 }
 
@@ -103,21 +143,35 @@ RecoverySession::~RecoverySession() {
 }
 
 core::Result<void> RecoverySession::write(const Recovery& recovery) const {
+  QJsonObject names;
+  std::set<std::filesystem::path> kept;
+  for (const auto& [name, picture] : recovery.pictures) {
+    const std::filesystem::path file = picture_file(file_, *picture);
+    names[QString::fromStdString(name)] = q(file.filename());
+    std::error_code error;
+    if (!kept.insert(file).second || std::filesystem::exists(file, error)) continue;
+    const image::GreyImage image{picture->width, picture->height, picture->pixels};
+    if (auto written = image::write_png(file, image); !written) return written;
+  }
   const QJsonObject object{
       {QStringLiteral("format"), kRecoveryFormat},
       {QStringLiteral("world_file"), q(recovery.world_file)},
       {QStringLiteral("text"), QString::fromStdString(recovery.text)},
       {QStringLiteral("saved_text"), QString::fromStdString(recovery.saved_text)},
       {QStringLiteral("undo_index"), recovery.undo_index},
+      {QStringLiteral("pictures"), names},
       {QStringLiteral("time"), QDateTime::currentDateTimeUtc().toString(Qt::ISODateWithMs)}};
   const QByteArray bytes = QJsonDocument(object).toJson(QJsonDocument::Compact);
-  return core::replace_file(
+  auto written = core::replace_file(
       file_, std::string_view(bytes.constData(), static_cast<std::size_t>(bytes.size())));
+  if (written) remove_pictures(file_, kept);
+  return written;
 }
 
 void RecoverySession::clear() const {
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);
+  remove_pictures(file_, {});
 }
 
 std::vector<Recovery> left_recoveries(const std::filesystem::path& state_folder) {
@@ -138,6 +192,7 @@ void discard_recovery(const Recovery& recovery) {
   std::error_code ignored;
   std::filesystem::remove(recovery.file, ignored);
   std::filesystem::remove(lock_name(recovery.file).toStdString(), ignored);
+  remove_pictures(recovery.file, {});
 }
 
 }  // namespace psygen::editor

@@ -1,4 +1,5 @@
-// Unsaved texts that survive a crash: one file per session in the editor's state folder, and locks
+// Unsaved texts that survive a crash: one file per session in the editor's state folder, with
+// painted pictures beside it, and locks
 // that tell which sessions still run. Not the undo history, and not a backup of saved files. Main
 // thread; several processes may use the same folder.
 #pragma once
@@ -12,17 +13,19 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/handmade/files.hpp"
 
 namespace psygen::editor {
 
 // An unsaved text.
 struct Recovery {
-  std::filesystem::path world_file;  // empty: it had no name yet
-  std::string text;                  // with the changes
-  std::string saved_text;            // what the file held
-  int undo_index = 0;                // steps that were done
-  QDateTime time;                    // when it was written
-  std::filesystem::path file;        // the recovery file
+  std::filesystem::path world_file;       // empty: it had no name yet
+  std::string text;                       // with the changes
+  std::string saved_text;                 // what the file held
+  int undo_index = 0;                     // steps that were done
+  QDateTime time;                         // when it was written
+  std::filesystem::path file;             // the recovery file
+  handmade::NamedPictures pictures = {};  // painted and not written
 };
 
 // $XDG_STATE_HOME/psygen-editor, else ~/.local/state/psygen-editor.

@@ -65,10 +65,11 @@ core::Result<std::string> ModelView::portrait() const {
 void ModelView::show(bool anew) {
   const std::string file = document_.file().empty() ? "new.toml" : document_.file().string();
   if (subject_ && !anew) {
-    if (auto text = portrait()) return view_.show_world(*std::move(text), file, false);
+    if (auto text = portrait())
+      return view_.show_world(*std::move(text), file, false, document_.pictures());
   }
   close();  // another file, or the model is gone
-  view_.show_world(document_.text(), file, anew);
+  view_.show_world(document_.text(), file, anew, document_.pictures());
 }
 
 void ModelView::open(const world::TextPath& section) {

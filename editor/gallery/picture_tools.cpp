@@ -202,6 +202,7 @@ std::optional<std::pair<ComparedState, ComparedState>> PictureTools::states() co
 
 void PictureTools::mark() {
   marked_ = document_.text();
+  marked_pictures_ = document_.pictures();
   marked_at_ = QTime::currentTime();
   Q_EMIT told(tr("This is A. Change the world, then F8 swaps between A and what you have made."));
   show_shown();
@@ -211,7 +212,8 @@ void PictureTools::swap() {
   if (!marked_) return;
   shows_marked_ = !shows_marked_;
   view_.show_world(shows_marked_ ? *marked_ : document_.text(),
-                   document_.file().empty() ? "new.toml" : document_.file().string(), false);
+                   document_.file().empty() ? "new.toml" : document_.file().string(), false,
+                   shows_marked_ ? marked_pictures_ : document_.pictures());
   show_shown();
 }
 

@@ -72,6 +72,7 @@ class PictureTools final : public QObject {
   world::TextPath attended_, passed_;
   QTimer attention_;
   std::optional<std::string> marked_;  // the text A
+  handmade::MemoryPicturesPtr marked_pictures_;
   std::filesystem::path marked_file_;
   QTime marked_at_;
   bool shows_marked_ = false, on_world_ = true;

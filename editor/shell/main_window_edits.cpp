@@ -142,7 +142,8 @@ void MainWindow::look_at_scene() {
 void MainWindow::ask_costs() {
   look_at_scene();
   costs_->ask(document_.text(), document_.file().string(), properties_->shown_fields(),
-              view_->camera().pose().position.block, learnt_);
+              view_->camera().pose().position.block, learnt_,
+              handmade::files_with(document_.file(), document_.pictures()));
 }
 
 // What is not locked of a section or field.

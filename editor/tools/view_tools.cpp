@@ -3,16 +3,20 @@
 #include <QAction>
 #include <QActionGroup>
 #include <QComboBox>
+#include <QDoubleSpinBox>
 #include <QLabel>
 #include <QMainWindow>
 #include <QMenu>
 #include <QSignalBlocker>
+#include <QSlider>
 #include <QToolBar>
-#include <tuple>
 #include <utility>
 
 namespace psygen::editor {
 namespace {
+
+constexpr int kStrengthSteps = 20, kStrengthPx = 90;
+constexpr double kGrowth = 1.25;  // of the brush, per key
 
 // Changes only what differs, so that an open list stays open.
 void fill(QComboBox& box, const QStringList& names, int current) {
@@ -38,7 +42,8 @@ ViewTools::ViewTools(QMainWindow& window, Document& document, WorldView& view,
       set_dragging_(std::move(set_dragging)),
       group_(new QActionGroup(this)),
       road_(host()),
-      place_(host()) {
+      place_(host()),
+      mask_(host()) {
   window.addToolBarBreak();
   bar_ = window.addToolBar(tr("Tools"));
   bar_->setObjectName("tools");
@@ -49,12 +54,14 @@ ViewTools::ViewTools(QMainWindow& window, Document& document, WorldView& view,
   });
   add_roads();
   add_places();
+  add_masks();
   add_commands(window);
   connect(&document_, &Document::changed, this, [this](Changes what) {
     if (what.testFlag(Change::kFile)) {
       leave();
       road_.choose(std::nullopt);
       place_.choose(std::nullopt);
+      mask_.choose(std::nullopt);
     }
     fill_lists();
   });
@@ -111,28 +118,84 @@ void ViewTools::add_places() {
                     "or the right button removes it.  ")));
 }
 
+void ViewTools::add_masks() {
+  add_tool(mask_, tr("Paint masks"), "F4", tr("Paint where scattered models stand"));
+  masks_ = new QComboBox;
+  masks_->setAccessibleName(tr("What is scattered, whose mask is painted"));
+  masks_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+  connect(masks_, &QComboBox::activated, this,
+          [this](int index) { mask_.choose(static_cast<std::size_t>(index)); });
+  add_of_tool(masks_);
+  new_mask_ = bar_->addAction(tr("New mask"), this, &ViewTools::make_mask);
+  new_mask_->setToolTip(tr("Makes a mask around the camera for what has none"));
+  of_tools_.push_back({&mask_, new_mask_});
+  add_brush();
+  add_of_tool(new QLabel(tr("  The mouse paints; Shift turns painting into erasing.  ")));
+}
+
+void ViewTools::add_brush() {
+  add_of_tool(new QLabel(tr("  Radius ")));
+  radius_ = new QDoubleSpinBox;
+  radius_->setAccessibleName(tr("Radius of the brush in metres"));
+  radius_->setRange(MaskTool::kLeastRadiusM, MaskTool::kMostRadiusM);
+  radius_->setDecimals(1);
+  radius_->setSuffix(tr(" m"));
+  radius_->setValue(mask_.brush().radius_m);
+  radius_->setToolTip(tr("Radius of the brush, [ and ]"));
+  connect(radius_, &QDoubleSpinBox::valueChanged, this,
+          [this](double radius_m) { mask_.set_radius_m(radius_m); });
+  add_of_tool(radius_);
+  add_of_tool(new QLabel(tr("  Strength ")));
+  auto* strength = new QSlider(Qt::Horizontal);
+  strength->setAccessibleName(tr("Strength of the brush"));
+  strength->setToolTip(tr("How far one stroke goes towards white or black"));
+  strength->setRange(1, kStrengthSteps);
+  strength->setValue(kStrengthSteps);
+  strength->setMaximumWidth(kStrengthPx);
+  connect(strength, &QSlider::valueChanged, this,
+          [this](int value) { mask_.set_strength(static_cast<double>(value) / kStrengthSteps); });
+  add_of_tool(strength);
+  erase_ = bar_->addAction(tr("Erase"));
+  erase_->setCheckable(true);
+  erase_->setShortcut(Qt::Key_X);
+  erase_->setToolTip(tr("The brush takes away (X)"));
+  connect(erase_, &QAction::toggled, this, [this](bool on) { mask_.set_erases(on); });
+  of_tools_.push_back({&mask_, erase_});
+}
+
+QAction* ViewTools::add_command(QMainWindow& window, const QString& name, const QKeySequence& key,
+                                std::function<void()> does) {
+  auto* command = new QAction(name, &window);
+  command->setShortcut(key);
+  connect(command, &QAction::triggered, this, std::move(does));
+  return command;
+}
+
 void ViewTools::add_commands(QMainWindow& window) {
-  leave_ = new QAction(tr("Leave the tool"), &window);
-  leave_->setShortcut(Qt::Key_Escape);
-  connect(leave_, &QAction::triggered, this, &ViewTools::escape);
-  for (const auto& [name, key, steps] : {std::tuple{tr("Turn to the left"), Qt::Key_Comma, 1},
-                                         std::tuple{tr("Turn to the right"), Qt::Key_Period, -1}}) {
-    turns_.push_back(new QAction(name, &window));
-    turns_.back()->setShortcut(key);
-    connect(turns_.back(), &QAction::triggered, this,
-            [this, steps = steps] { place_.turn(steps * PlaceTool::kTurnDeg); });
-  }
-  remove_ = new QAction(tr("Remove what the tool has chosen"), &window);
-  remove_->setShortcut(QKeySequence::Delete);
-  connect(remove_, &QAction::triggered, this, &ViewTools::remove);
+  const auto turn = [this](double degrees) { return [this, degrees] { place_.turn(degrees); }; };
+  const auto scale = [this](double factor) {
+    return [this, factor] { set_radius(mask_.brush().radius_m * factor); };
+  };
+  const double degrees = PlaceTool::kTurnDeg;
+  commands_ = {
+      {&place_, add_command(window, tr("Turn to the left"), Qt::Key_Comma, turn(degrees))},
+      {&place_, add_command(window, tr("Turn to the right"), Qt::Key_Period, turn(-degrees))},
+      {&mask_, add_command(window, tr("Smaller brush"), Qt::Key_BracketLeft, scale(1 / kGrowth))},
+      {&mask_, add_command(window, tr("Larger brush"), Qt::Key_BracketRight, scale(kGrowth))},
+      {&mask_, erase_},
+      {&mask_, new_mask_}};
+  remove_ = add_command(window, tr("Remove what the tool has chosen"), QKeySequence::Delete,
+                        [this] { remove(); });
+  leave_ = add_command(window, tr("Leave the tool"), Qt::Key_Escape, [this] { escape(); });
 }
 
 void ViewTools::add_to_menu(QMenu& menu) {
   for (const auto& [tool, button] : buttons_)
     menu.addAction(button);
   menu.addSeparator();
-  for (QAction* turn : turns_)
-    menu.addAction(turn);
+  for (const auto& [tool, command] : commands_)
+    menu.addAction(command);
+  menu.addSeparator();
   menu.addActions({remove_, leave_});
 }
 
@@ -143,10 +206,11 @@ void ViewTools::turn_on(ViewTool* tool) {
     button->setChecked(of == tool);
   for (const auto& [of, action] : of_tools_)
     action->setVisible(of == tool);
+  for (const auto& [of, command] : commands_)
+    command->setEnabled(of == tool);
   leave_->setEnabled(tool != nullptr);
-  remove_->setEnabled(tool != nullptr);
-  for (QAction* turn : turns_)
-    turn->setEnabled(tool == &place_);
+  remove_->setEnabled(tool == &road_ || tool == &place_);
+  if (tool == &mask_) fill_masks();
 }
 
 void ViewTools::leave() {
@@ -165,6 +229,7 @@ void ViewTools::remove() {
 void ViewTools::fill_lists() {
   if (roads_ != nullptr) fill_roads();
   if (types_ != nullptr) fill_types();
+  if (masks_ != nullptr) fill_masks();
 }
 
 void ViewTools::fill_roads() {
@@ -180,6 +245,32 @@ void ViewTools::fill_types() {
   for (const std::string& type : place_.types())
     names += QString::fromStdString(type);
   fill(*types_, names, static_cast<int>(names.indexOf(QString::fromStdString(place_.type()))));
+}
+
+void ViewTools::fill_masks() {
+  const ParsedWorldPtr parsed = document_.parsed();
+  QStringList names;
+  for (const world::Scatter& scatter : parsed->world.scatter) {
+    const std::string name(parsed->registry[scatter.model].name());
+    const QString mask =
+        scatter.mask.image.empty() ? tr("no mask") : QString::fromStdString(scatter.mask.image);
+    names += tr("%1: %2").arg(QString::fromStdString(name), mask);
+  }
+  if (view_.tool() == &mask_ && !mask_.scatter() && !names.isEmpty()) mask_.choose(0);
+  fill(*masks_, names, mask_.scatter() ? static_cast<int>(*mask_.scatter()) : -1);
+  new_mask_->setEnabled(view_.tool() == &mask_ && mask_.scatter() && !mask_.has_picture());
+}
+
+// Around the camera.
+void ViewTools::make_mask() {
+  const core::CameraPose& pose = view_.camera().pose();
+  const double block_m = document_.world().block_size_m();
+  mask_.make_mask({pose.position.block.x * block_m + pose.position.local.x,
+                   pose.position.block.z * block_m + pose.position.local.z});
+}
+
+void ViewTools::set_radius(double radius_m) {
+  radius_->setValue(radius_m);
 }
 
 }  // namespace psygen::editor

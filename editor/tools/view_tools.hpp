@@ -1,6 +1,6 @@
 // The tools of the view and the way to them: a bar with buttons and what the chosen tool needs, a
 // menu, shortcuts. One tool at most is on; Esc leaves it. What a tool does is its own (road_tool,
-// place_tool).
+// place_tool, mask_tool).
 // Main thread.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "editor/document/document.hpp"
+#include "editor/tools/mask_tool.hpp"
 #include "editor/tools/place_tool.hpp"
 #include "editor/tools/road_tool.hpp"
 #include "editor/view/world_view.hpp"
@@ -16,6 +17,8 @@
 class QAction;
 class QActionGroup;
 class QComboBox;
+class QDoubleSpinBox;
+class QKeySequence;
 class QLabel;
 class QMainWindow;
 class QMenu;
@@ -36,6 +39,7 @@ class ViewTools final : public QObject {
   void leave();
   RoadTool& road() { return road_; }
   PlaceTool& place() { return place_; }
+  MaskTool& mask() { return mask_; }
 
  Q_SIGNALS:
   void told(const QString& sentence);
@@ -51,6 +55,10 @@ class ViewTools final : public QObject {
   void add_of_tool(QWidget* widget);
   void add_roads();
   void add_places();
+  void add_masks();
+  void add_brush();
+  QAction* add_command(QMainWindow& window, const QString& name, const QKeySequence& key,
+                       std::function<void()> does);
   void add_commands(QMainWindow& window);
   void turn_on(ViewTool* tool);
   void escape();
@@ -58,6 +66,9 @@ class ViewTools final : public QObject {
   void fill_lists();
   void fill_roads();
   void fill_types();
+  void fill_masks();
+  void make_mask();
+  void set_radius(double radius_m);
 
   Document& document_;
   WorldView& view_;
@@ -76,7 +87,12 @@ class ViewTools final : public QObject {
   PlaceTool place_;
   QComboBox* roads_ = nullptr;
   QComboBox* types_ = nullptr;
-  std::vector<QAction*> turns_;
+  MaskTool mask_;
+  QComboBox* masks_ = nullptr;
+  QAction* new_mask_ = nullptr;
+  QDoubleSpinBox* radius_ = nullptr;
+  QAction* erase_ = nullptr;
+  std::vector<OfTool> commands_;  // that are enabled with their tool
 };
 
 }  // namespace psygen::editor

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include "engine/world/surface.hpp"
 
@@ -54,24 +55,34 @@ std::optional<glm::vec2> Lens::pixel_of(const core::WorldPosition& at) const {
 
 void ToolOverlay::set(const ToolMarks& marks, const world::World& world) {
   if (!stale_ && marks == marks_) return;
-  stale_ = false;
-  marks_ = marks;
-  handles_.clear();
-  for (const ToolMarks::Handle& handle : marks_.handles)
-    handles_.push_back(on_surface(handle.at_m, world));
-  lines_.clear();
-  for (const ToolMarks::Line& line : marks_.lines) {
-    std::vector<OnGround>& drawn = lines_.emplace_back();
-    for (std::size_t i = 0; i < line.points_m.size(); ++i) {
-      const glm::dvec2 from = line.points_m[i];
-      const glm::dvec2 to = i + 1 < line.points_m.size() ? line.points_m[i + 1] : from;
-      const int pieces =
-          std::clamp(static_cast<int>(std::ceil(glm::length(to - from) / kPieceM)), 1, kMostPieces);
-      for (int k = 0; k < pieces; ++k)
-        drawn.push_back(
-            {on_surface(from + (to - from) * (static_cast<double>(k) / pieces), world), i});
-    }
+  const bool same_ground = !std::exchange(stale_, false);
+  const ToolMarks was = std::exchange(marks_, marks);
+  const auto handles = std::exchange(handles_, {});
+  auto lines = std::exchange(lines_, {});
+  for (std::size_t i = 0; i < marks_.handles.size(); ++i) {
+    const glm::dvec2 at_m = marks_.handles[i].at_m;
+    const bool same = same_ground && i < handles.size() && was.handles[i].at_m == at_m;
+    handles_.push_back(same ? handles[i] : on_surface(at_m, world));
   }
+  for (std::size_t i = 0; i < marks_.lines.size(); ++i) {
+    const auto& points = marks_.lines[i].points_m;
+    const bool same = same_ground && i < lines.size() && was.lines[i].points_m == points;
+    lines_.push_back(same ? std::move(lines[i]) : line_on_ground(points, world));
+  }
+}
+
+std::vector<ToolOverlay::OnGround> ToolOverlay::line_on_ground(
+    const std::vector<glm::dvec2>& points, const world::World& world) {
+  std::vector<OnGround> line;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const glm::dvec2 from = points[i], to = i + 1 < points.size() ? points[i + 1] : from;
+    const int pieces =
+        std::clamp(static_cast<int>(std::ceil(glm::length(to - from) / kPieceM)), 1, kMostPieces);
+    for (int k = 0; k < pieces; ++k)
+      line.push_back(
+          {on_surface(from + (to - from) * (static_cast<double>(k) / pieces), world), i});
+  }
+  return line;
 }
 
 void ToolOverlay::add_lines(const core::WorldPosition& eye, double block_m,

@@ -53,6 +53,8 @@ class ToolOverlay {
     core::WorldPosition at;
     std::size_t part = 0;
   };
+  static std::vector<OnGround> line_on_ground(const std::vector<glm::dvec2>& points,
+                                              const world::World& world);
 
   ToolMarks marks_;
   bool stale_ = true;

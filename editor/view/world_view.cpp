@@ -29,9 +29,11 @@ WorldView::~WorldView() {
   close();
 }
 
-void WorldView::show_world(std::string text, std::string file, bool anew) {
+void WorldView::show_world(std::string text, std::string file, bool anew,
+                           handmade::MemoryPicturesPtr pictures) {
   text_ = std::move(text);
   file_ = std::move(file);
+  pictures_ = std::move(pictures);
   text_is_new_ = true;
   failed_ = false;
   since_text_.start();
@@ -43,6 +45,7 @@ void WorldView::open() {
   app::SessionOptions options = options_;
   options.world_text = text_;
   options.world_file = file_;
+  options.files = handmade::files_with(file_, pictures_);
   options.surface = &surface_;
   options.size = surface_.framebuffer_size();
   text_is_new_ = false;
@@ -99,6 +102,7 @@ bool WorldView::event(QEvent* event) {
 void WorldView::take_text() {
   if (prepared_.valid() || !std::exchange(text_is_new_, false)) return;
   since_prepared_ = since_text_;
+  session_->set_files(handmade::files_with(session_->options().world_file, pictures_));
   using Task = std::packaged_task<core::Result<scene::PreparedWorld>()>;
   const auto task = std::make_shared<Task>(session_->prepare_world(text_));
   prepared_ = task->get_future();

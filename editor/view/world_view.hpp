@@ -25,6 +25,7 @@
 #include "editor/view/view_tool.hpp"
 #include "editor/view/window_surface.hpp"
 #include "engine/app/session.hpp"
+#include "engine/handmade/files.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace psygen::editor {
@@ -41,8 +42,10 @@ class WorldView final : public QWindow {
   ~WorldView() override;
 
   // Shows the world of a text from the next picture on. `file` is for messages and the folder of
-  // its pictures. `anew`: opens another session, as for another file.
-  void show_world(std::string text, std::string file, bool anew);
+  // its pictures, of which `pictures` are in memory. `anew`: opens another session, as for another
+  // file.
+  void show_world(std::string text, std::string file, bool anew,
+                  handmade::MemoryPicturesPtr pictures = {});
   // Null until the window was seen, and while there is no world that can be drawn.
   app::Session* session() { return session_.get(); }
   ViewCamera& camera() { return camera_; }
@@ -114,6 +117,7 @@ class WorldView final : public QWindow {
   WindowSurface surface_;
   std::unique_ptr<app::Session> session_;
   std::string text_, file_;
+  handmade::MemoryPicturesPtr pictures_;
   bool text_is_new_ = false, paused_ = false, failed_ = false, has_hung_ = false, draft_ = false;
   std::bitset<2> beside_;  // by Beside
   ViewCamera camera_;

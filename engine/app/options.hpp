@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,10 @@
 
 namespace psygen::scene {
 struct Systems;
+}
+
+namespace psygen::world {
+class FilesBeside;
 }
 
 namespace psygen::app {
@@ -55,6 +60,8 @@ struct SessionOptions {
   // The world in place of what the file has, of which only the name is used then: in messages, and
   // for the folder of its pictures.
   std::optional<std::string> world_text;
+  // What reads the files beside it; null: handmade::files().
+  std::shared_ptr<const world::FilesBeside> files;
   core::Extent size{1280, 720};
   bool headless = false;
   // Draws into a window of the program's own, as of an editor; outlives the session, which opens

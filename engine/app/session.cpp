@@ -82,7 +82,7 @@ core::Result<void> Session::open() {
   if (auto ok = scene::Scene::check(options_.scene); !ok) return ok;
   auto registry = make_registry(options_.plugins);
   if (!registry) return tl::unexpected(registry.error());
-  auto world = read_world(options_.world_text, *registry);
+  auto world = read_world(options_.world_text, *registry, options_.files.get());
   if (!world) return tl::unexpected(world.error());
   auto ground = read_ground_pictures(*world, options_.world_file);
   if (!ground) return tl::unexpected(ground.error());
@@ -95,10 +95,11 @@ core::Result<void> Session::open() {
 }
 
 core::Result<world::World> Session::read_world(std::optional<std::string_view> text,
-                                               models::Registry& registry) const {
-  auto world =
-      text ? world::parse_world(*text, options_.world_file.string(), registry, &handmade::files())
-           : world::load_world(options_.world_file, registry, &handmade::files());
+                                               models::Registry& registry,
+                                               const world::FilesBeside* files) const {
+  if (files == nullptr) files = &handmade::files();
+  auto world = text ? world::parse_world(*text, options_.world_file.string(), registry, files)
+                    : world::load_world(options_.world_file, registry, files);
   if (!world) return world;
   if (auto ok = set_hour(options_, *world); !ok) return tl::unexpected(ok.error());
   return world;
@@ -111,9 +112,9 @@ core::Result<void> Session::set_world(std::string_view text) {
 }
 
 std::function<core::Result<scene::PreparedWorld>()> Session::prepare_world(std::string text) const {
-  return [this, text = std::move(text), snapshot = scene_->snapshot()] {
+  return [this, text = std::move(text), files = options_.files, snapshot = scene_->snapshot()] {
     return make_registry(options_.plugins).and_then([&](models::Registry registry) {
-      return read_world(text, registry).and_then([&](world::World world) {
+      return read_world(text, registry, files.get()).and_then([&](world::World world) {
         return scene::prepare_world(std::move(world), std::move(registry), snapshot);
       });
     });

@@ -36,8 +36,9 @@ namespace psygen::telemetry {
 class TraceLog;
 }
 namespace psygen::world {
+class FilesBeside;
 struct World;
-}
+}  // namespace psygen::world
 
 namespace psygen::app {
 
@@ -111,6 +112,10 @@ class Session {
   // The same in two steps: any thread may call what this returns, while the session lives, also
   // the plugins' register_models; then the main thread shows the world that it has made.
   std::function<core::Result<scene::PreparedWorld>()> prepare_world(std::string text) const;
+  // The files beside the worlds of the next texts (SessionOptions::files).
+  void set_files(std::shared_ptr<const world::FilesBeside> files) {
+    options_.files = std::move(files);
+  }
   core::Result<void> show_world(scene::PreparedWorld prepared);
 
   // Draws with another preset from the next tick on. The window stays alive meanwhile. Fails as
@@ -136,7 +141,8 @@ class Session {
   explicit Session(SessionOptions options);
   core::Result<void> open();
   core::Result<world::World> read_world(std::optional<std::string_view> text,
-                                        models::Registry& registry) const;
+                                        models::Registry& registry,
+                                        const world::FilesBeside* files) const;
   core::Result<void> open_window(const std::string& title);
   core::Result<void> open_renderer(GroundPictures ground, Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);

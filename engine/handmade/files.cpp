@@ -51,8 +51,7 @@ core::Result<PicturePtr> read_picture(const fs::path& file) {
   auto picture = std::make_shared<world::GreyPicture>();
   picture->width = image->width, picture->height = image->height;
   picture->pixels = std::move(image->grey);
-  picture->hash =
-      core::combine(core::hash_bytes(std::as_bytes(std::span(picture->pixels))), picture->width);
+  picture->hash = world::content_hash(*picture);
   return picture;
 }
 
@@ -130,11 +129,45 @@ class Files final : public world::FilesBeside {
   mutable InUse<FileState, world::GreyPicture> pictures_;
 };
 
+class FilesWithPictures final : public world::FilesBeside {
+ public:
+  FilesWithPictures(const fs::path& world_file, MemoryPicturesPtr pictures)
+      : folder_(world_file.parent_path()), pictures_(std::move(pictures)) {}
+
+  core::Result<std::unique_ptr<models::ModelType>> read_model(
+      const fs::path& file, const world::HandmadeModel& model) const override {
+    return files().read_model(file, model);
+  }
+  core::Result<PicturePtr> read_grey(const fs::path& file) const override {
+    if (auto found = find(pictures_->in_place, file)) return found;
+    auto read = files().read_grey(file);
+    if (read) return read;
+    if (auto found = find(pictures_->where_missing, file)) return found;
+    return read;
+  }
+
+ private:
+  PicturePtr find(const NamedPictures& pictures, const fs::path& file) const {
+    for (const auto& [name, picture] : pictures) {
+      if (folder_ / name == file) return picture;
+    }
+    return nullptr;
+  }
+
+  fs::path folder_;
+  MemoryPicturesPtr pictures_;
+};
+
 }  // namespace
 
 const world::FilesBeside& files() {
   static const Files reader;
   return reader;
+}
+
+FilesPtr files_with(const fs::path& world_file, MemoryPicturesPtr pictures) {
+  if (!pictures) return {&files(), [](const world::FilesBeside*) {}};
+  return std::make_shared<FilesWithPictures>(world_file, std::move(pictures));
 }
 
 }  // namespace psygen::handmade

@@ -3,6 +3,11 @@
 // textures and animations (engine/prefab). Any thread; too slow for the tick.
 #pragma once
 
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
 #include "engine/world/files/files_beside.hpp"
 
 namespace psygen::handmade {
@@ -10,5 +15,17 @@ namespace psygen::handmade {
 // The reader of this program. Models of .glb files that some registry still has are not read again,
 // unless their file has changed.
 const world::FilesBeside& files();
+
+// Pictures in memory, by the names that a world file has for them.
+using NamedPictures = std::map<std::string, std::shared_ptr<const world::GreyPicture>>;
+struct MemoryPictures {
+  NamedPictures in_place;       // in place of what the files hold, or of files that are not there
+  NamedPictures where_missing;  // only where a file cannot be read
+};
+using MemoryPicturesPtr = std::shared_ptr<const MemoryPictures>;
+using FilesPtr = std::shared_ptr<const world::FilesBeside>;
+
+// files(), with pictures that an editor has not written yet; null: files() alone.
+FilesPtr files_with(const std::filesystem::path& world_file, MemoryPicturesPtr pictures);
 
 }  // namespace psygen::handmade

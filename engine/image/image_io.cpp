@@ -102,19 +102,38 @@ core::Result<GreyImage> read_grey(const std::filesystem::path& path, const Image
   });
 }
 
-core::Result<void> write_png(const std::filesystem::path& path, const Image& image) {
-  constexpr std::uint32_t kLargest = 1U << 20;  // pixels per side
-  if (image.width == 0 || image.height == 0 || !is_valid(image) || image.width > kLargest ||
+namespace {
+
+constexpr std::uint32_t kLargest = 1U << 20;  // pixels per side
+
+// `bytes_given` are those of the pixels.
+template <class Picture, class Encode>
+core::Result<void> write_any_png(const std::filesystem::path& path, const Picture& image,
+                                 bool is_sound, std::size_t bytes_given, const Encode& encode) {
+  if (image.width == 0 || image.height == 0 || !is_sound || image.width > kLargest ||
       image.height > kLargest) {
     return fail_at(ErrorCode::kInvalidArgument, path,
                    fmt::format("a picture of {} x {} pixels with {} bytes cannot be written",
-                               image.width, image.height, image.rgba.size()));
+                               image.width, image.height, bytes_given));
   }
   return without_exceptions(path, ErrorCode::kIo, [&]() -> core::Result<void> {
-    return with_path(path, picture_codec().and_then(
-                               [&](const PictureCodec* codec) { return codec->encode_png(image); }))
-        .and_then([&](const Bytes& bytes) { return core::replace_file(path, bytes); });
+    return with_path(path, picture_codec().and_then(encode)).and_then([&](const Bytes& bytes) {
+      return core::replace_file(path, bytes);
+    });
   });
+}
+
+}  // namespace
+
+core::Result<void> write_png(const std::filesystem::path& path, const Image& image) {
+  return write_any_png(path, image, is_valid(image), image.rgba.size(),
+                       [&](const PictureCodec* codec) { return codec->encode_png(image); });
+}
+
+core::Result<void> write_png(const std::filesystem::path& path, const GreyImage& image) {
+  const bool is_sound = image.grey.size() == std::size_t{image.width} * image.height;
+  return write_any_png(path, image, is_sound, 2 * image.grey.size(),
+                       [&](const PictureCodec* codec) { return codec->encode_grey_png(image); });
 }
 
 }  // namespace psygen::image

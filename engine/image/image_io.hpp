@@ -45,5 +45,7 @@ core::Result<GreyImage> read_grey(const std::filesystem::path& path,
 // Fails with kInvalidArgument (no pixels, more than 2^20 per side, or bytes that do not match the
 // size) or kIo. Also fails like load_picture_libraries().
 core::Result<void> write_png(const std::filesystem::path& path, const Image& image);
+// The same for grey values, with 16 bits: read_grey() reads them back equal.
+core::Result<void> write_png(const std::filesystem::path& path, const GreyImage& image);
 
 }  // namespace psygen::image

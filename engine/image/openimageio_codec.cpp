@@ -103,21 +103,31 @@ core::Result<GreyImage> decode_grey(std::span<const std::uint8_t> bytes,
   return means_of(*decoded, header, [](std::uint16_t v) { return std::uint32_t{v}; });
 }
 
-core::Result<Bytes> encode_png(const Image& image) {
+core::Result<Bytes> encode(const OIIO::ImageSpec& spec, const void* pixels) {
   Bytes bytes;
   OIIO::Filesystem::IOVecOutput writer(bytes);
   const auto output = OIIO::ImageOutput::create("png");
   if (!output) return core::fail(ErrorCode::kInternal, OIIO::geterror());
   output->threads(1);
+  if (!output->set_ioproxy(&writer) || !output->open("picture.png", spec) ||
+      !output->write_image(spec.format, pixels) || !output->close()) {
+    return core::fail(ErrorCode::kIo, "cannot be encoded: " + output->geterror());
+  }
+  return bytes;
+}
+
+core::Result<Bytes> encode_png(const Image& image) {
   OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 4,
                        OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  if (!output->set_ioproxy(&writer) || !output->open("picture.png", spec) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, image.rgba.data()) || !output->close()) {
-    return core::fail(ErrorCode::kIo, "cannot be encoded: " + output->geterror());
-  }
-  return bytes;
+  return encode(spec, image.rgba.data());
+}
+
+core::Result<Bytes> encode_grey_png(const GreyImage& image) {
+  const OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 1,
+                             OIIO::TypeDesc::UINT16);
+  return encode(spec, image.grey.data());
 }
 
 }  // namespace
@@ -125,4 +135,5 @@ core::Result<Bytes> encode_png(const Image& image) {
 
 extern "C" __attribute__((visibility("default")))
 const psygen::image::PictureCodec psygen_picture_codec = {
-    psygen::image::decode, psygen::image::decode_grey, psygen::image::encode_png};
+    psygen::image::decode, psygen::image::decode_grey, psygen::image::encode_png,
+    psygen::image::encode_grey_png};

@@ -26,6 +26,8 @@ struct PictureCodec {
   // Encodes a valid picture as a PNG file. Fails with kIo, or with kInternal when OpenImageIO lacks
   // the format.
   core::Result<std::vector<std::uint8_t>> (*encode_png)(const Image& image);
+  // The same for grey values, with all their bits.
+  core::Result<std::vector<std::uint8_t>> (*encode_grey_png)(const GreyImage& image);
 };
 
 // Checks that the memory and the threads exist which the library takes while it is loaded. Fails

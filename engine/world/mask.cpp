@@ -68,6 +68,10 @@ double GreyPicture::at(double u, double v) const {
          (value(left, below) * (1 - s) + value(right, below) * s) * t;
 }
 
+std::uint64_t content_hash(const GreyPicture& picture) {
+  return core::combine(core::hash_bytes(std::as_bytes(std::span(picture.pixels))), picture.width);
+}
+
 bool operator==(const ScatterMask& a, const ScatterMask& b) {
   const auto content = [](const ScatterMask& m) { return m.picture ? m.picture->hash : 0; };
   return a.image == b.image && content(a) == content(b) && a.area_m == b.area_m &&

@@ -23,6 +23,9 @@ struct GreyPicture {
   double at(double u, double v) const;
 };
 
+// What GreyPicture::hash must be.
+std::uint64_t content_hash(const GreyPicture& picture);
+
 struct ScatterMask {
   std::string image;  // relative to the folder of the world's file; empty: none
   std::shared_ptr<const GreyPicture> picture;

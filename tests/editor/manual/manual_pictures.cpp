@@ -262,6 +262,18 @@ void take_tools(Photographer& take, MainWindow& window) {
       click(tools->place(), ground.at(24 * i - 60, 6 * (i % 2) + 8 * i - 20));
     tools->place().hover(ground.at(4, -22));
   });
+  take_tool(take, "Paint masks", "mask", [&] {
+    MaskTool& mask = tools->mask();
+    mask.choose(section_called(take.document(), "scatter", "spruce").steps[1].index);
+    mask.make_mask(*ground.at(0, 0).ground_m);
+    take.command("Erase");
+    mask.press(ground.at(-70, 10));
+    for (const auto& [right_m, beyond_m] :
+         {std::pair{-40, 0}, std::pair{-10, 5}, std::pair{10, 20}, std::pair{20, 40}})
+      mask.drag(ground.at(right_m, beyond_m));
+    mask.release();
+    mask.hover(ground.at(14, 4));
+  });
 }
 
 // A few seconds straight ahead are recorded and flown.

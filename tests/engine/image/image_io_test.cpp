@@ -66,6 +66,10 @@ TEST(ImageIo, ReadsGreyValuesWithSixteenBits) {
   const auto mean = read_grey(folder / "red.png");
   ASSERT_TRUE(mean) << mean.error().message;
   EXPECT_EQ(mean->grey, std::vector<std::uint16_t>(3, 21845));
+  const GreyImage steps{3, 2, {0, 1, 257, 32768, 65534, 65535}};
+  ASSERT_TRUE(write_png(folder / "steps.png", steps));
+  EXPECT_EQ(read_grey(folder / "steps.png")->grey, steps.grey) << "all 16 bits are written";
+  EXPECT_FALSE(write_png(folder / "steps.png", GreyImage{3, 2, {0, 1}}));
   EXPECT_EQ(read_grey(folder / "no.png").error().code, ErrorCode::kIo);
   EXPECT_EQ(read_grey(folder / "red.png", {2, 2, 16, 1000}).error().code, ErrorCode::kOverBudget);
 }

@@ -1,0 +1,172 @@
+// The pictures of a document that are painted: they are held in memory until the world is saved,
+// and are then written beside its file.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <set>
+
+#include "editor/document/document.hpp"
+#include "engine/handmade/files.hpp"
+#include "engine/image/image_io.hpp"
+
+namespace psygen::editor {
+namespace {
+
+// The picture of a name that a world has.
+PicturePtr picture_of(const world::World& world, const std::string& name) {
+  for (const world::Scatter& scatter : world.scatter)
+    if (scatter.mask.image == name) return scatter.mask.picture;
+  for (const world::Stamp& stamp : world.shaped.stamps)
+    if (stamp.image == name) return stamp.picture;
+  return nullptr;
+}
+
+core::Result<void> write_picture(const std::filesystem::path& file,
+                                 const world::GreyPicture& picture) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && access(file.c_str(), W_OK) != 0)
+    return core::fail(core::ErrorCode::kIo,
+                      fmt::format("{}: the picture is read-only; make it writable and save again, "
+                                  "or save the world in another folder",
+                                  file.string()));
+  std::filesystem::create_directories(file.parent_path(), error);  // writing says what is wrong
+  return image::write_png(file, image::GreyImage{picture.width, picture.height, picture.pixels});
+}
+
+}  // namespace
+
+PicturePtr Document::picture(const std::string& name) const {
+  if (pictures_) {
+    const auto found = pictures_->in_place.find(name);
+    if (found != pictures_->in_place.end()) return found->second;
+  }
+  return picture_of(world(), name);
+}
+
+// Only those that the world names: undo may bring the others back.
+std::vector<std::string> Document::unsaved_pictures() const {
+  std::vector<std::string> names;
+  if (!pictures_) return names;
+  for (const auto& [name, painted] : pictures_->in_place)
+    if (picture_of(world(), name) != nullptr) names.push_back(name);
+  return names;
+}
+
+// What is on the disk is read from there again.
+handmade::MemoryPicturesPtr Document::with_picture(const std::string& name,
+                                                   const PicturePtr& picture) const {
+  auto next = pictures_ ? std::make_shared<handmade::MemoryPictures>(*pictures_)
+                        : std::make_shared<handmade::MemoryPictures>();
+  const auto disk = disk_pictures_.find(name);
+  const bool is_on_disk = picture && disk != disk_pictures_.end() && disk->second == picture->hash;
+  if (picture && !is_on_disk)
+    next->in_place[name] = picture;
+  else
+    next->in_place.erase(name);
+  if (picture) next->where_missing[name] = picture;
+  return next;
+}
+
+core::Result<void> Document::show_pictures(handmade::MemoryPicturesPtr pictures,
+                                           const std::string& text) {
+  auto parsed = parse_world_text(text, name(), options_.register_models,
+                                 handmade::files_with(name(), pictures).get());
+  if (!parsed) return tl::unexpected(std::move(parsed.error()));
+  next_parsed_ = *std::move(parsed);
+  pictures_ = std::move(pictures);
+  return {};
+}
+
+void Document::note_on_disk(const std::string& name) {
+  const bool is_painted = pictures_ && pictures_->in_place.contains(name);
+  if (const PicturePtr now = picture(name); now && !is_painted) disk_pictures_[name] = now->hash;
+}
+
+core::Result<void> Document::preview_picture(const std::string& name, const PicturePtr& picture) {
+  note_on_disk(name);
+  if (auto shown = show_pictures(with_picture(name, picture), *text_); !shown) return shown;
+  show(text_);
+  return {};
+}
+
+core::Result<void> Document::paint(const QString& step, std::vector<PaintChange> changes,
+                                   std::string text) {
+  const handmade::MemoryPicturesPtr before = pictures_;
+  for (const PaintChange& change : changes) {
+    note_on_disk(change.name());
+    pictures_ = with_picture(change.name(), change.applied(picture(change.name()), true));
+  }
+  auto shown = show_pictures(pictures_, text);
+  pictures_ = before;
+  if (!shown) return shown;
+  Edit edit{std::move(text), step, {}, 0, std::move(changes)};
+  make(std::move(edit), std::exchange(next_parsed_, nullptr));
+  return {};
+}
+
+void Document::apply(const std::vector<PaintChange>& changes, bool done) {
+  for (const PaintChange& change : changes)
+    pictures_ = with_picture(change.name(), change.applied(picture(change.name()), done));
+}
+
+core::Result<void> Document::require_known_pictures(const std::filesystem::path& file) {
+  if (!pictures_) return {};
+  const handmade::FilesPtr disk = handmade::files_with(file, nullptr);
+  std::error_code error;
+  for (const auto& [name, painted] : pictures_->in_place) {
+    const std::filesystem::path at = file.parent_path() / name;
+    if (picture_of(world(), name) == nullptr || !std::filesystem::exists(at, error)) continue;
+    const auto now = disk->read_grey(at);
+    const std::uint64_t hash = now ? (*now)->hash : 0;  // what is no picture is somebody's too
+    const auto known = disk_pictures_.find(name);
+    const bool is_known = known != disk_pictures_.end() && known->second == hash;
+    if (is_known || (now && hash == painted->hash)) continue;
+    const auto refused = refused_pictures_.find(at.string());
+    if (refused != refused_pictures_.end() && refused->second == hash) continue;
+    refused_pictures_[at.string()] = hash;
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("{}: the picture there is not the one that was painted on; move "
+                                  "it away to keep it, or save again to replace it",
+                                  at.string()));
+  }
+  return {};
+}
+
+// Copies what a world in another folder would miss. What is there stays.
+core::Result<void> Document::take_along_pictures(const std::filesystem::path& file) const {
+  std::set<std::string> names;
+  for (const world::Scatter& scatter : world().scatter)
+    names.insert(scatter.mask.image);
+  for (const world::Stamp& stamp : world().shaped.stamps)
+    names.insert(stamp.image);
+  for (const std::string& name : names) {
+    const std::filesystem::path from = file_.parent_path() / name, to = file.parent_path() / name;
+    std::error_code error;
+    const bool painted = pictures_ && pictures_->in_place.contains(name);
+    if (name.empty() || painted || std::filesystem::exists(to, error)) continue;
+    std::filesystem::create_directories(to.parent_path(), error);
+    std::filesystem::copy_file(from, to, error);
+    if (error)
+      return core::fail(core::ErrorCode::kIo,
+                        fmt::format("{}: it cannot be copied to {}: {}", from.string(), to.string(),
+                                    error.message()));
+  }
+  return {};
+}
+
+core::Result<void> Document::write_pictures(const std::filesystem::path& file) {
+  if (auto known = require_known_pictures(file); !known) return known;
+  if (!pictures_) return {};
+  auto written = std::make_shared<handmade::MemoryPictures>(*pictures_);
+  for (const auto& [name, painted] : pictures_->in_place) {
+    if (picture_of(world(), name) == nullptr) continue;
+    if (auto ok = write_picture(file.parent_path() / name, *painted); !ok) return ok;
+    disk_pictures_[name] = painted->hash;
+    written->in_place.erase(name);
+  }
+  pictures_ = std::move(written);
+  refused_pictures_.clear();
+  return {};
+}
+
+}  // namespace psygen::editor

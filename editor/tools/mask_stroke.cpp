@@ -1,0 +1,75 @@
+#include "editor/tools/mask_stroke.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace psygen::editor {
+namespace {
+
+constexpr double kHardShare = 0.5;       // of the radius, that is covered as a whole
+constexpr double kLeastRadiusPx = 0.75;  // so that the smallest brush meets a pixel
+
+double to_line(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
+  const glm::dvec2 along = b - a;
+  const double length2 = glm::dot(along, along);
+  const double t = length2 > 0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0;
+  return glm::length(p - (a + t * along));
+}
+
+}  // namespace
+
+double brush_cover(double share) {
+  const double t = std::clamp((1 - share) / (1 - kHardShare), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+MaskStroke::MaskStroke(PicturePtr before, const std::array<double, 4>& area_m, const Brush& brush)
+    : before_(std::move(before)),
+      now_(before_),
+      area_m_(area_m),
+      brush_(brush),
+      pixel_m_((area_m[2] - area_m[0]) / before_->width, (area_m[3] - area_m[1]) / before_->height),
+      covered_(before_->pixels.size()) {
+  brush_.radius_m = std::max(brush_.radius_m, kLeastRadiusPx * std::max(pixel_m_.x, pixel_m_.y));
+}
+
+bool MaskStroke::go_to(glm::dvec2 at_m) {
+  auto next = std::make_shared<world::GreyPicture>(*now_);
+  met_ = false;
+  cover(begun_ ? last_m_ : at_m, at_m, *next);
+  begun_ = true;
+  last_m_ = at_m;
+  if (!met_) return false;
+  next->hash = world::content_hash(*next);
+  now_ = std::move(next);
+  return true;
+}
+
+void MaskStroke::cover(glm::dvec2 from_m, glm::dvec2 to_m, world::GreyPicture& picture) {
+  const glm::dvec2 corner_m(area_m_[0], area_m_[1]);
+  const glm::dvec2 low = (glm::min(from_m, to_m) - brush_.radius_m - corner_m) / pixel_m_;
+  const glm::dvec2 high = (glm::max(from_m, to_m) + brush_.radius_m - corner_m) / pixel_m_;
+  const auto bound = [](double at, std::uint32_t size) {
+    return static_cast<std::uint32_t>(std::clamp(std::floor(at), 0.0, double{1} * size));
+  };
+  const std::uint32_t right = bound(high.x + 1, picture.width);
+  const std::uint32_t bottom = bound(high.y + 1, picture.height);
+  const double target = brush_.erases ? 0 : 65535;
+  for (std::uint32_t y = bound(low.y, picture.height); y < bottom; ++y) {
+    for (std::uint32_t x = bound(low.x, picture.width); x < right; ++x) {
+      const glm::dvec2 middle_m = corner_m + (glm::dvec2(x, y) + 0.5) * pixel_m_;
+      const double cover = 255 * brush_cover(to_line(middle_m, from_m, to_m) / brush_.radius_m);
+      const std::size_t i = std::size_t{y} * picture.width + x;
+      if (cover <= 0) continue;
+      met_ = true;
+      if (cover <= covered_[i]) continue;
+      covered_[i] = static_cast<std::uint8_t>(std::ceil(cover));
+      const double was = before_->pixels[i];
+      const double share = brush_.strength * covered_[i] / 255;
+      picture.pixels[i] = static_cast<std::uint16_t>(std::lround(was + (target - was) * share));
+    }
+  }
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,253 @@
+#include "editor/tools/mask_tool.hpp"
+
+#include <fmt/format.h>
+
+#include <QCoreApplication>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/world/files/text_edit.hpp"
+#include "engine/world/files/toml_values.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr double kWholeWorldM = 4096;  // larger worlds get a mask around a place
+constexpr double kAroundM = 1024;      // its side
+constexpr double kPixelM = 2;
+constexpr std::uint32_t kMostPixels = 1024;  // a side, of a new mask
+constexpr int kCirclePoints = 48, kBorderPieces = 32;
+constexpr int kTicks = 9;  // on each side of the brush's middle
+const glm::vec3 kBrushColour{0.95F, 0.96F, 1.0F}, kEraserColour{1.0F, 0.45F, 0.35F},
+    kAreaColour{0.45F, 0.75F, 1.0F}, kFullColour{0.35F, 0.95F, 0.35F},
+    kEmptyColour{0.95F, 0.25F, 0.2F};
+
+QString mask_words(const char* text) {
+  return QCoreApplication::translate("MaskTool", text);
+}
+
+// An area in whole metres, and how many pixels it gets.
+struct NewMask {
+  std::array<double, 4> area_m{};
+  std::uint32_t width = 0, height = 0;
+};
+
+NewMask new_mask(const world::World& world, glm::dvec2 around_m) {
+  const glm::dvec2 size_m =
+      glm::dvec2(double(world.blocks_x), double(world.blocks_z)) * world.block_size_m();
+  NewMask mask;
+  if (world.is_endless() || std::max(size_m.x, size_m.y) > kWholeWorldM) {
+    const glm::dvec2 corner(std::round(around_m.x - kAroundM / 2),
+                            std::round(around_m.y - kAroundM / 2));
+    mask.area_m = {corner.x, corner.y, corner.x + kAroundM, corner.y + kAroundM};
+  } else {
+    mask.area_m = {0, 0, size_m.x, size_m.y};
+  }
+  const auto pixels = [](double m) {
+    return static_cast<std::uint32_t>(std::clamp(std::ceil(m / kPixelM), 2.0, double(kMostPixels)));
+  };
+  mask.width = pixels(mask.area_m[2] - mask.area_m[0]);
+  mask.height = pixels(mask.area_m[3] - mask.area_m[1]);
+  return mask;
+}
+
+ToolMarks::Line circle(glm::dvec2 middle_m, double radius_m, const glm::vec3& colour) {
+  ToolMarks::Line line;
+  line.colour = colour;
+  for (int i = 0; i <= kCirclePoints; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kCirclePoints;
+    line.points_m.push_back(middle_m + radius_m * glm::dvec2(std::sin(angle), std::cos(angle)));
+  }
+  return line;
+}
+
+// Pieces of its own, because the view follows the ground only so far between two points.
+ToolMarks::Line border(const std::array<double, 4>& area) {
+  const glm::dvec2 corners[] = {{area[0], area[1]},
+                                {area[2], area[1]},
+                                {area[2], area[3]},
+                                {area[0], area[3]},
+                                {area[0], area[1]}};
+  ToolMarks::Line line;
+  line.colour = kAreaColour;
+  for (int side = 0; side < 4; ++side) {
+    for (int i = 0; i < kBorderPieces; ++i)
+      line.points_m.push_back(corners[side] + (corners[side + 1] - corners[side]) *
+                                                  (static_cast<double>(i) / kBorderPieces));
+  }
+  line.points_m.push_back(corners[0]);
+  return line;
+}
+
+// Short strokes on the ground, coloured by the mask.
+void add_ticks(const world::GreyPicture& picture, const std::array<double, 4>& area,
+               glm::dvec2 middle_m, double radius_m, std::vector<ToolMarks::Line>& lines) {
+  const double step_m = 1.5 * radius_m / kTicks;
+  for (int z = -kTicks; z <= kTicks; ++z) {
+    for (int x = -kTicks; x <= kTicks; ++x) {
+      if (x * x + z * z > kTicks * kTicks) continue;
+      const glm::dvec2 at = middle_m + glm::dvec2(x, z) * step_m;
+      const double u = (at.x - area[0]) / (area[2] - area[0]);
+      const double v = (at.y - area[1]) / (area[3] - area[1]);
+      if (u < 0 || u > 1 || v < 0 || v > 1) continue;
+      const auto share = static_cast<float>(picture.at(u, v));
+      const glm::dvec2 half(step_m * 0.2, 0);
+      lines.push_back(
+          {{at - half, at + half}, kEmptyColour + (kFullColour - kEmptyColour) * share});
+    }
+  }
+}
+
+bool is_png(const std::string& name) {
+  return QString::fromStdString(name).endsWith(QStringLiteral(".png"), Qt::CaseInsensitive);
+}
+
+}  // namespace
+
+void MaskTool::choose(std::optional<std::size_t> scatter) {
+  cancel();
+  scatter_ = scatter;
+  host_.chosen(this->scatter() ? world::TextPath{"scatter", *scatter_} : world::TextPath{});
+}
+
+std::optional<std::size_t> MaskTool::scatter() const {
+  const bool there = scatter_ && *scatter_ < host_.document.world().scatter.size();
+  return there ? scatter_ : std::nullopt;
+}
+
+const world::ScatterMask& MaskTool::mask() const {
+  return host_.document.world().scatter[*scatter_].mask;
+}
+
+bool MaskTool::has_picture() const {
+  return scatter() && mask().picture != nullptr;
+}
+
+QString MaskTool::model_name() const {
+  const ParsedWorldPtr parsed = host_.document.parsed();
+  const std::string_view name = parsed->registry[parsed->world.scatter[*scatter_].model].name();
+  return QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size()));
+}
+
+// Beside the world file, unlike the pictures that are there or that the world names.
+std::string MaskTool::free_name() const {
+  const std::filesystem::path& file = host_.document.file();
+  const std::string start =
+      (file.empty() ? "" : file.stem().string() + "_") + model_name().toStdString() + "_mask";
+  for (int number = 1;; ++number) {
+    const std::string name = start + (number == 1 ? "" : fmt::format("_{}", number)) + ".png";
+    std::error_code error;
+    const bool taken = host_.document.picture(name) != nullptr ||
+                       std::filesystem::exists(file.parent_path() / name, error);
+    if (!taken) return name;
+  }
+}
+
+void MaskTool::make_mask(glm::dvec2 around_m) {
+  cancel();
+  if (!scatter()) return host_.say(mask_words("Choose first whose mask it shall be."));
+  if (has_picture()) return host_.say(mask_words("It has a mask: paint on the ground."));
+  const NewMask made = new_mask(host_.document.world(), around_m);
+  auto picture = std::make_shared<world::GreyPicture>();
+  picture->width = made.width, picture->height = made.height;
+  picture->pixels.assign(std::size_t{made.width} * made.height, 65535);
+  picture->hash = world::content_hash(*picture);
+  const std::string name = free_name();
+  const world::TextPath path{"scatter", *scatter_};
+  const auto text =
+      world::with_value(host_.document.text(), path.with("mask_image"), world::toml_string(name))
+          .and_then([&](const std::string& with_image) {
+            return world::with_value(with_image, path.with("mask_area_m"),
+                                     world::toml_vector(made.area_m));
+          });
+  if (!text) return host_.say(QString::fromStdString(text.error().message));
+  const auto done = host_.document.paint(mask_words("New mask of %1").arg(model_name()),
+                                         {PaintChange(name, nullptr, picture)}, *text);
+  if (!host_.tell(done)) return;
+  host_.say(mask_words("%1 stands everywhere in the blue border until you erase, and nowhere else. "
+                       "The mask is written to %2 when the world is saved.")
+                .arg(model_name(), QString::fromStdString(name)));
+}
+
+void MaskTool::set_radius_m(double radius_m) {
+  brush_.radius_m = std::clamp(radius_m, kLeastRadiusM, kMostRadiusM);
+}
+
+void MaskTool::press(const ToolPoint& at) {
+  hover_m_ = at.ground_m;
+  if (!scatter()) return host_.say(mask_words("Choose first whose mask to paint."));
+  if (!has_picture())
+    return host_.say(mask_words("%1 has no mask yet: \"New mask\" makes one.").arg(model_name()));
+  if (!at.ground_m)
+    return host_.say(mask_words("There is no ground under the mouse: paint on the ground."));
+  Brush brush = brush_;
+  if (at.fine) brush.erases = !brush.erases;
+  stroke_.emplace(mask().picture, mask().area_m, brush);
+  host_.set_dragging(true);
+  drag(at);
+  if (stroke_ && stroke_->now() == stroke_->before())
+    host_.say(mask_words("The brush is outside of the mask's area: it ends at the blue border."));
+}
+
+void MaskTool::drag(const ToolPoint& at) {
+  hover_m_ = at.ground_m;
+  if (!stroke_ || !at.ground_m) return;
+  // Undone meanwhile, or the mask is another one.
+  if (!has_picture() || mask().picture->hash != stroke_->now()->hash) {
+    stroke_.reset();
+    return host_.set_dragging(false);
+  }
+  if (stroke_->go_to(*at.ground_m) &&
+      !host_.tell(host_.document.preview_picture(mask().image, stroke_->now())))
+    cancel();
+}
+
+void MaskTool::release() {
+  if (!stroke_) return;
+  const MaskStroke stroke = *std::exchange(stroke_, std::nullopt);
+  if (has_picture() && mask().picture->hash == stroke.now()->hash) keep(mask().image, stroke);
+  host_.set_dragging(false);
+}
+
+void MaskTool::keep(std::string name, const MaskStroke& stroke) {
+  if (stroke.now()->hash == stroke.before()->hash) return;
+  const QString step = mask_words("Paint the mask of %1").arg(model_name());
+  if (is_png(name)) {
+    host_.tell(host_.document.paint(step,
+                                    {PaintChange::between(name, *stroke.before(), *stroke.now())},
+                                    host_.document.text()));
+    return;
+  }
+  // Other formats are read, not written: the picture becomes a new one.
+  const std::string png = free_name();
+  const auto text = world::with_value(host_.document.text(), {"scatter", *scatter_, "mask_image"},
+                                      world::toml_string(png));
+  host_.tell(host_.document.preview_picture(name, stroke.before()));
+  if (!text) return host_.say(QString::fromStdString(text.error().message));
+  if (host_.tell(host_.document.paint(step, {PaintChange(png, nullptr, stroke.now())}, *text)))
+    host_.say(mask_words("%1 stays as it is: masks are written as PNG, to %2.")
+                  .arg(QString::fromStdString(name), QString::fromStdString(png)));
+}
+
+bool MaskTool::cancel() {
+  if (!stroke_) return false;
+  const MaskStroke stroke = *std::exchange(stroke_, std::nullopt);
+  host_.set_dragging(false);
+  if (has_picture() && mask().picture->hash == stroke.now()->hash)
+    host_.tell(host_.document.preview_picture(mask().image, stroke.before()));
+  return true;
+}
+
+const ToolMarks& MaskTool::marks() {
+  marks_ = {};
+  if (has_picture()) marks_.lines.push_back(border(mask().area_m));
+  if (!hover_m_) return marks_;
+  const glm::vec3 colour = brush_.erases ? kEraserColour : kBrushColour;
+  marks_.lines.push_back(circle(*hover_m_, brush_.radius_m, colour));
+  if (has_picture())
+    add_ticks(*mask().picture, mask().area_m, *hover_m_, brush_.radius_m, marks_.lines);
+  return marks_;
+}
+
+}  // namespace psygen::editor
