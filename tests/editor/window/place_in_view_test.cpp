@@ -47,8 +47,8 @@ TEST_F(PlaceInView, IsPlacedDraggedTurnedSavedAndOpenedAgain) {
   click(place(-4, 0));
   ASSERT_EQ(count(), 1U);
   EXPECT_TRUE(near(placed().at_m, place(-4, 0)));
-  settle();
-  EXPECT_GT(difference(picture(), plain), 0.001) << "it stands there";
+  EXPECT_TRUE(QTest::qWaitFor([&] { return difference(picture(), plain) > 0.001; }, kMostMs))
+      << "it stands there";
   drag(placed().at_m, place(4, 2));
   EXPECT_TRUE(near(placed().at_m, place(4, 2)));
   EXPECT_EQ(steps(), 2);
