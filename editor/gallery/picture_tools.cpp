@@ -46,6 +46,7 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
   });
   shown_->setVisible(false);
   window_.statusBar()->addPermanentWidget(shown_);
+  service_.set_pictures([this] { return document_.pictures(); });
   connect(library_, &LibraryPanel::told, this, &PictureTools::told);
   connect(&view_, &WorldView::drawn, this, [this] {
     const scene::State& state = view_.session()->scene().state();

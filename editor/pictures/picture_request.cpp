@@ -52,6 +52,10 @@ QByteArray to_line(const PictureRequest& r) {
                              {"pitch", p.pitch},
                              {"above_ground", p.above_ground}};
   }
+  QJsonObject pictures;
+  for (const auto& [name, file] : r.pictures)
+    pictures[json_text(name)] = json_text(file);
+  if (!pictures.isEmpty()) o["pictures"] = pictures;
   return json_line(o);
 }
 
@@ -74,6 +78,9 @@ std::optional<PictureRequest> request_from(const QByteArray& line) {
   r.block_z = (*o)["block"].toArray().at(1).toInt();
   r.index = static_cast<std::uint32_t>((*o)["index"].toInteger());
   r.level = std::clamp((*o)["level"].toInt(), 0, 31);
+  const QJsonObject pictures = (*o)["pictures"].toObject();
+  for (auto it = pictures.begin(); it != pictures.end(); ++it)
+    r.pictures[it.key().toStdString()] = it.value().toString().toStdString();
   if (const QJsonObject p = (*o)["place"].toObject(); !p.isEmpty()) {
     const QJsonArray at = p["at_m"].toArray();
     r.place = PicturePlace{{at.at(0).toDouble(), at.at(1).toDouble(), at.at(2).toDouble()},

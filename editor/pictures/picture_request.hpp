@@ -7,6 +7,7 @@
 #include <QImage>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -46,6 +47,8 @@ struct PictureRequest {
   std::int32_t block_x = 0, block_z = 0;
   std::uint32_t index = 0;  // of the model within the block
   int level = 0;            // of detail
+  // Pictures beside the world that are not written there yet: files that hold them, by name.
+  std::map<std::string, std::string> pictures = {};
 };
 
 // The answer. `error` is empty for success.

@@ -20,6 +20,7 @@
 #include "editor/pictures/picture_request.hpp"
 #include "engine/app/session.hpp"
 #include "engine/core/log.hpp"
+#include "engine/handmade/files.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/render/software_tuning.hpp"
@@ -102,9 +103,10 @@ class PictureServer {
   PictureReply answer(const PictureRequest& request) {
     PictureReply reply;
     reply.id = request.id;
-    const auto parsed = parse_world_text(request.text, request.file, [this](auto& registry) {
-      return app::register_models(plugins_, registry);
-    });
+    files_ = files_of(request);
+    const auto parsed = parse_world_text(
+        request.text, request.file,
+        [this](auto& registry) { return app::register_models(plugins_, registry); }, files_.get());
     core::Result<void> done;
     if (!parsed) {
       done = tl::unexpected(parsed.error());
@@ -131,6 +133,17 @@ class PictureServer {
     }
     if (!done) reply.error = done.error().message;
     return reply;
+  }
+
+  // Those beside the world, with what is painted and not written there. What cannot be read is told
+  // by whoever reads the world.
+  static handmade::FilesPtr files_of(const PictureRequest& request) {
+    auto pictures = std::make_shared<handmade::MemoryPictures>();
+    for (const auto& [name, file] : request.pictures) {
+      if (auto picture = handmade::files().read_grey(file))
+        pictures->in_place[name] = *std::move(picture);
+    }
+    return handmade::files_with(request.file, std::move(pictures));
   }
 
   const synthesis::CostModel* learnt() const {
@@ -190,12 +203,14 @@ class PictureServer {
       if (session_->picture_size() != request.size) {
         if (auto ok = session_->renderer().resize(request.size); !ok) return ok;
       }
+      session_->set_files(files_);
       return session_->set_world(request.text);
     }
     session_.reset();
     app::SessionOptions options;
     options.world_text = request.text;
     options.world_file = request.file;
+    options.files = files_;
     options.headless = true;
     options.device_name = device_name_;
     options.size = request.size;
@@ -240,6 +255,7 @@ class PictureServer {
   std::vector<app::Plugin> plugins_;
   std::string device_name_;
   std::unique_ptr<app::Session> session_;
+  handmade::FilesPtr files_;  // of the request
   decltype(world::Palette{}.images) images_{};
   std::filesystem::path folder_;
   LineInput input_;

@@ -5,6 +5,8 @@
 #include <QFile>
 #include <algorithm>
 
+#include "engine/image/image_io.hpp"
+
 namespace psygen::editor {
 namespace {
 
@@ -61,8 +63,22 @@ bool PictureService::is_picture(const PictureRequest& request) {
   return request.kind == PictureKind::kPicture || request.kind == PictureKind::kPortrait;
 }
 
+// As files of the service's own, which stay until it ends.
+void PictureService::attach_pictures(PictureRequest& request) {
+  const handmade::MemoryPicturesPtr pictures = ask_pictures_ ? ask_pictures_() : nullptr;
+  if (!pictures) return;
+  for (const auto& [name, picture] : pictures->in_place) {
+    const QString file =
+        folder_.filePath(QString("painted_%1.png").arg(picture->hash, 16, 16, QChar('0')));
+    const image::GreyImage image{picture->width, picture->height, picture->pixels};
+    if (QFile::exists(file) || image::write_png(file.toStdString(), image))
+      request.pictures[name] = file.toStdString();
+  }
+}
+
 void PictureService::ask(PictureRequest request, int batch, double rank, QObject* owner,
                          Done done) {
+  attach_pictures(request);
   request.id = ++last_id_;
   if (request.out.empty() && is_picture(request))
     request.out = folder_.filePath(QString("%1.png").arg(request.id)).toStdString();

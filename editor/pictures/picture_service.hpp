@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "editor/pictures/picture_request.hpp"
+#include "engine/handmade/files.hpp"
 
 namespace psygen::editor {
 
@@ -36,6 +37,10 @@ class PictureService final : public QObject {
   void ask(PictureRequest request, int batch, double rank, QObject* owner, Done done);
   // Forgets what an owner has asked for.
   void cancel(const QObject* owner);
+  // What is painted and not written, asked for with each request; its answer may be null.
+  void set_pictures(std::function<handmade::MemoryPicturesPtr()> ask) {
+    ask_pictures_ = std::move(ask);
+  }
   // The view waits for meshes: pictures wait too, but for no longer than a second. Costs and
   // exports do not.
   void set_busy(bool busy);
@@ -54,6 +59,7 @@ class PictureService final : public QObject {
     bool cancelled = false;
   };
   static bool is_picture(const PictureRequest& request);
+  void attach_pictures(PictureRequest& request);
   void send_next();
   void start();
   void read();
@@ -66,6 +72,7 @@ class PictureService final : public QObject {
   int limit_ms_;
   std::unique_ptr<QProcess> process_;
   QTemporaryDir folder_;
+  std::function<handmade::MemoryPicturesPtr()> ask_pictures_;
   std::deque<Job> queue_;
   std::optional<Job> current_;
   int unanswered_ = 0;  // requests that the process has; more than one: current_ has replaced one

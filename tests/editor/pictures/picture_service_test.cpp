@@ -56,6 +56,27 @@ bool has_colours(const QImage& image) {
   return false;
 }
 
+TEST(PictureService, SeesWhatIsPaintedAndNotWritten) {
+  Serving s;
+  PictureRequest request = picture_of(
+      "format = 1\n[world]\nname = \"painted\"\nseed = 1\nblocks = [4, 4]\n[[scatter]]\n"
+      "model = \"rock\"\ncount = 4\nmask_image = \"not_written.png\"\n",
+      PictureKind::kCost);
+  EXPECT_FALSE(s.answer(request).error.empty());
+  for (const auto grey : {std::uint16_t{0}, std::uint16_t{65535}}) {
+    auto mask = std::make_shared<world::GreyPicture>();
+    mask->width = mask->height = 4;
+    mask->pixels.assign(16, grey);
+    mask->hash = world::content_hash(*mask);
+    auto pictures = std::make_shared<handmade::MemoryPictures>();
+    pictures->in_place["not_written.png"] = mask;
+    s.service.set_pictures([pictures] { return pictures; });
+    const PictureReply reply = s.answer(request);
+    ASSERT_EQ(reply.error, "");
+    EXPECT_EQ(reply.cost->models > 0, grey > 0);
+  }
+}
+
 TEST(PictureService, DrawsWorldsAndModelsAndSaysWhatTheyCost) {
   Serving s;
   const PictureReply world = s.answer(picture_of(testing::world_text("endless")));
