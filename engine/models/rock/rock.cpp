@@ -98,6 +98,12 @@ constexpr std::uint32_t index_list(int subdivisions, bool faceted) {
   return (2U << 24) | (faceted ? 0x100U : 0U) | static_cast<std::uint32_t>(subdivisions + 1);
 }
 
+// The tables of all rocks: constant, and too much work to be made for each registry anew.
+const RockTopology& all_topology() {
+  static const RockTopology topology;
+  return topology;
+}
+
 class RockType final : public ModelType {
  public:
   std::string_view name() const override { return "rock"; }
@@ -123,7 +129,7 @@ class RockType final : public ModelType {
   void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override;
 
  private:
-  RockTopology topology_;
+  const RockTopology& topology_ = all_topology();
 };
 
 // The distance of a unit sphere from its tetrahedron of n subdivisions, plus the displacements that
