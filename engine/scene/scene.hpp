@@ -38,8 +38,9 @@ struct Systems {
 // What prepare_world() has to know of a scene. A copy, for another thread.
 struct SceneSnapshot {
   Settings settings;
-  world::World world;                    // without edits
-  std::vector<core::BlockCoord> blocks;  // whose models exist
+  world::World world;                      // without edits
+  std::vector<core::BlockCoord> blocks;    // whose models exist
+  std::shared_ptr<const Derived> derived;  // of the world; null: nothing can be taken over
 };
 
 // A world that is ready to take the place of a scene's.
@@ -47,12 +48,14 @@ struct PreparedWorld {
   WorldFacts facts;  // without pictures of trees in the renderer
   // Only sky, water, palette or name differ, and of `facts` there is nothing else.
   bool looks_only = false;
-  // What stands on the blocks of the snapshot.
+  // What stands on the blocks of the snapshot, but for the scatters that are the same as in the
+  // world of `before`; null: there are none.
   std::unordered_map<core::BlockCoord, std::vector<world::Placement>, core::BlockCoordHash> models;
+  std::shared_ptr<const Derived> before;
 };
 
 // Does what takes time of taking over another world (Scene::set_world). Any thread. Fails as
-// Scene::create(). Some 10 ms, and 0.2 ms for each block.
+// Scene::create(). Some 10 ms, and 0.2 ms for each block; less where only some scatters differ.
 core::Result<PreparedWorld> prepare_world(world::World world, models::Registry registry,
                                           const SceneSnapshot& snapshot);
 

@@ -3,6 +3,7 @@
 // is synthesis like any other.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "engine/scene/cost_samples.hpp"
@@ -13,6 +14,7 @@
 #include "engine/scene/scene.hpp"
 #include "engine/scene/tree_pictures.hpp"
 #include "engine/scene/world_facts.hpp"
+#include "engine/world/far/tree_pictures.hpp"
 #include "engine/world/ground_blends.hpp"
 
 namespace psygen::scene {
@@ -61,21 +63,65 @@ void destroy_all_nodes(const WorldFacts& facts, State& s) {
   s.draws.handover = {};
 }
 
-void update_all_nodes(PreparedWorld& prepared, State& s) {
+// What stays of the instances of each scatter. Parameters that depend on the ground's slope are
+// drawn where it is known.
+std::vector<KeptModels::Stays> what_stays(const Derived& before, const WorldFacts& facts) {
+  using enum KeptModels::Stays;
+  const Derived& after = *facts.derived;
+  std::vector<KeptModels::Stays> stays(facts.world.scatter.size(), kNothing);
+  if (before.types != after.types || before.parts.ground != after.parts.ground) return stays;
+  for (std::size_t s = 0; s < std::min(stays.size(), before.parts.places.size()); ++s) {
+    if (before.parts.places[s] != after.parts.places[s]) continue;
+    const models::ModelType& type = facts.registry[facts.world.scatter[s].model];
+    const bool slopes = world::slope_parameters(type) != world::SlopeParameters{-1, -1};
+    stays[s] = before.parts.models[s] == after.parts.models[s] ? kAll : slopes ? kNothing : kPlaces;
+  }
+  return stays;
+}
+
+// What stays of a scene's models when the facts `before` are replaced.
+KeptModels kept_models(const WorldFacts& before, const WorldFacts& after) {
+  KeptModels kept{what_stays(*before.derived, after), {}, {}};
+  for (std::size_t s = 0; s < kept.stays.size(); ++s)
+    kept.scatter_of.insert(kept.scatter_of.end(), after.world.scatter[s].count,
+                           static_cast<std::uint32_t>(s));
+  const auto quads = [](const WorldFacts& facts, models::ModelIndex model) {
+    const bool has = model < facts.quad_models.size() && facts.quad_models[model] != 0;
+    return std::pair(has ? facts.quad_models[model] : models::ModelIndex{0},
+                     has ? facts.pictures->identity_of_quads(model) : 0);
+  };
+  const std::size_t types = std::min(before.registry.size(), after.registry.size());
+  for (models::ModelIndex model = 0; model < types; ++model)
+    kept.refit.push_back(before.usual_boxes[model] != after.usual_boxes[model] ||
+                         quads(before, model) != quads(after, model));
+  return kept;
+}
+
+// `kept`: null: nothing.
+void update_all_nodes(PreparedWorld& prepared, const KeptModels* kept, State& s) {
   std::vector<world::Placement> scratch;
   for (const ecs::Entity node : nodes_of(s.entities)) {
     const visibility::NodeCoord at = s.entities.get<Node>(node)->at;
     const auto models = at.level == 0 ? prepared.models.find(at.coord) : prepared.models.end();
     const bool known = models != prepared.models.end();
     if (known) scratch = std::move(models->second);
-    update_node(s.facts, s.daylight, node, {.world = true, .placed = known}, scratch, s.meshes,
-                s.entities, {s.events.created, s.events.removed});
+    const NodeChange change{
+        .ground = kept == nullptr, .world = true, .placed = known, .kept = kept};
+    update_node(s.facts, s.daylight, node, change, scratch, s.meshes, s.entities,
+                {s.events.created, s.events.removed});
   }
 }
 
 world::World without_edits(world::World world) {
   world::set_edits(world, nullptr);
   return world;
+}
+
+// The types that a world came with.
+models::Registry without_own_types(WorldFacts& facts) {
+  models::Registry registry = std::move(facts.registry);
+  registry.shrink(facts.given_types);
+  return registry;
 }
 
 // Whether worlds without edits differ in nothing that meshes or places depend on.
@@ -132,15 +178,22 @@ core::Result<PreparedWorld> prepare_world(world::World world, models::Registry r
   facts.world = std::move(world);
   facts.registry = std::move(registry);
   if (prepared.looks_only) return prepared;
-  if (auto ok = derive(snapshot.settings, true, facts); !ok) return tl::unexpected(ok.error());
+  prepared.before = snapshot.derived;
+  if (auto ok = derive(snapshot.settings, true, facts, prepared.before.get()); !ok)
+    return tl::unexpected(ok.error());
   facts.usual_boxes = usual_boxes(facts.registry, models_on(facts, {}));
+  const std::vector<bool> wanted =
+      prepared.before ? KeptModels{what_stays(*prepared.before, facts), {}, {}}.wanted()
+                      : std::vector<bool>(facts.world.scatter.size(), true);
   for (const core::BlockCoord block : snapshot.blocks)
-    world::place_models(facts.world, facts.registry, block, prepared.models[block]);
+    world::place_models(facts.world, facts.registry, block, wanted, prepared.models[block]);
   return prepared;
 }
 
 SceneSnapshot Scene::snapshot() const {
-  SceneSnapshot snapshot{state_.settings, state_.facts.world, {}};
+  const WorldFacts& facts = state_.facts;
+  SceneSnapshot snapshot{
+      state_.settings, facts.world, {}, facts.world.edits ? nullptr : facts.derived};
   world::set_edits(snapshot.world, nullptr);
   state_.entities.each<const Node>([&](std::span<const ecs::Entity>, std::span<const Node> nodes) {
     for (const Node& node : nodes) {
@@ -162,6 +215,8 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
   // The scene may have changed since the snapshot.
   if (prepared.looks_only && !same_but_looks(next.world, without_edits(s.facts.world)))
     return set_world(std::move(next.world), std::move(next.registry));
+  const bool other = prepared.before && (prepared.before != s.facts.derived || s.facts.world.edits);
+  if (other) return set_world(std::move(next.world), without_own_types(next));
   if (prepared.looks_only) {
     take_over_looks(next.world, s);
     return {};
@@ -169,6 +224,8 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
   if (!show_stand_ins(next, s.facts.pictures.get(), s.output)) {
     if (auto ok = derive(s.settings, false, next); !ok) return ok;
     next.usual_boxes = usual_boxes(next.registry, models_on(next, {}));
+    prepared.models.clear();  // without pictures other things stay
+    prepared.before = nullptr;
   }
   const bool rested = s.meshes.come_to_rest();
   forget_pictures(s.facts, s.meshes);
@@ -178,6 +235,10 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
       same_nodes(s.facts, next) && same_windows(s.streaming.grids, node_grids(s.settings, next));
   if (!same || !same_types(s.facts.registry, next.registry)) s.output.shared_indices.clear();
   if (!same) destroy_all_nodes(next, s);
+  const bool same_ground = same && prepared.before &&
+                           prepared.before->types == next.derived->types &&
+                           prepared.before->parts.ground == next.derived->parts.ground;
+  const auto kept = same_ground ? std::optional(kept_models(s.facts, next)) : std::nullopt;
   std::swap(s.facts, next);
   if (!rested || s.assets.mesh_count() > 0) retired_types_.push_back(std::move(next.registry));
   s.meshes.take_over_types(mesh_notes(s.facts));
@@ -185,7 +246,7 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
   take_over_preset();
   name_types(s.facts.registry, s.trace);
   edit(std::move(s.editing.edits));
-  if (same) update_all_nodes(prepared, s);
+  if (same) update_all_nodes(prepared, kept ? &*kept : nullptr, s);
   for (Foresight::Place& place : s.foresight.places)
     place.stale = true;
   return {};

@@ -40,10 +40,12 @@
 #include "engine/world/edits/edits.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
+#include "engine/world/world_parts.hpp"
 
 namespace psygen::world {
+class FarScatters;
 class PictureSet;
-}
+}  // namespace psygen::world
 
 namespace psygen::scene {
 
@@ -114,6 +116,16 @@ struct Camera {
   std::vector<Prediction> predictions;
 };
 
+// What is derived of a world that the next one can take over where both have parts in common.
+// Immutable; any thread.
+struct Derived {
+  world::WorldParts parts;
+  std::uint64_t types = 0;                             // of the names in the registry, in order
+  std::shared_ptr<const world::FarScatters> scatters;  // whose types may be gone
+  std::vector<double> placed;                          // world::placed_per_block()
+  std::vector<NodeLevel> levels;
+};
+
 // The world and what is derived from it once (world_facts.hpp). Only its edits change, and how far
 // models reach because of them (edits_system); everything else was derived without edits.
 // Scene::set_world() replaces all of it.
@@ -139,6 +151,7 @@ struct WorldFacts {
   models::ModelIndex picture_model = 0;
   std::vector<models::Parameters> picture_parameters;
   std::vector<models::ModelIndex> quad_models;
+  std::shared_ptr<const Derived> derived;
   std::uint32_t models_per_block = 0;
   float cell_m = 1;
   glm::vec2 models_reach_m{0.0F};     // from their foot: sideways, up

@@ -14,6 +14,10 @@
 namespace psygen::scene {
 namespace {
 
+// What is in view in so many layers around the camera comes before pictures, which are seen afar
+// and take long.
+constexpr std::uint32_t kLayers = 3;
+
 std::uint32_t all_of(std::size_t pictures) {
   return static_cast<std::uint32_t>((std::uint64_t{1} << pictures) - 1);
 }
@@ -37,9 +41,11 @@ bool show_stand_ins(const WorldFacts& facts, const world::PictureSet* before, Ou
   if (output.renderer == nullptr) return true;
   const std::size_t count = facts.pictures ? facts.pictures->count() : 0;
   if (output.pictures_shown == count) {
-    const bool other =
-        count > 0 && (before == nullptr || before->identity() != facts.pictures->identity());
-    if (other) output.pictures_lacking = all_of(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool same = before != nullptr &&
+                        before->identity_of_picture(i) == facts.pictures->identity_of_picture(i);
+      if (!same) output.pictures_lacking |= 1U << i;
+    }
     return true;
   }
   std::vector<core::ModelPicture> stand_ins;
@@ -82,7 +88,7 @@ void want_pictures(const WorldFacts& facts, const Output& output, synthesis::Mes
   for (std::size_t i = 0; output.pictures_lacking >> i != 0; ++i) {
     if ((output.pictures_lacking >> i & 1) == 0) continue;
     meshes.want({key_of_picture(facts, i), &facts.picture_parameters[i], owner_of(ecs::kNullEntity),
-                 synthesis::Rank::by_layer(synthesis::RankGroup::kVisibleCoarse, 0, 0.0F)});
+                 synthesis::Rank::by_layer(synthesis::RankGroup::kVisibleCoarse, kLayers, 0.0F)});
   }
 }
 

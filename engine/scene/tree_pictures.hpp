@@ -14,7 +14,7 @@ namespace psygen::scene {
 core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts);
 
 // Gives the renderer a rough stand-in for each, in place of what it had. Where it has as many of
-// this scene already, they stay until the new ones are made, and for good if they are those of
+// this scene already, they stay until the new ones are made, and for good where they are those of
 // `before` (may be null). False if the renderer has no room: that is said in the log.
 bool show_stand_ins(const WorldFacts& facts, const world::PictureSet* before, Output& output);
 

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <memory>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <utility>
 
+#include "engine/core/hash.hpp"
 #include "engine/scene/draws/lighting.hpp"
 #include "engine/scene/nodes/solidity.hpp"
 #include "engine/scene/nodes/usual_boxes.hpp"
@@ -68,12 +71,31 @@ core::Result<void> check_size(const world::World& world, std::span<const NodeLev
           Scene::kMaxEntities));
 }
 
+std::uint64_t hash_of_names(const models::Registry& registry) {
+  std::uint64_t hash = registry.size();
+  for (models::ModelIndex i = 0; i < registry.size(); ++i)
+    hash = core::hash_bytes(std::as_bytes(std::span(registry[i].name())), hash);
+  return hash;
+}
+
+// How many instances of each scatter a block has, of those that find the same places as before.
+std::vector<std::optional<double>> known_placed(const world::WorldParts& parts,
+                                                const Derived* before) {
+  std::vector<std::optional<double>> known(before != nullptr ? parts.places.size() : 0);
+  for (std::size_t s = 0; s < std::min(known.size(), before ? before->placed.size() : 0); ++s) {
+    if (parts.places[s] == before->parts.places[s]) known[s] = before->placed[s];
+  }
+  return known;
+}
+
 // The levels of the quadtree, pictures, and the type of the meshes that stand for everything on a
 // node.
-core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
+core::Result<void> find_levels(const Settings& settings, WorldFacts& facts, const Derived* before) {
   const models::ModelType* merged = nullptr;
   const auto world = std::make_shared<const world::World>(facts.world);
-  const auto scatters = world::far_scatters(world, facts.registry);
+  const auto scatters = world::far_scatters(world, facts.registry,
+                                            before != nullptr ? before->scatters.get() : nullptr);
+  Derived derived{world::parts_of(*world, facts.registry), 0, scatters, {}, {}};
   if (settings.levels_of_detail && world::models_per_block(facts.world) > 0) {
     const auto added = facts.registry.add(
         world::make_merged_type(world, facts.registry, facts.pictures, scatters));
@@ -81,20 +103,28 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts) {
     facts.merged_model = *added;
     merged = &facts.registry[*added];
   }
-  facts.levels = node_levels(facts.world, facts.registry, settings, merged);
+  const bool same_ground = before != nullptr && before->parts.ground == derived.parts.ground;
+  facts.levels = node_levels(facts.world, facts.registry, settings, merged,
+                             same_ground ? before->levels : std::span<const NodeLevel>{});
   const auto size = static_cast<int>(facts.world.terrain.integer(models::kTerrainSize));
   for (int level = 0; level < models::kTerrainLevels; ++level)
     facts.grids.emplace_back(size, level);
   if (facts.levels[0].mesh_level != 0) facts.tiles.emplace(size);
-  const world::FarCover cover = world::far_cover(facts.world, facts.registry, *scatters);
+  derived.placed =
+      world::placed_per_block(facts.world, facts.registry, known_placed(derived.parts, before));
+  const world::FarCover cover = world::far_cover(facts.world, *scatters, derived.placed);
   facts.canopy = canopy_of(facts.world, cover.albedo);
   facts.cover_share = cover.share;
+  derived.types = hash_of_names(facts.registry);
+  derived.levels = facts.levels;
+  facts.derived = std::make_shared<const Derived>(std::move(derived));
   return {};
 }
 
 }  // namespace
 
-core::Result<void> derive(const Settings& settings, bool pictures, WorldFacts& facts) {
+core::Result<void> derive(const Settings& settings, bool pictures, WorldFacts& facts,
+                          const Derived* before) {
   WorldFacts given;
   given.world = std::move(facts.world);
   given.registry = std::move(facts.registry);
@@ -113,7 +143,7 @@ core::Result<void> derive(const Settings& settings, bool pictures, WorldFacts& f
   if (pictures) {
     if (auto ok = find_pictures(settings, facts); !ok) return ok;
   }
-  if (auto ok = find_levels(settings, facts); !ok) return ok;
+  if (auto ok = find_levels(settings, facts, before); !ok) return ok;
   return check_size(world, facts.levels, settings);
 }
 

@@ -158,20 +158,28 @@ bool has_edited_ground(const World& world, core::BlockCoord block) {
          world.edits->ground.own().reaches(models::QuadPlace::of(block), world.block_size_m());
 }
 
-// The placements of the world's function that nobody removed. They find their places on `base` and
-// stand on `ground`.
+// Where instances find their places, and where they stand.
+struct Grounds {
+  const models::BlockGround &base, &shown;
+};
+
+// The placements of the world's function that nobody removed, of the scatters that are wanted;
+// null: of all.
 void place_instances(const World& world, const models::Registry& registry, core::BlockCoord block,
-                     const models::BlockGround& base, const models::BlockGround& ground,
-                     const models::BlockEdits* edits, std::vector<Placement>& out) {
-  std::uint32_t index = 0;
-  for (const Scatter& scatter : world.scatter) {
+                     const Grounds& grounds, const models::BlockEdits* edits,
+                     const std::vector<bool>* wanted, std::vector<Placement>& out) {
+  std::uint32_t first = 0;
+  for (std::size_t s = 0; s < world.scatter.size(); first += world.scatter[s++].count) {
+    if (wanted != nullptr && !(*wanted)[s]) continue;
+    const Scatter& scatter = world.scatter[s];
+    std::uint32_t index = first;
     const Scattering scattering(world, registry[scatter.model], scatter, block);
     for (std::uint32_t k = 0; k < scatter.count; ++k, ++index) {
       if (edits != nullptr && edits->is_removed(index)) continue;
-      auto place = scattering.place(base, index);
+      auto place = scattering.place(grounds.base, index);
       if (!place) continue;
-      if (&base != &ground) {
-        const models::GroundPoint point = ground.at({place->position.x, place->position.z});
+      if (&grounds.base != &grounds.shown) {
+        const models::GroundPoint point = grounds.shown.at({place->position.x, place->position.z});
         place->position.y = static_cast<float>(point.height_m);
         place->normal = point.normal;
       }
@@ -198,6 +206,23 @@ void place_by_hand(const models::BlockEdits& edits, const models::Registry& regi
   }
 }
 
+void place_wanted(const World& world, const models::Registry& registry, core::BlockCoord block,
+                  const models::BlockGround& ground, const std::vector<bool>* wanted,
+                  std::vector<Placement>& out) {
+  out.clear();
+  const models::BlockEdits* const edits = world.edits ? world.edits->block(block) : nullptr;
+  if (has_edited_ground(world, block)) {
+    const models::BlockGround base(unedited_terrain(world), block, models_per_block(world));
+    place_instances(world, registry, block, {base, ground}, edits, wanted, out);
+  } else {
+    place_instances(world, registry, block, {ground, ground}, edits, wanted, out);
+  }
+  if (edits != nullptr) place_by_hand(*edits, registry, ground, kPlacedIndex, out);
+  if (!world.places.by_block) return;
+  if (const models::BlockEdits* const of_file = world.places.by_block->block(block))
+    place_by_hand(*of_file, registry, ground, kFilePlacedIndex, out);
+}
+
 }  // namespace
 
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
@@ -208,18 +233,18 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
 
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const models::BlockGround& ground, std::vector<Placement>& out) {
-  out.clear();
-  const models::BlockEdits* const edits = world.edits ? world.edits->block(block) : nullptr;
-  if (has_edited_ground(world, block)) {
-    const models::BlockGround base(unedited_terrain(world), block, models_per_block(world));
-    place_instances(world, registry, block, base, ground, edits, out);
-  } else {
-    place_instances(world, registry, block, ground, ground, edits, out);
-  }
-  if (edits != nullptr) place_by_hand(*edits, registry, ground, kPlacedIndex, out);
-  if (!world.places.by_block) return;
-  if (const models::BlockEdits* const of_file = world.places.by_block->block(block))
-    place_by_hand(*of_file, registry, ground, kFilePlacedIndex, out);
+  place_wanted(world, registry, block, ground, nullptr, out);
+}
+
+void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
+                  const std::vector<bool>& wanted, std::vector<Placement>& out) {
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < world.scatter.size(); ++s)
+    count += wanted[s] ? world.scatter[s].count : 0;
+  const bool by_hand = (world.edits && world.edits->block(block) != nullptr) ||
+                       (world.places.by_block && world.places.by_block->block(block) != nullptr);
+  if (count == 0 && !by_hand) return out.clear();
+  place_wanted(world, registry, block, {world.terrain, block, count}, &wanted, out);
 }
 
 float road_at(const World& world, core::BlockCoord block, glm::dvec2 local_m) {

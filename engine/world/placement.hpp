@@ -110,13 +110,20 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const models::BlockGround& ground, std::vector<Placement>& out);
 
+// The same without the instances of scatters that are not `wanted`, by number; what was placed by
+// hand is there. Takes as much less time.
+void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
+                  const std::vector<bool>& wanted, std::vector<Placement>& out);
+
 // How much of the ground at a place of a block is a road, 0 … 1. O(log n + pieces of roads there).
 float road_at(const World& world, core::BlockCoord block, glm::dvec2 local_m);
 
 // The mean number of instances of each scatter that find a place in a block. Exact if no scatter
 // has a filter and there are no roads; otherwise the mean over kSizeBlocks blocks, always the same
 // ones.
-std::vector<double> placed_per_block(const World& world, const models::Registry& registry);
+// `known`: those of some scatters, as from a world that has them in common (world_parts.hpp).
+std::vector<double> placed_per_block(const World& world, const models::Registry& registry,
+                                     std::span<const std::optional<double>> known = {});
 
 // Sets parameter `i`, of either type. Integers are rounded to nearest and limited to 64 bits.
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,

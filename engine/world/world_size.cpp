@@ -33,15 +33,20 @@ MeanSize mean_size(const World& world, const models::Registry& registry, const S
 
 }  // namespace
 
-std::vector<double> placed_per_block(const World& world, const models::Registry& registry) {
+std::vector<double> placed_per_block(const World& world, const models::Registry& registry,
+                                     std::span<const std::optional<double>> known) {
   std::vector<double> counts;
+  std::vector<bool> wanted;
   bool filtered = !world.shaped.roads.empty();
   for (const Scatter& scatter : world.scatter) {
-    counts.push_back(scatter.count);
+    const std::size_t s = counts.size();
+    wanted.push_back(s >= known.size() || !known[s]);
+    counts.push_back(wanted[s] ? scatter.count : *known[s]);
     filtered = filtered || scatter.has_filter();
   }
-  if (!filtered) return counts;
-  std::fill(counts.begin(), counts.end(), 0.0);
+  if (!filtered || std::ranges::find(wanted, true) == wanted.end()) return counts;
+  for (std::size_t s = 0; s < counts.size(); ++s)
+    counts[s] = wanted[s] ? 0 : counts[s];
   std::vector<Placement> placements;
   for (std::uint32_t k = 0; k < kSizeBlocks; ++k) {
     core::RandomStream random(world.seed, 0, 0, k, core::Purpose::kStructure);
@@ -49,7 +54,7 @@ std::vector<double> placed_per_block(const World& world, const models::Registry&
       return static_cast<std::int32_t>(random.next_integer(0, (blocks == 0 ? 65536 : blocks) - 1));
     };
     const std::int32_t x = coordinate(world.blocks_x), z = coordinate(world.blocks_z);
-    place_models(world, registry, {x, z}, placements);
+    place_models(world, registry, {x, z}, wanted, placements);
     for (const Placement& placement : placements) {
       if (placement.index >= kPlacedIndex) continue;
       std::size_t s = 0;

@@ -34,7 +34,8 @@ MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
   if (placement.model < facts.quad_models.size())
     columns.source.picture_model = facts.quad_models[placement.model];
   if (columns.source.picture_model != 0)
-    columns.source.picture_set = static_cast<std::uint32_t>(facts.pictures->identity());
+    columns.source.picture_set =
+        static_cast<std::uint32_t>(facts.pictures->identity_of_quads(placement.model));
   if (picture_level > 0) columns.detail.picture_level = static_cast<std::uint16_t>(picture_level);
   return columns;
 }

@@ -1,6 +1,7 @@
 #include "engine/scene/nodes/entities.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "engine/scene/nodes/columns.hpp"
 #include "engine/scene/nodes/levels.hpp"
@@ -144,19 +145,72 @@ void fit_ground(const WorldFacts& facts, const Daylight& daylight, ecs::Entity n
   entities.get<Demand>(node)->requested_level = kNoLevel;
 }
 
+// Gives the instances of a block that stay what they are in the world that replaces another one.
+class StayingModels {
+ public:
+  // `kept` may be null: nothing stays.
+  StayingModels(const WorldFacts& facts, core::BlockCoord block, const KeptModels* kept)
+      : facts_(facts), block_(block), kept_(kept) {}
+
+  // False for one that is placed anew.
+  bool take(ecs::Entity model, const synthesis::MeshSupply& meshes, ecs::World& entities) {
+    const Source& source = *entities.get<Source>(model);
+    if (kept_ == nullptr || source.index >= kept_->scatter_of.size()) return false;
+    const std::uint32_t scatter = kept_->scatter_of[source.index];
+    const KeptModels::Stays stays = kept_->stays[scatter];
+    if (stays == KeptModels::Stays::kNothing) return false;
+    world::Placement placed{source.model, source.index, entities.get<Placed>(model)->position,
+                            source.parameters};
+    if (stays == KeptModels::Stays::kPlaces)
+      placed.parameters = scattering(scatter).parameters(source.index);
+    if (stays == KeptModels::Stays::kPlaces || kept_->refit[source.model])
+      place_anew(facts_, block_, placed, true, model, meshes, entities);
+    return true;
+  }
+
+ private:
+  const world::Scattering& scattering(std::uint32_t number) {
+    if (!scattering_ || number_ != number) {
+      const world::Scatter& scatter = facts_.world.scatter[number];
+      scattering_.emplace(facts_.world, facts_.registry[scatter.model], scatter, block_);
+      number_ = number;
+    }
+    return *scattering_;
+  }
+
+  const WorldFacts& facts_;
+  core::BlockCoord block_;
+  const KeptModels* kept_;
+  std::optional<world::Scattering> scattering_;  // of this number
+  std::uint32_t number_ = 0;
+};
+
+void place_on(const WorldFacts& facts, core::BlockCoord block, const NodeChange& change,
+              std::vector<world::Placement>& scratch) {
+  if (change.placed) return;
+  if (change.kept == nullptr)
+    return world::place_models(facts.world, facts.registry, block, scratch);
+  world::place_models(facts.world, facts.registry, block, change.kept->wanted(), scratch);
+}
+
 // Entities of models that stay are kept, with what is drawn of them.
 void update_models(const WorldFacts& facts, core::BlockCoord block, const NodeChange& change,
                    ecs::Entity node, std::vector<world::Placement>& scratch,
                    synthesis::MeshSupply& meshes, ecs::World& entities, const ModelEvents& events) {
-  if (!change.placed) world::place_models(facts.world, facts.registry, block, scratch);
+  place_on(facts, block, change, scratch);
   const std::span<const ecs::Entity> now = entities.children(node);
   std::vector<ecs::Entity> before(now.begin(), now.end()), kept, gone;
   std::vector<world::Placement> created;
+  StayingModels staying(facts, block, change.kept);
   // Both are sorted by index.
   std::size_t next = 0;
   for (const ecs::Entity model : before) {
     const Source* source = entities.get<Source>(model);
     if (source == nullptr) continue;
+    if (staying.take(model, meshes, entities)) {
+      kept.push_back(model);
+      continue;
+    }
     while (next < scratch.size() && scratch[next].index < source->index)
       created.push_back(scratch[next++]);
     const bool stays = next < scratch.size() && scratch[next].index == source->index &&
@@ -165,6 +219,7 @@ void update_models(const WorldFacts& facts, core::BlockCoord block, const NodeCh
     (stays ? kept : gone).push_back(model);
   }
   created.insert(created.end(), scratch.begin() + static_cast<std::ptrdiff_t>(next), scratch.end());
+  if (gone.empty() && created.empty()) return;
   destroy_models(gone, meshes, entities, events.removed);
   const std::span<const ecs::Entity> added = create_meshes(facts, block, created, entities, true);
   tell_created(added, block, created, events.created);
@@ -193,6 +248,13 @@ void tell_removed(std::span<const ecs::Entity> nodes, const ecs::World& entities
 }
 
 }  // namespace
+
+std::vector<bool> KeptModels::wanted() const {
+  std::vector<bool> wanted;
+  for (const Stays of : stays)
+    wanted.push_back(of == Stays::kNothing);
+  return wanted;
+}
 
 ecs::Entity create_node(const Settings& settings, const WorldFacts& facts, const Daylight& daylight,
                         const visibility::NodeCoord& at, std::vector<world::Placement>& scratch,
@@ -234,7 +296,7 @@ void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity 
   } else if (models::Parameters& p = entities.get<Source>(node)->parameters; p.edits() != nullptr) {
     p.set_edits(facts.world.layer().get(), p.edits_hash());
   }
-  if (change.world) fit_ground(facts, daylight, node, entities);
+  if (change.world && change.ground) fit_ground(facts, daylight, node, entities);
   const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
     if (change.models) update_models(facts, block, change, node, scratch, meshes, entities, events);

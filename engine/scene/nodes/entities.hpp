@@ -25,12 +25,23 @@ struct ModelEvents {
   ecs::EventQueue<ModelRemoved>& removed;
 };
 
+// What a world that takes the place of another one leaves as it was. Both have the same ground and
+// the same types.
+struct KeptModels {
+  enum class Stays : std::uint8_t { kNothing, kPlaces, kAll };
+  std::vector<Stays> stays;               // of each scatter, of its instances
+  std::vector<std::uint32_t> scatter_of;  // of each index of an instance on a block
+  std::vector<bool> refit;                // of each type: boxes or pictures of its models differ
+  std::vector<bool> wanted() const;       // of each scatter: its instances are placed anew
+};
+
 // What changed of a node: of its edits, or all of the world.
 struct NodeChange {
-  bool ground = true;   // heights or light may differ
-  bool models = true;   // the edits of its blocks differ, or heights under its models
-  bool world = false;   // anything may differ, also boxes and levels
-  bool placed = false;  // `scratch` has what stands on the block, which has no edits
+  bool ground = true;                // heights or light may differ
+  bool models = true;                // the edits of its blocks differ, or heights under its models
+  bool world = false;                // anything may differ, also boxes and levels
+  bool placed = false;               // `scratch` has what stands on the block, which has no edits
+  const KeptModels* kept = nullptr;  // what stays is not in `scratch`; null: nothing stays
 };
 
 // Gives a node and its models what they are in the world's present edits. What is drawn of them

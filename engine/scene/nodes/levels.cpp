@@ -89,7 +89,8 @@ bool overhangs(const world::World& world, const visibility::NodeCoord& node) {
 }
 
 std::vector<NodeLevel> node_levels(const world::World& world, const models::Registry& registry,
-                                   const Settings& settings, const models::ModelType* merged) {
+                                   const Settings& settings, const models::ModelType* merged,
+                                   std::span<const NodeLevel> before) {
   const models::ModelType& terrain = registry[world.terrain_model];
   const int mesh_level = settings.levels_of_detail ? world::node_mesh_level(world) : 0;
   std::vector<NodeLevel> levels(static_cast<std::size_t>(count_of_levels(world, settings)));
@@ -100,7 +101,9 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
     level.mesh_level = static_cast<std::uint16_t>(mesh_level);
     level.bounds = terrain.bounds(p);
     level.ground_bound_m = (k == 0 ? kBlockBound : kNodeBound) * terrain.level_error_m(p, 1);
-    level.ground_error_m = measured_ground_error_m(world, registry, static_cast<int>(k));
+    level.ground_error_m = k < before.size()
+                               ? before[k].ground_error_m
+                               : measured_ground_error_m(world, registry, static_cast<int>(k));
     if (k > 0) level.ground_error_m = std::max(level.ground_error_m, levels[k - 1].ground_error_m);
     level.error_m = level.ground_error_m;
     level.skirt_m = kLeastSkirtM + kSkirtPerBound * static_cast<float>(level.ground_bound_m);

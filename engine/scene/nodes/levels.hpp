@@ -28,9 +28,11 @@ struct NodeLevel {
 };
 
 // Finest first; a single one where levels of detail are off. `merged` is the type of meshes that
-// stand for everything on a node; null: there are none.
+// stand for everything on a node; null: there are none. `before`: those of a world with the same
+// ground, whose errors need not be measured again; empty: there is none.
 std::vector<NodeLevel> node_levels(const world::World& world, const models::Registry& registry,
-                                   const Settings& settings, const models::ModelType* merged);
+                                   const Settings& settings, const models::ModelType* merged,
+                                   std::span<const NodeLevel> before = {});
 
 // How many nodes of a level a world of this many blocks has along an axis. 0 stands for endless.
 constexpr std::int64_t nodes_along(std::int64_t blocks, std::size_t level) {

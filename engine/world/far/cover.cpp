@@ -4,7 +4,6 @@
 #include "engine/models/kit/exact_math.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/far/scatter.hpp"
-#include "engine/world/placement.hpp"
 
 namespace psygen::world {
 namespace {
@@ -20,9 +19,8 @@ glm::vec3 albedo_of(const Outline& outline) {
 
 }  // namespace
 
-FarCover far_cover(const World& world, const models::Registry& registry,
-                   const FarScatters& scatters) {
-  const std::vector<double> placed = placed_per_block(world, registry);
+FarCover far_cover(const World& world, const FarScatters& scatters,
+                   std::span<const double> placed) {
   const double block_m2 = world.block_size_m() * world.block_size_m();
   glm::vec3 light(0.0F);
   double covered = 0;

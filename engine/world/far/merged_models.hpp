@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "engine/models/registry.hpp"
 #include "engine/world/world.hpp"
@@ -29,10 +30,12 @@ class PictureSet;
 
 // What stands for the instances of each scatter from afar (scatter.hpp). Synthesises 32 instances
 // of every scatter, some milliseconds in all. The model types of `registry` must outlive it;
-// `world` must belong to this registry.
+// `world` must belong to this registry. Scatters that are the same in a world before are taken over
+// from it: `before` may be null, and its types may be gone.
 class FarScatters;
 std::shared_ptr<const FarScatters> far_scatters(std::shared_ptr<const World> world,
-                                                const models::Registry& registry);
+                                                const models::Registry& registry,
+                                                const FarScatters* before = nullptr);
 
 // The model type of a world. It has two levels of detail: the forms of the node level, and those of
 // the next node level, which are coarser than all single models except the smallest stones.
@@ -59,9 +62,8 @@ struct FarCover {
                            // visibility
   float share = 0;         // of the ground that is covered, mean over the world; 0 … 1
 };
-// The cover of a world. Takes some milliseconds, because it places models on kSizeBlocks blocks.
-// `scatters` must be those of this world.
-FarCover far_cover(const World& world, const models::Registry& registry,
-                   const FarScatters& scatters);
+// The cover of a world. `scatters` must be those of this world, `placed` what placed_per_block()
+// says of it, which takes some milliseconds.
+FarCover far_cover(const World& world, const FarScatters& scatters, std::span<const double> placed);
 
 }  // namespace psygen::world

@@ -74,7 +74,7 @@ class QuadType final : public ModelType {
   double step_seconds() const override { return type_->step_seconds(); }
   double log2_cost(const Parameters& p) const override { return type_->log2_cost(p); }
   std::uint64_t identity() const override {
-    return core::combine(pictures_->identity(), type_->identity());
+    return core::combine(pictures_->identity_of_quads(model_), type_->identity());
   }
   bool may_run_on_main_thread() const override { return true; }
   core::Bounds synthesize(const Parameters& p, int, const MeshView& out) const override {

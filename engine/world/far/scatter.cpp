@@ -5,6 +5,7 @@
 #include <new>
 
 #include "engine/world/placement.hpp"
+#include "engine/world/world_parts.hpp"
 
 namespace psygen::world {
 namespace {
@@ -61,18 +62,31 @@ models::Parameters sample_parameters(const World& world, const models::ModelType
   return scattering.parameters(first + number % scatter.count);
 }
 
-FarScatters::FarScatters(std::shared_ptr<const World> world, const models::Registry& registry)
-    : world_(std::move(world)) {
+FarScatters::FarScatters(std::shared_ptr<const World> world, const models::Registry& registry,
+                         const FarScatters* before)
+    : world_(std::move(world)), hashes_(parts_of(*world_, registry).models) {
   std::uint32_t first = 0;
   for (const Scatter& scatter : world_->scatter) {
-    all_.emplace_back(*world_, registry[scatter.model], scatter, first);
+    const models::ModelType& type = registry[scatter.model];
+    const FarScatter* known = before != nullptr ? before->find(hashes_[all_.size()]) : nullptr;
+    if (known != nullptr) {
+      all_.emplace_back(*known, type, scatter);
+    } else {
+      all_.emplace_back(*world_, type, scatter, first);
+    }
     first += scatter.count;
   }
 }
 
+const FarScatter* FarScatters::find(std::uint64_t hash) const {
+  const auto at = std::ranges::find(hashes_, hash);
+  return at == hashes_.end() ? nullptr : &all_[static_cast<std::size_t>(at - hashes_.begin())];
+}
+
 std::shared_ptr<const FarScatters> far_scatters(std::shared_ptr<const World> world,
-                                                const models::Registry& registry) {
-  return std::make_shared<const FarScatters>(std::move(world), registry);
+                                                const models::Registry& registry,
+                                                const FarScatters* before) {
+  return std::make_shared<const FarScatters>(std::move(world), registry, before);
 }
 
 FarScatter::FarScatter(const World& world, const models::ModelType& type, const Scatter& scatter,

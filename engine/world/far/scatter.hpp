@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/world/far/forms.hpp"
@@ -44,6 +46,13 @@ class FarScatter {
   // representatives if the type throws, makes nothing visible or is not seen from far.
   FarScatter(const World& world, const models::ModelType& type, const Scatter& scatter,
              std::uint32_t first);
+
+  // The same representatives for a scatter that is equal to this one, in another world.
+  FarScatter(const FarScatter& equal, const models::ModelType& type, const Scatter& scatter)
+      : FarScatter(equal) {
+    type_ = &type;
+    scatter_ = &scatter;
+  }
 
   // The inputs, and the representatives; empty() if there are none.
   bool empty() const { return representatives_.empty(); }
@@ -96,12 +105,19 @@ class FarScatter {
 // Those of all scatters of a world, in its order.
 class FarScatters {
  public:
-  // `registry` must be that of the world; its types must outlive this.
-  FarScatters(std::shared_ptr<const World> world, const models::Registry& registry);
+  // `registry` must be that of the world; its types must outlive this. Scatters that are the same
+  // in another world (WorldParts::models) are taken over from there: `before` may be null, and its
+  // types may be gone.
+  FarScatters(std::shared_ptr<const World> world, const models::Registry& registry,
+              const FarScatters* before = nullptr);
   std::span<const FarScatter> all() const { return all_; }
 
  private:
+  // What is known of a scatter; null: nothing.
+  const FarScatter* find(std::uint64_t hash) const;
+
   std::shared_ptr<const World> world_;  // the scatters refer to it
+  std::vector<std::uint64_t> hashes_;   // of each of them
   std::vector<FarScatter> all_;
 };
 

@@ -167,6 +167,21 @@ void PictureSet::add_scatter(const World& world, const Scatter& scatter, std::ui
   }
 }
 
+std::uint64_t PictureSet::identity_of_picture(std::size_t number) const {
+  const PicturedModel& m = models_[number];
+  return core::combine(kPictureEdition, models::parameters_hash(*types_[m.model], m.parameters));
+}
+
+// Quads name pictures by number, and begin to look for theirs at one of all of them.
+std::uint64_t PictureSet::identity_of_quads(models::ModelIndex model) const {
+  std::uint64_t identity = models_.size();
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    if (models_[i].model == model)
+      identity = core::combine(core::combine(identity, i), identity_of_picture(i));
+  }
+  return identity;
+}
+
 bool PictureSet::has(models::ModelIndex model) const {
   return std::ranges::any_of(models_, [&](const PicturedModel& m) { return m.model == model; });
 }

@@ -65,8 +65,11 @@ class PictureSet {
   // A rough one from the coarsest mesh, until the other is there.
   core::ModelPicture stand_in(std::size_t number) const;
 
-  // Of everything above, as part of the keys of meshes.
+  // Of everything above, as part of the keys of meshes; of what the quads of one type show; and of
+  // one picture.
   std::uint64_t identity() const { return identity_; }
+  std::uint64_t identity_of_quads(models::ModelIndex model) const;
+  std::uint64_t identity_of_picture(std::size_t number) const;
 
  private:
   void add_scatter(const World& world, const Scatter& scatter, std::uint32_t first,

@@ -95,6 +95,18 @@ TEST_F(SetWorld, OtherParametersOfTreesLeadToTheSameSceneAsANewOne) {
   expect_like_new(paper_, replaced(paper_, "branches = [2, 4]", "branches = [3, 3]"));
 }
 
+// What stands there, and the pictures of other species, are kept.
+TEST_F(SetWorld, OneSpeciesOfManyLeadsToTheSameSceneAsANewOne) {
+  expect_like_new(species_, replaced(species_, "size_m = [1.9, 3.0]", "size_m = [1.9, 2.4]"));
+  expect_like_new(species_, replaced(species_, "flare = 0.9", "flare = 1.1"));
+  expect_like_new(species_, replaced(species_, "max_slope_deg = 38", "max_slope_deg = 12"));
+}
+
+TEST_F(SetWorld, GrassThatFollowsTheSlopeLeadsToTheSameSceneAsANewOne) {
+  const std::string meadow = paper_ + "\n[[scatter]]\nmodel = \"grass\"\ncount = 30\n";
+  expect_like_new(meadow, meadow + "height_m = [0.5, 0.6]\n");
+}
+
 TEST_F(SetWorld, OtherGroundLeadsToTheSameSceneAsANewOne) {
   expect_like_new(paper_, replaced(paper_, "octaves = 9", "octaves = 9\nrelief_m = 40"));
 }

@@ -43,7 +43,9 @@ struct Scenery {
     world = std::make_shared<const World>(*std::move(parsed));
     type = make_merged_type(world, registry);
   }
-  FarCover cover() const { return far_cover(*world, registry, *far_scatters(world, registry)); }
+  FarCover cover() const {
+    return far_cover(*world, *far_scatters(world, registry), placed_per_block(*world, registry));
+  }
   Mesh mesh(core::BlockCoord node, int level, int detail = 0) const {
     return synthesize(*type, merged_parameters(node, level), detail);
   }

@@ -1,0 +1,65 @@
+#include "engine/world/world_parts.hpp"
+
+#include <bit>
+#include <span>
+
+#include "engine/core/hash.hpp"
+#include "engine/world/ground_blends.hpp"
+
+namespace psygen::world {
+namespace {
+
+std::uint64_t with_real(std::uint64_t hash, double value) {
+  return core::combine(hash, std::bit_cast<std::uint64_t>(value));
+}
+
+std::uint64_t hash_of_ground(const World& world, const models::Registry& registry) {
+  const models::ModelType& terrain = registry[world.terrain_model];
+  std::uint64_t hash = core::hash_bytes(std::as_bytes(std::span(terrain.name())));
+  models::Parameters ground = world.terrain;
+  ground.set_edits(nullptr, 0);
+  for (const std::uint64_t part :
+       {world.seed, static_cast<std::uint64_t>(world.blocks_x),
+        static_cast<std::uint64_t>(world.blocks_z), models::parameters_hash(terrain, ground),
+        shape_hash(world), placing_hash(world)})
+    hash = core::combine(hash, part);
+  return hash;
+}
+
+// `first`: the index of its first instance in a block.
+std::uint64_t hash_of_places(const models::ModelType& type, const Scatter& scatter,
+                             std::uint32_t first, std::uint64_t ground) {
+  std::uint64_t hash = core::hash_bytes(std::as_bytes(std::span(type.name())), ground);
+  hash = core::combine(core::combine(hash, first), scatter.count);
+  for (const double limit : {scatter.min_height_m, scatter.max_height_m, scatter.max_slope_deg})
+    hash = with_real(hash, limit);
+  return core::combine(hash, mask_hash(scatter.mask));
+}
+
+std::uint64_t hash_of_models(const World& world, const models::Registry& registry,
+                             const Scatter& scatter, std::uint32_t first) {
+  const models::ModelType& type = registry[scatter.model];
+  std::uint64_t hash = core::hash_bytes(std::as_bytes(std::span(type.name())));
+  for (const std::uint64_t part : {world.seed, std::uint64_t{first}, std::uint64_t{scatter.count},
+                                   models::parameters_hash(type, models::default_parameters(type))})
+    hash = core::combine(hash, part);
+  for (const ParameterRange& range : scatter.ranges)
+    hash = with_real(with_real(hash, range.low), range.high);
+  return hash;
+}
+
+}  // namespace
+
+WorldParts parts_of(const World& world, const models::Registry& registry) {
+  WorldParts parts;
+  parts.ground = hash_of_ground(world, registry);
+  std::uint32_t first = 0;
+  for (const Scatter& scatter : world.scatter) {
+    parts.places.push_back(hash_of_places(registry[scatter.model], scatter, first, parts.ground));
+    parts.models.push_back(hash_of_models(world, registry, scatter, first));
+    first += scatter.count;
+  }
+  return parts;
+}
+
+}  // namespace psygen::world
