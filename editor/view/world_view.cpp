@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "editor/view/world_before.hpp"
 #include "engine/core/start_thread.hpp"
 #include "engine/render/hud_drawing.hpp"
 #include "engine/scene/scene.hpp"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr int kBusyMs = 0, kIdleMs = 100;  // between pictures; idle: another program is in front
 constexpr int kYieldMs = 150;
+constexpr int kPreparedMs = 10;  // a picture waits for another world
 constexpr double kMostStepS = 0.1;
 
 }  // namespace
@@ -109,6 +111,9 @@ void WorldView::take_text() {
   auto thread = core::start_thread([task] { (*task)(); });
   if (!thread) return (*task)();
   thread->detach();
+  // Most are ready sooner than a picture of the world before would be.
+  prepared_.wait_for(std::chrono::milliseconds(kPreparedMs));
+  take_prepared();
 }
 
 void WorldView::take_prepared() {
@@ -124,6 +129,7 @@ void WorldView::take_prepared() {
     return;
   }
   since_taken_ = since_prepared_;
+  has_landed_ = false;
   take_stand();
   if (selection_) select(found_again(*selection_, session_->scene().state()));
 }
@@ -145,7 +151,8 @@ void WorldView::tick() {
   serve_tool();
   write_over_picture();
   scene::State& state = session_->scene().state();
-  state.input.draft = draft_;
+  // The first picture of a change is coarse, so that it comes soon.
+  state.input.draft = draft_ || since_taken_.isValid();
   state.input.lines = lines_;
   QElapsedTimer spent;
   spent.start();
@@ -182,11 +189,12 @@ void WorldView::take_stand() {
   camera_.set_pivot(stand->pivot);
 }
 
-// Looks alone change at once, meshes when the first of them lands.
+// Looks alone change at once. Where nothing near changes, the first mesh that lands is the answer.
 void WorldView::note_answered() {
   if (!since_taken_.isValid()) return;
   const scene::State& state = session_->scene().state();
-  if (state.counters.completed == 0 && state.meshes.outstanding() > 0) return;
+  has_landed_ = has_landed_ || state.counters.completed > 0;
+  if ((!has_landed_ && state.meshes.outstanding() > 0) || shows_world_before(state)) return;
   Q_EMIT answered(static_cast<double>(since_taken_.nsecsElapsed()) * 1e-6);
   since_taken_.invalidate();
 }
@@ -194,7 +202,7 @@ void WorldView::note_answered() {
 void WorldView::note_settled() {
   if (!since_text_.isValid() || text_is_new_ || prepared_.valid() || draft_) return;
   const scene::State& state = session_->scene().state();
-  if (state.counters.awaited > 0 || state.meshes.outstanding() > 0 ||
+  if (state.counters.awaited > 0 || state.meshes.outstanding() > 0 || state.quality.draft ||
       state.output.pictures_lacking != 0)
     return;
   Q_EMIT settled(static_cast<double>(since_text_.nsecsElapsed()) * 1e-6);

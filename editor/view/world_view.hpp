@@ -76,6 +76,9 @@ class WorldView final : public QWindow {
   // camera stays.
   using FindStand = std::function<std::optional<Stand>(const scene::State&)>;
   void stand_with_text(FindStand find) { find_stand_ = std::move(find); }
+  // Whether something of the text that was given last is still to be made; a draft, which waits for
+  // more, counts as made.
+  bool awaits_meshes() const { return since_text_.isValid() && !draft_ && !paused_; }
   // Synthesis rests: what is there is drawn.
   void set_paused(bool paused) { paused_ = paused; }
   // Something else works on the same processors: while any of it does, nobody moves here and
@@ -90,7 +93,8 @@ class WorldView final : public QWindow {
   void selected();
   // After every picture, with what it took.
   void drawn(double frame_ms);
-  // The first picture that has something of another text; milliseconds since it came.
+  // The first picture in which all that is near, and seen, is that of another text, be it coarse;
+  // milliseconds since it came.
   void answered(double ms);
   // The text that was shown last is in the picture with all its meshes; milliseconds since it came.
   void settled(double ms);
@@ -118,6 +122,7 @@ class WorldView final : public QWindow {
   std::unique_ptr<app::Session> session_;
   std::string text_, file_;
   handmade::MemoryPicturesPtr pictures_;
+  bool has_landed_ = false;  // a mesh, since a text was taken over
   bool text_is_new_ = false, paused_ = false, failed_ = false, has_hung_ = false, draft_ = false;
   std::bitset<2> beside_;  // by Beside
   ViewCamera camera_;

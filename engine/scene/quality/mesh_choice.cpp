@@ -102,7 +102,7 @@ MeshChoice choose_mesh(const ChoiceRules& rules, const NodeView& node, const Det
   choice.drawn = wanted ? drawn : RankGroup::kPrefetch;
   if (hole) {
     choice.requested = RankGroup::kVisibleHole;
-  } else if (wanted && choice.request == demand.drawn_level) {
+  } else if (wanted && choice.request == demand.drawn_level && !rules.draft) {
     // New light on ground waits for missing detail: a fast sun changes the light of all ground.
     choice.requested = RankGroup::kDrawn;
   } else if (wanted) {  // freeing memory is urgent only while memory is short

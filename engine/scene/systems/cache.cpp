@@ -26,6 +26,9 @@ constexpr std::uint32_t kFewestHidden = 48;
 // How long pictures may be too coarse before the main thread helps: modelers get only what others
 // leave of the processors, and that can be nothing.
 constexpr double kCoarsePatienceSeconds = 0.03;
+// What the main thread makes in a tick of a draft, predicted: models on blocks in view that are
+// still those of a world before, nearest first. Who tries out a value waits for these.
+constexpr double kDraftSeconds = 0.008;
 
 // What all mesh entities are judged by in this tick.
 struct CacheTick {
@@ -35,6 +38,7 @@ struct CacheTick {
   bool request = true;   // what is missing is synthesised
   bool roomy = false;    // ranks do not matter: only unwanted meshes will be evicted
   bool shadows = false;  // what is out of view may cast some into the picture
+  double draft_s = 0;    // what is left of kDraftSeconds
 };
 
 // A row of the columns of a mesh entity.
@@ -110,9 +114,8 @@ void keep(const CacheTick& tick, const NodeView& node, const MeshEntity& row, Ra
 }
 
 // Takes the chosen mesh from the cache, or asks for it.
-void request(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
-             const MeshChoice& choice, float distance_m, synthesis::MeshSupply& meshes,
-             Found& found) {
+void request(CacheTick& tick, const NodeView& node, const MeshEntity& row, const MeshChoice& choice,
+             float distance_m, synthesis::MeshSupply& meshes, Found& found) {
   const Source& source = row.source;
   Demand& demand = row.demand;
   const synthesis::MeshKey key = key_of(row.placed, row.detail, row.source, choice.request);
@@ -133,13 +136,22 @@ void request(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
     return;
   }
   if (!tick.request) return;
-  meshes.want({key, &source.parameters, owner_of(row.entity),
-               rank_on(node, choice.requested, distance_m), node.visibility.deadline_s,
-               choice.at_once});
+  synthesis::Want want{key,
+                       &source.parameters,
+                       owner_of(row.entity),
+                       rank_on(node, choice.requested, distance_m),
+                       node.visibility.deadline_s,
+                       choice.at_once};
+  const bool awaited = demand.stale && node.level == 0 && demand.in_view_tick == tick.tick;
+  if (awaited && tick.draft_s > 0) {
+    tick.draft_s -= meshes.predict(want);
+    want.at_once = true;
+  }
+  meshes.want(want);
 }
 
 // The ground of a node, or a model on it. False if there should be a mesh to draw and is none.
-bool consider(const CacheTick& tick, const View& view, const NodeView& node, const MeshEntity& row,
+bool consider(CacheTick& tick, const View& view, const NodeView& node, const MeshEntity& row,
               bool is_ground, synthesis::MeshSupply& meshes, Found& found, Counters& counters) {
   const Placed& placed = row.placed;
   Demand& demand = row.demand;
@@ -268,7 +280,8 @@ synthesis::PlanLimits plan_limits(const Settings& settings, const Rules& rules, 
           std::max(settings.plan_max_new / streaming.spread_ticks, kFewestHidden);
     }
   }
-  if (pressure.waiting == 0 && clock.real_s - quality.awaiting_since_s > kCoarsePatienceSeconds)
+  if (quality.draft ||
+      (pressure.waiting == 0 && clock.real_s - quality.awaiting_since_s > kCoarsePatienceSeconds))
     limits.here_up_to = RankGroup::kVisibleCoarse;
   return limits;
 }
@@ -285,7 +298,7 @@ void cache_system(const Settings& settings, const Rules& rules, const Clock& clo
   if (!rules.keep) forget_last_frame(entities, meshes);
   meshes.begin_wants();
   assets.want_all(meshes);
-  want_pictures(facts, output, meshes);
+  if (!quality.draft) want_pictures(facts, output, meshes);  // those of before are shown
   found.meshes.clear();
   // Before the picture's wants: where both want a mesh, it is the picture's.
   if (rules.request && !rules.settle)
@@ -296,7 +309,8 @@ void cache_system(const Settings& settings, const Rules& rules, const Clock& clo
                  camera.projection.near_m,
                  rules.request,
                  is_roomy(meshes.stats()),
-                 facts.shadows};
+                 facts.shadows,
+                 quality.draft && !rules.settle ? kDraftSeconds : 0};
   const auto visit = [&](std::span<const ecs::Entity> nodes, const NodeView& common) {
     visit_nodes(entities, nodes, camera.pose.position, facts.world.block_size_m(), common,
                 [&](const NodeView& node, const MeshEntity& row, bool is_ground) {
