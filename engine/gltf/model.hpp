@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -84,6 +85,7 @@ struct Model {
   // What the file has and this does not, a sentence each: skins, morph targets, blending, points
   // and lines, extensions. Begins with the file's path.
   std::vector<std::string> notes;
+  std::vector<std::filesystem::path> files;  // that the file names: buffers and pictures
 };
 
 }  // namespace psygen::gltf

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "engine/core/read_file.hpp"
 #include "engine/core/utf8.hpp"
@@ -24,7 +25,8 @@ constexpr std::size_t kMostMessage = 300;  // of what a library says
 struct FileGate {
   std::filesystem::path file;
   std::uint64_t left_bytes = 0;
-  std::optional<core::Error> error;  // the first one
+  std::vector<std::filesystem::path>& named;  // that were read
+  std::optional<core::Error> error;           // the first one
 };
 
 core::Result<std::filesystem::path> beside(const std::filesystem::path& file,
@@ -53,6 +55,7 @@ bool read_beside(std::vector<unsigned char>* out, std::string* message, const st
                  void* user) {
   FileGate& gate = *static_cast<FileGate*>(user);
   auto bytes = beside(gate.file, name).and_then([&](const std::filesystem::path& path) {
+    gate.named.push_back(path);
     return core::read_file(path, gate.left_bytes);
   });
   if (!bytes) {
@@ -126,7 +129,8 @@ bool is_supported(std::string_view extension) {
   return extension == "KHR_materials_emissive_strength" || extension == "KHR_mesh_quantization";
 }
 
-core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Limits& limits) {
+core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Limits& limits,
+                                    std::vector<std::filesystem::path>& named) {
   const auto refuse = [&](ErrorCode code, std::string_view sentence) {
     return core::fail(code, fmt::format("{}: {}", path.string(), sentence));
   };
@@ -139,7 +143,7 @@ core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Lim
   if (auto ok = check_shape(json_of(*bytes, binary), limits.json_values); !ok)
     return refuse(ok.error().code, ok.error().message);
 
-  FileGate gate{path, most_bytes - bytes->size(), {}};
+  FileGate gate{path, most_bytes - bytes->size(), named, {}};
   tinygltf::TinyGLTF reader;
   tinygltf::FsCallbacks files{};
   files.FileExists = [](const std::string&, void*) { return true; };

@@ -4,6 +4,8 @@
 
 #include <exception>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include "engine/core/out_of_memory.hpp"
 #include "engine/core/utf8.hpp"
@@ -41,13 +43,15 @@ core::Result<Model> read_parsed(const std::filesystem::path& path, const tinyglt
 
 core::Result<Model> read_file(const std::filesystem::path& path, const Limits& limits) {
   try {
-    const auto file = parse(path, limits);
+    std::vector<std::filesystem::path> named;
+    const auto file = parse(path, limits, named);
     if (!file) return tl::unexpected(file.error());
     auto model = read_parsed(path, *file, limits);
     if (!model) {
       return core::fail(model.error().code,
                         fmt::format("{}: {}", path.string(), model.error().message));
     }
+    model->files = std::move(named);
     return model;
   } catch (const std::bad_alloc&) {
     return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory(path.string()));

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "engine/core/hash.hpp"
 #include "engine/core/log.hpp"
@@ -30,7 +33,14 @@ gltf::Limits limits() {
   return most;
 }
 
-core::Result<ShapePtr> read_shape(const fs::path& file, const world::HandmadeModel& how) {
+// What was made of a file, and of which others it names.
+template <class Made>
+struct Read {
+  std::shared_ptr<const Made> made;
+  std::vector<fs::path> named;
+};
+
+core::Result<Read<Shape>> read_shape(const fs::path& file, const world::HandmadeModel& how) {
   const auto model = gltf::read_file(file, limits());
   if (!model) return tl::unexpected(model.error());
   auto shape = shape_of(*model, how);
@@ -39,12 +49,12 @@ core::Result<ShapePtr> read_shape(const fs::path& file, const world::HandmadeMod
                       fmt::format("{}: {}", file.string(), shape.error().message));
   for (const std::string& note : model->notes)
     core::log_warning(note);
-  return shape;
+  return Read<Shape>{*std::move(shape), model->files};
 }
 
 using PicturePtr = std::shared_ptr<const world::GreyPicture>;
 
-core::Result<PicturePtr> read_picture(const fs::path& file) {
+core::Result<Read<world::GreyPicture>> read_picture(const fs::path& file) {
   const image::ImageLimits most{4096, 4096, std::uint64_t{64} << 20, std::uint64_t{64} << 20};
   auto image = image::read_grey(file, most);
   if (!image) return tl::unexpected(image.error());
@@ -52,7 +62,7 @@ core::Result<PicturePtr> read_picture(const fs::path& file) {
   picture->width = image->width, picture->height = image->height;
   picture->pixels = std::move(image->grey);
   picture->hash = world::content_hash(*picture);
-  return picture;
+  return Read<world::GreyPicture>{std::move(picture), {}};
 }
 
 // A file as it was: its path, its time and its size.
@@ -70,29 +80,43 @@ std::optional<FileState> state_of(const fs::path& file) {
 template <class Key, class Made>
 class InUse {
  public:
-  // What is known for a key, or what `make` makes, which is known from then on.
+  // What is known for a key, or what `make` reads, which is known from then on. Without a key it is
+  // read.
   template <class Make>
-  core::Result<std::shared_ptr<const Made>> find_or(const Key& key, const Make& make) {
-    if (auto known = find(key)) return known;
-    auto made = make();
-    if (made) keep(key, *made);
-    return made;
+  core::Result<std::shared_ptr<const Made>> find_or(const std::optional<Key>& key,
+                                                    const Make& make) {
+    if (auto known = key ? find(*key) : nullptr) return known;
+    auto read = make();
+    if (!read) return tl::unexpected(read.error());
+    if (key) keep(*key, *read);
+    return read->made;
   }
 
  private:
+  struct Entry {
+    std::weak_ptr<const Made> made;
+    std::vector<std::pair<fs::path, std::optional<FileState>>> named;
+  };
+
   std::shared_ptr<const Made> find(const Key& key) {
     const std::lock_guard lock(mutex_);
     const auto found = made_.find(key);
-    return found == made_.end() ? nullptr : found->second.lock();
+    if (found == made_.end()) return nullptr;
+    const bool same = std::ranges::all_of(
+        found->second.named, [](const auto& file) { return state_of(file.first) == file.second; });
+    return same ? found->second.made.lock() : nullptr;
   }
-  void keep(const Key& key, const std::shared_ptr<const Made>& made) {
+  void keep(const Key& key, const Read<Made>& read) {
+    Entry entry{read.made, {}};
+    for (const fs::path& file : read.named)
+      entry.named.emplace_back(file, state_of(file));
     const std::lock_guard lock(mutex_);
-    std::erase_if(made_, [](const auto& entry) { return entry.second.expired(); });
-    made_[key] = made;
+    std::erase_if(made_, [](const auto& known) { return known.second.made.expired(); });
+    made_[key] = std::move(entry);
   }
 
   std::mutex mutex_;
-  std::map<Key, std::weak_ptr<const Made>> made_;
+  std::map<Key, Entry> made_;
 };
 
 class Files final : public world::FilesBeside {
@@ -108,9 +132,7 @@ class Files final : public world::FilesBeside {
   }
 
   core::Result<PicturePtr> read_grey(const fs::path& file) const override {
-    const auto state = state_of(file);
-    if (!state) return read_picture(file);
-    return pictures_.find_or(*state, [&] { return read_picture(file); });
+    return pictures_.find_or(state_of(file), [&] { return read_picture(file); });
   }
 
  private:
@@ -118,10 +140,9 @@ class Files final : public world::FilesBeside {
       std::tuple<FileState, double, double, double, std::int64_t, std::string>;  // with settings
 
   core::Result<ShapePtr> shape_from(const fs::path& file, const world::HandmadeModel& how) const {
-    const auto state = state_of(file);
-    // Other glTF files consist of several, which may change alone.
-    if (!state || file.extension() != ".glb") return read_shape(file, how);
-    const ShapeKey key{*state, how.size_m, how.scale, how.sink_m, how.levels, how.collider};
+    std::optional<ShapeKey> key;
+    if (auto state = state_of(file))
+      key = {*std::move(state), how.size_m, how.scale, how.sink_m, how.levels, how.collider};
     return shapes_.find_or(key, [&] { return read_shape(file, how); });
   }
 

@@ -12,8 +12,8 @@
 
 namespace psygen::handmade {
 
-// The reader of this program. Models of .glb files that some registry still has are not read again,
-// unless their file has changed.
+// The reader of this program. Models that some registry still has, and pictures in use, are not
+// read again, unless their file or one that it names has changed: another size, or another time.
 const world::FilesBeside& files();
 
 // Pictures in memory, by the names that a world file has for them.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <span>
 
 #include "engine/core/read_file.hpp"
@@ -167,6 +168,33 @@ TEST(HandmadeFiles, ReadMasksAndReadThemAgainWhenTheyChange) {
   // One pixel is a picture too.
   ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(1, 1, 255, 255, 255)));
   EXPECT_EQ(rocks_with(w), 20U);
+}
+
+// A model whose buffer is in a file of its own.
+TEST(HandmadeFiles, ReadModelsAgainWhenAFileThatTheyNameChanges) {
+  World w;
+  gltf::Sample sample = ball(24, 40);
+  const auto buffer = w.folder / "things/ball.bin";
+  gltf::write_bytes(w.folder / "things/ball.gltf", sample.text("ball.bin"));
+  gltf::write_bytes(buffer, sample.binary);
+  std::string text = std::string(kHead) + kBall + kScatter;
+  text.replace(text.find("ball.glb"), 8, "ball.gltf");
+  const auto identity = [&](models::Registry& registry) {
+    const auto world = world::parse_world(text, w.file(), registry, &files());
+    EXPECT_TRUE(world) << world.error().message;
+    return registry[4].identity();
+  };
+  models::Registry first = models::make_standard_registry(),
+                   same = models::make_standard_registry(),
+                   other = models::make_standard_registry();
+  const std::uint64_t before = identity(first);
+  const auto time = std::filesystem::last_write_time(buffer);
+  std::swap(sample.binary.front(), sample.binary.back());  // another triangle, and a normal
+  gltf::write_bytes(buffer, sample.binary);
+  std::filesystem::last_write_time(buffer, time);
+  EXPECT_EQ(identity(same), before) << "size and time are the same, so it is not read again";
+  std::filesystem::last_write_time(buffer, time + std::chrono::seconds(1));
+  EXPECT_NE(identity(other), before);
 }
 
 TEST(HandmadeFiles, RefuseBadMasks) {
