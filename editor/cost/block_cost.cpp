@@ -3,31 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/cost/block_survey.hpp"
 #include "editor/document/scale.hpp"
-#include "engine/core/clock.hpp"
 #include "engine/synthesis/synthesize.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
-#include "engine/world/placement.hpp"
 
 namespace psygen::editor {
 namespace {
 
 using world::FieldKind;
 
-constexpr int kBlocks = 4;         // over which means are taken
 constexpr int kPoints = 24;        // of a curve of reals
 constexpr int kMeasuredEvery = 6;  // points
-constexpr double kMostMeasuredS = 0.05;
-
-// Seconds of this thread to make a mesh; nothing if it fails.
-std::optional<double> make_mesh(const models::ModelType& type, const models::Parameters& p) {
-  const auto memory = synthesis::HeapDestination::make(type, p, 0);
-  if (!memory) return std::nullopt;
-  const double start_s = core::thread_cpu_seconds();
-  if (!synthesis::synthesize_guarded(type, p, 0, memory->view()).ok) return std::nullopt;
-  return core::thread_cpu_seconds() - start_s;
-}
 
 std::string toml_of(const world::WorldField& field, double value) {
   const bool integer = is_whole(field.kind);
@@ -80,35 +68,7 @@ bool has_cost_curve(const world::WorldField& field) {
 
 BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,
                      const synthesis::CostModel* learnt, bool measure) {
-  synthesis::CostModel costs(parsed.registry);
-  if (learnt != nullptr) costs.learn_from(*learnt);
-  BlockCost sum;
-  std::vector<world::Placement> placements;
-  std::vector<std::pair<models::ModelIndex, models::Parameters>> meshes;
-  for (int i = 0; i < kBlocks; ++i) {
-    const core::BlockCoord block = block_near(parsed.world, around, i);
-    world::place_models(parsed.world, parsed.registry, block, placements);
-    sum.models += static_cast<double>(placements.size());
-    meshes.emplace_back(parsed.world.terrain_model, world::terrain_parameters(parsed.world, block));
-    for (const world::Placement& placed : placements)
-      meshes.emplace_back(placed.model, placed.parameters);
-  }
-  double measured_s = 0;
-  for (const auto& [model, p] : meshes) {
-    const MeshCost cost = mesh_cost(parsed, model, p, costs);
-    sum.triangles += cost.triangles;
-    sum.bytes += cost.bytes;
-    sum.seconds += cost.seconds;
-  }
-  if (measure && sum.seconds <= kMostMeasuredS) {
-    for (const auto& [model, p] : meshes)
-      measured_s += make_mesh(parsed.registry[model], p).value_or(0);
-    sum.measured_seconds = measured_s / kBlocks;
-  }
-  for (double BlockCost::*part :
-       {&BlockCost::models, &BlockCost::triangles, &BlockCost::bytes, &BlockCost::seconds})
-    sum.*part /= kBlocks;
-  return sum;
+  return BlockSurvey(around, learnt).cost(parsed, measure);
 }
 
 std::vector<CostPoint> cost_curve(const std::string& text, const std::string& file,
@@ -119,6 +79,7 @@ std::vector<CostPoint> cost_curve(const std::string& text, const std::string& fi
                                   const world::FilesBeside* files) {
   std::vector<CostPoint> curve;
   if (!has_cost_curve(field)) return curve;
+  BlockSurvey survey(around, learnt);
   int number = 0;
   for (const double value : values_of(field)) {
     if (!go_on()) return {};
@@ -127,7 +88,7 @@ std::vector<CostPoint> cost_curve(const std::string& text, const std::string& fi
     const auto parsed = changed ? parse_world_text(*changed, file, register_models, files)
                                 : tl::make_unexpected(changed.error());
     if (parsed) {
-      point.cost = block_cost(**parsed, around, learnt, number++ % kMeasuredEvery == 0);
+      point.cost = survey.cost(**parsed, number++ % kMeasuredEvery == 0);
     } else {
       point.refusal = parsed.error().message;
     }

@@ -53,14 +53,31 @@ void CostWorker::ask_impact(ParsedWorldPtr before, ParsedWorldPtr after, core::B
   asked_.notify_all();
 }
 
+void CostWorker::rest(std::chrono::milliseconds most) {
+  {
+    const std::lock_guard lock(mutex_);
+    rest_until_ = std::chrono::steady_clock::now() + most;
+  }
+  asked_.notify_all();
+}
+
+bool CostWorker::is_over() const {
+  return newest_.load() == kEnd;
+}
+
+void CostWorker::wait_while_resting(std::unique_lock<std::mutex>& lock) {
+  while (!is_over() && std::chrono::steady_clock::now() < rest_until_)
+    asked_.wait_until(lock, rest_until_);
+}
+
 void CostWorker::run() {
   synthesis::lower_priority_of_this_thread();
   while (true) {
     std::unique_lock lock(mutex_);
-    asked_.wait(lock, [this] {
-      return next_.has_value() || next_impact_.has_value() || newest_.load() == kEnd;
-    });
-    if (newest_.load() == kEnd) return;
+    asked_.wait(lock,
+                [this] { return next_.has_value() || next_impact_.has_value() || is_over(); });
+    wait_while_resting(lock);
+    if (is_over()) return;
     if (!next_) {
       lock.unlock();
       work_on_impact();
@@ -74,6 +91,7 @@ void CostWorker::run() {
 
 void CostWorker::work_on_impact() {
   std::unique_lock lock(mutex_);
+  wait_while_resting(lock);
   if (!next_impact_) return;
   const ImpactJob job = *std::exchange(next_impact_, std::nullopt);
   lock.unlock();

@@ -4,6 +4,7 @@
 
 #include <QObject>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <memory>
@@ -32,6 +33,10 @@ class CostWorker final : public QObject {
   // only the impact that was asked before.
   void ask_impact(ParsedWorldPtr before, ParsedWorldPtr after, core::BlockCoord around,
                   CacheContents contents, std::shared_ptr<const synthesis::CostModel> learnt);
+  // Something that a person waits for needs the processors: nothing more is computed until go_on(),
+  // or for this long.
+  void rest(std::chrono::milliseconds most);
+  void go_on() { rest(std::chrono::milliseconds(0)); }
 
  Q_SIGNALS:
   void world_cost(const psygen::editor::BlockCost& cost);
@@ -54,6 +59,8 @@ class CostWorker final : public QObject {
     std::shared_ptr<const synthesis::CostModel> learnt;
   };
   void run();
+  bool is_over() const;
+  void wait_while_resting(std::unique_lock<std::mutex>& lock);
   void work(const Job& job);
   void work_on_impact();
 
@@ -62,6 +69,7 @@ class CostWorker final : public QObject {
   std::condition_variable asked_;
   std::optional<Job> next_;
   std::optional<ImpactJob> next_impact_;
+  std::chrono::steady_clock::time_point rest_until_{};
   std::atomic<std::uint64_t> newest_{0};  // number of the newest job; UINT64_MAX: the end
   std::thread thread_;
 };

@@ -140,7 +140,11 @@ void MainWindow::connect_view() {
     ask_costs();
   });
   connect(view_, &WorldView::refused, this, &MainWindow::say);
-  connect(view_, &WorldView::answered, this, [this](double ms) { answered_ms_ = ms; });
+  connect(view_, &WorldView::refused, costs_, &CostWorker::go_on);
+  connect(view_, &WorldView::answered, this, [this](double ms) {
+    answered_ms_ = ms;
+    costs_->go_on();
+  });
   connect(view_, &WorldView::settled, this, [this](double ms) {
     statusBar()->showMessage(
         tr("The first picture came %1 ms after the change, the last mesh after %2 ms.")

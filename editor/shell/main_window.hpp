@@ -131,6 +131,7 @@ class MainWindow final : public QMainWindow {
   QMenu* recent_menu_ = nullptr;
   QMenu* panels_menu_ = nullptr;
   QTimer figures_timer_, costs_timer_;
+  int costs_put_off_ = 0;  // times, because the view awaited meshes
   // What the scene's cache held and its cost model knew, when it was looked at last.
   CacheContents contents_;
   std::shared_ptr<const synthesis::CostModel> learnt_;

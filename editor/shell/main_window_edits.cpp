@@ -3,6 +3,7 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QMenu>
+#include <chrono>
 #include <random>
 
 #include "editor/cost/cost_worker.hpp"
@@ -21,6 +22,9 @@ namespace {
 
 constexpr int kCostsMs = 300;     // after the last change
 constexpr int kLearntMs = 1'000;  // what is known of the scene may be so old
+// Costs give way to what the view makes of a change, for so long.
+constexpr std::chrono::milliseconds kMostRest{2'000};
+constexpr int kMostPutOff = 10;  // times, for kCostsMs each
 
 }  // namespace
 
@@ -119,10 +123,12 @@ void MainWindow::document_changed(Changes what) {
   model_->show(what.testFlag(Change::kFile) || images != shown_images_);
   shown_images_ = images;
   costs_timer_.start(kCostsMs);
+  costs_put_off_ = 0;
   const ParsedWorldPtr before = drag_from_ ? drag_from_ : last_parsed_;
   last_parsed_ = document_.parsed();
   if (what.testFlag(Change::kFile) || view_->session() == nullptr || !before) return;
   look_at_scene();
+  costs_->rest(kMostRest);
   costs_->ask_impact(before, last_parsed_, view_->camera().pose().position.block, contents_,
                      learnt_);
 }
@@ -138,8 +144,11 @@ void MainWindow::look_at_scene() {
   looked_.start();
 }
 
-// Of the fields that are shown.
+// Of the fields that are shown, once the view has what it needs.
 void MainWindow::ask_costs() {
+  if (view_->session() != nullptr && view_->awaits_meshes() && costs_put_off_++ < kMostPutOff)
+    return costs_timer_.start(kCostsMs);
+  costs_put_off_ = 0;
   look_at_scene();
   costs_->ask(document_.text(), document_.file().string(), properties_->shown_fields(),
               view_->camera().pose().position.block, learnt_,

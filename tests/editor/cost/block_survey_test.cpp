@@ -1,0 +1,50 @@
+#include "editor/cost/block_survey.hpp"
+
+#include "tests/editor/cost/worlds.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr core::BlockCoord kAround{20, 20};
+
+void expect_same(const BlockCost& a, const BlockCost& b) {
+  EXPECT_DOUBLE_EQ(a.models, b.models);
+  EXPECT_NEAR(a.triangles, b.triangles, 1e-9 * b.triangles);
+  EXPECT_NEAR(a.bytes, b.bytes, 1e-9 * b.bytes);
+  EXPECT_NEAR(a.seconds, b.seconds, 1e-9 * b.seconds);
+}
+
+TEST(BlockSurvey, CostsOfWorldsInARowAreThoseOfEachAlone) {
+  BlockSurvey survey(kAround, nullptr);
+  for (const auto& parsed : {
+           costed(),
+           costed_with({"scatter", 0, "branches"}, "[2, 3]"),
+           costed_with({"scatter", 0, "branches"}, "[3, 3]"),
+           costed_with({"scatter", 1, "count"}, "9"),
+           costed_with({"scatter", 0, "count"}, "9"),
+           costed_with({"terrain", "relief_m"}, "90"),
+           costed(),
+       })
+    expect_same(survey.cost(*parsed, false), block_cost(*parsed, kAround, nullptr, false));
+}
+
+TEST(BlockSurvey, AScatterCostsMoreWithMoreOfIt) {
+  BlockSurvey survey(kAround, nullptr);
+  const BlockCost few = survey.cost(*costed(), false);
+  const BlockCost more = survey.cost(*costed_with({"scatter", 0, "count"}, "12"), false);
+  EXPECT_DOUBLE_EQ(few.models, 11);
+  EXPECT_DOUBLE_EQ(more.models, 17);
+  EXPECT_GT(more.triangles, few.triangles);
+  EXPECT_GT(more.seconds, few.seconds);
+}
+
+TEST(BlockSurvey, MeasuresABlockWhereThatIsAskedFor) {
+  BlockSurvey survey(kAround, nullptr);
+  EXPECT_FALSE(survey.cost(*costed(), false).measured_seconds);
+  const auto measured = survey.cost(*costed(), true).measured_seconds;
+  ASSERT_TRUE(measured);
+  EXPECT_GT(*measured, 0);
+}
+
+}  // namespace
+}  // namespace psygen::editor
