@@ -21,7 +21,6 @@ struct BlockCost {
 };
 
 // The cost of a world, of some blocks around one. `learnt`: what a cost model of the same program
-// The cost of a world, of some blocks around one. `learnt`: what a cost model of the same program
 // knows (null: nothing). `measure`: also makes one of the blocks, unless that is predicted to take
 // over 12.5 ms, and takes what that took, in parts of what was predicted, for all.
 BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,

@@ -262,6 +262,32 @@ TEST_F(SetWorld, ADraftIsCoarseAndGetsFineWhenItEnds) {
   expect_consistent(*scene);
 }
 
+// In virtual time no modeler has had any time: the main thread makes them.
+TEST_F(SetWorld, InADraftTheNearestModelsAreNewInTheNextPicture) {
+  const auto scene = scene_of(paper_, settings_);
+  scene->settle(pose_);
+  tick_until_quiet(*scene, pose_);
+  ASSERT_TRUE(set(*scene, replaced(paper_, "branches = [2, 4]", "branches = [3, 3]")));
+  const auto stale_in_view = [&] {
+    std::size_t stale = 0;
+    const std::uint32_t tick = scene->state().clock.tick - 1;
+    std::as_const(scene->state().entities)
+        .each<const Demand, const Source>([&](std::span<const ecs::Entity>,
+                                              std::span<const Demand> demands,
+                                              std::span<const Source> sources) {
+          for (std::size_t i = 0; i < demands.size(); ++i)
+            stale += sources[i].index < kMergedIndex && demands[i].in_view_tick == tick &&
+                     demands[i].stale;
+        });
+    return stale;
+  };
+  const std::size_t before = stale_in_view();
+  ASSERT_GT(before, 0u);
+  scene->state().input.draft = true;
+  tick_at(*scene, pose_);
+  EXPECT_LT(stale_in_view(), before);
+}
+
 TEST_F(SetWorld, WhatIsTakenBackIsStillInTheCache) {
   const auto scene = scene_of(paper_, settings_);
   scene->settle(pose_);
