@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "editor/cost/block_survey.hpp"
 #include "editor/document/scale.hpp"
@@ -24,6 +25,30 @@ std::string toml_of(const world::WorldField& field, double value) {
                    : world::toml_number(value);
   return world::toml_range(std::min(field.numbers[0], value), value, integer);
 }
+
+// A text with one value after the other: where the value stands is found once.
+class TextsOfField {
+ public:
+  TextsOfField(const std::string& text, const world::TextPath& path) : text_(text), path_(path) {
+    static constexpr std::string_view kMark = "\"\\u0001 value \\u0001\"";
+    const auto marked = world::with_value(text, path, kMark);
+    const std::size_t at = marked ? marked->find(kMark) : std::string::npos;
+    if (at == std::string::npos || marked->find(kMark, at + 1) != std::string::npos) return;
+    is_found_ = true;
+    before_ = marked->substr(0, at);
+    behind_ = marked->substr(at + kMark.size());
+  }
+  core::Result<std::string> with(const std::string& toml) const {
+    if (is_found_) return before_ + toml + behind_;
+    return world::with_value(text_, path_, toml);
+  }
+
+ private:
+  const std::string& text_;
+  const world::TextPath& path_;
+  bool is_found_ = false;
+  std::string before_, behind_;
+};
 
 std::vector<double> values_of(const world::WorldField& field) {
   const Scale scale = scale_of(field);
@@ -80,11 +105,12 @@ std::vector<CostPoint> cost_curve(const std::string& text, const std::string& fi
   std::vector<CostPoint> curve;
   if (!has_cost_curve(field)) return curve;
   BlockSurvey survey(around, learnt);
+  const TextsOfField texts(text, field.path);
   int number = 0;
   for (const double value : values_of(field)) {
     if (!go_on()) return {};
     CostPoint point{value, {}, {}};
-    const auto changed = world::with_value(text, field.path, toml_of(field, value));
+    const auto changed = texts.with(toml_of(field, value));
     const auto parsed = changed ? parse_world_text(*changed, file, register_models, files)
                                 : tl::make_unexpected(changed.error());
     if (parsed) {

@@ -1,5 +1,8 @@
 #include "editor/cost/block_survey.hpp"
 
+#include <cmath>
+
+#include "engine/world/files/world_schema.hpp"
 #include "tests/editor/cost/worlds.hpp"
 
 namespace psygen::editor {
@@ -26,6 +29,20 @@ TEST(BlockSurvey, CostsOfWorldsInARowAreThoseOfEachAlone) {
            costed(),
        })
     expect_same(survey.cost(*parsed, false), block_cost(*parsed, kAround, nullptr, false));
+}
+
+TEST(BlockSurvey, ACurveHasTheCostsOfItsValues) {
+  const auto parsed = costed();
+  const auto sections = world::world_schema(kCostedWorld, parsed->world, parsed->registry).value();
+  const world::WorldField& count = *world::find_field(sections, {"scatter", 0, "count"});
+  const auto curve =
+      cost_curve(kCostedWorld, "costed.toml", {}, count, kAround, nullptr, [] { return true; });
+  ASSERT_GT(curve.size(), 5u);
+  for (const CostPoint& point : {curve[0], curve[3], curve.back()}) {
+    const auto toml = std::to_string(std::llround(point.value));
+    ASSERT_TRUE(point.cost) << point.refusal;
+    expect_same(*point.cost, block_cost(*costed_with(count.path, toml), kAround, nullptr, false));
+  }
 }
 
 TEST(BlockSurvey, AScatterCostsMoreWithMoreOfIt) {
