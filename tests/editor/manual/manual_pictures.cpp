@@ -1,6 +1,7 @@
 // Takes the pictures of the manual (docs/editor.md): goes through the panels of a window as a
 // person would and saves each as NAME-THEME-WIDTH.jpg. Run by tools/editor_pictures.sh. Minutes.
-//   psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools]     one of them alone
+//   psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools|others]
+// `window`: that alone; `tools`: those of the view; `others`: export, comparison, attached flight.
 // It edits the document and saves nothing of it.
 #include <QAction>
 #include <QApplication>
@@ -12,15 +13,24 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QPainter>
+#include <QProcess>
+#include <QScrollArea>
 #include <QSpinBox>
+#include <QTimer>
+#include <QUndoStack>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "editor/attach/remote_session.hpp"
+#include "editor/flights/flight_process.hpp"
 #include "editor/flights/timeline_panel.hpp"
+#include "editor/gallery/compare_window.hpp"
 #include "editor/gallery/contact_sheet.hpp"
 #include "editor/gallery/library_panel.hpp"
 #include "editor/panels/impact_bar.hpp"
@@ -41,8 +51,9 @@ namespace {
 struct Arguments {
   std::filesystem::path folder;
   QString theme;
-  std::string size;  // of the display
-  std::string only;  // "window" or "tools"; empty: all pictures
+  std::string size;                 // of the display
+  std::string only;                 // "window", "tools", "others"; empty: all pictures
+  std::filesystem::path home = {};  // for files that nobody keeps
 };
 
 constexpr int kLongestMs = 400'000, kRestMs = 700, kQuality = 78;
@@ -331,11 +342,101 @@ void take_sheet(Photographer& take, MainWindow& window) {
   palette->reject();
 }
 
+// The selected oak and how it is exported. The dialog waits for an answer: the picture is taken
+// from within, with names as they are in the folder of the sources.
+void take_export(Photographer& take, MainWindow& window) {
+  const scene::State& state = window.view().session()->scene().state();
+  const core::CameraPose pose = window.view().camera().pose();
+  for (double aside = -0.3; aside < 0.3; aside += 0.02) {
+    core::CameraPose turned = pose;
+    turned.yaw += aside;
+    window.view().select(pick(state, pose, glm::dvec3(core::forward_of(turned))));
+    const auto& selection = window.view().selection();
+    if (selection && selection->kind == query::HitKind::kModel) break;
+  }
+  QTimer::singleShot(kRestMs, &window, [&take] {
+    QWidget* dialog = QApplication::activeModalWidget();
+    if (dialog == nullptr) return take.fail("there is no dialog for exports");
+    const auto lines = dialog->findChildren<QLineEdit*>();
+    for (QLineEdit* line : lines) {
+      const bool of_number = qobject_cast<QSpinBox*>(line->parentWidget()) != nullptr;
+      if (!line->isReadOnly() && !of_number) line->setText("oak.glb");
+    }
+    for (QLineEdit* line : lines) {
+      if (!line->isReadOnly()) continue;
+      line->setText(line->text().replace(QString::fromStdString(source_file("")), ""));
+      line->setCursorPosition(0);
+    }
+    take.widget("export", *dialog);
+    dialog->close();
+  });
+  take.command("Export a model or block …");
+  window.view().select(std::nullopt);
+}
+
+// Left of the line the land as it is, right of it in the evening.
+void take_compare(Photographer& take, MainWindow& window) {
+  take.command("Mark this state as A");
+  take.settle([&] { take.set({"sky", "sun_elevation_deg"}, "12"); });
+  take.command("A and B side by side");
+  auto* compare = window.findChild<CompareWindow*>();
+  if (compare == nullptr) return take.fail("there is no comparison");
+  const auto is_drawn = [&] {
+    const QImage seen = compare->grab().toImage();
+    const QColor empty = compare->palette().color(QPalette::Base);
+    return seen.pixelColor(seen.width() / 4, seen.height() / 2) != empty &&
+           seen.pixelColor(seen.width() * 3 / 4, seen.height() / 2) != empty;
+  };
+  if (!wait_until(is_drawn, kLongestMs)) take.fail("the comparison is not drawn");
+  take.widget("compare", *compare);
+  compare->close();
+  take.settle([&] { take.document().undo_stack().undo(); });
+}
+
+// A flight in another process. The document becomes its world, so this is the last picture.
+void take_attached(Photographer& take, MainWindow& window, const std::filesystem::path& home) {
+  const std::filesystem::path sockets = home / "sockets";
+  std::filesystem::create_directory(sockets);
+  std::filesystem::permissions(sockets, std::filesystem::perms::owner_all);
+  ::setenv("XDG_RUNTIME_DIR", sockets.c_str(), 1);
+  if (auto done = take.document().revert(); !done)
+    return take.fail(QString::fromStdString(done.error().message));
+  QProcess flight;
+  flight.start(psygen_program(), {"fly", "--headless", "--world", "paper", "--path", "walk27",
+                                  "--loop", "--seconds", "600", "--target-fps", "30", "--inspect"});
+  auto* remote = window.findChild<RemoteSession*>();
+  bool answers = false;
+  QObject::connect(remote, &RemoteSession::entities, &window,
+                   [&answers](const QJsonObject&) { answers = true; });
+  // A flight that has just begun may not answer yet.
+  const auto is_attached = [&] {
+    const auto found = inspect::endpoints(sockets);
+    if (!remote->is_attached() && found && !found->empty()) (void)remote->attach(found->front());
+    return answers;
+  };
+  if (!wait_until(is_attached, kLongestMs)) take.fail("no flight can be attached to");
+  rest(6000);
+  auto* area = window.findChild<QDockWidget*>("attached")->findChild<QScrollArea*>();
+  if (area == nullptr) return take.fail("there is no panel of an attached program");
+  take.widget("attached", *area->widget());  // all of it, however much is seen
+  remote->detach(false);
+  flight.terminate();
+  flight.waitForFinished();
+}
+
+bool take_others(Photographer& take, MainWindow& window, const Arguments& arguments) {
+  take_export(take, window);
+  take_compare(take, window);
+  take_attached(take, window, arguments.home);
+  return take.ok();
+}
+
 bool take_all(MainWindow& window, const Arguments& arguments) {
   Photographer take(window, arguments.folder, arguments.theme);
   if (!wait_until([&] { return window.view().session() != nullptr; }, kLongestMs)) return false;
   take.settle([] {});
   if (arguments.only == "tools") return take_tools(take, window), take.ok();
+  if (arguments.only == "others") return take_others(take, window, arguments);
   take_window(take);
   if (arguments.only == "window") return take.ok();
   take_fields(take);
@@ -344,10 +445,10 @@ bool take_all(MainWindow& window, const Arguments& arguments) {
   take_tools(take, window);
   take_sheet(take, window);
   take_timeline(take, window);
-  return take.ok();
+  return take_others(take, window, arguments);
 }
 
-int run(int argc, char** argv, const Arguments& arguments) {
+int run(int argc, char** argv, Arguments arguments) {
   const auto display = OwnDisplay::start(arguments.size);
   if (!display) return 1;
   const QApplication application(argc, argv);
@@ -357,7 +458,7 @@ int run(int argc, char** argv, const Arguments& arguments) {
   MainWindowOptions options;
   options.session.preset = render::Preset::kMedium;
   options.session.target_hz = 0;  // as fine as it gets, however long it takes
-  options.document.state_folder = display->home();
+  options.document.state_folder = arguments.home = display->home();
   MainWindow window(std::move(options));
   window.showFullScreen();
   window.set_first_place(first_pose(), kFirstHeightM);
@@ -373,7 +474,7 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::strcmp(argv[1], kPicturesOption) == 0) return render_pictures({});
   if (argc < 4 || argc > 5) {
     std::fprintf(stderr,
-                 "usage: psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools]\n");
+                 "usage: psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools|others]\n");
     return 2;
   }
   return run(argc, argv, {argv[1], argv[2], argv[3], argc > 4 ? argv[4] : ""});
