@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Holds the lists of public headers together: every header under HEADERS of a folder's CMakeLists.txt is
 there, and includes only public headers; otherwise the installed package would not compile. And each of
-its functions has a comment: above it, behind it, or above the group of lines that it stands in.
+its functions has a comment: above it, behind it, or above the group of lines that it stands in. The game,
+which is written as games outside of this project are, includes only public headers of the engine.
 
 usage: public_headers_test.py SOURCE_DIR
        public_headers_test.py --self-test
@@ -45,6 +46,14 @@ def violations(public, text_of):
                 yield f"{header} has functions without a comment: {line}"
 
 
+def beyond_the_package(public, sources):
+    """Sentences about sources, by name, of a program that has the installed package alone."""
+    for name, text in sorted(sources.items()):
+        for header in INCLUDE.findall(text):
+            if header.startswith(("engine/", "ecs/")) and header not in public:
+                yield f"{name} includes {header}, which is not public"
+
+
 def self_test():
     assert listed("a", "f(a\n  SOURCES x.cpp\n  HEADERS b.hpp\n          c/d.hpp\n  PUBLIC e)") == [
         "a/b.hpp", "a/c/d.hpp"]
@@ -52,6 +61,8 @@ def self_test():
     assert not list(violations({"a/b.hpp", "a/c.hpp"}, texts.get))
     assert len(list(violations({"a/b.hpp"}, texts.get))) == 1
     assert len(list(violations({"a/gone.hpp"}, texts.get))) == 1
+    assert len(list(beyond_the_package({"engine/a/b.hpp"}, {
+        "x": '#include "engine/a/b.hpp"\n#include "game/c.hpp"\n#include "engine/a/c.hpp"\n'}))) == 1
     assert list(without_comment("// File.\n\nint f(int a);\n")) == ["int f(int a);"]
     assert list(without_comment("class A {\n  bool g() const {\n    return 1;\n  }\n};\n")) == ["class A {"]
     assert not list(without_comment("// Of f.\nint f(int a);\n\nclass A {\n private:\n  int g();\n};\n"))
@@ -67,7 +78,8 @@ def main():
         public.update(listed(file.parent.relative_to(root).as_posix(), file.read_text(encoding="utf-8")))
     assert len(public) > 50, "the scan found too few headers to mean anything"
     texts = {name: (root / name).read_text(encoding="utf-8") for name in public if (root / name).exists()}
-    found = list(violations(public, texts.get))
+    game = {file.relative_to(root).as_posix(): file.read_text(encoding="utf-8") for file in root.glob("game/**/*.?pp")}
+    found = [*violations(public, texts.get), *beyond_the_package(public, game)]
     print("\n".join(found) or f"public headers: {len(public)}, all complete")
     return 1 if found else 0
 

@@ -473,8 +473,9 @@ int main(int argc, char** argv) {
   using namespace psygen::editor;
   if (argc > 1 && std::strcmp(argv[1], kPicturesOption) == 0) return render_pictures({});
   if (argc < 4 || argc > 5) {
-    std::fprintf(stderr,
-                 "usage: psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools|others]\n");
+    std::fprintf(
+        stderr,
+        "usage: psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools|others]\n");
     return 2;
   }
   return run(argc, argv, {argv[1], argv[2], argv[3], argc > 4 ? argv[4] : ""});
