@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <glm/trigonometric.hpp>
+#include <numbers>
+#include <utility>
 
 #include "engine/core/log.hpp"
 #include "engine/platform/window.hpp"
@@ -14,6 +16,9 @@ namespace {
 
 constexpr std::uint64_t kFirstSeed = 7;  // of the land behind the title, until a game was saved
 constexpr double kSaveEveryS = 60, kZoom = 0.28;
+constexpr double kSwayM = 0.025, kSwayPerM = 3.6, kPhotoTurn = 0.003;  // radians for a pixel
+constexpr int kQuietSteps = 2, kTries = 8;                             // of seeds that nobody chose
+constexpr std::uint64_t kSeeds = 1'000'000'000;
 constexpr double kTitleHeightM = 26, kTitleRadiusM = 150, kTitleTurnS = 140;
 constexpr int kPictureFrames = 2;  // until the last one has no page over it
 constexpr std::uint64_t kBudgetBytes = 256ull << 20;
@@ -35,7 +40,15 @@ core::Result<app::SessionOptions> Game::session_options() {
   session.world_text = std::move(*text);
   session.headless = options_.headless;
   session.size = options_.size;
+  if (auto read = load_settings(config_)) {
+    settings_ = *read;
+  } else {
+    settings_broken_ = true;
+    menu_.message = read.error().message;
+  }
   session.preset = options_.preset;
+  if (!session.preset && settings_.quality >= 0)
+    session.preset = static_cast<render::Preset>(settings_.quality);
   session.prefill = false;
   session.scene.budget_bytes = kBudgetBytes;
   session.scene.modelers = options_.modelers;
@@ -51,23 +64,33 @@ core::Result<app::SessionOptions> Game::session_options() {
   return session;
 }
 
-core::Result<Game::Loaded> Game::load(std::uint64_t seed) {
+core::Result<Game::Loaded> Game::load(std::uint64_t seed, int tries) {
   auto land = Land::load(seed);
   if (!land) return tl::unexpected(land.error());
   auto play = Play::create((*land)->world, (*land)->registry);
+  if (!play && tries > 1) return load(seed + 1, tries - 1);
   if (!play) return tl::unexpected(play.error());
   auto text = land_text(seed);
   if (!text) return tl::unexpected(text.error());
   return Loaded{std::move(*land), std::move(*play), std::move(*text)};
 }
 
+void Game::load_later(std::uint64_t seed, int tries) {
+  if (loading_.valid() && seed == seed_) return;
+  if (loading_.valid()) dropped_.push_back(std::move(loading_));  // its end is not waited for here
+  loading_ = std::async(std::launch::async, load, seed, tries);
+  seed_ = seed;
+}
+
 core::Result<void> Game::start(app::Session& session) {
   if (auto ok = add_actions(session.actions()); !ok) return ok;
-  if (auto read = load_settings(config_, session.actions())) {
-    settings_ = *read;
-  } else {
-    core::log_warning(read.error().message);
+  if (auto ok = load_keys(config_, session.actions()); !ok) {
+    settings_broken_ = true;
+    menu_.message = ok.error().message;
   }
+  if (settings_broken_) core::log_warning(menu_.message);
+  if (settings_.quality < 0) settings_.quality = static_cast<int>(session.renderer().preset());
+  title_place_ = session.home().position;
   if (auto ok = scenery_.open(session); !ok) return ok;
   const auto destination =
       options_.sound ? audio::Destination::kDevice : audio::Destination::kNowhere;
@@ -88,7 +111,7 @@ core::Result<void> Game::start(app::Session& session) {
   }
   menu_.can_continue = last_seed(saves_).has_value();
   if (options_.seed.empty() && !options_.autoplay) {
-    loading_ = std::async(std::launch::async, load, seed_);
+    loading_ = std::async(std::launch::async, load, seed_, 1);
     return {};
   }
   auto loaded = load(seed_);
@@ -99,37 +122,73 @@ core::Result<void> Game::start(app::Session& session) {
 // Goes into a land; its save, if there is one, is gone on from.
 core::Result<void> Game::begin(app::Session& session, Loaded loaded) {
   const std::uint64_t seed = loaded.land->world.seed;
-  auto saved = Saved::open(save_file(saves_, seed), *loaded.play);
-  if (!saved) return tl::unexpected(saved.error());
+  const bool is_kept = options_.record.empty() && options_.replay.empty();
+  std::optional<Saved> opened;
+  if (is_kept) {
+    auto saved = Saved::open(save_file(saves_, seed), *loaded.play);
+    if (!saved) return tl::unexpected(saved.error());
+    opened.emplace(std::move(*saved));
+  }
   if (seed != session.scene().state().facts.world.seed) {
+    title_query_.reset();
     if (auto ok = session.set_world(loaded.text); !ok) return ok;
   }
   scenery_.clear(session);
   pilot_.reset();
-  saved_.emplace(std::move(*saved));
+  saved_ = std::move(opened);
   lands_.emplace(std::move(loaded));
   seed_ = seed;
-  shown_edits_ = nullptr;
   if (options_.autoplay) pilot_.emplace(*lands_->play);
+  title_place_ = lands_->play->route().start;
   open_page(session, Page::kNone);
   until_save_s_ = kSaveEveryS;
+  shown_edits_ = lands_->play->edits().layer();
+  session.scene().edit(lands_->play->edits());
+  // Nobody arrives in a land that is still being made.
+  const core::CameraPose eyes = frame(session, 0);
+  if (auto ok = session.prepare(eyes); !ok) return ok;
   if (lands_->play->progress().time_s < 1)
     hud_.say("Twelve cairns stand in this land.", "The needle knows the next one.", 8);
   return {};
 }
 
 void Game::open_page(app::Session& session, Page page) {
+  if (shown_page_ == Page::kSettings && page != Page::kSettings && !settings_broken_) {
+    if (auto ok = save_settings(config_, settings_, session.actions()); !ok)
+      hud_.say(ok.error().message, {}, 8);
+  }
+  if (page == Page::kPhoto && lands_) {
+    menu_.photo.hour = static_cast<float>(lands_->play->hour());
+    menu_.photo.fov_deg = static_cast<float>(settings_.fov_deg);
+    photo_turn_ = {};
+  }
   menu_.page = shown_page_ = page;
+  quiet_steps_ = kQuietSteps;
   if (session.window() == nullptr) return;
+  session.window()->set_right_button_looks(page == Page::kPhoto);
   session.window()->capture_cursor(page == Page::kNone);
 }
 
 void Game::step(app::Session& session, double dt) {
-  if (recording_) (void)recording_->add(session.actions().states());
   if (!lands_ || menu_.page != Page::kNone) return;
+  if (recording_) {
+    if (auto ok = recording_->add(session.actions().states()); !ok) {
+      hud_.say(ok.error().message, {}, 8);
+      recording_.reset();
+    }
+  }
   Play& play = *lands_->play;
-  Intent intent = pilot_ ? pilot_->steer(dt) : intent_of(session.actions(), settings_.mouse, dt);
-  if (zoom_) intent.turn *= kZoom;
+  const double mouse = recording_ || session.replays() ? 1 : settings_.mouse;
+  Intent intent = pilot_ ? pilot_->steer(dt) : intent_of(session.actions(), mouse, dt);
+  zoom_ = has(play.abilities(), Ability::kEye) && state_of(session.actions(), Act::kEye).held;
+  if (zoom_) {
+    intent.turn *= kZoom;
+    intent.look *= kZoom;
+  }
+  if (quiet_steps_ > 0 && !pilot_) {
+    --quiet_steps_;
+    intent.jump = intent.use = false;
+  }
   play.step(intent, dt);
 }
 
@@ -148,51 +207,53 @@ void Game::keep_up(app::Session& session, double dt_s) {
     session.scene().edit(play.edits());
   }
   until_save_s_ -= dt_s;
-  if (until_save_s_ <= 0) save();
+  if (until_save_s_ <= 0) {
+    if (auto ok = save(); !ok) hud_.say(ok.error().message, {}, 8);
+  }
   if (saved_) {
     if (const auto done = saved_->outcome(); done && !*done) hud_.say(done->error().message);
   }
 }
 
-void Game::save() {
+core::Result<void> Game::save() {
   until_save_s_ = kSaveEveryS;
-  if (!lands_ || !saved_) return;
-  if (auto ok = saved_->put(*lands_->play); !ok) hud_.say(ok.error().message, {}, 8);
+  return lands_ && saved_ ? saved_->put(*lands_->play) : core::Result<void>();
+}
+
+core::Result<void> Game::save_now() {
+  return save().and_then([&] { return saved_ ? saved_->wait() : core::Result<void>(); });
+}
+
+// Leaves nothing unsaved. False: the disk does not take it, and the page says why.
+bool Game::save_and_leave() {
+  auto saved = save_now();
+  if (!saved) menu_.message = saved.error().message;
+  return saved.has_value();
 }
 
 void Game::choose(app::Session& session, Choice choice) {
-  if (menu_.settings_changed) {
-    menu_.settings_changed = false;
-    apply_settings(session);
-    if (auto ok = save_settings(config_, settings_, session.actions()); !ok)
-      menu_.message = ok.error().message;
-  }
+  if (std::exchange(menu_.settings_changed, false)) apply_settings(session);
   if (menu_.page != shown_page_) open_page(session, menu_.page);
-  if (choice == Choice::kNew || choice == Choice::kContinue) {
-    const bool again = choice == Choice::kContinue;
-    const auto seed = again ? last_seed(saves_).value_or(seed_)
-                      : menu_.seed.empty()
-                          ? core::mix64(static_cast<std::uint64_t>(
-                                std::chrono::steady_clock::now().time_since_epoch().count())) %
-                                1'000'000
-                          : seed_of(menu_.seed);
-    if (!loading_.valid() || seed != seed_) loading_ = std::async(std::launch::async, load, seed);
-    seed_ = seed;
-    menu_.busy = true;
-  } else if (choice == Choice::kSave) {
-    save();
+  if (choice == Choice::kContinue) load_later(last_seed(saves_).value_or(seed_), 1);
+  if (choice == Choice::kNew && !menu_.seed.empty()) load_later(seed_of(menu_.seed), 1);
+  if (choice == Choice::kNew && menu_.seed.empty()) {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+    load_later(core::mix64(static_cast<std::uint64_t>(now)) % kSeeds, kTries);
+  }
+  if (choice == Choice::kNew || choice == Choice::kContinue) menu_.busy = true;
+  if (choice == Choice::kPicture) picture_in_ = kPictureFrames;
+  if (choice == Choice::kSave && save_and_leave()) {
     hud_.say("Saved.");
     open_page(session, Page::kNone);
-  } else if (choice == Choice::kToTitle) {
-    save();
-    if (saved_) (void)saved_->wait();
+  }
+  if (choice == Choice::kQuit && save_and_leave()) session.close();
+  if (choice == Choice::kToTitle && save_and_leave()) {
+    scenery_.clear(session);
+    pilot_.reset();
     saved_.reset();
+    lands_.reset();
     menu_.can_continue = true;
     open_page(session, Page::kTitle);
-  } else if (choice == Choice::kPicture) {
-    picture_in_ = kPictureFrames;
-  } else if (choice == Choice::kQuit) {
-    session.close();
   }
 }
 
@@ -205,13 +266,14 @@ void Game::take_keys(app::Session& session) {
     return false;
   };
   const Page page = menu_.page;
-  if (page == Page::kTitle || page == Page::kSettings) return;
-  if (pressed(Act::kMenu)) open_page(session, page == Page::kNone ? Page::kPause : Page::kNone);
-  if (pressed(Act::kMap)) open_page(session, page == Page::kMap ? Page::kNone : Page::kMap);
-  if (pressed(Act::kPhoto)) {
-    menu_.photo.hour = static_cast<float>(lands_->play->hour());
-    menu_.photo.fov_deg = static_cast<float>(settings_.fov_deg);
-    open_page(session, page == Page::kPhoto ? Page::kNone : Page::kPhoto);
+  const bool plays = page == Page::kNone;
+  if (page == Page::kSettings || page == Page::kCredits || session.replays()) return;
+  if (pressed(Act::kMenu)) {
+    open_page(session, plays ? Page::kPause : Page::kNone);
+  } else if (pressed(Act::kMap) && (plays || page == Page::kMap)) {
+    open_page(session, plays ? Page::kMap : Page::kNone);
+  } else if (pressed(Act::kPhoto) && plays) {
+    open_page(session, Page::kPhoto);
   }
   if (pressed(Act::kPicture)) picture_in_ = kPictureFrames;
 }
@@ -219,7 +281,12 @@ void Game::take_keys(app::Session& session) {
 void Game::apply_settings(app::Session& session) {
   sounds_->set_volumes(settings_.effects, settings_.music);
   const auto preset = static_cast<render::Preset>(settings_.quality);
-  if (!options_.preset && session.renderer().preset() != preset) (void)session.set_preset(preset);
+  if (!options_.preset && session.renderer().preset() != preset) {
+    if (auto ok = session.set_preset(preset); !ok) {
+      menu_.message = ok.error().message;
+      settings_.quality = static_cast<int>(session.renderer().preset());
+    }
+  }
   if (session.window() != nullptr && session.window()->fullscreen() != settings_.fullscreen)
     (void)session.window()->set_fullscreen(settings_.fullscreen);
 }
@@ -227,25 +294,26 @@ void Game::apply_settings(app::Session& session) {
 // Over the land of the title, in a slow circle.
 core::CameraPose Game::title_camera(app::Session& session, double dt_s) {
   if (!settings_.reduced_motion) title_s_ += dt_s;
-  const double angle = title_s_ * 2 * 3.14159265 / kTitleTurnS;
-  core::CameraPose pose =
-      lands_ ? core::CameraPose{lands_->play->route().start, 0, 0} : session.home();
-  const world::World& world = session.scene().state().facts.world;
-  query::World query(world, session.scene().state().facts.registry, 1 << 20);
+  const double angle = title_s_ * 2 * std::numbers::pi / kTitleTurnS;
+  const scene::WorldFacts& facts = session.scene().state().facts;
+  const world::World& world = facts.world;
+  if (!title_query_) title_query_.emplace(world, facts.registry);
+  core::CameraPose pose;
   pose.position =
-      at_end_of(pose.position, kTitleRadiusM * glm::dvec3(std::sin(angle), 0, -std::cos(angle)),
+      at_end_of(title_place_, kTitleRadiusM * glm::dvec3(std::sin(angle), 0, -std::cos(angle)),
                 world.block_size_m());
   double height_m = world.water.level_m;
   for (double ahead = -40; ahead <= 80; ahead += 20) {
     const glm::dvec3 way(std::cos(angle) * ahead, 0, std::sin(angle) * ahead);
-    if (const auto ground = query.ground(at_end_of(pose.position, way, world.block_size_m())))
+    if (const auto ground =
+            title_query_->ground(at_end_of(pose.position, way, world.block_size_m())))
       height_m = std::max(height_m, ground->height_m);
   }
   const double wanted = height_m + kTitleHeightM;
   title_height_m_ =
       title_height_m_ == 0 ? wanted : std::lerp(title_height_m_, wanted, std::min(0.4 * dt_s, 1.0));
   pose.position.local.y = title_height_m_;
-  pose.yaw = angle + 3.14159265 / 2;
+  pose.yaw = angle + std::numbers::pi / 2;
   pose.pitch = -0.16;
   return pose;
 }
@@ -256,7 +324,9 @@ void Game::take_picture(app::Session& session) {
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored)) continue;
     const auto saved = session.save_picture(file);
-    hud_.say(saved ? "Saved " + file.string() : saved.error().message, {}, 5);
+    const std::string said = saved ? "Saved " + file.string() : saved.error().message;
+    hud_.say(said, {}, 5);
+    menu_.message = said;
     return;
   }
 }
@@ -264,48 +334,60 @@ void Game::take_picture(app::Session& session) {
 core::CameraPose Game::frame(app::Session& session, double dt_s) {
   using namespace std::chrono_literals;
   if (picture_in_ > 0 && --picture_in_ == 0) take_picture(session);
+  std::erase_if(dropped_,
+                [](auto& land) { return land.wait_for(0s) == std::future_status::ready; });
   if (menu_.busy && loading_.valid() && loading_.wait_for(0s) == std::future_status::ready) {
     menu_.busy = false;
     auto loaded = loading_.get();
     auto begun = loaded ? begin(session, std::move(*loaded)) : tl::unexpected(loaded.error());
     if (!begun) menu_.message = begun.error().message;
   }
-  scene::State& state = session.scene().state();
-  const bool title = !lands_ || menu_.page == Page::kTitle;
-  double fov_deg = settings_.fov_deg;
   core::CameraPose pose;
-  if (title) {
+  if (lands_) {
+    pose = playing(session, dt_s);
+  } else {
     pose = title_camera(session, dt_s);
     session.hud() = {};
-  } else {
-    Play& play = *lands_->play;
-    take_keys(session);
-    keep_up(session, dt_s);
-    const bool photo = menu_.page == Page::kPhoto;
-    zoom_ = has(play.abilities(), Ability::kEye) && state_of(session.actions(), Act::kEye).held;
-    if (zoom_) fov_deg *= kZoom;
-    if (photo) fov_deg = menu_.photo.fov_deg;
-    const double share = state.simulation.step.share;
-    pose = play.walker().eyes(share);
-    const bool sways = !settings_.reduced_motion && play.walker().gait() == Gait::kGround;
-    if (sways) pose.position.local.y += 0.025 * std::sin(play.walker().walked_m() * 3.6);
-    scenery_.update(session, play, share, photo ? menu_.photo.hour : play.hour());
-    session.hud() = photo ? render::HudDrawing{} : hud_.draw(play, session, settings_, zoom_, dt_s);
-    if (photo)
-      session.hud().areas.push_back(
-          {{}, {{1, 1}, {0, 0}}, kFilters[static_cast<std::size_t>(menu_.photo.filter)].colour});
   }
-  state.camera.projection.vertical_fov = static_cast<float>(glm::radians(fov_deg));
-  sounds_->update(title ? nullptr : lands_->play.get(), pose, dt_s);
+  sounds_->update(lands_ ? lands_->play.get() : nullptr, pose, dt_s);
   return pose;
 }
 
-core::Result<void> Game::end(app::Session&) {
-  if (recording_) {
-    if (auto ok = recording_->save(options_.record); !ok) return ok;
+// The camera of a game, and all that is seen over and around it.
+core::CameraPose Game::playing(app::Session& session, double dt_s) {
+  Play& play = *lands_->play;
+  take_keys(session);
+  keep_up(session, dt_s);
+  scene::State& state = session.scene().state();
+  const bool photo = menu_.page == Page::kPhoto;
+  const double share = state.simulation.step.share;
+  core::CameraPose pose = play.walker().eyes(share);
+  const bool sways = !settings_.reduced_motion && play.walker().gait() == Gait::kGround;
+  if (sways) pose.position.local.y += kSwayM * std::sin(play.walker().walked_m() * kSwayPerM);
+  scenery_.update(session, play, share, photo ? menu_.photo.hour : play.hour());
+  double fov_deg = settings_.fov_deg * (zoom_ ? kZoom : 1);
+  session.hud() = {};
+  if (photo) {
+    fov_deg = menu_.photo.fov_deg;
+    const glm::dvec2 moved = session.input().look_px * kPhotoTurn;
+    photo_turn_ += glm::dvec2(moved.x, -moved.y);
+    pose.yaw += photo_turn_.x;
+    pose.pitch = std::clamp(pose.pitch + photo_turn_.y, -1.5, 1.5);
+    const Filter& filter = kFilters[static_cast<std::size_t>(menu_.photo.filter)];
+    session.hud().areas.push_back({{}, {{1, 1}, {0, 0}}, filter.colour});
+  } else {
+    session.hud() = hud_.draw(play, session, settings_, zoom_, dt_s);
   }
-  if (!lands_ || !saved_) return {};
-  return saved_->put(*lands_->play).and_then([&] { return saved_->wait(); });
+  state.camera.projection.vertical_fov = static_cast<float>(glm::radians(fov_deg));
+  return pose;
+}
+
+core::Result<void> Game::end() {
+  auto kept = save_now();
+  if (recording_) {
+    if (auto ok = recording_->save(options_.record); !ok && kept) kept = ok;
+  }
+  return kept;
 }
 
 }  // namespace cairns

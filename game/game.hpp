@@ -42,8 +42,9 @@ class Game {
   // Before every tick: pages, what is drawn over the picture, sounds. Returns the camera. `dt_s`:
   // real seconds since the last frame.
   core::CameraPose frame(app::Session& session, double dt_s);
-  // After the last: saves. Fails as Saved::put().
-  core::Result<void> end(app::Session& session);
+  // After the last: saves, and writes what was recorded. Fails as Saved::put(), and for a recording
+  // that cannot be written.
+  core::Result<void> end();
 
   const Play* play() const { return lands_ ? lands_->play.get() : nullptr; }
 
@@ -54,7 +55,9 @@ class Game {
     std::unique_ptr<Play> play;
     std::string text;  // of its world
   };
-  static core::Result<Loaded> load(std::uint64_t seed);
+  // With more than one try, a seed whose land has no way for cairns gives way to the next.
+  static core::Result<Loaded> load(std::uint64_t seed, int tries = 1);
+  void load_later(std::uint64_t seed, int tries);
   core::Result<void> begin(app::Session& session, Loaded loaded);
   void step(app::Session& session, double dt);
   void keep_up(app::Session& session, double dt_s);
@@ -62,7 +65,10 @@ class Game {
   void open_page(app::Session& session, Page page);
   void take_keys(app::Session& session);
   void apply_settings(app::Session& session);
-  void save();
+  core::Result<void> save();
+  core::Result<void> save_now();
+  bool save_and_leave();
+  core::CameraPose playing(app::Session& session, double dt_s);
   void take_picture(app::Session& session);
   core::CameraPose title_camera(app::Session& session, double dt_s);
 
@@ -78,12 +84,17 @@ class Game {
   std::optional<Saved> saved_;
   std::optional<Pilot> pilot_;
   std::future<core::Result<Loaded>> loading_;
+  std::vector<std::future<core::Result<Loaded>>> dropped_;  // lands that nobody waits for
   std::optional<input::Recording> recording_;
   std::shared_ptr<const models::EditLayer> shown_edits_;
   Page shown_page_ = Page::kTitle;
   double until_save_s_ = 0, title_s_ = 0, title_height_m_ = 0;
-  int picture_in_ = 0;  // frames until a picture is taken; 0: none is
-  bool zoom_ = false;
+  int picture_in_ = 0;   // frames until a picture is taken; 0: none is
+  int quiet_steps_ = 0;  // in which a press that closed a page is not one of the game
+  bool zoom_ = false, settings_broken_ = false;
+  glm::dvec2 photo_turn_{0.0};
+  std::optional<query::World> title_query_;  // of the land behind the title
+  core::WorldPosition title_place_;
 };
 
 }  // namespace cairns

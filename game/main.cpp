@@ -1,9 +1,13 @@
 // psygen-game: Cairns in its window, or played by itself. Exit codes: 0 ok, 1 failed, 2 usage, 4 no
 // usable device or display.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 #include "engine/app/session.hpp"
 #include "engine/render/preset.hpp"
@@ -14,6 +18,7 @@ namespace cairns {
 namespace {
 
 std::atomic<bool> stop{false};
+constexpr double kWarmUpS = 3;  // of autoplay, whose frames are left out of its figures
 
 struct Arguments {
   GameOptions game;
@@ -32,8 +37,11 @@ std::optional<int> read(int argc, char** argv, Arguments& a) {
   cli.add_flag("--virtual-time", a.game.virtual_time, "the same pictures on every machine")
       ->needs("--headless");
   cli.add_option("--folder", a.game.folder, "of saves and settings, in place of the user's");
-  cli.add_option("--record", a.game.record, "write the input of this game to a file");
-  cli.add_option("--replay", a.game.replay, "play the input of a file")->excludes("--record");
+  cli.add_option("--record", a.game.record, "write the input of a new game to a file")
+      ->needs("--seed");
+  cli.add_option("--replay", a.game.replay, "play the input of a file, in a new game of its land")
+      ->excludes("--record")
+      ->needs("--seed");
   cli.add_option("--width", a.game.size.width, "of the window or picture, in pixels");
   cli.add_option("--height", a.game.size.height, "the same");
   cli.add_option("--preset", a.preset, "low, medium, high or ultra, in place of the settings'");
@@ -54,6 +62,17 @@ std::optional<int> read(int argc, char** argv, Arguments& a) {
   }
   a.game.autoplay = a.seconds > 0;
   return std::nullopt;
+}
+
+// Of what the frames took, in milliseconds.
+void tell(std::vector<double> frame_ms) {
+  if (frame_ms.empty()) return;
+  std::ranges::sort(frame_ms);
+  const auto at = [&](double share) {
+    return frame_ms[static_cast<std::size_t>(share * static_cast<double>(frame_ms.size() - 1))];
+  };
+  std::printf("%zu frames: %.1f ms half of them, %.1f ms 99 of 100\n", frame_ms.size(), at(0.5),
+              at(0.99));
 }
 
 void tell(const Play* play) {
@@ -81,19 +100,23 @@ core::Result<void> run(Arguments a) {
   using Clock = std::chrono::steady_clock;
   Clock::time_point last = Clock::now();
   double dt_s = 1.0 / 60, played_s = 0;
+  std::vector<double> frame_ms;
+  core::Result<void> ended;
   while (session.poll() && (a.seconds == 0 || played_s < a.seconds)) {
-    if (auto ok = session.tick(game.frame(session, dt_s), dt_s); !ok) return ok;
+    ended = session.tick(game.frame(session, dt_s), dt_s);
+    if (!ended) break;
     played_s += dt_s;
     const Clock::time_point now = Clock::now();
-    if (!headless) dt_s = std::min(std::chrono::duration<double>(now - last).count(), 0.25);
-    last = now;
+    const double took_s = std::chrono::duration<double>(now - std::exchange(last, now)).count();
+    if (!headless) dt_s = std::min(took_s, 0.25);
+    if (a.seconds > 0 && played_s > kWarmUpS) frame_ms.push_back(1000 * took_s);
     if (a.seconds > 0 && game.play() != nullptr && game.play()->is_finished()) break;
   }
-  if (!a.picture.empty()) {
-    if (auto ok = session.save_picture(a.picture); !ok) return ok;
-  }
+  if (ended && !a.picture.empty()) ended = session.save_picture(a.picture);
+  tell(std::move(frame_ms));
   tell(game.play());
-  return game.end(session);
+  const auto kept = game.end();  // whatever came before
+  return ended ? kept : ended;
 }
 
 }  // namespace

@@ -33,7 +33,12 @@ class Search {
  public:
   Search(World& query, const PathSettings& settings,
          const std::unordered_set<std::uint64_t>& avoided, Cell from, Cell to, bool solids)
-      : query_(query), settings_(settings), avoided_(avoided), to_(to), solids_(solids) {
+      : query_(query),
+        settings_(settings),
+        avoided_(avoided),
+        to_(to),
+        best_(from),
+        solids_(solids) {
     open(from, 0, from);
   }
 
@@ -132,10 +137,13 @@ class Search {
     const Ground from = ground(a), to = ground(b);
     if (!to.exists || (avoided_.contains(name_of(b)) && b != to_)) return 1e300;
     double run = PathFinder::kCellM * std::hypot(a.x - b.x, a.z - b.z);
-    if (to.depth_m > settings_.wade_m) return run * settings_.swim_cost;
-    const double level_m = from.height_m + std::max(from.depth_m - settings_.wade_m, 0.0);
-    const double slope = (to.height_m - level_m) / run;
+    // Of deep water one has its surface to do with.
+    const auto level_m = [&](const Ground& g) {
+      return g.height_m + std::max(g.depth_m - settings_.wade_m, 0.0);
+    };
+    const double slope = (level_m(to) - level_m(from)) / run;
     if (slope > settings_.steepest_up || slope < -settings_.steepest_down) return 1e300;
+    if (to.depth_m > settings_.wade_m) return run * settings_.swim_cost;
     if (to.up < kLeastUp && slope > -kGentle) return 1e300;
     if (solids_ && is_narrow(b)) run *= settings_.narrow_cost;
     return run * (1 + 3 * slope * slope + (slope > 0 ? slope : 0));

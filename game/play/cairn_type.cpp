@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 #include "engine/core/hash.hpp"
+#include "engine/models/kit/exact_math.hpp"
 #include "engine/models/kit/packing.hpp"
 
 namespace cairns {
@@ -51,15 +51,21 @@ Stone stone(const models::Parameters& p, std::uint32_t i, float& foot_m) {
   return made;
 }
 
-// A point of a stone's surface; rough, the same in all levels at the same place.
-glm::vec3 surface_point(const Stone& s, std::uint32_t number, float around, float up) {
-  const float bump = kRough * std::sin(3 * around + 1.7F * static_cast<float>(number)) *
-                     std::cos(2.3F * up + static_cast<float>(number));
+float sine(double degrees) {
+  return static_cast<float>(models::exact_sin_degrees(degrees));
+}
+float cosine(double degrees) {
+  return static_cast<float>(models::exact_cos_degrees(degrees));
+}
+
+// A point of a stone's surface; rough, the same in all levels at the same place. Angles in degrees:
+// around the vertical line, and up from the middle.
+glm::vec3 surface_point(const Stone& s, std::uint32_t number, double around, double up) {
+  const float bump = kRough * sine(3 * around + 97 * number) * cosine(2.3 * up + 57 * number);
   const float r = s.radius * (1 + bump);
   // Flattened at its poles more than an ellipsoid.
-  const float c = std::pow(std::cos(up), 0.6F);
-  return s.middle + glm::vec3(r * c * std::cos(around), kFlatness * r * std::sin(up),
-                              r * c * std::sin(around));
+  const float c = std::sqrt(std::max(cosine(up), 0.0F));
+  return s.middle + r * glm::vec3(c * cosine(around), kFlatness * sine(up), c * sine(around));
 }
 
 // Writes one stone.
@@ -76,15 +82,13 @@ class StoneWriter {
     const std::uint32_t first = vertex_;
     for (std::uint32_t ring = 0; ring <= rings_ + 1; ++ring) {
       const bool pole = ring == 0 || ring == rings_ + 1;
-      const float up = std::numbers::pi_v<float> *
-                       (static_cast<float>(ring) / static_cast<float>(rings_ + 1) - 0.5F);
+      const double up = 180.0 * ring / (rings_ + 1) - 90;
       for (std::uint32_t side = 0; side < (pole ? 1 : sides_); ++side) {
-        const float around =
-            2 * std::numbers::pi_v<float> * static_cast<float>(side) / static_cast<float>(sides_);
+        const double around = 360.0 * side / sides_;
         const glm::vec3 at = surface_point(s, number, around, up);
         tight = {glm::min(tight.min, at), glm::max(tight.max, at)};
         add_vertex(at, (at - s.middle) * glm::vec3(1, 1 / (kFlatness * kFlatness), 1), grey,
-                   std::sin(up));
+                   sine(up));
       }
     }
     for (std::uint32_t side = 0; side < sides_; ++side)

@@ -100,7 +100,7 @@ void Creatures::settle(std::int32_t x, std::int32_t z) {
 
 void Creatures::add_group(Kind kind, int count, const core::WorldPosition& home, std::uint64_t seed,
                           std::int32_t x, std::int32_t z) {
-  cells_[name_of(x, z)] = true;
+  cells_.insert(name_of(x, z));
   core::RandomStream random(seed, x, z, static_cast<std::uint32_t>(kind), kHabitat);
   for (int i = 0; i < count; ++i) {
     Creature c;
@@ -115,7 +115,8 @@ void Creatures::add_group(Kind kind, int count, const core::WorldPosition& home,
     c.at.local += glm::dvec3(random.next_real(-9, 9), 0, random.next_real(-9, 9));
     c.at = core::normalised(c.at, query_->world().block_size_m());
     const auto ground = query_->ground(c.at);
-    if (!ground) continue;
+    const bool is_wet = ground && ground->water_depth_m > 0.7;
+    if (!ground || is_wet != (kind == Kind::kFish)) continue;  // not where it cannot live
     c.at.local.y = kind == Kind::kFish ? home.local.y : ground->height_m;
     if (kind == Kind::kBird) c.at.local.y += random.next_real(9, 26);
     c.before = c.at;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "engine/query/world.hpp"
@@ -52,7 +52,7 @@ class Creatures {
 
   query::World* query_;
   std::vector<Creature> all_;
-  std::unordered_map<std::uint64_t, bool> cells_;  // that have been settled
+  std::unordered_set<std::uint64_t> cells_;  // that have been settled
   std::uint64_t steps_ = 0;
 };
 

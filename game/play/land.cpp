@@ -1,5 +1,6 @@
 #include "game/play/land.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -43,11 +44,12 @@ core::Result<std::string> land_text(std::uint64_t seed) {
   if (line == std::string::npos)
     return core::fail(core::ErrorCode::kParse, *file + ": the land has no line `seed = …`");
   const std::size_t from = line + kSeedLine.size();
+  const std::size_t end = std::min(text.find('\n', from), text.size());
   std::string changed = text.substr(0, from);
   changed += '"';
   changed += std::to_string(seed);
   changed += '"';
-  return changed + text.substr(text.find('\n', from));
+  return changed + text.substr(end);
 }
 
 core::Result<void> add_types(models::Registry& registry) {

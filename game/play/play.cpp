@@ -126,11 +126,14 @@ std::optional<std::size_t> Play::next_cairn() const {
 }
 
 const Fire* Play::fire_near(double reach_m) const {
+  const Fire* nearest = nullptr;
   for (const Fire& fire : progress_.fires) {
-    if (fire.until_s > progress_.time_s && distance_m(progress_.feet, fire.at, block_m()) < reach_m)
-      return &fire;
+    const double far_m = distance_m(progress_.feet, fire.at, block_m());
+    if (fire.until_s < progress_.time_s || far_m > reach_m) continue;
+    nearest = &fire;
+    reach_m = far_m;
   }
-  return nullptr;
+  return nearest;
 }
 
 // The nearest thing ahead that can be used.
@@ -139,14 +142,12 @@ void Play::look_for_target() {
   const query::NearModel before = target_.model;
   target_ = {};
   if (!query_.models_within(progress_.feet, kReachM, near)) return;
-  const int rock = registry_->find("rock"), cairn = registry_->find("cairn");
+  const int rock = registry_->find("rock");
   for (const query::NearModel& model : near) {
     const glm::dvec3 way = way_m(progress_.feet, model.position, block_m());
     if (way.x * std::sin(walker_->yaw()) - way.z * std::cos(walker_->yaw()) < -0.3) continue;
     const models::ModelType& type = (*registry_)[model.model];
-    if (model.model == cairn) {
-      target_.kind = Target::Kind::kCairn;
-    } else if (model.model == rock) {
+    if (model.model == rock) {
       const auto placed = query_.placement(model.block, model.index);
       const int radius = models::parameter_index(type, "radius_m");
       if (!placed || placed->parameters.real(static_cast<std::size_t>(radius)) > kLargestStoneM)

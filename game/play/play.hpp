@@ -1,7 +1,8 @@
 // A game of Cairns, without pictures, sound or keys: the land, the player in it, what was found,
 // gathered, built, felled and lit. It has a copy of the world, with the edits that the player made,
 // and queries and physics of its own, so it follows from its seed and the intents of its steps
-// alone: the same on every machine, at every frame rate, with or without a renderer. One thread.
+// alone: the same to the bit in the same build, at every frame rate, with or without a renderer.
+// One thread.
 #pragma once
 
 #include <memory>
@@ -33,7 +34,7 @@ struct Fire {
 
 // What can be used where the player stands.
 struct Target {
-  enum class Kind : std::uint8_t { kNothing, kStone, kTree, kCairn };
+  enum class Kind : std::uint8_t { kNothing, kStone, kTree };
   Kind kind = Kind::kNothing;
   query::NearModel model;  // of a stone or tree
 };
@@ -108,7 +109,7 @@ class Play {
   std::optional<std::size_t> next_cairn() const;
   bool is_finished() const { return progress_.found.all(); }
   int most_stones() const { return has(abilities(), Ability::kSatchel) ? 40 : 12; }
-  // The fire that burns within reach, or nothing.
+  // The nearest fire that burns within reach, or null.
   const Fire* fire_near(double reach_m) const;
 
   query::World& query() { return query_; }
@@ -150,7 +151,7 @@ class Play {
   std::vector<Happening> happenings_;
 };
 
-// The cell of the map that has a place: 24 m wide, counted from the corner of block (0, 0).
+// The name of a cell of the map, counted in cells of 24 m from the corner of block (0, 0).
 std::uint64_t map_cell(std::int32_t x, std::int32_t z);
 
 }  // namespace cairns

@@ -22,7 +22,7 @@ std::optional<std::uint64_t> last_seed(const std::filesystem::path& folder);
 class Saved {
  public:
   // Opens or makes the save of a land, and goes on from what it holds. Fails as
-  // save::SaveGame::open(), and with kParse for values that are none; the game is as it was then.
+  // save::SaveGame::open(), and with kParse for values that cannot be; the game is as it was then.
   static core::Result<Saved> open(const std::filesystem::path& file, Play& play);
 
   // Takes the state of the game and writes it behind the game's back. What is being written

@@ -15,6 +15,7 @@ constexpr double kJumpSpeed = 4.6, kSpringSpeed = 6.8;
 constexpr double kSwimSpeed = 1.9, kRaftSpeed = 5.5;
 constexpr double kSwimDepthM = 1.15, kRaftDepthM = 0.15, kFloat = 3;  // 1/s
 constexpr double kClimbSpeed = 1.7, kBreathS = 3.5, kGripBreathS = 10, kWallM = 0.9;
+constexpr float kWallUp = 0.64F;  // of the normal of ground that is climbed: 50°
 constexpr double kGlideSpeed = 10, kSinkSpeed = 2.1, kWingSinkSpeed = 1.3;
 constexpr double kDive = 9;       // m/s faster with the view straight down
 constexpr double kUpdraft = 1.2;  // of the wind against a slope that carries the sail …
@@ -66,7 +67,8 @@ bool Walker::faces_wall() const {
     ray.origin = feet_;
     ray.origin.local.y += height_m;
     const auto hit = query_->cast(ray);
-    if (hit && hit->kind != query::HitKind::kNothing) return true;
+    const bool walks_up = hit && hit->kind == query::HitKind::kGround && hit->normal.y > kWallUp;
+    if (hit && hit->kind != query::HitKind::kNothing && !walks_up) return true;
   }
   return false;
 }

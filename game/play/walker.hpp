@@ -16,7 +16,7 @@ namespace cairns {
 
 // What the player wants in one step, from whatever device, or from the pilot.
 struct Intent {
-  glm::dvec2 move{0.0};       // to the right and ahead, at most 1 long
+  glm::dvec2 move{0.0};       // to the right and ahead; longer than 1 counts as 1
   double turn = 0, look = 0;  // radians to the right and upwards, in this step
   bool run = false;
   bool jump = false, jump_held = false;                              // pressed in this step; held

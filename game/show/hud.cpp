@@ -84,11 +84,9 @@ void Hud::draw_compass(const Play& play, bool zoom) {
           {{0.5F + kCompassShare * x, 0}, {0, 76}}, 20);
 }
 
-void Hud::draw_doing(const Play& play, const app::Session& session) {
-  auto& actions = const_cast<app::Session&>(session).actions();
-  const auto key = [&](Act act) {
-    return "[" + key_of(actions, act, const_cast<app::Session&>(session).window()) + "]  ";
-  };
+void Hud::draw_doing(const Play& play, app::Session& session) {
+  const input::Actions& actions = session.actions();
+  const auto key = [&](Act act) { return "[" + key_of(actions, act, session.window()) + "]  "; };
   const render::HudPlace below{{0.5F, 1}, {0, -70}};
   using enum Target::Kind;
   const Target::Kind target = play.target().kind;
@@ -120,8 +118,8 @@ void Hud::draw_line(double dt_s) {
   if (!help_.empty()) write(help_, {{0.5F, 0.68F}, {0, 40}}, 22, opacity);
 }
 
-render::HudDrawing Hud::draw(const Play& play, const app::Session& session,
-                             const Settings& settings, bool zoom, double dt_s) {
+render::HudDrawing Hud::draw(const Play& play, app::Session& session, const Settings& settings,
+                             bool zoom, double dt_s) {
   drawing_ = {};
   size_ =
       static_cast<float>(settings.text) * static_cast<float>(session.picture_size().height) / 720;

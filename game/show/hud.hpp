@@ -17,12 +17,12 @@ class Hud {
   void say(std::string line, std::string help = {}, double seconds = 3);
   void tell(const Happening& happening);
   // Once a frame; `zoom`: the far eye is used.
-  render::HudDrawing draw(const Play& play, const app::Session& session, const Settings& settings,
+  render::HudDrawing draw(const Play& play, app::Session& session, const Settings& settings,
                           bool zoom, double dt_s);
 
  private:
   void draw_compass(const Play& play, bool zoom);
-  void draw_doing(const Play& play, const app::Session& session);
+  void draw_doing(const Play& play, app::Session& session);
   void draw_line(double dt_s);
   void write(std::string text, const render::HudPlace& at, float size_px, float opacity = 1,
              render::HudAlign align = render::HudAlign::kCentre);

@@ -12,7 +12,7 @@ constexpr float kWidth = 340;
 constexpr std::array<const char*, 4> kQualities{"low", "medium", "high", "ultra"};
 constexpr int kMapCells = 25;  // on each side of the player
 
-// A window without a frame in the middle of the left third. False: it is not drawn.
+// Begins a window without a frame in the left third.
 void begin(const char* title, float scale, float width = kWidth) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x * 0.08F, size.y * 0.5F}, ImGuiCond_Always, {0, 0.5F});
@@ -22,6 +22,18 @@ void begin(const char* title, float scale, float width = kWidth) {
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse);
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+}
+
+// Gives an action another control; those of other devices stay.
+bool rebind(input::Actions& actions, input::ActionId action, input::Control control) {
+  const auto is_of_pad = [](const input::Control& c) {
+    return c.device == input::Device::kPadButton || c.device == input::Device::kPadAxis;
+  };
+  std::vector<input::Binding> bindings{{control}};
+  for (const input::Binding& binding : actions.bindings(action)) {
+    if (is_of_pad(binding.control) != is_of_pad(control)) bindings.push_back(binding);
+  }
+  return actions.set_bindings(action, std::move(bindings)).has_value();
 }
 
 // Colours of the map, in the order of world::GroundKind; the last is water.
@@ -36,6 +48,7 @@ void Menu::open(Page next) {
   if (next == Page::kSettings || next == Page::kCredits) before_ = page;
   page = next;
   message.clear();
+  capture_.reset();
 }
 
 bool Menu::button(const char* label) {
@@ -48,8 +61,10 @@ bool Menu::button(const char* label) {
 
 Choice Menu::draw(app::Session& session, const Play* play, Settings& settings) {
   if (page == Page::kNone) return Choice::kNothing;
-  ImGui::GetIO().ConfigFlags |=
-      ImGuiConfigFlags_NavEnableGamepad | ImGuiConfigFlags_NavEnableKeyboard;
+  // Keys also reach the game, which closes pages with them; text fields take them anyway.
+  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableGamepad |
+                                ImGuiConfigFlags_NavEnableKeyboard |
+                                ImGuiConfigFlags_NavNoCaptureKeyboard;
   const auto scale = ImGui::GetFontSize() / 16;
   if (page == Page::kMap) {
     if (play != nullptr) draw_map(*play, session);
@@ -128,7 +143,7 @@ void Menu::draw_keys(app::Session& session) {
     if (const auto control = capture_->update(session.input())) {
       capture_.reset();
       const bool cancelled = *control == input::Control(platform::Key::kEscape);
-      if (!cancelled) settings_changed |= actions.set_bindings(captured_, {{*control}}).has_value();
+      if (!cancelled) settings_changed |= rebind(actions, captured_, *control);
     }
     return;
   }
@@ -151,7 +166,7 @@ void Menu::draw_keys(app::Session& session) {
 
 // Cells that were seen, from above, north upwards, with the player in the middle.
 void Menu::draw_map(const Play& play, const app::Session& session) {
-  const auto extent = const_cast<app::Session&>(session).picture_size();
+  const core::Extent extent = session.picture_size();
   const float cell = static_cast<float>(extent.height) * 0.86F / (2 * kMapCells + 1);
   const glm::vec2 middle(static_cast<float>(extent.width) / 2,
                          static_cast<float>(extent.height) / 2);
@@ -185,8 +200,11 @@ void Menu::draw_map(const Play& play, const app::Session& session) {
   for (std::size_t i = 0; i < kCairns; ++i) {
     if (play.progress().found[i]) mark(play.route().cairns[i], IM_COL32(255, 196, 92, 255));
   }
-  for (const core::WorldPosition& waymark : play.progress().waymarks)
-    mark(waymark, IM_COL32(240, 240, 240, 255));
+  for (const core::WorldPosition& waymark : play.progress().waymarks) {
+    const glm::vec2 p = place(waymark);
+    if (std::abs(p.x - middle.x) <= half && std::abs(p.y - middle.y) <= half)
+      list.AddRectFilled({p.x - 4, p.y - 4}, {p.x + 4, p.y + 4}, IM_COL32(240, 240, 240, 255));
+  }
   const double yaw = play.walker().yaw();
   const ImVec2 tip(middle.x + 12 * static_cast<float>(std::sin(yaw)),
                    middle.y - 12 * static_cast<float>(std::cos(yaw)));
@@ -202,6 +220,7 @@ Choice Menu::draw_photo() {
     if (i > 0) ImGui::SameLine();
     ImGui::RadioButton(kFilters[static_cast<std::size_t>(i)].name, &photo.filter, i);
   }
+  ImGui::TextUnformatted("Hold the right button to look around.");
   if (button("Take the picture (F12)")) return Choice::kPicture;
   if (button("Back")) open(Page::kNone);
   return Choice::kNothing;
@@ -211,8 +230,7 @@ void Menu::draw_credits() {
   ImGui::TextWrapped(
       "Cairns is the game of psygen. The land, its trees, the creatures, all sounds and the music "
       "are made by code while you play; nothing was recorded or drawn. The letters are DejaVu "
-      "Sans. "
-      "game/CREDITS lists the libraries.");
+      "Sans. ");
   if (button("Back")) open(before_);
 }
 

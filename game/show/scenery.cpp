@@ -163,7 +163,7 @@ void Scenery::update_falling(scene::State& state, const Play& play) {
     const glm::vec3 axis(static_cast<float>(std::cos(tree.yaw)), 0,
                          static_cast<float>(std::sin(tree.yaw)));
     if (auto* there = state.entities.get<scene::Transform>(tree.entity))
-      there->rotation = glm::angleAxis(-angle, axis) * tree.stands;
+      there->rotation = glm::angleAxis(-angle, axis);
     const bool gone = age_s > kFallS + kLiesS || age_s < 0;
     if (gone) state.entities.destroy(std::array{tree.entity});
     if (age_s > kFallS + kLiesS - 1 && !gone)
@@ -204,7 +204,6 @@ void Scenery::tell(app::Session& session, const Happening& happening, const Play
   const auto mesh = state.assets.add_model(type.name(), happening.tree->parameters, 0, 2);
   if (!mesh) return;
   Falling tree;
-  tree.foot = happening.at;
   tree.yaw = play.walker().yaw();
   tree.since_s = play.progress().time_s;
   tree.entity = scene::spawn(state.entities, {.mesh = *mesh}, {.position = happening.at});

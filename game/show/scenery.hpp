@@ -24,7 +24,7 @@ class Scenery {
   void update(app::Session& session, const Play& play, double share, double hour);
   // What happened since.
   void tell(app::Session& session, const Happening& happening, const Play& play);
-  // Of another game: forgets what belongs to this one.
+  // Forgets what belongs to a game, before another one.
   void clear(app::Session& session);
 
  private:
@@ -38,8 +38,6 @@ class Scenery {
   };
   struct Falling {
     ecs::Entity entity;
-    core::WorldPosition foot;
-    glm::quat stands{1.0F, 0.0F, 0.0F, 0.0F};
     double yaw = 0, since_s = 0;
   };
   void update_creatures(scene::State& state, const Play& play, double share);

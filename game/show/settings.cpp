@@ -49,13 +49,15 @@ core::Result<std::filesystem::path> settings_folder(const std::filesystem::path&
   return folder;
 }
 
-core::Result<Settings> load_settings(const std::filesystem::path& folder, input::Actions& actions) {
+core::Result<void> load_keys(const std::filesystem::path& folder, input::Actions& actions) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder / kKeys, ignored)) return {};
+  return input::load_bindings(folder / kKeys, actions);
+}
+
+core::Result<Settings> load_settings(const std::filesystem::path& folder) {
   Settings settings;
   std::error_code ignored;
-  if (std::filesystem::exists(folder / kKeys, ignored)) {
-    if (auto ok = input::load_bindings(folder / kKeys, actions); !ok)
-      return tl::unexpected(ok.error());
-  }
   if (!std::filesystem::exists(folder / kFile, ignored)) return settings;
   try {
     const toml::table table = toml::parse_file((folder / kFile).string());
@@ -65,7 +67,7 @@ core::Result<Settings> load_settings(const std::filesystem::path& folder, input:
     }
     for (const Switch& s : kSwitches)
       settings.*s.value = table[s.name].value_or(settings.*s.value);
-    settings.quality = std::clamp(table["quality"].value_or(0), 0, 3);
+    settings.quality = std::clamp(table["quality"].value_or(-1), -1, 3);
   } catch (const toml::parse_error& error) {
     return core::fail(core::ErrorCode::kParse,
                       (folder / kFile).string() + ": " + std::string(error.description()));

@@ -12,19 +12,21 @@ namespace cairns {
 using namespace psygen;
 
 struct Settings {
-  int quality = 0;                           // of render::Preset, from low to ultra
+  int quality = -1;  // of render::Preset, from low to ultra; -1: what suits the device
   double fov_deg = 60, mouse = 1, text = 1;  // degrees; factors
   double effects = 0.8, music = 0.5;         // volumes, 0 … 1
   bool colour_blind = false;                 // marks differ by brightness, not by hue
-  bool reduced_motion = false;               // the view does not sway, and nothing flies past
+  bool reduced_motion = false;               // the view does not sway, and the title stands still
   bool fullscreen = false;
 };
 
 // The folder of both files, which is made; or `given`. Fails with kIo.
 core::Result<std::filesystem::path> settings_folder(const std::filesystem::path& given = {});
-// Fails with kParse for a file that is none, and kIo; a missing one has the usual values. Values
-// out of their ranges are moved into them.
-core::Result<Settings> load_settings(const std::filesystem::path& folder, input::Actions& actions);
+// A missing file has the usual values; values out of their ranges are moved into them. Fails with
+// kParse for a file that is not TOML, and kIo.
+core::Result<Settings> load_settings(const std::filesystem::path& folder);
+// The same for the keys, with the errors of input::load_bindings().
+core::Result<void> load_keys(const std::filesystem::path& folder, input::Actions& actions);
 core::Result<void> save_settings(const std::filesystem::path& folder, const Settings& settings,
                                  const input::Actions& actions);
 

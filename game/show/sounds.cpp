@@ -8,6 +8,7 @@ namespace cairns {
 namespace {
 
 constexpr double kFadePerS = 0.8;  // of the gain of a loop
+constexpr double kTitleWind = 0.15;
 
 }  // namespace
 
@@ -45,7 +46,8 @@ void Sounds::hold(Loop& loop, const ClipPtr& clip, double gain, double dt_s,
                   const std::optional<core::WorldPosition>& at) {
   const double most = kFadePerS * dt_s;
   loop.gain += std::clamp(gain - loop.gain, -most, most);
-  const audio::Play how{.at = at, .range = {2, 30}, .gain = loop.gain, .loop = true};
+  if (at) loop.at = at;  // what fades away stays where it was
+  const audio::Play how{.at = loop.at, .range = {2, 30}, .gain = loop.gain, .loop = true};
   if (loop.sound == audio::SoundId::kNone && loop.gain > 0.01) {
     if (const auto sound = audio_.play(clip, how)) loop.sound = *sound;
   } else if (loop.sound != audio::SoundId::kNone) {
@@ -77,6 +79,11 @@ void Sounds::update(Play* play, const core::CameraPose& ears, double dt_s) {
     hold(fire_, clips_->fire, fire != nullptr ? 0.9 : 0, dt_s,
          fire != nullptr ? std::optional(fire->at) : std::nullopt);
     sing(*play, dt_s);
+  } else if (clips_) {
+    hold(wind_, clips_->wind, kTitleWind, dt_s);
+    hold(rain_, clips_->rain, 0, dt_s);
+    hold(water_, clips_->water, 0, dt_s);
+    hold(fire_, clips_->fire, 0, dt_s);
   }
   audio_.update(ears, dt_s);
 }

@@ -32,6 +32,7 @@ class Sounds {
   struct Loop {
     audio::SoundId sound = audio::SoundId::kNone;
     double gain = 0;
+    std::optional<core::WorldPosition> at = {};
   };
   void hold(Loop& loop, const ClipPtr& clip, double gain, double dt_s,
             const std::optional<core::WorldPosition>& at = {});

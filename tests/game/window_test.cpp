@@ -74,6 +74,12 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
     const double time_s = run.game.play()->progress().time_s;
     run.frames(30);
     EXPECT_EQ(run.game.play()->progress().time_s, time_s);
+    // Escape leads back, too.
+    ASSERT_TRUE(key("Escape"));
+    EXPECT_TRUE(run.frames_until([&] { return run.session->window()->cursor_captured(); }));
+    ASSERT_TRUE(key("Escape"));
+    EXPECT_TRUE(run.frames_until([&] { return !run.session->window()->cursor_captured(); }));
+    run.frames(5);
     // "Save and quit" is the last button.
     for (int i = 0; i < 6; ++i) {
       ASSERT_TRUE(key("Down"));
@@ -82,7 +88,7 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
     ASSERT_TRUE(key("Return"));
     EXPECT_TRUE(run.frames_until([&] { return run.session->over(); }));
     at = run.game.play()->progress().feet;
-    ASSERT_TRUE(run.game.end(*run.session));
+    ASSERT_TRUE(run.game.end());
   }
   EXPECT_TRUE(std::filesystem::exists(save_file(folder_, seed_of("heather"))));
   Running again(options_);

@@ -26,7 +26,10 @@ class CostWorkerTest : public ::testing::Test {
     }
     return so();
   }
-  void ask() { worker_.ask(kCostedWorld, "costed.toml", {}, {20, 20}, nullptr); }
+  void ask() {
+    worker_.ask(kCostedWorld, "costed.toml", {}, {20, 20}, nullptr,
+                handmade::files_with({}, nullptr));
+  }
   void ask_impact() { worker_.ask_impact(costed(), costed(), {20, 20}, {}, nullptr); }
 
   int argc_ = 0;
