@@ -49,7 +49,6 @@ core::Result<app::SessionOptions> Game::session_options() {
   session.preset = options_.preset;
   if (!session.preset && settings_.quality >= 0)
     session.preset = static_cast<render::Preset>(settings_.quality);
-  session.prefill = false;
   session.scene.budget_bytes = kBudgetBytes;
   session.scene.modelers = options_.modelers;
   session.scene.virtual_time = options_.virtual_time;

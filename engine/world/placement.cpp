@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
+#include "engine/core/assert.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/ground_blends.hpp"
@@ -238,6 +239,7 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
 
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const std::vector<bool>& wanted, std::vector<Placement>& out) {
+  PSYGEN_ASSERT(wanted.size() == world.scatter.size(), "one entry for each scatter");
   std::size_t count = 0;
   for (std::size_t s = 0; s < world.scatter.size(); ++s)
     count += wanted[s] ? world.scatter[s].count : 0;

@@ -110,8 +110,8 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const models::BlockGround& ground, std::vector<Placement>& out);
 
-// The same without the instances of scatters that are not `wanted`, by number; what was placed by
-// hand is there. Takes as much less time.
+// The same without the instances of scatters that are not `wanted`, which has one entry for each of
+// World::scatter; what was placed by hand is there. Takes as much less time.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const std::vector<bool>& wanted, std::vector<Placement>& out);
 

@@ -10,8 +10,8 @@ namespace {
 
 using testing::registry;
 
-// Two scatters, the second behind the first.
-World two_scatters() {
+// The two scatters of the small world, and one behind them.
+World three_scatters() {
   return parse_world(std::string(testing::kSmallWorld) +
                          "\n[[scatter]]\nmodel = \"tree\"\ncount = 7\nmax_slope_deg = 40\n",
                      "w.toml", registry())
@@ -19,7 +19,7 @@ World two_scatters() {
 }
 
 TEST(WorldParts, LooksAreNoPart) {
-  World world = two_scatters();
+  World world = three_scatters();
   const WorldParts before = parts_of(world, registry());
   world.name = "another";
   world.sky.exposure = 2;
@@ -28,7 +28,7 @@ TEST(WorldParts, LooksAreNoPart) {
 }
 
 TEST(WorldParts, OtherRangesOfAScatterLeaveItsPlacesAndAllOthers) {
-  World world = two_scatters();
+  World world = three_scatters();
   const WorldParts before = parts_of(world, registry());
   world.scatter.back().ranges[1].high += 1;
   const WorldParts after = parts_of(world, registry());
@@ -40,7 +40,7 @@ TEST(WorldParts, OtherRangesOfAScatterLeaveItsPlacesAndAllOthers) {
 
 // The instances behind have other indices, so all about them is drawn anew.
 TEST(WorldParts, AnotherCountChangesAllScattersBehind) {
-  World world = two_scatters();
+  World world = three_scatters();
   const WorldParts before = parts_of(world, registry());
   ++world.scatter.front().count;
   const WorldParts after = parts_of(world, registry());
@@ -49,7 +49,7 @@ TEST(WorldParts, AnotherCountChangesAllScattersBehind) {
 }
 
 TEST(WorldParts, OtherGroundMovesAllPlacesAndNoModel) {
-  World world = two_scatters();
+  World world = three_scatters();
   const WorldParts before = parts_of(world, registry());
   world.terrain.set_real(models::kTerrainReliefM, world.terrain.real(models::kTerrainReliefM) + 1);
   const WorldParts after = parts_of(world, registry());
@@ -61,10 +61,10 @@ TEST(WorldParts, OtherGroundMovesAllPlacesAndNoModel) {
 }
 
 TEST(WorldParts, SomeScattersAreWhatTheyAreAmongAll) {
-  const World world = two_scatters();
+  const World world = three_scatters();
   std::vector<Placement> all, some;
   place_models(world, registry(), {1, 2}, all);
-  place_models(world, registry(), {1, 2}, {false, true}, some);
+  place_models(world, registry(), {1, 2}, {false, false, true}, some);
   ASSERT_FALSE(some.empty());
   const std::size_t first = all.size() - some.size();
   for (std::size_t i = 0; i < some.size(); ++i) {
