@@ -90,7 +90,8 @@ KeptModels kept_models(const WorldFacts& before, const WorldFacts& after) {
     return std::pair(has ? facts.quad_models[model] : models::ModelIndex{0},
                      has ? facts.pictures->identity_of_quads(model) : 0);
   };
-  const std::size_t types = std::min(before.registry.size(), after.registry.size());
+  // The types that can stand on a block; registries also have those of objects.
+  const std::size_t types = std::min(before.usual_boxes.size(), after.usual_boxes.size());
   for (models::ModelIndex model = 0; model < types; ++model)
     kept.refit.push_back(before.usual_boxes[model] != after.usual_boxes[model] ||
                          quads(before, model) != quads(after, model));
