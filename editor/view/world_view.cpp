@@ -39,6 +39,7 @@ void WorldView::show_world(std::string text, std::string file, bool anew,
   text_is_new_ = true;
   failed_ = false;
   since_text_.start();
+  if (timer_.isActive()) timer_.start(kBusyMs);  // the next picture is not waited for
   if (anew) close();
   if (!session_ && isExposed()) open();
 }
