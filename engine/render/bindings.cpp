@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/render/cloud_texture.hpp"
+#include "engine/render/descriptors.hpp"
 #include "shaders/shared.h"
 
 namespace psygen::render {
@@ -106,7 +107,6 @@ Result<void> Bindings::create(const Device& device, const PresetTraits& traits,
       .and_then([&] { return create_textures(device, overlay); })
       .and_then([&] { return ground_.create(device, traits, ground); })
       .and_then([&] { return shadows_.create(device, traits); })
-      .and_then([&] { return create_set_layout(device); })
       .and_then([&] { return create_sets(device, sets); })
       .and_then([&] { return create_layout(device); });
 }
@@ -131,7 +131,7 @@ Result<void> Bindings::create_textures(const Device& device, const Overlay& over
       });
 }
 
-Result<void> Bindings::create_set_layout(const Device& device) {
+Result<void> Bindings::create_sets(const Device& device, std::uint32_t sets) {
   std::array<const VkSampler*, kBindings.size()> samplers{};
   samplers[PSYGEN_BINDING_CLOUDS] = cloud_sampler_.address();
   samplers[PSYGEN_BINDING_FONT] = samplers[PSYGEN_BINDING_MIRROR] = smooth_sampler_.address();
@@ -142,41 +142,15 @@ Result<void> Bindings::create_set_layout(const Device& device) {
   std::array<VkDescriptorSetLayoutBinding, kBindings.size()> bindings{};
   for (std::size_t i = 0; i < kBindings.size(); ++i)
     bindings[i] = {kBindings[i].number, kBindings[i].type, 1, kBindings[i].stages, samplers[i]};
-  VkDescriptorSetLayoutCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  info.bindingCount = static_cast<std::uint32_t>(bindings.size());
-  info.pBindings = bindings.data();
-  VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-  const VkResult result =
-      device.vk.vkCreateDescriptorSetLayout(device.handle, &info, nullptr, &layout);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor set layout");
-  set_layout_ = UniqueSetLayout(device.vk, device.handle, layout);
-  return {};
-}
-
-Result<void> Bindings::create_sets(const Device& device, std::uint32_t count) {
-  std::vector<VkDescriptorPoolSize> sizes;
-  for (const Binding& binding : kBindings)
-    sizes.push_back({binding.type, count});
-  VkDescriptorPoolCreateInfo pool_info{};
-  pool_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  pool_info.maxSets = count;
-  pool_info.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
-  pool_info.pPoolSizes = sizes.data();
-  VkDescriptorPool pool = VK_NULL_HANDLE;
-  VkResult result = device.vk.vkCreateDescriptorPool(device.handle, &pool_info, nullptr, &pool);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor pool");
-  pool_ = UniqueDescriptorPool(device.vk, device.handle, pool);
-
-  const std::vector<VkDescriptorSetLayout> layouts(count, set_layout_.get());
-  sets_.resize(count);
-  VkDescriptorSetAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  info.descriptorPool = pool_.get();
-  info.descriptorSetCount = count;
-  info.pSetLayouts = layouts.data();
-  result = device.vk.vkAllocateDescriptorSets(device.handle, &info, sets_.data());
-  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating descriptor sets");
+  Result<UniqueSetLayout> layout = make_set_layout(device, bindings);
+  if (!layout) return tl::unexpected(layout.error());
+  set_layout_ = std::move(*layout);
+  Result<UniqueDescriptorPool> pool = make_descriptor_pool(device, bindings, sets);
+  if (!pool) return tl::unexpected(pool.error());
+  pool_ = std::move(*pool);
+  auto allocated = allocate_sets(device, pool_.get(), set_layout_.get(), sets);
+  if (!allocated) return tl::unexpected(allocated.error());
+  sets_ = std::move(*allocated);
   return {};
 }
 

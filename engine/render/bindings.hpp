@@ -43,7 +43,6 @@ class Bindings {
  private:
   core::Result<void> create_samplers(const Device& device);
   core::Result<void> create_textures(const Device& device, const Overlay& overlay);
-  core::Result<void> create_set_layout(const Device& device);
   core::Result<void> create_sets(const Device& device, std::uint32_t count);
   core::Result<void> create_layout(const Device& device);
 

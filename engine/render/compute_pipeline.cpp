@@ -1,5 +1,9 @@
 #include "engine/render/compute_pipeline.hpp"
 
+#include <utility>
+
+#include "engine/render/descriptors.hpp"
+
 namespace psygen::render {
 
 using core::Result;
@@ -30,39 +34,6 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   return UniquePipeline(device.vk, device.handle, pipeline);
 }
 
-Result<UniqueSetLayout> make_set_layout(const Device& device,
-                                        std::span<const VkDescriptorType> types) {
-  std::vector<VkDescriptorSetLayoutBinding> bindings;
-  for (std::uint32_t i = 0; i < types.size(); ++i)
-    bindings.push_back({i, types[i], 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
-  VkDescriptorSetLayoutCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  info.bindingCount = static_cast<std::uint32_t>(bindings.size());
-  info.pBindings = bindings.data();
-  VkDescriptorSetLayout made = VK_NULL_HANDLE;
-  const VkResult result =
-      device.vk.vkCreateDescriptorSetLayout(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor set layout");
-  return UniqueSetLayout(device.vk, device.handle, made);
-}
-
-Result<UniqueDescriptorPool> make_pool(const Device& device,
-                                       std::span<const VkDescriptorType> types,
-                                       std::uint32_t sets) {
-  std::vector<VkDescriptorPoolSize> sizes;
-  for (const VkDescriptorType type : types)
-    sizes.push_back({type, sets});
-  VkDescriptorPoolCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  info.maxSets = sets;
-  info.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
-  info.pPoolSizes = sizes.data();
-  VkDescriptorPool made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateDescriptorPool(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor pool");
-  return UniqueDescriptorPool(device.vk, device.handle, made);
-}
-
 Result<UniquePipelineLayout> make_layout(const Device& device, const UniqueSetLayout& set,
                                          std::uint32_t push_bytes) {
   const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
@@ -85,10 +56,13 @@ Result<void> ComputePipeline::create(const Device& device, std::span<const std::
                                      std::uint32_t push_bytes, std::uint32_t sets) {
   types_.assign(types.begin(), types.end());
   push_bytes_ = push_bytes;
-  Result<UniqueSetLayout> set_layout = make_set_layout(device, types);
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (std::uint32_t i = 0; i < types.size(); ++i)
+    bindings.push_back({i, types[i], 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  Result<UniqueSetLayout> set_layout = make_set_layout(device, bindings);
   if (!set_layout) return tl::unexpected(set_layout.error());
   set_layout_ = std::move(*set_layout);
-  Result<UniqueDescriptorPool> pool = make_pool(device, types, sets);
+  Result<UniqueDescriptorPool> pool = make_descriptor_pool(device, bindings, sets);
   if (!pool) return tl::unexpected(pool.error());
   pool_ = std::move(*pool);
   Result<UniquePipelineLayout> layout = make_layout(device, set_layout_, push_bytes);
@@ -98,15 +72,9 @@ Result<void> ComputePipeline::create(const Device& device, std::span<const std::
   if (!pipeline) return tl::unexpected(pipeline.error());
   pipeline_ = std::move(*pipeline);
 
-  const std::vector<VkDescriptorSetLayout> layouts(sets, set_layout_.get());
-  VkDescriptorSetAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  info.descriptorPool = pool_.get();
-  info.descriptorSetCount = sets;
-  info.pSetLayouts = layouts.data();
-  sets_.resize(sets);
-  const VkResult result = device.vk.vkAllocateDescriptorSets(device.handle, &info, sets_.data());
-  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating descriptor sets");
+  auto allocated = allocate_sets(device, pool_.get(), set_layout_.get(), sets);
+  if (!allocated) return tl::unexpected(allocated.error());
+  sets_ = std::move(*allocated);
   return {};
 }
 

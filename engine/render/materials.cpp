@@ -7,6 +7,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <utility>
+
+#include "engine/render/descriptors.hpp"
 
 namespace psygen::render {
 
@@ -76,6 +79,17 @@ bool is_valid(const Material& m) {
   return ok(m.opacity) && ok(m.least_opacity) && std::abs(m.normal_strength) <= kMost;
 }
 
+// The maps of a material.
+std::array<VkDescriptorSetLayoutBinding, kMapsOfMaterial> bindings_of(
+    const UniqueSampler& sampler) {
+  std::array<VkDescriptorSetLayoutBinding, kMapsOfMaterial> bindings{};
+  for (std::uint32_t i = 0; i < kMapsOfMaterial; ++i) {
+    bindings[i] = {i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT,
+                   sampler.address()};
+  }
+  return bindings;
+}
+
 }  // namespace
 
 std::vector<std::vector<std::uint8_t>> mip_levels(const TexturePixels& pixels) {
@@ -99,20 +113,9 @@ Result<void> MaterialTable::create(const Device& device, std::uint64_t texture_b
   Result<UniqueSampler> sampler = make_texture_sampler(device);
   if (!sampler) return tl::unexpected(sampler.error());
   sampler_ = std::move(*sampler);
-  std::array<VkDescriptorSetLayoutBinding, kMapsOfMaterial> bindings{};
-  for (std::uint32_t i = 0; i < kMapsOfMaterial; ++i) {
-    bindings[i] = {i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT,
-                   sampler_.address()};
-  }
-  VkDescriptorSetLayoutCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  info.bindingCount = kMapsOfMaterial;
-  info.pBindings = bindings.data();
-  VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-  const VkResult result =
-      device.vk.vkCreateDescriptorSetLayout(device.handle, &info, nullptr, &layout);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor set layout");
-  set_layout_ = UniqueSetLayout(device.vk, device.handle, layout);
+  Result<UniqueSetLayout> layout = make_set_layout(device, bindings_of(sampler_));
+  if (!layout) return tl::unexpected(layout.error());
+  set_layout_ = std::move(*layout);
   // Numbers that no material has yet look like the plain one.
   const shaders::MaterialData plain = data_of(Material{});
   for (std::size_t i = 0; i < PSYGEN_MAX_MATERIALS; ++i)
@@ -177,26 +180,14 @@ Result<TextureId> MaterialTable::store(const Device& device, const TexturePixels
 
 Result<VkDescriptorSet> MaterialTable::make_set(const Device& device, const Material& material) {
   if (pools_.size() * kSetsInPool <= set_count_) {
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                    kMapsOfMaterial * kSetsInPool};
-    VkDescriptorPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    info.maxSets = kSetsInPool;
-    info.poolSizeCount = 1;
-    info.pPoolSizes = &size;
-    VkDescriptorPool pool = VK_NULL_HANDLE;
-    const VkResult result = device.vk.vkCreateDescriptorPool(device.handle, &info, nullptr, &pool);
-    if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor pool");
-    pools_.emplace_back(device.vk, device.handle, pool);
+    Result<UniqueDescriptorPool> pool =
+        make_descriptor_pool(device, bindings_of(sampler_), kSetsInPool);
+    if (!pool) return tl::unexpected(pool.error());
+    pools_.push_back(std::move(*pool));
   }
-  VkDescriptorSetAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  info.descriptorPool = pools_.back().get();
-  info.descriptorSetCount = 1;
-  info.pSetLayouts = set_layout_.address();
-  VkDescriptorSet set = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkAllocateDescriptorSets(device.handle, &info, &set);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating a descriptor set");
+  const auto made = allocate_sets(device, pools_.back().get(), set_layout_.get(), 1);
+  if (!made) return tl::unexpected(made.error());
+  const VkDescriptorSet set = made->front();
   ++set_count_;
   const std::array maps{material.base_texture, material.normal_texture, material.emissive_texture};
   std::array<VkDescriptorImageInfo, kMapsOfMaterial> images{};
