@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 #include "engine/platform/window.hpp"
 #include "engine/scene/scene.hpp"
@@ -26,9 +27,9 @@ constexpr std::uint64_t kBudgetBytes = 256ull << 20;
 }  // namespace
 
 core::Result<app::SessionOptions> Game::session_options() {
-  auto saves = save_folder(options_.folder);
+  auto saves = core::user_folder(core::UserFolder::kData, "cairns", options_.folder);
   if (!saves) return tl::unexpected(saves.error());
-  auto config = settings_folder(options_.folder);
+  auto config = core::user_folder(core::UserFolder::kConfig, "cairns", options_.folder);
   if (!config) return tl::unexpected(config.error());
   saves_ = *saves;
   config_ = *config;
@@ -69,9 +70,7 @@ core::Result<Game::Loaded> Game::load(std::uint64_t seed, int tries) {
   auto play = Play::create((*land)->world, (*land)->registry);
   if (!play && tries > 1) return load(seed + 1, tries - 1);
   if (!play) return tl::unexpected(play.error());
-  auto text = land_text(seed);
-  if (!text) return tl::unexpected(text.error());
-  return Loaded{std::move(*land), std::move(*play), std::move(*text)};
+  return Loaded{std::move(*land), std::move(*play)};
 }
 
 void Game::load_later(std::uint64_t seed, int tries) {
@@ -130,7 +129,7 @@ core::Result<void> Game::begin(app::Session& session, Loaded loaded) {
   }
   if (seed != session.scene().state().facts.world.seed) {
     title_query_.reset();
-    if (auto ok = session.set_world(loaded.text); !ok) return ok;
+    if (auto ok = session.set_world(loaded.land->text); !ok) return ok;
   }
   scenery_.clear(session);
   pilot_.reset();
@@ -231,7 +230,6 @@ bool Game::save_and_leave() {
 }
 
 void Game::choose(app::Session& session, Choice choice) {
-  if (std::exchange(menu_.settings_changed, false)) apply_settings(session);
   if (menu_.page != shown_page_) open_page(session, menu_.page);
   if (choice == Choice::kContinue) load_later(last_seed(saves_).value_or(seed_), 1);
   if (choice == Choice::kNew && !menu_.seed.empty()) load_later(seed_of(menu_.seed), 1);
@@ -333,6 +331,7 @@ void Game::take_picture(app::Session& session) {
 core::CameraPose Game::frame(app::Session& session, double dt_s) {
   using namespace std::chrono_literals;
   if (picture_in_ > 0 && --picture_in_ == 0) take_picture(session);
+  if (std::exchange(menu_.settings_changed, false)) apply_settings(session);
   std::erase_if(dropped_,
                 [](auto& land) { return land.wait_for(0s) == std::future_status::ready; });
   if (menu_.busy && loading_.valid() && loading_.wait_for(0s) == std::future_status::ready) {

@@ -53,7 +53,6 @@ class Game {
   struct Loaded {
     std::unique_ptr<Land> land;  // outlives the game
     std::unique_ptr<Play> play;
-    std::string text;  // of its world
   };
   // With more than one try, a seed whose land has no way for cairns gives way to the next.
   static core::Result<Loaded> load(std::uint64_t seed, int tries = 1);

@@ -66,4 +66,24 @@ Result<fs::path> data_file(const fs::path& name, const fs::path& given,
                           name.string(), looked, kVariable));
 }
 
+Result<fs::path> user_folder(UserFolder folder, const std::string& program, const fs::path& given) {
+  const bool data = folder == UserFolder::kData;
+  const char* variable = data ? "XDG_DATA_HOME" : "XDG_CONFIG_HOME";
+  const char* named = std::getenv(variable);
+  const char* home = std::getenv("HOME");
+  fs::path found = given;
+  if (found.empty() && named != nullptr && *named == '/') {
+    found = fs::path(named) / program;
+  } else if (found.empty() && home != nullptr && *home == '/') {
+    found = fs::path(home) / (data ? ".local/share" : ".config") / program;
+  }
+  if (found.empty())
+    return fail(ErrorCode::kIo,
+                fmt::format("no folder for {}: neither {} nor HOME is set", program, variable));
+  std::error_code error;
+  fs::create_directories(found, error);
+  if (error) return fail(ErrorCode::kIo, fmt::format("{}: {}", found.string(), error.message()));
+  return found;
+}
+
 }  // namespace psygen::core

@@ -1,9 +1,12 @@
 // Finds the files that come with a program or with psygen (worlds, paths, pictures), wherever the
-// program is installed or built and from whatever folder it is run. It opens nothing. Any thread,
+// program is installed or built and from whatever folder it is run; and the folders of the user in
+// which a program keeps what is its own. It opens no file. Any thread,
 // as long as nobody changes the environment meanwhile.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "engine/core/error.hpp"
@@ -32,5 +35,13 @@ std::vector<std::filesystem::path> data_folders(
 Result<std::filesystem::path> data_file(
     const std::filesystem::path& name, const std::filesystem::path& given = {},
     const std::filesystem::path& built_with = PSYGEN_DATA_FOLDER);
+
+// What of a user a folder is for: $XDG_DATA_HOME or ~/.local/share, and $XDG_CONFIG_HOME or
+// ~/.config.
+enum class UserFolder : std::uint8_t { kData, kConfig };
+// The folder of a program in it, or `given` if it is not empty; it is made. Fails with kIo where it
+// cannot be made, and where neither variable nor HOME says where it is.
+Result<std::filesystem::path> user_folder(UserFolder folder, const std::string& program,
+                                          const std::filesystem::path& given = {});
 
 }  // namespace psygen::core

@@ -16,10 +16,6 @@ constexpr double kDeerWalk = 0.7, kDeerRun = 9, kBirdPace = 8, kFishPace = 0.5, 
 constexpr double kCalmS = 6;  // in which fear fades
 constexpr core::Purpose kHabitat = core::Purpose::kPosition;
 
-std::uint64_t name_of(std::int32_t x, std::int32_t z) {
-  return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(z);
-}
-
 // The smallest turn from one yaw to another.
 double turn_to(double from, double to) {
   return std::remainder(to - from, 2 * std::numbers::pi);
@@ -62,7 +58,7 @@ void Creatures::settle_cells(const core::WorldPosition& player) {
   const double block_m = query_->world().block_size_m();
   std::erase_if(all_, [&](const Creature& c) {
     const bool gone = distance_m(c.home, player, block_m) > kFarM;
-    if (gone) cells_.erase(name_of(c.cell_x, c.cell_z));
+    if (gone) cells_.erase(cell_name(c.cell_x, c.cell_z));
     return gone;
   });
   const glm::dvec3 at = way_m({}, player, block_m);
@@ -70,7 +66,7 @@ void Creatures::settle_cells(const core::WorldPosition& player) {
   for (std::int32_t z = cell(at.z - kNearM); z <= cell(at.z + kNearM); ++z) {
     for (std::int32_t x = cell(at.x - kNearM); x <= cell(at.x + kNearM); ++x) {
       const glm::dvec2 middle((x + 0.5) * kCellM - at.x, (z + 0.5) * kCellM - at.z);
-      if (glm::length(middle) < kNearM && !cells_.contains(name_of(x, z))) settle(x, z);
+      if (glm::length(middle) < kNearM && !cells_.contains(cell_name(x, z))) settle(x, z);
     }
   }
 }
@@ -100,7 +96,7 @@ void Creatures::settle(std::int32_t x, std::int32_t z) {
 
 void Creatures::add_group(Kind kind, int count, const core::WorldPosition& home, std::uint64_t seed,
                           std::int32_t x, std::int32_t z) {
-  cells_.insert(name_of(x, z));
+  cells_.insert(cell_name(x, z));
   core::RandomStream random(seed, x, z, static_cast<std::uint32_t>(kind), kHabitat);
   for (int i = 0; i < count; ++i) {
     Creature c;

@@ -59,7 +59,7 @@ core::Result<void> add_types(models::Registry& registry) {
 }
 
 core::Result<std::unique_ptr<Land>> Land::load(std::uint64_t seed) {
-  const auto text = land_text(seed);
+  auto text = land_text(seed);
   if (!text) return tl::unexpected(text.error());
   auto land = std::make_unique<Land>();
   land->registry = models::make_standard_registry();
@@ -67,6 +67,7 @@ core::Result<std::unique_ptr<Land>> Land::load(std::uint64_t seed) {
   auto world = world::parse_world(*text, kFile, land->registry);
   if (!world) return tl::unexpected(world.error());
   land->world = std::move(*world);
+  land->text = std::move(*text);
   return land;
 }
 

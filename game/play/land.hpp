@@ -31,9 +31,15 @@ core::Result<void> add_types(models::Registry& registry);
 struct Land {
   models::Registry registry;
   world::World world;
+  std::string text;  // of its file
   // Fails as land_text() and world::parse_world().
   static core::Result<std::unique_ptr<Land>> load(std::uint64_t seed);
 };
+
+// The name of a cell of a grid over the land, by its numbers east and south.
+constexpr std::uint64_t cell_name(std::int32_t x, std::int32_t z) {
+  return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(z);
+}
 
 // The way from one place to another, in metres. Exact as core::offset_m().
 glm::dvec3 way_m(const core::WorldPosition& from, const core::WorldPosition& to, double block_m);

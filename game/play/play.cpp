@@ -19,10 +19,6 @@ constexpr int kTargetSteps = 6, kSeenSteps = 30;
 
 }  // namespace
 
-std::uint64_t map_cell(std::int32_t x, std::int32_t z) {
-  return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(z);
-}
-
 Play::Play(const world::World& world, const models::Registry& registry)
     : world_(world), registry_(&registry), query_(world_, registry), creatures_(query_) {
   world::set_edits(world_, nullptr);
@@ -73,7 +69,7 @@ core::Result<void> Play::place_cairn(const core::WorldPosition& at, int stones, 
   if (type < 0) return core::fail(core::ErrorCode::kInternal, "the land knows no cairns");
   model.model = static_cast<models::ModelIndex>(type);
   model.parameters = models::default_parameters((*registry_)[model.model]);
-  const auto mixed = core::combine(map_cell(at.block.x, at.block.z),
+  const auto mixed = core::combine(cell_name(at.block.x, at.block.z),
                                    static_cast<std::uint64_t>(at.local.x * 1000));
   model.parameters.set_integer(kCairnSeed, static_cast<std::int64_t>(mixed >> 1));
   model.parameters.set_integer(kCairnStones, stones);
@@ -262,7 +258,7 @@ void Play::find_cairns() {
 }
 
 void Play::see(std::int32_t x, std::int32_t z) {
-  const auto [cell, is_new] = progress_.seen.try_emplace(map_cell(x, z));
+  const auto [cell, is_new] = progress_.seen.try_emplace(cell_name(x, z));
   if (!is_new) return;
   core::WorldPosition middle;
   middle.local = {(x + 0.5) * kMapCellM, 0, (z + 0.5) * kMapCellM};

@@ -70,7 +70,7 @@ struct Progress {
   bool lantern = false;
   std::vector<Fire> fires;
   std::vector<core::WorldPosition> waymarks;  // that the player has built
-  // Cells of the map, by map_cell(), with what is there: a world::GroundKind, or kMapWater.
+  // Cells of the map, by cell_name(), with what is there: a world::GroundKind, or kMapWater.
   std::unordered_map<std::uint64_t, std::uint8_t> seen;
 };
 
@@ -150,8 +150,5 @@ class Play {
   std::uint64_t steps_ = 0;
   std::vector<Happening> happenings_;
 };
-
-// The name of a cell of the map, counted in cells of 24 m from the corner of block (0, 0).
-std::uint64_t map_cell(std::int32_t x, std::int32_t z);
 
 }  // namespace cairns

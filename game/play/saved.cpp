@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 #include "engine/world/edits/edit_bytes.hpp"
@@ -129,24 +128,6 @@ core::Result<void> put_progress(save::SaveGame& save, const Progress& p) {
 }
 
 }  // namespace
-
-core::Result<std::filesystem::path> save_folder(const std::filesystem::path& given) {
-  std::filesystem::path folder = given;
-  const char* data = std::getenv("XDG_DATA_HOME");
-  const char* home = std::getenv("HOME");
-  if (folder.empty() && data != nullptr && *data == '/')
-    folder = std::filesystem::path(data) / "cairns";
-  if (folder.empty() && home != nullptr)
-    folder = std::filesystem::path(home) / ".local/share/cairns";
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (folder.empty() || error)
-    return core::fail(
-        core::ErrorCode::kIo,
-        "no folder for saves: " +
-            (folder.empty() ? "HOME is not set" : folder.string() + ": " + error.message()));
-  return folder;
-}
 
 std::filesystem::path save_file(const std::filesystem::path& folder, std::uint64_t seed) {
   return folder / (std::to_string(seed) + kSuffix);

@@ -11,9 +11,7 @@
 
 namespace cairns {
 
-// Where saves lie: a folder of the user's data, which is made; or `given`. Fails with kIo.
-core::Result<std::filesystem::path> save_folder(const std::filesystem::path& given = {});
-// The save of a land in it.
+// The save of a land in a folder.
 std::filesystem::path save_file(const std::filesystem::path& folder, std::uint64_t seed);
 // The seed of the game that was saved last; nothing where there is none.
 std::optional<std::uint64_t> last_seed(const std::filesystem::path& folder);

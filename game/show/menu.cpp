@@ -183,7 +183,7 @@ void Menu::draw_map(const Play& play, const app::Session& session) {
   const auto number = [](double m) { return static_cast<std::int32_t>(std::floor(m / kMapCellM)); };
   for (std::int32_t z = number(at.z) - kMapCells; z <= number(at.z) + kMapCells; ++z) {
     for (std::int32_t x = number(at.x) - kMapCells; x <= number(at.x) + kMapCells; ++x) {
-      const auto seen = play.progress().seen.find(map_cell(x, z));
+      const auto seen = play.progress().seen.find(cell_name(x, z));
       if (seen == play.progress().seen.end()) continue;
       core::WorldPosition corner;
       corner.local = {x * kMapCellM, 0, z * kMapCellM};

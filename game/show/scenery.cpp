@@ -20,7 +20,7 @@ glm::quat turned(double yaw, double pitch = 0) {
 }
 
 std::uint64_t name_of_place(const core::WorldPosition& at) {
-  return core::combine(map_cell(at.block.x, at.block.z),
+  return core::combine(cell_name(at.block.x, at.block.z),
                        static_cast<std::uint64_t>(at.local.x * 64) << 20 ^
                            static_cast<std::uint64_t>(at.local.z * 64));
 }
@@ -218,6 +218,11 @@ void Scenery::clear(app::Session& session) {
     world.destroy(std::array{flame.fire, flame.smoke, flame.light});
   for (const Falling& tree : falling_)
     world.destroy(std::array{tree.entity});
+  for (const ecs::Entity entity : {smoke_, glow_, rain_, snow_})
+    world.get<scene::ParticleEmitter>(entity)->visible = false;
+  for (const ecs::Entity entity : {beacon_light_, lantern_})
+    world.get<scene::PointLight>(entity)->visible = false;
+  (void)session.scene().set_sky(clear_sky_);
   shown_.clear();
   flames_.clear();
   falling_.clear();

@@ -24,7 +24,7 @@ class Scenery {
   void update(app::Session& session, const Play& play, double share, double hour);
   // What happened since.
   void tell(app::Session& session, const Happening& happening, const Play& play);
-  // Forgets what belongs to a game, before another one.
+  // Takes away all of a game, before another one or the title.
   void clear(app::Session& session);
 
  private:

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <sstream>
 
 #include "engine/core/replace_file.hpp"
@@ -35,19 +34,6 @@ constexpr Switch kSwitches[] = {{"colour_blind", &Settings::colour_blind},
                                 {"fullscreen", &Settings::fullscreen}};
 
 }  // namespace
-
-core::Result<std::filesystem::path> settings_folder(const std::filesystem::path& given) {
-  std::filesystem::path folder = given;
-  const char* config = std::getenv("XDG_CONFIG_HOME");
-  const char* home = std::getenv("HOME");
-  if (folder.empty() && config != nullptr && *config == '/')
-    folder = std::filesystem::path(config) / "cairns";
-  if (folder.empty() && home != nullptr) folder = std::filesystem::path(home) / ".config/cairns";
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return core::fail(core::ErrorCode::kIo, "no folder for settings: " + error.message());
-  return folder;
-}
 
 core::Result<void> load_keys(const std::filesystem::path& folder, input::Actions& actions) {
   std::error_code ignored;

@@ -20,8 +20,6 @@ struct Settings {
   bool fullscreen = false;
 };
 
-// The folder of both files, which is made; or `given`. Fails with kIo.
-core::Result<std::filesystem::path> settings_folder(const std::filesystem::path& given = {});
 // A missing file has the usual values; values out of their ranges are moved into them. Fails with
 // kParse for a file that is not TOML, and kIo.
 core::Result<Settings> load_settings(const std::filesystem::path& folder);

@@ -152,7 +152,7 @@ TEST_F(Saves, AProcessThatIsKilledLeavesAWholeSave) {
       for (;;) {
         // Stones and wood grow together, so a mix of two saves would be seen.
         progress.stock = {progress.stock.stones + 1, progress.stock.stones + 1};
-        progress.seen[map_cell(progress.stock.stones, 0)] = 1;
+        progress.seen[cell_name(progress.stock.stones, 0)] = 1;
         if (!play->resume(progress, play->edits()) || !saved->put(*play) || !saved->wait())
           ::_exit(4);
         if (::write(ready[1], "x", 1) != 1) ::_exit(5);
@@ -172,8 +172,8 @@ TEST_F(Saves, AProcessThatIsKilledLeavesAWholeSave) {
     const Stock stock = play->progress().stock;
     EXPECT_EQ(stock.stones, stock.wood);
     EXPECT_GT(stock.stones, stones);
-    EXPECT_TRUE(play->progress().seen.contains(map_cell(stock.stones, 0)));
-    EXPECT_FALSE(play->progress().seen.contains(map_cell(stock.stones + 1, 0)));
+    EXPECT_TRUE(play->progress().seen.contains(cell_name(stock.stones, 0)));
+    EXPECT_FALSE(play->progress().seen.contains(cell_name(stock.stones + 1, 0)));
     stones = stock.stones;
   }
 }

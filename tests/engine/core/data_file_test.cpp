@@ -20,21 +20,22 @@ using testing::HasSubstr;
 // The environment variable with a value, until the end of the test.
 class Variable {
  public:
-  explicit Variable(const std::string& value) {
-    if (const char* old = std::getenv("PSYGEN_DATA")) old_ = old;
-    setenv("PSYGEN_DATA", value.c_str(), 1);
+  Variable(const char* name, const std::string& value) : name_(name) {
+    if (const char* old = std::getenv(name_)) old_ = old;
+    setenv(name_, value.c_str(), 1);
   }
   ~Variable() {
     if (old_) {
-      setenv("PSYGEN_DATA", old_->c_str(), 1);
+      setenv(name_, old_->c_str(), 1);
     } else {
-      unsetenv("PSYGEN_DATA");
+      unsetenv(name_);
     }
   }
   Variable(const Variable&) = delete;
   Variable& operator=(const Variable&) = delete;
 
  private:
+  const char* name_;
   std::optional<std::string> old_;
 };
 
@@ -48,7 +49,7 @@ fs::path own_folder() {
 }
 
 TEST(DataFile, FoldersAreTheGivenTheVariablesTheExecutablesAndThatOfThePackage) {
-  const Variable variable("/first:/second/./folder:");
+  const Variable variable("PSYGEN_DATA", "/first:/second/./folder:");
   EXPECT_THAT(
       data_folders("/given", "/package"),
       ElementsAre("/given", "/first", "/second/folder", own_folder(),
@@ -56,7 +57,7 @@ TEST(DataFile, FoldersAreTheGivenTheVariablesTheExecutablesAndThatOfThePackage) 
 }
 
 TEST(DataFile, EmptyFoldersAreLeftOutAndEachIsThereOnce) {
-  const Variable variable("::/given::/given");
+  const Variable variable("PSYGEN_DATA", "::/given::/given");
   EXPECT_THAT(data_folders("/given", ""),
               ElementsAre("/given", own_folder(),
                           (own_folder() / PSYGEN_DATA_FROM_EXECUTABLE).lexically_normal()));
@@ -65,7 +66,7 @@ TEST(DataFile, EmptyFoldersAreLeftOutAndEachIsThereOnce) {
 TEST(DataFile, TheFirstFolderThatHasTheFileCounts) {
   const TemporaryFolder folder;
   const fs::path name = "worlds/psygen_test_data_file.toml";
-  const Variable variable((folder / "variable").string());
+  const Variable variable("PSYGEN_DATA", (folder / "variable").string());
   put(folder / "package" / name);
   EXPECT_EQ(data_file(name, folder / "given", folder / "package"), folder / "package" / name);
   put(folder / "variable" / name);
@@ -75,7 +76,7 @@ TEST(DataFile, TheFirstFolderThatHasTheFileCounts) {
 }
 
 TEST(DataFile, WorldsThatComeWithPsygenAreFoundBesideTheExecutable) {
-  const Variable variable("");
+  const Variable variable("PSYGEN_DATA", "");
   const auto file = data_file("worlds/paper.toml", "", "");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(*file, own_folder() / "worlds/paper.toml");
@@ -84,7 +85,7 @@ TEST(DataFile, WorldsThatComeWithPsygenAreFoundBesideTheExecutable) {
 TEST(DataFile, WhereThereIsNoSuchFileTheErrorListsWhereItLooked) {
   const TemporaryFolder folder;
   fs::create_directories(folder / "given/worlds/none.toml");  // a folder is not a file
-  const Variable variable("/from/the/variable");
+  const Variable variable("PSYGEN_DATA", "/from/the/variable");
   const auto file = data_file("worlds/none.toml", folder / "given", "/of/the/package");
   ASSERT_FALSE(file);
   EXPECT_EQ(file.error().code, ErrorCode::kIo);
@@ -101,6 +102,35 @@ TEST(DataFile, NamesThatLeadOutOfTheFoldersAreRefused) {
     ASSERT_FALSE(file) << name;
     EXPECT_EQ(file.error().code, ErrorCode::kInvalidArgument) << name;
   }
+}
+
+TEST(UserFolder, IsWhereTheUserSaysAndIsMade) {
+  const TemporaryFolder folder;
+  const Variable home("HOME", folder.path().string());
+  {
+    const Variable data("XDG_DATA_HOME", (folder.path() / "data").string());
+    EXPECT_EQ(*user_folder(UserFolder::kData, "game"), folder.path() / "data" / "game");
+    EXPECT_TRUE(fs::is_directory(folder.path() / "data" / "game"));
+  }
+  // A relative one does not count, as the specification says.
+  const Variable data("XDG_DATA_HOME", "data"), config("XDG_CONFIG_HOME", "");
+  EXPECT_EQ(*user_folder(UserFolder::kData, "game"), folder.path() / ".local/share/game");
+  EXPECT_EQ(*user_folder(UserFolder::kConfig, "game"), folder.path() / ".config/game");
+  EXPECT_EQ(*user_folder(UserFolder::kConfig, "game", folder.path() / "mine"),
+            folder.path() / "mine");
+}
+
+TEST(UserFolder, SaysWhyThereIsNone) {
+  const TemporaryFolder folder;
+  const Variable home("HOME", ""), data("XDG_DATA_HOME", "");
+  const auto none = user_folder(UserFolder::kData, "game");
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message, HasSubstr("XDG_DATA_HOME"));
+  std::ofstream(folder.path() / "file") << "x";
+  const auto blocked = user_folder(UserFolder::kData, "game", folder.path() / "file" / "sub");
+  ASSERT_FALSE(blocked);
+  EXPECT_EQ(blocked.error().code, ErrorCode::kIo);
+  EXPECT_THAT(blocked.error().message, HasSubstr("file"));
 }
 
 }  // namespace
