@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cairns {
 namespace {
@@ -12,8 +13,8 @@ constexpr float kWidth = 340;
 constexpr std::array<const char*, 4> kQualities{"low", "medium", "high", "ultra"};
 constexpr int kMapCells = 25;  // on each side of the player
 
-// Begins a window without a frame in the left third.
-void begin(const char* title, float scale, float width = kWidth) {
+// Begins a window without a frame in the left third. `opened`: its first control gets the focus.
+void begin(const char* title, float scale, float width, bool opened) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x * 0.08F, size.y * 0.5F}, ImGuiCond_Always, {0, 0.5F});
   ImGui::SetNextWindowSize({width * scale, 0}, ImGuiCond_Always);
@@ -21,7 +22,7 @@ void begin(const char* title, float scale, float width = kWidth) {
   ImGui::Begin(title, nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse);
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  if (opened) ImGui::SetKeyboardFocusHere();
 }
 
 // Gives an action another control; those of other devices stay.
@@ -60,6 +61,7 @@ bool Menu::button(const char* label) {
 }
 
 Choice Menu::draw(app::Session& session, const Play* play, Settings& settings) {
+  const bool opened = std::exchange(drawn_, page) != page;
   if (page == Page::kNone) return Choice::kNothing;
   // Keys also reach the game, which closes pages with them; text fields take them anyway.
   ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableGamepad |
@@ -70,7 +72,7 @@ Choice Menu::draw(app::Session& session, const Play* play, Settings& settings) {
     if (play != nullptr) draw_map(*play, session);
     return Choice::kNothing;
   }
-  begin("cairns", scale, page == Page::kSettings ? 1.6F * kWidth : kWidth);
+  begin("cairns", scale, page == Page::kSettings ? 1.6F * kWidth : kWidth, opened);
   Choice choice = Choice::kNothing;
   if (page == Page::kTitle) choice = draw_title();
   if (page == Page::kPause) choice = draw_pause();

@@ -54,6 +54,7 @@ class Menu {
   void open(Page next);
   bool button(const char* label);
 
+  Page drawn_ = Page::kNone;    // in the last frame
   Page before_ = Page::kTitle;  // to which settings and credits go back
   std::optional<input::BindingCapture> capture_;
   std::size_t captured_ = 0;

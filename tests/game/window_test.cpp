@@ -94,6 +94,15 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
   Running again(options_);
   ASSERT_TRUE(again.open());
   again.frames(20);
+  // Credits are the fourth control below "Continue", and lead back to it.
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_TRUE(key("Down"));
+    again.frames(6);
+  }
+  ASSERT_TRUE(key("Return"));
+  again.frames(10);
+  ASSERT_TRUE(key("Return"));  // "Back", its only button
+  again.frames(10);
   ASSERT_TRUE(key("Return"));  // "Continue" is the first button
   ASSERT_TRUE(again.frames_until([&] { return again.game.play() != nullptr; }));
   EXPECT_EQ(again.game.play()->progress().feet.local, at.local);
