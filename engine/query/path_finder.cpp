@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
 #include <unordered_map>
 
@@ -10,6 +11,7 @@ namespace {
 
 constexpr float kLeastUp = 0.72F;  // of the normal of ground that is walked on …
 constexpr double kGentle = 0.3;    // … unless the way leads down
+constexpr double kNoWay = std::numeric_limits<double>::infinity();
 
 struct Cell {
   std::int32_t x = 0, z = 0;
@@ -20,12 +22,16 @@ std::uint64_t name_of(Cell c) {
   return std::uint64_t{static_cast<std::uint32_t>(c.x)} << 32 | static_cast<std::uint32_t>(c.z);
 }
 
+// In metres from the corner of block (0, 0).
+Cell cell_at(double x_m, double z_m) {
+  const auto number = [](double m) {
+    return static_cast<std::int32_t>(std::floor(m / PathFinder::kCellM));
+  };
+  return {number(x_m), number(z_m)};
+}
 Cell cell_at(const core::WorldPosition& at, double block_m) {
   const glm::dvec3 m = core::offset_m(at.block, {}, block_m) + at.local;
-  const auto number = [](double v) {
-    return static_cast<std::int32_t>(std::floor(v / PathFinder::kCellM));
-  };
-  return {number(m.x), number(m.z)};
+  return cell_at(m.x, m.z);
 }
 
 // One search.
@@ -62,9 +68,7 @@ class Search {
   }
 
   core::WorldPosition place(Cell c) {
-    core::WorldPosition at;
-    at.local = {(c.x + 0.5) * PathFinder::kCellM, 0, (c.z + 0.5) * PathFinder::kCellM};
-    at = core::normalised(at, query_.world().block_size_m());
+    core::WorldPosition at = middle(c);
     at.local.y = ground(c).height_m;
     return at;
   }
@@ -72,7 +76,7 @@ class Search {
  private:
   struct Node {
     Cell from;
-    double cost = 1e300;
+    double cost = kNoWay;
     bool closed = false;
   };
   struct Ground {
@@ -89,6 +93,11 @@ class Search {
     }
   };
 
+  core::WorldPosition middle(Cell c) const {
+    const glm::dvec3 m((c.x + 0.5) * PathFinder::kCellM, 0, (c.z + 0.5) * PathFinder::kCellM);
+    return core::normalised({{}, m}, query_.world().block_size_m());
+  }
+
   double estimate(Cell c) const {
     return PathFinder::kCellM * std::hypot(c.x - to_.x, c.z - to_.z);
   }
@@ -96,9 +105,7 @@ class Search {
   const Ground& ground(Cell c) {
     const auto [it, is_new] = grounds_.try_emplace(name_of(c));
     if (is_new) {
-      core::WorldPosition at;
-      at.local = {(c.x + 0.5) * PathFinder::kCellM, 0, (c.z + 0.5) * PathFinder::kCellM};
-      const auto found = query_.ground(core::normalised(at, query_.world().block_size_m()));
+      const auto found = query_.ground(middle(c));
       if (found) it->second = {found->height_m, found->water_depth_m, found->normal.y, true};
     }
     return it->second;
@@ -106,13 +113,9 @@ class Search {
 
   // Whether a tree or a boulder stands in a cell.
   bool is_narrow(Cell c) {
-    const double block_m = query_.world().block_size_m();
-    const core::BlockCoord block =
-        core::normalised(
-            {{}, {(c.x + 0.5) * PathFinder::kCellM, 0, (c.z + 0.5) * PathFinder::kCellM}}, block_m)
-            .block;
+    const core::BlockCoord block = middle(c).block;
     if (blocks_.insert(name_of({block.x, block.z})).second) {
-      const glm::dvec3 corner = core::offset_m(block, {}, block_m);
+      const glm::dvec3 corner = core::offset_m(block, {}, query_.world().block_size_m());
       for (const core::Bounds& box : query_.solids(block).boxes) {
         if (box.max.y - box.min.y > settings_.step_m) mark(box, corner);
       }
@@ -121,13 +124,11 @@ class Search {
   }
 
   void mark(const core::Bounds& box, const glm::dvec3& corner) {
-    const auto cell = [](double m) {
-      return static_cast<std::int32_t>(std::floor(m / PathFinder::kCellM));
-    };
-    for (std::int32_t z = cell(corner.z + box.min.z - settings_.aside_m);
-         z <= cell(corner.z + box.max.z + settings_.aside_m); ++z) {
-      for (std::int32_t x = cell(corner.x + box.min.x - settings_.aside_m);
-           x <= cell(corner.x + box.max.x + settings_.aside_m); ++x)
+    const glm::dvec3 low = corner + glm::dvec3(box.min) - settings_.aside_m;
+    const glm::dvec3 high = corner + glm::dvec3(box.max) + settings_.aside_m;
+    const Cell first = cell_at(low.x, low.z), last = cell_at(high.x, high.z);
+    for (std::int32_t z = first.z; z <= last.z; ++z) {
+      for (std::int32_t x = first.x; x <= last.x; ++x)
         narrow_.insert(name_of({x, z}));
     }
   }
@@ -135,16 +136,16 @@ class Search {
   // Of a step between neighbours; infinite where there is no way.
   double cost(Cell a, Cell b) {
     const Ground from = ground(a), to = ground(b);
-    if (!to.exists || (avoided_.contains(name_of(b)) && b != to_)) return 1e300;
+    if (!to.exists || (avoided_.contains(name_of(b)) && b != to_)) return kNoWay;
     double run = PathFinder::kCellM * std::hypot(a.x - b.x, a.z - b.z);
     // Of deep water one has its surface to do with.
     const auto level_m = [&](const Ground& g) {
       return g.height_m + std::max(g.depth_m - settings_.wade_m, 0.0);
     };
     const double slope = (level_m(to) - level_m(from)) / run;
-    if (slope > settings_.steepest_up || slope < -settings_.steepest_down) return 1e300;
+    if (slope > settings_.steepest_up || slope < -settings_.steepest_down) return kNoWay;
     if (to.depth_m > settings_.wade_m) return run * settings_.swim_cost;
-    if (to.up < kLeastUp && slope > -kGentle) return 1e300;
+    if (to.up < kLeastUp && slope > -kGentle) return kNoWay;
     if (solids_ && is_narrow(b)) run *= settings_.narrow_cost;
     return run * (1 + 3 * slope * slope + (slope > 0 ? slope : 0));
   }
@@ -163,8 +164,9 @@ class Search {
       for (int x = -1; x <= 1; ++x) {
         if (x == 0 && z == 0) continue;
         const Cell there{c.x + x, c.z + z};
+        if (nodes_[name_of(there)].closed) continue;
         const double step = cost(c, there);
-        if (step < 1e300 && !nodes_[name_of(there)].closed) open(there, so_far + step, c);
+        if (step < kNoWay) open(there, so_far + step, c);
       }
     }
   }
@@ -185,7 +187,7 @@ class Search {
   const std::unordered_set<std::uint64_t>& avoided_;
   Cell to_, best_;
   bool solids_;
-  double best_rest_ = 1e300;
+  double best_rest_ = kNoWay;
   std::unordered_map<std::uint64_t, Node> nodes_;
   std::unordered_map<std::uint64_t, Ground> grounds_;
   std::unordered_set<std::uint64_t> blocks_,
