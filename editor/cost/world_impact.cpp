@@ -10,6 +10,7 @@
 #include "editor/cost/block_cost.hpp"
 #include "editor/cost/seconds_text.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/world_parts.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -150,6 +151,12 @@ void add_new(const Comparison& comparison, const CacheContents& contents, WorldI
   }
 }
 
+// Whether any mesh of the worlds may differ, wherever it is.
+bool places_differ(const ParsedWorld& a, const ParsedWorld& b) {
+  return world::parts_of(a.world, a.registry) != world::parts_of(b.world, b.registry) ||
+         world::places_hash(a.world, a.registry) != world::places_hash(b.world, b.registry);
+}
+
 }  // namespace
 
 WorldImpact impact_of(const ParsedWorld& before, const ParsedWorld& after, core::BlockCoord around,
@@ -174,12 +181,17 @@ WorldImpact impact_of(const ParsedWorld& before, const ParsedWorld& after, core:
   }
   add_new(comparison, contents, impact);
   impact.seconds /= std::max(contents.modelers, 1U);
+  impact.is_elsewhere = impact.changed < 0.5 && places_differ(before, after);
   return impact;
 }
 
 QString impact_text(const WorldImpact& impact) {
   const QLocale english(QLocale::English);
-  if (impact.changed < 0.5 && impact.seconds <= 0) return QObject::tr("No mesh changes.");
+  if (impact.changed < 0.5 && impact.seconds <= 0) {
+    return impact.is_elsewhere
+               ? QObject::tr("Few meshes change, and none of those around the camera.")
+               : QObject::tr("No mesh changes.");
+  }
   const auto whole = [&](double count) { return english.toString(std::llround(count)); };
   return QObject::tr(
              "About %1 meshes change of %2 in the cache; %3 to make them. Then the world takes %4 "

@@ -34,6 +34,8 @@ struct WorldImpact {
   double held = 0, changed = 0;        // meshes; those that are made anew
   double seconds = 0;                  // of all modelers together
   double bytes = 0, budget_bytes = 0;  // of what is needed afterwards, and of the cache
+  // The worlds differ, but not where it was looked: a road, a model at a place, a spot of a mask.
+  bool is_elsewhere = false;
 };
 
 // The impact of `after` where `contents` are of `before`; of blocks around one. `learnt`: as in

@@ -126,6 +126,7 @@ void Document::adopt(const std::filesystem::path& file, std::string text, Parsed
   parsed_ = std::move(parsed);
   sections_.reset();
   pictures_ = std::move(pictures);
+  before_preview_.reset();
   disk_pictures_.clear();
   refused_pictures_.clear();
   undo_.clear();
@@ -265,16 +266,16 @@ const world::WorldField* Document::field(const world::TextPath& path) const {
   return world::find_field(sections(), path);
 }
 
-void Document::show(const TextPtr& text) {
+void Document::show(const ShownText& shown) {
   const ParsedWorldPtr before = parsed_;
   if (next_parsed_) {
     parsed_ = std::exchange(next_parsed_, nullptr);
   } else {
-    auto parsed = parse(*text);
-    PSYGEN_CHECK(parsed.has_value(), "a text that was a world is one again");
-    parsed_ = *std::move(parsed);
+    end_preview();
+    auto parsed = parse(*shown.text);
+    parsed_ = parsed ? *std::move(parsed) : shown.world;  // files beside it may be gone
   }
-  text_ = text;
+  text_ = shown.text;
   sections_.reset();
   drop_asked();
   Q_EMIT changed(Change::kText | changes_between(*before, *parsed_));

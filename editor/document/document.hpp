@@ -140,10 +140,10 @@ class Document : public QObject {
   const handmade::MemoryPicturesPtr& pictures() const { return pictures_; }
 
   // Edits between these two are one step: a drag, or several values at once.
-  void begin_drag();
+  int begin_drag();
   void end_drag() { drag_ = 0; }
-  // Goes on with the last drag: its step grows, if nothing was done since.
-  void resume_drag() { drag_ = last_drag_; }
+  // Goes on with a drag, by what begin_drag() gave: its step grows, if it is the last one.
+  void resume_drag(int drag) { drag_ = drag; }
   QUndoStack& undo_stack() { return undo_; }
 
   // --- Copies, presets and variations.
@@ -208,7 +208,7 @@ class Document : public QObject {
                           std::optional<FieldLocks> locks = {}, bool guarded = true);
   void make(Edit edit, ParsedWorldPtr parsed);
   void ask(std::optional<Edit> edit, const QString& question);
-  void show(const TextPtr& text);
+  void show(const ShownText& shown);
   void note_modified();
   std::vector<std::string> unsaved_pictures() const;  // by name
   handmade::MemoryPicturesPtr with_picture(const std::string& name,
@@ -217,6 +217,7 @@ class Document : public QObject {
   core::Result<void> show_pictures(handmade::MemoryPicturesPtr pictures, const std::string& text);
   void note_on_disk(const std::string& name);
   void apply(const std::vector<PaintChange>& changes, bool done);
+  void end_preview();
   core::Result<void> require_known_pictures(const std::filesystem::path& file);
   core::Result<void> write_pictures(const std::filesystem::path& file);
   core::Result<void> write_all(const std::filesystem::path& file);
@@ -232,6 +233,7 @@ class Document : public QObject {
   std::string saved_;                     // the file as it was last read or saved
   std::optional<std::string> seen_;       // the text of the disk that was told last; none: no file
   handmade::MemoryPicturesPtr pictures_;  // null: none was painted
+  std::optional<handmade::MemoryPicturesPtr> before_preview_;  // while one is shown
   // Hashes of pictures: as files had them when they were read or written, by name; and as saving
   // was refused for them, by file.
   std::map<std::string, std::uint64_t> disk_pictures_, refused_pictures_;

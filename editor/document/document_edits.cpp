@@ -52,22 +52,22 @@ core::Result<void> Document::push(std::string text, const QString& step,
 }
 
 void Document::make(Edit edit, ParsedWorldPtr parsed) {
+  const ShownText before{text_, parsed_};
+  const ShownText after{std::make_shared<const std::string>(std::move(edit.text)), parsed};
   next_parsed_ = std::move(parsed);
-  const TextPtr before = text_;
-  std::function<void(const TextPtr&)> show_step = [this](const TextPtr& shown) { show(shown); };
+  std::function<void(const ShownText&)> show_step = [this](const ShownText& shown) { show(shown); };
   if (edit.locks)
-    show_step = [this, before, undone = locks_, done = edit.locks](const TextPtr& shown) {
-      locks_ = shown == before ? undone : *done;
+    show_step = [this, first = text_, undone = locks_, done = edit.locks](const ShownText& shown) {
+      locks_ = shown.text == first ? undone : *done;
       show(shown);
     };
   if (!edit.paint.empty())
-    show_step = [this, before, paint = std::move(edit.paint)](const TextPtr& shown) {
-      apply(paint, shown != before);
+    show_step = [this, first = text_, paint = std::move(edit.paint)](const ShownText& shown) {
+      apply(paint, shown.text != first);
       show(shown);
     };
-  undo_.push(new TextCommand(edit.step, before,
-                             std::make_shared<const std::string>(std::move(edit.text)), edit.drag,
-                             std::move(show_step)));
+  undo_.push(new TextCommand(edit.step, before, after, edit.drag, std::move(show_step)));
+  before_preview_.reset();
 }
 
 void Document::ask(std::optional<Edit> edit, const QString& question) {
@@ -96,8 +96,8 @@ core::Result<void> Document::edit(const QString& step,
   return push(*std::move(text), step);
 }
 
-void Document::begin_drag() {
-  drag_ = ++last_drag_;
+int Document::begin_drag() {
+  return drag_ = ++last_drag_;
 }
 
 core::Result<void> Document::set_value(const world::TextPath& path, std::string_view toml_value) {

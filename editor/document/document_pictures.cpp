@@ -84,8 +84,10 @@ void Document::note_on_disk(const std::string& name) {
 
 core::Result<void> Document::preview_picture(const std::string& name, const PicturePtr& picture) {
   note_on_disk(name);
+  const handmade::MemoryPicturesPtr before = pictures_;
   if (auto shown = show_pictures(with_picture(name, picture), *text_); !shown) return shown;
-  show(text_);
+  if (!before_preview_) before_preview_ = before;
+  show({text_, parsed_});
   return {};
 }
 
@@ -104,7 +106,13 @@ core::Result<void> Document::paint(const QString& step, std::vector<PaintChange>
   return {};
 }
 
+// What was only shown and is no step goes before a step is taken back.
+void Document::end_preview() {
+  if (before_preview_) pictures_ = *std::exchange(before_preview_, std::nullopt);
+}
+
 void Document::apply(const std::vector<PaintChange>& changes, bool done) {
+  end_preview();
   for (const PaintChange& change : changes)
     pictures_ = with_picture(change.name(), change.applied(picture(change.name()), done));
 }
@@ -132,7 +140,7 @@ core::Result<void> Document::require_known_pictures(const std::filesystem::path&
   return {};
 }
 
-// Copies what a world in another folder would miss. What is there stays.
+// Copies the masks and stamps that a world in another folder would miss. What is there stays.
 core::Result<void> Document::take_along_pictures(const std::filesystem::path& file) const {
   std::set<std::string> names;
   for (const world::Scatter& scatter : world().scatter)
@@ -165,6 +173,7 @@ core::Result<void> Document::write_pictures(const std::filesystem::path& file) {
     written->in_place.erase(name);
   }
   pictures_ = std::move(written);
+  before_preview_.reset();
   refused_pictures_.clear();
   return {};
 }

@@ -4,18 +4,13 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "editor/view/segment.hpp"
+
 namespace psygen::editor {
 namespace {
 
 constexpr double kHardShare = 0.5;       // of the radius, that is covered as a whole
 constexpr double kLeastRadiusPx = 0.75;  // so that the smallest brush meets a pixel
-
-double to_line(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
-  const glm::dvec2 along = b - a;
-  const double length2 = glm::dot(along, along);
-  const double t = length2 > 0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0;
-  return glm::length(p - (a + t * along));
-}
 
 }  // namespace
 
@@ -59,7 +54,8 @@ void MaskStroke::cover(glm::dvec2 from_m, glm::dvec2 to_m, world::GreyPicture& p
   for (std::uint32_t y = bound(low.y, picture.height); y < bottom; ++y) {
     for (std::uint32_t x = bound(low.x, picture.width); x < right; ++x) {
       const glm::dvec2 middle_m = corner_m + (glm::dvec2(x, y) + 0.5) * pixel_m_;
-      const double cover = 255 * brush_cover(to_line(middle_m, from_m, to_m) / brush_.radius_m);
+      const double cover =
+          255 * brush_cover(distance_to_segment(middle_m, from_m, to_m) / brush_.radius_m);
       const std::size_t i = std::size_t{y} * picture.width + x;
       if (cover <= 0) continue;
       met_ = true;

@@ -5,8 +5,8 @@
 #include <QCoreApplication>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "editor/tools/circle_mark.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
 
@@ -17,7 +17,7 @@ constexpr double kWholeWorldM = 4096;  // larger worlds get a mask around a plac
 constexpr double kAroundM = 1024;      // its side
 constexpr double kPixelM = 2;
 constexpr std::uint32_t kMostPixels = 1024;  // a side, of a new mask
-constexpr int kCirclePoints = 48, kBorderPieces = 32;
+constexpr int kBorderPieces = 32;
 constexpr int kTicks = 9;  // on each side of the brush's middle
 const glm::vec3 kBrushColour{0.95F, 0.96F, 1.0F}, kEraserColour{1.0F, 0.45F, 0.35F},
     kAreaColour{0.45F, 0.75F, 1.0F}, kFullColour{0.35F, 0.95F, 0.35F},
@@ -50,16 +50,6 @@ NewMask new_mask(const world::World& world, glm::dvec2 around_m) {
   mask.width = pixels(mask.area_m[2] - mask.area_m[0]);
   mask.height = pixels(mask.area_m[3] - mask.area_m[1]);
   return mask;
-}
-
-ToolMarks::Line circle(glm::dvec2 middle_m, double radius_m, const glm::vec3& colour) {
-  ToolMarks::Line line;
-  line.colour = colour;
-  for (int i = 0; i <= kCirclePoints; ++i) {
-    const double angle = 2 * std::numbers::pi * i / kCirclePoints;
-    line.points_m.push_back(middle_m + radius_m * glm::dvec2(std::sin(angle), std::cos(angle)));
-  }
-  return line;
 }
 
 // Pieces of its own, because the view follows the ground only so far between two points.
@@ -244,7 +234,7 @@ const ToolMarks& MaskTool::marks() {
   if (has_picture()) marks_.lines.push_back(border(mask().area_m));
   if (!hover_m_) return marks_;
   const glm::vec3 colour = brush_.erases ? kEraserColour : kBrushColour;
-  marks_.lines.push_back(circle(*hover_m_, brush_.radius_m, colour));
+  marks_.lines.push_back(circle_mark(*hover_m_, brush_.radius_m, colour));
   if (has_picture())
     add_ticks(*mask().picture, mask().area_m, *hover_m_, brush_.radius_m, marks_.lines);
   return marks_;

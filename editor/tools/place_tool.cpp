@@ -6,13 +6,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "editor/tools/circle_mark.hpp"
+#include "engine/synthesis/synthesize.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
 
 namespace psygen::editor {
 namespace {
 
-constexpr int kOutlinePoints = 32;
 constexpr double kLeastOutlineM = 0.3;
 const glm::vec3 kPlacedColour{1.0F, 0.62F, 0.1F}, kNextColour{0.85F, 0.88F, 0.95F};
 
@@ -24,21 +25,17 @@ std::string toml_point(glm::dvec2 at_m) {
   return world::toml_vector(std::array{at_m.x, at_m.y});
 }
 
+// Ground is not placed, nor is a type whose sizes fail.
+bool is_placeable(const models::ModelType& type) {
+  const auto size = synthesis::mesh_size_guarded(type, models::default_parameters(type), 0);
+  return size && size->layout == core::VertexLayout::kModel;
+}
+
 // How far a model reaches from its foot.
 double reach_m(const models::ModelType& type, const models::Parameters& parameters) {
   const core::Bounds box = type.bounds(parameters);
   return std::max({double{-box.min.x}, double{-box.min.z}, double{box.max.x}, double{box.max.z},
                    kLeastOutlineM});
-}
-
-ToolMarks::Line outline(glm::dvec2 middle_m, double radius_m, const glm::vec3& colour) {
-  ToolMarks::Line line;
-  line.colour = colour;
-  for (int i = 0; i <= kOutlinePoints; ++i) {
-    const double angle = 2 * std::numbers::pi * i / kOutlinePoints;
-    line.points_m.push_back(middle_m + radius_m * glm::dvec2(std::sin(angle), std::cos(angle)));
-  }
-  return line;
 }
 
 }  // namespace
@@ -50,9 +47,7 @@ const std::vector<std::string>& PlaceTool::types() const {
   const models::Registry& registry = listed_->registry;
   for (auto i = static_cast<models::ModelIndex>(registry.size()); i-- > 0;) {
     const models::ModelType& type = registry[i];
-    if (i != listed_->world.terrain_model &&
-        type.mesh_size(models::default_parameters(type), 0).layout == core::VertexLayout::kModel)
-      types_.emplace_back(type.name());
+    if (i != listed_->world.terrain_model && is_placeable(type)) types_.emplace_back(type.name());
   }
   return types_;
 }
@@ -148,15 +143,18 @@ void PlaceTool::turn(double degrees) {
       std::fmod(turned.parameters.real(static_cast<std::size_t>(parameter)) + degrees, 360);
   if (now < 0) now += 360;
   // Turns in a row are one step.
-  const bool goes_on = turned_ == place_ && turned_at_ == document.undo_stack().index();
-  if (!drag_.active()) goes_on ? document.resume_drag() : document.begin_drag();
+  if (!drag_.active()) {
+    if (turned_ == place_ && turn_drag_ != 0)
+      document.resume_drag(turn_drag_);
+    else
+      turn_drag_ = document.begin_drag();
+  }
   host_.tell(
       document.edit(place_words("Turn place %1").arg(*place_ + 1), [&](std::string_view text) {
         return world::with_value(text, {"place", *place_, "turn_deg"}, world::toml_number(now));
       }));
   if (!drag_.active()) document.end_drag();
   turned_ = place_;
-  turned_at_ = document.undo_stack().index();
 }
 
 const ToolMarks& PlaceTool::marks() {
@@ -169,7 +167,7 @@ const ToolMarks& PlaceTool::marks() {
     const world::Place& chosen = places[*place_];
     const models::ModelType& type = parsed->registry[chosen.model];
     const double radius_m = reach_m(type, chosen.parameters);
-    marks_.lines.push_back(outline(chosen.at_m, radius_m, kPlacedColour));
+    marks_.lines.push_back(circle_mark(chosen.at_m, radius_m, kPlacedColour));
     if (const int turn = models::parameter_index(type, "turn_deg"); turn >= 0) {
       const double angle =
           chosen.parameters.real(static_cast<std::size_t>(turn)) * std::numbers::pi / 180;
@@ -182,7 +180,7 @@ const ToolMarks& PlaceTool::marks() {
   if (hover_m_ && next >= 0) {
     const models::ModelType& type = parsed->registry[static_cast<models::ModelIndex>(next)];
     marks_.lines.push_back(
-        outline(*hover_m_, reach_m(type, models::default_parameters(type)), kNextColour));
+        circle_mark(*hover_m_, reach_m(type, models::default_parameters(type)), kNextColour));
   }
   return marks_;
 }

@@ -52,7 +52,7 @@ class PlaceTool final : public ViewTool {
   std::string type_;
   std::optional<std::size_t> place_;
   ToolDrag drag_{host_};
-  int turned_at_ = -1;                 // the undo step of the last turn
+  int turn_drag_ = 0;                  // of the last turn; 0: none
   std::optional<std::size_t> turned_;  // what it turned
   std::optional<glm::dvec2> hover_m_;  // where a click would place one
   ToolMarks marks_;

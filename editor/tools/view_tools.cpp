@@ -210,7 +210,9 @@ void ViewTools::turn_on(ViewTool* tool) {
     command->setEnabled(of == tool);
   leave_->setEnabled(tool != nullptr);
   remove_->setEnabled(tool == &road_ || tool == &place_);
-  if (tool == &mask_) fill_masks();
+  if (tool == &mask_ && !mask_.scatter() && !document_.world().scatter.empty()) mask_.choose(0);
+  fill_lists();
+  new_mask_->setEnabled(tool == &mask_ && mask_.scatter() && !mask_.has_picture());
 }
 
 void ViewTools::leave() {
@@ -226,10 +228,11 @@ void ViewTools::remove() {
   if (view_.tool() == &place_) place_.remove();
 }
 
+// Those of a tool that is off are filled when it is turned on.
 void ViewTools::fill_lists() {
-  if (roads_ != nullptr) fill_roads();
-  if (types_ != nullptr) fill_types();
-  if (masks_ != nullptr) fill_masks();
+  if (view_.tool() == &road_) fill_roads();
+  if (view_.tool() == &place_) fill_types();
+  if (view_.tool() == &mask_) fill_masks();
 }
 
 void ViewTools::fill_roads() {
@@ -256,9 +259,8 @@ void ViewTools::fill_masks() {
         scatter.mask.image.empty() ? tr("no mask") : QString::fromStdString(scatter.mask.image);
     names += tr("%1: %2").arg(QString::fromStdString(name), mask);
   }
-  if (view_.tool() == &mask_ && !mask_.scatter() && !names.isEmpty()) mask_.choose(0);
   fill(*masks_, names, mask_.scatter() ? static_cast<int>(*mask_.scatter()) : -1);
-  new_mask_->setEnabled(view_.tool() == &mask_ && mask_.scatter() && !mask_.has_picture());
+  new_mask_->setEnabled(mask_.scatter() && !mask_.has_picture());
 }
 
 // Around the camera.

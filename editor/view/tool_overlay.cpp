@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
+#include "editor/view/segment.hpp"
 #include "engine/world/surface.hpp"
 
 namespace psygen::editor {
@@ -26,13 +27,6 @@ glm::vec3 lifted(const core::WorldPosition& at, const core::WorldPosition& eye, 
   return from_eye;
 }
 
-float to_segment(glm::vec2 p, glm::vec2 a, glm::vec2 b) {
-  const glm::vec2 along = b - a;
-  const float length2 = glm::dot(along, along);
-  const float t = length2 > 0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0F, 1.0F) : 0.0F;
-  return glm::length(p - (a + t * along));
-}
-
 }  // namespace
 
 core::WorldPosition on_surface(glm::dvec2 at_m, const world::World& world) {
@@ -41,9 +35,16 @@ core::WorldPosition on_surface(glm::dvec2 at_m, const world::World& world) {
   return at;
 }
 
+Lens::Lens(const core::CameraPose& from, const core::Projection& by, core::Extent picture,
+           double block_size_m)
+    : pose(from),
+      projection(by),
+      size(picture),
+      block_m(block_size_m),
+      to_clip_(core::projection_matrix(by) * core::view_rotation(from)) {}
+
 std::optional<glm::vec2> Lens::pixel_of(const glm::vec3& from_eye) const {
-  const glm::vec4 clip =
-      core::projection_matrix(projection) * core::view_rotation(pose) * glm::vec4(from_eye, 1);
+  const glm::vec4 clip = to_clip_ * glm::vec4(from_eye, 1);
   if (clip.w <= projection.near_m) return std::nullopt;
   return glm::vec2{(clip.x / clip.w + 1) * 0.5F * static_cast<float>(size.width),
                    (clip.y / clip.w + 1) * 0.5F * static_cast<float>(size.height)};
@@ -125,7 +126,7 @@ void ToolOverlay::hit(QPointF pixel, const Lens& lens, ToolPoint& point) const {
     std::optional<glm::vec2> before;
     for (std::size_t i = 0; i < lines_[l].size(); ++i) {
       const auto at = lens.pixel_of(lines_[l][i].at);
-      const float away = before && at ? to_segment(mouse, *before, *at) : nearest;
+      const float away = before && at ? distance_to_segment(mouse, *before, *at) : nearest;
       if (away < nearest) nearest = away, point.line = {l, lines_[l][i - 1].part};
       before = at;
     }

@@ -16,8 +16,11 @@
 
 namespace psygen::editor {
 
-// Through what a picture is seen.
+// Through what a picture is seen. Its values stay as they were given.
 struct Lens {
+  Lens(const core::CameraPose& from, const core::Projection& by, core::Extent picture,
+       double block_size_m);
+
   core::CameraPose pose;
   core::Projection projection;
   core::Extent size;  // pixels
@@ -27,6 +30,9 @@ struct Lens {
   std::optional<glm::vec2> pixel_of(const core::WorldPosition& at) const;
   // The same for a place relative to the camera.
   std::optional<glm::vec2> pixel_of(const glm::vec3& from_eye) const;
+
+ private:
+  glm::mat4 to_clip_;  // of places relative to the camera; for thousands of points of lines
 };
 
 // A place of the world (x and z in metres) on the ground, or on the water over it.

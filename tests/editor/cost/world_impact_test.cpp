@@ -32,6 +32,18 @@ TEST(WorldImpact, LooksChangeNoMesh) {
   EXPECT_EQ(impact_text(impact), "No mesh changes.");
 }
 
+// What lies far from where it is looked is not called nothing.
+TEST(WorldImpact, ARoadFarAwayChangesFewMeshesAndNotNone) {
+  const auto with_road =
+      parse_world_text(std::string(kCostedWorld) + "\n[[road]]\npoints_m = [[10, 10], [60, 20]]\n",
+                       "costed.toml", {});
+  ASSERT_TRUE(with_road);
+  const WorldImpact impact = impact_of(*costed(), **with_road, kMiddle, contents(), nullptr);
+  EXPECT_EQ(impact.changed, 0);
+  EXPECT_TRUE(impact.is_elsewhere);
+  EXPECT_EQ(impact_text(impact), "Few meshes change, and none of those around the camera.");
+}
+
 TEST(WorldImpact, AnotherModelChangesItsMeshesAndWhatStandsForMany) {
   const WorldImpact impact = impact_of_value({"scatter", 1, "subdivisions"}, "1");
   EXPECT_DOUBLE_EQ(impact.changed, 550);

@@ -60,6 +60,27 @@ struct Painted {
   }
 };
 
+// A file beside the world that is gone does not take the steps with it.
+TEST(DocumentPictures, StepsAreTakenBackThoughAFileOfTheirsIsGone) {
+  Place place;
+  Document document(place.options());
+  ASSERT_TRUE(good(document.open(place.file)));
+  const std::filesystem::path file = place.file.parent_path() / kName;
+  write_grey(file, grey_picture(300));
+  ASSERT_TRUE(good(document.set_text(with_mask(document.text()), "Mask")));
+  ASSERT_TRUE(good(document.set_value({"sky", "exposure"}, "2")));
+  std::filesystem::remove(file);
+  document.undo_stack().undo();
+  EXPECT_EQ(document.world().sky.exposure, 1);
+  EXPECT_EQ(document.world().scatter[0].mask.picture->pixels[0], 300);
+  document.undo_stack().redo();
+  EXPECT_EQ(document.world().sky.exposure, 2);
+  document.undo_stack().undo();
+  document.undo_stack().undo();
+  EXPECT_EQ(document.text(), kWorld);
+  EXPECT_EQ(document.world().scatter[0].mask.picture, nullptr);
+}
+
 TEST(DocumentPictures, AreWrittenWithTheWorldAndNotBefore) {
   Painted painted;
   Document& document = *painted.document;

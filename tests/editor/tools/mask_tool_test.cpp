@@ -135,6 +135,27 @@ TEST(MaskTool, EscapeTakesTheStrokeBackAndWhatIsNothingIsNoStep) {
   EXPECT_EQ(bench.document.text(), kWorld);
 }
 
+// Undo while the button is held leaves nothing of what was only shown.
+TEST(MaskTool, WhatWasShownOfAStrokeGoesWithTheStepThatIsTakenBack) {
+  Masks bench;
+  const auto share = [&](double x) { return bench.share(x, 100); };
+  bench.tool.set_radius_m(10);
+  bench.tool.set_erases(true);
+  click(bench.tool, ground(100, 100));
+  ASSERT_LT(share(100), 0.01);
+  bench.tool.press(ground(200, 100));
+  ASSERT_LT(share(200), 0.01);
+  bench.document.undo_stack().undo();
+  EXPECT_GT(share(100), 0.99);
+  EXPECT_GT(share(200), 0.99);
+  bench.tool.drag(ground(210, 100));
+  bench.tool.release();
+  EXPECT_GT(share(200), 0.99);
+  bench.document.undo_stack().redo();
+  EXPECT_LT(share(100), 0.01);
+  EXPECT_GT(share(200), 0.99);
+}
+
 TEST(MaskTool, APictureOfAnotherFormatStaysAndBecomesAPng) {
   Toolbench bench;
   image::Image grey = image::make_image(16, 16, 255, 255, 255, 255);

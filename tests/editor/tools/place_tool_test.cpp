@@ -111,6 +111,22 @@ TEST(PlaceTool, TurnsInARowAreOneStep) {
   EXPECT_EQ(bench.turn_deg(0), 347);
 }
 
+// A turn is a step of its own after anything else, also where the history is as long as before.
+TEST(PlaceTool, ATurnDoesNotBecomePartOfAnotherDrag) {
+  Windmills bench;
+  click(bench.tool, ground(40, 50));
+  bench.tool.turn(15);
+  bench.document.undo_stack().undo();
+  bench.document.begin_drag();
+  ASSERT_TRUE(good(bench.document.set_value({"sky", "exposure"}, "2")));
+  bench.document.end_drag();
+  bench.tool.turn(15);
+  const int steps = bench.steps();
+  bench.document.undo_stack().undo();
+  EXPECT_EQ(bench.turn_deg(0), 0);
+  EXPECT_EQ(bench.document.world().sky.exposure, 2) << "of " << steps << " steps";
+}
+
 TEST(PlaceTool, WhatCannotBeIsRefusedWithASentence) {
   Placed bench;
   bench.tool.set_type("tree");

@@ -23,7 +23,7 @@ struct Toolbench {
     EXPECT_TRUE(good(document.open(place.file)));
   }
   ToolHost host() {
-    return {document, [this](bool on) { on ? document.begin_drag() : document.end_drag(); },
+    return {document, [this](bool on) { on ? void(document.begin_drag()) : document.end_drag(); },
             [this](const QString& sentence) { said.push_back(sentence.toStdString()); },
             [this](const world::TextPath& table) { chosen = table.text(); }};
   }

@@ -166,7 +166,5 @@ TEST(Road, RoadsAndStampsMayLieOnEachOther) {
   });
 }
 
-// Nodes of all levels agree at shared vertices.
-
 }  // namespace
 }  // namespace psygen::world

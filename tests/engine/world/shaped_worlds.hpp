@@ -44,7 +44,7 @@ class MadePictures final : public PicturesAlone {
     picture->width = picture->height = side;
     for (std::uint32_t i = 0; i < side * side; ++i)
       picture->pixels.push_back(static_cast<std::uint16_t>(grey(i)));
-    picture->hash = core::combine(side, picture->pixels.back());
+    picture->hash = content_hash(*picture);
     return picture;
   }
 };

@@ -73,8 +73,12 @@ TEST(WorldParts, SomeScattersAreWhatTheyAreAmongAll) {
     EXPECT_EQ(some[i].parameters, all[first + i].parameters);
   }
   const std::vector<double> placed = placed_per_block(world, registry());
-  const std::optional<double> known[] = {placed[0], std::nullopt};
-  EXPECT_EQ(placed_per_block(world, registry(), known), placed);
+  // What is known is not counted again.
+  const std::optional<double> known[] = {placed[0] + 1, std::nullopt, std::nullopt};
+  const std::vector<double> counted = placed_per_block(world, registry(), known);
+  EXPECT_EQ(counted[0], placed[0] + 1);
+  EXPECT_EQ(counted[1], placed[1]);
+  EXPECT_EQ(counted[2], placed[2]);
 }
 
 }  // namespace
