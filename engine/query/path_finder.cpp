@@ -5,9 +5,10 @@
 #include <limits>
 #include <queue>
 #include <unordered_map>
+#include <utility>
 
 namespace psygen::query {
-namespace {
+namespace ways {  // has a name, because PathFinder::Search has members of these types
 
 constexpr float kLeastUp = 0.72F;  // of the normal of ground that is walked on …
 constexpr double kGentle = 0.3;    // … unless the way leads down
@@ -34,23 +35,30 @@ Cell cell_at(const core::WorldPosition& at, double block_m) {
   return cell_at(m.x, m.z);
 }
 
-// One search.
-class Search {
+}  // namespace ways
+
+using namespace ways;
+
+// One search between two places.
+class PathFinder::Search {
  public:
-  Search(World& query, const PathSettings& settings,
-         const std::unordered_set<std::uint64_t>& avoided, Cell from, Cell to, bool solids)
-      : query_(query),
-        settings_(settings),
-        avoided_(avoided),
-        to_(to),
-        best_(from),
+  Search(const PathFinder& finder, const core::WorldPosition& from, const core::WorldPosition& to,
+         bool solids)
+      : query_(*finder.query_),
+        settings_(finder.settings_),
+        avoided_(finder.avoided_),
+        start_(from),
+        end_(to),
+        to_(cell_at(to, query_.world().block_size_m())),
+        best_(cell_at(from, query_.world().block_size_m())),
         solids_(solids) {
-    open(from, 0, from);
+    open(best_, 0, best_);
   }
 
-  // The cells of the way, first to last.
-  std::vector<Cell> run() {
-    while (!open_.empty() && nodes_.size() < settings_.most_cells) {
+  // Looks at up to so many cells. Whether it has ended.
+  bool run(std::size_t cells) {
+    for (std::size_t i = 0; i < cells; ++i) {
+      if (open_.empty() || nodes_.size() >= settings_.most_cells) return true;
       const Open next = open_.top();
       open_.pop();
       Node& node = nodes_[name_of(next.cell)];
@@ -61,16 +69,24 @@ class Search {
         best_rest_ = rest;
         best_ = next.cell;
       }
-      if (next.cell == to_) break;
+      if (next.cell == to_) return true;
       visit_neighbours(next.cell);
     }
-    return trace();
+    return false;
   }
 
-  core::WorldPosition place(Cell c) {
-    core::WorldPosition at = middle(c);
-    at.local.y = ground(c).height_m;
-    return at;
+  bool has_arrived() const { return best_ == to_; }
+
+  // The way to the nearest cell to the end.
+  std::vector<core::WorldPosition> way() {
+    std::vector<core::WorldPosition> points{start_};
+    for (const Cell c : trace()) {
+      points.push_back(middle(c));
+      points.back().local.y = ground(c).height_m;
+    }
+    points.erase(points.begin() + 1);  // the cell of the start
+    if (has_arrived()) points.push_back(end_);
+    return points;
   }
 
  private:
@@ -183,8 +199,9 @@ class Search {
   }
 
   World& query_;
-  const PathSettings& settings_;
-  const std::unordered_set<std::uint64_t>& avoided_;
+  PathSettings settings_;
+  std::unordered_set<std::uint64_t> avoided_;
+  core::WorldPosition start_, end_;
   Cell to_, best_;
   bool solids_;
   double best_rest_ = kNoWay;
@@ -195,7 +212,11 @@ class Search {
   std::priority_queue<Open> open_;
 };
 
-}  // namespace
+PathFinder::PathFinder(World& query, const PathSettings& settings)
+    : query_(&query), settings_(settings) {}
+PathFinder::~PathFinder() = default;
+PathFinder::PathFinder(PathFinder&&) noexcept = default;
+PathFinder& PathFinder::operator=(PathFinder&&) noexcept = default;
 
 void PathFinder::avoid(const core::WorldPosition& at) {
   const Cell middle = cell_at(at, query_->world().block_size_m());
@@ -206,23 +227,25 @@ void PathFinder::avoid(const core::WorldPosition& at) {
 }
 
 bool PathFinder::reaches(const core::WorldPosition& from, const core::WorldPosition& to) {
-  const double block_m = query_->world().block_size_m();
-  const Cell end = cell_at(to, block_m);
-  Search search(*query_, settings_, avoided_, cell_at(from, block_m), end, false);
-  return search.run().back() == end;
+  Search search(*this, from, to, false);
+  search.run(SIZE_MAX);
+  return search.has_arrived();
 }
 
 std::vector<core::WorldPosition> PathFinder::find(const core::WorldPosition& from,
                                                   const core::WorldPosition& to) {
-  const double block_m = query_->world().block_size_m();
-  const Cell end = cell_at(to, block_m);
-  Search search(*query_, settings_, avoided_, cell_at(from, block_m), end, true);
-  const std::vector<Cell> cells = search.run();
-  std::vector<core::WorldPosition> points{from};
-  for (std::size_t i = 1; i < cells.size(); ++i)
-    points.push_back(search.place(cells[i]));
-  if (cells.back() == end) points.push_back(to);
-  return points;
+  Search search(*this, from, to, true);
+  search.run(SIZE_MAX);
+  return search.way();
+}
+
+void PathFinder::begin(const core::WorldPosition& from, const core::WorldPosition& to) {
+  search_ = std::make_unique<Search>(*this, from, to, true);
+}
+
+std::optional<std::vector<core::WorldPosition>> PathFinder::advance(std::size_t cells) {
+  if (!search_ || !search_->run(cells)) return std::nullopt;
+  return std::exchange(search_, nullptr)->way();
 }
 
 }  // namespace psygen::query

@@ -4,6 +4,8 @@
 // Deterministic. One thread, that of its queries.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <unordered_set>
 #include <vector>
 
@@ -28,8 +30,10 @@ class PathFinder {
   static constexpr double kCellM = 2;
 
   // `query` outlives it.
-  explicit PathFinder(World& query, const PathSettings& settings = {})
-      : query_(&query), settings_(settings) {}
+  explicit PathFinder(World& query, const PathSettings& settings = {});
+  ~PathFinder();
+  PathFinder(PathFinder&&) noexcept;
+  PathFinder& operator=(PathFinder&&) noexcept;
 
   PathSettings& settings() { return settings_; }
   // Points from `from` to `to`, both included, a cell apart, on the ground. Where there is no way,
@@ -37,6 +41,12 @@ class PathFinder {
   // most 2^31 cells from the corner of block (0, 0).
   std::vector<core::WorldPosition> find(const core::WorldPosition& from,
                                         const core::WorldPosition& to);
+  // The same, a piece in each step of a game. begin() starts a search, in place of one that goes
+  // on, with the settings and the places to avoid of now. advance() looks at so many cells more,
+  // and returns the way once it is found; nothing before that, and where no search goes on.
+  void begin(const core::WorldPosition& from, const core::WorldPosition& to);
+  std::optional<std::vector<core::WorldPosition>> advance(std::size_t cells);
+  bool is_searching() const { return search_ != nullptr; }
   // Whether there is a way that can be found, whatever is solid on it. Faster than find().
   bool reaches(const core::WorldPosition& from, const core::WorldPosition& to);
   // Leaves a cell out from now on, with those next to it: something is in the way there. Places
@@ -44,9 +54,12 @@ class PathFinder {
   void avoid(const core::WorldPosition& at);
 
  private:
+  class Search;
+
   World* query_;
   PathSettings settings_;
   std::unordered_set<std::uint64_t> avoided_;
+  std::unique_ptr<Search> search_;  // that goes on
 };
 
 }  // namespace psygen::query

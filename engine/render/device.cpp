@@ -288,6 +288,22 @@ core::Result<void> Device::wait(VkSemaphore semaphore, std::uint64_t value,
   return vulkan_failure(result, what);
 }
 
+core::Result<void> Device::submit(VkQueue to, const VkSubmitInfo2& work, const char* what) const {
+  const std::scoped_lock lock(queues_);
+  const VkResult result = vk.vkQueueSubmit2(to, 1, &work, VK_NULL_HANDLE);
+  return result == VK_SUCCESS ? core::Result<void>{} : vulkan_failure(result, what);
+}
+
+VkResult Device::present(const VkPresentInfoKHR& picture) const {
+  const std::scoped_lock lock(queues_);
+  return vk.vkQueuePresentKHR(queue, &picture);
+}
+
+VkResult Device::wait_idle() const {
+  const std::scoped_lock lock(queues_);
+  return vk.vkDeviceWaitIdle(handle);
+}
+
 std::uint64_t Device::writable_bytes() const {
   const VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT |
                                        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,12 @@ class Device {
   // Returns when a timeline semaphore has reached `value`. `what` is for the error: "waiting for
   // ...". Fails with kDeviceLost, also after the timeout, which sets vk.hangs.
   core::Result<void> wait(VkSemaphore semaphore, std::uint64_t value, const char* what) const;
+  // Queues, one call at a time: a software device's pictures are presented by a thread of their own
+  // (RendererImpl::present). submit() fails like vulkan_failure(); `what` is for the error.
+  core::Result<void> submit(VkQueue to, const VkSubmitInfo2& work, const char* what) const;
+  VkResult present(const VkPresentInfoKHR& picture) const;
+  // Waits for everything that was submitted.
+  VkResult wait_idle() const;
   // Size in bytes of the largest device-local heap that the CPU can write.
   std::uint64_t writable_bytes() const;
 
@@ -70,6 +77,7 @@ class Device {
   Device() = default;
 
   std::uint64_t timeout_ns_ = 0;
+  mutable std::mutex queues_;
 };
 
 }  // namespace psygen::render

@@ -238,10 +238,9 @@ Result<void> finish_once(const Device& device, OneTimeCommands& once) {
   submit.pCommandBufferInfos = &commands;
   submit.signalSemaphoreInfoCount = 1;
   submit.pSignalSemaphoreInfos = &signal;
-  result = device.vk.vkQueueSubmit2(device.queue, 1, &submit, VK_NULL_HANDLE);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "submitting commands");
-
-  return device.wait(semaphore, signal.value, "waiting for the device");
+  return device.submit(device.queue, submit, "submitting commands").and_then([&] {
+    return device.wait(semaphore, signal.value, "waiting for the device");
+  });
 }
 
 Result<UniqueSampler> make_sampler(const Device& device, VkSamplerCreateInfo info) {

@@ -100,8 +100,7 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
   info.signalSemaphoreInfoCount = static_cast<std::uint32_t>(signals.size());
   info.pSignalSemaphoreInfos = signals.data();
   const double now_s = core::monotonic_seconds();
-  const VkResult result = device_->vk.vkQueueSubmit2(device_->queue, 1, &info, VK_NULL_HANDLE);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "submitting a frame");
+  if (auto ok = device_->submit(device_->queue, info, "submitting a frame"); !ok) return ok;
   slot.submitted_value = ++frame_value_;
   slot.timer().submitted(frame_value_, now_s);
   pool_->frame_submitted(frame_value_);
@@ -181,6 +180,10 @@ Result<void> RendererImpl::set_picture(std::size_t number, const core::ModelPict
 Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   if (lost_) return core::fail(ErrorCode::kDeviceLost, "the device was lost before");
   if (const Result<void> ok = check_camera(input); !ok) return tl::unexpected(ok.error());
+  const bool presents = presenting_.valid();
+  const Wait present{core::monotonic_seconds(), 0};
+  if (const Result<bool> ok = noted(settle_present()); !ok) return tl::unexpected(ok.error());
+  const Wait settled = ended(present);
   if (options_.surface != nullptr) {
     const Result<bool> shown = noted(prepare_window());
     if (!shown) return tl::unexpected(shown.error());
@@ -194,7 +197,9 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
     return core::fail(ErrorCode::kOutOfMemory, "there was no memory for a picture of this size");
   }
   if (Result<void> made = prepare(input); !made) return tl::unexpected(made.error());
-  return noted(draw_frame(input, slot_of(frame_value_ + 1)));
+  Result<FrameResult> drawn = noted(draw_frame(input, slot_of(frame_value_ + 1)));
+  if (drawn && presents) drawn->present = settled;
+  return drawn;
 }
 
 // Makes the list of draws: all draws, or candidates for the device.
@@ -335,7 +340,8 @@ Result<void> RendererImpl::resize(core::Extent size) {
 }
 
 void RendererImpl::wait_idle() {
-  if (lost_ || device_->vk.vkDeviceWaitIdle(device_->handle) != VK_SUCCESS) return;
+  if (presenting_.valid()) presenting_.wait();
+  if (lost_ || device_->wait_idle() != VK_SUCCESS) return;
   idle_value_ = frame_value_;
   if (pool_) pool_->frames_finished(frame_value_);
 }

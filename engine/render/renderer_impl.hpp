@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -111,6 +112,8 @@ class RendererImpl {
   core::Result<void> record(FrameSlot& slot, bool windowed);
   core::Result<void> submit(FrameSlot& slot, bool windowed);
   core::Result<bool> present();
+  core::Result<bool> settle_present();
+  core::Result<bool> note_presented(const core::Result<SwapchainState>& shown);
   core::Result<FrameResult> draw_frame(const FrameInput& input, FrameSlot& slot);
   Apart apart_now();
   core::Extent landscape_size(float resolution);
@@ -145,6 +148,9 @@ class RendererImpl {
   Swapchain swapchain_;
   core::Extent seen_framebuffer_;  // the window's size when the swapchain was created
   bool swapchain_stale_ = true;
+  // Of the last frame, on software devices: there it waits until the picture is drawn. Valid until
+  // settle_present(), before which the swapchain is not touched.
+  std::future<core::Result<SwapchainState>> presenting_;
 
   std::uint64_t frame_value_ = 0;    // last value submitted to the timeline
   std::uint64_t idle_value_ = 0;     // frame_value_ when the device was last known to be idle

@@ -226,6 +226,7 @@ Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_sc
                                 const HudDrawing& hud) {
   if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
   const bool windowed = options_.surface != nullptr;
+  if (const Result<bool> ok = noted(settle_present()); !ok) return tl::unexpected(ok.error());
   if (windowed) {
     const Result<bool> shown = noted(prepare_window());
     if (!shown) return tl::unexpected(shown.error());

@@ -5,6 +5,28 @@ namespace psygen::render {
 
 using core::Result;
 
+// True if the last picture was shown, as far as is known.
+Result<bool> RendererImpl::note_presented(const Result<SwapchainState>& shown) {
+  if (!shown) return tl::unexpected(shown.error());
+  if (*shown == SwapchainState::kStale) swapchain_stale_ = true;
+  if (*shown != SwapchainState::kSurfaceLost) return true;
+  if (Result<void> again = recreate_surface(); !again) return tl::unexpected(again.error());
+  return false;
+}
+
+// Waits for the end of a present() that goes on in its thread.
+Result<bool> RendererImpl::settle_present() {
+  return presenting_.valid() ? note_presented(presenting_.get()) : Result<bool>(true);
+}
+
+// Presents the acquired image. On a software device that takes as long as drawing does, so that it
+// is done beside the next tick. Where no thread can be had, settle_present() does it.
+Result<bool> RendererImpl::present() {
+  if (!device_->info.software) return note_presented(swapchain_.present(*device_));
+  presenting_ = std::async([this] { return swapchain_.present(*device_); });
+  return true;
+}
+
 // True if there is a swapchain with targets of its size; false while the window has no pixels.
 Result<bool> RendererImpl::prepare_window() {
   const core::Extent size = options_.surface->framebuffer_size();
@@ -57,15 +79,6 @@ Result<RendererImpl::WindowState> RendererImpl::acquire_window(FrameSlot& slot) 
   }
   if (Result<void> again = recreate_surface(); !again) return tl::unexpected(again.error());
   return WindowState::kNotNow;
-}
-
-Result<bool> RendererImpl::present() {
-  const Result<SwapchainState> shown = swapchain_.present(*device_);
-  if (!shown) return tl::unexpected(shown.error());
-  if (*shown == SwapchainState::kStale) swapchain_stale_ = true;
-  if (*shown != SwapchainState::kSurfaceLost) return true;
-  if (Result<void> again = recreate_surface(); !again) return tl::unexpected(again.error());
-  return false;
 }
 
 }  // namespace psygen::render

@@ -25,6 +25,8 @@ void bind_pipeline(const Device& device, VkCommandBuffer commands, VkPipeline pi
 
 namespace {
 
+constexpr std::uint64_t kTrianglesOfPart = 12'000;
+
 void draw_pushed(const Device& device, VkCommandBuffer commands, VkPipelineLayout layout,
                  const DrawList& list, const DrawRun& run) {
   for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
@@ -81,10 +83,10 @@ VkPipeline picture_pipeline(const Pipelines& pipelines, const Draws& draws, bool
                           draws.coverage != Coverage::kWhole, lamps, view);
 }
 
-// Draws the runs of the list, each with the pipeline pipeline_of(run).
-template <class PipelineOf>
+// Draws the runs of the list, each with the pipeline pipeline_of(run). After each, drawn(run).
+template <class PipelineOf, class Drawn>
 void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
-                 const ScenePass& pass, const PipelineOf& pipeline_of) {
+                 const ScenePass& pass, const PipelineOf& pipeline_of, const Drawn& drawn) {
   VkPipeline bound = VK_NULL_HANDLE;
   VkBuffer bound_vertices = VK_NULL_HANDLE, bound_indices = VK_NULL_HANDLE;
   TextureBinder textures(device, pipelines, commands, pass.materials);
@@ -109,7 +111,28 @@ void draw_meshes(const Device& device, const Pipelines& pipelines, VkCommandBuff
     } else {
       draw_many(device, commands, pass.list, run);
     }
+    drawn(run);
   }
+}
+
+// Draws the meshes on the CPU path, whose pass stays open. On software devices pixels are filled
+// while the next kTrianglesOfPart triangles are set up.
+void draw_listed(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
+                 Targets& targets, const ScenePass& pass) {
+  const VkCommandBuffer commands = slot.commands();
+  begin_pass(device, commands, targets);
+  bind_set(device, pipelines, slot);
+  const auto pipeline_of = [&](const DrawRun& run) {
+    return picture_pipeline(pipelines, run, run.pushed, run.lamps, pass.view);
+  };
+  std::uint64_t triangles = 0;
+  draw_meshes(device, pipelines, commands, pass, pipeline_of, [&](const DrawRun& run) {
+    for (std::uint32_t i = run.first; targets.in_parts && i < run.first + run.count; ++i)
+      triangles += pass.list.draws()[i].index_count / 3;
+    if (triangles < kTrianglesOfPart) return;
+    triangles = 0;
+    go_on_in_new_pass(device, commands, targets);
+  });
 }
 
 void draw_culled(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
@@ -156,12 +179,13 @@ void draw_shadows(const Device& device, const Pipelines& pipelines, const FrameS
     bind_set(device, pipelines, slot);
     device.vk.vkCmdPushConstants(commands, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT,
                                  sizeof(shaders::DrawData), sizeof(cascade), &cascade);
-    draw_meshes(device, pipelines, commands, pass, [&](const DrawRun& run) {
+    const auto pipeline_of = [&](const DrawRun& run) {
       if (run.layout != core::VertexLayout::kObject)
         return pipelines.mesh_shadow(run.layout, run.pushed, run.coverage);
       return pipelines.object_shadow(run.pushed, run.textures != kPlainMaterial,
                                      run.coverage != Coverage::kWhole);
-    });
+    };
+    draw_meshes(device, pipelines, commands, pass, pipeline_of, [](const DrawRun&) {});
   });
 }
 
@@ -247,11 +271,7 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
   if (pass.culled.culling != nullptr) {
     draw_culled_passes(device, pipelines, slot, targets, pass);
   } else {
-    begin_pass(device, commands, targets);
-    bind_set(device, pipelines, slot);
-    draw_meshes(device, pipelines, commands, pass, [&](const DrawRun& run) {
-      return picture_pipeline(pipelines, run, run.pushed, run.lamps, pass.view);
-    });
+    draw_listed(device, pipelines, slot, targets, pass);
   }
   draw_sky(device, pipelines, commands);
   if (targets.mirrors) {

@@ -155,8 +155,8 @@ Result<void> StagedGeometry::submit(const Device& device, std::span<const Buffer
   info.pCommandBufferInfos = &commands;
   info.signalSemaphoreInfoCount = 1;
   info.pSignalSemaphoreInfos = &signal;
-  result = device.vk.vkQueueSubmit2(device.transfer_queue, 1, &info, VK_NULL_HANDLE);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "submitting copies of meshes");
+  if (auto ok = device.submit(device.transfer_queue, info, "submitting copies of meshes"); !ok)
+    return ok;
   part.value = ++value_;
   return {};
 }

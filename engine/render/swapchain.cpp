@@ -181,7 +181,7 @@ Result<SwapchainState> Swapchain::present(const Device& device) {
   info.swapchainCount = 1;
   info.pSwapchains = &swapchain;
   info.pImageIndices = &current_;
-  const VkResult result = device.vk.vkQueuePresentKHR(device.queue, &info);
+  const VkResult result = device.present(info);
   switch (result) {
     case VK_SUCCESS:
       return SwapchainState::kReady;

@@ -15,10 +15,6 @@ namespace {
 
 constexpr VkImageSubresourceLayers kColourLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
 
-bool has_samples(const Targets& targets) {
-  return targets.samples.image.get() != VK_NULL_HANDLE;
-}
-
 // The image that the landscape gets its colours in.
 const Image& landscape_of(const Targets& targets) {
   return targets.is_coarse() ? targets.coarse : targets.colour;
@@ -68,7 +64,7 @@ void to_attachments(const Device& device, VkCommandBuffer commands, Targets& tar
   VkImageMemoryBarrier2 samples = colour;
   samples.image = targets.samples.image.get();
   const std::array barriers{colour, depth, samples};
-  image_barriers(device, commands, std::span(barriers).first(has_samples(targets) ? 3 : 2));
+  image_barriers(device, commands, std::span(barriers).first(targets.has_samples() ? 3 : 2));
   layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 }
 
@@ -170,7 +166,7 @@ VkRenderingAttachmentInfo colour_of_pass(const Targets& targets, PassPart part) 
   // Before the first pass nothing is kept: the sky covers all other pixels.
   info.loadOp = loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  if (!has_samples(targets)) return info;
+  if (!targets.has_samples()) return info;
   info.imageView = targets.samples.view.get();
   if (part == PassPart::kFirst) return info;
   const bool mirrored = is_mirrored(targets, part);
@@ -191,8 +187,8 @@ VkRenderingAttachmentInfo depth_of_pass(const Targets& targets, PassPart part) {
   info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
   // Cleared to 0, infinitely far.
   info.loadOp = loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR;
-  info.storeOp = mirrored || part == PassPart::kFirst ? VK_ATTACHMENT_STORE_OP_STORE
-                                                      : VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  const bool read_later = mirrored || part == PassPart::kFirst || targets.in_parts;
+  info.storeOp = read_later ? VK_ATTACHMENT_STORE_OP_STORE : VK_ATTACHMENT_STORE_OP_DONT_CARE;
   if (!mirrored) return info;
   info.resolveMode = VK_RESOLVE_MODE_SAMPLE_ZERO_BIT;
   info.resolveImageView = targets.mirror.depth.view.get();
@@ -265,6 +261,24 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
   to_attachments(device, commands, targets, part);
   const VkRenderingAttachmentInfo colour = colour_of_pass(targets, part);
   const VkRenderingAttachmentInfo depth = depth_of_pass(targets, part);
+  VkRenderingInfo info =
+      rendering_info({{0, 0}, {targets.drawn.width, targets.drawn.height}}, colour);
+  info.pDepthAttachment = &depth;
+  begin_rendering(device, commands, info);
+}
+
+void go_on_in_new_pass(const Device& device, VkCommandBuffer commands, const Targets& targets) {
+  device.vk.vkCmdEndRendering(commands);
+  // A pass on the same images would be taken for the same pass.
+  VkRenderingInfo other{};
+  other.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+  other.renderArea = {{0, 0}, {1, 1}};
+  other.layerCount = 1;
+  device.vk.vkCmdBeginRendering(commands, &other);
+  device.vk.vkCmdEndRendering(commands);
+  VkRenderingAttachmentInfo colour = colour_of_pass(targets, PassPart::kWhole);
+  VkRenderingAttachmentInfo depth = depth_of_pass(targets, PassPart::kWhole);
+  colour.loadOp = depth.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
   VkRenderingInfo info =
       rendering_info({{0, 0}, {targets.drawn.width, targets.drawn.height}}, colour);
   info.pDepthAttachment = &depth;

@@ -26,8 +26,10 @@ struct Targets {
   // barrier is needed between them. On lavapipe a barrier waits for everything. Without it, the
   // triangles of one frame are set up while the pixels of the last one are filled.
   bool host_ordered = false;
+  bool in_parts = false;  // go_on_in_new_pass() may be called: windows of software devices
 
   bool is_coarse() const { return drawn != extent; }
+  bool has_samples() const { return samples.image.get() != VK_NULL_HANDLE; }
 };
 // Creates targets of `extent` pixels, with a mirror if `mirrored`, which needs more than one sample
 // per pixel. Fails with kOutOfMemory.
@@ -45,6 +47,10 @@ enum class PassPart : std::uint8_t { kWhole, kFirst, kSecond, kWater };
 // all of them. Depth is cleared; whatever draws must cover every pixel.
 void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets,
                 PassPart part = PassPart::kWhole);
+
+// Within the pass kWhole of targets that are drawn `in_parts`: ends it and goes on. lavapipe fills
+// pixels once a pass ends, with threads of its own, while the triangles of the next are set up.
+void go_on_in_new_pass(const Device& device, VkCommandBuffer commands, const Targets& targets);
 
 // After the passes of a coarse frame: scales it up to the colour target, and begins a pass on that
 // alone, without depth and with one sample per pixel.

@@ -332,8 +332,8 @@ struct FrameResult {
   double cpu_ms = 0;            // recording and submission
   Wait device;                  // for the frame before the last
   Wait acquire;                 // for an image of the window
-  Wait present;                 // for presenting; software devices finish the frame here
-  std::optional<GpuTime> gpu;   // of the latest frame with a known time, usually four frames ago
+  Wait present;  // for presenting; software devices: the frame before, which is finished here
+  std::optional<GpuTime> gpu;  // of the latest frame with a known time, usually four frames ago
   Apart apart = Apart::kNo;
   bool presented = false;  // windowed: shown; headless: drawn
   // FrameInput::resolution, or 1 where the device or its memory cannot have less.

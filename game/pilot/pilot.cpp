@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace cairns {
 namespace {
@@ -14,17 +15,26 @@ constexpr double kBuildEveryS = 150, kFetchEveryS = 140, kGiveUpS = 12, kTreeM =
 constexpr double kGlideAheadM = 22, kLandM = 30;  // looks so far ahead in the air; comes down here
 constexpr double kDropM = 5, kDropAheadM = 7, kGlideAtLeastS = 1.5;
 constexpr double kRaftCost = 1.1;  // of water
+constexpr std::size_t kCellsAStep = 500;
 
 }  // namespace
 
+// Looks for a way from where it stands, and waits there for it.
 void Pilot::plan() {
+  path_.clear();
   const auto next = play_->next_cairn();
-  if (!next) return;
+  if (!next || (finder_.is_searching() && goal_ == *next)) return;
   goal_ = *next;
   if (has(play_->abilities(), Ability::kRaft)) finder_.settings().swim_cost = kRaftCost;
-  path_ = finder_.find(play_->walker().feet(), play_->route().cairns[goal_]);
-  next_ = 0;
+  finder_.begin(play_->walker().feet(), play_->route().cairns[goal_]);
   plan_s_ = 0;
+}
+
+void Pilot::look_for_path() {
+  auto found = finder_.advance(kCellsAStep);
+  if (!found) return;
+  path_ = std::move(*found);
+  next_ = 0;
 }
 
 // Whether the ground falls away where it goes.
@@ -147,8 +157,9 @@ Intent Pilot::steer(double dt) {
   plan_s_ += dt;
   Intent intent;
   if (play_->is_finished()) return intent;
-  if (path_.empty() || goal_ != play_->next_cairn() || plan_s_ > kPlanS) plan();
-  if (work(intent, dt)) return intent;
+  if (goal_ != play_->next_cairn() || plan_s_ > kPlanS) plan();
+  look_for_path();
+  if (work(intent, dt) || path_.empty()) return intent;
   follow_path(intent, dt);
   free_itself(intent, dt);
   return intent;

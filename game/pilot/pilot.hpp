@@ -20,6 +20,7 @@ class Pilot {
 
  private:
   void plan();
+  void look_for_path();
   void follow_path(Intent& intent, double dt);
   void free_itself(Intent& intent, double dt);
   bool work(Intent& intent, double dt);

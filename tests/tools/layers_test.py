@@ -87,7 +87,7 @@ ONLY_IN = {
     r"^nlohmann/": {"engine/telemetry", "engine/compare", "engine/inspect", "engine/cli"},
     r"^CLI/": {"engine/cli", "game"},
     r"^tiny_gltf": {"engine/exchange", "engine/gltf"},
-    r"^meshoptimizer": {"engine/handmade"},
+    r"^meshoptimizer": {"engine/handmade", "engine/scene"},
     r"^spdlog/": {"engine/core"},
     r"^(AL/|sndfile)": {"engine/audio"},
     r"^sqlite3": {"engine/save"},

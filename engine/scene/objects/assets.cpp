@@ -79,7 +79,8 @@ core::Result<MeshId> Assets::add_mesh(const core::MeshData& mesh, std::string na
   ObjectSource source;
   source.name = std::move(name);
   source.box = packed->box;
-  source.copied = std::move(*packed);
+  source.copied = object_levels(mesh, std::move(*packed), ObjectMesh::kMostLevels);
+  source.level_count = static_cast<int>(source.copied.size());
   return add(std::move(source), copied_);
 }
 

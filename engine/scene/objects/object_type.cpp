@@ -19,12 +19,12 @@ class ObjectType final : public models::ModelType {
   std::string_view name() const override { return copied_ ? "object_mesh" : "object_model"; }
   std::string_view doc() const override { return "a mesh of an object of the game"; }
   std::span<const models::ParameterSpec> parameters() const override { return kSchema; }
-  int level_count() const override { return copied_ ? 1 : kMostLevels; }
+  int level_count() const override { return kMostLevels; }
   int level_count_of(const models::Parameters& p) const override { return of(p).level_count; }
   double level_error_m(const models::Parameters& p, int level) const override {
     const ObjectSource& source = of(p);
     return source.type == nullptr
-               ? 0
+               ? copied(source, level).error_m
                : source.type->level_error_m(source.parameters, source.first_level + level);
   }
   core::Bounds bounds(const models::Parameters& p) const override { return of(p).box; }
@@ -35,8 +35,9 @@ class ObjectType final : public models::ModelType {
     if (source.type != nullptr) {
       size = source.type->mesh_size(source.parameters, source.first_level + level);
     } else {
-      size.vertex_count = static_cast<std::uint32_t>(source.copied.vertices.size());
-      size.index_count = static_cast<std::uint32_t>(source.copied.indices.size());
+      const PackedMesh& mesh = copied(source, level).mesh;
+      size.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
+      size.index_count = static_cast<std::uint32_t>(mesh.indices.size());
     }
     size.shared_indices = 0;
     size.layout = core::VertexLayout::kObject;
@@ -46,13 +47,13 @@ class ObjectType final : public models::ModelType {
   double complexity(const models::Parameters& p, int level) const override {
     const ObjectSource& source = of(p);
     return source.type == nullptr
-               ? static_cast<double>(source.copied.vertices.size())
+               ? static_cast<double>(copied(source, level).mesh.vertices.size())
                : source.type->complexity(source.parameters, source.first_level + level);
   }
   double steps(const models::Parameters& p, int level) const override {
     const ObjectSource& source = of(p);
     return source.type == nullptr
-               ? static_cast<double>(source.copied.vertices.size())
+               ? static_cast<double>(copied(source, level).mesh.vertices.size())
                : source.type->steps(source.parameters, source.first_level + level);
   }
   double step_seconds() const override { return copied_ ? 5e-9 : 20e-9; }
@@ -65,12 +66,19 @@ class ObjectType final : public models::ModelType {
                           const models::MeshView& out) const override {
     const ObjectSource& source = of(p);
     if (source.type != nullptr) return widen(source, source.first_level + level, out);
-    std::memcpy(out.vertices.data(), source.copied.vertices.data(), out.vertices.size());
-    std::ranges::copy(source.copied.indices, out.indices.begin());
+    const PackedMesh& mesh = copied(source, level).mesh;
+    std::memcpy(out.vertices.data(), mesh.vertices.data(), out.vertices.size());
+    std::ranges::copy(mesh.indices, out.indices.begin());
     return source.box;
   }
 
  private:
+  static const ObjectLevel& copied(const ObjectSource& source, int level) {
+    static const ObjectLevel none;
+    const auto number = static_cast<std::size_t>(level);
+    return number < source.copied.size() ? source.copied[number] : none;
+  }
+
   const ObjectSource& of(const models::Parameters& p) const {
     // Parameters of other code may name a mesh that there is not: it has no vertices.
     static const ObjectSource none;

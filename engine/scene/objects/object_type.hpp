@@ -10,16 +10,17 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "engine/models/registry.hpp"
-#include "engine/scene/objects/packed_mesh.hpp"
+#include "engine/scene/objects/object_levels.hpp"
 
 namespace psygen::scene {
 
 // Where the mesh of an object comes from.
 struct ObjectSource {
   std::string name;                         // for messages
-  PackedMesh copied;                        // if `type` is null
+  std::vector<ObjectLevel> copied;          // if `type` is null: level_count of them
   const models::ModelType* type = nullptr;  // else it is synthesised
   models::Parameters parameters;
   int first_level = 0;  // of the type

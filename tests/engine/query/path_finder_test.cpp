@@ -68,6 +68,29 @@ TEST_F(Ways, AreTheSameEachTimeAndFromAnyFinder) {
   }
 }
 
+TEST_F(Ways, AreTheSameIfTheyAreSearchedInPieces) {
+  const core::WorldPosition from = dry(0, 0), to = dry(120, -60);
+  PathFinder finder(query_);
+  const auto whole = finder.find(from, to);
+  EXPECT_FALSE(finder.is_searching());
+  EXPECT_FALSE(finder.advance(100));
+  finder.begin(to, from);
+  EXPECT_FALSE(finder.advance(10));
+  finder.begin(from, to);  // in place of the other
+  std::optional<std::vector<core::WorldPosition>> found;
+  int pieces = 0;
+  for (; !found && pieces < 100'000; ++pieces) {
+    EXPECT_TRUE(finder.is_searching());
+    found = finder.advance(50);
+  }
+  ASSERT_TRUE(found);
+  EXPECT_GT(pieces, 2);
+  EXPECT_FALSE(finder.is_searching());
+  ASSERT_EQ(found->size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    EXPECT_EQ((*found)[i].local, whole[i].local);
+}
+
 TEST_F(Ways, LeaveOutWhatIsToBeAvoided) {
   PathFinder finder(query_);
   const core::WorldPosition from = dry(0, 0), to = dry(60, 30);

@@ -216,6 +216,22 @@ TEST_F(Objects, OfAModelTypeTakeACoarserLevelFarAway) {
   expect_within_budget(*scene_);
 }
 
+TEST_F(Objects, OfTheProgramsOwnMeshTakeACoarserLevelFarAway) {
+  core::MeshData hills = box_mesh(40);
+  for (glm::vec3& p : hills.positions)
+    p.y = std::sin(6 * p.x) * std::sin(6 * p.z);
+  const auto mesh = state().assets.add_mesh(hills);
+  ASSERT_TRUE(mesh);
+  const ecs::Entity entity = spawn(state().entities, {.mesh = *mesh}, ahead(6));
+  tick(30);
+  ASSERT_EQ(drawn().size(), 1u);
+  const std::uint32_t near = drawn()[0].range.index_count;
+  *state().entities.get<Transform>(entity) = ahead(110);
+  tick(30);
+  ASSERT_EQ(drawn().size(), 1u);
+  EXPECT_LT(8 * drawn()[0].range.index_count, near);
+}
+
 TEST_F(Objects, TenThousandThatMoveShareOneMesh) {
   const std::uint64_t before = state().meshes.stats().bytes;
   for (int i = 0; i < 10'000; ++i)
@@ -254,6 +270,7 @@ TEST_F(Objects, MeshesThatAreNoneAreRefused) {
 TEST(ObjectsInASmallBudget, AreChargedToItAndTheLeastImportantGiveWay) {
   Settings settings = small_settings();
   settings.budget_bytes = 8ull << 20;
+  settings.levels_of_detail = false;  // else coarser meshes fit
   auto scene = make_scene_of(settings, [](world::World& world) { world.scatter.clear(); });
   core::CameraPose pose = pose_at(0, 0);
   scene->settle(pose);

@@ -1,0 +1,52 @@
+#include "engine/scene/objects/object_levels.hpp"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace psygen::scene {
+namespace {
+
+constexpr std::size_t kFewestIndices = 3 * 48;  // of a mesh that has a coarser level
+constexpr std::size_t kLeastIndices = 3 * 8;    // of any level
+
+// The vertices that the indices use, in the order of their use.
+PackedMesh with_indices(const PackedMesh& finest, std::vector<std::uint16_t> indices) {
+  PackedMesh mesh;
+  mesh.box = finest.box;
+  mesh.indices = std::move(indices);
+  meshopt_optimizeVertexCache(mesh.indices.data(), mesh.indices.data(), mesh.indices.size(),
+                              finest.vertices.size());
+  mesh.vertices.resize(finest.vertices.size());
+  mesh.vertices.resize(meshopt_optimizeVertexFetch(
+      mesh.vertices.data(), mesh.indices.data(), mesh.indices.size(), finest.vertices.data(),
+      finest.vertices.size(), sizeof(core::ObjectVertex)));
+  return mesh;
+}
+
+}  // namespace
+
+std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh finest,
+                                       std::size_t most) {
+  std::vector<ObjectLevel> levels;
+  levels.push_back({std::move(finest), 0});
+  const std::vector<std::uint16_t> all = levels[0].mesh.indices;
+  const float* const places = &mesh.positions.front().x;
+  const std::size_t count = mesh.positions.size(), stride = sizeof(glm::vec3);
+  const auto scale = static_cast<double>(meshopt_simplifyScale(places, count, stride));
+  while (levels.size() < most && levels.back().mesh.indices.size() >= kFewestIndices) {
+    const std::size_t before = levels.back().mesh.indices.size();
+    std::vector<std::uint16_t> indices(all.size());
+    float error = 0;
+    indices.resize(meshopt_simplify(indices.data(), all.data(), all.size(), places, count, stride,
+                                    before / 12 * 3, std::numeric_limits<float>::max(), 0, &error));
+    if (indices.size() < kLeastIndices || 2 * indices.size() > before) break;
+    const double error_m = std::max(error * scale, levels.back().error_m);
+    levels.push_back({with_indices(levels[0].mesh, std::move(indices)), error_m});
+  }
+  return levels;
+}
+
+}  // namespace psygen::scene
