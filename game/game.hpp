@@ -46,6 +46,7 @@ class Game {
   // that cannot be written.
   core::Result<void> end();
 
+  Page page() const { return menu_.page; }
   const Play* play() const { return lands_ ? lands_->play.get() : nullptr; }
 
  private:

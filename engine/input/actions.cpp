@@ -16,7 +16,7 @@ using core::ErrorCode;
 constexpr float kMostScale = 1000;
 constexpr float kMostDeadZone = 0.95F;
 // An axis counts as pressed from the first value on, and as released below the second.
-constexpr double kPressAt = 0.5, kReleaseAt = 0.4;
+constexpr double kPressAt = 0.5, kReleaseAt = 0.4, kUsedAt = 0.3;
 // Presses and releases that wait for a step; more are left out in pairs.
 constexpr std::uint32_t kMostChanges = 16;
 
@@ -101,6 +101,14 @@ void Actions::reset_bindings() {
     (void)set_bindings(id, actions_[id].defaults);  // they were checked when they were added
 }
 
+core::Result<void> Actions::rebind(ActionId action, const Control& control) {
+  std::vector<Binding> bindings{{control}};
+  for (const Binding& binding : actions_[action].bindings) {
+    if (is_of_pad(binding.control.device) != is_of_pad(control.device)) bindings.push_back(binding);
+  }
+  return set_bindings(action, std::move(bindings));
+}
+
 void Actions::feed(const platform::InputState& input) {
   for (Action& action : actions_)
     feed(action, input);
@@ -115,6 +123,7 @@ void Actions::feed(Action& action, const platform::InputState& input) {
     const Binding& binding = action.bindings[i];
     Input& at = action.inputs[i];
     const Reading reading = read(binding.control, input, pad_slot_);
+    if (reading.value > kUsedAt || reading.went_down) uses_pad_ = is_of_pad(binding.control.device);
     if (is_relative(binding.control)) {
       at.moved += reading.value;
       if (binding.control.device != Device::kWheel) continue;

@@ -57,6 +57,9 @@ class Actions {
   // hold it. Fails with kInvalidArgument for scales that are not finite, 0 or beyond ±1000, and
   // dead zones outside 0 … 0.95, and with kOverBudget beyond kMostBindings; nothing changes then.
   core::Result<void> set_bindings(ActionId action, std::vector<Binding> bindings);
+  // Gives an action another control. Those of a gamepad stay if that is of keyboard or mouse, and
+  // the other way round. Fails as set_bindings().
+  core::Result<void> rebind(ActionId action, const Control& control);
   // All actions have the bindings again with which they were added.
   void reset_bindings();
 
@@ -69,6 +72,9 @@ class Actions {
   void step();
   // Puts states in the place of those of step(), for replaying. As many as there are actions.
   void step_to(std::span<const ActionState> states);
+
+  // Whether the last control that was used is one of a gamepad, for what is written on the screen.
+  bool uses_pad() const { return uses_pad_; }
 
   // The states of this step; `action` is one that add() returned.
   const ActionState& state(ActionId action) const { return states_[action]; }
@@ -100,6 +106,7 @@ class Actions {
   std::vector<Action> actions_;
   std::vector<ActionState> states_;
   std::optional<std::size_t> pad_slot_;
+  bool uses_pad_ = false;
 };
 
 }  // namespace psygen::input

@@ -16,6 +16,11 @@ namespace psygen::input {
 // What kind of control `code` counts in: Key, MouseButton, WheelWay, MouseWay, PadButton, PadWay.
 enum class Device : std::uint8_t { kKey, kMouseButton, kWheel, kMouse, kPadButton, kPadAxis };
 
+// Whether it is a gamepad.
+constexpr bool is_of_pad(Device device) {
+  return device == Device::kPadButton || device == Device::kPadAxis;
+}
+
 enum class WheelWay : std::uint8_t { kUp, kDown, kLeft, kRight, kCount };
 enum class MouseWay : std::uint8_t { kUp, kDown, kLeft, kRight, kCount };
 enum class PadWay : std::uint8_t {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 
+#include "engine/core/replace_file.hpp"
 #include "engine/world/edits/edit_bytes.hpp"
 
 namespace cairns {
@@ -11,6 +13,7 @@ namespace {
 
 constexpr std::int64_t kFormat = 1;  // of the values below
 constexpr const char* kSuffix = ".cairns";
+constexpr const char* kLast = "last.txt";  // names the save that was opened last
 
 // Plain numbers as the bytes of one value.
 template <class T>
@@ -133,23 +136,21 @@ std::filesystem::path save_file(const std::filesystem::path& folder, std::uint64
   return folder / (std::to_string(seed) + kSuffix);
 }
 
+// The clock may have been set back since, so the times of the files do not tell.
 std::optional<std::uint64_t> last_seed(const std::filesystem::path& folder) {
-  std::optional<std::uint64_t> last;
-  std::filesystem::file_time_type when;
+  std::string name;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (entry.path().extension() != kSuffix) continue;
-    const auto time = entry.last_write_time(error);
-    if (error || (last && time <= when)) continue;
-    when = time;
-    last = seed_of(entry.path().stem().string());
-  }
-  return last;
+  if (!(std::ifstream(folder / kLast) >> name)) return std::nullopt;
+  const std::uint64_t seed = seed_of(name);
+  if (!std::filesystem::exists(save_file(folder, seed), error)) return std::nullopt;
+  return seed;
 }
 
 core::Result<Saved> Saved::open(const std::filesystem::path& file, Play& play) {
   auto save = save::SaveGame::open(file, save::identity_of(play.world(), play.registry()));
   if (!save) return tl::unexpected(save.error());
+  if (auto ok = core::replace_file(file.parent_path() / kLast, file.stem().string()); !ok)
+    return tl::unexpected(ok.error());
   Saved saved(std::move(*save));
   const auto format = saved.save_->value("format");
   if (!format) return tl::unexpected(format.error());

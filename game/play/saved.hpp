@@ -13,7 +13,7 @@ namespace cairns {
 
 // The save of a land in a folder.
 std::filesystem::path save_file(const std::filesystem::path& folder, std::uint64_t seed);
-// The seed of the game that was saved last; nothing where there is none.
+// The seed of the game that was opened last; nothing where there is none.
 std::optional<std::uint64_t> last_seed(const std::filesystem::path& folder);
 
 // The open save of a game. Only one process has it.

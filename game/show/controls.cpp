@@ -1,5 +1,6 @@
 #include "game/show/controls.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cairns {
@@ -21,26 +22,14 @@ struct Named {
 
 const std::array<Named, kActs>& all() {
   static const std::array<Named, kActs> kAll{{
-      {"ahead",
-       "ahead and back",
-       {{Key::kW},
-        {Key::kS, -1},
-        {Key::kUp},
-        {Key::kDown, -1},
-        {Pad::kLeftStickUp},
-        {Pad::kLeftStickDown, -1}}},
-      {"aside",
-       "aside",
-       {{Key::kD},
-        {Key::kA, -1},
-        {Key::kRight},
-        {Key::kLeft, -1},
-        {Pad::kLeftStickRight},
-        {Pad::kLeftStickLeft, -1}}},
       {"look_x", "turn", {{Way::kRight, kMouseTurn}, {Way::kLeft, -kMouseTurn}}},
       {"look_y", "look up", {{Way::kUp, kMouseTurn}, {Way::kDown, -kMouseTurn}}},
       {"turn_x", "turn (pad)", {{Pad::kRightStickRight}, {Pad::kRightStickLeft, -1}}},
       {"turn_y", "look up (pad)", {{Pad::kRightStickUp}, {Pad::kRightStickDown, -1}}},
+      {"ahead", "ahead", {{Key::kW}, {Key::kUp}, {Pad::kLeftStickUp}}},
+      {"back", "back", {{Key::kS}, {Key::kDown}, {Pad::kLeftStickDown}}},
+      {"left", "left", {{Key::kA}, {Key::kLeft}, {Pad::kLeftStickLeft}}},
+      {"right", "right", {{Key::kD}, {Key::kRight}, {Pad::kLeftStickRight}}},
       {"run", "run", {{Key::kLeftShift}, {PadButton::kLeftThumb}, {Pad::kLeftTrigger}}},
       {"jump", "jump, climb, glide", {{Key::kSpace}, {PadButton::kA}}},
       {"use", "gather, fell", {{Key::kE}, {platform::MouseButton::kLeft}, {PadButton::kX}}},
@@ -71,7 +60,7 @@ Intent intent_of(const input::Actions& actions, double mouse, double dt) {
   const auto value = [&](Act act) { return double{state_of(actions, act).value}; };
   const auto pressed = [&](Act act) { return state_of(actions, act).pressed; };
   Intent intent;
-  intent.move = {value(Act::kAside), value(Act::kAhead)};
+  intent.move = {value(Act::kRight) - value(Act::kLeft), value(Act::kAhead) - value(Act::kBack)};
   intent.turn = value(Act::kLookX) * mouse + value(Act::kTurnX) * kStickTurn * dt;
   intent.look = value(Act::kLookY) * mouse + value(Act::kTurnY) * kStickTurn * dt;
   intent.run = state_of(actions, Act::kRun).held;
@@ -89,7 +78,11 @@ Intent intent_of(const input::Actions& actions, double mouse, double dt) {
 std::string key_of(const input::Actions& actions, Act act, const platform::Window* window) {
   const auto bindings = actions.bindings(static_cast<input::ActionId>(act));
   if (bindings.empty()) return "–";
-  const input::Control control = bindings.front().control;
+  const auto of_device = std::ranges::find_if(bindings, [&](const input::Binding& binding) {
+    return input::is_of_pad(binding.control.device) == actions.uses_pad();
+  });
+  const input::Control control =
+      (of_device == bindings.end() ? bindings.begin() : of_device)->control;
   if (control.device == input::Device::kKey && window != nullptr)
     return window->label_of(static_cast<Key>(control.code));
   return std::string(input::name_of(control));

@@ -11,12 +11,14 @@
 namespace cairns {
 
 enum class Act : std::size_t {
-  kAhead,
-  kAside,
   kLookX,
   kLookY,
   kTurnX,
   kTurnY,
+  kAhead,  // from here on they can be given other keys
+  kBack,
+  kLeft,
+  kRight,
   kRun,
   kJump,
   kUse,
@@ -40,7 +42,8 @@ inline const input::ActionState& state_of(const input::Actions& actions, Act act
 }
 // What the player wants in a step of `dt` seconds. `mouse`: how fast the view turns.
 Intent intent_of(const input::Actions& actions, double mouse, double dt);
-// What is printed on the key of an action: "E". `window` may be null.
+// What is printed on the key of an action, or the pad's button where that is used: "E". `window`
+// may be null.
 std::string key_of(const input::Actions& actions, Act act, const platform::Window* window);
 // What an action does, for the settings.
 const char* label_of(Act act);

@@ -14,7 +14,7 @@ constexpr std::array<const char*, 4> kQualities{"low", "medium", "high", "ultra"
 constexpr int kMapCells = 25;  // on each side of the player
 
 // Begins a window without a frame in the left third. `opened`: its first control gets the focus.
-void begin(const char* title, float scale, float width, bool opened) {
+void begin(const char* title, float scale, float width, float text, bool opened) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x * 0.08F, size.y * 0.5F}, ImGuiCond_Always, {0, 0.5F});
   ImGui::SetNextWindowSize({width * scale, 0}, ImGuiCond_Always);
@@ -22,19 +22,8 @@ void begin(const char* title, float scale, float width, bool opened) {
   ImGui::Begin(title, nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse);
+  ImGui::SetWindowFontScale(text);
   if (opened) ImGui::SetKeyboardFocusHere();
-}
-
-// Gives an action another control; those of other devices stay.
-bool rebind(input::Actions& actions, input::ActionId action, input::Control control) {
-  const auto is_of_pad = [](const input::Control& c) {
-    return c.device == input::Device::kPadButton || c.device == input::Device::kPadAxis;
-  };
-  std::vector<input::Binding> bindings{{control}};
-  for (const input::Binding& binding : actions.bindings(action)) {
-    if (is_of_pad(binding.control) != is_of_pad(control)) bindings.push_back(binding);
-  }
-  return actions.set_bindings(action, std::move(bindings)).has_value();
 }
 
 // Colours of the map, in the order of world::GroundKind; the last is water.
@@ -62,17 +51,20 @@ bool Menu::button(const char* label) {
 
 Choice Menu::draw(app::Session& session, const Play* play, Settings& settings) {
   const bool opened = std::exchange(drawn_, page) != page;
+  if (page != Page::kNone && !opened && goes_back(session.input()))
+    open(page == Page::kSettings || page == Page::kCredits ? before_ : Page::kNone);
   if (page == Page::kNone) return Choice::kNothing;
   // Keys also reach the game, which closes pages with them; text fields take them anyway.
   ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableGamepad |
                                 ImGuiConfigFlags_NavEnableKeyboard |
                                 ImGuiConfigFlags_NavNoCaptureKeyboard;
-  const auto scale = ImGui::GetFontSize() / 16;
+  text_ = static_cast<float>(settings.text);
+  const auto scale = text_ * ImGui::GetFontSize() / 16;
   if (page == Page::kMap) {
     if (play != nullptr) draw_map(*play, session);
     return Choice::kNothing;
   }
-  begin("cairns", scale, page == Page::kSettings ? 1.6F * kWidth : kWidth, opened);
+  begin("cairns", scale, page == Page::kSettings ? 1.6F * kWidth : kWidth, text_, opened);
   Choice choice = Choice::kNothing;
   if (page == Page::kTitle) choice = draw_title();
   if (page == Page::kPause) choice = draw_pause();
@@ -84,10 +76,21 @@ Choice Menu::draw(app::Session& session, const Play* play, Settings& settings) {
   return choice;
 }
 
+void Menu::heading(const char* words, float size) const {
+  ImGui::SetWindowFontScale(size * text_);
+  ImGui::TextUnformatted(words);
+  ImGui::SetWindowFontScale(text_);
+}
+
+// By Escape or the pad's B, unless they are to be an action's.
+bool Menu::goes_back(const platform::InputState& input) const {
+  return page != Page::kTitle && !capture_ &&
+         (input::read(platform::Key::kEscape, input).went_down ||
+          input::read(platform::PadButton::kB, input).went_down);
+}
+
 Choice Menu::draw_title() {
-  ImGui::SetWindowFontScale(2.6F);
-  ImGui::TextUnformatted("Cairns");
-  ImGui::SetWindowFontScale(1);
+  heading("Cairns", 2.6F);
   ImGui::Spacing();
   if (busy) {
     ImGui::TextUnformatted("The land is being found …");
@@ -108,9 +111,7 @@ Choice Menu::draw_title() {
 }
 
 Choice Menu::draw_pause() {
-  ImGui::SetWindowFontScale(1.6F);
-  ImGui::TextUnformatted("Pause");
-  ImGui::SetWindowFontScale(1);
+  heading("Pause", 1.6F);
   if (button("Go on")) open(Page::kNone);
   if (button("Save")) return Choice::kSave;
   if (button("Map")) open(Page::kMap);
@@ -122,17 +123,11 @@ Choice Menu::draw_pause() {
 
 void Menu::draw_settings(app::Session& session, Settings& settings) {
   bool changed = ImGui::Combo("quality", &settings.quality, kQualities.data(), 4);
-  const auto slider = [&](const char* label, double& value, double low, double high) {
-    changed |= ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, "%.2f");
-  };
-  slider("field of view", settings.fov_deg, 45, 100);
-  slider("mouse", settings.mouse, 0.2, 5);
-  slider("text size", settings.text, 0.7, 2);
-  slider("sounds", settings.effects, 0, 1);
-  slider("music", settings.music, 0, 1);
-  changed |= ImGui::Checkbox("marks without colour", &settings.colour_blind);
-  changed |= ImGui::Checkbox("reduced motion", &settings.reduced_motion);
-  changed |= ImGui::Checkbox("full screen", &settings.fullscreen);
+  for (const Number& n : kNumbers)
+    changed |= ImGui::SliderScalar(n.label, ImGuiDataType_Double, &(settings.*n.value), &n.low,
+                                   &n.high, "%.2f");
+  for (const Switch& box : kSwitches)
+    changed |= ImGui::Checkbox(box.label, &(settings.*box.value));
   if (ImGui::CollapsingHeader("Keys and pad")) draw_keys(session);
   settings_changed |= changed;
   if (button("Back")) open(before_);
@@ -145,11 +140,11 @@ void Menu::draw_keys(app::Session& session) {
     if (const auto control = capture_->update(session.input())) {
       capture_.reset();
       const bool cancelled = *control == input::Control(platform::Key::kEscape);
-      if (!cancelled) settings_changed |= rebind(actions, captured_, *control);
+      if (!cancelled) settings_changed |= actions.rebind(captured_, *control).has_value();
     }
     return;
   }
-  for (auto i = static_cast<std::size_t>(Act::kRun); i < kActs; ++i) {
+  for (auto i = static_cast<std::size_t>(Act::kAhead); i < kActs; ++i) {
     const std::string key = key_of(actions, static_cast<Act>(i), session.window());
     ImGui::PushID(static_cast<int>(i));
     if (ImGui::Button(key.c_str(), {ImGui::GetFontSize() * 9, 0})) {

@@ -52,12 +52,15 @@ class Menu {
   Choice draw_photo();
   void draw_credits();
   void open(Page next);
+  bool goes_back(const platform::InputState& input) const;
+  void heading(const char* words, float size) const;
   bool button(const char* label);
 
   Page drawn_ = Page::kNone;    // in the last frame
   Page before_ = Page::kTitle;  // to which settings and credits go back
   std::optional<input::BindingCapture> capture_;
   std::size_t captured_ = 0;
+  float text_ = 1;  // Settings::text
 };
 
 }  // namespace cairns

@@ -15,24 +15,6 @@ namespace {
 constexpr const char* kFile = "settings.toml";
 constexpr const char* kKeys = "keys.toml";
 
-struct Number {
-  const char* name;
-  double Settings::*value;
-  double low, high;
-};
-constexpr Number kNumbers[] = {{"fov_deg", &Settings::fov_deg, 45, 100},
-                               {"mouse", &Settings::mouse, 0.2, 5},
-                               {"text", &Settings::text, 0.7, 2},
-                               {"effects", &Settings::effects, 0, 1},
-                               {"music", &Settings::music, 0, 1}};
-struct Switch {
-  const char* name;
-  bool Settings::*value;
-};
-constexpr Switch kSwitches[] = {{"colour_blind", &Settings::colour_blind},
-                                {"reduced_motion", &Settings::reduced_motion},
-                                {"fullscreen", &Settings::fullscreen}};
-
 }  // namespace
 
 core::Result<void> load_keys(const std::filesystem::path& folder, input::Actions& actions) {

@@ -20,6 +20,26 @@ struct Settings {
   bool fullscreen = false;
 };
 
+// What has a slider or a box in the settings. `name` is that of the file.
+struct Number {
+  const char *name, *label;
+  double Settings::*value;
+  double low, high;
+};
+inline constexpr Number kNumbers[] = {{"fov_deg", "field of view", &Settings::fov_deg, 45, 100},
+                                      {"mouse", "mouse", &Settings::mouse, 0.2, 5},
+                                      {"text", "text size", &Settings::text, 0.7, 2},
+                                      {"effects", "sounds", &Settings::effects, 0, 1},
+                                      {"music", "music", &Settings::music, 0, 1}};
+struct Switch {
+  const char *name, *label;
+  bool Settings::*value;
+};
+inline constexpr Switch kSwitches[] = {
+    {"colour_blind", "marks without colour", &Settings::colour_blind},
+    {"reduced_motion", "reduced motion", &Settings::reduced_motion},
+    {"fullscreen", "full screen", &Settings::fullscreen}};
+
 // A missing file has the usual values; values out of their ranges are moved into them. Fails with
 // kParse for a file that is not TOML, and kIo.
 core::Result<Settings> load_settings(const std::filesystem::path& folder);

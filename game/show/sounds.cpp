@@ -113,40 +113,19 @@ void Sounds::tell(const Happening& happening, Play& play) {
     (void)audio_.play(clip, {.at = happening.at, .range = {3, 60}, .gain = gain, .pitch = pitch});
   };
   using enum Happening::Kind;
-  switch (happening.kind) {
-    case kFound:
-      (void)audio_.play(clips_->chime, {.gain = 1});
-      break;
-    case kGathered:
-    case kBuilt:
-      here(clips_->stone, 0.8);
-      break;
-    case kChopped:
-      here(clips_->chop, 0.8);
-      break;
-    case kFelled:
-      here(clips_->fall, 1);
-      break;
-    case kSplashed:
-      here(clips_->splash, 0.8);
-      break;
-    case kLanded:
-    case kStepped: {
-      const auto ground = play.query().ground(happening.at);
-      if (!ground) break;
-      const bool soft = ground->kind == world::GroundKind::kSnow;
-      const bool hard = ground->kind == world::GroundKind::kRock;
-      const double pitch = 0.92 + 0.16 * std::fmod(play.walker().walked_m() * 0.731, 1.0);
-      here(ground->water_depth_m > 0 ? clips_->splash
-                                     : clips_->steps[soft   ? 0
-                                                     : hard ? 2
-                                                            : 1],
-           happening.kind == kLanded ? 0.9 : 0.35, pitch);
-      break;
-    }
-    default:
-      break;
-  }
+  const Happening::Kind kind = happening.kind;
+  if (kind == kFound) (void)audio_.play(clips_->chime, {.gain = 1});
+  if (kind == kGathered || kind == kBuilt) here(clips_->stone, 0.8);
+  if (kind == kChopped) here(clips_->chop, 0.8);
+  if (kind == kFelled) here(clips_->fall, 1);
+  if (kind == kSplashed) here(clips_->splash, 0.8);
+  const auto ground = play.query().ground(happening.at);
+  if ((kind != kLanded && kind != kStepped) || !ground) return;
+  const bool soft = ground->kind == world::GroundKind::kSnow;
+  const bool hard = ground->kind == world::GroundKind::kRock;
+  const ClipPtr& step = clips_->steps[soft ? 0 : hard ? 2 : 1];
+  here(ground->water_depth_m > 0 ? clips_->splash : step, kind == kLanded ? 0.9 : 0.35,
+       0.92 + 0.16 * std::fmod(play.walker().walked_m() * 0.731, 1.0));
 }
 
 }  // namespace cairns

@@ -3,79 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numbers>
-#include <vector>
+#include <span>
 
+#include "engine/audio/tones.hpp"
 #include "engine/core/hash.hpp"
 
 namespace cairns {
 namespace {
 
-constexpr std::uint32_t kRateHz = 22050;
-constexpr float kTwoPi = 2 * std::numbers::pi_v<float>;
+using audio::add, audio::add_tone, audio::looped, audio::noise, audio::shape;
+using audio::Samples, audio::samples_of;
 
-using Samples = std::vector<float>;
-
-std::size_t frames(double seconds) {
-  return static_cast<std::size_t>(seconds * kRateHz);
-}
-
-ClipPtr clip(const Samples& samples, std::uint32_t channels = 1) {
-  auto made = std::make_shared<audio::Clip>();
-  made->rate_hz = kRateHz;
-  made->channels = channels;
-  for (const float v : samples)
-    made->samples.push_back(static_cast<std::int16_t>(32767 * std::clamp(v, -1.0F, 1.0F)));
-  return made;
-}
-
-// White noise through a low-pass and a high-pass filter of first order; limits in hertz.
-Samples noise(double seconds, float low_hz, float high_hz, std::uint64_t seed) {
-  core::RandomStream random(seed, 0, 0, 0, core::Purpose::kStructure);
-  Samples out(frames(seconds));
-  const float low = 1 - std::exp(-kTwoPi * high_hz / kRateHz);
-  const float high = 1 - std::exp(-kTwoPi * low_hz / kRateHz);
-  float smooth = 0, slow = 0;
-  for (float& v : out) {
-    smooth += low * (static_cast<float>(random.next_real(-1, 1)) - smooth);
-    slow += high * (smooth - slow);
-    v = smooth - slow;
-  }
-  return out;
-}
-
-void shape(Samples& samples, const std::function<float(float)>& gain) {
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    samples[i] *= gain(static_cast<float>(i) / kRateHz);
-}
-
-// The end fades into the beginning, so that a loop has no seam.
-Samples looped(const Samples& samples, double overlap_s) {
-  const std::size_t overlap = frames(overlap_s), length = samples.size() - overlap;
-  Samples out(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(length));
-  for (std::size_t i = 0; i < overlap; ++i) {
-    const float t = static_cast<float>(i) / static_cast<float>(overlap);
-    out[i] = out[i] * std::sqrt(t) + samples[length + i] * std::sqrt(1 - t);
-  }
-  return out;
-}
-
-// A tone that dies away, added at a time. `overtones`: how much of 2, 3, 4 … times its frequency.
-void add_tone(Samples& out, double at_s, double hz, float gain, double decay_s,
-              std::initializer_list<float> overtones = {}) {
-  const std::size_t from = frames(at_s);
-  for (std::size_t i = from; i < out.size(); ++i) {
-    const float t = static_cast<float>(i - from) / kRateHz;
-    const float envelope =
-        gain * std::min(t * 90, 1.0F) * std::exp(-t / static_cast<float>(decay_s));
-    if (t > 6 * decay_s) break;
-    float v = std::sin(kTwoPi * static_cast<float>(hz) * t);
-    float n = 2;
-    for (const float share : overtones)
-      v += share * std::sin(kTwoPi * static_cast<float>(hz) * (n++) * t);
-    out[i] += envelope * v;
-  }
+ClipPtr clip(std::span<const float> left, std::span<const float> right = {}) {
+  return std::make_shared<const audio::Clip>(audio::clip_of(left, right));
 }
 
 }  // namespace
@@ -104,11 +45,8 @@ ClipPtr fire_sound() {
   core::RandomStream random(5, 0, 0, 0, core::Purpose::kStructure);
   for (int i = 0; i < 60; ++i) {
     const Samples crack = noise(0.02, 800, 6000, 100 + static_cast<std::uint64_t>(i));
-    const std::size_t at = frames(random.next_real(0, 3.9));
-    const auto gain = static_cast<float>(random.next_real(0.3, 1.4));
-    for (std::size_t k = 0; k < crack.size() && at + k < out.size(); ++k)
-      out[at + k] +=
-          gain * crack[k] * (1 - static_cast<float>(k) / static_cast<float>(crack.size()));
+    const double at_s = random.next_real(0, 3.9);
+    add(out, at_s, crack, static_cast<float>(random.next_real(0.3, 1.4)), 0);
   }
   return clip(looped(out, 0.4));
 }
@@ -119,7 +57,7 @@ ClipPtr music_sound(std::uint64_t seed) {
   constexpr double kSeconds = 64, kChordS = 8;
   core::RandomStream random(seed, 0, 0, 0, core::Purpose::kColour);
   const double root = 98 * std::pow(2.0, static_cast<double>(random.next_integer(0, 4)) / 12);
-  std::array<Samples, 2> sides{Samples(frames(kSeconds)), Samples(frames(kSeconds))};
+  std::array<Samples, 2> sides{Samples(samples_of(kSeconds)), Samples(samples_of(kSeconds))};
   for (int chord = 0; chord < static_cast<int>(kSeconds / kChordS); ++chord) {
     const double at = chord * kChordS;
     const auto base = static_cast<std::size_t>(random.next_integer(0, 4));
@@ -138,12 +76,7 @@ ClipPtr music_sound(std::uint64_t seed) {
       add_tone(sides[side], at + random.next_real(0.5, 5), hz, 0.035F, 1.3, {0.3F});
     }
   }
-  Samples both;
-  for (std::size_t i = 0; i < sides[0].size(); ++i) {
-    both.push_back(sides[0][i]);
-    both.push_back(sides[1][i]);
-  }
-  return clip(both, 2);
+  return clip(sides[0], sides[1]);
 }
 
 ClipPtr step_sound(float hardness) {
@@ -175,24 +108,24 @@ ClipPtr fall_sound() {
 }
 
 ClipPtr stone_sound() {
-  Samples out(frames(0.3));
+  Samples out(samples_of(0.3));
   add_tone(out, 0, 1250, 0.5F, 0.02, {0.6F, 0.4F});
   add_tone(out, 0.07, 980, 0.3F, 0.02, {0.6F, 0.3F});
   return clip(out);
 }
 
 ClipPtr bird_sound(int which) {
-  Samples out(frames(0.9));
+  Samples out(samples_of(0.9));
   core::RandomStream random(40 + static_cast<std::uint64_t>(which), 0, 0, 0,
                             core::Purpose::kColour);
   float phase = 0;
   for (int call = 0; call < 3 + which; ++call) {
-    const std::size_t from = frames(0.13 * call + 0.02), length = frames(0.08);
+    const std::size_t from = samples_of(0.13 * call + 0.02), length = samples_of(0.08);
     const auto hz = static_cast<float>(random.next_real(2600, 4600));
     const auto bend = static_cast<float>(random.next_real(-900, 1200));
     for (std::size_t i = 0; i < length && from + i < out.size(); ++i) {
       const float t = static_cast<float>(i) / static_cast<float>(length);
-      phase += kTwoPi * (hz + bend * t) / kRateHz;
+      phase += 2 * std::numbers::pi_v<float> * (hz + bend * t) / audio::kToneRateHz;
       out[from + i] += 0.35F * std::sin(std::numbers::pi_v<float> * t) * std::sin(phase);
     }
   }
@@ -200,7 +133,7 @@ ClipPtr bird_sound(int which) {
 }
 
 ClipPtr chime_sound() {
-  Samples out(frames(4));
+  Samples out(samples_of(4));
   int i = 0;
   for (const double ratio : {1.0, 1.25, 1.5, 2.0, 2.5})
     add_tone(out, 0.16 * i++, 392 * ratio, 0.16F, 0.9, {0.3F, 0.12F});

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 
 #include "engine/world/edits/edit_bytes.hpp"
@@ -61,6 +62,20 @@ TEST_F(Saves, GiveBackTheWholeGame) {
     EXPECT_EQ(world::encode_block(play->edits(), land_->registry, block),
               world::encode_block(again->edits(), land_->registry, block));
   EXPECT_EQ(last_seed(folder_), std::optional<std::uint64_t>(3));
+}
+
+TEST_F(Saves, TheLastIsKnownWhateverTheClockSays) {
+  auto play = begin();
+  { ASSERT_TRUE(Saved::open(file(), *play)); }
+  // Another land, saved by a clock that was far ahead.
+  const std::filesystem::path other = save_file(folder_, 4);
+  std::ofstream(other) << "later";
+  std::filesystem::last_write_time(
+      other, std::filesystem::last_write_time(file()) + std::chrono::hours(1000));
+  EXPECT_EQ(last_seed(folder_), std::optional<std::uint64_t>(3));
+  std::filesystem::remove(file());
+  EXPECT_EQ(last_seed(folder_), std::nullopt);
+  EXPECT_EQ(last_seed(folder_ / "none"), std::nullopt);
 }
 
 // A game that was quit and resumed is finished as well.

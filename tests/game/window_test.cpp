@@ -2,6 +2,7 @@
 // walking, pages, saving, going on.
 #include "tests/engine/platform/virtual_display.hpp"
 #include "tests/game/game_fixture.hpp"
+#include "tests/game/made_up_pad.hpp"
 
 namespace cairns {
 namespace {
@@ -106,6 +107,60 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
   ASSERT_TRUE(key("Return"));  // "Continue" is the first button
   ASSERT_TRUE(again.frames_until([&] { return again.game.play() != nullptr; }));
   EXPECT_EQ(again.game.play()->progress().feet.local, at.local);
+}
+
+// The same land by a pad alone: pages are gone through by its cross, A and B.
+TEST_F(GameWindow, IsPlayedByAPadFromTitleToTitle) {
+  using platform::PadAxis, platform::PadButton;
+  MadeUpPad pad;
+  options_.size = {320, 180};
+  Running run(options_);
+  ASSERT_TRUE(run.open());
+  run.frames(20);
+  const auto press = [&](PadButton button) {
+    pad.hold(button, true);
+    run.frames(3);
+    pad.hold(button, false);
+    run.frames(6);
+  };
+  press(PadButton::kDown);  // from the name of a land to "New land"
+  press(PadButton::kA);
+  ASSERT_TRUE(run.frames_until([&] { return run.game.play() != nullptr; }));
+  run.frames(10);
+  EXPECT_TRUE(run.session->actions().uses_pad());
+  EXPECT_EQ(key_of(run.session->actions(), Act::kUse, run.session->window()), "Gamepad X");
+  const Walker& walker = run.game.play()->walker();
+  pad.move(PadAxis::kLeftY, -1);
+  EXPECT_TRUE(run.frames_until([&] { return walker.walked_m() > 4; }));
+  pad.move(PadAxis::kLeftY, 0);
+  const double yaw = walker.yaw();
+  pad.move(PadAxis::kRightX, 1);
+  EXPECT_TRUE(run.frames_until([&] { return walker.yaw() > yaw + 0.2; }));
+  pad.move(PadAxis::kRightX, 0);
+  press(PadButton::kStart);
+  EXPECT_EQ(run.game.page(), Page::kPause);
+  for (int i = 0; i < 4; ++i)
+    press(PadButton::kDown);
+  press(PadButton::kA);
+  EXPECT_EQ(run.game.page(), Page::kSettings);
+  press(PadButton::kB);
+  EXPECT_EQ(run.game.page(), Page::kPause);
+  press(PadButton::kB);
+  EXPECT_EQ(run.game.page(), Page::kNone);
+  press(PadButton::kBack);
+  EXPECT_EQ(run.game.page(), Page::kMap);
+  press(PadButton::kB);
+  EXPECT_EQ(run.game.page(), Page::kNone);
+  // A key takes the place of the pad in what is written.
+  ASSERT_TRUE(key("e"));
+  EXPECT_TRUE(run.frames_until([&] { return !run.session->actions().uses_pad(); }, 100));
+  EXPECT_EQ(key_of(run.session->actions(), Act::kUse, run.session->window()), "E");
+  press(PadButton::kStart);
+  for (int i = 0; i < 5; ++i)
+    press(PadButton::kDown);
+  press(PadButton::kA);
+  EXPECT_EQ(run.game.page(), Page::kTitle);
+  EXPECT_EQ(run.game.play(), nullptr);
 }
 
 }  // namespace

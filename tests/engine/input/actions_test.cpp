@@ -61,6 +61,33 @@ TEST_F(ActionsOfAPerson, ArePressedInOneStepHeldInAllAndReleasedInOne) {
   EXPECT_EQ(step(jump), ActionState{});
 }
 
+TEST_F(ActionsOfAPerson, GetAnotherKeyAndKeepTheButtonOfThePad) {
+  const ActionId jump = add("jump", {{Key::kSpace}, {Key::kJ}, {PadButton::kA}});
+  ASSERT_TRUE(actions_.rebind(jump, Key::kK));
+  ASSERT_EQ(actions_.bindings(jump).size(), 2U);
+  EXPECT_EQ(actions_.bindings(jump)[0].control, Control(Key::kK));
+  EXPECT_EQ(actions_.bindings(jump)[1].control, Control(PadButton::kA));
+  ASSERT_TRUE(actions_.rebind(jump, PadButton::kY));
+  ASSERT_EQ(actions_.bindings(jump).size(), 2U);
+  EXPECT_EQ(actions_.bindings(jump)[0].control, Control(PadButton::kY));
+  EXPECT_EQ(actions_.bindings(jump)[1].control, Control(Key::kK));
+}
+
+TEST_F(ActionsOfAPerson, TellWhetherAPadWasUsedLast) {
+  add("jump", {{Key::kSpace}, {PadButton::kA}});
+  add("look", {{MouseWay::kRight}, {PadWay::kRightStickRight}});
+  EXPECT_FALSE(actions_.uses_pad());
+  person_.set_button(PadButton::kA, true);
+  frame();
+  EXPECT_TRUE(actions_.uses_pad());
+  person_.set_button(PadButton::kA, false);
+  frame();
+  EXPECT_TRUE(actions_.uses_pad());
+  person_.press(Key::kSpace);
+  frame();
+  EXPECT_FALSE(actions_.uses_pad());
+}
+
 TEST_F(ActionsOfAPerson, LoseNoEdgeInFramesWithoutSteps) {
   const ActionId jump = add("jump", {{Key::kSpace}});
   person_.press(Key::kSpace);
