@@ -11,6 +11,7 @@ namespace cairns {
 namespace {
 
 constexpr double kFallS = 1.7, kLiesS = 5;
+constexpr double kNightEyes = 2, kDuskH = 7;  // hours from noon
 constexpr float kBeaconM = 3.2F;  // height of a hidden cairn
 constexpr glm::vec3 kEmber{1.0F, 0.50F, 0.18F};
 
@@ -181,6 +182,8 @@ void Scenery::update_weather(app::Session& session, const Play& play, double hou
   sky.visibility_m =
       std::exp(std::lerp(std::log(clear_sky_.visibility_m), std::log(150.0), weather.fog));
   sky.sun_colour *= static_cast<float>(1 - 0.55 * std::max(weather.clouds - 0.5, 0.0));
+  // Eyes get used to the night.
+  sky.exposure *= 1 + kNightEyes * std::clamp((std::abs(hour - 12) - kDuskH) / 1.5, 0.0, 1.0);
   (void)session.scene().set_sky(sky);
   scene::State& state = session.scene().state();
   const bool cold = play.progress().feet.local.y > kSnowLineM;
