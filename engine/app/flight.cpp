@@ -109,7 +109,9 @@ bool Flight::stays_open() const {
 core::CameraPose Flight::next_pose(double dt_s) {
   const double now_s = session_->now_s();
   const world::World& world = session_->scene().state().facts.world;
-  if (user_flies_) {
+  if (options_.camera) {
+    pose_ = options_.camera(*session_, dt_s);
+  } else if (user_flies_) {
     pose_ = fly_camera_.update(pose_, session_->input(), dt_s);
     pose_.position = core::normalised(pose_.position, world.block_size_m());
     const glm::dvec3& local = pose_.position.local;

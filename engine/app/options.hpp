@@ -90,7 +90,10 @@ struct SessionOptions {
 // Options of a flight.
 struct FlightOptions {
   SessionOptions session;
-  std::filesystem::path path_file;   // empty: the camera stands and turns, or the user flies
+  std::filesystem::path path_file;  // empty: the camera stands and turns, or the user flies
+  // Who holds the camera in place of all that, such as a game: called for each frame with the
+  // seconds since the last one.
+  std::function<core::CameraPose(Session&, double)> camera;
   std::filesystem::path out_folder;  // empty: only pictures, here
   // Both 0: as long as the path; without one 27 s headless, else until the window is closed. Where
   // one is given a window closes at the end of the flight, otherwise it stays.

@@ -15,13 +15,16 @@
 
 namespace psygen::frametest {
 
-// What a game adds to each test; both may be empty. Called for every flight: after a missed budget
+// What a game adds to each test; each may be empty. Called for every flight: after a missed budget
 // a test flies again for its pictures (failure.hpp).
 struct Hooks {
   // Before the session is made: plugins, for example. World, size and the like are the file's.
   std::function<core::Result<void>(app::SessionOptions&)> prepare = {};
   // Once the session is there, before the cache is filled.
   std::function<core::Result<void>(app::Session&)> start = {};
+  // The camera of each frame, with the seconds since the last one, in place of the file's path: for
+  // games that play themselves.
+  std::function<core::CameraPose(app::Session&, double)> camera = {};
 };
 
 inline constexpr int kMostWorstFrames = 100;

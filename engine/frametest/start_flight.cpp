@@ -10,6 +10,7 @@ core::Result<std::unique_ptr<app::Flight>> start_flight(app::FlightOptions fligh
   if (hooks.prepare) {
     if (auto ok = hooks.prepare(flight.session); !ok) return tl::unexpected(ok.error());
   }
+  flight.camera = hooks.camera;
   if (!last.name.empty()) flight.session.plugins.push_back(std::move(last));
   auto made = app::Flight::create(std::move(flight));
   if (made && hooks.start) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFallS = 1.7, kLiesS = 5;
 constexpr double kNightEyes = 2, kDuskH = 7;  // hours from noon
-constexpr float kBeaconM = 3.2F;  // height of a hidden cairn
+constexpr float kBeaconM = 3.2F;              // height of a hidden cairn
 constexpr glm::vec3 kEmber{1.0F, 0.50F, 0.18F};
 
 glm::quat turned(double yaw, double pitch = 0) {
