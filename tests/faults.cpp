@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -34,20 +35,26 @@ bool runs_out(std::atomic<long>& left) {
   return left.load() != kUnlimited && left.fetch_sub(1) <= 0;
 }
 
-bool disk_refuses(const char* path) {
-  if (calls_left.load() == kUnlimited) return false;
-  if (std::strncmp(path, full_folder, std::strlen(full_folder)) != 0) return false;
-  if (!runs_out(calls_left)) return false;
-  errno = ENOSPC;
-  return true;
+// Whether the process dies where it would meet a full disk.
+bool dies = false;
+
+bool is_on_disk(const char* path) {
+  return std::strncmp(path, full_folder, std::strlen(full_folder)) == 0;
 }
 
-bool disk_refuses(int file) {
-  if (calls_left.load() == kUnlimited) return false;
+bool is_on_disk(int file) {
   char link[64];
   std::snprintf(link, sizeof(link), "/proc/self/fd/%d", file);
   char path[PATH_MAX] = "";
-  return readlink(link, path, sizeof(path) - 1) > 0 && disk_refuses(path);
+  return readlink(link, path, sizeof(path) - 1) > 0 && is_on_disk(path);
+}
+
+template <class File>
+bool disk_refuses(File file) {
+  if (calls_left.load() == kUnlimited || !is_on_disk(file) || !runs_out(calls_left)) return false;
+  if (dies) kill(getpid(), SIGKILL);
+  errno = ENOSPC;
+  return true;
 }
 
 bool is_concerned(const void* caller) {
@@ -72,6 +79,7 @@ void fill_disk(const char* folder, long calls) {
     const char* calls = std::getenv("PSYGEN_CALLS_LEFT");
     fill_disk(folder, calls != nullptr ? std::atol(calls) : 0);
   }
+  dies = std::getenv("PSYGEN_DIES") != nullptr;
   if (const char* threads = std::getenv("PSYGEN_THREADS_LEFT")) threads_left = std::atol(threads);
   return true;
 }();
@@ -124,6 +132,9 @@ int open(const char* path, int flags, ...) {
 }
 ssize_t write(int file, const void* bytes, size_t count) {
   static const auto real = next<ssize_t(int, const void*, size_t)>("write");
+  // Who dies while writing has written a part.
+  const bool is_last = dies && calls_left.load() == 0 && is_on_disk(file);
+  if (is_last && count > 1 && real(file, bytes, count / 2) < 0) return -1;
   return disk_refuses(file) ? -1 : real(file, bytes, count);
 }
 int fsync(int file) {

@@ -3,7 +3,8 @@
 // them while no fault is requested. As a library of its own (psygen_faults) it is preloaded into
 // whole programs, which take their faults from the environment:
 //   PSYGEN_FULL_DISK=FOLDER PSYGEN_CALLS_LEFT=N     FullDisk(FOLDER, N)
-//   PSYGEN_THREADS_LEFT=N                           FewThreads(N)
+//   the same with PSYGEN_DIES=1                     kill -9 at that call instead, in the middle of
+//   a write PSYGEN_THREADS_LEFT=N                           FewThreads(N)
 #pragma once
 
 #include <cstddef>

@@ -18,7 +18,21 @@
 namespace psygen::amplify {
 namespace {
 
-constexpr std::chrono::milliseconds kProgressPeriod{100};
+// All blocks of a region, one at a time.
+class EveryBlock final : public RunSource {
+ public:
+  explicit EveryBlock(std::uint64_t count) : count_(count) {}
+  core::Result<std::optional<BlockRun>> next() override {
+    const std::uint64_t i = next_.fetch_add(1, std::memory_order_relaxed);
+    if (i >= count_) return std::nullopt;
+    return BlockRun{i, i + 1};
+  }
+  core::Result<void> finished(const BlockRun&, const Totals&) override { return {}; }
+
+ private:
+  const std::uint64_t count_;
+  alignas(64) std::atomic<std::uint64_t> next_{0};
+};
 
 // State that the threads share. Each thread takes the lock once, when it ends.
 struct Shared {
@@ -26,9 +40,10 @@ struct Shared {
   const models::Registry& registry;
   const Region& region;
   const Options& options;
+  RunSource& source;
   const std::uint64_t block_count;
-  alignas(64) std::atomic<std::uint64_t> next{0};
   alignas(64) std::atomic<bool> failed{false};
+  std::atomic<bool> stopped{false};
   std::mutex mutex{};
   std::condition_variable ended{};
   int running = 0;
@@ -43,31 +58,57 @@ struct alignas(64) Worker {
 
   void work(Shared& shared);
   core::Result<void> make_blocks(Shared& shared);
+  // The blocks of a run, until it is to stop. False: it was stopped.
+  core::Result<bool> make_run(Shared& shared, BlockSynthesizer& synthesizer, BlockSink* sink,
+                              const BlockRun& run, Totals& made);
 };
 
-core::Result<void> Worker::make_blocks(Shared& shared) {
-  const Options& options = shared.options;
-  BlockSynthesizer synthesizer(shared.world, shared.registry);
-  const std::unique_ptr<BlockSink> sink = options.make_sink ? options.make_sink() : nullptr;
+bool is_over(Shared& shared) {
+  if (shared.failed.load(std::memory_order_relaxed)) return true;
+  const std::atomic<bool>* stop = shared.options.stop;
+  if (stop == nullptr || !stop->load(std::memory_order_relaxed)) return false;
+  shared.stopped.store(true, std::memory_order_relaxed);
+  return true;
+}
+
+core::Result<bool> Worker::make_run(Shared& shared, BlockSynthesizer& synthesizer, BlockSink* sink,
+                                    const BlockRun& run, Totals& made) {
   core::BlockCoord block;
   const std::function<void(const BlockMesh&)> visit = [&](const BlockMesh& mesh) {
     sink->add(block, mesh);
   };
   const std::function<void(const BlockMesh&)> discard;
-  while (!shared.failed.load(std::memory_order_relaxed) &&
-         !(options.stop != nullptr && options.stop->load(std::memory_order_relaxed))) {
-    const std::uint64_t i = shared.next.fetch_add(1, std::memory_order_relaxed);
-    if (i >= shared.block_count) break;
+  for (std::uint64_t i = run.first; i < run.end; ++i) {
+    if (i > run.first && is_over(shared)) return false;
     block = shared.region.block(i);
-    const bool wanted = sink && sink->wants(block);
-    const std::uint64_t failed = totals.failed;
-    synthesizer.synthesise(block, totals, wanted ? visit : discard);
-    if (wanted && totals.failed > failed) {
+    const bool wanted = sink != nullptr && sink->wants(block);
+    const std::uint64_t failed_before = made.failed;
+    synthesizer.synthesise(block, made, wanted ? visit : discard);
+    if (wanted && made.failed > failed_before) {
       sink->drop(block);
     } else if (wanted) {
-      if (auto ok = sink->finish(block); !ok) return ok;
+      if (auto ok = sink->finish(block); !ok) return tl::unexpected(ok.error());
     }
-    blocks_done.store(totals.blocks, std::memory_order_relaxed);
+    blocks_done.fetch_add(1, std::memory_order_relaxed);
+  }
+  return true;
+}
+
+core::Result<void> Worker::make_blocks(Shared& shared) {
+  const Options& options = shared.options;
+  BlockSynthesizer synthesizer(shared.world, shared.registry);
+  const std::unique_ptr<BlockSink> sink = options.make_sink ? options.make_sink() : nullptr;
+  while (!shared.failed.load(std::memory_order_relaxed)) {
+    const auto run = shared.source.next();
+    if (!run) return tl::unexpected(run.error());
+    if (!*run || is_over(shared)) break;
+    Totals made;
+    const auto whole = make_run(shared, synthesizer, sink.get(), **run, made);
+    totals.add(made);
+    if (!whole) return tl::unexpected(whole.error());
+    if (!*whole) break;
+    if (made.failed > 0) continue;
+    if (auto ok = shared.source.finished(**run, made); !ok) return ok;
   }
   return {};
 }
@@ -95,9 +136,10 @@ void Worker::work(Shared& shared) {
 }
 
 void wait_for(Shared& shared, std::span<const std::unique_ptr<Worker>> workers) {
+  const std::chrono::milliseconds period(shared.options.progress_period_ms);
   std::unique_lock lock(shared.mutex);
   while (shared.running > 0) {
-    shared.ended.wait_until(lock, std::chrono::system_clock::now() + kProgressPeriod);
+    shared.ended.wait_until(lock, std::chrono::system_clock::now() + period);
     if (!shared.options.progress) continue;
     lock.unlock();
     std::uint64_t done = 0;
@@ -164,7 +206,9 @@ core::Result<Report> amplify(const world::World& world, const models::Registry& 
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("there may be 1 to {} threads", kMaxThreads));
   }
-  Shared shared{world, registry, region, options, region.block_count()};
+  EveryBlock every_block(region.block_count());
+  RunSource& source = options.source != nullptr ? *options.source : every_block;
+  Shared shared{world, registry, region, options, source, region.block_count()};
   Crew crew{shared};
   const std::vector<std::unique_ptr<Worker>>& workers = crew.workers;
   const double start_s = core::monotonic_seconds();
@@ -181,8 +225,8 @@ core::Result<Report> amplify(const world::World& world, const models::Registry& 
   for (const auto& worker : workers) {
     if (worker->error) return tl::unexpected(*worker->error);
   }
-  report.region_blocks = shared.block_count;
-  report.complete = report.totals.blocks == shared.block_count && report.totals.failed == 0;
+  report.stopped = shared.stopped.load(std::memory_order_relaxed);
+  report.complete = !report.stopped && report.totals.failed == 0;
   return report;
 }
 

@@ -1,14 +1,16 @@
 // Data amplification without a camera: synthesises all blocks of a region at full detail on several
 // threads. Meshes are discarded or passed to a sink, and one hash identifies all of them. The hash
-// does not depend on the number of threads or on their order. Threads share only an atomic counter
-// of the next block. It draws nothing.
+// does not depend on the number of threads or on their order. Threads share only the source of the
+// next blocks, by default an atomic counter. It draws nothing.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 
+#include "engine/amplify/block_ranges.hpp"
 #include "engine/amplify/block_synthesizer.hpp"
 #include "engine/amplify/region.hpp"
 
@@ -35,14 +37,29 @@ class BlockSink {
   virtual bool wants(core::BlockCoord block) = 0;
 };
 
+// Hands out the blocks of a region to the threads of a run, which make all calls, several at once.
+class RunSource {
+ public:
+  virtual ~RunSource() = default;
+  // The next blocks of the calling thread; nothing: there are no more. A failure ends the whole
+  // run.
+  virtual core::Result<std::optional<BlockRun>> next() = 0;
+  // Every mesh of these blocks was made, and the sink has finished them: one call for each run of
+  // next() of which no mesh failed and that was not stopped. A failure ends the whole run.
+  virtual core::Result<void> finished(const BlockRun& run, const Totals& totals) = 0;
+};
+
 // How to run.
 struct Options {
   unsigned threads = 1;         // 1 … kMaxThreads
   bool lowest_priority = true;  // of the threads, for the system's scheduler
   // Makes the sink of a thread, in that thread. Empty: the meshes are discarded.
   std::function<std::unique_ptr<BlockSink>()> make_sink;
-  // Called in the calling thread, ten times a second, with the number of finished blocks.
+  // Which blocks of the region, in which order. Null: all of them, once.
+  RunSource* source = nullptr;
+  // Called in the calling thread, once in `progress_period_ms`, with the number of finished blocks.
   std::function<void(std::uint64_t)> progress;
+  unsigned progress_period_ms = 100;
   // Set it to true from any thread to stop after the blocks in progress. May be null.
   const std::atomic<bool>* stop = nullptr;
 };
@@ -53,8 +70,8 @@ struct Report {
   unsigned threads = 0;    // threads that were started
   double seconds = 0;      // wall-clock time
   double cpu_seconds = 0;  // of all threads together
-  std::uint64_t region_blocks = 0;
-  bool complete = false;  // every mesh of every block of the region was made
+  bool stopped = false;    // by Options::stop, before there were no more blocks
+  bool complete = false;   // not stopped, and no mesh failed
   // Triangles per second of CPU time; 0 if no time was measured.
   double triangles_per_second_per_core() const {
     return cpu_seconds > 0 ? static_cast<double>(totals.triangles) / cpu_seconds : 0;

@@ -22,6 +22,11 @@ std::string name_of(core::BlockCoord block) {
   return fmt::format("block_{}_{}", block.x, block.z);
 }
 
+std::filesystem::path file_in(const std::filesystem::path& folder, core::BlockCoord block,
+                              exchange::Format format) {
+  return folder / fmt::format("{}.{}", name_of(block), exchange::name_of(format));
+}
+
 core::Result<exchange::Object> object_of(const world::World& world,
                                          const models::Registry& registry, const BlockMesh& mesh) {
   const world::Placement& placement = mesh.placement;
@@ -74,15 +79,20 @@ core::Result<exchange::Document> block_document(const world::World& world,
   return document;
 }
 
+bool has_block_file(const std::filesystem::path& folder, core::BlockCoord block,
+                    exchange::Format format) {
+  std::error_code error;
+  const std::filesystem::path file = file_in(folder, block, format);
+  return std::filesystem::is_regular_file(file, error) &&
+         !exchange::is_cut_short(file, format, name_of(block));
+}
+
 class BlockFolder::Sink final : public BlockSink {
  public:
   explicit Sink(BlockFolder& folder) : folder_(folder) {}
 
   bool wants(core::BlockCoord block) override {
-    std::error_code error;
-    const std::filesystem::path file = folder_.file_of(block);
-    const bool there = std::filesystem::is_regular_file(file, error) &&
-                       !exchange::is_cut_short(file, folder_.format_, name_of(block));
+    const bool there = folder_.has(block);
     if (there) folder_.skipped_.fetch_add(1, std::memory_order_relaxed);
     return !there;
   }
@@ -179,7 +189,11 @@ std::unique_ptr<BlockSink> BlockFolder::make_sink() {
 }
 
 std::filesystem::path BlockFolder::file_of(core::BlockCoord block) const {
-  return folder_ / fmt::format("{}.{}", name_of(block), exchange::name_of(format_));
+  return file_in(folder_, block, format_);
+}
+
+bool BlockFolder::has(core::BlockCoord block) const {
+  return has_block_file(folder_, block, format_);
 }
 
 }  // namespace psygen::amplify

@@ -20,6 +20,10 @@ core::Result<exchange::Document> block_document(const world::World& world,
                                                 const models::Registry& registry,
                                                 core::BlockCoord block, int level);
 
+// Whether a folder has the whole file of a block, as BlockFolder writes it.
+bool has_block_file(const std::filesystem::path& folder, core::BlockCoord block,
+                    exchange::Format format);
+
 // The folder of one run.
 class BlockFolder {
  public:
@@ -36,6 +40,8 @@ class BlockFolder {
   std::unique_ptr<BlockSink> make_sink();
   // The file of a block: "block_X_Z.glb" in the folder.
   std::filesystem::path file_of(core::BlockCoord block) const;
+  // Whether that file is there and has its end. Any thread.
+  bool has(core::BlockCoord block) const;
   // Blocks written, and blocks skipped because their file exists; any thread.
   std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }
   std::uint64_t skipped() const { return skipped_.load(std::memory_order_relaxed); }

@@ -5,6 +5,8 @@
 #include <thread>
 
 #include "engine/amplify/block_files.hpp"
+#include "engine/amplify/shard.hpp"
+#include "engine/cli/amplify_figures.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
@@ -13,65 +15,11 @@
 #include "engine/core/log.hpp"
 #include "engine/models/kit/simd_targets.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
-#include "engine/telemetry/units.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
-namespace {
-
-struct Files {
-  std::uint64_t written, skipped;
-};
-
-std::string text_of(const amplify::Report& report, const Files* files) {
-  const amplify::Totals& t = report.totals;
-  std::string text;
-  const auto row = [&text](std::string_view name, const std::string& value) {
-    text += fmt::format("{:<31} {}\n", name, value);
-  };
-  row("blocks", fmt::format("{}", t.blocks));
-  row("models", fmt::format("{}", t.models));
-  row("triangles", fmt::format("{}  ({})", t.triangles,
-                               telemetry::count_text(static_cast<double>(t.triangles))));
-  row("bytes",
-      fmt::format("{}  ({})", t.bytes, telemetry::size_text(static_cast<double>(t.bytes))));
-  row("seconds", fmt::format("{:.3f}", report.seconds));
-  row("cpu_seconds", fmt::format("{:.3f}  (threads: {})", report.cpu_seconds, report.threads));
-  row("triangles_per_second_per_core",
-      fmt::format("{:.0f}  ({})", report.triangles_per_second_per_core(),
-                  telemetry::count_text(report.triangles_per_second_per_core())));
-  row("hash", report.complete ? fmt::format("{:016x}", t.hash.value())
-                              : std::string("– (not all of the region was made)"));
-  if (files != nullptr)
-    row("files", fmt::format("{} written, {} there already", files->written, files->skipped));
-  return text;
-}
-
-std::string json_of(const amplify::Report& report, const Files* files) {
-  const amplify::Totals& t = report.totals;
-  nlohmann::ordered_json json;
-  json["blocks"] = t.blocks;
-  json["models"] = t.models;
-  json["triangles"] = t.triangles;
-  json["bytes"] = t.bytes;
-  json["seconds"] = report.seconds;
-  json["cpu_seconds"] = report.cpu_seconds;
-  json["threads"] = report.threads;
-  json["triangles_per_second_per_core"] = report.triangles_per_second_per_core();
-  json["complete"] = report.complete;
-  json["failed"] = t.failed;
-  json["hash"] = nullptr;
-  if (report.complete) json["hash"] = fmt::format("{:016x}", t.hash.value());
-  if (files != nullptr) {
-    json["files_written"] = files->written;
-    json["files_skipped"] = files->skipped;
-  }
-  return json.dump(2) + "\n";
-}
-
-}  // namespace
-
 AmplifyCommand::AmplifyCommand(CLI::App& cli)
     : command_(cli.add_subcommand("amplify", "Synthesise a region or the whole world")) {
   CLI::App& c = *command_;
@@ -93,15 +41,25 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
        "several times")
       ->check(valid_if(parse_place, "X,Z"))
       ->excludes(region);
-  c.add_option("--out", out_, "Folder for one file per block; an interrupted run goes on")
-      ->excludes("--sample");
-  c.add_option("--format", format_, "Format of the files of --out: glb or obj")
-      ->check(one_of({"glb", "obj"}))
+  auto* out =
+      c.add_option("--out", out_, "Folder for one file per block; an interrupted run goes on");
+  out->excludes("--sample");
+  auto* shard = c.add_option_function<std::string>(
+      "--shard", [this](const std::string& text) { shard_ = *amplify::parse_shard(text); },
+      "Make only the I-th of N shards of equal predicted cost, and note its figures in --out");
+  shard->check(valid_if(amplify::parse_shard, "I/N"))->needs(out);
+  c.add_option("--format", format_,
+               "Format of the files of --out: glb or obj; none, with --shard: only the figures")
+      ->check(one_of({"glb", "obj", amplify::kNoFiles}))
       ->capture_default_str()
-      ->needs("--out");
+      ->needs(out);
   c.add_option("--simd", simd_, "Instruction set of the kernels, to compare; default: the best")
       ->check(one_of(models::simd_targets()));
   c.add_flag("--json", json_, "Print the figures as JSON");
+  c.callback([this] {
+    if (format_ == amplify::kNoFiles && !shard_)
+      throw CLI::ValidationError("psygen amplify: --format none needs --shard");
+  });
 }
 
 int AmplifyCommand::run() {
@@ -145,9 +103,9 @@ core::Result<amplify::Report> AmplifyCommand::amplify(const world::World& world,
   if (auto ok = amplify::check_region(world, *region); !ok) return tl::unexpected(ok.error());
   std::unique_ptr<amplify::BlockFolder> folder;
   amplify::Options options;
-  if (!out_.empty()) {
-    auto opened =
-        amplify::BlockFolder::open(out_, world, registry, *exchange::format_from(format_));
+  const amplify::JobFormat format = exchange::format_from(format_);
+  if (!out_.empty() && format) {
+    auto opened = amplify::BlockFolder::open(out_, world, registry, *format);
     if (!opened) return tl::unexpected(opened.error());
     folder = std::move(*opened);
     options.make_sink = [&folder] { return folder->make_sink(); };
@@ -158,7 +116,8 @@ core::Result<amplify::Report> AmplifyCommand::amplify(const world::World& world,
   telemetry::ProgressBar bar(telemetry::stderr_terminal(), "amplifying " + world.name,
                              static_cast<double>(region->block_count()));
   options.progress = [&bar](std::uint64_t blocks) { bar.update(static_cast<double>(blocks)); };
-  auto report = amplify::amplify(world, registry, *region, options);
+  auto report = shard_ ? make_shard({world, registry, {}}, *region, format, options)
+                       : amplify::amplify(world, registry, *region, options);
   if (folder) {
     written_ = folder->written();
     skipped_ = folder->skipped();
@@ -166,17 +125,31 @@ core::Result<amplify::Report> AmplifyCommand::amplify(const world::World& world,
   return report;
 }
 
+core::Result<amplify::Report> AmplifyCommand::make_shard(amplify::Job job,
+                                                         const amplify::Region& region,
+                                                         amplify::JobFormat format,
+                                                         const amplify::Options& options) const {
+  if (auto ok = telemetry::create_output_folder(out_); !ok) return tl::unexpected(ok.error());
+  auto key = amplify::job_key(job.world, job.registry, region, format, PSYGEN_VERSION);
+  if (!key) return tl::unexpected(key.error());
+  job.key = std::move(*key);
+  return amplify::amplify_shard(job, *shard_, out_, options);
+}
+
 int AmplifyCommand::print_report(const amplify::Report& report) const {
-  const Files files{written_, skipped_};
-  const Files* shown = out_.empty() ? nullptr : &files;
-  const int printed = print(json_ ? json_of(report, shown) : text_of(report, shown));
+  AmplifyFigures figures{report.totals, report.complete, {}, {}, {}, 0, 0, 0};
+  figures.times = {report.seconds, report.cpu_seconds, report.threads};
+  const bool with_files = !out_.empty() && format_ != amplify::kNoFiles;
+  if (with_files) figures.files = {written_, skipped_};
+  if (shard_) figures.part = amplify::text_of(*shard_);
+  const int printed = print(json_ ? json_of(figures) : text_of(figures));
   const amplify::Totals& totals = report.totals;
   if (totals.failed > 0) {
     core::log_error(fmt::format("{} meshes failed{}; the first: {}", totals.failed,
-                                shown != nullptr ? " (their blocks have no files)" : "",
+                                with_files ? " (their blocks have no files)" : "",
                                 totals.first_failure));
   }
-  if (totals.blocks < report.region_blocks) {
+  if (report.stopped) {
     core::log_error(fmt::format("interrupted after {} blocks", totals.blocks));
   }
   return report.complete ? printed : kFailed;

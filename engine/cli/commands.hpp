@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/amplify/amplify.hpp"
+#include "engine/amplify/shard.hpp"
 #include "engine/app/flight.hpp"
 #include "engine/cli/request_recorder.hpp"
 #include "engine/cli/shipped_files.hpp"
@@ -93,6 +94,9 @@ class AmplifyCommand {
   int print_heights(const world::World& world) const;
   core::Result<amplify::Report> amplify(const world::World& world,
                                         const models::Registry& registry);
+  core::Result<amplify::Report> make_shard(amplify::Job job, const amplify::Region& region,
+                                           amplify::JobFormat format,
+                                           const amplify::Options& options) const;
   int print_report(const amplify::Report& report) const;
 
   CLI::App* command_;
@@ -102,6 +106,7 @@ class AmplifyCommand {
   std::vector<glm::dvec2> samples_;  // x and z in metres
   std::string out_;                  // empty: nothing is written
   std::string format_ = "glb";
+  std::optional<amplify::Shard> shard_;
   std::string simd_;                         // empty: the best
   std::uint64_t written_ = 0, skipped_ = 0;  // files
   bool json_ = false;

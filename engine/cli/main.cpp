@@ -10,6 +10,7 @@
 #include "engine/cli/convert_command.hpp"
 #include "engine/cli/fatal.hpp"
 #include "engine/cli/interrupt.hpp"
+#include "engine/cli/merge_command.hpp"
 #include "engine/cli/standard_streams.hpp"
 #include "engine/cli/test_command.hpp"
 #include "engine/cli/usage.hpp"
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
   psygen::cli::PictureCommand picture(cli);
   psygen::cli::ModelsCommand models(cli);
   psygen::cli::AmplifyCommand amplify(cli);
+  psygen::cli::MergeCommand merge(cli);
   psygen::cli::ExportCommand exporter(cli);
   psygen::cli::CalibrateCommand calibrate(cli);
   psygen::cli::ScheduleCommand schedule(cli);
@@ -45,6 +47,7 @@ int main(int argc, char** argv) {
     if (fly.chosen()) return fly.run();
     if (picture.chosen()) return picture.run();
     if (amplify.chosen()) return amplify.run();
+    if (merge.chosen()) return merge.run();
     if (exporter.chosen()) return exporter.run();
     if (calibrate.chosen()) return calibrate.run();
     if (schedule.chosen()) return schedule.run();

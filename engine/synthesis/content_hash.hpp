@@ -30,6 +30,14 @@ class WorldHash {
     sum_ += part.sum_;
     count_ += part.count_;
   }
+  // One whose sum() and count() were written down.
+  static WorldHash restored(std::uint64_t sum, std::uint64_t count) {
+    WorldHash hash;
+    hash.sum_ = sum;
+    hash.count_ = count;
+    return hash;
+  }
+  std::uint64_t sum() const { return sum_; }
   // How many meshes were added, and the hash of all of them.
   std::uint64_t count() const { return count_; }
   std::uint64_t value() const { return core::combine(sum_, count_); }

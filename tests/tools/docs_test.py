@@ -94,7 +94,7 @@ def wrong_commands(root):
     seen = 0
     for page in pages(root):
         for line in commands(page.read_text(encoding="utf-8")):
-            for command, rest in re.findall(r"\bpsygen (fly|picture|amplify|export|calibrate|schedule|models)\b([^|;&]*)", line):
+            for command, rest in re.findall(r"\bpsygen (fly|picture|amplify|merge|export|calibrate|schedule|models)\b([^|;&]*)", line):
                 seen += 1
                 for option in re.findall(r"(?<=\s)--[a-z-]+", rest):
                     if option not in options_of(root, command):

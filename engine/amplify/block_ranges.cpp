@@ -1,0 +1,81 @@
+#include "engine/amplify/block_ranges.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/core/assert.hpp"
+
+namespace psygen::amplify {
+
+void BlockRanges::append(BlockRun run) {
+  PSYGEN_ASSERT(run.first <= run.end, "a run ends before it begins");
+  PSYGEN_ASSERT(runs_.empty() || run.first >= runs_.back().end, "runs are in ascending order");
+  if (run.first == run.end) return;
+  const std::uint64_t total = count() + run.count();
+  if (!runs_.empty() && runs_.back().end == run.first) {
+    runs_.back().end = run.end;
+    ends_.back() = total;
+    return;
+  }
+  runs_.push_back(run);
+  ends_.push_back(total);
+}
+
+std::uint64_t BlockRanges::at(std::uint64_t position) const {
+  PSYGEN_ASSERT(position < count(), "there is no block at this position");
+  const auto after = std::ranges::upper_bound(ends_, position);
+  const auto i = static_cast<std::size_t>(after - ends_.begin());
+  return runs_[i].end - (ends_[i] - position);
+}
+
+BlockRanges BlockRanges::sub(std::uint64_t first, std::uint64_t end) const {
+  BlockRanges part;
+  const auto start = std::ranges::upper_bound(ends_, first);
+  for (auto i = static_cast<std::size_t>(start - ends_.begin()); i < runs_.size(); ++i) {
+    const std::uint64_t from = ends_[i] - runs_[i].count();
+    if (from >= end) break;
+    const std::uint64_t low = std::max(first, from), high = std::min(end, ends_[i]);
+    part.append({runs_[i].first + (low - from), runs_[i].first + (high - from)});
+  }
+  return part;
+}
+
+BlockRanges BlockRanges::without(const BlockRanges& others) const {
+  BlockRanges rest;
+  auto other = others.runs_.begin();
+  for (BlockRun run : runs_) {
+    while (other != others.runs_.end() && other->end <= run.first)
+      ++other;
+    for (auto cut = other; cut != others.runs_.end() && cut->first < run.end; ++cut) {
+      rest.append({run.first, std::max(run.first, cut->first)});
+      run.first = std::min(run.end, cut->end);
+    }
+    rest.append(run);
+  }
+  return rest;
+}
+
+BlockRanges BlockRanges::joined(const BlockRanges& others) const {
+  std::vector<BlockRun> all(runs_);
+  all.insert(all.end(), others.runs_.begin(), others.runs_.end());
+  std::ranges::sort(all, {}, &BlockRun::first);
+  BlockRanges sum;
+  for (const BlockRun& run : all)
+    sum.append(run);
+  return sum;
+}
+
+std::string BlockRanges::text() const {
+  constexpr std::size_t kMostShown = 4;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kMostShown, runs_.size()); ++i) {
+    const BlockRun& run = runs_[i];
+    text += fmt::format("{}{}", i == 0 ? "" : ", ", run.first);
+    if (run.count() > 1) text += fmt::format("-{}", run.end - 1);
+  }
+  if (runs_.size() > kMostShown) text += ", …";
+  return text;
+}
+
+}  // namespace psygen::amplify

@@ -1,0 +1,82 @@
+// What a part of a job has finished, as a text file beside the blocks: who it is, then one line for
+// each run of blocks with its figures. Lines are appended whole and have checksums, so that a part
+// that is killed at any moment goes on where it was: a line that lost its end counts as not
+// written. A line is written after the files of its blocks. Not a log for people, and not a lock of
+// the folder. `add()` from any thread, everything else from one.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/amplify/block_ranges.hpp"
+#include "engine/amplify/block_synthesizer.hpp"
+#include "engine/amplify/job_key.hpp"
+
+namespace psygen::amplify {
+
+inline constexpr std::string_view kLedgerExtension = ".ledger";
+
+// Blocks that are finished, and their figures. No mesh of them failed.
+struct Finished {
+  BlockRun run;
+  Totals totals;
+};
+
+// The content of a ledger.
+struct LedgerText {
+  JobKey key;
+  std::string part;  // "shard 3 of 8", "rank 2"
+  BlockRun share;    // the blocks that the part has to finish, at most
+  std::vector<Finished> finished;
+  std::size_t whole_bytes = 0;  // up to the end of the last whole line
+};
+
+// The blocks of all entries. Fails with kInvalidArgument if two of them have a block in common.
+core::Result<BlockRanges> blocks_of(const std::vector<Finished>& finished);
+// Entries in ascending order; neighbours become one.
+std::vector<Finished> compacted(std::vector<Finished> finished);
+
+// The text of a whole ledger, and the line of an entry.
+std::string line_of(const Finished& finished);
+std::string ledger_text(const LedgerText& ledger);
+// Reads such a text; `name` is for messages. A cut last line is left out; nothing is read from a
+// head that is cut, which gives kParse as anything else does that psygen did not write.
+core::Result<LedgerText> parse_ledger(std::string_view text, const std::string& name);
+core::Result<LedgerText> read_ledger(const std::filesystem::path& file);
+
+// A ledger that is being written. The file is locked meanwhile, where its file system can.
+class Ledger {
+ public:
+  // Opens or creates `file` for a part whose key, name and share are those of `ledger`; what the
+  // file has is in finished() then, and `ledger.finished` is ignored. Fails with kIo, with
+  // kInvalidArgument if the file is of another job, part or share or another process writes it, and
+  // with kParse if psygen did not write it.
+  static core::Result<std::unique_ptr<Ledger>> open(std::filesystem::path file, LedgerText ledger);
+  ~Ledger();
+  Ledger(const Ledger&) = delete;
+  Ledger& operator=(const Ledger&) = delete;
+
+  const std::vector<Finished>& finished() const { return content_.finished; }
+  const std::filesystem::path& file() const { return file_; }
+  // Replaces the whole content by these entries. Fails with kIo.
+  core::Result<void> rewrite(std::vector<Finished> finished);
+  // Appends an entry. Any thread. Fails with kIo.
+  core::Result<void> add(const Finished& finished);
+
+ private:
+  Ledger(std::filesystem::path file, LedgerText content);
+  core::Result<void> lock();
+  core::Result<void> take_over(LedgerText theirs);
+
+  std::filesystem::path file_;
+  LedgerText content_;
+  std::mutex mutex_;
+  int handle_ = -1;
+};
+
+}  // namespace psygen::amplify

@@ -1,0 +1,35 @@
+#include "engine/cli/merge_command.hpp"
+
+#include "engine/amplify/merge.hpp"
+#include "engine/cli/amplify_figures.hpp"
+#include "engine/cli/commands.hpp"
+#include "engine/core/log.hpp"
+
+namespace psygen::cli {
+
+MergeCommand::MergeCommand(CLI::App& cli)
+    : command_(cli.add_subcommand("merge", "Check and join the shards of psygen amplify")) {
+  command_->add_option("PATH", paths_, "Folders of shards, or ledgers of theirs")->required();
+  command_->add_flag("--json", json_, "Print the figures as JSON");
+}
+
+int MergeCommand::run() const {
+  const std::vector<std::filesystem::path> paths(paths_.begin(), paths_.end());
+  const auto ledgers = amplify::read_ledgers(paths);
+  if (!ledgers) {
+    core::log_error(ledgers.error().message);
+    return exit_code_of(ledgers.error());
+  }
+  const auto totals = amplify::merge(*ledgers);
+  if (!totals) {
+    core::log_error(totals.error().message);
+    return exit_code_of(totals.error());
+  }
+  AmplifyFigures figures;
+  figures.totals = *totals;
+  figures.complete = true;
+  figures.parts = ledgers->size();
+  return print(json_ ? json_of(figures) : text_of(figures));
+}
+
+}  // namespace psygen::cli

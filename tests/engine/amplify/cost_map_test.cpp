@@ -1,0 +1,74 @@
+#include "engine/amplify/cost_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/engine/amplify/forest_world.hpp"
+#include "tests/engine/world/shipped.hpp"
+
+namespace psygen::amplify {
+namespace {
+
+using world::testing::kSmallWorld;
+using world::testing::parsed;
+using world::testing::registry;
+
+TEST(CostMap, CountsUpStretchByStretch) {
+  const CostMap map = CostMap::from(7, {1, 10, 100});  // 3, 2 and 2 blocks
+  EXPECT_DOUBLE_EQ(map.total_s(), 223);
+  EXPECT_DOUBLE_EQ(map.seconds_before(0), 0);
+  EXPECT_DOUBLE_EQ(map.seconds_before(3), 3);
+  EXPECT_DOUBLE_EQ(map.seconds_before(4), 13);
+  EXPECT_DOUBLE_EQ(map.seconds_before(7), 223);
+  for (std::uint64_t block = 0; block <= 7; ++block)
+    EXPECT_EQ(map.block_at(map.seconds_before(block)), block);
+  EXPECT_EQ(map.block_at(12), 3u);
+  EXPECT_EQ(map.block_at(1e9), 7u);
+  EXPECT_DOUBLE_EQ(map.seconds_of(BlockRanges({2, 5})), 1 + 20.0);
+}
+
+TEST(CostMap, SharesHoldEveryBlockOnceAndCostTheSame) {
+  const CostMap map = CostMap::from(1000, {1, 1, 1, 50, 1});
+  for (const std::uint64_t n : {1u, 2u, 3u, 7u, 64u, 2000u}) {
+    std::uint64_t next = 0;
+    for (std::uint64_t i = 1; i <= n; ++i) {
+      const BlockRun share = shard_of(map, i, n);
+      ASSERT_EQ(share.first, next);
+      ASSERT_GE(share.end, share.first);
+      next = share.end;
+      const double cost = map.seconds_of(BlockRanges(share));
+      EXPECT_NEAR(cost, map.total_s() / static_cast<double>(n), 50.001);  // a block more or less
+    }
+    EXPECT_EQ(next, 1000u);
+  }
+}
+
+// What is shared out is what the blocks of the world have on them.
+TEST(CostMap, OfAForestInTheCornerOfADesertSaysWhereTheWorkIs) {
+  const world::World world = world::testing::forest_in_a_desert();
+  const Region region = *whole(world);
+  const double desert = predicted_block_seconds(world, registry(), {10, 10}, {});
+  const double forest = predicted_block_seconds(world, registry(), {1, 1}, {});
+  EXPECT_GT(forest, 100 * desert);
+  const CostMap map = CostMap::of(world, registry(), region, {});
+  double exact = 0;
+  for (std::uint64_t i = 0; i < region.block_count(); ++i)
+    exact += predicted_block_seconds(world, registry(), region.block(i), {});
+  EXPECT_NEAR(map.total_s() / exact, 1, 0.2);
+  EXPECT_LE(shard_of(map, 1, 2).end, region.block_count() / 8);
+}
+
+TEST(CostMap, IsTheSameWhenItIsMadeAgainAndKnowsTheCostOfFiles) {
+  const world::World world = parsed(kSmallWorld);
+  const Region region = *whole(world);
+  const CostMap one = CostMap::of(world, registry(), region, {}),
+                two = CostMap::of(world, registry(), region, {}),
+                files = CostMap::of(world, registry(), region, {kGlbSecondsPerTriangle});
+  for (std::uint64_t block = 0; block <= region.block_count(); ++block)
+    EXPECT_EQ(one.seconds_before(block), two.seconds_before(block));
+  EXPECT_GT(files.total_s(), 10 * one.total_s());
+}
+
+}  // namespace
+}  // namespace psygen::amplify

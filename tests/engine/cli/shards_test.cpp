@@ -1,0 +1,99 @@
+// Shards as people run them: processes, killed at any moment, joined by psygen merge.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "tests/engine/cli/psygen_process.hpp"
+#include "tests/engine/world/shipped.hpp"
+#include "tests/full_disk.hpp"
+
+namespace psygen::cli {
+namespace {
+
+class Shards : public testing::Test {
+ protected:
+  Shards() { std::ofstream(folder_ / "small.toml") << world::testing::kSmallWorld; }
+
+  Outcome run(const std::string& arguments, const std::string& environment = "") const {
+    return run_psygen(arguments, environment, folder_.path());
+  }
+  Outcome amplify(const std::string& arguments, const std::string& environment = "") const {
+    return run("amplify --world small.toml " + arguments, environment);
+  }
+  // Of the output with --json.
+  static std::string hash_in(const Outcome& outcome) {
+    if (outcome.code != 0) return outcome.err;
+    return nlohmann::json::parse(outcome.out)["hash"];
+  }
+  FileContents blocks_in(const std::string& folder) const {
+    FileContents contents = contents_of(folder_ / folder);
+    std::erase_if(contents, [](const auto& file) { return file.first.ends_with(".ledger"); });
+    return contents;
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(Shards, MergedHaveTheHashOfOneProcessWithOneThread) {
+  const std::string whole = hash_in(amplify("--threads 1 --json"));
+  for (int i = 1; i <= 3; ++i) {
+    const Outcome shard = amplify(fmt::format("--shard {}/3 --out s --format none", i));
+    EXPECT_EQ(shard.code, 0) << shard.err;
+    EXPECT_TRUE(mentions(shard.out, fmt::format("shard {} of 3", i))) << shard.out;
+  }
+  EXPECT_EQ(hash_in(run("merge s --json")), whole);
+  EXPECT_TRUE(mentions(run("merge s").out, whole));
+  std::filesystem::rename(folder_ / "s/shard_2_of_3.ledger", folder_ / "s/kept");
+  const Outcome missing = run("merge s");
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_TRUE(mentions(missing.err, "are missing: the ledger of their shard")) << missing.err;
+  EXPECT_EQ(run("merge nowhere").code, 1);
+  EXPECT_EQ(run("merge").code, 2);
+  EXPECT_EQ(hash_in(run("merge s s/kept --json")), whole);
+}
+
+// The process dies at a call that writes something, in the middle of a write too: twenty times, at
+// moments that a seed chooses. What it left is whole, and the same command finishes it.
+TEST_F(Shards, KilledAtAnyMomentGoOn) {
+  const std::string region = " --region 1,1,4,4";
+  ASSERT_EQ(amplify("--out whole" + region).code, 0);
+  const FileContents whole = blocks_in("whole");
+  const std::string hash = hash_in(amplify("--threads 1 --json" + region));
+  std::mt19937 random(23);
+  int killed = 0;
+  for (int round = 0; killed < 20; ++round) {
+    const std::string out = fmt::format("s{}", round);
+    for (int lives = 0; lives < 2; ++lives) {
+      const Outcome dead = amplify(
+          "--shard 1/1 --out " + out + region,
+          fmt::format("LD_PRELOAD={} PSYGEN_FULL_DISK={} PSYGEN_CALLS_LEFT={} PSYGEN_DIES=1",
+                      PSYGEN_FAULTS, (folder_ / out).string(), random() % 70));
+      killed += dead.code == 137 ? 1 : 0;
+      for (const auto& [name, content] : blocks_in(out))
+        if (!name.ends_with(".partial")) {
+          EXPECT_TRUE(whole.contains(name) && whole.at(name) == content) << name;
+        }
+    }
+    EXPECT_EQ(hash_in(amplify("--json --shard 1/1 --out " + out + region)), hash);
+    EXPECT_TRUE(blocks_in(out) == whole) << round;
+    EXPECT_EQ(hash_in(run("merge --json " + out)), hash);
+    ASSERT_LT(round, 60) << "hardly any moment kills";
+  }
+}
+
+TEST_F(Shards, OfOtherWorldsAndRegionsAreNotMixed) {
+  ASSERT_EQ(amplify("--shard 1/2 --out s --format none").code, 0);
+  const Outcome other = amplify("--shard 1/2 --out s --format none --region 0,0,2,2");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_TRUE(mentions(other.err, "s/shard_1_of_2.ledger: is of the region")) << other.err;
+  ASSERT_EQ(run("amplify --world paper --region 0,0,2,2 --shard 2/2 --out p --format none").code,
+            0);
+  const Outcome mixed = run("merge s p");
+  EXPECT_EQ(mixed.code, 1);
+  EXPECT_TRUE(mentions(mixed.err, "is of another job than")) << mixed.err;
+}
+
+}  // namespace
+}  // namespace psygen::cli
