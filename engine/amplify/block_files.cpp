@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <optional>
 #include <span>
 #include <utility>
@@ -20,6 +21,19 @@ constexpr const char* kWorldFile = "world.toml";
 
 std::string name_of(core::BlockCoord block) {
   return fmt::format("block_{}_{}", block.x, block.z);
+}
+
+// The block of a file name as name_of() begins it.
+std::optional<core::BlockCoord> block_of(std::string_view file) {
+  constexpr std::string_view kBegin = "block_";
+  if (!file.starts_with(kBegin)) return std::nullopt;
+  core::BlockCoord block;
+  const char* const end = file.data() + file.size();
+  const auto x = std::from_chars(file.data() + kBegin.size(), end, block.x);
+  if (x.ec != std::errc() || x.ptr == end || *x.ptr != '_') return std::nullopt;
+  const auto z = std::from_chars(x.ptr + 1, end, block.z);
+  if (z.ec != std::errc() || z.ptr == end || *z.ptr != '.') return std::nullopt;
+  return block;
 }
 
 std::filesystem::path file_in(const std::filesystem::path& folder, core::BlockCoord block,
@@ -85,6 +99,14 @@ bool has_block_file(const std::filesystem::path& folder, core::BlockCoord block,
   const std::filesystem::path file = file_in(folder, block, format);
   return std::filesystem::is_regular_file(file, error) &&
          !exchange::is_cut_short(file, format, name_of(block));
+}
+
+void remove_partial_blocks(const std::filesystem::path& folder,
+                           const std::function<bool(core::BlockCoord)>& is_ours) {
+  core::remove_partials_of(folder, [&](const std::string& file) {
+    const auto block = block_of(file);
+    return block && is_ours(*block);
+  });
 }
 
 class BlockFolder::Sink final : public BlockSink {

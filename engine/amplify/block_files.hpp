@@ -24,6 +24,11 @@ core::Result<exchange::Document> block_document(const world::World& world,
 bool has_block_file(const std::filesystem::path& folder, core::BlockCoord block,
                     exchange::Format format);
 
+// Removes what killed processes left half-written of blocks, on whatever host. For those who alone
+// write these blocks.
+void remove_partial_blocks(const std::filesystem::path& folder,
+                           const std::function<bool(core::BlockCoord)>& is_ours);
+
 // The folder of one run.
 class BlockFolder {
  public:

@@ -27,7 +27,8 @@ class BlockRanges {
   // Appends a run that begins at or behind the end of the last one. Neighbours become one range.
   void append(BlockRun run);
   std::uint64_t count() const { return ends_.empty() ? 0 : ends_.back(); }
-  std::span<const BlockRun> runs() const { return runs_; }
+  std::span<const BlockRun> runs() const& { return runs_; }
+  std::span<const BlockRun> runs() && = delete;
   // The block number at a position. Requires position < count().
   std::uint64_t at(std::uint64_t position) const;
   // The blocks at positions first … end − 1. Requires first <= end <= count().

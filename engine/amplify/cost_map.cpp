@@ -11,6 +11,11 @@
 namespace psygen::amplify {
 namespace {
 
+// Where the k-th of n stretches begins. They differ by one block at most: the first ones have more.
+std::uint64_t stretch_begin(std::uint64_t blocks, std::uint64_t n, std::uint64_t k) {
+  return k * (blocks / n) + std::min(k, blocks % n);
+}
+
 double priced(const synthesis::CostModel& model, const CostRates& rates,
               const world::Placement& placement) {
   const synthesis::Work work = model.work(placement.model, placement.parameters, 0);
@@ -37,23 +42,32 @@ double predicted_block_seconds(const world::World& world, const models::Registry
   return priced_block(synthesis::CostModel(registry), world, registry, block, rates, placements);
 }
 
-CostMap CostMap::of(const world::World& world, const models::Registry& registry,
-                    const Region& region, const CostRates& rates) {
+std::uint64_t sample_count(const Region& region) {
   const std::uint64_t blocks = region.block_count();
-  const std::uint64_t samples =
-      std::min(blocks, std::clamp(blocks / kBlocksPerSample, kLeastSamples, kMostSamples));
-  CostMap map;
-  map.blocks_ = blocks;
-  map.each_.resize(samples);
+  return std::min(blocks, std::clamp(blocks / CostMap::kBlocksPerSample, CostMap::kLeastSamples,
+                                     CostMap::kMostSamples));
+}
+
+std::vector<double> prices_of(const world::World& world, const models::Registry& registry,
+                              const Region& region, const CostRates& rates, std::uint64_t first,
+                              std::uint64_t end) {
+  const std::uint64_t blocks = region.block_count(), samples = sample_count(region);
   const synthesis::CostModel model(registry);
   std::vector<world::Placement> placements;
-  std::vector<double> seconds(samples);
-  for (std::size_t k = 0; k < samples; ++k) {
-    const std::uint64_t first = map.stretch_begin(k), length = map.stretch_begin(k + 1) - first;
-    const core::BlockCoord block = region.block(first + core::mix64(k) % length);
-    seconds[k] = priced_block(model, world, registry, block, rates, placements);
+  std::vector<double> seconds;
+  for (std::uint64_t k = first; k < end; ++k) {
+    const std::uint64_t from = stretch_begin(blocks, samples, k),
+                        length = stretch_begin(blocks, samples, k + 1) - from;
+    const core::BlockCoord block = region.block(from + core::mix64(k) % length);
+    seconds.push_back(priced_block(model, world, registry, block, rates, placements));
   }
-  return from(blocks, std::move(seconds));
+  return seconds;
+}
+
+CostMap CostMap::of(const world::World& world, const models::Registry& registry,
+                    const Region& region, const CostRates& rates) {
+  return from(region.block_count(),
+              prices_of(world, registry, region, rates, 0, sample_count(region)));
 }
 
 CostMap CostMap::flat(std::uint64_t blocks) {
@@ -73,10 +87,8 @@ CostMap CostMap::from(std::uint64_t blocks, std::vector<double> seconds) {
   return map;
 }
 
-// Stretches differ by one block at most: the first blocks_ % n have one more.
 std::uint64_t CostMap::stretch_begin(std::size_t stretch) const {
-  const std::uint64_t n = each_.size(), k = stretch;
-  return k * (blocks_ / n) + std::min(k, blocks_ % n);
+  return amplify::stretch_begin(blocks_, each_.size(), stretch);
 }
 
 std::size_t CostMap::stretch_of(std::uint64_t block) const {

@@ -28,6 +28,13 @@ struct CostRates {
 double predicted_block_seconds(const world::World& world, const models::Registry& registry,
                                core::BlockCoord block, const CostRates& rates);
 
+// How many blocks of a region are priced, and the prices of the samples first … end − 1 of them: of
+// the whole region, the prices of all parts one behind the other, as CostMap::from() takes them.
+std::uint64_t sample_count(const Region& region);
+std::vector<double> prices_of(const world::World& world, const models::Registry& registry,
+                              const Region& region, const CostRates& rates, std::uint64_t first,
+                              std::uint64_t end);
+
 // The costs of a region's blocks by their numbers.
 class CostMap {
  public:

@@ -52,7 +52,8 @@ std::vector<Finished> compacted(std::vector<Finished> finished) {
   std::ranges::sort(finished, {}, [](const Finished& f) { return f.run.first; });
   std::vector<Finished> joined;
   for (Finished& f : finished) {
-    if (!joined.empty() && joined.back().run.end == f.run.first) {
+    if (!joined.empty() && joined.back().run.end == f.run.first &&
+        f.run.end - joined.back().run.first <= kMostCompacted) {
       joined.back().run.end = f.run.end;
       joined.back().totals.add(f.totals);
     } else {

@@ -38,7 +38,9 @@ struct LedgerText {
 
 // The blocks of all entries. Fails with kInvalidArgument if two of them have a block in common.
 core::Result<BlockRanges> blocks_of(const std::vector<Finished>& finished);
-// Entries in ascending order; neighbours become one.
+// Entries in ascending order; neighbours become one of at most kMostCompacted blocks, which is what
+// one lost file costs.
+inline constexpr std::uint64_t kMostCompacted = 4096;
 std::vector<Finished> compacted(std::vector<Finished> finished);
 
 // The text of a whole ledger, and the line of an entry.
@@ -62,7 +64,7 @@ class Ledger {
   Ledger& operator=(const Ledger&) = delete;
 
   const std::vector<Finished>& finished() const { return content_.finished; }
-  const std::filesystem::path& file() const { return file_; }
+  const JobKey& key() const { return content_.key; }
   // Replaces the whole content by these entries. Fails with kIo.
   core::Result<void> rewrite(std::vector<Finished> finished);
   // Appends an entry. Any thread. Fails with kIo.

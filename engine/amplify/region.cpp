@@ -26,6 +26,12 @@ core::BlockCoord Region::block(std::uint64_t i) const {
           static_cast<std::int32_t>(z0 + static_cast<std::int64_t>(i / width))};
 }
 
+std::optional<std::uint64_t> Region::number_of(core::BlockCoord block) const {
+  if (block.x < x0 || block.x >= x1 || block.z < z0 || block.z >= z1) return std::nullopt;
+  return static_cast<std::uint64_t>(block.z - z0) * static_cast<std::uint64_t>(x1 - x0) +
+         static_cast<std::uint64_t>(block.x - x0);
+}
+
 core::Result<Region> parse_region(std::string_view text) {
   const auto refuse = [text](std::string_view why) {
     return core::fail(core::ErrorCode::kInvalidArgument,

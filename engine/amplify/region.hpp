@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "engine/core/coordinates.hpp"
@@ -19,6 +20,8 @@ struct Region {
   std::uint64_t block_count() const;
   // The i-th block, row by row (z outer, x inner). Requires i < block_count().
   core::BlockCoord block(std::uint64_t i) const;
+  // The number of a block; nothing outside.
+  std::optional<std::uint64_t> number_of(core::BlockCoord block) const;
   friend bool operator==(const Region&, const Region&) = default;
 };
 

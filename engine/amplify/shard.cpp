@@ -32,12 +32,14 @@ std::string ledger_name(const Shard& shard) {
   return fmt::format("shard_{}_of_{}{}", shard.index, shard.count, kLedgerExtension);
 }
 
-BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads) {
+BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads,
+                  std::uint64_t most) {
   constexpr std::uint64_t kRunsPerThread = 4;  // of what is left
   const std::uint64_t left = todo.count() - position;
   const std::uint64_t wanted =
-      std::clamp<std::uint64_t>(left / (kRunsPerThread * threads), 1, LedgerSource::kMostBlocks);
-  return todo.sub(position, position + wanted).runs().front();
+      std::clamp<std::uint64_t>(left / (kRunsPerThread * threads), 1, most);
+  const BlockRanges next = todo.sub(position, position + wanted);
+  return next.runs().front();
 }
 
 LedgerSource::LedgerSource(BlockRanges todo, unsigned threads, Ledger& ledger)
@@ -76,6 +78,10 @@ core::Result<Report> amplify_shard(const Job& job, const Shard& shard,
   const BlockRun share = shard_of(costs, shard.index, shard.count);
   auto ledger = Ledger::open(folder / ledger_name(shard), {job.key, text_of(shard), share, {}, 0});
   if (!ledger) return tl::unexpected(ledger.error());
+  remove_partial_blocks(folder, [&](core::BlockCoord block) {
+    const auto number = job.key.region.number_of(block);
+    return number && *number >= share.first && *number < share.end;
+  });
   const std::size_t noted = (*ledger)->finished().size();
   std::vector<Finished> known = with_files((*ledger)->finished(), job.key, folder);
   if (known.size() < noted)

@@ -49,9 +49,10 @@ class LedgerSource final : public RunSource {
   std::uint64_t position_ = 0;
 };
 
-// The next run from `position` of some blocks for one of `threads` threads: 1 to kMostBlocks
+// The next run from `position` of some blocks for one of `threads` threads: 1 to `most`
 // neighbours, fewer towards the end. Requires position < todo.count().
-BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads);
+BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads,
+                  std::uint64_t most = LedgerSource::kMostBlocks);
 
 // Of what a ledger says, the entries of which every block has its whole file in the folder, cut
 // where one has not: an entry without one of its files is left out as a whole.

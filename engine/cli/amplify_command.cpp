@@ -55,15 +55,19 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
       ->needs(out);
   c.add_option("--simd", simd_, "Instruction set of the kernels, to compare; default: the best")
       ->check(one_of(models::simd_targets()));
+  c.add_flag("--mpi", mpi_, "This is one rank of several; known by itself under mpirun")
+      ->excludes(shard)
+      ->excludes("--sample");
   c.add_flag("--json", json_, "Print the figures as JSON");
   c.callback([this] {
-    if (format_ == amplify::kNoFiles && !shard_)
-      throw CLI::ValidationError("psygen amplify: --format none needs --shard");
+    if (format_ == amplify::kNoFiles && !shard_ && !mpi_ && !cluster::is_rank())
+      throw CLI::ValidationError("psygen amplify: --format none needs --shard or --mpi");
   });
 }
 
 int AmplifyCommand::run() {
   if (!simd_.empty()) models::pin_simd_target(simd_);
+  if (mpi_ || (cluster::is_rank() && !shard_ && samples_.empty())) return run_rank();
   models::Registry registry = models::make_standard_registry();
   const auto world = load_world(world_, registry);
   if (!world) {
@@ -96,11 +100,17 @@ int AmplifyCommand::print_heights(const world::World& world) const {
   return print(json_ ? list.dump(2) + "\n" : text);
 }
 
+core::Result<amplify::Region> AmplifyCommand::region_of(const world::World& world) const {
+  const auto region = region_ ? core::Result<amplify::Region>(*region_) : amplify::whole(world);
+  if (!region) return region;
+  if (auto ok = amplify::check_region(world, *region); !ok) return tl::unexpected(ok.error());
+  return region;
+}
+
 core::Result<amplify::Report> AmplifyCommand::amplify(const world::World& world,
                                                       const models::Registry& registry) {
-  const auto region = region_ ? core::Result<amplify::Region>(*region_) : amplify::whole(world);
+  const auto region = region_of(world);
   if (!region) return tl::unexpected(region.error());
-  if (auto ok = amplify::check_region(world, *region); !ok) return tl::unexpected(ok.error());
   std::unique_ptr<amplify::BlockFolder> folder;
   amplify::Options options;
   const amplify::JobFormat format = exchange::format_from(format_);
@@ -142,17 +152,19 @@ int AmplifyCommand::print_report(const amplify::Report& report) const {
   const bool with_files = !out_.empty() && format_ != amplify::kNoFiles;
   if (with_files) figures.files = {written_, skipped_};
   if (shard_) figures.part = amplify::text_of(*shard_);
+  return print_figures(figures, report.stopped);
+}
+
+int AmplifyCommand::print_figures(const AmplifyFigures& figures, bool stopped) const {
   const int printed = print(json_ ? json_of(figures) : text_of(figures));
-  const amplify::Totals& totals = report.totals;
+  const amplify::Totals& totals = figures.totals;
   if (totals.failed > 0) {
     core::log_error(fmt::format("{} meshes failed{}; the first: {}", totals.failed,
-                                with_files ? " (their blocks have no files)" : "",
+                                figures.files ? " (their blocks have no files)" : "",
                                 totals.first_failure));
   }
-  if (report.stopped) {
-    core::log_error(fmt::format("interrupted after {} blocks", totals.blocks));
-  }
-  return report.complete ? printed : kFailed;
+  if (stopped) core::log_error(fmt::format("interrupted after {} blocks", totals.blocks));
+  return figures.complete ? printed : kFailed;
 }
 
 }  // namespace psygen::cli

@@ -12,9 +12,11 @@
 #include "engine/amplify/amplify.hpp"
 #include "engine/amplify/shard.hpp"
 #include "engine/app/flight.hpp"
+#include "engine/cli/amplify_figures.hpp"
 #include "engine/cli/request_recorder.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/standard_streams.hpp"
+#include "engine/cluster/peers.hpp"
 #include "engine/exchange/write_document.hpp"
 
 namespace psygen::cli {
@@ -92,12 +94,16 @@ class AmplifyCommand {
 
  private:
   int print_heights(const world::World& world) const;
+  core::Result<amplify::Region> region_of(const world::World& world) const;
+  int run_rank();
+  int run_rank(cluster::Peers& peers);
   core::Result<amplify::Report> amplify(const world::World& world,
                                         const models::Registry& registry);
   core::Result<amplify::Report> make_shard(amplify::Job job, const amplify::Region& region,
                                            amplify::JobFormat format,
                                            const amplify::Options& options) const;
   int print_report(const amplify::Report& report) const;
+  int print_figures(const AmplifyFigures& figures, bool stopped) const;
 
   CLI::App* command_;
   std::string world_ = kDefaultWorld;
@@ -109,7 +115,7 @@ class AmplifyCommand {
   std::optional<amplify::Shard> shard_;
   std::string simd_;                         // empty: the best
   std::uint64_t written_ = 0, skipped_ = 0;  // files
-  bool json_ = false;
+  bool mpi_ = false, json_ = false;
 };
 
 // `psygen export`.

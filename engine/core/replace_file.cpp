@@ -8,20 +8,36 @@
 #include <charconv>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
+
+#include "engine/core/hash.hpp"
 
 namespace psygen::core {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{64} << 10;
 
+// Names the processes among which process ids are one's own: the host, and the container on it.
+const std::string& host_mark() {
+  static const std::string mark = [] {
+    char name[256] = "", space[64] = "";
+    if (gethostname(name, sizeof(name) - 1) != 0) name[0] = '\0';
+    if (readlink("/proc/self/ns/pid", space, sizeof(space) - 1) < 0) space[0] = '\0';
+    const std::string both = std::string(name) + space;
+    const std::uint64_t hash = hash_bytes(std::as_bytes(std::span(both)));
+    return fmt::format("{:08x}", static_cast<std::uint32_t>(hash));
+  }();
+  return mark;
+}
+
 // Opens a new file next to `path` and stores its name; -1 with errno when that fails.
 int open_temporary(const std::filesystem::path& path, std::filesystem::path& temporary) {
   int file = -1;
   for (int attempt = 0; attempt < 100 && file < 0; ++attempt) {
-    temporary = path.parent_path() /
-                fmt::format(".{}.{}-{}.partial", path.filename().string(), getpid(), attempt);
+    temporary = path.parent_path() / fmt::format(".{}.{}-{}@{}.partial", path.filename().string(),
+                                                 getpid(), attempt, host_mark());
     file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0 && errno != EEXIST) break;
   }
@@ -37,28 +53,51 @@ void flush_folder(const std::filesystem::path& path) {
   close(handle);
 }
 
-// The process that made a temporary file of open_temporary(); 0 for any other file.
-pid_t owner_of_partial(const std::string& name) {
-  constexpr std::string_view kEnding = ".partial";
-  if (!name.starts_with('.') || !name.ends_with(kEnding)) return 0;
-  const std::string_view stem = std::string_view(name).substr(0, name.size() - kEnding.size());
-  const std::size_t dot = stem.rfind('.');
-  const std::size_t dash = stem.rfind('-');
-  if (dot == std::string_view::npos || dash == std::string_view::npos || dash < dot) return 0;
+constexpr std::string_view kPartial = ".partial";
+
+// What a temporary file of open_temporary() is named after.
+struct Partial {
+  std::string file;  // that it would become
   pid_t owner = 0;
-  const auto parsed = std::from_chars(stem.data() + dot + 1, stem.data() + dash, owner);
-  return parsed.ec == std::errc() && parsed.ptr == stem.data() + dash ? owner : 0;
+  bool ours = false;  // of this host
+};
+
+std::optional<Partial> partial_of(const std::string& name) {
+  if (!name.starts_with('.') || !name.ends_with(kPartial)) return std::nullopt;
+  const std::string stem = name.substr(0, name.size() - kPartial.size());
+  const std::size_t dot = stem.rfind('.'), dash = stem.rfind('-'), at = stem.rfind('@');
+  if (dot == 0 || dot == std::string::npos || dash == std::string::npos || dash < dot)
+    return std::nullopt;
+  Partial partial{stem.substr(1, dot - 1), 0, false};
+  const auto parsed = std::from_chars(stem.data() + dot + 1, stem.data() + dash, partial.owner);
+  if (parsed.ec != std::errc() || parsed.ptr != stem.data() + dash || partial.owner <= 0)
+    return std::nullopt;
+  // Those of older versions do not say whose they are.
+  partial.ours = at == std::string::npos || at < dash || stem.substr(at + 1) == host_mark();
+  return partial;
+}
+
+template <class Unwanted>
+void remove_partials_that(const std::filesystem::path& folder, Unwanted unwanted) {
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    const auto partial = partial_of(it->path().filename().string());
+    if (partial && unwanted(*partial)) unlink(it->path().c_str());
+  }
 }
 
 }  // namespace
 
 void remove_stale_partials(const std::filesystem::path& folder) {
-  std::error_code error;
-  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
-       it.increment(error)) {
-    const pid_t owner = owner_of_partial(it->path().filename().string());
-    if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) unlink(it->path().c_str());
-  }
+  remove_partials_that(folder, [](const Partial& partial) {
+    return partial.ours && kill(partial.owner, 0) != 0 && errno == ESRCH;
+  });
+}
+
+void remove_partials_of(const std::filesystem::path& folder,
+                        const std::function<bool(const std::string& file)>& is_ours) {
+  remove_partials_that(folder, [&](const Partial& partial) { return is_ours(partial.file); });
 }
 
 FileReplacement::FileReplacement(std::filesystem::path path) : path_(std::move(path)) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -48,8 +49,12 @@ class FileReplacement {
 Result<void> replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Result<void> replace_file(const std::filesystem::path& path, std::string_view text);
 
-// Removes temporary files in this folder whose processes no longer run (killed, power lost). Does
-// not look into sub-folders.
+// Removes temporary files in this folder whose processes no longer run (killed, power lost). Those
+// of other hosts, which may share the folder, stay. Does not look into sub-folders.
 void remove_stale_partials(const std::filesystem::path& folder);
+// Removes the temporary files of the files of these names, whoever made them: for one who alone
+// writes those files.
+void remove_partials_of(const std::filesystem::path& folder,
+                        const std::function<bool(const std::string& file)>& is_ours);
 
 }  // namespace psygen::core

@@ -20,6 +20,8 @@ MAY_KNOW = {
     "engine/exchange": {"engine/core", "engine/models", "engine/world"},
     "engine/amplify": {"engine/core", "engine/models", "engine/world", "engine/synthesis",
                        "engine/exchange", "engine/telemetry"},
+    "engine/cluster": {"engine/core", "engine/models", "engine/world", "engine/synthesis", "engine/exchange",
+                       "engine/amplify", "engine/telemetry"},
     "engine/visibility": {"engine/core"},
     "engine/image": {"engine/core"},
     "engine/gltf": {"engine/core", "engine/image"},
@@ -40,7 +42,7 @@ MAY_KNOW = {
 MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/handmade", "engine/input"}
 MAY_KNOW["engine/frametest"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["engine/inspect"] = MAY_KNOW["engine/app"] | {"engine/app"}
-MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/inspect", "engine/frametest", "engine/compare"}
+MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/inspect", "engine/frametest", "engine/compare", "engine/cluster"}
 MAY_KNOW["engine/prefab"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/gltf"}
 MAY_KNOW["game"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/audio", "engine/save"}
 MAY_KNOW["editor/document"] = {"engine/core", "engine/models", "engine/world", "engine/handmade", "engine/image"}
@@ -91,6 +93,7 @@ ONLY_IN = {
     r"^spdlog/": {"engine/core"},
     r"^(AL/|sndfile)": {"engine/audio"},
     r"^sqlite3": {"engine/save"},
+    r"^mpi": {"engine/cluster"},
     r"^Q[A-Z]|^Qt": {folder for folder in MAY_KNOW if folder.startswith("editor")},
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
@@ -167,6 +170,7 @@ def self_test():
         "editor/document/b.hpp": '#include "editor/window/window.hpp"',
         "engine/scene/b.hpp": '#include "editor/document/document.hpp"',
         "engine/world/b.hpp": "#include <QString>",
+        "engine/amplify/a.cpp": "#include <mpi.h>",
     }
     for path, line in bad.items():
         assert violations(path, [line]), f"not noticed: {path}: {line}"

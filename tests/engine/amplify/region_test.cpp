@@ -32,8 +32,12 @@ TEST(Region, NumbersEachOfItsBlocksOnce) {
   const Region region{-2, 5, 1, 7};
   ASSERT_EQ(region.block_count(), 6u);
   std::set<core::BlockCoord> blocks;
-  for (std::uint64_t i = 0; i < region.block_count(); ++i)
+  for (std::uint64_t i = 0; i < region.block_count(); ++i) {
     blocks.insert(region.block(i));
+    EXPECT_EQ(region.number_of(region.block(i)), i);
+  }
+  for (const core::BlockCoord outside : {core::BlockCoord{-3, 5}, {1, 5}, {0, 4}, {0, 7}})
+    EXPECT_EQ(region.number_of(outside), std::nullopt);
   EXPECT_EQ(blocks.size(), 6u);
   EXPECT_EQ(*blocks.begin(), (core::BlockCoord{-2, 5}));
   EXPECT_EQ(*blocks.rbegin(), (core::BlockCoord{0, 6}));

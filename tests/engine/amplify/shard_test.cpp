@@ -133,6 +133,19 @@ TEST(Shard, MakesAgainWhatLostItsFile) {
   EXPECT_TRUE(contents_of(folder.path()) == whole);
 }
 
+TEST(Shard, ClearsAwayWhatAProcessOnAnyHostLeftHalfDoneOfItsBlocks) {
+  const TemporaryFolder folder;
+  const auto left = [&](const char* block) {
+    return folder / ("." + std::string(block) + ".glb.99999999-0@another.partial");
+  };
+  for (const char* block : {"block_1_0", "block_4_2", "block_9_9"})
+    std::ofstream(left(block)) << "half";
+  ASSERT_TRUE(make(parsed(kSmallWorld), {1, 2}, folder.path(), Format::kGlb));
+  EXPECT_FALSE(std::filesystem::exists(left("block_1_0")));
+  EXPECT_TRUE(std::filesystem::exists(left("block_4_2"))) << "that of another shard";
+  EXPECT_TRUE(std::filesystem::exists(left("block_9_9")));
+}
+
 TEST(Shard, WhoseModelsFailIsNotComplete) {
   const TemporaryFolder folder;
   ThrowingWorld throwing;

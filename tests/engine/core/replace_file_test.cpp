@@ -44,7 +44,7 @@ TEST(ReplaceFile, WritesANewFileAndReplacesAnOldOneAndLeavesNothingElse) {
 
 TEST(ReplaceFile, WorksBesideALeftOverOfAnInterruptedWrite) {
   const TemporaryFolder folder;
-  write_bytes(folder / (".a.bin." + std::to_string(getpid()) + "-0.partial"), text("left over"));
+  const FileReplacement other(folder / "a.bin");  // has the first name that there is
   ASSERT_TRUE(replace_file(folder / "a.bin", text("new")));
   EXPECT_EQ(bytes_of(folder / "a.bin"), text("new"));
 }
@@ -146,12 +146,16 @@ TEST(ReplaceFile, WhatAKilledProcessLeftBehindIsCleanedUpAndNothingElse) {
   // No process has a number beyond the kernel's limit of 2^22.
   for (const std::string& name :
        {std::string(".a.bin.99999999-0.partial"), mine, std::string("b.99999999-0.partial"),
-        std::string(".x.partial"), std::string("a.bin")}) {
+        std::string(".x.partial"), std::string("a.bin"),
+        std::string(".a.bin.99999999-0@another.partial")}) {
     std::ofstream(folder / name) << "half";
   }
   remove_stale_partials(folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder / ".a.bin.99999999-0.partial"));
-  EXPECT_EQ(folder.file_count(), 4u);
+  EXPECT_EQ(folder.file_count(), 5u);  // that of another host, whose processes are unknown, stays
+  remove_partials_of(folder.path(), [](const std::string& file) { return file == "a.bin"; });
+  EXPECT_EQ(folder.file_count(), 3u);
+  EXPECT_FALSE(std::filesystem::exists(folder / mine));
 }
 
 }  // namespace

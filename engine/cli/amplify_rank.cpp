@@ -1,0 +1,92 @@
+// psygen amplify as one of several ranks of a cluster.
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <thread>
+
+#include "engine/cli/commands.hpp"
+#include "engine/cli/interrupt.hpp"
+#include "engine/cluster/job.hpp"
+#include "engine/cluster/one_mind.hpp"
+#include "engine/core/log.hpp"
+#include "engine/telemetry/progress_bar.hpp"
+
+namespace psygen::cli {
+namespace {
+
+unsigned allowed_processors() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (sched_getaffinity(0, sizeof(set), &set) != 0) return std::thread::hardware_concurrency();
+  return static_cast<unsigned>(CPU_COUNT(&set));
+}
+
+// What every rank says is said once.
+int end_with(const core::Error& error, cluster::Peers& peers) {
+  if (peers.rank() == 0) core::log_error(error.message);
+  peers.finish();
+  return exit_code_of(error);
+}
+
+}  // namespace
+
+int AmplifyCommand::run_rank() {
+  const auto peers = cluster::join_peers();
+  if (!peers) {
+    core::log_error(peers.error().message);
+    return exit_code_of(peers.error());
+  }
+  return run_rank(**peers);
+}
+
+int AmplifyCommand::run_rank(cluster::Peers& peers) {
+  models::Registry registry = models::make_standard_registry();
+  const auto world = load_world(world_, registry);
+  core::Result<void> loaded{};
+  if (!world) loaded = tl::unexpected(world.error());
+  if (auto ok = cluster::agree(loaded, peers); !ok) return end_with(ok.error(), peers);
+  const auto region = region_of(*world);
+  if (!region) loaded = tl::unexpected(region.error());
+  if (auto ok = cluster::agree(loaded, peers); !ok) return end_with(ok.error(), peers);
+  amplify::Options options;
+  options.threads =
+      threads_ > 0
+          ? threads_
+          : amplify::threads_for(cluster::threads_for_rank(
+                allowed_processors(), std::thread::hardware_concurrency(), peers.count_here()));
+  options.stop = &stop_at_interrupt();
+  std::optional<telemetry::ProgressBar> bar;
+  if (peers.rank() == 0) {
+    bar.emplace(telemetry::stderr_terminal(), "amplifying " + world->name,
+                static_cast<double>(region->block_count()) / peers.count());
+    options.progress = [&bar](std::uint64_t blocks) { bar->update(static_cast<double>(blocks)); };
+  }
+  const amplify::JobFormat format = out_.empty() ? std::nullopt : exchange::format_from(format_);
+  const auto job = cluster::amplify_together(*world, registry, *region, format, PSYGEN_VERSION,
+                                             out_, options, peers);
+  if (!job && job.error().common) return end_with(job.error().error, peers);
+  if (!job) {
+    core::log_error(
+        fmt::format("rank {} ({}): {}", peers.rank(), peers.host(), job.error().error.message));
+    peers.abort();
+    return kFailed;
+  }
+  if (job->report.stopped) {  // of the others, two say so: one of them may be the one that died
+    if (peers.rank() < 2)
+      core::log_error(
+          fmt::format("rank {}: told to stop after {} blocks: a rank died, or the job "
+                      "was ended; the same command goes on",
+                      peers.rank(), job->report.totals.blocks));
+    return kFailed;
+  }
+  peers.finish();
+  if (peers.rank() != 0) return job->report.complete ? kOk : kFailed;
+  AmplifyFigures figures{job->report.totals, job->report.complete, {}, {}, {}, 0, 0, 0};
+  figures.times = {job->report.seconds, job->report.cpu_seconds, job->report.threads};
+  if (format) figures.files = {job->written, job->skipped};
+  figures.ranks = peers.count();
+  figures.messages = job->messages;
+  return print_figures(figures, false);
+}
+
+}  // namespace psygen::cli

@@ -1,0 +1,208 @@
+#include "engine/cluster/job.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <sstream>
+#include <utility>
+
+#include "engine/cluster/claim_source.hpp"
+#include "engine/cluster/one_mind.hpp"
+#include "engine/cluster/take_over.hpp"
+
+namespace psygen::cluster {
+namespace {
+
+using amplify::BlockRanges;
+using amplify::BlockRun;
+using amplify::Totals;
+
+constexpr unsigned kProgressMs = 1, kShownMs = 100;
+
+tl::unexpected<JobError> common(const core::Error& error) {
+  return tl::unexpected(JobError{error, true});
+}
+
+std::string text_of(const BlockRanges& blocks) {
+  std::string text;
+  for (const BlockRun& run : blocks.runs())
+    text += fmt::format("{} {} ", run.first, run.end);
+  return text;
+}
+
+BlockRanges ranges_from(const std::string& text) {
+  std::istringstream numbers(text);
+  BlockRanges blocks;
+  for (BlockRun run; numbers >> run.first >> run.end;)
+    blocks.append(run);
+  return blocks;
+}
+
+// Each rank prices its part of the samples; together they are the same for all.
+amplify::CostMap shared_costs(const world::World& world, const models::Registry& registry,
+                              const amplify::JobKey& key, Peers& peers) {
+  const std::uint64_t blocks = key.region.block_count();
+  if (peers.count() == 1) return amplify::CostMap::flat(blocks);
+  const amplify::CostRates rates{key.format ? amplify::kGlbSecondsPerTriangle : 0};
+  const std::uint64_t samples = amplify::sample_count(key.region);
+  const auto border = [&](std::uint64_t rank) { return samples * rank / peers.count(); };
+  const std::vector<double> mine = amplify::prices_of(
+      world, registry, key.region, rates, border(peers.rank()), border(peers.rank() + 1));
+  std::string bytes(mine.size() * sizeof(double), '\0');
+  std::memcpy(bytes.data(), mine.data(), bytes.size());
+  std::vector<double> all;
+  for (const std::string& part : peers.exchange(bytes)) {
+    const std::size_t before = all.size();
+    all.resize(before + part.size() / sizeof(double));
+    std::memcpy(all.data() + before, part.data(), part.size());
+  }
+  return amplify::CostMap::from(blocks, std::move(all));
+}
+
+std::string text_of(const JobReport& job) {
+  const amplify::Report& r = job.report;
+  const Totals& t = r.totals;
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {}", t.blocks, t.models, t.triangles,
+                     t.bytes, t.failed, t.hash.sum(), t.hash.count(), r.threads,
+                     std::bit_cast<std::uint64_t>(r.cpu_seconds), job.written, job.skipped,
+                     job.messages, t.first_failure);
+}
+
+void add_from(const std::string& text, JobReport& sum) {
+  std::istringstream numbers(text);
+  amplify::Report& r = sum.report;
+  Totals t;
+  std::uint64_t hash_sum = 0, hash_count = 0, cpu = 0, written = 0, skipped = 0, messages = 0;
+  unsigned threads = 0;
+  numbers >> t.blocks >> t.models >> t.triangles >> t.bytes >> t.failed >> hash_sum >> hash_count >>
+      threads >> cpu >> written >> skipped >> messages;
+  std::getline(numbers >> std::ws, t.first_failure);
+  t.hash = synthesis::WorldHash::restored(hash_sum, hash_count);
+  r.totals.add(t);
+  r.threads += threads;
+  r.cpu_seconds += std::bit_cast<double>(cpu);
+  sum.written += written;
+  sum.skipped += skipped;
+  sum.messages += messages;
+}
+
+// A job while it is set up: the steps of amplify_together(), in their order.
+struct Start {
+  const world::World& world;
+  const models::Registry& registry;
+  const std::filesystem::path& folder;
+  Peers& peers;
+  amplify::JobKey key{};
+  std::unique_ptr<amplify::Ledger> job{}, mine{};  // job: at rank 0
+  std::unique_ptr<amplify::BlockFolder> files{};
+  BlockRanges done{};
+
+  // Rank 0 opens the ledger of the job and tells the others what is finished.
+  core::Result<void> take_over_folder() {
+    core::Result<void> taken{};
+    if (peers.rank() == 0) {
+      auto opened = take_over(folder, key);
+      if (opened) job = std::move(*opened);
+      if (!opened) taken = tl::unexpected(opened.error());
+    }
+    if (auto ok = agree(taken, peers); !ok) return ok;
+    const std::string text = job ? text_of(*amplify::blocks_of(job->finished())) : "";
+    done = ranges_from(peers.exchange(text).front());
+    return {};
+  }
+
+  // Rank 0 first, so that it alone claims the folder.
+  core::Result<void> open_files(bool now) {
+    core::Result<void> opened{};
+    if (now && key.format) {
+      auto made = amplify::BlockFolder::open(folder, world, registry, *key.format);
+      if (made) files = std::move(*made);
+      if (!made) opened = tl::unexpected(made.error());
+    }
+    return agree(opened, peers);
+  }
+
+  core::Result<void> open_ledger() {
+    core::Result<void> opened{};
+    auto made = amplify::Ledger::open(
+        rank_ledger(folder, peers.rank()),
+        {key, fmt::format("rank {}", peers.rank()), {0, key.region.block_count()}, {}, 0});
+    if (made) mine = std::move(*made);
+    if (!made) opened = tl::unexpected(made.error());
+    return agree(opened, peers);
+  }
+
+  core::Result<void> open() {
+    if (auto ok = check_folder(folder, peers); !ok) return ok;
+    if (auto ok = take_over_folder(); !ok) return ok;
+    if (auto ok = open_files(peers.rank() == 0); !ok) return ok;
+    if (auto ok = open_files(peers.rank() != 0); !ok) return ok;
+    return open_ledger();
+  }
+};
+
+// Runs the blocks of this rank.
+core::Result<amplify::Report> run_rank(Start& start, const amplify::Options& given) {
+  const amplify::Region& region = start.key.region;
+  Peers& peers = start.peers;
+  const Plan plan(BlockRanges({0, region.block_count()}).without(start.done),
+                  shared_costs(start.world, start.registry, start.key, peers), peers.count());
+  ClaimSource source(plan, peers, given.threads, start.mine.get());
+  amplify::Options options = given;
+  options.source = &source;
+  options.make_sink = nullptr;
+  if (start.files) options.make_sink = [&start] { return start.files->make_sink(); };
+  unsigned calls = 0;
+  if (peers.rank() == 0 && peers.count() > 1) {
+    options.progress_period_ms = kProgressMs;
+    options.progress = [&](std::uint64_t blocks) {
+      peers.progress();
+      if (given.progress && ++calls % (kShownMs / kProgressMs) == 0) given.progress(blocks);
+    };
+  }
+  return amplify::amplify(start.world, start.registry, region, options);
+}
+
+}  // namespace
+
+unsigned threads_for_rank(unsigned allowed, unsigned of_machine, unsigned ranks_here) {
+  return std::max(1u, std::min(allowed, of_machine / std::max(1u, ranks_here)));
+}
+
+tl::expected<JobReport, JobError> amplify_together(
+    const world::World& world, const models::Registry& registry, const amplify::Region& region,
+    amplify::JobFormat format, std::string_view version, const std::filesystem::path& folder,
+    const amplify::Options& options, Peers& peers) {
+  const auto key = amplify::job_key(world, registry, region, format, version);
+  if (auto ok = check_keys(key, peers); !ok) return common(ok.error());
+  Start start{world, registry, folder, peers, *key};
+  if (!folder.empty())
+    if (auto ok = start.open(); !ok) return common(ok.error());
+  auto made = run_rank(start, options);
+  if (!made) return tl::unexpected(JobError{made.error(), false});
+  JobReport own{std::move(*made), 0, 0, peers.messages()};
+  if (start.files) {
+    own.written = start.files->written();
+    own.skipped = start.files->skipped();
+  }
+  if (own.report.stopped) return own;
+  JobReport all;
+  for (const std::string& text : peers.exchange(text_of(own)))
+    add_from(text, all);
+  core::Result<void> gathered{};
+  start.mine.reset();
+  if (start.job) {
+    for (const amplify::Finished& finished : start.job->finished())
+      all.report.totals.add(finished.totals);
+  }
+  if (auto ok = agree({}, peers); !ok) return common(ok.error());  // all ledgers are closed
+  if (start.job) gathered = gather_ledgers(folder, *start.job);
+  if (auto ok = agree(gathered, peers); !ok) return common(ok.error());
+  all.report.seconds = own.report.seconds;
+  all.report.complete = all.report.totals.failed == 0;
+  return all;
+}
+
+}  // namespace psygen::cluster

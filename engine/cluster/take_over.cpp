@@ -1,0 +1,91 @@
+#include "engine/cluster/take_over.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/amplify/block_files.hpp"
+#include "engine/amplify/shard.hpp"
+
+namespace psygen::cluster {
+namespace {
+
+using amplify::Finished;
+
+constexpr const char* kWhole = "all blocks";
+
+std::vector<std::filesystem::path> rank_ledgers(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name.starts_with("rank_") && name.ends_with(amplify::kLedgerExtension))
+      files.push_back(it->path());
+  }
+  return files;
+}
+
+bool holds(const std::vector<Finished>& all, const amplify::BlockRun& run) {
+  return std::ranges::any_of(
+      all, [&](const Finished& f) { return f.run.first <= run.first && run.end <= f.run.end; });
+}
+
+// Adds what the ledgers of ranks have. An entry that was taken over before a job was killed is in
+// both: it counts once.
+core::Result<void> add_from(const std::vector<std::filesystem::path>& files,
+                            const amplify::JobKey& key, std::vector<Finished>& all) {
+  const std::vector<Finished> before = all;
+  for (const std::filesystem::path& file : files) {
+    auto ledger = amplify::read_ledger(file);
+    if (!ledger) return tl::unexpected(ledger.error());
+    const std::string other = amplify::difference(key, ledger->key);
+    if (!other.empty())
+      return core::fail(core::ErrorCode::kInvalidArgument,
+                        fmt::format("{}: is of {}; choose another folder", file.string(), other));
+    for (Finished& finished : ledger->finished)
+      if (!holds(before, finished.run)) all.push_back(std::move(finished));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::filesystem::path rank_ledger(const std::filesystem::path& folder, unsigned rank) {
+  return folder / fmt::format("rank_{}{}", rank, amplify::kLedgerExtension);
+}
+
+core::Result<void> gather_ledgers(const std::filesystem::path& folder, amplify::Ledger& job) {
+  const std::vector<std::filesystem::path> files = rank_ledgers(folder);
+  std::vector<Finished> all = job.finished();
+  if (auto ok = add_from(files, job.key(), all); !ok) return ok;
+  if (auto once = amplify::blocks_of(all); !once)
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("{}: its ledgers do not fit together: {}; remove them (blocks "
+                                  "that are there are not written again)",
+                                  folder.string(), once.error().message));
+  all = amplify::compacted(amplify::with_files(std::move(all), job.key(), folder));
+  if (auto ok = job.rewrite(std::move(all)); !ok) return ok;
+  for (const std::filesystem::path& file : files) {
+    std::error_code error;
+    std::filesystem::remove(file, error);
+    if (error)
+      return core::fail(core::ErrorCode::kIo,
+                        fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+  }
+  return {};
+}
+
+core::Result<std::unique_ptr<amplify::Ledger>> take_over(const std::filesystem::path& folder,
+                                                         const amplify::JobKey& key) {
+  const amplify::BlockRun all{0, key.region.block_count()};
+  auto job = amplify::Ledger::open(folder / fmt::format("job{}", amplify::kLedgerExtension),
+                                   {key, kWhole, all, {}, 0});
+  if (!job) return job;
+  amplify::remove_partial_blocks(folder, [](core::BlockCoord) { return true; });
+  if (auto ok = gather_ledgers(folder, **job); !ok) return tl::unexpected(ok.error());
+  return job;
+}
+
+}  // namespace psygen::cluster

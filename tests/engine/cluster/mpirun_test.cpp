@@ -1,0 +1,143 @@
+// Real ranks: psygen under mpirun, as people start it. Processes die at calls that write something,
+// at moments that a seed chooses (tests/faults.hpp).
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "tests/engine/cli/psygen_process.hpp"
+#include "tests/engine/world/shipped.hpp"
+#include "tests/full_disk.hpp"
+
+namespace psygen::cli {
+namespace {
+
+// Containers, root and fewer processors than ranks are allowed; messages go through memory.
+constexpr const char* kMpi =
+    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
+    "OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_btl=self,vader "
+    "OMPI_MCA_odls_base_sigkill_timeout=0 mpirun";
+
+class Mpirun : public testing::Test {
+ protected:
+  Mpirun() { std::ofstream(folder_ / "small.toml") << world::testing::kSmallWorld; }
+
+  // `ranks`: the arguments of mpirun, with PSYGEN for the command.
+  Outcome run(std::string ranks) const {
+    for (std::size_t at; (at = ranks.find("PSYGEN ")) != std::string::npos;)
+      ranks.replace(at, 7, PSYGEN_EXECUTABLE " amplify ");
+    const auto out = folder_ / "stdout", err = folder_ / "stderr";
+    const std::string command =
+        fmt::format("cd {} && {} {} >{} 2>{} </dev/null", folder_.path().string(), kMpi, ranks,
+                    out.string(), err.string());
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
+  }
+  Outcome alone(const std::string& arguments) const {
+    return run_psygen("amplify --world small.toml " + arguments, "", folder_.path());
+  }
+  static std::string hash_in(const Outcome& outcome) {
+    if (outcome.code != 0) return outcome.err;
+    return nlohmann::json::parse(outcome.out)["hash"];
+  }
+  FileContents blocks_in(const std::string& folder) const {
+    FileContents contents = contents_of(folder_ / folder);
+    std::erase_if(contents, [](const auto& file) { return file.first.ends_with(".ledger"); });
+    return contents;
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(Mpirun, OneTwoAndFourRanksHaveTheHashAndTheFilesOfOneThread) {
+  const std::string hash = hash_in(alone("--threads 1 --json --out alone"));
+  for (const int ranks : {1, 2, 4}) {
+    const Outcome job =
+        run(fmt::format("-n {0} PSYGEN --world small.toml --json --out r{0}", ranks));
+    EXPECT_EQ(hash_in(job), hash);
+    EXPECT_TRUE(blocks_in(fmt::format("r{}", ranks)) == blocks_in("alone"));
+    EXPECT_EQ(nlohmann::json::parse(job.out)["ranks"], ranks);
+  }
+  EXPECT_EQ(hash_in(run("-n 2 PSYGEN --world small.toml --json")), hash);
+}
+
+TEST_F(Mpirun, AJobWhoseRanksAreKilledAtAnyMomentGoesOn) {
+  const std::string region = " --region 1,1,4,4";
+  const std::string hash = hash_in(alone("--threads 1 --json --out alone" + region));
+  const FileContents whole = blocks_in("alone");
+  std::mt19937 random(31);
+  const std::string mortal = fmt::format(
+      "-x LD_PRELOAD={} -x PSYGEN_FULL_DISK={} -x PSYGEN_DIES=1 -x PSYGEN_CALLS_LEFT={{}} "
+      "PSYGEN --world small.toml{} --out {{}}",
+      PSYGEN_FAULTS, folder_.path().string(), region);
+  int killed = 0;
+  for (int round = 0; killed < 20; ++round) {
+    ASSERT_LT(round, 12) << "hardly any moment kills";
+    const std::string out = fmt::format("job{}", round);
+    for (int lives = 0; lives < 6 && killed < 20; ++lives) {
+      // One rank of three, or all of them: the whole job.
+      const bool all = random() % 4 == 0;
+      const unsigned calls = static_cast<unsigned>(random() % 40);
+      const std::string one = fmt::format(fmt::runtime(mortal), calls, out);
+      const std::string rest = fmt::format(" : -n {} PSYGEN --world small.toml{} --out {}",
+                                           1 + random() % 2, region, out);
+      const Outcome dead = run(all                 ? "-n 2 " + one
+                               : random() % 2 == 0 ? "-n 1 " + one + rest
+                                                   : rest.substr(3) + " : -n 1 " + one);
+      if (dead.code == 0) break;  // it lived to the end
+      ++killed;
+      EXPECT_TRUE(mentions(dead.err, "signal 9 (Killed)")) << dead.err;
+      for (const auto& [name, content] : blocks_in(out))
+        if (!name.ends_with(".partial") && name != ".psygen_shared") {
+          EXPECT_TRUE(whole.contains(name) && whole.at(name) == content) << name;
+        }
+    }
+    EXPECT_EQ(hash_in(run("-n 2 PSYGEN --world small.toml --json --out " + out + region)), hash);
+    EXPECT_TRUE(blocks_in(out) == whole) << round;
+  }
+}
+
+TEST_F(Mpirun, RanksThatAreNotOfOneMindSayWhy) {
+  const Outcome worlds =
+      run("-n 1 PSYGEN --world small.toml : -n 1 PSYGEN --world paper --region 0,0,8,4");
+  EXPECT_NE(worlds.code, 0);
+  EXPECT_TRUE(mentions(worlds.err, "it has the world paper instead of small")) << worlds.err;
+  std::filesystem::create_directory(folder_ / "a");
+  std::filesystem::create_directory(folder_ / "b");
+  const std::string where = "PSYGEN --world " + (folder_ / "small.toml").string() + " --out job";
+  const Outcome folders =
+      run(fmt::format("-n 1 --wdir {} {} : -n 1 --wdir {} {}", (folder_ / "a").string(), where,
+                      (folder_ / "b").string(), where));
+  EXPECT_NE(folders.code, 0);
+  EXPECT_TRUE(mentions(folders.err, "--out must be a folder that all ranks share")) << folders.err;
+  const Outcome sets =
+      run("-n 1 PSYGEN --world small.toml --simd scalar --json : -n 1 PSYGEN --world small.toml "
+          "--json");
+  EXPECT_EQ(hash_in(sets), hash_in(alone("--json"))) << "instruction sets agree on every bit";
+}
+
+TEST_F(Mpirun, AFullDiskEndsTheJobWithTheFileAndTheReason) {
+  const Outcome full = run(fmt::format(
+      "-n 1 PSYGEN --world small.toml --out job : -n 1 -x LD_PRELOAD={} -x PSYGEN_FULL_DISK={} "
+      "-x PSYGEN_CALLS_LEFT=60 PSYGEN --world small.toml --out job",
+      PSYGEN_FAULTS, folder_.path().string()));
+  EXPECT_NE(full.code, 0);
+  EXPECT_TRUE(mentions(full.err, "psygen: error: rank 1")) << full.err;
+  EXPECT_TRUE(mentions(full.err, "No space left on device")) << full.err;
+}
+
+// The library of MPI that the loader finds first is none.
+TEST_F(Mpirun, WithoutMpiThereIsASentenceAndThePlainCommandWorks) {
+  std::ofstream(folder_ / "libmpi.so.40") << "no library";
+  const std::string hidden = "LD_LIBRARY_PATH=" + folder_.path().string();
+  const Outcome rank =
+      run_psygen("amplify --world small.toml", hidden + " OMPI_COMM_WORLD_SIZE=2", folder_.path());
+  EXPECT_EQ(rank.code, 1);
+  EXPECT_TRUE(mentions(rank.err, "one of several of mpirun, but MPI cannot be loaded")) << rank.err;
+  EXPECT_TRUE(mentions(rank.err, "libmpi.so.40")) << rank.err;
+  EXPECT_EQ(run_psygen("amplify --world small.toml", hidden, folder_.path()).code, 0);
+}
+
+}  // namespace
+}  // namespace psygen::cli
