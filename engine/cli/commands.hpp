@@ -18,6 +18,7 @@
 #include "engine/cli/standard_streams.hpp"
 #include "engine/cluster/peers.hpp"
 #include "engine/exchange/write_document.hpp"
+#include "engine/tiles/tile_tree.hpp"
 
 namespace psygen::cli {
 
@@ -130,12 +131,17 @@ class ExportCommand {
                                                   const world::Palette& palette) const;
   core::Result<exchange::Document> block_document(const world::World& world,
                                                   const models::Registry& registry) const;
+  int export_region(const world::World& world, const models::Registry& registry) const;
 
   CLI::App* command_;
   std::string model_, world_ = kDefaultWorld, out_;
   std::vector<std::string> settings_;  // name=value
   std::optional<core::BlockCoord> block_;
   int level_ = 0;
+  std::optional<amplify::Region> region_;
+  std::string format_ = "3dtiles";  // of a region
+  std::optional<tiles::NodeLevels> levels_;
+  unsigned threads_ = 0;
 };
 
 // `psygen calibrate`.

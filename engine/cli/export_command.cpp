@@ -138,19 +138,37 @@ ExportCommand::ExportCommand(CLI::App& cli)
   c.add_option("--world", world_, "World of the block, or with the model's species")
       ->capture_default_str();
   c.add_option("--level", level_, "Level of detail; 0 is full")->transform(integer_between(0, 31));
-  c.add_option("--out", out_, "File to write: .glb or .obj")
-      ->required()
-      ->check(valid_if(format_of, "FILE"));
+  auto* region = c.add_option_function<std::string>(
+      "--region", [this](const std::string& text) { region_ = *amplify::parse_region(text); },
+      "Blocks X0,Z0,X1,Z1 of the world, without X1 and Z1, as one tileset for streaming");
+  region->check(valid_if(amplify::parse_region, "REGION"))->excludes(model)->excludes(block);
+  c.add_option("--format", format_, "What is written of a region")
+      ->check(one_of({"3dtiles"}))
+      ->capture_default_str()
+      ->needs(region);
+  c.add_option_function<std::string>(
+       "--levels", [this](const std::string& text) { levels_ = *tiles::parse_levels(text); },
+       "FINEST-COARSEST level of a region's tiles: one of level k has 2^k x 2^k blocks; default: "
+       "from 0 to one tile for all")
+      ->check(valid_if(tiles::parse_levels, "LEVELS"))
+      ->needs(region);
+  c.add_option("--threads", threads_, "Threads for a region; default: one per processor")
+      ->transform(integer_between(1, amplify::kMaxThreads))
+      ->needs(region);
+  c.add_option("--out", out_, "File to write: .glb or .obj; folder of a region")->required();
   c.callback([this] {
-    if (model_.empty() && !block_)
-      throw CLI::RequiredError("psygen export: one of --model and --block");
+    if (model_.empty() && !block_ && !region_)
+      throw CLI::RequiredError("psygen export: one of --model, --block and --region");
+    if (region_) return;
+    if (const auto format = format_of(out_); !format)
+      throw CLI::ValidationError("--out", format.error().message);
   });
 }
 
 int ExportCommand::run() const {
   models::Registry registry = models::make_standard_registry();
   std::optional<world::World> world;
-  if (block_ || command_->count("--world") > 0) {
+  if (block_ || region_ || command_->count("--world") > 0) {
     auto loaded = load_world(world_, registry);
     if (!loaded) {
       core::log_error(loaded.error().message);
@@ -158,6 +176,7 @@ int ExportCommand::run() const {
     }
     world = std::move(*loaded);
   }
+  if (region_) return export_region(*world, registry);
   const auto document =
       block_ ? block_document(*world, registry)
              : model_document(registry, world ? world::drawn_palette(*world) : world::Palette{});

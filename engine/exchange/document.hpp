@@ -36,6 +36,7 @@ struct Object {
 struct Document {
   std::string name;
   std::vector<Object> objects;
+  glm::dvec3 origin{0.0};  // where all of it stands; files other than .glb leave it out
   // Sums over all parts.
   std::uint64_t vertex_count() const;
   std::uint64_t triangle_count() const;

@@ -49,6 +49,16 @@ class GlbWriter {
     model_.nodes.push_back(std::move(node));
   }
 
+  // Puts everything below a node that stands at `origin`.
+  void move_all_to(const glm::dvec3& origin) {
+    if (origin == glm::dvec3(0.0) || model_.nodes.empty()) return;
+    tinygltf::Node root;
+    root.translation = {origin.x, origin.y, origin.z};
+    root.children = std::move(model_.scenes[0].nodes);
+    model_.scenes[0].nodes = {static_cast<int>(model_.nodes.size())};
+    model_.nodes.push_back(std::move(root));
+  }
+
   core::Result<std::vector<std::uint8_t>> finish(const std::string& name) {
     model_.scenes[0].name = name;
     std::size_t bytes = 0;
@@ -170,6 +180,7 @@ core::Result<std::vector<std::uint8_t>> glb_bytes(const Document& document) {
   GlbWriter writer;
   for (const Object& object : document.objects)
     writer.add(object);
+  writer.move_all_to(document.origin);
   return writer.finish(document.name);
 }
 

@@ -48,6 +48,7 @@ struct Ground {
   double block_size_m;
   float cell_m;
   core::Bounds box;
+  float skirt_m;
 };
 
 Vertex terrain_vertex(const models::MeshView& mesh, std::uint32_t i, const Ground& ground) {
@@ -58,7 +59,8 @@ Vertex terrain_vertex(const models::MeshView& mesh, std::uint32_t i, const Groun
   const glm::vec3 normal =
       models::decode_octahedral(glm::vec2(v.normal_x, v.normal_z) * (1.0F / 127.0F));
   const glm::vec2 place = world::pattern_place(ground.block, ground.block_size_m, plane);
-  return {{plane.x, height_m, plane.y},
+  const float hangs_m = (v.grid_x & 0x80) != 0 ? ground.skirt_m : 0.0F;
+  return {{plane.x, height_m - hangs_m, plane.y},
           normal,
           ground_albedo(ground.palette, height_m, normal, place, v.height,
                         static_cast<float>(v.road) * (1.0F / 255.0F)),
@@ -104,7 +106,7 @@ class Builder {
 
 std::vector<Vertex> vertices_of(const models::ModelType& type, const models::Parameters& p,
                                 const models::MeshSize& size, const models::MeshView& mesh,
-                                const world::Palette& palette) {
+                                const world::Palette& palette, float skirt_m) {
   const core::Bounds box = type.bounds(p);
   std::vector<Vertex> vertices(size.vertex_count);
   if (size.layout == core::VertexLayout::kModel) {
@@ -119,7 +121,8 @@ std::vector<Vertex> vertices_of(const models::ModelType& type, const models::Par
                        static_cast<std::int32_t>(p.integer(models::kTerrainBlockZ))},
                       block_size_m,
                       static_cast<float>(block_size_m / cells),
-                      box};
+                      box,
+                      skirt_m};
   for (std::uint32_t i = 0; i < size.vertex_count; ++i)
     vertices[i] = terrain_vertex(mesh, i, ground);
   return vertices;
@@ -127,7 +130,8 @@ std::vector<Vertex> vertices_of(const models::ModelType& type, const models::Par
 
 core::Result<Object> object_of(const models::ModelType& type, const models::Parameters& p,
                                int level, const models::MeshSize& size,
-                               const models::MeshView& mesh, const world::Palette& palette) {
+                               const models::MeshView& mesh, const world::Palette& palette,
+                               float skirt_m) {
   std::vector<std::uint16_t> shared;
   std::span<const std::uint16_t> indices = mesh.indices;
   if (size.shared_indices != 0) {
@@ -136,10 +140,10 @@ core::Result<Object> object_of(const models::ModelType& type, const models::Para
     indices = shared;
   }
   // The surface comes first, then the skirt.
-  if (size.layout == core::VertexLayout::kTerrain)
+  if (size.layout == core::VertexLayout::kTerrain && !(skirt_m > 0))
     indices = indices.first(std::size_t{3} * models::terrain_surface_triangles(p, level));
 
-  const std::vector<Vertex> vertices = vertices_of(type, p, size, mesh, palette);
+  const std::vector<Vertex> vertices = vertices_of(type, p, size, mesh, palette, skirt_m);
   Object object{std::string(type.name()), glm::vec3(0.0F), {}};
   Builder builder(object, vertices.size());
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
@@ -159,14 +163,14 @@ core::Result<Object> object_of(const models::ModelType& type, const models::Para
 
 core::Result<Object> unpack(const models::ModelType& type, const models::Parameters& p, int level,
                             const models::MeshSize& size, const models::MeshView& mesh,
-                            const world::Palette& palette) {
+                            const world::Palette& palette, float skirt_m) {
   const auto fail = [&type, level](std::string_view what) {
     return core::fail(
         core::ErrorCode::kSynthesisFailed,
         fmt::format("{} level {} threw while it was unpacked{}", type.name(), level, what));
   };
   try {  // user types may throw; our own code throws only when memory is exhausted
-    return object_of(type, p, level, size, mesh, palette);
+    return object_of(type, p, level, size, mesh, palette, skirt_m);
   } catch (const std::bad_alloc&) {
     return core::fail(core::ErrorCode::kOutOfMemory,
                       core::out_of_memory(fmt::format("{} level {}", type.name(), level)));

@@ -22,6 +22,8 @@ MAY_KNOW = {
                        "engine/exchange", "engine/telemetry"},
     "engine/cluster": {"engine/core", "engine/models", "engine/world", "engine/synthesis", "engine/exchange",
                        "engine/amplify", "engine/telemetry"},
+    "engine/tiles": {"engine/core", "engine/models", "engine/world", "engine/synthesis", "engine/exchange",
+                     "engine/amplify", "engine/telemetry"},
     "engine/visibility": {"engine/core"},
     "engine/image": {"engine/core"},
     "engine/gltf": {"engine/core", "engine/image"},
@@ -42,7 +44,7 @@ MAY_KNOW = {
 MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/handmade", "engine/input"}
 MAY_KNOW["engine/frametest"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["engine/inspect"] = MAY_KNOW["engine/app"] | {"engine/app"}
-MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/inspect", "engine/frametest", "engine/compare", "engine/cluster"}
+MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/inspect", "engine/frametest", "engine/compare", "engine/cluster", "engine/tiles"}
 MAY_KNOW["engine/prefab"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/gltf"}
 MAY_KNOW["game"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/audio", "engine/save"}
 MAY_KNOW["editor/document"] = {"engine/core", "engine/models", "engine/world", "engine/handmade", "engine/image"}

@@ -1,0 +1,53 @@
+// psygen export --region: a part of a world for other programs to stream.
+#include <fmt/format.h>
+
+#include <thread>
+
+#include "engine/cli/commands.hpp"
+#include "engine/cli/interrupt.hpp"
+#include "engine/core/log.hpp"
+#include "engine/telemetry/progress_bar.hpp"
+#include "engine/telemetry/units.hpp"
+#include "engine/tiles/tileset.hpp"
+
+namespace psygen::cli {
+namespace {
+
+// From single blocks to one tile for all.
+tiles::NodeLevels all_levels(const amplify::Region& region) {
+  tiles::NodeLevels levels;
+  const auto is_one_tile = [&] {
+    return region.x0 >> levels.coarsest == (region.x1 - 1) >> levels.coarsest &&
+           region.z0 >> levels.coarsest == (region.z1 - 1) >> levels.coarsest;
+  };
+  while (levels.coarsest < tiles::kMaxNodeLevel && !is_one_tile())
+    ++levels.coarsest;
+  return levels;
+}
+
+}  // namespace
+
+int ExportCommand::export_region(const world::World& world,
+                                 const models::Registry& registry) const {
+  const auto fail = [](const core::Error& error) {
+    core::log_error(error.message);
+    return exit_code_of(error);
+  };
+  if (auto ok = amplify::check_region(world, *region_); !ok) return fail(ok.error());
+  const auto tree = tiles::TileTree::over(*region_, levels_.value_or(all_levels(*region_)));
+  if (!tree) return fail(tree.error());
+  tiles::TilesetOptions options;
+  options.threads =
+      threads_ > 0 ? threads_ : amplify::threads_for(std::thread::hardware_concurrency());
+  options.stop = &stop_at_interrupt();
+  telemetry::ProgressBar bar(telemetry::stderr_terminal(), "tiling " + world.name, 1);
+  options.progress = [&bar](double done) { bar.update(done); };
+  const auto report = tiles::write_tileset(world, registry, *tree, out_, options);
+  if (!report) return fail(report.error());
+  core::log_info(fmt::format("wrote {}: {} tiles in {} levels, {} triangles, {}", out_,
+                             report->contents, tree->level_count(), report->triangles,
+                             telemetry::size_text(static_cast<double>(report->bytes))));
+  return kOk;
+}
+
+}  // namespace psygen::cli
