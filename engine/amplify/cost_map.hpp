@@ -19,6 +19,9 @@ namespace psygen::amplify {
 // writing, measured on one core of a Xeon with a local disk (docs/cluster.md).
 inline constexpr double kGlbSecondsPerTriangle = 0.2e-6;
 
+// Bytes of a .glb for each triangle, with its share of vertices, in the paper's world.
+inline constexpr double kGlbBytesPerTriangle = 42;
+
 // How to price blocks.
 struct CostRates {
   double seconds_per_triangle = 0;  // beside synthesis: kGlbSecondsPerTriangle with files

@@ -159,6 +159,17 @@ class CalibrateCommand {
   bool json_ = false;
 };
 
+// What `psygen schedule --ranks` simulates.
+struct ClusterOptions {
+  unsigned ranks = 0;  // 0: no cluster
+  unsigned cores = 1, threads = 0;
+  std::string world = kDefaultWorld;
+  double terabytes = 8;       // 10^12 bytes of files
+  double error_percent = 20;  // how far predictions are off, at most
+  double latency_us = 2, claims_per_s = 1e6;
+  double rank_gb_per_s = 25, storage_gb_per_s = 4600, files_per_s = 64000, file_latency_ms = 3;
+};
+
 // `psygen schedule`.
 class ScheduleCommand {
  public:
@@ -167,10 +178,14 @@ class ScheduleCommand {
   int run() const;
 
  private:
+  int compare_policies() const;
+  int simulate_cluster() const;
+
   CLI::App* command_;
   std::string file_;
   unsigned modelers_ = 2;
   double slower_ = 1;
+  ClusterOptions cluster_;
   bool json_ = false;
 };
 

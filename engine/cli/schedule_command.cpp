@@ -69,23 +69,64 @@ std::string json_of(std::span<const synthesis::PolicyFigures> rows) {
   return list.dump(2) + "\n";
 }
 
+CLI::Option* add_cluster_options(CLI::App& c, ClusterOptions& o) {
+  auto* ranks = c.add_option("--ranks", o.ranks, "Simulate psygen amplify on so many ranks");
+  ranks->transform(integer_between(1, 65536));
+  const auto number = [&](const char* name, double& value, double low, double high,
+                          const char* meaning) {
+    c.add_option(name, value, meaning)
+        ->capture_default_str()
+        ->check(number_between(low, high))
+        ->needs(ranks);
+  };
+  c.add_option("--world", o.world, "World whose blocks are priced")
+      ->capture_default_str()
+      ->needs(ranks);
+  c.add_option("--cores", o.cores, "Cores of each rank")
+      ->capture_default_str()
+      ->transform(integer_between(1, 1024))
+      ->needs(ranks);
+  c.add_option("--threads", o.threads, "Threads of each rank; default: one per core")
+      ->transform(integer_between(1, 4096))
+      ->needs(ranks);
+  number("--terabytes", o.terabytes, 1e-3, 1e9, "Size of all files, in 10^12 bytes; 0.001: 1 GB");
+  number("--error-percent", o.error_percent, 0, 100,
+         "Runs of blocks take up to this much more or less than predicted");
+  number("--latency-us", o.latency_us, 0, 1e6, "From claiming work at rank 0 to having it");
+  number("--claims-per-s", o.claims_per_s, 1, 1e12, "Claims that rank 0 answers");
+  number("--rank-gb-per-s", o.rank_gb_per_s, 1e-6, 1e9, "From a rank to the file system");
+  number("--storage-gb-per-s", o.storage_gb_per_s, 1e-6, 1e9, "Of the file system, for all ranks");
+  number("--files-per-s", o.files_per_s, 1e-3, 1e12, "Files that it creates");
+  number("--file-latency-ms", o.file_latency_ms, 0, 1e5, "Of each file until it is on the disk");
+  return ranks;
+}
+
 }  // namespace
 
 ScheduleCommand::ScheduleCommand(CLI::App& cli)
     : command_(cli.add_subcommand("schedule", "Compare the policies on recorded requests")) {
   CLI::App& c = *command_;
-  c.add_option("--requests", file_, "What `psygen fly --record-requests` wrote")->required();
+  auto* requests = c.add_option("--requests", file_, "What `psygen fly --record-requests` wrote");
   c.add_option("--modelers", modelers_, "Simulated modelers")
       ->capture_default_str()
       ->transform(integer_between(1, 256));
   c.add_option("--slower", slower_, "Every synthesis takes this many times as long")
       ->capture_default_str()
       ->check(number_between(0.001, 1e6));
+  add_cluster_options(c, cluster_)->excludes(requests);
   c.add_flag("--json", json_, "Print the figures as JSON");
+  c.callback([this] {
+    if (file_.empty() && cluster_.ranks == 0)
+      throw CLI::RequiredError("psygen schedule: one of --requests and --ranks");
+  });
   c.footer(std::string("The columns:\n") + kColumns);
 }
 
 int ScheduleCommand::run() const {
+  return cluster_.ranks > 0 ? simulate_cluster() : compare_policies();
+}
+
+int ScheduleCommand::compare_policies() const {
   auto jobs = read_stream(file_);
   if (!jobs) {
     core::log_error(jobs.error().message);

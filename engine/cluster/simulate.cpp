@@ -28,12 +28,16 @@ struct Rank {
   std::uint64_t position = 0;
   double ready_s = 0;  // when what it claimed last has arrived
   bool is_over = false;
+  std::vector<double> cores_free_s;
   Server link;
 };
 
+// A thread, and what it writes as soon as it has made it.
 struct Thread {
   double free_s = 0;
   unsigned rank = 0;
+  double bytes = 0;
+  std::uint64_t files = 0;
   friend bool operator>(const Thread& a, const Thread& b) {
     return std::pair(a.free_s, a.rank) > std::pair(b.free_s, b.rank);
   }
@@ -44,6 +48,7 @@ class Simulation {
   Simulation(const Plan& plan, const VirtualJob& job) : plan_(plan), job_(job), ranks_(job.ranks) {
     for (unsigned rank = 0; rank < job.ranks; ++rank) {
       ranks_[rank].blocks = plan.own(rank);
+      ranks_[rank].cores_free_s.resize(job.cores > 0 ? job.cores : job.threads);
       for (unsigned i = 0; i < job.threads; ++i)
         threads_.push({0, rank});
     }
@@ -51,12 +56,18 @@ class Simulation {
     report_.rank_end_s.resize(job.ranks);
   }
 
+  // The next thing that happens, until nothing does: servers meet requests in the order of time.
   VirtualReport run() {
     while (!threads_.empty()) {
       Thread thread = threads_.top();
       threads_.pop();
-      if (!fetch(thread)) continue;
-      make(thread);
+      if (thread.files > 0) {
+        write(thread);
+      } else if (fetch(thread)) {
+        make(thread);
+      } else {
+        continue;
+      }
       report_.rank_end_s[thread.rank] = std::max(report_.rank_end_s[thread.rank], thread.free_s);
       threads_.push(thread);
     }
@@ -90,16 +101,18 @@ class Simulation {
     const double seconds = job_.seconds_of(run);
     report_.core_seconds += seconds;
     report_.rank_busy_s[thread.rank] += seconds;
-    thread.free_s += seconds;
-    const double bytes = job_.bytes_of ? job_.bytes_of(run) : 0;
-    if (bytes > 0) write(thread, rank, run, bytes);
+    double& core_free_s = *std::ranges::min_element(rank.cores_free_s);
+    thread.free_s = core_free_s = std::max(thread.free_s, core_free_s) + seconds;
+    thread.bytes = job_.bytes_of ? job_.bytes_of(run) : 0;
+    thread.files = thread.bytes > 0 ? run.count() : 0;
   }
 
-  void write(Thread& thread, Rank& rank, const BlockRun& run, double bytes) {
+  void write(Thread& thread) {
     const MachineLimits& limits = job_.limits;
-    const auto files = static_cast<double>(run.count());
-    const double at_s = thread.free_s;
-    thread.free_s = std::max({rank.link.serve(at_s, bytes / limits.rank_bytes_per_second),
+    const double at_s = thread.free_s, bytes = std::exchange(thread.bytes, 0);
+    const auto files = static_cast<double>(std::exchange(thread.files, 0));
+    Server& link = ranks_[thread.rank].link;
+    thread.free_s = std::max({link.serve(at_s, bytes / limits.rank_bytes_per_second),
                               storage_.serve(at_s, bytes / limits.storage_bytes_per_second),
                               metadata_.serve(at_s, files / limits.storage_files_per_second)}) +
                     files * limits.file_latency_s;
@@ -110,7 +123,8 @@ class Simulation {
       report_.makespan_s = std::max(report_.makespan_s, end_s);
     const double all_s = report_.makespan_s;
     if (!(all_s > 0)) return report_;
-    report_.efficiency = report_.core_seconds / (all_s * job_.ranks * job_.threads);
+    const unsigned cores = job_.cores > 0 ? job_.cores : job_.threads;
+    report_.efficiency = report_.core_seconds / (all_s * job_.ranks * cores);
     for (std::size_t i = 0; i < ranks_.size(); ++i) {
       report_.worst_rank_idle =
           std::max(report_.worst_rank_idle, 1 - report_.rank_end_s[i] / all_s);

@@ -27,6 +27,7 @@ struct MachineLimits {
 // What is run.
 struct VirtualJob {
   unsigned ranks = 1, threads = 1;  // threads of each rank
+  unsigned cores = 0;               // of each rank; 0: as many as threads
   // What blocks take of one core, and how many bytes their files have; 0: no files.
   std::function<double(const amplify::BlockRun&)> seconds_of;
   std::function<double(const amplify::BlockRun&)> bytes_of;
@@ -39,7 +40,7 @@ struct VirtualJob {
 struct VirtualReport {
   double makespan_s = 0;
   double core_seconds = 0;     // of all blocks
-  double efficiency = 0;       // core_seconds / (makespan · ranks · threads)
+  double efficiency = 0;       // core_seconds / (makespan · ranks · cores)
   double worst_rank_idle = 0;  // share of its time in which the idlest rank waits at the end
   std::uint64_t claims = 0;
   std::vector<double> rank_busy_s, rank_end_s;  // seconds of threads; when its last thread ended
