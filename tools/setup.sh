@@ -12,6 +12,7 @@ packages=(
   libtomlplusplus-dev nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev
   libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev libtinygltf-dev libmeshoptimizer-dev libsqlite3-dev
   libopenal-dev libsndfile1-dev libbullet-dev qt6-base-dev libxcb1-dev libopenmpi-dev openmpi-bin
+  slurm-wlm munge
   libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind
   xvfb openbox xdotool x11-utils x11-xkb-utils chromium
 )

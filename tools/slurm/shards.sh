@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# One shard of a region for each task of a job array; then tools/slurm/merge.sh.
+#   sbatch --array=1-N tools/slurm/shards.sh N OUT [options of psygen amplify: --world, --region, --format …]
+# Every shard may be killed, requeued and submitted again (--array=3): it goes on where it was.
+#SBATCH --job-name=psygen-shards
+#SBATCH --ntasks=1
+#SBATCH --requeue
+#SBATCH --open-mode=append
+set -euo pipefail
+shards="$1" out="$2"
+shift 2
+exec "${PSYGEN:-psygen}" amplify --shard "$SLURM_ARRAY_TASK_ID/$shards" --out "$out" \
+  --threads "${SLURM_CPUS_PER_TASK:-1}" "$@"
