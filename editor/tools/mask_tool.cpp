@@ -13,54 +13,25 @@
 namespace psygen::editor {
 namespace {
 
-constexpr double kWholeWorldM = 4096;  // larger worlds get a mask around a place
-constexpr double kAroundM = 1024;      // its side
-constexpr double kPixelM = 2;
-constexpr std::uint32_t kMostPixels = 1024;  // a side, of a new mask
 constexpr int kBorderPieces = 32;
 constexpr int kTicks = 9;  // on each side of the brush's middle
 const glm::vec3 kBrushColour{0.95F, 0.96F, 1.0F}, kEraserColour{1.0F, 0.45F, 0.35F},
-    kAreaColour{0.45F, 0.75F, 1.0F}, kFullColour{0.35F, 0.95F, 0.35F},
-    kEmptyColour{0.95F, 0.25F, 0.2F};
+    kAreaColour{0.45F, 0.75F, 1.0F}, kPlannedColour{0.25F, 0.45F, 0.65F},
+    kFullColour{0.35F, 0.95F, 0.35F}, kEmptyColour{0.95F, 0.25F, 0.2F};
 
 QString mask_words(const char* text) {
   return QCoreApplication::translate("MaskTool", text);
 }
 
-// An area in whole metres, and how many pixels it gets.
-struct NewMask {
-  std::array<double, 4> area_m{};
-  std::uint32_t width = 0, height = 0;
-};
-
-NewMask new_mask(const world::World& world, glm::dvec2 around_m) {
-  const glm::dvec2 size_m =
-      glm::dvec2(double(world.blocks_x), double(world.blocks_z)) * world.block_size_m();
-  NewMask mask;
-  if (world.is_endless() || std::max(size_m.x, size_m.y) > kWholeWorldM) {
-    const glm::dvec2 corner(std::round(around_m.x - kAroundM / 2),
-                            std::round(around_m.y - kAroundM / 2));
-    mask.area_m = {corner.x, corner.y, corner.x + kAroundM, corner.y + kAroundM};
-  } else {
-    mask.area_m = {0, 0, size_m.x, size_m.y};
-  }
-  const auto pixels = [](double m) {
-    return static_cast<std::uint32_t>(std::clamp(std::ceil(m / kPixelM), 2.0, double(kMostPixels)));
-  };
-  mask.width = pixels(mask.area_m[2] - mask.area_m[0]);
-  mask.height = pixels(mask.area_m[3] - mask.area_m[1]);
-  return mask;
-}
-
 // Pieces of its own, because the view follows the ground only so far between two points.
-ToolMarks::Line border(const std::array<double, 4>& area) {
+ToolMarks::Line border(const std::array<double, 4>& area, const glm::vec3& colour) {
   const glm::dvec2 corners[] = {{area[0], area[1]},
                                 {area[2], area[1]},
                                 {area[2], area[3]},
                                 {area[0], area[3]},
                                 {area[0], area[1]}};
   ToolMarks::Line line;
-  line.colour = kAreaColour;
+  line.colour = colour;
   for (int side = 0; side < 4; ++side) {
     for (int i = 0; i < kBorderPieces; ++i)
       line.points_m.push_back(corners[side] + (corners[side + 1] - corners[side]) *
@@ -134,14 +105,20 @@ std::string MaskTool::free_name() const {
   }
 }
 
-void MaskTool::make_mask(glm::dvec2 around_m) {
+NewMask MaskTool::new_mask() const {
+  return new_mask_.value_or(default_new_mask(host_.document.world()));
+}
+
+void MaskTool::make_mask() {
   cancel();
   if (!scatter()) return host_.say(mask_words("Choose first whose mask it shall be."));
   if (has_picture()) return host_.say(mask_words("It has a mask: paint on the ground."));
-  const NewMask made = new_mask(host_.document.world(), around_m);
+  const world::World& world = host_.document.world();
+  const auto plan = plan_of(new_mask(), world, host_.around(new_mask().side_m));
+  if (!plan) return host_.say(QString::fromStdString(plan.error().message));
   auto picture = std::make_shared<world::GreyPicture>();
-  picture->width = made.width, picture->height = made.height;
-  picture->pixels.assign(std::size_t{made.width} * made.height, 65535);
+  picture->width = plan->width, picture->height = plan->height;
+  picture->pixels.assign(std::size_t{plan->width} * plan->height, 65535);
   picture->hash = world::content_hash(*picture);
   const std::string name = free_name();
   const world::TextPath path{"scatter", *scatter_};
@@ -149,7 +126,7 @@ void MaskTool::make_mask(glm::dvec2 around_m) {
       world::with_value(host_.document.text(), path.with("mask_image"), world::toml_string(name))
           .and_then([&](const std::string& with_image) {
             return world::with_value(with_image, path.with("mask_area_m"),
-                                     world::toml_vector(made.area_m));
+                                     world::toml_vector(plan->area_m));
           });
   if (!text) return host_.say(QString::fromStdString(text.error().message));
   const auto done = host_.document.paint(mask_words("New mask of %1").arg(model_name()),
@@ -231,7 +208,12 @@ bool MaskTool::cancel() {
 
 const ToolMarks& MaskTool::marks() {
   marks_ = {};
-  if (has_picture()) marks_.lines.push_back(border(mask().area_m));
+  if (has_picture()) {
+    marks_.lines.push_back(border(mask().area_m, kAreaColour));
+  } else if (scatter()) {
+    const auto area = area_of(new_mask(), host_.document.world(), host_.around(new_mask().side_m));
+    marks_.lines.push_back(border(area, kPlannedColour));
+  }
   if (!hover_m_) return marks_;
   const glm::vec3 colour = brush_.erases ? kEraserColour : kBrushColour;
   marks_.lines.push_back(circle_mark(*hover_m_, brush_.radius_m, colour));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "editor/tools/mask_stroke.hpp"
+#include "editor/tools/new_mask.hpp"
 #include "editor/tools/tool_host.hpp"
 #include "editor/view/view_tool.hpp"
 
@@ -24,9 +25,11 @@ class MaskTool final : public ViewTool {
   std::optional<std::size_t> scatter() const;
   // Whether it has a picture to paint on.
   bool has_picture() const;
-  // Gives the chosen scatter a white picture: of the whole world where it is small, else of some
-  // hundred metres around a place (x and z in the world).
-  void make_mask(glm::dvec2 around_m);
+  // Area and resolution of the next new mask: those that were set, else the world's default.
+  NewMask new_mask() const;
+  void set_new_mask(std::optional<NewMask> mask) { new_mask_ = mask; }
+  // Gives the chosen scatter a white picture like that, around what the view shows. One undo step.
+  void make_mask();
 
   const Brush& brush() const { return brush_; }
   void set_radius_m(double radius_m);
@@ -41,7 +44,8 @@ class MaskTool final : public ViewTool {
   void leave() override { hover_m_.reset(); }
   void click_right(const ToolPoint&) override {}
   bool cancel() override;
-  // The brush, what the mask has around it (green to red), and the border of its area.
+  // The brush, what the mask has around it (green to red), and the border of its area, or of the
+  // one that a new mask would have.
   const ToolMarks& marks() override;
 
  private:
@@ -52,6 +56,7 @@ class MaskTool final : public ViewTool {
 
   ToolHost host_;
   std::optional<std::size_t> scatter_;
+  std::optional<NewMask> new_mask_;  // as the person has set it
   Brush brush_;
   std::optional<MaskStroke> stroke_;
   std::optional<glm::dvec2> hover_m_;

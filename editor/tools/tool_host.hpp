@@ -19,6 +19,8 @@ struct ToolHost {
   std::function<void(const QString&)> say;
   // Another thing was chosen: the table of the file that it is; empty: nothing.
   std::function<void(const world::TextPath&)> chosen;
+  // A place amid what the view shows (x and z in the world), for a thing of so many metres.
+  std::function<glm::dvec2(double size_m)> around;
 
   // Whether it went well; if not, the person is told why.
   bool tell(const core::Result<void>& result) const {

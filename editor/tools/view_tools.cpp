@@ -12,11 +12,14 @@
 #include <QToolBar>
 #include <utility>
 
+#include "editor/tools/new_mask_bar.hpp"
+
 namespace psygen::editor {
 namespace {
 
 constexpr int kStrengthSteps = 20, kStrengthPx = 90;
-constexpr double kGrowth = 1.25;  // of the brush, per key
+constexpr double kGrowth = 1.25;       // of the brush, per key
+constexpr double kAheadShare = 0.375;  // of a new mask, before the camera at most
 
 // Changes only what differs, so that an open list stays open.
 void fill(QComboBox& box, const QStringList& names, int current) {
@@ -62,6 +65,7 @@ ViewTools::ViewTools(QMainWindow& window, Document& document, WorldView& view,
       road_.choose(std::nullopt);
       place_.choose(std::nullopt);
       mask_.choose(std::nullopt);
+      mask_.set_new_mask(std::nullopt);
     }
     fill_lists();
   });
@@ -75,6 +79,9 @@ ToolHost ViewTools::host() {
           [this](const world::TextPath& table) {
             fill_lists();
             if (!table.empty()) Q_EMIT chosen(table);
+          },
+          [this](double size_m) {
+            return middle_of_view(view_.camera().pose(), document_.world(), size_m * kAheadShare);
           }};
 }
 
@@ -88,8 +95,9 @@ void ViewTools::add_tool(ViewTool& tool, const QString& name, const QString& key
   buttons_.push_back({&tool, action});
 }
 
-void ViewTools::add_of_tool(QWidget* widget) {
+QAction* ViewTools::add_of_tool(QWidget* widget) {
   of_tools_.push_back({buttons_.back().tool, bar_->addWidget(widget)});
+  return of_tools_.back().action;
 }
 
 void ViewTools::add_roads() {
@@ -126,15 +134,27 @@ void ViewTools::add_masks() {
   connect(masks_, &QComboBox::activated, this,
           [this](int index) { mask_.choose(static_cast<std::size_t>(index)); });
   add_of_tool(masks_);
-  new_mask_ = bar_->addAction(tr("New mask"), this, &ViewTools::make_mask);
-  new_mask_->setToolTip(tr("Makes a mask around the camera for what has none"));
-  of_tools_.push_back({&mask_, new_mask_});
+  add_new_mask();
   add_brush();
-  add_of_tool(new QLabel(tr("  The mouse paints; Shift turns painting into erasing.  ")));
+  brush_parts_.push_back(
+      add_of_tool(new QLabel(tr("  The mouse paints; Shift turns painting into erasing.  "))));
+}
+
+void ViewTools::add_new_mask() {
+  new_mask_bar_ = new NewMaskBar;
+  connect(new_mask_bar_, &NewMaskBar::edited, this, [this](const NewMask& mask) {
+    mask_.set_new_mask(mask);
+    show_new_mask();
+  });
+  QAction* const controls = add_of_tool(new_mask_bar_);
+  new_mask_ = bar_->addAction(tr("New mask"), this, [this] { mask_.make_mask(); });
+  new_mask_->setToolTip(tr("Makes a mask of this area for what has none"));
+  of_tools_.push_back({&mask_, new_mask_});
+  new_mask_parts_ = {controls, new_mask_};
 }
 
 void ViewTools::add_brush() {
-  add_of_tool(new QLabel(tr("  Radius ")));
+  QAction* const radius_label = add_of_tool(new QLabel(tr("  Radius ")));
   radius_ = new QDoubleSpinBox;
   radius_->setAccessibleName(tr("Radius of the brush in metres"));
   radius_->setRange(MaskTool::kLeastRadiusM, MaskTool::kMostRadiusM);
@@ -144,8 +164,8 @@ void ViewTools::add_brush() {
   radius_->setToolTip(tr("Radius of the brush, [ and ]"));
   connect(radius_, &QDoubleSpinBox::valueChanged, this,
           [this](double radius_m) { mask_.set_radius_m(radius_m); });
-  add_of_tool(radius_);
-  add_of_tool(new QLabel(tr("  Strength ")));
+  QAction* const radius = add_of_tool(radius_);
+  QAction* const strength_label = add_of_tool(new QLabel(tr("  Strength ")));
   auto* strength = new QSlider(Qt::Horizontal);
   strength->setAccessibleName(tr("Strength of the brush"));
   strength->setToolTip(tr("How far one stroke goes towards white or black"));
@@ -154,13 +174,14 @@ void ViewTools::add_brush() {
   strength->setMaximumWidth(kStrengthPx);
   connect(strength, &QSlider::valueChanged, this,
           [this](int value) { mask_.set_strength(static_cast<double>(value) / kStrengthSteps); });
-  add_of_tool(strength);
+  QAction* const strength_part = add_of_tool(strength);
   erase_ = bar_->addAction(tr("Erase"));
   erase_->setCheckable(true);
   erase_->setShortcut(Qt::Key_X);
   erase_->setToolTip(tr("The brush takes away (X)"));
   connect(erase_, &QAction::toggled, this, [this](bool on) { mask_.set_erases(on); });
   of_tools_.push_back({&mask_, erase_});
+  brush_parts_ = {radius_label, radius, strength_label, strength_part, erase_};
 }
 
 QAction* ViewTools::add_command(QMainWindow& window, const QString& name, const QKeySequence& key,
@@ -212,7 +233,6 @@ void ViewTools::turn_on(ViewTool* tool) {
   remove_->setEnabled(tool == &road_ || tool == &place_);
   if (tool == &mask_ && !mask_.scatter() && !document_.world().scatter.empty()) mask_.choose(0);
   fill_lists();
-  new_mask_->setEnabled(tool == &mask_ && mask_.scatter() && !mask_.has_picture());
 }
 
 void ViewTools::leave() {
@@ -260,15 +280,18 @@ void ViewTools::fill_masks() {
     names += tr("%1: %2").arg(QString::fromStdString(name), mask);
   }
   fill(*masks_, names, mask_.scatter() ? static_cast<int>(*mask_.scatter()) : -1);
-  new_mask_->setEnabled(mask_.scatter() && !mask_.has_picture());
+  show_new_mask();
 }
 
-// Around the camera.
-void ViewTools::make_mask() {
-  const core::CameraPose& pose = view_.camera().pose();
-  const double block_m = document_.world().block_size_m();
-  mask_.make_mask({pose.position.block.x * block_m + pose.position.local.x,
-                   pose.position.block.z * block_m + pose.position.local.z});
+// What makes a mask where there is none, else the brush.
+void ViewTools::show_new_mask() {
+  const bool none = mask_.scatter() && !mask_.has_picture();
+  for (QAction* part : new_mask_parts_)
+    part->setVisible(none);
+  for (QAction* part : brush_parts_)
+    part->setVisible(!none);
+  new_mask_->setEnabled(none);
+  if (none) new_mask_bar_->show_plan(mask_.new_mask(), document_.world());
 }
 
 void ViewTools::set_radius(double radius_m) {

@@ -23,8 +23,11 @@ class QLabel;
 class QMainWindow;
 class QMenu;
 class QToolBar;
+class QWidget;
 
 namespace psygen::editor {
+
+class NewMaskBar;
 
 class ViewTools final : public QObject {
   Q_OBJECT
@@ -52,10 +55,11 @@ class ViewTools final : public QObject {
   ToolHost host();
   // A button and command for a tool; what is added to the bar until the next one is its own.
   void add_tool(ViewTool& tool, const QString& name, const QString& key, const QString& help);
-  void add_of_tool(QWidget* widget);
+  QAction* add_of_tool(QWidget* widget);
   void add_roads();
   void add_places();
   void add_masks();
+  void add_new_mask();
   void add_brush();
   QAction* add_command(QMainWindow& window, const QString& name, const QKeySequence& key,
                        std::function<void()> does);
@@ -67,7 +71,7 @@ class ViewTools final : public QObject {
   void fill_roads();
   void fill_types();
   void fill_masks();
-  void make_mask();
+  void show_new_mask();
   void set_radius(double radius_m);
 
   Document& document_;
@@ -90,6 +94,8 @@ class ViewTools final : public QObject {
   MaskTool mask_;
   QComboBox* masks_ = nullptr;
   QAction* new_mask_ = nullptr;
+  NewMaskBar* new_mask_bar_ = nullptr;
+  std::vector<QAction*> new_mask_parts_, brush_parts_;  // of the bar, one or the other
   QDoubleSpinBox* radius_ = nullptr;
   QAction* erase_ = nullptr;
   std::vector<OfTool> commands_;  // that are enabled with their tool

@@ -276,7 +276,7 @@ void take_tools(Photographer& take, MainWindow& window) {
   take_tool(take, "Paint masks", "mask", [&] {
     MaskTool& mask = tools->mask();
     mask.choose(section_called(take.document(), "scatter", "spruce").steps[1].index);
-    mask.make_mask(*ground.at(0, 0).ground_m);
+    mask.make_mask();
     take.command("Erase");
     mask.press(ground.at(-70, 10));
     for (const auto& [right_m, beyond_m] :

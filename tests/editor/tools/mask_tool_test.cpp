@@ -21,7 +21,7 @@ struct Masks : Toolbench {
   MaskTool tool{host()};
   Masks() {
     tool.choose(0);
-    tool.make_mask({100, 100});
+    tool.make_mask();
     tool.set_radius_m(20);
   }
   const world::ScatterMask& mask() { return document.world().scatter[0].mask; }
@@ -31,14 +31,14 @@ struct Masks : Toolbench {
 TEST(MaskTool, ANewMaskChangesNothingUntilItIsPaintedOn) {
   Toolbench bench;
   MaskTool tool(bench.host());
-  tool.make_mask({100, 100});
+  tool.make_mask();
   EXPECT_EQ(bench.said.back(), "Choose first whose mask it shall be.");
   tool.choose(0);
   EXPECT_EQ(bench.chosen, "scatter[0]");
   click(tool, ground(50, 50));
   EXPECT_EQ(bench.said.back(), "tree has no mask yet: \"New mask\" makes one.");
   EXPECT_EQ(bench.steps(), 0);
-  tool.make_mask({100, 100});
+  tool.make_mask();
   ASSERT_TRUE(tool.has_picture());
   EXPECT_EQ(bench.last_step(), "New mask of tree");
   const world::ScatterMask& mask = bench.document.world().scatter[0].mask;
@@ -50,14 +50,41 @@ TEST(MaskTool, ANewMaskChangesNothingUntilItIsPaintedOn) {
   EXPECT_EQ(bench.document.text(), kWorld);
 }
 
-TEST(MaskTool, OfALargeWorldLiesAroundThePlace) {
+TEST(MaskTool, OfALargeWorldLiesAroundTheViewAndIsShownBefore) {
   Toolbench bench;
   EXPECT_TRUE(good(bench.document.set_value({"world", "blocks"}, "[0, 0]")));
+  bench.around_m = {-5000.4, 7000};
   MaskTool tool(bench.host());
+  EXPECT_TRUE(tool.marks().lines.empty());
   tool.choose(1);
-  tool.make_mask({-5000.4, 7000});
+  ASSERT_EQ(tool.marks().lines.size(), 1U) << "the border that it would have";
+  EXPECT_EQ(tool.marks().lines[0].points_m[0], glm::dvec2(-5504, 6464));
+  tool.make_mask();
   EXPECT_EQ(bench.document.world().scatter[1].mask.area_m,
-            (std::array<double, 4>{-5512, 6488, -4488, 7512}));
+            (std::array<double, 4>{-5504, 6464, -4480, 7488}));
+  EXPECT_EQ(tool.marks().lines[0].points_m[0], glm::dvec2(-5504, 6464));
+}
+
+TEST(MaskTool, ANewMaskHasTheAreaAndTheResolutionThatWereSet) {
+  Toolbench bench;
+  MaskTool tool(bench.host());
+  tool.choose(0);
+  tool.set_new_mask(NewMask{false, 64, 0.01});
+  tool.make_mask();
+  EXPECT_EQ(bench.said.back(), "A new mask's pixel is 0.01 m (allowed: 0.1 to 256 m).");
+  tool.set_new_mask(NewMask{false, 2000, 0.1});
+  tool.make_mask();
+  EXPECT_THAT(bench.said.back(), HasSubstr("20000 pixels a side (allowed: 4096)"));
+  EXPECT_EQ(bench.steps(), 0);
+  EXPECT_EQ(bench.document.text(), kWorld);
+  tool.set_new_mask(NewMask{false, 64, 0.5});
+  tool.make_mask();
+  const world::ScatterMask& mask = bench.document.world().scatter[0].mask;
+  EXPECT_EQ(mask.area_m, (std::array<double, 4>{68, 68, 132, 132}));
+  EXPECT_EQ(mask.picture->width, 128U);
+  EXPECT_EQ(bench.steps(), 1);
+  bench.document.undo_stack().undo();
+  EXPECT_EQ(bench.document.text(), kWorld);
 }
 
 TEST(MaskTool, AStrokeIsOneStepAndIsWrittenOnSave) {

@@ -17,7 +17,8 @@ struct Toolbench {
   Place place;
   Document document;
   std::vector<std::string> said;
-  std::string chosen;  // table of the file
+  std::string chosen;             // table of the file
+  glm::dvec2 around_m{100, 100};  // amid the view
 
   explicit Toolbench(const std::string& text = kWorld) : place(text), document(place.options()) {
     EXPECT_TRUE(good(document.open(place.file)));
@@ -25,7 +26,8 @@ struct Toolbench {
   ToolHost host() {
     return {document, [this](bool on) { on ? void(document.begin_drag()) : document.end_drag(); },
             [this](const QString& sentence) { said.push_back(sentence.toStdString()); },
-            [this](const world::TextPath& table) { chosen = table.text(); }};
+            [this](const world::TextPath& table) { chosen = table.text(); },
+            [this](double) { return around_m; }};
   }
   int steps() { return document.undo_stack().count(); }
   std::string last_step() { return document.undo_stack().undoText().toStdString(); }

@@ -1,7 +1,10 @@
 // The tool that paints masks, with mouse and keys in the view.
 #include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QLabel>
 #include <glm/geometric.hpp>
 
+#include "editor/tools/new_mask_bar.hpp"
 #include "editor/tools/view_tools.hpp"
 #include "engine/image/image_io.hpp"
 #include "tests/editor/window/tool_fixture.hpp"
@@ -47,6 +50,47 @@ TEST_F(MaskInView, IsPaintedUndoneSavedAndOpenedAgain) {
   EXPECT_TRUE(std::filesystem::exists(file));
   EXPECT_EQ(document().world().scatter[0].mask.picture->pixels, painted->pixels);
   ASSERT_TRUE(QTest::qWaitFor([&] { return share(shown(), place(0, 0)) < 0.05; }, kMostMs));
+}
+
+TEST_F(MaskInView, ANewMaskHasTheAreaAndPixelsOfTheBar) {
+  window_->resize(1280, 800);  // all of the bar is seen
+  command("Paint masks");
+  mask().choose(1);
+  auto* bar = window_->findChild<NewMaskBar*>();
+  ASSERT_NE(bar, nullptr);
+  draw();
+  ASSERT_TRUE(bar->isVisible());
+  const image::Image whole = picture();
+  // By keyboard alone: around the view instead of the whole world, 32 m, 0.5 m a pixel.
+  QTest::keyClick(bar->findChild<QComboBox*>(), Qt::Key_Up);
+  const auto numbers = bar->findChildren<QDoubleSpinBox*>();
+  ASSERT_EQ(numbers.size(), 2);
+  for (const auto& [number, typed] : {std::pair{numbers[0], "32"}, {numbers[1], "0.5"}}) {
+    number->selectAll();
+    QTest::keyClicks(number, typed);
+    QTest::keyClick(number, Qt::Key_Return);
+  }
+  EXPECT_EQ(bar->findChildren<QLabel*>().last()->text(), "64 × 64 pixels");
+  draw();
+  EXPECT_GT(difference(picture(), whole), 0) << "the border where it would lie";
+  command("New mask");
+  EXPECT_EQ(steps(), 1);
+  ASSERT_TRUE(mask().has_picture());
+  draw();
+  EXPECT_FALSE(bar->isVisible()) << "the brush instead";
+  const world::ScatterMask& made = document().world().scatter[1].mask;
+  EXPECT_EQ(made.picture->width, 64U);
+  EXPECT_EQ(made.area_m[2] - made.area_m[0], 32);
+  const glm::dvec2 middle(made.area_m[0] + 16, made.area_m[1] + 16);
+  EXPECT_TRUE(QRect({}, view().size()).contains(view().pixel_of(middle).value().toPoint()));
+  document().undo_stack().undo();
+  draw();
+  EXPECT_TRUE(bar->isVisible());
+  numbers[0]->setValue(60'000);
+  EXPECT_EQ(bar->findChildren<QLabel*>().last()->text(), "<b>too many pixels</b>");
+  command("New mask");
+  EXPECT_EQ(steps(), 1) << "the one that was taken back";
+  EXPECT_FALSE(mask().has_picture());
 }
 
 TEST_F(MaskInView, TheBrushIsShownAndItsKeysChangeIt) {

@@ -1,0 +1,48 @@
+// The area and the resolution of a mask that is about to be made: defaults that fit a world,
+// limits, and what comes of them. Pure; it knows no document and no picture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+
+#include "engine/core/camera.hpp"
+#include "engine/core/error.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::editor {
+
+struct NewMask {
+  static constexpr double kLeastSideM = 16, kMostSideM = 65'536;
+  static constexpr double kLeastPixelM = 0.1, kMostPixelM = 256;
+  static constexpr std::uint32_t kLeastPixels = 2, kMostPixels = 4096;  // a side
+
+  bool whole_world = false;  // else a square around a place; never of an endless world
+  double side_m = 1024;      // of that square
+  double pixel_m = 2;        // side of a pixel
+
+  friend bool operator==(const NewMask&, const NewMask&) = default;
+};
+
+// The whole of a world of up to 4,096 m, else 1,024 m; with 2 m a pixel, doubled until a side has
+// at most 1,024 pixels.
+NewMask default_new_mask(const world::World& world);
+
+// A rectangle of the world in metres, as ScatterMask::area_m, and the pixels of its picture.
+struct MaskPlan {
+  std::array<double, 4> area_m{};
+  std::uint32_t width = 0, height = 0;
+};
+
+// The rectangle, also of a mask that would be refused. A square lies on a grid of a 16th of its
+// side, so that it rests while the place moves a little.
+std::array<double, 4> area_of(const NewMask& mask, const world::World& world, glm::dvec2 around_m);
+// Fails with kInvalidArgument for a side or a pixel beyond the limits, and with kOverBudget where a
+// side would have more than kMostPixels.
+core::Result<MaskPlan> plan_of(const NewMask& mask, const world::World& world, glm::dvec2 around_m);
+
+// The ground in the middle of a view (x and z in the world), at most so many metres before the
+// camera.
+glm::dvec2 middle_of_view(const core::CameraPose& pose, const world::World& world, double most_m);
+
+}  // namespace psygen::editor

@@ -1,0 +1,74 @@
+#include "editor/tools/new_mask_bar.hpp"
+
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QLocale>
+#include <QSignalBlocker>
+
+namespace psygen::editor {
+namespace {
+
+enum Where { kAroundView, kWholeWorld };
+
+}  // namespace
+
+NewMaskBar::NewMaskBar(QWidget* parent)
+    : QWidget(parent), where_(new QComboBox), pixels_(new QLabel) {
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(6, 0, 6, 0);
+  where_->setAccessibleName(tr("Area of the new mask"));
+  where_->setToolTip(tr("Where the new mask lies: the blue border in the view"));
+  where_->addItem(tr("Around the view"));
+  layout->addWidget(where_);
+  side_ = add_metres(tr("Side"), tr("Side of the new mask in metres"), NewMask::kLeastSideM,
+                     NewMask::kMostSideM, 0);
+  pixel_ = add_metres(tr("Pixel"), tr("Side of a pixel of the new mask in metres"),
+                      NewMask::kLeastPixelM, NewMask::kMostPixelM, 1);
+  layout->addWidget(pixels_);
+  const auto changed = [this] { Q_EMIT edited(shown()); };
+  connect(where_, &QComboBox::activated, this, changed);
+  connect(side_, &QDoubleSpinBox::valueChanged, this, changed);
+  connect(pixel_, &QDoubleSpinBox::valueChanged, this, changed);
+}
+
+QDoubleSpinBox* NewMaskBar::add_metres(const QString& label, const QString& name, double least,
+                                       double most, int decimals) {
+  auto* edit = new QDoubleSpinBox;
+  edit->setAccessibleName(name);
+  edit->setToolTip(name);
+  edit->setRange(least, most);
+  edit->setDecimals(decimals);
+  edit->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
+  edit->setGroupSeparatorShown(true);
+  edit->setSuffix(tr(" m"));
+  layout()->addWidget(new QLabel(label));
+  layout()->addWidget(edit);
+  return edit;
+}
+
+NewMask NewMaskBar::shown() const {
+  return {where_->currentIndex() == kWholeWorld, side_->value(), pixel_->value()};
+}
+
+void NewMaskBar::show_plan(const NewMask& mask, const world::World& world) {
+  const QSignalBlocker quiet[] = {QSignalBlocker(where_), QSignalBlocker(side_),
+                                  QSignalBlocker(pixel_)};
+  if (world.is_endless() && where_->count() > kWholeWorld) where_->removeItem(kWholeWorld);
+  if (!world.is_endless() && where_->count() == kWholeWorld) where_->addItem(tr("The whole world"));
+  const bool whole = mask.whole_world && !world.is_endless();
+  where_->setCurrentIndex(whole ? kWholeWorld : kAroundView);
+  side_->setEnabled(!whole);
+  // A value that is typed stays as it is typed.
+  if (side_->value() != mask.side_m) side_->setValue(mask.side_m);
+  if (pixel_->value() != mask.pixel_m) pixel_->setValue(mask.pixel_m);
+  const auto plan = plan_of(mask, world, {0, 0});
+  const QLocale words(QLocale::English);
+  pixels_->setText(
+      plan ? tr("%1 × %2 pixels").arg(words.toString(plan->width), words.toString(plan->height))
+           : tr("<b>too many pixels</b>"));
+  pixels_->setToolTip(plan ? QString() : QString::fromStdString(plan.error().message));
+}
+
+}  // namespace psygen::editor
