@@ -128,7 +128,7 @@ void Document::adopt(const std::filesystem::path& file, std::string text, Parsed
   pictures_ = std::move(pictures);
   before_preview_.reset();
   disk_pictures_.clear();
-  refused_pictures_.clear();
+  refused_files_.clear();
   undo_.clear();
   watch_.watch(file_);
   note_saved(*text_);
@@ -164,6 +164,7 @@ core::Result<void> Document::save() {
   if (file_.empty())
     return core::fail(core::ErrorCode::kInvalidArgument, "this world has no file yet");
   if (auto known = require_known_disk(); !known) return known;
+  if (auto known = require_known_pictures(file_); !known) return known;
   if (auto written = write_all(file_); !written) return written;
   note_saved(*text_);
   autosave();
@@ -173,19 +174,31 @@ core::Result<void> Document::save() {
 }
 
 core::Result<void> Document::write_all(const std::filesystem::path& file) {
-  return write_pictures(file).and_then([&] { return write_whole(file, *text_); });
+  auto written = write_pictures(file).and_then([&] { return write_whole(file, *text_); });
+  if (written) note_pictures_written();
+  return written;
 }
 
-core::Result<void> Document::save_as(const std::filesystem::path& file, bool share) {
+core::Result<std::vector<std::string>> Document::save_as(const std::filesystem::path& file,
+                                                         bool share) {
+  std::vector<std::string> copied;
   if (file.empty())
     return core::fail(core::ErrorCode::kInvalidArgument, "a file to write must have a name");
+  if (auto known = require_known_pictures(file); !known)
+    return tl::unexpected(std::move(known.error()));
   if (same_file(file, file_)) {
-    if (auto written = write_all(file_); !written) return written;
+    if (auto written = write_all(file_); !written)
+      return tl::unexpected(std::move(written.error()));
   } else {
     auto session = RecoverySession::start(options_.state_folder, file, share);
     if (!session) return tl::unexpected(std::move(session.error()));
-    if (auto taken = take_along_pictures(file); !taken) return taken;
-    if (auto written = write_all(file); !written) return written;
+    FileCopies copies;
+    auto taken = take_along(file, copies);
+    if (!taken) return taken;
+    const auto written = copies.commit().and_then([&] { return write_all(file); });
+    if (!written) return tl::unexpected(written.error());
+    copies.keep();
+    copied = *std::move(taken);
     session_ = *std::move(session);
     file_ = file;
     Q_EMIT file_changed();
@@ -194,7 +207,7 @@ core::Result<void> Document::save_as(const std::filesystem::path& file, bool sha
   autosave();
   save_locks();
   watch_.watch(file_);
-  return {};
+  return copied;
 }
 
 core::Result<void> Document::revert() {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "editor/document/disk_watch.hpp"
+#include "editor/document/file_copies.hpp"
 #include "editor/document/paint_change.hpp"
 #include "editor/document/parsed_world.hpp"
 #include "editor/document/recovery.hpp"
@@ -64,8 +65,13 @@ class Document : public QObject {
   // with kIo; with kInvalidArgument without a file, and where the file was changed by others since
   // it was read (reload(), or keep_mine() and save again).
   core::Result<void> save();
-  // Writes another file, which is the document's from then on. Replaces what is there.
-  core::Result<void> save_as(const std::filesystem::path& file, bool share = false);
+  // Writes another file, which is the document's from then on, and replaces what is there. In
+  // another folder the files that the world names (handmade::files_named_by) come along, before the
+  // text; gives the names of those that were copied. Fails like save() and files_named_by(), and
+  // with kInvalidArgument where other files of such names are there (save again to replace them);
+  // then nothing new is left there.
+  core::Result<std::vector<std::string>> save_as(const std::filesystem::path& file,
+                                                 bool share = false);
   // Back to the text of the file as it was last read or saved, as an undo step.
   core::Result<void> revert();
   // The file; empty: none. Whether it, or its folder, cannot be written.
@@ -219,9 +225,12 @@ class Document : public QObject {
   void apply(const std::vector<PaintChange>& changes, bool done);
   void end_preview();
   core::Result<void> require_known_pictures(const std::filesystem::path& file);
-  core::Result<void> write_pictures(const std::filesystem::path& file);
+  core::Result<void> write_pictures(const std::filesystem::path& file) const;
+  void note_pictures_written();
   core::Result<void> write_all(const std::filesystem::path& file);
-  core::Result<void> take_along_pictures(const std::filesystem::path& file) const;
+  core::Result<std::vector<std::string>> take_along(const std::filesystem::path& file,
+                                                    FileCopies& copies);
+  core::Result<void> require_free(const std::vector<std::filesystem::path>& taken);
   void autosave();
   void save_locks() const;
 
@@ -234,9 +243,9 @@ class Document : public QObject {
   std::optional<std::string> seen_;       // the text of the disk that was told last; none: no file
   handmade::MemoryPicturesPtr pictures_;  // null: none was painted
   std::optional<handmade::MemoryPicturesPtr> before_preview_;  // while one is shown
-  // Hashes of pictures: as files had them when they were read or written, by name; and as saving
-  // was refused for them, by file.
-  std::map<std::string, std::uint64_t> disk_pictures_, refused_pictures_;
+  // Hashes of pictures as files had them when they were read or written, by name. What files were
+  // when saving was refused for them, by path.
+  std::map<std::string, std::uint64_t> disk_pictures_, refused_files_;
   bool was_modified_ = false;
   bool autosave_told_ = false;
   int drag_ = 0, last_drag_ = 0;

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <set>
-
 #include "editor/document/document.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/image/image_io.hpp"
@@ -129,9 +127,9 @@ core::Result<void> Document::require_known_pictures(const std::filesystem::path&
     const auto known = disk_pictures_.find(name);
     const bool is_known = known != disk_pictures_.end() && known->second == hash;
     if (is_known || (now && hash == painted->hash)) continue;
-    const auto refused = refused_pictures_.find(at.string());
-    if (refused != refused_pictures_.end() && refused->second == hash) continue;
-    refused_pictures_[at.string()] = hash;
+    const auto refused = refused_files_.find(at.string());
+    if (refused != refused_files_.end() && refused->second == hash) continue;
+    refused_files_[at.string()] = hash;
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("{}: the picture there is not the one that was painted on; move "
                                   "it away to keep it, or save again to replace it",
@@ -140,42 +138,69 @@ core::Result<void> Document::require_known_pictures(const std::filesystem::path&
   return {};
 }
 
-// Copies the masks and stamps that a world in another folder would miss. What is there stays.
-core::Result<void> Document::take_along_pictures(const std::filesystem::path& file) const {
-  std::set<std::string> names;
-  for (const world::Scatter& scatter : world().scatter)
-    names.insert(scatter.mask.image);
-  for (const world::Stamp& stamp : world().shaped.stamps)
-    names.insert(stamp.image);
-  for (const std::string& name : names) {
+// Refuses files that would be replaced, until it is asked again for the same ones.
+core::Result<void> Document::require_free(const std::vector<std::filesystem::path>& taken) {
+  std::string others;
+  bool is_known = true;
+  for (const std::filesystem::path& file : taken) {
+    const std::uint64_t stamp = stamp_of(file);
+    const auto [refused, is_new] = refused_files_.try_emplace(file.string(), stamp);
+    is_known = is_known && !is_new && refused->second == stamp;
+    refused->second = stamp;
+    if (file != taken.front()) others += (others.empty() ? "" : ", ") + file.string();
+  }
+  if (is_known) return {};
+  return core::fail(
+      core::ErrorCode::kInvalidArgument,
+      fmt::format("{}: another file of this name is there{}; choose another folder, or save again "
+                  "to replace it",
+                  taken.front().string(),
+                  others.empty() ? others : fmt::format(" (and also {})", others)));
+}
+
+// Copies what a world in another folder would miss, under temporary names, and tells its names.
+core::Result<std::vector<std::string>> Document::take_along(const std::filesystem::path& file,
+                                                            FileCopies& copies) {
+  const auto names = handmade::files_named_by(world(), file_);
+  if (!names) return tl::unexpected(names.error());
+  std::vector<std::string> copied;
+  std::vector<std::filesystem::path> taken;
+  for (const std::filesystem::path& name : *names) {
     const std::filesystem::path from = file_.parent_path() / name, to = file.parent_path() / name;
+    const bool is_painted = pictures_ && pictures_->in_place.contains(name.string());
+    if (is_painted || same_content(from, to)) continue;
     std::error_code error;
-    const bool painted = pictures_ && pictures_->in_place.contains(name);
-    if (name.empty() || painted || std::filesystem::exists(to, error)) continue;
-    std::filesystem::create_directories(to.parent_path(), error);
-    std::filesystem::copy_file(from, to, error);
-    if (error)
-      return core::fail(core::ErrorCode::kIo,
-                        fmt::format("{}: it cannot be copied to {}: {}", from.string(), to.string(),
-                                    error.message()));
+    if (std::filesystem::exists(from, error) && std::filesystem::exists(to, error))
+      taken.push_back(to);
+    copied.push_back(name.string());
+  }
+  if (auto free = require_free(taken); !free) return tl::unexpected(free.error());
+  for (const std::string& name : copied)
+    if (auto done = copies.add(file_.parent_path() / name, file.parent_path() / name); !done)
+      return tl::unexpected(done.error());
+  return copied;
+}
+
+core::Result<void> Document::write_pictures(const std::filesystem::path& file) const {
+  if (!pictures_) return {};
+  for (const auto& [name, painted] : pictures_->in_place) {
+    if (picture_of(world(), name) == nullptr) continue;
+    if (auto ok = write_picture(file.parent_path() / name, *painted); !ok) return ok;
   }
   return {};
 }
 
-core::Result<void> Document::write_pictures(const std::filesystem::path& file) {
-  if (auto known = require_known_pictures(file); !known) return known;
-  if (!pictures_) return {};
+void Document::note_pictures_written() {
+  refused_files_.clear();
+  if (!pictures_) return;
   auto written = std::make_shared<handmade::MemoryPictures>(*pictures_);
   for (const auto& [name, painted] : pictures_->in_place) {
     if (picture_of(world(), name) == nullptr) continue;
-    if (auto ok = write_picture(file.parent_path() / name, *painted); !ok) return ok;
     disk_pictures_[name] = painted->hash;
     written->in_place.erase(name);
   }
   pictures_ = std::move(written);
   before_preview_.reset();
-  refused_pictures_.clear();
-  return {};
 }
 
 }  // namespace psygen::editor

@@ -63,7 +63,16 @@ bool MainWindow::save() {
 bool MainWindow::save_as() {
   const QString file = QFileDialog::getSaveFileName(
       this, tr("Save the world as"), QString::fromStdString(document_.file().string()), kFilter);
-  return !file.isEmpty() && tell(document_.save_as(file.toStdString()));
+  if (file.isEmpty()) return false;
+  const auto copied = document_.save_as(file.toStdString());
+  if (!copied) return tell(tl::unexpected(copied.error()));
+  QString sentence = tr("Saved %1.").arg(file);
+  QStringList names;
+  for (const std::string& name : *copied)
+    names += QString::fromStdString(name);
+  if (!names.isEmpty()) sentence += " " + tr("Copied with it: %1.").arg(names.join(", "));
+  say(sentence);
+  return true;
 }
 
 bool MainWindow::may_discard() {

@@ -85,7 +85,8 @@ struct Model {
   // What the file has and this does not, a sentence each: skins, morph targets, blending, points
   // and lines, extensions. Begins with the file's path.
   std::vector<std::string> notes;
-  std::vector<std::filesystem::path> files;  // that the file names: buffers and pictures
+  // Those that the file names, in its folder or below: buffers and pictures.
+  std::vector<std::filesystem::path> files;
 };
 
 }  // namespace psygen::gltf

@@ -55,7 +55,7 @@ bool read_beside(std::vector<unsigned char>* out, std::string* message, const st
                  void* user) {
   FileGate& gate = *static_cast<FileGate*>(user);
   auto bytes = beside(gate.file, name).and_then([&](const std::filesystem::path& path) {
-    gate.named.push_back(path);
+    gate.named.push_back(gate.file.parent_path() / name);
     return core::read_file(path, gate.left_bytes);
   });
   if (!bytes) {

@@ -14,6 +14,7 @@
 #include "engine/core/hash.hpp"
 #include "engine/core/log.hpp"
 #include "engine/gltf/read_file.hpp"
+#include "engine/handmade/gltf_limits.hpp"
 #include "engine/handmade/handmade_type.hpp"
 #include "engine/image/image_io.hpp"
 
@@ -24,15 +25,6 @@ namespace fs = std::filesystem;
 
 using ShapePtr = std::shared_ptr<const Shape>;
 
-gltf::Limits limits() {
-  gltf::Limits most;
-  most.bytes = std::uint64_t{128} << 20;
-  most.vertices = kMostVertices;
-  most.indices = 6 * kMostVertices;
-  most.images = {4096, 4096, std::uint64_t{64} << 20, std::uint64_t{32} << 20};
-  return most;
-}
-
 // What was made of a file, and of which others it names.
 template <class Made>
 struct Read {
@@ -41,7 +33,7 @@ struct Read {
 };
 
 core::Result<Read<Shape>> read_shape(const fs::path& file, const world::HandmadeModel& how) {
-  const auto model = gltf::read_file(file, limits());
+  const auto model = gltf::read_file(file, gltf_limits());
   if (!model) return tl::unexpected(model.error());
   auto shape = shape_of(*model, how);
   if (!shape)

@@ -7,8 +7,10 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "engine/world/files/files_beside.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::handmade {
 
@@ -27,5 +29,11 @@ using FilesPtr = std::shared_ptr<const world::FilesBeside>;
 
 // files(), with pictures that an editor has not written yet; null: files() alone.
 FilesPtr files_with(const std::filesystem::path& world_file, MemoryPicturesPtr pictures);
+
+// All files that a world names beside its own, as paths from the folder of its file, each once:
+// models, what their .gltf files name, masks, stamps and pictures of the ground. Reads the models.
+// Fails like gltf::read_file(). Pictures are not looked for.
+core::Result<std::vector<std::filesystem::path>> files_named_by(
+    const world::World& world, const std::filesystem::path& world_file);
 
 }  // namespace psygen::handmade

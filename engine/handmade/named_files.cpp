@@ -1,0 +1,34 @@
+#include <algorithm>
+
+#include "engine/gltf/read_file.hpp"
+#include "engine/handmade/files.hpp"
+#include "engine/handmade/gltf_limits.hpp"
+
+namespace psygen::handmade {
+
+namespace fs = std::filesystem;
+
+core::Result<std::vector<fs::path>> files_named_by(const world::World& world,
+                                                   const fs::path& world_file) {
+  std::vector<fs::path> names;
+  const auto note = [&names](const fs::path& name) {
+    if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
+  };
+  for (const world::HandmadeModel& model : world.models) {
+    note(model.file);
+    const fs::path file = world_file.parent_path() / model.file;
+    const auto read = gltf::read_file(file, gltf_limits());
+    if (!read) return tl::unexpected(read.error());
+    for (const fs::path& named : read->files)
+      note(fs::path(model.file).parent_path() / named.lexically_relative(file.parent_path()));
+  }
+  for (const world::Scatter& scatter : world.scatter)
+    note(scatter.mask.image);
+  for (const world::Stamp& stamp : world.shaped.stamps)
+    note(stamp.image);
+  for (const std::string& image : world.palette.images)
+    note(image);
+  return names;
+}
+
+}  // namespace psygen::handmade
