@@ -21,7 +21,7 @@ double brush_cover(double share) {
 
 MaskStroke::MaskStroke(PicturePtr before, const std::array<double, 4>& area_m, const Brush& brush)
     : before_(std::move(before)),
-      now_(before_),
+      picture_(before_),
       area_m_(area_m),
       brush_(brush),
       pixel_m_((area_m[2] - area_m[0]) / before_->width, (area_m[3] - area_m[1]) / before_->height),
@@ -30,35 +30,44 @@ MaskStroke::MaskStroke(PicturePtr before, const std::array<double, 4>& area_m, c
 }
 
 bool MaskStroke::go_to(glm::dvec2 at_m) {
-  auto next = std::make_shared<world::GreyPicture>(*now_);
-  met_ = false;
-  cover(begun_ ? last_m_ : at_m, at_m, *next);
+  const glm::dvec2 from_m = begun_ ? last_m_ : at_m;
   begun_ = true;
   last_m_ = at_m;
-  if (!met_) return false;
-  next->hash = world::content_hash(*next);
-  now_ = std::move(next);
-  return true;
+  const PixelRect rect = around(from_m, at_m);
+  if (rect.empty()) return false;
+  bool met = false;
+  picture_.change(rect,
+                  [&](world::GreyPicture& picture) { met = cover(from_m, at_m, rect, picture); });
+  touched_.add(rect);
+  has_met_ = has_met_ || met;
+  return met;
 }
 
-void MaskStroke::cover(glm::dvec2 from_m, glm::dvec2 to_m, world::GreyPicture& picture) {
+// All pixels that the brush can meet on its way.
+PixelRect MaskStroke::around(glm::dvec2 from_m, glm::dvec2 to_m) const {
   const glm::dvec2 corner_m(area_m_[0], area_m_[1]);
   const glm::dvec2 low = (glm::min(from_m, to_m) - brush_.radius_m - corner_m) / pixel_m_;
   const glm::dvec2 high = (glm::max(from_m, to_m) + brush_.radius_m - corner_m) / pixel_m_;
   const auto bound = [](double at, std::uint32_t size) {
     return static_cast<std::uint32_t>(std::clamp(std::floor(at), 0.0, double{1} * size));
   };
-  const std::uint32_t right = bound(high.x + 1, picture.width);
-  const std::uint32_t bottom = bound(high.y + 1, picture.height);
+  return {bound(low.x, before_->width), bound(low.y, before_->height),
+          bound(high.x + 1, before_->width), bound(high.y + 1, before_->height)};
+}
+
+bool MaskStroke::cover(glm::dvec2 from_m, glm::dvec2 to_m, const PixelRect& rect,
+                       world::GreyPicture& picture) {
+  const glm::dvec2 corner_m(area_m_[0], area_m_[1]);
   const double target = brush_.erases ? 0 : 65535;
-  for (std::uint32_t y = bound(low.y, picture.height); y < bottom; ++y) {
-    for (std::uint32_t x = bound(low.x, picture.width); x < right; ++x) {
+  bool met = false;
+  for (std::uint32_t y = rect.top; y < rect.bottom; ++y) {
+    for (std::uint32_t x = rect.left; x < rect.right; ++x) {
       const glm::dvec2 middle_m = corner_m + (glm::dvec2(x, y) + 0.5) * pixel_m_;
       const double cover =
           255 * brush_cover(distance_to_segment(middle_m, from_m, to_m) / brush_.radius_m);
       const std::size_t i = std::size_t{y} * picture.width + x;
       if (cover <= 0) continue;
-      met_ = true;
+      met = true;
       if (cover <= covered_[i]) continue;
       covered_[i] = static_cast<std::uint8_t>(std::ceil(cover));
       const double was = before_->pixels[i];
@@ -66,6 +75,7 @@ void MaskStroke::cover(glm::dvec2 from_m, glm::dvec2 to_m, world::GreyPicture& p
       picture.pixels[i] = static_cast<std::uint16_t>(std::lround(was + (target - was) * share));
     }
   }
+  return met;
 }
 
 }  // namespace psygen::editor

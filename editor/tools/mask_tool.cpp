@@ -153,7 +153,7 @@ void MaskTool::press(const ToolPoint& at) {
   stroke_.emplace(mask().picture, mask().area_m, brush);
   host_.set_dragging(true);
   drag(at);
-  if (stroke_ && stroke_->now() == stroke_->before())
+  if (stroke_ && !stroke_->has_met())
     host_.say(mask_words("The brush is outside of the mask's area: it ends at the blue border."));
 }
 
@@ -172,7 +172,8 @@ void MaskTool::drag(const ToolPoint& at) {
 
 void MaskTool::release() {
   if (!stroke_) return;
-  const MaskStroke stroke = *std::exchange(stroke_, std::nullopt);
+  const MaskStroke stroke = std::move(*stroke_);
+  stroke_.reset();
   if (has_picture() && mask().picture->hash == stroke.now()->hash) keep(mask().image, stroke);
   host_.set_dragging(false);
 }
@@ -181,9 +182,9 @@ void MaskTool::keep(std::string name, const MaskStroke& stroke) {
   if (stroke.now()->hash == stroke.before()->hash) return;
   const QString step = mask_words("Paint the mask of %1").arg(model_name());
   if (is_png(name)) {
-    host_.tell(host_.document.paint(step,
-                                    {PaintChange::between(name, *stroke.before(), *stroke.now())},
-                                    host_.document.text()));
+    host_.tell(host_.document.paint(
+        step, {PaintChange::between(name, *stroke.before(), *stroke.now(), stroke.touched())},
+        host_.document.text()));
     return;
   }
   // Other formats are read, not written: the picture becomes a new one.
@@ -199,7 +200,8 @@ void MaskTool::keep(std::string name, const MaskStroke& stroke) {
 
 bool MaskTool::cancel() {
   if (!stroke_) return false;
-  const MaskStroke stroke = *std::exchange(stroke_, std::nullopt);
+  const MaskStroke stroke = std::move(*stroke_);
+  stroke_.reset();
   host_.set_dragging(false);
   if (has_picture() && mask().picture->hash == stroke.now()->hash)
     host_.tell(host_.document.preview_picture(mask().image, stroke.before()));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "engine/world/surface.hpp"
 
@@ -29,6 +30,7 @@ std::span<const render::Line> GroundGrid::lines(const world::World& world,
   const double block_m = world.block_size_m();
   const double cell_m = spacing_m_ < 0 ? block_m : spacing_m_;
   glm::dvec3 from_eye = core::offset_m(anchor_.block, eye, block_m) + anchor_.local;
+  if (std::exchange(world_is_new_, false)) stale_ = differs_from(world, cell_m) || stale_;
   if (stale_ || std::max(std::abs(from_eye.x), std::abs(from_eye.z)) > kMoved * cell_m) {
     make(world, eye, cell_m);
     from_eye = core::offset_m(anchor_.block, eye, block_m) + anchor_.local;
@@ -43,8 +45,30 @@ std::span<const render::Line> GroundGrid::lines(const world::World& world,
   return shown_;
 }
 
+// Whether the ground under the grid is another one.
+bool GroundGrid::differs_from(const world::World& world, double cell_m) {
+  const SurfaceShape now(world);
+  const auto before = std::exchange(ground_, now);
+  if (!before || !before->has_base_of(now)) return true;
+  if (*before == now) return false;
+  const double block_m = world.block_size_m(), reach_m = kCells * cell_m;
+  const auto block_of = [&](double x_m, double z_m) {
+    return core::normalised({anchor_.block, anchor_.local + glm::dvec3(x_m, 0, z_m)}, block_m)
+        .block;
+  };
+  const core::BlockCoord first = block_of(-reach_m, -reach_m), last = block_of(reach_m, reach_m);
+  SurfaceDifference differs(*before, now);
+  for (std::int64_t x = first.x; x <= last.x; ++x) {
+    for (std::int64_t z = first.z; z <= last.z; ++z) {
+      if (differs.at({static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)})) return true;
+    }
+  }
+  return false;
+}
+
 void GroundGrid::make(const world::World& world, const core::WorldPosition& eye, double cell_m) {
   stale_ = false;
+  ++times_made_;
   kept_.clear();
   const double block_m = world.block_size_m();
   // The crossing of lines next to the camera, in cells from the world's origin.

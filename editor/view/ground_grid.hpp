@@ -1,11 +1,14 @@
 // A grid of lines on the ground around the camera, for judging sizes and distances. Every tenth
 // line has another colour; the borders of blocks are a grid too. Knows no renderer: lines are
-// values. Made anew when the camera has moved some cells, which takes some milliseconds.
+// values. Made anew when the camera has moved some cells or the ground under it has changed, which
+// takes some milliseconds.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "editor/view/surface_shape.hpp"
 #include "engine/render/types.hpp"
 #include "engine/world/world.hpp"
 
@@ -17,8 +20,10 @@ class GroundGrid {
   static constexpr double kBlocks = -1;  // as wide as blocks
   void set_spacing(double spacing_m);
   double spacing_m() const { return spacing_m_; }
-  // The ground is another one.
-  void forget() { stale_ = true; }
+  // The world is another one. Where its ground is the same, the lines stay.
+  void note_world() { world_is_new_ = true; }
+  // How often they were made.
+  std::size_t times_made() const { return times_made_; }
   // The lines from a camera. Valid until the next call.
   std::span<const render::Line> lines(const world::World& world, const core::WorldPosition& eye);
 
@@ -26,8 +31,12 @@ class GroundGrid {
   void make(const world::World& world, const core::WorldPosition& eye, double cell_m);
 
   double spacing_m_ = 0;
-  bool stale_ = true;
-  core::WorldPosition anchor_;  // lines are kept relative to it
+  bool differs_from(const world::World& world, double cell_m);
+
+  bool stale_ = true, world_is_new_ = true;
+  std::size_t times_made_ = 0;
+  std::optional<SurfaceShape> ground_;  // on which they lie
+  core::WorldPosition anchor_;          // lines are kept relative to it
   std::vector<render::Line> kept_, shown_;
 };
 

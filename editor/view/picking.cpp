@@ -102,16 +102,29 @@ std::optional<Selection> pick(const scene::State& state, const core::CameraPose&
   return found_again(selection, state);
 }
 
-std::optional<glm::dvec2> ground_at(query::World& queries, const core::CameraPose& pose,
-                                    const glm::dvec3& direction) {
+GroundRays::Ground::Ground(const scene::State& state)
+    : shape(state.facts.world),
+      world([&] {
+        world::World bare = state.facts.world;
+        bare.scatter.clear();
+        bare.places = {};
+        return bare;
+      }()),
+      queries(world, state.facts.registry) {}
+
+std::optional<glm::dvec2> GroundRays::at(const scene::State& state, const core::CameraPose& pose,
+                                         const glm::dvec3& direction) {
+  const bool is_new = std::exchange(world_is_new_, false);
+  if (!ground_ || (is_new && !(ground_->shape == SurfaceShape(state.facts.world))))
+    ground_ = std::make_unique<Ground>(state);
   query::Ray ray;
   ray.origin = pose.position;
   ray.direction = direction;
   ray.longest_m = kFarM;
   ray.models = ray.objects = false;
-  const auto hit = queries.cast(ray);
+  const auto hit = ground_->queries.cast(ray);
   if (!hit || hit->kind != query::HitKind::kGround) return std::nullopt;
-  const double block_m = queries.world().block_size_m();
+  const double block_m = ground_->world.block_size_m();
   const core::WorldPosition& at = hit->position;
   return glm::dvec2(at.block.x * block_m + at.local.x, at.block.z * block_m + at.local.z);
 }

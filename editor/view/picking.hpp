@@ -3,8 +3,10 @@
 #pragma once
 
 #include <QPointF>
+#include <memory>
 #include <optional>
 
+#include "editor/view/surface_shape.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/surface_provider.hpp"
 #include "engine/query/world.hpp"
@@ -35,10 +37,30 @@ glm::dvec3 direction_of(QPointF pixel, core::Extent size, const core::CameraPose
 std::optional<Selection> pick(const scene::State& state, const core::CameraPose& pose,
                               const glm::dvec3& direction);
 
-// The ground from the camera in a direction, as x and z in metres of the world; nothing: the sky,
-// or more than 20 km away. Models are in nobody's way.
-std::optional<glm::dvec2> ground_at(query::World& queries, const core::CameraPose& pose,
-                                    const glm::dvec3& direction);
+// Rays against the ground of the worlds that a view shows one after the other. What is known of the
+// ground stays while it is the same. Costs some milliseconds for the first ray on other ground.
+class GroundRays {
+ public:
+  // The ground from the camera in a direction, as x and z in metres of the world; nothing: the sky,
+  // or more than 20 km away. Models are in nobody's way.
+  std::optional<glm::dvec2> at(const scene::State& state, const core::CameraPose& pose,
+                               const glm::dvec3& direction);
+  // The state has another world.
+  void note_world() { world_is_new_ = true; }
+  // The state ends.
+  void clear() { ground_.reset(); }
+
+ private:
+  // Without models, so that only the ground matters.
+  struct Ground {
+    explicit Ground(const scene::State& state);
+    SurfaceShape shape;
+    world::World world;
+    query::World queries;
+  };
+  std::unique_ptr<Ground> ground_;
+  bool world_is_new_ = false;
+};
 
 // The same model, or the same place of the ground, in the present world; nothing if it is gone.
 std::optional<Selection> found_again(const Selection& selection, const scene::State& state);

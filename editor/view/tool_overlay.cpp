@@ -55,21 +55,48 @@ std::optional<glm::vec2> Lens::pixel_of(const core::WorldPosition& at) const {
 }
 
 void ToolOverlay::set(const ToolMarks& marks, const world::World& world) {
-  if (!stale_ && marks == marks_) return;
-  const bool same_ground = !std::exchange(stale_, false);
+  if (std::exchange(world_is_new_, false)) take_ground(world);
+  if (marks == marks_) return;
   const ToolMarks was = std::exchange(marks_, marks);
   const auto handles = std::exchange(handles_, {});
   auto lines = std::exchange(lines_, {});
   for (std::size_t i = 0; i < marks_.handles.size(); ++i) {
     const glm::dvec2 at_m = marks_.handles[i].at_m;
-    const bool same = same_ground && i < handles.size() && was.handles[i].at_m == at_m;
-    handles_.push_back(same ? handles[i] : on_surface(at_m, world));
+    const bool same = i < handles.size() && was.handles[i].at_m == at_m;
+    handles_.push_back(same ? handles[i] : look_up(at_m, world));
   }
   for (std::size_t i = 0; i < marks_.lines.size(); ++i) {
     const auto& points = marks_.lines[i].points_m;
-    const bool same = same_ground && i < lines.size() && was.lines[i].points_m == points;
+    const bool same = i < lines.size() && was.lines[i].points_m == points;
     lines_.push_back(same ? std::move(lines[i]) : line_on_ground(points, world));
   }
+}
+
+// Looks up heights where the ground has changed.
+void ToolOverlay::take_ground(const world::World& world) {
+  const SurfaceShape now(world);
+  const auto before = std::exchange(ground_, now);
+  if (before == now) return;
+  const double block_m = world.block_size_m();
+  if (!before || marks_block_m_ != block_m) {  // places are counted in blocks
+    marks_block_m_ = block_m;
+    marks_ = {}, handles_.clear(), lines_.clear();
+    return;
+  }
+  SurfaceDifference differs(*before, now);
+  const auto renew = [&](core::WorldPosition& at) {
+    if (!differs.at(at.block)) return;
+    at.local.y = world::surface_height_m(world, at);
+    ++lookups_;
+  };
+  std::ranges::for_each(handles_, renew);
+  for (auto& line : lines_)
+    std::ranges::for_each(line, renew, &OnGround::at);
+}
+
+core::WorldPosition ToolOverlay::look_up(glm::dvec2 at_m, const world::World& world) {
+  ++lookups_;
+  return on_surface(at_m, world);
 }
 
 std::vector<ToolOverlay::OnGround> ToolOverlay::line_on_ground(
@@ -80,8 +107,7 @@ std::vector<ToolOverlay::OnGround> ToolOverlay::line_on_ground(
     const int pieces =
         std::clamp(static_cast<int>(std::ceil(glm::length(to - from) / kPieceM)), 1, kMostPieces);
     for (int k = 0; k < pieces; ++k)
-      line.push_back(
-          {on_surface(from + (to - from) * (static_cast<double>(k) / pieces), world), i});
+      line.push_back({look_up(from + (to - from) * (static_cast<double>(k) / pieces), world), i});
   }
   return line;
 }

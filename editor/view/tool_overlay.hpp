@@ -1,12 +1,13 @@
 // A tool's marks in a picture: lines that follow the ground and handles of constant size, and which
-// of them is under the mouse. Looks up heights only when marks or ground change. Knows no renderer:
-// lines and areas are values. Main thread.
+// of them is under the mouse. Looks up heights only where marks or ground change. Knows no
+// renderer: lines and areas are values. Main thread.
 #pragma once
 
 #include <QPointF>
 #include <span>
 #include <vector>
 
+#include "editor/view/surface_shape.hpp"
 #include "editor/view/view_tool.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/surface_provider.hpp"
@@ -42,8 +43,10 @@ class ToolOverlay {
  public:
   // What is drawn from now on, on the ground of this world.
   void set(const ToolMarks& marks, const world::World& world);
-  // The ground is another one.
-  void forget() { stale_ = true; }
+  // The world is another one. Heights where its ground is the same stay.
+  void note_world() { world_is_new_ = true; }
+  // How many heights were looked up so far.
+  std::size_t lookups() const { return lookups_; }
 
   // The lines from a camera, at the end of `lines`.
   void add_lines(const core::WorldPosition& eye, double block_m,
@@ -59,11 +62,16 @@ class ToolOverlay {
     core::WorldPosition at;
     std::size_t part = 0;
   };
-  static std::vector<OnGround> line_on_ground(const std::vector<glm::dvec2>& points,
-                                              const world::World& world);
+  core::WorldPosition look_up(glm::dvec2 at_m, const world::World& world);
+  std::vector<OnGround> line_on_ground(const std::vector<glm::dvec2>& points,
+                                       const world::World& world);
+  void take_ground(const world::World& world);
 
   ToolMarks marks_;
-  bool stale_ = true;
+  bool world_is_new_ = true;
+  std::optional<SurfaceShape> ground_;  // on which they lie
+  double marks_block_m_ = 0;
+  std::size_t lookups_ = 0;
   std::vector<core::WorldPosition> handles_;  // of marks_.handles
   std::vector<std::vector<OnGround>> lines_;  // of marks_.lines
 };

@@ -70,7 +70,7 @@ void WorldView::close() {
   timer_.stop();
   if (prepared_.valid()) prepared_.wait();  // it uses the session
   prepared_ = {};
-  ground_.reset();
+  ground_.clear();
   has_hung_ = has_hung();
   if (session_ && session_->has_hung_modelers()) (void)session_.release();
   session_.reset();
@@ -178,9 +178,9 @@ void WorldView::tick() {
 
 // In the world that is shown from now on.
 void WorldView::take_stand() {
-  grid_.forget();
-  overlay_.forget();
-  ground_.reset();
+  grid_.note_world();
+  overlay_.note_world();
+  ground_.note_world();
   const scene::State& state = session_->scene().state();
   camera_.set_block_size(state.facts.world.block_size_m());
   const FindStand find = std::exchange(find_stand_, nullptr);

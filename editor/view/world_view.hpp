@@ -130,8 +130,8 @@ class WorldView final : public QWindow {
   ViewTool* tool_ = nullptr;
   ToolInput tool_input_;
   ToolOverlay overlay_;
-  std::unique_ptr<query::World> ground_;  // of the world that is shown; null: not asked yet
-  std::vector<render::Line> lines_;       // over the picture
+  GroundRays ground_;
+  std::vector<render::Line> lines_;  // over the picture
   std::optional<Selection> selection_;
   // What another thread makes of the newest text that it has got; invalid: it rests.
   std::future<core::Result<scene::PreparedWorld>> prepared_;

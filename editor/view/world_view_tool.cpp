@@ -30,12 +30,11 @@ std::optional<QPointF> WorldView::pixel_of(glm::dvec2 at_m) const {
 
 ToolPoint WorldView::point_at(const ToolEvent& event) {
   const scene::State& state = session_->scene().state();
-  if (!ground_) ground_ = std::make_unique<query::World>(state.facts.world, state.facts.registry);
   const Lens seen = lens();
   ToolPoint point;
   point.fine = event.fine;
   point.ground_m =
-      ground_at(*ground_, seen.pose, direction_of(event.at, seen.size, seen.pose, seen.projection));
+      ground_.at(state, seen.pose, direction_of(event.at, seen.size, seen.pose, seen.projection));
   overlay_.set(tool_->marks(), state.facts.world);
   overlay_.hit(event.at, seen, point);
   return point;

@@ -69,7 +69,16 @@ double GreyPicture::at(double u, double v) const {
 }
 
 std::uint64_t content_hash(const GreyPicture& picture) {
-  return core::combine(core::hash_bytes(std::as_bytes(std::span(picture.pixels))), picture.width);
+  std::uint64_t hash = core::mix64(picture.width);
+  for (std::uint32_t row = 0; row < picture.height; ++row)
+    hash += row_hash(picture, row);
+  return hash;
+}
+
+std::uint64_t row_hash(const GreyPicture& picture, std::uint32_t row) {
+  const std::span<const std::uint16_t> pixels(picture.pixels);
+  return core::hash_bytes(
+      std::as_bytes(pixels.subspan(std::size_t{row} * picture.width, picture.width)), row);
 }
 
 bool operator==(const ScatterMask& a, const ScatterMask& b) {

@@ -23,8 +23,11 @@ struct GreyPicture {
   double at(double u, double v) const;
 };
 
-// What GreyPicture::hash must be.
+// What GreyPicture::hash must be: the sum, modulo 2^64, of the shares of its rows and its width. So
+// the hash of a picture of which rows have changed follows from theirs.
 std::uint64_t content_hash(const GreyPicture& picture);
+// The share of one row.
+std::uint64_t row_hash(const GreyPicture& picture, std::uint32_t row);
 
 struct ScatterMask {
   std::string image;  // relative to the folder of the world's file; empty: none
