@@ -1,6 +1,7 @@
 #include "editor/cost/block_cost.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -63,12 +64,17 @@ std::vector<double> values_of(const world::WorldField& field) {
 }  // namespace
 
 core::BlockCoord block_near(const world::World& world, core::BlockCoord around, int number) {
+  // Corners of a square, then the middles of the sides of a larger one, then both further out.
+  constexpr std::array<std::array<int, 2>, 8> kOffsets{
+      {{-3, -3}, {3, 3}, {3, -3}, {-3, 3}, {0, -6}, {0, 6}, {-6, 0}, {6, 0}}};
+  const auto& offset = kOffsets[static_cast<std::size_t>(number) % kOffsets.size()];
+  const int ring = 1 + number / static_cast<int>(kOffsets.size());
   const auto place = [](std::int64_t at, std::int64_t blocks) {
     return static_cast<std::int32_t>(blocks == 0 ? at
                                                  : std::clamp<std::int64_t>(at, 0, blocks - 1));
   };
-  return {place(around.x + (number % 2) * 5 - 2, world.blocks_x),
-          place(around.z + (number / 2) * 5 - 2, world.blocks_z)};
+  return {place(std::int64_t{around.x} + offset[0] * ring, world.blocks_x),
+          place(std::int64_t{around.z} + offset[1] * ring, world.blocks_z)};
 }
 
 MeshCost mesh_cost(const ParsedWorld& parsed, models::ModelIndex model, const models::Parameters& p,

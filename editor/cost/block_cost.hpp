@@ -27,7 +27,7 @@ BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,
                      const synthesis::CostModel* learnt, bool measure);
 
 // Blocks of which means are taken: number 0, 1, … around a block, a few hundred metres apart,
-// within the world.
+// within the world. The block is in the middle of each four of them, unless the world ends there.
 core::BlockCoord block_near(const world::World& world, core::BlockCoord around, int number);
 
 // What a mesh takes at full detail. Bytes are those of its vertices and of the indices that are its

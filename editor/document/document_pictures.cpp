@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include "editor/document/document.hpp"
+#include "editor/document/picture_file.hpp"
 #include "engine/handmade/files.hpp"
-#include "engine/image/image_io.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -28,7 +28,7 @@ core::Result<void> write_picture(const std::filesystem::path& file,
                                   "or save the world in another folder",
                                   file.string()));
   std::filesystem::create_directories(file.parent_path(), error);  // writing says what is wrong
-  return image::write_png(file, image::GreyImage{picture.width, picture.height, picture.pixels});
+  return write_picture_file(file, picture);
 }
 
 }  // namespace

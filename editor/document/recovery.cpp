@@ -12,9 +12,9 @@
 #include <cstdlib>
 #include <set>
 
+#include "editor/document/picture_file.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
-#include "engine/image/image_io.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -150,8 +150,7 @@ core::Result<void> RecoverySession::write(const Recovery& recovery) const {
     names[QString::fromStdString(name)] = q(file.filename());
     std::error_code error;
     if (!kept.insert(file).second || std::filesystem::exists(file, error)) continue;
-    const image::GreyImage image{picture->width, picture->height, picture->pixels};
-    if (auto written = image::write_png(file, image); !written) return written;
+    if (auto written = write_picture_file(file, *picture); !written) return written;
   }
   const QJsonObject object{
       {QStringLiteral("format"), kRecoveryFormat},

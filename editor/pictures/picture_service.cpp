@@ -5,7 +5,7 @@
 #include <QFile>
 #include <algorithm>
 
-#include "engine/image/image_io.hpp"
+#include "editor/document/picture_file.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -70,8 +70,7 @@ void PictureService::attach_pictures(PictureRequest& request) {
   for (const auto& [name, picture] : pictures->in_place) {
     const QString file =
         folder_.filePath(QString("painted_%1.png").arg(picture->hash, 16, 16, QChar('0')));
-    const image::GreyImage image{picture->width, picture->height, picture->pixels};
-    if (QFile::exists(file) || image::write_png(file.toStdString(), image))
+    if (QFile::exists(file) || write_picture_file(file.toStdString(), *picture))
       request.pictures[name] = file.toStdString();
   }
 }

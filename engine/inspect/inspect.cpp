@@ -20,22 +20,27 @@ struct Desk {
   std::unique_ptr<LineServer> server;
   Visit visit;
 
+  bool is_left = false;  // the visitor is gone, and has not ended
+
   void frame(app::Session& session) {
+    if (is_left) is_left = !visit.end(session);
+    if (is_left) return;
     if (!server->attached()) {
       if (!server->accept()) return;
       visit.begin();
     }
     visit.note_frame(session.scene().state());
     server->receive();
-    for (int i = 0; i < kMostRequestsAFrame && !visit.over(); ++i) {
+    if (const auto late = visit.late_answer(session)) server->send(*late);
+    for (int i = 0; i < kMostRequestsAFrame && !visit.over() && !visit.is_busy(); ++i) {
       const auto line = server->take_line();
       if (!line) break;
-      server->send(visit.answer(session, *line));
+      if (const auto answer = visit.answer(session, *line)) server->send(*answer);
       if (visit.has_greeted()) server->trust();
     }
     server->transmit();
     if (visit.over() && !server->is_sending()) server->drop();
-    if (!server->attached()) visit.end(session);
+    if (!server->attached()) is_left = !visit.end(session);
   }
 };
 

@@ -26,6 +26,12 @@ std::string refusal(const Json& id, const std::string& sentence) {
   return line_of({{"id", id}, {"ok", false}, {"error", sentence}});
 }
 
+std::string reply_line(const Json& id, const Json& found) {
+  Json whole = {{"id", id}, {"ok", true}};
+  whole.update(found);
+  return line_of(whole);
+}
+
 std::string written_world(const app::Session& session) {
   const scene::WorldFacts& facts = session.scene().state().facts;
   return world::write_world(facts.world, facts.registry);
@@ -33,17 +39,19 @@ std::string written_world(const app::Session& session) {
 
 }  // namespace
 
-std::string Visit::answer(app::Session& session, std::string_view request) {
+std::optional<std::string> Visit::answer(app::Session& session, std::string_view request) {
   if (!is_small_json(request)) return refusal(nullptr, "a request is one small object of JSON");
   const Json json = Json::parse(request, nullptr, false);
   if (!json.is_object()) return refusal(nullptr, "a request is one small object of JSON");
   Json id = json.contains("id") ? json["id"] : Json();
   if (!id.is_number_integer()) id = nullptr;
+  if (greeted_ && json.value("do", Json()) == "set_world") {
+    change_id_ = id;
+    if (auto begun = set_world(session, json); !begun) return refusal(id, begun.error().message);
+    return late_answer(session);
+  }
   Reply found = reply(session, json);
-  if (!found) return refusal(id, found.error().message);
-  Json whole = {{"id", std::move(id)}, {"ok", true}};
-  whole.update(*found);
-  return line_of(whole);
+  return found ? reply_line(id, *found) : refusal(id, found.error().message);
 }
 
 Visit::Reply Visit::reply(app::Session& session, const Json& request) {
@@ -57,7 +65,6 @@ Visit::Reply Visit::reply(app::Session& session, const Json& request) {
   if (what == "systems") return systems(state, frames_);
   if (what == "entities") return entities(state);
   if (what == "parameters") return Json{{"text", world_text(session)}};
-  if (what == "set_world") return set_world(session, request);
   if (what == "pause") return pause(session, request);
   if (what == "pose") return place(session, request);
   if (what == "detach") return detach(request);
@@ -82,15 +89,21 @@ Visit::Reply Visit::hello(app::Session& session, const Json& request) {
               {"virtual_clock", state.settings.virtual_time}};
 }
 
-Visit::Reply Visit::set_world(app::Session& session, const Json& request) {
+core::Result<void> Visit::set_world(app::Session& session, const Json& request) {
   const auto text = request.find("text");
   if (text == request.end() || !text->is_string()) return refuse("set_world has \"text\", a text");
-  std::string before = world_before_ ? std::string() : world_text(session);
-  if (auto ok = session.set_world(text->get_ref<const std::string&>()); !ok)
-    return tl::unexpected(ok.error());
-  if (!world_before_) world_before_ = std::move(before);
+  before_change_ = world_before_ ? std::string() : world_text(session);
+  change_.start(session, text->get<std::string>());
+  return {};
+}
+
+std::optional<std::string> Visit::late_answer(app::Session& session) {
+  const auto done = change_.finish(session);
+  if (!done) return std::nullopt;
+  if (!*done) return refusal(change_id_, done->error().message);
+  if (!world_before_) world_before_ = std::move(before_change_);
   world_set_ = written_world(session);
-  return Json::object();
+  return reply_line(change_id_, Json::object());
 }
 
 Visit::Reply Visit::pause(app::Session& session, const Json& request) {
@@ -121,14 +134,19 @@ Visit::Reply Visit::detach(const Json& request) {
   return Json::object();
 }
 
-void Visit::end(app::Session& session) {
-  if (!keep_ && world_before_ && written_world(session) == world_set_) {
-    if (auto ok = session.set_world(*world_before_); !ok)
-      core::log_warning(fmt::format("the world before the visit is lost: {}", ok.error().message));
+bool Visit::end(app::Session& session) {
+  pose_.reset();
+  if (!is_ending_) {
+    if (!change_.drop()) return false;  // what was asked for last is not shown any more
+    is_ending_ = true;
+    if (!keep_ && paused_before_ && session.paused() == paused_set_)
+      session.set_paused(*paused_before_);
+    if (!keep_ && world_before_ && written_world(session) == world_set_)
+      change_.start(session, *world_before_);
   }
-  if (!keep_ && paused_before_ && session.paused() == paused_set_)
-    session.set_paused(*paused_before_);
-  begin();
+  if (const auto done = change_.finish(session); done && !*done)
+    core::log_warning(fmt::format("the world before the visit is lost: {}", done->error().message));
+  return !change_.is_under_way();
 }
 
 }  // namespace psygen::inspect

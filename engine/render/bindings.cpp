@@ -159,16 +159,9 @@ Result<void> Bindings::create_layout(const Device& device) {
   const VkPushConstantRange push{VK_SHADER_STAGE_VERTEX_BIT, 0,
                                  sizeof(shaders::DrawData) + sizeof(std::uint32_t)};
   const std::array sets{set_layout_.get(), materials_->set_layout()};
-  VkPipelineLayoutCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
-  info.pSetLayouts = sets.data();
-  info.pushConstantRangeCount = 1;
-  info.pPushConstantRanges = &push;
-  VkPipelineLayout layout = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreatePipelineLayout(device.handle, &info, nullptr, &layout);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a pipeline layout");
-  layout_ = UniquePipelineLayout(device.vk, device.handle, layout);
+  Result<UniquePipelineLayout> layout = make_pipeline_layout(device, sets, push);
+  if (!layout) return tl::unexpected(layout.error());
+  layout_ = std::move(*layout);
   return {};
 }
 

@@ -34,21 +34,6 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
   return UniquePipeline(device.vk, device.handle, pipeline);
 }
 
-Result<UniquePipelineLayout> make_layout(const Device& device, const UniqueSetLayout& set,
-                                         std::uint32_t push_bytes) {
-  const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
-  VkPipelineLayoutCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  info.setLayoutCount = 1;
-  info.pSetLayouts = set.address();
-  info.pushConstantRangeCount = 1;
-  info.pPushConstantRanges = &push;
-  VkPipelineLayout made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreatePipelineLayout(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a pipeline layout");
-  return UniquePipelineLayout(device.vk, device.handle, made);
-}
-
 }  // namespace
 
 Result<void> ComputePipeline::create(const Device& device, std::span<const std::uint32_t> code,
@@ -65,7 +50,8 @@ Result<void> ComputePipeline::create(const Device& device, std::span<const std::
   Result<UniqueDescriptorPool> pool = make_descriptor_pool(device, bindings, sets);
   if (!pool) return tl::unexpected(pool.error());
   pool_ = std::move(*pool);
-  Result<UniquePipelineLayout> layout = make_layout(device, set_layout_, push_bytes);
+  Result<UniquePipelineLayout> layout = make_pipeline_layout(
+      device, {set_layout_.address(), 1}, {VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes});
   if (!layout) return tl::unexpected(layout.error());
   layout_ = std::move(*layout);
   Result<UniquePipeline> pipeline = make_pipeline(device, layout_.get(), code);

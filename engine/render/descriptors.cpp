@@ -17,6 +17,21 @@ Result<UniqueSetLayout> make_set_layout(const Device& device,
   return UniqueSetLayout(device.vk, device.handle, made);
 }
 
+Result<UniquePipelineLayout> make_pipeline_layout(const Device& device,
+                                                  std::span<const VkDescriptorSetLayout> sets,
+                                                  const VkPushConstantRange& push) {
+  VkPipelineLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
+  info.pSetLayouts = sets.data();
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &push;
+  VkPipelineLayout made = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkCreatePipelineLayout(device.handle, &info, nullptr, &made);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a pipeline layout");
+  return UniquePipelineLayout(device.vk, device.handle, made);
+}
+
 Result<UniqueDescriptorPool> make_descriptor_pool(
     const Device& device, std::span<const VkDescriptorSetLayoutBinding> bindings,
     std::uint32_t sets) {

@@ -124,6 +124,7 @@ struct Derived {
   std::shared_ptr<const world::FarScatters> scatters;  // whose types may be gone
   std::vector<double> placed;                          // world::placed_per_block()
   std::vector<NodeLevel> levels;
+  std::shared_ptr<const world::PictureSet> pictures;  // whose types may be gone; null: none
 };
 
 // The world and what is derived from it once (world_facts.hpp). Only its edits change, and how far

@@ -62,9 +62,10 @@ bool show_stand_ins(const WorldFacts& facts, const world::PictureSet* before, Ou
   return true;
 }
 
-core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts) {
+core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts,
+                                 const world::PictureSet* before) {
   if (settings.paradigm == Paradigm::kDataAmplification || !settings.levels_of_detail) return {};
-  auto pictures = std::make_shared<const world::PictureSet>(facts.world, facts.registry);
+  auto pictures = std::make_shared<const world::PictureSet>(facts.world, facts.registry, before);
   if (pictures->count() == 0) return {};
   const std::size_t types = facts.registry.size();
   const auto baked = facts.registry.add(world::make_picture_type());

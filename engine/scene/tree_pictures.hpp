@@ -10,8 +10,9 @@ namespace psygen::scene {
 
 // Finds the pictures of the world's trees and adds the types of their meshes to the registry. There
 // are none without levels of detail, and none with data amplification, which makes all levels of
-// all meshes once.
-core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts);
+// all meshes once. What was measured for those `before` (may be null) is taken over.
+core::Result<void> find_pictures(const Settings& settings, WorldFacts& facts,
+                                 const world::PictureSet* before);
 
 // Gives the renderer a rough stand-in for each, in place of what it had. Where it has as many of
 // this scene already, they stay until the new ones are made, and for good where they are those of

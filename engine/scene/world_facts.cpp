@@ -95,7 +95,7 @@ core::Result<void> find_levels(const Settings& settings, WorldFacts& facts, cons
   const auto world = std::make_shared<const world::World>(facts.world);
   const auto scatters = world::far_scatters(world, facts.registry,
                                             before != nullptr ? before->scatters.get() : nullptr);
-  Derived derived{world::parts_of(*world, facts.registry), 0, scatters, {}, {}};
+  Derived derived{world::parts_of(*world, facts.registry), 0, scatters, {}, {}, facts.pictures};
   if (settings.levels_of_detail && world::models_per_block(facts.world) > 0) {
     const auto added = facts.registry.add(
         world::make_merged_type(world, facts.registry, facts.pictures, scatters));
@@ -141,7 +141,8 @@ core::Result<void> derive(const Settings& settings, bool pictures, WorldFacts& f
   facts.models_reach_m = facts.scattered_reach_m;
   facts.standing = standing_on_block(world, facts.registry);
   if (pictures) {
-    if (auto ok = find_pictures(settings, facts); !ok) return ok;
+    const world::PictureSet* known = before != nullptr ? before->pictures.get() : nullptr;
+    if (auto ok = find_pictures(settings, facts, known); !ok) return ok;
   }
   if (auto ok = find_levels(settings, facts, before); !ok) return ok;
   return check_size(world, facts.levels, settings);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 #include <optional>
+#include <span>
 
 #include "engine/core/assert.hpp"
 #include "engine/world/far/scatter.hpp"
@@ -64,6 +65,12 @@ glm::vec2 coarse_size(const ModelType& type, const Parameters& p, SampleMesh& me
   return {radius_m, outline->top.position.y};
 }
 
+// Registries may number the same type differently.
+std::uint64_t key_of(const ModelType& type, const Parameters& p) {
+  return core::combine(core::hash_bytes(std::as_bytes(std::span(type.name()))),
+                       models::parameters_hash(type, p));
+}
+
 // Nothing for a mesh without leaves or without any extent.
 std::optional<PicturedModel> measured(models::ModelIndex index, const ModelType& type,
                                       const Parameters& p) {
@@ -89,11 +96,19 @@ std::optional<PicturedModel> measured(models::ModelIndex index, const ModelType&
   if (!m.leafy) frame.ambient = ambient;
   frame.ambient /= std::max(m.leafy ? leaves : solids, 1.0F);
   m.turn_deg = type.turn_deg(p).value_or(0);
+  m.key = key_of(type, p);
   frame.bottom_m = std::max(frame.bottom_m, 0.0F);  // what is in the ground is not seen
   frame.half_width_m *= 1 + kMargin;
   frame.top_m += kMargin * (frame.top_m - frame.bottom_m);
   const bool flat = !(frame.half_width_m > 1e-3F && frame.top_m - frame.bottom_m > 1e-3F);
   return (m.leafy || type.turn_deg(p)) && !flat ? std::optional(m) : std::nullopt;
+}
+
+// What another set has measured.
+std::optional<PicturedModel> taken_over(const PictureSet* before, std::uint64_t key) {
+  if (before == nullptr) return std::nullopt;
+  const auto found = std::ranges::find(before->models(), key, &PicturedModel::key);
+  return found != before->models().end() ? std::optional(*found) : std::nullopt;
 }
 
 // By how many views of a picture a model is turned that was turned by `from` degrees there.
@@ -114,7 +129,8 @@ glm::vec2 stretch(glm::vec2 from, glm::vec2 to) {
 
 }  // namespace
 
-PictureSet::PictureSet(const World& world, const models::Registry& registry)
+PictureSet::PictureSet(const World& world, const models::Registry& registry,
+                       const PictureSet* before)
     : identity_(kPictureEdition) {
   for (std::size_t i = 0; i < registry.size(); ++i)
     types_.push_back(&registry[static_cast<models::ModelIndex>(i)]);
@@ -132,7 +148,7 @@ PictureSet::PictureSet(const World& world, const models::Registry& registry)
       std::clamp<std::size_t>(core::kMostPictures / scatters, 1, kMostOfScatter);
   for (std::size_t s = 0; s < world.scatter.size(); ++s) {
     try {  // user types may throw; our own code throws only when memory is exhausted
-      add_scatter(world, world.scatter[s], firsts[s], most);
+      add_scatter(world, world.scatter[s], firsts[s], most, before);
     } catch (const std::bad_alloc&) {
       throw;
     } catch (...) {
@@ -141,7 +157,7 @@ PictureSet::PictureSet(const World& world, const models::Registry& registry)
 }
 
 void PictureSet::add_scatter(const World& world, const Scatter& scatter, std::uint32_t first,
-                             std::size_t most) {
+                             std::size_t most, const PictureSet* before) {
   const ModelType& type = *types_[scatter.model];
   if (scatter.count == 0 || !type.is_seen_from_far() || !type.may_run_on_main_thread()) return;
   std::vector<std::pair<float, Parameters>> candidates;
@@ -160,8 +176,10 @@ void PictureSet::add_scatter(const World& world, const Scatter& scatter, std::ui
       return m.model == scatter.model && (m.parameters == p || type.turn_deg(p));
     });
     if (known) continue;
-    const std::optional<PicturedModel> model = measured(scatter.model, type, p);
+    std::optional<PicturedModel> model = taken_over(before, key_of(type, p));
+    if (!model) model = measured(scatter.model, type, p);
     if (!model) continue;
+    model->model = scatter.model;
     models_.push_back(*model);
     identity_ = core::combine(identity_, models::parameters_hash(type, p));
   }

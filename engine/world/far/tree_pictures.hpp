@@ -29,8 +29,9 @@ struct PicturedModel {
   // reaches from the foot to any side and up.
   glm::vec2 bounds_m{0.0F}, coarse_m{0.0F};
   PictureFrame frame;
-  bool leafy = true;    // sways in the wind
-  double turn_deg = 0;  // ModelType::turn_deg
+  bool leafy = true;      // sways in the wind
+  double turn_deg = 0;    // ModelType::turn_deg
+  std::uint64_t key = 0;  // of what all this was measured of
 };
 
 // All of a world.
@@ -42,8 +43,10 @@ class PictureSet {
   // Synthesises one instance for each picture (some 100 µs each). There are none for types that are
   // not seen from far, that may not run on the main thread, that throw, or whose finest mesh has no
   // leaves or too few triangles to need pictures; types of one shape (ModelType::turn_deg) have one
-  // each, with or without leaves. The types of `registry` must outlive it.
-  PictureSet(const World& world, const models::Registry& registry);
+  // each, with or without leaves. The types of `registry` must outlive it. What is in `before` too
+  // is taken over from there; it may be null, and its types may be gone.
+  PictureSet(const World& world, const models::Registry& registry,
+             const PictureSet* before = nullptr);
 
   std::span<const PicturedModel> models() const { return models_; }
   std::size_t count() const { return models_.size(); }
@@ -73,7 +76,7 @@ class PictureSet {
 
  private:
   void add_scatter(const World& world, const Scatter& scatter, std::uint32_t first,
-                   std::size_t most);
+                   std::size_t most, const PictureSet* before);
 
   std::vector<const models::ModelType*> types_;  // of the registry
   std::vector<PicturedModel> models_;

@@ -1,6 +1,7 @@
 #include "editor/cost/block_survey.hpp"
 
 #include <cmath>
+#include <set>
 
 #include "engine/world/files/world_schema.hpp"
 #include "tests/editor/cost/worlds.hpp"
@@ -43,6 +44,25 @@ TEST(BlockSurvey, ACurveHasTheCostsOfItsValues) {
     ASSERT_TRUE(point.cost) << point.refusal;
     expect_same(*point.cost, block_cost(*costed_with(count.path, toml), kAround, nullptr, false));
   }
+}
+
+TEST(BlockNear, BlocksLieAroundTheirMiddleAndApart) {
+  world::World world;
+  world.blocks_x = world.blocks_z = 0;
+  for (const int count : {4, 8, 16}) {
+    std::set<std::pair<int, int>> seen;
+    core::BlockCoord sum{0, 0};
+    for (int i = 0; i < count; ++i) {
+      const core::BlockCoord at = block_near(world, kAround, i);
+      sum = {sum.x + at.x - kAround.x, sum.z + at.z - kAround.z};
+      seen.emplace(at.x, at.z);
+    }
+    EXPECT_EQ(sum, (core::BlockCoord{0, 0})) << count;
+    EXPECT_EQ(seen.size(), static_cast<std::size_t>(count));
+  }
+  world.blocks_x = world.blocks_z = 22;
+  for (int i = 0; i < 8; ++i)
+    EXPECT_TRUE(world.contains(block_near(world, kAround, i)));
 }
 
 TEST(BlockSurvey, AScatterCostsMoreWithMoreOfIt) {

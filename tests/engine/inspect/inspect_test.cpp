@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <atomic>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <thread>
 
 #include "engine/app/session.hpp"
 #include "engine/inspect/client.hpp"
@@ -33,9 +36,10 @@ class InspectTest : public ::testing::Test {
     options.world_file = kWorld;
     options.headless = true;
     options.size = {160, 90};
-    options.scene.virtual_time = true;
+    options.scene.virtual_time = virtual_time_;
     options.scene.view_distance_m = 100;
     options.scene.budget_bytes = 64ull << 20;
+    options.plugins = plugins_;
     options.plugins.push_back(plugin({folder_.path()}));
     return app::Session::create(std::move(options));
   }
@@ -75,13 +79,16 @@ class InspectTest : public ::testing::Test {
     const scene::WorldFacts& facts = session_->scene().state().facts;
     return world::write_world(facts.world, facts.registry);
   }
-  std::string changed_text() {
-    std::string text = ask({{"do", "parameters"}})["text"];
+  std::string changed_text() { return changed_text_of(ask({{"do", "parameters"}})["text"]); }
+
+  static std::string changed_text_of(std::string text) {
     const std::size_t at = text.find("seed = ");
     EXPECT_NE(at, std::string::npos);
     return text.insert(at + 7, "1");
   }
 
+  bool virtual_time_ = true;
+  std::vector<app::Plugin> plugins_;
   TemporaryFolder folder_;
   std::unique_ptr<app::Session> session_;
   std::unique_ptr<Client> client_;
@@ -148,6 +155,74 @@ TEST_F(InspectTest, KeepsChangesThatAreToBeKept) {
   EXPECT_EQ(client_->take_answer(), std::nullopt);
   EXPECT_FALSE(client_->is_open());
   EXPECT_EQ(written(), changed);
+}
+
+// A model type whose registration, a part of preparing a world, waits in other threads.
+struct SlowTypes {
+  std::thread::id main = std::this_thread::get_id();
+  std::mutex gate;
+  std::atomic<int> entered = 0;
+
+  app::Plugin plugin() {
+    app::Plugin slow;
+    slow.name = "slow";
+    slow.register_models = [this](models::Registry&) -> core::Result<void> {
+      if (std::this_thread::get_id() == main) return {};
+      ++entered;
+      const std::lock_guard wait(gate);
+      return {};
+    };
+    return slow;
+  }
+};
+
+TEST_F(InspectTest, FramesGoOnWhileAnotherThreadPreparesAWorld) {
+  SlowTypes slow;
+  virtual_time_ = false;
+  plugins_.push_back(slow.plugin());
+  open();
+  greet();
+  const std::string before = written(), text = changed_text();
+  std::unique_lock closed(slow.gate);
+  client_->ask(json({{"id", 1}, {"do", "set_world"}, {"text", text}}).dump());
+  client_->ask(json({{"id", 2}, {"do", "figures"}}).dump());
+  while (slow.entered == 0)
+    tick();
+  for (int frame = 0; frame < 5; ++frame)
+    tick();
+  EXPECT_EQ(client_->take_answer(), std::nullopt);
+  EXPECT_EQ(written(), before);
+  closed.unlock();
+  std::vector<json> answers;
+  while (answers.size() < 2) {
+    tick();
+    if (const auto answer = client_->take_answer()) answers.push_back(json::parse(*answer));
+  }
+  EXPECT_EQ(answers[0]["id"], 1) << "in order";
+  EXPECT_EQ(answers[0]["ok"], true);
+  EXPECT_EQ(answers[1]["id"], 2);
+  EXPECT_NE(written(), before);
+  // Gone amid the next change: that one is never shown, and the first world comes back.
+  closed.lock();
+  slow.entered = 0;
+  client_->ask(json({{"do", "set_world"}, {"text", changed_text_of(text)}}).dump());
+  while (slow.entered == 0)
+    tick();
+  client_.reset();
+  tick();
+  closed.unlock();
+  while (written() != before)
+    tick();
+  attach();
+  EXPECT_EQ(ask({{"do", "hello"}, {"protocol", kProtocol}})["ok"], true);
+  // The session ends amid a change.
+  closed.lock();
+  slow.entered = 0;
+  client_->ask(json({{"do", "set_world"}, {"text", text}}).dump());
+  while (slow.entered == 0)
+    tick();
+  closed.unlock();
+  session_.reset();
 }
 
 TEST_F(InspectTest, DoesNotUndoWhatTheGameChangedMeanwhile) {

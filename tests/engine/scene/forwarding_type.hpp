@@ -1,7 +1,9 @@
 // A model type that is like another in all but its name and how it is synthesised.
 #pragma once
 
+#include <atomic>
 #include <string>
+#include <utility>
 
 #include "engine/models/model_type.hpp"
 
@@ -36,6 +38,29 @@ class ForwardingType : public models::ModelType {
  private:
   std::string name_;
   const models::ModelType& of_;
+};
+
+// Counts how often a mesh of it is made, but for the coarsest level, of which other meshes are made
+// too (those of whole nodes). In everything else like the other one.
+class CountingType final : public ForwardingType {
+ public:
+  CountingType(std::string name, const models::ModelType& of, std::atomic<int>& made)
+      : ForwardingType(std::move(name), of), made_(made) {}
+  core::Bounds synthesize(const models::Parameters& p, int level,
+                          const models::MeshView& out) const override {
+    made_ += level + 1 < level_count_of(p);
+    return of().synthesize(p, level, out);
+  }
+  int level_count_of(const models::Parameters& p) const override { return of().level_count_of(p); }
+  double steps(const models::Parameters& p, int level) const override {
+    return of().steps(p, level);
+  }
+  core::SurfaceKind surface() const override { return of().surface(); }
+  models::Collider collider(const models::Parameters& p) const override { return of().collider(p); }
+  bool may_run_on_main_thread() const override { return of().may_run_on_main_thread(); }
+
+ private:
+  std::atomic<int>& made_;
 };
 
 }  // namespace psygen::scene

@@ -6,6 +6,7 @@
 
 #include "engine/world/files/text_edit.hpp"
 #include "tests/engine/scene/fixture.hpp"
+#include "tests/engine/scene/forwarding_type.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -100,6 +101,78 @@ TEST_F(SetWorld, OneSpeciesOfManyLeadsToTheSameSceneAsANewOne) {
   expect_like_new(species_, replaced(species_, "size_m = [1.9, 3.0]", "size_m = [1.9, 2.4]"));
   expect_like_new(species_, replaced(species_, "flare = 0.9", "flare = 1.1"));
   expect_like_new(species_, replaced(species_, "max_slope_deg = 38", "max_slope_deg = 12"));
+}
+
+// A world of two kinds of trees and rocks, of which made meshes are counted.
+struct Counting {
+  std::atomic<int> oaks = 0, firs = 0, rocks = 0;
+  models::Registry standard = models::make_standard_registry();
+
+  static std::string text(const std::string& of_firs) {
+    return "format = 1\n[world]\nname = \"counted\"\nseed = 3\nblocks = [512, 512]\n"
+           "[terrain]\noctaves = 5\n[[scatter]]\nmodel = \"oak\"\ncount = 4\n"
+           "[[scatter]]\nmodel = \"rock2\"\ncount = 6\n"
+           "[[scatter]]\nmodel = \"fir\"\ncount = 4\n" +
+           of_firs;
+  }
+  std::pair<world::World, models::Registry> parsed(const std::string& of_firs) {
+    models::Registry registry = models::make_standard_registry();
+    const models::ModelType& tree =
+        standard[static_cast<models::ModelIndex>(standard.find("tree"))];
+    const models::ModelType& rock =
+        standard[static_cast<models::ModelIndex>(standard.find("rock"))];
+    EXPECT_TRUE(registry.add(std::make_unique<CountingType>("oak", tree, oaks)));
+    EXPECT_TRUE(registry.add(std::make_unique<CountingType>("rock2", rock, rocks)));
+    EXPECT_TRUE(registry.add(std::make_unique<CountingType>("fir", tree, firs)));
+    auto world = world::parse_world(text(of_firs), "counted.toml", registry);
+    EXPECT_TRUE(world) << world.error().message;
+    return {*std::move(world), std::move(registry)};
+  }
+};
+
+// The entities of an instance of a scatter, with their meshes.
+std::map<std::uint32_t, std::pair<ecs::Entity, synthesis::MeshHandle>> entities_of(
+    Scene& scene, const std::string& type) {
+  std::map<std::uint32_t, std::pair<ecs::Entity, synthesis::MeshHandle>> found;
+  const State& s = scene.state();
+  std::as_const(s.entities)
+      .each<const Source, const Mesh>([&](std::span<const ecs::Entity> rows,
+                                          std::span<const Source> sources,
+                                          std::span<const Mesh> meshes) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          if (sources[i].index < kMergedIndex && s.facts.registry[sources[i].model].name() == type)
+            found.emplace(rows[i].index, std::pair{rows[i], meshes[i].handle});
+        }
+      });
+  return found;
+}
+
+TEST_F(SetWorld, WhatIsKeptIsNotMadeAgain) {
+  Counting counting;
+  auto [world, registry] = counting.parsed("iterations = [3, 4]\n");
+  const auto scene = make_scene(world, settings_, std::move(registry));
+  scene->settle(pose_);
+  const auto oaks = entities_of(*scene, "oak"), rocks = entities_of(*scene, "rock2"),
+             firs = entities_of(*scene, "fir");
+  ASSERT_GT(oaks.size(), 20U);
+  counting.oaks = counting.rocks = counting.firs = 0;
+  auto [next, types] = counting.parsed("iterations = [3, 3]\n");
+  auto prepared = prepare_world(std::move(next), std::move(types), scene->snapshot());
+  ASSERT_TRUE(prepared);
+  EXPECT_EQ(counting.oaks, 0) << "for pictures";
+  EXPECT_EQ(counting.rocks, 0);
+  EXPECT_GT(counting.firs, 0);
+  for (const auto& [block, models] : prepared->models) {
+    for (const world::Placement& placed : models)
+      ASSERT_EQ(prepared->facts.registry[placed.model].name(), "fir") << "placed anew";
+  }
+  ASSERT_TRUE(scene->set_world(std::move(*prepared)));
+  scene->settle(pose_);
+  EXPECT_EQ(counting.oaks, 0) << "meshes of near ones";
+  EXPECT_EQ(counting.rocks, 0);
+  EXPECT_EQ(entities_of(*scene, "oak"), oaks);
+  EXPECT_EQ(entities_of(*scene, "rock2"), rocks);
+  EXPECT_NE(entities_of(*scene, "fir"), firs);
 }
 
 TEST_F(SetWorld, GrassThatFollowsTheSlopeLeadsToTheSameSceneAsANewOne) {
