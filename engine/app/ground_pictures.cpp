@@ -2,32 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <system_error>
-
 #include "engine/image/image_io.hpp"
+#include "engine/world/files/files_beside.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::app {
 
 namespace {
 
-// Whether a file, with all links followed, is in the folder or below. Files that do not exist are:
-// reading tells.
-bool is_below(const std::filesystem::path& folder, const std::filesystem::path& file) {
-  std::error_code failed;
-  const auto real_file = std::filesystem::canonical(file, failed);
-  if (failed) return true;
-  const auto real_folder = std::filesystem::canonical(folder, failed);
-  if (failed) return true;
-  return std::mismatch(real_folder.begin(), real_folder.end(), real_file.begin(), real_file.end())
-             .first == real_folder.end();
-}
-
 core::Result<render::GroundPicture> read_picture(const std::filesystem::path& folder,
                                                  const std::string& name) {
   const std::filesystem::path file = folder / name;
-  if (!is_below(folder, file))
+  if (!world::is_below(folder, file))
     return core::fail(core::ErrorCode::kInvalidArgument,
                       file.string() + " leads out of the folder of the world's file");
   constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 
+#include "engine/handmade/foliage.hpp"
 #include "engine/models/kit/packing.hpp"
 
 namespace psygen::handmade {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMostLevelVertices = 65'536;
 constexpr std::size_t kLeastTriangles = 12;
+constexpr std::size_t kManyPieces = 32, kLeastSolid = 8;
 constexpr std::size_t kStep = 4;      // triangles of a level over those of the next
 constexpr float kMostError = 0.5F;    // of the extent
 constexpr float kNearlyThere = 1.3F;  // times the wanted triangles
@@ -196,6 +198,51 @@ Level packed(Mesh mesh, double error_m) {
   return level;
 }
 
+// What coarser levels are made of: loose leaves are on their own where there are many.
+class Parts {
+ public:
+  explicit Parts(const Mesh& finest)
+      : leaves_(indices_of(finest, true)), foliage_(finest.vertices, leaves_) {
+    is_loose_ = foliage_.piece_count() >= kManyPieces;
+    Mesh rest{finest.vertices, is_loose_ ? indices_of(finest, false) : finest.indices};
+    if (rest.indices.empty()) return;
+    triangles_ = rest.indices.size() / 3;
+    std::vector<unsigned> remap;
+    rest = welded(rest.vertices, rest.indices, Keep::kAll, remap);
+    sources_ = {source_of(rest, Keep::kColours), source_of(rest, Keep::kPositions)};
+  }
+
+  // About as many triangles as wanted, and how far they are from the finest ones.
+  std::pair<Mesh, double> coarse(std::size_t wanted) const {
+    if (!is_loose_) return coarser(sources_, wanted);
+    const std::size_t leaves = leaves_.size() / 3;
+    const std::size_t solid =
+        std::min(triangles_, std::max(wanted * triangles_ / (triangles_ + leaves), kLeastSolid));
+    std::pair<Mesh, double> made;
+    if (solid > 0) made = coarser(sources_, solid);
+    const double error_m =
+        foliage_.add(wanted - std::min(wanted, solid), made.first.vertices, made.first.indices);
+    made.second = std::max(made.second, error_m);
+    return made;
+  }
+
+ private:
+  static Indices indices_of(const Mesh& mesh, bool leaves) {
+    Indices indices;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      if ((mesh.vertices[mesh.indices[i]].leaf != 0) == leaves)
+        indices.insert(indices.end(), {mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]});
+    }
+    return indices;
+  }
+
+  Indices leaves_;
+  Foliage foliage_;
+  bool is_loose_ = false;
+  std::size_t triangles_ = 0;  // of the rest
+  Sources sources_;
+};
+
 }  // namespace
 
 std::vector<Level> levels_of(const Triangles& triangles, int most) {
@@ -203,19 +250,19 @@ std::vector<Level> levels_of(const Triangles& triangles, int most) {
   if (sound.empty()) return {};
   std::vector<unsigned> remap;
   Mesh finest = welded(triangles.vertices, sound, Keep::kAll, remap);
-  const Sources sources{source_of(finest, Keep::kColours), source_of(finest, Keep::kPositions)};
+  const Parts parts(finest);
   std::vector<Level> levels;
   std::size_t wanted = finest.indices.size() / 3;
   while (finest.vertices.size() > kMostLevelVertices) {
     wanted = std::min(wanted * 9 / 10, wanted * kMostLevelVertices / finest.vertices.size());
-    finest = coarser(sources, wanted).first;
+    finest = parts.coarse(wanted).first;
     if (finest.indices.empty()) return {};
   }
   wanted = finest.indices.size() / 3;
   levels.push_back(packed(std::move(finest), 0));
   while (static_cast<int>(levels.size()) < most && wanted > kLeastTriangles) {
     wanted = std::max(wanted / kStep, kLeastTriangles);
-    auto [mesh, error_m] = coarser(sources, wanted);
+    auto [mesh, error_m] = parts.coarse(wanted);
     const float before = static_cast<float>(levels.back().indices.size());
     if (mesh.indices.empty() || static_cast<float>(mesh.indices.size()) > kLeastGain * before ||
         mesh.vertices.size() > kMostLevelVertices)

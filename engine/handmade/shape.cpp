@@ -13,7 +13,7 @@
 namespace psygen::handmade {
 namespace {
 
-constexpr std::uint64_t kShapeEdition = 1;  // of how levels are made
+constexpr std::uint64_t kShapeEdition = 2;  // of how levels are made
 
 // Of what the file and the settings say, not of what a simplifier makes of it.
 std::uint64_t identity_of(const Triangles& triangles, const world::HandmadeModel& how) {

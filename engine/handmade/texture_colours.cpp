@@ -58,8 +58,16 @@ struct Sum {
     drawn += glm::vec3(pixel) * weight;
     drawn_weight += weight;
   }
-  glm::vec3 mean() const {
+  void add(const Sum& other) {
+    all += other.all;
+    all_weight += other.all_weight;
+    drawn += other.drawn;
+    drawn_weight += other.drawn_weight;
+  }
+  // `others`: of the whole mesh, where nothing is drawn here.
+  glm::vec3 mean(const Sum& others) const {
     if (drawn_weight > 0) return drawn / drawn_weight;
+    if (others.drawn_weight > 0) return others.drawn / others.drawn_weight;
     return all_weight > 0 ? all / all_weight : glm::vec3(1.0F);
   }
 };
@@ -86,10 +94,13 @@ std::vector<glm::vec3> texture_colours(const core::MeshData& mesh, const image::
       }
     }
   }
+  Sum whole;
+  for (const Sum& sum : sums)
+    whole.add(sum);
   std::vector<glm::vec3> colours;
   colours.reserve(sums.size());
   for (const Sum& sum : sums)
-    colours.push_back(sum.mean());
+    colours.push_back(sum.mean(whole));
   return colours;
 }
 

@@ -9,7 +9,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
+#include <map>
 
+#include "engine/handmade/cut_out.hpp"
 #include "engine/handmade/texture_colours.hpp"
 #include "engine/models/kit/packing.hpp"
 
@@ -23,9 +25,16 @@ glm::mat4 matrix_of(const gltf::Pose& pose) {
          glm::scale(glm::mat4(1.0F), pose.scale);
 }
 
-// Linear colours of the vertices of a primitive.
-std::vector<glm::vec3> colours_of(const gltf::Model& model, const gltf::Primitive& primitive) {
-  const core::MeshData& mesh = primitive.mesh;
+// Whether a material leaves out pixels of the primitive.
+bool is_cut(const gltf::Model& model, const gltf::Primitive& primitive) {
+  if (primitive.material == gltf::kNone || primitive.mesh.uvs.empty()) return false;
+  const gltf::Material& material = model.materials[primitive.material];
+  return material.least_opacity > 0 && material.base_texture != gltf::kNone;
+}
+
+// Linear colours of the vertices of a primitive, of which `mesh` is drawn.
+std::vector<glm::vec3> colours_of(const gltf::Model& model, const gltf::Primitive& primitive,
+                                  const core::MeshData& mesh) {
   std::vector<glm::vec3> colours(mesh.positions.size(), glm::vec3(1.0F));
   if (primitive.material != gltf::kNone) {
     const gltf::Material& material = model.materials[primitive.material];
@@ -40,15 +49,43 @@ std::vector<glm::vec3> colours_of(const gltf::Model& model, const gltf::Primitiv
   return colours;
 }
 
-void add(const gltf::Model& model, const gltf::Primitive& primitive, const glm::mat4& placed,
-         Triangles& out) {
-  const core::MeshData& mesh = primitive.mesh;
+// What is drawn of a primitive, wherever it is placed.
+struct Drawn {
+  core::MeshData mesh;
+  std::vector<glm::vec3> colours;
+};
+
+Drawn drawn_of(const gltf::Model& model, const gltf::Primitive& primitive, int depth) {
+  Drawn drawn{primitive.mesh, {}};
+  if (is_cut(model, primitive)) {
+    const gltf::Material& material = model.materials[primitive.material];
+    drawn.mesh = cut_out(primitive.mesh, model.images[material.base_texture], material.opacity,
+                         material.least_opacity, depth);
+  }
+  drawn.colours = colours_of(model, primitive, drawn.mesh);
+  return drawn;
+}
+
+// How finely cards are cut, by how many there are in all nodes.
+int depth_for(const gltf::Model& model) {
+  std::size_t triangles = 0;
+  for (const gltf::Node& node : model.nodes) {
+    if (node.mesh == gltf::kNone) continue;
+    for (const gltf::Primitive& primitive : model.meshes[node.mesh].primitives)
+      triangles += is_cut(model, primitive) ? primitive.mesh.indices.size() / 3 : 0;
+  }
+  return cut_depth(triangles);
+}
+
+void add(const gltf::Model& model, const gltf::Primitive& primitive, const Drawn& drawn,
+         const glm::mat4& placed, Triangles& out) {
+  const core::MeshData& mesh = drawn.mesh;
   const glm::mat3 linear(placed);
   // The matrix of cofactors: it turns normals, whatever the scales.
   const glm::mat3 normals(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                           glm::cross(linear[0], linear[1]));
   const bool mirrored = glm::determinant(linear) < 0;
-  const std::vector<glm::vec3> colours = colours_of(model, primitive);
+  const std::vector<glm::vec3>& colours = drawn.colours;
   const bool leaf =
       primitive.material != gltf::kNone && model.materials[primitive.material].least_opacity > 0;
   const auto first = static_cast<std::uint32_t>(out.vertices.size());
@@ -108,18 +145,23 @@ core::Result<void> place(const world::HandmadeModel& how, Triangles& out) {
 core::Result<Triangles> triangles_of(const gltf::Model& model, const world::HandmadeModel& how) {
   Triangles out;
   std::vector<glm::mat4> placed;
+  std::map<const gltf::Primitive*, Drawn> known;  // nodes may share meshes
+  const int depth = depth_for(model);
   for (const gltf::Node& node : model.nodes) {
     const glm::mat4 own = matrix_of(node.rest);
     placed.push_back(node.parent == gltf::kNone ? own : placed[node.parent] * own);
     if (node.mesh == gltf::kNone) continue;
     for (const gltf::Primitive& primitive : model.meshes[node.mesh].primitives) {
-      if (out.vertices.size() + primitive.mesh.positions.size() > kMostVertices ||
-          out.indices.size() + primitive.mesh.indices.size() > 6 * kMostVertices)
+      const auto [drawn, is_new] = known.try_emplace(&primitive);
+      if (is_new) drawn->second = drawn_of(model, primitive, depth);
+      const core::MeshData& mesh = drawn->second.mesh;
+      if (out.vertices.size() + mesh.positions.size() > kMostVertices ||
+          out.indices.size() + mesh.indices.size() > 6 * kMostVertices)
         return core::fail(core::ErrorCode::kOverBudget,
                           fmt::format("with all its nodes it has more than {} vertices or {} "
                                       "triangles",
                                       kMostVertices, 2 * kMostVertices));
-      add(model, primitive, placed.back(), out);
+      add(model, primitive, drawn->second, placed.back(), out);
     }
   }
   const auto finite = [](const Vertex& v) {

@@ -31,16 +31,14 @@ struct Beside {
   std::string_view world_file;  // names are relative to its folder
   const FilesBeside* files;     // null: this program reads none
 
-  // The file of a name, and the picture in it. Without a reader of files that fails with
-  // kInvalidArgument.
-  std::filesystem::path path_of(std::string_view name) const {
-    return std::filesystem::path(world_file).parent_path() / name;
-  }
-  core::Result<std::shared_ptr<const GreyPicture>> read_grey(std::string_view name) const {
-    if (files != nullptr) return files->read_grey(path_of(name));
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      "this program reads no files beside world files (engine/handmade)");
-  }
+  // The file of a name. Fails with kInvalidArgument where links lead out of the folder.
+  core::Result<std::filesystem::path> path_of(std::string_view name) const;
+  // The picture in it. Fails also without a reader of files, with kInvalidArgument.
+  core::Result<std::shared_ptr<const GreyPicture>> read_grey(std::string_view name) const;
 };
+
+// Whether a file, with all links followed, is in the folder or below. Files that do not exist are:
+// reading tells.
+bool is_below(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 }  // namespace psygen::world

@@ -47,7 +47,9 @@ void register_model(const HandmadeModel& model, const HandmadeSource& source, co
   if (source.beside.files == nullptr)
     return refuse("file", "this program reads no files beside world files (engine/handmade)",
                   core::ErrorCode::kInvalidArgument);
-  auto type = source.beside.files->read_model(source.beside.path_of(model.file), model);
+  auto type = source.beside.path_of(model.file).and_then([&](const std::filesystem::path& file) {
+    return source.beside.files->read_model(file, model);
+  });
   if (!type) return refuse("file", type.error().message, type.error().code);
   if (const int known = source.registry.find(model.name); known >= 0) {
     const models::ModelType& there = source.registry[static_cast<models::ModelIndex>(known)];

@@ -222,6 +222,29 @@ TEST(HandmadeFiles, RefuseBadMasks) {
   EXPECT_THAT(error(), StartsWith(at));
 }
 
+TEST(HandmadeFiles, RefuseLinksThatLeadOutOfTheFolder) {
+  World w;
+  const auto inner = w.folder / "inner";
+  std::filesystem::create_directories(inner / "things");
+  ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(64, 64, 9, 99, 200)));
+  std::filesystem::create_symlink(w.folder / "m.png", inner / "m.png");
+  std::filesystem::create_symlink(w.folder / "things/ball.glb", inner / "things/ball.glb");
+  const auto error_of = [&](const std::string& rest) {
+    models::Registry types = models::make_standard_registry();
+    const auto world =
+        world::parse_world(kHead + rest, (inner / "w.toml").string(), types, &files());
+    return world ? "" : world.error().message;
+  };
+  const char* const out = "leads out of the folder of the world's file";
+  EXPECT_THAT(error_of(kMask), HasSubstr(out));
+  EXPECT_THAT(error_of(std::string(kBall) + kScatter), HasSubstr(out));
+  // Within the folder they may lead anywhere.
+  std::filesystem::remove(inner / "m.png");
+  std::filesystem::copy(w.folder / "m.png", inner / "things/real.png");
+  std::filesystem::create_symlink(inner / "things/real.png", inner / "m.png");
+  EXPECT_EQ(error_of(kMask), "");
+}
+
 TEST(HandmadeFiles, RefuseEveryCutFile) {
   World w;
   const std::string whole = ball(4, 5).glb();

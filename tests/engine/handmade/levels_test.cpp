@@ -4,7 +4,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/gltf/read_file.hpp"
 #include "tests/engine/handmade/shapes.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace psygen::handmade {
 namespace {
@@ -78,6 +80,42 @@ TEST(Levels, AreTheSameEveryTime) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].indices, b[i].indices);
     EXPECT_EQ(a[i].error_m, b[i].error_m);
+  }
+}
+
+// The area of the triangles of leaves, or of all others.
+double area_in(const Level& level, bool leaves) {
+  double area = 0;
+  for (std::size_t i = 0; i < level.indices.size(); i += 3) {
+    const auto at = [&](std::size_t k) -> const Vertex& {
+      return level.vertices[level.indices[i + k]];
+    };
+    if ((at(0).leaf != 0) == leaves)
+      area += static_cast<double>(glm::length(
+                  glm::cross(at(1).position - at(0).position, at(2).position - at(0).position))) /
+              2;
+  }
+  return area;
+}
+
+// Nothing of loose leaves can be merged: fewer of them get larger.
+TEST(Levels, OfATreeOfCardsKeepItsTrunkAndTheAreaOfItsLeaves) {
+  const TemporaryFolder folder;
+  write_card_tree(folder / "tree.glb");
+  const Triangles t = triangles_of(gltf::read_file(folder / "tree.glb").value(), {}).value();
+  const std::vector<Level> levels = levels_of(t, 8);
+  ASSERT_GE(levels.size(), 4U);
+  const double leaves = area_in(levels[0], true), trunk = area_in(levels[0], false);
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    EXPECT_LT(levels[i].indices.size(), levels[i - 1].indices.size());
+    EXPECT_GT(levels[i].error_m, levels[i - 1].error_m);
+    EXPECT_GT(area_in(levels[i], false), trunk / 2) << i;
+    EXPECT_LT(area_in(levels[i], true), 1.01 * leaves) << i;
+    if (levels[i].indices.size() > 3 * 300) {
+      EXPECT_NEAR(area_in(levels[i], true), leaves, 0.05 * leaves) << i;
+    }
+    for (const Vertex& v : levels[i].vertices)
+      EXPECT_LT(glm::length(v.position - glm::vec3(0, 5, 0)), 7) << i;
   }
 }
 

@@ -1,10 +1,16 @@
 // Models for tests of handmade models.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 
 #include "engine/handmade/shape.hpp"
+#include "engine/image/image_io.hpp"
 #include "tests/engine/gltf/sample.hpp"
 
 namespace psygen::handmade {
@@ -63,6 +69,99 @@ inline Triangles sphere(int rows, int columns) {
   }
   t.box = {glm::vec3(-1), glm::vec3(1)};
   return t;
+}
+
+// A picture of a few leaves side by side: green within them, magenta and left out around them.
+inline image::Image leaf_picture(std::uint32_t side = 64) {
+  image::Image image = image::make_image(side, side, 255, 0, 255, 0);
+  for (std::uint32_t y = 0; y < side; ++y) {
+    for (std::uint32_t x = 0; x < side; ++x) {
+      // Three by three tilted ellipses.
+      const double u = 3.0 * x / side, v = 3.0 * y / side;
+      const double a = u - std::floor(u) - 0.5, b = v - std::floor(v) - 0.5;
+      const double along = 0.8 * a + 0.6 * b, across = 0.8 * b - 0.6 * a;
+      if (along * along / 0.2 + across * across / 0.05 > 1) continue;
+      const auto green = static_cast<std::uint8_t>(110 + 40 * std::sin(40 * across));
+      image.pixel(x, y)[0] = 50, image.pixel(x, y)[1] = green;
+      image.pixel(x, y)[2] = 25, image.pixel(x, y)[3] = 255;
+    }
+  }
+  return image;
+}
+
+// A tree as artists make them: a trunk, and cards with leaves, of which a texture leaves out what
+// is between them. `leaves`: its PNG.
+inline gltf::Sample card_tree(std::string_view leaves, int cards = 160) {
+  gltf::Sample s;
+  struct Part {
+    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec2> uvs;
+    std::vector<std::uint32_t> indices;
+    void quad(const std::array<glm::vec3, 4>& corners, const std::array<glm::vec3, 4>& up) {
+      const auto first = static_cast<std::uint32_t>(positions.size());
+      positions.insert(positions.end(), corners.begin(), corners.end());
+      normals.insert(normals.end(), up.begin(), up.end());
+      uvs.insert(uvs.end(), {{0, 1}, {1, 1}, {1, 0}, {0, 0}});
+      for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U})
+        indices.push_back(first + i);
+    }
+  };
+  Part trunk, crown;
+  constexpr int kSides = 8;
+  for (int k = 0; k < kSides; ++k) {
+    const auto out = [](int side) {
+      const double angle = 2 * std::numbers::pi * side / kSides;
+      return glm::vec3(std::sin(angle), 0, std::cos(angle));
+    };
+    const glm::vec3 a = out(k), b = out(k + 1), top{0, 6, 0};
+    trunk.quad({0.3F * a, 0.3F * b, top + 0.1F * b, top + 0.1F * a}, {a, b, b, a});
+  }
+  std::uint32_t state = 7;
+  const auto random = [&state] {
+    state = state * 1664525U + 1013904223U;
+    return static_cast<float>(state >> 8) / static_cast<float>(1 << 24);
+  };
+  for (int k = 0; k < cards; ++k) {
+    const float turn = 6.2832F * random(), height = 2 * random() - 1,
+                far = 0.55F + 0.45F * random();
+    const float wide = std::sqrt(1 - height * height);
+    const glm::vec3 out{wide * std::sin(turn), height, wide * std::cos(turn)};
+    const glm::vec3 middle = glm::vec3(0, 5, 0) + far * glm::vec3(2.2F, 2.6F, 2.2F) * out;
+    const float lean = 6.2832F * random(), rise = random() - 0.5F;
+    const glm::vec3 right{0.8F * std::cos(lean), 0, 0.8F * std::sin(lean)};
+    const glm::vec3 up{-0.8F * rise * std::sin(lean), 0.8F, 0.8F * rise * std::cos(lean)};
+    crown.quad({middle - right - up, middle + right - up, middle + right + up, middle - right + up},
+               {out, out, out, out});
+  }
+  const int picture = s.view(leaves);
+  s.add("images", {{"bufferView", picture}, {"mimeType", "image/png"}});
+  s.add("textures", {{"source", 0}});
+  s.add("materials",
+        gltf::parsed(R"({"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.13, 0.08, 1]}})"));
+  s.add("materials", gltf::parsed(R"({"alphaMode": "MASK", "doubleSided": true,
+      "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})"));
+  nlohmann::json primitives = nlohmann::json::array();
+  for (const auto& [part, material] : {std::pair{&trunk, 0}, {&crown, 1}}) {
+    nlohmann::json primitive = {{"indices", s.accessor(part->indices, "SCALAR", gltf::kInts)},
+                                {"material", material}};
+    primitive["attributes"] = {{"POSITION", s.accessor(part->positions, "VEC3", gltf::kFloats)},
+                               {"NORMAL", s.accessor(part->normals, "VEC3", gltf::kFloats)},
+                               {"TEXCOORD_0", s.accessor(part->uvs, "VEC2", gltf::kFloats)}};
+    primitives.push_back(primitive);
+  }
+  s.add("meshes", {{"name", "tree"}, {"primitives", primitives}});
+  s.add("nodes", gltf::parsed(R"({"mesh": 0})"));
+  s.add("scenes", gltf::parsed(R"({"nodes": [0]})"));
+  return s;
+}
+
+// Writes that tree with its leaves into a folder.
+inline void write_card_tree(const std::filesystem::path& file) {
+  const std::filesystem::path leaves = file.parent_path() / "leaves.png";
+  EXPECT_TRUE(image::write_png(leaves, leaf_picture()));
+  std::ifstream stream(leaves, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  gltf::write_bytes(file, card_tree(bytes).glb());
 }
 
 }  // namespace psygen::handmade

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/gltf/read_file.hpp"
+#include "engine/handmade/cut_out.hpp"
 #include "engine/handmade/texture_colours.hpp"
 #include "tests/engine/handmade/shapes.hpp"
 #include "tests/temporary_folder.hpp"
@@ -44,6 +45,86 @@ TEST(Triangles, HaveTheColoursOfTheirMaterial) {
     EXPECT_EQ(v.colour, (std::array<std::uint8_t, 3>{180, 0, 40}));
     EXPECT_EQ(v.leaf, 1);
   }
+}
+
+double area_of(const core::MeshData& mesh) {
+  double area = 0;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const auto at = [&](std::size_t k) { return mesh.positions[mesh.indices[i + k]]; };
+    area += static_cast<double>(glm::length(glm::cross(at(1) - at(0), at(2) - at(0)))) / 2;
+  }
+  return area;
+}
+double share_drawn(const image::Image& image) {
+  std::size_t drawn = 0;
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+    drawn += image.rgba[i] >= 128;
+  return 4.0 * static_cast<double>(drawn) / static_cast<double>(image.rgba.size());
+}
+// A card of 1 m².
+core::MeshData card() {
+  core::MeshData mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.normals.assign(4, {0, 0, 1});
+  mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+TEST(CutOut, LeavesWhatIsDrawnWithItsAreaAndItsFront) {
+  const image::Image leaves = leaf_picture();
+  const core::MeshData cut = cut_out(card(), leaves, 1, 0.5F, kMostCutDepth);
+  EXPECT_NEAR(area_of(cut), share_drawn(leaves), 0.15 * share_drawn(leaves));
+  ASSERT_TRUE(core::check(cut));
+  double outside = 0;
+  for (std::size_t i = 0; i < cut.indices.size(); i += 3) {
+    const auto at = [&](std::size_t k) { return cut.positions[cut.indices[i + k]]; };
+    const float twice = glm::cross(at(1) - at(0), at(2) - at(0)).z;
+    EXPECT_GE(twice, 0);
+    const glm::vec3 middle = (at(0) + at(1) + at(2)) / 3.0F;
+    const bool drawn = leaves.pixel(static_cast<std::uint32_t>(64 * middle.x),
+                                    static_cast<std::uint32_t>(64 * (1 - middle.y)))[3] > 0;
+    outside += drawn ? 0.0 : static_cast<double>(twice) / 2;
+  }
+  EXPECT_LT(outside, 0.25 * area_of(cut)) << "a leaf is not three steps large";
+}
+
+// Needles are finer than what is cut: as much of the card stays as they cover.
+TEST(CutOut, KeepsTheAreaOfWhatIsFinerThanItCuts) {
+  image::Image needles = image::make_image(256, 256, 0, 90, 0, 0);
+  for (std::uint32_t y = 0; y < 256; ++y)
+    for (std::uint32_t x = 0; x < 256; ++x)
+      if ((x + 3 * y) % 20 < 6 && (x - 128) * (x - 128) + (y - 128) * (y - 128) < 110 * 110)
+        needles.pixel(x, y)[3] = 255;
+  const double drawn = share_drawn(needles);
+  for (int depth = 1; depth <= kMostCutDepth; ++depth)
+    EXPECT_NEAR(area_of(cut_out(card(), needles, 1, 0.5F, depth)), drawn, 0.35 * drawn) << depth;
+}
+
+TEST(CutOut, OfOnePictureIsAllOrNothing) {
+  const core::MeshData whole =
+      cut_out(card(), image::make_image(8, 8, 1, 2, 3, 255), 1, 0.5F, kMostCutDepth);
+  EXPECT_EQ(whole.indices.size(), 6U) << "no more triangles than it had";
+  EXPECT_EQ(whole.positions.size(), 4U);
+  const image::Image half = image::make_image(8, 8, 1, 2, 3, 128);
+  EXPECT_TRUE(cut_out(card(), half, 0.5F, 0.5F, kMostCutDepth).indices.empty())
+      << "the material is half as opaque";
+  EXPECT_EQ(cut_depth(100), kMostCutDepth);
+  EXPECT_EQ(cut_depth(1 << 20), 0);
+}
+
+TEST(Triangles, OfCardsHaveTheColourOfTheirLeavesAlone) {
+  const TemporaryFolder folder;
+  write_card_tree(folder / "tree.glb");
+  const Triangles t = triangles_of(gltf::read_file(folder / "tree.glb").value(), {}).value();
+  std::size_t leaves = 0;
+  for (const Vertex& v : t.vertices) {
+    if (v.leaf == 0) continue;
+    ++leaves;
+    ASSERT_GT(v.colour[1], v.colour[0]) << "green, not what is left out";
+    ASSERT_GT(v.colour[1], v.colour[2]);
+  }
+  EXPECT_GT(leaves, 160U * 8);
 }
 
 TEST(Triangles, KeepTheirFrontsWhereANodeMirrorsThem) {
