@@ -74,10 +74,15 @@ NumberEdit::NumberEdit(const Range& range, const QString& name, QWidget* parent)
   box_->setSingleStep(step_of(range));
   box_->setKeyboardTracking(false);
   box_->setAccessibleName(name);
-  box_->setFixedWidth(
-      box_->fontMetrics().horizontalAdvance("0000000000") +
-      (range.unit.isEmpty() ? 0 : box_->fontMetrics().horizontalAdvance(range.unit)));
-  if (!range.unit.isEmpty()) box_->setSuffix(" " + range.unit);
+  // As wide for all short units, so that rows stand below each other.
+  const QString unit = range.unit == "degrees" ? QStringLiteral("°")
+                       : range.unit.isEmpty()  ? QString()
+                                               : " " + range.unit;
+  const auto width_of = [this](const QString& text) {
+    return box_->fontMetrics().horizontalAdvance(text);
+  };
+  box_->setFixedWidth(width_of("0000000000") + std::max(width_of(unit), width_of(" m")));
+  box_->setSuffix(unit);
   auto* layout = new QHBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(slider_, 1);

@@ -139,6 +139,9 @@ void MainWindow::connect_view() {
     restore_place();
     ask_costs();
   });
+  connect(view_, &WorldView::lost, this, [this] {
+    say(tr("The graphics device was lost. The view is opened again; the document is as it was."));
+  });
   connect(view_, &WorldView::refused, this, &MainWindow::say);
   connect(view_, &WorldView::refused, costs_, &CostWorker::go_on);
   connect(view_, &WorldView::answered, this, [this](double ms) {
@@ -205,7 +208,8 @@ void MainWindow::fit_title() {
   const QString name = document_.file().empty()
                            ? tr("new world")
                            : QString::fromStdString(document_.file().filename().string());
-  setWindowTitle(tr("%1[*] – psygen editor").arg(name));
+  const QString shown = document_.is_read_only() ? tr("%1 (read-only)").arg(name) : name;
+  setWindowTitle(tr("%1[*] – psygen editor").arg(shown));
   setWindowModified(document_.is_modified());
 }
 

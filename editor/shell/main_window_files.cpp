@@ -30,6 +30,10 @@ bool MainWindow::open_file(const std::filesystem::path& file) {
 void MainWindow::note_file() {
   fit_title();
   if (document_.file().empty()) return;
+  if (document_.is_read_only())
+    say(tr("%1 or its folder cannot be written: save changes under another name, in another "
+           "folder.")
+            .arg(QString::fromStdString(document_.file().string())));
   QSettings settings;
   note_recent_file(settings, document_.file());
   fill_recent_files();

@@ -19,6 +19,7 @@ constexpr int kBusyMs = 0, kIdleMs = 100;  // between pictures; idle: another pr
 constexpr int kYieldMs = 150;
 constexpr int kPreparedMs = 10;  // a picture waits for another world
 constexpr double kMostStepS = 0.1;
+constexpr int kLostAgainMs = 60'000;  // a device that is lost within that is not opened again
 
 }  // namespace
 
@@ -101,6 +102,20 @@ bool WorldView::event(QEvent* event) {
   return QWindow::event(event);
 }
 
+// After the device was lost, on a new one, with the camera where it is. False: it was lost a short
+// while ago too, and would be lost again.
+bool WorldView::open_again() {
+  if (since_lost_.isValid() && since_lost_.elapsed() < kLostAgainMs) return false;
+  since_lost_.start();
+  close();
+  const Stand stand{camera_.pose(), camera_.pivot()};
+  Q_EMIT lost();
+  open();
+  camera_.set_pose(stand.pose);
+  camera_.set_pivot(stand.pivot);
+  return true;
+}
+
 // The newest text, once what is prepared of the one before has been taken.
 void WorldView::take_text() {
   if (prepared_.valid() || !std::exchange(text_is_new_, false)) return;
@@ -160,6 +175,8 @@ void WorldView::tick() {
   const bool over = !session_->poll();
   const auto ok = over ? core::Result<void>{} : session_->tick(camera_.pose(), dt_s);
   if (over || !ok) {
+    const bool is_lost = !ok && ok.error().code == core::ErrorCode::kDeviceLost;
+    if (is_lost && open_again()) return;
     close();
     failed_ = true;
     Q_EMIT opened(QString::fromStdString(ok ? "the view was closed" : ok.error().message));

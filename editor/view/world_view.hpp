@@ -88,6 +88,9 @@ class WorldView final : public QWindow {
  Q_SIGNALS:
   // A session was opened, or could not be: `error` says why.
   void opened(const QString& error);
+  // The device was lost; another one is opened now, once. If that fails, or if it is lost again
+  // soon, opened() tells it.
+  void lost();
   // The present text could not be shown; the world before stays.
   void refused(const QString& error);
   void selected();
@@ -105,6 +108,7 @@ class WorldView final : public QWindow {
  private:
   void open();
   void close();
+  bool open_again();
   void tick();
   void take_text();
   void take_prepared();
@@ -136,7 +140,7 @@ class WorldView final : public QWindow {
   // What another thread makes of the newest text that it has got; invalid: it rests.
   std::future<core::Result<scene::PreparedWorld>> prepared_;
   QTimer timer_;
-  QElapsedTimer since_tick_;
+  QElapsedTimer since_tick_, since_lost_;
   QElapsedTimer since_text_;                    // invalid: everything of the text is drawn
   QElapsedTimer since_prepared_, since_taken_;  // the text that is prepared, and drawn, came
   GroundGrid grid_;

@@ -273,8 +273,15 @@ void take_tools(Photographer& take, MainWindow& window) {
       click(tools->place(), ground.at(24 * i - 60, 6 * (i % 2) + 8 * i - 20));
     tools->place().hover(ground.at(4, -22));
   });
+  MaskTool& mask = tools->mask();
+  take.command("Paint masks");
+  mask.set_new_mask(NewMask{false, 128, 1});
+  mask.choose(section_called(take.document(), "scatter", "spruce").steps[1].index);
+  rest(3000);
+  take.window("new-mask");
+  take.command("Leave the tool");
   take_tool(take, "Paint masks", "mask", [&] {
-    MaskTool& mask = tools->mask();
+    mask.set_new_mask(std::nullopt);
     mask.choose(section_called(take.document(), "scatter", "spruce").steps[1].index);
     mask.make_mask();
     take.command("Erase");
@@ -462,7 +469,9 @@ int run(int argc, char** argv, Arguments arguments) {
   MainWindow window(std::move(options));
   window.showFullScreen();
   window.set_first_place(first_pose(), kFirstHeightM);
-  window.open_file(source_file(std::string("game/worlds/") + kFirstWorld + ".toml"));
+  // From the sources' folder, so that messages name the same file everywhere.
+  window.open_file(
+      std::filesystem::proximate(source_file(std::string("game/worlds/") + kFirstWorld + ".toml")));
   return take_all(window, arguments) ? 0 : 1;
 }
 
