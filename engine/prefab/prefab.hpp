@@ -64,6 +64,40 @@ struct Instance {
   std::uint64_t since_step = 0;  // FixedStep::index
 };
 
+}  // namespace psygen::prefab
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::gltf::Pose> {
+  static constexpr auto fields =
+      std::tuple{field("translation", &gltf::Pose::translation),
+                 field("rotation", &gltf::Pose::rotation), field("scale", &gltf::Pose::scale)};
+};
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::prefab::PrefabId> {
+  static constexpr auto fields = std::tuple{field("index", &prefab::PrefabId::index)};
+};
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::prefab::Attached> {
+  static constexpr std::string_view name = "Attached";
+  static constexpr auto fields = std::tuple{field("parent", &prefab::Attached::parent),
+                                            field("pose", &prefab::Attached::pose)};
+};
+
+// Prefabs by their numbers: those of the same order of calls of Library. Steps count from the start
+// of a session, so an animation begins anew there unless Library::play() is called.
+template <>
+struct psygen::ecs::ComponentTraits<psygen::prefab::Instance> {
+  static constexpr std::string_view name = "Instance";
+  static constexpr auto fields = std::tuple{
+      field("prefab", &prefab::Instance::prefab), field("animation", &prefab::Instance::animation),
+      field("speed", &prefab::Instance::speed), field("loops", &prefab::Instance::loops),
+      field("from_s", &prefab::Instance::from_s)};
+};
+
+namespace psygen::prefab {
+
 // How an animation is played.
 struct Playback {
   double from_s = 0;  // of the animation

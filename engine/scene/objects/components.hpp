@@ -12,6 +12,7 @@
 #include "ecs/ecs.hpp"
 #include "engine/core/coordinates.hpp"
 #include "engine/render/types.hpp"
+#include "engine/scene/objects/described.hpp"
 
 namespace psygen::scene {
 
@@ -49,6 +50,32 @@ struct Object {
   ObjectState state = {};
 };
 static_assert(sizeof(Object) == 32);
+
+}  // namespace psygen::scene
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::scene::MeshId> {
+  static constexpr auto fields = std::tuple{field("index", &scene::MeshId::index)};
+};
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::scene::Transform> {
+  static constexpr std::string_view name = "Transform";
+  static constexpr auto fields = std::tuple{field("position", &scene::Transform::position),
+                                            field("rotation", &scene::Transform::rotation),
+                                            field("scale", &scene::Transform::scale)};
+};
+
+// Meshes and materials by their numbers: those of the same order of calls of Assets.
+template <>
+struct psygen::ecs::ComponentTraits<psygen::scene::Object> {
+  static constexpr std::string_view name = "Object";
+  static constexpr auto fields =
+      std::tuple{field("mesh", &scene::Object::mesh), field("material", &scene::Object::material),
+                 field("visible", &scene::Object::visible)};
+};
+
+namespace psygen::scene {
 
 // A new object: an entity with a Transform and an Object.
 inline ecs::Entity spawn(ecs::World& world, const Object& object, const Transform& transform) {

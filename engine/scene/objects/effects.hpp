@@ -28,6 +28,19 @@ struct PointLight {
   PointLightState state = {};
 };
 
+}  // namespace psygen::scene
+
+template <>
+struct psygen::ecs::ComponentTraits<psygen::scene::PointLight> {
+  static constexpr std::string_view name = "PointLight";
+  static constexpr auto fields = std::tuple{field("colour", &scene::PointLight::colour),
+                                            field("intensity", &scene::PointLight::intensity),
+                                            field("range_m", &scene::PointLight::range_m),
+                                            field("visible", &scene::PointLight::visible)};
+};
+
+namespace psygen::scene {
+
 // Particles. With values outside of ParticleKind's ranges nothing is drawn
 // (Counters::emitters_invalid).
 struct ParticleEmitter {

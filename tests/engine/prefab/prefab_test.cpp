@@ -8,7 +8,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "ecs/snapshot.hpp"
 #include "engine/gltf/read_file.hpp"
+#include "engine/scene/objects/effects.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::prefab {
@@ -161,6 +163,71 @@ TEST_F(Prefabs, SplitMeshesThatAreTooLarge) {
   ASSERT_TRUE(added) << added.error().message;
   EXPECT_EQ(state().assets.mesh_count() - before, 5u) << "four parts, and the second material";
   EXPECT_EQ(library_[*added].parts.size(), 10u);
+}
+
+// A save keeps instances whole: where they stand, what they play, what holds to what.
+TEST(PrefabSnapshots, KeepObjectsAndInstancesWithTheirParts) {
+  ecs::World world;
+  scene::spawn(world, {}, {});  // so that handles differ
+  Transform place;
+  place.position.block = {3, -7};
+  place.position.local = {1.5, 40.25, 9};
+  place.rotation = glm::quat(0.6F, 0, 0.8F, 0);
+  place.scale = {1, 2, 0.5F};
+  const auto root = world.create<Transform, Instance, ecs::Children>(1);
+  root.column<Transform>()[0] = place;
+  root.column<Instance>()[0] = {
+      .prefab = {4}, .animation = 1, .speed = -2, .loops = false, .from_s = 0.75};
+  const auto part = world.create<Transform, Object, Attached>(1);
+  part.column<Object>()[0] = {.mesh = {9}, .material = 3, .visible = false};
+  part.column<Attached>()[0] = {
+      root.entities[0], {{1, 2, 3}, glm::quat(0, 1, 0, 0), {4, 5, 6}}, {}};
+  world.set_children(root.entities[0], part.entities);
+  const auto light = world.create<Transform, scene::PointLight>(1);
+  light.column<scene::PointLight>()[0] = {
+      .colour = {1, 0.5F, 0.25F}, .intensity = 7, .range_m = 33};
+
+  const auto bytes = ecs::save_snapshot(world);
+  ecs::World again;
+  again.declare<Transform, Object, Attached, Instance, ecs::Children, scene::PointLight>();
+  ASSERT_TRUE(ecs::load_snapshot(bytes, again));
+  int seen = 0;
+  again.each<const Instance, const Transform, const ecs::Children>(
+      [&](std::span<const ecs::Entity> rows, std::span<const Instance> instances,
+          std::span<const Transform> places, std::span<const ecs::Children> lists) {
+        ++seen;
+        EXPECT_EQ(instances[0].prefab, PrefabId{4});
+        EXPECT_EQ(instances[0].animation, 1U);
+        EXPECT_EQ(instances[0].speed, -2);
+        EXPECT_FALSE(instances[0].loops);
+        EXPECT_EQ(instances[0].from_s, 0.75);
+        EXPECT_EQ(places[0].position.block, place.position.block);
+        EXPECT_EQ(places[0].position.local, place.position.local);
+        EXPECT_EQ(places[0].rotation, place.rotation);
+        EXPECT_EQ(places[0].scale, place.scale);
+        const auto children = again.children(lists[0]);
+        ASSERT_EQ(children.size(), 1U);
+        const auto* attached = again.get<Attached>(children[0]);
+        ASSERT_NE(attached, nullptr);
+        EXPECT_EQ(attached->parent, rows[0]);
+        EXPECT_EQ(attached->pose.translation, glm::vec3(1, 2, 3));
+        EXPECT_EQ(attached->pose.rotation, glm::quat(0, 1, 0, 0));
+        EXPECT_EQ(attached->pose.scale, glm::vec3(4, 5, 6));
+        const auto* object = again.get<Object>(children[0]);
+        ASSERT_NE(object, nullptr);
+        EXPECT_EQ(object->mesh, scene::MeshId{9});
+        EXPECT_EQ(object->material, 3U);
+        EXPECT_FALSE(object->visible);
+      });
+  EXPECT_EQ(seen, 1);
+  again.each<const scene::PointLight>(
+      [&](std::span<const ecs::Entity>, std::span<const scene::PointLight> lights) {
+        ++seen;
+        EXPECT_EQ(lights[0].colour, glm::vec3(1, 0.5F, 0.25F));
+        EXPECT_EQ(lights[0].intensity, 7);
+        EXPECT_EQ(lights[0].range_m, 33);
+      });
+  EXPECT_EQ(seen, 2);
 }
 
 }  // namespace
