@@ -47,8 +47,8 @@ core::Result<void> Walker::put(const core::WorldPosition& feet, double yaw) {
   if (auto ok = physics_->set_velocity(body_, {}); !ok) return ok;
   feet_ = before_ = physics_->state(body_)->feet;
   velocity_ = {};
-  yaw_ = yaw;
-  pitch_ = 0;
+  yaw_ = yaw_before_ = yaw;
+  pitch_ = pitch_before_ = 0;
   return {};
 }
 
@@ -117,7 +117,8 @@ physics::CharacterInput Walker::glide(const Abilities& abilities, const Intent& 
 
 void Walker::decide(const Intent& intent, const Abilities& abilities, const Weather& weather,
                     double dt) {
-  yaw_ += intent.turn;
+  yaw_before_ = std::exchange(yaw_, yaw_ + intent.turn);
+  pitch_before_ = pitch_;
   pitch_ = std::clamp(pitch_ + intent.look, -kMostPitch, kMostPitch);
   gust_s_ = std::max(gust_s_ - dt, 0.0);
   const Gait before = std::exchange(gait_, next_gait(intent, abilities));
@@ -165,8 +166,8 @@ core::CameraPose Walker::eyes(double share) const {
   pose.position = feet_;
   pose.position.local -= way_m(before_, feet_, block_m) * (1 - share);
   pose.position.local.y += kEyesM;
-  pose.yaw = yaw_;
-  pose.pitch = pitch_;
+  pose.yaw = std::lerp(yaw_before_, yaw_, share);
+  pose.pitch = std::lerp(pitch_before_, pitch_, share);
   return pose;
 }
 

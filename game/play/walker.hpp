@@ -69,7 +69,8 @@ class Walker {
   physics::CharacterId body_;
   core::WorldPosition feet_, before_;
   glm::dvec3 velocity_{0.0};
-  double yaw_ = 0, pitch_ = 0, breath_ = 1, walked_m_ = 0, stride_m_ = 0, gust_s_ = 0;
+  double yaw_ = 0, pitch_ = 0, yaw_before_ = 0, pitch_before_ = 0, breath_ = 1, walked_m_ = 0,
+         stride_m_ = 0, gust_s_ = 0;
   Gait gait_ = Gait::kGround;
   bool on_ground_ = true, stepped_ = false, landed_ = false, splashed_ = false;
 };

@@ -149,6 +149,22 @@ TEST(Walker, FloatsInDeepWaterAndSinksNoDeeperThanTheChest) {
   EXPECT_GT(game.play->walker().eyes(1).position.local.y, level_m);
 }
 
+TEST(Walker, MovesAndTurnsEvenlyBetweenSteps) {
+  Begun game;
+  game.steps(30, {.move = {0, 1}});
+  const double yaw = game.play->walker().yaw();
+  game.steps(1, {.move = {0, 1}, .turn = 0.2, .look = 0.1});
+  const Walker& walker = game.play->walker();
+  const core::CameraPose first = walker.eyes(0), half = walker.eyes(0.5), last = walker.eyes(1);
+  EXPECT_NEAR(first.yaw, yaw, 1e-12);
+  EXPECT_NEAR(half.yaw, yaw + 0.1, 1e-12);
+  EXPECT_NEAR(last.yaw, yaw + 0.2, 1e-12);
+  EXPECT_NEAR(half.pitch, (first.pitch + last.pitch) / 2, 1e-12);
+  EXPECT_GT(distance_m(first.position, last.position, game.play->block_m()), 0.01);
+  EXPECT_NEAR(distance_m(first.position, half.position, game.play->block_m()),
+              distance_m(half.position, last.position, game.play->block_m()), 1e-9);
+}
+
 TEST(Walker, GlidesOnlyWithTheSailAndFallsSlowly) {
   for (const int found : {0, 1}) {
     Begun game;
