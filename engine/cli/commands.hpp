@@ -132,6 +132,7 @@ class ExportCommand {
   core::Result<exchange::Document> block_document(const world::World& world,
                                                   const models::Registry& registry) const;
   int export_region(const world::World& world, const models::Registry& registry) const;
+  int export_heightmap(const world::World& world, unsigned threads) const;
 
   CLI::App* command_;
   std::string model_, world_ = kDefaultWorld, out_;

@@ -143,7 +143,7 @@ ExportCommand::ExportCommand(CLI::App& cli)
       "Blocks X0,Z0,X1,Z1 of the world, without X1 and Z1, as one tileset for streaming");
   region->check(valid_if(amplify::parse_region, "REGION"))->excludes(model)->excludes(block);
   c.add_option("--format", format_, "What is written of a region")
-      ->check(one_of({"3dtiles"}))
+      ->check(one_of({"3dtiles", "heightmap"}))
       ->capture_default_str()
       ->needs(region);
   c.add_option_function<std::string>(

@@ -8,6 +8,7 @@
 #include "engine/core/log.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "engine/telemetry/units.hpp"
+#include "engine/tiles/heightmap.hpp"
 #include "engine/tiles/tileset.hpp"
 
 namespace psygen::cli {
@@ -34,11 +35,13 @@ int ExportCommand::export_region(const world::World& world,
     return exit_code_of(error);
   };
   if (auto ok = amplify::check_region(world, *region_); !ok) return fail(ok.error());
+  const unsigned threads =
+      threads_ > 0 ? threads_ : amplify::threads_for(std::thread::hardware_concurrency());
+  if (format_ == "heightmap") return export_heightmap(world, threads);
   const auto tree = tiles::TileTree::over(*region_, levels_.value_or(all_levels(*region_)));
   if (!tree) return fail(tree.error());
   tiles::TilesetOptions options;
-  options.threads =
-      threads_ > 0 ? threads_ : amplify::threads_for(std::thread::hardware_concurrency());
+  options.threads = threads;
   options.stop = &stop_at_interrupt();
   telemetry::ProgressBar bar(telemetry::stderr_terminal(), "tiling " + world.name, 1);
   options.progress = [&bar](double done) { bar.update(done); };
@@ -47,6 +50,17 @@ int ExportCommand::export_region(const world::World& world,
   core::log_info(fmt::format("wrote {}: {} tiles in {} levels, {} triangles, {}", out_,
                              report->contents, tree->level_count(), report->triangles,
                              telemetry::size_text(static_cast<double>(report->bytes))));
+  return kOk;
+}
+
+int ExportCommand::export_heightmap(const world::World& world, unsigned threads) const {
+  const auto report = tiles::write_heightmap(world, *region_, out_, threads, &stop_at_interrupt());
+  if (!report) {
+    core::log_error(report.error().message);
+    return exit_code_of(report.error());
+  }
+  core::log_info(fmt::format("wrote {}: {} x {} heights from {:.1f} to {:.1f} m", out_,
+                             report->width, report->height, report->least_m, report->most_m));
   return kOk;
 }
 

@@ -32,6 +32,14 @@ struct GreyImage {
   std::vector<std::uint16_t> grey;  // 0 … 65535
 };
 
+// A picture of one number a pixel, such as heights in metres. Valid when `values` has width ·
+// height values.
+struct FloatImage {
+  std::uint32_t width = 0;    // pixels
+  std::uint32_t height = 0;   // pixels
+  std::vector<float> values;  // any
+};
+
 // A picture of one colour (transparent black by default). Sizes in pixels, channels 0 … 255.
 Image make_image(std::uint32_t width, std::uint32_t height, std::uint8_t red = 0,
                  std::uint8_t green = 0, std::uint8_t blue = 0, std::uint8_t alpha = 0);

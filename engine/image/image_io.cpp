@@ -108,8 +108,8 @@ constexpr std::uint32_t kLargest = 1U << 20;  // pixels per side
 
 // `bytes_given` are those of the pixels.
 template <class Picture, class Encode>
-core::Result<void> write_any_png(const std::filesystem::path& path, const Picture& image,
-                                 bool is_sound, std::size_t bytes_given, const Encode& encode) {
+core::Result<void> write_any(const std::filesystem::path& path, const Picture& image, bool is_sound,
+                             std::size_t bytes_given, const Encode& encode) {
   if (image.width == 0 || image.height == 0 || !is_sound || image.width > kLargest ||
       image.height > kLargest) {
     return fail_at(ErrorCode::kInvalidArgument, path,
@@ -126,14 +126,20 @@ core::Result<void> write_any_png(const std::filesystem::path& path, const Pictur
 }  // namespace
 
 core::Result<void> write_png(const std::filesystem::path& path, const Image& image) {
-  return write_any_png(path, image, is_valid(image), image.rgba.size(),
-                       [&](const PictureCodec* codec) { return codec->encode_png(image); });
+  return write_any(path, image, is_valid(image), image.rgba.size(),
+                   [&](const PictureCodec* codec) { return codec->encode_png(image); });
 }
 
 core::Result<void> write_png(const std::filesystem::path& path, const GreyImage& image) {
   const bool is_sound = image.grey.size() == std::size_t{image.width} * image.height;
-  return write_any_png(path, image, is_sound, 2 * image.grey.size(),
-                       [&](const PictureCodec* codec) { return codec->encode_grey_png(image); });
+  return write_any(path, image, is_sound, 2 * image.grey.size(),
+                   [&](const PictureCodec* codec) { return codec->encode_grey_png(image); });
+}
+
+core::Result<void> write_exr(const std::filesystem::path& path, const FloatImage& image) {
+  const bool is_sound = image.values.size() == std::size_t{image.width} * image.height;
+  return write_any(path, image, is_sound, 4 * image.values.size(),
+                   [&](const PictureCodec* codec) { return codec->encode_exr(image); });
 }
 
 }  // namespace psygen::image

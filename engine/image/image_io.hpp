@@ -47,5 +47,7 @@ core::Result<GreyImage> read_grey(const std::filesystem::path& path,
 core::Result<void> write_png(const std::filesystem::path& path, const Image& image);
 // The same for grey values, with 16 bits: read_grey() reads them back equal.
 core::Result<void> write_png(const std::filesystem::path& path, const GreyImage& image);
+// The same as OpenEXR, with all 32 bits of each value, in one channel, Y.
+core::Result<void> write_exr(const std::filesystem::path& path, const FloatImage& image);
 
 }  // namespace psygen::image

@@ -103,13 +103,14 @@ core::Result<GreyImage> decode_grey(std::span<const std::uint8_t> bytes,
   return means_of(*decoded, header, [](std::uint16_t v) { return std::uint32_t{v}; });
 }
 
-core::Result<Bytes> encode(const OIIO::ImageSpec& spec, const void* pixels) {
+core::Result<Bytes> encode(const OIIO::ImageSpec& spec, const void* pixels,
+                           const char* format = "png") {
   Bytes bytes;
   OIIO::Filesystem::IOVecOutput writer(bytes);
-  const auto output = OIIO::ImageOutput::create("png");
+  const auto output = OIIO::ImageOutput::create(format);
   if (!output) return core::fail(ErrorCode::kInternal, OIIO::geterror());
   output->threads(1);
-  if (!output->set_ioproxy(&writer) || !output->open("picture.png", spec) ||
+  if (!output->set_ioproxy(&writer) || !output->open("picture", spec) ||
       !output->write_image(spec.format, pixels) || !output->close()) {
     return core::fail(ErrorCode::kIo, "cannot be encoded: " + output->geterror());
   }
@@ -130,10 +131,18 @@ core::Result<Bytes> encode_grey_png(const GreyImage& image) {
   return encode(spec, image.grey.data());
 }
 
+core::Result<Bytes> encode_exr(const FloatImage& image) {
+  OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 1,
+                       OIIO::TypeDesc::FLOAT);
+  spec.channelnames = {"Y"};
+  spec.attribute("compression", "zip");
+  return encode(spec, image.values.data(), "openexr");
+}
+
 }  // namespace
 }  // namespace psygen::image
 
 extern "C" __attribute__((visibility("default")))
 const psygen::image::PictureCodec psygen_picture_codec = {
     psygen::image::decode, psygen::image::decode_grey, psygen::image::encode_png,
-    psygen::image::encode_grey_png};
+    psygen::image::encode_grey_png, psygen::image::encode_exr};

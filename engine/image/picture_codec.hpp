@@ -28,6 +28,8 @@ struct PictureCodec {
   core::Result<std::vector<std::uint8_t>> (*encode_png)(const Image& image);
   // The same for grey values, with all their bits.
   core::Result<std::vector<std::uint8_t>> (*encode_grey_png)(const GreyImage& image);
+  // Encodes numbers as an OpenEXR file of 32-bit floats.
+  core::Result<std::vector<std::uint8_t>> (*encode_exr)(const FloatImage& image);
 };
 
 // Checks that the memory and the threads exist which the library takes while it is loaded. Fails

@@ -22,7 +22,7 @@ MAY_KNOW = {
                        "engine/exchange", "engine/telemetry"},
     "engine/cluster": {"engine/core", "engine/models", "engine/world", "engine/synthesis", "engine/exchange",
                        "engine/amplify", "engine/telemetry"},
-    "engine/tiles": {"engine/core", "engine/models", "engine/world", "engine/synthesis", "engine/exchange",
+    "engine/tiles": {"engine/core", "engine/image", "engine/models", "engine/world", "engine/synthesis", "engine/exchange",
                      "engine/amplify", "engine/telemetry"},
     "engine/visibility": {"engine/core"},
     "engine/image": {"engine/core"},

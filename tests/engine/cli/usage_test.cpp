@@ -164,7 +164,7 @@ TEST(Usage, WhatIsOutOfPlaceIsNamed) {
       {{"models", "--", "x"}, "'x' is not expected"},
       {{"fly", "--seconds", "3", "--size", "64x36", "--seconds", "4"},
        "--seconds is given 2 times"},
-      {{"schedule"}, "--requests is required"},
+      {{"schedule"}, "one of --requests and --ranks is required"},
       {{"amplify", "--format", "obj"}, "--format requires --out"},
       {{"fly", "--seconds", "-3"}, "\npsygen fly --help lists its options\n"}};
   for (const auto& [arguments, words] : cases)
@@ -196,6 +196,12 @@ TEST(Usage, NumbersAreDecimalAndOthersAreToldWhatIsAllowed) {
       {{"amplify", "--out", "a", "--format", "stl"},
        "'stl' is unknown; allowed are glb, obj, none"},
       {{"amplify", "--out", "a", "--format", "none"}, "--format none needs --shard"},
+      {{"export", "--region", "0,0,2,2", "--out", "a", "--levels", "5-1"},
+       "is not FINEST-COARSEST"},
+      {{"export", "--out", "a.glb", "--levels", "1-2", "--model", "tree"},
+       "--levels requires --region"},
+      {{"schedule", "--ranks", "4", "--cores", "0"}, "from 1 to 1024"},
+      {{"schedule", "--cores", "4", "--requests", "a"}, "--cores requires --ranks"},
       {{"amplify", "--out", "a", "--shard", "9/8"}, "'9/8' is not a shard I/N"},
       {{"amplify", "--shard", "1/8"}, "--shard requires --out"},
       {{"amplify", "--simd", "mmx"}, "'mmx' is unknown; allowed are "},

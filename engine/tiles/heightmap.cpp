@@ -1,0 +1,164 @@
+#include "engine/tiles/heightmap.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <thread>
+#include <vector>
+
+#include "engine/core/replace_file.hpp"
+#include "engine/core/start_thread.hpp"
+#include "engine/image/image_io.hpp"
+#include "engine/models/terrain/ground.hpp"
+#include "engine/telemetry/output_file.hpp"
+#include "engine/world/ground_blends.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::tiles {
+namespace {
+
+constexpr float kWhite = 65535.0F;
+
+struct Pictures {
+  image::FloatImage heights;
+  std::array<image::GreyImage, world::kGroundKinds> kinds;
+
+  Pictures(std::uint32_t width, std::uint32_t height) {
+    const std::size_t pixels = std::size_t{width} * height;
+    heights = {width, height, std::vector<float>(pixels)};
+    for (image::GreyImage& kind : kinds)
+      kind = {width, height, std::vector<std::uint16_t>(pixels)};
+  }
+};
+
+// Draws one block: all its vertices. Neighbours have the same values at the border that they share.
+class Painter {
+ public:
+  Painter(const world::World& world, const amplify::Region& region, Pictures& pictures)
+      : world_(world),
+        region_(region),
+        pictures_(pictures),
+        palette_(world::drawn_palette(world)),
+        side_(static_cast<std::uint32_t>(world.terrain.integer(models::kTerrainSize))) {}
+
+  // Blocks on the eastern and southern border of the region have a column and a row more.
+  void paint(core::BlockCoord block) const {
+    const models::BlockGround ground(world::terrain_parameters(world_, block), block,
+                                     std::size_t{side_} * side_);
+    const auto first_x = static_cast<std::uint32_t>(block.x - region_.x0) * (side_ - 1),
+               first_z = static_cast<std::uint32_t>(block.z - region_.z0) * (side_ - 1);
+    const std::uint32_t columns = block.x + 1 == region_.x1 ? side_ : side_ - 1,
+                        rows = block.z + 1 == region_.z1 ? side_ : side_ - 1;
+    for (std::uint32_t z = 0; z < rows; ++z)
+      for (std::uint32_t x = 0; x < columns; ++x)
+        paint_pixel(block, ground, {x, z},
+                    std::size_t{first_z + z} * pictures_.heights.width + first_x + x);
+  }
+
+ private:
+  void paint_pixel(core::BlockCoord block, const models::BlockGround& ground, glm::uvec2 vertex,
+                   std::size_t pixel) const {
+    const glm::dvec2 local = glm::dvec2(vertex) * world_.cell_m();
+    const models::GroundPoint point = ground.at(local);
+    const auto height_m = static_cast<float>(point.height_m);
+    pictures_.heights.values[pixel] = height_m;
+    const glm::vec2 place = world::pattern_place(block, world_.block_size_m(), glm::vec2(local));
+    const world::GroundBlends blends =
+        world::ground_blends(palette_, height_m, point.normal, place,
+                             static_cast<float>(world::road_at(world_, block, local)));
+    float seen = 1;  // of what later kinds leave
+    for (std::size_t kind = blends.size(); kind-- > 0;) {
+      pictures_.kinds[kind].grey[pixel] =
+          static_cast<std::uint16_t>(seen * blends[kind] * kWhite + 0.5F);
+      seen *= 1 - blends[kind];
+    }
+  }
+
+  const world::World& world_;
+  const amplify::Region& region_;
+  Pictures& pictures_;
+  const world::Palette palette_;
+  const std::uint32_t side_;
+};
+
+core::Result<void> paint_all(const Painter& painter, const amplify::Region& region,
+                             unsigned threads, const std::atomic<bool>* stop) {
+  std::atomic<std::uint64_t> next{0};
+  const auto work = [&] {
+    while (stop == nullptr || !stop->load(std::memory_order_relaxed)) {
+      const std::uint64_t i = next.fetch_add(1, std::memory_order_relaxed);
+      if (i >= region.block_count()) return;
+      painter.paint(region.block(i));
+    }
+  };
+  std::vector<std::thread> helpers;
+  for (unsigned i = 1; i < threads; ++i) {
+    auto helper = core::start_thread(work);
+    if (!helper) break;
+    helpers.push_back(std::move(*helper));
+  }
+  work();
+  for (std::thread& helper : helpers)
+    helper.join();
+  if (next.load() < region.block_count())
+    return core::fail(core::ErrorCode::kInterrupted, "interrupted: nothing is written");
+  return {};
+}
+
+core::Result<void> write_pictures(const Pictures& pictures, const std::filesystem::path& folder,
+                                  HeightmapReport& report) {
+  const std::vector<float>& heights = pictures.heights.values;
+  const auto [least, most] = std::ranges::minmax_element(heights);
+  report.least_m = static_cast<double>(*least);
+  report.most_m = static_cast<double>(*most);
+  image::GreyImage spread{pictures.heights.width, pictures.heights.height, {}};
+  const double range_m = std::max(report.most_m - report.least_m, 1e-6);
+  spread.grey.reserve(heights.size());
+  for (const float height : heights)
+    spread.grey.push_back(static_cast<std::uint16_t>(
+        (static_cast<double>(height) - report.least_m) / range_m * 65535 + 0.5));
+  if (auto ok = image::write_exr(folder / "heights.exr", pictures.heights); !ok) return ok;
+  if (auto ok = image::write_png(folder / "heights.png", spread); !ok) return ok;
+  for (std::size_t kind = 0; kind < world::kGroundKinds; ++kind) {
+    const auto file = folder / fmt::format("ground_{}.png", world::kGroundNames[kind]);
+    if (auto ok = image::write_png(file, pictures.kinds[kind]); !ok) return ok;
+  }
+  return {};
+}
+
+}  // namespace
+
+core::Result<HeightmapReport> write_heightmap(const world::World& world,
+                                              const amplify::Region& region,
+                                              const std::filesystem::path& folder, unsigned threads,
+                                              const std::atomic<bool>* stop) {
+  const auto cells = static_cast<std::uint64_t>(world.terrain.integer(models::kTerrainSize) - 1);
+  const auto side = [&](std::int64_t blocks) {
+    return static_cast<std::uint64_t>(blocks) * cells + 1;
+  };
+  const std::uint64_t width = side(region.x1 - region.x0), height = side(region.z1 - region.z0);
+  if (width > kMaxHeightmapSide || height > kMaxHeightmapSide)
+    return core::fail(
+        core::ErrorCode::kInvalidArgument,
+        fmt::format("a heightmap of {} x {} pixels is too large: at most {} along a "
+                    "side, which are {} blocks of this world",
+                    width, height, kMaxHeightmapSide, (kMaxHeightmapSide - 1) / cells));
+  if (auto ok = telemetry::create_output_folder(folder); !ok) return tl::unexpected(ok.error());
+  HeightmapReport report{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+  Pictures pictures(report.width, report.height);
+  if (auto ok = paint_all(Painter(world, region, pictures), region, threads, stop); !ok)
+    return tl::unexpected(ok.error());
+  if (auto ok = write_pictures(pictures, folder, report); !ok) return tl::unexpected(ok.error());
+  const std::string json = fmt::format(
+      "{{\"width\":{},\"height\":{},\"cell_m\":{},\"height_of_black_m\":{},"
+      "\"height_of_white_m\":{},\"west_m\":{},\"north_m\":{}}}\n",
+      report.width, report.height, world.cell_m(), report.least_m, report.most_m,
+      static_cast<double>(region.x0) * world.block_size_m(),
+      static_cast<double>(region.z0) * world.block_size_m());
+  if (auto ok = core::replace_file(folder / "heightmap.json", json); !ok)
+    return tl::unexpected(ok.error());
+  return report;
+}
+
+}  // namespace psygen::tiles

@@ -1,0 +1,32 @@
+// A region's ground as pictures for other programs: heights in metres (heights.exr, 32 bits) and
+// spread over 16 bits (heights.png), how much of each kind of ground is seen (ground_grass.png and
+// so on, 16 bits), and heightmap.json with what the numbers mean. A pixel is a vertex of the ground
+// at full detail; the first row is the northern border. Without models and water.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+
+#include "engine/amplify/region.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::tiles {
+
+// The most pixels along a side.
+inline constexpr std::uint64_t kMaxHeightmapSide = 16384;
+
+struct HeightmapReport {
+  std::uint32_t width = 0, height = 0;  // pixels
+  double least_m = 0, most_m = 0;       // of the heights
+};
+
+// Writes the pictures into `folder`, which is created; heightmap.json comes last. Needs 4 bytes of
+// memory for each pixel and kind of ground. Fails with kInvalidArgument for regions with more than
+// kMaxHeightmapSide pixels along a side, with kInterrupted, and like image::write_png().
+core::Result<HeightmapReport> write_heightmap(const world::World& world,
+                                              const amplify::Region& region,
+                                              const std::filesystem::path& folder, unsigned threads,
+                                              const std::atomic<bool>* stop);
+
+}  // namespace psygen::tiles

@@ -1,0 +1,85 @@
+#include "engine/tiles/heightmap.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/image/image_io.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/world/placement.hpp"
+#include "tests/engine/world/shipped.hpp"
+#include "tests/full_disk.hpp"
+
+namespace psygen::tiles {
+namespace {
+
+using world::testing::kSmallWorld;
+using world::testing::parsed;
+
+TEST(Heightmap, HasTheHeightsOfTheGroundWhereTheyAre) {
+  const TemporaryFolder folder;
+  const world::World world = parsed(kSmallWorld);
+  const auto report = write_heightmap(world, {2, 1, 5, 3}, folder.path(), 3, nullptr);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->width, 3u * 32 + 1);
+  EXPECT_EQ(report->height, 2u * 32 + 1);
+  const auto json = nlohmann::json::parse(contents_of(folder.path()).at("heightmap.json"));
+  EXPECT_EQ(json["west_m"], 128);
+  EXPECT_EQ(json["north_m"], 64);
+  const auto png = image::read_grey(folder / "heights.png");
+  ASSERT_TRUE(png) << png.error().message;
+  const double black = json["height_of_black_m"], white = json["height_of_white_m"];
+  EXPECT_EQ(black, report->least_m);
+  for (const auto& [x, z] : {std::pair{0, 0}, {96, 64}, {32, 5}, {50, 40}, {96, 0}}) {
+    const core::BlockCoord block{2 + std::min(x / 32, 2), 1 + std::min(z / 32, 1)};
+    const double height =
+        models::ground_height_m(world::terrain_parameters(world, block), block,
+                                2.0 * (x - 32 * (block.x - 2)), 2.0 * (z - 32 * (block.z - 1)));
+    const std::size_t pixel = static_cast<std::size_t>(z) * 97 + static_cast<std::size_t>(x);
+    EXPECT_NEAR(black + png->grey[pixel] / 65535.0 * (white - black), height,
+                (white - black) / 65535)
+        << x << " " << z;
+  }
+}
+
+TEST(Heightmap, MasksAddUpToWhite) {
+  const TemporaryFolder folder;
+  const world::World world = parsed(kSmallWorld);
+  ASSERT_TRUE(write_heightmap(world, {0, 0, 2, 2}, folder.path(), 1, nullptr));
+  std::vector<int> sums(65 * 65);
+  for (const char* kind : {"grass", "forest", "dry", "sand", "rock", "snow"}) {
+    const auto mask = image::read_grey(folder / ("ground_" + std::string(kind) + ".png"));
+    ASSERT_TRUE(mask) << mask.error().message;
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      sums[i] += mask->grey[i];
+  }
+  for (const int sum : sums)
+    EXPECT_NEAR(sum, 65535, 3);
+}
+
+// The floats are read back as grey values, for which they must lie from 0 to 1.
+TEST(Heightmap, OfFloatsIsReadBackAsItWas) {
+  const TemporaryFolder folder;
+  const image::FloatImage values{3, 2, {0.0F, 0.25F, 0.5F, 0.75F, 1.0F, 0.125F}};
+  ASSERT_TRUE(image::write_exr(folder / "a.exr", values));
+  const auto read = image::read_grey(folder / "a.exr");
+  ASSERT_TRUE(read) << read.error().message;
+  for (std::size_t i = 0; i < values.values.size(); ++i)
+    EXPECT_EQ(read->grey[i], static_cast<std::uint16_t>(values.values[i] * 65535 + 0.5F));
+}
+
+TEST(Heightmap, HasLimitsAndCanBeStopped) {
+  const TemporaryFolder folder;
+  const world::World world = parsed(kSmallWorld);
+  const auto large = write_heightmap(world, {0, 0, 513, 1}, folder / "a", 1, nullptr);
+  ASSERT_FALSE(large);
+  EXPECT_NE(large.error().message.find("at most 16384 along a side, which are 511 blocks"),
+            std::string::npos)
+      << large.error().message;
+  const std::atomic<bool> stop{true};
+  EXPECT_EQ(write_heightmap(world, {0, 0, 1, 1}, folder / "b", 1, &stop).error().code,
+            core::ErrorCode::kInterrupted);
+}
+
+}  // namespace
+}  // namespace psygen::tiles
