@@ -25,9 +25,10 @@ double priced(const synthesis::CostModel& model, const CostRates& rates,
 double priced_block(const synthesis::CostModel& model, const world::World& world,
                     const models::Registry& registry, core::BlockCoord block,
                     const CostRates& rates, std::vector<world::Placement>& placements) {
-  double seconds = priced(model, rates,
-                          {world.terrain_model, world::kTerrainIndex, glm::vec3(0.0F),
-                           world::terrain_parameters(world, block)});
+  double seconds = rates.seconds_per_block;
+  seconds += priced(model, rates,
+                    {world.terrain_model, world::kTerrainIndex, glm::vec3(0.0F),
+                     world::terrain_parameters(world, block)});
   world::place_models(world, registry, block, placements);
   for (const world::Placement& placement : placements)
     seconds += priced(model, rates, placement);
@@ -85,6 +86,13 @@ CostMap CostMap::from(std::uint64_t blocks, std::vector<double> seconds) {
     map.until_.push_back(map.until_.back() + length * map.each_[k]);
   }
   return map;
+}
+
+CostMap CostMap::plus(double seconds_per_block) const {
+  std::vector<double> more = each_;
+  for (double& seconds : more)
+    seconds += seconds_per_block;
+  return from(blocks_, std::move(more));
 }
 
 std::uint64_t CostMap::stretch_begin(std::size_t stretch) const {

@@ -19,12 +19,19 @@ namespace psygen::amplify {
 // writing, measured on one core of a Xeon with a local disk (docs/cluster.md).
 inline constexpr double kGlbSecondsPerTriangle = 0.2e-6;
 
+// What a file costs whatever is in it: until it is on the disk, measured like that.
+inline constexpr double kSecondsPerFile = 3e-3;
 // Bytes of a .glb for each triangle, with its share of vertices, in the paper's world.
 inline constexpr double kGlbBytesPerTriangle = 42;
 
 // How to price blocks.
 struct CostRates {
-  double seconds_per_triangle = 0;  // beside synthesis: kGlbSecondsPerTriangle with files
+  double seconds_per_triangle = 0;  // beside synthesis
+  double seconds_per_block = 0;
+  // Of blocks that are written as files, or only made.
+  static constexpr CostRates with_files(bool files) {
+    return files ? CostRates{kGlbSecondsPerTriangle, kSecondsPerFile} : CostRates{};
+  }
 };
 
 // The predicted seconds of one core for a block at full detail.
@@ -53,6 +60,9 @@ class CostMap {
   static CostMap flat(std::uint64_t blocks);
   // Known costs: `seconds[k]` for each block of the k-th of equally many stretches.
   static CostMap from(std::uint64_t blocks, std::vector<double> seconds);
+
+  // The same with so much more for each block.
+  CostMap plus(double seconds_per_block) const;
 
   std::uint64_t block_count() const { return blocks_; }
   double total_s() const { return until_.back(); }

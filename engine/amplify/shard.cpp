@@ -71,7 +71,7 @@ std::vector<Finished> with_files(std::vector<Finished> finished, const JobKey& k
 core::Result<Report> amplify_shard(const Job& job, const Shard& shard,
                                    const std::filesystem::path& folder, const Options& given) {
   const std::uint64_t blocks = job.key.region.block_count();
-  const CostRates rates{job.key.format ? kGlbSecondsPerTriangle : 0};
+  const CostRates rates = CostRates::with_files(job.key.format.has_value());
   const CostMap costs = shard.count == 1
                             ? CostMap::flat(blocks)
                             : CostMap::of(job.world, job.registry, job.key.region, rates);

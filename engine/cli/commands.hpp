@@ -165,6 +165,7 @@ struct ClusterOptions {
   unsigned ranks = 0;  // 0: no cluster
   unsigned cores = 1, threads = 0;
   std::string world = kDefaultWorld;
+  std::string share = "claims";
   double terabytes = 8;       // 10^12 bytes of files
   double error_percent = 20;  // how far predictions are off, at most
   double latency_us = 2, claims_per_s = 1e6;

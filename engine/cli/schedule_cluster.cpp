@@ -84,6 +84,7 @@ std::string json_of(const ClusterOptions& o, const Demand& demand,
   json["efficiency"] = report.efficiency;
   json["worst_rank_idle"] = report.worst_rank_idle;
   json["claims"] = report.claims;
+  json["rank_end_seconds"] = report.rank_end_s;
   for (const Limit& limit : limits_of(o, demand, report)) {
     json["limits"][limit.name]["busy"] = limit.busy;
     json["limits"][limit.name]["ranks"] = nullptr;
@@ -101,7 +102,7 @@ core::Result<amplify::CostMap> costs_of(const std::string& name, double bytes, D
                                      ? amplify::Region{0, 0, kEndlessBlocks, kEndlessBlocks}
                                      : amplify::Region{0, 0, world->blocks_x, world->blocks_z};
   std::vector<double> prices =
-      amplify::prices_of(*world, registry, region, {amplify::kGlbSecondsPerTriangle}, 0,
+      amplify::prices_of(*world, registry, region, {amplify::kGlbSecondsPerTriangle, 0}, 0,
                          amplify::sample_count(region));
   demand.block_bytes =
       world::world_size(*world, registry).block_triangles * amplify::kGlbBytesPerTriangle;
@@ -138,7 +139,11 @@ int ScheduleCommand::simulate_cluster() const {
   const double per_thread = static_cast<double>(demand.blocks) / o.ranks / job.threads;
   job.most_blocks_per_run = std::max<std::uint64_t>(
       amplify::LedgerSource::kMostBlocks, static_cast<std::uint64_t>(per_thread / kRunsPerThread));
-  const cluster::Plan plan(amplify::BlockRanges({0, demand.blocks}), *costs, o.ranks);
+  cluster::PlanOptions options;
+  if (o.share != "claims") options.fixed_share = 1;
+  const amplify::CostMap planned = o.share == "count" ? amplify::CostMap::flat(demand.blocks)
+                                                      : costs->plus(o.file_latency_ms * 1e-3);
+  const cluster::Plan plan(amplify::BlockRanges({0, demand.blocks}), planned, o.ranks, options);
   const cluster::VirtualReport report = cluster::simulate(plan, job);
   return print(json_ ? json_of(o, demand, report) : text_of(o, demand, report));
 }

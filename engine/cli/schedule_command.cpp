@@ -89,6 +89,11 @@ CLI::Option* add_cluster_options(CLI::App& c, ClusterOptions& o) {
   c.add_option("--threads", o.threads, "Threads of each rank; default: one per core")
       ->transform(integer_between(1, 4096))
       ->needs(ranks);
+  c.add_option("--share", o.share,
+               "How blocks are shared out: by count, by predicted cost, or that and claims")
+      ->check(one_of({"count", "cost", "claims"}))
+      ->capture_default_str()
+      ->needs(ranks);
   number("--terabytes", o.terabytes, 1e-3, 1e9, "Size of all files, in 10^12 bytes; 0.001: 1 GB");
   number("--error-percent", o.error_percent, 0, 100,
          "Runs of blocks take up to this much more or less than predicted");

@@ -45,7 +45,7 @@ amplify::CostMap shared_costs(const world::World& world, const models::Registry&
                               const amplify::JobKey& key, Peers& peers) {
   const std::uint64_t blocks = key.region.block_count();
   if (peers.count() == 1) return amplify::CostMap::flat(blocks);
-  const amplify::CostRates rates{key.format ? amplify::kGlbSecondsPerTriangle : 0};
+  const amplify::CostRates rates = amplify::CostRates::with_files(key.format.has_value());
   const std::uint64_t samples = amplify::sample_count(key.region);
   const auto border = [&](std::uint64_t rank) { return samples * rank / peers.count(); };
   const std::vector<double> mine = amplify::prices_of(

@@ -64,10 +64,11 @@ TEST(CostMap, IsTheSameWhenItIsMadeAgainAndKnowsTheCostOfFiles) {
   const Region region = *whole(world);
   const CostMap one = CostMap::of(world, registry(), region, {}),
                 two = CostMap::of(world, registry(), region, {}),
-                files = CostMap::of(world, registry(), region, {kGlbSecondsPerTriangle});
+                files = CostMap::of(world, registry(), region, CostRates::with_files(true));
   for (std::uint64_t block = 0; block <= region.block_count(); ++block)
     EXPECT_EQ(one.seconds_before(block), two.seconds_before(block));
   EXPECT_GT(files.total_s(), 10 * one.total_s());
+  EXPECT_NEAR(one.plus(0.5).total_s(), one.total_s() + 0.5 * 32, 1e-9);
 }
 
 }  // namespace

@@ -36,6 +36,14 @@ TEST(ScheduleCluster, SaysWhatSaturatesAndFromWhichNumberOfRanksOn) {
               0.01);
 }
 
+TEST(ScheduleCluster, ClaimsEndRanksTogetherWherePredictionsAreOff) {
+  const std::string options = "--ranks 16 --terabytes 0.1 --error-percent 100 --share ";
+  const double cost = simulated(options + "cost")["worst_rank_idle"],
+               claims = simulated(options + "claims")["worst_rank_idle"];
+  EXPECT_LE(claims, 0.05);
+  EXPECT_GT(cost, 1.5 * claims);
+}
+
 TEST(ScheduleCluster, NeedsRanksOrRequests) {
   EXPECT_EQ(run_psygen("schedule").code, 2);
   EXPECT_EQ(run_psygen("schedule --cores 4").code, 2);
