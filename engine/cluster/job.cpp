@@ -64,9 +64,10 @@ amplify::CostMap shared_costs(const world::World& world, const models::Registry&
 std::string text_of(const JobReport& job) {
   const amplify::Report& r = job.report;
   const Totals& t = r.totals;
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {}", t.blocks, t.models, t.triangles,
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {}", t.blocks, t.models, t.triangles,
                      t.bytes, t.failed, t.hash.sum(), t.hash.count(), r.threads,
-                     std::bit_cast<std::uint64_t>(r.cpu_seconds), job.written, job.skipped,
+                     std::bit_cast<std::uint64_t>(r.cpu_seconds),
+                     std::bit_cast<std::uint64_t>(r.seconds), job.written, job.skipped,
                      job.messages, t.first_failure);
 }
 
@@ -74,15 +75,17 @@ void add_from(const std::string& text, JobReport& sum) {
   std::istringstream numbers(text);
   amplify::Report& r = sum.report;
   Totals t;
-  std::uint64_t hash_sum = 0, hash_count = 0, cpu = 0, written = 0, skipped = 0, messages = 0;
+  std::uint64_t hash_sum = 0, hash_count = 0, cpu = 0, wall = 0, written = 0, skipped = 0,
+                messages = 0;
   unsigned threads = 0;
   numbers >> t.blocks >> t.models >> t.triangles >> t.bytes >> t.failed >> hash_sum >> hash_count >>
-      threads >> cpu >> written >> skipped >> messages;
+      threads >> cpu >> wall >> written >> skipped >> messages;
   std::getline(numbers >> std::ws, t.first_failure);
   t.hash = synthesis::WorldHash::restored(hash_sum, hash_count);
   r.totals.add(t);
   r.threads += threads;
   r.cpu_seconds += std::bit_cast<double>(cpu);
+  r.seconds = std::max(r.seconds, std::bit_cast<double>(wall));
   sum.written += written;
   sum.skipped += skipped;
   sum.messages += messages;
@@ -200,7 +203,6 @@ tl::expected<JobReport, JobError> amplify_together(
   if (auto ok = agree({}, peers); !ok) return common(ok.error());  // all ledgers are closed
   if (start.job) gathered = gather_ledgers(folder, *start.job);
   if (auto ok = agree(gathered, peers); !ok) return common(ok.error());
-  all.report.seconds = own.report.seconds;
   all.report.complete = all.report.totals.failed == 0;
   return all;
 }

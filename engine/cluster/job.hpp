@@ -15,7 +15,7 @@ namespace psygen::cluster {
 
 // What came out, at every rank.
 struct JobReport {
-  amplify::Report report;                  // of all ranks together; seconds: of this one
+  amplify::Report report;                  // of all ranks together; seconds: of the last one
   std::uint64_t written = 0, skipped = 0;  // files, of all ranks
   std::uint64_t messages = 0;              // of all ranks
 };

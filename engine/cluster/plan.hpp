@@ -13,9 +13,9 @@ namespace psygen::cluster {
 
 // How to cut.
 struct PlanOptions {
-  // The part of the cost that is shared out at the start. What predictions and machines are off by
-  // should fit into the rest.
-  double fixed_share = 0.8;
+  // The part of the cost that is shared out at the start. What predictions are off by, and what
+  // other programs take from a rank, should fit into the rest: half a rank's speed does.
+  double fixed_share = 0.5;
   // The least chunk, as a part of what a rank makes in the mean: how unevenly ranks end. Chunks
   // before are larger: a half of what each rank has left to claim in the mean.
   double least_chunk = 0.0025;

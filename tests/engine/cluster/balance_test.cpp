@@ -76,7 +76,7 @@ TEST(Balance, MakesUpForARankThatIsSlow) {
   const BlockRanges slow = plan.own(3);
   job.seconds_of = [&](const BlockRun& run) {
     const bool is_slow = run.first >= slow.at(0) && run.end <= slow.at(slow.count() - 1) + 1;
-    return static_cast<double>(run.count()) * (is_slow ? 1.2e-3 : 1e-3);
+    return static_cast<double>(run.count()) * (is_slow ? 1.9e-3 : 1e-3);
   };
   EXPECT_LE(simulate(plan, job).worst_rank_idle, 0.02);
 }
