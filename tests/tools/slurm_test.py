@@ -134,10 +134,9 @@ class Slurm:
 
     def run(self, *arguments, output):
         """Submits a script and waits until it has ended; what it wrote."""
-        out = self.folder / output
-        job = subprocess.run([program("sbatch"), "--wait", f"--output={out}", f"--chdir={self.folder}", *arguments],
+        job = subprocess.run([program("sbatch"), "--wait", f"--output={self.folder / output}", f"--chdir={self.folder}", *arguments],
                              env=self.environment, capture_output=True, text=True)
-        said = out.read_text(encoding="utf-8") if out.exists() else ""
+        said = "".join(each.read_text(encoding="utf-8") for each in sorted(self.folder.glob(output.replace("%a", "*"))))
         assert job.returncode == 0, f"{arguments}: {job.stderr}{said}"
         return said
 
@@ -147,7 +146,7 @@ def blocks_in(folder):
 
 
 def main():
-    source, psygen = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    source, psygen = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     missing = [name for name in PROGRAMS if not program(name)]
     if missing:
         print(f"skipped: {', '.join(missing)} not installed (Debian: slurm-wlm, munge)")
