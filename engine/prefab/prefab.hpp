@@ -66,6 +66,7 @@ struct Instance {
 
 }  // namespace psygen::prefab
 
+// For snapshots (engine/scene/objects/described.hpp), as those below.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::gltf::Pose> {
   static constexpr auto fields =
@@ -73,11 +74,13 @@ struct psygen::ecs::ComponentTraits<psygen::gltf::Pose> {
                  field("rotation", &gltf::Pose::rotation), field("scale", &gltf::Pose::scale)};
 };
 
+// Its number.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::prefab::PrefabId> {
   static constexpr auto fields = std::tuple{field("index", &prefab::PrefabId::index)};
 };
 
+// The parent and the pose to it; where it was drawn comes anew.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::prefab::Attached> {
   static constexpr std::string_view name = "Attached";

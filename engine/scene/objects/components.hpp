@@ -53,11 +53,13 @@ static_assert(sizeof(Object) == 32);
 
 }  // namespace psygen::scene
 
+// For snapshots (described.hpp), as those below.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::scene::MeshId> {
   static constexpr auto fields = std::tuple{field("index", &scene::MeshId::index)};
 };
 
+// All of it.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::scene::Transform> {
   static constexpr std::string_view name = "Transform";

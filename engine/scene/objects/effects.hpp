@@ -30,6 +30,7 @@ struct PointLight {
 
 }  // namespace psygen::scene
 
+// For snapshots (described.hpp): all but how it is drawn now.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::scene::PointLight> {
   static constexpr std::string_view name = "PointLight";
