@@ -185,7 +185,7 @@ void Game::step(app::Session& session, double dt) {
   }
   if (quiet_steps_ > 0 && !pilot_) {
     --quiet_steps_;
-    intent.jump = intent.use = false;
+    intent.jump = intent.use = intent.build = intent.fire = intent.sleep = intent.lantern = false;
   }
   play.step(intent, dt);
 }

@@ -135,7 +135,11 @@ core::Result<void> Ledger::add(const Finished& finished) {
     written = write(handle_, line.data(), line.size());
   } while (written < 0 && errno == EINTR);
   if (written != static_cast<ssize_t>(line.size())) {
-    if (written >= 0) errno = ENOSPC;
+    const int reason = written < 0 ? errno : ENOSPC;
+    // A half line would stand before those of other threads, and damage the ledger.
+    if (written > 0 && ftruncate(handle_, lseek(handle_, 0, SEEK_END) - written) != 0)
+      return io_error(file_, "cannot be cut");
+    errno = reason;
     return io_error(file_, "cannot write");
   }
   content_.finished.push_back(finished);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/amplify/block_files.hpp"
+#include "engine/core/log.hpp"
 
 namespace psygen::amplify {
 
@@ -95,8 +96,9 @@ core::Result<Report> amplify_shard(const Job& job, const Shard& shard,
   if (!report) return report;
   for (const Finished& f : known)
     report->totals.add(f.totals);
+  // Everything is noted already, in more lines.
   if (auto ok = (*ledger)->rewrite(compacted((*ledger)->finished())); !ok)
-    return tl::unexpected(ok.error());
+    core::log_warning(ok.error().message);
   return report;
 }
 

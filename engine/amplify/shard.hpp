@@ -54,8 +54,8 @@ class LedgerSource final : public RunSource {
 BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads,
                   std::uint64_t most = LedgerSource::kMostBlocks);
 
-// Of what a ledger says, the entries of which every block has its whole file in the folder, cut
-// where one has not: an entry without one of its files is left out as a whole.
+// Of what a ledger says, the entries of which every block has its whole file in the folder. An
+// entry without one of its files is left out as a whole.
 std::vector<Finished> with_files(std::vector<Finished> finished, const JobKey& key,
                                  const std::filesystem::path& folder);
 

@@ -179,7 +179,7 @@ tl::expected<JobReport, JobError> amplify_together(
     amplify::JobFormat format, std::string_view version, const std::filesystem::path& folder,
     const amplify::Options& options, Peers& peers) {
   const auto key = amplify::job_key(world, registry, region, format, version);
-  if (auto ok = check_keys(key, peers); !ok) return common(ok.error());
+  if (auto ok = check_keys(key, !folder.empty(), peers); !ok) return common(ok.error());
   Start start{world, registry, folder, peers, *key};
   if (!folder.empty())
     if (auto ok = start.open(); !ok) return common(ok.error());
@@ -201,7 +201,7 @@ tl::expected<JobReport, JobError> amplify_together(
       all.report.totals.add(finished.totals);
   }
   if (auto ok = agree({}, peers); !ok) return common(ok.error());  // all ledgers are closed
-  if (start.job) gathered = gather_ledgers(folder, *start.job);
+  if (start.job) gathered = gather_ledgers(folder, *start.job, Check::kNothing);
   if (auto ok = agree(gathered, peers); !ok) return common(ok.error());
   all.report.complete = all.report.totals.failed == 0;
   return all;

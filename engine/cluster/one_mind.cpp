@@ -68,7 +68,8 @@ core::Result<void> agree(const core::Result<void>& mine, Peers& peers) {
   return {};
 }
 
-core::Result<void> check_keys(const core::Result<amplify::JobKey>& mine, Peers& peers) {
+core::Result<void> check_keys(const core::Result<amplify::JobKey>& mine, bool with_folder,
+                              Peers& peers) {
   core::Result<void> made{};
   if (!mine) made = tl::unexpected(mine.error());
   if (auto ok = agree(made, peers); !ok) return ok;
@@ -76,7 +77,7 @@ core::Result<void> check_keys(const core::Result<amplify::JobKey>& mine, Peers& 
   const std::vector<std::string> keys =
       peers.exchange(amplify::ledger_text({*mine, place, {}, {}, 0}));
   const auto first = amplify::parse_ledger(keys.front(), "rank 0");
-  if (!first) return refuse("rank 0 is of a version of psygen that says other things at the start");
+  if (!first) return refuse("rank 0 is of another version of psygen");
   for (std::size_t rank = 1; rank < keys.size(); ++rank) {
     const auto other = amplify::parse_ledger(keys[rank], "rank");
     if (!other)
@@ -85,6 +86,12 @@ core::Result<void> check_keys(const core::Result<amplify::JobKey>& mine, Peers& 
     if (!different.empty())
       return refuse(
           fmt::format("{} does not fit {}: it has {}", other->part, first->part, different));
+  }
+  const std::vector<std::string> folders = peers.exchange(with_folder ? "1" : "0");
+  for (std::size_t rank = 1; rank < folders.size(); ++rank) {
+    if (folders[rank] != folders.front())
+      return refuse(fmt::format("rank {} has --out and rank {} has none",
+                                folders[rank] == "1" ? rank : 0, folders[rank] == "1" ? 0 : rank));
   }
   return {};
 }

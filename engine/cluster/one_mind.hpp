@@ -11,10 +11,12 @@
 
 namespace psygen::cluster {
 
-// Whether all ranks have the same key; `mine` may be why this rank has none. Fails with
+// Whether all ranks have the same key, and all a folder or none does; `mine` may be why this rank
+// has no key. Fails with
 // kInvalidArgument; the sentence names the first rank that differs from rank 0, its machine and its
 // instruction set.
-core::Result<void> check_keys(const core::Result<amplify::JobKey>& mine, Peers& peers);
+core::Result<void> check_keys(const core::Result<amplify::JobKey>& mine, bool with_folder,
+                              Peers& peers);
 
 // Whether all ranks see the same folder: rank 0 creates it and writes a file, which the others look
 // for. Fails with kIo or kInvalidArgument.

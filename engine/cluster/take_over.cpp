@@ -56,7 +56,8 @@ std::filesystem::path rank_ledger(const std::filesystem::path& folder, unsigned 
   return folder / fmt::format("rank_{}{}", rank, amplify::kLedgerExtension);
 }
 
-core::Result<void> gather_ledgers(const std::filesystem::path& folder, amplify::Ledger& job) {
+core::Result<void> gather_ledgers(const std::filesystem::path& folder, amplify::Ledger& job,
+                                  Check check) {
   const std::vector<std::filesystem::path> files = rank_ledgers(folder);
   std::vector<Finished> all = job.finished();
   if (auto ok = add_from(files, job.key(), all); !ok) return ok;
@@ -65,8 +66,8 @@ core::Result<void> gather_ledgers(const std::filesystem::path& folder, amplify::
                       fmt::format("{}: its ledgers do not fit together: {}; remove them (blocks "
                                   "that are there are not written again)",
                                   folder.string(), once.error().message));
-  all = amplify::compacted(amplify::with_files(std::move(all), job.key(), folder));
-  if (auto ok = job.rewrite(std::move(all)); !ok) return ok;
+  if (check == Check::kFiles) all = amplify::with_files(std::move(all), job.key(), folder);
+  if (auto ok = job.rewrite(amplify::compacted(std::move(all))); !ok) return ok;
   for (const std::filesystem::path& file : files) {
     std::error_code error;
     std::filesystem::remove(file, error);
@@ -84,7 +85,8 @@ core::Result<std::unique_ptr<amplify::Ledger>> take_over(const std::filesystem::
                                    {key, kWhole, all, {}, 0});
   if (!job) return job;
   amplify::remove_partial_blocks(folder, [](core::BlockCoord) { return true; });
-  if (auto ok = gather_ledgers(folder, **job); !ok) return tl::unexpected(ok.error());
+  if (auto ok = gather_ledgers(folder, **job, Check::kFiles); !ok)
+    return tl::unexpected(ok.error());
   return job;
 }
 

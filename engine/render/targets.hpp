@@ -26,7 +26,8 @@ struct Targets {
   // barrier is needed between them. On lavapipe a barrier waits for everything. Without it, the
   // triangles of one frame are set up while the pixels of the last one are filled.
   bool host_ordered = false;
-  bool in_parts = false;  // go_on_in_new_pass() may be called: windows of software devices
+  bool in_parts =
+      false;  // go_on_in_new_pass() may be called: windows of lavapipe, which keeps order
 
   bool is_coarse() const { return drawn != extent; }
   bool has_samples() const { return samples.image.get() != VK_NULL_HANDLE; }

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <new>
 #include <thread>
 #include <vector>
 
+#include "engine/core/out_of_memory.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/core/start_thread.hpp"
 #include "engine/image/image_io.hpp"
@@ -85,11 +88,19 @@ class Painter {
 core::Result<void> paint_all(const Painter& painter, const amplify::Region& region,
                              unsigned threads, const std::atomic<bool>* stop) {
   std::atomic<std::uint64_t> next{0};
+  std::atomic<bool> lacks_memory{false};
+  const auto paint = [&](std::uint64_t i) {
+    try {
+      painter.paint(region.block(i));
+    } catch (const std::bad_alloc&) {
+      lacks_memory = true;
+    }
+  };
   const auto work = [&] {
-    while (stop == nullptr || !stop->load(std::memory_order_relaxed)) {
+    while (!lacks_memory && (stop == nullptr || !stop->load(std::memory_order_relaxed))) {
       const std::uint64_t i = next.fetch_add(1, std::memory_order_relaxed);
       if (i >= region.block_count()) return;
-      painter.paint(region.block(i));
+      paint(i);
     }
   };
   std::vector<std::thread> helpers;
@@ -101,6 +112,8 @@ core::Result<void> paint_all(const Painter& painter, const amplify::Region& regi
   work();
   for (std::thread& helper : helpers)
     helper.join();
+  if (lacks_memory)
+    return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory("the ground of a block"));
   if (next.load() < region.block_count())
     return core::fail(core::ErrorCode::kInterrupted, "interrupted: nothing is written");
   return {};

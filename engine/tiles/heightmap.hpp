@@ -21,9 +21,10 @@ struct HeightmapReport {
   double least_m = 0, most_m = 0;       // of the heights
 };
 
-// Writes the pictures into `folder`, which is created; heightmap.json comes last. Needs 4 bytes of
-// memory for each pixel and kind of ground. Fails with kInvalidArgument for regions with more than
-// kMaxHeightmapSide pixels along a side, with kInterrupted, and like image::write_png().
+// Writes the pictures into `folder`, which is created; heightmap.json comes last. Needs 8 bytes of
+// memory for each pixel, and 2 for each kind of ground. Fails with kInvalidArgument for regions
+// with more than kMaxHeightmapSide pixels along a side, with kInterrupted, and like
+// image::write_png().
 core::Result<HeightmapReport> write_heightmap(const world::World& world,
                                               const amplify::Region& region,
                                               const std::filesystem::path& folder, unsigned threads,

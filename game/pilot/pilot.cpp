@@ -109,8 +109,8 @@ void Pilot::free_itself(Intent& intent, double dt) {
 // Goes to a tree near by and fells it. Whether that is all it does now.
 bool Pilot::fetch_wood(Intent& intent, double dt) {
   const Walker& walker = play_->walker();
-  if (!tree_ && walker.gait() == Gait::kGround && play_->progress().stock.wood < kWoodOfFire &&
-      time_s_ - fetched_s_ > kFetchEveryS) {
+  if (!tree_ && !finder_.is_searching() && walker.gait() == Gait::kGround &&
+      play_->progress().stock.wood < kWoodOfFire && time_s_ - fetched_s_ > kFetchEveryS) {
     fetched_s_ = time_s_;
     const models::Registry& types = play_->registry();
     std::vector<models::ModelIndex> trees;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/world/edits/edit_bytes.hpp"
 
@@ -150,7 +151,7 @@ core::Result<Saved> Saved::open(const std::filesystem::path& file, Play& play) {
   auto save = save::SaveGame::open(file, save::identity_of(play.world(), play.registry()));
   if (!save) return tl::unexpected(save.error());
   if (auto ok = core::replace_file(file.parent_path() / kLast, file.stem().string()); !ok)
-    return tl::unexpected(ok.error());
+    core::log_warning(ok.error().message);  // "Continue" is another one then
   Saved saved(std::move(*save));
   const auto format = saved.save_->value("format");
   if (!format) return tl::unexpected(format.error());

@@ -3,6 +3,7 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
 
@@ -11,6 +12,19 @@ namespace {
 
 constexpr std::size_t kFewestIndices = 3 * 48;  // of a mesh that has a coarser level
 constexpr std::size_t kLeastIndices = 3 * 8;    // of any level
+constexpr double kLeastArea = 0.5;              // of any level, of that of the finest
+
+// Of all triangles, in square metres. Loose ones vanish one by one where a surface would only
+// become coarser: then there is less of it.
+double area_m2(const core::MeshData& mesh, const std::vector<std::uint16_t>& indices) {
+  double area = 0;
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const glm::vec3& a = mesh.positions[indices[i]];
+    area += 0.5 * static_cast<double>(glm::length(glm::cross(mesh.positions[indices[i + 1]] - a,
+                                                             mesh.positions[indices[i + 2]] - a)));
+  }
+  return area;
+}
 
 // The vertices that the indices use, in the order of their use.
 PackedMesh with_indices(const PackedMesh& finest, std::vector<std::uint16_t> indices) {
@@ -36,13 +50,16 @@ std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh fi
   const float* const places = &mesh.positions.front().x;
   const std::size_t count = mesh.positions.size(), stride = sizeof(glm::vec3);
   const auto scale = static_cast<double>(meshopt_simplifyScale(places, count, stride));
+  const double least_area = kLeastArea * area_m2(mesh, all);
   while (levels.size() < most && levels.back().mesh.indices.size() >= kFewestIndices) {
     const std::size_t before = levels.back().mesh.indices.size();
     std::vector<std::uint16_t> indices(all.size());
     float error = 0;
     indices.resize(meshopt_simplify(indices.data(), all.data(), all.size(), places, count, stride,
                                     before / 12 * 3, std::numeric_limits<float>::max(), 0, &error));
-    if (indices.size() < kLeastIndices || 2 * indices.size() > before) break;
+    if (indices.size() < kLeastIndices || 2 * indices.size() > before ||
+        area_m2(mesh, indices) < least_area)
+      break;
     const double error_m = std::max(error * scale, levels.back().error_m);
     levels.push_back({with_indices(levels[0].mesh, std::move(indices)), error_m});
   }

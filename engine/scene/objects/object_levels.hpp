@@ -15,8 +15,8 @@ struct ObjectLevel {
 };
 
 // One to `most` levels (>= 1), each with at most half the triangles of the one before, and about a
-// quarter where the shape allows it. The first is `finest`, which is packed from `mesh`. Small
-// meshes have one. O(n log n) for n triangles.
+// quarter where the shape allows it, and at least half its surface. The first is `finest`, which is
+// packed from `mesh`. Small meshes have one. O(n log n) for n triangles.
 std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh finest,
                                        std::size_t most);
 

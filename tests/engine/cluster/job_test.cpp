@@ -137,6 +137,8 @@ TEST(Job, OfRanksThatAreNotOfOneMindDoesNotBegin) {
   expect_refused(with([](RankSetup& s) { s.world.name = "other"; }),
                  "the world other instead of small");
   expect_refused(with([](RankSetup& s) { s.format = Format::kObj; }), "format obj instead of glb");
+  expect_refused(with([](RankSetup& s) { s.folder.clear(); }),
+                 "rank 0 has --out and rank 2 has none");
   EXPECT_FALSE(std::filesystem::exists(top / "job"));
   expect_refused(with([&](RankSetup& s) { s.folder = top / "elsewhere"; }),
                  "what rank 0 writes there is not seen on host2; --out must be a folder that all "

@@ -47,8 +47,8 @@ def install(folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     shutil.copy(HERE / "package.json", folder)
-    npm = subprocess.run(["npm", "install", "--no-audit", "--no-fund", "--loglevel=error"], cwd=folder,
-                         capture_output=True, text=True)
+    npm = subprocess.run(["npm", "install", "--no-audit", "--no-fund", "--loglevel=error", "--fetch-retries=1",
+                          "--fetch-timeout=60000"], cwd=folder, capture_output=True, text=True, timeout=400)
     if npm.returncode != 0:
         print("skipped: npm cannot install what reads tilesets:\n" + npm.stderr[-800:])
         return False
