@@ -83,7 +83,7 @@ struct psygen::ecs::ComponentTraits<psygen::prefab::PrefabId> {
 // The parent and the pose to it; where it was drawn comes anew.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::prefab::Attached> {
-  static constexpr std::string_view name = "psygen.Attached";
+  static constexpr std::string_view name = "Attached";
   static constexpr auto fields = std::tuple{field("parent", &prefab::Attached::parent),
                                             field("pose", &prefab::Attached::pose)};
 };
@@ -92,7 +92,7 @@ struct psygen::ecs::ComponentTraits<psygen::prefab::Attached> {
 // of a session: call Library::play() after loading.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::prefab::Instance> {
-  static constexpr std::string_view name = "psygen.Instance";
+  static constexpr std::string_view name = "Instance";
   static constexpr auto fields = std::tuple{
       field("prefab", &prefab::Instance::prefab), field("animation", &prefab::Instance::animation),
       field("speed", &prefab::Instance::speed), field("loops", &prefab::Instance::loops),

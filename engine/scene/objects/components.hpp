@@ -62,7 +62,7 @@ struct psygen::ecs::ComponentTraits<psygen::scene::MeshId> {
 // All of it.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::scene::Transform> {
-  static constexpr std::string_view name = "psygen.Transform";
+  static constexpr std::string_view name = "Transform";
   static constexpr auto fields = std::tuple{field("position", &scene::Transform::position),
                                             field("rotation", &scene::Transform::rotation),
                                             field("scale", &scene::Transform::scale)};
@@ -71,7 +71,7 @@ struct psygen::ecs::ComponentTraits<psygen::scene::Transform> {
 // Meshes and materials by their numbers: those of the same order of calls of Assets.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::scene::Object> {
-  static constexpr std::string_view name = "psygen.Object";
+  static constexpr std::string_view name = "Object";
   static constexpr auto fields =
       std::tuple{field("mesh", &scene::Object::mesh), field("material", &scene::Object::material),
                  field("visible", &scene::Object::visible)};

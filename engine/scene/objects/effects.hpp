@@ -33,7 +33,7 @@ struct PointLight {
 // For snapshots (described.hpp): all but how it is drawn now.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::scene::PointLight> {
-  static constexpr std::string_view name = "psygen.PointLight";
+  static constexpr std::string_view name = "PointLight";
   static constexpr auto fields = std::tuple{field("colour", &scene::PointLight::colour),
                                             field("intensity", &scene::PointLight::intensity),
                                             field("range_m", &scene::PointLight::range_m),
