@@ -195,6 +195,8 @@ core::Result<std::vector<std::string>> Document::save_as(const std::filesystem::
     FileCopies copies;
     auto taken = take_along(file, copies);
     if (!taken) return taken;
+    for (const std::string& name : unsaved_pictures())
+      copies.expect(file.parent_path() / name);
     const auto written = copies.commit().and_then([&] { return write_all(file); });
     if (!written) return tl::unexpected(written.error());
     copies.keep();

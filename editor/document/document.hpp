@@ -69,7 +69,7 @@ class Document : public QObject {
   // another folder the files that the world names (handmade::files_named_by) come along, before the
   // text; gives the names of those that were copied. Fails like save() and files_named_by(), and
   // with kInvalidArgument where other files of such names are there (save again to replace them);
-  // then nothing new is left there. Where the disk is full, painted masks may be.
+  // then nothing new is left there.
   core::Result<std::vector<std::string>> save_as(const std::filesystem::path& file,
                                                  bool share = false);
   // Back to the text of the file as it was last read or saved, as an undo step.

@@ -44,13 +44,7 @@ core::Result<void> FileCopies::add(const fs::path& from, const fs::path& to) {
     return cannot_copy(from, to, error ? error.message() : "it is not a regular file");
   std::ifstream source(from, std::ios::binary);
   if (!source) return cannot_copy(from, to, std::strerror(errno));
-  std::vector<fs::path> missing;
-  for (fs::path folder = to.parent_path(); !folder.empty() && !fs::exists(folder, error);
-       folder = folder.parent_path())
-    missing.push_back(folder);
-  for (auto folder = missing.rbegin(); folder != missing.rend(); ++folder)
-    if (fs::create_directory(*folder, error))
-      made_.push_back(*folder);  // writing says what is wrong
+  make_folders(to);
   auto file = std::make_unique<core::FileReplacement>(to);
   std::array<char, kChunkBytes> bytes;
   for (auto chunk = next_chunk(source, bytes); !chunk.empty(); chunk = next_chunk(source, bytes))
@@ -60,6 +54,23 @@ core::Result<void> FileCopies::add(const fs::path& from, const fs::path& to) {
   files_.push_back(std::move(file));
   targets_.push_back(to);
   return {};
+}
+
+void FileCopies::expect(const fs::path& file) {
+  make_folders(file);
+  std::error_code error;
+  if (!fs::exists(file, error)) made_.push_back(file);
+}
+
+// Writing says what is wrong where that fails.
+void FileCopies::make_folders(const fs::path& file) {
+  std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path folder = file.parent_path(); !folder.empty() && !fs::exists(folder, error);
+       folder = folder.parent_path())
+    missing.push_back(folder);
+  for (auto folder = missing.rbegin(); folder != missing.rend(); ++folder)
+    if (fs::create_directory(*folder, error)) made_.push_back(*folder);
 }
 
 core::Result<void> FileCopies::commit() {

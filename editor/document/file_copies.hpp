@@ -24,12 +24,17 @@ class FileCopies {
   // Copies a file under a temporary name and makes the folders that it needs. Fails with kIo; the
   // message starts with the file that cannot be read or written.
   core::Result<void> add(const std::filesystem::path& from, const std::filesystem::path& to);
+  // A file that is about to be written by somebody else: it goes away too, if it is new. Makes the
+  // folders that it needs.
+  void expect(const std::filesystem::path& file);
   // Gives all of them their names; what was there is replaced. Fails with kIo.
   core::Result<void> commit();
   // They stay.
   void keep() { made_.clear(); }
 
  private:
+  void make_folders(const std::filesystem::path& file);
+
   std::vector<std::unique_ptr<core::FileReplacement>> files_;
   std::vector<std::filesystem::path> targets_, made_;  // made: folders, and files that are new
 };

@@ -21,6 +21,25 @@ tl::unexpected<core::Error> io_error(const std::filesystem::path& file, const ch
                     fmt::format("{}: {}: {}", file.string(), action, std::strerror(errno)));
 }
 
+// Held by one process at a time while it looks for a ledger, makes or replaces it. File systems
+// without locks are taken as they are.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& file)
+      : handle_(::open(file.has_parent_path() ? file.parent_path().c_str() : ".",
+                       O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (handle_ >= 0) (void)flock(handle_, LOCK_EX);
+  }
+  ~FolderLock() {
+    if (handle_ >= 0) close(handle_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int handle_;
+};
+
 // Whether the name still leads to the open file.
 bool is_at(const std::filesystem::path& file, int handle) {
   struct stat named {
@@ -74,9 +93,10 @@ Ledger::~Ledger() {
 
 core::Result<std::unique_ptr<Ledger>> Ledger::open(std::filesystem::path file, LedgerText ledger) {
   std::unique_ptr<Ledger> opened(new Ledger(std::move(file), std::move(ledger)));
+  const FolderLock alone(opened->file_);
   std::error_code error;
   if (!std::filesystem::exists(opened->file_, error)) {
-    if (auto ok = opened->rewrite({}); !ok) return tl::unexpected(ok.error());
+    if (auto ok = opened->replace({}); !ok) return tl::unexpected(ok.error());
     return opened;
   }
   if (auto ok = opened->lock(); !ok) return tl::unexpected(ok.error());
@@ -122,6 +142,11 @@ core::Result<void> Ledger::take_over(LedgerText theirs) {
 }
 
 core::Result<void> Ledger::rewrite(std::vector<Finished> finished) {
+  const FolderLock alone(file_);
+  return replace(std::move(finished));
+}
+
+core::Result<void> Ledger::replace(std::vector<Finished> finished) {
   content_.finished = std::move(finished);
   if (auto ok = core::replace_file(file_, ledger_text(content_)); !ok) return ok;
   return lock();

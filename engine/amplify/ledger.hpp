@@ -73,6 +73,7 @@ class Ledger {
  private:
   Ledger(std::filesystem::path file, LedgerText content);
   core::Result<void> lock();
+  core::Result<void> replace(std::vector<Finished> finished);
   core::Result<void> take_over(LedgerText theirs);
 
   std::filesystem::path file_;

@@ -1,15 +1,14 @@
 // What would make a player fall out of the land, or a save be lost: drops, far runs, teleports, the
 // edge of the coordinates, ten thousand edits in a block, a full disk.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <set>
 
-#include "game/play/saved.hpp"
 #include "tests/engine/save/file_faults.hpp"
+#include "tests/game/saves_fixture.hpp"
 
 namespace cairns {
 namespace {
@@ -160,17 +159,7 @@ TEST(Faults, ThePlayerAtTheEdgeOfTheCoordinatesStays) {
   }
 }
 
-class GameFaults : public ::testing::Test {
- protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::unique_ptr<Play> begin() { return *Play::create(land_->world, land_->registry); }
-  std::filesystem::path file() const { return save_file(folder_, land_->world.seed); }
-
-  std::unique_ptr<Land> land_ = *Land::load(3);
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("psygen_faults_" + std::to_string(::getpid()));
-};
+class GameFaults : public SavesFixture {};
 
 TEST_F(GameFaults, TenThousandEditsInABlockArePlayedOnAndSaved) {
   auto play = begin();

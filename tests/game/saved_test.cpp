@@ -1,5 +1,4 @@
 // Saves of a game: what comes back, what is refused, and what a process that is killed leaves.
-#include "game/play/saved.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -11,23 +10,14 @@
 
 #include "engine/world/edits/edit_bytes.hpp"
 #include "game/pilot/pilot.hpp"
+#include "tests/game/saves_fixture.hpp"
 
 namespace cairns {
 namespace {
 
 constexpr double kSavedStep = 1.0 / 60;
 
-class Saves : public ::testing::Test {
- protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::unique_ptr<Play> begin() { return *Play::create(land_->world, land_->registry); }
-  std::filesystem::path file() const { return save_file(folder_, land_->world.seed); }
-
-  std::unique_ptr<Land> land_ = *Land::load(3);
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("psygen_game_" + std::to_string(::getpid()));
-};
+class Saves : public SavesFixture {};
 
 TEST_F(Saves, GiveBackTheWholeGame) {
   auto play = begin();

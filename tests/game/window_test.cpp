@@ -112,6 +112,17 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
 // The same land by a pad alone: pages are gone through by its cross, A and B.
 TEST_F(GameWindow, IsPlayedByAPadFromTitleToTitle) {
   using platform::PadAxis, platform::PadButton;
+  {  // a game whose player has wood: B also lights fires
+    auto land = *Land::load(3);
+    auto play = *Play::create(land->world, land->registry);
+    std::filesystem::create_directories(folder_);
+    auto saved = Saved::open(save_file(folder_, 3), *play);
+    ASSERT_TRUE(saved) << saved.error().message;
+    Progress progress = play->progress();
+    progress.stock.wood = 6;
+    ASSERT_TRUE(play->resume(progress, play->edits()));
+    ASSERT_TRUE(saved->put(*play).and_then([&] { return saved->wait(); }));
+  }
   MadeUpPad pad;
   options_.size = {320, 180};
   Running run(options_);
@@ -123,8 +134,7 @@ TEST_F(GameWindow, IsPlayedByAPadFromTitleToTitle) {
     pad.hold(button, false);
     run.frames(6);
   };
-  press(PadButton::kDown);  // from the name of a land to "New land"
-  press(PadButton::kA);
+  press(PadButton::kA);  // "Continue"
   ASSERT_TRUE(run.frames_until([&] { return run.game.play() != nullptr; }));
   run.frames(10);
   EXPECT_TRUE(run.session->actions().uses_pad());
@@ -151,6 +161,9 @@ TEST_F(GameWindow, IsPlayedByAPadFromTitleToTitle) {
   EXPECT_EQ(run.game.page(), Page::kMap);
   press(PadButton::kB);
   EXPECT_EQ(run.game.page(), Page::kNone);
+  EXPECT_EQ(run.game.play()->progress().stock.wood, 6) << "leaving a page lights no fire";
+  press(PadButton::kB);
+  EXPECT_EQ(run.game.play()->progress().stock.wood, 6 - kWoodOfFire);
   // A key takes the place of the pad in what is written.
   ASSERT_TRUE(key("e"));
   EXPECT_TRUE(run.frames_until([&] { return !run.session->actions().uses_pad(); }, 100));

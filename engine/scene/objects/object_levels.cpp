@@ -2,7 +2,6 @@
 
 #include <meshoptimizer.h>
 
-#include <algorithm>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
@@ -46,22 +45,24 @@ std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh fi
                                        std::size_t most) {
   std::vector<ObjectLevel> levels;
   levels.push_back({std::move(finest), 0});
-  const std::vector<std::uint16_t> all = levels[0].mesh.indices;
   const float* const places = &mesh.positions.front().x;
   const std::size_t count = mesh.positions.size(), stride = sizeof(glm::vec3);
   const auto scale = static_cast<double>(meshopt_simplifyScale(places, count, stride));
-  const double least_area = kLeastArea * area_m2(mesh, all);
-  while (levels.size() < most && levels.back().mesh.indices.size() >= kFewestIndices) {
-    const std::size_t before = levels.back().mesh.indices.size();
-    std::vector<std::uint16_t> indices(all.size());
+  const double least_area = kLeastArea * area_m2(mesh, levels[0].mesh.indices);
+  // Each from the one before: all of them together cost little more than the first.
+  std::vector<std::uint16_t> last = levels[0].mesh.indices;
+  while (levels.size() < most && last.size() >= kFewestIndices) {
+    const std::size_t before = last.size();
+    std::vector<std::uint16_t> indices(before);
     float error = 0;
-    indices.resize(meshopt_simplify(indices.data(), all.data(), all.size(), places, count, stride,
+    indices.resize(meshopt_simplify(indices.data(), last.data(), before, places, count, stride,
                                     before / 12 * 3, std::numeric_limits<float>::max(), 0, &error));
     if (indices.size() < kLeastIndices || 2 * indices.size() > before ||
         area_m2(mesh, indices) < least_area)
       break;
-    const double error_m = std::max(error * scale, levels.back().error_m);
-    levels.push_back({with_indices(levels[0].mesh, std::move(indices)), error_m});
+    const double error_m = levels.back().error_m + error * scale;
+    levels.push_back({with_indices(levels[0].mesh, indices), error_m});
+    last = std::move(indices);
   }
   return levels;
 }

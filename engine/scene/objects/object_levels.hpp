@@ -11,7 +11,7 @@ namespace psygen::scene {
 
 struct ObjectLevel {
   PackedMesh mesh;
-  double error_m = 0;  // as the simplifier measures it; 0 at level 0, and grows
+  double error_m = 0;  // as the simplifier measures it, in all; 0 at level 0, and grows
 };
 
 // One to `most` levels (>= 1), each with at most half the triangles of the one before, and about a

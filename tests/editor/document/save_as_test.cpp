@@ -64,6 +64,14 @@ struct WithFiles {
     EXPECT_TRUE(good(image::write_png(
         from / name, image::GreyImage{4, 4, std::vector<std::uint16_t>(16, value)})));
   }
+  // One value all over.
+  void paint(const std::string& name, std::uint16_t value) {
+    auto painted = std::make_shared<world::GreyPicture>(*document->picture(name));
+    painted->pixels.assign(painted->pixels.size(), value);
+    painted->hash = world::content_hash(*painted);
+    const auto change = PaintChange::between(name, *document->picture(name), *painted);
+    EXPECT_TRUE(good(document->paint("Paint", {change}, document->text())));
+  }
   std::set<std::string> in_other() const {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(to))
@@ -131,32 +139,32 @@ TEST(SaveAs, AMissingFileIsNamedAndNothingIsLeftBehind) {
   }
 }
 
+// Also of what was painted and is written after the copies.
 TEST(SaveAs, AFullDiskLeavesNothingNew) {
-  WithFiles bench;
-  std::size_t failures = 0;
-  for (std::size_t calls = 0;; ++calls) {
-    const FullDisk full(bench.to, calls);
-    const auto saved = bench.document->save_as(bench.to / "new.toml");
-    if (!full.was_met()) break;
-    if (saved) break;  // only what comes after the text met it
-    ++failures;
-    EXPECT_THAT(saved.error().message, HasSubstr("No space left"));
-    EXPECT_EQ(saved.error().code, core::ErrorCode::kIo);
-    EXPECT_EQ(bench.document->file(), bench.place.file);
-    EXPECT_EQ(bench.in_other(), std::set<std::string>()) << "after " << calls << " calls";
+  for (const bool painted : {false, true}) {
+    WithFiles bench;
+    if (painted) bench.paint("balls.png", 4000);
+    std::size_t failures = 0;
+    for (std::size_t calls = 0;; ++calls) {
+      const FullDisk full(bench.to, calls);
+      const auto saved = bench.document->save_as(bench.to / "new.toml");
+      if (!full.was_met()) break;
+      if (saved) break;  // only what comes after the text met it
+      ++failures;
+      EXPECT_THAT(saved.error().message, HasSubstr("No space left"));
+      EXPECT_EQ(saved.error().code, core::ErrorCode::kIo);
+      EXPECT_EQ(bench.document->file(), bench.place.file);
+      EXPECT_EQ(bench.in_other(), std::set<std::string>()) << "after " << calls << " calls";
+    }
+    EXPECT_GE(failures, 20U) << "create, write, flush, close and rename of six files";
+    EXPECT_EQ(bench.in_other(), kAll);
   }
-  EXPECT_GE(failures, 20U) << "create, write, flush, close and rename of six files";
-  EXPECT_EQ(bench.in_other(), kAll);
 }
 
 TEST(SaveAs, PaintedPicturesAreUnsavedUntilTheTextIsWritten) {
   WithFiles bench;
   Document& document = *bench.document;
-  auto painted = std::make_shared<world::GreyPicture>(*document.picture("balls.png"));
-  painted->pixels.assign(painted->pixels.size(), 4000);
-  painted->hash = world::content_hash(*painted);
-  const auto paint = PaintChange::between("balls.png", *document.picture("balls.png"), *painted);
-  ASSERT_TRUE(good(document.paint("Paint", {paint}, document.text())));
+  bench.paint("balls.png", 4000);
   std::filesystem::create_directory(bench.to / "new.toml");
   EXPECT_THAT(bench.refusal(), HasSubstr("new.toml"));
   EXPECT_TRUE(document.is_modified());

@@ -1,8 +1,14 @@
 #include "engine/amplify/ledger.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <algorithm>
+#include <array>
+#include <barrier>
+#include <csignal>
 #include <fstream>
+#include <thread>
 
 #include "tests/engine/amplify/ledgers.hpp"
 #include "tests/full_disk.hpp"
@@ -96,6 +102,26 @@ TEST(Ledger, IsWrittenByOneAtATime) {
   EXPECT_NE(second.error().message.find("another process is writing it"), std::string::npos);
 }
 
+// Whoever is first makes it; the others see that it is there and locked.
+TEST(Ledger, IsMadeByOneOfManyThatBeginAtOnce) {
+  const TemporaryFolder folder;
+  for (int round = 0; round < 40; ++round) {
+    const auto file = folder / (std::to_string(round) + ".ledger");
+    std::array<std::unique_ptr<Ledger>, 4> opened;
+    std::barrier start(opened.size());
+    std::vector<std::jthread> threads;
+    for (std::unique_ptr<Ledger>& mine : opened) {
+      threads.emplace_back([&] {
+        start.arrive_and_wait();
+        if (auto ledger = Ledger::open(file, some_ledger({}))) mine = std::move(*ledger);
+      });
+    }
+    threads.clear();
+    EXPECT_EQ(std::ranges::count_if(opened, [](const auto& l) { return l != nullptr; }), 1)
+        << round;
+  }
+}
+
 TEST(Ledger, OfAnotherJobPartOrShareIsLeftAlone) {
   const TemporaryFolder folder;
   const auto file = folder / "a.ledger";
@@ -144,6 +170,31 @@ TEST(Ledger, OnAFullDiskKeepsWhatItHad) {
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->finished.size(), 1 + calls);
   }
+}
+
+// A line that the disk takes half of goes again: those of other threads come behind it.
+TEST(Ledger, KeepsNoHalfLine) {
+  const TemporaryFolder folder;
+  const auto file = folder / "a.ledger";
+  auto ledger = Ledger::open(file, some_ledger({}));
+  ASSERT_TRUE(ledger);
+  ASSERT_TRUE((*ledger)->add(entry({0, 5})));
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto size = std::filesystem::file_size(file);
+  const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit five_bytes_more{size + 5, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &five_bytes_more), 0);
+  const auto added = (*ledger)->add(entry({5, 6}));
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, ignored);
+  ASSERT_FALSE(added);
+  EXPECT_EQ(std::filesystem::file_size(file), size);
+  ASSERT_TRUE((*ledger)->add(entry({6, 7})));
+  ledger->reset();
+  const auto read = read_ledger(file);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->finished.size(), 2U);
 }
 
 }  // namespace

@@ -2,38 +2,18 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <random>
 
-#include "tests/engine/cli/psygen_process.hpp"
-#include "tests/engine/world/shipped.hpp"
-#include "tests/full_disk.hpp"
+#include "tests/engine/cli/amplify_fixture.hpp"
 
 namespace psygen::cli {
 namespace {
 
-class Shards : public testing::Test {
+class Shards : public AmplifyFixture {
  protected:
-  Shards() { std::ofstream(folder_ / "small.toml") << world::testing::kSmallWorld; }
-
   Outcome run(const std::string& arguments, const std::string& environment = "") const {
     return run_psygen(arguments, environment, folder_.path());
   }
-  Outcome amplify(const std::string& arguments, const std::string& environment = "") const {
-    return run("amplify --world small.toml " + arguments, environment);
-  }
-  // Of the output with --json.
-  static std::string hash_in(const Outcome& outcome) {
-    if (outcome.code != 0) return outcome.err;
-    return nlohmann::json::parse(outcome.out)["hash"];
-  }
-  FileContents blocks_in(const std::string& folder) const {
-    FileContents contents = contents_of(folder_ / folder);
-    std::erase_if(contents, [](const auto& file) { return file.first.ends_with(".ledger"); });
-    return contents;
-  }
-
-  const TemporaryFolder folder_;
 };
 
 TEST_F(Shards, MergedHaveTheHashOfOneProcessWithOneThread) {

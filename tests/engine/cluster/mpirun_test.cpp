@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <random>
 
-#include "tests/engine/cli/psygen_process.hpp"
-#include "tests/engine/world/shipped.hpp"
-#include "tests/full_disk.hpp"
+#include "tests/engine/cli/amplify_fixture.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -19,10 +16,8 @@ constexpr const char* kMpi =
     "OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_btl=self,vader "
     "OMPI_MCA_odls_base_sigkill_timeout=0 mpirun";
 
-class Mpirun : public testing::Test {
+class Mpirun : public AmplifyFixture {
  protected:
-  Mpirun() { std::ofstream(folder_ / "small.toml") << world::testing::kSmallWorld; }
-
   // `ranks`: the arguments of mpirun, with PSYGEN for the command.
   Outcome run(std::string ranks) const {
     for (std::size_t at; (at = ranks.find("PSYGEN ")) != std::string::npos;)
@@ -34,24 +29,10 @@ class Mpirun : public testing::Test {
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
   }
-  Outcome alone(const std::string& arguments) const {
-    return run_psygen("amplify --world small.toml " + arguments, "", folder_.path());
-  }
-  static std::string hash_in(const Outcome& outcome) {
-    if (outcome.code != 0) return outcome.err;
-    return nlohmann::json::parse(outcome.out)["hash"];
-  }
-  FileContents blocks_in(const std::string& folder) const {
-    FileContents contents = contents_of(folder_ / folder);
-    std::erase_if(contents, [](const auto& file) { return file.first.ends_with(".ledger"); });
-    return contents;
-  }
-
-  const TemporaryFolder folder_;
 };
 
 TEST_F(Mpirun, OneTwoAndFourRanksHaveTheHashAndTheFilesOfOneThread) {
-  const std::string hash = hash_in(alone("--threads 1 --json --out alone"));
+  const std::string hash = hash_in(amplify("--threads 1 --json --out alone"));
   for (const int ranks : {1, 2, 4}) {
     const Outcome job =
         run(fmt::format("-n {0} PSYGEN --world small.toml --json --out r{0}", ranks));
@@ -64,7 +45,7 @@ TEST_F(Mpirun, OneTwoAndFourRanksHaveTheHashAndTheFilesOfOneThread) {
 
 TEST_F(Mpirun, AJobWhoseRanksAreKilledAtAnyMomentGoesOn) {
   const std::string region = " --region 1,1,4,4";
-  const std::string hash = hash_in(alone("--threads 1 --json --out alone" + region));
+  const std::string hash = hash_in(amplify("--threads 1 --json --out alone" + region));
   const FileContents whole = blocks_in("alone");
   std::mt19937 random(31);
   const std::string mortal = fmt::format(
@@ -114,7 +95,7 @@ TEST_F(Mpirun, RanksThatAreNotOfOneMindSayWhy) {
   const Outcome sets =
       run("-n 1 PSYGEN --world small.toml --simd scalar --json : -n 1 PSYGEN --world small.toml "
           "--json");
-  EXPECT_EQ(hash_in(sets), hash_in(alone("--json"))) << "instruction sets agree on every bit";
+  EXPECT_EQ(hash_in(sets), hash_in(amplify("--json"))) << "instruction sets agree on every bit";
 }
 
 TEST_F(Mpirun, AFullDiskEndsTheJobWithTheFileAndTheReason) {
