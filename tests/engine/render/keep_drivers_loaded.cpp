@@ -1,22 +1,18 @@
 // Keeps the Vulkan loader, layer and software driver loaded until the process ends, so that a leak
 // checker can name whose leaks it found (tools/lsan.supp names the libraries). Link it into any
-// test that makes a renderer. Does nothing where a library is not installed.
+// test program that makes a renderer. Does nothing where a library is not installed.
 #include <dlfcn.h>
-#include <gtest/gtest.h>
 
 namespace {
 
-class KeepDriversLoaded final : public testing::Environment {
- public:
-  void SetUp() override {
-    for (const char* name :
-         {"libvulkan.so.1", "libVkLayer_khronos_validation.so", "libvulkan_lvp.so"}) {
-      dlopen(name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-    }
+bool keep_drivers_loaded() {
+  for (const char* name :
+       {"libvulkan.so.1", "libVkLayer_khronos_validation.so", "libvulkan_lvp.so"}) {
+    dlopen(name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   }
-};
+  return true;
+}
 
-[[maybe_unused]] const testing::Environment* const kKept =
-    testing::AddGlobalTestEnvironment(new KeepDriversLoaded);
+[[maybe_unused]] const bool kKept = keep_drivers_loaded();
 
 }  // namespace
