@@ -12,7 +12,8 @@ const float kViewBlend = 0.1;
 // two pixels wide.
 float noise_of_spot() {
   vec2 across = abs(dFdx(uv)) + abs(dFdy(uv));
-  float spots = exp2(-ceil(log2(max(max(across.x, across.y), 1e-4))));
+  float most = 1.0 / max(max(across.x, across.y), 1e-4);
+  float spots = uintBitsToFloat(floatBitsToUint(most) & 0xFF800000u);  // the power of two below
   return ordered_noise(floor(uv * spots), 0.0) - 0.5;
 }
 

@@ -177,9 +177,7 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
         make_targets(*device_, colour_format_, extent, pipelines_.samples(), pipelines_.mirrors());
     if (!made) return tl::unexpected(made.error());
     made->host_ordered = !culling_;
-    // Headless, the pixels of a frame are filled beside the triangles of the next one.
-    made->in_parts =
-        !culling_ && options_.surface != nullptr && device_->info.software && !made->has_samples();
+    made->keeps_order = !culling_ && device_->info.software && !made->has_samples();
     targets.push_back(std::move(*made));
   }
   if (culling_) {

@@ -127,6 +127,9 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
                        .shadows = frame_.shadow.y > 0};
   Targets& targets = targets_of(slot);
   targets.drawn = drawn_;
+  // Frames without a barrier need no parts: their pixels are filled beside the triangles of the
+  // next.
+  targets.in_parts = targets.keeps_order && (options_.surface != nullptr || targets.is_coarse());
   targets.mirrors = water_ && targets.mirror.exists();
   record_scene(*device_, pipelines_, slot, targets, pass);
   if (windowed) {

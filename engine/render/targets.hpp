@@ -26,8 +26,9 @@ struct Targets {
   // barrier is needed between them. On lavapipe a barrier waits for everything. Without it, the
   // triangles of one frame are set up while the pixels of the last one are filled.
   bool host_ordered = false;
-  bool in_parts =
-      false;  // go_on_in_new_pass() may be called: windows of lavapipe, which keeps order
+  bool keeps_order =
+      false;              // the device fills pixels in the order of triangles over passes: lavapipe
+  bool in_parts = false;  // the next frame is drawn so: go_on_in_new_pass() may be called
 
   bool is_coarse() const { return drawn != extent; }
   bool has_samples() const { return samples.image.get() != VK_NULL_HANDLE; }

@@ -59,9 +59,10 @@ bool Modeler::is_given_up() const {
   return (state_.load(std::memory_order_acquire) & kPhaseMask) == kGivenUp;
 }
 
-bool Modeler::write_mesh(const Workshop& workshop, const models::MeshView& mesh, Completion& c) {
-  SynthesisOutcome outcome = synthesize_guarded((*workshop.registry)[current_.key.model],
-                                                current_.parameters, current_.key.level, mesh);
+bool Modeler::write_mesh(const models::ModelType& type, const models::MeshView& mesh,
+                         Completion& c) {
+  SynthesisOutcome outcome =
+      synthesize_guarded(type, current_.parameters, current_.key.level, mesh);
   c.ok = outcome.ok;
   c.tight = outcome.tight;
   c.error = std::move(outcome.error);
@@ -70,11 +71,12 @@ bool Modeler::write_mesh(const Workshop& workshop, const models::MeshView& mesh,
 
 // Writes the mesh and what is noted of it. It is read where it is cached: destinations may
 // be slow to read, and a copy costs no more than writing in place.
-void Modeler::write_noted_mesh(const Workshop& workshop, const Annotate& annotate, Completion& c) {
+void Modeler::write_noted_mesh(const models::ModelType& type, const Annotate& annotate,
+                               Completion& c) {
   const models::MeshView& destination = current_.destination;
   try {
     const models::MeshView mesh = scratch_for(destination);
-    if (!write_mesh(workshop, mesh, c) || is_given_up()) return;
+    if (!write_mesh(type, mesh, c) || is_given_up()) return;
     c.note = annotate(current_, mesh);
     std::ranges::copy(mesh.vertices, destination.vertices.begin());
     std::ranges::copy(mesh.indices, destination.indices.begin());
@@ -115,14 +117,19 @@ bool Modeler::execute(Workshop& workshop) {
   c.warmth = warmth_at(c.started_s);
   c.predicted_seconds = current_.cost.of(c.warmth);
   started_s_.store(c.started_s, std::memory_order_relaxed);
+  // Looked up first: once the request can be given up, the types may change.
+  const models::ModelIndex model = current_.key.model;
+  const models::ModelType& type = (*workshop.registry)[model];
+  const Annotate* annotate = model < workshop.annotate.size() && workshop.annotate[model]
+                                 ? &workshop.annotate[model]
+                                 : nullptr;
   ++serial_;
   state_.store(serial_ * 4 + kWorking, std::memory_order_release);
 
-  const models::ModelIndex model = current_.key.model;
-  if (model < workshop.annotate.size() && workshop.annotate[model]) {
-    write_noted_mesh(workshop, workshop.annotate[model], c);
+  if (annotate != nullptr) {
+    write_noted_mesh(type, *annotate, c);
   } else {
-    write_mesh(workshop, current_.destination, c);
+    write_mesh(type, current_.destination, c);
   }
   const double cpu_s = core::thread_cpu_seconds();
   c.seconds = cpu_s - std::exchange(cpu_s_, cpu_s);

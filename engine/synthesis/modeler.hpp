@@ -87,8 +87,8 @@ class Modeler {
   bool execute(Workshop& workshop);
   Warmth warmth_at(double now_s);
   bool is_given_up() const;
-  bool write_mesh(const Workshop& workshop, const models::MeshView& mesh, Completion& c);
-  void write_noted_mesh(const Workshop& workshop, const Annotate& annotate, Completion& c);
+  bool write_mesh(const models::ModelType& type, const models::MeshView& mesh, Completion& c);
+  void write_noted_mesh(const models::ModelType& type, const Annotate& annotate, Completion& c);
   models::MeshView scratch_for(const models::MeshView& destination);
   void wake_waiting(Workshop& workshop);
   void count(const Completion& completion);
