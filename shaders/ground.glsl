@@ -21,8 +21,8 @@ float slow_noise(vec2 p) {
 
 // The slow pattern over the plane, 0 to 1.
 float ground_pattern(vec2 plane) {
-  if (frame.ground_colour.w <= 0.0) return 0.5;
-  return 0.65 * slow_noise(plane * (1.0 / 32.0)) + 0.35 * slow_noise(plane * (1.0 / 8.0));
+  float noise = 0.65 * slow_noise(plane * (1.0 / 32.0)) + 0.35 * slow_noise(plane * (1.0 / 8.0));
+  return mix(0.5, noise, frame.ground_colour.w > 0.0);
 }
 
 // How much each kind of ground covers of those before it, from grass on, 0 to 1.

@@ -59,40 +59,32 @@ void main() {
   vec3 p = moved + from.x * e.axis_x.xyz + from.y * e.axis_y.xyz + from.z * e.axis_z.xyz;
   float opacity = e.light.y * clamp(lived / e.shape.x, 0.0, 1.0) *
                   clamp((1.0 - lived) / e.shape.y, 0.0, 1.0);
-  if (e.around.x > 0.0) {
-    // The origin is the box's corner in a lattice of boxes; the camera is in its middle.
-    p = fract((p + e.origin.xyz) / e.around.xyz) - 0.5;
-    vec3 edge = clamp((0.5 - abs(p)) * 8.0, 0.0, 1.0);
-    opacity *= edge.x * edge.y * edge.z;
-    p *= e.around.xyz;
-  } else {
-    p += e.origin.xyz;
-  }
+  // In a lattice of boxes the origin is the corner of one; the camera is in its middle.
+  bvec3 in_box = bvec3(e.around.x > 0.0);
+  vec3 place_in_box = fract((p + e.origin.xyz) / mix(vec3(1.0), e.around.xyz, in_box)) - 0.5;
+  vec3 edge = clamp((0.5 - abs(place_in_box)) * 8.0, 0.0, 1.0);
+  opacity *= mix(1.0, edge.x * edge.y * edge.z, in_box.x);
+  p = mix(p + e.origin.xyz, place_in_box * e.around.xyz, in_box);
   float away2 = max(dot(p, p), 1e-6);
 
   float size = mix(e.size.x, e.size.y, lived) * (1.0 - e.size.z * r0.y) * 0.5;
   // None fills the picture when the camera passes through it.
   opacity *= clamp(sqrt(away2) / (size + 0.3) - 0.5, 0.0, 1.0);
   vec3 ahead = p * inversesqrt(away2);
-  vec3 up = vec3(0.0, 1.0, 0.0);
-  float half_height = size;
-  if (e.size.w > 0.0) {
-    float speed2 = max(dot(velocity, velocity), 1e-6);
-    up = velocity * inversesqrt(speed2);
-    half_height += 0.5 * e.size.w * sqrt(speed2);
-  }
-  vec3 right = cross(ahead, up);
-  right *= inversesqrt(max(dot(right, right), 1e-6));
-  if (e.size.w <= 0.0) {
-    up = cross(right, ahead);
-    float turned_by = r0.z + age * e.motion.z * (r3.x - 0.5) * 0.3183099;
-    vec2 turn = normalize(wave(turned_by + vec3(0.0, 0.25, 0.0)).xy);  // cosine, sine
-    vec3 turned = turn.x * right + turn.y * up;
-    up = turn.x * up - turn.y * right;
-    right = turned;
-  }
-  float half_width = size * e.shape.w;
-  if (e.motion.w > 0.0) half_width *= 0.15 + 0.85 * abs(wave(vec3(r1.x + age * e.motion.w * 0.159)).x);
+  // A streak lies along its motion, all others turn about the line to the camera.
+  bool streak = e.size.w > 0.0;
+  float speed2 = max(dot(velocity, velocity), 1e-6);
+  vec3 along = mix(vec3(0.0, 1.0, 0.0), velocity * inversesqrt(speed2), bvec3(streak));
+  vec3 across = cross(ahead, along);
+  across *= inversesqrt(max(dot(across, across), 1e-6));
+  vec3 above = cross(across, ahead);
+  float turned_by = r0.z + age * e.motion.z * (r3.x - 0.5) * 0.3183099;
+  vec2 turn = normalize(wave(turned_by + vec3(0.0, 0.25, 0.0)).xy);  // cosine, sine
+  vec3 right = mix(turn.x * across + turn.y * above, across, bvec3(streak));
+  vec3 up = mix(turn.x * above - turn.y * across, along, bvec3(streak));
+  float half_height = size + mix(0.0, 0.5 * e.size.w * sqrt(speed2), streak);
+  float tumbled = 0.15 + 0.85 * abs(wave(vec3(r1.x + age * e.motion.w * 0.159)).x);
+  float half_width = size * e.shape.w * mix(1.0, tumbled, e.motion.w > 0.0);
 
   vec4 paint = mix(e.first_colour, e.last_colour, clamp(lived, 0.0, 1.0));
   paint.rgb *= 1.0 - e.around.w * r2.x;

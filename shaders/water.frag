@@ -31,7 +31,7 @@ vec2 slope_of(vec2 plane, float length_m, vec2 drift) {
 vec3 lamp_glint(vec3 p, vec3 n) {
   vec3 v = normalize(p);
   vec3 sum = vec3(0.0);
-  int count = int(frame.lamp_count.x);
+  int count = lamp_count_at(p);
   for (int i = 0; i < count; ++i) {
     vec3 to_lamp;
     vec3 light = lamp_at(i, p, to_lamp);
