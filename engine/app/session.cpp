@@ -177,11 +177,12 @@ core::Result<void> Session::open_scene(world::World world, models::Registry regi
                                   kMostTargetHz, target_hz));
   options_.scene.target_frame_ms = target_hz > 0 ? 1000 / target_hz : 0;
   if (options_.trace) trace_ = std::make_unique<telemetry::TraceLog>();
-  auto scene =
-      scene::Scene::create(std::move(world), std::move(registry), options_.scene, renderer_.get(),
-                           trace_.get(), [&](std::string_view label, double fraction) {
-                             return loading.update(label, fraction, renderer_.get());
-                           });
+  auto scene = scene::Scene::create(
+      std::move(world), std::move(registry), options_.scene, renderer_.get(), trace_.get(),
+      [&](std::string_view label, double fraction) {
+        return loading.update(label, fraction, renderer_.get());
+      },
+      options_.remote);
   loading.finish();
   if (!scene) return tl::unexpected(scene.error());
   if (loading.closed()) return closed_early();

@@ -119,7 +119,8 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
                                                    const Settings& settings,
                                                    render::Renderer* renderer,
                                                    telemetry::TraceLog* trace,
-                                                   const Progress& progress) {
+                                                   const Progress& progress,
+                                                   synthesis::RemoteModelers* remote) {
   if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
   std::unique_ptr<Scene> scene(new Scene);
   State& s = scene->state_;
@@ -157,6 +158,7 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   options.modelers = s.settings.modelers;
   options.watchdog_seconds = settings.watchdog_seconds;
   options.annotate = mesh_notes(facts);
+  options.remote = remote;
   if (settings.virtual_time) options.virtual_clock = [&s] { return s.clock.real_s; };
   if (auto ok = start_modelers(options, s.meshes, s.settings); !ok)
     return tl::unexpected(ok.error());

@@ -62,7 +62,8 @@ core::Result<PreparedWorld> prepare_world(world::World world, models::Registry r
 // One world with its entities, its meshes and its tick.
 class Scene {
  public:
-  // `world` may have edits. `renderer` (may be null) and `trace` (may be null) outlive the scene.
+  // `world` may have edits. `renderer`, `trace` and `remote` (further modelers, not with virtual
+  // time) may be null and outlive the scene.
   // Starts the modelers and calibrates the cost model (below 0.5 s). Fails as check(), and with
   // kOverBudget for a view with more than kMaxEntities nodes and models or kMaxPlaces places for
   // nodes.
@@ -70,7 +71,8 @@ class Scene {
                                                      const Settings& settings,
                                                      render::Renderer* renderer,
                                                      telemetry::TraceLog* trace = nullptr,
-                                                     const Progress& progress = {});
+                                                     const Progress& progress = {},
+                                                     synthesis::RemoteModelers* remote = nullptr);
 
   // All that the tick reads and writes.
   State& state() { return state_; }

@@ -14,7 +14,7 @@ LandingReport land(std::span<Completion> completions, GeometryCache& cache, Cost
       cache.fail(c.handle, c.error, c.abandoned);
       ++report.failed;
     } else {
-      if (cost != nullptr) {
+      if (cost != nullptr && !c.remote) {
         cost->observe(c.key.model, c.key.level, c.work, c.warmth, c.predicted_seconds, c.seconds);
       }
       cache.complete(c.handle, c.tight, std::move(c.note));

@@ -20,8 +20,8 @@ struct LandingReport {
 };
 
 // Completes or fails each mesh; stale handles are dropped. `cost`, if not null, learns from every
-// success. Completions may come in any order, but a late one after its abandoned one. Notes go to
-// the records of their meshes.
+// success of this machine. Completions may come in any order, but a late one after its abandoned
+// one. Notes go to the records of their meshes.
 LandingReport land(std::span<Completion> completions, GeometryCache& cache, CostModel* cost);
 
 }  // namespace psygen::synthesis

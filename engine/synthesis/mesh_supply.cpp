@@ -67,7 +67,7 @@ bool MeshSupply::come_to_rest() {
   manager_->wait_all();
   collect();
   land(UINT64_MAX);
-  return manager_->hung().empty();
+  return manager_->is_at_rest();
 }
 
 void MeshSupply::take_over_types(std::vector<Annotate> annotate) {

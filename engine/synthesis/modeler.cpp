@@ -21,6 +21,40 @@ void add(std::atomic<T>& counter, T value) {
   counter.store(counter.load(std::memory_order_relaxed) + value, std::memory_order_relaxed);
 }
 
+// Calls what notes something of a mesh. Whatever it throws fails the request.
+template <class Work>
+void noting(Completion& c, const Work& work) {
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    c.ok = false;
+    c.error = core::out_of_memory("what is noted of a mesh");
+  } catch (const std::exception& e) {
+    c.ok = false;
+    c.error = fmt::format("nothing could be noted of a mesh: {}", e.what());
+  } catch (...) {
+    c.ok = false;
+    c.error = "nothing could be noted of a mesh";
+  }
+}
+
+// What is noted of meshes of a type; null: nothing.
+const Annotate* annotate_of(const Workshop& workshop, models::ModelIndex model) {
+  const std::vector<Annotate>& all = workshop.annotate;
+  return model < all.size() && all[model] ? &all[model] : nullptr;
+}
+
+void copy(const models::MeshView& mesh, const models::MeshView& destination) {
+  std::ranges::copy(mesh.vertices, destination.vertices.begin());
+  std::ranges::copy(mesh.indices, destination.indices.begin());
+}
+
+models::MeshView view_of(std::span<std::byte> bytes, const models::MeshView& like) {
+  const std::size_t vertex_bytes = like.vertices.size();
+  return {bytes.first(vertex_bytes),
+          {reinterpret_cast<std::uint16_t*>(bytes.data() + vertex_bytes), like.indices.size()}};
+}
+
 }  // namespace
 
 void Modeler::run(Workshop& workshop) {
@@ -28,16 +62,16 @@ void Modeler::run(Workshop& workshop) {
   bool lowered = false;
   cpu_s_ = core::thread_cpu_seconds();
   while (!workshop.stop.load(std::memory_order_acquire)) {
+    if (is_remote() && !place_.modelers->is_usable(place_.number)) break;
     const std::uint32_t epoch = workshop.board.epoch();
-    std::uint64_t retries = 0;
-    const bool claimed = workshop.board.claim(*reader_, current_, retries);
-    if (retries > 0) add(counters_.retries, retries);
-    if (!lowered && workshop.lowest_priority.load(std::memory_order_relaxed)) {
+    const bool claimed = claim(workshop);
+    // The thread of a remote one hardly computes.
+    if (!lowered && !is_remote() && workshop.lowest_priority.load(std::memory_order_relaxed)) {
       lower_priority_of_this_thread();
       lowered = true;
     }
     if (claimed) {
-      if (!execute(workshop)) break;
+      if (!(is_remote() ? execute_there(workshop) : execute(workshop))) break;
     } else {
       wake_waiting(workshop);
       // stop is set before the epoch moves, so that it cannot be missed here.
@@ -46,6 +80,14 @@ void Modeler::run(Workshop& workshop) {
     }
   }
   exited_.store(true, std::memory_order_release);
+}
+
+bool Modeler::claim(Workshop& workshop) {
+  std::uint64_t retries = 0;
+  const bool claimed = is_remote() ? workshop.board.claim_offered(*reader_, current_, retries)
+                                   : workshop.board.claim(*reader_, current_, retries);
+  if (retries > 0) add(counters_.retries, retries);
+  return claimed;
 }
 
 void Modeler::perform(Workshop& workshop, const Request& request) {
@@ -73,32 +115,18 @@ bool Modeler::write_mesh(const models::ModelType& type, const models::MeshView& 
 // be slow to read, and a copy costs no more than writing in place.
 void Modeler::write_noted_mesh(const models::ModelType& type, const Annotate& annotate,
                                Completion& c) {
-  const models::MeshView& destination = current_.destination;
-  try {
-    const models::MeshView mesh = scratch_for(destination);
+  noting(c, [&] {
+    const models::MeshView mesh = scratch_for(current_.destination);
     if (!write_mesh(type, mesh, c) || is_given_up()) return;
     c.note = annotate(current_, mesh);
-    std::ranges::copy(mesh.vertices, destination.vertices.begin());
-    std::ranges::copy(mesh.indices, destination.indices.begin());
-  } catch (const std::bad_alloc&) {
-    c.ok = false;
-    c.error = core::out_of_memory("what is noted of a mesh");
-  } catch (const std::exception& e) {
-    c.ok = false;
-    c.error = fmt::format("nothing could be noted of a mesh: {}", e.what());
-  } catch (...) {
-    c.ok = false;
-    c.error = "nothing could be noted of a mesh";
-  }
+    copy(mesh, current_.destination);
+  });
 }
 
 models::MeshView Modeler::scratch_for(const models::MeshView& destination) {
-  const std::size_t vertex_bytes = destination.vertices.size();
-  const std::size_t bytes = vertex_bytes + destination.indices.size_bytes();
+  const std::size_t bytes = destination.vertices.size() + destination.indices.size_bytes();
   if (scratch_.size() < bytes) scratch_.resize(bytes);
-  return {{scratch_.data(), vertex_bytes},
-          {reinterpret_cast<std::uint16_t*>(scratch_.data() + vertex_bytes),
-           destination.indices.size()}};
+  return view_of(scratch_, destination);
 }
 
 // How warm the caches are for this request. After a pause, in sleep or without a processor, they
@@ -111,21 +139,22 @@ Warmth Modeler::warmth_at(double now_s) {
   return warm_.size() == 1 ? Warmth::kWoken : Warmth::kCold;
 }
 
+void Modeler::begin(double now_s) {
+  started_s_.store(now_s, std::memory_order_relaxed);
+  ++serial_;
+  state_.store(serial_ * 4 + kWorking, std::memory_order_release);
+}
+
 bool Modeler::execute(Workshop& workshop) {
   Completion c = completion_of(current_, number_);
   c.started_s = workshop.clock();
   c.warmth = warmth_at(c.started_s);
   c.predicted_seconds = current_.cost.of(c.warmth);
-  started_s_.store(c.started_s, std::memory_order_relaxed);
   // Looked up first: once the request can be given up, the types may change.
   const models::ModelIndex model = current_.key.model;
   const models::ModelType& type = (*workshop.registry)[model];
-  const Annotate* annotate = model < workshop.annotate.size() && workshop.annotate[model]
-                                 ? &workshop.annotate[model]
-                                 : nullptr;
-  ++serial_;
-  state_.store(serial_ * 4 + kWorking, std::memory_order_release);
-
+  const Annotate* annotate = annotate_of(workshop, model);
+  begin(c.started_s);
   if (annotate != nullptr) {
     write_noted_mesh(type, *annotate, c);
   } else {
@@ -146,10 +175,57 @@ bool Modeler::execute(Workshop& workshop) {
     queue_.push(std::move(c));
     return false;
   }
+  finish(std::move(c));
+  return true;
+}
+
+void Modeler::finish(Completion&& c) {
   count(c);
   queue_.push(std::move(c));
   finished_.store(finished_.load(std::memory_order_relaxed) + 1, std::memory_order_seq_cst);
+}
+
+// The destination is this thread's only once the mesh is here and nobody has given it up.
+bool Modeler::execute_there(Workshop& workshop) {
+  Completion c = completion_of(current_, number_);
+  c.remote = true;
+  c.started_s = workshop.clock();
+  c.predicted_seconds = current_.cost.warm_s();
+  const models::ModelType& type = (*workshop.registry)[current_.key.model];
+  begin(c.started_s);
+  RemoteMesh mesh = place_.modelers->make(place_.number, type, current_);
+  std::uint64_t expected = serial_ * 4 + kWorking;
+  if (!state_.compare_exchange_strong(expected, serial_ * 4 + kWriting, std::memory_order_acq_rel))
+    return false;
+  const bool made = mesh.answer != RemoteMesh::Answer::kNone;
+  if (made) write_remote_mesh(workshop, mesh, c);
+  c.finished_s = workshop.clock();
+  state_.store(serial_ * 4 + kIdle, std::memory_order_release);
+  if (made) {
+    finish(std::move(c));
+  } else {
+    give_back(workshop);
+  }
   return true;
+}
+
+void Modeler::write_remote_mesh(const Workshop& workshop, RemoteMesh& mesh, Completion& c) {
+  c.seconds = mesh.seconds;
+  c.tight = mesh.tight;
+  c.ok = mesh.answer == RemoteMesh::Answer::kMade;
+  c.error = std::move(mesh.error);
+  if (!c.ok) return;
+  const models::MeshView made = view_of(mesh.bytes, current_.destination);
+  if (const Annotate* annotate = annotate_of(workshop, current_.key.model))
+    noting(c, [&] { c.note = (*annotate)(current_, made); });
+  copy(made, current_.destination);
+  if (workshop.hash_content && c.ok) c.content_hash = content_hash(current_.key, made);
+}
+
+void Modeler::give_back(Workshop& workshop) {
+  const std::lock_guard lock(workshop.mutex);
+  workshop.returned.push_back(current_);
+  workshop.has_returned.store(true, std::memory_order_release);
 }
 
 // The last modeler to finish finds nothing more to claim: that is when all may be done.
@@ -192,6 +268,7 @@ bool Modeler::give_up_if_older(double limit_s, double now_s, Completion& out) {
   out.abandoned = true;
   out.started_s = started_s;
   out.finished_s = now_s;
+  out.remote = is_remote();
   out.error = fmt::format("level {} was given up after {:.1f} s without an end", out.key.level,
                           now_s - started_s);
   return true;

@@ -2,6 +2,10 @@
 // board, writes into the destination of the request, and queues a completion; it takes no lock and
 // sees nothing else. The main thread may give up a modeler whose model hangs: from then on the
 // modeler only reports when it let go of the destination, and ends.
+//
+// The mesh of a remote modeler is made elsewhere (remote_modelers.hpp); its thread here waits for
+// the bytes and touches the destination only once it has them. So what it was given up with is free
+// at once, and others can make it.
 #pragma once
 
 #include <atomic>
@@ -15,6 +19,7 @@
 
 #include "engine/synthesis/completion_queue.hpp"
 #include "engine/synthesis/plan_board.hpp"
+#include "engine/synthesis/remote_modelers.hpp"
 
 namespace psygen::synthesis {
 
@@ -37,6 +42,15 @@ struct Workshop {
   std::atomic<bool> waiting{false};
   std::mutex mutex;
   std::condition_variable finished;
+  // Requests that remote modelers could not have made, for the main thread; under `mutex`.
+  std::vector<Request> returned;
+  std::atomic<bool> has_returned{false};
+};
+
+// Where the meshes of a remote modeler are made; of others nowhere.
+struct RemotePlace {
+  RemoteModelers* modelers = nullptr;
+  unsigned number = 0;
 };
 
 // Counters with one writer, the modeler, readable from anywhere.
@@ -51,8 +65,8 @@ struct ModelerCounters {
 // One modeler. Its functions are for its own thread unless they say otherwise.
 class Modeler {
  public:
-  Modeler(std::uint32_t number, std::shared_ptr<PlanBoard::Reader> reader)
-      : number_(number), reader_(std::move(reader)) {}
+  Modeler(std::uint32_t number, std::shared_ptr<PlanBoard::Reader> reader, RemotePlace place = {})
+      : number_(number), reader_(std::move(reader)), place_(place) {}
 
   // The thread's function: works until workshop.stop or until it was given up.
   void run(Workshop& workshop);
@@ -65,6 +79,9 @@ class Modeler {
   bool give_up_if_older(double limit_s, double now_s, Completion& out);
   // Main thread: whether a request that runs now was started before `limit_s`.
   bool is_older(double limit_s) const;
+  // Main thread, once a remote modeler was given up: what it was given up with. Nobody touches its
+  // destination.
+  const Request& abandoned() const { return current_; }
 
   // Whether the main thread has given it up. Any thread.
   bool given_up() const {
@@ -73,6 +90,8 @@ class Modeler {
 
   // Its number, its view of the board, its completions and its counters.
   std::uint32_t number() const { return number_; }
+  bool is_remote() const { return place_.modelers != nullptr; }
+  const RemotePlace& place() const { return place_; }
   const std::shared_ptr<PlanBoard::Reader>& reader() const { return reader_; }
   CompletionQueue& queue() { return queue_; }
   const ModelerCounters& counters() const { return counters_; }
@@ -82,9 +101,22 @@ class Modeler {
   bool exited() const { return exited_.load(std::memory_order_acquire); }
 
  private:
-  enum Phase : std::uint64_t { kIdle = 0, kWorking = 1, kGivenUp = 2, kPhaseMask = 3 };
+  // kWriting: of a remote mesh that is here; it ends soon and is not given up.
+  enum Phase : std::uint64_t {
+    kIdle = 0,
+    kWorking = 1,
+    kGivenUp = 2,
+    kWriting = 3,
+    kPhaseMask = 3
+  };
+  bool claim(Workshop& workshop);
+  void begin(double now_s);
   // False if the request was given up meanwhile.
   bool execute(Workshop& workshop);
+  bool execute_there(Workshop& workshop);
+  void give_back(Workshop& workshop);
+  void finish(Completion&& c);
+  void write_remote_mesh(const Workshop& workshop, RemoteMesh& mesh, Completion& c);
   Warmth warmth_at(double now_s);
   bool is_given_up() const;
   bool write_mesh(const models::ModelType& type, const models::MeshView& mesh, Completion& c);
@@ -95,6 +127,7 @@ class Modeler {
 
   const std::uint32_t number_;
   const std::shared_ptr<PlanBoard::Reader> reader_;
+  const RemotePlace place_;
   Request current_;  // written while idle only
   std::uint64_t serial_ = 0;
   std::vector<std::size_t> warm_;   // codes that were run since it last did nothing

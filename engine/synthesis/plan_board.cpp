@@ -29,45 +29,71 @@ std::unique_ptr<PlanBoard::Plan> PlanBoard::take_plan() {
   return std::make_unique<Plan>();
 }
 
-void PlanBoard::publish(std::vector<Request>&& requests) {
+void PlanBoard::publish(std::vector<Request>&& requests, std::vector<std::uint32_t>&& offered) {
   PSYGEN_CHECK(current_.load(std::memory_order_relaxed) == nullptr, "the last plan is not closed");
   if (requests.empty()) return;
   std::unique_ptr<Plan> plan = take_plan();
   plan->requests = std::move(requests);
+  plan->offered = std::move(offered);
+  plan->taken = std::vector<std::atomic<bool>>(plan->offered.empty() ? 0 : plan->requests.size());
   plan->cursor.store(0, std::memory_order_relaxed);
+  plan->remote_cursor.store(0, std::memory_order_relaxed);
   current_.store(plan.get(), std::memory_order_seq_cst);
   plans_.push_back(std::move(plan));
   wake_all();
 }
 
+// Every request is taken in the end: by a modeler, or here.
 std::size_t PlanBoard::close(std::vector<Request>& unclaimed) {
   Plan* plan = current_.load(std::memory_order_relaxed);
   if (plan == nullptr) return 0;
-  const std::uint64_t claimed = std::min<std::uint64_t>(
+  const std::size_t before = unclaimed.size();
+  const std::uint64_t passed = std::min<std::uint64_t>(
       plan->cursor.exchange(kClosed, std::memory_order_acq_rel), plan->requests.size());
+  plan->remote_cursor.store(kClosed, std::memory_order_release);
   current_.store(nullptr, std::memory_order_seq_cst);
-  unclaimed.insert(unclaimed.end(), plan->requests.begin() + static_cast<std::ptrdiff_t>(claimed),
-                   plan->requests.end());
-  return claimed;
+  for (std::size_t i = passed; i < plan->requests.size(); ++i) {
+    if (plan->take(i)) unclaimed.push_back(plan->requests[i]);
+  }
+  return plan->requests.size() - (unclaimed.size() - before);
 }
 
-bool PlanBoard::claim(Reader& reader, Request& out, std::uint64_t& retries) {
+// The newest plan, which is not reused while the reader names it; null where there is none.
+PlanBoard::Plan* PlanBoard::hold_newest(Reader& reader, std::uint64_t& retries) const {
   Plan* plan = current_.load(std::memory_order_seq_cst);
   for (;;) {
     reader.plan.store(plan, std::memory_order_seq_cst);
     Plan* now = current_.load(std::memory_order_seq_cst);
-    if (now == plan) break;
+    if (now == plan) return plan;
     plan = now;
     ++retries;
   }
+}
+
+bool PlanBoard::claim(Reader& reader, Request& out, std::uint64_t& retries) {
+  Plan* plan = hold_newest(reader, retries);
   bool claimed = false;
   // Looking first keeps idle modelers from moving the cursor of an exhausted plan.
-  if (plan != nullptr && plan->cursor.load(std::memory_order_relaxed) < plan->requests.size()) {
+  while (!claimed && plan != nullptr &&
+         plan->cursor.load(std::memory_order_relaxed) < plan->requests.size()) {
     const std::uint64_t i = plan->cursor.fetch_add(1, std::memory_order_acq_rel);
-    if (i < plan->requests.size()) {
-      out = plan->requests[i];
-      claimed = true;
-    }
+    if (i >= plan->requests.size()) break;
+    claimed = plan->take(i);
+    if (claimed) out = plan->requests[i];
+  }
+  reader.plan.store(nullptr, std::memory_order_release);
+  return claimed;
+}
+
+bool PlanBoard::claim_offered(Reader& reader, Request& out, std::uint64_t& retries) {
+  Plan* plan = hold_newest(reader, retries);
+  bool claimed = false;
+  while (!claimed && plan != nullptr &&
+         plan->remote_cursor.load(std::memory_order_relaxed) < plan->offered.size()) {
+    const std::uint64_t i = plan->remote_cursor.fetch_add(1, std::memory_order_acq_rel);
+    if (i >= plan->offered.size()) break;
+    claimed = plan->take(plan->offered[i]);
+    if (claimed) out = plan->requests[plan->offered[i]];
   }
   reader.plan.store(nullptr, std::memory_order_release);
   return claimed;

@@ -1,7 +1,9 @@
 // Where the newest plan hangs: an immutable array of requests with an atomic cursor. One thread
 // (the main thread) publishes and closes; any number of modelers claim. Each request is claimed
 // exactly once or returned by close(), never both. Lock-free: a claim is one fetch_add; a plan is
-// reused only when no modeler's reader names it (hazard pointers; Michael 2004).
+// reused only when no modeler's reader names it (hazard pointers; Michael 2004). Some requests may
+// be offered to remote modelers too, which claim in the same order among these; who sets the flag
+// of such a request has it.
 #pragma once
 
 #include <atomic>
@@ -17,7 +19,15 @@ namespace psygen::synthesis {
 class PlanBoard {
   struct Plan {
     std::vector<Request> requests;
+    std::vector<std::uint32_t> offered;    // positions of those that remote modelers may claim
+    std::vector<std::atomic<bool>> taken;  // by position; none where nothing is offered
     alignas(64) std::atomic<std::uint64_t> cursor{0};
+    alignas(64) std::atomic<std::uint64_t> remote_cursor{0};  // in `offered`
+
+    // Whether nobody else has it.
+    bool take(std::size_t position) {
+      return taken.empty() || !taken[position].exchange(true, std::memory_order_acq_rel);
+    }
   };
 
  public:
@@ -31,7 +41,8 @@ class PlanBoard {
   void remove_reader(const std::shared_ptr<Reader>& reader);
 
   // Main thread: publishes a plan and wakes waiting readers. Requires that the last one is closed.
-  void publish(std::vector<Request>&& requests);
+  // `offered`: growing positions of requests that claim_offered() may return.
+  void publish(std::vector<Request>&& requests, std::vector<std::uint32_t>&& offered = {});
   // Main thread: closes the current plan, appends its unclaimed requests in order, and returns how
   // many were claimed from it.
   std::size_t close(std::vector<Request>& unclaimed);
@@ -39,6 +50,8 @@ class PlanBoard {
   // Modelers: the next request of the newest plan, or false when there is none. Counts how often it
   // had to look again because the plan was replaced meanwhile; nothing else can delay it.
   bool claim(Reader& reader, Request& out, std::uint64_t& retries);
+  // The same of those that are offered to remote modelers.
+  bool claim_offered(Reader& reader, Request& out, std::uint64_t& retries);
   // Modelers: number of the newest plan, and sleeping until there is a newer one than `seen`.
   std::uint32_t epoch() const { return epoch_.load(std::memory_order_acquire); }
   void wait(std::uint32_t seen) const { epoch_.wait(seen, std::memory_order_acquire); }
@@ -48,6 +61,7 @@ class PlanBoard {
  private:
   static constexpr std::uint64_t kClosed = std::uint64_t{1} << 62;
   std::unique_ptr<Plan> take_plan();
+  Plan* hold_newest(Reader& reader, std::uint64_t& retries) const;
 
   alignas(64) std::atomic<Plan*> current_{nullptr};
   alignas(64) std::atomic<std::uint32_t> epoch_{0};

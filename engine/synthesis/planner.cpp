@@ -221,13 +221,20 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   here_.clear();
   waiting_seconds_ = 0;
   const double enough = limits.seconds_ahead * std::max(manager.modeler_count(), 1u);
+  // Of what remote modelers may make they have enough by themselves.
+  const double enough_remote = limits.seconds_ahead * manager.remote_count();
+  double offered_seconds = 0;
   std::size_t next = 0;
   for (; next < items_.size(); ++next) {
-    if (report.predicted_seconds + waiting_seconds_ >= enough ||
-        plan_.size() >= limits.max_requests || report.refused >= limits.max_refusals) {
+    const double here_seconds = report.predicted_seconds - std::min(offered_seconds, enough_remote);
+    if (here_seconds + waiting_seconds_ >= enough || plan_.size() >= limits.max_requests ||
+        report.refused >= limits.max_refusals) {
       break;
     }
+    const std::size_t before = plan_.size();
     add(items_[next], wants[items_[next].want], cache, report);
+    if (enough_remote > 0 && plan_.size() > before && manager.may_go(plan_.back()))
+      offered_seconds += items_[next].order.predicted_seconds;
   }
   report.deferred += static_cast<std::uint32_t>(items_.size() - next);
   while (give_back_last(cache, report)) {

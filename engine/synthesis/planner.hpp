@@ -33,7 +33,7 @@ struct Want {
 
 // Limits of one plan.
 struct PlanLimits {
-  double seconds_ahead = 0.25;  // predicted work per modeler in one plan
+  double seconds_ahead = 0.25;  // predicted work per modeler in one plan, remote ones too
   std::uint32_t max_requests = 4096;
   std::uint32_t max_refusals = 16;  // reservations refused by the budget before giving up
   // For what is wanted in the groups up to `here_up_to` and whose type may run on the main thread:

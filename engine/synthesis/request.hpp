@@ -44,10 +44,11 @@ struct Completion {
   // the same handle with `late` set follows when it lets go. Both have ok == false.
   bool abandoned = false;
   bool late = false;
+  bool remote = false;  // made by a remote modeler: what it took says nothing of this machine
   std::uint32_t modeler = 0;
   std::string error;  // if not ok: one sentence that names the model and the level
   // CPU time of the modeler's thread for it, with claiming and timing: since the last request, or
-  // since it woke.
+  // since it woke. Of a remote one: that of a core there.
   double seconds = 0;
   double started_s = 0, finished_s = 0;  // by the manager's clock, for traces
   Work work;                             // as requested, for CostModel::observe()

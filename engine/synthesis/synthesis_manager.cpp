@@ -28,7 +28,8 @@ ModelerStats stats_of(const Modeler& modeler) {
           c.cpu_seconds.load(std::memory_order_relaxed),
           c.busy_seconds.load(std::memory_order_relaxed),
           c.locks.load(std::memory_order_relaxed),
-          c.retries.load(std::memory_order_relaxed)};
+          c.retries.load(std::memory_order_relaxed),
+          modeler.is_remote()};
 }
 
 // A virtual clock has one modeler, however many threads execute what it claims: their number must
@@ -44,13 +45,16 @@ unsigned modeler_count_for(unsigned requested) {
 // Delegates, so that an exception in it meets the destructor and not running threads.
 SynthesisManager::SynthesisManager(const models::Registry& registry,
                                    const SynthesisOptions& options)
-    : SynthesisManager(registry, options, modeler_count_for(options.modelers)) {
+    : SynthesisManager(registry, options,
+                       modeler_count_for(options.modelers) +
+                           (options.remote != nullptr ? options.remote->count() : 0)) {
   while (active_.size() < modeler_count_for(options.modelers)) {
     if (auto ok = start_modeler(); !ok) {
       shortage_ = ok.error().message;
       break;
     }
   }
+  if (options.remote != nullptr && !virtual_) start_remote(*options.remote);
 }
 
 SynthesisManager::SynthesisManager(const models::Registry& registry,
@@ -78,6 +82,12 @@ SynthesisManager::~SynthesisManager() {
 }
 
 void SynthesisManager::leave(Worker& worker) {
+  const RemotePlace& place = worker.modeler->place();
+  if (place.modelers != nullptr) {  // it waits for no answer any more
+    place.modelers->cancel(place.number, false);
+    worker.thread.join();
+    return;
+  }
   while (!worker.modeler->exited()) {
     const bool hangs =
         watchdog_seconds_ > 0 && worker.modeler->is_older(workshop_->clock() - watchdog_seconds_);
@@ -91,9 +101,9 @@ void SynthesisManager::leave(Worker& worker) {
 }
 
 // There is room for one in active_.
-core::Result<void> SynthesisManager::start_modeler() {
+core::Result<void> SynthesisManager::start_modeler(RemotePlace place) {
   Worker worker;
-  worker.modeler = std::make_shared<Modeler>(next_number_, workshop_->board.add_reader());
+  worker.modeler = std::make_shared<Modeler>(next_number_, workshop_->board.add_reader(), place);
   auto thread = core::start_thread(
       [workshop = workshop_, modeler = worker.modeler] { modeler->run(*workshop); });
   if (!thread) {
@@ -104,6 +114,27 @@ core::Result<void> SynthesisManager::start_modeler() {
   ++next_number_;
   active_.push_back(std::move(worker));
   return {};
+}
+
+// With fewer threads than places the others are idle.
+void SynthesisManager::start_remote(RemoteModelers& remote) {
+  remote_ = &remote;
+  for (unsigned place = 0; place < remote.count(); ++place) {
+    if (auto ok = start_modeler({&remote, place}); !ok) {
+      core::log_warning(fmt::format("only {} of {} remote modelers are used: {}", place,
+                                    remote.count(), ok.error().message));
+      break;
+    }
+  }
+}
+
+unsigned SynthesisManager::local_count() const {
+  return static_cast<unsigned>(
+      std::ranges::count_if(active_, [](const Worker& w) { return !w.modeler->is_remote(); }));
+}
+
+bool SynthesisManager::may_go(const Request& request) const {
+  return remote_ != nullptr && remote_->takes((*workshop_->registry)[request.key.model], request);
 }
 
 void SynthesisManager::publish(std::vector<Request>&& plan) {
@@ -117,7 +148,13 @@ void SynthesisManager::publish(std::vector<Request>&& plan) {
 void SynthesisManager::publish_to_threads(std::vector<Request>&& plan) {
   close_plan();
   published_ += plan.size();
-  workshop_->board.publish(std::move(plan));
+  std::vector<std::uint32_t> offered;
+  if (remote_count() > 0) {
+    for (std::uint32_t i = 0; i < plan.size(); ++i) {
+      if (may_go(plan[i])) offered.push_back(i);
+    }
+  }
+  workshop_->board.publish(std::move(plan), std::move(offered));
 }
 
 void SynthesisManager::execute_here(const Request& request) {
@@ -138,6 +175,7 @@ std::vector<Request> SynthesisManager::reclaim() {
   }
   close_plan();
   drain();
+  std::ranges::move(std::exchange(returned_, {}), std::back_inserter(unclaimed_));
   return std::exchange(unclaimed_, {});
 }
 
@@ -208,28 +246,72 @@ bool SynthesisManager::execute_jobs(const std::vector<VirtualModelers::Job>& job
 }
 
 void SynthesisManager::run_watchdog() {
-  if (watchdog_seconds_ <= 0) return;
+  take_returned();
   const double now = workshop_->clock();
   for (std::size_t i = 0; i < active_.size();) {
-    Completion c;
-    if (!active_[i].modeler->give_up_if_older(now - watchdog_seconds_, now, c)) {
+    const Worker& worker = active_[i];
+    const bool gone =
+        worker.modeler->is_remote() ? give_up_remote(worker, now) : give_up_local(worker, now);
+    if (!gone) {
       ++i;
       continue;
     }
-    c.error = fmt::format("{} {}", (*workshop_->registry)[c.key.model].name(), c.error);
-    core::log_warning(fmt::format("modeler {} hangs: {}", c.modeler, c.error));
-    hung_.push_back({c.handle, c.key, c.owner, c.modeler, c.started_s});
-    abandoned_.push_back(std::move(c));
-    ++given_up_;
+    const bool replaced = !worker.modeler->is_remote() && replacements_left_ > 0;
     retired_.push_back(std::move(active_[i]));
     active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(i));
-    if (replacements_left_ == 0) continue;
+    if (!replaced) continue;
     if (auto ok = start_modeler(); !ok) {
       core::log_warning(fmt::format("no modeler takes its place: {}", ok.error().message));
     } else {
       --replacements_left_;
     }
   }
+}
+
+bool SynthesisManager::give_up_local(const Worker& worker, double now_s) {
+  Completion c;
+  if (watchdog_seconds_ <= 0 ||
+      !worker.modeler->give_up_if_older(now_s - watchdog_seconds_, now_s, c))
+    return false;
+  c.error = fmt::format("{} {}", (*workshop_->registry)[c.key.model].name(), c.error);
+  core::log_warning(fmt::format("modeler {} hangs: {}", c.modeler, c.error));
+  hung_.push_back({c.handle, c.key, c.owner, c.modeler, c.started_s});
+  abandoned_.push_back(std::move(c));
+  ++given_up_;
+  return true;
+}
+
+// Its request goes back to be made here. True for those that left by themselves, too.
+bool SynthesisManager::give_up_remote(const Worker& worker, double now_s) {
+  Completion c;
+  if (watchdog_seconds_ <= 0 ||
+      !worker.modeler->give_up_if_older(now_s - watchdog_seconds_, now_s, c))
+    return worker.modeler->exited();
+  returned_.push_back(worker.modeler->abandoned());
+  ++reclaimed_;
+  worker.modeler->place().modelers->cancel(worker.modeler->place().number, true);
+  core::log_warning(fmt::format("remote modeler {} does not answer: {} {}, and is made here",
+                                c.modeler, (*workshop_->registry)[c.key.model].name(), c.error));
+  return true;
+}
+
+void SynthesisManager::take_returned() {
+  if (!workshop_->has_returned.load(std::memory_order_acquire)) return;
+  const std::lock_guard lock(workshop_->mutex);
+  workshop_->has_returned.store(false, std::memory_order_relaxed);
+  reclaimed_ += workshop_->returned.size();
+  std::ranges::move(std::exchange(workshop_->returned, {}), std::back_inserter(returned_));
+}
+
+// Publishes once more what remote modelers have not made, for those that are threads here. False if
+// there is nothing.
+bool SynthesisManager::publish_returned() {
+  take_returned();
+  if (returned_.empty()) return false;
+  close_plan();
+  published_ += returned_.size();
+  workshop_->board.publish(std::exchange(returned_, {}));
+  return true;
 }
 
 // Hung modelers still have completions of before; those that came back are joined and counted.
@@ -268,8 +350,8 @@ bool SynthesisManager::wait_all(const std::function<bool()>& go_on) {
 bool SynthesisManager::wait_for_threads(const std::function<bool()>& go_on) {
   workshop_->waiting.store(true, std::memory_order_seq_cst);
   bool all = true;
-  while (outstanding_in_threads() > 0) {
-    if (active_.empty()) {
+  while (outstanding_in_threads() > 0 || publish_returned()) {
+    if (local_count() == 0) {
       all = false;
       break;
     }
@@ -277,7 +359,7 @@ bool SynthesisManager::wait_for_threads(const std::function<bool()>& go_on) {
       // A modeler that finds no more work notifies under the lock, so nothing is missed between
       // looking and sleeping.
       std::unique_lock lock(workshop_->mutex);
-      if (outstanding_in_threads() == 0) break;
+      if (outstanding_in_threads() == 0) continue;
       workshop_->finished.wait_until(lock, std::chrono::system_clock::now() + kWatchdogPeriod);
     }
     run_watchdog();

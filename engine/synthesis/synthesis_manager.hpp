@@ -1,7 +1,9 @@
 // Keeps the modelers busy (paper, section 5.1: Synthesis Manager). The main thread publishes a
 // plan, a sorted array of requests; modelers claim the next one whenever they are free, which
 // balances the load by itself. Cancelling and re-prioritising is replacing the plan. The watchdog
-// gives up requests that never end and puts a new modeler in place of the one that hangs.
+// gives up requests that never end and puts a new modeler in place of the one that hangs. Remote
+// modelers (remote_modelers.hpp) take only what is worth its way; the others take anything, so that
+// nothing waits for a remote one. What a remote one was given up with goes back into the plan.
 //
 // Main thread only. Decides neither what is requested nor in which order (planner.hpp), and does
 // not touch the cache (landing.hpp). Nothing here blocks except wait_all() and the destructor.
@@ -36,6 +38,8 @@ struct SynthesisOptions {
   // they refer to outlives the manager as the registry does. Meshes of these models are synthesised
   // in memory of the modeler's own and copied to their destinations, which may be slow to read.
   std::vector<Annotate> annotate = {};
+  // Further modelers that are not threads here; null: none. Not with a virtual clock.
+  RemoteModelers* remote = nullptr;
 };
 
 // Number of modelers that `requested` (0: default) stands for on this machine.
@@ -48,12 +52,14 @@ struct ModelerStats {
   double cpu_seconds = 0;                // of its thread, in requests
   double busy_seconds = 0;               // by the clock, in requests
   std::uint64_t locks = 0, retries = 0;  // see ModelerCounters
+  bool remote = false;
 };
 
 // Figures of all modelers.
 struct SynthesisStats {
   std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
   double cpu_seconds = 0;  // of all modelers
+  // Reclaimed: also what remote modelers gave back, or were given up with.
   std::uint64_t published = 0, reclaimed = 0, given_up = 0;
   std::vector<ModelerStats> modelers;  // those that hung included
 };
@@ -111,12 +117,18 @@ class SynthesisManager {
 
   // Requests published and neither reclaimed nor finished.
   std::uint64_t outstanding() const;
+  // Those that are threads here, or of the virtual clock.
   unsigned modeler_count() const {
-    return virtual_ && !active_.empty() ? virtual_->count() : static_cast<unsigned>(active_.size());
+    return virtual_ && !active_.empty() ? virtual_->count() : local_count();
   }
+  unsigned remote_count() const { return static_cast<unsigned>(active_.size()) - local_count(); }
+  // Whether a request is offered to remote modelers, too.
+  bool may_go(const Request& request) const;
   // Why not all modelers that were asked for could be started; empty if they were.
   const std::string& shortage() const { return shortage_; }
   const std::vector<HungRequest>& hung() const { return hung_; }
+  // No modeler that was given up uses anything any more, as of the last collect().
+  bool is_at_rest() const { return retired_.empty(); }
   SynthesisStats stats() const;
 
  private:
@@ -132,7 +144,13 @@ class SynthesisManager {
   bool wait_for_threads(const std::function<bool()>& go_on = {});
   std::uint64_t outstanding_in_threads() const;
   bool execute_jobs(const std::vector<VirtualModelers::Job>& jobs);
-  core::Result<void> start_modeler();
+  core::Result<void> start_modeler(RemotePlace place = {});
+  void start_remote(RemoteModelers& remote);
+  unsigned local_count() const;
+  void take_returned();
+  bool publish_returned();
+  bool give_up_local(const Worker& worker, double now_s);
+  bool give_up_remote(const Worker& worker, double now_s);
   void run_watchdog();
   void drain_retired(std::vector<Completion>& out);
   void close_plan();
@@ -141,6 +159,7 @@ class SynthesisManager {
   std::shared_ptr<Workshop> workshop_;
   std::optional<VirtualModelers> virtual_;
   std::function<double()> virtual_clock_;
+  RemoteModelers* remote_ = nullptr;
   Modeler here_{kMainThreadModeler, nullptr};
   double watchdog_seconds_;
   unsigned replacements_left_;
@@ -152,6 +171,7 @@ class SynthesisManager {
   std::vector<Completion> abandoned_;  // not yet collected
   std::vector<Completion> arrived_;    // not yet collected
   std::vector<Request> unclaimed_;     // of closed plans, not yet returned
+  std::vector<Request> returned_;      // remote modelers have not made them
   std::vector<ModelerStats> buried_;   // figures of modelers that are gone
   std::uint64_t published_ = 0, reclaimed_ = 0, given_up_ = 0, buried_finished_ = 0;
 };

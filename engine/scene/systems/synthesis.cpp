@@ -25,8 +25,9 @@ void synthesis_system(const Settings& settings, const Rules& rules, synthesis::M
   if (rules.wait) meshes.wait();
   for (const synthesis::Completion& job : meshes.collect()) {
     ++(job.ok ? counters.completed : counters.failed);
-    counters.synthesis_seconds += job.seconds;
-    if (job.ok) counters.costs.push_back({job.predicted_seconds, job.seconds, job.key.model});
+    if (!job.remote) counters.synthesis_seconds += job.seconds;
+    if (job.ok && !job.remote)
+      counters.costs.push_back({job.predicted_seconds, job.seconds, job.key.model});
     if (trace.log != nullptr && !job.late && !settings.virtual_time) trace_job(job, trace);
   }
 }
