@@ -1,11 +1,9 @@
 // psygen amplify as one of several ranks of a cluster.
 #include <fmt/format.h>
-#include <sched.h>
-
-#include <thread>
 
 #include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
+#include "engine/cli/rank_threads.hpp"
 #include "engine/cluster/job.hpp"
 #include "engine/cluster/one_mind.hpp"
 #include "engine/core/log.hpp"
@@ -13,13 +11,6 @@
 
 namespace psygen::cli {
 namespace {
-
-unsigned allowed_processors() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  if (sched_getaffinity(0, sizeof(set), &set) != 0) return std::thread::hardware_concurrency();
-  return static_cast<unsigned>(CPU_COUNT(&set));
-}
 
 // What every rank says is said once.
 int end_with(const core::Error& error, cluster::Peers& peers) {
@@ -49,11 +40,7 @@ int AmplifyCommand::run_rank(cluster::Peers& peers) {
   if (!region) loaded = tl::unexpected(region.error());
   if (auto ok = cluster::agree(loaded, peers); !ok) return end_with(ok.error(), peers);
   amplify::Options options;
-  options.threads =
-      threads_ > 0
-          ? threads_
-          : amplify::threads_for(cluster::threads_for_rank(
-                allowed_processors(), std::thread::hardware_concurrency(), peers.count_here()));
+  options.threads = threads_ > 0 ? threads_ : amplify::threads_for(threads_for_rank(peers));
   options.stop = &stop_at_interrupt();
   std::optional<telemetry::ProgressBar> bar;
   if (peers.rank() == 0) {

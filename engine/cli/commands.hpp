@@ -17,6 +17,7 @@
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/standard_streams.hpp"
 #include "engine/cluster/peers.hpp"
+#include "engine/cluster/remote_models.hpp"
 #include "engine/exchange/write_document.hpp"
 #include "engine/tiles/tile_tree.hpp"
 
@@ -41,6 +42,16 @@ class FlyCommand {
   void add_flight_options();
   void add_synthesis_options();
   void add_picture_options();
+  void add_cluster_options();
+  std::string objection() const;
+  std::string cluster_objection() const;
+  static bool is_heard();
+  int run_here();
+  int run_rank();
+  int run_rank(cluster::Peers& peers);
+  int run_first_rank(cluster::FlightKey key, const std::vector<unsigned>& threads,
+                     cluster::Peers& peers);
+  void print_cluster() const;
   static int code_of(const core::Error& error);
   core::Result<void> load_what_pictures_take() const;
   int fly();
@@ -54,6 +65,9 @@ class FlyCommand {
   std::string requests_;  // file; empty: they are not recorded
   RequestRecorder recorder_;
   bool inspect_ = false, json_ = false;
+  bool in_cluster_ = false;
+  cluster::RemoteOptions remote_options_;
+  std::unique_ptr<cluster::RemoteModels> remote_;  // of the first rank
 };
 
 // `psygen picture`.

@@ -26,6 +26,7 @@ FlyCommand::FlyCommand(CLI::App& cli)
   add_flight_options();
   add_synthesis_options();
   add_picture_options();
+  add_cluster_options();
   command_->add_option("--record-requests", requests_,
                        "File that gets every request of the flight; starts with an empty cache");
   command_->add_flag(
@@ -116,16 +117,48 @@ void FlyCommand::add_picture_options() {
   c.add_flag("!--no-prefill", options_.session.prefill, "Start with an empty cache");
 }
 
+void FlyCommand::add_cluster_options() {
+  auto* cluster = command_->add_flag(
+      "--cluster", in_cluster_,
+      "Under mpirun: the first rank flies, the others make meshes that take longer than their way");
+  command_
+      ->add_option_function<double>(
+          "--send-above", [this](double ms) { remote_options_.send_above_s = ms * 1e-3; },
+          "What is predicted to take more milliseconds may go to other ranks; default: more than "
+          "its way there and back, which is measured")
+      ->check(number_between(0, 1e6))
+      ->needs(cluster);
+}
+
+// What the options do not allow together, or not here; empty if nothing.
+std::string FlyCommand::objection() const {
+  const bool is_virtual = options_.session.scene.virtual_time;
+  if (is_virtual && !options_.session.headless)
+    return "--clock virtual needs --headless: a window draws when it can";
+  if (is_virtual && in_cluster_)
+    return "--cluster needs --clock wall: what other ranks take is no price";
+  return cluster_objection();
+}
+
 int FlyCommand::run() {
+  if (const std::string reason = objection(); !reason.empty()) {
+    if (!is_heard()) return kOk;  // mpirun ends all at the first that fails
+    core::log_error(reason);
+    return kUsage;
+  }
   if (auto ok = find_world(options_.session).and_then([this] { return find_path(options_); });
       !ok) {
     core::log_error(ok.error().message);
     return exit_code_of(ok.error());
   }
-  if (options_.session.scene.virtual_time && !options_.session.headless) {
-    core::log_error("--clock virtual needs --headless: a window draws when it can");
-    return kUsage;
-  }
+  const int code = in_cluster_ ? run_rank() : run_here();
+  // Its memory must not be torn down.
+  if (flight_ && flight_->session().has_hung_modelers()) std::_Exit(code);
+  flight_.reset();
+  return code;
+}
+
+int FlyCommand::run_here() {
   options_.session.stop = &stop_at_interrupt();
   if (inspect_) options_.session.plugins.push_back(inspect::plugin());
   app::Plugin reporter;
@@ -149,11 +182,7 @@ int FlyCommand::run() {
                     .and_then([this] { return app::Flight::create(options_); });
   if (!flight) return code_of(flight.error());
   flight_ = std::move(*flight);
-  const int code = fly();
-  // Its memory must not be torn down.
-  if (flight_->session().has_hung_modelers()) std::_Exit(code);
-  flight_.reset();
-  return code;
+  return fly();
 }
 
 // Before the driver and the modelers take the threads that are left.
@@ -184,6 +213,7 @@ int FlyCommand::fly() {
 
 int FlyCommand::tell(const app::FlightReport& report) const {
   int code = print(json_ ? telemetry::to_json(report.summary) : telemetry::to_text(report.summary));
+  if (remote_) print_cluster();
   for (const auto& file : report.files)
     core::log_info(fmt::format("wrote {}", file.string()));
   const auto fail = [&code](const std::string& sentence) {

@@ -5,8 +5,12 @@
 
 #include <atomic>
 #include <cstddef>
+#include <list>
 #include <mutex>
+#include <thread>
+#include <utility>
 
+#include "engine/cluster/nap.hpp"
 #include "engine/cluster/peers.hpp"
 
 namespace psygen::cluster {
@@ -83,6 +87,34 @@ class MpiPeers final : public Peers {
     MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &arrived, MPI_STATUS_IGNORE);
   }
 
+  // Small ones leave at once. For a large one the other rank must look; others may call meanwhile.
+  void send(unsigned rank, Bytes bytes) override {
+    messages_.fetch_add(1, std::memory_order_relaxed);
+    MPI_Request request = MPI_REQUEST_NULL;
+    int is_sent = 0;
+    for (Nap nap; is_sent == 0; nap.sleep()) {
+      const std::lock_guard lock(mutex_);
+      if (request == MPI_REQUEST_NULL)
+        MPI_Isend(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, static_cast<int>(rank),
+                  kParcel, MPI_COMM_WORLD, &request);
+      MPI_Test(&request, &is_sent, MPI_STATUS_IGNORE);
+      if (is_sent != 0) return;
+    }
+  }
+
+  std::optional<Parcel> receive() override {
+    for (int look = 0; look < kLooks; ++look) {
+      {
+        const std::lock_guard lock(mutex_);
+        begin_to_receive();
+        if (auto parcel = take_whole()) return parcel;
+        if (coming_.empty()) break;
+      }
+      std::this_thread::yield();
+    }
+    return std::nullopt;
+  }
+
   std::uint64_t messages() const override { return messages_.load(std::memory_order_relaxed); }
 
   void finish() override {
@@ -94,6 +126,43 @@ class MpiPeers final : public Peers {
   void abort() override { MPI_Abort(MPI_COMM_WORLD, 1); }
 
  private:
+  static constexpr int kParcel = 1;   // tag
+  static constexpr int kLooks = 100;  // some 100 µs: what comes through memory is here by then
+
+  // A parcel that has begun to come.
+  struct Coming {
+    Parcel parcel;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+
+  void begin_to_receive() {
+    int is_there = 0;
+    MPI_Message message = MPI_MESSAGE_NULL;
+    MPI_Status status;
+    MPI_Improbe(MPI_ANY_SOURCE, kParcel, MPI_COMM_WORLD, &is_there, &message, &status);
+    if (is_there == 0) return;
+    int bytes = 0;
+    MPI_Get_count(&status, MPI_BYTE, &bytes);
+    Coming& coming = coming_.emplace_back();
+    coming.parcel.from = static_cast<unsigned>(status.MPI_SOURCE);
+    coming.parcel.bytes.resize(static_cast<std::size_t>(bytes));
+    MPI_Imrecv(coming.parcel.bytes.data(), bytes, MPI_BYTE, &message, &coming.request);
+  }
+
+  // The first one that is whole. A rank that stops in the middle of one holds up no other rank.
+  std::optional<Parcel> take_whole() {
+    for (auto coming = coming_.begin(); coming != coming_.end(); ++coming) {
+      int is_whole = 0;
+      MPI_Test(&coming->request, &is_whole, MPI_STATUS_IGNORE);
+      if (is_whole == 0) continue;
+      Parcel parcel = std::move(coming->parcel);
+      coming_.erase(coming);
+      return parcel;
+    }
+    return std::nullopt;
+  }
+
+  std::list<Coming> coming_;
   int rank_ = 0, count_ = 1, count_here_ = 1;
   MPI_Win window_ = MPI_WIN_NULL;
   std::mutex mutex_;  // MPI_THREAD_SERIALIZED

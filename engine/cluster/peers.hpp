@@ -4,14 +4,24 @@
 // order everywhere.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/core/error.hpp"
 
 namespace psygen::cluster {
+
+using Bytes = std::vector<std::byte>;
+
+// What another rank has sent to this one.
+struct Parcel {
+  unsigned from = 0;
+  Bytes bytes;
+};
 
 class Peers {
  public:
@@ -29,6 +39,12 @@ class Peers {
   // Lets claims of others get through where the network needs this process for it. Rank 0 calls it
   // every millisecond, from its main thread.
   virtual void progress() = 0;
+  // Sends bytes to another rank; returns once they are on their way. That may take until it calls
+  // receive(). Any thread.
+  virtual void send(unsigned rank, Bytes bytes) = 0;
+  // What has come from any rank, in the order in which each of them sent it; nothing where nothing
+  // has. Waits only for the rest of what has begun to come, and not for long. One thread.
+  virtual std::optional<Parcel> receive() = 0;
   // Calls of this rank that sent something. Any thread.
   virtual std::uint64_t messages() const = 0;
   // All ranks: the end of the job. Nothing may be called after it. Without it the others are told

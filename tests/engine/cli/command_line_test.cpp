@@ -50,6 +50,8 @@ TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
                                 "fly --paradigm eager",
                                 "fly --policy random",
                                 "fly --hour 25",
+                                "fly --cluster",
+                                "fly --send-above 5",
                                 "picture",
                                 "picture --out a.jpg",
                                 "picture --out a.png --at 1",

@@ -16,12 +16,33 @@ constexpr const char* kMpi =
     "OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_btl=self,vader "
     "OMPI_MCA_odls_base_sigkill_timeout=0 mpirun";
 
+constexpr const char* kFly =
+    "fly --headless --size 64x36 --world rocks.toml --view-distance 150 --frames 1 --images 1 "
+    "--modelers 1 --lod off --json ";
+
+// Of a millisecond each.
+constexpr const char* kRocks = R"(format = 1
+
+[world]
+name = "rocks"
+seed = 4
+blocks = [16, 16]
+
+[[scatter]]
+model = "rock"
+count = 10
+subdivisions = 6
+)";
+
 class Mpirun : public AmplifyFixture {
  protected:
-  // `ranks`: the arguments of mpirun, with PSYGEN for the command.
+  // `ranks`: the arguments of mpirun, with PSYGEN for the command `psygen amplify`, and FLY for
+  // `psygen fly` of a short flight.
   Outcome run(std::string ranks) const {
     for (std::size_t at; (at = ranks.find("PSYGEN ")) != std::string::npos;)
       ranks.replace(at, 7, PSYGEN_EXECUTABLE " amplify ");
+    for (std::size_t at; (at = ranks.find("FLY ")) != std::string::npos;)
+      ranks.replace(at, 4, std::string(PSYGEN_EXECUTABLE " ") + kFly);
     const auto out = folder_ / "stdout", err = folder_ / "stderr";
     const std::string command =
         fmt::format("cd {} && {} {} >{} 2>{} </dev/null", folder_.path().string(), kMpi, ranks,
@@ -108,6 +129,40 @@ TEST_F(Mpirun, AFullDiskEndsTheJobWithTheFileAndTheReason) {
   EXPECT_NE(full.code, 0);
   EXPECT_TRUE(mentions(full.err, "psygen: error: rank 1")) << full.err;
   EXPECT_TRUE(mentions(full.err, "No space left on device")) << full.err;
+}
+
+TEST_F(Mpirun, AFlightHasTheSamePicturesWhicheverRankMakesItsMeshes) {
+  std::ofstream(folder_ / "rocks.toml") << kRocks;
+  const auto images_in = [](const Outcome& flight) -> std::string {
+    if (flight.code != 0) return flight.err;
+    return nlohmann::json::parse(flight.out)["hash"]["images"];
+  };
+  const Outcome alone = run_psygen(kFly + std::string("--out alone"), "", folder_.path());
+  const Outcome one = run("-n 1 FLY --cluster --send-above 0 --out one");
+  EXPECT_EQ(images_in(one), images_in(alone));
+  EXPECT_TRUE(mentions(one.err, "made there         0 meshes")) << one.err;
+  // Others need no device.
+  const Outcome three = run(
+      "-n 1 FLY --cluster --send-above 0 --out three : -n 2 -x VK_ICD_FILENAMES=/nonexistent.json "
+      "FLY --cluster --send-above 0 --out three");
+  EXPECT_EQ(images_in(three), images_in(alone));
+  EXPECT_TRUE(mentions(three.err, "other ranks        2\n")) << three.err;
+  EXPECT_TRUE(mentions(three.err, "made there")) << three.err;
+  EXPECT_FALSE(mentions(three.err, "made there         0 meshes")) << three.err;
+}
+
+TEST_F(Mpirun, AFlightThatCannotBeSharedSaysWhyOnce) {
+  std::ofstream(folder_ / "rocks.toml") << kRocks;
+  const Outcome each = run("-n 3 FLY ");
+  EXPECT_NE(each.code, 0);
+  const std::string sentence = "each of the 3 ranks of mpirun would fly by itself";
+  EXPECT_TRUE(mentions(each.err, sentence)) << each.err;
+  EXPECT_EQ(each.err.find(sentence), each.err.rfind(sentence));
+  std::ofstream(folder_ / "other.toml") << kRocks << "radius_m = [1, 2]\n";
+  const Outcome differ = run("-n 1 FLY --cluster : -n 1 " PSYGEN_EXECUTABLE
+                             " fly --cluster --headless --world other.toml");
+  EXPECT_NE(differ.code, 0);
+  EXPECT_TRUE(mentions(differ.err, "it has another version of the world rocks")) << differ.err;
 }
 
 // The library of MPI that the loader finds first is none.

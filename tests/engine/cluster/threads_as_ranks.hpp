@@ -3,9 +3,13 @@
 
 #include <atomic>
 #include <barrier>
+#include <deque>
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "engine/cluster/peers.hpp"
@@ -15,7 +19,10 @@ namespace psygen::cluster {
 class ThreadsAsRanks {
  public:
   explicit ThreadsAsRanks(unsigned count)
-      : texts_(count), barrier_(static_cast<std::ptrdiff_t>(count)) {}
+      : texts_(count), boxes_(count), barrier_(static_cast<std::ptrdiff_t>(count)) {}
+
+  // Called with what a rank sends before it leaves; may change it. Of several threads.
+  std::function<void(unsigned from, Bytes&)> on_send;
 
   // Calls `rank` once for each rank, at the same time.
   void run(const std::function<void(Peers&)>& rank) {
@@ -48,6 +55,21 @@ class ThreadsAsRanks {
       return all_.claimed_.fetch_add(1);
     }
     void progress() override {}
+    void send(unsigned rank, Bytes bytes) override {
+      ++messages_;
+      if (all_.on_send) all_.on_send(rank_, bytes);
+      Box& box = all_.boxes_[rank];
+      const std::lock_guard lock(box.mutex);
+      box.parcels.push_back({rank_, std::move(bytes)});
+    }
+    std::optional<Parcel> receive() override {
+      Box& box = all_.boxes_[rank_];
+      const std::lock_guard lock(box.mutex);
+      if (box.parcels.empty()) return std::nullopt;
+      Parcel parcel = std::move(box.parcels.front());
+      box.parcels.pop_front();
+      return parcel;
+    }
     std::uint64_t messages() const override { return messages_; }
     void finish() override {}
     void abort() override {}
@@ -58,7 +80,13 @@ class ThreadsAsRanks {
     std::atomic<std::uint64_t> messages_{0};
   };
 
+  struct Box {
+    std::mutex mutex;
+    std::deque<Parcel> parcels;
+  };
+
   std::vector<std::string> texts_;
+  std::vector<Box> boxes_;
   std::barrier<> barrier_;
   std::atomic<std::uint64_t> claimed_{0};
 };

@@ -1,0 +1,118 @@
+// psygen fly as one of several ranks of a cluster: the first flies, the others make meshes for it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "engine/cli/commands.hpp"
+#include "engine/cli/rank_threads.hpp"
+#include "engine/cluster/one_mind.hpp"
+#include "engine/cluster/serve_models.hpp"
+#include "engine/core/log.hpp"
+
+namespace psygen::cli {
+namespace {
+
+// Started as a rank by mpirun, or by srun --mpi=pmix and the like.
+bool was_started_as_rank() {
+  return cluster::is_rank() || std::getenv("PMIX_RANK") != nullptr;
+}
+
+}  // namespace
+
+std::string FlyCommand::cluster_objection() const {
+  const char* const ranks = std::getenv("OMPI_COMM_WORLD_SIZE");
+  if (!in_cluster_ && ranks != nullptr && std::atoi(ranks) > 1)
+    return fmt::format(
+        "each of the {} ranks of mpirun would fly by itself; with --cluster the first flies, and "
+        "the others make meshes for it",
+        ranks);
+  if (in_cluster_ && !was_started_as_rank())
+    return "--cluster needs other ranks: mpirun -n 4 psygen fly --cluster";
+  return {};
+}
+
+// What all ranks would say is said by the first.
+bool FlyCommand::is_heard() {
+  const char* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+  return rank == nullptr || std::atoi(rank) == 0;
+}
+
+int FlyCommand::run_rank() {
+  const auto peers = cluster::join_peers();
+  if (!peers) {
+    core::log_error(peers.error().message);
+    return exit_code_of(peers.error());
+  }
+  return run_rank(**peers);
+}
+
+int FlyCommand::run_rank(cluster::Peers& peers) {
+  models::Registry registry = models::make_standard_registry();
+  const auto key = load_world(options_.session.world_file.string(), registry)
+                       .map([&](const world::World& world) {
+                         return cluster::flight_key(world, registry, PSYGEN_VERSION);
+                       });
+  const std::uint32_t asked = options_.session.scene.modelers;
+  const unsigned threads = asked > 0 ? asked : threads_for_rank(peers);
+  const auto all = cluster::meet(key, threads, peers);
+  if (!all) {
+    if (peers.rank() == 0) core::log_error(all.error().message);
+    peers.finish();
+    return exit_code_of(all.error());
+  }
+  if (peers.rank() == 0) return run_first_rank(*key, *all, peers);
+  const auto served = cluster::serve_models(registry, threads, peers);
+  if (!served) {
+    core::log_error(fmt::format("rank {}: {}", peers.rank(), served.error().message));
+    peers.abort();
+    return kFailed;
+  }
+  peers.finish();
+  if (served->hangs) std::_Exit(kOk);
+  return kOk;
+}
+
+// The flight leaves a processor to its frames. It ends before the others are told so.
+int FlyCommand::run_first_rank(cluster::FlightKey key, const std::vector<unsigned>& threads,
+                               cluster::Peers& peers) {
+  std::uint32_t& modelers = options_.session.scene.modelers;
+  if (modelers == 0) modelers = std::max(threads_for_rank(peers), 2U) - 1;
+  auto remote = cluster::RemoteModels::start(std::move(key), threads, peers, remote_options_);
+  if (!remote) {
+    core::log_error(remote.error().message);
+    peers.abort();
+    return kFailed;
+  }
+  remote_ = std::move(*remote);
+  options_.session.remote = remote_.get();
+  const int code = run_here();
+  if (flight_ && !flight_->session().has_hung_modelers()) flight_.reset();
+  if (remote_->end()) {
+    peers.finish();
+  } else {
+    peers.abort();
+  }
+  return code;
+}
+
+// Below the table of the flight's own figures; beside JSON as messages.
+void FlyCommand::print_cluster() const {
+  const cluster::RemoteFigures figures = remote_->figures();
+  std::string_view title = "cluster";
+  const auto row = [&](std::string_view label, const std::string& value) {
+    const std::string line = fmt::format("{:<10} {:<18} {}", title, label, value);
+    title = "";
+    json_ ? core::log_info(line) : static_cast<void>(print(line + "\n"));
+  };
+  row("other ranks", figures.lost == 0 ? fmt::format("{}", figures.ranks)
+                                       : fmt::format("{}, of which {} were given up", figures.ranks,
+                                                     figures.lost));
+  row("made there", fmt::format("{} meshes, {:.1f} MB", figures.meshes,
+                                static_cast<double>(figures.bytes) * 1e-6));
+  if (figures.given_back > 0) row("and in vain", fmt::format("{} requests", figures.given_back));
+  row("a mesh's way",
+      fmt::format("{:.0f} µs there and back with 100 KB", figures.way.seconds(1e5) * 1e6));
+}
+
+}  // namespace psygen::cli

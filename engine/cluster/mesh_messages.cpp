@@ -1,0 +1,193 @@
+#include "engine/cluster/mesh_messages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include "engine/core/bytes.hpp"
+#include "engine/core/hash.hpp"
+#include "engine/core/out_of_memory.hpp"
+
+namespace psygen::cluster {
+namespace {
+
+using synthesis::RemoteMesh;
+
+constexpr std::size_t kHashBytes = sizeof(std::uint64_t);
+// Of an answer, before the mesh: a multiple of what vertices are aligned to. Kind, answer, 6
+// unused, ticket, seconds, box, size of the mesh, 8 unused.
+constexpr std::size_t kAnswerHeader = 64;
+
+Bytes begin(MessageKind kind) {
+  Bytes bytes;
+  core::put(bytes, kind);
+  return bytes;
+}
+
+Bytes sealed(Bytes bytes) {
+  core::put(bytes, core::hash_bytes(bytes));
+  return bytes;
+}
+
+void write_answer_header(std::span<std::byte> to, std::uint64_t ticket, RemoteMesh::Answer answer,
+                         double seconds, const core::Bounds& tight, std::uint64_t mesh_bytes) {
+  Bytes header = begin(MessageKind::kAnswer);
+  core::put(header, answer);
+  header.resize(8);
+  core::put(header, ticket);
+  core::put(header, seconds);
+  for (const glm::vec3& corner : {tight.min, tight.max})
+    for (int i = 0; i < 3; ++i)
+      core::put(header, corner[i]);
+  core::put(header, mesh_bytes);
+  header.resize(kAnswerHeader);
+  std::ranges::copy(header, to.begin());
+}
+
+bool read_answer(core::ByteReader& in, Message& message, Bytes&& bytes) {
+  RemoteMesh& mesh = message.mesh;
+  mesh.answer = in.get<RemoteMesh::Answer>();
+  in.get_text(6);
+  message.ticket = in.get<std::uint64_t>();
+  mesh.seconds = in.get<double>();
+  for (glm::vec3* corner : {&mesh.tight.min, &mesh.tight.max})
+    for (int i = 0; i < 3; ++i)
+      (*corner)[i] = in.get<float>();
+  const auto mesh_bytes = in.get<std::uint64_t>();
+  in.get_text(8);
+  if (in.failed() || mesh.answer > RemoteMesh::Answer::kNone || !std::isfinite(mesh.seconds))
+    return false;
+  if (mesh.answer == RemoteMesh::Answer::kMade) {
+    if (mesh_bytes != in.left()) return false;
+    mesh.storage = std::move(bytes);
+    mesh.bytes = std::span(mesh.storage).subspan(kAnswerHeader, mesh_bytes);
+  } else {
+    mesh.error = in.get_text(in.left());
+  }
+  return true;
+}
+
+bool read_make(core::ByteReader& in, MakeMessage& make) {
+  make.ticket = in.get<std::uint64_t>();
+  make.parameters_hash = in.get<std::uint64_t>();
+  for (std::size_t i = 0; i < models::Parameters::kMaxCount; ++i)
+    make.parameters.set_integer(i, in.get<std::int64_t>());
+  make.level = in.get<std::uint16_t>();
+  make.size.vertex_count = in.get<std::uint32_t>();
+  make.size.index_count = in.get<std::uint32_t>();
+  make.size.shared_indices = in.get<std::uint32_t>();
+  make.size.layout = in.get<core::VertexLayout>();
+  make.type = in.get_text(in.left());
+  return !in.failed() && make.size.layout <= core::VertexLayout::kObject;
+}
+
+}  // namespace
+
+Bytes ping_message(std::uint64_t ticket, std::uint64_t wanted_bytes) {
+  Bytes bytes = begin(MessageKind::kPing);
+  core::put(bytes, ticket);
+  core::put(bytes, wanted_bytes);
+  return sealed(std::move(bytes));
+}
+
+Bytes pong_message(std::uint64_t ticket, std::uint64_t count) {
+  Bytes bytes = begin(MessageKind::kPong);
+  core::put(bytes, ticket);
+  bytes.resize(bytes.size() + count);
+  return sealed(std::move(bytes));
+}
+
+Bytes make_message(const MakeMessage& request) {
+  Bytes bytes = begin(MessageKind::kMake);
+  core::put(bytes, request.ticket);
+  core::put(bytes, request.parameters_hash);
+  for (std::size_t i = 0; i < models::Parameters::kMaxCount; ++i)
+    core::put(bytes, request.parameters.integer(i));
+  core::put(bytes, request.level);
+  core::put(bytes, request.size.vertex_count);
+  core::put(bytes, request.size.index_count);
+  core::put(bytes, request.size.shared_indices);
+  core::put(bytes, request.size.layout);
+  core::put_all(bytes, std::span<const char>(request.type));
+  return sealed(std::move(bytes));
+}
+
+Bytes plain_message(MessageKind kind) {
+  return sealed(begin(kind));
+}
+
+core::Result<AnswerWriter> AnswerWriter::make(std::uint64_t ticket, const models::MeshSize& size) {
+  AnswerWriter writer;
+  writer.vertex_bytes_ = std::size_t{size.vertex_count} * core::vertex_stride_bytes(size.layout);
+  writer.index_bytes_ = size.shared_indices == 0 ? std::size_t{size.index_count} * 2 : 0;
+  const std::size_t mesh_bytes = writer.vertex_bytes_ + writer.index_bytes_;
+  try {
+    writer.bytes_.reserve(kAnswerHeader + mesh_bytes + kHashBytes);
+    writer.bytes_.resize(kAnswerHeader + mesh_bytes);
+  } catch (const std::bad_alloc&) {
+    return core::fail(core::ErrorCode::kOutOfMemory,
+                      core::out_of_memory("a mesh for another rank"));
+  }
+  write_answer_header(writer.bytes_, ticket, RemoteMesh::Answer::kMade, 0, {}, mesh_bytes);
+  return writer;
+}
+
+models::MeshView AnswerWriter::mesh() {
+  std::byte* const begin = bytes_.data() + kAnswerHeader;
+  return {{begin, vertex_bytes_},
+          {reinterpret_cast<std::uint16_t*>(begin + vertex_bytes_), index_bytes_ / 2}};
+}
+
+Bytes AnswerWriter::finish(const core::Bounds& tight, double seconds) && {
+  core::ByteReader header{std::span<const std::byte>(bytes_).subspan(8)};
+  const auto ticket = header.get<std::uint64_t>();
+  write_answer_header(bytes_, ticket, RemoteMesh::Answer::kMade, seconds, tight,
+                      vertex_bytes_ + index_bytes_);
+  return sealed(std::move(bytes_));
+}
+
+Bytes failed_message(std::uint64_t ticket, RemoteMesh::Answer answer, const std::string& error) {
+  Bytes bytes(kAnswerHeader);
+  write_answer_header(bytes, ticket, answer, 0, {}, 0);
+  core::put_all(bytes, std::span<const char>(error));
+  return sealed(std::move(bytes));
+}
+
+std::optional<Message> read_message(Bytes&& bytes) {
+  if (bytes.size() < 1 + kHashBytes) return std::nullopt;
+  const std::span all(bytes);
+  const auto body = all.first(bytes.size() - kHashBytes);
+  core::ByteReader seal(std::span<const std::byte>(all.last(kHashBytes)));
+  if (seal.get<std::uint64_t>() != core::hash_bytes(body)) return std::nullopt;
+  core::ByteReader in{std::span<const std::byte>(body)};
+  Message message;
+  message.kind = in.get<MessageKind>();
+  bool whole = true;
+  switch (message.kind) {
+    case MessageKind::kPing:
+      message.ticket = in.get<std::uint64_t>();
+      message.wanted_bytes = in.get<std::uint64_t>();
+      whole = !in.failed();
+      break;
+    case MessageKind::kPong:
+      message.ticket = in.get<std::uint64_t>();
+      whole = !in.failed();
+      break;
+    case MessageKind::kMake:
+      whole = read_make(in, message.make);
+      break;
+    case MessageKind::kAnswer:
+      whole = read_answer(in, message, std::move(bytes));
+      break;
+    case MessageKind::kEnd:
+    case MessageKind::kBye:
+      break;
+    default:
+      whole = false;
+  }
+  if (!whole) return std::nullopt;
+  return message;
+}
+
+}  // namespace psygen::cluster

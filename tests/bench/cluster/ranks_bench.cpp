@@ -1,0 +1,139 @@
+// How long it takes until all meshes around a camera are there, of which some belong to a type that
+// takes long, on the ranks of mpirun: rank 0 ticks a scene without drawing, 60 times a second, with
+// one modeler; the others make meshes for it, with one thread each. Without mpirun it is alone. At
+// rank 0 the type computes. At the others it computes, or waits as long, for machines with fewer
+// processors than ranks: what remains is what sharing costs.
+//
+//   mpirun -n RANKS psygen_bench_ranks [compute|wait [MS]]
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "engine/cluster/meeting.hpp"
+#include "engine/cluster/remote_models.hpp"
+#include "engine/cluster/serve_models.hpp"
+#include "engine/core/clock.hpp"
+#include "engine/scene/readiness.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/world/files/world_file.hpp"
+#include "tests/engine/synthesis/fake_models.hpp"
+
+namespace psygen {
+namespace {
+
+constexpr double kFrame_s = 1.0 / 60, kView_m = 160;
+
+constexpr const char* kWorld = R"(format = 1
+
+[world]
+name = "slow"
+seed = 3
+blocks = [64, 64]
+
+[[scatter]]
+model = "slow"
+count = 6
+vertices = 4500
+
+[[scatter]]
+model = "tree"
+count = 20
+)";
+
+// Of 100 KB a mesh, which takes a given time.
+class SlowType final : public synthesis::testing::FakeModel {
+ public:
+  SlowType(double seconds, bool waits) : FakeModel("slow", 1), seconds_(seconds), waits_(waits) {}
+  bool is_seen_from_far() const override { return false; }
+  core::Bounds synthesize(const models::Parameters& p, int level,
+                          const models::MeshView& out) const override {
+    if (waits_) std::this_thread::sleep_for(std::chrono::duration<double>(seconds_));
+    const double begin_s = core::thread_cpu_seconds();
+    while (!waits_ && core::thread_cpu_seconds() - begin_s < seconds_) {
+    }
+    return FakeModel::synthesize(p, level, out);
+  }
+
+ private:
+  const double seconds_;
+  const bool waits_;
+};
+
+core::CameraPose middle() {
+  core::CameraPose pose;
+  pose.position = {{32, 32}, {31.5, 60, 31.5}};
+  return pose;
+}
+
+// Ticks until everything around the camera is there. Seconds, and how many meshes that are.
+struct Filled {
+  double seconds = 0;
+  std::uint32_t meshes = 0;
+};
+Filled fill(scene::Scene& scene) {
+  scene::State& state = scene.state();
+  const double begin_s = core::monotonic_seconds();
+  for (double next_s = begin_s;; next_s += kFrame_s) {
+    state.input.pose = middle();
+    scene::tick(state);
+    state.clock.now_s += kFrame_s;
+    const auto there = scene::readiness(state, middle().position, kView_m).value();
+    if (there.ready()) return {core::monotonic_seconds() - begin_s, there.meshes};
+    std::this_thread::sleep_for(
+        std::chrono::duration<double>(next_s + kFrame_s - core::monotonic_seconds()));
+  }
+}
+
+int fly(world::World world, models::Registry registry, cluster::RemoteModels* remote) {
+  scene::Settings settings;
+  settings.modelers = 1;
+  settings.view_distance_m = kView_m;
+  auto scene = scene::Scene::create(std::move(world), std::move(registry), settings, nullptr,
+                                    nullptr, {}, remote);
+  if (!scene) {
+    fmt::print(stderr, "{}\n", scene.error().message);
+    return EXIT_FAILURE;
+  }
+  const Filled filled = fill(**scene);
+  scene->reset();
+  const cluster::RemoteFigures figures = remote ? remote->figures() : cluster::RemoteFigures{};
+  fmt::print(
+      "{} ranks: {} meshes are there after {:.2f} s; other ranks made {} ({:.1f} MB); there and "
+      "back {:.0f} µs, with 100 KB {:.0f} µs\n",
+      figures.ranks + 1, filled.meshes, filled.seconds, figures.meshes,
+      static_cast<double>(figures.bytes) * 1e-6, figures.way.latency_s * 1e6,
+      figures.way.seconds(1e5) * 1e6);
+  return EXIT_SUCCESS;
+}
+
+int run(bool waits, double seconds) {
+  const auto peers = cluster::is_rank() ? cluster::join_peers().value() : nullptr;
+  models::Registry registry = models::make_standard_registry();
+  const bool is_first = !peers || peers->rank() == 0;
+  (void)registry.add(std::make_unique<SlowType>(seconds, waits && !is_first));
+  world::World world = world::parse_world(kWorld, "slow.toml", registry).value();
+  if (!peers) return fly(std::move(world), std::move(registry), nullptr);
+  const cluster::FlightKey key = cluster::flight_key(world, registry, "bench");
+  const auto threads = cluster::meet(key, 1, *peers).value();
+  int code = EXIT_SUCCESS;
+  if (is_first) {
+    const auto remote = cluster::RemoteModels::start(key, threads, *peers).value();
+    code = fly(std::move(world), std::move(registry), remote.get());
+    if (!remote->end()) peers->abort();
+  } else {
+    (void)cluster::serve_models(registry, 1, *peers);
+  }
+  peers->finish();
+  return code;
+}
+
+}  // namespace
+}  // namespace psygen
+
+int main(int argc, char** argv) {
+  const bool waits = argc > 1 && std::string(argv[1]) == "wait";
+  return psygen::run(waits, argc > 2 ? std::atof(argv[2]) * 1e-3 : 20e-3);
+}
