@@ -150,6 +150,42 @@ void request(CacheTick& tick, const NodeView& node, const MeshEntity& row, const
   meshes.want(want);
 }
 
+// A single model that has become large enough to be drawn is lacked from this many times that size
+// on. Until then it is asked for, and its node need not give way to a coarser one.
+constexpr float kLackedFrom = 1.25F;
+
+bool is_early(const ChoiceRules& rules, const NodeView& node, const Demand& demand,
+              float size_pixels) {
+  return node.level == 0 && demand.drawn_level == kNoLevel && !rules.settle &&
+         size_pixels < kLackedFrom * rules.min_size_pixels;
+}
+
+// Asks for a mesh that nothing lacks yet. The model counts as too small until it is there.
+void ask_early(CacheTick& tick, NodeView node, const MeshEntity& row, bool in_view,
+               float distance_m, synthesis::MeshSupply& meshes, Found& found) {
+  node.covered = true;
+  const MeshChoice choice =
+      choose_mesh(tick.choice, node, row.detail, row.demand, in_view, /*is_ground=*/false);
+  if (choice.request != kNoLevel) request(tick, node, row, choice, distance_m, meshes, found);
+  row.demand.wanted_level = kNoLevel;
+}
+
+// Finds the level that the mesh should have, and how large a model is on screen: ground as large as
+// can be.
+float want_level(const CacheTick& tick, const NodeView& node, const MeshEntity& row, bool is_ground,
+                 float distance_m) {
+  Demand& demand = row.demand;
+  if (is_ground) {
+    demand.wanted_level = ground_level(node, row.detail, demand.drawn_level);
+    return std::numeric_limits<float>::infinity();
+  }
+  const float pixels =
+      size_pixels(row.placed, row.detail, distance_m, tick.choice.pixels_per_radian, tick.near_m);
+  demand.wanted_level =
+      model_level(tick.choice, node, row.detail, pixels, distance_m, demand.drawn_level);
+  return pixels;
+}
+
 // The ground of a node, or a model on it. False if there should be a mesh to draw and is none.
 bool consider(CacheTick& tick, const View& view, const NodeView& node, const MeshEntity& row,
               bool is_ground, synthesis::MeshSupply& meshes, Found& found, Counters& counters) {
@@ -161,13 +197,10 @@ bool consider(CacheTick& tick, const View& view, const NodeView& node, const Mes
       near ? node.visibility.distance_m : distance_to(placed, foot, tick.near_m);
   const bool in_view =
       node.in_view && (near || mesh_can_be_seen(box_of(row, tick.shadows), foot, view));
-  if (is_ground) {
-    demand.wanted_level = ground_level(node, row.detail, demand.drawn_level);
-  } else {
-    const float pixels =
-        size_pixels(placed, row.detail, distance_m, tick.choice.pixels_per_radian, tick.near_m);
-    demand.wanted_level =
-        model_level(tick.choice, node, row.detail, pixels, distance_m, demand.drawn_level);
+  const float pixels = want_level(tick, node, row, is_ground, distance_m);
+  if (demand.wanted_level != kNoLevel && is_early(tick.choice, node, demand, pixels)) {
+    ask_early(tick, node, row, in_view, distance_m, meshes, found);
+    return true;
   }
   if (in_view) {
     note_in_view(tick, node.leaf, demand, counters);

@@ -305,5 +305,48 @@ TEST(Steady, TooLittleMemoryMakesNoHolesInTheGround) {
   expect_consistent(*scene);
 }
 
+// Nodes that were drawn in the last tick, and of which an ancestor is drawn now.
+std::size_t gave_way(const std::vector<visibility::NodeCoord>& before, const State& s) {
+  return static_cast<std::size_t>(std::ranges::count_if(before, [&](visibility::NodeCoord node) {
+    while (std::size_t{node.level} + 1 < s.facts.levels.size()) {
+      node = visibility::parent_of(node);
+      if (std::ranges::find(s.draws.shown_nodes, node) != s.draws.shown_nodes.end()) return true;
+    }
+    return false;
+  }));
+}
+
+std::size_t drawn_single_models(const State& s) {
+  std::size_t count = 0;
+  s.entities.each<const Demand, const Fading>(
+      [&](std::span<const ecs::Entity>, std::span<const Demand> demands, std::span<const Fading>) {
+        count += static_cast<std::size_t>(std::ranges::count_if(
+            demands, [](const Demand& demand) { return demand.drawn_level != kNoLevel; }));
+      });
+  return count;
+}
+
+// Otherwise all models of a block would fade away, and come back, for each stone on it.
+TEST(Steady, NoNodeGivesWayToACoarserOneForAModelThatBecomesLargeEnough) {
+  Settings settings = small_settings();
+  settings.view_distance_m = 500;
+  settings.min_size_pixels = 8;
+  const auto scene = make_scene(settings);
+  core::CameraPose pose = pose_at(256, 256);
+  for (int i = 0; i < 120; ++i)
+    tick_at(*scene, pose);
+  const State& s = scene->state();
+  const std::size_t models_before = drawn_single_models(s);
+  std::size_t given_way = 0;
+  for (int i = 0; i < 400; ++i) {
+    const std::vector<visibility::NodeCoord> before = s.draws.shown_nodes;
+    pose.position.local.z -= 0.1;
+    tick_at(*scene, pose);
+    given_way += gave_way(before, s);
+  }
+  EXPECT_EQ(given_way, 0U);
+  EXPECT_GT(drawn_single_models(s), models_before + 10) << "nothing has become large enough";
+}
+
 }  // namespace
 }  // namespace psygen::scene
