@@ -200,6 +200,10 @@ bool BlockFolder::has_blocks() const {
 core::Result<void> BlockFolder::claim() const {
   if (auto ok = claim(kWorldFile, world::write_world(world_, registry_), "another world"); !ok)
     return ok;
+  if (world_.files_hash != 0) {
+    const std::string hash = fmt::format("{:016x}\n", world_.files_hash);
+    if (auto ok = claim("files.hash", hash, "this world with other files"); !ok) return ok;
+  }
   const auto sample = sample_of(world_, registry_, format_);
   if (!sample) return {};  // a later run with a sample will refuse these blocks
   return claim(format_ == exchange::Format::kGlb ? "sample_glb.hash" : "sample_obj.hash",

@@ -33,9 +33,9 @@ void remove_partial_blocks(const std::filesystem::path& folder,
 class BlockFolder {
  public:
   // Creates the folder if needed. `world` and `registry` must outlive it. Fails with kIo if the
-  // folder cannot be written. Fails with kInvalidArgument if it holds blocks of another world,
-  // blocks that this version of the engine and these model types would make differently, or blocks
-  // of unknown origin.
+  // folder cannot be written. Fails with kInvalidArgument if it holds blocks of another world
+  // or of other files that it names, blocks that this version of the engine and these model types
+  // would make differently, or blocks of unknown origin.
   static core::Result<std::unique_ptr<BlockFolder>> open(std::filesystem::path folder,
                                                          const world::World& world,
                                                          const models::Registry& registry,

@@ -34,7 +34,7 @@ core::Result<JobKey> job_key(const world::World& world, const models::Registry& 
   const std::string text = world::write_world(world, registry);
   return JobKey{std::string(version),
                 world.name,
-                core::hash_bytes(std::as_bytes(std::span(text))),
+                core::hash_bytes(std::as_bytes(std::span(text)), world.files_hash),
                 *sample,
                 region,
                 format};
@@ -45,7 +45,8 @@ std::string difference(const JobKey& mine, const JobKey& theirs) {
     return fmt::format("psygen {} instead of {}", theirs.version, mine.version);
   if (theirs.world_hash != mine.world_hash)
     return theirs.world == mine.world
-               ? fmt::format("another version of the world {}", mine.world)
+               ? fmt::format("another version of the world {} or of the files that it names",
+                             mine.world)
                : fmt::format("the world {} instead of {}", theirs.world, mine.world);
   if (theirs.region != mine.region)
     return fmt::format("the region {} instead of {}", text_of(theirs.region), text_of(mine.region));

@@ -69,7 +69,7 @@ int AmplifyCommand::run() {
   if (!simd_.empty()) models::pin_simd_target(simd_);
   if (mpi_ || (cluster::is_rank() && !shard_ && samples_.empty())) return run_rank();
   models::Registry registry = models::make_standard_registry();
-  const auto world = load_world(world_, registry);
+  const auto world = load_world_and_files(world_, registry);
   if (!world) {
     core::log_error(world.error().message);
     return exit_code_of(world.error());

@@ -32,7 +32,7 @@ int AmplifyCommand::run_rank() {
 
 int AmplifyCommand::run_rank(cluster::Peers& peers) {
   models::Registry registry = models::make_standard_registry();
-  const auto world = load_world(world_, registry);
+  const auto world = load_world_and_files(world_, registry);
   core::Result<void> loaded{};
   if (!world) loaded = tl::unexpected(world.error());
   if (auto ok = cluster::agree(loaded, peers); !ok) return end_with(ok.error(), peers);

@@ -92,6 +92,18 @@ core::Result<world::World> load_world(const std::string& name, models::Registry&
   return world::load_world(*file, registry, &handmade::files());
 }
 
+core::Result<world::World> load_world_and_files(const std::string& name,
+                                                models::Registry& registry) {
+  const auto file = find_file(Shipped::kWorld, name);
+  if (!file) return tl::unexpected(file.error());
+  auto world = world::load_world(*file, registry, &handmade::files());
+  if (!world) return world;
+  const auto hash = handmade::hash_of_files(*world, *file);
+  if (!hash) return tl::unexpected(hash.error());
+  world->files_hash = *hash;
+  return world;
+}
+
 core::Result<void> find_world(app::SessionOptions& options) {
   auto file = find_file(Shipped::kWorld, options.world_file.string());
   if (!file) return tl::unexpected(file.error());

@@ -22,6 +22,11 @@ core::Result<std::filesystem::path> find_file(Shipped kind, const std::string& n
 // Reads the world that an option means. Fails as find_file() and world::load_world().
 core::Result<world::World> load_world(const std::string& name, models::Registry& registry);
 
+// The same for a world that is made into files: also reads what its own files hold
+// (World::files_hash). Fails as load_world() and handmade::hash_of_files().
+core::Result<world::World> load_world_and_files(const std::string& name,
+                                                models::Registry& registry);
+
 // Replace what was typed by the file that is meant. No path stays no path.
 core::Result<void> find_world(app::SessionOptions& options);
 core::Result<void> find_path(app::FlightOptions& options);

@@ -36,4 +36,9 @@ FilesPtr files_with(const std::filesystem::path& world_file, MemoryPicturesPtr p
 core::Result<std::vector<std::filesystem::path>> files_named_by(
     const world::World& world, const std::filesystem::path& world_file);
 
+// The hash of what these files hold, in this order; 0 without any. Fails like files_named_by() and
+// core::read_file().
+core::Result<std::uint64_t> hash_of_files(const world::World& world,
+                                          const std::filesystem::path& world_file);
+
 }  // namespace psygen::handmade

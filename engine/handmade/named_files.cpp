@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <span>
 
+#include "engine/core/hash.hpp"
+#include "engine/core/read_file.hpp"
 #include "engine/gltf/read_file.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/handmade/gltf_limits.hpp"
@@ -7,6 +10,10 @@
 namespace psygen::handmade {
 
 namespace fs = std::filesystem;
+
+namespace {
+constexpr std::uint64_t kMostHashedBytes = std::uint64_t{1} << 30;
+}  // namespace
 
 core::Result<std::vector<fs::path>> files_named_by(const world::World& world,
                                                    const fs::path& world_file) {
@@ -29,6 +36,18 @@ core::Result<std::vector<fs::path>> files_named_by(const world::World& world,
   for (const std::string& image : world.palette.images)
     note(image);
   return names;
+}
+
+core::Result<std::uint64_t> hash_of_files(const world::World& world, const fs::path& world_file) {
+  const auto names = files_named_by(world, world_file);
+  if (!names) return tl::unexpected(names.error());
+  std::uint64_t hash = 0;
+  for (const fs::path& name : *names) {
+    const auto bytes = core::read_file(world_file.parent_path() / name, kMostHashedBytes);
+    if (!bytes) return tl::unexpected(bytes.error());
+    hash = core::hash_bytes(std::as_bytes(std::span(*bytes)), hash);
+  }
+  return hash;
 }
 
 }  // namespace psygen::handmade

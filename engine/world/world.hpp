@@ -160,6 +160,9 @@ struct World {
   // What was changed by hand (edits/edits.hpp), over the shaped ground; null: nothing. Not part of
   // world files. `terrain` names the same layer: use set_edits().
   std::shared_ptr<const models::EditLayer> edits;
+  // Of what the files hold that are named here (handmade::hash_of_files()), where it was asked for;
+  // else 0. Not part of world files.
+  std::uint64_t files_hash = 0;
 
   // What lies over the terrain's function: the edits, or the shaped ground without edits; null:
   // nothing.

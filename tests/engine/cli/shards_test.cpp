@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "engine/image/image.hpp"
+#include "engine/image/image_io.hpp"
 #include "tests/engine/cli/amplify_fixture.hpp"
 
 namespace psygen::cli {
@@ -73,6 +75,34 @@ TEST_F(Shards, OfOtherWorldsAndRegionsAreNotMixed) {
   const Outcome mixed = run("merge s p");
   EXPECT_EQ(mixed.code, 1);
   EXPECT_TRUE(mentions(mixed.err, "is of another job than")) << mixed.err;
+}
+
+// The text of the world is the same, but what a mask holds is not.
+TEST_F(Shards, OfWorldsWhoseFilesHaveChangedAreNotMixed) {
+  std::ofstream(folder_ / "masked.toml")
+      << world::testing::kSmallWorld << "mask = { image = \"mask.png\" }\n";
+  const auto paint = [&](std::uint8_t grey) {
+    const auto picture = image::make_image(8, 8, grey, grey, grey);
+    ASSERT_TRUE(image::write_png(folder_ / "mask.png", picture));
+  };
+  const auto make = [&](const std::string& arguments) {
+    return run("amplify --world masked.toml --region 0,0,2,2 " + arguments);
+  };
+  paint(255);
+  ASSERT_EQ(make("--shard 1/2 --out s --format none").code, 0);
+  ASSERT_EQ(make("--out blocks").code, 0);
+  paint(100);
+  const Outcome goes_on = make("--shard 1/2 --out s --format none");
+  EXPECT_EQ(goes_on.code, 1);
+  EXPECT_TRUE(mentions(goes_on.err, "or of the files that it names")) << goes_on.err;
+  const Outcome blocks = make("--out blocks");
+  EXPECT_EQ(blocks.code, 1);
+  EXPECT_TRUE(mentions(blocks.err, "holds the blocks of this world with other files"))
+      << blocks.err;
+  ASSERT_EQ(make("--shard 2/2 --out s --format none").code, 0);
+  EXPECT_EQ(run("merge s").code, 1);
+  paint(255);
+  EXPECT_EQ(make("--out blocks").code, 0);
 }
 
 }  // namespace
