@@ -80,7 +80,7 @@ TEST_F(Shards, OfOtherWorldsAndRegionsAreNotMixed) {
 // The text of the world is the same, but what a mask holds is not.
 TEST_F(Shards, OfWorldsWhoseFilesHaveChangedAreNotMixed) {
   std::ofstream(folder_ / "masked.toml")
-      << world::testing::kSmallWorld << "mask = { image = \"mask.png\" }\n";
+      << world::testing::kSmallWorld << "mask_image = \"mask.png\"\n";
   const auto paint = [&](std::uint8_t grey) {
     const auto picture = image::make_image(8, 8, grey, grey, grey);
     ASSERT_TRUE(image::write_png(folder_ / "mask.png", picture));
