@@ -86,8 +86,8 @@ struct SessionOptions {
   bool prefill = true;  // fill the cache for the first pose before the first tick
   bool trace = false;   // record spans of systems and modelers (Session::trace())
   scene::Settings scene;
-  // Modelers of other processes, as of a cluster (docs/cluster.md); outlive the session. Null:
-  // none.
+  // Modelers of other processes, as of a cluster (docs/cluster.md). They serve this session only,
+  // and outlive it. Null: none.
   synthesis::RemoteModelers* remote = nullptr;
   std::vector<Plugin> plugins;
   // Set from anywhere (a signal handler, another thread) to end the session after this tick.

@@ -64,7 +64,8 @@ MeshSupply::Landed MeshSupply::land(std::uint64_t max_bytes) {
 bool MeshSupply::come_to_rest() {
   begin_wants();
   plan({}, Policy::kDeadline);
-  manager_->wait_all();
+  for (const Request& unmade : manager_->come_to_rest())
+    cache_->cancel(unmade.handle);
   collect();
   land(UINT64_MAX);
   return manager_->is_at_rest();

@@ -63,7 +63,7 @@ void Modeler::run(Workshop& workshop) {
   cpu_s_ = core::thread_cpu_seconds();
   while (!workshop.stop.load(std::memory_order_acquire)) {
     if (is_remote() && !place_.modelers->is_usable(place_.number)) break;
-    const std::uint32_t epoch = workshop.board.epoch();
+    const std::uint32_t epoch = epoch_of(workshop);
     const bool claimed = claim(workshop);
     // The thread of a remote one hardly computes.
     if (!lowered && !is_remote() && workshop.lowest_priority.load(std::memory_order_relaxed)) {
@@ -75,11 +75,19 @@ void Modeler::run(Workshop& workshop) {
     } else {
       wake_waiting(workshop);
       // stop is set before the epoch moves, so that it cannot be missed here.
-      if (!workshop.stop.load(std::memory_order_acquire)) workshop.board.wait(epoch);
+      if (!workshop.stop.load(std::memory_order_acquire)) sleep(workshop, epoch);
       cpu_s_ = core::thread_cpu_seconds();
     }
   }
   exited_.store(true, std::memory_order_release);
+}
+
+std::uint32_t Modeler::epoch_of(const Workshop& workshop) const {
+  return is_remote() ? workshop.board.offer_epoch() : workshop.board.epoch();
+}
+
+void Modeler::sleep(const Workshop& workshop, std::uint32_t epoch) const {
+  is_remote() ? workshop.board.wait_for_offer(epoch) : workshop.board.wait(epoch);
 }
 
 bool Modeler::claim(Workshop& workshop) {
@@ -94,11 +102,6 @@ void Modeler::perform(Workshop& workshop, const Request& request) {
   current_ = request;
   cpu_s_ = core::thread_cpu_seconds();
   execute(workshop);
-}
-
-// True once the request and what the hook refers to may be gone.
-bool Modeler::is_given_up() const {
-  return (state_.load(std::memory_order_acquire) & kPhaseMask) == kGivenUp;
 }
 
 bool Modeler::write_mesh(const models::ModelType& type, const models::MeshView& mesh,
@@ -191,14 +194,17 @@ bool Modeler::execute_there(Workshop& workshop) {
   c.remote = true;
   c.started_s = workshop.clock();
   c.predicted_seconds = current_.cost.warm_s();
-  const models::ModelType& type = (*workshop.registry)[current_.key.model];
+  // Looked up first: once the request can be given up, the types may change.
+  const models::ModelIndex model = current_.key.model;
+  const models::ModelType& type = (*workshop.registry)[model];
+  const Annotate* annotate = annotate_of(workshop, model);
   begin(c.started_s);
   RemoteMesh mesh = place_.modelers->make(place_.number, type, current_);
   std::uint64_t expected = serial_ * 4 + kWorking;
   if (!state_.compare_exchange_strong(expected, serial_ * 4 + kWriting, std::memory_order_acq_rel))
     return false;
   const bool made = mesh.answer != RemoteMesh::Answer::kNone;
-  if (made) write_remote_mesh(workshop, mesh, c);
+  if (made) write_remote_mesh(workshop, annotate, mesh, c);
   c.finished_s = workshop.clock();
   state_.store(serial_ * 4 + kIdle, std::memory_order_release);
   if (made) {
@@ -209,15 +215,15 @@ bool Modeler::execute_there(Workshop& workshop) {
   return true;
 }
 
-void Modeler::write_remote_mesh(const Workshop& workshop, RemoteMesh& mesh, Completion& c) {
+void Modeler::write_remote_mesh(const Workshop& workshop, const Annotate* annotate,
+                                RemoteMesh& mesh, Completion& c) {
   c.seconds = mesh.seconds;
   c.tight = mesh.tight;
   c.ok = mesh.answer == RemoteMesh::Answer::kMade;
   c.error = std::move(mesh.error);
   if (!c.ok) return;
   const models::MeshView made = view_of(mesh.bytes, current_.destination);
-  if (const Annotate* annotate = annotate_of(workshop, current_.key.model))
-    noting(c, [&] { c.note = (*annotate)(current_, made); });
+  if (annotate != nullptr) noting(c, [&] { c.note = (*annotate)(current_, made); });
   copy(made, current_.destination);
   if (workshop.hash_content && c.ok) c.content_hash = content_hash(current_.key, made);
 }

@@ -1,11 +1,9 @@
 // A worker that executes one request at a time (paper, section 5.1: Modeler). It claims from the
-// board, writes into the destination of the request, and queues a completion; it takes no lock and
-// sees nothing else. The main thread may give up a modeler whose model hangs: from then on the
-// modeler only reports when it let go of the destination, and ends.
-//
-// The mesh of a remote modeler is made elsewhere (remote_modelers.hpp); its thread here waits for
-// the bytes and touches the destination only once it has them. So what it was given up with is free
-// at once, and others can make it.
+// board, writes into the destination of the request, and queues a completion; it sees nothing else.
+// Once the main thread has given it up, as its model hangs, it only reports when it let go of the
+// destination, and ends. The mesh of a remote one is made elsewhere (remote_modelers.hpp): its
+// thread touches the destination only once the bytes are here. So what it was given up with is free
+// at once. No locks between requests, but for remote ones where a mesh is asked for or given back.
 #pragma once
 
 #include <atomic>
@@ -83,8 +81,9 @@ class Modeler {
   // destination.
   const Request& abandoned() const { return current_; }
 
-  // Whether the main thread has given it up. Any thread.
-  bool given_up() const {
+  // Whether the main thread has given it up: the request and what the hook refers to may be gone.
+  // Any thread.
+  bool is_given_up() const {
     return (state_.load(std::memory_order_acquire) & kPhaseMask) == kGivenUp;
   }
 
@@ -109,6 +108,8 @@ class Modeler {
     kWriting = 3,
     kPhaseMask = 3
   };
+  std::uint32_t epoch_of(const Workshop& workshop) const;
+  void sleep(const Workshop& workshop, std::uint32_t epoch) const;
   bool claim(Workshop& workshop);
   void begin(double now_s);
   // False if the request was given up meanwhile.
@@ -116,9 +117,9 @@ class Modeler {
   bool execute_there(Workshop& workshop);
   void give_back(Workshop& workshop);
   void finish(Completion&& c);
-  void write_remote_mesh(const Workshop& workshop, RemoteMesh& mesh, Completion& c);
+  void write_remote_mesh(const Workshop& workshop, const Annotate* annotate, RemoteMesh& mesh,
+                         Completion& c);
   Warmth warmth_at(double now_s);
-  bool is_given_up() const;
   bool write_mesh(const models::ModelType& type, const models::MeshView& mesh, Completion& c);
   void write_noted_mesh(const models::ModelType& type, const Annotate& annotate, Completion& c);
   models::MeshView scratch_for(const models::MeshView& destination);

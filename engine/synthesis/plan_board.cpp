@@ -38,9 +38,11 @@ void PlanBoard::publish(std::vector<Request>&& requests, std::vector<std::uint32
   plan->taken = std::vector<std::atomic<bool>>(plan->offered.empty() ? 0 : plan->requests.size());
   plan->cursor.store(0, std::memory_order_relaxed);
   plan->remote_cursor.store(0, std::memory_order_relaxed);
+  const bool offers = !plan->offered.empty();
   current_.store(plan.get(), std::memory_order_seq_cst);
   plans_.push_back(std::move(plan));
-  wake_all();
+  wake_local();
+  if (offers) wake_remote();
 }
 
 // Every request is taken in the end: by a modeler, or here.
@@ -100,8 +102,18 @@ bool PlanBoard::claim_offered(Reader& reader, Request& out, std::uint64_t& retri
 }
 
 void PlanBoard::wake_all() {
+  wake_local();
+  wake_remote();
+}
+
+void PlanBoard::wake_local() {
   epoch_.fetch_add(1, std::memory_order_acq_rel);
   epoch_.notify_all();
+}
+
+void PlanBoard::wake_remote() {
+  offer_epoch_.fetch_add(1, std::memory_order_acq_rel);
+  offer_epoch_.notify_all();
 }
 
 }  // namespace psygen::synthesis

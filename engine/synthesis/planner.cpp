@@ -222,7 +222,8 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   waiting_seconds_ = 0;
   const double enough = limits.seconds_ahead * std::max(manager.modeler_count(), 1u);
   // Of what remote modelers may make they have enough by themselves.
-  const double enough_remote = limits.seconds_ahead * manager.remote_count();
+  const unsigned remote = manager.remote_count();
+  const double enough_remote = remote > 0 ? limits.seconds_ahead * remote : 0;
   double offered_seconds = 0;
   std::size_t next = 0;
   for (; next < items_.size(); ++next) {

@@ -1,7 +1,7 @@
 // Modelers that are no threads of this process, as the manager sees them: places where a mesh can
 // be made, whose bytes then come here. An interface; who the others are, and how requests travel,
 // is for who implements it (engine/cluster/remote_models.hpp). For meshes that take longer than
-// their way. Outlives the manager.
+// their way. Of one session: its manager cancels them at its end. Outlives it.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,10 @@ struct RemoteMesh {
   core::Bounds tight;              // if made
   double seconds = 0;              // of a core there
   std::string error;               // if failed: names the model and the level
+
+  RemoteMesh() = default;
+  RemoteMesh(RemoteMesh&&) = default;  // a copy's `bytes` would be the original's
+  RemoteMesh& operator=(RemoteMesh&&) = default;
 };
 
 // Calls of different places may come at the same time.

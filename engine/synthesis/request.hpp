@@ -27,6 +27,9 @@ struct Request {
   std::uint64_t owner = 0;
   // Keeps what the parameters refer to alive until the mesh is made. Null where there are no edits.
   std::shared_ptr<const models::EditLayer> edits;
+  // It came back from a remote modeler without a mesh, or with none in time: it goes to no other,
+  // which it may make hang too.
+  bool stays_here = false;
 };
 
 // What the main thread must know of a mesh when it lands, so that it need not be read back: any

@@ -91,7 +91,7 @@ void SynthesisManager::leave(Worker& worker) {
   while (!worker.modeler->exited()) {
     const bool hangs =
         watchdog_seconds_ > 0 && worker.modeler->is_older(workshop_->clock() - watchdog_seconds_);
-    if (hangs || worker.modeler->given_up()) {
+    if (hangs || worker.modeler->is_given_up()) {
       worker.thread.detach();
       return;
     }
@@ -118,6 +118,14 @@ core::Result<void> SynthesisManager::start_modeler(RemotePlace place) {
 
 // With fewer threads than places the others are idle.
 void SynthesisManager::start_remote(RemoteModelers& remote) {
+  bool any = remote.count() == 0;
+  for (unsigned place = 0; place < remote.count() && !any; ++place)
+    any = remote.is_usable(place);
+  if (!any) {
+    core::log_warning(
+        "no remote modeler can be used: their ranks were given up, or they have served a session");
+    return;
+  }
   remote_ = &remote;
   for (unsigned place = 0; place < remote.count(); ++place) {
     if (auto ok = start_modeler({&remote, place}); !ok) {
@@ -134,7 +142,8 @@ unsigned SynthesisManager::local_count() const {
 }
 
 bool SynthesisManager::may_go(const Request& request) const {
-  return remote_ != nullptr && remote_->takes((*workshop_->registry)[request.key.model], request);
+  return remote_ != nullptr && !request.stays_here &&
+         remote_->takes((*workshop_->registry)[request.key.model], request);
 }
 
 void SynthesisManager::publish(std::vector<Request>&& plan) {
@@ -288,8 +297,10 @@ bool SynthesisManager::give_up_remote(const Worker& worker, double now_s) {
       !worker.modeler->give_up_if_older(now_s - watchdog_seconds_, now_s, c))
     return worker.modeler->exited();
   returned_.push_back(worker.modeler->abandoned());
+  returned_.back().stays_here = true;
   ++reclaimed_;
   worker.modeler->place().modelers->cancel(worker.modeler->place().number, true);
+  workshop_->board.wake_remote();  // its other places may be lost
   core::log_warning(fmt::format("remote modeler {} does not answer: {} {}, and is made here",
                                 c.modeler, (*workshop_->registry)[c.key.model].name(), c.error));
   return true;
@@ -300,7 +311,11 @@ void SynthesisManager::take_returned() {
   const std::lock_guard lock(workshop_->mutex);
   workshop_->has_returned.store(false, std::memory_order_relaxed);
   reclaimed_ += workshop_->returned.size();
-  std::ranges::move(std::exchange(workshop_->returned, {}), std::back_inserter(returned_));
+  for (Request& request : std::exchange(workshop_->returned, {})) {
+    request.stays_here = true;
+    returned_.push_back(std::move(request));
+  }
+  workshop_->board.wake_remote();
 }
 
 // Publishes once more what remote modelers have not made, for those that are threads here. False if
@@ -355,21 +370,38 @@ bool SynthesisManager::wait_for_threads(const std::function<bool()>& go_on) {
       all = false;
       break;
     }
-    {
-      // A modeler that finds no more work notifies under the lock, so nothing is missed between
-      // looking and sleeping.
-      std::unique_lock lock(workshop_->mutex);
-      if (outstanding_in_threads() == 0) continue;
-      workshop_->finished.wait_until(lock, std::chrono::system_clock::now() + kWatchdogPeriod);
-    }
-    run_watchdog();
-    if (go_on && !go_on()) {
+    if (await_finished() && go_on && !go_on()) {
       all = false;
       break;
     }
   }
   workshop_->waiting.store(false, std::memory_order_seq_cst);
   return all;
+}
+
+// Until modelers have found no more work, but not for long. False if all was finished before.
+bool SynthesisManager::await_finished() {
+  {
+    // A modeler that finds no more work notifies under the lock, so nothing is missed between
+    // looking and sleeping.
+    std::unique_lock lock(workshop_->mutex);
+    if (outstanding_in_threads() == 0) return false;
+    workshop_->finished.wait_until(lock, std::chrono::system_clock::now() + kWatchdogPeriod);
+  }
+  run_watchdog();
+  return true;
+}
+
+std::vector<Request> SynthesisManager::come_to_rest() {
+  if (virtual_) {
+    wait_all();
+    return {};
+  }
+  workshop_->waiting.store(true, std::memory_order_seq_cst);
+  while (outstanding_in_threads() > 0 && !active_.empty())
+    await_finished();
+  workshop_->waiting.store(false, std::memory_order_seq_cst);
+  return std::exchange(returned_, {});
 }
 
 SynthesisStats SynthesisManager::stats() const {

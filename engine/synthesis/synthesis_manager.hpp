@@ -1,12 +1,9 @@
 // Keeps the modelers busy (paper, section 5.1: Synthesis Manager). The main thread publishes a
-// plan, a sorted array of requests; modelers claim the next one whenever they are free, which
-// balances the load by itself. Cancelling and re-prioritising is replacing the plan. The watchdog
-// gives up requests that never end and puts a new modeler in place of the one that hangs. Remote
-// modelers (remote_modelers.hpp) take only what is worth its way; the others take anything, so that
-// nothing waits for a remote one. What a remote one was given up with goes back into the plan.
-//
-// Main thread only. Decides neither what is requested nor in which order (planner.hpp), and does
-// not touch the cache (landing.hpp). Nothing here blocks except wait_all() and the destructor.
+// sorted plan; modelers claim the next request whenever they are free. Cancelling is replacing the
+// plan. The watchdog gives up what never ends, and puts a new modeler in place of the one that
+// hangs. Remote modelers (remote_modelers.hpp) take only what is worth its way; what one comes back
+// without is made here. Main thread only. Does not decide what is requested (planner.hpp), and does
+// not touch the cache (landing.hpp). wait_all(), come_to_rest() and the destructor block.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +35,8 @@ struct SynthesisOptions {
   // they refer to outlives the manager as the registry does. Meshes of these models are synthesised
   // in memory of the modeler's own and copied to their destinations, which may be slow to read.
   std::vector<Annotate> annotate = {};
-  // Further modelers that are not threads here; null: none. Not with a virtual clock.
+  // Further modelers that are not threads here; null: none. Of this manager only, and not with a
+  // virtual clock.
   RemoteModelers* remote = nullptr;
 };
 
@@ -111,9 +109,12 @@ class SynthesisManager {
   std::size_t collect(std::vector<Completion>& out);
   // Blocks until every published request is finished or given up; a virtual clock stands still
   // meanwhile. For tools, tests and the lazy paradigm; the tick never calls it. False if no modeler
-  // is left to finish them, and once `go_on`, called some 50 times a second, says so (never by a
-  // virtual clock, where nothing is waited for).
+  // is left here to finish them (remote ones may be at work still), and once `go_on`, called some
+  // 50 times a second, says so (never by a virtual clock, where nothing is waited for).
   bool wait_all(const std::function<bool()>& go_on = {});
+  // Requires that the plan is empty. Blocks until everything that was claimed is finished or given
+  // up, by remote modelers too. Returns what these came back without, which nobody makes any more.
+  std::vector<Request> come_to_rest();
 
   // Requests published and neither reclaimed nor finished.
   std::uint64_t outstanding() const;
@@ -142,6 +143,7 @@ class SynthesisManager {
   void drain();
   void drain_threads(std::vector<Completion>& out);
   bool wait_for_threads(const std::function<bool()>& go_on = {});
+  bool await_finished();
   std::uint64_t outstanding_in_threads() const;
   bool execute_jobs(const std::vector<VirtualModelers::Job>& jobs);
   core::Result<void> start_modeler(RemotePlace place = {});

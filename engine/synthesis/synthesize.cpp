@@ -40,7 +40,9 @@ SynthesisOutcome synthesize_guarded(const models::ModelType& type, const models:
     if (is_box(tight)) return {true, tight, {}};
     return {false, {}, named(type, level, " returned bounds that are not a box")};
   } catch (const std::bad_alloc&) {
-    return failed([&] { return core::out_of_memory(named(type, level, "")); });
+    SynthesisOutcome outcome = failed([&] { return core::out_of_memory(named(type, level, "")); });
+    outcome.out_of_memory = true;
+    return outcome;
   } catch (const std::exception& e) {
     return failed([&] { return named(type, level, fmt::format(" threw: {}", e.what())); });
   } catch (...) {

@@ -14,8 +14,9 @@ namespace psygen::synthesis {
 // The result of one synthesis.
 struct SynthesisOutcome {
   bool ok = false;
-  core::Bounds tight;  // if ok
-  std::string error;   // else one sentence that names the model and the level
+  core::Bounds tight;          // if ok
+  std::string error;           // else one sentence that names the model and the level
+  bool out_of_memory = false;  // that is why: elsewhere, or later, it may not fail
 };
 
 // Calls type.synthesize(); `out` has exactly the sizes of mesh_size(p, level).

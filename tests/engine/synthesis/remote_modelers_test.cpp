@@ -121,6 +121,21 @@ TEST(PlanBoard, EveryRequestIsClaimedOnceFromEitherSideOrReturned) {
     ASSERT_EQ(times, 1) << slot;
 }
 
+TEST(PlanBoard, RemoteModelersAreWokenOnlyWhereSomethingIsOffered) {
+  PlanBoard board;
+  std::vector<Request> unclaimed;
+  const std::uint32_t before = board.offer_epoch(), plans = board.epoch();
+  board.publish({request_of(0, 0)});
+  EXPECT_EQ(board.offer_epoch(), before);
+  EXPECT_NE(board.epoch(), plans);
+  board.close(unclaimed);
+  board.publish({request_of(0, 0)}, {0});
+  const std::uint32_t offered = board.offer_epoch();
+  EXPECT_NE(offered, before);
+  board.wake_all();
+  EXPECT_NE(board.offer_epoch(), offered) << "as at the end";
+}
+
 TEST(PlanBoard, WhatWasClaimedFromAfarIsNotReturned) {
   PlanBoard board;
   const auto here = board.add_reader(), there = board.add_reader();
