@@ -46,6 +46,8 @@ class FlyCommand {
   std::string objection() const;
   std::string cluster_objection() const;
   static bool is_heard();
+  core::Result<void> find_files();
+  int run_alone();
   int run_here();
   int run_rank();
   int run_rank(cluster::Peers& peers);

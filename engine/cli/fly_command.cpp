@@ -146,16 +146,23 @@ int FlyCommand::run() {
     core::log_error(reason);
     return kUsage;
   }
-  if (auto ok = find_world(options_.session).and_then([this] { return find_path(options_); });
-      !ok) {
-    core::log_error(ok.error().message);
-    return exit_code_of(ok.error());
-  }
-  const int code = in_cluster_ ? run_rank() : run_here();
+  const int code = in_cluster_ ? run_rank() : run_alone();
   // Its memory must not be torn down.
   if (flight_ && flight_->session().has_hung_modelers()) std::_Exit(code);
   flight_.reset();
   return code;
+}
+
+core::Result<void> FlyCommand::find_files() {
+  return find_world(options_.session).and_then([this] { return find_path(options_); });
+}
+
+int FlyCommand::run_alone() {
+  if (auto ok = find_files(); !ok) {
+    core::log_error(ok.error().message);
+    return exit_code_of(ok.error());
+  }
+  return run_here();
 }
 
 int FlyCommand::run_here() {

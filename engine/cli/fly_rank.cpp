@@ -34,7 +34,8 @@ std::string FlyCommand::cluster_objection() const {
 
 // What all ranks would say is said by the first.
 bool FlyCommand::is_heard() {
-  const char* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+  const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
+  if (rank == nullptr) rank = std::getenv("PMIX_RANK");
   return rank == nullptr || std::atoi(rank) == 0;
 }
 
@@ -47,12 +48,15 @@ int FlyCommand::run_rank() {
   return run_rank(**peers);
 }
 
+// What a rank lacks is said once all have met. Only the first needs a path.
 int FlyCommand::run_rank(cluster::Peers& peers) {
   models::Registry registry = models::make_standard_registry();
-  const auto key = load_world(options_.session.world_file.string(), registry)
-                       .map([&](const world::World& world) {
-                         return cluster::flight_key(world, registry, PSYGEN_VERSION);
-                       });
+  const auto key =
+      (peers.rank() == 0 ? find_files() : find_world(options_.session))
+          .and_then([&] { return load_world(options_.session.world_file.string(), registry); })
+          .map([&](const world::World& world) {
+            return cluster::flight_key(world, registry, PSYGEN_VERSION);
+          });
   const std::uint32_t asked = options_.session.scene.modelers;
   const unsigned threads = asked > 0 ? asked : threads_for_rank(peers);
   const auto all = cluster::meet(key, threads, peers);

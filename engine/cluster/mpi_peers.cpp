@@ -4,12 +4,13 @@
 #include <mpi.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
-#include <list>
 #include <mutex>
 #include <thread>
 #include <utility>
 
+#include "engine/cluster/coming_parcels.hpp"
 #include "engine/cluster/nap.hpp"
 #include "engine/cluster/peers.hpp"
 
@@ -107,8 +108,8 @@ class MpiPeers final : public Peers {
       {
         const std::lock_guard lock(mutex_);
         begin_to_receive();
-        if (auto parcel = take_whole()) return parcel;
-        if (coming_.empty()) break;
+        if (auto parcel = coming_.take_whole(is_whole)) return parcel;
+        if (!coming_.any_since(std::chrono::steady_clock::now() - kComesSoon)) break;
       }
       std::this_thread::yield();
     }
@@ -128,12 +129,8 @@ class MpiPeers final : public Peers {
  private:
   static constexpr int kParcel = 1;   // tag
   static constexpr int kLooks = 100;  // some 100 µs: what comes through memory is here by then
-
-  // A parcel that has begun to come.
-  struct Coming {
-    Parcel parcel;
-    MPI_Request request = MPI_REQUEST_NULL;
-  };
+  // What takes longer is not looked at without a pause: its rank may have stopped.
+  static constexpr std::chrono::milliseconds kComesSoon{5};
 
   void begin_to_receive() {
     int is_there = 0;
@@ -143,26 +140,18 @@ class MpiPeers final : public Peers {
     if (is_there == 0) return;
     int bytes = 0;
     MPI_Get_count(&status, MPI_BYTE, &bytes);
-    Coming& coming = coming_.emplace_back();
-    coming.parcel.from = static_cast<unsigned>(status.MPI_SOURCE);
-    coming.parcel.bytes.resize(static_cast<std::size_t>(bytes));
+    auto& coming =
+        coming_.begin(static_cast<unsigned>(status.MPI_SOURCE), static_cast<std::size_t>(bytes));
     MPI_Imrecv(coming.parcel.bytes.data(), bytes, MPI_BYTE, &message, &coming.request);
   }
 
-  // The first one that is whole. A rank that stops in the middle of one holds up no other rank.
-  std::optional<Parcel> take_whole() {
-    for (auto coming = coming_.begin(); coming != coming_.end(); ++coming) {
-      int is_whole = 0;
-      MPI_Test(&coming->request, &is_whole, MPI_STATUS_IGNORE);
-      if (is_whole == 0) continue;
-      Parcel parcel = std::move(coming->parcel);
-      coming_.erase(coming);
-      return parcel;
-    }
-    return std::nullopt;
+  static bool is_whole(MPI_Request& request) {
+    int is = 0;
+    MPI_Test(&request, &is, MPI_STATUS_IGNORE);
+    return is != 0;
   }
 
-  std::list<Coming> coming_;
+  ComingParcels<MPI_Request> coming_;
   int rank_ = 0, count_ = 1, count_here_ = 1;
   MPI_Win window_ = MPI_WIN_NULL;
   std::mutex mutex_;  // MPI_THREAD_SERIALIZED

@@ -2,7 +2,7 @@
 // (synthesis/remote_modelers.hpp), one for each thread of another rank. Measures what a mesh takes
 // on its way, and takes only requests that take longer. A thread of its own receives answers while
 // some are awaited, and sleeps otherwise. A rank that does not answer, answers what is damaged or
-// refuses a request is not used any more. Rank 0; the others are in serve_models().
+// refuses a request is not used any more. For one session. Rank 0; the others: serve_models().
 #pragma once
 
 #include <atomic>

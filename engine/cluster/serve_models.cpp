@@ -1,5 +1,7 @@
 #include "engine/cluster/serve_models.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -79,7 +81,9 @@ Bytes answer_to(const MakeMessage& make, Shop& shop) {
       synthesis::synthesize_guarded(type, make.parameters, make.level, writer->mesh());
   if (!outcome.ok) {
     ++shop.failed;
-    return failed_message(make.ticket, RemoteMesh::Answer::kFailed, outcome.error);
+    const auto answer =
+        outcome.out_of_memory ? RemoteMesh::Answer::kNone : RemoteMesh::Answer::kFailed;
+    return failed_message(make.ticket, answer, outcome.error);
   }
   ++shop.made;
   return std::move(*writer).finish(outcome.tight, core::thread_cpu_seconds() - begin_s);
@@ -124,8 +128,9 @@ class Threads {
       if (!thread) {
         const std::lock_guard lock(shop_->mutex);
         --shop_->threads;
-        if (threads_.empty()) return tl::unexpected(thread.error());
-        break;  // fewer do, too
+        return core::fail(thread.error().code,
+                          fmt::format("only {} of {} threads that make meshes were started: {}",
+                                      threads_.size(), count, thread.error().message));
       }
       threads_.push_back(std::move(*thread));
     }

@@ -20,8 +20,8 @@ struct ServeReport {
 
 // Makes what rank 0 asks for, with so many threads, until it says that no more comes. Then what is
 // being made is finished, or hangs if that takes longer than `patience_s`, as for the watchdog of a
-// flight. Requires meet() at all ranks, and threads >= 1. Fails with kInternal where the system
-// gives no thread.
+// flight. Requires meet() at all ranks, and threads >= 1, as many as meet() was told. Fails with
+// kInternal where the system gives fewer.
 core::Result<ServeReport> serve_models(const models::Registry& registry, unsigned threads,
                                        Peers& peers, double patience_s = 10);
 

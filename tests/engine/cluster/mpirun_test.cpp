@@ -165,6 +165,19 @@ TEST_F(Mpirun, AFlightThatCannotBeSharedSaysWhyOnce) {
   EXPECT_TRUE(mentions(differ.err, "it has another version of the world rocks")) << differ.err;
 }
 
+// Nobody waits for it.
+TEST_F(Mpirun, ARankThatLacksTheWorldSaysSoOnceAllHaveMetAndOnlyTheFirstNeedsAPath) {
+  std::ofstream(folder_ / "rocks.toml") << kRocks;
+  const std::string other = " : -n 1 " PSYGEN_EXECUTABLE " fly --cluster --headless ";
+  const Outcome lacks = run("-n 1 FLY --cluster" + other + "--world nowhere.toml");
+  EXPECT_EQ(lacks.code, 1);
+  EXPECT_TRUE(mentions(lacks.err, "psygen: error: rank 1: ")) << lacks.err;
+  EXPECT_TRUE(mentions(lacks.err, "nowhere.toml")) << lacks.err;
+  const Outcome path =
+      run("-n 1 FLY --cluster" + other + "--modelers 1 --world rocks.toml --path nowhere.toml");
+  EXPECT_EQ(path.code, 0) << path.err;
+}
+
 // The library of MPI that the loader finds first is none.
 TEST_F(Mpirun, WithoutMpiThereIsASentenceAndThePlainCommandWorks) {
   std::ofstream(folder_ / "libmpi.so.40") << "no library";

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 
+#include "engine/cluster/mesh_messages.hpp"
 #include "engine/cluster/serve_models.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/synthesis/content_hash.hpp"
@@ -15,6 +16,7 @@
 #include "tests/engine/cluster/threads_as_ranks.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 #include "tests/engine/world/shipped.hpp"
+#include "tests/faults.hpp"
 
 namespace psygen::cluster {
 namespace {
@@ -216,6 +218,53 @@ TEST(RemoteModels, AStalledRankIsGivenUpAndItsMeshIsMadeHere) {
       });
 }
 
+// It would hang at every one of them.
+TEST(RemoteModels, WhatARankWasGivenUpWithGoesToNoOther) {
+  Gate busy, stalled;
+  std::atomic<double> now_s{0};
+  const models::Registry registry =
+      registry_of([&](const models::Parameters&, int) { busy.wait(); });
+  run({.count = 3, .costly_there = [&](const models::Parameters&, int) { stalled.wait(); }},
+      [&](RemoteModels& remote) {
+        Jobs jobs;
+        SynthesisOptions options = options_with(remote);
+        options.watchdog_seconds = 10;
+        options.clock = [&] { return now_s.load(); };
+        SynthesisManager manager(registry, options);
+        manager.publish({jobs.make(registry, 1, kBlocker)});
+        busy.await(1);
+        const Request costly = jobs.make(registry, 2, kCostly);
+        EXPECT_TRUE(manager.may_go(costly));
+        manager.publish({costly});
+        stalled.await(1);
+        busy.open();
+        std::vector<Completion> done;
+        collect(manager, 1, done);
+        now_s = 11;
+        std::vector<Request> again = manager.reclaim();
+        ASSERT_EQ(again.size(), 1u);
+        EXPECT_FALSE(manager.may_go(again[0]));
+        manager.publish(std::move(again));
+        ASSERT_TRUE(manager.wait_all());
+        collect(manager, 2, done);
+        EXPECT_TRUE(done[1].ok && !done[1].remote);
+        EXPECT_EQ(remote.figures().lost, 1u);
+        stalled.open();
+      });
+}
+
+TEST(RemoteModels, TheyServeOneManager) {
+  const models::Registry registry = registry_of();
+  run({}, [&](RemoteModels& remote) {
+    EXPECT_EQ(SynthesisManager(registry, options_with(remote)).remote_count(), 1u);
+    SynthesisManager second(registry, options_with(remote));
+    EXPECT_EQ(second.remote_count(), 0u);
+    Jobs jobs;
+    second.publish({jobs.make(registry, 1, kCostly)});
+    EXPECT_TRUE(second.wait_all());
+  });
+}
+
 TEST(RemoteModels, WaitingForAllMakesHereWhatCameBackWithoutAMesh) {
   std::atomic<int> damaged{0};
   const models::Registry registry = registry_of();
@@ -292,6 +341,32 @@ TEST(RemoteModels, AFailureThereIsTheSameSentenceAsHere) {
     EXPECT_TRUE(remote.is_usable(0));
   });
   EXPECT_EQ(reports[kAnswerer].failed, 1u);
+}
+
+TEST(RemoteModels, WhereMemoryRunsOutThereTheRequestComesBack) {
+  const auto reports =
+      run({.costly_there = [](const models::Parameters&, int) { throw std::bad_alloc(); }},
+          [](RemoteModels& remote) {
+            const models::Registry registry = registry_of();
+            Jobs jobs;
+            const auto mesh = remote.make(0, registry[kCostly], jobs.make(registry, 1, kCostly));
+            EXPECT_EQ(mesh.answer, synthesis::RemoteMesh::Answer::kNone);
+            EXPECT_FALSE(remote.is_usable(0));
+          });
+  EXPECT_EQ(reports[kAnswerer].failed, 1u);
+}
+
+TEST(RemoteModels, ARankThatGetsFewerThreadsThanItToldSaysSo) {
+  const models::Registry registry = registry_of();
+  ThreadsAsRanks(1).run([&](Peers& peers) {
+    peers.send(0, plain_message(MessageKind::kEnd));
+    const FewThreads few(1);
+    const auto served = serve_models(registry, 2, peers);
+    ASSERT_FALSE(served.has_value());
+    EXPECT_TRUE(served.error().message.starts_with(
+        "only 1 of 2 threads that make meshes were started: the system gives no more threads"))
+        << served.error().message;
+  });
 }
 
 TEST(RemoteModels, AFlightEndsWithRequestsInTheAir) {
