@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
-#include <new>
 #include <utility>
 
 #include "engine/core/clock.hpp"
-#include "engine/core/out_of_memory.hpp"
 #include "engine/synthesis/content_hash.hpp"
+#include "engine/synthesis/making.hpp"
 #include "engine/synthesis/synthesize.hpp"
 #include "engine/synthesis/thread_priority.hpp"
 
@@ -19,40 +17,6 @@ namespace {
 template <class T>
 void add(std::atomic<T>& counter, T value) {
   counter.store(counter.load(std::memory_order_relaxed) + value, std::memory_order_relaxed);
-}
-
-// Calls what notes something of a mesh. Whatever it throws fails the request.
-template <class Work>
-void noting(Completion& c, const Work& work) {
-  try {
-    work();
-  } catch (const std::bad_alloc&) {
-    c.ok = false;
-    c.error = core::out_of_memory("what is noted of a mesh");
-  } catch (const std::exception& e) {
-    c.ok = false;
-    c.error = fmt::format("nothing could be noted of a mesh: {}", e.what());
-  } catch (...) {
-    c.ok = false;
-    c.error = "nothing could be noted of a mesh";
-  }
-}
-
-// What is noted of meshes of a type; null: nothing.
-const Annotate* annotate_of(const Workshop& workshop, models::ModelIndex model) {
-  const std::vector<Annotate>& all = workshop.annotate;
-  return model < all.size() && all[model] ? &all[model] : nullptr;
-}
-
-void copy(const models::MeshView& mesh, const models::MeshView& destination) {
-  std::ranges::copy(mesh.vertices, destination.vertices.begin());
-  std::ranges::copy(mesh.indices, destination.indices.begin());
-}
-
-models::MeshView view_of(std::span<std::byte> bytes, const models::MeshView& like) {
-  const std::size_t vertex_bytes = like.vertices.size();
-  return {bytes.first(vertex_bytes),
-          {reinterpret_cast<std::uint16_t*>(bytes.data() + vertex_bytes), like.indices.size()}};
 }
 
 }  // namespace
@@ -122,7 +86,7 @@ void Modeler::write_noted_mesh(const models::ModelType& type, const Annotate& an
     const models::MeshView mesh = scratch_for(current_.destination);
     if (!write_mesh(type, mesh, c) || is_given_up()) return;
     c.note = annotate(current_, mesh);
-    copy(mesh, current_.destination);
+    copy_mesh(mesh, current_.destination);
   });
 }
 
@@ -186,52 +150,6 @@ void Modeler::finish(Completion&& c) {
   count(c);
   queue_.push(std::move(c));
   finished_.store(finished_.load(std::memory_order_relaxed) + 1, std::memory_order_seq_cst);
-}
-
-// The destination is this thread's only once the mesh is here and nobody has given it up.
-bool Modeler::execute_there(Workshop& workshop) {
-  Completion c = completion_of(current_, number_);
-  c.remote = true;
-  c.started_s = workshop.clock();
-  c.predicted_seconds = current_.cost.warm_s();
-  // Looked up first: once the request can be given up, the types may change.
-  const models::ModelIndex model = current_.key.model;
-  const models::ModelType& type = (*workshop.registry)[model];
-  const Annotate* annotate = annotate_of(workshop, model);
-  begin(c.started_s);
-  RemoteMesh mesh = place_.modelers->make(place_.number, type, current_);
-  std::uint64_t expected = serial_ * 4 + kWorking;
-  if (!state_.compare_exchange_strong(expected, serial_ * 4 + kWriting, std::memory_order_acq_rel))
-    return false;
-  const bool made = mesh.answer != RemoteMesh::Answer::kNone;
-  if (made) write_remote_mesh(workshop, annotate, mesh, c);
-  c.finished_s = workshop.clock();
-  state_.store(serial_ * 4 + kIdle, std::memory_order_release);
-  if (made) {
-    finish(std::move(c));
-  } else {
-    give_back(workshop);
-  }
-  return true;
-}
-
-void Modeler::write_remote_mesh(const Workshop& workshop, const Annotate* annotate,
-                                RemoteMesh& mesh, Completion& c) {
-  c.seconds = mesh.seconds;
-  c.tight = mesh.tight;
-  c.ok = mesh.answer == RemoteMesh::Answer::kMade;
-  c.error = std::move(mesh.error);
-  if (!c.ok) return;
-  const models::MeshView made = view_of(mesh.bytes, current_.destination);
-  if (annotate != nullptr) noting(c, [&] { c.note = (*annotate)(current_, made); });
-  copy(made, current_.destination);
-  if (workshop.hash_content && c.ok) c.content_hash = content_hash(current_.key, made);
-}
-
-void Modeler::give_back(Workshop& workshop) {
-  const std::lock_guard lock(workshop.mutex);
-  workshop.returned.push_back(current_);
-  workshop.has_returned.store(true, std::memory_order_release);
 }
 
 // The last modeler to finish finds nothing more to claim: that is when all may be done.

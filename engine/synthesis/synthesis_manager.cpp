@@ -18,20 +18,6 @@ namespace {
 constexpr std::chrono::milliseconds kWatchdogPeriod{20};
 constexpr std::chrono::microseconds kExitPeriod{100};
 
-ModelerStats stats_of(const Modeler& modeler) {
-  const ModelerCounters& c = modeler.counters();
-  return {modeler.number(),
-          c.models.load(std::memory_order_relaxed),
-          c.failed.load(std::memory_order_relaxed),
-          c.triangles.load(std::memory_order_relaxed),
-          c.bytes.load(std::memory_order_relaxed),
-          c.cpu_seconds.load(std::memory_order_relaxed),
-          c.busy_seconds.load(std::memory_order_relaxed),
-          c.locks.load(std::memory_order_relaxed),
-          c.retries.load(std::memory_order_relaxed),
-          modeler.is_remote()};
-}
-
 // A virtual clock has one modeler, however many threads execute what it claims: their number must
 // change nothing.
 constexpr unsigned kVirtualModelers = 1;
@@ -254,96 +240,6 @@ bool SynthesisManager::execute_jobs(const std::vector<VirtualModelers::Job>& job
   return all;
 }
 
-void SynthesisManager::run_watchdog() {
-  take_returned();
-  const double now = workshop_->clock();
-  for (std::size_t i = 0; i < active_.size();) {
-    const Worker& worker = active_[i];
-    const bool gone =
-        worker.modeler->is_remote() ? give_up_remote(worker, now) : give_up_local(worker, now);
-    if (!gone) {
-      ++i;
-      continue;
-    }
-    const bool replaced = !worker.modeler->is_remote() && replacements_left_ > 0;
-    retired_.push_back(std::move(active_[i]));
-    active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(i));
-    if (!replaced) continue;
-    if (auto ok = start_modeler(); !ok) {
-      core::log_warning(fmt::format("no modeler takes its place: {}", ok.error().message));
-    } else {
-      --replacements_left_;
-    }
-  }
-}
-
-bool SynthesisManager::give_up_local(const Worker& worker, double now_s) {
-  Completion c;
-  if (watchdog_seconds_ <= 0 ||
-      !worker.modeler->give_up_if_older(now_s - watchdog_seconds_, now_s, c))
-    return false;
-  c.error = fmt::format("{} {}", (*workshop_->registry)[c.key.model].name(), c.error);
-  core::log_warning(fmt::format("modeler {} hangs: {}", c.modeler, c.error));
-  hung_.push_back({c.handle, c.key, c.owner, c.modeler, c.started_s});
-  abandoned_.push_back(std::move(c));
-  ++given_up_;
-  return true;
-}
-
-// Its request goes back to be made here. True for those that left by themselves, too.
-bool SynthesisManager::give_up_remote(const Worker& worker, double now_s) {
-  Completion c;
-  if (watchdog_seconds_ <= 0 ||
-      !worker.modeler->give_up_if_older(now_s - watchdog_seconds_, now_s, c))
-    return worker.modeler->exited();
-  returned_.push_back(worker.modeler->abandoned());
-  returned_.back().stays_here = true;
-  ++reclaimed_;
-  worker.modeler->place().modelers->cancel(worker.modeler->place().number, true);
-  workshop_->board.wake_remote();  // its other places may be lost
-  core::log_warning(fmt::format("remote modeler {} does not answer: {} {}, and is made here",
-                                c.modeler, (*workshop_->registry)[c.key.model].name(), c.error));
-  return true;
-}
-
-void SynthesisManager::take_returned() {
-  if (!workshop_->has_returned.load(std::memory_order_acquire)) return;
-  const std::lock_guard lock(workshop_->mutex);
-  workshop_->has_returned.store(false, std::memory_order_relaxed);
-  reclaimed_ += workshop_->returned.size();
-  for (Request& request : std::exchange(workshop_->returned, {})) {
-    request.stays_here = true;
-    returned_.push_back(std::move(request));
-  }
-  workshop_->board.wake_remote();
-}
-
-// Publishes once more what remote modelers have not made, for those that are threads here. False if
-// there is nothing.
-bool SynthesisManager::publish_returned() {
-  take_returned();
-  if (returned_.empty()) return false;
-  close_plan();
-  published_ += returned_.size();
-  workshop_->board.publish(std::exchange(returned_, {}));
-  return true;
-}
-
-// Hung modelers still have completions of before; those that came back are joined and counted.
-void SynthesisManager::drain_retired(std::vector<Completion>& out) {
-  std::erase_if(retired_, [&](Worker& w) {
-    const bool exited = w.modeler->exited();  // read first: nothing is queued after it
-    w.modeler->queue().drain(out);
-    if (!exited) return false;
-    w.thread.join();
-    workshop_->board.remove_reader(w.modeler->reader());
-    buried_.push_back(stats_of(*w.modeler));
-    buried_finished_ += w.modeler->finished();
-    std::erase_if(hung_, [&](const HungRequest& h) { return h.modeler == w.modeler->number(); });
-    return true;
-  });
-}
-
 std::uint64_t SynthesisManager::outstanding() const {
   return virtual_ ? virtual_->outstanding() : outstanding_in_threads();
 }
@@ -402,29 +298,6 @@ std::vector<Request> SynthesisManager::come_to_rest() {
     await_finished();
   workshop_->waiting.store(false, std::memory_order_seq_cst);
   return std::exchange(returned_, {});
-}
-
-SynthesisStats SynthesisManager::stats() const {
-  SynthesisStats s;
-  s.published = published_;
-  s.reclaimed = reclaimed_;
-  s.given_up = given_up_;
-  s.modelers = buried_;
-  if (here_.finished() > 0) s.modelers.push_back(stats_of(here_));
-  for (const Worker& w : active_)
-    s.modelers.push_back(stats_of(*w.modeler));
-  for (const Worker& w : retired_)
-    s.modelers.push_back(stats_of(*w.modeler));
-  std::sort(s.modelers.begin(), s.modelers.end(),
-            [](const ModelerStats& a, const ModelerStats& b) { return a.modeler < b.modeler; });
-  for (const ModelerStats& m : s.modelers) {
-    s.models += m.models;
-    s.failed += m.failed;
-    s.triangles += m.triangles;
-    s.bytes += m.bytes;
-    s.cpu_seconds += m.cpu_seconds;
-  }
-  return s;
 }
 
 }  // namespace psygen::synthesis

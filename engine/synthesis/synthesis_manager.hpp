@@ -139,6 +139,7 @@ class SynthesisManager {
   };
   SynthesisManager(const models::Registry& registry, const SynthesisOptions& options,
                    unsigned most);
+  static ModelerStats stats_of(const Modeler& modeler);
   void publish_to_threads(std::vector<Request>&& plan);
   void drain();
   void drain_threads(std::vector<Completion>& out);

@@ -1,0 +1,46 @@
+// Ranks that are not of one mind.
+#include "engine/cluster/meeting.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/engine/cluster/threads_as_ranks.hpp"
+#include "tests/engine/world/shipped.hpp"
+
+namespace psygen::cluster {
+namespace {
+
+TEST(Meeting, RanksThatMakeOtherMeshesAreRefusedWithTheirNumberAndMachine) {
+  const models::Registry standard = models::make_standard_registry();
+  const world::World world = world::testing::parsed(world::testing::kSmallWorld);
+  const auto sentence = [&](const std::function<void(FlightKey&)>& change) {
+    std::string said;
+    ThreadsAsRanks(3).run([&](Peers& peers) {
+      FlightKey key = flight_key(world, standard, "0.1.0");
+      if (peers.rank() == 2) change(key);
+      const auto met = meet(key, peers.rank() + 1, peers);
+      if (peers.rank() == 1) said = met ? std::string() : met.error().message;
+      if (met) {
+        EXPECT_EQ(*met, (std::vector<unsigned>{1, 2, 3}));
+      }
+    });
+    return said;
+  };
+  EXPECT_EQ(sentence([](FlightKey&) {}), "");
+  EXPECT_EQ(sentence([](FlightKey& key) { key.version = "0.2.0"; }),
+            "rank 2 (host2) does not fit rank 0 (host0): it has psygen 0.2.0 instead of 0.1.0");
+  EXPECT_EQ(sentence([](FlightKey& key) { key.types.pop_back(); }),
+            "rank 2 (host2) does not fit rank 0 (host0): it has 3 model types instead of 4");
+  EXPECT_EQ(sentence([](FlightKey& key) { key.types[2].sample_hash ^= 1; }),
+            "rank 2 (host2) does not fit rank 0 (host0): it has another edition of the model type "
+            "tree, which makes other meshes");
+  EXPECT_EQ(
+      sentence([](FlightKey& key) { key.world_hash ^= 1; }),
+      "rank 2 (host2) does not fit rank 0 (host0): it has another version of the world small");
+}
+
+}  // namespace
+}  // namespace psygen::cluster

@@ -1,0 +1,111 @@
+// What a rank that makes meshes answers where it cannot.
+#include "engine/cluster/serve_models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <new>
+#include <stdexcept>
+#include <thread>
+
+#include "engine/cluster/mesh_messages.hpp"
+#include "tests/engine/cluster/flight_ranks.hpp"
+#include "tests/faults.hpp"
+
+namespace psygen::cluster {
+namespace {
+
+using namespace flight;
+
+TEST(ServeModels, ARequestThatComesDamagedGoesBack) {
+  const models::Registry registry = registry_of();
+  std::atomic<int> damaged{0};
+  const auto reports = run({.on_send =
+                                [&](unsigned from, Bytes& bytes) {
+                                  const auto is_request = bytes.front() == std::byte{2};
+                                  if (from == 0 && is_request && damaged++ == 0)
+                                    bytes[20] ^= std::byte{1};
+                                }},
+                           [&](RemoteModels& remote) {
+                             Jobs jobs;
+                             synthesis::RemoteMesh mesh =
+                                 remote.make(0, registry[kCostly], jobs.make(registry, 1, kCostly));
+                             EXPECT_EQ(mesh.answer, synthesis::RemoteMesh::Answer::kNone);
+                             EXPECT_FALSE(remote.is_usable(0));
+                           });
+  EXPECT_EQ(reports[kAnswerer].refused, 1u);
+}
+
+TEST(ServeModels, AFailureThereIsTheSameSentenceAsHere) {
+  const auto fails = [](const models::Parameters&, int) { throw std::runtime_error("too steep"); };
+  const models::Registry registry = registry_of([](const models::Parameters&, int) {}, fails);
+  const auto reports = run({.costly_there = fails}, [&](RemoteModels& remote) {
+    Jobs jobs;
+    const auto mesh = remote.make(0, registry[kCostly], jobs.make(registry, 1, kCostly));
+    EXPECT_EQ(mesh.answer, synthesis::RemoteMesh::Answer::kFailed);
+    const auto p = synthesis::testing::parameters_of(1, 41);
+    const auto place = *HeapDestination::make(registry[kCostly], p, 0);
+    EXPECT_EQ(mesh.error,
+              synthesis::synthesize_guarded(registry[kCostly], p, 0, place.view()).error);
+    EXPECT_TRUE(remote.is_usable(0));
+  });
+  EXPECT_EQ(reports[kAnswerer].failed, 1u);
+}
+
+TEST(ServeModels, WhereMemoryRunsOutThereTheRequestComesBack) {
+  const auto reports =
+      run({.costly_there = [](const models::Parameters&, int) { throw std::bad_alloc(); }},
+          [](RemoteModels& remote) {
+            const models::Registry registry = registry_of();
+            Jobs jobs;
+            const auto mesh = remote.make(0, registry[kCostly], jobs.make(registry, 1, kCostly));
+            EXPECT_EQ(mesh.answer, synthesis::RemoteMesh::Answer::kNone);
+            EXPECT_FALSE(remote.is_usable(0));
+          });
+  EXPECT_EQ(reports[kAnswerer].failed, 1u);
+}
+
+TEST(ServeModels, ARankThatGetsFewerThreadsThanItToldSaysSo) {
+  const models::Registry registry = registry_of();
+  ThreadsAsRanks(1).run([&](Peers& peers) {
+    peers.send(0, plain_message(MessageKind::kEnd));
+    const FewThreads few(1);
+    const auto served = serve_models(registry, 2, peers);
+    ASSERT_FALSE(served.has_value());
+    EXPECT_TRUE(served.error().message.starts_with(
+        "only 1 of 2 threads that make meshes were started: the system gives no more threads"))
+        << served.error().message;
+  });
+}
+
+// What a thread that was left to itself uses lives on.
+TEST(ServeModels, AModelThatHangsAtAnotherRankHoldsUpNoEnd) {
+  static Gate hangs;
+  static const models::Registry there = registry_of(
+      [](const models::Parameters&, int) {}, [](const models::Parameters&, int) { hangs.wait(); });
+  bool noticed = false;
+  ThreadsAsRanks(2).run([&](Peers& peers) {
+    const FlightKey key = key_of(there);
+    const auto threads = meet(key, 1, peers).value();
+    if (peers.rank() > 0) {
+      noticed = serve_models(there, 1, peers, 0).value().hangs;
+      return;
+    }
+    const auto remote =
+        RemoteModels::start(key, threads, peers, {.send_above_s = kSendAbove_s}).value();
+    Jobs jobs;
+    const Request request = jobs.make(there, 1, kCostly);
+    std::jthread waits([&] {
+      EXPECT_EQ(remote->make(0, there[kCostly], request).answer,
+                synthesis::RemoteMesh::Answer::kNone);
+    });
+    hangs.await(1);
+    remote->cancel(0, true);
+    EXPECT_TRUE(remote->end());
+  });
+  EXPECT_TRUE(noticed);
+  hangs.open();
+}
+
+}  // namespace
+}  // namespace psygen::cluster
