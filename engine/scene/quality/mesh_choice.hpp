@@ -20,6 +20,7 @@ struct ChoiceRules {
   std::size_t node_levels = 1;   // of the quadtree
   bool levels_of_detail = true;  // false: always the finest
   bool settle = false;           // Rules::settle
+  bool ask_early = false;        // for models before they are lacked; not where frames wait for all
   bool coarse_first = true;      // Rules::coarse_first
   bool short_of_memory = false;  // the picture is coarser for want of memory
   bool awaits_memory = false;    // requests wait for memory that is about to be free

@@ -75,6 +75,7 @@ ChoiceRules choice_rules(const Settings& settings, const Rules& rules, const Clo
   choice.real_s = clock.real_s;
   choice.levels_of_detail = settings.levels_of_detail;
   choice.settle = rules.settle;
+  choice.ask_early = !rules.settle && !rules.wait;
   choice.coarse_first = rules.coarse_first;
   choice.short_of_memory = quality.coarsening > 1;
   choice.awaits_memory = pressure.waiting > 0;
@@ -156,7 +157,7 @@ constexpr float kLackedFrom = 1.25F;
 
 bool is_early(const ChoiceRules& rules, const NodeView& node, const Demand& demand,
               float size_pixels) {
-  return node.level == 0 && demand.drawn_level == kNoLevel && !rules.settle &&
+  return rules.ask_early && node.level == 0 && demand.drawn_level == kNoLevel &&
          size_pixels < kLackedFrom * rules.min_size_pixels;
 }
 

@@ -64,6 +64,21 @@ TEST(Paradigms, LazyEvaluationDrawsEverythingAndKeepsNothing) {
 }
 
 // Though each picture would fit, and here nothing is in flight.
+// Nothing is asked for early where frames wait for everything: it would never be drawn.
+TEST(Paradigms, LazyEvaluationDrawsModelsThatAreJustLargeEnough) {
+  Settings settings = small_settings();
+  settings.min_size_pixels = 12;
+  const auto usual = make_scene(settings);
+  for (int i = 0; i < 60; ++i)
+    tick_at(*usual, pose_at(256, 256));
+  settings.paradigm = Paradigm::kLazyEvaluation;
+  const auto lazy = make_scene(settings);
+  for (int i = 0; i < 3; ++i)
+    tick_at(*lazy, pose_at(256, 256));
+  EXPECT_GT(lazy->state().draws.models.size(), 20U);
+  EXPECT_EQ(lazy->state().draws.models.size(), usual->state().draws.models.size());
+}
+
 TEST(Paradigms, LazyEvaluationLeavesRoomForTwoPicturesThatMayBeInFlight) {
   Settings settings = small_settings();
   settings.paradigm = Paradigm::kLazyEvaluation;
