@@ -38,9 +38,7 @@ BlockSynthesizer::BlockSynthesizer(const world::World& world, const models::Regi
     : world_(world), registry_(registry), level_(level) {}
 
 models::MeshView BlockSynthesizer::room_for(const models::MeshSize& size) {
-  const std::size_t vertex_bytes =
-      std::size_t{size.vertex_count} * core::vertex_stride_bytes(size.layout);
-  const std::size_t own_indices = size.shared_indices == 0 ? size.index_count : 0;
+  const std::size_t vertex_bytes = size.vertex_bytes(), own_indices = size.own_index_count();
   const std::size_t vertex_lines = lines_of(vertex_bytes);
   const std::size_t needed = vertex_lines + lines_of(own_indices * sizeof(std::uint16_t));
   if (needed > line_count_) {

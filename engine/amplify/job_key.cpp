@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <span>
-
 #include "engine/amplify/block_synthesizer.hpp"
 #include "engine/world/files/world_file.hpp"
 
@@ -31,10 +29,9 @@ core::Result<JobKey> job_key(const world::World& world, const models::Registry& 
                                   "{},{} fails",
                                   world.name, middle.x, middle.z));
   }
-  const std::string text = world::write_world(world, registry);
   return JobKey{std::string(version),
                 world.name,
-                core::hash_bytes(std::as_bytes(std::span(text)), world.files_hash),
+                world::world_hash(world, registry),
                 *sample,
                 region,
                 format};

@@ -19,10 +19,9 @@ inline constexpr std::string_view kNoFiles = "none";
 std::string_view name_of(const JobFormat& format);
 
 struct JobKey {
-  std::string version;  // of psygen
-  std::string world;    // its name, for messages
-  // Of the text of the world's file, as psygen writes it, and of World::files_hash.
-  std::uint64_t world_hash = 0;
+  std::string version;            // of psygen
+  std::string world;              // its name, for messages
+  std::uint64_t world_hash = 0;   // world::world_hash()
   std::uint64_t sample_hash = 0;  // of blocks in the middle of the region, at all levels of detail
   Region region;
   JobFormat format;

@@ -94,11 +94,9 @@ core::Result<world::World> load_world(const std::string& name, models::Registry&
 
 core::Result<world::World> load_world_and_files(const std::string& name,
                                                 models::Registry& registry) {
-  const auto file = find_file(Shipped::kWorld, name);
-  if (!file) return tl::unexpected(file.error());
-  auto world = world::load_world(*file, registry, &handmade::files());
+  auto world = load_world(name, registry);
   if (!world) return world;
-  const auto hash = handmade::hash_of_files(*world, *file);
+  const auto hash = handmade::hash_of_files(*world, *find_file(Shipped::kWorld, name));
   if (!hash) return tl::unexpected(hash.error());
   world->files_hash = *hash;
   return world;

@@ -104,9 +104,7 @@ std::string difference(const FlightKey& mine, const FlightKey& theirs) {
 
 FlightKey flight_key(const world::World& world, const models::Registry& registry,
                      std::string_view version) {
-  const std::string text = world::write_world(world, registry);
-  FlightKey key{
-      std::string(version), world.name, core::hash_bytes(std::as_bytes(std::span(text))), {}};
+  FlightKey key{std::string(version), world.name, world::world_hash(world, registry), {}};
   for (models::ModelIndex i = 0; i < registry.size(); ++i)
     key.types.push_back(known_type(registry[i]));
   return key;

@@ -25,7 +25,7 @@ struct KnownType {
 struct FlightKey {
   std::string version;           // of psygen
   std::string world;             // its name, for messages
-  std::uint64_t world_hash = 0;  // of the text of the world's file, as psygen writes it
+  std::uint64_t world_hash = 0;  // world::world_hash()
   std::vector<KnownType> types;  // of its registry, in order
 };
 

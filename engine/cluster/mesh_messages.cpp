@@ -119,9 +119,8 @@ Bytes plain_message(MessageKind kind) {
 
 core::Result<AnswerWriter> AnswerWriter::make(std::uint64_t ticket, const models::MeshSize& size) {
   AnswerWriter writer;
-  writer.vertex_bytes_ = std::size_t{size.vertex_count} * core::vertex_stride_bytes(size.layout);
-  writer.index_bytes_ = size.shared_indices == 0 ? std::size_t{size.index_count} * 2 : 0;
-  const std::size_t mesh_bytes = writer.vertex_bytes_ + writer.index_bytes_;
+  writer.size_ = size;
+  const std::size_t mesh_bytes = size.bytes();
   try {
     writer.bytes_.reserve(kAnswerHeader + mesh_bytes + kHashBytes);
     writer.bytes_.resize(kAnswerHeader + mesh_bytes);
@@ -134,16 +133,13 @@ core::Result<AnswerWriter> AnswerWriter::make(std::uint64_t ticket, const models
 }
 
 models::MeshView AnswerWriter::mesh() {
-  std::byte* const begin = bytes_.data() + kAnswerHeader;
-  return {{begin, vertex_bytes_},
-          {reinterpret_cast<std::uint16_t*>(begin + vertex_bytes_), index_bytes_ / 2}};
+  return models::mesh_view(bytes_.data() + kAnswerHeader, size_);
 }
 
 Bytes AnswerWriter::finish(const core::Bounds& tight, double seconds) && {
   core::ByteReader header{std::span<const std::byte>(bytes_).subspan(8)};
   const auto ticket = header.get<std::uint64_t>();
-  write_answer_header(bytes_, ticket, RemoteMesh::Answer::kMade, seconds, tight,
-                      vertex_bytes_ + index_bytes_);
+  write_answer_header(bytes_, ticket, RemoteMesh::Answer::kMade, seconds, tight, size_.bytes());
   return sealed(std::move(bytes_));
 }
 

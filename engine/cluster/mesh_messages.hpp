@@ -59,7 +59,7 @@ class AnswerWriter {
 
  private:
   Bytes bytes_;
-  std::size_t vertex_bytes_ = 0, index_bytes_ = 0;
+  models::MeshSize size_;
 };
 // An answer without a mesh: `error` of the type, or kNone.
 Bytes failed_message(std::uint64_t ticket, synthesis::RemoteMesh::Answer answer,

@@ -10,21 +10,7 @@
 #include "engine/core/log.hpp"
 
 namespace psygen::cluster {
-namespace {
-
 using synthesis::RemoteMesh;
-
-std::size_t mesh_bytes(const models::MeshSize& size) {
-  return std::size_t{size.vertex_count} * core::vertex_stride_bytes(size.layout) +
-         (size.shared_indices == 0 ? std::size_t{size.index_count} * 2 : 0);
-}
-
-bool is_box(const core::Bounds& box) {
-  return core::is_finite(box.min) && core::is_finite(box.max) && box.min.x <= box.max.x &&
-         box.min.y <= box.max.y && box.min.z <= box.max.z;
-}
-
-}  // namespace
 
 RemoteModels::RemoteModels(FlightKey key, Peers& peers, const RemoteOptions& options)
     : key_(std::move(key)),
@@ -34,7 +20,7 @@ RemoteModels::RemoteModels(FlightKey key, Peers& peers, const RemoteOptions& opt
 
 bool RemoteModels::takes(const models::ModelType& type, const synthesis::Request& request) const {
   const double least_s =
-      send_above_s_ ? *send_above_s_ : way_.seconds(static_cast<double>(mesh_bytes(request.size)));
+      send_above_s_ ? *send_above_s_ : way_.seconds(static_cast<double>(request.size.bytes()));
   if (!(request.cost.warm_s() > least_s) || request.edits || request.parameters.edits() != nullptr)
     return false;
   return std::ranges::any_of(key_.types, [&](const KnownType& known) {
@@ -91,7 +77,7 @@ RemoteMesh RemoteModels::make(unsigned number, const models::ModelType& type,
   }
   using Answer = RemoteMesh::Answer;
   const bool made = mesh.answer == Answer::kMade;
-  if (made && (mesh.bytes.size() != mesh_bytes(request.size) || !is_box(mesh.tight))) {
+  if (made && (mesh.bytes.size() != request.size.bytes() || !core::is_box(mesh.tight))) {
     lose(place.rank, "its mesh is none");
     mesh = {};
   }

@@ -49,6 +49,12 @@ inline bool is_finite(const glm::vec3& v) {
   return is_finite(glm::dvec3(v));
 }
 
+// Whether the corners are finite, and none of `min` is beyond `max`.
+inline bool is_box(const Bounds& b) {
+  return is_finite(b.min) && is_finite(b.max) && b.min.x <= b.max.x && b.min.y <= b.max.y &&
+         b.min.z <= b.max.z;
+}
+
 // A place in the world. Normalised when local x and z lie in [0, block size).
 struct WorldPosition {
   BlockCoord block;

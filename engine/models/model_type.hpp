@@ -90,6 +90,12 @@ struct MeshSize {
   core::VertexLayout layout = core::VertexLayout::kModel;
   // Triangles of the whole mesh.
   std::uint32_t triangle_count() const { return index_count / 3; }
+  // What a synthesis writes: indices of its own, and the bytes of vertices and of all.
+  std::uint32_t own_index_count() const { return shared_indices == 0 ? index_count : 0; }
+  std::size_t vertex_bytes() const {
+    return std::size_t{vertex_count} * core::vertex_stride_bytes(layout);
+  }
+  std::size_t bytes() const { return vertex_bytes() + std::size_t{own_index_count()} * 2; }
   friend bool operator==(const MeshSize&, const MeshSize&) = default;
 };
 
@@ -99,6 +105,12 @@ struct MeshView {
   std::span<std::byte> vertices;
   std::span<std::uint16_t> indices;
 };
+// The destination at `bytes`, which has size.bytes() of them: vertices, then indices. They are
+// aligned as vertices are.
+inline MeshView mesh_view(std::byte* bytes, const MeshSize& size) {
+  return {{bytes, size.vertex_bytes()},
+          {reinterpret_cast<std::uint16_t*>(bytes + size.vertex_bytes()), size.own_index_count()}};
+}
 
 // One type of model. Unless stated otherwise, `p` passes validate() and 0 <= level < level_count().
 class ModelType {

@@ -44,8 +44,8 @@ RegionSize region_size(const State& s) {
       for (int level = 0; level < levels_needed(s.settings, details[i]); ++level) {
         const models::MeshSize mesh = s.facts.registry[sources[i].model].mesh_size(
             sources[i].parameters, sources[i].first_level + level);
-        size.bytes += s.memory->charged_bytes(mesh.layout, mesh.vertex_count,
-                                              mesh.shared_indices != 0 ? 0 : mesh.index_count);
+        size.bytes +=
+            s.memory->charged_bytes(mesh.layout, mesh.vertex_count, mesh.own_index_count());
         ++size.meshes;
       }
     }

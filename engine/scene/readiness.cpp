@@ -174,8 +174,7 @@ std::uint64_t bytes_of(const State& s, std::span<const Foresight::Mesh> meshes) 
   for (const Foresight::Mesh& mesh : meshes) {
     const models::MeshSize size =
         s.facts.registry[mesh.key.model].mesh_size(mesh.parameters, mesh.key.level);
-    bytes += s.memory->charged_bytes(size.layout, size.vertex_count,
-                                     size.shared_indices != 0 ? 0 : size.index_count);
+    bytes += s.memory->charged_bytes(size.layout, size.vertex_count, size.own_index_count());
   }
   return bytes;
 }

@@ -100,7 +100,7 @@ void GeometryCache::give_back(const core::GeometryRange& range) {
 
 core::Result<core::GeometryReservation> GeometryCache::reserve_memory(const models::MeshSize& size,
                                                                       Rank rank) {
-  const std::uint32_t own_indices = size.shared_indices == 0 ? size.index_count : 0;
+  const std::uint32_t own_indices = size.own_index_count();
   const std::uint64_t need = memory_.charged_bytes(size.layout, size.vertex_count, own_indices);
   const auto refuse = [this](Room room) {
     stats_.refusals += room == Room::kNone ? 1 : 0;

@@ -4,11 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <new>
-#include <span>
 #include <vector>
 
 #include "engine/core/out_of_memory.hpp"
@@ -42,13 +39,6 @@ inline const Annotate* annotate_of(const Workshop& workshop, models::ModelIndex 
 inline void copy_mesh(const models::MeshView& mesh, const models::MeshView& destination) {
   std::ranges::copy(mesh.vertices, destination.vertices.begin());
   std::ranges::copy(mesh.indices, destination.indices.begin());
-}
-
-// Vertices, then own indices, of the sizes of `like`.
-inline models::MeshView view_of(std::span<std::byte> bytes, const models::MeshView& like) {
-  const std::size_t vertex_bytes = like.vertices.size();
-  return {bytes.first(vertex_bytes),
-          {reinterpret_cast<std::uint16_t*>(bytes.data() + vertex_bytes), like.indices.size()}};
 }
 
 }  // namespace psygen::synthesis

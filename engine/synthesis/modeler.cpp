@@ -83,17 +83,16 @@ bool Modeler::write_mesh(const models::ModelType& type, const models::MeshView& 
 void Modeler::write_noted_mesh(const models::ModelType& type, const Annotate& annotate,
                                Completion& c) {
   noting(c, [&] {
-    const models::MeshView mesh = scratch_for(current_.destination);
+    const models::MeshView mesh = scratch();
     if (!write_mesh(type, mesh, c) || is_given_up()) return;
     c.note = annotate(current_, mesh);
     copy_mesh(mesh, current_.destination);
   });
 }
 
-models::MeshView Modeler::scratch_for(const models::MeshView& destination) {
-  const std::size_t bytes = destination.vertices.size() + destination.indices.size_bytes();
-  if (scratch_.size() < bytes) scratch_.resize(bytes);
-  return view_of(scratch_, destination);
+models::MeshView Modeler::scratch() {
+  if (scratch_.size() < current_.size.bytes()) scratch_.resize(current_.size.bytes());
+  return models::mesh_view(scratch_.data(), current_.size);
 }
 
 // How warm the caches are for this request. After a pause, in sleep or without a processor, they
@@ -169,8 +168,7 @@ void Modeler::count(const Completion& c) {
   }
   add(counters_.models, std::uint64_t{1});
   add(counters_.triangles, std::uint64_t{current_.size.triangle_count()});
-  add(counters_.bytes, std::uint64_t{current_.destination.vertices.size() +
-                                     current_.destination.indices.size_bytes()});
+  add(counters_.bytes, std::uint64_t{current_.size.bytes()});
 }
 
 bool Modeler::is_older(double limit_s) const {

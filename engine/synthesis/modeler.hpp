@@ -122,7 +122,7 @@ class Modeler {
   Warmth warmth_at(double now_s);
   bool write_mesh(const models::ModelType& type, const models::MeshView& mesh, Completion& c);
   void write_noted_mesh(const models::ModelType& type, const Annotate& annotate, Completion& c);
-  models::MeshView scratch_for(const models::MeshView& destination);
+  models::MeshView scratch();
   void wake_waiting(Workshop& workshop);
   void count(const Completion& completion);
 

@@ -41,7 +41,7 @@ void Modeler::write_remote_mesh(const Workshop& workshop, const Annotate* annota
   c.ok = mesh.answer == RemoteMesh::Answer::kMade;
   c.error = std::move(mesh.error);
   if (!c.ok) return;
-  const models::MeshView made = view_of(mesh.bytes, current_.destination);
+  const models::MeshView made = models::mesh_view(mesh.bytes.data(), current_.size);
   if (annotate != nullptr) noting(c, [&] { c.note = (*annotate)(current_, made); });
   copy_mesh(made, current_.destination);
   if (workshop.hash_content && c.ok) c.content_hash = content_hash(current_.key, made);

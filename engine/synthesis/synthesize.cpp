@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <exception>
 #include <new>
 
@@ -10,13 +9,6 @@
 
 namespace psygen::synthesis {
 namespace {
-bool is_box(const core::Bounds& b) {
-  for (int i = 0; i < 3; ++i) {
-    if (!std::isfinite(b.min[i]) || !std::isfinite(b.max[i]) || b.min[i] > b.max[i]) return false;
-  }
-  return true;
-}
-
 std::string named(const models::ModelType& type, int level, std::string_view what) {
   return fmt::format("{} level {}{}", type.name(), level, what);
 }
@@ -37,7 +29,7 @@ SynthesisOutcome synthesize_guarded(const models::ModelType& type, const models:
                                     int level, const models::MeshView& out) {
   try {  // types of users may throw; nothing of ours does unless memory ends
     const core::Bounds tight = type.synthesize(p, level, out);
-    if (is_box(tight)) return {true, tight, {}};
+    if (core::is_box(tight)) return {true, tight, {}};
     return {false, {}, named(type, level, " returned bounds that are not a box")};
   } catch (const std::bad_alloc&) {
     SynthesisOutcome outcome = failed([&] { return core::out_of_memory(named(type, level, "")); });
@@ -72,9 +64,7 @@ core::Result<HeapDestination> HeapDestination::make(const models::ModelType& typ
   if (!size) return tl::unexpected(size.error());
   HeapDestination d;
   d.size_ = *size;
-  d.vertex_bytes_ = std::size_t{d.size_.vertex_count} * core::vertex_stride_bytes(d.size_.layout);
-  d.own_indices_ = d.size_.shared_indices == 0 ? d.size_.index_count : 0;
-  d.memory_.reset(new (std::nothrow) std::byte[d.vertex_bytes_ + d.own_indices_ * 2]);
+  d.memory_.reset(new (std::nothrow) std::byte[d.size_.bytes()]);
   if (!d.memory_) {
     return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory(named(type, level, "")));
   }
@@ -82,8 +72,7 @@ core::Result<HeapDestination> HeapDestination::make(const models::ModelType& typ
 }
 
 models::MeshView HeapDestination::view() const {
-  return {{memory_.get(), vertex_bytes_},
-          {reinterpret_cast<std::uint16_t*>(memory_.get() + vertex_bytes_), own_indices_}};
+  return models::mesh_view(memory_.get(), size_);
 }
 
 }  // namespace psygen::synthesis

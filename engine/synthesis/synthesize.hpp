@@ -39,7 +39,6 @@ class HeapDestination {
 
  private:
   models::MeshSize size_;
-  std::size_t vertex_bytes_ = 0, own_indices_ = 0;
   std::unique_ptr<std::byte[]> memory_;
 };
 

@@ -6,12 +6,6 @@
 namespace psygen::world {
 namespace {
 
-double mesh_bytes(const models::MeshSize& size) {
-  const std::uint32_t own_indices = size.shared_indices == 0 ? size.index_count : 0;
-  return static_cast<double>(size.vertex_count) * core::vertex_stride_bytes(size.layout) +
-         static_cast<double>(own_indices) * sizeof(std::uint16_t);
-}
-
 // Mean size of one instance of a scatter whose first instance has the index `first`. The samples
 // are real instances of the world, from consecutive blocks.
 struct MeanSize {
@@ -26,7 +20,7 @@ MeanSize mean_size(const World& world, const models::Registry& registry, const S
         draw_parameters(world, registry, scatter, block, first + k % scatter.count);
     const models::MeshSize size = registry[scatter.model].mesh_size(p, 0);
     sum.triangles += size.triangle_count();
-    sum.bytes += mesh_bytes(size);
+    sum.bytes += static_cast<double>(size.bytes());
   }
   return {sum.triangles / kSizeSamples, sum.bytes / kSizeSamples};
 }
@@ -73,7 +67,8 @@ WorldSize world_size(const World& world, const models::Registry& registry) {
                              : static_cast<std::uint64_t>(world.blocks_x) *
                                    static_cast<std::uint64_t>(world.blocks_z);
   size.block_triangles = models::terrain_surface_triangles(world.terrain, 0);
-  size.block_bytes = mesh_bytes(registry[world.terrain_model].mesh_size(world.terrain, 0));
+  size.block_bytes =
+      static_cast<double>(registry[world.terrain_model].mesh_size(world.terrain, 0).bytes());
   const std::vector<double> counts = placed_per_block(world, registry);
   std::uint32_t first = 0;
   for (std::size_t s = 0; s < world.scatter.size(); ++s) {

@@ -44,7 +44,7 @@ double measured_ground_error_m(const world::World& world, const models::Registry
     const models::Parameters p = node_terrain(world, node);
     const models::MeshSize size = terrain.mesh_size(p, 0);
     vertices.resize(size.vertex_count * sizeof(core::TerrainVertex));
-    indices.resize(size.shared_indices == 0 ? size.index_count : 0);
+    indices.resize(size.own_index_count());
     terrain.synthesize(p, 0, {vertices, indices});
     add_distances(core::vertices_of<core::TerrainVertex>(vertices), distances);
   }

@@ -92,7 +92,7 @@ void SampleMesh::make(const models::ModelType& type, const models::Parameters& p
   PSYGEN_CHECK(size_.layout == core::VertexLayout::kModel, "models are made of ModelVertex");
   box_ = type.bounds(p);
   vertices_.resize(size_.vertex_count * sizeof(core::ModelVertex));
-  indices_.resize(size_.shared_indices == 0 ? size_.index_count : 0);
+  indices_.resize(size_.own_index_count());
   type.synthesize(p, level, {vertices_, indices_});
 }
 

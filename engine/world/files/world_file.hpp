@@ -34,5 +34,7 @@ core::Result<World> parse_world(std::string_view text, std::string_view file_nam
 
 // The text of a world file from which parse_world() makes an equal world.
 std::string write_world(const World& world, const models::Registry& registry);
+// Of that text, and of World::files_hash.
+std::uint64_t world_hash(const World& world, const models::Registry& registry);
 
 }  // namespace psygen::world

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <iterator>
+#include <span>
 
+#include "engine/core/hash.hpp"
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/mask_file.hpp"
@@ -92,6 +94,11 @@ std::string write_world(const World& world, const models::Registry& registry) {
     if (!name.empty()) fmt::format_to(out, "{} = {}\n", kPaletteImages[i], toml_string(name));
   }
   return text;
+}
+
+std::uint64_t world_hash(const World& world, const models::Registry& registry) {
+  const std::string text = write_world(world, registry);
+  return core::hash_bytes(std::as_bytes(std::span(text)), world.files_hash);
 }
 
 }  // namespace psygen::world

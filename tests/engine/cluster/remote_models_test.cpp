@@ -68,49 +68,16 @@ TEST(RemoteModels, TheWorldIsTheSameForAnyNumberOfRanks) {
   EXPECT_EQ(hashes[4], hashes[1]);
 }
 
-TEST(RemoteModels, AStalledRankIsGivenUpAndItsMeshIsMadeHere) {
+// A rank that claimed a costly mesh, while a blocker kept the modeler here busy, and stalled. After
+// eleven seconds of the watchdog's clock, with `count` ranks: after_it(manager, remote, done),
+// where `done` has the blocker.
+template <class AfterIt>
+void stall(unsigned count, const AfterIt& after_it) {
   Gate busy, stalled;
   std::atomic<double> now_s{0};
   const models::Registry registry =
       registry_of([&](const models::Parameters&, int) { busy.wait(); });
-  run({.costly_there = [&](const models::Parameters&, int) { stalled.wait(); }},
-      [&](RemoteModels& remote) {
-        Jobs jobs;
-        SynthesisOptions options = options_with(remote);
-        options.watchdog_seconds = 10;
-        options.clock = [&] { return now_s.load(); };
-        SynthesisManager manager(registry, options);
-        manager.publish({jobs.make(registry, 1, kBlocker)});
-        busy.await(1);
-        manager.publish({jobs.make(registry, 2, kCostly)});
-        stalled.await(1);
-        busy.open();
-        std::vector<Completion> done;
-        collect(manager, 1, done);
-        now_s = 11;
-        manager.collect(done);
-        EXPECT_EQ(done.size(), 1u) << "it is not failed";
-        EXPECT_TRUE(manager.hung().empty());
-        EXPECT_EQ(manager.remote_count(), 0u);
-        std::vector<Request> again = manager.reclaim();
-        ASSERT_EQ(again.size(), 1u);
-        manager.publish(std::move(again));
-        ASSERT_TRUE(manager.wait_all());
-        collect(manager, 2, done);
-        EXPECT_TRUE(done[1].ok && !done[1].remote && done[1].key.model == kCostly);
-        EXPECT_EQ(manager.stats().failed, 0u);
-        EXPECT_EQ(remote.figures().lost, 1u);
-        stalled.open();
-      });
-}
-
-// It would hang at every one of them.
-TEST(RemoteModels, WhatARankWasGivenUpWithGoesToNoOther) {
-  Gate busy, stalled;
-  std::atomic<double> now_s{0};
-  const models::Registry registry =
-      registry_of([&](const models::Parameters&, int) { busy.wait(); });
-  run({.count = 3, .costly_there = [&](const models::Parameters&, int) { stalled.wait(); }},
+  run({.count = count, .costly_there = [&](const models::Parameters&, int) { stalled.wait(); }},
       [&](RemoteModels& remote) {
         Jobs jobs;
         SynthesisOptions options = options_with(remote);
@@ -127,16 +94,40 @@ TEST(RemoteModels, WhatARankWasGivenUpWithGoesToNoOther) {
         std::vector<Completion> done;
         collect(manager, 1, done);
         now_s = 11;
-        std::vector<Request> again = manager.reclaim();
-        ASSERT_EQ(again.size(), 1u);
-        EXPECT_FALSE(manager.may_go(again[0]));
-        manager.publish(std::move(again));
-        ASSERT_TRUE(manager.wait_all());
-        collect(manager, 2, done);
-        EXPECT_TRUE(done[1].ok && !done[1].remote);
-        EXPECT_EQ(remote.figures().lost, 1u);
+        after_it(manager, remote, done);
         stalled.open();
       });
+}
+
+TEST(RemoteModels, AStalledRankIsGivenUpAndItsMeshIsMadeHere) {
+  stall(2, [](SynthesisManager& manager, RemoteModels& remote, std::vector<Completion>& done) {
+    manager.collect(done);
+    EXPECT_EQ(done.size(), 1u) << "it is not failed";
+    EXPECT_TRUE(manager.hung().empty());
+    EXPECT_EQ(manager.remote_count(), 0u);
+    std::vector<Request> again = manager.reclaim();
+    ASSERT_EQ(again.size(), 1u);
+    manager.publish(std::move(again));
+    ASSERT_TRUE(manager.wait_all());
+    collect(manager, 2, done);
+    EXPECT_TRUE(done[1].ok && !done[1].remote && done[1].key.model == kCostly);
+    EXPECT_EQ(manager.stats().failed, 0u);
+    EXPECT_EQ(remote.figures().lost, 1u);
+  });
+}
+
+// It would hang at every one of them.
+TEST(RemoteModels, WhatARankWasGivenUpWithGoesToNoOther) {
+  stall(3, [](SynthesisManager& manager, RemoteModels& remote, std::vector<Completion>& done) {
+    std::vector<Request> again = manager.reclaim();
+    ASSERT_EQ(again.size(), 1u);
+    EXPECT_FALSE(manager.may_go(again[0]));
+    manager.publish(std::move(again));
+    ASSERT_TRUE(manager.wait_all());
+    collect(manager, 2, done);
+    EXPECT_TRUE(done[1].ok && !done[1].remote);
+    EXPECT_EQ(remote.figures().lost, 1u);
+  });
 }
 
 TEST(RemoteModels, TheyServeOneManager) {

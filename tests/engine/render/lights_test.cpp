@@ -2,38 +2,20 @@
 // else changes.
 #include <gtest/gtest.h>
 
-#include "tests/engine/render/on_a_path.hpp"
+#include "tests/engine/render/one_of_each.hpp"
 
 namespace psygen::render {
 namespace {
 
-class PointLights : public OnAPath {
+class PointLights : public OneOfEach {
  protected:
   void SetUp() override {
-    OnAPath::SetUp();
-    if (!renderer_) return;
-    const auto model = synthetic::make_box(renderer_->geometry(), glm::vec3(0.3F));
-    const auto object = synthetic::make_object_box(renderer_->geometry(), glm::vec3(0.3F));
-    const auto ground =
-        synthetic::make_terrain(renderer_->geometry(), 64, [](int, int) { return 0.5F; });
-    const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(64));
-    ASSERT_TRUE(model && object && ground && grid);
-    model_.range = *model;
-    object_.range = *object;
-    ground_.range = *ground;
-    ground_.shared_indices = *grid;
-    model_.origin = {-3, 0, -12};
-    object_.origin = {3, 0, -12};
-    ground_.origin = {-32, -3, -60};
-    input_ = synthetic::look(60, 0, kSize);
+    OneOfEach::SetUp();
     input_.light.cloud_cover = 0;
     for (glm::vec3* colour :
          {&input_.light.sun_colour, &input_.light.zenith_colour, &input_.light.horizon_colour,
           &input_.light.ground_colour, &input_.light.haze_colour, &input_.light.glow_colour})
       *colour *= 0.05F;
-    input_.models = {&model_, 1};
-    input_.objects = {&object_, 1};
-    input_.terrain = {&ground_, 1};
   }
   Picture lit_by(std::vector<PointLight> lights) {
     FrameInput input = input_;
@@ -53,11 +35,6 @@ class PointLights : public OnAPath {
   static double model_of(const Picture& p) { return brightness(p, 44, 56, 56, 64); }
   static double object_of(const Picture& p) { return brightness(p, 104, 116, 56, 64); }
   static double ground_of(const Picture& p) { return brightness(p, 60, 100, 90, 118); }
-
-  MeshDraw model_;
-  ObjectDraw object_;
-  TerrainDraw ground_;
-  FrameInput input_;
 };
 
 TEST_P(PointLights, light_ground_models_and_objects_that_they_reach) {

@@ -7,34 +7,17 @@
 
 #include "engine/render/particles.hpp"
 #include "tests/engine/render/compiled_shaders.hpp"
-#include "tests/engine/render/on_a_path.hpp"
+#include "tests/engine/render/one_of_each.hpp"
 
 namespace psygen::render {
 namespace {
 
-class SteadyShaders : public OnAPath {
+class SteadyShaders : public OneOfEach {
  protected:
   void SetUp() override {
-    OnAPath::SetUp();
+    OneOfEach::SetUp();
     if (!renderer_) return;
     if (!renderer_->device().software) GTEST_SKIP() << "only software devices do";
-    const auto model = synthetic::make_box(renderer_->geometry(), glm::vec3(0.3F));
-    const auto object = synthetic::make_object_box(renderer_->geometry(), glm::vec3(0.3F));
-    const auto ground =
-        synthetic::make_terrain(renderer_->geometry(), 64, [](int, int) { return 0.5F; });
-    const auto grid = renderer_->upload_shared_indices(synthetic::grid_indices(64));
-    ASSERT_TRUE(model && object && ground && grid);
-    model_.range = *model;
-    object_.range = *object;
-    ground_.range = *ground;
-    ground_.shared_indices = *grid;
-    model_.origin = {-3, 0, -12};
-    object_.origin = {3, 0, -12};
-    ground_.origin = {-32, -3, -60};
-    input_ = synthetic::look(60, 0, kSize);
-    input_.models = {&model_, 1};
-    input_.objects = {&object_, 1};
-    input_.terrain = {&ground_, 1};
     input_.water = Water{};
     input_.block_size_m = 64;
     emitter_.kind.half_extent_m = {2, 2, 0.5F};
@@ -50,11 +33,7 @@ class SteadyShaders : public OnAPath {
     return compiled_shaders() - std::exchange(known_, compiled_shaders());
   }
 
-  MeshDraw model_;
-  ObjectDraw object_;
-  TerrainDraw ground_;
   ParticleDraw emitter_;
-  FrameInput input_;
   std::uint64_t known_ = 0;
 };
 
