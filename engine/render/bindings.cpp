@@ -25,6 +25,7 @@ constexpr VkShaderStageFlags kVertex = VK_SHADER_STAGE_VERTEX_BIT,
 constexpr std::array kBindings{
     Binding{PSYGEN_BINDING_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kBoth},
     Binding{PSYGEN_BINDING_DRAWS, kBufferType, kVertex},
+    Binding{PSYGEN_BINDING_COARSE, kTextureType, kFragment},
     Binding{PSYGEN_BINDING_CLOUDS, kTextureType, kFragment},
     Binding{PSYGEN_BINDING_FONT, kTextureType, kFragment},
     Binding{PSYGEN_BINDING_GLYPHS, kBufferType, kVertex},
@@ -134,7 +135,9 @@ Result<void> Bindings::create_textures(const Device& device, const Overlay& over
 Result<void> Bindings::create_sets(const Device& device, std::uint32_t sets) {
   std::array<const VkSampler*, kBindings.size()> samplers{};
   samplers[PSYGEN_BINDING_CLOUDS] = cloud_sampler_.address();
-  samplers[PSYGEN_BINDING_FONT] = samplers[PSYGEN_BINDING_MIRROR] = smooth_sampler_.address();
+  for (const std::size_t smooth :
+       {PSYGEN_BINDING_FONT, PSYGEN_BINDING_MIRROR, PSYGEN_BINDING_COARSE})
+    samplers[smooth] = smooth_sampler_.address();
   samplers[PSYGEN_BINDING_SHADOWS] = shadows_.sampler();
   samplers[PSYGEN_BINDING_GROUND] = ground_.sampler();
   samplers[PSYGEN_BINDING_PICTURES] = pictures_->sampler();
@@ -181,11 +184,18 @@ void Bindings::write(const Device& device, VkDescriptorSet set, const SlotBuffer
   write_named(device, set, all);
 }
 
-void Bindings::write_mirror(const Device& device, VkDescriptorSet set, const Mirror& mirror) const {
-  if (!mirror.exists()) return;
-  const std::array both{named(PSYGEN_BINDING_MIRROR, mirror.colour.view.get()),
-                        named(PSYGEN_BINDING_MIRROR_DEPTH, mirror.depth.view.get())};
-  write_named(device, set, both);
+void Bindings::write_targets(const Device& device, VkDescriptorSet set,
+                             const Targets& targets) const {
+  // lavapipe looks at all images of a set, also at those that no shader reads.
+  const auto or_clouds = [&](const Image& image) {
+    return (image.view.get() != VK_NULL_HANDLE ? image : clouds_).view.get();
+  };
+  const bool coarse = targets.coarse.view.get() != VK_NULL_HANDLE;
+  const std::array all{named(PSYGEN_BINDING_MIRROR, or_clouds(targets.mirror.colour)),
+                       named(PSYGEN_BINDING_MIRROR_DEPTH, or_clouds(targets.mirror.depth)),
+                       named(PSYGEN_BINDING_COARSE, or_clouds(targets.coarse),
+                             coarse ? kCoarseLayout : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)};
+  write_named(device, set, all);
 }
 
 }  // namespace psygen::render

@@ -9,10 +9,10 @@
 
 #include "engine/render/ground_image.hpp"
 #include "engine/render/materials.hpp"
-#include "engine/render/mirror.hpp"
 #include "engine/render/model_pictures.hpp"
 #include "engine/render/overlay.hpp"
 #include "engine/render/shadow_maps.hpp"
+#include "engine/render/targets.hpp"
 
 namespace psygen::render {
 
@@ -37,8 +37,8 @@ class Bindings {
 
   // Binds these buffers and the textures to a set that no unfinished commands use.
   void write(const Device& device, VkDescriptorSet set, const SlotBuffers& buffers) const;
-  // The same with what water mirrors, if that exists.
-  void write_mirror(const Device& device, VkDescriptorSet set, const Mirror& mirror) const;
+  // The same with what is read of the images that a frame is drawn to, once they have changed.
+  void write_targets(const Device& device, VkDescriptorSet set, const Targets& targets) const;
 
  private:
   core::Result<void> create_samplers(const Device& device);

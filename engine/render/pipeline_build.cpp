@@ -111,7 +111,8 @@ VkPipelineDepthStencilStateCreateInfo depth_of(const PipelineShape& shape) {
   const bool writes = draws_meshes(shape.kind) || shape.kind == PipelineKind::kWater;
   VkPipelineDepthStencilStateCreateInfo depth{};
   depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-  depth.depthTestEnable = shape.kind != PipelineKind::kOverlay;
+  depth.depthTestEnable =
+      shape.kind != PipelineKind::kOverlay && shape.kind != PipelineKind::kScaleUp;
   depth.depthWriteEnable = writes;
   depth.depthCompareOp = shape.shadow ? VK_COMPARE_OP_LESS
                          : writes     ? VK_COMPARE_OP_GREATER

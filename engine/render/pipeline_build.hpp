@@ -23,6 +23,7 @@ enum class PipelineKind : std::uint8_t {
   kSun,
   kParticles,
   kLines,
+  kScaleUp,
   kOverlay
 };
 

@@ -11,7 +11,7 @@ using core::Result;
 namespace {
 
 // Largest number of pipelines of a preset, for the progress.
-constexpr double kMostPipelines = 33;
+constexpr double kMostPipelines = 34;
 
 constexpr VkBool32 on(bool yes) {
   return yes ? VK_TRUE : VK_FALSE;
@@ -36,7 +36,11 @@ Result<void> Pipelines::create(const Device& device, VkFormat colour_format,
     shape.frag = other_code().overlay_frag;
     if (Result<void> made = make(alone, shape, overlay_); !made) return made;
     shape.flat = true;
-    return make(alone, shape, overlay_over_coarse_);
+    if (Result<void> made = make(alone, shape, overlay_over_coarse_); !made) return made;
+    shape.kind = PipelineKind::kScaleUp;
+    shape.vert = other_code().scale_up_vert;
+    shape.frag = other_code().scale_up_frag;
+    return make(alone, shape, scale_up_);
   });
 }
 

@@ -15,7 +15,7 @@ namespace psygen::render {
 // Empty until create(). The device must outlive it.
 class Pipelines {
  public:
-  // Creates the textures, `sets` descriptor sets, and the pipeline for text.
+  // Creates the textures, `sets` descriptor sets, and the pipelines for text and for scaling up.
   core::Result<void> create(const Device& device, VkFormat colour_format,
                             const PresetTraits& traits, const Overlay& overlay, std::uint32_t sets,
                             const MaterialTable& materials, const ModelPictures& pictures,
@@ -66,6 +66,8 @@ class Pipelines {
   VkPipeline sky() const { return sky_.get(); }
   VkPipeline sky_below() const { return sky_below_.get(); }
   VkPipeline sun() const { return sun_.get(); }
+  // Scales a landscape of fewer pixels up, in the pass over it.
+  VkPipeline scale_up() const { return scale_up_.get(); }
   // Text, in the pass of the landscape or in that over a coarse one (begin_pass_over_coarse()).
   VkPipeline overlay(bool over_coarse) const {
     return (over_coarse ? overlay_over_coarse_ : overlay_).get();
@@ -127,7 +129,7 @@ class Pipelines {
   ObjectPipelines objects_;
   std::array<UniquePipeline, 2> particles_;  // indexed by whether they have a texture
   UniquePipeline water_, lamplit_water_, sky_, sky_below_, sun_, lines_;
-  UniquePipeline overlay_, overlay_over_coarse_;
+  UniquePipeline overlay_, overlay_over_coarse_, scale_up_;
 };
 
 }  // namespace psygen::render

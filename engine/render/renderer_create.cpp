@@ -185,7 +185,7 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
     if (!fits) return fits;
   }
   targets_ = std::move(targets);
-  use_mirrors();
+  use_targets();
   return {};
 }
 

@@ -86,7 +86,7 @@ class RendererImpl {
   core::Result<void> create_culling();
   core::Result<void> create_looks(Preset preset, const Progress& progress);
   void use_pipelines();
-  void use_mirrors();
+  void use_targets();
   core::Result<Targets> make_small_targets();
   core::Result<void> warm_up(const Progress& progress);
   core::Result<void> warm_up_objects(bool lamps);
@@ -131,7 +131,7 @@ class RendererImpl {
   std::unique_ptr<Instance> instance_;
   UniqueSurface surface_;
   std::unique_ptr<Device> device_;
-  VkFormat colour_format_ = VK_FORMAT_R8G8B8A8_UNORM;
+  VkFormat colour_format_ = VK_FORMAT_B8G8R8A8_UNORM;
   std::uint32_t pushed_from_ = 0;  // meshes with at least this many indices are pushed
   std::vector<Buffer> pool_blocks_;
   std::unique_ptr<GeometryPool> pool_;

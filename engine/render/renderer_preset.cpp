@@ -45,14 +45,14 @@ Result<void> RendererImpl::create_looks(Preset preset, const Progress& progress)
 void RendererImpl::use_pipelines() {
   for (FrameSlot& slot : slots_)
     slot.use(*device_, pipelines_.bindings(), index_of(slot));
-  use_mirrors();
+  use_targets();
 }
 
-// Binds what water mirrors to the sets of the slots, after either has changed.
-void RendererImpl::use_mirrors() {
+// Binds what shaders read of the targets to the sets of the slots, after either has changed.
+void RendererImpl::use_targets() {
   if (targets_.empty()) return;
   for (const FrameSlot& slot : slots_)
-    pipelines_.bindings().write_mirror(*device_, slot.set(), targets_of(slot).mirror);
+    pipelines_.bindings().write_targets(*device_, slot.set(), targets_of(slot));
 }
 
 Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
@@ -88,23 +88,24 @@ Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
   return {};
 }
 
-// Targets for draws before the first frame. Their mirror is bound until use_mirrors().
+// Targets for draws before the first frame, which are bound until use_targets().
 Result<Targets> RendererImpl::make_small_targets() {
   wait_idle();
   Result<Targets> small =
       make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples(), pipelines_.mirrors());
   if (!small) return small;
+  if (scales_up_) {
+    if (Result<void> added = add_coarse(*device_, colour_format_, *small); !added)
+      return tl::unexpected(added.error());
+  }
   for (const FrameSlot& slot : slots_)
-    pipelines_.bindings().write_mirror(*device_, slot.set(), small->mirror);
+    pipelines_.bindings().write_targets(*device_, slot.set(), *small);
   return small;
 }
 
 Result<void> RendererImpl::warm_up(const Progress& progress) {
   Result<Targets> small = make_small_targets();
   if (!small) return tl::unexpected(small.error());
-  if (scales_up_) {
-    if (Result<void> added = add_coarse(*device_, colour_format_, *small); !added) return added;
-  }
   FrameSlot& slot = slots_[0];
   const FrameInput nothing;
   for (int step = 0; step < kWarmUpSteps; ++step) {
@@ -123,7 +124,7 @@ Result<void> RendererImpl::warm_up(const Progress& progress) {
             .and_then([&] { return go_on(progress, (step + 1.0) / kWarmUpSteps); });
     if (!drawn) return drawn;
   }
-  use_mirrors();
+  use_targets();
   small->drawn = small->extent;
   return culling_ ? warm_up_culling(slot, *small) : Result<void>{};
 }
@@ -196,7 +197,7 @@ Result<void> RendererImpl::warm_up_later(int steps, const RecordStep& record) {
                 .and_then([&] { return submit(slot, false); })
                 .and_then([&] { return wait_for(slot); });
   }
-  use_mirrors();
+  use_targets();
   idle_value_ = warm_up_value_ = frame_value_;
   return drawn;
 }

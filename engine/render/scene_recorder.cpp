@@ -245,6 +245,14 @@ void draw_water(const Device& device, const Pipelines& pipelines, VkCommandBuffe
   device.vk.vkCmdDraw(commands, PSYGEN_WATER_COLUMNS * PSYGEN_WATER_STRIP, 1, 0, 0);
 }
 
+void draw_scaled_up(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
+                    Targets& targets) {
+  begin_pass_over_coarse(device, slot.commands(), targets);
+  bind_set(device, pipelines, slot);
+  bind_pipeline(device, slot.commands(), pipelines.scale_up());
+  device.vk.vkCmdDraw(slot.commands(), 6, 1, 0, 0);
+}
+
 void draw_text(const Device& device, VkPipeline overlay, VkCommandBuffer commands,
                std::uint32_t glyph_vertex_count) {
   if (glyph_vertex_count == 0) return;
@@ -283,8 +291,7 @@ void record_scene(const Device& device, const Pipelines& pipelines, FrameSlot& s
   draw_lines(device, pipelines, commands, pass);
   if (targets.is_coarse()) {
     device.vk.vkCmdEndRendering(commands);
-    begin_pass_over_coarse(device, commands, targets);
-    bind_set(device, pipelines, slot);
+    draw_scaled_up(device, pipelines, slot, targets);
   }
   const VkPipeline overlay = pipelines.overlay(targets.is_coarse());
   draw_text(device, overlay, commands, pass.glyph_vertex_count);

@@ -67,6 +67,9 @@ void draw_sky(const Device& device, const Pipelines& pipelines, VkCommandBuffer 
 // does.
 void draw_water(const Device& device, const Pipelines& pipelines, VkCommandBuffer commands,
                 bool lamps);
+// Over a coarse landscape: scales it up, and begins the pass for text on all pixels of the picture.
+void draw_scaled_up(const Device& device, const Pipelines& pipelines, const FrameSlot& slot,
+                    Targets& targets);
 void draw_text(const Device& device, VkPipeline overlay, VkCommandBuffer commands,
                std::uint32_t glyph_vertex_count);
 

@@ -175,6 +175,12 @@ constexpr std::uint32_t kSkyBelowVert[] =
 constexpr std::uint32_t kSunVert[] =
 #include "sun_vert_spv.h"
     ;
+constexpr std::uint32_t kScaleUpVert[] =
+#include "scale_up_vert_spv.h"
+    ;
+constexpr std::uint32_t kScaleUpFrag[] =
+#include "scale_up_frag_spv.h"
+    ;
 constexpr std::uint32_t kOverlayVert[] =
 #include "overlay_vert_spv.h"
     ;
@@ -283,6 +289,8 @@ constexpr OtherCode kOthers{kSurfaceFrag,
                             kSkyDomeFrag,
                             kSkyBelowVert,
                             kSunVert,
+                            kScaleUpVert,
+                            kScaleUpFrag,
                             kOverlayVert,
                             kOverlayFrag,
                             kObjectFrag,

@@ -15,9 +15,12 @@ namespace {
 
 constexpr VkImageSubresourceLayers kColourLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
 
-// The image that the landscape gets its colours in.
+// The image that the landscape gets its colours in, and the layout for that.
 const Image& landscape_of(const Targets& targets) {
   return targets.is_coarse() ? targets.coarse : targets.colour;
+}
+VkImageLayout landscape_layout(const Targets& targets) {
+  return targets.is_coarse() ? kCoarseLayout : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 }
 
 // Whether the landscape is complete after this part of a frame, and water mirrors it.
@@ -31,18 +34,18 @@ void to_attachments(const Device& device, VkCommandBuffer commands, Targets& tar
   VkImageLayout& layout = targets.is_coarse() ? targets.coarse_layout : targets.colour_layout;
   if (is_mirrored(targets, part)) mirror_to_attachments(device, commands, targets.mirror);
   if (part == PassPart::kWater) mirror_to_textures(device, commands, targets.mirror);
-  if (part == PassPart::kWhole && targets.host_ordered &&
-      layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)
-    return;
+  const VkImageLayout drawn_to = landscape_layout(targets);
+  if (part == PassPart::kWhole && targets.host_ordered && layout == drawn_to) return;
   VkImageMemoryBarrier2 colour =
       barrier_of(landscape_of(targets).image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
-  colour.srcStageMask =
-      VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
+  colour.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT |
+                        (targets.is_coarse() ? VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT
+                                             : VK_PIPELINE_STAGE_2_COPY_BIT);
   colour.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
   colour.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
   colour.dstAccessMask =
       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
-  colour.newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  colour.newLayout = drawn_to;
   VkImageMemoryBarrier2 depth = barrier_of(targets.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT);
   depth.srcStageMask = VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
   depth.srcAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
@@ -52,20 +55,22 @@ void to_attachments(const Device& device, VkCommandBuffer commands, Targets& tar
                         VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
   depth.newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
   if (part == PassPart::kSecond) {
-    colour.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    colour.oldLayout = drawn_to;
     depth.oldLayout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
     depth.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     depth.srcAccessMask = VK_ACCESS_2_NONE;
   }
   if (part == PassPart::kWater) {
-    colour.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    colour.oldLayout = drawn_to;
     depth.oldLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
   }
   VkImageMemoryBarrier2 samples = colour;
   samples.image = targets.samples.image.get();
+  samples.newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  if (colour.oldLayout != VK_IMAGE_LAYOUT_UNDEFINED) samples.oldLayout = samples.newLayout;
   const std::array barriers{colour, depth, samples};
   image_barriers(device, commands, std::span(barriers).first(targets.has_samples() ? 3 : 2));
-  layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  layout = drawn_to;
 }
 
 void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& targets) {
@@ -81,65 +86,22 @@ void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& tar
   targets.colour_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
 }
 
-// Repeats the last column and row of the landscape beyond it, where scaling up looks too. In
-// VK_IMAGE_LAYOUT_GENERAL.
-void repeat_edges(const Device& device, VkCommandBuffer commands, const Targets& targets) {
-  const auto [width, height] = targets.drawn;
-  const auto right = static_cast<std::int32_t>(width), below = static_cast<std::int32_t>(height);
-  std::array<VkImageCopy, 3> copies;
-  std::uint32_t count = 0;
-  const auto add = [&](VkOffset3D from, VkOffset3D to, VkExtent3D size) {
-    copies[count++] = {kColourLayer, from, kColourLayer, to, size};
-  };
-  const bool wider = width < targets.extent.width, higher = height < targets.extent.height;
-  if (wider) add({right - 1, 0, 0}, {right, 0, 0}, {1, height, 1});
-  if (higher) add({0, below - 1, 0}, {0, below, 0}, {width, 1, 1});
-  if (wider && higher) add({right - 1, below - 1, 0}, {right, below, 0}, {1, 1, 1});
-  const VkImage image = targets.coarse.image.get();
-  device.vk.vkCmdCopyImage(commands, image, VK_IMAGE_LAYOUT_GENERAL, image, VK_IMAGE_LAYOUT_GENERAL,
-                           count, copies.data());
-}
-
-void scale_up(const Device& device, VkCommandBuffer commands, Targets& targets) {
+// After the passes of a coarse frame: what they drew can be read, and the picture be drawn to.
+void to_scaling_up(const Device& device, VkCommandBuffer commands, Targets& targets) {
   VkImageMemoryBarrier2 from = barrier_of(targets.coarse.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
   from.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
   from.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-  from.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-  from.dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  from.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  from.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+  from.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  from.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+  from.oldLayout = from.newLayout = kCoarseLayout;
   VkImageMemoryBarrier2 to = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
   to.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
-  to.dstStageMask = VK_PIPELINE_STAGE_2_BLIT_BIT;
-  to.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  to.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-  image_barriers(device, commands, std::array{from, to});
-  repeat_edges(device, commands, targets);
-  memory_barrier(device, commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                 VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
-
-  VkImageBlit blit{};
-  blit.srcSubresource = blit.dstSubresource = kColourLayer;
-  blit.srcOffsets[1] = {static_cast<std::int32_t>(targets.drawn.width),
-                        static_cast<std::int32_t>(targets.drawn.height), 1};
-  blit.dstOffsets[1] = {static_cast<std::int32_t>(targets.extent.width),
-                        static_cast<std::int32_t>(targets.extent.height), 1};
-  device.vk.vkCmdBlitImage(commands, targets.coarse.image.get(), VK_IMAGE_LAYOUT_GENERAL,
-                           targets.colour.image.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                           &blit, VK_FILTER_LINEAR);
-
-  // The coarse image too is ready for the next frame, which then needs no barrier.
-  std::swap(from.oldLayout, from.newLayout);
-  from.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_BLIT_BIT;
-  to.srcStageMask = VK_PIPELINE_STAGE_2_BLIT_BIT;
-  from.srcAccessMask = to.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  from.dstStageMask = to.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-  from.dstAccessMask = to.dstAccessMask =
-      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
-  to.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  to.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+  to.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  to.dstAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
   to.newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   image_barriers(device, commands, std::array{from, to});
-  targets.colour_layout = targets.coarse_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  targets.colour_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 }
 
 // The depth pyramid reads depth, if the device supports it.
@@ -150,31 +112,26 @@ VkImageUsageFlags depth_usage(const Device& device, VkSampleCountFlagBits sample
   return usage;
 }
 
-Result<Image> make_colour(const Device& device, VkFormat format, core::Extent extent) {
-  return make_image(device, extent, format,
-                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                        VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                    VK_IMAGE_ASPECT_COLOR_BIT);
-}
-
 VkRenderingAttachmentInfo colour_of_pass(const Targets& targets, PassPart part) {
   const bool loads = part == PassPart::kSecond || part == PassPart::kWater;
   VkRenderingAttachmentInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   info.imageView = landscape_of(targets).view.get();
-  info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  info.imageLayout = landscape_layout(targets);
   // Before the first pass nothing is kept: the sky covers all other pixels.
   info.loadOp = loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   if (!targets.has_samples()) return info;
   info.imageView = targets.samples.view.get();
+  info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   if (part == PassPart::kFirst) return info;
   const bool mirrored = is_mirrored(targets, part);
   const Image& mean = mirrored ? targets.mirror.colour : landscape_of(targets);
   if (!mirrored) info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
   info.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
   info.resolveImageView = mean.view.get();
-  info.resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  info.resolveImageLayout =
+      mirrored ? VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL : landscape_layout(targets);
   return info;
 }
 
@@ -221,14 +178,15 @@ void begin_rendering(const Device& device, VkCommandBuffer commands, const VkRen
 bool can_scale_up(const Device& device, VkFormat format) {
   VkFormatProperties properties{};
   vkGetPhysicalDeviceFormatProperties(device.physical, format, &properties);
-  constexpr VkFormatFeatureFlags kNeeded = VK_FORMAT_FEATURE_BLIT_SRC_BIT |
-                                           VK_FORMAT_FEATURE_BLIT_DST_BIT |
-                                           VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  constexpr VkFormatFeatureFlags kNeeded =
+      VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
   return (properties.optimalTilingFeatures & kNeeded) == kNeeded;
 }
 
 Result<void> add_coarse(const Device& device, VkFormat format, Targets& targets) {
-  Result<Image> made = make_colour(device, format, targets.extent);
+  Result<Image> made = make_image(device, targets.extent, format,
+                                  VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                  VK_IMAGE_ASPECT_COLOR_BIT);
   if (!made) return tl::unexpected(made.error());
   targets.coarse = std::move(*made);
   return {};
@@ -238,7 +196,9 @@ Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent
                              VkSampleCountFlagBits samples, bool mirrored) {
   Targets targets;
   targets.extent = targets.drawn = extent;
-  Result<Image> colour = make_colour(device, format, extent);
+  Result<Image> colour = make_image(
+      device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+      VK_IMAGE_ASPECT_COLOR_BIT);
   if (!colour) return tl::unexpected(colour.error());
   targets.colour = std::move(*colour);
   Result<Image> depth = make_image(device, extent, kDepthFormat, depth_usage(device, samples),
@@ -286,12 +246,12 @@ void go_on_in_new_pass(const Device& device, VkCommandBuffer commands, const Tar
 }
 
 void begin_pass_over_coarse(const Device& device, VkCommandBuffer commands, Targets& targets) {
-  scale_up(device, commands, targets);
+  to_scaling_up(device, commands, targets);
   VkRenderingAttachmentInfo colour{};
   colour.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   colour.imageView = targets.colour.view.get();
   colour.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  colour.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+  colour.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   colour.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   const VkRect2D area{{0, 0}, {targets.extent.width, targets.extent.height}};
   begin_rendering(device, commands, rendering_info(area, colour));

@@ -8,6 +8,9 @@
 
 namespace psygen::render {
 
+// Of Targets::coarse, which is attachment and texture in turns.
+inline constexpr VkImageLayout kCoarseLayout = VK_IMAGE_LAYOUT_GENERAL;
+
 // The images of a picture: colour, which can be copied out, and depth, which is discarded after the
 // last pass. With several samples per pixel, `samples` is drawn to and `colour` gets their mean.
 struct Targets {
@@ -54,8 +57,8 @@ void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets
 // pixels once a pass ends, with threads of its own, while the triangles of the next are set up.
 void go_on_in_new_pass(const Device& device, VkCommandBuffer commands, const Targets& targets);
 
-// After the passes of a coarse frame: scales it up to the colour target, and begins a pass on that
-// alone, without depth and with one sample per pixel.
+// After the passes of a coarse frame: begins a pass on the colour target alone, without depth and
+// with one sample per pixel, whose first draw scales the landscape up over all pixels.
 void begin_pass_over_coarse(const Device& device, VkCommandBuffer commands, Targets& targets);
 
 // Copies the colour target to a swapchain image and makes that ready to be presented.

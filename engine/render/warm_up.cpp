@@ -64,8 +64,7 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
     if (step == 4) draw_text(device, pipelines.overlay(false), commands, 3);
   });
   if (step == 4 && targets.is_coarse()) {
-    begin_pass_over_coarse(device, slot.commands(), targets);
-    bind_set(device, pipelines, slot);
+    draw_scaled_up(device, pipelines, slot, targets);
     draw_text(device, pipelines.overlay(true), slot.commands(), 3);
     device.vk.vkCmdEndRendering(slot.commands());
   }

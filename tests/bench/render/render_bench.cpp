@@ -97,6 +97,19 @@ void BM_sky(benchmark::State& state) {
           static_cast<double>(kSize.width) * kSize.height, 0);
 }
 
+// The sky of 60 % of width and height, scaled up to the picture; less that of a picture of so few
+// pixels.
+void BM_scaling_up(benchmark::State& state) {
+  const auto renderer = make_renderer(submission_of(state));
+  FrameInput input = synthetic::look(10, 0.3, kSize);
+  input.resolution = 0.6F;
+  const core::Extent few{kSize.width * 6 / 10, kSize.height * 6 / 10};
+  if (!renderer->resize(few)) return state.SkipWithError("no memory for the picture");
+  const double few_ms = sky_ms(*renderer);
+  if (!renderer->resize(kSize)) return state.SkipWithError("no memory for the picture");
+  measure(state, *renderer, input, "ns_per_pixel", double{kSize.width} * kSize.height, few_ms);
+}
+
 // Draws of `side`² vertices side by side that fill the picture; range(1): side, range(2): draws
 // per row.
 void BM_sheets(benchmark::State& state) {
@@ -419,6 +432,7 @@ BENCHMARK(BM_near_ground)
     ->Unit(benchmark::kMillisecond)
     ->Iterations(9)
     ->ArgsProduct({{0}, {0, 1}});
+BENCHMARK(BM_scaling_up)->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(3)->Arg(0);
 BENCHMARK(BM_sky)->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(3)->Arg(0);
 BENCHMARK(BM_sheets)
     ->UseManualTime()
