@@ -40,7 +40,7 @@ class Pipelines {
   VkPipelineLayout layout() const { return bindings_.layout(); }
   // What their shaders read.
   const Bindings& bindings() const { return bindings_; }
-  // Whether water mirrors the land: its pipelines need Bindings::write_mirror().
+  // Whether water mirrors the land: its pipelines need what Bindings::write_targets() binds.
   bool mirrors() const { return traits_.waves && samples_ != VK_SAMPLE_COUNT_1_BIT; }
   // The pipeline for meshes. `pushed`: the data of a draw is in push constants, else in the buffer
   // of draws. `lamps`, after create_lamps(): with point lights.

@@ -46,14 +46,11 @@ void adapt_to_memory(const Settings& settings, const Rules& rules, const Pressur
   }
 }
 
-// The share of width and height that leaves 1 / relief of the pixels, in steps: nobody sees one of
-// them, and most frames scale like the one before. Scaling up takes about as long as a fifth of the
-// pixels, so the first step is a large one.
+// The share of width and height that leaves at most 1 / relief of the pixels, in steps: nobody sees
+// one of them, and most frames scale like the one before.
 double resolution_for(double relief, double least) {
-  constexpr double kSteps = 20, kNearlyAll = 0.9, kFirst = 0.8;
-  const double share = 1 / std::sqrt(relief);
-  if (share > kNearlyAll) return 1;
-  return std::max(std::min(std::floor(share * kSteps) / kSteps, kFirst), least);
+  constexpr double kSteps = 20, kBeyondRounding = 1e-9;
+  return std::max(std::floor(kSteps / std::sqrt(relief) + kBeyondRounding) / kSteps, least);
 }
 
 }  // namespace

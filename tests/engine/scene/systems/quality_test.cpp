@@ -98,7 +98,8 @@ TEST(QualityOfTime, PixelsAreGivenUpBeforeShapesAndComeBackAfterThem) {
       scene->state().input.frame_ms = frame_ms;
       tick_at(*scene, pose_at(256, 256));
       const double r = quality.resolution;
-      EXPECT_TRUE(r == 1 || (r >= 0.6 && r <= 0.8)) << r;
+      EXPECT_TRUE(r >= 0.6 && r <= 1) << r;
+      EXPECT_NEAR(20 * r, std::round(20 * r), 1e-9) << "in steps of 5 %";
       EXPECT_TRUE(r == 0.6 || quality.error_pixels == kError) << r;
       least = std::min(least, r);
     }
