@@ -43,6 +43,14 @@ static_assert([] {
   return true;
 }());
 
+static_assert(
+    [] {
+      for (const Binding& binding : kBindings)
+        if (binding.type == kTextureType) return binding.number == PSYGEN_BINDING_COARSE;
+      return false;
+    }(),
+    "the coarse landscape is the first texture (shaders/scale_up.frag)");
+
 // What a write of a set names; the other one stays null.
 struct Named {
   std::uint32_t binding;

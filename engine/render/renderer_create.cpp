@@ -193,9 +193,11 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
 core::Extent RendererImpl::landscape_size(float resolution) {
   const core::Extent whole = size();
   if (!(resolution < 1) || !scales_up_) return whole;
-  for (Targets& targets : targets_) {
-    if (targets.coarse.image.get() != VK_NULL_HANDLE) continue;
-    scales_up_ = add_coarse(*device_, colour_format_, targets).has_value();
+  if (targets_.back().coarse.image.get() == VK_NULL_HANDLE) {
+    wait_idle();
+    for (Targets& targets : targets_)
+      scales_up_ = scales_up_ && add_coarse(*device_, colour_format_, targets).has_value();
+    use_targets();
     if (!scales_up_) return whole;
   }
   const auto side = [share = std::max(resolution, kLeastResolution)](std::uint32_t pixels) {

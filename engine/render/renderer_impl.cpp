@@ -241,8 +241,6 @@ Result<void> RendererImpl::write_frame(FrameSlot& slot) {
   Result<void> written =
       slot.write(*device_, pipelines_.bindings(), frame_, list_.data(), glyphs_, emitters_);
   if (written) slot.write_shade(shade_.words());
-  if (written && drawn_ != size())
-    pipelines_.bindings().write_targets(*device_, slot.set(), targets_of(slot));
   if (!written || !culling_) return written;
   written = culling_->write(*device_, index_of(slot));
   if (written)

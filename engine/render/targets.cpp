@@ -28,6 +28,19 @@ bool is_mirrored(const Targets& targets, PassPart part) {
   return targets.mirrors && (part == PassPart::kWhole || part == PassPart::kSecond);
 }
 
+// Makes a colour image an attachment that forgets what it had, after it was drawn to and read.
+VkImageMemoryBarrier2 to_attachment(const Image& image, VkImageLayout layout,
+                                    VkPipelineStageFlags2 read_in) {
+  VkImageMemoryBarrier2 barrier = barrier_of(image.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | read_in;
+  barrier.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  barrier.dstAccessMask =
+      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
+  barrier.newLayout = layout;
+  return barrier;
+}
+
 // Moves the targets to the layouts of attachments, after all previous uses.
 void to_attachments(const Device& device, VkCommandBuffer commands, Targets& targets,
                     PassPart part) {
@@ -36,16 +49,9 @@ void to_attachments(const Device& device, VkCommandBuffer commands, Targets& tar
   if (part == PassPart::kWater) mirror_to_textures(device, commands, targets.mirror);
   const VkImageLayout drawn_to = landscape_layout(targets);
   if (part == PassPart::kWhole && targets.host_ordered && layout == drawn_to) return;
-  VkImageMemoryBarrier2 colour =
-      barrier_of(landscape_of(targets).image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
-  colour.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT |
-                        (targets.is_coarse() ? VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT
-                                             : VK_PIPELINE_STAGE_2_COPY_BIT);
-  colour.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-  colour.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-  colour.dstAccessMask =
-      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
-  colour.newLayout = drawn_to;
+  VkImageMemoryBarrier2 colour = to_attachment(
+      landscape_of(targets), drawn_to,
+      targets.is_coarse() ? VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT : VK_PIPELINE_STAGE_2_COPY_BIT);
   VkImageMemoryBarrier2 depth = barrier_of(targets.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT);
   depth.srcStageMask = VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
   depth.srcAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
@@ -94,12 +100,8 @@ void to_scaling_up(const Device& device, VkCommandBuffer commands, Targets& targ
   from.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
   from.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
   from.oldLayout = from.newLayout = kCoarseLayout;
-  VkImageMemoryBarrier2 to = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
-  to.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
-  to.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-  to.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-  to.dstAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
-  to.newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  const VkImageMemoryBarrier2 to = to_attachment(
+      targets.colour, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT);
   image_barriers(device, commands, std::array{from, to});
   targets.colour_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 }

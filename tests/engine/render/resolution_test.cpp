@@ -75,6 +75,18 @@ TEST_P(Resolutions, FewerPixelsOfALandscapeFillThePicture) {
   EXPECT_EQ(picture_at(1).rgba, whole.rgba) << "something is left of them";
 }
 
+// The rest of the image has what a landscape of more pixels has left there.
+TEST_P(Resolutions, NothingIsSeenBeyondALandscapeOfFewerPixels) {
+  const auto after = [&](double pitch) {
+    FrameInput input = synthetic::look(10.0, pitch, renderer_->size());
+    input.resolution = 0.95F;
+    for (int i = 0; i < 2; ++i)
+      EXPECT_TRUE(renderer_->render(input));
+    return picture_at(0.6F);
+  };
+  EXPECT_EQ(after(1.2).rgba, after(-1.2).rgba);
+}
+
 TEST_P(Resolutions, TextHasAllPixels) {
   const double sharp = pixels_that_differ(picture_at(1, true), picture_at(1));
   EXPECT_GT(sharp, 100);
