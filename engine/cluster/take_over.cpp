@@ -7,6 +7,7 @@
 
 #include "engine/amplify/block_files.hpp"
 #include "engine/amplify/shard.hpp"
+#include "engine/core/replace_file.hpp"
 
 namespace psygen::cluster {
 namespace {
@@ -15,14 +16,16 @@ using amplify::Finished;
 
 constexpr const char* kWhole = "all blocks";
 
+bool is_rank_ledger(const std::string& name) {
+  return name.starts_with("rank_") && name.ends_with(amplify::kLedgerExtension);
+}
+
 std::vector<std::filesystem::path> rank_ledgers(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code error;
   for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
        it.increment(error)) {
-    const std::string name = it->path().filename().string();
-    if (name.starts_with("rank_") && name.ends_with(amplify::kLedgerExtension))
-      files.push_back(it->path());
+    if (is_rank_ledger(it->path().filename().string())) files.push_back(it->path());
   }
   return files;
 }
@@ -85,6 +88,7 @@ core::Result<std::unique_ptr<amplify::Ledger>> take_over(const std::filesystem::
                                    {key, kWhole, all, {}, 0});
   if (!job) return job;
   amplify::remove_partial_blocks(folder, [](core::BlockCoord) { return true; });
+  core::remove_partials_of(folder, is_rank_ledger);
   if (auto ok = gather_ledgers(folder, **job, Check::kFiles); !ok)
     return tl::unexpected(ok.error());
   return job;

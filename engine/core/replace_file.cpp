@@ -8,6 +8,7 @@
 #include <charconv>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <utility>
@@ -77,6 +78,17 @@ std::optional<Partial> partial_of(const std::string& name) {
   return partial;
 }
 
+// Whether this process can still write. A zombie cannot: it has ended, but its parent has not asked
+// for its status yet. The first process of a container may take seconds to ask, or never do so.
+bool is_running(pid_t process) {
+  if (kill(process, 0) != 0 && errno == ESRCH) return false;
+  std::ifstream file(fmt::format("/proc/{}/stat", process));
+  std::string stat;  // process (name) state …; empty where there is no /proc
+  std::getline(file, stat);
+  const std::size_t name_end = stat.rfind(") ");
+  return name_end == std::string::npos || stat[name_end + 2] != 'Z';
+}
+
 template <class Unwanted>
 void remove_partials_that(const std::filesystem::path& folder, Unwanted unwanted) {
   std::error_code error;
@@ -90,9 +102,8 @@ void remove_partials_that(const std::filesystem::path& folder, Unwanted unwanted
 }  // namespace
 
 void remove_stale_partials(const std::filesystem::path& folder) {
-  remove_partials_that(folder, [](const Partial& partial) {
-    return partial.ours && kill(partial.owner, 0) != 0 && errno == ESRCH;
-  });
+  remove_partials_that(
+      folder, [](const Partial& partial) { return partial.ours && !is_running(partial.owner); });
 }
 
 void remove_partials_of(const std::filesystem::path& folder,

@@ -49,8 +49,9 @@ class FileReplacement {
 Result<void> replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Result<void> replace_file(const std::filesystem::path& path, std::string_view text);
 
-// Removes temporary files in this folder whose processes no longer run (killed, power lost). Those
-// of other hosts, which may share the folder, stay. Does not look into sub-folders.
+// Removes temporary files in this folder whose processes no longer run (killed, power lost),
+// whether or not their parents have waited for them. Those of other hosts, which may share the
+// folder, stay. Does not look into sub-folders.
 void remove_stale_partials(const std::filesystem::path& folder);
 // Removes the temporary files of the files of these names, whoever made them: for one who alone
 // writes those files.

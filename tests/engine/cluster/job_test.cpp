@@ -174,11 +174,14 @@ TEST(Job, TakesOverLedgersOfRanksThatDiedAndRefusesThoseOfOtherJobs) {
   theirs.part = "rank 7";
   std::filesystem::remove(top / "job/job.ledger");
   std::ofstream(top / "job/rank_7.ledger") << amplify::ledger_text(theirs) << "done 3 4";
+  const auto partial = top / "job/.rank_3.ledger.17-0@anotherhost.partial";
+  std::ofstream(partial) << "half";
   const auto again = run_ranks(2, top / "job");
   ASSERT_TRUE(again[0]) << again[0].error().error.message;
   EXPECT_EQ(again[0]->skipped, 0u);
   EXPECT_EQ(again[0]->report.totals.hash.value(), first[0]->report.totals.hash.value());
   EXPECT_FALSE(std::filesystem::exists(top / "job/rank_7.ledger"));
+  EXPECT_FALSE(std::filesystem::exists(partial));
   theirs.key.version = "0.0.1";
   std::ofstream(top / "job/rank_7.ledger") << amplify::ledger_text(theirs);
   expect_refused(run_ranks(2, top / "job"), "rank_7.ledger: is of psygen 0.0.1 instead of 0.1.0");

@@ -1,8 +1,10 @@
 #include "engine/core/replace_file.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -150,6 +152,18 @@ TEST(ReplaceFile, WhatAKilledProcessLeftBehindIsCleanedUpAndNothingElse) {
   remove_partials_of(folder.path(), [](const std::string& file) { return file == "a.bin"; });
   EXPECT_EQ(folder.file_count(), 3u);
   EXPECT_FALSE(std::filesystem::exists(folder / mine));
+}
+
+TEST(ReplaceFile, AProcessThatEndedWithoutAParentThatAsksLeavesNothingEither) {
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  siginfo_t ended{};  // a zombie until it is waited for without WNOWAIT
+  ASSERT_EQ(waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT), 0);
+  std::ofstream(folder / fmt::format(".a.bin.{}-0.partial", child)) << "half";
+  remove_stale_partials(folder.path());
+  EXPECT_EQ(folder.file_count(), 0u);
+  EXPECT_EQ(waitpid(child, nullptr, 0), child);
 }
 
 }  // namespace
