@@ -189,7 +189,7 @@ struct LevelView {
   std::vector<core::Bounds> bounds;  // relative to the camera
   std::vector<float> solidity;       // where PLP asks for it
   std::vector<float> deadlines;      // seconds until it is expected in view; +inf: it is not
-  std::vector<std::uint8_t> chosen;  // not 0: its entity is in View::chosen
+  std::vector<std::uint8_t> part;    // that it has in the cut (visibility system); 0: none
 };
 
 // A node that matters to the picture of this tick.
@@ -202,10 +202,18 @@ struct ChosenNode {
   bool covered = false;  // an ancestor is drawn instead, or could be
 };
 
+// What a predicted camera sees.
+struct Outlook {
+  float tau_s = 0;        // when
+  glm::vec3 moved{0.0F};  // from where the camera is now
+  visibility::Frustum frustum;
+};
+
 // The visibility of this tick.
 struct View {
   visibility::Frustum frustum;
-  visibility::Cut cut;  // what should be drawn
+  std::vector<Outlook> outlooks;  // soonest first
+  visibility::Cut cut;            // what should be drawn
   std::vector<visibility::NodeCoord> roots;
   visibility::Horizon horizon;        // of the ground that is drawn
   std::vector<std::uint8_t> in_view;  // per node of the cut, and not behind the horizon
@@ -215,7 +223,10 @@ struct View {
   std::vector<LevelView> levels;
   std::vector<ChosenNode> chosen;     // of the cut, ancestors first, front to back
   std::vector<ecs::Entity> expected;  // nodes expected in view, soonest first
-  std::vector<ecs::Entity> around;    // the others, coarsest level first, then nearest layers
+  // Nodes without which those expected could not be drawn, and ancestors of all others, which stand
+  // for them where the camera turns unexpectedly.
+  std::vector<ecs::Entity> around;
+  std::vector<ecs::Entity> kept;  // the others: they ask for nothing that they lack
 };
 
 // Meshes that the cache system found ready in this tick. The upload system gives them to their

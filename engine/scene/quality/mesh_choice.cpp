@@ -17,11 +17,16 @@ constexpr double kHolePatienceSeconds = 0.02;
 // A picture is kept up to so much more than kMostPicturePixels.
 constexpr float kKept = 1.1F;
 
-// The level that a draft has in place of the wanted one; a picture only where that is wanted.
-int draft_level(const Detail& detail, std::uint8_t wanted_level) {
+// So many levels coarser than the wanted one; a picture only where that is wanted.
+int coarser_level(const Detail& detail, std::uint8_t wanted_level, int by) {
   const int levels = static_cast<int>(detail.level_count);
   const int coarsest = detail.picture_level == levels - 1 ? levels - 2 : levels - 1;
-  return std::max(std::min(wanted_level + kDraftLevels, coarsest), int{wanted_level});
+  return std::max(std::min(wanted_level + by, coarsest), int{wanted_level});
+}
+
+// The level that a draft has in place of the wanted one.
+int draft_level(const Detail& detail, std::uint8_t wanted_level) {
+  return coarser_level(detail, wanted_level, kDraftLevels);
 }
 
 // Whether what is drawn of a draft is fine enough for it.
@@ -81,6 +86,14 @@ std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const D
   return level == detail.picture_level && level > 0 && size_pixels > most
              ? static_cast<std::uint8_t>(level - 1)
              : level;
+}
+
+std::uint8_t level_out_of_view(const Detail& detail, std::uint8_t level, bool expected,
+                               std::uint8_t drawn_level) {
+  if (level == kNoLevel) return level;
+  const auto enough =
+      static_cast<std::uint8_t>(expected ? int{level} : coarser_level(detail, level, 1));
+  return drawn_level != kNoLevel && drawn_level <= enough ? drawn_level : enough;
 }
 
 bool is_hole(const NodeView& node, const Demand& demand, bool in_view) {

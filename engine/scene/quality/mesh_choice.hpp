@@ -45,6 +45,7 @@ struct NodeView {
   bool fine = false;
   float error_factor = 1;  // on the allowed error of the picture
   bool around = false;     // revisited every few ticks only
+  bool kept = false;       // keeps what it has and asks for nothing
 };
 
 // The level that the ground of a node should show.
@@ -55,6 +56,12 @@ std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8
 // visibility::choose_level(), and so is that of pictures by size.
 std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
                          float size_pixels, float distance_m, std::uint8_t drawn_level);
+
+// The level that a model should have ready while it is out of view, in place of the one that it
+// should show: that or a finer one if it has it, and if it is not `expected` in view the next
+// coarser one, which is far cheaper, and not much coarser where the camera turns unexpectedly.
+std::uint8_t level_out_of_view(const Detail& detail, std::uint8_t level, bool expected,
+                               std::uint8_t drawn_level);
 
 // What to do about the mesh of an entity whose wanted level is known.
 struct MeshChoice {

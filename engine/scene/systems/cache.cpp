@@ -2,6 +2,7 @@
 // it has, ranks what it keeps, and plans what is missing. Nodes that the picture depends on are
 // visited in every tick, front to back; those around the camera every 8th.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "engine/scene/draws/seen.hpp"
@@ -136,7 +137,7 @@ void request(CacheTick& tick, const NodeView& node, const MeshEntity& row, const
     demand.failed_levels |= static_cast<std::uint8_t>(1u << choice.request);
     return;
   }
-  if (!tick.request) return;
+  if (!tick.request || (node.kept && !demand.stale)) return;
   synthesis::Want want{key,
                        &source.parameters,
                        owner_of(row.entity),
@@ -187,6 +188,29 @@ float want_level(const CacheTick& tick, const NodeView& node, const MeshEntity& 
   return pixels;
 }
 
+// Replaces the level that a model should have where it is by the one that it should have ready
+// there out of view.
+void want_out_of_view(const CacheTick& tick, const View& view, const NodeView& node,
+                      const MeshEntity& row, const glm::vec3& foot,
+                      const synthesis::MeshSupply& meshes) {
+  Demand& demand = row.demand;
+  const Outlook* const outlook = std::isfinite(node.visibility.deadline_s)
+                                     ? first_to_see(box_of(row, tick.shadows), foot, view)
+                                     : nullptr;
+  if (outlook != nullptr && node.level == 0) {
+    const float distance_m = distance_to(row.placed, foot - outlook->moved, tick.near_m);
+    want_level(tick, node, row, /*is_ground=*/false, distance_m);
+  }
+  const std::uint8_t shown = demand.wanted_level;
+  demand.wanted_level = level_out_of_view(row.detail, shown, outlook != nullptr,
+                                          tick.choice.settle ? kNoLevel : demand.drawn_level);
+  const bool asks = !tick.choice.settle && demand.wanted_level != demand.drawn_level &&
+                    demand.wanted_level != shown;
+  if (asks &&
+      meshes.ready(meshes.find(key_of(row.placed, row.detail, row.source, shown))) != nullptr)
+    demand.wanted_level = shown;
+}
+
 // The ground of a node, or a model on it. False if there should be a mesh to draw and is none.
 bool consider(CacheTick& tick, const View& view, const NodeView& node, const MeshEntity& row,
               bool is_ground, synthesis::MeshSupply& meshes, Found& found, Counters& counters) {
@@ -199,6 +223,8 @@ bool consider(CacheTick& tick, const View& view, const NodeView& node, const Mes
   const bool in_view =
       node.in_view && (near || mesh_can_be_seen(box_of(row, tick.shadows), foot, view));
   const float pixels = want_level(tick, node, row, is_ground, distance_m);
+  if (!in_view && !is_ground && !tick.shadows && tick.choice.levels_of_detail)
+    want_out_of_view(tick, view, node, row, foot, meshes);
   if (demand.wanted_level != kNoLevel && is_early(tick.choice, node, demand, pixels)) {
     ask_early(tick, node, row, in_view, distance_m, meshes, found);
     return true;
@@ -267,6 +293,15 @@ void visit_nodes(const CacheQuery& entities, std::span<const ecs::Entity> nodes,
                               count_false(entities, entities.children(models[i]), model);
         }
       });
+}
+
+// Those whose turn it is.
+std::vector<ecs::Entity> every_nth(std::span<const ecs::Entity> nodes, std::size_t n,
+                                   std::uint32_t tick) {
+  std::vector<ecs::Entity> chosen;
+  for (std::size_t i = tick % n; i < nodes.size(); i += n)
+    chosen.push_back(nodes[i]);
+  return chosen;
 }
 
 // Lazy evaluation keeps nothing: what the last frame drew is given back.
@@ -361,10 +396,10 @@ void cache_system(const Settings& settings, const Rules& rules, const Clock& clo
   }
   if (rules.look_ahead) {
     visit(view.expected, NodeView{});
-    std::vector<ecs::Entity> around;  // those whose turn it is
-    for (std::size_t i = clock.tick % kAroundTurns; i < view.around.size(); i += kAroundTurns)
-      around.push_back(view.around[i]);
-    visit(around, NodeView{.error_factor = kAroundErrorFactor, .around = true});
+    const std::vector<ecs::Entity> ready = every_nth(view.around, kAroundTurns, clock.tick);
+    visit(ready, NodeView{.error_factor = kAroundErrorFactor, .around = true});
+    const std::vector<ecs::Entity> kept = every_nth(view.kept, kAroundTurns, clock.tick);
+    visit(kept, NodeView{.error_factor = kAroundErrorFactor, .around = true, .kept = true});
   }
   const synthesis::PlanReport report = meshes.plan(
       plan_limits(settings, rules, clock, quality, streaming, pressure), settings.policy);

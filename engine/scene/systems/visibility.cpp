@@ -13,8 +13,9 @@
 namespace psygen::scene {
 namespace {
 
-// LevelView::chosen of nodes in view, and of those that are chosen only for their sake.
-constexpr std::uint8_t kInView = 1, kBeside = 2;
+// LevelView::part of nodes in view, of those that are chosen only for their sake, and of other
+// ancestors of leaves of the cut: what would be drawn first if the camera turned.
+constexpr std::uint8_t kInView = 1, kBeside = 2, kAncestor = 3;
 
 // With room for what stands on the ground and reaches over the node's edge.
 core::Bounds node_bounds(const WorldFacts& facts, const glm::vec3& corner, double size_m,
@@ -85,15 +86,8 @@ void project_layers(const Settings& settings, const NodeGrid& grid,
   input.solidity = level.solidity;
   visibility::run_plp(input, level.plp);
   level.deadlines.assign(level.bounds.size(), std::numeric_limits<float>::infinity());
-  level.chosen.assign(level.bounds.size(), 0);
+  level.part.assign(level.bounds.size(), 0);
 }
-
-// What a predicted camera sees.
-struct Outlook {
-  float tau_s = 0;
-  glm::vec3 moved{0.0F};  // from where the camera is
-  visibility::Frustum frustum;
-};
 
 // Until when a node is expected in view by cameras that are so near to it that it is fine enough
 // only for them: the first of the outlooks.
@@ -110,10 +104,10 @@ float deadline_of(const core::Bounds& bounds, float reach_m, std::span<const Out
 // The deadlines of all nodes that there are.
 void expect(const Camera& camera, const WorldFacts& facts, const Streaming& streaming,
             const VisibilityQuery& query, View& view) {
-  std::vector<Outlook> outlooks;  // soonest first
+  view.outlooks.clear();
   for (const Camera::Prediction& prediction : camera.predictions) {
     const core::WorldPosition& to = prediction.pose.position;
-    outlooks.push_back(
+    view.outlooks.push_back(
         {prediction.tau_s,
          glm::vec3(core::offset_m(to.block, camera.pose.position, facts.world.block_size_m()) +
                    to.local),
@@ -128,7 +122,8 @@ void expect(const Camera& camera, const WorldFacts& facts, const Streaming& stre
     for (const Node& node : nodes) {
       LevelView& level = view.levels[node.at.level];
       const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
-      level.deadlines[cell] = deadline_of(level.bounds[cell], reaches_m[node.at.level], outlooks);
+      level.deadlines[cell] =
+          deadline_of(level.bounds[cell], reaches_m[node.at.level], view.outlooks);
     }
   });
 }
@@ -233,11 +228,14 @@ void list_chosen(const Streaming& streaming, const VisibilityQuery& nodes, View&
       ++next;
     // What is drawn in this tick is not covered, whatever stands ready: what it lacks is seen.
     const bool drawn = next < view.drawn.size() && view.drawn[next] == i;
-    if (view.in_view[i] == 0 && (root || view.in_view[node.parent] == 0)) continue;
+    if (view.in_view[i] == 0 && (root || view.in_view[node.parent] == 0)) {
+      level.part[cell] = root || !node.leaf ? kAncestor : 0;
+      continue;
+    }
     if (!alive) continue;
     view.chosen.push_back({entity, node.node.level, node.leaf, node.fine, view.in_view[i] != 0,
                            covered_above && !drawn});
-    level.chosen[cell] = view.in_view[i] != 0 ? kInView : kBeside;
+    level.part[cell] = view.in_view[i] != 0 ? kInView : kBeside;
   }
 }
 
@@ -252,16 +250,27 @@ void write_visibility(const View& view, const Streaming& streaming, const Visibi
       visibility.distance_m = std::sqrt(distance_squared_to(level.bounds[cell]));
       visibility.layer = static_cast<std::uint16_t>(
           std::min<std::uint32_t>(level.plp.key[cell] / visibility::kKeysPerLayer, UINT16_MAX));
-      visibility.in_view = level.chosen[cell] == kInView ? 1 : 0;
+      visibility.in_view = level.part[cell] == kInView ? 1 : 0;
       visibility.deadline_s = visibility.in_view != 0 ? 0.0F : level.deadlines[cell];
     }
   });
+}
+
+// Whether a sibling of a node is expected in view: neither is drawn before all four are complete.
+bool sibling_is_expected(const NodeGrid& grid, const LevelView& level, core::BlockCoord coord) {
+  for (const int i : {0, 1, 2, 3}) {
+    const core::BlockCoord sibling{(coord.x & ~1) | (i & 1), (coord.z & ~1) | (i >> 1)};
+    if (grid.contains(sibling) && std::isfinite(level.deadlines[grid.window_index(sibling)]))
+      return true;
+  }
+  return false;
 }
 
 // All other nodes, in order of importance.
 void list_others(const Streaming& streaming, const VisibilityQuery& nodes, View& view) {
   view.expected.clear();
   view.around.clear();
+  view.kept.clear();
   struct Expected {
     float deadline_s;
     ecs::Entity node;
@@ -272,14 +281,17 @@ void list_others(const Streaming& streaming, const VisibilityQuery& nodes, View&
     const NodeGrid& grid = streaming.grids[k];
     for (const auto* list : {&level.plp.visible, &level.plp.prefetch}) {
       for (const std::uint32_t cell : *list) {
-        if (level.chosen[cell] != 0) continue;
-        const ecs::Entity entity =
-            grid.entity_of(grid.node_at(cell % grid.side(), cell / grid.side()).coord);
+        const std::uint8_t part = level.part[cell];
+        if (part == kInView || part == kBeside) continue;
+        const core::BlockCoord coord = grid.node_at(cell % grid.side(), cell / grid.side()).coord;
+        const ecs::Entity entity = grid.entity_of(coord);
         if (!nodes.alive(entity)) continue;
         if (std::isfinite(level.deadlines[cell])) {
           expected.push_back({level.deadlines[cell], entity});
-        } else {
+        } else if (part == kAncestor || sibling_is_expected(grid, level, coord)) {
           view.around.push_back(entity);
+        } else {
+          view.kept.push_back(entity);
         }
       }
     }

@@ -37,6 +37,8 @@ TEST(Flights, OnThePapersWalkOneModelerIsEnoughForNoHoles) {
   EXPECT_GT(holes_before, 0u);
   EXPECT_GT(made, 5000u);
   EXPECT_GT(most_in_view, 300u);
+  const synthesis::CacheStats& made_and_drawn = s.meshes.stats();
+  EXPECT_GT(made_and_drawn.triangles_drawn, made_and_drawn.triangles * 7 / 10);
 }
 
 // What a settled scene takes.

@@ -119,7 +119,7 @@ TEST(Readiness, APlaceAsksForTheMeshesThatACameraThereDraws) {
 
 TEST(Readiness, WhatIsAskedForIsKeptAndOtherwiseItMayGo) {
   Settings settings = small_settings();
-  settings.budget_bytes = 16ull << 20;
+  settings.budget_bytes = 10ull << 20;
   auto scene = make_scene(settings);
   State& state = scene->state();
   scene->settle(kHere);

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "engine/world/files/text_edit.hpp"
@@ -42,24 +43,43 @@ core::Result<void> set(Scene& scene, const std::string& text) {
   return scene.set_world(std::move(parsed.world), std::move(parsed.registry));
 }
 
-// Everything that stands in a scene, by place: what it is, where, and what is drawn of it.
+// The nodes in view, and what stands on them, by index.
+std::set<std::uint32_t> seen_in(Scene& scene) {
+  const State& s = scene.state();
+  std::set<std::uint32_t> seen;
+  for (const ChosenNode& node : s.view.chosen) {
+    if (!node.in_view) continue;
+    seen.insert(node.entity.index);
+    const auto models = s.entities.children(*s.entities.get<ecs::Children>(node.entity));
+    for (const ecs::Entity model : models)
+      seen.insert(model.index);
+  }
+  return seen;
+}
+
+// Everything that stands in a scene, by place: what it is, where, and what is drawn of it where it
+// is seen. The rest keeps what it has, which is of the world as it is.
 using What = std::tuple<std::string, std::uint64_t, float, float, float, int, std::uint64_t>;
 std::multimap<std::tuple<int, int, std::uint32_t>, What> contents_of(Scene& scene) {
   std::multimap<std::tuple<int, int, std::uint32_t>, What> contents;
   const State& s = scene.state();
+  const std::set<std::uint32_t> seen = seen_in(scene);
   std::as_const(scene.state().entities)
       .each<const Placed, const Source, const Demand, const Mesh>(
-          [&](std::span<const ecs::Entity>, std::span<const Placed> placed,
+          [&](std::span<const ecs::Entity> entities, std::span<const Placed> placed,
               std::span<const Source> sources, std::span<const Demand> demands,
               std::span<const Mesh> meshes) {
             for (std::size_t i = 0; i < placed.size(); ++i) {
+              const bool shown = demands[i].drawn_level != kNoLevel;
+              const bool compared = shown && seen.contains(entities[i].index);
               const synthesis::MeshRecord* drawn =
-                  demands[i].drawn_level == kNoLevel ? nullptr : s.meshes.ready(meshes[i].handle);
+                  compared ? s.meshes.ready(meshes[i].handle) : nullptr;
               const Placed& at = placed[i];
               contents.emplace(
                   std::tuple{at.block.x, at.block.z, sources[i].index},
                   What{s.facts.registry[sources[i].model].name(), sources[i].parameters_hash,
-                       at.position.x, at.position.y, at.box_half_extent.y, demands[i].drawn_level,
+                       at.position.x, at.position.y, at.box_half_extent.y,
+                       compared ? demands[i].drawn_level : kNoLevel,
                        drawn != nullptr ? drawn->key.parameters_hash : 0});
             }
           });
@@ -73,6 +93,16 @@ std::size_t drawn_in(Scene& scene) {
   return drawn;
 }
 
+bool draws_of_a_world_before(Scene& scene) {
+  bool any = false;
+  std::as_const(scene.state().entities)
+      .each<const Demand>([&](std::span<const ecs::Entity>, std::span<const Demand> demands) {
+        for (const Demand& demand : demands)
+          any |= demand.drawn_level != kNoLevel && demand.stale;
+      });
+  return any;
+}
+
 class SetWorld : public testing::Test {
  protected:
   // In a scene of `before` that is given `after`, everything is as in one of `after`.
@@ -82,6 +112,7 @@ class SetWorld : public testing::Test {
     ASSERT_TRUE(set(*changed, after));
     changed->settle(pose_);
     expect_consistent(*changed);
+    EXPECT_FALSE(draws_of_a_world_before(*changed));
     const auto fresh = scene_of(after, settings_);
     fresh->settle(pose_);
     EXPECT_EQ(contents_of(*changed), contents_of(*fresh));

@@ -96,6 +96,22 @@ TEST(MeshChoice, HysteresisHoldsUnlessTheSceneSettles) {
   EXPECT_EQ(model_level(rules, node, four_levels(), 50, 110, 0), 1);
 }
 
+TEST(MeshChoice, OutOfViewTheNextLevelIsEnoughUnlessItIsExpectedAndFinerOnesAreKept) {
+  Detail detail = four_levels();
+  EXPECT_EQ(level_out_of_view(detail, 1, false, kNoLevel), 2);
+  EXPECT_EQ(level_out_of_view(detail, 1, false, 3), 2);
+  EXPECT_EQ(level_out_of_view(detail, 1, true, kNoLevel), 1);
+  EXPECT_EQ(level_out_of_view(detail, 1, true, 2), 1);
+  for (const bool expected : {true, false}) {
+    EXPECT_EQ(level_out_of_view(detail, 1, expected, 1), 1);
+    EXPECT_EQ(level_out_of_view(detail, 1, expected, 0), 0);
+    EXPECT_EQ(level_out_of_view(detail, 3, expected, kNoLevel), 3) << "none is coarser";
+    EXPECT_EQ(level_out_of_view(detail, kNoLevel, expected, 0), kNoLevel) << "too small";
+  }
+  detail.picture_level = 3;
+  EXPECT_EQ(level_out_of_view(detail, 2, false, kNoLevel), 2) << "a picture does not do for it";
+}
+
 TEST(MeshChoice, AHoleAsksForTheCoarsestLevelUnlessTheWantedOneIsCached) {
   const Demand hole = demand(kNoLevel, 1);
   EXPECT_EQ(choose_mesh({}, in_view(), four_levels(), hole, true, false).request, 3);
