@@ -45,7 +45,7 @@ struct NodeView {
   bool fine = false;
   float error_factor = 1;  // on the allowed error of the picture
   bool around = false;     // revisited every few ticks only
-  bool kept = false;       // keeps what it has and asks for nothing
+  bool kept = false;       // keeps what it has, and asks only for what replaces stale meshes
 };
 
 // The level that the ground of a node should show.

@@ -23,13 +23,13 @@ TEST(Requests, WhoTurnsAroundSeesNoHoleThoughNothingMoreIsSynthesised) {
   for (const double yaw : {0.3, 2.0}) {
     gated.gate.set_open(true);
     scene.settle(pose_at(256, 256, yaw));
-    tick_at(scene, pose_at(256, 256, yaw));
     gated.gate.set_open(false);
     for (int i = 0; i < 5; ++i) {
       tick_at(scene, pose_at(256, 256, yaw + std::numbers::pi));
       const Counters& counters = scene.state().counters;
       EXPECT_EQ(counters.holes, 0u) << "tick " << i;
-      EXPECT_GT(counters.nodes_in_view, 100u);
+      // Coarser nodes stand for most of what nobody expected there.
+      EXPECT_GT(counters.nodes_in_view, 50u);
       EXPECT_GT(scene.state().draws.terrain.size(), 10u);
     }
     expect_consistent(scene);
