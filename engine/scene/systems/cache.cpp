@@ -120,6 +120,7 @@ void request(CacheTick& tick, const NodeView& node, const MeshEntity& row, const
              float distance_m, synthesis::MeshSupply& meshes, Found& found) {
   const Source& source = row.source;
   Demand& demand = row.demand;
+  if (node.kept && !demand.stale) return;
   const synthesis::MeshKey key = key_of(row.placed, row.detail, row.source, choice.request);
   const bool first_time = demand.requested_level != choice.request;
   demand.requested_level = choice.request;
@@ -137,7 +138,7 @@ void request(CacheTick& tick, const NodeView& node, const MeshEntity& row, const
     demand.failed_levels |= static_cast<std::uint8_t>(1u << choice.request);
     return;
   }
-  if (!tick.request || (node.kept && !demand.stale)) return;
+  if (!tick.request) return;
   synthesis::Want want{key,
                        &source.parameters,
                        owner_of(row.entity),
