@@ -1,7 +1,8 @@
 // Trees, rocks and all other models: unpacks core::ModelVertex, turns billboards, applies wind,
 // light and haze. With PSYGEN_PICTURE some vertices may be those of pictures (pictures.glsl). With
 // PSYGEN_OBJECT: a game's own objects (core::ObjectVertex), which are turned and scaled, and have a
-// material. On software devices all of this is per vertex, and the fragment shader only writes the
+// material. With PSYGEN_MODEL_DETAIL: near models whose surfaces have textures though their light is
+// per vertex (model_detail.frag). On software devices all of this is per vertex, and the fragment shader only writes the
 // colour.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -107,6 +108,14 @@ void main() {
 #endif
 #ifdef PSYGEN_SURFACES
   still_place = p;
+#endif
+#ifdef PSYGEN_MODEL_DETAIL
+  const float kRepeats_per_m = float(PSYGEN_GROUND_REPEATS) / 2048.0;
+  vec3 anchor = vec3(frame.ground_anchor.x, frame.horizon_colour.w, frame.ground_anchor.y);
+  detail_place = fract(anchor * kRepeats_per_m) + p * kRepeats_per_m;  // small: it has exact slopes
+  float stone = draw.light.y == float(PSYGEN_SURFACE_STONE) ? 1.0 : 0.0;
+  detail_shares = (1.0 - smoothstep(0.5, 1.0, length(p) * (1.0 / float(PSYGEN_NEAR_M)))) *
+                  vec3(leaf, (1.0 - leaf) * (1.0 - stone), (1.0 - leaf) * stone);
 #endif
   p.x += sway * 0.12 * wave(time + xy.y * 0.3);
   p.z += sway * 0.09 * wave(time * 1.37 + xy.x * 0.4);

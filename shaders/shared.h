@@ -39,10 +39,11 @@ using glm::vec4;
 #define PSYGEN_MATERIAL_TWO_SIDED 2u
 
 // The textures of the ground (ground_textures.hpp): texels per side, periods of the pattern of 2048
-// m that one covers, and the distance up to which presets without fine grain draw them, in metres.
+// m that one covers, and the distance up to which presets without fine grain draw them, in metres;
+// on models only those with light per vertex do.
 #define PSYGEN_GROUND_SIDE 256
 #define PSYGEN_GROUND_REPEATS 976
-#define PSYGEN_GROUND_REACH_M 64
+#define PSYGEN_NEAR_M 64
 // Its layers: of each texture the colour, then of each the normal. The first are the kinds of
 // ground (world::GroundKind).
 #define PSYGEN_TEXTURE_ROCK 4

@@ -17,6 +17,11 @@ layout(location = 0) out vec3 colour;
 layout(location = 1) out vec2 detail_place;
 layout(location = 2) out vec4 detail_shares;
 #endif
+// The same of near models: the inputs of model_detail.frag.
+#ifdef PSYGEN_MODEL_DETAIL
+layout(location = 1) out vec3 detail_place;
+layout(location = 2) out vec3 detail_shares;
+#endif
 // Also with PSYGEN_FADING: the share of the draw's pixels (fading.glsl).
 #if defined(PSYGEN_FADING) || defined(PSYGEN_OBJECT)
 layout(location = 4) flat out float fade;

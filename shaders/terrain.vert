@@ -49,7 +49,7 @@ void main() {
 #endif
 #if defined(PSYGEN_GROUND_DETAIL)
   visible *= left_by_spots(p);
-  float near = (1.0 - smoothstep(0.3, 1.0, length(p) * (1.0 / float(PSYGEN_GROUND_REACH_M)))) *
+  float near = (1.0 - smoothstep(0.3, 1.0, length(p) * (1.0 / float(PSYGEN_NEAR_M)))) *
                frame.ground_colour.w;
   vec4 share = vec4(near * (1.0 - blends.snow));
   share.z *= blends.rock;

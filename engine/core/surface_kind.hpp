@@ -1,4 +1,4 @@
-// What solid surfaces of models are made of, for the textures of presets with light per pixel.
+// What solid surfaces of models are made of, for their textures.
 #pragma once
 
 #include <cstdint>

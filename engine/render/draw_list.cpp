@@ -113,7 +113,7 @@ void DrawList::add(std::span<const Draw> input) {
     const bool terrain = std::is_same_v<Draw, TerrainDraw>;
     const auto order =  // near terrain comes first
         terrain ? (run.coverage == Coverage::kPart ? 0ULL : 1ULL) : std::uint64_t(run.coverage);
-    return (run.lamps ? 0ULL : 1ULL) << 47 | std::uint64_t{run.textures} << 35 | order << 33 |
+    return (run.lamps ? 0ULL : 1ULL) << 48 | std::uint64_t{run.textures} << 36 | order << 33 |
            (run.pushed ? 0ULL : 2ULL) << 31 | std::uint64_t{run.pool_block} * 2 |
            (run.shared ? 1u : 0u);
   };

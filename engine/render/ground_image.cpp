@@ -9,7 +9,7 @@
 
 static_assert(PSYGEN_GROUND_SIDE == psygen::render::kPatternSide);
 static_assert(PSYGEN_GROUND_TEXTURES == psygen::render::kGroundTextures);
-static_assert(PSYGEN_GROUND_REACH_M == psygen::render::kNearGroundM);
+static_assert(PSYGEN_NEAR_M == psygen::render::kNearM);
 
 namespace psygen::render {
 
@@ -30,7 +30,7 @@ Result<void> GroundImage::create(const Device& device, const PresetTraits& trait
 
   const GroundLevels levels =
       traits.pixel_light ? make_ground_layers(pictures) : make_ground_detail(pictures);
-  const std::uint32_t layers = traits.pixel_light ? kGroundLayers : 1;
+  const std::uint32_t layers = traits.pixel_light ? kGroundLayers : kDetailLayers;
   Result<Image> image = make_image(
       device, {kPatternSide, kPatternSide}, VK_FORMAT_R8G8B8A8_UNORM,
       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, VK_IMAGE_ASPECT_COLOR_BIT,

@@ -361,16 +361,25 @@ GroundLevels make_ground_layers(std::span<const GroundPicture> pictures) {
 
 GroundLevels make_ground_detail(std::span<const GroundPicture> pictures) {
   constexpr std::size_t kGrass = 0, kForest = 1, kSand = 3, kRock = 4;  // of the pictures
-  std::array<Field, 4> light{
-      ground_of(kGrass, grass, pictures).light, ground_of(kForest, forest_floor, pictures).light,
-      ground_of(kRock, scree, pictures).light, ground_of(kSand, sand, pictures).light};
-  LevelBytes detail(kTexels * 4);
-  for (std::size_t c = 0; c < light.size(); ++c) {
-    for (float& v : light[c].values)
-      v *= 0.5F;
-    set_mean(light[c].values, 0.5F);
+  Ground leaves = forest_floor();
+  const Ground floor = ground_of(kForest, forest_floor, pictures);
+  std::array<Field, kDetailLayers * 4> fields{ground_of(kGrass, grass, pictures).light,
+                                              floor.light,
+                                              ground_of(kRock, scree, pictures).light,
+                                              ground_of(kSand, sand, pictures).light,
+                                              leaves.height,
+                                              bark().light,
+                                              ground_of(kRock, rock, pictures).light,
+                                              leaves.light};
+  LevelBytes detail(kTexels * fields.size());
+  for (std::size_t c = 0; c < fields.size(); ++c) {
+    if (c != 4) {
+      for (float& v : fields[c].values)
+        v *= 0.5F;
+      set_mean(fields[c].values, 0.5F);
+    }
     for (std::size_t i = 0; i < kTexels; ++i)
-      detail[i * 4 + c] = unorm8(light[c].values[i]);
+      detail[(c / 4 * kTexels + i) * 4 + c % 4] = unorm8(fields[c].values[i]);
   }
   return with_mips(std::move(detail));
 }

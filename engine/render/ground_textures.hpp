@@ -30,8 +30,10 @@ using GroundLevels = std::vector<std::vector<std::uint8_t>>;
 // for −1 to 1), roughness, and the share of the sky that reaches the texel. `pictures` take the
 // place of textures of the same number; those without texels do not.
 GroundLevels make_ground_layers(std::span<const GroundPicture> pictures = {});
-// One texture for light per vertex. Its four bytes are the brightness of grass, of forest floor, of
-// scree and of sand, as factors over 2 with a mean of 1/2.
+// Layers for light per vertex, of brightness as factors over 2 with a mean of 1/2. First of ground:
+// grass, forest floor, scree, sand. Then of models: the height of leaves, 0 to 1, which are high
+// where they are dense, bark, rock, leaves.
+inline constexpr std::uint32_t kDetailLayers = 2;
 GroundLevels make_ground_detail(std::span<const GroundPicture> pictures = {});
 
 }  // namespace psygen::render

@@ -11,7 +11,7 @@ using core::Result;
 namespace {
 
 // Largest number of pipelines of a preset, for the progress.
-constexpr double kMostPipelines = 34;
+constexpr double kMostPipelines = 36;
 
 constexpr VkBool32 on(bool yes) {
   return yes ? VK_TRUE : VK_FALSE;
@@ -93,6 +93,21 @@ Result<void> Pipelines::create_near_ground(Making& making, PipelineShape shape,
   return {};
 }
 
+// Where light is per vertex, near models have textures. Where it is per pixel all models have.
+Result<void> Pipelines::create_near_models(Making& making, PipelineShape shape,
+                                           MeshPipelines& out) {
+  if (traits_.pixel_light) return {};
+  const OtherCode& code = other_code();
+  shape.kind = PipelineKind::kModel;
+  shape.frag = code.model_detail_frag;
+  for (const bool pushed : {false, true}) {
+    shape.vert = pushed ? code.model_detail_pushed_vert : code.model_detail_vert;
+    const Result<void> made = make(making, shape, out.near_models[pushed ? 1 : 0]);
+    if (!made) return made;
+  }
+  return {};
+}
+
 // The fragment shader of meshes whose light is per pixel.
 ShaderCode Pipelines::lit_frag(bool terrain) const {
   const OtherCode& code = other_code();
@@ -156,6 +171,7 @@ Result<void> Pipelines::create_landscape(Making& making, bool lamps, MeshPipelin
   water.constants = {on(traits_.waves), VK_FALSE, on(lamps)};
   return create_meshes(making, meshes, look, out)
       .and_then([&] { return create_near_ground(making, meshes, out); })
+      .and_then([&] { return create_near_models(making, meshes, out); })
       .and_then([&] { return create_fading(making, meshes, look, out); })
       .and_then([&] { return make(making, water, water_out); });
 }

@@ -105,6 +105,9 @@ RenderPath Renderer::path() const {
 bool Renderer::casts_shadows() const {
   return impl_->casts_shadows();
 }
+bool Renderer::has_fine_grain() const {
+  return impl_->has_fine_grain();
+}
 void Renderer::wait_idle() {
   impl_->wait_idle();
 }

@@ -127,6 +127,15 @@ constexpr std::uint32_t kSurfaceFadingFrag[] =
 constexpr std::uint32_t kSurfaceLitFadingFrag[] =
 #include "surface_lit_fading_frag_spv.h"
     ;
+constexpr std::uint32_t kModelDetailVert[] =
+#include "model_detail_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelDetailPushedVert[] =
+#include "model_detail_pushed_vert_spv.h"
+    ;
+constexpr std::uint32_t kModelDetailFrag[] =
+#include "model_detail_frag_spv.h"
+    ;
 constexpr std::uint32_t kTerrainDetailVert[] =
 #include "terrain_detail_vert_spv.h"
     ;
@@ -301,6 +310,9 @@ constexpr OtherCode kOthers{kSurfaceFrag,
                             kParticleVert,
                             kParticleFrag,
                             kParticleTexturedFrag,
+                            kModelDetailVert,
+                            kModelDetailPushedVert,
+                            kModelDetailFrag,
                             kTerrainDetailVert,
                             kTerrainDetailPushedVert,
                             kGroundDetailFrag,

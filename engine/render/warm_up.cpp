@@ -48,7 +48,10 @@ void record_warm_up(const Device& device, const Pipelines& pipelines, FrameSlot&
       draw_twice(core::VertexLayout::kTerrain, Coverage::kWhole);
       draw_twice(core::VertexLayout::kTerrain, Coverage::kPart);
     }
-    if (step == 1) draw_twice(core::VertexLayout::kModel, Coverage::kWhole);
+    if (step == 1) {
+      draw_twice(core::VertexLayout::kModel, Coverage::kWhole);
+      draw_twice(core::VertexLayout::kModel, Coverage::kNear);
+    }
     if (step == 2) {
       draw_twice(core::VertexLayout::kModel, Coverage::kPart);
       draw_twice(core::VertexLayout::kModel, Coverage::kPictured);

@@ -67,6 +67,7 @@ struct Detail {
   std::uint16_t level_count = 0;
   std::uint16_t picture_level = kNoLevel;  // the last one where that is a picture, else kNoLevel
   float seen_size_m = 0;                   // ModelType::seen_size_m
+  bool leaves = false;                     // a tree: textures of leaves hide how coarse it is
 };
 
 // What is synthesised. Cold: read when a request is made.

@@ -113,6 +113,7 @@ void Scene::edit(world::Edits edits) {
 void Scene::take_over_preset() {
   const render::Renderer* const renderer = state_.output.renderer;
   state_.facts.shadows = renderer != nullptr && renderer->casts_shadows();
+  state_.facts.coarse_leaves = renderer != nullptr && !renderer->has_fine_grain();
 }
 
 core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::Registry registry,

@@ -123,7 +123,8 @@ class Scene {
   // below kMinBudgetBytes or above kMaxBudgetBytes.
   static core::Result<void> check(const Settings& settings);
 
-  // To be called after Renderer::set_preset(): with shadows what is out of the picture matters too.
+  // To be called after Renderer::set_preset(): with shadows what is out of the picture matters too,
+  // and where triangles cost much near trees are coarser.
   void take_over_preset();
 
   static constexpr std::uint64_t kMinBudgetBytes = 4ull << 20;

@@ -158,6 +158,7 @@ struct WorldFacts {
   glm::vec2 models_reach_m{0.0F};     // from their foot: sideways, up
   glm::vec2 scattered_reach_m{0.0F};  // the same without what was placed by hand
   bool shadows = false;  // what is drawn casts some into the picture, though it may be out of view
+  bool coarse_leaves = false;  // near trees are coarser: textures of leaves hide it, and save time
 };
 
 // Where the sun stands that the ground is lit by (world::set_sun).

@@ -21,6 +21,7 @@ Detail detail_of(const models::ModelType& type, const models::Parameters& parame
                  int last) {
   Detail detail;
   detail.seen_size_m = static_cast<float>(type.seen_size_m(parameters));
+  detail.leaves = type.surface() == core::SurfaceKind::kBark;
   for (int level = first; level <= std::min(last, type.level_count_of(parameters) - 1); ++level) {
     if (detail.level_count == kMaxLevels) break;
     detail.error_m[detail.level_count++] =

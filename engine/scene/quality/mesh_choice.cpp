@@ -17,6 +17,14 @@ constexpr double kHolePatienceSeconds = 0.02;
 // A picture is kept up to so much more than kMostPicturePixels.
 constexpr float kKept = 1.1F;
 
+// The allowed error of a single model at this distance. That of near trees falls towards
+// ChoiceRules::near_leaves_m just so that no tree gets coarser on its way to the camera.
+float model_error_pixels(const ChoiceRules& rules, const Detail& detail, float distance_m) {
+  if (!detail.leaves || distance_m >= rules.near_leaves_m) return rules.model_error_pixels;
+  return rules.model_error_pixels *
+         std::min(rules.near_leaves_m / std::max(distance_m, 1e-3F), kNearLeaves);
+}
+
 // So many levels coarser than the wanted one; a picture only where that is wanted.
 int coarser_level(const Detail& detail, std::uint8_t wanted_level, int by) {
   const int levels = static_cast<int>(detail.level_count);
@@ -77,7 +85,8 @@ std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const D
   if (!rules.levels_of_detail) return 0;
   const std::span<const float> errors(detail.error_m.data(), detail.level_count);
   const bool keep = drawn_level != kNoLevel && !rules.settle;
-  const float error_pixels = node.level == 0 ? rules.model_error_pixels : rules.error_pixels;
+  const float error_pixels =
+      node.level == 0 ? model_error_pixels(rules, detail, distance_m) : rules.error_pixels;
   const auto level = static_cast<std::uint8_t>(
       visibility::choose_level(errors, distance_m, rules.pixels_per_radian,
                                node.error_factor * error_pixels, keep ? drawn_level : -1));

@@ -16,6 +16,7 @@ struct ChoiceRules {
   float min_size_pixels = 0;     // models smaller than this are not drawn
   float error_pixels = 1;        // that nodes may have
   float model_error_pixels = 1;  // that single models may have
+  float near_leaves_m = 0;       // trees nearer than this may have up to kNearLeaves times as much
   double real_s = 0;             // the real clock, as in Demand::seen_s
   std::size_t node_levels = 1;   // of the quadtree
   bool levels_of_detail = true;  // false: always the finest
@@ -29,6 +30,9 @@ struct ChoiceRules {
 
 // In a draft, meshes may be so many levels coarser than wanted.
 inline constexpr int kDraftLevels = 2;
+
+// Near the camera one sees textures with gaps between leaves, not the polygons that carry them.
+inline constexpr float kNearLeaves = 2;
 
 // Models that are larger on screen have no picture: its texels would be seen.
 inline constexpr float kMostPicturePixels = 160;

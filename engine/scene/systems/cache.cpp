@@ -73,6 +73,7 @@ ChoiceRules choice_rules(const Settings& settings, const Rules& rules, const Clo
   choice.min_size_pixels = static_cast<float>(settings.min_size_pixels);
   choice.error_pixels = static_cast<float>(quality.error_pixels);
   choice.model_error_pixels = static_cast<float>(quality.model_error_pixels);
+  choice.near_leaves_m = facts.coarse_leaves ? render::kNearM : 0.0F;
   choice.real_s = clock.real_s;
   choice.levels_of_detail = settings.levels_of_detail;
   choice.settle = rules.settle;

@@ -79,7 +79,7 @@ TEST_F(GoldenCombe, HalfwayThroughItsFades) {
   open(render::Preset::kLow, 3);
   const core::CameraPose from = pose();
   core::CameraPose to = from;
-  to.position.local += glm::dvec3(26, 0, 15);  // ahead
+  to.position.local += glm::dvec3(31, 0, 18);  // ahead
   to.position = core::normalised(to.position, state().facts.world.block_size_m());
   for (const core::CameraPose& at : {to, from})
     session_->scene().settle(at);

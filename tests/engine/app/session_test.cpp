@@ -96,6 +96,7 @@ TEST(Session, SavesThePictureOfTheLastTickAndChangesItsPreset) {
   EXPECT_TRUE((*session)->take_saved().empty()) << "told once";
   ASSERT_TRUE((*session)->set_preset(render::Preset::kMedium));
   EXPECT_EQ((*session)->scene().state().facts.shadows, (*session)->renderer().casts_shadows());
+  EXPECT_TRUE((*session)->scene().state().facts.coarse_leaves);
   ASSERT_TRUE((*session)->tick((*session)->home(), 0));
   EXPECT_EQ((*session)->renderer().preset(), render::Preset::kMedium);
 }

@@ -187,7 +187,8 @@ TEST_F(WindowFlight, ItsKeysDoWhatTheHelpSays) {
   const auto preset_is = [](render::Preset preset) {
     return [preset](Session& session) {
       return session.renderer().preset() == preset &&
-             session.scene().state().facts.shadows == session.renderer().casts_shadows();
+             session.scene().state().facts.shadows == session.renderer().casts_shadows() &&
+             session.scene().state().facts.coarse_leaves != session.renderer().has_fine_grain();
     };
   };
   const auto size_is = [](core::Extent size) {

@@ -54,6 +54,18 @@ TEST(CandidateList, takes_parts_of_a_mesh_as_candidates_of_one_name) {
   EXPECT_EQ(list.candidates()[0].name.x, list.candidates()[1].name.x);
 }
 
+TEST(CandidateList, groups_what_has_the_same_pipeline_and_buffers) {
+  std::vector<MeshDraw> models(4, candidate(1, 0, 0));
+  models[1].range.pool_block = 1;
+  models[2].near = models[3].near = true;
+  models[3].fade = 0.5F;
+  CandidateList list;
+  list.build({}, models, {});
+  ASSERT_EQ(list.groups().size(), 4u);
+  EXPECT_EQ(list.groups()[1].coverage, Coverage::kWhole);
+  EXPECT_EQ(list.groups()[3].coverage, Coverage::kNearPart);
+}
+
 TEST(CandidateList, starts_a_new_group_where_one_call_can_take_no_more) {
   const std::vector<MeshDraw> models(CandidateList::kGroupCapacity + 5, candidate(1, 0, 0));
   CandidateList list;

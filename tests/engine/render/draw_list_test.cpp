@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace psygen::render {
 namespace {
 
@@ -109,6 +111,21 @@ TEST(DrawList, draws_what_comes_and_goes_apart_and_after_the_rest_of_its_window)
   EXPECT_EQ(list.data()[2].scale.w, 0.5F);
   EXPECT_EQ(list.data()[3].scale.w, -0.5F);
   EXPECT_EQ(list.data()[4].scale.w, 0.0F);
+}
+
+TEST(DrawList, draws_near_models_apart_whether_they_fade_or_not) {
+  std::vector<MeshDraw> draws(6, model(0, 0, 0));
+  draws[1].near = draws[3].near = draws[5].near = true;
+  draws[2].fade = draws[3].fade = 0.5F;
+  draws[5].pictured = true;
+  DrawList list;
+  list.build({}, draws, {});
+  ASSERT_EQ(list.runs().size(), 5u);
+  EXPECT_EQ(list.runs()[0].count, 2u);
+  constexpr std::array kOrder{Coverage::kWhole, Coverage::kPart, Coverage::kPictured,
+                              Coverage::kNear, Coverage::kNearPart};
+  for (std::size_t i = 0; i < kOrder.size(); ++i)
+    EXPECT_EQ(list.runs()[i].coverage, kOrder[i]);
 }
 
 TEST(DrawList, draws_the_part_that_is_asked_for_of_own_and_of_shared_indices) {

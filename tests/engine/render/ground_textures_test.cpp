@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <span>
 
+#include "shaders/shared.h"
+
 namespace psygen::render {
 namespace {
 
@@ -32,6 +34,8 @@ TEST(GroundTextures, ColoursHaveAMeanOfOneAtEveryLevelSoThatDistanceChangesNoCol
   for (std::size_t level = 0; level < layers.size(); ++level) {
     for (std::size_t c = 0; c < 4; ++c)
       EXPECT_NEAR(mean(detail, level, 0, c), 127.5, 1.6) << level;
+    for (std::size_t c = 1; c < 4; ++c)  // 0 is a height
+      EXPECT_NEAR(mean(detail, level, 1, c), 127.5, 1.6) << level;
     for (std::size_t layer = 0; layer < kGroundTextures; ++layer) {
       for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(mean(layers, level, layer, c), 127.5, 1.6) << level << ' ' << layer;
@@ -105,6 +109,21 @@ TEST(GroundTextures, APictureTakesThePlaceOfItsKindAndOfNoOther) {
   EXPECT_EQ(channel(with, 2, 1, 0, 0), 64);
   EXPECT_EQ(channel(with, 2, 0, 0, 1), 128) << "even in green";
   EXPECT_EQ(make_ground_detail(pictures), make_ground_detail()) << "which has no dry grass";
+}
+
+TEST(GroundTextures, ModelsHaveBarkAndLeavesOfTheirOwnAndStoneOfThePictureOfRock) {
+  const GroundLevels layers = make_ground_layers(), detail = make_ground_detail();
+  for (int i = 0; i < kPatternSide; ++i)
+    EXPECT_EQ(channel(detail, 1, i, 0, 0), channel(layers, PSYGEN_TEXTURE_LEAVES, i, 0, 3));
+  std::vector<GroundPicture> pictures(kGroundPictures);
+  for (GroundPicture& picture : pictures)
+    picture.rgb.resize(kTexels * 3, 0.1F);
+  const GroundLevels with = make_ground_detail(pictures);
+  for (int i = 0; i < kPatternSide; ++i) {
+    for (const int c : {0, 1, 3})
+      EXPECT_EQ(channel(with, 1, i, 9, c), channel(detail, 1, i, 9, c));
+    EXPECT_EQ(channel(with, 1, i, 9, 2), 128);
+  }
 }
 
 TEST(GroundTextures, AreTheSameEachTime) {

@@ -150,9 +150,12 @@ TEST_P(LooksOfPresets, stone_and_bark_have_detail_around_the_colour_that_they_ha
   image::Image stone;
   for (const auto surface : {core::SurfaceKind::kStone, core::SurfaceKind::kBark}) {
     box_.surface = surface;
+    box_.near = false;
+    EXPECT_EQ(draw().rgba != plain.rgba, traits_of(GetParam()).pixel_light);
+    box_.near = true;
     const image::Image detailed = draw();
-    EXPECT_EQ(detailed.rgba != plain.rgba, traits_of(GetParam()).pixel_light);
-    EXPECT_EQ(detailed.rgba != stone.rgba, stone.rgba.empty() || traits_of(GetParam()).pixel_light);
+    EXPECT_NE(detailed.rgba, plain.rgba);
+    EXPECT_NE(detailed.rgba, stone.rgba);
     EXPECT_NEAR(light_of(detailed), light_of(plain), 0.05 * light_of(plain));
     stone = detailed;
   }
@@ -162,7 +165,7 @@ TEST_P(LooksOfPresets, stone_and_bark_have_detail_around_the_colour_that_they_ha
   EXPECT_EQ(draw().rgba, far.rgba) << "out of reach";
 }
 
-TEST_P(LooksOfPresets, near_leaves_of_trees_have_gaps_where_light_is_per_pixel) {
+TEST_P(LooksOfPresets, near_leaves_of_trees_have_gaps_also_while_they_fade) {
   open(GetParam());
   input_.terrain = {};
   input_.water.reset();
@@ -177,14 +180,18 @@ TEST_P(LooksOfPresets, near_leaves_of_trees_have_gaps_where_light_is_per_pixel) 
   input_.models = {&box_, 1};
   const std::size_t whole = image::compare(sky, draw(), 0).pixels_over;
   box_.surface = core::SurfaceKind::kBark;
+  box_.near = true;
   const std::size_t open_ = image::compare(sky, draw(), 0).pixels_over;
   EXPECT_GT(whole, 1000u);
-  if (traits_of(GetParam()).pixel_light) {
-    EXPECT_LT(static_cast<double>(open_), 0.95 * static_cast<double>(whole));
-    EXPECT_GT(static_cast<double>(open_), 0.4 * static_cast<double>(whole));
-  } else {
-    EXPECT_EQ(open_, whole);
-  }
+  EXPECT_LT(static_cast<double>(open_), 0.95 * static_cast<double>(whole));
+  EXPECT_GT(static_cast<double>(open_), 0.4 * static_cast<double>(whole));
+  box_.fade = 0.5F;
+  const std::size_t fading = image::compare(sky, draw(), 0).pixels_over;
+  EXPECT_NEAR(static_cast<double>(fading), 0.5 * static_cast<double>(open_),
+              0.1 * static_cast<double>(open_));
+  box_.near = false;
+  const std::size_t far = image::compare(sky, draw(), 0).pixels_over;
+  EXPECT_EQ(far > fading, !traits_of(GetParam()).pixel_light);
 }
 
 TEST_P(LooksOfPresets, spots_darken_near_ground_and_nothing_else) {

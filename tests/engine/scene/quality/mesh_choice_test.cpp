@@ -57,6 +57,36 @@ TEST(MeshChoice, ModelsGetCoarserWithDistanceUntilTheyAreTooSmall) {
   EXPECT_EQ(model_level(rules, node, four_levels(), 2, 1700, kNoLevel), 0);
 }
 
+// Whatever it has, a tree that comes nearer never gets coarser.
+TEST(MeshChoice, NearTreesAreCoarserWhereTexturesOfLeavesHideIt) {
+  ChoiceRules rules;
+  rules.pixels_per_radian = 1000;
+  Detail tree = four_levels();
+  tree.leaves = true;
+  tree.error_m = {0, 0.03F, 0.06F, 1.6F};
+  Detail rock = tree;
+  rock.leaves = false;
+  const auto level = [&](const Detail& of, float distance_m) {
+    return model_level(rules, in_view(), of, 100, distance_m, kNoLevel);
+  };
+  EXPECT_EQ(level(tree, 20), 0);
+  EXPECT_EQ(level(tree, 40), 1);
+  rules.near_leaves_m = 64;
+  EXPECT_EQ(level(tree, 20), 1);
+  EXPECT_EQ(level(tree, 40), 2);
+  EXPECT_EQ(level(tree, 70), 2);
+  EXPECT_EQ(level(rock, 20), 0);
+  NodeView merged = in_view();
+  merged.level = 1;
+  EXPECT_EQ(model_level(rules, merged, tree, 100, 20, kNoLevel), 0);
+  int last = 0;
+  for (float distance_m = 0; distance_m < 100; distance_m += 0.25F) {
+    EXPECT_GE(level(tree, distance_m), last) << distance_m;
+    last = level(tree, distance_m);
+  }
+  EXPECT_EQ(last, 2);
+}
+
 TEST(MeshChoice, MergedModelsAreNeverTooSmall) {
   ChoiceRules rules;
   rules.pixels_per_radian = 1000;
