@@ -134,12 +134,12 @@ void main() {
   float rough = 1.0, shine = 0.0;
   float sun = sun_leaf_surface.x;
 #ifdef PSYGEN_NEAR_GROUND
-  if (away < float(PSYGEN_NEAR_M)) {
+  if (away < float(PSYGEN_NEAR_GROUND_M)) {
     vec2 left = left_by_spots(place);
     sun *= left.x;
     ambient *= left.y;
   }
-  float reach = fine_grain ? 400.0 : float(PSYGEN_NEAR_M);
+  float reach = fine_grain ? 400.0 : float(PSYGEN_NEAR_GROUND_M);
   float near = (1.0 - smoothstep(0.4 * reach, reach, away)) * frame.ground_colour.w;
   if (near > 0.0) {
     Kinds k = kinds_of(b);

@@ -18,6 +18,6 @@ vec2 left_by_spots(vec3 p) {
   vec2 missing = mix(mix(shade_of_cell(cell), shade_of_cell(cell + ivec2(1, 0)), f.x),
                      mix(shade_of_cell(cell + ivec2(0, 1)), shade_of_cell(cell + ivec2(1, 1)), f.x),
                      f.y);
-  float near = 1.0 - smoothstep(0.6, 1.0, length(p) * (1.0 / float(PSYGEN_NEAR_M)));
+  float near = 1.0 - smoothstep(0.6, 1.0, length(p) * (1.0 / float(PSYGEN_NEAR_GROUND_M)));
   return 1.0 - missing * near;
 }

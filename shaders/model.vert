@@ -1,9 +1,8 @@
 // Trees, rocks and all other models: unpacks core::ModelVertex, turns billboards, applies wind,
 // light and haze. With PSYGEN_PICTURE some vertices may be those of pictures (pictures.glsl). With
 // PSYGEN_OBJECT: a game's own objects (core::ObjectVertex), which are turned and scaled, and have a
-// material. With PSYGEN_MODEL_DETAIL: near models whose surfaces have textures though their light is
-// per vertex (model_detail.frag). On software devices all of this is per vertex, and the fragment shader only writes the
-// colour.
+// material. On software devices all of this is per vertex, and the fragment shader only writes the
+// colour; with PSYGEN_MODEL_DETAIL, for near models, it adds a texture (model_detail.frag).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -110,11 +109,11 @@ void main() {
   still_place = p;
 #endif
 #ifdef PSYGEN_MODEL_DETAIL
-  const float kRepeats_per_m = float(PSYGEN_GROUND_REPEATS) / 2048.0;
+  const float kRepeatsPerM = float(PSYGEN_GROUND_REPEATS) / float(PSYGEN_GROUND_PERIOD_M);
   vec3 anchor = vec3(frame.ground_anchor.x, frame.horizon_colour.w, frame.ground_anchor.y);
-  detail_place = fract(anchor * kRepeats_per_m) + p * kRepeats_per_m;  // small: it has exact slopes
+  detail_place = fract(anchor * kRepeatsPerM) + p * kRepeatsPerM;  // small: its slopes are exact
   float stone = draw.light.y == float(PSYGEN_SURFACE_STONE) ? 1.0 : 0.0;
-  detail_shares = (1.0 - smoothstep(0.5, 1.0, length(p) * (1.0 / float(PSYGEN_NEAR_M)))) *
+  detail_shares = (1.0 - smoothstep(0.5, 1.0, length(p) * (1.0 / float(PSYGEN_NEAR_MODELS_M)))) *
                   vec3(leaf, (1.0 - leaf) * (1.0 - stone), (1.0 - leaf) * stone);
 #endif
   p.x += sway * 0.12 * wave(time + xy.y * 0.3);

@@ -8,11 +8,8 @@
 layout(set = 0, binding = PSYGEN_BINDING_GROUND) uniform sampler2DArray detail;
 layout(location = 0) in vec3 colour;
 layout(location = 1) in vec3 detail_place;   // in periods of the textures
-layout(location = 2) in vec3 detail_shares;  // of leaves, of bark, of stone; all but one are 0
+layout(location = 2) in vec3 detail_shares;  // of leaves, of bark, of stone; at most one is not 0
 layout(location = 0) out vec4 pixel;
-
-const float kLayer = 1.0;  // of models
-const float kLeafGaps = 0.36;  // of the height of leaves, which lie below
 
 // The texture on the side that the face turns to; bark repeats twice as often around a trunk.
 vec2 place_on_face() {
@@ -23,9 +20,10 @@ vec2 place_on_face() {
 }
 
 void main() {
-  vec4 texel = texture(detail, vec3(place_on_face(), kLayer));  // before a discard
+  // First: derivatives are undefined after a discard.
+  vec4 texel = texture(detail, vec3(place_on_face(), float(PSYGEN_LAYER_OF_MODELS)));
   leave_out_faded();
-  if (texel.x < kLeafGaps * detail_shares.x) discard;
+  if (texel.x < PSYGEN_LEAF_GAPS * detail_shares.x) discard;
   // Display values change half as much as light.
   pixel = vec4(colour * (1.0 + 0.5 * dot(texel.wyz * 2.0 - 1.0, detail_shares)), 1.0);
 }

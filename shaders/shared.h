@@ -38,12 +38,13 @@ using glm::vec4;
 #define PSYGEN_MATERIAL_NORMAL_MAP 1u
 #define PSYGEN_MATERIAL_TWO_SIDED 2u
 
-// The textures of the ground (ground_textures.hpp): texels per side, periods of the pattern of 2048
-// m that one covers, and the distance up to which presets without fine grain draw them, in metres;
-// on models only those with light per vertex do.
+// The textures of the ground (ground_textures.hpp): texels per side, how often they repeat in the
+// period of the slow pattern, that period in metres, and up to how many metres from the camera
+// presets without fine grain draw them.
 #define PSYGEN_GROUND_SIDE 256
 #define PSYGEN_GROUND_REPEATS 976
-#define PSYGEN_NEAR_M 64
+#define PSYGEN_GROUND_PERIOD_M 2048
+#define PSYGEN_NEAR_GROUND_M 64
 // Its layers: of each texture the colour, then of each the normal. The first are the kinds of
 // ground (world::GroundKind).
 #define PSYGEN_TEXTURE_ROCK 4
@@ -56,6 +57,13 @@ using glm::vec4;
 #define PSYGEN_SURFACE_STONE 1
 #define PSYGEN_SURFACE_BARK 2
 #define PSYGEN_SURFACE_LEAVES 3  // those of bark
+// Where the texture of leaves is lower than this there are gaps between them.
+#define PSYGEN_LEAF_GAPS 0.36
+// With light per vertex, models up to so many metres from the camera have this layer of textures
+// (make_ground_detail). Its channels: 0 how high leaves are, brightness of 1 bark, 2 stone, 3
+// leaves.
+#define PSYGEN_NEAR_MODELS_M 128
+#define PSYGEN_LAYER_OF_MODELS 1
 // Cells of one metre along each side of the map of dark spots on near ground (ground_shade.hpp).
 #define PSYGEN_SHADE_SIDE 128
 

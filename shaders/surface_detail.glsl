@@ -3,7 +3,6 @@
 #include "texture_look.glsl"
 
 const float kDetailReach_m = 120.0;
-const float kLeafGaps = 0.36;  // of the height of the leaves' texture, which lie below
 
 const vec3 kX = vec3(1, 0, 0), kY = vec3(0, 1, 0), kZ = vec3(0, 0, 1);
 
@@ -52,7 +51,7 @@ void add_detail(int surface, vec3 place, inout vec3 albedo, inout vec3 n, inout 
     look = look_of_bark(at, n, lod);
   } else {
     look = look_of_leaves(at, n, lod);
-    if (look.colour.a < kLeafGaps * near) discard;
+    if (look.colour.a < PSYGEN_LEAF_GAPS * near) discard;
   }
   albedo *= mix(vec3(1.0), look.colour.rgb, near);
   if (!fine_grain) return;

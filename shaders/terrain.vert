@@ -49,7 +49,7 @@ void main() {
 #endif
 #if defined(PSYGEN_GROUND_DETAIL)
   visible *= left_by_spots(p);
-  float near = (1.0 - smoothstep(0.3, 1.0, length(p) * (1.0 / float(PSYGEN_NEAR_M)))) *
+  float near = (1.0 - smoothstep(0.3, 1.0, length(p) * (1.0 / float(PSYGEN_NEAR_GROUND_M)))) *
                frame.ground_colour.w;
   vec4 share = vec4(near * (1.0 - blends.snow));
   share.z *= blends.rock;
@@ -59,7 +59,7 @@ void main() {
   float floor_ = blends.forest * (1.0 - blends.dry);
   detail_shares = share * vec4(1.0 - floor_, floor_, 1.0, 1.0) +
                   vec4(0.0, 0.0, 0.0, 0.4 * near * blends.snow);
-  detail_place = plane * (float(PSYGEN_GROUND_REPEATS) / 2048.0);
+  detail_place = plane * (float(PSYGEN_GROUND_REPEATS) / float(PSYGEN_GROUND_PERIOD_M));
 #endif
   p.y -= skirt * draw.scale.y;
 #if defined(PSYGEN_PIXEL_LIGHT)

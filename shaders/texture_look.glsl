@@ -3,7 +3,8 @@
 layout(constant_id = 0) const bool fine_grain = false;
 layout(set = 0, binding = PSYGEN_BINDING_GROUND) uniform sampler2DArray textures;
 
-const float kPeriod = 2048.0;  // of the pattern; all textures repeat a whole number of times in it
+// Of the pattern; all textures repeat a whole number of times in it.
+const float kPeriod = float(PSYGEN_GROUND_PERIOD_M);
 
 // What a texture looks like at a place.
 struct Look {

@@ -16,7 +16,7 @@ constexpr std::uint32_t kMostNames = 1 << 20;
 std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool shared,
                                        Coverage coverage) {
   const std::size_t key =
-      std::size_t{range.pool_block} << 5 | static_cast<std::size_t>(coverage) << 2 |
+      std::size_t{range.pool_block} << 4 | static_cast<std::size_t>(coverage) << 2 |
       (shared ? 2u : 0u) |
       static_cast<std::size_t>(range.layout == core::VertexLayout::kTerrain ? 1 : 0);
   if (key >= open_.size()) open_.resize(key + 1);

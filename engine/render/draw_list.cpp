@@ -111,9 +111,10 @@ void DrawList::add(std::span<const Draw> input) {
   const auto key = [&](const Draw& draw) {
     const DrawRun run = run_of(draw);
     const bool terrain = std::is_same_v<Draw, TerrainDraw>;
-    const auto order =  // near terrain comes first
-        terrain ? (run.coverage == Coverage::kPart ? 0ULL : 1ULL) : std::uint64_t(run.coverage);
-    return (run.lamps ? 0ULL : 1ULL) << 48 | std::uint64_t{run.textures} << 36 | order << 33 |
+    // What is near comes first: it hides most.
+    const bool near = run.coverage == (terrain ? Coverage::kPart : Coverage::kNear);
+    const std::uint64_t order = near ? 0 : 1 + static_cast<std::uint64_t>(run.coverage);
+    return (run.lamps ? 0ULL : 1ULL) << 47 | std::uint64_t{run.textures} << 35 | order << 33 |
            (run.pushed ? 0ULL : 2ULL) << 31 | std::uint64_t{run.pool_block} * 2 |
            (run.shared ? 1u : 0u);
   };

@@ -35,16 +35,16 @@ enum class Coverage : std::uint8_t {
   kWhole,
   kPart,      // models that fade in or out, objects with holes; of terrain, what is near
   kPictured,  // models with pictures, whether they fade or not
-  kNear,      // near models
-  kNearPart,  // near models that fade in or out
+  kNear,      // near models, whether they fade or not
 };
 constexpr Coverage coverage_of(const TerrainDraw& draw) {
   return draw.near ? Coverage::kPart : Coverage::kWhole;
 }
 constexpr Coverage coverage_of(const MeshDraw& draw) {
-  if (draw.pictured) return Coverage::kPictured;
-  if (draw.fade < 1.0F) return draw.near ? Coverage::kNearPart : Coverage::kPart;
-  return draw.near ? Coverage::kNear : Coverage::kWhole;
+  return draw.pictured      ? Coverage::kPictured
+         : draw.near        ? Coverage::kNear
+         : draw.fade < 1.0F ? Coverage::kPart
+                            : Coverage::kWhole;
 }
 // Puts the debug colour of a draw into its data, for the views that show it.
 void set_colour(shaders::DrawData& data, const TerrainDraw& draw);

@@ -9,7 +9,8 @@
 
 static_assert(PSYGEN_GROUND_SIDE == psygen::render::kPatternSide);
 static_assert(PSYGEN_GROUND_TEXTURES == psygen::render::kGroundTextures);
-static_assert(PSYGEN_NEAR_M == psygen::render::kNearM);
+static_assert(PSYGEN_NEAR_GROUND_M == psygen::render::kNearGroundM);
+static_assert(PSYGEN_NEAR_MODELS_M == psygen::render::kNearModelsM);
 
 namespace psygen::render {
 

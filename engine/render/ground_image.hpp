@@ -1,5 +1,5 @@
 // The image with the textures of the ground (ground_textures.hpp) and its sampler: for presets with
-// light per pixel all textures as layers, else the one of brightnesses. Main thread. Private to
+// light per pixel all textures as layers, else those of brightness. Main thread. Private to
 // engine/render.
 #pragma once
 

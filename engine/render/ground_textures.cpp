@@ -344,6 +344,32 @@ GroundLevels with_mips(LevelBytes first) {
   return levels;
 }
 
+// Leaves in clumps, so that gaps between these are left where leaves are smaller than pixels.
+Ground leaves_of_models() {
+  Ground out = forest_floor();
+  const Field clumps = tiled_noise(8, 8, 3, 0.6F, 1000);
+  fill(out.height, [&](std::size_t i) { return out.height.values[i] + 0.35F * clumps.values[i]; });
+  return out;
+}
+
+// `channels` four at a time, each as a layer.
+LevelBytes as_layers(std::span<const Field> channels) {
+  LevelBytes layers(kTexels * channels.size());
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    for (std::size_t i = 0; i < kTexels; ++i)
+      layers[(c / 4 * kTexels + i) * 4 + c % 4] = unorm8(channels[c].values[i]);
+  }
+  return layers;
+}
+
+// Factors of the albedo over 2.
+Field brightness(Field light) {
+  for (float& v : light.values)
+    v *= 0.5F;
+  set_mean(light.values, 0.5F);
+  return light;
+}
+
 }  // namespace
 
 GroundLevels make_ground_layers(std::span<const GroundPicture> pictures) {
@@ -361,27 +387,17 @@ GroundLevels make_ground_layers(std::span<const GroundPicture> pictures) {
 
 GroundLevels make_ground_detail(std::span<const GroundPicture> pictures) {
   constexpr std::size_t kGrass = 0, kForest = 1, kSand = 3, kRock = 4;  // of the pictures
-  Ground leaves = forest_floor();
-  const Ground floor = ground_of(kForest, forest_floor, pictures);
-  std::array<Field, kDetailLayers * 4> fields{ground_of(kGrass, grass, pictures).light,
-                                              floor.light,
-                                              ground_of(kRock, scree, pictures).light,
-                                              ground_of(kSand, sand, pictures).light,
-                                              leaves.height,
-                                              bark().light,
-                                              ground_of(kRock, rock, pictures).light,
-                                              leaves.light};
-  LevelBytes detail(kTexels * fields.size());
-  for (std::size_t c = 0; c < fields.size(); ++c) {
-    if (c != 4) {
-      for (float& v : fields[c].values)
-        v *= 0.5F;
-      set_mean(fields[c].values, 0.5F);
-    }
-    for (std::size_t i = 0; i < kTexels; ++i)
-      detail[(c / 4 * kTexels + i) * 4 + c % 4] = unorm8(fields[c].values[i]);
-  }
-  return with_mips(std::move(detail));
+  const Ground leaves = leaves_of_models();
+  const std::array<Field, kDetailLayers * 4> channels{
+      brightness(ground_of(kGrass, grass, pictures).light),
+      brightness(ground_of(kForest, forest_floor, pictures).light),
+      brightness(ground_of(kRock, scree, pictures).light),
+      brightness(ground_of(kSand, sand, pictures).light),
+      leaves.height,
+      brightness(bark().light),
+      brightness(ground_of(kRock, rock, pictures).light),
+      brightness(leaves.light)};
+  return with_mips(as_layers(channels));
 }
 
 }  // namespace psygen::render

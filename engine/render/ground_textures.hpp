@@ -32,7 +32,7 @@ using GroundLevels = std::vector<std::vector<std::uint8_t>>;
 GroundLevels make_ground_layers(std::span<const GroundPicture> pictures = {});
 // Layers for light per vertex, of brightness as factors over 2 with a mean of 1/2. First of ground:
 // grass, forest floor, scree, sand. Then of models: the height of leaves, 0 to 1, which are high
-// where they are dense, bark, rock, leaves.
+// where they are dense, then brightness of bark, of rock and of leaves.
 inline constexpr std::uint32_t kDetailLayers = 2;
 GroundLevels make_ground_detail(std::span<const GroundPicture> pictures = {});
 

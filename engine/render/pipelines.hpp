@@ -80,7 +80,8 @@ class Pipelines {
     std::array<UniquePipeline, 2> fading;       // models, indexed by whether the data is pushed
     std::array<UniquePipeline, 2> pictured;     // the same
     std::array<UniquePipeline, 2> near_ground;  // the same; null if it is drawn like all terrain
-    std::array<UniquePipeline, 2> near_models;  // the same; null if they are drawn like all models
+    std::array<UniquePipeline, 2>
+        near_models;  // the same; null if they are drawn like those that fade
 
     VkPipeline of(core::VertexLayout layout, bool is_pushed, Coverage coverage) const {
       const std::size_t pushed = is_pushed ? 1 : 0;
@@ -90,10 +91,9 @@ class Pipelines {
         return near != VK_NULL_HANDLE ? near : whole[0][pushed].get();
       }
       if (coverage == Coverage::kPictured) return pictured[pushed].get();
-      const bool near = coverage == Coverage::kNear || coverage == Coverage::kNearPart;
-      if (near && near_models[pushed].get() != VK_NULL_HANDLE) return near_models[pushed].get();
-      const bool whole_pixels = coverage == Coverage::kWhole || coverage == Coverage::kNear;
-      return whole_pixels ? whole[1][pushed].get() : fading[pushed].get();
+      if (coverage == Coverage::kNear && near_models[pushed].get() != VK_NULL_HANDLE)
+        return near_models[pushed].get();
+      return coverage == Coverage::kWhole ? whole[1][pushed].get() : fading[pushed].get();
     }
   };
   static std::size_t index_of_object(bool pushed, bool textured, bool fading) {

@@ -105,8 +105,8 @@ RenderPath Renderer::path() const {
 bool Renderer::casts_shadows() const {
   return impl_->casts_shadows();
 }
-bool Renderer::has_fine_grain() const {
-  return impl_->has_fine_grain();
+bool Renderer::has_near_models() const {
+  return impl_->has_near_models();
 }
 void Renderer::wait_idle() {
   impl_->wait_idle();

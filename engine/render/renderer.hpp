@@ -113,8 +113,8 @@ class Renderer {
   RenderPath path() const;
   // Whether meshes cast shadows into cascades. Then draws outside the picture matter too.
   bool casts_shadows() const;
-  // Whether its textures have relief: the preset is for devices to which triangles cost little.
-  bool has_fine_grain() const;
+  // Whether the preset draws near models in a way of their own (MeshDraw::near).
+  bool has_near_models() const;
 
   // Waits until the device has finished everything. Released ranges are free afterwards.
   void wait_idle();

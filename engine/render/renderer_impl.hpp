@@ -74,7 +74,7 @@ class RendererImpl {
   core::Result<std::vector<DrawnMesh>> drawn_meshes();
   RenderPath path() const { return culling_ ? RenderPath::kGpu : RenderPath::kCpu; }
   bool casts_shadows() const { return pipelines_.traits().cascades > 0; }
-  bool has_fine_grain() const { return pipelines_.traits().fine_grain; }
+  bool has_near_models() const { return !pipelines_.traits().pixel_light; }
   void wait_idle();
   bool hangs() const;
 

@@ -148,9 +148,10 @@ struct TerrainPalette {
 // The id for "no shared list": the mesh has its own indices.
 inline constexpr std::uint32_t kNoSharedIndices = 0;
 
-// Presets without fine grain draw detail on the ground up to this distance from the camera, and
-// those with light per vertex on models.
-inline constexpr float kNearM = 64.0F;
+// Presets without fine grain draw detail on the ground up to this distance from the camera.
+inline constexpr float kNearGroundM = 64.0F;
+// Presets with light per vertex draw detail on models up to this distance, less beyond half of it.
+inline constexpr float kNearModelsM = 128.0F;
 
 // Largest displacement of a vertex by the wind in metres, in both directions (shaders/model.vert).
 inline constexpr glm::vec3 kSwayM{0.12F, 0.0F, 0.09F};
@@ -167,7 +168,7 @@ struct MeshDraw {
   core::IndexPart part;   // of its indices; empty: all
   float fade = 1.0F;      // 1: all of its pixels
   bool pictured = false;  // vertices may have core::kPictureBit
-  bool near = false;      // some of it is nearer than kNearM: drawn with more detail
+  bool near = false;      // nearer than kNearModelsM: with more detail if the preset has it
   core::SurfaceKind surface = core::SurfaceKind::kPlain;  // of all but leaves
   float sun = 1.0F;                       // share of the sun that no terrain hides, 0 … 1
   std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
@@ -185,7 +186,7 @@ struct TerrainDraw {
   core::IndexPart part;  // of the shared list; empty: all of it
   float side_m = 0.0F;   // of the square that the grid covers; 0: the largest possible grid
   float cover = 0.0F;    // share of the ground that far forests hide (Canopy)
-  bool near = false;     // some of it is nearer than kNearM: drawn with more detail
+  bool near = false;     // some of it is nearer than kNearGroundM: drawn with more detail
   std::uint32_t debug_colour = 0x808080;  // 0xRRGGBB, in the views that colour draws
 };
 
@@ -253,7 +254,7 @@ struct Line {
 };
 
 // A soft dark spot on the ground: a disc seen from above, darkest in its middle. It is drawn up to
-// kNearM.
+// kNearGroundM.
 struct GroundSpot {
   glm::vec2 middle{0.0F};  // x and z, relative to the camera
   float radius_m = 0;      // of its end

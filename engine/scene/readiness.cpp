@@ -87,17 +87,6 @@ struct Collector {
   }
 };
 
-// How the picture of a camera there would be judged.
-ChoiceRules choice_of(const PlaceRules& s) {
-  ChoiceRules choice;
-  choice.pixels_per_radian = s.camera.pixels_per_radian;
-  choice.min_size_pixels = static_cast<float>(s.settings.min_size_pixels);
-  choice.error_pixels = static_cast<float>(s.quality.error_pixels);
-  choice.model_error_pixels = static_cast<float>(s.quality.model_error_pixels);
-  choice.levels_of_detail = s.settings.levels_of_detail;
-  return choice;
-}
-
 core::Result<void> check(const core::WorldPosition& position, double radius_m) {
   const glm::dvec3& local = position.local;
   if (!core::is_finite(local))
@@ -122,7 +111,9 @@ void list(const PlaceRules& rules, Foresight::Place& place) {
   place.stale = false;
   const core::WorldPosition normal =
       core::normalised(place.position, rules.facts.world.block_size_m());
-  Collector collector{rules, normal, choice_of(rules), place.meshes};
+  Collector collector{rules, normal,
+                      choice_of_picture(rules.settings, rules.camera, rules.quality, rules.facts),
+                      place.meshes};
   for (const visibility::CutNode& node : cut_at(rules, normal, place.radius_m).nodes) {
     if (!node.leaf) continue;
     place.nodes.push_back(node.node);

@@ -70,7 +70,7 @@ struct Foresight {
     std::uint64_t bytes = 0;
     Readiness readiness;
     bool told = false;
-    bool stale = false;  // edits have changed one of the nodes: the meshes are not these any more
+    bool stale = false;  // the meshes are not these any more, since edits or another preset
   };
   std::vector<Place> places;
   PlaceId last_id = 0;

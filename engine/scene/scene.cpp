@@ -113,7 +113,10 @@ void Scene::edit(world::Edits edits) {
 void Scene::take_over_preset() {
   const render::Renderer* const renderer = state_.output.renderer;
   state_.facts.shadows = renderer != nullptr && renderer->casts_shadows();
-  state_.facts.coarse_leaves = renderer != nullptr && !renderer->has_fine_grain();
+  const bool near_detail = renderer != nullptr && renderer->has_near_models();
+  if (std::exchange(state_.facts.near_detail, near_detail) == near_detail) return;
+  for (Foresight::Place& place : state_.foresight.places)
+    place.stale = true;
 }
 
 core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::Registry registry,

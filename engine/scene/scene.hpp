@@ -124,7 +124,7 @@ class Scene {
   static core::Result<void> check(const Settings& settings);
 
   // To be called after Renderer::set_preset(): with shadows what is out of the picture matters too,
-  // and where triangles cost much near trees are coarser.
+  // and near trees may be coarser where textures hide it.
   void take_over_preset();
 
   static constexpr std::uint64_t kMinBudgetBytes = 4ull << 20;

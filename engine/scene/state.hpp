@@ -158,7 +158,7 @@ struct WorldFacts {
   glm::vec2 models_reach_m{0.0F};     // from their foot: sideways, up
   glm::vec2 scattered_reach_m{0.0F};  // the same without what was placed by hand
   bool shadows = false;  // what is drawn casts some into the picture, though it may be out of view
-  bool coarse_leaves = false;  // near trees are coarser: textures of leaves hide it, and save time
+  bool near_detail = false;  // near models have textures: in those of trees gaps hide polygons
 };
 
 // Where the sun stands that the ground is lit by (world::set_sun).
@@ -225,7 +225,7 @@ struct View {
   std::vector<ChosenNode> chosen;     // of the cut, ancestors first, front to back
   std::vector<ecs::Entity> expected;  // nodes expected in view, soonest first
   // Nodes without which those expected could not be drawn, and ancestors of all others, which stand
-  // for them where the camera turns unexpectedly.
+  // for them where the camera turns unexpectedly; coarsest level first.
   std::vector<ecs::Entity> around;
   std::vector<ecs::Entity> kept;  // the others: they ask for nothing that they lack
 };

@@ -52,7 +52,7 @@ float distance_m(const core::Bounds& box) {
 }
 
 bool is_near(const core::Bounds& box) {
-  return glm::length(glm::clamp(glm::vec3(0.0F), box.min, box.max)) < render::kNearM;
+  return glm::length(glm::clamp(glm::vec3(0.0F), box.min, box.max)) < render::kNearGroundM;
 }
 
 std::uint32_t bit(int tile) {

@@ -8,8 +8,8 @@
 namespace psygen::scene {
 namespace {
 
-// Spots end at render::kNearM; these are the largest that reach into it from beyond.
-constexpr float kReachM = render::kNearM + 12.0F;
+// Spots end at render::kNearGroundM; these are the largest that reach into it from beyond.
+constexpr float kReachM = render::kNearGroundM + 12.0F;
 constexpr float kLeastRadiusM = 0.9F;   // what cells of one metre can show
 constexpr float kTreeM = 2.0F;          // what is higher stands on a stem
 constexpr float kLeastSunrise = 0.25F;  // of the sun's height: shadows of a low sun fade instead

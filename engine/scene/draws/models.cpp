@@ -43,8 +43,9 @@ bool add_mesh(const ModelGround& ground, const View& view, const Placed& placed,
   draw.box_half_extent = placed.box_half_extent;
   draw.surface = placed.surface;
   if (parts == nullptr) {
-    draw.near = placed.surface != core::SurfaceKind::kPlain &&
-                glm::length(draw.origin + placed.middle) < render::kNearM + placed.radius_m;
+    draw.near = ground.near_detail && !draw.pictured &&
+                placed.surface != core::SurfaceKind::kPlain &&
+                glm::length(draw.origin + placed.middle) < render::kNearModelsM + placed.radius_m;
     draw.sun = sun_at(*ground.sun, glm::vec2(placed.position.x, placed.position.z) / ground.side_m);
     draws.push_back(draw);
     return true;

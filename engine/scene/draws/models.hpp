@@ -18,8 +18,9 @@ struct ModelGround {
   DrawFacts node;                  // what the views for understanding say about it
   render::View shown = render::View::kNormal;
   FadeStep step;
-  bool shadows = false;   // WorldFacts::shadows
-  bool pictures = false;  // it has a merged mesh, which may have pictures
+  bool shadows = false;      // WorldFacts::shadows
+  bool near_detail = false;  // WorldFacts::near_detail
+  bool pictures = false;     // it has a merged mesh, which may have pictures
 };
 
 // How a node came to be drawn in this tick.

@@ -73,6 +73,19 @@ std::uint8_t level_to_request(const ChoiceRules& rules, const Detail& detail, co
 
 }  // namespace
 
+ChoiceRules choice_of_picture(const Settings& settings, const Camera& camera,
+                              const Quality& quality, const WorldFacts& facts) {
+  ChoiceRules rules;
+  rules.pixels_per_radian = camera.pixels_per_radian;
+  rules.min_size_pixels = static_cast<float>(settings.min_size_pixels);
+  rules.error_pixels = static_cast<float>(quality.error_pixels);
+  rules.model_error_pixels = static_cast<float>(quality.model_error_pixels);
+  rules.levels_of_detail = settings.levels_of_detail;
+  // Gaps between leaves are whole up to there.
+  rules.near_leaves_m = facts.near_detail ? 0.5F * render::kNearModelsM : 0.0F;
+  return rules;
+}
+
 std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8_t drawn_level) {
   if (node.fine) return 0;
   if (!node.wanted && drawn_level != kNoLevel) return drawn_level;
@@ -85,16 +98,18 @@ std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const D
   if (!rules.levels_of_detail) return 0;
   const std::span<const float> errors(detail.error_m.data(), detail.level_count);
   const bool keep = drawn_level != kNoLevel && !rules.settle;
-  const float error_pixels =
-      node.level == 0 ? model_error_pixels(rules, detail, distance_m) : rules.error_pixels;
-  const auto level = static_cast<std::uint8_t>(
-      visibility::choose_level(errors, distance_m, rules.pixels_per_radian,
-                               node.error_factor * error_pixels, keep ? drawn_level : -1));
-  const float most =
-      kMostPicturePixels * (keep && drawn_level == detail.picture_level ? kKept : 1.0F);
-  return level == detail.picture_level && level > 0 && size_pixels > most
-             ? static_cast<std::uint8_t>(level - 1)
-             : level;
+  const auto level_with = [&](float error_pixels) {
+    return static_cast<std::uint8_t>(
+        visibility::choose_level(errors, distance_m, rules.pixels_per_radian,
+                                 node.error_factor * error_pixels, keep ? drawn_level : -1));
+  };
+  if (node.level > 0) return level_with(rules.error_pixels);
+  const std::uint8_t level = level_with(model_error_pixels(rules, detail, distance_m));
+  if (level != detail.picture_level || level == 0) return level;
+  // Pictures have no gaps that could hide a larger error.
+  const float most = kMostPicturePixels * (keep && drawn_level == level ? kKept : 1.0F);
+  const bool fits = size_pixels <= most && level_with(rules.model_error_pixels) == level;
+  return fits ? level : static_cast<std::uint8_t>(level - 1);
 }
 
 std::uint8_t level_out_of_view(const Detail& detail, std::uint8_t level, bool expected,

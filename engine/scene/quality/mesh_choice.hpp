@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "engine/scene/components.hpp"
+#include "engine/scene/state.hpp"
 #include "engine/synthesis/rank.hpp"
 
 namespace psygen::scene {
@@ -27,6 +28,10 @@ struct ChoiceRules {
   bool awaits_memory = false;    // requests wait for memory that is about to be free
   bool draft = false;            // Quality::draft
 };
+
+// What decides about the meshes of a picture, wherever its camera stands.
+ChoiceRules choice_of_picture(const Settings& settings, const Camera& camera,
+                              const Quality& quality, const WorldFacts& facts);
 
 // In a draft, meshes may be so many levels coarser than wanted.
 inline constexpr int kDraftLevels = 2;
@@ -61,9 +66,9 @@ std::uint8_t ground_level(const NodeView& node, const Detail& detail, std::uint8
 std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const Detail& detail,
                          float size_pixels, float distance_m, std::uint8_t drawn_level);
 
-// The level that a model should have ready while it is out of view, in place of the one that it
-// should show: that or a finer one if it has it, and if it is not `expected` in view the next
-// coarser one, which is far cheaper, and not much coarser where the camera turns unexpectedly.
+// The level to keep ready while out of view, in place of `level`, which would be shown in view. A
+// finer mesh that is there is kept. A model that no predicted camera sees (not `expected`) gets one
+// level coarser: it is far cheaper, and little is lost where the camera turns unexpectedly.
 std::uint8_t level_out_of_view(const Detail& detail, std::uint8_t level, bool expected,
                                std::uint8_t drawn_level);
 

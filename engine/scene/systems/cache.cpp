@@ -67,15 +67,9 @@ double seen_share(const synthesis::CacheStats& stats) {
 ChoiceRules choice_rules(const Settings& settings, const Rules& rules, const Clock& clock,
                          const Camera& camera, const Quality& quality, const WorldFacts& facts,
                          const Pressure& pressure) {
-  ChoiceRules choice;
+  ChoiceRules choice = choice_of_picture(settings, camera, quality, facts);
   choice.node_levels = facts.levels.size();
-  choice.pixels_per_radian = camera.pixels_per_radian;
-  choice.min_size_pixels = static_cast<float>(settings.min_size_pixels);
-  choice.error_pixels = static_cast<float>(quality.error_pixels);
-  choice.model_error_pixels = static_cast<float>(quality.model_error_pixels);
-  choice.near_leaves_m = facts.coarse_leaves ? render::kNearM : 0.0F;
   choice.real_s = clock.real_s;
-  choice.levels_of_detail = settings.levels_of_detail;
   choice.settle = rules.settle;
   choice.ask_early = !rules.settle && !rules.wait;
   choice.coarse_first = rules.coarse_first;

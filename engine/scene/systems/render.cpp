@@ -61,6 +61,7 @@ ModelGround ground_of(const DrawTick& tick, const WorldFacts& facts, const Rende
           tick.shown,
           tick.step,
           facts.shadows,
+          facts.near_detail,
           facts.pictures && level > 0 && level <= world::kMaxPicturedLevel};
 }
 

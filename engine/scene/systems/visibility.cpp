@@ -14,7 +14,7 @@ namespace psygen::scene {
 namespace {
 
 // LevelView::part of nodes in view, of those that are chosen only for their sake, and of other
-// ancestors of leaves of the cut: what would be drawn first if the camera turned.
+// roots and ancestors of leaves of the cut: what would be drawn first if the camera turned.
 constexpr std::uint8_t kInView = 1, kBeside = 2, kAncestor = 3;
 
 // With room for what stands on the ground and reaches over the node's edge.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/render/renderer.hpp"
+#include "engine/scene/readiness.hpp"
 #include "engine/scene/scene.hpp"
 #include "tests/engine/app/fixture.hpp"
 
@@ -94,9 +95,14 @@ TEST(Session, SavesThePictureOfTheLastTickAndChangesItsPreset) {
   ASSERT_TRUE((*session)->save_picture(file));
   EXPECT_EQ((*session)->take_saved(), std::vector{file});
   EXPECT_TRUE((*session)->take_saved().empty()) << "told once";
+  scene::State& state = (*session)->scene().state();
+  EXPECT_TRUE(state.facts.near_detail);
+  ASSERT_TRUE(scene::ask_ready(state, (*session)->home().position, 40));
+  EXPECT_FALSE(state.foresight.places[0].stale);
   ASSERT_TRUE((*session)->set_preset(render::Preset::kMedium));
   EXPECT_EQ((*session)->scene().state().facts.shadows, (*session)->renderer().casts_shadows());
-  EXPECT_TRUE((*session)->scene().state().facts.coarse_leaves);
+  EXPECT_FALSE(state.facts.near_detail);
+  EXPECT_TRUE(state.foresight.places[0].stale) << "other trees are near enough";
   ASSERT_TRUE((*session)->tick((*session)->home(), 0));
   EXPECT_EQ((*session)->renderer().preset(), render::Preset::kMedium);
 }

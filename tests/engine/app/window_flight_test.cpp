@@ -188,7 +188,7 @@ TEST_F(WindowFlight, ItsKeysDoWhatTheHelpSays) {
     return [preset](Session& session) {
       return session.renderer().preset() == preset &&
              session.scene().state().facts.shadows == session.renderer().casts_shadows() &&
-             session.scene().state().facts.coarse_leaves != session.renderer().has_fine_grain();
+             session.scene().state().facts.near_detail == session.renderer().has_near_models();
     };
   };
   const auto size_is = [](core::Extent size) {

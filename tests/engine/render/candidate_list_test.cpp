@@ -61,9 +61,10 @@ TEST(CandidateList, groups_what_has_the_same_pipeline_and_buffers) {
   models[3].fade = 0.5F;
   CandidateList list;
   list.build({}, models, {});
-  ASSERT_EQ(list.groups().size(), 4u);
+  ASSERT_EQ(list.groups().size(), 3u);
   EXPECT_EQ(list.groups()[1].coverage, Coverage::kWhole);
-  EXPECT_EQ(list.groups()[3].coverage, Coverage::kNearPart);
+  EXPECT_EQ(list.groups()[2].coverage, Coverage::kNear);
+  EXPECT_EQ(list.groups()[2].capacity, 2u);
 }
 
 TEST(CandidateList, starts_a_new_group_where_one_call_can_take_no_more) {

@@ -113,8 +113,23 @@ TEST(GroundTextures, APictureTakesThePlaceOfItsKindAndOfNoOther) {
 
 TEST(GroundTextures, ModelsHaveBarkAndLeavesOfTheirOwnAndStoneOfThePictureOfRock) {
   const GroundLevels layers = make_ground_layers(), detail = make_ground_detail();
-  for (int i = 0; i < kPatternSide; ++i)
-    EXPECT_EQ(channel(detail, 1, i, 0, 0), channel(layers, PSYGEN_TEXTURE_LEAVES, i, 0, 3));
+  // The order of channels that model_detail.frag has.
+  const auto likeness = [&](std::size_t c, std::size_t texture, std::size_t of) {
+    double sum = 0;
+    for (int y = 0; y < kPatternSide; ++y) {
+      for (int x = 0; x < kPatternSide; ++x)
+        sum += (channel(detail, 1, x, y, c) - 127.5) * (channel(layers, texture, x, y, of) - 127.5);
+    }
+    return sum;
+  };
+  for (const std::size_t other : std::array<std::size_t, 3>{
+           PSYGEN_TEXTURE_ROCK, PSYGEN_TEXTURE_BARK, PSYGEN_TEXTURE_LEAVES}) {
+    EXPECT_GE(likeness(1, PSYGEN_TEXTURE_BARK, 1), likeness(1, other, 1));
+    EXPECT_GE(likeness(2, PSYGEN_TEXTURE_ROCK, 1), likeness(2, other, 1));
+    EXPECT_GE(likeness(3, PSYGEN_TEXTURE_LEAVES, 1), likeness(3, other, 1));
+  }
+  EXPECT_GT(likeness(0, PSYGEN_TEXTURE_LEAVES, 3),
+            2 * std::abs(likeness(0, PSYGEN_TEXTURE_BARK, 3)));
   std::vector<GroundPicture> pictures(kGroundPictures);
   for (GroundPicture& picture : pictures)
     picture.rgb.resize(kTexels * 3, 0.1F);

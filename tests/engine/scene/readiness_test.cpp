@@ -85,12 +85,13 @@ TEST(Readiness, AnAskedForPlaceBecomesReadyAndAJumpThereFindsItAll) {
 }
 
 // Far trees are drawn as pictures there, so their quads are what is asked for.
-TEST(Readiness, APlaceAsksForTheMeshesThatACameraThereDraws) {
+void expect_place_asks_for_what_is_drawn(bool near_detail) {
   Settings settings = small_settings();
   settings.view_distance_m = 400;
   settings.max_error_pixels = 13;
   auto scene = make_scene(settings);
   State& state = scene->state();
+  state.facts.near_detail = near_detail;
   scene->settle(kHere);
   tick_at(*scene, kHere);
   ASSERT_TRUE(ask_ready(state, kThere.position, 400));
@@ -115,6 +116,13 @@ TEST(Readiness, APlaceAsksForTheMeshesThatACameraThereDraws) {
       });
   EXPECT_GT(pictures, 5U);
   EXPECT_GT(others, 5U);
+}
+
+TEST(Readiness, APlaceAsksForTheMeshesThatACameraThereDraws) {
+  expect_place_asks_for_what_is_drawn(false);
+}
+TEST(Readiness, APlaceAsksForTheCoarserTreesWhereNearOnesHaveGaps) {
+  expect_place_asks_for_what_is_drawn(true);
 }
 
 TEST(Readiness, WhatIsAskedForIsKeptAndOtherwiseItMayGo) {

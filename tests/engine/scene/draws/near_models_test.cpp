@@ -1,28 +1,53 @@
-// Single models near the camera are drawn with detail, and all others without.
+// Single models near the camera are drawn with detail if the preset has it, and no others.
+#include "engine/core/coordinates.hpp"
 #include "engine/render/types.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {
 namespace {
 
-TEST(NearModels, AreThoseOfBarkAndStoneOfWhichSomethingIsInReach) {
+std::size_t near_draws(const State& state) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(state.draws.models, [](const auto& draw) { return draw.near; }));
+}
+
+// Trees and rocks that are drawn in this tick and reach into the distance.
+std::size_t models_in_reach(State& state, const core::WorldPosition& camera) {
+  std::size_t count = 0;
+  state.entities.each<const Placed, const Demand, const Source>(
+      [&](auto, std::span<const Placed> placed, std::span<const Demand> demands,
+          std::span<const Source> sources) {
+        for (std::size_t i = 0; i < placed.size(); ++i) {
+          const Placed& model = placed[i];
+          const glm::vec3 from_camera(
+              core::offset_m(model.block, camera, state.facts.world.block_size_m()));
+          const glm::vec3 middle = from_camera + model.position + model.middle;
+          const bool drawn = demands[i].in_view_tick + 1 == state.clock.tick &&
+                             demands[i].drawn_level != kNoLevel && !demands[i].pictured;
+          if (drawn && sources[i].index < kMergedIndex &&
+              model.surface != core::SurfaceKind::kPlain &&
+              glm::length(middle) < render::kNearModelsM + model.radius_m)
+            ++count;
+        }
+      });
+  return count;
+}
+
+TEST(NearModels, AreThoseOfBarkAndStoneWithinReachIfThePresetHasThem) {
   Settings settings = small_settings();
   settings.view_distance_m = 1000;
   const auto scene = make_scene(settings);
-  scene->settle(pose_at(256, 256));
-  tick_at(*scene, pose_at(256, 256));
-  std::size_t near = 0, far = 0;
-  for (const render::MeshDraw& draw : scene->state().draws.models) {
-    const glm::vec3 middle = draw.origin + draw.box_center;
-    const float away_m = glm::length(glm::max(glm::abs(middle) - draw.box_half_extent, 0.0F));
-    ++(draw.near ? near : far);
-    EXPECT_FALSE(draw.near && draw.surface == core::SurfaceKind::kPlain);
-    EXPECT_FALSE(draw.near && away_m > 2 * render::kNearM) << "boxes are larger than models";
-    EXPECT_TRUE(draw.near || draw.surface == core::SurfaceKind::kPlain || draw.part.count > 0 ||
-                glm::length(middle) > render::kNearM);
+  State& state = scene->state();
+  const core::CameraPose pose = pose_at(256, 256);
+  for (const bool has_detail : {false, true}) {
+    state.facts.near_detail = has_detail;
+    scene->settle(pose);
+    tick_at(*scene, pose);
+    const std::size_t expected = models_in_reach(state, pose.position);
+    EXPECT_GT(expected, 20u);
+    EXPECT_LT(expected + 20, state.draws.models.size());
+    EXPECT_EQ(near_draws(state), has_detail ? expected : 0u);
   }
-  EXPECT_GT(near, 20u);
-  EXPECT_GT(far, 20u);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(MeshChoice, ModelsGetCoarserWithDistanceUntilTheyAreTooSmall) {
   EXPECT_EQ(model_level(rules, node, four_levels(), 2, 1700, kNoLevel), 0);
 }
 
-// Whatever it has, a tree that comes nearer never gets coarser.
+// Whatever it has, a tree that comes nearer never gets coarser, and it does not flicker.
 TEST(MeshChoice, NearTreesAreCoarserWhereTexturesOfLeavesHideIt) {
   ChoiceRules rules;
   rules.pixels_per_radian = 1000;
@@ -79,12 +79,27 @@ TEST(MeshChoice, NearTreesAreCoarserWhereTexturesOfLeavesHideIt) {
   NodeView merged = in_view();
   merged.level = 1;
   EXPECT_EQ(model_level(rules, merged, tree, 100, 20, kNoLevel), 0);
-  int last = 0;
-  for (float distance_m = 0; distance_m < 100; distance_m += 0.25F) {
-    EXPECT_GE(level(tree, distance_m), last) << distance_m;
-    last = level(tree, distance_m);
+  for (const std::uint8_t drawn : {kNoLevel, std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{2}}) {
+    int last = 0;
+    for (float distance_m = 0; distance_m < 100; distance_m += 0.25F) {
+      const int now = model_level(rules, in_view(), tree, 100, distance_m, drawn);
+      EXPECT_GE(now, last) << distance_m;
+      last = now;
+    }
+    EXPECT_EQ(last, 2);
   }
-  EXPECT_EQ(last, 2);
+}
+
+TEST(MeshChoice, NearTreesAreNoPicturesBeforeTheirOwnErrorAllowsIt) {
+  ChoiceRules rules;
+  rules.pixels_per_radian = 1000;
+  rules.near_leaves_m = 64;
+  Detail tree = four_levels();
+  tree.leaves = true;
+  tree.error_m = {0, 0.01F, 0.02F, 0.05F};
+  tree.picture_level = 3;
+  EXPECT_EQ(model_level(rules, in_view(), tree, 100, 30, kNoLevel), 2);
+  EXPECT_EQ(model_level(rules, in_view(), tree, 100, 60, kNoLevel), 3);
 }
 
 TEST(MeshChoice, MergedModelsAreNeverTooSmall) {
