@@ -30,6 +30,8 @@ constexpr double kCoarsePatienceSeconds = 0.03;
 // What the main thread makes in a tick of a draft, predicted: models on blocks in view that are
 // still those of a world before, nearest first. Who tries out a value waits for these.
 constexpr double kDraftSeconds = 0.008;
+// What is asked for in one tick is drawn two ticks later: so long at 30 frames/s.
+constexpr float kLandingSeconds = 1.0F / 15;
 
 // What all mesh entities are judged by in this tick.
 struct CacheTick {
@@ -40,6 +42,7 @@ struct CacheTick {
   bool roomy = false;    // ranks do not matter: only unwanted meshes will be evicted
   bool shadows = false;  // what is out of view may cast some into the picture
   double draft_s = 0;    // what is left of kDraftSeconds
+  glm::vec3 soon{0.0F};  // how far the camera moves in kLandingSeconds; 0: nothing is asked ahead
 };
 
 // A row of the columns of a mesh entity.
@@ -184,6 +187,18 @@ float want_level(const CacheTick& tick, const NodeView& node, const MeshEntity& 
   return pixels;
 }
 
+// The level to ask for: the wanted one, or the finer one that will be wanted once it is there.
+std::uint8_t level_to_ask(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
+                          const glm::vec3& foot) {
+  const std::uint8_t wanted = row.demand.wanted_level;
+  if (node.level > 0 || wanted == 0 || tick.soon == glm::vec3(0.0F)) return wanted;
+  const float distance_m = distance_to(row.placed, foot - tick.soon, tick.near_m);
+  const float pixels =
+      size_pixels(row.placed, row.detail, distance_m, tick.choice.pixels_per_radian, tick.near_m);
+  return std::min(wanted, model_level(tick.choice, node, row.detail, pixels, distance_m,
+                                      row.demand.drawn_level));
+}
+
 // Replaces the level that a model should have where it is by the one that it should have ready
 // there out of view.
 void want_out_of_view(const CacheTick& tick, const View& view, const NodeView& node,
@@ -236,13 +251,15 @@ bool consider(CacheTick& tick, const View& view, const NodeView& node, const Mes
     if (drawn) keep(tick, node, row, RankGroup::kUnwanted, distance_m, meshes);
     return true;
   }
+  Demand asked = demand;
+  if (in_view && !is_ground) asked.wanted_level = level_to_ask(tick, node, row, foot);
   // Only holes ask: looking a mesh up takes time.
   const bool cached =
       tick.choice.coarse_first && is_hole(node, demand, in_view) &&
-      meshes.ready(meshes.find(key_of(row.placed, row.detail, row.source, demand.wanted_level))) !=
+      meshes.ready(meshes.find(key_of(row.placed, row.detail, row.source, asked.wanted_level))) !=
           nullptr;
   const MeshChoice choice =
-      choose_mesh(tick.choice, node, row.detail, demand, in_view, is_ground, cached);
+      choose_mesh(tick.choice, node, row.detail, asked, in_view, is_ground, cached);
   if (drawn) keep(tick, node, row, choice.drawn, distance_m, meshes);
   if (choice.there) demand.requested_level = kNoLevel;
   if (choice.request != kNoLevel) request(tick, node, row, choice, distance_m, meshes, found);
@@ -376,6 +393,8 @@ void cache_system(const Settings& settings, const Rules& rules, const Clock& clo
                  is_roomy(meshes.stats()),
                  facts.shadows,
                  quality.draft && !rules.settle ? kDraftSeconds : 0};
+  if (rules.look_ahead && !rules.settle && !quality.draft && !view.outlooks.empty())
+    tick.soon = view.outlooks.front().moved * (kLandingSeconds / view.outlooks.front().tau_s);
   const auto visit = [&](std::span<const ecs::Entity> nodes, const NodeView& common) {
     visit_nodes(entities, nodes, camera.pose.position, facts.world.block_size_m(), common,
                 [&](const NodeView& node, const MeshEntity& row, bool is_ground) {
