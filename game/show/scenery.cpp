@@ -156,6 +156,11 @@ void Scenery::update_beacon(scene::State& state, const Play& play) {
   state.entities.get<scene::PointLight>(beacon_light_)->visible = next && night;
 }
 
+void Scenery::take_away(const Falling& tree, scene::State& state) {
+  state.entities.destroy(std::array{tree.entity});
+  state.assets.remove_mesh(tree.mesh);
+}
+
 void Scenery::update_falling(scene::State& state, const Play& play) {
   std::erase_if(falling_, [&](const Falling& tree) {
     const double age_s = play.progress().time_s - tree.since_s;
@@ -166,7 +171,7 @@ void Scenery::update_falling(scene::State& state, const Play& play) {
     if (auto* there = state.entities.get<scene::Transform>(tree.entity))
       there->rotation = glm::angleAxis(-angle, axis);
     const bool gone = age_s > kFallS + kLiesS || age_s < 0;
-    if (gone) state.entities.destroy(std::array{tree.entity});
+    if (gone) take_away(tree, state);
     if (age_s > kFallS + kLiesS - 1 && !gone)
       state.entities.get<scene::Object>(tree.entity)->visible = false;
     return gone;
@@ -209,6 +214,7 @@ void Scenery::tell(app::Session& session, const Happening& happening, const Play
   Falling tree;
   tree.yaw = play.walker().yaw();
   tree.since_s = play.progress().time_s;
+  tree.mesh = *mesh;
   tree.entity = scene::spawn(state.entities, {.mesh = *mesh}, {.position = happening.at});
   falling_.push_back(tree);
 }
@@ -220,7 +226,7 @@ void Scenery::clear(app::Session& session) {
   for (const auto& [place, flame] : flames_)
     world.destroy(std::array{flame.fire, flame.smoke, flame.light});
   for (const Falling& tree : falling_)
-    world.destroy(std::array{tree.entity});
+    take_away(tree, session.scene().state());
   for (const ecs::Entity entity : {smoke_, glow_, rain_, snow_})
     world.get<scene::ParticleEmitter>(entity)->visible = false;
   for (const ecs::Entity entity : {beacon_light_, lantern_})

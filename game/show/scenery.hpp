@@ -38,6 +38,7 @@ class Scenery {
   };
   struct Falling {
     ecs::Entity entity;
+    scene::MeshId mesh;
     double yaw = 0, since_s = 0;
   };
   void update_creatures(scene::State& state, const Play& play, double share);
@@ -45,6 +46,7 @@ class Scenery {
   void update_beacon(scene::State& state, const Play& play);
   void update_weather(app::Session& session, const Play& play, double hour);
   void update_falling(scene::State& state, const Play& play);
+  static void take_away(const Falling& tree, scene::State& state);
 
   std::array<std::array<Part, kParts>, kKinds> shapes_;
   std::array<std::array<scene::MeshId, kParts>, kKinds> meshes_;

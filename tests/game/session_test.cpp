@@ -2,6 +2,7 @@
 // recorded input, settings, and what is refused.
 #include <fstream>
 
+#include "game/show/scenery.hpp"
 #include "tests/game/game_fixture.hpp"
 
 namespace cairns {
@@ -70,6 +71,34 @@ TEST_F(GameSession, GoesOnFromItsSave) {
   const auto opened = second.open();
   ASSERT_FALSE(opened);
   EXPECT_NE(opened.error().message.find("3.cairns"), std::string::npos);
+}
+
+// Else a session could fell no more than some ten thousands.
+TEST_F(GameSession, FelledTreesGiveTheirMeshesBack) {
+  Running run(options());
+  ASSERT_TRUE(run.open());
+  Scenery scenery;
+  ASSERT_TRUE(scenery.open(*run.session));
+  run.frames(1);
+  const Play& play = *run.game.play();
+  world::Placement tree;
+  tree.model = static_cast<models::ModelIndex>(play.registry().find("tree"));
+  tree.parameters = models::default_parameters(play.registry()[tree.model]);
+  const Happening felled{
+      .kind = Happening::Kind::kFelled, .at = play.progress().feet, .tree = tree};
+  const scene::Assets& assets = run.session->scene().state().assets;
+  const std::size_t before = assets.mesh_count();
+  scenery.tell(*run.session, felled, play);
+  EXPECT_EQ(assets.mesh_count(), before + 1);
+  run.frames(240);  // it falls, and lies there
+  scenery.update(*run.session, play, 1, 12);
+  EXPECT_EQ(assets.mesh_count(), before + 1);
+  run.frames(240);
+  scenery.update(*run.session, play, 1, 12);
+  EXPECT_EQ(assets.mesh_count(), before);
+  scenery.tell(*run.session, felled, play);
+  scenery.clear(*run.session);
+  EXPECT_EQ(assets.mesh_count(), before);
 }
 
 TEST_F(GameSession, RecordedInputIsPlayedBack) {

@@ -25,9 +25,13 @@ core::Result<void> Assets::follow(models::Registry& registry) {
   const models::ModelIndex copied = copied_, synthesised = synthesised_;
   if (auto ok = add_types(registry); !ok) return ok;
   if (copied == copied_ && synthesised == synthesised_) return {};
+  const auto rename = [&](synthesis::MeshKey& key) {
+    key.model = key.model == copied ? copied_ : synthesised_;
+  };
+  std::ranges::for_each(removed_, rename);
   for (ObjectMesh& mesh : meshes_) {
     for (ObjectMeshLevel& level : mesh.levels) {
-      level.key.model = level.key.model == copied ? copied_ : synthesised_;
+      rename(level.key);
       level.handle = {};
       level.ready = level.failed = false;
     }
@@ -51,25 +55,38 @@ core::Result<MeshId> Assets::add(ObjectSource source, models::ModelIndex type) {
   mesh.box = source.box;
   mesh.level_count = static_cast<std::uint32_t>(source.level_count);
   const std::string name = source.name;
-  const std::uint32_t index = sources_->add(std::move(source));
-  if (index == ObjectSources::kMost) {
+  const std::optional<std::uint32_t> added = sources_->add(std::move(source));
+  if (!added) {
     return core::fail(
         ErrorCode::kOverBudget,
         fmt::format("{}: a scene has at most {} meshes of objects", name, ObjectSources::kMost));
   }
-  mesh.parameters = object_parameters(index);
+  mesh.id = {*added};
+  mesh.parameters = object_parameters(*added);
   const models::ModelType& of = (*registry_)[type];
   for (std::uint32_t level = 0; level < mesh.level_count; ++level) {
     mesh.levels[level].key = {{},
-                              index,
+                              *added,
                               type,
                               static_cast<std::uint16_t>(level),
                               models::parameters_hash(of, mesh.parameters)};
     mesh.levels[level].error_m =
         static_cast<float>(of.level_error_m(mesh.parameters, static_cast<int>(level)));
   }
-  meshes_.push_back(mesh);
-  return MeshId{index};
+  if (slot_of(mesh.id) == meshes_.size()) meshes_.emplace_back();
+  meshes_[slot_of(mesh.id)] = mesh;
+  ++count_;
+  return mesh.id;
+}
+
+void Assets::remove_mesh(MeshId id) {
+  if (!exists(id)) return;
+  ObjectMesh& mesh = meshes_[slot_of(id)];
+  for (std::uint32_t level = 0; level < mesh.level_count; ++level)
+    removed_.push_back(mesh.levels[level].key);
+  mesh = {};
+  --count_;
+  sources_->remove(id.index);
 }
 
 core::Result<MeshId> Assets::add_mesh(const core::MeshData& mesh, std::string name) {
@@ -130,8 +147,9 @@ core::Result<render::MaterialId> Assets::add_material(const render::Material& ma
 void Assets::want_all(synthesis::MeshSupply& meshes) const {
   using synthesis::Rank;
   using synthesis::RankGroup;
-  for (const auto& [index, number] : used) {
-    const ObjectMesh& mesh = meshes_[index];
+  for (const auto& [id, number] : used) {
+    if (!exists(id)) continue;
+    const ObjectMesh& mesh = meshes_[slot_of(id)];
     const ObjectMeshLevel& level = mesh.levels[number];
     if (level.ready || level.failed) continue;
     const RankGroup group = level.hole   ? RankGroup::kVisibleHole
@@ -140,6 +158,14 @@ void Assets::want_all(synthesis::MeshSupply& meshes) const {
     meshes.want({level.key, &mesh.parameters, kNoOwner,
                  Rank(group, 0, level.hole ? level.hole_m : level.nearest_m), 0.0F, false});
   }
+}
+
+void Assets::forget_removed(synthesis::MeshSupply& meshes) {
+  for (const synthesis::MeshKey& key : removed_) {
+    meshes.forget(meshes.find(key));
+    meshes.forget(meshes.find(synthesis::spare_of(key)));
+  }
+  removed_.clear();
 }
 
 }  // namespace psygen::scene

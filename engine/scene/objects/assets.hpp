@@ -1,6 +1,7 @@
 // The meshes, textures and materials of a scene's objects, by number. They live as long as the
-// scene. The vertices of copied meshes stay with the host; what is drawn lies in the geometry
-// memory, is charged to the byte budget and may be evicted and copied again. Main thread only.
+// scene, meshes until they are removed. The vertices of copied meshes stay with the host; what is
+// drawn lies in the geometry memory, is charged to the byte budget and may be evicted and copied
+// again. Main thread only.
 #pragma once
 
 #include <array>
@@ -35,6 +36,7 @@ struct ObjectMeshLevel {
 // One mesh.
 struct ObjectMesh {
   static constexpr std::size_t kMostLevels = 8;
+  MeshId id;  // none: it was removed
   core::Bounds box;
   models::Parameters parameters;
   std::uint32_t level_count = 0;
@@ -54,7 +56,7 @@ class Assets {
   // A mesh of the program's own, or of a file, and the levels of detail that are made of it, of
   // which each object takes one by its distance. Takes about 0.5 ms for 1,000 triangles: add large
   // ones while a game loads. `name` is for messages. Fails like scene::pack(),
-  // and with kOverBudget beyond 65,536 meshes.
+  // and with kOverBudget beyond 65,536 meshes at a time.
   core::Result<MeshId> add_mesh(const core::MeshData& mesh, std::string name = "mesh");
   // The mesh of a model type ("tree", "rock", or one of a plugin), made by modelers when it is
   // needed. `level_count` levels of detail from `first_level` on, of which each object takes one by
@@ -62,24 +64,33 @@ class Assets {
   // parameters that models::validate() refuses and levels that do not exist.
   core::Result<MeshId> add_model(std::string_view type, const models::Parameters& parameters,
                                  int first_level = 0, int level_count = 0);
+  // Takes a mesh away: objects with it are not drawn from now on. Its memory comes back at once, in
+  // geometry memory with the next tick. Its name means no other mesh later. Does nothing for meshes
+  // that there are not.
+  void remove_mesh(MeshId mesh);
   // A picture as a texture; `colours`: else numbers, as normal maps have. Fails like
   // Renderer::add_texture(). Without a renderer it only gets a number.
   core::Result<render::TextureId> add_texture(const image::Image& picture, bool colours = true);
   // Fails like Renderer::add_material(). Without a renderer it only gets a number.
   core::Result<render::MaterialId> add_material(const render::Material& material);
 
-  bool exists(MeshId mesh) const { return mesh.index < meshes_.size(); }
-  std::size_t mesh_count() const { return meshes_.size(); }
+  bool exists(MeshId mesh) const {
+    return slot_of(mesh) < meshes_.size() && meshes_[slot_of(mesh)].id == mesh && mesh != MeshId{};
+  }
+  std::size_t mesh_count() const { return count_; }
   // The box of a mesh that exists, in metres from its origin.
-  const core::Bounds& box(MeshId mesh) const { return meshes_[mesh.index].box; }
+  const core::Bounds& box(MeshId mesh) const { return meshes_[slot_of(mesh)].box; }
 
   // The engine's: what a mesh has, and the wants of those that lack something (cache_system).
-  ObjectMesh& mesh(MeshId mesh) { return meshes_[mesh.index]; }
+  ObjectMesh& mesh(MeshId mesh) { return meshes_[slot_of(mesh)]; }
   void want_all(synthesis::MeshSupply& meshes) const;
+  // Gives back what the cache has of meshes that were removed.
+  void forget_removed(synthesis::MeshSupply& meshes);
   // Meshes that objects used in the last tick, for objects_system.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> used, used_before;  // mesh, level
+  std::vector<std::pair<MeshId, std::uint32_t>> used, used_before;  // mesh, level
 
  private:
+  static std::uint32_t slot_of(MeshId mesh) { return mesh.index % ObjectSources::kMost; }
   core::Result<MeshId> add(ObjectSource source, models::ModelIndex type);
   core::Result<void> add_types(models::Registry& registry);
 
@@ -88,7 +99,9 @@ class Assets {
   models::ModelIndex copied_ = 0, synthesised_ = 0;
   render::Renderer* renderer_ = nullptr;
   std::uint32_t textures_ = 0, materials_ = 0;  // without a renderer
-  std::vector<ObjectMesh> meshes_;
+  std::vector<ObjectMesh> meshes_;              // by slot
+  std::size_t count_ = 0;                       // of those that were not removed
+  std::vector<synthesis::MeshKey> removed_;
 };
 
 }  // namespace psygen::scene

@@ -7,9 +7,10 @@ namespace psygen::scene {
 namespace {
 
 constexpr int kMostLevels = 8;
-constexpr std::array kSchema{models::ParameterSpec{
-    "mesh", models::ParameterType::kInteger, "", 0, 0, ObjectSources::kMost - 1.0, 0,
-    ObjectSources::kMost - 1.0, "number of the mesh", models::ParameterSource::kPlaced}};
+constexpr double kMostName = UINT32_MAX;
+constexpr std::array kSchema{models::ParameterSpec{"mesh", models::ParameterType::kInteger, "", 0,
+                                                   0, kMostName, 0, kMostName, "name of the mesh",
+                                                   models::ParameterSource::kPlaced}};
 
 class ObjectType final : public models::ModelType {
  public:
@@ -20,17 +21,19 @@ class ObjectType final : public models::ModelType {
   std::string_view doc() const override { return "a mesh of an object of the game"; }
   std::span<const models::ParameterSpec> parameters() const override { return kSchema; }
   int level_count() const override { return kMostLevels; }
-  int level_count_of(const models::Parameters& p) const override { return of(p).level_count; }
+  int level_count_of(const models::Parameters& p) const override { return of(p)->level_count; }
   double level_error_m(const models::Parameters& p, int level) const override {
-    const ObjectSource& source = of(p);
+    const std::shared_ptr<const ObjectSource> of_it = of(p);
+    const ObjectSource& source = *of_it;
     return source.type == nullptr
                ? copied(source, level).error_m
                : source.type->level_error_m(source.parameters, source.first_level + level);
   }
-  core::Bounds bounds(const models::Parameters& p) const override { return of(p).box; }
+  core::Bounds bounds(const models::Parameters& p) const override { return of(p)->box; }
 
   models::MeshSize mesh_size(const models::Parameters& p, int level) const override {
-    const ObjectSource& source = of(p);
+    const std::shared_ptr<const ObjectSource> of_it = of(p);
+    const ObjectSource& source = *of_it;
     models::MeshSize size;
     if (source.type != nullptr) {
       size = source.type->mesh_size(source.parameters, source.first_level + level);
@@ -45,13 +48,15 @@ class ObjectType final : public models::ModelType {
   }
 
   double complexity(const models::Parameters& p, int level) const override {
-    const ObjectSource& source = of(p);
+    const std::shared_ptr<const ObjectSource> of_it = of(p);
+    const ObjectSource& source = *of_it;
     return source.type == nullptr
                ? static_cast<double>(copied(source, level).mesh.vertices.size())
                : source.type->complexity(source.parameters, source.first_level + level);
   }
   double steps(const models::Parameters& p, int level) const override {
-    const ObjectSource& source = of(p);
+    const std::shared_ptr<const ObjectSource> of_it = of(p);
+    const ObjectSource& source = *of_it;
     return source.type == nullptr
                ? static_cast<double>(copied(source, level).mesh.vertices.size())
                : source.type->steps(source.parameters, source.first_level + level);
@@ -64,9 +69,11 @@ class ObjectType final : public models::ModelType {
 
   core::Bounds synthesize(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
-    const ObjectSource& source = of(p);
+    const std::shared_ptr<const ObjectSource> of_it = of(p);
+    const ObjectSource& source = *of_it;
     if (source.type != nullptr) return widen(source, source.first_level + level, out);
     const PackedMesh& mesh = copied(source, level).mesh;
+    if (mesh.vertices.size() * sizeof(mesh.vertices[0]) != out.vertices.size()) return nothing(out);
     std::memcpy(out.vertices.data(), mesh.vertices.data(), out.vertices.size());
     std::ranges::copy(mesh.indices, out.indices.begin());
     return source.box;
@@ -79,11 +86,19 @@ class ObjectType final : public models::ModelType {
     return number < source.copied.size() ? source.copied[number] : none;
   }
 
-  const ObjectSource& of(const models::Parameters& p) const {
-    // Parameters of other code may name a mesh that there is not: it has no vertices.
-    static const ObjectSource none;
-    const auto index = static_cast<std::uint32_t>(p.integer(0));
-    return index < sources_->count() ? (*sources_)[index] : none;
+  // Of a mesh that was removed after it was asked for. It is in the cache under a name that nobody
+  // uses any more.
+  static core::Bounds nothing(const models::MeshView& out) {
+    std::ranges::fill(out.vertices, std::byte{0});
+    std::ranges::fill(out.indices, std::uint16_t{0});
+    return {};
+  }
+
+  std::shared_ptr<const ObjectSource> of(const models::Parameters& p) const {
+    // A mesh that there is not, or no more, has no vertices.
+    static const auto none = std::make_shared<const ObjectSource>();
+    auto source = sources_->find(static_cast<std::uint32_t>(p.integer(0)));
+    return source ? source : none;
   }
 
   static core::Bounds widen(const ObjectSource& source, int level, const models::MeshView& out) {
@@ -110,14 +125,36 @@ class ObjectType final : public models::ModelType {
 
 }  // namespace
 
-std::uint32_t ObjectSources::add(ObjectSource source) {
-  const std::uint32_t index = count_;
-  if (index == kMost) return kMost;
-  std::unique_ptr<Chunk>& chunk = chunks_[index / kChunk];
-  if (!chunk) chunk = std::make_unique<Chunk>();
-  chunk->at(index % kChunk) = std::make_unique<const ObjectSource>(std::move(source));
-  count_ = index + 1;
-  return index;
+std::optional<std::uint32_t> ObjectSources::add(ObjectSource source) {
+  const std::scoped_lock lock(mutex_);
+  if (free_.empty()) {
+    if (slots_.size() == kMost) return std::nullopt;
+    free_.push_back(static_cast<std::uint32_t>(slots_.size()));
+    slots_.push_back({nullptr, free_.back()});
+  }
+  Slot& slot = slots_[free_.back()];
+  free_.pop_back();
+  slot.source = std::make_shared<const ObjectSource>(std::move(source));
+  return slot.name;
+}
+
+void ObjectSources::remove(std::uint32_t name) {
+  std::shared_ptr<const ObjectSource> gone;  // destroyed after the lock is
+  const std::scoped_lock lock(mutex_);
+  const std::uint32_t number = name % kMost;
+  if (number >= slots_.size() || slots_[number].name != name) return;
+  Slot& slot = slots_[number];
+  if (slot.source == nullptr) return;
+  gone.swap(slot.source);
+  slot.name += kMost;
+  // All names of the last round stay unused: one of them means "none".
+  if (slot.name / kMost < kMost - 1) free_.push_back(number);
+}
+
+std::shared_ptr<const ObjectSource> ObjectSources::find(std::uint32_t name) const {
+  const std::scoped_lock lock(mutex_);
+  const std::uint32_t number = name % kMost;
+  return number < slots_.size() && slots_[number].name == name ? slots_[number].source : nullptr;
 }
 
 std::unique_ptr<models::ModelType> make_object_type(std::shared_ptr<const ObjectSources> sources,
@@ -125,9 +162,9 @@ std::unique_ptr<models::ModelType> make_object_type(std::shared_ptr<const Object
   return std::make_unique<ObjectType>(std::move(sources), copied);
 }
 
-models::Parameters object_parameters(std::uint32_t index) {
+models::Parameters object_parameters(std::uint32_t name) {
   models::Parameters p;
-  p.set_integer(0, index);
+  p.set_integer(0, name);
   return p;
 }
 

@@ -2,13 +2,13 @@
 // evicted like all others: a copied mesh (of code or of a file), or the mesh of another model type
 // with its vertices widened. Which mesh is meant is the only parameter.
 //
-// The list of sources grows on the main thread. Modelers read those entries that a request names,
-// which were written before the request was made. Entries never change or move.
+// Modelers look entries up while the main thread adds and removes others. An entry never changes,
+// and lives on while a modeler uses it.
 #pragma once
 
-#include <array>
-#include <atomic>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,24 +28,27 @@ struct ObjectSource {
   core::Bounds box;
 };
 
-// All of a scene.
+// All of a scene. Any thread.
 class ObjectSources {
  public:
   static constexpr std::uint32_t kMost = 1 << 16;
 
-  // The number of a new entry, or kMost where all are used.
-  std::uint32_t add(ObjectSource source);
-  std::uint32_t count() const { return count_; }
-  // index < count().
-  const ObjectSource& operator[](std::uint32_t index) const {
-    return *chunks_[index / kChunk]->at(index % kChunk);
-  }
+  // The name of a new entry; nothing where kMost are there. The lower 16 bits are a slot, which is
+  // used again after remove(), the upper ones count how often it was. No name comes twice.
+  std::optional<std::uint32_t> add(ObjectSource source);
+  // Does nothing for names of none.
+  void remove(std::uint32_t name);
+  // Null: there is none of this name, or no more.
+  std::shared_ptr<const ObjectSource> find(std::uint32_t name) const;
 
  private:
-  static constexpr std::uint32_t kChunk = 256;
-  using Chunk = std::array<std::unique_ptr<const ObjectSource>, kChunk>;
-  std::array<std::unique_ptr<Chunk>, kMost / kChunk> chunks_;
-  std::atomic<std::uint32_t> count_ = 0;  // written after the entry
+  struct Slot {
+    std::shared_ptr<const ObjectSource> source;
+    std::uint32_t name = 0;  // of `source`, or of the next one
+  };
+  mutable std::mutex mutex_;  // guards all of it
+  std::vector<Slot> slots_;
+  std::vector<std::uint32_t> free_;
 };
 
 // The type of copied meshes, or that of synthesised ones, which only modelers make.
@@ -53,6 +56,6 @@ std::unique_ptr<models::ModelType> make_object_type(std::shared_ptr<const Object
                                                     bool copied);
 
 // The parameters that name a source.
-models::Parameters object_parameters(std::uint32_t index);
+models::Parameters object_parameters(std::uint32_t name);
 
 }  // namespace psygen::scene

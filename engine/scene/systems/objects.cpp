@@ -70,7 +70,7 @@ ObjectMeshLevel& refresh(Assets& assets, MeshId id, std::uint32_t number, std::u
   level.ready = record != nullptr && record->state == synthesis::MeshState::kReady;
   level.failed = record != nullptr && record->state == synthesis::MeshState::kFailed;
   if (level.ready) level.range = record->range;
-  assets.used.push_back({id.index, number});
+  assets.used.push_back({id, number});
   return level;
 }
 
@@ -266,16 +266,17 @@ void rank_meshes(std::uint32_t tick, double block_size_m, Assets& assets,
   using synthesis::Rank;
   using synthesis::RankGroup;
   draws.meshes.clear();
-  for (const auto& [index, number] : assets.used) {
-    const ObjectMeshLevel& level = assets.mesh({index}).levels[number];
+  for (const auto& [id, number] : assets.used) {
+    const ObjectMeshLevel& level = assets.mesh(id).levels[number];
     if (!level.ready) continue;
     if (level.seen) draws.meshes.push_back(level.handle);
     const auto layer = static_cast<std::uint32_t>(level.nearest_m / block_size_m);
     supply.rank(level.handle, level.seen ? Rank(RankGroup::kDrawn, 0, level.nearest_m)
                                          : Rank(RankGroup::kPrefetch, layer, level.nearest_m));
   }
-  for (const auto& [index, number] : assets.used_before) {
-    const ObjectMeshLevel& level = assets.mesh({index}).levels[number];
+  for (const auto& [id, number] : assets.used_before) {
+    if (!assets.exists(id)) continue;
+    const ObjectMeshLevel& level = assets.mesh(id).levels[number];
     if (level.tick != tick && level.ready) supply.rank(level.handle, Rank::unwanted());
   }
   supply.note_drawn(draws.meshes);
@@ -307,6 +308,7 @@ void objects_system(const Settings& settings, const Rules& rules, const Input& i
   draws.tick = clock.tick;
   draws.now_s = clock.now_s;
   draws.objects.clear();
+  assets.forget_removed(meshes);
   assets.used_before.swap(assets.used);
   assets.used.clear();
   entities.each<const Transform, Object>([&](std::span<const ecs::Entity> rows,

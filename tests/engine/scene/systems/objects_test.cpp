@@ -4,9 +4,10 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "engine/models/model_type.hpp"
-#include "tests/engine/scene/fixture.hpp"
+#include "tests/engine/scene/gate.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -265,6 +266,98 @@ TEST_F(Objects, MeshesThatAreNoneAreRefused) {
   EXPECT_FALSE(assets.add_model("rock", p, 0, 100));
   EXPECT_FALSE(assets.add_model("terrain", models::default_parameters(registry[0])));
   EXPECT_TRUE(assets.add_model("rock", p, 0, 1));
+}
+
+std::size_t meshes_in_memory(State& state) {
+  tick(state);  // ranges come back with the tick after
+  const synthesis::CacheStats stats = state.meshes.stats();
+  return stats.ready + stats.requested;
+}
+
+TEST_F(Objects, OfAMeshThatIsRemovedAreGoneAndAnotherMeshIsNotTheirs) {
+  tick(2);
+  const std::size_t before = meshes_in_memory(state());
+  const ecs::Entity entity = put(ahead(20));
+  tick(30);
+  ASSERT_EQ(drawn().size(), 1u);
+  EXPECT_EQ(meshes_in_memory(state()), before + 1);
+  const std::size_t count = state().assets.mesh_count();
+  state().assets.remove_mesh(mesh_);
+  EXPECT_FALSE(state().assets.exists(mesh_));
+  EXPECT_EQ(state().assets.mesh_count(), count - 1);
+  const auto other = state().assets.add_mesh(box_mesh(3));
+  ASSERT_TRUE(other);
+  EXPECT_NE(*other, mesh_);
+  tick(2);
+  EXPECT_TRUE(drawn().empty());
+  EXPECT_EQ(meshes_in_memory(state()), before);
+  state().assets.remove_mesh(mesh_);  // again: nothing
+  EXPECT_TRUE(state().assets.exists(*other));
+  state().assets.remove_mesh({});
+  state().entities.get<Object>(entity)->mesh = *other;
+  tick(30);
+  EXPECT_EQ(drawn().size(), 1u);
+}
+
+TEST_F(Objects, SeventyThousandMeshesOneAfterAnotherTakeTheRoomOfOne) {
+  const core::MeshData box = box_mesh();
+  tick(2);
+  const std::size_t before = meshes_in_memory(state());
+  std::optional<ecs::Entity> entity;
+  for (int i = 0; i < 70'000; ++i) {
+    const auto mesh = state().assets.add_mesh(box);
+    ASSERT_TRUE(mesh) << i << ": " << mesh.error().message;
+    mesh_ = *mesh;
+    if (i % 1'000 == 0) {
+      entity = put(ahead(20));
+      tick(3);
+      ASSERT_EQ(drawn().size(), 1u);
+      state().entities.destroy(std::span(&*entity, 1));
+    }
+    state().assets.remove_mesh(mesh_);
+  }
+  tick(2);
+  EXPECT_EQ(meshes_in_memory(state()), before);
+}
+
+// The modeler writes it, and its model type, when it is removed.
+TEST(ObjectsOfASlowType, CanBeRemovedWhileAModelerMakesThem) {
+  Gate gate;
+  models::Registry registry = models::make_standard_registry();
+  world::World world = paper_world(registry);
+  world.scatter.clear();
+  const auto& rock = registry[static_cast<models::ModelIndex>(registry.find("rock"))];
+  const models::Parameters parameters = models::default_parameters(rock);
+  ASSERT_TRUE(registry.add(std::make_unique<SlowType>("slow", rock, gate)));
+  const auto scene = make_scene(world, gated_settings(), std::move(registry));
+  State& state = scene->state();
+  const core::CameraPose pose = pose_at(0, 0);
+  scene->settle(pose);
+  for (int i = 0; i < 3; ++i)
+    tick_at(*scene, pose);
+  const std::uint64_t before = state.meshes.stats().bytes;
+  const std::size_t count = meshes_in_memory(state);
+  gate.set_open(false);
+  const auto mesh = state.assets.add_model("slow", parameters);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  Transform transform;
+  transform.position = pose.position;
+  transform.position.local += glm::dvec3(0, -2, -10);
+  spawn(state.entities, {.mesh = *mesh}, transform);
+  for (int i = 0; i < 3 || !gate.blocks(); ++i)
+    tick_at(*scene, pose);
+  EXPECT_EQ(state.meshes.stats().requested, 1u);
+  state.assets.remove_mesh(*mesh);
+  for (int i = 0; i < 3; ++i)
+    tick_at(*scene, pose);
+  gate.set_open(true);
+  while (state.meshes.outstanding() > 0)
+    tick_at(*scene, pose);
+  for (int i = 0; i < 3; ++i)
+    tick_at(*scene, pose);
+  EXPECT_EQ(meshes_in_memory(state), count);
+  EXPECT_EQ(state.meshes.stats().bytes, before);
+  EXPECT_TRUE(state.object_draws.objects.empty());
 }
 
 TEST(ObjectsInASmallBudget, AreChargedToItAndTheLeastImportantGiveWay) {
