@@ -14,6 +14,7 @@
 #include "clouds.glsl"
 #include "cloud_shadow.glsl"
 #include "shore.glsl"
+#include "foam.glsl"
 #include "texture_look.glsl"
 #ifdef PSYGEN_NEAR_GROUND
 #include "ground_shade.glsl"
@@ -178,5 +179,5 @@ void main() {
              (shine * sun * max(dot(n, frame.sun_direction.xyz), 0.0) * gloss(n, v, rough));
   light = through_water(light, max(depth, 0.0));
   light = mix(light, foam, foam_at(place, normalize(normal).y));
-  pixel = vec4(shown(through_haze(light, place)), 1.0);
+  pixel = vec4(shown(through_haze(light, in_air(place))), 1.0);
 }

@@ -10,6 +10,7 @@
 #include "atmosphere.glsl"
 #include "lighting.glsl"
 #include "lamps.glsl"
+#include "under_water.glsl"
 #if defined(PSYGEN_PIXEL_LIGHT) && !defined(PSYGEN_OBJECT) && !defined(PSYGEN_PICTURE)
 #define PSYGEN_SURFACES
 #endif
@@ -146,7 +147,7 @@ void main() {
   vec3 light = model_light(albedo, n, p, ambient, leaf, draw.light.x) +
                m.emissive.rgb * frame.sun_colour.w;
   if (lamps) light += albedo * ambient * lamp_light(p, n, 0.5 * leaf);
-  colour = shown(through_haze(light, p));
+  colour = shown(through_haze(through_water(light, water_over(p.y)), in_air(p)));
 #elif !defined(PSYGEN_SHADOW)
   vec3 light = model_light(albedo, n, p, ambient, leaf, draw.light.x);
   if (lamps) light += albedo * ambient * lamp_light(p, n, 0.5 * leaf);
@@ -155,7 +156,7 @@ void main() {
   air = haze(p, kept);
   colour = light * kept;
 #else
-  colour = shown(through_haze(light, p));
+  colour = shown(through_haze(through_water(light, water_over(p.y)), in_air(p)));
 #endif
 #endif
   gl_Position = clip_matrix() * vec4(p, 1.0);

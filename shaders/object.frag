@@ -60,5 +60,5 @@ void main() {
   vec3 light = model_light(base.rgb, n, place, albedo_ambient.a, sun_leaf_surface.y, sun);
   if (lamps) light += base.rgb * albedo_ambient.a * lamp_light(place, n, 0.5 * sun_leaf_surface.y);
   light = through_water(light + emitted * frame.sun_colour.w, water_over(place.y));
-  pixel = vec4(shown(through_haze(light, place)), 1.0);
+  pixel = vec4(shown(through_haze(light, in_air(place))), 1.0);
 }

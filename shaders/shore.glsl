@@ -1,30 +1,22 @@
-// Foam where water meets the ground, and ground that waves keep wet. It lies on the ground under and
-// just above the water, so it has the shape of each shore and costs nothing elsewhere. Needs
-// cloud_shadow.glsl, for the noise.
-// Foam lies up to so many metres under the surface, wet ground up to so many above.
-const float kFoamDepthM = 0.7, kWetM = 0.25;
+// Where water meets the ground: what waves keep wet, and the film of foam that runs up with them.
+// Needs frame.glsl; foam.glsl draws foam per pixel.
+// Wet ground lies up to so many metres above the surface.
+const float kWetM = 0.25;
 
 // Factor of the albedo of ground so many metres under the surface, or above it if negative.
 float wet_at(float depth) { return mix(0.62, 1.0, smoothstep(0.0, kWetM, -depth)); }
 
-// Share of the ground at `p` that foam hides. `up`: y of its normal.
-float foam_at(vec3 p, float up) {
-  float depth = frame.water.w - p.y;
-  if (depth > kFoamDepthM || depth < -kWetM) return 0.0;
-  float time = frame.sun_direction.w;
-  vec2 plane = p.xz + frame.ground_anchor.xy;
-  float near = 1.0 / (1.0 + dot(p, p) * (1.0 / 3600.0));  // beyond, the noise is finer than pixels
-  float fine = mix(0.5, texture(noises, plane * (1.0 / 8.0) + vec2(0.011, 0.007) * time).g, near);
-  float coarse = texture(noises, plane.yx * (1.0 / 64.0)).g;
-  // Metres to the edge of the water. Lines of foam run towards it, and it moves to and fro.
+// Metres along the ground from there to the edge of the water. `up`: y of the ground's normal.
+float way_to_shore(float depth, float up) {
   float slope = sqrt(max(1.0 - up * up, 0.0)) / max(up, 0.1);
-  float edge = depth / max(slope, 0.04);
-  float swash = 0.5 * sin(0.9 * time + 25.0 * coarse) - 0.3;
-  float away = edge - swash;
-  float film = (1.0 - smoothstep(0.1, 1.1, abs(away - 0.3))) * smoothstep(0.40, 0.66, fine);
-  float line = fract(0.16 * edge + 0.11 * time + 3.0 * coarse);
-  float crest = smoothstep(0.75, 0.95, line) * (1.0 - smoothstep(0.97, 1.0, line));
-  crest *= smoothstep(0.46, 0.66, fine) * (1.0 - smoothstep(0.2, kFoamDepthM, depth)) *
-           smoothstep(0.0, 0.5, away);
-  return clamp(0.8 * film + 0.6 * crest, 0.0, 0.8) * smoothstep(kWetM, 0.5 * kWetM, -depth);
+  return depth / max(slope, 0.04);
+}
+
+// How far the edge has moved into the water; it moves to and fro. `phase`: from place to place, in
+// turns of a few.
+float swash_at(float phase) { return 0.5 * sin(0.9 * frame.sun_direction.w + 25.0 * phase) - 0.3; }
+
+// Share of the film's foam so many metres from the moved edge; `fine`: noise.
+float film_at(float away, float fine) {
+  return (1.0 - smoothstep(0.1, 1.1, abs(away - 0.3))) * smoothstep(0.40, 0.66, fine);
 }

@@ -16,6 +16,7 @@ layout(location = 0) out vec3 colour;
 #ifdef PSYGEN_GROUND_DETAIL
 layout(location = 1) out vec2 detail_place;
 layout(location = 2) out vec4 detail_shares;
+layout(location = 3) out vec3 shore;
 #endif
 // The same of near models: the inputs of model_detail.frag.
 #ifdef PSYGEN_MODEL_DETAIL

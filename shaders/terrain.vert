@@ -10,6 +10,8 @@
 #include "lamps.glsl"
 #include "ground.glsl"
 #include "surface_out.glsl"
+#include "under_water.glsl"
+#include "shore.glsl"
 #ifdef PSYGEN_GROUND_DETAIL
 #include "ground_shade.glsl"
 #endif
@@ -68,9 +70,20 @@ void main() {
   albedo_ambient = vec4(pattern, grain, cover, visible.y);
   sun_leaf_surface = vec3(visible.x, 0.0, 0.0);
 #elif !defined(PSYGEN_DRAW_COLOUR) && !defined(PSYGEN_SHADOW)
+  float depth = frame.water.w - p.y;
+  albedo *= wet_at(depth);
   vec3 light = ground_light(albedo, n, visible.x, visible.y);
   if (lamps) light += albedo * lamp_light(p, n, 0.0);
-  colour = shown(through_haze(light, p));
+  light = through_water(light, max(depth, 0.0));
+  colour = shown(through_haze(light, in_air(p)));
+#endif
+#if defined(PSYGEN_GROUND_DETAIL)
+  detail_shares *= kept_by_water(max(depth, 0.0)).g;
+  float away = clamp(way_to_shore(depth, n.y), -9.0, 9.0) - swash_at(pattern);
+  vec3 foam = ground_light(vec3(0.7), vec3(0, 1, 0), visible.x, visible.y);
+  foam = through_water(foam, max(depth, 0.0));
+  shore = vec3(away, slow_noise(0.7 * plane + 0.09 * frame.sun_direction.w),
+               dot(shown(through_haze(foam, in_air(p))), vec3(1.0 / 3.0)));
 #endif
   gl_Position = clip_matrix() * vec4(p, 1.0);
 }

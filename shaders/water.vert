@@ -14,7 +14,7 @@
 #ifdef PSYGEN_PIXEL_LIGHT
 layout(location = 0) out vec3 place;
 #else
-layout(location = 0) out vec3 colour;
+layout(location = 0) out vec4 colour;  // to blend (water.glsl)
 #endif
 
 const float kTurn = 6.2831853;
@@ -51,8 +51,10 @@ void main() {
 #else
   vec3 up = vec3(0, 1, 0);
   WaterLight water = water_light(p, up);
-  if (lamps) water.all += frame.water.rgb * lamp_light(p, up, 0.0);
-  colour = shown(through_haze(water.all, p));
+  vec3 lit = vec3(0.0);
+  if (lamps) lit = frame.water.rgb * lamp_light(p, up, 0.0);
+  water.all += lit;
+  colour = water_blend(water, lit, p);
 #endif
   gl_Position = frame.clip_from_camera * vec4(p, 1.0);
 }

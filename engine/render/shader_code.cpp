@@ -157,6 +157,9 @@ constexpr std::uint32_t kWaterVert[] =
 constexpr std::uint32_t kWaterLitVert[] =
 #include "water_lit_vert_spv.h"
     ;
+constexpr std::uint32_t kWaterColourFrag[] =
+#include "water_colour_frag_spv.h"
+    ;
 constexpr std::uint32_t kWaterFrag[] =
 #include "water_frag_spv.h"
     ;
@@ -289,6 +292,7 @@ constexpr OtherCode kOthers{kSurfaceFrag,
                             kShadowFadingFrag,
                             kWaterVert,
                             kWaterLitVert,
+                            kWaterColourFrag,
                             kWaterFrag,
                             kWaterMirrorFrag,
                             kLineVert,
