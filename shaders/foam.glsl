@@ -21,5 +21,5 @@ float foam_at(vec3 p, float up) {
   crest *= smoothstep(0.46, 0.66, fine) * (1.0 - smoothstep(0.2, kFoamDepthM, depth)) *
            smoothstep(0.0, 0.5, away);
   return clamp(0.8 * film_at(away, fine) + 0.6 * crest, 0.0, 0.8) *
-         smoothstep(kWetM, 0.5 * kWetM, -depth);
+         (1.0 - smoothstep(0.5 * kWetM, kWetM, -depth));
 }

@@ -116,6 +116,7 @@ void main() {
   float stone = draw.light.y == float(PSYGEN_SURFACE_STONE) ? 1.0 : 0.0;
   detail_shares = (1.0 - smoothstep(0.5, 1.0, length(p) * (1.0 / float(PSYGEN_NEAR_MODELS_M)))) *
                   vec3(leaf, (1.0 - leaf) * (1.0 - stone), (1.0 - leaf) * stone);
+  detail_shares *= kept_by_water(water_over(p.y)).g;
 #endif
   p.x += sway * 0.12 * wave(time + xy.y * 0.3);
   p.z += sway * 0.09 * wave(time * 1.37 + xy.x * 0.4);
@@ -147,16 +148,16 @@ void main() {
   vec3 light = model_light(albedo, n, p, ambient, leaf, draw.light.x) +
                m.emissive.rgb * frame.sun_colour.w;
   if (lamps) light += albedo * ambient * lamp_light(p, n, 0.5 * leaf);
-  colour = shown(through_haze(through_water(light, water_over(p.y)), in_air(p)));
+  colour = shown(through_water_and_haze(light, p));
 #elif !defined(PSYGEN_SHADOW)
   vec3 light = model_light(albedo, n, p, ambient, leaf, draw.light.x);
   if (lamps) light += albedo * ambient * lamp_light(p, n, 0.5 * leaf);
 #ifdef PSYGEN_PICTURE
-  vec3 kept;
-  air = haze(p, kept);
-  colour = light * kept;
+  vec3 kept, left = kept_by_water(water_over(p.y));
+  air = haze(in_air(p), kept) + frame.deep_water.rgb * (1.0 - left) * kept;
+  colour = light * left * kept;
 #else
-  colour = shown(through_haze(through_water(light, water_over(p.y)), in_air(p)));
+  colour = shown(through_water_and_haze(light, p));
 #endif
 #endif
   gl_Position = clip_matrix() * vec4(p, 1.0);

@@ -59,6 +59,6 @@ void main() {
   float sun = sun_leaf_surface.x * (shadows ? sun_at(place, n) * left_by_clouds(place) : 1.0);
   vec3 light = model_light(base.rgb, n, place, albedo_ambient.a, sun_leaf_surface.y, sun);
   if (lamps) light += base.rgb * albedo_ambient.a * lamp_light(place, n, 0.5 * sun_leaf_surface.y);
-  light = through_water(light + emitted * frame.sun_colour.w, water_over(place.y));
-  pixel = vec4(shown(through_haze(light, in_air(place))), 1.0);
+  light += emitted * frame.sun_colour.w;
+  pixel = vec4(shown(through_water_and_haze(light, place)), 1.0);
 }

@@ -45,6 +45,5 @@ void main() {
 #endif
   vec3 light = model_light(albedo, n, place, ambient, sun_leaf_surface.y, sun);
   if (lamps) light += albedo * ambient * lamp_light(place, n, 0.5 * sun_leaf_surface.y);
-  light = through_water(light, water_over(place.y));
-  pixel = vec4(shown(through_haze(light, in_air(place))), 1.0);
+  pixel = vec4(shown(through_water_and_haze(light, place)), 1.0);
 }

@@ -74,16 +74,18 @@ void main() {
   albedo *= wet_at(depth);
   vec3 light = ground_light(albedo, n, visible.x, visible.y);
   if (lamps) light += albedo * lamp_light(p, n, 0.0);
-  light = through_water(light, max(depth, 0.0));
-  colour = shown(through_haze(light, in_air(p)));
+  colour = shown(through_water_and_haze(light, p));
 #endif
 #if defined(PSYGEN_GROUND_DETAIL)
-  detail_shares *= kept_by_water(max(depth, 0.0)).g;
-  float away = clamp(way_to_shore(depth, n.y), -9.0, 9.0) - swash_at(pattern);
-  vec3 foam = ground_light(vec3(0.7), vec3(0, 1, 0), visible.x, visible.y);
-  foam = through_water(foam, max(depth, 0.0));
-  shore = vec3(away, slow_noise(0.7 * plane + 0.09 * frame.sun_direction.w),
-               dot(shown(through_haze(foam, in_air(p))), vec3(1.0 / 3.0)));
+  detail_shares *= kept_by_water(water_over(p.y)).g;
+  const vec3 white = vec3(0.7), up = vec3(0, 1, 0);
+  vec3 foam = ground_light(white, up, visible.x, visible.y);
+  if (lamps) foam += white * lamp_light(p, up, 0.0);
+  float fades = smoothstep(0.7, 1.0, length(p) * (1.0 / float(PSYGEN_NEAR_GROUND_M)));
+  // On steep banks foam would reach high up.
+  shore.x = way_to_shore(depth, max(n.y, 0.93)) - swash_at(pattern);
+  shore.y = 0.08 + slow_noise(0.75 * plane + 0.09 * frame.sun_direction.w) - 0.7 * fades;
+  shore.z = dot(shown(through_water_and_haze(foam, p)), vec3(1.0 / 3.0));
 #endif
   gl_Position = clip_matrix() * vec4(p, 1.0);
 }

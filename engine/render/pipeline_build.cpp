@@ -39,7 +39,7 @@ VkPipelineColorBlendAttachmentState blend_of(const PipelineShape& shape) {
   VkPipelineColorBlendAttachmentState blend{};
   blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                          VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  const bool multiplied = kind == PipelineKind::kParticles || shape.see_through;
+  const bool multiplied = kind == PipelineKind::kParticles || kind == PipelineKind::kWater;
   if (kind != PipelineKind::kOverlay && kind != PipelineKind::kSun && !multiplied) return blend;
   blend.blendEnable = VK_TRUE;
   blend.srcColorBlendFactor = multiplied ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_SRC_ALPHA;

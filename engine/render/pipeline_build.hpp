@@ -35,10 +35,9 @@ struct PipelineShape {
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   // Of both shaders; those that they lack are ignored: fine grain or waves, shadows, point lights.
   std::array<VkBool32, 3> constants{};
-  bool wireframe = false;    // needs DeviceInfo::wireframe
-  bool flat = false;         // in a pass without depth and with one sample per pixel
-  bool see_through = false;  // water that is blended over what lies under it
-  bool shadow = false;       // only depth, of a cascade; `frag` may be empty
+  bool wireframe = false;  // needs DeviceInfo::wireframe
+  bool flat = false;       // in a pass without depth and with one sample per pixel
+  bool shadow = false;     // only depth, of a cascade; `frag` may be empty
 };
 
 // Creates a pipeline. Takes milliseconds to seconds, if the driver has to compile the shaders.

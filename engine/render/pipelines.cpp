@@ -167,7 +167,6 @@ Result<void> Pipelines::create_landscape(Making& making, bool lamps, MeshPipelin
   water.kind = PipelineKind::kWater;
   water.vert = lit ? code.water_lit_vert : code.water_vert;
   water.frag = !lit ? code.water_colour_frag : mirrors() ? code.water_mirror_frag : code.water_frag;
-  water.see_through = true;
   water.constants = {on(traits_.waves), VK_FALSE, on(lamps)};
   return create_meshes(making, meshes, look, out)
       .and_then([&] { return create_near_ground(making, meshes, out); })

@@ -73,7 +73,7 @@ TEST_F(GameSession, GoesOnFromItsSave) {
   EXPECT_NE(opened.error().message.find("3.cairns"), std::string::npos);
 }
 
-// Else a session could fell no more than some ten thousands.
+// Otherwise a session could fell only some 65,000 trees.
 TEST_F(GameSession, FelledTreesGiveTheirMeshesBack) {
   Running run(options());
   ASSERT_TRUE(run.open());

@@ -18,6 +18,7 @@ constexpr std::uint64_t kNoOwner = ecs::kNullEntity.index;
 core::Result<void> Assets::open(models::Registry& registry, render::Renderer* renderer) {
   sources_ = std::make_shared<ObjectSources>();
   renderer_ = renderer;
+  registry_ = &registry;
   return add_types(registry);
 }
 
@@ -25,13 +26,11 @@ core::Result<void> Assets::follow(models::Registry& registry) {
   const models::ModelIndex copied = copied_, synthesised = synthesised_;
   if (auto ok = add_types(registry); !ok) return ok;
   if (copied == copied_ && synthesised == synthesised_) return {};
-  const auto rename = [&](synthesis::MeshKey& key) {
-    key.model = key.model == copied ? copied_ : synthesised_;
-  };
-  std::ranges::for_each(removed_, rename);
   for (ObjectMesh& mesh : meshes_) {
-    for (ObjectMeshLevel& level : mesh.levels) {
-      rename(level.key);
+    for (std::uint32_t i = 0; i < mesh.level_count; ++i) {
+      ObjectMeshLevel& level = mesh.levels[i];
+      removed_.push_back(level.key);  // the cache has it under that name
+      level.key.model = level.key.model == copied ? copied_ : synthesised_;
       level.handle = {};
       level.ready = level.failed = false;
     }
@@ -40,7 +39,6 @@ core::Result<void> Assets::follow(models::Registry& registry) {
 }
 
 core::Result<void> Assets::add_types(models::Registry& registry) {
-  registry_ = &registry;
   const auto copied = registry.add(make_object_type(sources_, true));
   if (!copied) return tl::unexpected(copied.error());
   const auto synthesised = registry.add(make_object_type(sources_, false));

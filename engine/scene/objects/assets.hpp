@@ -49,8 +49,9 @@ class Assets {
   // null. Both outlive it. Once. Fails like Registry::add().
   core::Result<void> open(models::Registry& registry, render::Renderer* renderer);
 
-  // From now on for another registry, to which it adds the same types. Meshes of objects are the
-  // same, under other keys. Those of model types keep their types, which must live on.
+  // Adds the same types to another registry, which is about to take the place of the one of open().
+  // Meshes of objects are the same, under other keys. Those of model types keep their types, which
+  // must live on.
   core::Result<void> follow(models::Registry& registry);
 
   // A mesh of the program's own, or of a file, and the levels of detail that are made of it, of
@@ -64,9 +65,9 @@ class Assets {
   // parameters that models::validate() refuses and levels that do not exist.
   core::Result<MeshId> add_model(std::string_view type, const models::Parameters& parameters,
                                  int first_level = 0, int level_count = 0);
-  // Takes a mesh away: objects with it are not drawn from now on. Its memory comes back at once, in
-  // geometry memory with the next tick. Its name means no other mesh later. Does nothing for meshes
-  // that there are not.
+  // Removes a mesh. Objects with it are not drawn from the next tick on, and do not fade. Host
+  // memory is freed once no modeler uses it, geometry memory in a later tick. Its name is never
+  // used again. Ignores meshes that do not exist.
   void remove_mesh(MeshId mesh);
   // A picture as a texture; `colours`: else numbers, as normal maps have. Fails like
   // Renderer::add_texture(). Without a renderer it only gets a number.
@@ -84,7 +85,7 @@ class Assets {
   // The engine's: what a mesh has, and the wants of those that lack something (cache_system).
   ObjectMesh& mesh(MeshId mesh) { return meshes_[slot_of(mesh)]; }
   void want_all(synthesis::MeshSupply& meshes) const;
-  // Gives back what the cache has of meshes that were removed.
+  // Gives back what the cache has of meshes that were removed, or that have other keys now.
   void forget_removed(synthesis::MeshSupply& meshes);
   // Meshes that objects used in the last tick, for objects_system.
   std::vector<std::pair<MeshId, std::uint32_t>> used, used_before;  // mesh, level
@@ -101,7 +102,7 @@ class Assets {
   std::uint32_t textures_ = 0, materials_ = 0;  // without a renderer
   std::vector<ObjectMesh> meshes_;              // by slot
   std::size_t count_ = 0;                       // of those that were not removed
-  std::vector<synthesis::MeshKey> removed_;
+  std::vector<synthesis::MeshKey> removed_;     // what the cache may have of those
 };
 
 }  // namespace psygen::scene

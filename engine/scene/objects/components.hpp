@@ -16,7 +16,7 @@
 
 namespace psygen::scene {
 
-// Names a mesh of Assets.
+// Names a mesh of Assets. No two meshes of a scene ever have the same name.
 struct MeshId {
   std::uint32_t index = UINT32_MAX;  // UINT32_MAX: none
   friend bool operator==(const MeshId&, const MeshId&) = default;

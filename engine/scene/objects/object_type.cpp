@@ -23,8 +23,8 @@ class ObjectType final : public models::ModelType {
   int level_count() const override { return kMostLevels; }
   int level_count_of(const models::Parameters& p) const override { return of(p)->level_count; }
   double level_error_m(const models::Parameters& p, int level) const override {
-    const std::shared_ptr<const ObjectSource> of_it = of(p);
-    const ObjectSource& source = *of_it;
+    const auto held = of(p);
+    const ObjectSource& source = *held;
     return source.type == nullptr
                ? copied(source, level).error_m
                : source.type->level_error_m(source.parameters, source.first_level + level);
@@ -32,8 +32,8 @@ class ObjectType final : public models::ModelType {
   core::Bounds bounds(const models::Parameters& p) const override { return of(p)->box; }
 
   models::MeshSize mesh_size(const models::Parameters& p, int level) const override {
-    const std::shared_ptr<const ObjectSource> of_it = of(p);
-    const ObjectSource& source = *of_it;
+    const auto held = of(p);
+    const ObjectSource& source = *held;
     models::MeshSize size;
     if (source.type != nullptr) {
       size = source.type->mesh_size(source.parameters, source.first_level + level);
@@ -48,15 +48,15 @@ class ObjectType final : public models::ModelType {
   }
 
   double complexity(const models::Parameters& p, int level) const override {
-    const std::shared_ptr<const ObjectSource> of_it = of(p);
-    const ObjectSource& source = *of_it;
+    const auto held = of(p);
+    const ObjectSource& source = *held;
     return source.type == nullptr
                ? static_cast<double>(copied(source, level).mesh.vertices.size())
                : source.type->complexity(source.parameters, source.first_level + level);
   }
   double steps(const models::Parameters& p, int level) const override {
-    const std::shared_ptr<const ObjectSource> of_it = of(p);
-    const ObjectSource& source = *of_it;
+    const auto held = of(p);
+    const ObjectSource& source = *held;
     return source.type == nullptr
                ? static_cast<double>(copied(source, level).mesh.vertices.size())
                : source.type->steps(source.parameters, source.first_level + level);
@@ -69,12 +69,13 @@ class ObjectType final : public models::ModelType {
 
   core::Bounds synthesize(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
-    const std::shared_ptr<const ObjectSource> of_it = of(p);
-    const ObjectSource& source = *of_it;
+    const auto held = of(p);
+    const ObjectSource& source = *held;
     if (source.type != nullptr) return widen(source, source.first_level + level, out);
     const PackedMesh& mesh = copied(source, level).mesh;
-    if (mesh.vertices.size() * sizeof(mesh.vertices[0]) != out.vertices.size()) return nothing(out);
-    std::memcpy(out.vertices.data(), mesh.vertices.data(), out.vertices.size());
+    const std::size_t bytes = mesh.vertices.size() * sizeof(core::ObjectVertex);
+    if (bytes == 0 || bytes != out.vertices.size()) return nothing(out);
+    std::memcpy(out.vertices.data(), mesh.vertices.data(), bytes);
     std::ranges::copy(mesh.indices, out.indices.begin());
     return source.box;
   }

@@ -33,12 +33,12 @@ class ObjectSources {
  public:
   static constexpr std::uint32_t kMost = 1 << 16;
 
-  // The name of a new entry; nothing where kMost are there. The lower 16 bits are a slot, which is
+  // The name of a new entry; nothing if kMost exist. The lower 16 bits are a slot, which is
   // used again after remove(), the upper ones count how often it was. No name comes twice.
   std::optional<std::uint32_t> add(ObjectSource source);
-  // Does nothing for names of none.
+  // Ignores unknown names.
   void remove(std::uint32_t name);
-  // Null: there is none of this name, or no more.
+  // Null: there is no entry of this name, or it was removed.
   std::shared_ptr<const ObjectSource> find(std::uint32_t name) const;
 
  private:

@@ -30,7 +30,7 @@ constexpr double kCoarsePatienceSeconds = 0.03;
 // What the main thread makes in a tick of a draft, predicted: models on blocks in view that are
 // still those of a world before, nearest first. Who tries out a value waits for these.
 constexpr double kDraftSeconds = 0.008;
-// What is asked for in one tick is drawn two ticks later: so long at 30 frames/s.
+// A mesh asked for in one tick is drawn two ticks later: 1/15 s at 30 frames/s.
 constexpr float kLandingSeconds = 1.0F / 15;
 
 // What all mesh entities are judged by in this tick.
@@ -187,16 +187,22 @@ float want_level(const CacheTick& tick, const NodeView& node, const MeshEntity& 
   return pixels;
 }
 
-// The level to ask for: the wanted one, or the finer one that will be wanted once it is there.
-std::uint8_t level_to_ask(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
-                          const glm::vec3& foot) {
-  const std::uint8_t wanted = row.demand.wanted_level;
-  if (node.level > 0 || wanted == 0 || tick.soon == glm::vec3(0.0F)) return wanted;
+// What a model in view asks for that lacks nothing: the finer level that will be wanted once it is
+// there. It waits for all that is lacked.
+void look_ahead(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
+                const glm::vec3& foot, MeshChoice& choice) {
+  const Demand& demand = row.demand;
+  if (node.level > 0 || !choice.there || demand.drawn_level == 0 || tick.soon == glm::vec3(0.0F))
+    return;
   const float distance_m = distance_to(row.placed, foot - tick.soon, tick.near_m);
   const float pixels =
       size_pixels(row.placed, row.detail, distance_m, tick.choice.pixels_per_radian, tick.near_m);
-  return std::min(wanted, model_level(tick.choice, node, row.detail, pixels, distance_m,
-                                      row.demand.drawn_level));
+  Demand soon = demand;
+  soon.wanted_level =
+      model_level(tick.choice, node, row.detail, pixels, distance_m, demand.drawn_level);
+  if (soon.wanted_level >= demand.drawn_level) return;
+  choice.request = choose_mesh(tick.choice, node, row.detail, soon, true, false).request;
+  choice.requested = RankGroup::kPrefetch;
 }
 
 // Replaces the level that a model should have where it is by the one that it should have ready
@@ -251,17 +257,16 @@ bool consider(CacheTick& tick, const View& view, const NodeView& node, const Mes
     if (drawn) keep(tick, node, row, RankGroup::kUnwanted, distance_m, meshes);
     return true;
   }
-  Demand asked = demand;
-  if (in_view && !is_ground) asked.wanted_level = level_to_ask(tick, node, row, foot);
   // Only holes ask: looking a mesh up takes time.
   const bool cached =
       tick.choice.coarse_first && is_hole(node, demand, in_view) &&
-      meshes.ready(meshes.find(key_of(row.placed, row.detail, row.source, asked.wanted_level))) !=
+      meshes.ready(meshes.find(key_of(row.placed, row.detail, row.source, demand.wanted_level))) !=
           nullptr;
-  const MeshChoice choice =
-      choose_mesh(tick.choice, node, row.detail, asked, in_view, is_ground, cached);
+  MeshChoice choice =
+      choose_mesh(tick.choice, node, row.detail, demand, in_view, is_ground, cached);
   if (drawn) keep(tick, node, row, choice.drawn, distance_m, meshes);
-  if (choice.there) demand.requested_level = kNoLevel;
+  if (in_view && !is_ground) look_ahead(tick, node, row, foot, choice);
+  if (choice.there && choice.request == kNoLevel) demand.requested_level = kNoLevel;
   if (choice.request != kNoLevel) request(tick, node, row, choice, distance_m, meshes, found);
   const unsigned all_levels = (1U << row.detail.level_count) - 1;
   return drawn || demand.failed_levels == all_levels || demand.added;

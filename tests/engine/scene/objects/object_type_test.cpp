@@ -95,6 +95,7 @@ TEST(ObjectType, MeshesAreAddedAndRemovedWhileModelersMakeThem) {
   const auto type = make_object_type(sources, true);
   std::atomic<std::uint32_t> newest = 0;
   std::atomic<bool> ended = false;
+  std::atomic<int> began = 0;
   std::vector<std::thread> modelers;
   for (int i = 0; i < 2; ++i) {
     modelers.emplace_back([&] {
@@ -105,10 +106,11 @@ TEST(ObjectType, MeshesAreAddedAndRemovedWhileModelersMakeThem) {
         const core::Bounds box =
             type->synthesize(parameters, 0, {std::as_writable_bytes(std::span(vertices)), indices});
         EXPECT_TRUE(box == triangle().box || box == core::Bounds{});
+        ++began;
       }
     });
   }
-  for (int i = 0; i < 2'000; ++i) {
+  for (int i = 0; i < 2'000 || began < 100; ++i) {
     const auto name = sources->add(triangle());
     ASSERT_TRUE(name);
     newest = *name;

@@ -320,16 +320,49 @@ TEST_F(Objects, SeventyThousandMeshesOneAfterAnotherTakeTheRoomOfOne) {
   EXPECT_EQ(meshes_in_memory(state()), before);
 }
 
-// The modeler writes it, and its model type, when it is removed.
+// Types of objects have other numbers then, so their meshes have other keys.
+TEST_F(Objects, OutliveTheirWorldAndLeaveNothingBehindInTheCache) {
+  put(ahead(20));
+  const auto other = state().assets.add_mesh(box_mesh(3));
+  ASSERT_TRUE(other);
+  const ecs::Entity gone = spawn(state().entities, {.mesh = *other}, ahead(20, 3));
+  tick(30);
+  ASSERT_EQ(drawn().size(), 2u);
+  const std::size_t before = meshes_in_memory(state());
+  state().entities.destroy(std::span(&gone, 1));
+  state().assets.remove_mesh(*other);
+  Gate gate;
+  models::Registry registry = models::make_standard_registry();
+  world::World world = paper_world(registry);
+  world.scatter.clear();
+  ASSERT_TRUE(registry.add(std::make_unique<SlowType>("another", registry[0], gate)));
+  const auto set = scene_->set_world(std::move(world), std::move(registry));
+  ASSERT_TRUE(set) << set.error().message;
+  tick(30);
+  EXPECT_EQ(drawn().size(), 1u);
+  EXPECT_EQ(meshes_in_memory(state()), before - 1);
+  const auto later = state().assets.add_mesh(box_mesh(2));
+  ASSERT_TRUE(later);
+  spawn(state().entities, {.mesh = *later}, ahead(20, 3));
+  tick(30);
+  EXPECT_EQ(drawn().size(), 2u);
+}
+
+// A modeler is writing the mesh when it is removed.
 TEST(ObjectsOfASlowType, CanBeRemovedWhileAModelerMakesThem) {
   Gate gate;
+  std::unique_ptr<Scene> scene;
+  const struct Opens {
+    Gate& gate;
+    ~Opens() { gate.set_open(true); }
+  } opens{gate};  // before the modelers end
   models::Registry registry = models::make_standard_registry();
   world::World world = paper_world(registry);
   world.scatter.clear();
   const auto& rock = registry[static_cast<models::ModelIndex>(registry.find("rock"))];
   const models::Parameters parameters = models::default_parameters(rock);
   ASSERT_TRUE(registry.add(std::make_unique<SlowType>("slow", rock, gate)));
-  const auto scene = make_scene(world, gated_settings(), std::move(registry));
+  scene = make_scene(world, gated_settings(), std::move(registry));
   State& state = scene->state();
   const core::CameraPose pose = pose_at(0, 0);
   scene->settle(pose);
