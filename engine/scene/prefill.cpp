@@ -128,6 +128,7 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
   const auto go_on = [&] { return !progress || progress("filling the cache", fraction); };
   s.pressure = {};
   s.quality.coarsening = 1;
+  s.camera.predictor.reset();  // no movement led here
   // What frames in flight may read cannot be given back before they are done, and none follows.
   if (s.output.renderer != nullptr) s.output.renderer->wait_idle();
   while (quiet < kQuietTicks && idle < kIdleTicks && refused < kRefusedTicks) {
