@@ -3,6 +3,7 @@
 // visited in every tick, front to back; those around the camera every 8th.
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "engine/scene/draws/seen.hpp"
@@ -187,22 +188,26 @@ float want_level(const CacheTick& tick, const NodeView& node, const MeshEntity& 
   return pixels;
 }
 
-// What a model in view asks for that lacks nothing: the finer level that will be wanted once it is
-// there. It waits for all that is lacked.
-void look_ahead(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
-                const glm::vec3& foot, MeshChoice& choice) {
+// What is done instead about a model in view that lacks nothing: it gets the finer level that will
+// be wanted once it is there, and keeps it. That waits for all that is lacked.
+MeshChoice look_ahead(const CacheTick& tick, const NodeView& node, const MeshEntity& row,
+                      const glm::vec3& foot, const MeshChoice& here) {
   const Demand& demand = row.demand;
-  if (node.level > 0 || !choice.there || demand.drawn_level == 0 || tick.soon == glm::vec3(0.0F))
-    return;
-  const float distance_m = distance_to(row.placed, foot - tick.soon, tick.near_m);
+  const bool lacks = demand.stale || demand.drawn_level > demand.wanted_level;  // or has nothing
+  const float ahead = glm::dot(foot, tick.soon);
+  if (node.level > 0 || lacks || demand.wanted_level == 0 || ahead <= 0) return here;
+  // From the nearest point of the way.
+  const glm::vec3 moved = tick.soon * std::min(ahead / glm::dot(tick.soon, tick.soon), 1.0F);
+  const float distance_m = distance_to(row.placed, foot - moved, tick.near_m);
   const float pixels =
       size_pixels(row.placed, row.detail, distance_m, tick.choice.pixels_per_radian, tick.near_m);
   Demand soon = demand;
   soon.wanted_level =
       model_level(tick.choice, node, row.detail, pixels, distance_m, demand.drawn_level);
-  if (soon.wanted_level >= demand.drawn_level) return;
-  choice.request = choose_mesh(tick.choice, node, row.detail, soon, true, false).request;
-  choice.requested = RankGroup::kPrefetch;
+  if (soon.wanted_level >= demand.wanted_level) return here;
+  MeshChoice choice = choose_mesh(tick.choice, node, row.detail, soon, true, false);
+  if (choice.request < demand.drawn_level) choice.requested = RankGroup::kPrefetch;
+  return choice;
 }
 
 // Replaces the level that a model should have where it is by the one that it should have ready
@@ -264,9 +269,9 @@ bool consider(CacheTick& tick, const View& view, const NodeView& node, const Mes
           nullptr;
   MeshChoice choice =
       choose_mesh(tick.choice, node, row.detail, demand, in_view, is_ground, cached);
+  if (in_view && !is_ground) choice = look_ahead(tick, node, row, foot, choice);
   if (drawn) keep(tick, node, row, choice.drawn, distance_m, meshes);
-  if (in_view && !is_ground) look_ahead(tick, node, row, foot, choice);
-  if (choice.there && choice.request == kNoLevel) demand.requested_level = kNoLevel;
+  if (choice.there) demand.requested_level = kNoLevel;
   if (choice.request != kNoLevel) request(tick, node, row, choice, distance_m, meshes, found);
   const unsigned all_levels = (1U << row.detail.level_count) - 1;
   return drawn || demand.failed_levels == all_levels || demand.added;

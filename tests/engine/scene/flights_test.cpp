@@ -1,6 +1,7 @@
 // The paper's walk with a single modeler that is no faster than it need be, and how little more a
 // wide view takes than a narrow one.
 #include <algorithm>
+#include <map>
 
 #include "engine/world/camera_path.hpp"
 #include "engine/world/files/path_file.hpp"
@@ -39,6 +40,57 @@ TEST(Flights, OnThePapersWalkOneModelerIsEnoughForNoHoles) {
   EXPECT_GT(most_in_view, 300u);
   const synthesis::CacheStats& made_and_drawn = s.meshes.stats();
   EXPECT_GT(made_and_drawn.triangles_drawn, made_and_drawn.triangles * 7 / 10);
+}
+
+// What single models drew in the last tick, and how far away they are, by entity.
+struct ShownModel {
+  int level;
+  float distance_m;
+};
+std::map<std::uint32_t, ShownModel> shown_models(const State& s) {
+  std::map<std::uint32_t, ShownModel> shown;
+  for (const ChosenNode& chosen : s.view.chosen) {
+    if (chosen.level > 0) continue;
+    const Node& node = *s.entities.get<Node>(chosen.entity);
+    const glm::dvec3 corner = core::offset_m(visibility::corner_block(node.at),
+                                             s.camera.pose.position, s.facts.world.block_size_m());
+    for (const ecs::Entity model :
+         s.entities.children(*s.entities.get<ecs::Children>(chosen.entity))) {
+      const Demand& demand = *s.entities.get<Demand>(model);
+      if (demand.in_view_tick != s.clock.tick - 1 || demand.drawn_level == kNoLevel) continue;
+      const glm::vec3 foot = glm::vec3(corner) + s.entities.get<Placed>(model)->position;
+      shown[model.index] = {demand.drawn_level, glm::length(foot)};
+    }
+  }
+  return shown;
+}
+
+// The level that a model will need is there before it is wanted, and it stays.
+TEST(Flights, AModelThatComesNearerNeverGetsCoarser) {
+  Settings settings = small_settings();
+  settings.view_distance_m = 600;
+  settings.max_error_pixels = 12;
+  const auto scene = make_scene(settings);
+  const State& s = scene->state();
+  core::CameraPose pose = pose_at(256, 256, 0.3);
+  pose.position.local.y = 40;
+  scene->settle(pose);
+  std::map<std::uint32_t, ShownModel> before;
+  int finer = 0;
+  for (int tick = 0; tick < 120; ++tick) {
+    const glm::dvec3 ahead(core::forward_of(pose));
+    pose.position.local += glm::dvec3(ahead.x, 0, ahead.z) * (300.0 / 60);
+    tick_at(*scene, pose);
+    const auto now = shown_models(s);
+    for (const auto& [model, is] : now) {
+      const auto was = before.find(model);
+      if (was == before.end() || is.distance_m >= was->second.distance_m) continue;
+      EXPECT_LE(is.level, was->second.level) << "model " << model << " in tick " << tick;
+      finer += is.level < was->second.level ? 1 : 0;
+    }
+    before = now;
+  }
+  EXPECT_GT(finer, 100);
 }
 
 // What a settled scene takes.
