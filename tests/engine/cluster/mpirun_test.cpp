@@ -2,7 +2,9 @@
 // at moments that a seed chooses (tests/faults.hpp).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <random>
 
 #include "tests/engine/cli/amplify_fixture.hpp"
@@ -36,6 +38,16 @@ subdivisions = 6
 
 class Mpirun : public AmplifyFixture {
  protected:
+  // Two jobs that start at once would make the same folder of sessions, and Open MPI gives up then.
+  // It lies outside of folder_, where tests count what is written.
+  Mpirun()
+      : sessions_(std::filesystem::temp_directory_path() / fmt::format("psygen_mpi_{}", getpid())) {
+    std::filesystem::create_directory(sessions_);
+  }
+  ~Mpirun() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(sessions_, ignored);
+  }
   // `ranks`: the arguments of mpirun, with PSYGEN for the command `psygen amplify`, and FLY for
   // `psygen fly` of a short flight.
   Outcome run(std::string ranks) const {
@@ -45,11 +57,14 @@ class Mpirun : public AmplifyFixture {
       ranks.replace(at, 4, std::string(PSYGEN_EXECUTABLE " ") + kFly);
     const auto out = folder_ / "stdout", err = folder_ / "stderr";
     const std::string command =
-        fmt::format("cd {} && {} {} >{} 2>{} </dev/null", folder_.path().string(), kMpi, ranks,
-                    out.string(), err.string());
+        fmt::format("cd {} && TMPDIR={} {} {} >{} 2>{} </dev/null", folder_.path().string(),
+                    sessions_.string(), kMpi, ranks, out.string(), err.string());
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
   }
+
+ private:
+  const std::filesystem::path sessions_;
 };
 
 TEST_F(Mpirun, OneTwoAndFourRanksHaveTheHashAndTheFilesOfOneThread) {
