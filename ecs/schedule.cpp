@@ -24,6 +24,22 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// Ends the program if the parameters name a resource twice: one of the two would be superfluous, or
+// would write what the other takes as constant.
+void expect_each_once(const SystemInfo& system) {
+  const auto source = [](const Access& access) {
+    return access.bundle.empty() ? std::string("by itself") : "in " + access.bundle;
+  };
+  const std::vector<Access>& all = system.accesses;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (all[i].type != all[k].type || all[i].is_component) continue;
+      detail::give_up("schedule: the system '" + system.name + "' takes " + all[i].name +
+                      " twice, " + source(all[k]) + " and " + source(all[i]));
+    }
+  }
+}
+
 }  // namespace
 
 std::string detail::without_namespace(std::string_view name) {
@@ -240,6 +256,7 @@ void Schedule::own(std::shared_ptr<void> resource) {
 
 void Schedule::append(System system) {
   parts_->expect_idle("add");
+  expect_each_once(system.info);
   parts_->infos.push_back(system.info);
   parts_->systems.push_back(std::move(system));
   parts_->arranged = false;

@@ -4,10 +4,11 @@
 //   const R& / R&         reads / writes a resource: any object given to provide()
 //   EventQueue<T>&        emits events; the queue is a resource
 //   EventReader<T>&       the system's own reader of a queue: sees every event once
-//   ChangeReader<C, Tag>& drains a reader that was provided; reads C. A reader hidden in another
-//                         resource is not seen: nothing would separate its drain from writers of C
+//   ChangeReader<C, Tag>& drains a reader that was provided; reads C. The schedule cannot see a
+//                         reader inside another resource, so its drain could overlap writers of C
 //   Commands&             structural changes, applied right after the system
 //   World& / const World& everything: alone / beside others that only read
+//   a bundle, by value    a struct of references, or of other bundles: stands for its members
 // Systems run in the order of add(), or where their Place says. On several threads, systems that do
 // not conflict run at the same time, and the result equals that of one thread. Not a job system: a
 // system that wants to split its own work does so itself. One thread owns the schedule.
@@ -47,12 +48,13 @@ struct Access {
   const void* type;  // identity of the type, unique in the program
   bool writes;
   bool is_component;
+  std::string bundle = {};  // outermost bundle that names it, without its namespace; or empty
 };
 
-// What a schedule knows about a system. Times are in seconds; they are 0 before the first run.
+// A system's accesses and times. Times are in seconds; they are 0 before the first run.
 struct SystemInfo {
-  std::string name;  // of the component, or of the resource's type; no namespace
-  std::vector<Access> accesses;
+  std::string name;
+  std::vector<Access> accesses;  // in the order of the parameters
   WorldAccess world = WorldAccess::kNone;
   bool records_commands = false;
   RunsOn runs_on = RunsOn::kAnyThread;
@@ -93,8 +95,8 @@ class Schedule {
     return resource;
   }
 
-  // Adds a system. Its resources must have been provided before: otherwise the program ends with a
-  // message that names what is missing. Not from inside a system. O(systems).
+  // Adds a system. Provide its resources first: the program ends with a message that names a
+  // missing one, or one that the parameters name twice. Not from inside a system. O(systems).
   template <class F>
   void add(std::string_view name, F system, RunsOn runs_on = RunsOn::kAnyThread) {
     add(name, std::move(system), Place{}, runs_on);
@@ -189,6 +191,12 @@ inline constexpr bool kIsQuery = false;
 template <class... Cs>
 inline constexpr bool kIsQuery<Query<Cs...>> = true;
 
+// A struct of references, or of such structs.
+template <class T>
+concept Bundle = std::is_class_v<T> && std::is_aggregate_v<T> && !std::is_empty_v<T> &&
+                 std::is_trivially_copy_constructible_v<T> && !std::is_copy_assignable_v<T> &&
+                 !std::is_default_constructible_v<T>;
+
 // The type of the events of an EventQueue; others have none.
 template <class T>
 struct EventOf : std::type_identity<void> {};
@@ -213,8 +221,10 @@ std::string Schedule::type_label() {
 template <class P>
 struct Schedule::Parameter {
   static_assert(std::is_lvalue_reference_v<P>,
-                "a system takes Query<...> by value, everything else by reference");
+                "a system takes Query<...> and bundles (structs of references) by value, "
+                "everything else by reference");
   using R = std::remove_cvref_t<P>;
+  static_assert(!detail::Bundle<R>, "a system takes a bundle by value");
   static_assert(!detail::kIsQuery<R> && !std::is_same_v<R, Commands>,
                 "a system takes Query<...> by value and Commands by a reference to write");
   R* resource;
@@ -279,6 +289,56 @@ struct Schedule::Parameter<Commands&> {
     commands = system.commands.get();
   }
   Commands& get() const { return *commands; }
+};
+
+// A bundle: accesses what its members access. Built once, when the system is added: resources stay
+// where they are.
+template <detail::Bundle B>
+struct Schedule::Parameter<B> {
+  B bundle;
+  Parameter(Schedule& schedule, System& system)
+      : bundle(make(schedule, system, std::make_index_sequence<count()>{})) {}
+  B get() const { return bundle; }
+
+ private:
+  // Converts to each member in turn, and records the member's accesses.
+  struct Member {
+    Schedule& schedule;
+    System& system;
+    template <class T>
+    requires(!detail::Bundle<T>) operator T&() const {
+      static_assert(std::is_trivially_copyable_v<Parameter<T&>>,
+                    "readers and Commands are parameters of their own, not members of a bundle");
+      return Parameter<T&>(schedule, system).get();
+    }
+    template <detail::Bundle T>
+    operator T() const {
+      return Parameter<T>(schedule, system).get();
+    }
+  };
+  // The number of members. References take neither more values nor fewer.
+  template <std::size_t Max = 16>
+  static constexpr std::size_t count() {
+    constexpr bool fits = []<std::size_t... I>(std::index_sequence<I...>) {
+      return requires(Member m) {
+        B{(void(I), m)...};
+      };
+    }
+    (std::make_index_sequence<Max>{});
+    static_assert(fits || Max > 1, "a bundle has 1 to 16 members, each a reference or a bundle");
+    if constexpr (fits || Max <= 1)
+      return Max;
+    else
+      return count<Max - 1>();
+  }
+  template <std::size_t... I>
+  static B make(Schedule& schedule, System& system, std::index_sequence<I...>) {
+    const std::size_t first = system.info.accesses.size();
+    const B made{(void(I), Member{schedule, system})...};  // from left to right
+    for (Access& access : std::span(system.info.accesses).subspan(first))
+      access.bundle = type_label<B>();
+    return made;
+  }
 };
 
 // The world, to change it or only to read it.

@@ -435,5 +435,100 @@ TEST(Schedule, an_exception_of_a_system_ends_the_run_and_names_it) {
   }
 }
 
+// Bundles: what several systems take together.
+struct Weather {
+  const Wind& wind;
+};
+struct WeatherWork {
+  Weather weather;
+  Tally& tally;
+  EventQueue<int>& gusts;
+};
+
+TEST(ScheduleBundles, ABundleStandsForTheAccessesOfItsMembers) {
+  World world;
+  Wind wind;
+  Tally tally;
+  Schedule schedule(world);
+  schedule.provide(wind, tally);
+  schedule.emplace<EventQueue<int>>();
+  schedule.add("work", [](WeatherWork work, Query<const Position>) {
+    work.tally.seen += static_cast<std::size_t>(work.weather.wind.strength);
+    work.gusts.emit(7);
+  });
+  schedule.add("look", [](Weather) {});
+  const SystemInfo& work = info(schedule, "work");
+  ASSERT_EQ(work.accesses.size(), 4U);
+  EXPECT_TRUE(declares(work, "Wind", false));
+  EXPECT_TRUE(declares(work, "Tally", true));
+  EXPECT_TRUE(declares(work, "int", true));
+  EXPECT_EQ(work.accesses[0].name, "Wind");
+  EXPECT_EQ(work.accesses[0].bundle, "WeatherWork");  // not Weather, which is inside it
+  EXPECT_EQ(work.accesses[3].bundle, "");
+  EXPECT_EQ(info(schedule, "look").accesses[0].bundle, "Weather");
+  schedule.run();
+  EXPECT_EQ(tally.seen, 2U);
+}
+
+TEST(ScheduleBundles, SystemsConflictThroughTheMembersOfTheirBundles) {
+  World world;
+  Wind wind;
+  Tally tally;
+  Schedule s(world);
+  s.provide(wind, tally);
+  s.emplace<EventQueue<int>>();
+  s.add("reads", [](Weather) {});
+  s.add("reads too", [](const Wind&) {});
+  s.add("writes", [](Wind&) {});
+  s.add("works", [](WeatherWork) {});
+  s.add("counts", [](const Tally&) {});
+  EXPECT_FALSE(conflict(info(s, "reads"), info(s, "reads too")));
+  EXPECT_FALSE(conflict(info(s, "reads"), info(s, "works")));
+  EXPECT_TRUE(conflict(info(s, "reads"), info(s, "writes")));
+  EXPECT_TRUE(conflict(info(s, "works"), info(s, "writes")));
+  EXPECT_TRUE(conflict(info(s, "works"), info(s, "counts")));
+}
+
+TEST(ScheduleBundlesDeathTest, AMissingMemberIsNamed) {
+  World world;
+  Wind wind;
+  Schedule schedule(world);
+  schedule.provide(wind);
+  EXPECT_DEATH(schedule.add("work", [](WeatherWork) {}),
+               "the system 'work' wants a Tally, which was not provided");
+}
+
+struct Mixed {
+  const Wind& wind;
+  Tally tally;
+};
+
+TEST(ScheduleBundlesDeathTest, AValueBesideReferencesIsAMissingResource) {
+  World world;
+  Wind wind;
+  Schedule schedule(world);
+  schedule.provide(wind);
+  EXPECT_DEATH(schedule.add("mixed", [](Mixed) {}), "wants a Tally, which was not provided");
+}
+
+TEST(ScheduleBundlesDeathTest, AResourceThatComesTwiceIsNamedWithItsBundles) {
+  World world;
+  Wind wind;
+  Schedule schedule(world);
+  schedule.provide(wind);
+  EXPECT_DEATH(schedule.add("twice", [](Weather, const Wind&) {}),
+               "the system 'twice' takes Wind twice, in Weather and by itself");
+  EXPECT_DEATH(schedule.add("again", [](Wind&, const Wind&) {}),
+               "the system 'again' takes Wind twice, by itself and by itself");
+}
+
+// A schedule rejects the wrong uses of bundles at compile time; these are the conditions.
+TEST(ScheduleBundles, OnlyStructsOfReferencesAreBundles) {
+  static_assert(detail::Bundle<Weather> && detail::Bundle<WeatherWork> && detail::Bundle<Mixed>);
+  static_assert(!detail::Bundle<Wind> && !detail::Bundle<Tally> && !detail::Bundle<const Wind&>);
+  static_assert(!detail::Bundle<EventReader<int>> && !detail::Bundle<Commands>);
+  static_assert(!detail::Bundle<Query<Position>> && !detail::Bundle<World>);
+}
+
 }  // namespace
 }  // namespace psygen::ecs::test
