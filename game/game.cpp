@@ -15,13 +15,13 @@
 namespace cairns {
 namespace {
 
-constexpr std::uint64_t kFirstSeed = 7;  // of the land behind the title, until a game was saved
+constexpr std::uint64_t kFirstSeed = 7;  // land behind the title screen until a game is saved
 constexpr double kSaveEveryS = 60, kZoom = 0.28;
-constexpr double kSwayM = 0.025, kSwayPerM = 3.6, kPhotoTurn = 0.003;  // radians for a pixel
-constexpr int kQuietSteps = 2, kTries = 8;                             // of seeds that nobody chose
+constexpr double kSwayM = 0.025, kSwayPerM = 3.6, kPhotoTurn = 0.003;  // radians per pixel
+constexpr int kQuietSteps = 2, kTries = 8;  // seeds tried for a random land
 constexpr std::uint64_t kSeeds = 1'000'000'000;
 constexpr double kTitleHeightM = 26, kTitleRadiusM = 150, kTitleTurnS = 140;
-constexpr int kPictureFrames = 2;  // until the last one has no page over it
+constexpr int kPictureFrames = 2;  // frames until the rendered image has no page over it
 constexpr std::uint64_t kBudgetBytes = 256ull << 20;
 
 }  // namespace
@@ -75,7 +75,7 @@ core::Result<Game::Loaded> Game::load(std::uint64_t seed, int tries) {
 
 void Game::load_later(std::uint64_t seed, int tries) {
   if (loading_.valid() && seed == seed_) return;
-  if (loading_.valid()) dropped_.push_back(std::move(loading_));  // its end is not waited for here
+  if (loading_.valid()) dropped_.push_back(std::move(loading_));  // finishes in the background
   loading_ = std::async(std::launch::async, load, seed, tries);
   seed_ = seed;
 }
@@ -117,7 +117,7 @@ core::Result<void> Game::start(app::Session& session) {
   return begin(session, std::move(*loaded));
 }
 
-// Goes into a land; its save, if there is one, is gone on from.
+// Enters a land, and resumes its save if there is one.
 core::Result<void> Game::begin(app::Session& session, Loaded loaded) {
   const std::uint64_t seed = loaded.land->world.seed;
   const bool is_kept = options_.record.empty() && options_.replay.empty();
@@ -142,11 +142,11 @@ core::Result<void> Game::begin(app::Session& session, Loaded loaded) {
   until_save_s_ = kSaveEveryS;
   shown_edits_ = lands_->play->edits().layer();
   session.scene().edit(lands_->play->edits());
-  // Nobody arrives in a land that is still being made.
+  // Fill the cache first, so that the player never sees a half-built land.
   const core::CameraPose eyes = frame(session, 0);
   if (auto ok = session.prepare(eyes); !ok) return ok;
   if (lands_->play->progress().time_s < 1)
-    hud_.say("Twelve cairns stand in this land.", "The needle knows the next one.", 8);
+    hud_.say("Twelve cairns stand in this land.", "The needle points to the next one.", 8);
   return {};
 }
 
@@ -190,7 +190,7 @@ void Game::step(app::Session& session, double dt) {
   play.step(intent, dt);
 }
 
-// After the steps of a frame: what happened is heard and seen, edits go to the scene.
+// After the steps of a frame: presents the events, and hands edits to the scene.
 void Game::keep_up(app::Session& session, double dt_s) {
   Play& play = *lands_->play;
   for (const Happening& happening : play.take_happenings()) {
@@ -222,7 +222,7 @@ core::Result<void> Game::save_now() {
   return save().and_then([&] { return saved_ ? saved_->wait() : core::Result<void>(); });
 }
 
-// Leaves nothing unsaved. False: the disk does not take it, and the page says why.
+// Returns false if the game cannot be saved; the page then shows the reason.
 bool Game::save_and_leave() {
   auto saved = save_now();
   if (!saved) menu_.message = saved.error().message;
@@ -254,7 +254,7 @@ void Game::choose(app::Session& session, Choice choice) {
   }
 }
 
-// Keys that are not of the steps: they also work while the game stands still.
+// Handles the keys that also work while the game is paused.
 void Game::take_keys(app::Session& session) {
   const auto pressed = [&](Act act) {
     for (const input::Binding& b : session.actions().bindings(static_cast<input::ActionId>(act))) {
@@ -288,7 +288,7 @@ void Game::apply_settings(app::Session& session) {
     (void)session.window()->set_fullscreen(settings_.fullscreen);
 }
 
-// Over the land of the title, in a slow circle.
+// Circles slowly above the land behind the title screen.
 core::CameraPose Game::title_camera(app::Session& session, double dt_s) {
   if (!settings_.reduced_motion) title_s_ += dt_s;
   const double angle = title_s_ * 2 * std::numbers::pi / kTitleTurnS;
@@ -351,7 +351,7 @@ core::CameraPose Game::frame(app::Session& session, double dt_s) {
   return pose;
 }
 
-// The camera of a game, and all that is seen over and around it.
+// Returns the camera of a running game, and updates its HUD and scenery.
 core::CameraPose Game::playing(app::Session& session, double dt_s) {
   Play& play = *lands_->play;
   take_keys(session);

@@ -1,6 +1,6 @@
-// Cairns in a session: title, a game, pages over it, sounds, saves. The rules are in play/, what is
-// seen and heard in show/; this joins them with a session of the engine. main.cpp has the loop,
-// which also drives it without a window. Main thread; a new land is found in another.
+// Cairns in a session: title screen, game, menu pages, sounds and saves. The rules are in play/,
+// the presentation in show/; this class connects both with a session of the engine. The loop is in
+// main.cpp and also runs without a window. Main thread only; a second thread creates new lands.
 #pragma once
 
 #include <future>
@@ -19,12 +19,12 @@
 namespace cairns {
 
 struct GameOptions {
-  std::string seed;       // of a game that begins at once; empty: the title
-  bool autoplay = false;  // the pilot plays
+  std::string seed;       // land to start in; empty: show the title screen
+  bool autoplay = false;  // the autopilot plays
   bool headless = false;
-  std::filesystem::path folder;          // of saves and settings; empty: those of the user
-  std::filesystem::path record, replay;  // files of input; empty: none
-  std::optional<render::Preset> preset;  // else as the settings say
+  std::filesystem::path folder;          // saves and settings; empty: the user's folders
+  std::filesystem::path record, replay;  // input recordings; empty: none
+  std::optional<render::Preset> preset;  // overrides the settings
   core::Extent size{1280, 720};
   bool sound = true, virtual_time = false;
   unsigned modelers = 0;
@@ -34,28 +34,28 @@ class Game {
  public:
   explicit Game(GameOptions options) : options_(std::move(options)) {}
 
-  // The options of a session with this game in it, which must outlive the session. Fails for
-  // folders that cannot be made and for a land that cannot be read.
+  // Returns the options of a session that runs this game. The game must outlive the session. Fails
+  // if a folder cannot be created or the land cannot be read.
   core::Result<app::SessionOptions> session_options();
-  // Once, before the first frame. Fails where a game that begins at once cannot be loaded.
+  // Call once, before the first frame. Fails if the land named in the options cannot be loaded.
   core::Result<void> start(app::Session& session);
-  // Before every tick: pages, what is drawn over the picture, sounds. Returns the camera. `dt_s`:
+  // Call before every tick. Updates pages, HUD and sounds, and returns the camera pose. `dt_s`:
   // real seconds since the last frame.
   core::CameraPose frame(app::Session& session, double dt_s);
-  // After the last: saves, and writes what was recorded. Fails as Saved::put(), and for a recording
-  // that cannot be written.
+  // Call after the last frame. Saves the game and writes the input recording. Fails like
+  // Saved::put(), or if the recording cannot be written.
   core::Result<void> end();
 
   Page page() const { return menu_.page; }
   const Play* play() const { return lands_ ? lands_->play.get() : nullptr; }
 
  private:
-  // A land with a game in it, made in a thread of its own.
+  // A land with its game, created on a worker thread.
   struct Loaded {
     std::unique_ptr<Land> land;  // outlives the game
     std::unique_ptr<Play> play;
   };
-  // With more than one try, a seed whose land has no way for cairns gives way to the next.
+  // Tries up to `tries` consecutive seeds until a land has a route for all cairns.
   static core::Result<Loaded> load(std::uint64_t seed, int tries = 1);
   void load_later(std::uint64_t seed, int tries);
   core::Result<void> begin(app::Session& session, Loaded loaded);
@@ -84,16 +84,16 @@ class Game {
   std::optional<Saved> saved_;
   std::optional<Pilot> pilot_;
   std::future<core::Result<Loaded>> loading_;
-  std::vector<std::future<core::Result<Loaded>>> dropped_;  // lands that nobody waits for
+  std::vector<std::future<core::Result<Loaded>>> dropped_;  // abandoned loads
   std::optional<input::Recording> recording_;
   std::shared_ptr<const models::EditLayer> shown_edits_;
   Page shown_page_ = Page::kTitle;
   double until_save_s_ = 0, title_s_ = 0, title_height_m_ = 0;
-  int picture_in_ = 0;   // frames until a picture is taken; 0: none is
-  int quiet_steps_ = 0;  // in which a press that closed a page is not one of the game
+  int picture_in_ = 0;   // frames until a screenshot is saved; 0: none pending
+  int quiet_steps_ = 0;  // steps that ignore presses, because they closed a page
   bool zoom_ = false, settings_broken_ = false;
   glm::dvec2 photo_turn_{0.0};
-  std::optional<query::World> title_query_;  // of the land behind the title
+  std::optional<query::World> title_query_;  // of the land behind the title screen
   core::WorldPosition title_place_;
 };
 

@@ -1,5 +1,5 @@
-// psygen-game: Cairns in its window, or played by itself. Exit codes: 0 ok, 1 failed, 2 usage, 4 no
-// usable device or display.
+// psygen-game: Cairns in a window, or played by the autopilot. Exit codes: 0 success, 1 failure,
+// 2 usage error, 4 no usable device or display.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -18,38 +18,42 @@ namespace cairns {
 namespace {
 
 std::atomic<bool> stop{false};
-constexpr double kWarmUpS = 3;  // of autoplay, whose frames are left out of its figures
+constexpr double kWarmUpS = 3;  // frames of this part of an autoplay are excluded from statistics
 
 struct Arguments {
   GameOptions game;
-  double seconds = 0;  // 0: until it is closed
+  double seconds = 0;  // 0: until the player quits
   std::string picture, preset, device;
   bool validation = false;
 };
 
 std::optional<int> read(int argc, char** argv, Arguments& a) {
   CLI::App cli("Cairns: find twelve cairns in an endless land", "psygen-game");
-  cli.add_option("--seed", a.game.seed, "begin, or go on, in the land of this word or number");
-  cli.add_option("--autoplay", a.seconds, "play by itself for so many seconds")
+  cli.add_option("--seed", a.game.seed, "Start or continue in this land (any word or number)");
+  cli.add_option("--autoplay", a.seconds, "Run the autopilot for this many seconds")
       ->check(CLI::Range(0.1, 1e6));
-  cli.add_flag("--headless", a.game.headless, "without a window; as fast as it goes")
+  cli.add_flag("--headless", a.game.headless, "Run without a window, as fast as possible")
       ->needs("--autoplay");
-  cli.add_flag("--virtual-time", a.game.virtual_time, "the same pictures on every machine")
+  cli.add_flag("--virtual-time", a.game.virtual_time,
+               "Use a virtual clock: identical images on every machine")
       ->needs("--headless");
-  cli.add_option("--folder", a.game.folder, "of saves and settings, in place of the user's");
-  cli.add_option("--record", a.game.record, "write the input of a new game to a file")
+  cli.add_option("--folder", a.game.folder, "Folder for saves and settings (default: the user's)");
+  cli.add_option("--record", a.game.record, "Record the input of a new game to this file")
       ->needs("--seed");
-  cli.add_option("--replay", a.game.replay, "play the input of a file, in a new game of its land")
+  cli.add_option("--replay", a.game.replay,
+                 "Replay a recorded input file in a new game of its land")
       ->excludes("--record")
       ->needs("--seed");
-  cli.add_option("--width", a.game.size.width, "of the window or picture, in pixels");
-  cli.add_option("--height", a.game.size.height, "the same");
-  cli.add_option("--preset", a.preset, "low, medium, high or ultra, in place of the settings'");
-  cli.add_option("--device", a.device, "part of the name of the Vulkan device");
-  cli.add_option("--modelers", a.game.modelers, "threads that make the land; 0: as suits");
-  cli.add_option("--picture", a.picture, "PNG of the last frame");
-  cli.add_flag("!--no-sound", a.game.sound, "silent");
-  cli.add_flag("--validation", a.validation, "Vulkan validation");
+  cli.add_option("--width", a.game.size.width, "Width of the window or image in pixels");
+  cli.add_option("--height", a.game.size.height, "Height of the window or image in pixels");
+  cli.add_option("--preset", a.preset,
+                 "Quality: low, medium, high or ultra (default: from the settings)");
+  cli.add_option("--device", a.device, "Vulkan device whose name contains this text");
+  cli.add_option("--modelers", a.game.modelers,
+                 "Number of modelers (worker threads); 0: automatic");
+  cli.add_option("--picture", a.picture, "Save the last frame to this PNG file");
+  cli.add_flag("!--no-sound", a.game.sound, "Disable sound");
+  cli.add_flag("--validation", a.validation, "Enable Vulkan validation layers");
   try {
     cli.parse(argc, argv);
     if (!a.preset.empty()) {
@@ -64,14 +68,14 @@ std::optional<int> read(int argc, char** argv, Arguments& a) {
   return std::nullopt;
 }
 
-// Of what the frames took, in milliseconds.
+// Prints the median and the 99th percentile of frame times in milliseconds.
 void tell(std::vector<double> frame_ms) {
   if (frame_ms.empty()) return;
   std::ranges::sort(frame_ms);
   const auto at = [&](double share) {
     return frame_ms[static_cast<std::size_t>(share * static_cast<double>(frame_ms.size() - 1))];
   };
-  std::printf("%zu frames: %.1f ms half of them, %.1f ms 99 of 100\n", frame_ms.size(), at(0.5),
+  std::printf("%zu frames: median %.1f ms, 99th percentile %.1f ms\n", frame_ms.size(), at(0.5),
               at(0.99));
 }
 
@@ -115,7 +119,7 @@ core::Result<void> run(Arguments a) {
   if (ended && !a.picture.empty()) ended = session.save_picture(a.picture);
   tell(std::move(frame_ms));
   tell(game.play());
-  const auto kept = game.end();  // whatever came before
+  const auto kept = game.end();  // also after a failed frame
   return ended ? kept : ended;
 }
 

@@ -12,14 +12,15 @@ constexpr double kReachedM = 2.5, kLookAheadM = 2.6, kLostM = 12, kPlanS = 45;
 constexpr double kStillS = 1.4, kFreeS = 1.1;
 constexpr double kTurn = 4;  // rad/s
 constexpr double kBuildEveryS = 150, kFetchEveryS = 140, kGiveUpS = 12, kTreeM = 30;
-constexpr double kGlideAheadM = 22, kLandM = 30;  // looks so far ahead in the air; comes down here
+constexpr double kGlideAheadM = 22,
+                 kLandM = 30;  // look-ahead in the air; distance at which it lands
 constexpr double kDropM = 5, kDropAheadM = 7, kGlideAtLeastS = 1.5;
-constexpr double kRaftCost = 1.1;  // of water
+constexpr double kRaftCost = 1.1;  // path cost of water with the raft
 constexpr std::size_t kCellsAStep = 500;
 
 }  // namespace
 
-// Looks for a way from where it stands, and waits there for it.
+// Starts a path search from the current position. The player waits until it ends.
 void Pilot::plan() {
   path_.clear();
   const auto next = play_->next_cairn();
@@ -37,7 +38,7 @@ void Pilot::look_for_path() {
   next_ = 0;
 }
 
-// Whether the ground falls away where it goes.
+// Returns true if the ground drops away ahead.
 bool Pilot::is_over_drop() const {
   const Walker& walker = play_->walker();
   const core::WorldPosition ahead = at_end_of(
@@ -47,7 +48,7 @@ bool Pilot::is_over_drop() const {
   return ground && walker.feet().local.y - ground->height_m > kDropM;
 }
 
-// Turns towards a place and runs.
+// Turns towards a position and runs there.
 void Pilot::walk_to(Intent& intent, const core::WorldPosition& at, double dt) const {
   const Walker& walker = play_->walker();
   const glm::dvec3 way = way_m(walker.feet(), at, play_->block_m());
@@ -69,7 +70,7 @@ void Pilot::follow_path(Intent& intent, double dt) {
   walk_to(intent, path_[next_], dt);
   const double far_m = distance_m(walker.feet(), path_[next_], block_m);
   if (far_m > kLostM && !glides) plan_s_ += 10 * dt;
-  // From an edge it leaps, and sails as long as that leads on.
+  // Leaps from an edge, and glides as long as that leads to the goal.
   const bool sail = has(play_->abilities(), Ability::kSail) &&
                     distance_m(walker.feet(), path_.back(), block_m) > kLandM;
   if (sail && walker.gait() == Gait::kGround && std::abs(intent.turn) < 0.3 * dt * kTurn &&
@@ -80,11 +81,11 @@ void Pilot::follow_path(Intent& intent, double dt) {
   glide_s_ =
       sail && glides && is_over_drop() ? std::max(glide_s_, 0.3) : std::max(glide_s_ - dt, 0.0);
   intent.jump_held = intent.jump || (sail && glide_s_ > 0);
-  if (was_gliding_ && walker.gait() == Gait::kGround) plan();  // it may be anywhere
+  if (was_gliding_ && walker.gait() == Gait::kGround) plan();  // gliding may have left the path
   was_gliding_ = glides || (was_gliding_ && walker.gait() == Gait::kAir);
 }
 
-// Something is in the way: jumps, steps aside, and in the end looks for another path.
+// Gets past an obstacle: jumps, steps aside, and finally searches another path.
 void Pilot::free_itself(Intent& intent, double dt) {
   const bool moves_on = next_ != seen_next_ || play_->walker().gait() == Gait::kGlide;
   seen_next_ = next_;
@@ -106,7 +107,7 @@ void Pilot::free_itself(Intent& intent, double dt) {
   intent.jump_held = !back;
 }
 
-// Goes to a tree near by and fells it. Whether that is all it does now.
+// Walks to a nearby tree and fells it. Returns true while that takes all of the step.
 bool Pilot::fetch_wood(Intent& intent, double dt) {
   const Walker& walker = play_->walker();
   if (!tree_ && !finder_.is_searching() && walker.gait() == Gait::kGround &&
@@ -131,7 +132,7 @@ bool Pilot::fetch_wood(Intent& intent, double dt) {
   return true;
 }
 
-// Gathers, builds and sleeps on the way, and fetches wood. Whether that is all it does now.
+// Gathers, builds, sleeps and fetches wood. Returns true while that takes all of the step.
 bool Pilot::work(Intent& intent, double dt) {
   const Target& target = play_->target();
   const Progress& progress = play_->progress();

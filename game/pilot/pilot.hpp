@@ -1,6 +1,6 @@
-// Plays by itself: finds its way to the next cairn, gathers, builds, fells, sleeps, jumps, swims
-// and glides. It sees what a player sees and says what a player would (Intent); the game does not
-// know that it is there. The end-to-end test of the game and its frame test are its. Deterministic.
+// The autopilot: finds a path to the next cairn, gathers, builds, fells, sleeps, jumps, swims and
+// glides. It reads what a player sees and answers with an Intent; the game cannot tell it from a
+// player. It drives the end-to-end test and the frame test of the game. Deterministic.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,9 @@ namespace cairns {
 
 class Pilot {
  public:
-  // `play` outlives it.
+  // `play` must outlive the pilot.
   explicit Pilot(Play& play) : play_(&play), finder_(play.query()) {}
-  // What to do in the next step of `dt` seconds.
+  // Returns the intent for the next step of `dt` seconds.
   Intent steer(double dt);
 
  private:
@@ -31,13 +31,13 @@ class Pilot {
   Play* play_;
   query::PathFinder finder_;
   std::vector<core::WorldPosition> path_;
-  std::size_t next_ = 0, seen_next_ = 0;  // points of the path: that it goes to; the same before
+  std::size_t next_ = 0, seen_next_ = 0;  // target point of the path, now and in the last step
   std::size_t goal_ = kCairns;
   double still_s_ = 0, plan_s_ = 0, free_s_ = 0, aside_ = 1, glide_s_ = 0;
   double time_s_ = 0, built_s_ = 0, lit_s_ = -1e9;
   bool was_gliding_ = false;
-  std::optional<core::WorldPosition> tree_;  // that it wants to fell
-  double fetched_s_ = 0;                     // when it last began with that
+  std::optional<core::WorldPosition> tree_;  // the tree to fell
+  double fetched_s_ = 0;                     // time when the last search for wood began
 };
 
 }  // namespace cairns

@@ -13,17 +13,19 @@ namespace cairns {
 namespace {
 
 constexpr models::ParameterSpec kSchema[] = {
-    {"seed", models::ParameterType::kInteger, "", 1, -0x1p63, 0x1p63, 0, 1000, "which of all",
+    {"seed", models::ParameterType::kInteger, "", 1, -0x1p63, 0x1p63, 0, 1000, "Random seed",
      models::ParameterSource::kPlaced},
-    {"stones", models::ParameterType::kInteger, "1", 7, 1, 24, 3, 12, "on top of each other"},
-    {"width_m", models::ParameterType::kReal, "m", 1.1, 0.1, 6, 0.4, 2, "of the lowest stone"},
+    {"stones", models::ParameterType::kInteger, "1", 7, 1, 24, 3, 12,
+     "Number of stones in the stack"},
+    {"width_m", models::ParameterType::kReal, "m", 1.1, 0.1, 6, 0.4, 2,
+     "Width of the lowest stone"},
 };
 
-// Of each level: corners around a stone, and rings of them between its poles.
+// Per LOD level: corners around a stone, and rings between its poles.
 constexpr std::array<std::uint32_t, 3> kStoneSides{11, 8, 5}, kStoneRings{5, 3, 2};
-constexpr float kFlatness = 0.42F;  // height of a stone over its width
-constexpr float kTopShare = 0.34F;  // width of the highest stone over that of the lowest
-constexpr float kSunkShare = 0.3F;  // of the lowest stone
+constexpr float kFlatness = 0.42F;  // ratio of a stone's height to its width
+constexpr float kTopShare = 0.34F;  // ratio of the top stone's width to the lowest stone's
+constexpr float kSunkShare = 0.3F;  // fraction of the lowest stone below the ground
 constexpr float kRough = 0.12F;
 
 struct Stone {
@@ -35,7 +37,7 @@ std::uint32_t stones_of(const models::Parameters& p) {
   return static_cast<std::uint32_t>(p.integer(kCairnStones));
 }
 
-// Stone `i`, and where the next one lies.
+// Returns stone `i`, and raises `foot_m` to the base of the next one.
 Stone stone(const models::Parameters& p, std::uint32_t i, float& foot_m) {
   core::RandomStream random(static_cast<std::uint64_t>(p.integer(kCairnSeed)), 0, 0, i,
                             core::Purpose::kStructure);
@@ -58,17 +60,17 @@ float cosine(double degrees) {
   return static_cast<float>(models::exact_cos_degrees(degrees));
 }
 
-// A point of a stone's surface; rough, the same in all levels at the same place. Angles in degrees:
-// around the vertical line, and up from the middle.
+// Returns a point of a stone's rough surface, which is the same at every LOD level. Angles are in
+// degrees: around the vertical axis, and up from the equator.
 glm::vec3 surface_point(const Stone& s, std::uint32_t number, double around, double up) {
   const float bump = kRough * sine(3 * around + 97 * number) * cosine(2.3 * up + 57 * number);
   const float r = s.radius * (1 + bump);
-  // Flattened at its poles more than an ellipsoid.
+  // The poles are flatter than an ellipsoid's.
   const float c = std::sqrt(std::max(cosine(up), 0.0F));
   return s.middle + r * glm::vec3(c * cosine(around), kFlatness * sine(up), c * sine(around));
 }
 
-// Writes one stone.
+// Writes the vertices and triangles of stones.
 class StoneWriter {
  public:
   StoneWriter(const core::Bounds& box, const models::MeshView& out, int level)
@@ -112,7 +114,7 @@ class StoneWriter {
     for (const std::uint32_t corner : {a, b, c})
       indices_[index_++] = static_cast<std::uint16_t>(corner);
   }
-  // From pole to pole between two neighbouring sides.
+  // Adds the triangles between two neighbouring sides, from pole to pole.
   void add_column(std::uint32_t first, std::uint32_t a, std::uint32_t b) {
     const std::uint32_t ring0 = first + 1, top = first + 1 + rings_ * sides_;
     add_triangle(first, ring0 + a, ring0 + b);

@@ -1,6 +1,6 @@
-// The model type of a cairn: flat stones on each other, each smaller than the one below. Hidden
-// cairns and those that the player builds are both placed as edits of the world, so they are seen,
-// solid and saved like everything else. A pure function of its parameters.
+// Model type of a cairn: a stack of flat stones, each smaller than the one below. Hidden cairns and
+// the player's cairns are both edits of the world, so they are drawn, solid and saved like all
+// models. A pure function of its parameters.
 #pragma once
 
 #include "engine/models/model_type.hpp"
@@ -9,13 +9,13 @@ namespace cairns {
 
 using namespace psygen;
 
-// The parameters, in the order of the schema.
+// Parameter indices, in the order of the schema.
 enum CairnParameter : std::size_t { kCairnSeed, kCairnStones, kCairnWidthM };
 
 class CairnType final : public models::ModelType {
  public:
   std::string_view name() const override { return "cairn"; }
-  std::string_view doc() const override { return "stones, piled up as a waymark"; }
+  std::string_view doc() const override { return "A stack of stones that marks a place"; }
   std::span<const models::ParameterSpec> parameters() const override;
   int level_count() const override { return 3; }
   double level_error_m(const models::Parameters& p, int level) const override;

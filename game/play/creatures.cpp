@@ -10,13 +10,13 @@ namespace {
 
 constexpr double kCellM = 72, kNearM = 190, kFarM = 260;
 constexpr std::size_t kMost = 320;
-constexpr int kStepsBetween = 30;                   // looks at cells
-constexpr double kDeerSees = 14, kDeerHears = 3.2;  // m, and m for each m/s of the player
+constexpr int kStepsBetween = 30;                   // steps between updates of the cells
+constexpr double kDeerSees = 14, kDeerHears = 3.2;  // m, and m per m/s of the player
 constexpr double kDeerWalk = 0.7, kDeerRun = 9, kBirdPace = 8, kFishPace = 0.5, kFishFlees = 3.5;
-constexpr double kCalmS = 6;  // in which fear fades
+constexpr double kCalmS = 6;  // seconds until fear has faded
 constexpr core::Purpose kHabitat = core::Purpose::kPosition;
 
-// The smallest turn from one yaw to another.
+// Returns the smallest rotation from one yaw to another, in radians.
 double turn_to(double from, double to) {
   return std::remainder(to - from, 2 * std::numbers::pi);
 }
@@ -25,7 +25,7 @@ double yaw_of(const glm::dvec3& way) {
   return std::atan2(way.x, -way.z);
 }
 
-// A number of a creature that changes every `period_s`: 0 … 1.
+// Returns a random number of a creature, 0 to 1, that changes every `period_s` seconds.
 double whim(const Creature& c, double time_s, double period_s) {
   const auto turn = static_cast<std::uint64_t>(time_s / period_s);
   return static_cast<double>(core::combine(c.seed, turn) >> 11) * 0x1.0p-53;
@@ -112,7 +112,7 @@ void Creatures::add_group(Kind kind, int count, const core::WorldPosition& home,
     c.at = core::normalised(c.at, query_->world().block_size_m());
     const auto ground = query_->ground(c.at);
     const bool is_wet = ground && ground->water_depth_m > 0.7;
-    if (!ground || is_wet != (kind == Kind::kFish)) continue;  // not where it cannot live
+    if (!ground || is_wet != (kind == Kind::kFish)) continue;  // not its habitat
     c.at.local.y = kind == Kind::kFish ? home.local.y : ground->height_m;
     if (kind == Kind::kBird) c.at.local.y += random.next_real(9, 26);
     c.before = c.at;
@@ -132,7 +132,7 @@ bool Creatures::advance(Creature& c, double dt, const MayBe& may_be) {
   return true;
 }
 
-// Grazes around its home; runs from the player.
+// A deer grazes around its home, and runs from the player.
 void Creatures::step_deer(Creature& c, const glm::dvec3& to_player, double dt) {
   const double time_s = static_cast<double>(steps_) * dt;
   const double block_m = query_->world().block_size_m();
@@ -154,13 +154,13 @@ void Creatures::step_deer(Creature& c, const glm::dvec3& to_player, double dt) {
   if (c.pace > 0.01 && !advance(c, dt, may_be)) c.yaw += 2.5 * dt;
 }
 
-// Circles around its home with its flock; higher and away from the player.
+// A bird circles above its home with its flock, and rises away from the player.
 void Creatures::step_bird(Creature& c, const glm::dvec3& to_player, double hour, double dt) {
   const double time_s = static_cast<double>(steps_) * dt;
   const double block_m = query_->world().block_size_m();
   const glm::dvec3 home = way_m(c.at, c.home, block_m);
   const double out_m = std::hypot(home.x, home.z);
-  // Along the circle, inwards from outside of it, and with a mind of its own.
+  // Steers along the circle, back to it from outside, and a little at random.
   const double circle_m = 12 + 14 * whim(c, time_s, 9);
   double wanted =
       yaw_of(home) + std::numbers::pi / 2 - std::clamp((out_m - circle_m) / 12, -0.7, 1.4);
@@ -180,7 +180,7 @@ void Creatures::step_bird(Creature& c, const glm::dvec3& to_player, double hour,
   advance(c, dt, [](const query::Ground&) { return true; });
 }
 
-// Stays in deep water, below the surface.
+// A fish stays in deep water, below the surface.
 void Creatures::step_fish(Creature& c, const glm::dvec3& to_player, double dt) {
   const double time_s = static_cast<double>(steps_) * dt;
   const double block_m = query_->world().block_size_m();

@@ -1,6 +1,6 @@
-// Deer, birds and fish: a few hundred around the player, shaped and moved by code. Where they live
-// is a function of the land; they come with the ground around the player and go with it. They flee
-// from whoever comes near. Not saved. Deterministic in steps.
+// Deer, birds and fish: a few hundred around the player. Their homes are a function of the land, so
+// they appear and disappear with the ground around the player. They flee from the player. They are
+// not saved. Fixed steps, deterministic.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@ inline constexpr std::size_t kKinds = 3;
 
 struct Creature {
   Kind kind = Kind::kDeer;
-  core::WorldPosition at, before;  // after the last step, and after the one before
-  double yaw = 0, pitch = 0;       // as of a camera
-  double pace = 0;                 // m/s
-  double beat = 0;                 // of legs, wings or tail; radians
-  double fear = 0;                 // 0 calm … 1 flees
+  core::WorldPosition at, before;  // after the last step and after the previous one
+  double yaw = 0, pitch = 0;       // radians, as in core::CameraPose
+  double pace = 0;                 // speed in m/s
+  double beat = 0;                 // phase of legs, wings or tail in radians
+  double fear = 0;                 // 0 (calm) to 1 (fleeing)
   std::uint64_t seed = 0;
-  core::WorldPosition home;  // that it stays around
+  core::WorldPosition home;  // centre of its range
   std::int32_t cell_x = 0, cell_z = 0;
 };
 
@@ -32,8 +32,8 @@ class Creatures {
   // `query` outlives it.
   explicit Creatures(query::World& query) : query_(&query) {}
 
-  // One step. `loud`: how fast the player is, in m/s; those who run are heard from farther away.
-  // `hour` of the day: birds sleep at night.
+  // Advances one step. `loud` is the player's speed in m/s: deer hear a running player from farther
+  // away. `hour` is the hour of the day: birds sleep at night.
   void step(const core::WorldPosition& player, double loud, double hour, double dt);
 
   const std::vector<Creature>& all() const { return all_; }
@@ -46,13 +46,13 @@ class Creatures {
   void step_deer(Creature& c, const glm::dvec3& to_player, double dt);
   void step_bird(Creature& c, const glm::dvec3& to_player, double hour, double dt);
   void step_fish(Creature& c, const glm::dvec3& to_player, double dt);
-  // Moves it ahead, unless `may_be` says no to the ground there. Whether it has.
+  // Moves the creature ahead if `may_be` accepts the ground there. Returns true if it moved.
   template <class MayBe>
   bool advance(Creature& c, double dt, const MayBe& may_be);
 
   query::World* query_;
   std::vector<Creature> all_;
-  std::unordered_set<std::uint64_t> cells_;  // that have been settled
+  std::unordered_set<std::uint64_t> cells_;  // cells whose creatures exist
   std::uint64_t steps_ = 0;
 };
 

@@ -42,7 +42,7 @@ core::Result<std::string> land_text(std::uint64_t seed) {
   std::string text = read.str();
   const std::size_t line = text.find(kSeedLine);
   if (line == std::string::npos)
-    return core::fail(core::ErrorCode::kParse, *file + ": the land has no line `seed = …`");
+    return core::fail(core::ErrorCode::kParse, *file + ": the line `seed = …` is missing");
   const std::size_t from = line + kSeedLine.size();
   const std::size_t end = std::min(text.find('\n', from), text.size());
   std::string changed = text.substr(0, from);

@@ -1,5 +1,5 @@
-// The land of a game: the world file of Cairns with the seed of the game in place of its own, and
-// ways between places in it. Pure but for reading that file. Knows no rules.
+// The land of a game: the world file of Cairns with the game's seed, and distances between
+// positions. Pure, except for reading the world file. It contains no rules of the game.
 #pragma once
 
 #include <cstdint>
@@ -17,35 +17,36 @@ namespace cairns {
 
 using namespace psygen;
 
-// The seed that a player's text stands for: its number if it is one, else a hash of the text.
+// Returns the seed for a player's text: its value if it is a number, else a hash of the text.
 std::uint64_t seed_of(std::string_view typed);
 
-// Where the world file is: `worlds/cairns.toml` of the data folders. Fails with kIo.
+// Returns the path of the world file, `worlds/cairns.toml` in the data folders. Fails with kIo.
 core::Result<std::string> land_file();
-// Its text with this seed. Fails with kIo, and with kParse where the file has no seed.
+// Returns the text of the world file with this seed. Fails with kIo, or with kParse if the file has
+// no line for the seed.
 core::Result<std::string> land_text(std::uint64_t seed);
 // Adds the model types of the game to those of the engine.
 core::Result<void> add_types(models::Registry& registry);
 
-// A land without a session: for tests, and for playing without pictures.
+// A land without a session, for tests and for playing without a renderer.
 struct Land {
   models::Registry registry;
   world::World world;
-  std::string text;  // of its file
-  // Fails as land_text() and world::parse_world().
+  std::string text;  // of the world file
+  // Fails like land_text() and world::parse_world().
   static core::Result<std::unique_ptr<Land>> load(std::uint64_t seed);
 };
 
-// The name of a cell of a grid over the land, by its numbers east and south.
+// Returns the key of a grid cell, from its indices towards east and south.
 constexpr std::uint64_t cell_name(std::int32_t x, std::int32_t z) {
   return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(z);
 }
 
-// The way from one place to another, in metres. Exact as core::offset_m().
+// Returns the offset between two positions in metres, as exact as core::offset_m().
 glm::dvec3 way_m(const core::WorldPosition& from, const core::WorldPosition& to, double block_m);
-// Its length in the plane.
+// Returns the horizontal distance of two positions in metres.
 double distance_m(const core::WorldPosition& from, const core::WorldPosition& to, double block_m);
-// The place at the end of a way, normalised.
+// Returns the position at an offset in metres, normalised.
 core::WorldPosition at_end_of(const core::WorldPosition& from, const glm::dvec3& way,
                               double block_m);
 

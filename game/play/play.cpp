@@ -11,7 +11,7 @@ namespace {
 constexpr int kHiddenStones = 11;
 constexpr double kHiddenWidthM = 1.9, kBuiltWidthM = 0.9;
 constexpr double kFoundM = 4.5, kReachM = 2.6, kSeenM = 60;
-constexpr double kLargestStoneM = 0.65;  // radius of what can be carried
+constexpr double kLargestStoneM = 0.65;  // largest radius that the player can carry
 constexpr double kFellS = 2.2, kAxeS = 0.7;
 constexpr double kFireS = 420, kFireReachM = 5, kAheadM = 1.8;
 constexpr double kMorningHour = 7;
@@ -46,7 +46,7 @@ core::Result<void> Play::begin() {
   walker_.emplace(std::move(*walker));
   const glm::dvec3 to_first = way_m(route_.start, route_.cairns[0], block_m());
   progress_.feet = walker_->feet();
-  // Not quite towards the first cairn: it is to be looked for.
+  // The player starts facing a little past the first cairn, and has to look for it.
   progress_.yaw = std::atan2(to_first.x, -to_first.z) + 0.35;
   return walker_->put(progress_.feet, progress_.yaw);
 }
@@ -66,7 +66,8 @@ void Play::take_edits(world::Edits edits) {
 core::Result<void> Play::place_cairn(const core::WorldPosition& at, int stones, double width_m) {
   world::NewModel model;
   const int type = registry_->find("cairn");
-  if (type < 0) return core::fail(core::ErrorCode::kInternal, "the land knows no cairns");
+  if (type < 0)
+    return core::fail(core::ErrorCode::kInternal, "the registry has no model type \"cairn\"");
   model.model = static_cast<models::ModelIndex>(type);
   model.parameters = models::default_parameters((*registry_)[model.model]);
   const auto mixed = core::combine(cell_name(at.block.x, at.block.z),
@@ -132,7 +133,7 @@ const Fire* Play::fire_near(double reach_m) const {
   return nearest;
 }
 
-// The nearest thing ahead that can be used.
+// Finds the nearest usable stone or tree in front of the player.
 void Play::look_for_target() {
   std::vector<query::NearModel> near;
   const query::NearModel before = target_.model;
@@ -217,10 +218,10 @@ std::optional<core::WorldPosition> Play::dry_place_ahead() {
 }
 
 void Play::build() {
-  if (progress_.stock.stones < kStonesOfCairn) return refuse("A cairn takes five stones.");
+  if (progress_.stock.stones < kStonesOfCairn) return refuse("You need five stones for a cairn.");
   const auto at = dry_place_ahead();
   if (!at) return refuse("There is no firm ground here.");
-  if (!place_cairn(*at, kStonesOfCairn + 1, kBuiltWidthM)) return refuse("Nothing more fits here.");
+  if (!place_cairn(*at, kStonesOfCairn + 1, kBuiltWidthM)) return refuse("There is no room here.");
   progress_.stock.stones -= kStonesOfCairn;
   progress_.waymarks.push_back(*at);
   happenings_.push_back({.kind = Happening::Kind::kBuilt, .at = *at});
@@ -228,7 +229,8 @@ void Play::build() {
 
 void Play::light_fire() {
   const bool free = has(abilities(), Ability::kEmber);
-  if (!free && progress_.stock.wood < kWoodOfFire) return refuse("A fire takes wood: fell a tree.");
+  if (!free && progress_.stock.wood < kWoodOfFire)
+    return refuse("You need wood for a fire. Fell a tree.");
   const auto at = dry_place_ahead();
   if (!at) return refuse("There is no dry ground here.");
   if (!free) progress_.stock.wood -= kWoodOfFire;
@@ -238,8 +240,8 @@ void Play::light_fire() {
 }
 
 void Play::sleep() {
-  if (fire_near(kFireReachM) == nullptr) return refuse("One sleeps beside a fire.");
-  if (!is_night()) return refuse("It is day.");
+  if (fire_near(kFireReachM) == nullptr) return refuse("Light a fire to sleep beside.");
+  if (!is_night()) return refuse("You can sleep only at night.");
   const double hours = std::fmod(kMorningHour - hour() + 24, 24.0);
   progress_.time_s += hours / 24 * world_.sky.day_length_s;
   happenings_.push_back({.kind = Happening::Kind::kSlept, .at = progress_.feet});

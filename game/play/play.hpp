@@ -1,8 +1,7 @@
-// A game of Cairns, without pictures, sound or keys: the land, the player in it, what was found,
-// gathered, built, felled and lit. It has a copy of the world, with the edits that the player made,
-// and queries and physics of its own, so it follows from its seed and the intents of its steps
-// alone: the same to the bit in the same build, at every frame rate, with or without a renderer.
-// One thread.
+// A game of Cairns without rendering, sound or keys: the land, the player, and the progress. It
+// owns a copy of the world with the player's edits, and its own queries and physics. Its state
+// therefore depends only on the seed and the intents of its steps: bit for bit the same in the same
+// build, at every frame rate, with or without a renderer. Single-threaded.
 #pragma once
 
 #include <memory>
@@ -21,25 +20,25 @@
 
 namespace cairns {
 
-// What the player carries.
+// Items that the player carries.
 struct Stock {
   int stones = 0, wood = 0;
 };
 
-// A fire that burns until a time of the game.
+// A burning fire. `until_s` is a time of the game in seconds.
 struct Fire {
   core::WorldPosition at;
   double until_s = 0;
 };
 
-// What can be used where the player stands.
+// The object that the player can use.
 struct Target {
   enum class Kind : std::uint8_t { kNothing, kStone, kTree };
   Kind kind = Kind::kNothing;
-  query::NearModel model;  // of a stone or tree
+  query::NearModel model;  // the stone or tree
 };
 
-// What happened in a step, for sounds, particles and messages.
+// An event of a step, for sounds, particles and messages.
 struct Happening {
   enum class Kind : std::uint8_t {
     kFound,
@@ -55,13 +54,13 @@ struct Happening {
     kSplashed
   };
   Kind kind = Kind::kStepped;
-  std::size_t number = 0;  // of the cairn that was found
-  const char* why = "";    // of kRefused
+  std::size_t number = 0;  // kFound: index of the cairn
+  const char* why = "";    // kRefused: the reason
   core::WorldPosition at = {};
-  std::optional<world::Placement> tree = {};  // that was felled
+  std::optional<world::Placement> tree = {};  // kFelled: the tree
 };
 
-// What a save keeps of a game, beside the edits.
+// The saved state of a game, apart from its edits.
 struct Progress {
   core::WorldPosition feet;
   double yaw = 0, time_s = 0;
@@ -69,8 +68,8 @@ struct Progress {
   Stock stock;
   bool lantern = false;
   std::vector<Fire> fires;
-  std::vector<core::WorldPosition> waymarks;  // that the player has built
-  // Cells of the map, by cell_name(), with what is there: a world::GroundKind, or kMapWater.
+  std::vector<core::WorldPosition> waymarks;  // cairns built by the player
+  // Explored cells of the map, by cell_name(): a world::GroundKind, or kMapWater.
   std::unordered_map<std::uint64_t, std::uint8_t> seen;
 };
 
@@ -80,17 +79,17 @@ inline constexpr std::uint8_t kMapWater = world::kGroundKinds;
 
 class Play {
  public:
-  // A new game in a land, whose seed the world has. `registry` outlives it, and has add_types().
-  // Fails as find_route() and world::Edits::place().
+  // Starts a new game in a world. `registry` must outlive the game and contain the types of
+  // add_types(). Fails like find_route() and world::Edits::place().
   static core::Result<std::unique_ptr<Play>> create(const world::World& world,
                                                     const models::Registry& registry);
 
-  // One step of `dt` seconds, always the same.
+  // Advances the game by one fixed step of `dt` seconds.
   void step(const Intent& intent, double dt);
-  // What happened since this was last called.
+  // Returns the events since the last call.
   std::vector<Happening> take_happenings() { return std::exchange(happenings_, {}); }
 
-  // Goes on from a save. Fails as physics::World::set_feet(); the game is as it was then.
+  // Resumes from a save. Fails like physics::World::set_feet(), and then changes nothing.
   core::Result<void> resume(Progress progress, world::Edits edits);
 
   const Progress& progress() const { return progress_; }
@@ -99,17 +98,17 @@ class Play {
   const Walker& walker() const { return *walker_; }
   const Creatures& creatures() const { return creatures_; }
   const Target& target() const { return target_; }
-  double felling() const { return felling_; }  // of the tree that is felled: 0 … 1
+  double felling() const { return felling_; }  // progress on the current tree, 0 to 1
   Weather weather() const { return weather_at(world_.seed, progress_.time_s); }
   double hour() const;  // of the day
   bool is_night() const { return hour() < 5.5 || hour() > 19.5; }
-  // What the player has: an ability for each found cairn.
+  // Returns the player's abilities: one for each cairn found.
   Abilities abilities() const { return Abilities((1ULL << progress_.found.count()) - 1); }
-  // The next cairn, or nothing when all are found.
+  // Returns the next cairn, or nullopt if all are found.
   std::optional<std::size_t> next_cairn() const;
   bool is_finished() const { return progress_.found.all(); }
   int most_stones() const { return has(abilities(), Ability::kSatchel) ? 40 : 12; }
-  // The nearest fire that burns within reach, or null.
+  // Returns the nearest burning fire within reach, or null.
   const Fire* fire_near(double reach_m) const;
 
   query::World& query() { return query_; }

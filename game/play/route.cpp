@@ -12,16 +12,16 @@
 namespace cairns {
 namespace {
 
-constexpr double kLeastSiteUp = 0.90, kStartUp = 0.966;  // of the normal: 26° and 15°
+constexpr double kLeastSiteUp = 0.90, kStartUp = 0.966;  // normal.y of slopes of 26° and 15°
 constexpr double kHighestStartM = 110, kHighestM = 200, kDryM = 1.5;
-constexpr double kProminentM = 9;  // more is no better
+constexpr double kProminentM = 9;  // more gains nothing
 constexpr double kLeastWayM = 200, kMostWayM = 360;
-constexpr std::size_t kMostCells = 60'000;  // that a way of a few hundred metres needs
+constexpr std::size_t kMostCells = 60'000;  // enough for a path of a few hundred metres
 constexpr int kTries = 24, kMostTries = 192, kRings = 60, kTurns = 5;
-constexpr double kSeenFromM = 45;  // how far around a cairn is compared with its place
+constexpr double kSeenFromM = 45;  // radius of the surroundings that a site is compared with
 constexpr core::Purpose kPurpose = core::Purpose::kStructure;
 
-// The ground of a place where one can stand; nothing elsewhere. Sets its height.
+// Returns the ground at a position if the player can stand there, and sets the position's height.
 std::optional<query::Ground> dry_ground(query::World& query, core::WorldPosition& at,
                                         double least_up, double highest_m) {
   at = core::normalised(at, query.world().block_size_m());
@@ -32,7 +32,7 @@ std::optional<query::Ground> dry_ground(query::World& query, core::WorldPosition
   return *ground;
 }
 
-// By how much a place is higher than what is around it.
+// Returns the height of a position above the mean of its surroundings.
 double prominence_m(query::World& query, const core::WorldPosition& at) {
   double sum_m = 0;
   constexpr int kAround = 8;
@@ -45,7 +45,7 @@ double prominence_m(query::World& query, const core::WorldPosition& at) {
   return at.local.y - sum_m / kAround;
 }
 
-// The first good place on growing circles around the middle of the land.
+// Returns the first suitable position on growing circles around the centre of the land.
 std::optional<core::WorldPosition> find_start(query::World& query) {
   for (int ring = 0; ring < kRings; ++ring) {
     for (int i = 0; i <= 6 * ring; ++i) {
@@ -58,13 +58,13 @@ std::optional<core::WorldPosition> find_start(query::World& query) {
   return std::nullopt;
 }
 
-// A place for a cairn, and the heading that leads there.
+// A possible site of a cairn, and the heading that leads there.
 struct Candidate {
   core::WorldPosition at;
   double heading = 0, score = 0;
 };
 
-// Places ahead, the best first.
+// Returns sites ahead, best first.
 std::vector<Candidate> candidates(query::World& query, const core::WorldPosition& from,
                                   double heading, core::RandomStream& random) {
   std::vector<Candidate> found;
@@ -80,7 +80,7 @@ std::vector<Candidate> candidates(query::World& query, const core::WorldPosition
   return found;
 }
 
-// The first of them that one can walk or swim to.
+// Returns the first site that the player can walk or swim to, or null.
 const Candidate* first_reached(query::PathFinder& finder, const core::WorldPosition& from,
                                const std::vector<Candidate>& found) {
   for (const Candidate& candidate : found) {
@@ -94,7 +94,7 @@ const Candidate* first_reached(query::PathFinder& finder, const core::WorldPosit
 core::Result<Route> find_route(query::World& query) {
   const auto fail = [] {
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      "this land has no way for twelve cairns; take another seed");
+                      "this land has no route for twelve cairns; choose another seed");
   };
   const auto start = find_start(query);
   if (!start) return fail();
@@ -108,7 +108,7 @@ core::Result<Route> find_route(query::World& query) {
                               kPurpose);
     heading += random.next_real(-0.9, 0.9);
     std::optional<Candidate> next;
-    // Where nothing ahead can be reached, the way turns.
+    // If no site ahead is reachable, the route turns.
     for (int turn = 0; turn < kTurns && !next; ++turn) {
       const double ahead = heading + turn * 2 * std::numbers::pi / kTurns;
       const auto found = candidates(query, from, ahead, random);

@@ -1,6 +1,6 @@
-// Where a game begins and where its twelve cairns stand: a function of the land and its seed. Each
-// cairn is some 300 m from the one before, on dry ground that a walker can reach, and rather high,
-// so that it is seen. Nothing is random but the seed.
+// The start of a game and the places of its twelve cairns, a pure function of the land and its
+// seed. Each cairn stands about 300 m from the previous one, on dry ground that the player can
+// reach, and on high ground, so that it is visible.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct Route {
   std::array<core::WorldPosition, kCairns> cairns;  // on the ground
 };
 
-// Fails with kInvalidArgument in a land that is all water or cliffs.
+// Fails with kInvalidArgument if the land is all water or cliffs.
 core::Result<Route> find_route(query::World& query);
 
 }  // namespace cairns

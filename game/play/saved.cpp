@@ -12,11 +12,11 @@
 namespace cairns {
 namespace {
 
-constexpr std::int64_t kFormat = 1;  // of the values below
+constexpr std::int64_t kFormat = 1;  // version of the values below
 constexpr const char* kSuffix = ".cairns";
-constexpr const char* kLast = "last.txt";  // names the save that was opened last
+constexpr const char* kLast = "last.txt";  // holds the seed of the last opened save
 
-// Plain numbers as the bytes of one value.
+// Returns plain numbers as the bytes of one value.
 template <class T>
 save::Bytes bytes_of(const std::vector<T>& values) {
   save::Bytes bytes(values.size() * sizeof(T));
@@ -41,7 +41,7 @@ core::WorldPosition position(const Place& place) {
   return {{place.block_x, place.block_z}, {place.x, place.y, place.z}};
 }
 
-// Reads values by name; the first that is wrong is kept.
+// Reads values by name, and keeps the first error.
 class Reader {
  public:
   explicit Reader(const save::SaveGame& save) : save_(save) {}
@@ -53,7 +53,8 @@ class Reader {
     } else if (const T* found = std::get_if<T>(&*value)) {
       return *found;
     } else {
-      note({core::ErrorCode::kParse, save_.file().string() + ": the save lacks \"" + name + "\""});
+      note({core::ErrorCode::kParse,
+            save_.file().string() + ": the value \"" + name + "\" is missing"});
     }
     return {};
   }
@@ -61,7 +62,7 @@ class Reader {
   std::vector<T> list(const char* name) {
     const auto bytes = get<save::Bytes>(name);
     if (bytes.size() % sizeof(T) != 0)
-      note({core::ErrorCode::kParse, save_.file().string() + ": \"" + name + "\" is cut short"});
+      note({core::ErrorCode::kParse, save_.file().string() + ": \"" + name + "\" is truncated"});
     std::vector<T> values(bytes.size() / sizeof(T));
     if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
     return values;
@@ -79,11 +80,13 @@ class Reader {
 Progress read_progress(Reader& in, const save::SaveGame& save) {
   Progress p;
   if (in.get<std::int64_t>("format") > kFormat)
-    in.note({core::ErrorCode::kParse, save.file().string() + ": the save is of a newer version"});
+    in.note({core::ErrorCode::kParse,
+             save.file().string() + ": a newer version of the game wrote this save"});
   const auto feet = in.list<Place>("feet"), fires = in.list<Place>("fires"),
              waymarks = in.list<Place>("waymarks");
   if (feet.size() != 1)
-    in.note({core::ErrorCode::kParse, save.file().string() + ": nobody stands anywhere"});
+    in.note({core::ErrorCode::kParse,
+             save.file().string() + ": the position of the player is missing"});
   if (!feet.empty()) p.feet = position(feet[0]);
   p.yaw = in.get<double>("yaw");
   p.time_s = in.get<double>("time_s");
@@ -100,7 +103,8 @@ Progress read_progress(Reader& in, const save::SaveGame& save) {
   const bool usable = std::isfinite(p.yaw) && std::isfinite(p.time_s) && p.time_s >= 0 &&
                       p.time_s < 1e9 && p.stock.stones >= 0 && p.stock.wood >= 0;
   if (!usable)
-    in.note({core::ErrorCode::kParse, save.file().string() + ": the save has impossible numbers"});
+    in.note(
+        {core::ErrorCode::kParse, save.file().string() + ": the save contains invalid numbers"});
   return p;
 }
 
@@ -137,7 +141,7 @@ std::filesystem::path save_file(const std::filesystem::path& folder, std::uint64
   return folder / (std::to_string(seed) + kSuffix);
 }
 
-// The clock may have been set back since, so the times of the files do not tell.
+// File times do not help here, because the system clock may have been set back.
 std::optional<std::uint64_t> last_seed(const std::filesystem::path& folder) {
   std::string name;
   std::error_code error;
@@ -151,11 +155,11 @@ core::Result<Saved> Saved::open(const std::filesystem::path& file, Play& play) {
   auto save = save::SaveGame::open(file, save::identity_of(play.world(), play.registry()));
   if (!save) return tl::unexpected(save.error());
   if (auto ok = core::replace_file(file.parent_path() / kLast, file.stem().string()); !ok)
-    core::log_warning(ok.error().message);  // "Continue" is another one then
+    core::log_warning(ok.error().message);  // "Continue" then opens an older game
   Saved saved(std::move(*save));
   const auto format = saved.save_->value("format");
   if (!format) return tl::unexpected(format.error());
-  if (std::holds_alternative<std::monostate>(*format)) return saved;  // a new one
+  if (std::holds_alternative<std::monostate>(*format)) return saved;  // a new save
   if (auto ok = saved.resume(play); !ok) return tl::unexpected(ok.error());
   return saved;
 }
@@ -176,7 +180,7 @@ core::Result<void> Saved::resume(Play& play) {
 }
 
 core::Result<void> Saved::put(const Play& play) {
-  (void)wait();  // what could not be written then is written now
+  (void)wait();  // this put() also writes what a failed write left out
   const world::Edits& now = play.edits();
   for (const core::BlockCoord block : world::changed_blocks(stored_, now)) {
     const auto bytes = world::encode_block(now, play.registry(), block);

@@ -1,5 +1,5 @@
-// A game in a save file: what the player has come to, and the edits of the land. What a save of
-// another land, version or program says is refused with a sentence (save::SaveGame).
+// A game in a save file: its progress and the edits of the land. Saves of another land, version or
+// program are rejected with an error message (save::SaveGame).
 #pragma once
 
 #include <filesystem>
@@ -11,32 +11,32 @@
 
 namespace cairns {
 
-// The save of a land in a folder.
+// Returns the save file of a land in a folder.
 std::filesystem::path save_file(const std::filesystem::path& folder, std::uint64_t seed);
-// The seed of the game that was opened last; nothing where there is none.
+// Returns the seed of the last opened game, or nullopt if there is none.
 std::optional<std::uint64_t> last_seed(const std::filesystem::path& folder);
 
-// The open save of a game. Only one process has it.
+// The open save of a game. Only one process can hold it.
 class Saved {
  public:
-  // Opens or makes the save of a land, and goes on from what it holds. Fails as
-  // save::SaveGame::open(), and with kParse for values that cannot be; the game is as it was then.
+  // Opens or creates the save of a land, and resumes the game that it holds. Fails like
+  // save::SaveGame::open(), or with kParse for impossible values, and then changes nothing.
   static core::Result<Saved> open(const std::filesystem::path& file, Play& play);
 
-  // Takes the state of the game and writes it behind the game's back. What is being written
-  // already is waited for, so the disk may be slow but is never overtaken.
+  // Copies the state of the game and writes it on another thread. Waits for an unfinished write
+  // first, so writes never overtake each other.
   core::Result<void> put(const Play& play);
-  // Waits for what is being written. Fails as save::SaveGame::save(); the file then has the state
-  // before, and the next put() tries again.
+  // Waits for an unfinished write. Fails like save::SaveGame::save(); the file then keeps the
+  // previous state, and the next put() tries again.
   core::Result<void> wait();
-  // The same once it is done: nothing while it is being written or was told already.
+  // Returns the result of a finished write once, else nullopt.
   std::optional<core::Result<void>> outcome();
 
  private:
   explicit Saved(save::SaveGame save) : save_(std::make_unique<save::SaveGame>(std::move(save))) {}
   core::Result<void> resume(Play& play);
 
-  std::unique_ptr<save::SaveGame> save_;  // at one address: another thread writes
+  std::unique_ptr<save::SaveGame> save_;  // stable address, because another thread writes
   world::Edits stored_;
   std::future<core::Result<void>> writing_;
 };

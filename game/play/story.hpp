@@ -1,4 +1,4 @@
-// The story: a line and an ability for each cairn, in the order in which they are found.
+// The story: a line and an ability for each cairn, in the order of discovery.
 #pragma once
 
 #include <array>
@@ -9,20 +9,20 @@
 
 namespace cairns {
 
-// What a found cairn gives, in this order.
+// Abilities, in the order in which cairns give them.
 enum class Ability : std::uint8_t {
-  kSail,     // glides
-  kStride,   // runs faster
+  kSail,     // glide
+  kStride,   // run faster
   kLantern,  // a light
-  kSpring,   // jumps higher
-  kRaft,     // crosses water fast and dry
-  kGrip,     // climbs longer
-  kWing,     // glides farther
-  kAxe,      // fells faster
-  kEye,      // sees far, and how far
-  kSatchel,  // carries more stones
-  kEmber,    // lights fires without wood
-  kWind      // rises while it glides
+  kSpring,   // jump higher
+  kRaft,     // cross water fast and dry
+  kGrip,     // climb longer
+  kWing,     // glide farther
+  kAxe,      // fell trees faster
+  kEye,      // zoom in, and read distances
+  kSatchel,  // carry more stones
+  kEmber,    // light fires without wood
+  kWind      // rise while gliding
 };
 using Abilities = std::bitset<kCairns>;
 inline bool has(const Abilities& abilities, Ability ability) {
@@ -30,9 +30,9 @@ inline bool has(const Abilities& abilities, Ability ability) {
 }
 
 struct Chapter {
-  const char* gift;  // the name of the ability
-  const char* line;  // of the story
-  const char* help;  // how the ability is used
+  const char* gift;  // name of the ability
+  const char* line;  // line of the story
+  const char* help;  // instructions for the ability
 };
 
 inline constexpr std::array<Chapter, kCairns> kChapters{{
@@ -41,17 +41,16 @@ inline constexpr std::array<Chapter, kCairns> kChapters{{
     {"the long stride", "For nine days she did not look back. On the tenth she ran.",
      "You run faster."},
     {"the lantern", "Someone had kept a light here, long after anyone came.",
-     "The lantern key lights your way."},
+     "Use the lantern key to light your way."},
     {"the spring", "Goats taught her where the rock would hold.", "You jump higher."},
-    {"the raft", "The lake remembered every face that had crossed it.",
-     "Water carries you quickly."},
+    {"the raft", "The lake remembered every face that had crossed it.", "You swim faster."},
     {"the grip", "She wrote her name on the cliff in chalk. Rain read it.",
      "Hold jump at a steep face to climb; you climb longer now."},
     {"the wide wing", "From the ridge the land was one slow breath.", "You glide farther."},
     {"the axe", "One winter, one hut, one hundred trees. She planted two hundred.",
      "Trees fall faster."},
     {"the far eye", "She learned to tell smoke from cloud by how it wanted to be found.",
-     "The look key brings far things near, and tells how far the next cairn is."},
+     "Hold the spyglass key to zoom in and see the distance to the next cairn."},
     {"the satchel", "Every stone she carried was heavier than the one before, until it was not.",
      "You carry more stones."},
     {"the ember", "A fire can be carried in a horn for years, if someone breathes on it.",

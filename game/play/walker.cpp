@@ -15,15 +15,15 @@ constexpr double kJumpSpeed = 4.6, kSpringSpeed = 6.8;
 constexpr double kSwimSpeed = 1.9, kRaftSpeed = 5.5;
 constexpr double kSwimDepthM = 1.15, kRaftDepthM = 0.15, kFloat = 3;  // 1/s
 constexpr double kClimbSpeed = 1.7, kBreathS = 3.5, kGripBreathS = 10, kWallM = 0.9;
-constexpr float kWallUp = 0.64F;  // of the normal of ground that is climbed: 50°
+constexpr float kWallUp = 0.64F;  // normal.y of the flattest ground to climb: 50°
 constexpr double kGlideSpeed = 10, kSinkSpeed = 2.1, kWingSinkSpeed = 1.3;
-constexpr double kDive = 9;       // m/s faster with the view straight down
-constexpr double kUpdraft = 1.2;  // of the wind against a slope that carries the sail …
-constexpr double kMostLift = 1.6, kUpdraftM = 35;  // … m/s at most, and less with height
+constexpr double kDive = 9;                        // m/s gained when looking straight down
+constexpr double kUpdraft = 1.2;                   // lift per m/s of wind against a slope,
+constexpr double kMostLift = 1.6, kUpdraftM = 35;  // its limit in m/s, and the height where it ends
 constexpr double kGustS = 1.2, kGustSpeed = 4.5;
-constexpr double kStrideM = 0.82;  // of a step
+constexpr double kStrideM = 0.82;  // length of a stride
 constexpr double kMostPitch = 1.5;
-constexpr double kFellFarSpeed = 3;  // m/s down, from which landing is heard
+constexpr double kFellFarSpeed = 3;  // m/s; faster landings make a sound
 
 glm::dvec2 ahead_of(double yaw) {
   return {std::sin(yaw), -std::cos(yaw)};
@@ -103,7 +103,7 @@ physics::CharacterInput Walker::glide(const Abilities& abilities, const Intent& 
   told.speed = kGlideSpeed + kDive * dive;
   double rise =
       -(has(abilities, Ability::kWing) ? kWingSinkSpeed : kSinkSpeed) - kDive * dive * 0.8;
-  // Wind that meets a slope is turned upwards.
+  // A slope deflects wind upwards.
   if (const auto ground = query_->ground(feet_)) {
     const double against = -glm::dot(weather.wind, glm::dvec3(ground->normal));
     const double near = 1 - (feet_.local.y - ground->height_m) / kUpdraftM;
@@ -139,7 +139,7 @@ void Walker::decide(const Intent& intent, const Abilities& abilities, const Weat
   } else if (gait_ == Gait::kGlide) {
     told = glide(abilities, intent, weather);
   } else if (told.jump && on_ground_ && has(abilities, Ability::kSpring)) {
-    // A jump of its own height: physics knows only that of the body.
+    // Sets the velocity directly, because the physics character has one jump speed only.
     (void)physics_->set_velocity(body_, {velocity_.x, kSpringSpeed, velocity_.z});
     told.jump = false;
   }

@@ -1,6 +1,6 @@
-// The player's body: walks, runs, jumps, climbs, swims and glides. A character of physics, told
-// every step how to move; it decides which of these it does from the ground, the water, and what
-// the player wants. Knows neither keys nor pictures. Steps are fixed and deterministic.
+// The player's body: a physics character that walks, runs, jumps, climbs, swims and glides. It
+// chooses its gait from the ground, the water and the player's intent. It knows neither keys nor
+// rendering. Steps are fixed and deterministic.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace cairns {
 
-// What the player wants in one step, from whatever device, or from the pilot.
+// The player's input for one step, from any device or from the autopilot.
 struct Intent {
-  glm::dvec2 move{0.0};       // to the right and ahead; longer than 1 counts as 1
-  double turn = 0, look = 0;  // radians to the right and upwards, in this step
+  glm::dvec2 move{0.0};       // right and ahead; clamped to length 1
+  double turn = 0, look = 0;  // radians to the right and up, in this step
   bool run = false;
   bool jump = false, jump_held = false;                              // pressed in this step; held
-  bool use = false, use_held = false;                                // gathers, fells
+  bool use = false, use_held = false;                                // gather or fell
   bool build = false, fire = false, sleep = false, lantern = false;  // pressed
 };
 
@@ -30,15 +30,15 @@ inline constexpr double kEyesM = 1.65;
 
 class Walker {
  public:
-  // Both outlive it. Fails as physics::World::add().
+  // `physics` and `query` must outlive the walker. Fails like physics::World::add().
   static core::Result<Walker> create(physics::World& physics, query::World& query,
                                      const core::WorldPosition& feet);
 
-  // Before physics::World::step(): what the body is told.
+  // Call before physics::World::step(). Sets the input of the physics character.
   void decide(const Intent& intent, const Abilities& abilities, const Weather& weather, double dt);
-  // After it: what came of it.
+  // Call after physics::World::step(). Reads the new state of the character.
   void follow();
-  // Teleports; nothing of its motion is left.
+  // Teleports the player, and stops all motion.
   core::Result<void> put(const core::WorldPosition& feet, double yaw);
 
   const core::WorldPosition& feet() const { return feet_; }
@@ -46,19 +46,19 @@ class Walker {
   double yaw() const { return yaw_; }
   double pitch() const { return pitch_; }
   Gait gait() const { return gait_; }
-  double breath() const { return breath_; }      // for climbing: 0 … 1
-  double walked_m() const { return walked_m_; }  // in all
-  // What happened in the last step.
-  bool stepped() const { return stepped_; }  // a foot came down
+  double breath() const { return breath_; }      // stamina for climbing, 0 to 1
+  double walked_m() const { return walked_m_; }  // total distance
+  // Events of the last step.
+  bool stepped() const { return stepped_; }  // a foot touched the ground
   bool landed() const { return landed_; }
   bool splashed() const { return splashed_; }
-  // The eyes, `share` of a step after the step before the last.
+  // Returns the eyes, interpolated between the last two steps; `share` is 0 to 1.
   core::CameraPose eyes(double share) const;
 
  private:
   Walker(physics::World& physics, query::World& query) : physics_(&physics), query_(&query) {}
   bool faces_wall() const;
-  double depth_m() const;  // of the feet below the water's surface; below 0: above it
+  double depth_m() const;  // depth of the feet under water; negative above the surface
   Gait next_gait(const Intent& intent, const Abilities& abilities) const;
   physics::CharacterInput walk(const Intent& intent, const Abilities& abilities) const;
   physics::CharacterInput glide(const Abilities& abilities, const Intent& intent,

@@ -8,7 +8,7 @@
 namespace cairns {
 namespace {
 
-// Noise of one value a knot, 0 … 1, smooth between them.
+// Value noise with one knot per integer, 0 to 1.
 double noise(std::uint64_t seed, double at) {
   const double knot = std::floor(at);
   const auto value = [&](double k) {
@@ -19,7 +19,7 @@ double noise(std::uint64_t seed, double at) {
   return std::lerp(value(knot), value(knot + 1), s);
 }
 
-// 0 up to `from`, 1 from `to` on.
+// Linear ramp: 0 up to `from`, 1 from `to` on.
 double ramp(double value, double from, double to) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
 }
@@ -27,7 +27,7 @@ double ramp(double value, double from, double to) {
 }  // namespace
 
 Weather weather_at(std::uint64_t seed, double time_s) {
-  // A game begins fair.
+  // Every game starts in fair weather.
   const double calm = ramp(time_s, 120, 420);
   const double foul = calm * noise(seed ^ 1, time_s / 260);
   Weather now;

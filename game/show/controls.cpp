@@ -11,7 +11,7 @@ using platform::PadButton;
 using Way = input::MouseWay;
 using Pad = input::PadWay;
 
-constexpr float kMouseTurn = 0.0022F;  // radians for a step of the mouse
+constexpr float kMouseTurn = 0.0022F;  // radians per mouse count
 constexpr double kStickTurn = 2.6;     // rad/s
 
 struct Named {
@@ -26,10 +26,10 @@ const std::array<Named, kActs>& all() {
       {"look_y", "look up", {{Way::kUp, kMouseTurn}, {Way::kDown, -kMouseTurn}}},
       {"turn_x", "turn (pad)", {{Pad::kRightStickRight}, {Pad::kRightStickLeft, -1}}},
       {"turn_y", "look up (pad)", {{Pad::kRightStickUp}, {Pad::kRightStickDown, -1}}},
-      {"ahead", "ahead", {{Key::kW}, {Key::kUp}, {Pad::kLeftStickUp}}},
-      {"back", "back", {{Key::kS}, {Key::kDown}, {Pad::kLeftStickDown}}},
-      {"left", "left", {{Key::kA}, {Key::kLeft}, {Pad::kLeftStickLeft}}},
-      {"right", "right", {{Key::kD}, {Key::kRight}, {Pad::kLeftStickRight}}},
+      {"ahead", "walk forward", {{Key::kW}, {Key::kUp}, {Pad::kLeftStickUp}}},
+      {"back", "walk back", {{Key::kS}, {Key::kDown}, {Pad::kLeftStickDown}}},
+      {"left", "step left", {{Key::kA}, {Key::kLeft}, {Pad::kLeftStickLeft}}},
+      {"right", "step right", {{Key::kD}, {Key::kRight}, {Pad::kLeftStickRight}}},
       {"run", "run", {{Key::kLeftShift}, {PadButton::kLeftThumb}, {Pad::kLeftTrigger}}},
       {"jump", "jump, climb, glide", {{Key::kSpace}, {PadButton::kA}}},
       {"use", "gather, fell", {{Key::kE}, {platform::MouseButton::kLeft}, {PadButton::kX}}},
@@ -37,11 +37,11 @@ const std::array<Named, kActs>& all() {
       {"fire", "light a fire", {{Key::kF}, {PadButton::kB}}},
       {"sleep", "sleep until morning", {{Key::kR}, {PadButton::kDown}}},
       {"lantern", "lantern", {{Key::kL}, {PadButton::kUp}}},
-      {"eye", "look far", {{Key::kZ}, {platform::MouseButton::kRight}, {Pad::kRightTrigger}}},
+      {"eye", "spyglass", {{Key::kZ}, {platform::MouseButton::kRight}, {Pad::kRightTrigger}}},
       {"map", "map", {{Key::kM}, {Key::kTab}, {PadButton::kBack}}},
-      {"photo", "photo", {{Key::kP}, {PadButton::kRight}}},
+      {"photo", "photo mode", {{Key::kP}, {PadButton::kRight}}},
       {"menu", "menu", {{Key::kEscape}, {PadButton::kStart}}},
-      {"picture", "take a picture", {{Key::kF12}}},
+      {"picture", "take a screenshot", {{Key::kF12}}},
   }};
   return kAll;
 }

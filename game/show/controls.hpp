@@ -1,4 +1,4 @@
-// The actions of the game, their usual keys, and what they mean in a step.
+// The actions of the game, their default keys, and their effect on a step.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ enum class Act : std::size_t {
   kLookY,
   kTurnX,
   kTurnY,
-  kAhead,  // from here on they can be given other keys
+  kAhead,  // actions from here on can be rebound
   kBack,
   kLeft,
   kRight,
@@ -35,17 +35,17 @@ enum class Act : std::size_t {
 };
 inline constexpr std::size_t kActs = static_cast<std::size_t>(Act::kCount);
 
-// Adds all of them, in this order, to actions without any. Fails as input::Actions::add().
+// Adds all actions in this order to an empty set. Fails like input::Actions::add().
 core::Result<void> add_actions(input::Actions& actions);
 inline const input::ActionState& state_of(const input::Actions& actions, Act act) {
   return actions.state(static_cast<input::ActionId>(act));
 }
-// What the player wants in a step of `dt` seconds. `mouse`: how fast the view turns.
+// Returns the player's intent for a step of `dt` seconds. `mouse` is the mouse sensitivity.
 Intent intent_of(const input::Actions& actions, double mouse, double dt);
-// What is printed on the key of an action, or the pad's button where that is used: "E". `window`
-// may be null.
+// Returns the label of an action's key, or of its gamepad button while a gamepad is in use: "E".
+// `window` may be null.
 std::string key_of(const input::Actions& actions, Act act, const platform::Window* window);
-// What an action does, for the settings.
+// Returns the label of an action in the settings.
 const char* label_of(Act act);
 
 }  // namespace cairns

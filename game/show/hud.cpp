@@ -10,8 +10,8 @@
 namespace cairns {
 namespace {
 
-constexpr double kCompassHalf = 0.95;   // radians on each side of its middle
-constexpr float kCompassShare = 0.17F;  // half its width, of the picture
+constexpr double kCompassHalf = 0.95;   // radians on each side of its centre
+constexpr float kCompassShare = 0.17F;  // half its width, as a fraction of the image
 constexpr float kBarPx = 160;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What is written over the picture while one plays: the compass, what can be done here, what is
-// carried, and the story. Reads the game. Main thread.
+// The HUD: compass, available action, inventory, and messages of the story. Reads the game. Main
+// thread only.
 #pragma once
 
 #include <string>
@@ -13,10 +13,10 @@ namespace cairns {
 
 class Hud {
  public:
-  // A sentence that stays for a while; the next one takes its place.
+  // Shows a message for some seconds. The next message replaces it.
   void say(std::string line, std::string help = {}, double seconds = 3);
   void tell(const Happening& happening);
-  // Once a frame; `zoom`: the far eye is used.
+  // Call once a frame. `zoom`: the spyglass is in use.
   render::HudDrawing draw(const Play& play, app::Session& session, const Settings& settings,
                           bool zoom, double dt_s);
 

@@ -13,7 +13,7 @@ constexpr float kWidth = 340;
 constexpr std::array<const char*, 4> kQualities{"low", "medium", "high", "ultra"};
 constexpr int kMapCells = 25;  // on each side of the player
 
-// Begins a window without a frame in the left third. `opened`: its first control gets the focus.
+// Begins a window without a frame at the left. `opened`: its first control takes the focus.
 void begin(const char* title, float scale, float width, float text, bool opened) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x * 0.08F, size.y * 0.5F}, ImGuiCond_Always, {0, 0.5F});
@@ -26,7 +26,7 @@ void begin(const char* title, float scale, float width, float text, bool opened)
   if (opened) ImGui::SetKeyboardFocusHere();
 }
 
-// Colours of the map, in the order of world::GroundKind; the last is water.
+// Map colours, in the order of world::GroundKind; the last one is water.
 constexpr std::array<ImU32, 7> kMapColours{
     IM_COL32(98, 125, 62, 255),   IM_COL32(62, 92, 48, 255),    IM_COL32(166, 150, 96, 255),
     IM_COL32(205, 188, 140, 255), IM_COL32(132, 126, 118, 255), IM_COL32(236, 240, 244, 255),
@@ -43,7 +43,7 @@ void Menu::open(Page next) {
 
 bool Menu::button(const char* label) {
   const bool clicked = ImGui::Button(label, {-1, 0});
-  // ImGui itself takes only the space bar for a click.
+  // ImGui's own keyboard click is the space bar.
   const bool entered =
       ImGui::IsItemFocused() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
   return clicked || entered;
@@ -54,7 +54,7 @@ Choice Menu::draw(app::Session& session, const Play* play, Settings& settings) {
   if (page != Page::kNone && !opened && goes_back(session.input()))
     open(page == Page::kSettings || page == Page::kCredits ? before_ : Page::kNone);
   if (page == Page::kNone) return Choice::kNothing;
-  // Keys also reach the game, which closes pages with them; text fields take them anyway.
+  // Keys also reach the game, which closes pages. Text fields capture them regardless.
   ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableGamepad |
                                 ImGuiConfigFlags_NavEnableKeyboard |
                                 ImGuiConfigFlags_NavNoCaptureKeyboard;
@@ -82,7 +82,7 @@ void Menu::heading(const char* words, float size) const {
   ImGui::SetWindowFontScale(text_);
 }
 
-// By Escape or the pad's B, unless they are to be an action's.
+// Returns true on Escape or the gamepad's B, except while a key is being rebound.
 bool Menu::goes_back(const platform::InputState& input) const {
   return page != Page::kTitle && !capture_ &&
          (input::read(platform::Key::kEscape, input).went_down ||
@@ -93,7 +93,7 @@ Choice Menu::draw_title() {
   heading("Cairns", 2.6F);
   ImGui::Spacing();
   if (busy) {
-    ImGui::TextUnformatted("The land is being found …");
+    ImGui::TextUnformatted("Creating the land …");
     return Choice::kNothing;
   }
   if (can_continue && button("Continue")) return Choice::kContinue;
@@ -101,7 +101,7 @@ Choice Menu::draw_title() {
   seed.copy(typed, sizeof(typed) - 1);
   ImGui::SetNextItemWidth(-1);
   const bool entered =
-      ImGui::InputTextWithHint("##seed", "a word or number names a land", typed, sizeof(typed),
+      ImGui::InputTextWithHint("##seed", "Seed: any word or number", typed, sizeof(typed),
                                ImGuiInputTextFlags_EnterReturnsTrue);
   seed = typed;
   if (button("New land") || entered) return Choice::kNew;
@@ -112,12 +112,12 @@ Choice Menu::draw_title() {
 
 Choice Menu::draw_pause() {
   heading("Pause", 1.6F);
-  if (button("Go on")) open(Page::kNone);
+  if (button("Resume")) open(Page::kNone);
   if (button("Save")) return Choice::kSave;
   if (button("Map")) open(Page::kMap);
-  if (button("Photo")) open(Page::kPhoto);
+  if (button("Photo mode")) open(Page::kPhoto);
   if (button("Settings")) open(Page::kSettings);
-  if (button("To the title")) return Choice::kToTitle;
+  if (button("Quit to title")) return Choice::kToTitle;
   return button("Save and quit") ? Choice::kQuit : Choice::kNothing;
 }
 
@@ -128,7 +128,7 @@ void Menu::draw_settings(app::Session& session, Settings& settings) {
                                    &n.high, "%.2f");
   for (const Switch& box : kSwitches)
     changed |= ImGui::Checkbox(box.label, &(settings.*box.value));
-  if (ImGui::CollapsingHeader("Keys and pad")) draw_keys(session);
+  if (ImGui::CollapsingHeader("Keys and gamepad")) draw_keys(session);
   settings_changed |= changed;
   if (button("Back")) open(before_);
 }
@@ -136,7 +136,8 @@ void Menu::draw_settings(app::Session& session, Settings& settings) {
 void Menu::draw_keys(app::Session& session) {
   input::Actions& actions = session.actions();
   if (capture_) {
-    ImGui::Text("Press a key or button for: %s", label_of(static_cast<Act>(captured_)));
+    ImGui::Text("Press a key or button for \"%s\" (Escape cancels)",
+                label_of(static_cast<Act>(captured_)));
     if (const auto control = capture_->update(session.input())) {
       capture_.reset();
       const bool cancelled = *control == input::Control(platform::Key::kEscape);
@@ -155,13 +156,13 @@ void Menu::draw_keys(app::Session& session) {
     ImGui::TextUnformatted(label_of(static_cast<Act>(i)));
     ImGui::PopID();
   }
-  if (button("Usual keys")) {
+  if (button("Reset to defaults")) {
     actions.reset_bindings();
     settings_changed = true;
   }
 }
 
-// Cells that were seen, from above, north upwards, with the player in the middle.
+// Draws the explored cells from above, north up, with the player in the centre.
 void Menu::draw_map(const Play& play, const app::Session& session) {
   const core::Extent extent = session.picture_size();
   const float cell = static_cast<float>(extent.height) * 0.86F / (2 * kMapCells + 1);
@@ -217,8 +218,8 @@ Choice Menu::draw_photo() {
     if (i > 0) ImGui::SameLine();
     ImGui::RadioButton(kFilters[static_cast<std::size_t>(i)].name, &photo.filter, i);
   }
-  ImGui::TextUnformatted("Hold the right button to look around.");
-  if (button("Take the picture (F12)")) return Choice::kPicture;
+  ImGui::TextUnformatted("Hold the right mouse button to look around.");
+  if (button("Save image (F12)")) return Choice::kPicture;
   if (button("Back")) open(Page::kNone);
   return Choice::kNothing;
 }
@@ -226,8 +227,7 @@ Choice Menu::draw_photo() {
 void Menu::draw_credits() {
   ImGui::TextWrapped(
       "Cairns is the game of psygen. The land, its trees, the creatures, all sounds and the music "
-      "are made by code while you play; nothing was recorded or drawn. The letters are DejaVu "
-      "Sans. ");
+      "are generated while you play; nothing was recorded or drawn. Font: DejaVu Sans.");
   if (button("Back")) open(before_);
 }
 

@@ -1,5 +1,6 @@
-// The pages over the picture: title, pause, settings, map, photo, credits. Drawn with Dear ImGui,
-// by keyboard, mouse or pad. It changes settings and says what was chosen; it does nothing itself.
+// The menu pages: title, pause, settings, map, photo mode and credits. Drawn with Dear ImGui, used
+// by keyboard, mouse or gamepad. The menu changes settings and returns the player's choice; the
+// caller acts on it.
 #pragma once
 
 #include <optional>
@@ -14,17 +15,17 @@
 namespace cairns {
 
 enum class Page : std::uint8_t { kTitle, kNone, kPause, kSettings, kMap, kPhoto, kCredits };
-// What the player chose; for kNew the seed is Menu::seed.
+// The player's choice. For kNew the seed is Menu::seed.
 enum class Choice : std::uint8_t { kNothing, kContinue, kNew, kToTitle, kSave, kPicture, kQuit };
 
-// How a photo is taken.
+// Settings of the photo mode.
 struct Photo {
   float hour = 12, fov_deg = 60;
-  int filter = 0;  // of kFilters
+  int filter = 0;  // index into kFilters
 };
 struct Filter {
   const char* name;
-  glm::vec4 colour;  // laid over the picture
+  glm::vec4 colour;  // blended over the image
 };
 inline constexpr std::array<Filter, 4> kFilters{{{"none", {0, 0, 0, 0}},
                                                  {"warm", {1.0F, 0.62F, 0.25F, 0.14F}},
@@ -35,12 +36,12 @@ class Menu {
  public:
   Page page = Page::kTitle;
   std::string seed;     // as typed
-  std::string message;  // of what went wrong, until another page is opened
+  std::string message;  // error message, until another page opens
   Photo photo;
-  bool can_continue = false, busy = false;  // a game was saved; a land is being made
+  bool can_continue = false, busy = false;  // a save exists; a land is being created
   bool settings_changed = false;
 
-  // Draws the page. `play` may be null.
+  // Draws the page and returns the player's choice. `play` may be null.
   Choice draw(app::Session& session, const Play* play, Settings& settings);
 
  private:
@@ -56,8 +57,8 @@ class Menu {
   void heading(const char* words, float size) const;
   bool button(const char* label);
 
-  Page drawn_ = Page::kNone;    // in the last frame
-  Page before_ = Page::kTitle;  // to which settings and credits go back
+  Page drawn_ = Page::kNone;    // page of the last frame
+  Page before_ = Page::kTitle;  // page to return to from settings and credits
   std::optional<input::BindingCapture> capture_;
   std::size_t captured_ = 0;
   float text_ = 1;  // Settings::text

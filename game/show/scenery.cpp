@@ -31,7 +31,7 @@ core::WorldPosition raised(core::WorldPosition at, double up_m) {
   return at;
 }
 
-// The smoke of a cairn is seen from far away.
+// Smoke of a hidden cairn, visible from far away.
 render::ParticleKind beacon_smoke() {
   render::ParticleKind kind = scene::smoke({0.4F, 0, 0.2F});
   kind.lifetime_s = 14;
@@ -129,7 +129,7 @@ void Scenery::update_fires(scene::State& state, const Play& play) {
       flame.light = scene::spawn_light(world, {.colour = kEmber, .intensity = 5, .range_m = 22},
                                        {.position = raised(fire.at, 0.7)});
     }
-    // Flickers, and burns down in the end.
+    // The fire flickers, and dims in its last seconds.
     const auto left = static_cast<float>(std::clamp((fire.until_s - time_s) / 30, 0.2, 1.0));
     const auto flicker =
         static_cast<float>(0.85 + 0.15 * std::sin(time_s * 11) * std::sin(time_s * 7.3));
@@ -143,7 +143,7 @@ void Scenery::update_fires(scene::State& state, const Play& play) {
   });
 }
 
-// Smoke by day and light by night where the next cairn stands.
+// Marks the next cairn with smoke by day and light by night.
 void Scenery::update_beacon(scene::State& state, const Play& play) {
   const auto next = play.next_cairn();
   const core::WorldPosition at =
@@ -187,7 +187,7 @@ void Scenery::update_weather(app::Session& session, const Play& play, double hou
   sky.visibility_m =
       std::exp(std::lerp(std::log(clear_sky_.visibility_m), std::log(150.0), weather.fog));
   sky.sun_colour *= static_cast<float>(1 - 0.55 * std::max(weather.clouds - 0.5, 0.0));
-  // Eyes get used to the night.
+  // Eyes adapt to the night.
   sky.exposure *= 1 + kNightEyes * std::clamp((std::abs(hour - 12) - kDuskH) / 1.5, 0.0, 1.0);
   (void)session.scene().set_sky(sky);
   scene::State& state = session.scene().state();

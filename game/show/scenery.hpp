@@ -1,6 +1,5 @@
-// What a game has in the landscape beside the land: creatures, smoke and light of cairns, fires,
-// rain, falling trees, the lantern. Entities of the scene that follow the game; it changes nothing
-// of the game. Main thread.
+// The game's entities in the scene: creatures, smoke and light of cairns, fires, rain, falling
+// trees and the lantern. They follow the game and never change it. Main thread only.
 #pragma once
 
 #include <array>
@@ -16,15 +15,15 @@ namespace cairns {
 
 class Scenery {
  public:
-  // Makes meshes and entities in a session, once. Fails as scene::Assets::add_mesh().
+  // Creates the meshes and entities in a session. Call once. Fails like scene::Assets::add_mesh().
   core::Result<void> open(app::Session& session);
-  // Before a tick: everything to where it is `share` of a step after the step before the last.
-  // The weather and `hour` of the day go to the sky, whose clock is not that of the game: it goes
-  // on while a game stands still.
+  // Call before a tick. Interpolates all entities between the last two steps; `share` is 0 to 1.
+  // Sets the weather and the hour of the day in the sky, because the sky's own clock also runs
+  // while the game is paused.
   void update(app::Session& session, const Play& play, double share, double hour);
-  // What happened since.
+  // Presents an event of the game.
   void tell(app::Session& session, const Happening& happening, const Play& play);
-  // Takes away all of a game, before another one or the title.
+  // Removes all entities of a game, before another game or the title screen.
   void clear(app::Session& session);
 
  private:
@@ -50,8 +49,8 @@ class Scenery {
 
   std::array<std::array<Part, kParts>, kKinds> shapes_;
   std::array<std::array<scene::MeshId, kParts>, kKinds> meshes_;
-  std::unordered_map<std::uint64_t, Shown> shown_;   // by Creature::seed
-  std::unordered_map<std::uint64_t, Flame> flames_;  // by place
+  std::unordered_map<std::uint64_t, Shown> shown_;   // key: Creature::seed
+  std::unordered_map<std::uint64_t, Flame> flames_;  // key: position of the fire
   std::vector<Falling> falling_;
   ecs::Entity smoke_, glow_, beacon_light_, rain_, snow_, lantern_;
   world::Sky clear_sky_;  // of the world file

@@ -27,7 +27,7 @@ std::array<Part, kParts> deer() {
                   {side * 0.06F, 1.50F, -0.62F}},
                  dark);
   }
-  // Legs that swing together are diagonal ones.
+  // Diagonal legs swing together.
   const auto leg = [&](core::MeshData& mesh, float x, float z) {
     add_ellipsoid(mesh, {x, -0.10F, z}, {0.07F, 0.26F, 0.09F}, coat, coat);
     add_ellipsoid(mesh, {x, -0.50F, z}, {0.04F, 0.34F, 0.045F}, coat, dark);

@@ -1,5 +1,5 @@
-// The meshes of what moves: deer, birds and fish, in parts that swing, made of a few ellipsoids
-// and fins. Pure functions. Metres; they look along −Z.
+// Meshes of deer, birds and fish, in parts that swing, made of a few ellipsoids and fins. Pure
+// functions. Units are metres; the animals face −Z.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@ namespace cairns {
 inline constexpr std::size_t kParts = 3;
 struct Part {
   core::MeshData mesh;
-  glm::vec3 joint{0.0F};  // about which it swings, from the creature's place
+  glm::vec3 joint{0.0F};  // pivot, relative to the creature's base point
   glm::vec3 axis{1, 0, 0};
-  float swing = 0;  // radians, either way
+  float swing = 0;  // amplitude in radians
 };
-// Parts without triangles are not there.
+// Returns the parts of a creature. Unused parts have no triangles.
 std::array<Part, kParts> parts_of(Kind kind);
 
 }  // namespace cairns

@@ -7,7 +7,7 @@
 namespace cairns {
 namespace {
 
-constexpr double kFadePerS = 0.8;  // of the gain of a loop
+constexpr double kFadePerS = 0.8;  // change of a loop's gain per second
 constexpr double kTitleWind = 0.15;
 
 }  // namespace
@@ -41,12 +41,12 @@ void Sounds::set_volumes(double effects, double music) {
   audio_.set_volume(audio::Bus::kMusic, music);
 }
 
-// Starts, changes or ends a loop, slowly.
+// Fades a loop towards a gain, and starts or stops it.
 void Sounds::hold(Loop& loop, const ClipPtr& clip, double gain, double dt_s,
                   const std::optional<core::WorldPosition>& at) {
   const double most = kFadePerS * dt_s;
   loop.gain += std::clamp(gain - loop.gain, -most, most);
-  if (at) loop.at = at;  // what fades away stays where it was
+  if (at) loop.at = at;  // a fading loop keeps its position
   const audio::Play how{.at = loop.at, .range = {2, 30}, .gain = loop.gain, .loop = true};
   if (loop.sound == audio::SoundId::kNone && loop.gain > 0.01) {
     if (const auto sound = audio_.play(clip, how)) loop.sound = *sound;
@@ -88,7 +88,7 @@ void Sounds::update(Play* play, const core::CameraPose& ears, double dt_s) {
   audio_.update(ears, dt_s);
 }
 
-// Birds sing from where they are, most in the morning.
+// Birds sing at their positions, most often in the morning.
 void Sounds::sing(Play& play, double dt_s) {
   until_song_s_ -= dt_s;
   if (until_song_s_ > 0) return;

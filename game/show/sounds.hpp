@@ -1,5 +1,5 @@
-// Plays the sounds of a game: wind by height, steps by ground, water, rain, fire, birds by the
-// hour, music. Without a device nothing is heard and nothing fails. Main thread.
+// Plays the sounds of a game: wind by height, footsteps by ground, water, rain, fire, birds by the
+// hour, and music. Without an audio device it stays silent and does not fail. Main thread only.
 #pragma once
 
 #include <array>
@@ -16,14 +16,14 @@ class Sounds {
  public:
   explicit Sounds(double block_m, audio::Destination destination);
 
-  // 0 … 1 each.
+  // Sets the volumes, 0 to 1 each.
   void set_volumes(double effects, double music);
-  // Once a frame. `play` may be null: a title without a game.
+  // Call once a frame. `play` is null on the title screen.
   void update(Play* play, const core::CameraPose& ears, double dt_s);
   void tell(const Happening& happening, Play& play);
 
  private:
-  // All that can be heard. Made in a thread of its own, as the music takes a while.
+  // All clips, generated on a worker thread, because the music takes about 0.1 s.
   struct Clips {
     ClipPtr wind, rain, water, fire, music, splash, chop, fall, stone, chime;
     std::array<ClipPtr, 3> steps, birds;
@@ -41,7 +41,7 @@ class Sounds {
   audio::Audio audio_;
   Loop wind_, rain_, water_, fire_;
   std::future<Clips> coming_;
-  std::optional<Clips> clips_;  // until then nothing is heard
+  std::optional<Clips> clips_;  // empty until generated
   double until_song_s_ = 4;
   std::uint64_t songs_ = 0;
 };

@@ -51,7 +51,7 @@ ClipPtr fire_sound() {
   return clip(looped(out, 0.4));
 }
 
-// Four chords of a pentatonic scale, each with a few notes over it; two channels.
+// Slow chords of a pentatonic scale with a few notes above each, in stereo.
 ClipPtr music_sound(std::uint64_t seed) {
   constexpr std::array<double, 5> kScale{1, 9.0 / 8, 5.0 / 4, 3.0 / 2, 5.0 / 3};
   constexpr double kSeconds = 64, kChordS = 8;

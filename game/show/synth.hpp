@@ -1,5 +1,5 @@
-// The sounds of the game, made by code: no file is read. Pure functions; some milliseconds each,
-// the music about a tenth of a second.
+// Synthesises the sounds of the game; no file is read. Pure functions of a few milliseconds each;
+// the music takes about 0.1 s.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@ namespace cairns {
 using namespace psygen;
 using ClipPtr = std::shared_ptr<const audio::Clip>;
 
-ClipPtr wind_sound();  // loops, as those that follow
+ClipPtr wind_sound();  // this one and the next four are loops
 ClipPtr rain_sound();
 ClipPtr water_sound();
 ClipPtr fire_sound();
 ClipPtr music_sound(std::uint64_t seed);  // a minute of slow chords
-ClipPtr step_sound(float hardness);       // 0 snow … 1 rock
+ClipPtr step_sound(float hardness);       // 0 (snow) to 1 (rock)
 ClipPtr splash_sound();
 ClipPtr chop_sound();
-ClipPtr fall_sound();  // of a tree
+ClipPtr fall_sound();  // a falling tree
 ClipPtr stone_sound();
 ClipPtr bird_sound(int which);
-ClipPtr chime_sound();  // a cairn is found
+ClipPtr chime_sound();  // a discovered cairn
 
 }  // namespace cairns

@@ -1,5 +1,5 @@
-// Whole games, played by the pilot without pictures: they end, the same each time, and nobody falls
-// through the ground.
+// Whole games, played by the autopilot without a renderer: each game ends, is the same every time,
+// and the player never falls through the ground.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,7 @@ constexpr int kMostSteps = 40 * 3600;
 constexpr std::size_t kHappenings = static_cast<std::size_t>(Happening::Kind::kSplashed) + 1;
 constexpr std::size_t kGaits = static_cast<std::size_t>(Gait::kClimb) + 1;
 
-// A game and who plays it.
+// A game with its autopilot.
 struct Played {
   std::unique_ptr<Land> land;
   std::unique_ptr<Play> play;
@@ -56,7 +56,7 @@ TEST_P(Autoplay, FinishesTheGameOnTheGround) {
   EXPECT_GT(game.count(Gait::kGlide), 60);
 }
 
-// Over the ten games everything that there is was done.
+// The ten games together use every ability of the player.
 TEST(Autoplay, SwimsClimbsAndSleeps) {
   bool swum = false, climbed = false, slept = false;
   for (std::uint64_t seed = 1; seed <= 10 && !(swum && climbed && slept); ++seed) {
@@ -72,7 +72,7 @@ TEST(Autoplay, SwimsClimbsAndSleeps) {
   EXPECT_TRUE(slept);
 }
 
-TEST(Autoplay, IsTheSameEachTime) {
+TEST(Autoplay, IsTheSameEveryTime) {
   Played first(2), second(2);
   for (int k = 0; k < 90 * 60; ++k) {
     first.step();

@@ -1,5 +1,5 @@
-// What would make a player fall out of the land, or a save be lost: drops, far runs, teleports, the
-// edge of the coordinates, ten thousand edits in a block, a full disk.
+// Faults that could drop a player out of the land or lose a save: drops, long runs, teleports, the
+// edge of the coordinates, ten thousand edits in a block, and a full disk.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kFaultStep = 1.0 / 60;
 
-// A figure that a longer run of this test may have, as docs/game.md says.
+// Returns a number that the environment may raise for a longer run (docs/game.md).
 int figure(const char* name, int usual) {
   const char* text = std::getenv(name);
   return text == nullptr ? usual : std::atoi(text);
 }
 
-// A player without a game, in a land of its own.
+// A player in a land without a game.
 struct Body {
   std::unique_ptr<Land> land = *Land::load(3);
   query::World query{land->world, land->registry};
@@ -29,7 +29,7 @@ struct Body {
   Abilities abilities{(1ULL << kCairns) - 1};
 
   double block_m() const { return land->world.block_size_m(); }
-  // Whether the feet are on the ground or above it.
+  // Returns true if the feet are on or above the ground.
   ::testing::AssertionResult is_above(const core::WorldPosition& feet) {
     const auto ground = query.ground(feet);
     if (!ground) return ::testing::AssertionFailure() << "no ground";
@@ -52,8 +52,8 @@ core::BlockCoord any_block(core::RandomStream& random, std::int64_t reach) {
           static_cast<std::int32_t>(random.next_integer(-reach, reach))};
 }
 
-// A million of them are dropped by PSYGEN_DROPS=1000000.
-TEST(Faults, WhoIsDroppedAnywhereEndsOnTheGround) {
+// PSYGEN_DROPS=1000000 drops a million players.
+TEST(Faults, APlayerDroppedAnywhereEndsOnTheGround) {
   Body body;
   core::RandomStream random(11, 0, 0, 0, core::Purpose::kStructure);
   auto walker = *Walker::create(body.physics, body.query, {});
@@ -85,8 +85,8 @@ TEST(Faults, WhoIsDroppedAnywhereEndsOnTheGround) {
   EXPECT_GT(came_down, 0.95 * (drops - sail)) << "others slide on";
 }
 
-// A thousand blocks by PSYGEN_FAR_BLOCKS=1000.
-TEST(Faults, WhoRunsTenTimesAsFastAsOneWalksStaysOnTheGround) {
+// PSYGEN_FAR_BLOCKS=1000 runs across a thousand blocks.
+TEST(Faults, APlayerAtTenTimesWalkingSpeedStaysOnTheGround) {
   Body body;
   const int blocks = figure("PSYGEN_FAR_BLOCKS", 60);
   const auto feet = body.query.ground({}).value();
@@ -101,7 +101,7 @@ TEST(Faults, WhoRunsTenTimesAsFastAsOneWalksStaysOnTheGround) {
     physics::CharacterInput told;
     told.direction = {1, 0};
     told.speed = 22;
-    // Over what cannot be climbed it flies, and comes down behind.
+    // The player flies over obstacles that cannot be climbed, and lands behind them.
     if (stuck > 0) told.rise = 6;
     ASSERT_TRUE(body.physics.tell(runner, told));
     ASSERT_TRUE(body.physics.step(kFaultStep));
@@ -114,7 +114,7 @@ TEST(Faults, WhoRunsTenTimesAsFastAsOneWalksStaysOnTheGround) {
   }
 }
 
-TEST(Faults, WhoIsTeleportedHasGroundAtOnce) {
+TEST(Faults, ATeleportedPlayerHasGroundImmediately) {
   Body body;
   core::RandomStream random(12, 0, 0, 0, core::Purpose::kStructure);
   auto walker = *Walker::create(body.physics, body.query, {});
@@ -133,8 +133,8 @@ TEST(Faults, WhoIsTeleportedHasGroundAtOnce) {
   }
 }
 
-// At the end of the coordinates the land ends, or the player stops; nothing else happens.
-TEST(Faults, ThePlayerAtTheEdgeOfTheCoordinatesStays) {
+// At the edge of the coordinates the land ends or the player stops.
+TEST(Faults, APlayerAtTheEdgeOfTheCoordinatesStays) {
   Body body;
   constexpr std::int32_t kLast = std::numeric_limits<std::int32_t>::max();
   for (const bool positive : {true, false}) {
@@ -161,7 +161,7 @@ TEST(Faults, ThePlayerAtTheEdgeOfTheCoordinatesStays) {
 
 class GameFaults : public SavesFixture {};
 
-TEST_F(GameFaults, TenThousandEditsInABlockArePlayedOnAndSaved) {
+TEST_F(GameFaults, ABlockWithTenThousandEditsIsPlayableAndSaved) {
   auto play = begin();
   world::Edits edits = play->edits();
   const std::uint64_t before = edits.counts().placed;
@@ -197,9 +197,9 @@ TEST_F(GameFaults, TenThousandEditsInABlockArePlayedOnAndSaved) {
   EXPECT_EQ(again->progress().feet.local, play->progress().feet.local);
 }
 
-// On a disk with room for no call, for one, and so on: a save is told to have failed or is there,
-// and the one before is never lost.
-TEST_F(GameFaults, AFullDiskIsToldAndTheSaveBeforeStays) {
+// On a disk with room for no write, for one write, and so on: a save is reported as failed or
+// exists, and the previous save is never lost.
+TEST_F(GameFaults, AFullDiskIsReportedAndKeepsThePreviousSave) {
   auto play = begin();
   int told = 0, stones = 0;
   for (std::size_t calls = 0;; ++calls) {
@@ -221,7 +221,7 @@ TEST_F(GameFaults, AFullDiskIsToldAndTheSaveBeforeStays) {
       if (!done) {
         ++told;
         EXPECT_NE(done.error().message.find("3.cairns"), std::string::npos) << done.error().message;
-        // With room again the next one succeeds.
+        // The next save succeeds once there is room.
         if (calls % 3 == 0) {
           ASSERT_TRUE(saved->put(*play).and_then([&] { return saved->wait(); }));
           stones = progress.stock.stones;

@@ -1,7 +1,7 @@
-// The frame test of Cairns: the game plays itself, and its frames are held against the budgets of a
+// The frame test of Cairns: the autopilot plays, and its frames are compared with the budgets of a
 // file (docs/frame-tests.md).
 //   cairns_frame_test FILE... [--junit FILE] [--out DIR] [--device NAME]
-// Exit codes: 0 within the budgets, 1 failed, 2 usage, 3 a budget is missed, 77 no device.
+// Exit codes: 0 within the budgets, 1 failure, 2 usage error, 3 over a budget, 77 no device.
 #include <unistd.h>
 
 #include <memory>
@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
       std::filesystem::temp_directory_path() / ("cairns_frame_test_" + std::to_string(::getpid()));
   std::unique_ptr<cairns::Game> game;
   frametest::Hooks hooks;
-  // A new game for each flight; the file says which size, clock and preset.
+  // Each flight is a new game. The file sets size, clock and preset.
   hooks.prepare = [&](app::SessionOptions& options) -> core::Result<void> {
     game.reset();
     std::error_code ignored;

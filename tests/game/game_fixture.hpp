@@ -1,4 +1,4 @@
-// A game in a session, in a folder of its own, driven frame by frame.
+// Runs a game in a session frame by frame, with a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ struct Running {
     for (int i = 0; i < count && frame(); ++i) {
     }
   }
-  // Frames until something is so. False: it never was.
+  // Runs frames until `is_so()` holds. Returns false if it never does.
   bool frames_until(const std::function<bool()>& is_so, int most = 3'000) {
     for (int i = 0; i < most; ++i) {
       if (is_so()) return true;
@@ -51,7 +51,7 @@ struct Running {
 
   static constexpr double kFrameS = 1.0 / 60;
   Game game;
-  std::unique_ptr<app::Session> session;  // ends before the game
+  std::unique_ptr<app::Session> session;  // destroyed before the game
 };
 
 }  // namespace cairns

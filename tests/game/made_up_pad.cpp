@@ -30,7 +30,7 @@ void MadeUpPad::move(platform::PadAxis axis, float to) {
 
 }  // namespace psygen
 
-// In place of GLFW's, for the whole program.
+// Replace GLFW's functions in the whole program.
 extern "C" int glfwGetGamepadState(int slot, GLFWgamepadstate* state) {
   if (slot != 0 || !psygen::connected) return GLFW_FALSE;
   *state = psygen::made_up;

@@ -1,12 +1,12 @@
-// A gamepad that a test presses: GLFW reports it, so that a game in its window is played by pad on
-// machines without one. Main thread.
+// A fake gamepad: GLFW reports it, so that tests play by gamepad on machines without one. Main
+// thread only.
 #pragma once
 
 #include "engine/platform/keys.hpp"
 
 namespace psygen {
 
-// Connected while it lives. One at a time.
+// Connected during its lifetime. At most one at a time.
 class MadeUpPad {
  public:
   MadeUpPad();

@@ -1,4 +1,4 @@
-// The rules: what can be done where, and what a step of a player does.
+// The rules of the game: available actions, and the effect of a step.
 #include "game/play/play.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ struct Begun {
   explicit Begun(std::uint64_t seed = 3) : land(*Land::load(seed)) {
     play = *Play::create(land->world, land->registry);
   }
-  // Puts the player somewhere, with what is carried.
+  // Moves the player to a position, with an inventory.
   void put(const core::WorldPosition& at, Stock stock = {}, int found = 0, double time_s = 1) {
     Progress progress = play->progress();
     progress.feet = at;
@@ -38,7 +38,7 @@ struct Begun {
       found |= happening.kind == kind;
     return found;
   }
-  // A place near the start with water of at least this depth.
+  // Returns a position near the start with water of at least this depth.
   core::WorldPosition water(double depth_m) {
     for (int i = 0; i < 400'000; ++i) {
       const double angle = i * 0.13, far_m = 0.05 * i;
@@ -55,7 +55,7 @@ struct Begun {
   }
 };
 
-TEST(Route, IsOfTheSeedAloneAndOnDryGround) {
+TEST(Route, DependsOnlyOnTheSeedAndStaysOnDryGround) {
   Begun a(5), b(5), other(6);
   std::set<std::pair<int, int>> blocks;
   for (std::size_t i = 0; i < kCairns; ++i) {
@@ -74,7 +74,7 @@ TEST(Route, IsOfTheSeedAloneAndOnDryGround) {
   EXPECT_NE(other.play->route().cairns[0].local, a.play->route().cairns[0].local);
 }
 
-TEST(Land, ASeedIsANumberOrAWord) {
+TEST(Land, AcceptsANumberOrAWordAsSeed) {
   EXPECT_EQ(seed_of("0"), 0U);
   EXPECT_EQ(seed_of("18446744073709551615"), UINT64_MAX);
   EXPECT_EQ(seed_of("heather"), seed_of("heather"));
@@ -86,7 +86,7 @@ TEST(Land, ASeedIsANumberOrAWord) {
   }
 }
 
-TEST(Play, ACairnIsFoundWhenOneStandsBesideItAndGivesAnAbility) {
+TEST(Play, FindsACairnBesideThePlayerAndGivesAnAbility) {
   Begun game;
   core::WorldPosition at = game.play->route().cairns[0];
   at.local.x += 2.5;
@@ -119,7 +119,7 @@ TEST(Play, BuildingTakesFiveStonesAndFirmGround) {
   EXPECT_EQ(game.play->progress().stock.stones, 9);
 }
 
-TEST(Play, OneSleepsAtNightBesideAFireUntilSeven) {
+TEST(Play, SleepsAtNightBesideAFireUntilSeven) {
   Begun game;
   const double day_s = game.land->world.sky.day_length_s;
   const double night_s = (22 - game.land->world.sky.start_hour) / 24 * day_s;
@@ -134,7 +134,7 @@ TEST(Play, OneSleepsAtNightBesideAFireUntilSeven) {
   EXPECT_NEAR(game.play->hour(), 7, 0.1);
   EXPECT_EQ(game.play->progress().stock.wood, 0);
   game.steps(1, {.sleep = true});
-  EXPECT_TRUE(game.happened(Happening::Kind::kRefused));  // it is day
+  EXPECT_TRUE(game.happened(Happening::Kind::kRefused));  // not at night
 }
 
 TEST(Walker, FloatsInDeepWaterAndSinksNoDeeperThanTheChest) {
@@ -183,8 +183,8 @@ TEST(Walker, GlidesOnlyWithTheSailAndFallsSlowly) {
   }
 }
 
-// The camera stays out of the ground and of what is solid, wherever one runs.
-TEST(Walker, TheCameraIsNeverInsideAnything) {
+// The camera stays outside the ground and all solid objects.
+TEST(Walker, KeepsTheCameraOutsideSolids) {
   Begun game(4);
   core::RandomStream random(9, 0, 0, 0, core::Purpose::kStructure);
   for (int k = 0; k < 120 * 60; ++k) {
@@ -202,7 +202,7 @@ TEST(Walker, TheCameraIsNeverInsideAnything) {
   }
 }
 
-TEST(Creatures, LiveWhereTheyCanAndFlee) {
+TEST(Creatures, LiveInTheirHabitatAndFlee) {
   Begun game(6);
   std::set<Kind> kinds;
   std::size_t most = 0, fled = 0;
@@ -230,7 +230,7 @@ TEST(Creatures, LiveWhereTheyCanAndFlee) {
   EXPECT_GT(fled, 0U);
 }
 
-TEST(Weather, IsOfSeedAndTimeAloneAndChangesSlowly) {
+TEST(Weather, DependsOnlyOnSeedAndTimeAndChangesSlowly) {
   double wettest = 0, driest = 1;
   for (int s = 0; s < 3 * 3600; ++s) {
     const Weather a = weather_at(8, s), b = weather_at(8, s + 1);
@@ -246,7 +246,7 @@ TEST(Weather, IsOfSeedAndTimeAloneAndChangesSlowly) {
   EXPECT_EQ(weather_at(8, 900).clouds, weather_at(8, 900).clouds);
 }
 
-TEST(CairnType, WritesWhatItSaysWithinItsBounds) {
+TEST(CairnType, WritesTheDeclaredSizeWithinItsBounds) {
   const CairnType type;
   models::Parameters p = models::default_parameters(type);
   for (const int stones : {1, 6, 24}) {

@@ -1,4 +1,4 @@
-// Saves of a game: what comes back, what is refused, and what a process that is killed leaves.
+// Saves of a game: round trips, rejected files, and saves of killed processes.
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -19,7 +19,7 @@ constexpr double kSavedStep = 1.0 / 60;
 
 class Saves : public SavesFixture {};
 
-TEST_F(Saves, GiveBackTheWholeGame) {
+TEST_F(Saves, RestoreTheWholeGame) {
   auto play = begin();
   {
     auto saved = Saved::open(file(), *play);
@@ -54,10 +54,10 @@ TEST_F(Saves, GiveBackTheWholeGame) {
   EXPECT_EQ(last_seed(folder_), std::optional<std::uint64_t>(3));
 }
 
-TEST_F(Saves, TheLastIsKnownWhateverTheClockSays) {
+TEST_F(Saves, TheLastSaveIsKnownAfterTheClockWasSetBack) {
   auto play = begin();
   { ASSERT_TRUE(Saved::open(file(), *play)); }
-  // Another land, saved by a clock that was far ahead.
+  // Another land, saved while the clock was far ahead.
   const std::filesystem::path other = save_file(folder_, 4);
   std::ofstream(other) << "later";
   std::filesystem::last_write_time(
@@ -68,8 +68,8 @@ TEST_F(Saves, TheLastIsKnownWhateverTheClockSays) {
   EXPECT_EQ(last_seed(folder_ / "none"), std::nullopt);
 }
 
-// A game that was quit and resumed is finished as well.
-TEST_F(Saves, AGameThatIsQuitAndResumedEveryMinuteIsFinished) {
+// A game that is quit and resumed can be finished.
+TEST_F(Saves, AGameThatIsResumedEveryMinuteCanBeFinished) {
   for (int minute = 0; minute < 40; ++minute) {
     auto play = begin();
     auto saved = Saved::open(file(), *play);
@@ -84,14 +84,14 @@ TEST_F(Saves, AGameThatIsQuitAndResumedEveryMinuteIsFinished) {
   FAIL() << "not finished in 40 minutes";
 }
 
-TEST_F(Saves, AreRefusedWithASentenceAndStayAsTheyAre) {
+TEST_F(Saves, AreRejectedWithAMessageAndStayUnchanged) {
   {
     auto play = begin();
     auto saved = Saved::open(file(), *play);
     ASSERT_TRUE(saved);
     ASSERT_TRUE(saved->put(*play));
     ASSERT_TRUE(saved->wait());
-    // While it is open, nobody else gets it.
+    // An open save is locked.
     auto other = begin();
     const auto second = Saved::open(file(), *other);
     ASSERT_FALSE(second);
@@ -114,7 +114,7 @@ TEST_F(Saves, AreRefusedWithASentenceAndStayAsTheyAre) {
   }
 }
 
-TEST_F(Saves, OfANewerFormatOrWithImpossibleNumbersAreRefused) {
+TEST_F(Saves, OfANewerFormatOrWithInvalidNumbersAreRejected) {
   const std::pair<const char*, save::Value> wrong[] = {
       {"format", std::int64_t{2}}, {"time_s", -5.0},          {"stones", std::int64_t{-1}},
       {"feet", save::Bytes(7)},    {"yaw", std::string("n")}, {"found", save::Value()}};
@@ -139,9 +139,9 @@ TEST_F(Saves, OfANewerFormatOrWithImpossibleNumbersAreRefused) {
   }
 }
 
-// 100 times a process that saves again and again is killed in the middle of it: the save has the
-// state before or after, whole.
-TEST_F(Saves, AProcessThatIsKilledLeavesAWholeSave) {
+// Kills a saving process 100 times in the middle of a write: the save then holds the previous or
+// the new state, complete.
+TEST_F(Saves, AKilledProcessLeavesACompleteSave) {
   auto play = begin();
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kStructure);
   int stones = 0;
@@ -155,7 +155,7 @@ TEST_F(Saves, AProcessThatIsKilledLeavesAWholeSave) {
       if (!saved) ::_exit(3);
       Progress progress = play->progress();
       for (;;) {
-        // Stones and wood grow together, so a mix of two saves would be seen.
+        // Stones and wood grow together, so a mix of two saves would show.
         progress.stock = {progress.stock.stones + 1, progress.stock.stones + 1};
         progress.seen[cell_name(progress.stock.stones, 0)] = 1;
         if (!play->resume(progress, play->edits()) || !saved->put(*play) || !saved->wait())

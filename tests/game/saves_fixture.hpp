@@ -1,4 +1,4 @@
-// A land, and a folder for the saves of games in it.
+// A land, and a temporary folder for its saves.
 #pragma once
 
 #include <gtest/gtest.h>

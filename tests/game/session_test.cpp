@@ -1,5 +1,5 @@
-// The game in a session without a window: the same for any number of modelers, silent validation,
-// recorded input, settings, and what is refused.
+// The game in a session without a window: equal for any number of modelers, silent validation,
+// recorded input, settings, and rejected files.
 #include <fstream>
 
 #include "game/show/scenery.hpp"
@@ -42,7 +42,7 @@ TEST_F(GameSession, PlaysTheSameForAnyNumberOfModelers) {
   }
 }
 
-TEST_F(GameSession, IsDrawnWithoutAWordOfTheValidationLayers) {
+TEST_F(GameSession, IsDrawnWithoutValidationMessages) {
   for (const render::Preset preset : {render::Preset::kLow, render::Preset::kHigh}) {
     std::filesystem::remove_all(folder_);
     GameOptions o = options(5);
@@ -54,7 +54,7 @@ TEST_F(GameSession, IsDrawnWithoutAWordOfTheValidationLayers) {
   }
 }
 
-TEST_F(GameSession, GoesOnFromItsSave) {
+TEST_F(GameSession, ResumesItsSave) {
   core::WorldPosition at;
   {
     Running run(options());
@@ -66,15 +66,15 @@ TEST_F(GameSession, GoesOnFromItsSave) {
   Running again(options());
   ASSERT_TRUE(again.open());
   EXPECT_EQ(again.game.play()->progress().feet.local, at.local);
-  // While it runs, another process is told that the save is taken.
+  // A second process gets an error while the game runs.
   Running second(options());
   const auto opened = second.open();
   ASSERT_FALSE(opened);
   EXPECT_NE(opened.error().message.find("3.cairns"), std::string::npos);
 }
 
-// Otherwise a session could fell only some 65,000 trees.
-TEST_F(GameSession, FelledTreesGiveTheirMeshesBack) {
+// Without this a session could fell only about 65,000 trees.
+TEST_F(GameSession, FelledTreesReleaseTheirMeshes) {
   Running run(options());
   ASSERT_TRUE(run.open());
   Scenery scenery;
@@ -90,7 +90,7 @@ TEST_F(GameSession, FelledTreesGiveTheirMeshesBack) {
   const std::size_t before = assets.mesh_count();
   scenery.tell(*run.session, felled, play);
   EXPECT_EQ(assets.mesh_count(), before + 1);
-  run.frames(240);  // it falls, and lies there
+  run.frames(240);  // it falls and comes to rest
   scenery.update(*run.session, play, 1, 12);
   EXPECT_EQ(assets.mesh_count(), before + 1);
   run.frames(240);
@@ -101,7 +101,7 @@ TEST_F(GameSession, FelledTreesGiveTheirMeshesBack) {
   EXPECT_EQ(assets.mesh_count(), before);
 }
 
-TEST_F(GameSession, RecordedInputIsPlayedBack) {
+TEST_F(GameSession, ReplaysRecordedInput) {
   core::WorldPosition at;
   double yaw = 0;
   for (const bool replay : {false, true}) {
@@ -138,7 +138,7 @@ TEST_F(GameSession, RecordedInputIsPlayedBack) {
   }
 }
 
-TEST_F(GameSession, SettingsAreKeptAndBrokenOnesAreToldAndLeft) {
+TEST_F(GameSession, KeepsSettingsAndReportsBrokenFilesWithoutChangingThem) {
   input::Actions actions;
   ASSERT_TRUE(add_actions(actions));
   std::filesystem::create_directories(folder_);
@@ -173,7 +173,7 @@ TEST_F(GameSession, SettingsAreKeptAndBrokenOnesAreToldAndLeft) {
   EXPECT_TRUE(std::isfinite(wild->text));
 }
 
-TEST_F(GameSession, FoldersThatCannotBeMadeAreTold) {
+TEST_F(GameSession, ReportsFoldersThatCannotBeCreated) {
   std::filesystem::create_directories(folder_);
   std::ofstream(folder_ / "file") << "x";
   GameOptions o = options();
@@ -184,7 +184,7 @@ TEST_F(GameSession, FoldersThatCannotBeMadeAreTold) {
   EXPECT_EQ(opened.error().code, core::ErrorCode::kIo);
 }
 
-// A pad plays as well as keys.
+// A gamepad controls the game as keys do.
 TEST(Controls, APadMovesLooksAndJumps) {
   input::Actions actions;
   ASSERT_TRUE(add_actions(actions));
@@ -203,7 +203,7 @@ TEST(Controls, APadMovesLooksAndJumps) {
   EXPECT_TRUE(intent.jump_held);
 }
 
-TEST(Synth, SoundsAreHeardAndNotCutOff) {
+TEST(Synth, SoundsAreAudibleAndNotClipped) {
   const ClipPtr all[] = {wind_sound(),  rain_sound(),  water_sound(),  fire_sound(), music_sound(1),
                          step_sound(0), step_sound(1), splash_sound(), chop_sound(), fall_sound(),
                          stone_sound(), bird_sound(0), bird_sound(2),  chime_sound()};

@@ -1,5 +1,5 @@
-// The game in its window, with the keyboard and mouse of a person: title, a land by its name,
-// walking, pages, saving, going on.
+// The game in its window, used by keyboard and mouse: title, a named land, walking, pages, saving
+// and resuming.
 #include "tests/engine/platform/virtual_display.hpp"
 #include "tests/game/game_fixture.hpp"
 #include "tests/game/made_up_pad.hpp"
@@ -26,7 +26,7 @@ class GameWindow : public ::testing::Test {
   GameOptions options_;
 };
 
-// How much of two pictures differs, 0 … 1.
+// Returns the fraction of differing pixels of two images, 0 to 1.
 double difference(const image::Image& a, const image::Image& b) {
   std::size_t differ = 0;
   for (std::size_t i = 0; i < a.rgba.size() && i < b.rgba.size(); i += 4)
@@ -41,7 +41,7 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
     ASSERT_TRUE(run.open());
     run.frames(30);
     const image::Image title = *run.session->picture();
-    // A land by its name.
+    // Type the name of a land.
     ASSERT_TRUE(display_->xdotool({"type", "heather"}));
     run.frames(20);
     ASSERT_TRUE(key("Return"));
@@ -50,7 +50,7 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
     EXPECT_TRUE(run.session->window()->cursor_captured());
     run.frames(30);
     EXPECT_GT(difference(title, *run.session->picture()), 0.2);
-    // Steps ahead, without a word of help.
+    // Walk forward.
     const Walker& walker = run.game.play()->walker();
     ASSERT_TRUE(display_->xdotool({"keydown", "w"}));
     EXPECT_TRUE(run.frames_until([&] { return walker.walked_m() > 4; }));
@@ -61,7 +61,7 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
     ASSERT_TRUE(key("space"));
     EXPECT_TRUE(run.frames_until([&] { return walker.gait() == Gait::kAir; }));
     EXPECT_TRUE(run.frames_until([&] { return walker.gait() == Gait::kGround; }));
-    // The map, and back.
+    // Open and close the map.
     run.frames(10);
     const image::Image play = *run.session->picture();
     ASSERT_TRUE(key("m"));
@@ -69,13 +69,13 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
         run.frames_until([&] { return difference(play, *run.session->picture()) > 0.2; }, 600));
     ASSERT_TRUE(key("m"));
     run.frames(20);
-    // A pause: no time passes in the game.
+    // Pause: no time passes in the game.
     ASSERT_TRUE(key("Escape"));
     EXPECT_TRUE(run.frames_until([&] { return !run.session->window()->cursor_captured(); }));
     const double time_s = run.game.play()->progress().time_s;
     run.frames(30);
     EXPECT_EQ(run.game.play()->progress().time_s, time_s);
-    // Escape leads back, too.
+    // Escape also resumes the game.
     ASSERT_TRUE(key("Escape"));
     EXPECT_TRUE(run.frames_until([&] { return run.session->window()->cursor_captured(); }));
     ASSERT_TRUE(key("Escape"));
@@ -95,7 +95,7 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
   Running again(options_);
   ASSERT_TRUE(again.open());
   again.frames(20);
-  // Credits are the fourth control below "Continue", and lead back to it.
+  // "Credits" is the fourth control below "Continue", and returns to it.
   for (int i = 0; i < 4; ++i) {
     ASSERT_TRUE(key("Down"));
     again.frames(6);
@@ -109,7 +109,7 @@ TEST_F(GameWindow, IsPlayedByKeyboardAndMouseFromTitleToTitle) {
   EXPECT_EQ(again.game.play()->progress().feet.local, at.local);
 }
 
-// The same land by a pad alone: pages are gone through by its cross, A and B.
+// The same land with a gamepad alone: its cross, A and B navigate the pages.
 TEST_F(GameWindow, IsPlayedByAPadFromTitleToTitle) {
   using platform::PadAxis, platform::PadButton;
   {  // a game whose player has wood: B also lights fires
@@ -164,7 +164,7 @@ TEST_F(GameWindow, IsPlayedByAPadFromTitleToTitle) {
   EXPECT_EQ(run.game.play()->progress().stock.wood, 6) << "leaving a page lights no fire";
   press(PadButton::kB);
   EXPECT_EQ(run.game.play()->progress().stock.wood, 6 - kWoodOfFire);
-  // A key takes the place of the pad in what is written.
+  // After a key press, hints name keys instead of gamepad buttons.
   ASSERT_TRUE(key("e"));
   EXPECT_TRUE(run.frames_until([&] { return !run.session->actions().uses_pad(); }, 100));
   EXPECT_EQ(key_of(run.session->actions(), Act::kUse, run.session->window()), "E");
