@@ -1,4 +1,4 @@
-// Random access to one component by handle, with everything looked up once. Not for walking whole
+// Random access to one component by handle; it looks up everything else once. Not for walking whole
 // tables: iterate instead. A system that follows handles holds an accessor. It stays valid as long
 // as its world, also across structural changes, and reads on any thread while nothing changes the
 // structure. get is O(1).
@@ -19,8 +19,8 @@ class Accessor {
   using Value = std::remove_const_t<C>;
 
  public:
-  // The entity's component; null when the entity is dead or lacks it. The pointer is valid until
-  // the next structural change.
+  // Returns the entity's component; null if the entity is dead or lacks it. The pointer is valid
+  // until the next structural change.
   C* get(Entity entity) const {
     if constexpr (is_sparse<Value>()) {
       return find(entity).value;
@@ -30,12 +30,12 @@ class Accessor {
     }
   }
 
-  // Calls f(i, get(entities[i])) for every i in order and prefetches the next ones: the fast way to
-  // follow many handles. `f` may write through the pointer and must not change structure.
+  // Calls f(i, get(entities[i])) for every i in order and prefetches the next components: the fast
+  // way to follow many handles. `f` may write through the pointer and must not change structure.
   template <class F>
   void each(std::span<const Entity> entities, F&& f) const;
 
-  // Hints that get(entity) follows soon. Loads the place of the entity, not the component itself.
+  // Hints that get(entity) follows soon. Loads the entity's location, not the component itself.
   void prefetch(Entity entity) const {
     if constexpr (is_sparse<Value>()) {
       if (record_->sparse != nullptr) record_->sparse->prefetch(entity);

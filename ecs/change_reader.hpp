@@ -1,7 +1,7 @@
 // One consumer of the changes of a tracked component. Every reader has its own bits: rows that one
-// has drained are still new to another. A row is changed when it was created, landed on, added or
-// marked. To a new reader all rows are new. Not an event queue: repeated changes of a row are one.
-// Belongs to the world's thread and must not outlive its world.
+// reader has drained are still new to another. A row counts as changed when it was created,
+// written, added or marked. To a new reader all rows are new. Not an event queue: repeated changes
+// of a row are one. Belongs to the world's thread and must not outlive its world.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace psygen::ecs {
 
-// Whether a reader also collects the entities that lost the component. Such a reader must drain
+// Selects readers that also collect the entities that lost the component. Such a reader must drain
 // them.
 enum class Removed : bool { kIgnore, kReport };
 
@@ -25,7 +25,7 @@ class ChangeReader {
                 "only a tracked component has changes: ComponentTraits<C>::tracked");
 
  public:
-  // Movable; a moved-from reader may only be assigned to or destroyed.
+  // Movable. A moved-from reader may only be assigned to or destroyed.
   ChangeReader(ChangeReader&& other) noexcept
       : storage_(std::exchange(other.storage_, nullptr)), state_(other.state_) {}
   ChangeReader& operator=(ChangeReader&& other) noexcept {
@@ -33,15 +33,15 @@ class ChangeReader {
     std::swap(state_, other.state_);
     return *this;
   }
-  // Ends the reader: its bits are freed.
+  // Frees the reader's bits.
   ~ChangeReader() {
     if (storage_ != nullptr) storage_->remove_reader(*state_);
   }
 
   // Calls f(std::span<const Entity>, std::span<const C>) once per run of neighbouring rows that
-  // changed since the last drain; visits exactly these rows and returns how many. `f` may mark and
-  // land, but not create, destroy, add or remove. O(tables + changed rows), plus one word per 4096
-  // rows.
+  // changed since the last drain; visits exactly these rows and returns their number. `f` may mark
+  // rows and write values, but not create, destroy, add or remove. O(tables + changed rows), plus
+  // one word per 4096 rows.
   template <class F>
   std::size_t drain(F&& f) {
     const detail::IterationGuard guard(storage_->iteration(), detail::kQuery<const C>);
@@ -67,9 +67,9 @@ class ChangeReader {
   }
 
   // Calls f(std::span<const Entity>) with the entities that died or lost C since the last call,
-  // forgets them and returns how many there were. Earlier verbs come first; within one verb the
-  // order is undefined. Entities that gained and lost C in between are included. The span is valid
-  // during the call. Only for readers made with Removed::kReport.
+  // forgets them and returns their number. Entities of earlier verbs precede those of later verbs;
+  // within one verb the order is undefined. Entities that gained and lost C in between are
+  // included. The span is valid during the call. Only for readers made with Removed::kReport.
   template <class F>
   std::size_t drain_removed(F&& f) {
     PSYGEN_ECS_ASSERT(state_->reports_removed, "make the reader with Removed::kReport");

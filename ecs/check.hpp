@@ -1,15 +1,16 @@
-// The library's contracts. PSYGEN_ECS_ASSERT(condition, "sentence") ends the program when a caller
-// broke one; it is checked unless NDEBUG is defined. `give_up` reports exceeded limits, in every
-// build. Not error handling: nothing here returns to the caller. Safe from any thread.
+// Contracts of the library. PSYGEN_ECS_ASSERT(condition, "message") aborts the program when a
+// caller violates a contract; it is checked unless NDEBUG is defined. `give_up` reports exceeded
+// limits, in every build. Not error handling: nothing here returns to the caller. Safe from any
+// thread.
 #pragma once
 
 #include <string_view>
 
 namespace psygen::ecs::detail {
 
-// Prints "ecs: " and the sentence on stderr and aborts.
+// Prints "ecs: " and the message on stderr and aborts.
 [[noreturn]] void give_up(std::string_view sentence);
-// Prints file, line, condition and sentence on stderr and aborts. Called by PSYGEN_ECS_ASSERT only.
+// Prints file, line, condition and message on stderr and aborts. Called by PSYGEN_ECS_ASSERT only.
 [[noreturn]] void contract_broken(const char* file, int line, const char* condition,
                                   std::string_view sentence);
 

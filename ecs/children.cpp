@@ -33,7 +33,7 @@ void ChildLists::assign(Children& list, std::span<const Entity> handles) {
   }
   list.count_ = static_cast<std::uint32_t>(handles.size());
   std::ranges::copy(handles, handles_.begin() + list.first_);
-  // Last: a range that is free while its list still names it could be given away twice.
+  // Last, because a range that is free while its list still names it could be issued twice.
   if (had_range && !keeps_range) free_[old_class].push_back(old_first);
 }
 

@@ -1,7 +1,7 @@
 // Structural changes recorded while a query is iterated, and applied afterwards in the order of
-// recording. Neighbouring commands of the same form become one batch. Not thread-safe: a Commands
-// belongs to one thread, and every thread may have its own. Entities that die before apply are
-// skipped. Recording is amortised O(1) per entity.
+// recording. Neighbouring commands of one form become one batch. Not thread-safe: a Commands
+// belongs to one thread, and every thread may have its own. apply() skips entities that died in the
+// meantime. Recording is amortised O(1) per entity.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@
 
 namespace psygen::ecs {
 
-// A list of recorded changes. Destroying it drops what was not applied.
+// A list of recorded changes. The destructor drops changes that were not applied.
 class Commands {
  public:
-  // Starts empty; moving takes the recorded changes along.
+  // Starts empty. Moving transfers the recorded changes.
   Commands() = default;
   Commands(Commands&&) noexcept = default;
   Commands& operator=(Commands&&) noexcept = default;
@@ -26,7 +26,7 @@ class Commands {
   // Records one new entity with these components and values.
   template <Component... Cs>
   void create(Cs... values) {
-    static_assert(sizeof...(Cs) > 0, "an entity without components is created in no batch");
+    static_assert(sizeof...(Cs) > 0, "an entity in a batch needs components");
     using List = CreateList<Cs...>;
     std::apply([&](auto&... rows) { (rows.push_back(std::move(values)), ...); },
                list<List>().values);
@@ -44,7 +44,7 @@ class Commands {
   }
   // Records World::destroy_with_children.
   void destroy_with_children(Entity parent) { list<FamilyList>().parents.push_back(parent); }
-  // Records that the entity gets a C with this value; an existing C takes the value.
+  // Records that the entity gets a C with this value. The value replaces that of an existing C.
   template <Component C>
   void add(Entity entity, C value = {}) {
     list<AddList<C>>().results.push_back({entity, std::move(value)});
@@ -55,10 +55,10 @@ class Commands {
     list<RemoveList<C>>().entities.push_back(entity);
   }
 
-  // Whether nothing is recorded.
+  // True if nothing is recorded.
   bool empty() const { return batches_.empty(); }
-  // Applies everything in order and forgets it. Not while a query of this world is iterated. When a
-  // component's constructor throws, the batches after that one are kept.
+  // Applies all changes in order and clears the list. Not while a query of this world is iterated.
+  // If a component's constructor throws, the later batches stay recorded.
   void apply(World& world);
 
  private:
@@ -93,7 +93,7 @@ class Commands {
     void apply(World& world) { world.remove<C>(entities); }
   };
 
-  // Owns a list of any of these types.
+  // Owns one of these lists.
   class Batch {
    public:
     template <class List>

@@ -1,7 +1,7 @@
-// What the library knows about a component type: its name, where it is kept, whether changes are
-// tracked, and how batches of rows are built, moved and destroyed. There is one constant table per
-// type, and its address is the type's identity. Users specialise ComponentTraits (fields.hpp); the
-// rest is internal. Constants and pure functions over rows: no state, any thread.
+// Type information of a component: its name, its storage, change tracking, and functions that
+// build, move and destroy batches of rows. There is one constant table per type, and its address is
+// the type's identity. Users specialise ComponentTraits (fields.hpp); the rest is internal.
+// Constants and pure functions over rows: no state, any thread.
 #pragma once
 
 #include <algorithm>
@@ -26,14 +26,14 @@ concept Component =
     std::is_default_constructible_v<C> && std::is_nothrow_move_constructible_v<C> &&
     std::is_nothrow_destructible_v<C> && alignof(C) <= 64;
 
-// Whether changes of C are tracked: ComponentTraits<C>::tracked, by default false.
+// True if changes of C are tracked: ComponentTraits<C>::tracked, by default false.
 template <class C>
 constexpr bool is_tracked() {
   if constexpr (requires { ComponentTraits<C>::tracked; }) return ComponentTraits<C>::tracked;
   return false;
 }
 
-// Whether C is kept in a set of its own: ComponentTraits<C>::sparse, by default false.
+// True if C is stored in a sparse set: ComponentTraits<C>::sparse, by default false.
 template <class C>
 constexpr bool is_sparse() {
   if constexpr (requires { ComponentTraits<C>::sparse; }) return ComponentTraits<C>::sparse;
@@ -62,32 +62,32 @@ constexpr std::string_view component_name() {
 
 namespace detail {
 
-// Row `from` moves to row `to`. `to` holds no object before the move, `from` holds none after it.
+// Moves row `from` to row `to`. `to` holds no object before the move, `from` holds none after it.
 struct RowMove {
   std::uint32_t to;
   std::uint32_t from;
 };
 
-// How many elements before their use the loops over handles and moves prefetch.
+// Number of elements by which loops over handles and moves prefetch ahead.
 inline constexpr std::size_t kPrefetchAhead = 16;
 
-// A component type without its type: sizes, flags and functions over rows of its column. `column`
-// is the address of row 0, rows are `size_bytes` apart.
+// A component type without its C++ type: sizes, flags and functions over rows of its column.
+// `column` is the address of row 0; rows are `size_bytes` apart.
 struct ComponentInfo {
   std::string_view name;
   std::size_t size_bytes;
   std::size_t alignment;
   bool tracked;
   bool sparse;
-  const TypeDescription* (*describe)();  // returns null when fields are not listed
-  // Value-initialises rows [first, first + count). `fresh` says that their memory reads as zero.
-  // When a constructor throws, none of these rows holds an object.
+  const TypeDescription* (*describe)();  // returns null if the type lists no fields
+  // Value-initialises rows [first, first + count). `fresh` says that their memory reads as zero. If
+  // a constructor throws, none of these rows holds an object.
   void (*construct)(std::byte* column, std::size_t first, std::size_t count, bool fresh);
-  // Both end the objects of rows: of [first, first + count), or of the `count` rows listed. Null
-  // for types with trivial destructors.
+  // Both destroy objects: those of [first, first + count), or of the `count` listed rows. Null for
+  // types with trivial destructors.
   void (*destroy_range)(std::byte* column, std::size_t first, std::size_t count);
   void (*destroy_rows)(std::byte* column, const std::uint32_t* rows, std::size_t count);
-  // Carries out `count` moves between rows of one column.
+  // Performs `count` moves between rows of one column.
   void (*relocate_within)(std::byte* column, const RowMove* moves, std::size_t count);
   // Moves the listed rows of `source`, in this order, to rows first, first + 1, ... of `target`.
   void (*relocate_into)(std::byte* target, std::size_t first, std::byte* source,
@@ -100,7 +100,7 @@ C* rows_of(std::byte* column) {
   return std::launder(reinterpret_cast<C*>(column));
 }
 
-// Moves the object at `from` to `to`, which holds none; `from` holds none afterwards. The two rows
+// Moves the object at `from` to `to`, which holds none. `from` holds none afterwards. The two rows
 // differ.
 template <class C>
 void relocate(C* to, C* from) {
@@ -113,7 +113,7 @@ void relocate(C* to, C* from) {
 }
 
 // ComponentInfo::construct for C. Trivially copyable rows are copies of one value-initialised row.
-// When that row is all zeros this is one memset, or nothing at all on fresh memory.
+// If that row is all zeros, this is one memset, or nothing at all on fresh memory.
 template <class C>
 void construct_rows(std::byte* column, std::size_t first, std::size_t count, bool fresh) {
   C* rows = reinterpret_cast<C*>(column) + first;

@@ -1,4 +1,4 @@
-// The one header to include: entities, components in columns, and batch verbs. README.md has a
+// Includes the whole library: entities, components in columns, and batch verbs. README.md has a
 // tour. Depends on the standard library and, for its memory, on mmap.
 #pragma once
 

@@ -13,17 +13,17 @@ namespace psygen::ecs {
 // is kNullEntity.
 struct Entity {
   std::uint32_t index = UINT32_MAX;
-  std::uint32_t generation = 0;  // 0 is never given to an entity
+  std::uint32_t generation = 0;  // never 0 for an entity
   friend constexpr bool operator==(Entity, Entity) = default;
 };
 static_assert(sizeof(Entity) == 8);
 
-// Equals no entity that ever lived.
+// Differs from every entity that ever lived.
 inline constexpr Entity kNullEntity{};
 
 }  // namespace psygen::ecs
 
-// Handles as keys of unordered containers.
+// Lets unordered containers use handles as keys.
 template <>
 struct std::hash<psygen::ecs::Entity> {
   // Mixes both halves of the handle. O(1).

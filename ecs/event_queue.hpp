@@ -1,8 +1,8 @@
-// Typed events in batches. A queue keeps what was emitted until every one of its readers has
-// drained it, in the order of emission; without readers it keeps nothing. A reader that does not
-// drain costs at most `most` events: then the oldest are dropped and counted. Not a callback list,
-// and not a change log of components (change_reader.hpp). A queue and its readers belong to one
-// thread at a time; a schedule sees to that.
+// Typed events in batches. A queue keeps an event until every one of its readers has drained it, in
+// the order of emission; without readers it keeps nothing. A reader that does not drain costs at
+// most `most` events: then the oldest are dropped and counted. Not a callback list, and not a
+// change log of components (change_reader.hpp). A queue and its readers belong to one thread at a
+// time, which a schedule guarantees.
 #pragma once
 
 #include <algorithm>
@@ -29,24 +29,24 @@ class EventQueue {
   EventQueue(EventQueue&&) noexcept = default;
   EventQueue& operator=(EventQueue&&) noexcept = default;
 
-  // Whether anyone drains: without readers there is no need to collect events.
+  // True if the queue has readers. Without readers, collecting events is unnecessary.
   bool has_readers() const { return !kept_->readers.empty(); }
-  // Appends events. Not from inside a drain of this queue.
+  // Appends events. Not inside a drain of this queue.
   void emit(std::span<const T> events) {
     if (has_readers()) kept_->append(events);
   }
   void emit(const T& event) { emit(std::span(&event, 1)); }
-  // A new reader, which sees what is emitted from now on. It may outlive the queue.
+  // Makes a reader that sees events from this call on. It may outlive the queue.
   EventReader<T> reader() { return EventReader<T>(kept_); }
-  // Events that were dropped because a reader did not drain them.
+  // Number of events that were dropped because a reader did not drain them.
   std::uint64_t dropped() const { return kept_->dropped; }
-  // Events kept for readers that have not drained them.
+  // Number of events kept for readers that have not drained them.
   std::size_t size() const { return kept_->events.size(); }
 
  private:
   friend class EventReader<T>;
 
-  // Positions count all events since the first; that of events[0] is `first`.
+  // Positions count all events since the first; `first` is the position of events[0].
   struct Kept {
     std::size_t most = 0;
     std::vector<T> events;
@@ -63,7 +63,7 @@ class EventQueue {
         more = more.last(most);
       }
       if (events.size() + more.size() > most) {
-        // Half of what fits goes at once: dropping one by one would be quadratic.
+        // Drops half of the bound at least: dropping one by one would be quadratic.
         const std::size_t needed = events.size() + more.size() - most;
         const std::size_t gone = std::min(events.size(), std::max(needed, most / 2));
         dropped += gone;
@@ -93,7 +93,7 @@ class EventReader {
  public:
   EventReader(const EventReader&) = delete;
   EventReader& operator=(const EventReader&) = delete;
-  // Movable; a moved-from reader may only be assigned to or destroyed.
+  // Movable. A moved-from reader may only be assigned to or destroyed.
   EventReader(EventReader&& other) noexcept { *this = std::move(other); }
   EventReader& operator=(EventReader&& other) noexcept {
     if (kept_) std::erase(kept_->readers, this);
@@ -102,15 +102,15 @@ class EventReader {
     if (kept_) std::ranges::replace(kept_->readers, &other, this);
     return *this;
   }
-  // Ends the reader: nothing is kept for it any more.
+  // Detaches the reader: the queue keeps nothing for it.
   ~EventReader() {
     if (!kept_) return;
     std::erase(kept_->readers, this);
     kept_->forget_drained();
   }
 
-  // Calls f(std::span<const T>) with what was emitted since the last drain, unless that is nothing,
-  // and returns how many events there were. `f` must not emit into this queue.
+  // Calls f(std::span<const T>) with the events since the last drain, unless there are none, and
+  // returns their number. `f` must not emit into this queue.
   template <class F>
   std::size_t drain(F&& f) {
     const std::uint64_t from = std::max(next_, kept_->first);

@@ -1,7 +1,7 @@
-// The description of a type, written once: names, units and ranges of its fields, for snapshots,
-// editors and messages. Values are reached by offset, so only `field` and `describe` need
-// templates. Not a serialiser (snapshot.hpp is) and not reflection: a field that is not listed is
-// unknown. Descriptions are built on first use, never freed, and safe to read from any thread.
+// Describes the fields of a type once, with names, units and ranges, for snapshots, editors and
+// messages. Values are reached by offset, so only `field` and `describe` need templates. Not a
+// serialiser (snapshot.hpp is) and not reflection: a field that is not listed is unknown.
+// Descriptions are built on first use, never freed, and safe to read from any thread.
 #pragma once
 
 #include <array>
@@ -21,21 +21,21 @@
 
 namespace psygen::ecs {
 
-// Describes a type once. Specialise it to override the defaults; each member may be left out:
+// Describes a type. Specialise it to override the defaults; every member is optional:
 //   static constexpr std::string_view name = "mesh";   default: the type's name
 //   static constexpr bool tracked = true;              default: false, no change bits
 //   static constexpr bool sparse = true;               default: false, a column of tables
 //   static constexpr auto fields = std::tuple{ecs::field("id", &Mesh::id), ...};
-// A component without `fields` is transient: snapshots record which entities have it, not its
+// A component without `fields` is transient: snapshots record which entities have it, but not its
 // value.
 template <class C>
 struct ComponentTraits {};
 
-// How a value is built up. Snapshots store these numbers.
+// Kinds of values. Snapshots store these numbers.
 enum class FieldKind : std::uint8_t {
   kBool,
-  kSigned,    // 1, 2, 4 or 8 bytes; enumerations too
-  kUnsigned,  // likewise
+  kSigned,    // 1, 2, 4 or 8 bytes; also enumerations
+  kUnsigned,  // as kSigned
   kReal,      // float or double
   kEntity,
   kString,  // std::string
@@ -46,8 +46,8 @@ enum class FieldKind : std::uint8_t {
 
 struct TypeDescription;
 
-// What an editor wants to know beyond the type. Ranges bound sliders; they are not enforced. The
-// strings have static storage.
+// Notes for editors beyond the type. Ranges bound sliders; they are not enforced. The strings have
+// static storage.
 struct FieldNotes {
   std::string_view unit = {};  // "m", "rad"; empty: none
   std::string_view doc = {};
@@ -63,22 +63,22 @@ struct FieldDescription {
   FieldNotes notes;
 };
 
-// One type: its kind, its size, and what it is made of. Pointers are null when the kind has no use
-// for them.
+// One type: its kind, its size and its elements or fields. Pointers are null if the kind does not
+// use them.
 struct TypeDescription {
   FieldKind kind = FieldKind::kStruct;
   std::size_t size_bytes = 0;
   std::size_t count = 0;                      // of a kArray
   const TypeDescription* element = nullptr;   // of a kArray or kList
   std::vector<FieldDescription> fields = {};  // of a kStruct
-  // Of a kString or kList: its number of elements, the address of the first, and a function that
-  // resizes it to `count` elements and returns the address of the first.
+  // Of a kString or kList: the number of elements, the address of the first element, and a function
+  // that resizes it to `count` elements and returns the address of the first.
   std::size_t (*length)(const std::byte* value) = nullptr;
   const std::byte* (*elements)(const std::byte* value) = nullptr;
   std::byte* (*resize)(std::byte* value, std::size_t count) = nullptr;
 };
 
-// A field and its name. ComponentTraits<C>::fields lists them; descriptions keep that order.
+// A field and its name. Descriptions keep the order of ComponentTraits<C>::fields.
 template <class C, class T>
 struct Field {
   std::string_view name;
@@ -99,12 +99,12 @@ concept HasFields = requires {
   ComponentTraits<T>::fields;
 };
 
-// The description of T, built on first use. Ends the program when T contains itself. Passes on what
-// a constructor of T throws; the next use tries again. Any thread.
+// Returns the description of T, built on first use. Ends the program if T contains itself. Passes
+// on an exception of T's constructor; the next use tries again. Any thread.
 template <class T>
 const TypeDescription& description_of();
 
-// Whether T is a std::array, or a std::vector other than std::vector<bool>.
+// True if T is a std::array, or a std::vector other than std::vector<bool>.
 template <class T>
 inline constexpr bool kIsArray = false;
 template <class T, std::size_t N>
@@ -120,7 +120,7 @@ concept Describable = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_sa
     std::is_same_v<T, std::string> || kIsArray<T> || kIsList<T> || HasFields<T> ||
     std::is_empty_v<T>;
 
-// Whether a value of T takes bytes in a snapshot: elements of lists and arrays must.
+// True if a value of T takes bytes in a snapshot, which elements of lists and arrays must.
 template <class T>
 constexpr bool has_content() {
   if constexpr (HasFields<T>) return std::tuple_size_v<decltype(ComponentTraits<T>::fields)> > 0;
@@ -128,10 +128,11 @@ constexpr bool has_content() {
   return !std::is_empty_v<T>;
 }
 
-// The description of a std::string or std::vector.
+// Describes a std::string or std::vector.
 template <class T>
 TypeDescription describe_list(FieldKind kind) {
-  static_assert(has_content<typename T::value_type>(), "a list of nothing is a number: its length");
+  static_assert(has_content<typename T::value_type>(),
+                "elements of a list must take bytes in a snapshot");
   TypeDescription result;
   result.kind = kind;
   result.size_bytes = sizeof(T);
@@ -148,7 +149,7 @@ TypeDescription describe_list(FieldKind kind) {
   return result;
 }
 
-// The description of a struct. Finds offsets on a default-constructed T.
+// Describes a struct. Finds offsets on a default-constructed T.
 template <class T>
 TypeDescription describe_struct() {
   TypeDescription result;
@@ -166,7 +167,7 @@ TypeDescription describe_struct() {
   return result;
 }
 
-// Builds the description of T. Fails to compile for a type that is not Describable.
+// Builds the description of T. Fails to compile if T is not Describable.
 template <class T>
 TypeDescription make_description() {
   static_assert(Describable<T>,
@@ -176,7 +177,7 @@ TypeDescription make_description() {
   if constexpr (kIsList<T>) return describe_list<T>(FieldKind::kList);
   if constexpr (kIsArray<T>) {
     static_assert(has_content<T>() && has_content<typename T::value_type>(),
-                  "an array of nothing is nothing");
+                  "elements of an array must take bytes in a snapshot");
     TypeDescription result;
     result.kind = FieldKind::kArray;
     result.size_bytes = sizeof(T);
@@ -196,7 +197,7 @@ TypeDescription make_description() {
 
 template <class T>
 const TypeDescription& description_of() {
-  // Set while this thread builds the description, also until a constructor of T throws.
+  // True while this thread builds the description, also until a constructor of T throws.
   thread_local bool under_way = false;
   if (under_way) give_up("a described type contains itself");
   struct UnderWay {
@@ -213,7 +214,7 @@ template <class C>
 const TypeDescription* describe_component() {
   static_assert(
       !HasFields<C> || requires { ComponentTraits<C>::name; },
-      "a component with fields has a name of its own: compilers disagree about the "
+      "a component with fields needs ComponentTraits<>::name: compilers disagree about the "
       "default, and snapshots keep it");
   if constexpr (HasFields<C> || std::is_empty_v<C>) return &description_of<C>();
   return nullptr;
@@ -221,8 +222,8 @@ const TypeDescription* describe_component() {
 
 }  // namespace detail
 
-// The fields of a component; null when its ComponentTraits list none. A component without members
-// is described, with no fields. Never freed. Safe from any thread.
+// Returns the description of a component; null if its ComponentTraits list no fields. A component
+// without members has a description without fields. Never freed. Safe from any thread.
 template <class C>
 const TypeDescription* describe() {
   return detail::describe_component<C>();

@@ -1,7 +1,7 @@
-// Iteration: which rows a query visits, and the spans of each run of them. One call per table;
-// filters by a sparse component cut tables into runs of matching rows. Not a cache: each walk
-// matches tables anew, O(tables) plus the rows visited. Several threads may iterate while nothing
-// changes structure.
+// Iteration: selects the rows that a query visits, and passes each run of them as spans. One call
+// per table; filters by a sparse component cut tables into runs of matching rows. Not a cache: each
+// walk matches tables again, O(tables) plus the rows visited. Several threads may iterate while
+// nothing changes structure.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@
 
 namespace psygen::ecs {
 
-// Filters: components that the entities must also have, or must not have:
+// Filters: components that entities must also have, or must not have:
 //   world.each<A>(f, With<Selected>{}, Without<Hidden>{})
-// With<sparse component> walks the smallest of the sets named. Without<sparse component> costs one
-// look-up per row when the set has members.
+// With<sparse component> walks the smallest of the named sets. Without<sparse component> costs one
+// look-up per row if the set has members.
 template <Component... Cs>
 struct With {};
 template <Component... Cs>
@@ -26,7 +26,7 @@ struct Without {};
 
 namespace detail {
 
-// How often C occurs in Cs, and whether every component occurs once.
+// The number of times that C occurs in Cs, and a flag that is true if every component occurs once.
 template <class C, class... Cs>
 inline constexpr std::size_t kCount = (std::size_t{0} + ... + std::size_t{std::is_same_v<C, Cs>});
 template <class... Cs>
@@ -75,14 +75,14 @@ class TableRows {
 
 namespace detail {
 
-// Joins rows that are neighbours in a table to runs; calls visit(table, first row, count) for each.
+// Joins neighbouring rows of a table to runs; calls visit(table, first row, count) for each run.
 template <class F>
 class RunMerger {
  public:
-  // Both must outlive it.
+  // Both arguments must outlive the merger.
   RunMerger(const Storage& storage, F& visit) : storage_(storage), visit_(visit) {}
 
-  // The next row. Visits the previous run when `at` does not continue it.
+  // Adds the next row. Visits the previous run if `at` does not continue it.
   void add(RowPlace at) {
     if (count_ > 0 && at.table == begin_.table && at.row == begin_.row + count_) {
       ++count_;
@@ -104,7 +104,7 @@ class RunMerger {
   std::uint32_t count_ = 0;
 };
 
-// How many components the filters of one query may name, and how many one filter names.
+// The most components that the filters of one query may name, and the number that one filter names.
 inline constexpr std::size_t kMaxFilters = 8;
 template <class F>
 inline constexpr std::size_t kFilterSize = 0;
@@ -113,11 +113,12 @@ inline constexpr std::size_t kFilterSize<With<Cs...>> = sizeof...(Cs);
 template <class... Cs>
 inline constexpr std::size_t kFilterSize<Without<Cs...>> = sizeof...(Cs);
 
-// Which rows a query visits. Made from the query's columns and filters, then walked once.
+// Selects the rows that a query visits. Made from the query's columns and filters, then walked
+// once.
 class RowFilter {
  public:
-  // Rows must have (want) or lack (refuse) this component. Nothing matches a wanted component that
-  // the world has never seen. At most kMaxFilters calls of each for sparse components.
+  // Rows must have (want) or lack (refuse) this component. A wanted component that the world does
+  // not know matches nothing. At most kMaxFilters calls of each for sparse components.
   void want(const Storage& storage, const ComponentInfo& info);
   void refuse(const Storage& storage, const ComponentInfo& info);
 
@@ -131,7 +132,7 @@ class RowFilter {
     (refuse(storage, kComponentInfo<Cs>), ...);
   }
 
-  // Calls visit(table, first row, count) for every run of matching rows; runs are not empty.
+  // Calls visit(table, first row, count) for every run of matching rows. Runs are not empty.
   template <class F>
   void each_run(const Storage& storage, F&& visit) const;
 
@@ -169,7 +170,7 @@ void RowFilter::each_run(const Storage& storage, F&& visit) const {
   }
 }
 
-// Follows the members of the smallest set to their tables; neighbours there form one run.
+// Follows the members of the smallest set to their tables. Neighbours there form one run.
 template <class F>
 void RowFilter::each_run_of_members(const Storage& storage, F& visit) const {
   const SparseSet* smallest = with_[0];

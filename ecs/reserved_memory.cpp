@@ -23,9 +23,8 @@ constexpr std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
 
-// How much one reservation may take when the process's address space is limited (ulimit -v): a
-// small part of what is left, which leaves enough for other reservations and the rest of the
-// program.
+// Largest reservation when the process's address space is limited (ulimit -v): a small part of the
+// rest, which leaves enough for other reservations and the rest of the program.
 std::size_t fair_share_bytes() {
   constexpr std::size_t kPart = 64;
   rlimit limit{};
@@ -59,7 +58,7 @@ ReservedMemory::ReservedMemory(std::size_t bytes, std::size_t skew_bytes) {
   const std::size_t lead = round_up(address, kHugePageBytes) - address;
   data_ = mapping_ + lead + skew_bytes;
   capacity_bytes_ = mapping_bytes_ - lead - skew_bytes;
-  ::madvise(mapping_, mapping_bytes_, MADV_HUGEPAGE);  // a hint; refusal changes nothing
+  ::madvise(mapping_, mapping_bytes_, MADV_HUGEPAGE);  // a hint; failure changes nothing
 }
 
 ReservedMemory::~ReservedMemory() {

@@ -1,5 +1,5 @@
 // A range of address space, reserved once and backed by memory as it grows, so its contents never
-// move. Fresh memory reads as zero. Large ranges ask for huge pages. Not a container: it knows
+// move. Fresh memory reads as zero. Large ranges request huge pages. Not a container: it knows
 // bytes, not objects. Growing costs one system call; the first touch of a page costs its page
 // fault. Owned by one thread at a time.
 #pragma once
@@ -13,11 +13,11 @@ class ReservedMemory {
  public:
   // An empty range: no address, no bytes.
   ReservedMemory() = default;
-  // Reserves `bytes` of address space. When the system refuses, it reserves the largest half,
-  // quarter, ... of it down to 1 MiB. When the process's address space is limited (ulimit -v), it
-  // reserves at most a 64th of what is left. Throws std::bad_alloc when there is none. `skew_bytes`
-  // (a multiple of 64, below 4096) shifts the first byte, so columns that are walked together do
-  // not compete for the same cache sets.
+  // Reserves `bytes` of address space. If the system refuses, it tries a half, a quarter, ... down
+  // to 1 MiB. If the process's address space is limited (ulimit -v), it reserves at most a 64th of
+  // the rest. Throws std::bad_alloc if the system grants none. `skew_bytes` (a multiple of 64,
+  // below 4096) shifts the first byte, so columns that are walked together do not compete for the
+  // same cache sets.
   explicit ReservedMemory(std::size_t bytes, std::size_t skew_bytes = 0);
   // Returns memory and address space to the system.
   ~ReservedMemory();
@@ -25,14 +25,13 @@ class ReservedMemory {
   ReservedMemory(ReservedMemory&& other) noexcept;
   ReservedMemory& operator=(ReservedMemory&& other) noexcept;
 
-  // Makes at least the first `bytes` usable. Throws std::bad_alloc when the system has no more, or
-  // when `bytes` exceeds capacity_bytes().
+  // Makes at least the first `bytes` usable. Throws std::bad_alloc if the system has no more, or if
+  // `bytes` exceeds capacity_bytes().
   void commit(std::size_t bytes) {
     if (bytes > committed_bytes_) grow(bytes);
   }
 
-  // The first byte, 64-byte aligned; null for an empty range. Then the bytes usable now and at
-  // most.
+  // The first byte, 64-byte aligned, null for an empty range; the bytes usable now; the most bytes.
   std::byte* data() const { return data_; }
   std::size_t committed_bytes() const { return committed_bytes_; }
   std::size_t capacity_bytes() const { return capacity_bytes_; }

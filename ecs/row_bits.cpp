@@ -5,8 +5,8 @@
 namespace psygen::ecs::detail {
 namespace {
 
-// Calls f(word index, mask) for every word that [first, first + count) touches; the mask has the
-// bits of the range in that word.
+// Calls f(word index, mask) for every word that [first, first + count) touches. The mask has the
+// range's bits in that word.
 template <class F>
 void for_each_word(std::uint32_t first, std::uint32_t count, F&& f) {
   const std::uint32_t end = first + count;

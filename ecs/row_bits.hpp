@@ -1,6 +1,6 @@
-// One bit per row and one summary bit per 64 rows: the rows of a column that changed since a reader
-// last looked. Marking is O(1). Draining costs one summary word per 4096 rows plus the marked rows.
-// Not synchronised: one thread writes a RowBits at a time.
+// One bit per row and one summary bit per 64 rows: the rows of a column that changed since a
+// reader's last drain. Marking is O(1). Draining costs one summary word per 4096 rows plus the
+// marked rows. Not synchronised: one thread writes a RowBits at a time.
 #pragma once
 
 #include <array>
@@ -12,10 +12,10 @@
 
 namespace psygen::ecs::detail {
 
-// The bits of one table for one reader. Rows passed in are below the count reserved.
+// The bits of one table for one reader. Row arguments are below the reserved count.
 class RowBits {
  public:
-  // Afterwards bits exist for rows [0, count); new ones are clear.
+  // Provides bits for rows [0, count). New bits are clear.
   void reserve_rows(std::size_t count) {
     if (count > words_.size() * 64) grow(count);
   }
@@ -29,7 +29,7 @@ class RowBits {
   // Both set or clear rows [first, first + count). O(count / 64).
   void mark_range(std::uint32_t first, std::uint32_t count);
   void clear_range(std::uint32_t first, std::uint32_t count);
-  // Row `to` takes the value of row `from` of `source`, which may be this object.
+  // Copies the bit of row `from` of `source`, which may be this object, to row `to`.
   void copy_bit(std::uint32_t to, const RowBits& source, std::uint32_t from) {
     if (source.test(from)) {
       mark(to);
@@ -37,15 +37,15 @@ class RowBits {
       words_[to / 64] &= ~bit(to % 64);
     }
   }
-  // Whether the row is marked.
+  // True if the row is marked.
   bool test(std::uint32_t row) const { return (words_[row / 64] & bit(row % 64)) != 0; }
-  // False only when every bit is clear; true may be out of date.
+  // False only if every bit is clear; true may be out of date.
   bool any() const { return any_; }
   // Hints that mark(row) follows soon.
   void prefetch(std::uint32_t row) const { __builtin_prefetch(words_.data() + row / 64, 1); }
 
   // Clears every marked row and calls f(first, count) once per maximal run of them, ascending. `f`
-  // may mark rows: they come up later in this drain or in the next one.
+  // may mark rows: this drain or the next one reports them.
   template <class F>
   void drain(F&& f);
 
@@ -67,7 +67,7 @@ void RowBits::drain(F&& f) {
   if (!any_) return;
   any_ = false;
   // Runs are collected before `f` sees them: two short loops instead of one long one. The last run
-  // is kept back because the next word may continue it.
+  // waits because the next word may continue it.
   std::array<Run, 256> runs;
   std::size_t last = 0;
   runs[0] = {UINT32_MAX, UINT32_MAX};  // empty, and no row continues it

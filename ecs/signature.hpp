@@ -1,4 +1,4 @@
-// A set of component types of one world: the columns that a table has, or that a query wants. Four
+// A set of component types of one world: the columns of a table, or those that a query needs. Four
 // words; at most 256 component types per world. A plain value; every operation is O(1).
 #pragma once
 
@@ -13,27 +13,27 @@ using ComponentId = std::uint16_t;
 inline constexpr std::size_t kMaxComponents = 256;
 inline constexpr ComponentId kNoComponent = UINT16_MAX;
 
-// Ids given to it are below kMaxComponents.
+// Ids must be below kMaxComponents.
 class Signature {
  public:
-  // One id: adds it to the set, or tests for it.
+  // Adds an id to the set, or tests for it.
   void insert(ComponentId id) { words_[id / 64] |= bit(id); }
   bool contains(ComponentId id) const { return (words_[id / 64] & bit(id)) != 0; }
-  // Whether every id of `other` is in this set.
+  // True if this set has every id of `other`.
   bool includes(const Signature& other) const {
     std::uint64_t missing = 0;
     for (std::size_t i = 0; i < words_.size(); ++i)
       missing |= other.words_[i] & ~words_[i];
     return missing == 0;
   }
-  // Whether the two sets share an id.
+  // True if the two sets share an id.
   bool intersects(const Signature& other) const {
     std::uint64_t shared = 0;
     for (std::size_t i = 0; i < words_.size(); ++i)
       shared |= other.words_[i] & words_[i];
     return shared != 0;
   }
-  // This set plus all of `added`, then minus all of `removed`.
+  // Returns this set plus all of `added`, then minus all of `removed`.
   Signature changed(const Signature& added, const Signature& removed) const {
     Signature result;
     for (std::size_t i = 0; i < words_.size(); ++i) {

@@ -1,4 +1,4 @@
-// Appending a snapshot: it is loaded into a world of its own, and its rows then move over.
+// Appending a snapshot: loads it into a separate world, then moves its rows to the target.
 #include <algorithm>
 #include <new>
 #include <numeric>
@@ -10,7 +10,7 @@ namespace psygen::ecs {
 namespace detail {
 namespace {
 
-// Memory for rows of a component while they change places.
+// Memory for rows of a component during an exchange.
 class Scratch {
  public:
   Scratch(const ComponentInfo& info, std::size_t rows)
@@ -32,7 +32,7 @@ class Appender {
     new_handles_.resize(from.slots().used(), kNullEntity);
   }
 
-  // Whether the limits of the world allow it; otherwise says which does not.
+  // Returns the limit of the world that the append would exceed; empty if none.
   std::string refusal() const {
     if (from_.slots().living() + to_.slots().living() + to_.slots().retired() >
         to_.limits().max_entities)
@@ -51,10 +51,10 @@ class Appender {
           to_.limits().max_rows_per_table)
         return "a table has more rows than WorldLimits::max_rows_per_table";
     }
-    return kinds > to_.limits().max_tables ? "more kinds than WorldLimits::max_tables" : "";
+    return kinds > to_.limits().max_tables ? "more archetypes than WorldLimits::max_tables" : "";
   }
 
-  // When memory ends, the world has no entity more and the exception passes through.
+  // If memory ends, the world has no new entity and the exception passes through.
   std::vector<Entity> run() {
     try {
       for (const Table* table : filled_tables())
@@ -110,7 +110,7 @@ class Appender {
     }
   }
 
-  // Every row of either side holds an object before and after it.
+  // Every row on both sides holds an object before and after the swap.
   static void swap_rows(const ComponentInfo& info, std::byte* source, std::byte* target,
                         std::size_t first, std::size_t count) {
     const Scratch scratch(info, count);
@@ -138,14 +138,14 @@ class Appender {
     std::vector<Entity> entities;
     for (std::uint32_t row = 0; row < members.rows(); ++row)
       entities.push_back(new_handle(members.entities()[row]));
-    to_.add_sparse(id, entities);  // in this order, after those that were there
+    to_.add_sparse(id, entities);  // in this order, after existing members
     SparseSet& set = *to_.record(id).sparse;
     const std::size_t first = set.row_of(entities.front());
     swap_rows(*record.info, record.sparse->column(), set.column(), first, entities.size());
     follow(*record.info, set.column(), first, entities.size());
   }
 
-  // Handles in the values of these rows name the new entities.
+  // Redirects handles in the values of these rows to the new entities.
   void follow(const ComponentInfo& info, std::byte* column, std::size_t first,
               std::size_t count) const {
     const TypeDescription* type = described(info);
@@ -175,13 +175,13 @@ class Appender {
 
   Storage& from_;
   Storage& to_;
-  std::vector<Entity> new_handles_;  // by the index of the old one
+  std::vector<Entity> new_handles_;  // by the old index
   std::vector<Storage::Batch> batches_;
   std::size_t moved_tables_ = 0;
   std::vector<Entity> all_;
 };
 
-// As large as the snapshot could need: address space may be limited.
+// Limits as large as the snapshot could need, because address space may be limited.
 WorldLimits limits_for(std::size_t bytes, const WorldLimits& limits) {
   WorldLimits part = limits;
   part.max_entities = std::min(limits.max_entities, bytes / sizeof(std::uint32_t) + 1);

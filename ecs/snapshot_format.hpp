@@ -1,4 +1,5 @@
-// What saving and loading snapshots share: the header, the checksum, and how a type is stored.
+// The common format of saving and loading snapshots: the header, the checksum, and the storage of
+// types.
 //
 //   "psyg-ecs", u32 version, u64 bytes of what follows up to the checksum
 //   components: u32 count; each: string name, u8 sparse, u8 described, type if described
@@ -35,8 +36,8 @@ inline constexpr std::uint32_t kSnapshotVersion = 1;
 inline constexpr std::size_t kSnapshotHeaderBytes = 8 + 4 + 8;
 inline constexpr std::size_t kSnapshotChecksumBytes = 8;
 
-// A 64-bit hash of the bytes and their number. Every step is a bijection of the state, so changing
-// one word always changes the result. Not cryptographic.
+// Returns a 64-bit hash of the bytes and their number. Every step is a bijection of the state, so
+// changing one word always changes the result. Not cryptographic.
 inline std::uint64_t checksum(std::span<const std::byte> bytes) {
   std::uint64_t h = 0x243F6A8885A308D3ull ^ bytes.size();
   for (std::size_t i = 0; i < bytes.size(); i += 8) {
@@ -48,16 +49,16 @@ inline std::uint64_t checksum(std::span<const std::byte> bytes) {
   return h;
 }
 
-// Children are stored as the list that they name.
+// True for Children, whose list is stored instead of the component.
 inline bool is_children(const ComponentInfo& info) {
   return &info == &kComponentInfo<Children>;
 }
-// The stored type of a component; null when its value is not stored.
+// Returns the stored type of a component; null if its value is not stored.
 inline const TypeDescription* described(const ComponentInfo& info) {
   return is_children(info) ? &description_of<std::vector<Entity>>() : info.describe();
 }
 
-// Gives saving and loading the storage of a world.
+// Gives saving and loading access to a world's storage.
 class SnapshotAccess {
  public:
   // The storage, to read or to fill.

@@ -1,6 +1,6 @@
 // Loading in two passes over the same bytes: the first checks everything and changes nothing, the
-// second fills the world. Only a throwing constructor or allocation can stop the second pass; what
-// it did is then undone.
+// second fills the world. Only a throwing constructor or allocation can stop the second pass, which
+// then undoes its changes.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -35,12 +35,12 @@ class Loader {
  private:
   bool header() {
     if (storage_.slots().used() > 0) {
-      return in_.refuse(Status::kWorldInUse, "only a world without a past can be loaded");
+      return in_.refuse(Status::kWorldInUse, "only a world that never had an entity can be loaded");
     }
     const std::span<const std::byte> bytes = in_.bytes();
     const std::size_t magic = kSnapshotMagic.size();
     if (bytes.size() < magic || std::memcmp(bytes.data(), kSnapshotMagic.data(), magic) != 0) {
-      return in_.refuse(Status::kNotASnapshot, "these bytes are none");
+      return in_.refuse(Status::kNotASnapshot, "the bytes are not a snapshot");
     }
     if (bytes.size() < kSnapshotHeaderBytes + kSnapshotChecksumBytes) {
       return in_.refuse(Status::kTruncated, "it ends within its header");
@@ -52,7 +52,7 @@ class Loader {
                                                    " is newer than " +
                                                    std::to_string(kSnapshotVersion));
     }
-    if (version == 0) return in_.corrupt("there is no version 0");
+    if (version == 0) return in_.corrupt("version 0 does not exist");
     return length_and_checksum();
   }
 
@@ -63,11 +63,11 @@ class Loader {
       return in_.refuse(Status::kTruncated,
                         std::to_string(length - there) + " bytes are missing at its end");
     }
-    if (length < there) return in_.corrupt("something follows after its end");
+    if (length < there) return in_.corrupt("it has bytes after its end");
     const auto content = in_.bytes().first(in_.size() - kSnapshotChecksumBytes);
     std::uint64_t sum = 0;
     std::memcpy(&sum, in_.bytes().data() + content.size(), sizeof(sum));
-    if (checksum(content) != sum) return in_.corrupt("the checksum does not fit");
+    if (checksum(content) != sum) return in_.corrupt("the checksum does not match");
     in_.end_at(content.size());
     return true;
   }
@@ -88,11 +88,11 @@ class Loader {
       }
       component.id = static_cast<ComponentId>(known - storage_.records().begin());
       if (std::ranges::find(components_, component.id, &SavedComponent::id) != components_.end()) {
-        return in_.corrupt("a component is there twice");
+        return in_.corrupt("a component is listed twice");
       }
       const ComponentInfo& info = *(*known)->info;
       if (info.sparse != sparse) {
-        return in_.refuse(Status::kTypeMismatch, component.name + " is kept elsewhere now");
+        return in_.refuse(Status::kTypeMismatch, component.name + " has another storage now");
       }
       if (component.described)
         component.type = read_saved_type(in_, described(info), component.name);
@@ -127,7 +127,8 @@ class Loader {
       default: {
         const std::byte* from = in_.take(type.size_bytes);
         if (from == nullptr) return;
-        if (type.kind == FieldKind::kBool && *from > std::byte{1}) in_.corrupt("a bool is neither");
+        if (type.kind == FieldKind::kBool && *from > std::byte{1})
+          in_.corrupt("a bool is neither 0 nor 1");
         if (to != nullptr) std::memcpy(to, from, type.size_bytes);
       }
     }
@@ -137,7 +138,7 @@ class Loader {
     for (std::size_t i = 0; i < count && in_.ok(); ++i)
       value(type.parts[0], to == nullptr ? nullptr : to + i * step);
   }
-  // Elements may be larger in the program than in the snapshot, but within bounds.
+  // Elements may be larger in the program than in the snapshot, within bounds.
   void count_memory(const SavedType& type, std::uint32_t length) {
     if (type.own == nullptr) return;
     list_bytes_ += std::uint64_t{length} * type.own->element->size_bytes;
@@ -175,7 +176,7 @@ class Loader {
   bool check_rest() {
     rest_ = in_.at();
     check_slots() && check_tables() && check_sparse_sets();
-    if (in_.ok() && in_.left() > 0) in_.corrupt("something follows after its end");
+    if (in_.ok() && in_.left() > 0) in_.corrupt("it has bytes after its end");
     if (in_.ok() && std::ranges::count(owner_, Owner::kNobody) > 0) in_.corrupt("a slot is lost");
     return in_.ok();
   }
@@ -216,16 +217,16 @@ class Loader {
     for (std::uint32_t left = in_.length(8); left > 0 && in_.ok(); --left) {
       const auto [numbers, kind] = read_kind();
       if (std::ranges::find(kinds, kind) != kinds.end())
-        return in_.corrupt("a kind is there twice");
+        return in_.corrupt("an archetype is listed twice");
       kinds.push_back(kind);
       if (storage_.tables().size() - 1 + kinds.size() > storage_.limits().max_tables)
-        return too_large("more kinds", "max_tables");
+        return too_large("more archetypes", "max_tables");
       const std::vector<Entity> rows = handles();
       if (!check_rows(rows)) return false;
       if (rows.empty()) return in_.corrupt("a table has no rows");
       for (const Entity e : rows) {
         if (!lives(e) || owner_[e.index] != Owner::kNobody)
-          return in_.corrupt("an entity is there twice");
+          return in_.corrupt("an entity is listed twice");
         owner_[e.index] = Owner::kTable;
       }
       for (const std::uint32_t number : numbers)
@@ -239,14 +240,14 @@ class Loader {
     for (std::uint32_t left = in_.length(8); left > 0 && in_.ok(); --left) {
       const auto number = in_.number<std::uint32_t>();
       if (number >= components_.size() || seen[number] || !is_sparse(number))
-        return in_.corrupt("a sparse component is none");
+        return in_.corrupt("a sparse component is not sparse");
       seen[number] = true;
       std::vector<bool> member(owner_.size());
       const std::vector<Entity> rows = handles();
       if (!check_rows(rows)) return false;
       for (const Entity e : rows) {
         if (!lives(e) || owner_[e.index] != Owner::kTable || member[e.index])
-          return in_.corrupt("a sparse component belongs to nobody");
+          return in_.corrupt("a sparse component belongs to no entity");
         member[e.index] = true;
       }
       column(components_[number], rows.size(), nullptr);
@@ -258,7 +259,8 @@ class Loader {
     return storage_.record(components_[number].id).info->sparse;
   }
 
-  // The component numbers of a table, and the kind that they form. Empty when they are invalid.
+  // Reads the component numbers of a table, and the archetype that they form. Empty if they are
+  // invalid.
   std::pair<std::vector<std::uint32_t>, Signature> read_kind() {
     std::vector<std::uint32_t> numbers(in_.length(sizeof(std::uint32_t)));
     Signature kind;

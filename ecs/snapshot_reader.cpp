@@ -5,7 +5,7 @@
 namespace psygen::ecs::detail {
 namespace {
 
-constexpr std::uint32_t kDeepestType = 32;  // levels of types within types
+constexpr std::uint32_t kDeepestType = 32;  // levels of nested types
 constexpr std::size_t kLongestSkippedArray = std::size_t{1} << 20;
 
 class TypeReader {
@@ -62,7 +62,7 @@ class TypeReader {
       SavedType part;
       part.offset_bytes = own == nullptr ? 0 : own->offset_bytes;
       read(part, own == nullptr ? nullptr : own->type);
-      // A field that takes no bytes is dropped: it needs no work, however often it is repeated.
+      // Drops a field that takes no bytes: it needs no work, however often it is repeated.
       if (in_.ok() && part.has_bytes()) type.parts.push_back(std::move(part));
       path_.pop_back();
     }
@@ -72,7 +72,7 @@ class TypeReader {
     path_.emplace_back("[]");
     read(type.parts.emplace_back(), type.own == nullptr ? nullptr : type.own->element);
     path_.pop_back();
-    if (in_.ok() && !type.parts[0].has_bytes()) in_.corrupt("a list of nothing");
+    if (in_.ok() && !type.parts[0].has_bytes()) in_.corrupt("a list of elements without bytes");
   }
 
   void read_scalar(SavedType& type) {

@@ -1,6 +1,6 @@
-// Reading a snapshot: a cursor over its bytes that refuses to run past the end, and the types that
-// the snapshot declares, matched with those of the program. Not the loader: it changes no world.
-// Internal to the library; used by one thread.
+// Reads a snapshot: a cursor over its bytes that rejects reads past the end, and the snapshot's
+// types, matched with those of the program. Not the loader: it changes no world. Internal to the
+// library; used by one thread.
 #pragma once
 
 #include <cstddef>
@@ -17,25 +17,25 @@
 
 namespace psygen::ecs::detail {
 
-// The first refusal stays; after it every read returns zero. Offsets and sizes are in bytes.
+// Keeps the first error; after it every read returns zero. Offsets and sizes are in bytes.
 class SnapshotReader {
  public:
   explicit SnapshotReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
-  // The cursor, and how many bytes follow it or are there in all.
+  // Position of the cursor, and the number of bytes after it.
   std::size_t at() const { return at_; }
   void go_to(std::size_t at) { at_ = at; }
   std::size_t left() const { return bytes_.size() - at_; }
   std::size_t size() const { return bytes_.size(); }
-  // Cuts the bytes to the first `size`; the cursor stays.
+  // Cuts the bytes to the first `size`. The cursor stays.
   void end_at(std::size_t size) { bytes_ = bytes_.first(size); }
   std::span<const std::byte> bytes() const { return bytes_; }
 
-  // Whether nothing has been refused.
+  // True if no error occurred.
   bool ok() const { return bool(result_); }
-  // The outcome, moved out.
+  // Moves the result out.
   SnapshotResult take_result() { return std::move(result_); }
-  // Records an outcome unless there is one already; both return false. corrupt() adds the position.
+  // Records an error unless one is recorded already; returns false. corrupt() adds the position.
   bool refuse(SnapshotStatus status, std::string sentence) {
     if (result_) result_ = {status, "snapshot: " + std::move(sentence)};
     return false;
@@ -44,10 +44,10 @@ class SnapshotReader {
     return refuse(SnapshotStatus::kCorrupt,
                   std::string(what) + " (at byte " + std::to_string(at_) + context_ + ")");
   }
-  // What is being read, for the sentences of corrupt().
+  // Sets the subject for messages of corrupt().
   void set_context(std::string context) { context_ = std::move(context); }
 
-  // Moves past `count` bytes and returns their address; null when fewer are left.
+  // Moves past `count` bytes and returns their address; null if fewer are left.
   const std::byte* take(std::size_t count) {
     if (count > left()) {
       corrupt("a list is longer than the data");
@@ -55,22 +55,22 @@ class SnapshotReader {
     }
     return bytes_.data() + std::exchange(at_, at_ + count);
   }
-  // The next sizeof(T) bytes as a number, 0 when fewer are left.
+  // Reads the next sizeof(T) bytes as a number; 0 if fewer are left.
   template <class T>
   T number() {
     T value{};
     if (const std::byte* from = take(sizeof(T))) std::memcpy(&value, from, sizeof(T));
     return value;
   }
-  // A count of elements that take at least `least_bytes` each; 0 when the bytes left cannot hold
-  // them.
+  // Reads a count of elements that take at least `least_bytes` each; 0 if the bytes left cannot
+  // hold them.
   std::uint32_t length(std::size_t least_bytes) {
     const auto value = number<std::uint32_t>();
     if (value <= left() / least_bytes) return value;
     corrupt("a list is longer than the data");
     return 0;
   }
-  // A string of at most 1024 bytes; a longer one is corrupt.
+  // Reads a string of at most 1024 bytes. A longer one is corrupt.
   std::string name();
 
  private:
@@ -81,7 +81,7 @@ class SnapshotReader {
   std::string context_;
 };
 
-// A type as the snapshot declares it.
+// A type as declared in the snapshot.
 struct SavedType {
   FieldKind kind = FieldKind::kStruct;
   std::size_t size_bytes = 0;            // of a scalar
@@ -90,15 +90,15 @@ struct SavedType {
   const TypeDescription* own = nullptr;  // the program's type; null: the value is skipped
   std::size_t offset_bytes = 0;          // in the program's struct
 
-  // Whether a value of this type takes bytes in the snapshot.
+  // True if a value of this type takes bytes in the snapshot.
   bool has_bytes() const {
     if (kind == FieldKind::kStruct) return !parts.empty();
     return kind != FieldKind::kArray || (count > 0 && parts[0].has_bytes());
   }
 };
 
-// Reads a type and compares it with `own`, the program's type of that name (null when it has none).
-// Refuses types that changed and names `name` and the fields on the way.
+// Reads a type and compares it with `own`, the program's type of that name (null if it has none).
+// Rejects types that changed, with a message that has `name` and the path of fields.
 SavedType read_saved_type(SnapshotReader& in, const TypeDescription* own, const std::string& name);
 
 }  // namespace psygen::ecs::detail

@@ -7,7 +7,7 @@ namespace psygen::ecs {
 namespace detail {
 namespace {
 
-// Of all entities, or of those that have one component. These are numbered anew.
+// Saves all entities, or those that have one component, which it numbers anew.
 class Saver {
  public:
   explicit Saver(const Storage& storage) : storage_(storage) {}
@@ -71,8 +71,8 @@ class Saver {
     }
   }
 
-  // The components that some entity has, sorted by name: the same state then gives the same bytes,
-  // whatever the order in which the world registered its types.
+  // Collects the components that some entity has, sorted by name: the same state then gives the
+  // same bytes, whatever the order in which the world registered its types.
   void components() {
     number_of_.assign(storage_.records().size(), kUnused);
     for (const auto& table : storage_.tables()) {
@@ -238,11 +238,11 @@ class Saver {
   static constexpr std::uint32_t kUnused = UINT32_MAX;
   const Storage& storage_;
   const bool all_ = true;
-  std::vector<std::uint32_t> new_index_;  // by index; kUnused: left out
+  std::vector<std::uint32_t> new_index_;  // by index; kUnused: not saved
   std::uint32_t new_count_ = 0;
   std::vector<std::byte> out_;
-  std::vector<ComponentId> ids_;          // of the components written, in their order
-  std::vector<std::uint32_t> number_of_;  // place in ids_, by component id
+  std::vector<ComponentId> ids_;          // of the written components, in order
+  std::vector<std::uint32_t> number_of_;  // index into ids_, by component id
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
-// Where a toggled component (ComponentTraits<C>::sparse) is kept: one table of its own for all
-// entities that have it, whatever their kind, and the row in it for every entity. Adding and
-// removing move no other component. Untyped; Storage keeps readers and slots in step with it.
-// Lookups are O(1).
+// Storage of a sparse component (ComponentTraits<C>::sparse), which entities gain and lose often:
+// one table for all entities that have it, whatever their archetype, and an index from every entity
+// to its row. Adding and removing move no other component. Untyped; Storage updates readers and
+// slots. Lookups are O(1).
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ class SparseSet {
   static constexpr std::uint32_t kNoRow = UINT32_MAX;
 
   // Reserves address space for `max_rows` members among `max_entities` entities. Throws
-  // std::bad_alloc when there is none. `info` outlives the set.
+  // std::bad_alloc if there is none. `info` outlives the set.
   SparseSet(ComponentId id, const ComponentInfo& info, std::size_t max_entities,
             std::size_t max_rows);
 
@@ -32,25 +32,25 @@ class SparseSet {
   // Row 0 of the values. The address never changes.
   std::byte* column() const { return rows_.columns()[0].memory.data(); }
 
-  // The row of a member, else kNoRow. Stale handles are not members.
+  // Returns the row of a member, else kNoRow. Stale handles are not members.
   std::uint32_t row_of(Entity entity) const {
     if (entity.index >= indexed_) return kNoRow;
     const std::uint32_t row = row_after()[entity.index] - 1;
     if (row >= rows_.rows()) return kNoRow;
     return rows_.entities()[row] == entity ? row : kNoRow;
   }
-  // Whether the entity is a member.
+  // True if the entity is a member.
   bool contains(Entity entity) const { return row_of(entity) != kNoRow; }
-  // Hints that row_of(entity) follows soon. Any handle is allowed.
+  // Hints that row_of(entity) follows soon. Accepts any handle.
   void prefetch(Entity entity) const {
     if (entity.index < indexed_) __builtin_prefetch(row_after() + entity.index);
   }
 
   // Appends value-initialised rows for those of `entities` that live and are not members yet;
-  // returns how many. When a constructor throws, no entity has joined. Ends the program beyond
+  // returns their number. If a constructor throws, no entity has joined. Ends the program beyond
   // `max_rows` members. O(entities).
   std::size_t add(std::span<const Entity> entities, const EntitySlots& slots);
-  // Lists a member in rows().leaving, once; from then on it is not a member. False for other
+  // Adds a member to rows().leaving, once; it then no longer is a member. Returns false for other
   // entities.
   bool leave(Entity entity) {
     const std::uint32_t row = row_of(entity);
@@ -59,10 +59,10 @@ class SparseSet {
     rows_.leaving.push_back(row);
     return true;
   }
-  // Row `row` holds another member now: updates where that member is found.
+  // Updates the index after another member moved to `row`.
   void note_moved(std::uint32_t row) { row_after()[rows_.entities()[row].index] = row + 1; }
 
-  // Bytes of memory that are usable now, rows and index together.
+  // Committed bytes of rows and index.
   std::size_t committed_bytes() const {
     return rows_.committed_bytes() + memory_.committed_bytes();
   }

@@ -49,7 +49,7 @@ ComponentId Storage::id_of(const ComponentInfo& info) {
   for (const auto& other : records_) {
     if (other->info->name != info.name) continue;
     give_up("two component types are named '" + std::string(info.name) +
-            "': give one another ComponentTraits<>::name");
+            "': change one ComponentTraits<>::name");
   }
   const auto id = static_cast<ComponentId>(records_.size());
   auto& record = *records_.emplace_back(std::make_unique<ComponentRecord>());
@@ -78,7 +78,7 @@ Table& Storage::table_for(const Signature& kind) {
 }
 
 Table& Storage::make_table(const Signature& kind) {
-  if (tables_.size() > limits_.max_tables) give_up("more kinds than WorldLimits::max_tables");
+  if (tables_.size() > limits_.max_tables) give_up("more archetypes than WorldLimits::max_tables");
   const auto id = static_cast<std::uint32_t>(tables_.size());
   std::vector<Column> columns;
   for (std::size_t c = 0; c < records_.size(); ++c) {
@@ -96,7 +96,7 @@ Table& Storage::make_table(const Signature& kind) {
   }
   if (tables_.size() * 2 <= table_index_.size()) {
     index_table(id);
-  } else {  // at most half full: every table gets a new place
+  } else {  // at most half full: every table gets a new position
     table_index_.assign(table_index_.size() * 2, 0);
     for (std::uint32_t t = 1; t < tables_.size(); ++t)
       index_table(t);
@@ -112,7 +112,7 @@ void Storage::index_table(std::uint32_t id) {
   table_index_[i] = id;
 }
 
-// Makes room for `count` more rows and stores for every component where its rows of new chunks are.
+// Commits memory for `count` more rows and records the addresses of new chunks for every component.
 void Storage::make_room(Table& table, std::size_t count) {
   const std::size_t known = directory_.chunk_count();
   table.reserve_more(count);
@@ -198,7 +198,7 @@ void Storage::report_removed(const Table& table, const Signature& which) {
   });
 }
 
-// Ends the objects of the leaving rows in the columns of `which`, and frees their child lists.
+// Destroys the objects of the leaving rows in the columns of `which`, and frees their child lists.
 void Storage::end_leaving_rows(Table& table, const Signature& which) {
   if (children_id_ != kNoComponent && which.contains(children_id_)) {
     if (std::byte* column = table.column_data(children_id_)) {
@@ -209,7 +209,7 @@ void Storage::end_leaving_rows(Table& table, const Signature& which) {
   table.destroy_rows(table.leaving, which);
 }
 
-// Moves the change bits after `moves_` moved rows and the table became shorter.
+// Moves the change bits after the moves in `moves_` and the shortening of the table.
 void Storage::move_leaving_bits(Table& table, std::uint32_t old_rows) {
   for_each_reader(table, [&](ReaderState& reader) {
     RowBits& bits = reader.bits_of_table[table.id()];
@@ -221,7 +221,7 @@ void Storage::move_leaving_bits(Table& table, std::uint32_t old_rows) {
   table.leaving.clear();
 }
 
-// Fills the holes of the leaving rows, whose objects are gone, and updates handles and change bits.
+// Fills the holes of the leaving rows, which hold no objects, and updates handles and change bits.
 void Storage::remove_leaving_rows(Table& table) {
   const std::uint32_t old_rows = table.rows();
   table.close_holes(table.leaving, moves_);
@@ -330,7 +330,7 @@ std::size_t Storage::change_kind(std::span<const Entity> entities, const Signatu
     ++moved;
   }
 
-  // When a component's constructor throws, the entities that have not moved yet stay as they are.
+  // If a component's constructor throws, entities that have not moved yet are unchanged.
   struct Unwind {
     Storage& storage;
     ~Unwind() {

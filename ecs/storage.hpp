@@ -1,7 +1,7 @@
 // The untyped core of a world: component types, tables, sparse sets, handles, change bits, and the
-// batch verbs that change structure. `World` puts types on top; nothing else uses it. One thread
-// changes it; const functions may run on several threads while nothing changes. Verbs are linear in
-// the handles or rows that they are given.
+// batch verbs that change structure. `World` adds types and is its only user. One thread changes
+// it; const functions may run on several threads while nothing changes. Verbs are linear in the
+// given handles or rows.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ namespace psygen::ecs {
 
 namespace detail {
 
-// What one consumer of a component's changes has not seen yet.
+// The changes of a component that one consumer has not seen yet.
 struct ReaderState {
   ComponentId component = kNoComponent;
   bool reports_removed = false;
@@ -38,18 +38,18 @@ struct ReaderState {
   std::vector<Entity> handed_out;  // scratch of draining
 };
 
-// What a world keeps per component type.
+// Data of a world per component type.
 struct ComponentRecord {
   const ComponentInfo* info = nullptr;
   // By chunk: the address that the row at location 0 would have if the rows of this chunk continued
-  // down to it. The address of a row is then one multiplication and one addition. 0 when the
-  // chunk's table lacks the component.
+  // down to it. The address of a row is then one multiplication and one addition. 0 if the chunk's
+  // table lacks the component.
   std::vector<std::uintptr_t> origin_of_chunk;
-  std::unique_ptr<SparseSet> sparse;  // null for a component that is kept in tables
+  std::unique_ptr<SparseSet> sparse;  // null for a component in tables
   std::vector<std::unique_ptr<ReaderState>> readers;
 };
 
-// The row of a component at a location; null when its table lacks the component. O(1).
+// Returns the row of a component at a location; null if its table lacks the component. O(1).
 template <class C>
 C* row_at(const ComponentRecord& record, std::uint32_t location) {
   const std::uintptr_t origin = record.origin_of_chunk[location / kChunkRows];
@@ -72,14 +72,14 @@ inline constexpr std::array<QueryTerm, sizeof...(Cs)> kQueryTerms{
 template <class... Cs>
 inline constexpr std::span<const QueryTerm> kQuery{kQueryTerms<Cs...>};
 
-// The query being iterated: structural changes break the contract until it ends. Atomic because
-// systems on several threads iterate at once.
+// The query being iterated, during which structural changes violate the contract. Atomic because
+// systems on several threads may iterate at the same time.
 struct IterationState {
-  std::atomic<std::uint32_t> depth{0};  // iterations under way on all threads
+  std::atomic<std::uint32_t> depth{0};  // active iterations on all threads
   std::atomic<const std::span<const QueryTerm>*> query{nullptr};  // the latest; for messages only
 };
 
-// Counts one iteration as under way for as long as it lives.
+// Counts one iteration as active during its lifetime.
 class IterationGuard {
  public:
   // `state` and `query` must outlive the guard.
@@ -100,8 +100,8 @@ class IterationGuard {
   const std::span<const QueryTerm>* outer_;
 };
 
-// World's functions without types; contracts and errors are described there. A component is named
-// by its id in this world, a kind by the set of its ids.
+// World's functions without types; World documents contracts and errors. A component is named by
+// its id in this world, an archetype by the set of its ids.
 class Storage {
  public:
   // Contiguous rows of a table, from `first` on. Valid until the next structural change.
@@ -111,44 +111,46 @@ class Storage {
   };
 
   // An empty storage. Limits above 2^32 - 2 entities or rows are lowered to that. Throws
-  // std::bad_alloc when there is no address space for the slots.
+  // std::bad_alloc if there is no address space for the slots.
   explicit Storage(const WorldLimits& limits);
   // Destroys all components.
   ~Storage();
   Storage(const Storage&) = delete;
   Storage& operator=(const Storage&) = delete;
 
-  // The id of a component type. id_of registers a new type and ends the program beyond 256 types or
-  // when two types share a name; find_id returns kNoComponent for a new type. O(1) for known types.
+  // Returns the id of a component type. id_of registers a new type and ends the program beyond 256
+  // types or if two types share a name; find_id returns kNoComponent for a new type. O(1) for known
+  // types.
   ComponentId id_of(const ComponentInfo& info);
   ComponentId find_id(const ComponentInfo& info) const;
   // The record of a registered id. Its address never changes.
   ComponentRecord& record(ComponentId id) { return *records_[id]; }
   const ComponentRecord& record(ComponentId id) const { return *records_[id]; }
-  // Stands for a component that this world has never seen: no entity has it.
+  // Record of a component that this world does not know: no entity has it.
   const ComponentRecord& absent() const { return absent_; }
-  // Component types by id, and tables by id; tables()[0] is null. Valid until one is added.
+  // Component types by id, and tables by id; tables()[0] is null. Valid until the next registration
+  // or new table.
   std::span<const std::unique_ptr<ComponentRecord>> records() const { return records_; }
   std::span<const std::unique_ptr<Table>> tables() const { return tables_; }
-  // Where entities are: the slots, and what their locations mean.
+  // Locations of entities: the slots, and the directory that interprets them.
   const EntitySlots& slots() const { return slots_; }
   const RowDirectory& directory() const { return directory_; }
 
-  // The slot of a living entity, else null. O(1).
+  // Returns the slot of a living entity, else null. O(1).
   Slot* living(Entity entity) const {
     Slot* slot = slots_.find(entity);
     return slot != nullptr && slot->location != kNowhere ? slot : nullptr;
   }
 
-  // World::create: `count` entities of one kind, in new contiguous rows.
+  // World::create: `count` entities of one archetype, in new contiguous rows.
   Batch create(const Signature& kind, std::size_t count);
-  // World::destroy. Returns how many died.
+  // World::destroy. Returns the number of entities that died.
   std::size_t destroy(std::span<const Entity> entities);
-  // World::change_kind for components that are kept in tables. Returns how many entities moved.
-  // When a constructor throws, entities that have not moved yet stay as they were.
+  // World::change_kind for components in tables. Returns the number of entities that moved. If a
+  // constructor throws, entities that have not moved yet are unchanged.
   std::size_t change_kind(std::span<const Entity> entities, const Signature& added,
                           const Signature& removed);
-  // World::add and World::remove for one sparse component. Return how many entities changed.
+  // World::add and World::remove for one sparse component. Return the number of changed entities.
   std::size_t add_sparse(ComponentId id, std::span<const Entity> entities);
   std::size_t remove_sparse(ComponentId id, std::span<const Entity> entities);
   // World::reserve.
@@ -157,7 +159,7 @@ class Storage {
     make_room(table_for(kind), count);
   }
 
-  // A new reader, to which all rows are new. The storage owns it; its address never changes.
+  // Makes a reader, to which all rows are new. The storage owns it; its address never changes.
   ReaderState& add_reader(ComponentId id, bool reports_removed);
   // Deletes a reader that add_reader returned.
   void remove_reader(const ReaderState& reader);
@@ -180,34 +182,34 @@ class Storage {
       reader->bits_of_table[table].mark_range(first, count);
   }
 
-  // Ends the program with a message that names `verb` when a query is being iterated.
+  // Ends the program with a message that names `verb` if a query is being iterated.
   void expect_no_iteration(std::string_view verb) const {
     if (iteration_.depth.load(std::memory_order_relaxed) != 0) structural_change_inside(verb);
   }
-  // For IterationGuard. Changes also in a const storage.
+  // For IterationGuard. Also changes in a const storage.
   IterationState& iteration() const { return iteration_; }
-  // Bytes of memory that slots, children, tables and sparse sets can use now.
+  // Committed bytes of slots, children, tables and sparse sets.
   std::size_t committed_bytes() const;
 
   // The lists that Children components name.
   const ChildLists& child_lists() const { return child_lists_; }
-  // The entity's Children; null when it is dead or has none.
+  // Returns the entity's Children; null if it is dead or has none.
   Children* children_of(Entity entity) const;
-  // Replaces the list. `children` may not be a list of this storage.
+  // Replaces the list. `children` must not be a list of this storage.
   void set_children(Children& list, std::span<const Entity> children) {
     expect_no_iteration("set_children");
     child_lists_.assign(list, children);
   }
 
-  // The limits, after lowering.
+  // The limits after lowering.
   const WorldLimits& limits() const { return limits_; }
-  // For loading into a world that never had an entity: first the slots, then rows for handles that
-  // these slots know.
+  // For loading into a world that never had an entity: first restores the slots, then rows for
+  // handles that these slots know.
   void restore_slots(std::span<const std::uint32_t> generations,
                      std::span<const std::uint32_t> free) {
     slots_.restore(generations, free);
   }
-  // One row per handle, in this order, with value-initialised components.
+  // Makes one row per handle, in this order, with value-initialised components.
   Batch restore_rows(const Signature& kind, std::span<const Entity> entities);
   // Undoes restore_slots, restore_rows and add_sparse: no entities and no slots remain.
   void forget_restored();

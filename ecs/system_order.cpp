@@ -42,7 +42,7 @@ class Sorting {
     return true;
   }
 
-  // The position of a system that another one names; kNone with an error.
+  // Returns the position of a named system; kNone with an error if it is unknown.
   std::size_t find(const std::string& name, const PlacedSystem& asker, const char* side) {
     const auto found = positions_.find(name);
     if (found != positions_.end()) return found->second;
@@ -92,7 +92,7 @@ class Sorting {
     return visit_followers();
   }
 
-  // What waited for the last one, and for nothing else, runs right after it.
+  // Runs systems that waited only for the last one right after it.
   bool visit_followers() {
     for (std::size_t i = 0; i < systems_.size(); ++i) {
       const auto done = [this](std::size_t leader) { return state_[leader] == State::kDone; };
@@ -114,7 +114,7 @@ class Sorting {
 
   std::span<const PlacedSystem> systems_;
   std::unordered_map<std::string, std::size_t> positions_;
-  std::vector<std::vector<std::size_t>> leaders_;  // that must run before each
+  std::vector<std::vector<std::size_t>> leaders_;  // systems that must run before each
   std::vector<State> state_;
   std::vector<std::size_t> path_;  // being visited, each a leader of the one before
   SystemOrder result_;

@@ -1,6 +1,6 @@
-// The order of systems: those without a place run in the order in which they were added, the others
-// before and after systems that they name. Not a scheduler: what runs at the same time is decided
-// by accesses (schedule.hpp). Pure functions.
+// The order of systems: systems without constraints run in the order of add(), others before and
+// after the systems that they name. Not a scheduler: accesses decide which systems run at the same
+// time (schedule.hpp). Pure functions.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace psygen::ecs {
 
-// Where a system runs, by the names of others. Without any name: after every system that was added
-// before it without a place. With `after`: as soon as those have run. With `before` alone: as late
-// as possible. Systems with the same place run in the order in which they were added.
+// Constraints on a system's position, by names of other systems. Without names: after every system
+// that was added before it without constraints. With `after`: as soon as those have run. With
+// `before` alone: as late as possible. Systems with equal constraints run in the order of add().
 struct Place {
   std::vector<std::string> before = {};
   std::vector<std::string> after = {};
 };
-// A place right before or right after one system.
+// Makes a constraint: right before or right after one system.
 inline Place before(std::string system) {
   return {.before = {std::move(system)}};
 }
@@ -32,11 +32,11 @@ struct PlacedSystem {
   Place place;
 };
 struct SystemOrder {
-  std::vector<std::size_t> order;  // positions in what was given; empty with an error
-  std::string error;               // empty, or a sentence that names the systems
+  std::vector<std::size_t> order;  // indices into the argument; empty after an error
+  std::string error;               // empty, or a message that names the systems
 };
 
-// Errors: two systems of one name, a name that there is not, a cycle. O(systems²).
+// Errors: two systems of one name, an unknown name, a cycle. O(systems²).
 SystemOrder order_systems(std::span<const PlacedSystem> systems);
 
 }  // namespace detail

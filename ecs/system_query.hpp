@@ -1,7 +1,7 @@
-// What a system may do with the components that it names: a view of a world, restricted to these
+// A system's access to the components that it names: a view of a world, restricted to these
 // components. `Query<Mesh, const Placed>` writes Mesh and reads Placed, and the compiler enforces
 // it. No structural changes: record those in Commands. Its functions are World's, with the same
-// complexity and contracts; a schedule decides which systems run beside each other.
+// complexity and contracts; a schedule decides which systems run at the same time.
 #pragma once
 
 #include <cstddef>
@@ -26,13 +26,14 @@ class Query {
   // A view of `world`. Schedules make it from a system's parameters.
   explicit Query(World& world) : world_(&world) {}
 
-  // World::each over all of Cs, or over the components named: query.each<const Placed>(f).
+  // World::each over all of Cs, or over the named components: query.each<const Placed>(f).
   template <class... Some, class F, class... Filters>
   void each(F&& f, Filters... filters) const {
     if constexpr (sizeof...(Some) == 0) {
       world_->each<Cs...>(f, filters...);
     } else {
-      static_assert((may_use<Some>() && ...), "the query does not name this component like this");
+      static_assert((may_use<Some>() && ...),
+                    "the query does not name this component with this access");
       world_->each<Some...>(f, filters...);
     }
   }
@@ -43,18 +44,19 @@ class Query {
     if constexpr (sizeof...(Some) == 0) {
       return world_->each_of<Cs...>(entities, f);
     } else {
-      static_assert((may_use<Some>() && ...), "the query does not name this component like this");
+      static_assert((may_use<Some>() && ...),
+                    "the query does not name this component with this access");
       return world_->each_of<Some...>(entities, f);
     }
   }
 
-  // World::accessor for C or const C, as far as the query allows.
+  // World::accessor for C or const C, within the query's access.
   template <class C>
   Accessor<C> accessor() const {
-    static_assert(may_use<C>(), "the query does not name this component like this");
+    static_assert(may_use<C>(), "the query does not name this component with this access");
     return world_->accessor<C>();
   }
-  // World::get; a pointer to const when the query only reads C.
+  // World::get; a pointer to const if the query only reads C.
   template <class C>
   auto get(Entity entity) const {
     static_assert(kReads<C>, "the query does not name this component");

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kFirstRows = 64;
 
-// Destroys what was built when an exception ends construction early.
+// Destroys the objects built so far if an exception ends construction early.
 class ConstructionGuard {
  public:
   ConstructionGuard(std::span<Column> columns, std::size_t first, std::size_t count)
@@ -76,7 +76,7 @@ void Table::name_rows(std::size_t count, RowDirectory& directory) {
 
 void Table::reserve_more(std::size_t count) {
   if (count > max_rows_ - rows_) {
-    give_up("more rows of one kind than WorldLimits::max_rows_per_table");
+    give_up("more rows of one archetype than WorldLimits::max_rows_per_table");
   }
   const std::size_t need = rows_ + count;
   if (need <= capacity_) return;

@@ -1,7 +1,7 @@
 // All entities with the same set of components: one contiguous column per component and one of
 // handles, each at an address that never changes. Rows [0, rows()) are filled without holes; their
-// order has no meaning. Untyped: the world above knows the component types. Not a map: it does not
-// find entities (EntitySlots does). The world's thread changes it.
+// order has no meaning. Untyped: the world above knows the component types. Not a map: EntitySlots
+// finds entities. Only the world's thread changes it.
 #pragma once
 
 #include <array>
@@ -18,19 +18,19 @@
 
 namespace psygen::ecs::detail {
 
-// One component's values: row i lies at memory.data() + i * info->size_bytes.
+// One component's values: row i is at memory.data() + i * info->size_bytes.
 struct Column {
   const ComponentInfo* info = nullptr;
   ComponentId id = kNoComponent;
   ReservedMemory memory;
 };
 
-// Its functions are steps of Storage's verbs and are called in their order; columns and handles are
-// its own, slots and change bits are the caller's.
+// Its functions are steps of Storage's verbs, which call them in order. The table owns columns and
+// handles; the caller updates slots and change bits.
 class Table {
  public:
-  // `columns` are those of `signature`, each with address space for `max_rows` rows. Throws
-  // std::bad_alloc when there is no address space for the handles.
+  // `columns` match `signature`, each with address space for `max_rows` rows. Throws std::bad_alloc
+  // if there is no address space for the handles.
   Table(std::uint32_t id, const Signature& signature, std::vector<Column> columns,
         std::size_t max_rows);
   // Destroys the objects of all rows.
@@ -38,7 +38,7 @@ class Table {
   Table(const Table&) = delete;
   Table& operator=(const Table&) = delete;
 
-  // What the table is: its number in the world (0 for a sparse set), its components, its filled
+  // The table's number in the world (0 for a sparse set), its components, its number of filled
   // rows.
   std::uint32_t id() const { return id_; }
   const Signature& signature() const { return signature_; }
@@ -48,42 +48,42 @@ class Table {
   // One column per component of the signature. Valid as long as the table.
   std::span<Column> columns() { return columns_; }
   std::span<const Column> columns() const { return columns_; }
-  // Row 0 of a component's column; null when the table lacks it. `id` is below kMaxComponents.
+  // Row 0 of a component's column; null if the table lacks it. `id` is below kMaxComponents.
   std::byte* column_data(ComponentId id) const {
     const std::uint16_t at = column_of_[id];
     return at == kNoColumn ? nullptr : columns_[at].memory.data();
   }
 
-  // The location of a row that is filled or was named by name_rows.
+  // Returns the location of a row that is filled or was named by name_rows.
   std::uint32_t location(std::uint32_t row) const {
     return chunks_[row / kChunkRows] + row % kChunkRows;
   }
 
-  // The most rows this table may have.
+  // The most rows that this table may have.
   std::size_t max_rows() const { return max_rows_; }
 
-  // Commits memory for `count` more rows, without objects in them. Throws std::bad_alloc when
-  // memory ends; ends the program beyond max_rows(). Amortised O(1) system calls.
+  // Commits memory for `count` more rows, without objects in them. Throws std::bad_alloc if memory
+  // ends; ends the program beyond max_rows(). Amortised O(1) system calls.
   void reserve_more(std::size_t count);
   // Gives locations to rows up to rows() + count.
   void name_rows(std::size_t count, RowDirectory& directory);
-  // Builds rows [rows(), rows() + count) of the columns that are not in `except`. When a
-  // constructor throws, everything built here is destroyed again.
+  // Builds rows [rows(), rows() + count) of the columns that are not in `except`. If a constructor
+  // throws, everything built here is destroyed again.
   void construct_new_rows(std::size_t count, const Signature& except);
-  // Counts the `count` rows after the last one as filled from now on; returns the first of them.
+  // Declares the `count` rows after the last one filled; returns the first of them.
   std::uint32_t add_rows(std::size_t count);
 
-  // Ends the objects of these rows in the columns of `which`.
+  // Destroys the objects of these rows in the columns of `which`.
   void destroy_rows(std::span<const std::uint32_t> leaving, const Signature& which);
-  // Fills the holes that `leaving` (distinct rows without objects) makes with rows from the end of
-  // the table, which becomes shorter. `moves` receives what moved where. Columns and handles are
-  // moved here, everything else is the caller's. O(leaving).
+  // Fills the holes of `leaving` (distinct rows without objects) with rows from the end of the
+  // table, which becomes shorter. `moves` receives the moves. Moves columns and handles; the caller
+  // updates everything else. O(leaving).
   void close_holes(std::span<const std::uint32_t> leaving, std::vector<RowMove>& moves);
 
-  // Bytes of handles and columns that are usable now.
+  // Committed bytes of handles and columns.
   std::size_t committed_bytes() const;
 
-  // The rows that a batch verb in progress takes away; empty between verbs.
+  // Rows that the current batch verb removes; empty between verbs.
   std::vector<std::uint32_t> leaving;
 
  private:
@@ -99,7 +99,7 @@ class Table {
   std::vector<Column> columns_;
   ReservedMemory entities_;
   std::vector<std::uint32_t> chunks_;  // the location of every 4096th row
-  std::vector<std::uint64_t> dead_;    // scratch: which of the last rows are leaving
+  std::vector<std::uint64_t> dead_;    // scratch: bits of the last rows that are leaving
   std::array<std::uint16_t, kMaxComponents> column_of_;
 };
 

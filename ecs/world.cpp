@@ -15,7 +15,7 @@ std::size_t World::destroy_with_children(std::span<const Entity> parents) {
       if (list == nullptr) continue;
       const std::span<const Entity> found = children(*list);
       next.insert(next.end(), found.begin(), found.end());
-      storage_.set_children(*list, {});  // a parent met again has no children left
+      storage_.set_children(*list, {});  // a parent visited again has no children left
     }
     died += destroy(level);
     level = std::move(next);
@@ -26,7 +26,7 @@ std::size_t World::destroy_with_children(std::span<const Entity> parents) {
 bool World::set_children(Entity parent, std::span<const Entity> children) {
   Children* list = storage_.children_of(parent);
   if (list == nullptr) return false;
-  // The new children may be a list of this world, which may move when one grows.
+  // The new children may be a list of this world, which may move when a list grows.
   const std::vector<Entity> copy(children.begin(), children.end());
   storage_.set_children(*list, copy);
   return true;

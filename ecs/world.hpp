@@ -3,7 +3,7 @@
 // add, remove, reserve) invalidates spans and pointers into columns. It must not happen while a
 // query is iterated: the program ends with a message that names the query; use Commands. Component
 // constructors and destructors must not touch the world. One thread changes a world; const
-// functions may run on several threads while nothing changes it. When a component's constructor
+// functions may run on several threads while nothing changes it. If a component's constructor
 // throws, the exception passes through and no entity was created.
 #pragma once
 
@@ -21,7 +21,7 @@
 
 namespace psygen::ecs {
 
-// What create made: entity i owns row i of every column. Valid until the next structural change.
+// Result of create: entity i owns row i of every column. Valid until the next structural change.
 template <class... Cs>
 struct Created {
   std::span<const Entity> entities;
@@ -34,23 +34,23 @@ struct Created {
   }
 };
 
-// The components that World::change_kind gives and takes.
+// The components that World::change_kind adds and removes.
 template <Component... Cs>
 struct Add {};
 template <Component... Cs>
 struct Remove {};
 
-// A value that arrives for an entity which may have died in the meantime.
+// A value for an entity that may have died in the meantime.
 template <class C>
 struct Landing {
   Entity entity;
   C value;
 };
 
-// How many values World::land wrote and dropped.
+// Counts of values written, and of values dropped because their entity is stale.
 struct LandReport {
   std::size_t landed = 0;
-  std::size_t stale = 0;  // dead, or without the component
+  std::size_t stale = 0;  // the entity is dead, or lacks the component
   friend bool operator==(const LandReport&, const LandReport&) = default;
 };
 
@@ -61,7 +61,7 @@ class SnapshotAccess;
 // Owns its entities and components. Handles, accessors and readers belong to one world.
 class World {
  public:
-  // An empty world. Throws std::bad_alloc when there is no address space for `limits`.
+  // An empty world. Throws std::bad_alloc if there is no address space for `limits`.
   explicit World(const WorldLimits& limits = {}) : storage_(limits) {}
 
   // ---- structure -------------------------------------------------------------------------------
@@ -71,17 +71,17 @@ class World {
   template <Component... Cs>
   Created<Cs...> create(std::size_t count);
 
-  // Destroys these entities; stale handles and repetitions are skipped. Returns how many died.
-  // O(handles); touches only the columns of the kinds concerned.
+  // Destroys these entities; skips stale handles and repetitions. Returns the number of entities
+  // that died. O(handles); touches only the columns of their archetypes.
   std::size_t destroy(std::span<const Entity> entities) { return storage_.destroy(entities); }
 
-  // Destroys these entities, their children, the children of those, and so on. Returns how many
-  // died.
+  // Destroys these entities, their children, the children of those, and so on. Returns the number
+  // of entities that died.
   std::size_t destroy_with_children(std::span<const Entity> parents);
 
-  // add gives these entities value-initialised components, remove takes components away; everything
-  // else keeps its value. Entities that are dead are skipped, and so are those that already have
-  // all of the components (add) or none of them (remove). Returns how many changed. A sparse
+  // add gives these entities value-initialised components, remove takes components away; all other
+  // values stay. Skips dead entities, entities that have all of the components already (add), and
+  // entities that have none of them (remove). Returns the number of changed entities. A sparse
   // component is added and removed by itself; other components move the entity's row. O(handles).
   template <Component... Cs>
   std::size_t add(std::span<const Entity> entities) {
@@ -100,14 +100,14 @@ class World {
     }
   }
 
-  // Adds and removes in one move from kind to kind. Returns how many entities moved.
+  // Adds and removes in one move between archetypes. Returns the number of entities that moved.
   //   world.change_kind(entities, Add<Asleep>{}, Remove<Awake>{})
   template <Component... As, Component... Rs>
   std::size_t change_kind(std::span<const Entity> entities, Add<As...>, Remove<Rs...>) {
     return storage_.change_kind(entities, signature<As...>(), signature<Rs...>());
   }
 
-  // Makes room for `count` more entities with exactly these components.
+  // Commits memory for `count` more entities with exactly these components.
   template <Component... Cs>
   void reserve(std::size_t count) {
     storage_.reserve(signature<Cs...>(), count);
@@ -116,7 +116,7 @@ class World {
   // ---- values ----------------------------------------------------------------------------------
 
   // Writes each value in place and marks it changed; of several values for one entity the last
-  // wins. Stale handles are dropped. O(results).
+  // wins. Drops stale handles. O(results).
   template <Component C>
   LandReport land(std::span<const Landing<C>> results) {
     return land_from<C>(results);
@@ -127,12 +127,12 @@ class World {
     return land_from<C>(results);
   }
 
-  // Whether the entity lives. O(1).
+  // True if the entity lives. O(1).
   bool alive(Entity entity) const { return storage_.living(entity) != nullptr; }
-  // How many entities live.
+  // Number of living entities.
   std::size_t size() const { return storage_.slots().living(); }
 
-  // The entity's component; null when the entity is dead or lacks it. Valid until the next
+  // Returns the entity's component; null if the entity is dead or lacks it. Valid until the next
   // structural change. To follow many handles, hold an accessor instead.
   template <Component C>
   C* get(Entity entity) {
@@ -147,7 +147,7 @@ class World {
   Accessor<C> accessor() {
     return {storage_, record<std::remove_const_t<C>>()};
   }
-  // From a const world. A component that the world has never seen stays absent to this accessor,
+  // From a const world. A component that the world does not know stays absent to this accessor,
   // even after it was added.
   template <class C>
   Accessor<C> accessor() const {
@@ -173,8 +173,9 @@ class World {
   }
 
   // Like each, for these entities in their order: calls f once per run of handles whose rows are
-  // neighbours. Entities that were created together usually still are. Entities that are dead or
-  // lack one of Cs are skipped. No sparse components. Returns how many were visited. O(handles).
+  // neighbours. Entities that were created together usually still are neighbours. Skips entities
+  // that are dead or lack one of Cs. No sparse components. Returns the number of visited entities.
+  // O(handles).
   template <class... Cs, class F>
   std::size_t each_of(std::span<const Entity> entities, F&& f) {
     return each_of_in<Cs...>(storage_, entities, f);
@@ -185,7 +186,7 @@ class World {
     return each_of_in<Cs...>(storage_, entities, f);
   }
 
-  // How many entities have all of these components. O(tables).
+  // Number of entities that have all of these components. O(tables).
   template <Component... Cs>
   std::size_t count() const {
     std::size_t total = 0;
@@ -196,10 +197,10 @@ class World {
 
   // ---- parents and children --------------------------------------------------------------------
 
-  // Replaces the children of an entity that has the component Children; false when it lacks it.
-  // O(children). Children may be dead or die later: their handles are then stale.
+  // Replaces the children of an entity that has the component Children; returns false if it lacks
+  // it. O(children). Children may be dead or die later: their handles are then stale.
   bool set_children(Entity parent, std::span<const Entity> children);
-  // The children in the order in which they were set; empty for entities without children. Valid
+  // Returns the children in the order of set_children; empty for entities without children. Valid
   // until the next structural change or set_children, which is not possible while a query is
   // iterated.
   std::span<const Entity> children(Entity parent) const {
@@ -212,7 +213,7 @@ class World {
 
   // ---- changes ---------------------------------------------------------------------------------
 
-  // Says that C was written through a span or a pointer. Stale handles are skipped. O(handles).
+  // Marks C as changed after writes through a span or a pointer. Skips stale handles. O(handles).
   template <Component C>
   void mark_changed(std::span<const Entity> entities);
   template <Component C>
@@ -220,7 +221,7 @@ class World {
     mark_changed<C>(std::span<const Entity>(&entity, 1));
   }
 
-  // A new consumer of C's changes; to it, all rows are new. A tag separates readers of the same
+  // Makes a consumer of C's changes; to it, all rows are new. A tag separates readers of the same
   // component by type, as a schedule needs. O(rows / 64).
   template <Component C, class Tag = void>
   ChangeReader<C, Tag> reader(Removed removed = Removed::kIgnore) {
@@ -229,20 +230,20 @@ class World {
                                           removed == Removed::kReport)};
   }
 
-  // Makes component types known before they are used. load_snapshot requires this of every type
+  // Registers component types before their first use. load_snapshot requires this of every type
   // that its snapshot names.
   template <Component... Cs>
   void declare() {
     (storage_.id_of(detail::kComponentInfo<Cs>), ...);
   }
 
-  // ---- figures ---------------------------------------------------------------------------------
+  // ---- statistics ------------------------------------------------------------------------------
 
-  // How many tables the world has made, one per kind of entity.
+  // Number of tables that the world has made, one per archetype.
   std::size_t table_count() const { return storage_.tables().size() - 1; }
-  // How many slots have used up their generations.
+  // Number of slots that have used up their generations.
   std::size_t retired_slots() const { return storage_.slots().retired(); }
-  // Bytes of memory of handles and columns that are usable now; pages never touched cost nothing.
+  // Committed bytes of handles and columns. Pages never touched cost nothing.
   std::size_t committed_bytes() const { return storage_.committed_bytes(); }
 
  private:
@@ -269,7 +270,7 @@ class World {
   }
   template <class... Cs>
   detail::Signature signature() {
-    static_assert(detail::kDistinct<Cs...>, "a component type occurs once in a kind");
+    static_assert(detail::kDistinct<Cs...>, "a component type occurs once in an archetype");
     static_assert((!is_sparse<Cs>() && ...), "a sparse component is added after create");
     detail::Signature result;
     (result.insert(storage_.id_of(detail::kComponentInfo<Cs>)), ...);
@@ -361,7 +362,7 @@ template <class... Cs, class S, class F>
 std::size_t World::each_of_in(S& storage, std::span<const Entity> entities, F& f) {
   static_assert(detail::kDistinct<Cs...>, "a component type occurs once in a query");
   static_assert((!is_sparse<std::remove_const_t<Cs>>() && ...),
-                "a sparse component has no rows among others: use an accessor");
+                "a sparse component has no rows in tables: use an accessor");
   const std::array<detail::ComponentId, sizeof...(Cs)> ids{
       storage.find_id(detail::kComponentInfo<std::remove_const_t<Cs>>)...};
   detail::Signature wanted;

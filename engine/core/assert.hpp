@@ -1,13 +1,13 @@
-// Contracts. PSYGEN_ASSERT(condition, "sentence") ends the program when a caller broke a contract;
-// it is checked unless NDEBUG is defined. PSYGEN_CHECK is checked in every build. Not error
-// handling: failures for outside reasons are core::Error. Any thread.
+// Contracts. PSYGEN_ASSERT(condition, "message") aborts the program when a caller violates a
+// contract; it is checked unless NDEBUG is defined. PSYGEN_CHECK is checked in every build. Not
+// error handling: a failure for outside reasons is a core::Error. Any thread.
 #pragma once
 
 #include <cstdio>
 #include <cstdlib>
 
 namespace psygen::core {
-// Prints file, line, sentence and condition on stderr and aborts. For the macros below.
+// Prints file, line, message and condition on stderr and aborts. For the macros below.
 [[noreturn]] inline void contract_broken(const char* file, int line, const char* condition,
                                          const char* sentence) {
   std::fprintf(stderr, "%s:%d: contract broken: %s (%s)\n", file, line, sentence, condition);

@@ -1,7 +1,7 @@
-// Numbers as bytes in formats of our own, little-endian, one after the other. Writing appends to a
-// std::string or a std::vector<std::byte>. Reading trusts nothing: a count is checked before memory
-// is taken, and once anything is missing the reader has failed and gives zeros. Knows no files.
-// O(1) a number. An object belongs to one thread.
+// Numbers as bytes in psygen's own formats: little-endian, without padding. Writing appends to a
+// std::string or a std::vector<std::byte>. Reading trusts nothing: it checks a count before it
+// allocates memory, and after the first missing byte the reader has failed and returns zeros. Knows
+// no files. O(1) a number. An object belongs to one thread.
 #pragma once
 
 #include <bit>
@@ -17,7 +17,7 @@ namespace psygen::core {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 
-// Appends the bytes of values of one type, and of a single one.
+// Appends the bytes of many values of one type, or of a single value.
 template <class T, class Bytes>
 void put_all(Bytes& out, std::span<const T> values) {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(typename Bytes::value_type) == 1);
@@ -29,7 +29,7 @@ template <class T, class Bytes>
 void put(Bytes& out, T value) {
   put_all(out, std::span<const T>(&value, 1));
 }
-// Appends 7 bits a byte, the least first: 1 … 10 bytes.
+// Appends a number in groups of 7 bits, the lowest first: 1 … 10 bytes.
 template <class Bytes>
 void put_varint(Bytes& out, std::uint64_t value) {
   for (; value >= 0x80; value >>= 7)
@@ -37,14 +37,14 @@ void put_varint(Bytes& out, std::uint64_t value) {
   put(out, static_cast<std::uint8_t>(value));
 }
 
-// Reads bytes from the first to the last. They must outlive it.
+// Reads bytes from first to last. The bytes must outlive the reader.
 class ByteReader {
  public:
-  // Reads `bytes`, which must outlive it, from the start.
+  // Starts at the first byte.
   explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
   explicit ByteReader(std::string_view bytes) : bytes_(std::as_bytes(std::span(bytes))) {}
 
-  // The next number; 0 where there is none.
+  // Returns the next number; 0 if too few bytes are left.
   template <class T>
   T get() {
     T value{};
@@ -52,7 +52,7 @@ class ByteReader {
     if (!failed_) std::memcpy(&value, from.data(), sizeof value);
     return value;
   }
-  // The next `count` numbers; none where there are not so many.
+  // Returns the next `count` numbers; an empty list if too few bytes are left.
   template <class T>
   std::vector<T> get_all(std::size_t count) {
     if (count > bytes_.size() / sizeof(T)) failed_ = true;
@@ -62,12 +62,12 @@ class ByteReader {
     if (count > 0) std::memcpy(values.data(), from.data(), from.size());
     return values;
   }
-  // The next `bytes` bytes as text, in place.
+  // Returns the next `bytes` bytes as a view into the input.
   std::string_view get_text(std::size_t bytes) {
     const auto from = next(bytes);
     return {reinterpret_cast<const char*>(from.data()), from.size()};
   }
-  // What put_varint() wrote, below 2^63.
+  // Reads a number below 2^63 that put_varint() wrote.
   std::uint64_t get_varint() {
     std::uint64_t value = 0;
     for (unsigned shift = 0; shift < 63; shift += 7) {
@@ -78,20 +78,21 @@ class ByteReader {
     failed_ = true;
     return 0;
   }
-  // A 32-bit count of things of at least `each_bytes` bytes, for all of which there must be room.
+  // Reads a 32-bit count of elements of at least `each_bytes` bytes each. The reader fails if that
+  // many elements do not fit into the rest.
   std::size_t get_count(std::size_t each_bytes) {
     const auto count = get<std::uint32_t>();
     if (count > bytes_.size() / each_bytes) failed_ = true;
     return failed_ ? 0 : count;
   }
 
-  // Whether anything was missing so far.
+  // True if any read so far found too few bytes.
   bool failed() const { return failed_; }
-  // How many bytes were not read yet.
+  // Number of bytes not yet read.
   std::size_t left() const { return bytes_.size(); }
 
  private:
-  // The next bytes; none, and failed, where there are too few.
+  // Returns the next bytes; if too few are left, none, and the reader has failed.
   std::span<const std::byte> next(std::size_t count) {
     if (count > bytes_.size()) failed_ = true;
     if (failed_) return {};

@@ -1,7 +1,7 @@
-// A camera: where it is, where it looks, how it projects. Matrices are relative to the camera's
-// position (the camera is the origin), so precision does not suffer far from the world's origin.
-// Depth is reversed: 1 at the near plane, 0 infinitely far. Vulkan clip space (y down). Values and
-// pure functions; not a controller (platform/fly_camera.hpp).
+// A camera: its pose and its projection. Matrices are relative to the camera's position (the camera
+// is the origin), so precision does not suffer far from the world's origin. Depth is reversed: 1 at
+// the near plane, 0 infinitely far. Vulkan clip space (y down). Values and pure functions; not a
+// controller (platform/fly_camera.hpp).
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ struct CameraPose {
   double pitch = 0;
 };
 
-// The unit vector of the direction of view.
+// Returns the direction of view as a unit vector.
 inline glm::vec3 forward_of(const CameraPose& pose) {
   const double c = std::cos(pose.pitch);
   return {static_cast<float>(std::sin(pose.yaw) * c), static_cast<float>(std::sin(pose.pitch)),
@@ -31,7 +31,7 @@ struct Projection {
   float vertical_fov = 0.9F;    // radians, in (0, π)
   float aspect = 16.0F / 9.0F;  // width / height
   float near_m = 0.2F;          // above 0
-  // Pixels that one radian covers in the middle of a picture `height` pixels high.
+  // Pixels per radian in the middle of an image that is `height` pixels high.
   float pixels_per_radian(float height) const {
     return height * 0.5F / std::tan(vertical_fov * 0.5F);
   }

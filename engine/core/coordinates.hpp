@@ -1,6 +1,6 @@
-// Where things are. A position is a block (integers) and metres inside it, so precision does not
-// depend on the distance from the origin. Metres; +Y is up; right-handed; block (x, z) spans local
-// [0, size) on both axes. Not a transform hierarchy. Plain values; any thread.
+// Positions in the world. A world position is a block (integers) and metres inside it, so precision
+// does not depend on the distance from the origin. Metres; +Y is up; right-handed; block (x, z)
+// spans local [0, size) on both axes. Not a transform hierarchy. Plain values; any thread.
 #pragma once
 
 #include <cmath>
@@ -26,11 +26,11 @@ static_assert(sizeof(BlockCoord) == 8);
 struct Bounds {
   glm::vec3 min{0.0F};
   glm::vec3 max{0.0F};
-  // The box with this centre and these half extents (>= 0), in metres.
+  // Returns the box with this centre and these half extents (>= 0), in metres.
   static Bounds around(const glm::vec3& center, const glm::vec3& half_extent) {
     return {center - half_extent, center + half_extent};
   }
-  // Its centre and half extents, in metres.
+  // Centre and half extents of the box, in metres.
   glm::vec3 center() const { return (min + max) * 0.5F; }
   glm::vec3 half_extent() const { return (max - min) * 0.5F; }
   friend bool operator==(const Bounds&, const Bounds&) = default;
@@ -41,7 +41,7 @@ inline Bounds united(const Bounds& a, const Bounds& b) {
   return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
 }
 
-// Whether all three components are numbers, and none is infinite.
+// True if all three components are finite.
 inline bool is_finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -49,20 +49,20 @@ inline bool is_finite(const glm::vec3& v) {
   return is_finite(glm::dvec3(v));
 }
 
-// Whether the corners are finite, and none of `min` is beyond `max`.
+// True if the corners are finite and no component of `min` exceeds that of `max`.
 inline bool is_box(const Bounds& b) {
   return is_finite(b.min) && is_finite(b.max) && b.min.x <= b.max.x && b.min.y <= b.max.y &&
          b.min.z <= b.max.z;
 }
 
-// A place in the world. Normalised when local x and z lie in [0, block size).
+// A position in the world. Normalised when local x and z lie in [0, block size).
 struct WorldPosition {
   BlockCoord block;
   // Metres from the block's corner.
   glm::dvec3 local{0.0};
 };
 
-// The block this many blocks east and south of another. Indices wrap at 2^32.
+// Returns the block that lies this many blocks east and south of `block`. Indices wrap at 2^32.
 constexpr BlockCoord moved(BlockCoord block, std::int64_t east, std::int64_t south) {
   const auto wrap = [](std::int32_t index, std::int64_t steps) {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(index) +
@@ -71,7 +71,7 @@ constexpr BlockCoord moved(BlockCoord block, std::int64_t east, std::int64_t sou
   return {wrap(block.x, east), wrap(block.z, south)};
 }
 
-// The same place with local x and z in [0, block_size_m). Block indices wrap at 2^32.
+// Returns the same position with local x and z in [0, block_size_m). Block indices wrap at 2^32.
 inline WorldPosition normalised(WorldPosition p, double block_size_m) {
   const double east = std::floor(p.local.x / block_size_m);
   const double south = std::floor(p.local.z / block_size_m);
@@ -81,8 +81,7 @@ inline WorldPosition normalised(WorldPosition p, double block_size_m) {
   return p;
 }
 
-// Metres from `origin` to the corner of `block`, at height 0. Exact while they are within 2^31
-// blocks.
+// Metres from `origin` to the corner of `block`, at height 0. Exact up to 2^31 blocks apart.
 inline glm::dvec3 offset_m(BlockCoord block, const WorldPosition& origin, double block_size_m) {
   const auto difference = [](std::int32_t a, std::int32_t b) {
     return static_cast<double>(
@@ -92,7 +91,7 @@ inline glm::dvec3 offset_m(BlockCoord block, const WorldPosition& origin, double
           difference(block.z, origin.block.z) * block_size_m - origin.local.z};
 }
 
-// Blocks as keys of unordered containers.
+// Lets unordered containers use blocks as keys.
 struct BlockCoordHash {
   // A bijective mix of both indices. O(1).
   std::size_t operator()(BlockCoord b) const {

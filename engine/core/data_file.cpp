@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kVariable = "PSYGEN_DATA";
 
-// Each folder once.
+// Adds the folder unless the list has it already.
 void add(std::vector<fs::path>& folders, const fs::path& folder) {
   if (folder.empty()) return;
   const fs::path plain = folder.lexically_normal();
@@ -50,7 +50,7 @@ Result<fs::path> data_file(const fs::path& name, const fs::path& given,
                            const fs::path& built_with) {
   if (name.empty() || name.is_absolute() || std::ranges::find(name, "..") != name.end()) {
     return fail(ErrorCode::kInvalidArgument,
-                fmt::format("\"{}\": the name of a data file is a path without \"..\" that is "
+                fmt::format("\"{}\": the name of a data file must be a path without \"..\" that is "
                             "relative to a data folder",
                             name.string()));
   }
@@ -62,7 +62,7 @@ Result<fs::path> data_file(const fs::path& name, const fs::path& given,
     looked += fmt::format("{}{}", looked.empty() ? "" : ", ", folder.string());
   }
   return fail(ErrorCode::kIo,
-              fmt::format("{}: there is no such data file; looked in {} (set {} to look elsewhere)",
+              fmt::format("{}: no such data file; looked in {} (set {} to add folders)",
                           name.string(), looked, kVariable));
 }
 

@@ -1,7 +1,6 @@
-// Finds the files that come with a program or with psygen (worlds, paths, pictures), wherever the
-// program is installed or built and from whatever folder it is run; and the folders of the user in
-// which a program keeps what is its own. It opens no file. Any thread,
-// as long as nobody changes the environment meanwhile.
+// Finds data files of psygen or of a program (worlds, paths, images), independent of the folder of
+// installation, build or start; and the folders of a user that keep a program's data and settings.
+// It opens no file. Any thread, if no thread changes the environment at the same time.
 #pragma once
 
 #include <cstdint>
@@ -19,28 +18,28 @@
 
 namespace psygen::core {
 
-// The folders in which data_file() looks, in this order; they need not exist:
+// The folders that data_file() searches, in this order; they need not exist:
 //   1. `given`, if it is not empty;
 //   2. those of the environment variable PSYGEN_DATA, separated by ':';
-//   3. the executable's own, symbolic links resolved;
-//   4. share/psygen of the installation that the executable is in;
-//   5. `built_with`, if it is not empty: share/psygen of the psygen it was built with.
+//   3. the folder of the executable, symbolic links resolved;
+//   4. share/psygen of the executable's installation;
+//   5. `built_with`, if it is not empty: share/psygen of the psygen that built the program.
 std::vector<std::filesystem::path> data_folders(
     const std::filesystem::path& given = {},
     const std::filesystem::path& built_with = PSYGEN_DATA_FOLDER);
 
-// The file `name` ("worlds/paper.toml") in the first of these folders that has it. Fails with
-// kInvalidArgument if `name` is empty, absolute or has a "..", and with kIo and a sentence that
-// lists all folders if there is no such file, also where it is a folder.
+// Returns the file `name` ("worlds/paper.toml") in the first folder that has it. Fails with
+// kInvalidArgument if `name` is empty, absolute or has a "..". Fails with kIo and a message that
+// lists all folders if no folder has a file of this name.
 Result<std::filesystem::path> data_file(
     const std::filesystem::path& name, const std::filesystem::path& given = {},
     const std::filesystem::path& built_with = PSYGEN_DATA_FOLDER);
 
-// What of a user a folder is for: $XDG_DATA_HOME or ~/.local/share, and $XDG_CONFIG_HOME or
-// ~/.config.
+// Purpose of a user's folder. Data: $XDG_DATA_HOME or ~/.local/share. Configuration:
+// $XDG_CONFIG_HOME or ~/.config.
 enum class UserFolder : std::uint8_t { kData, kConfig };
-// The folder of a program in it, or `given` if it is not empty; it is made. Fails with kIo where it
-// cannot be made, and where neither variable nor HOME says where it is.
+// Creates and returns the program's folder for this purpose, or `given` if it is not empty. Fails
+// with kIo if it cannot be created, or if neither the variable nor HOME is set.
 Result<std::filesystem::path> user_folder(UserFolder folder, const std::string& program,
                                           const std::filesystem::path& given = {});
 

@@ -1,6 +1,5 @@
 // Errors as values. A function that can fail for outside reasons returns `Result<T>`; our code
-// throws nothing. Not for broken contracts of a caller: those are PSYGEN_ASSERT (assert.hpp). Any
-// thread.
+// throws nothing. Contract violations of a caller are for PSYGEN_ASSERT (assert.hpp). Any thread.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +8,14 @@
 
 namespace psygen::core {
 
-// What went wrong, for programs to decide on.
+// The kind of failure, for programs to decide on.
 enum class ErrorCode : std::uint8_t {
   kInvalidArgument,  // a value outside its documented range
   kParse,            // text that violates its format; the message has file, line, field
   kIo,               // a file could not be read or written
-  kOverBudget,       // legal, but larger than a limit that was set
+  kOverBudget,       // legal, but beyond a configured limit
   kOutOfMemory,      // host or device memory
-  kNotYet,           // the result is not ready yet; ask again
+  kNotYet,           // the result is not ready; try again later
   kNoDevice,         // no usable Vulkan device or no display
   kDeviceLost,
   kSynthesisFailed,  // a model's synthesis threw or was abandoned
@@ -24,8 +23,8 @@ enum class ErrorCode : std::uint8_t {
   kInternal,
 };
 
-// A code for programs and one sentence for people. The sentence names file, line and field when
-// there are any, says what is allowed, and starts with a lower-case letter.
+// A code for programs and a message for people. The message names file, line and field if they are
+// known, states the allowed values, and starts with a lower-case letter.
 struct Error {
   ErrorCode code = ErrorCode::kInternal;
   std::string message;
@@ -35,7 +34,7 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-// An Error to return from a function with a Result of any type.
+// Makes an Error to return from a function with a Result of any type.
 inline tl::unexpected<Error> fail(ErrorCode code, std::string message) {
   return tl::unexpected<Error>(Error{code, std::move(message)});
 }

@@ -1,6 +1,6 @@
-// Where mesh data lives: reserve, write, commit, release. The interface between synthesis (which
-// writes) and rendering (which draws). render implements it over mapped device memory, or over the
-// heap with copies to the device; HeapGeometryMemory implements it over the heap for tests and
+// Memory for mesh data: reserve, write, commit, release. The interface between synthesis (which
+// writes) and rendering (which draws). Render implements it over mapped device memory, or over the
+// heap with copies to the device. HeapGeometryMemory implements it over the heap for tests and
 // tools. Main thread, except for the spans of a reservation: any one thread may write them until
 // commit.
 #pragma once
@@ -14,11 +14,11 @@
 
 namespace psygen::core {
 
-// The place of one mesh. Offsets count vertices and indices of the pool block, as draw calls need
+// Location of one mesh. Offsets count vertices and indices of the pool block, as draw calls need
 // them.
 struct GeometryRange {
-  std::uint32_t id = UINT32_MAX;   // names the range to its memory; UINT32_MAX: none
-  std::uint32_t pool_block = 0;    // which buffer pair to bind
+  std::uint32_t id = UINT32_MAX;   // identifies the range in its memory; UINT32_MAX: none
+  std::uint32_t pool_block = 0;    // the buffer pair to bind
   std::uint32_t first_vertex = 0;  // in strides of the range's layout
   std::uint32_t first_index = 0;   // in 16-bit indices
   std::uint32_t vertex_count = 0;
@@ -27,7 +27,7 @@ struct GeometryRange {
   VertexLayout layout = VertexLayout::kModel;
   friend bool operator==(const GeometryRange&, const GeometryRange&) = default;
 };
-// The id of no range.
+// Marks a range without memory.
 inline constexpr std::uint32_t kNoGeometry = UINT32_MAX;
 
 // Indices [first, first + count) of a list.
@@ -42,33 +42,33 @@ struct GeometryReservation {
   std::span<std::uint16_t> indices;  // index_count
 };
 
-// Ranges come from reserve of the same memory; a range is released once.
+// A range comes from reserve() of the same memory, and is released once.
 class GeometryMemory {
  public:
-  // Ends every range.
+  // Invalidates every range.
   virtual ~GeometryMemory() = default;
 
-  // Reserves space for a mesh. Fails with kOutOfMemory when capacity or fragmentation does not
-  // allow it.
+  // Reserves space for a mesh. Fails with kOutOfMemory if capacity or fragmentation does not allow
+  // it.
   virtual Result<GeometryReservation> reserve(VertexLayout layout, std::uint32_t vertex_count,
                                               std::uint32_t index_count) = 0;
-  // Declares the spans fully written; the range may be drawn from the next frame on.
+  // Declares the spans fully written. From the next frame on, the range may be drawn.
   virtual void commit(const GeometryRange& range) = 0;
-  // Returns a range, committed or not. Its bytes are reused once no frame in flight reads them.
+  // Returns a range, committed or not, to the memory. Its bytes are reused once no frame in flight
+  // reads them.
   virtual void release(const GeometryRange& range) = 0;
 
-  // Bytes that a reservation of this shape would be charged.
+  // Bytes that a reservation of this shape would charge to the budget.
   virtual std::uint32_t charged_bytes(VertexLayout layout, std::uint32_t vertex_count,
                                       std::uint32_t index_count) const = 0;
   // Bytes that are reserved, committed, or released but still read by a frame in flight.
   virtual std::uint64_t used_bytes() const = 0;
-  // The limit of used_bytes(): less than requested when the system has no more memory.
+  // Upper limit of used_bytes(). Less than requested if the system has less memory.
   virtual std::uint64_t capacity_bytes() const = 0;
-  // True when the GPU (or, on a software device, the CPU) reads the same memory that was written.
+  // True if the GPU (or, on a software device, the CPU) reads the memory that was written.
   virtual bool zero_copy() const = 0;
-  // The contents of a committed range, for tests; empty when they cannot be read. Slow on some
-  // devices: what the program needs to know of a mesh is noted by its modeler
-  // (synthesis::Annotate).
+  // Contents of a committed range, for tests; empty if they cannot be read. Slow on some devices:
+  // the modeler records facts about a mesh that the program needs later (synthesis::Annotate).
   virtual std::span<const std::byte> vertex_bytes(const GeometryRange& range) const = 0;
   virtual std::span<const std::uint16_t> indices(const GeometryRange& range) const = 0;
 };

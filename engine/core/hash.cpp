@@ -1,7 +1,7 @@
 #include "engine/core/hash.hpp"
 
-// xxHash's ordinary functions are built for the oldest processor and are nine times slower. The
-// dispatching functions give the same values.
+// The ordinary functions of xxHash are built for the oldest processor and are nine times slower
+// than the dispatching functions, which return the same values.
 #if defined(__x86_64__)
 #include <xxh_x86dispatch.h>
 #else

@@ -24,7 +24,7 @@ constexpr std::uint64_t combine(std::uint64_t hash, std::uint64_t value) {
 // XXH3, 64 bits, over the bytes.
 std::uint64_t hash_bytes(std::span<const std::byte> bytes, std::uint64_t seed = 0);
 
-// The use of a random number: two purposes never share a stream.
+// The use of a random number. Two purposes never share a stream.
 enum class Purpose : std::uint32_t {
   kPosition = 1,
   kParameters = 2,
@@ -38,7 +38,7 @@ enum class Purpose : std::uint32_t {
 // k).
 class RandomStream {
  public:
-  // The stream of the thing `index` in a block, for one purpose. Starts at k = 0.
+  // The stream of element `index` of a block, for one purpose. Starts at k = 0.
   constexpr RandomStream(std::uint64_t world_seed, std::int32_t block_x, std::int32_t block_z,
                          std::uint32_t index, Purpose purpose)
       : key_(combine(

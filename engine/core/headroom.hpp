@@ -1,8 +1,8 @@
-// How much more the operating system would give to this process. Each function takes the resource
-// and returns it at once. This reveals limits (ulimit -d, -v, -u, container limits on threads,
-// memory that must not be overcommitted) before a library that cannot handle them runs into them.
-// Limits of memory that the kernel enforces by killing are not seen. The answer holds for the
-// moment only. POSIX. Any thread.
+// Resources that the operating system would still give to this process. Each function allocates the
+// resource and frees it immediately. This reveals limits (ulimit -d, -v, -u, container limits on
+// threads, memory that must not be overcommitted) before a library that cannot handle them reaches
+// them. It does not see memory limits that the kernel enforces by killing. An answer holds only for
+// the moment. POSIX. Any thread.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,13 @@
 
 namespace psygen::core {
 
-// Whether `bytes` bytes of memory could be allocated. If not, the next out_of_memory() in this
-// thread reports them.
+// Returns true if `bytes` bytes of memory can be allocated. If not, the next out_of_memory() in
+// this thread reports them.
 bool memory_left(std::uint64_t bytes);
-// Like memory_left, for address space without memory behind it.
+// Like memory_left(), for address space without memory behind it.
 bool addresses_left(std::uint64_t bytes);
-// How many threads could be started, at most `most`. Takes about 10 microseconds per thread.
+// Returns the number of threads that can be started, at most `most`. Takes about 10 microseconds a
+// thread.
 std::size_t threads_left(std::size_t most);
 
 }  // namespace psygen::core

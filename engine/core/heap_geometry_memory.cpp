@@ -7,7 +7,7 @@
 
 namespace psygen::core {
 namespace {
-// What meshes are charged that are too large for any memory.
+// The charge for a mesh that is too large for any memory.
 constexpr std::uint32_t kTooManyBytes = UINT32_MAX;
 }  // namespace
 

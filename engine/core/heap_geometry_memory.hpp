@@ -9,14 +9,14 @@
 
 namespace psygen::core {
 
-// See GeometryMemory for the contracts. Ranges it does not know end the program.
+// GeometryMemory has the contracts. An unknown range aborts the program.
 class HeapGeometryMemory final : public GeometryMemory {
  public:
-  // At most `capacity_bytes` are used at a time; none are allocated before reserve.
+  // Uses at most `capacity_bytes` at a time; allocates nothing before reserve().
   explicit HeapGeometryMemory(std::uint64_t capacity_bytes) : capacity_bytes_(capacity_bytes) {}
 
-  // As in GeometryMemory. reserve also fails with kOutOfMemory when the heap has no memory;
-  // vertex_bytes and indices require a committed range.
+  // As in GeometryMemory. reserve() also fails with kOutOfMemory if the heap has no memory.
+  // vertex_bytes() and indices() require a committed range.
   Result<GeometryReservation> reserve(VertexLayout layout, std::uint32_t vertex_count,
                                       std::uint32_t index_count) override;
   void commit(const GeometryRange& range) override;

@@ -6,7 +6,7 @@
 
 namespace psygen::core {
 
-// One line with its level. Characters that cannot be printed are escaped.
+// Writes one line with its level. Unprintable characters are escaped.
 void log_info(std::string_view message);
 void log_warning(std::string_view message);
 void log_error(std::string_view message);

@@ -13,7 +13,7 @@ tl::unexpected<Error> refuse(std::string sentence) {
   return fail(ErrorCode::kInvalidArgument, std::move(sentence));
 }
 
-// Every number of a list is at most `most` in size.
+// Checks the length of a list, and that the absolute value of every number is at most `most`.
 template <class Vector>
 Result<void> check_list(std::string_view name, const std::vector<Vector>& list, std::size_t count,
                         float most) {
@@ -58,7 +58,7 @@ std::vector<MeshData> split(const MeshData& mesh, std::uint32_t most_vertices) {
     parts.push_back(mesh);
     return parts;
   }
-  std::unordered_map<std::uint32_t, std::uint32_t> placed;  // vertex → its place in the part
+  std::unordered_map<std::uint32_t, std::uint32_t> placed;  // vertex → its index in the part
   const auto place = [&](std::uint32_t vertex) {
     MeshData& part = parts.back();
     const auto [at, is_new] =

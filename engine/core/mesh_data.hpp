@@ -1,4 +1,4 @@
-// A triangle mesh as plain lists: what a game's code or a file describes before it is packed for
+// A triangle mesh as plain lists, as a game's code or a file describes it, before it is packed for
 // drawing (scene/objects/packed_mesh.hpp). Metres, +Y up, right-handed, counter-clockwise seen from
 // outside, colours as linear albedo. Not a scene graph. Values; any thread.
 #pragma once
@@ -12,27 +12,27 @@
 
 namespace psygen::core {
 
-// Lists of vertices, all as long as `positions` or empty, and three indices for each triangle.
+// Lists of vertices, each as long as `positions` or empty, and three indices for each triangle.
 struct MeshData {
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;  // any length but 0; empty: those of the triangles
+  std::vector<glm::vec3> normals;  // any length but 0; empty: the triangles' normals
   std::vector<glm::vec2> uvs;      // empty: (0, 0). (0, 0) is a texture's upper left corner
   std::vector<glm::vec3> colours;  // 0 … 1; empty: white
   std::vector<std::uint32_t> indices;
 };
 
-// Positions farther than this from the mesh's origin are refused, in metres.
+// Largest distance of a position from the mesh's origin, in metres.
 inline constexpr float kMostMeshReachM = 1e5F;
 
-// Fails with kInvalidArgument, and says which list is wrong and where: no triangles, lists of
-// different lengths, indices out of range, numbers that are not finite or too large. O(n).
+// Fails with kInvalidArgument and a message that names the list and the element: no triangles,
+// lists of different lengths, indices out of range, numbers that are not finite or too large. O(n).
 Result<void> check(const MeshData& mesh);
 
-// The largest number of vertices that a mesh for drawing can have.
+// The most vertices that a mesh for drawing can have.
 inline constexpr std::uint32_t kMostMeshVertices = 65535;
 
-// The mesh in parts of at most `most_vertices` (>= 3) each, which share no vertices. The mesh must
-// have passed check(). Triangles keep their order. O(n).
+// Splits the mesh into parts of at most `most_vertices` (>= 3) vertices, which share none. The mesh
+// must have passed check(). Triangles keep their order. O(n).
 std::vector<MeshData> split(const MeshData& mesh, std::uint32_t most_vertices = kMostMeshVertices);
 
 }  // namespace psygen::core

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kAround = 8, kUp = 5;
 static_assert(2 * kAround * kUp == kEllipsoidTriangles);
-constexpr float kUnderside = -0.2F;  // of the upwards part of the way out of the middle
+constexpr float kUnderside = -0.2F;  // of the upward component of the direction from the centre
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// The format of pictures of models, which stand for models from afar: views from around, as they
-// follow each other in one texture. Synthesis makes them (world/far/tree_pictures.hpp), and the
+// The texture format of impostors, which stand in for distant models: views from around the model,
+// one after the other in one texture. Synthesis makes them (world/far/tree_pictures.hpp), and the
 // renderer draws them (core::kPictureBit). Byte layout only. Any thread.
 #pragma once
 
@@ -9,19 +9,20 @@
 
 namespace psygen::core {
 
-// Texels of 4 bytes: red, green, blue as the square root of the linear albedo, and opacity, of
-// which half is drawn. Level by level, each half as wide as the one before; in a level view by
-// view; in a view rows from the top. View k is what a viewer sees who looks along (cos, 0, sin) of
-// k · 45°.
+// Texels of 4 bytes: red, green and blue as the square root of the linear albedo, and opacity,
+// which is drawn from one half on. The texture stores level by level, each half as wide as the one
+// before; in a level view by view; in a view rows from the top. View k shows the model to a viewer
+// who looks along (cos, 0, sin) of k · 45°.
 inline constexpr std::uint32_t kPictureSide = 128;  // texels
 inline constexpr std::uint32_t kPictureViews = 8;
 inline constexpr std::uint32_t kPictureLevels = 6;  // the last one has 4 x 4 texels
-// The renderer's limit: a byte names a picture and a view, and every device has as many layers.
+// Limit of the renderer: one byte holds an impostor and a view, and every device has as many
+// layers.
 inline constexpr std::uint32_t kMostPictures = 31;
 
 using ModelPicture = std::vector<std::uint8_t>;
 
-// The bytes of a level of all views, and of a whole picture.
+// Bytes of one level of all views, and of a whole impostor.
 constexpr std::size_t picture_level_bytes(std::uint32_t level) {
   const std::size_t side = kPictureSide >> level;
   return kPictureViews * side * side * 4;

@@ -1,5 +1,5 @@
-// What a misspelt word was probably meant to be: a key of a file, a command, an option. Not a
-// spelling checker: it compares with the words given. Pure.
+// Finds the word that a misspelt key of a file, command or option probably means. Not a spelling
+// checker: it compares with the given words. Pure.
 #pragma once
 
 #include <span>
@@ -8,15 +8,15 @@
 
 namespace psygen::core {
 
-// The word of `known` that the fewest edits turn into `word`; the first of several. An edit adds,
-// removes or replaces a letter, or swaps two neighbours; a word that begins with `word`, of three
-// letters or more, is one edit away. Empty when none is within a third of the letters of `word`,
-// one at least; dashes in front are not letters. A view into `known`. O(letters of `word` * letters
-// of `known`); words over 64 bytes match nothing.
+// Returns the word of `known` that needs the fewest edits to become `word`; the first of several.
+// An edit adds, removes or replaces a letter, or swaps two neighbours. A word that begins with
+// `word` (three letters or more) is one edit away. Empty if no word is within a third of the
+// letters of `word` (at least one edit); leading dashes do not count as letters. The result is a
+// view into `known`. O(letters of `word` · letters of `known`). Words over 64 bytes match nothing.
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> known);
 std::string_view nearest_word(std::string_view word, std::span<const std::string> known);
 
-// For the end of a message: "; did you mean count?", or nothing where no word is near.
+// The end of a message: "; did you mean count?", or empty if no word is near.
 std::string suggestion(std::string_view word, std::span<const std::string_view> known);
 std::string suggestion(std::string_view word, std::span<const std::string> known);
 

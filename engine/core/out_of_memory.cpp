@@ -17,7 +17,7 @@ thread_local std::size_t refused_bytes = 0;
 
 constexpr unsigned long kMiB = 1ul << 20;
 
-// A text in memory that exists already.
+// A text in a buffer of the caller.
 struct Text {
   std::span<char> buffer;
   std::size_t length = 0;
@@ -31,7 +31,7 @@ struct Text {
   }
 };
 
-// Memory of this process that no file backs, in MiB; 0 when the system does not report it.
+// Memory of this process without a file behind it, in MiB; 0 if the system does not report it.
 unsigned long memory_in_use_mib() {
   std::array<char, 256> text{};
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);

@@ -1,5 +1,5 @@
-// The message for exhausted memory: what it was for, how much more was requested, how much is in
-// use and what limits it. Not an allocator. Allocates nothing except the std::string. Any thread.
+// The message for exhausted memory: the purpose, the bytes requested, the bytes in use and the
+// limit. Not an allocator. Allocates nothing except the std::string. Any thread.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,19 @@
 
 namespace psygen::core {
 
-// Notes that an allocation of `bytes` bytes has failed in this thread; 0 forgets it. Called by the
-// code that allocates and by a program's operator new.
+// Records that an allocation of `bytes` bytes has failed in this thread; 0 clears the record. Code
+// that allocates calls it, and so does a program's operator new.
 void note_refused_bytes(std::size_t bytes);
 
-// "<what>: memory ran out (N bytes more were wanted; M MiB are in use, ulimit -d allows L MiB)". N
-// is the size last noted in this thread, in MiB from 10 MiB on; it is left out when none was noted,
-// and so is an empty `what`. Forgets what was noted. At most 511 bytes.
+// Returns "<what>: memory ran out (N bytes more were wanted; M MiB are in use, ulimit -d allows
+// L MiB)". N is the size last recorded in this thread, in MiB from 10 MiB on. The message omits N
+// without a record, and an empty `what`. Clears the record. At most 511 bytes.
 std::string out_of_memory(std::string_view what);
-// The same written into `buffer` (not empty) and cut to its size, for when no string can be made.
+// Writes the same message into `buffer` (not empty) and cuts it to that size, for callers that
+// cannot allocate a string.
 std::string_view out_of_memory(std::string_view what, std::span<char> buffer);
 
-// Returns f()'s Result<void>, or kOutOfMemory when f() throws std::bad_alloc.
+// Returns f()'s Result<void>, or kOutOfMemory if f() throws std::bad_alloc.
 template <class F>
 Result<void> within_memory(std::string_view what, const F& f) {
   try {

@@ -1,5 +1,5 @@
-// Reads a whole file into memory, behind a limit. Not for files that change meanwhile, and not for
-// text (world/files/text_file.hpp). Any thread.
+// Reads a whole file into memory, up to a limit. Not for files that change during the read, and not
+// for text (world/files/text_file.hpp). Any thread.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace psygen::core {
 
-// The bytes of a regular file. Nothing is allocated for one of more than `most_bytes` bytes. Fails
-// with kIo or kOverBudget; the message starts with the path. Throws std::bad_alloc.
+// Returns the bytes of a regular file. Allocates nothing if the file has more than `most_bytes`
+// bytes. Fails with kIo or kOverBudget; the message starts with the path. Throws std::bad_alloc.
 Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path,
                                             std::uint64_t most_bytes);
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{64} << 10;
 
-// Names the processes among which process ids are one's own: the host, and the container on it.
+// Identifies the host and the container, within which process ids are unique.
 const std::string& host_mark() {
   static const std::string mark = [] {
     char name[256] = "", space[64] = "";
@@ -33,7 +33,7 @@ const std::string& host_mark() {
   return mark;
 }
 
-// Opens a new file next to `path` and stores its name; -1 with errno when that fails.
+// Opens a new file next to `path` and stores its name; returns -1 and sets errno if that fails.
 int open_temporary(const std::filesystem::path& path, std::filesystem::path& temporary) {
   int file = -1;
   for (int attempt = 0; attempt < 100 && file < 0; ++attempt) {
@@ -56,11 +56,11 @@ void flush_folder(const std::filesystem::path& path) {
 
 constexpr std::string_view kPartial = ".partial";
 
-// What a temporary file of open_temporary() is named after.
+// The parts of a temporary file's name, as open_temporary() makes it.
 struct Partial {
-  std::string file;  // that it would become
+  std::string file;  // the file that it was to become
   pid_t owner = 0;
-  bool ours = false;  // of this host
+  bool ours = false;  // written on this host
 };
 
 std::optional<Partial> partial_of(const std::string& name) {
@@ -73,17 +73,17 @@ std::optional<Partial> partial_of(const std::string& name) {
   const auto parsed = std::from_chars(stem.data() + dot + 1, stem.data() + dash, partial.owner);
   if (parsed.ec != std::errc() || parsed.ptr != stem.data() + dash || partial.owner <= 0)
     return std::nullopt;
-  // Those of older versions do not say whose they are.
+  // Files of older versions do not name their host.
   partial.ours = at == std::string::npos || at < dash || stem.substr(at + 1) == host_mark();
   return partial;
 }
 
-// Whether this process can still write. A zombie cannot: it has ended, but its parent has not asked
-// for its status yet. The first process of a container may take seconds to ask, or never do so.
+// True if this process can still write. A zombie cannot: it has ended, but its parent has not read
+// its status. The first process of a container may take seconds to do so, or never do it.
 bool is_running(pid_t process) {
   if (kill(process, 0) != 0 && errno == ESRCH) return false;
   std::ifstream file(fmt::format("/proc/{}/stat", process));
-  std::string stat;  // process (name) state …; empty where there is no /proc
+  std::string stat;  // process (name) state …; empty without /proc
   std::getline(file, stat);
   const std::size_t name_end = stat.rfind(") ");
   return name_end == std::string::npos || stat[name_end + 2] != 'Z';
@@ -115,7 +115,7 @@ FileReplacement::FileReplacement(std::filesystem::path path) : path_(std::move(p
   std::error_code error;
   const auto status = std::filesystem::status(path_, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    failure_ = fmt::format("{}: is not a regular file; it is left alone", path_.string());
+    failure_ = fmt::format("{}: is not a regular file, and is not replaced", path_.string());
     return;
   }
   file_ = open_temporary(path_, temporary_);

@@ -14,24 +14,24 @@
 
 namespace psygen::core {
 
-// A file that is written piece by piece. Until commit() the content is in a temporary file next to
-// `path`; it is removed when commit() does not happen.
+// A file that is written piece by piece. Until commit(), its content is in a temporary file next to
+// `path`, which the destructor removes.
 class FileReplacement {
  public:
-  // Refuses a path that exists and is not a regular file. Always constructs an object: the first
-  // error is kept and is returned by commit().
+  // Rejects a path that exists and is not a regular file. Always constructs an object: it keeps the
+  // first error, and commit() returns it.
   explicit FileReplacement(std::filesystem::path path);
   // Removes the temporary file unless it was committed.
   ~FileReplacement();
   FileReplacement(const FileReplacement&) = delete;
   FileReplacement& operator=(const FileReplacement&) = delete;
 
-  // Appends bytes, buffered. After an error it does nothing.
+  // Appends bytes, buffered. Does nothing after an error.
   void write(std::string_view bytes);
   // Writes everything to the disk, still under the temporary name. Call it once, or leave it to
-  // commit(). Fails with kIo: the path, what failed and the system's reason.
+  // commit(). Fails with kIo; the message has the path, the operation and the system's reason.
   Result<void> flush();
-  // Flushes and renames, once. Fails like flush(); `path` then holds what it held before.
+  // Flushes and renames, once. Fails like flush(); `path` then keeps its old content.
   Result<void> commit();
 
  private:
@@ -39,22 +39,22 @@ class FileReplacement {
   void fail_with(const char* action, int error);
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  // empty: there is none
-  int file_ = -1;                    // open until it is flushed
-  std::string buffer_;               // written next
-  std::string failure_;              // the first; empty: none
+  std::filesystem::path temporary_;  // empty: none
+  int file_ = -1;                    // open until the flush
+  std::string buffer_;               // bytes not yet written
+  std::string failure_;              // the first error; empty: none
 };
 
-// Replaces the whole content at once. Fails like FileReplacement::commit().
+// Replaces the whole content. Fails like FileReplacement::commit().
 Result<void> replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Result<void> replace_file(const std::filesystem::path& path, std::string_view text);
 
-// Removes temporary files in this folder whose processes no longer run (killed, power lost),
-// whether or not their parents have waited for them. Those of other hosts, which may share the
-// folder, stay. Does not look into sub-folders.
+// Removes temporary files in this folder whose processes have ended (killed, power lost), also if
+// their parents have not waited for them. Keeps files of other hosts, which may share the folder.
+// Does not visit sub-folders.
 void remove_stale_partials(const std::filesystem::path& folder);
-// Removes the temporary files of the files of these names, whoever made them: for one who alone
-// writes those files.
+// Removes all temporary files of the files that `is_ours` selects, whichever process made them.
+// Only for the one program that writes those files.
 void remove_partials_of(const std::filesystem::path& folder,
                         const std::function<bool(const std::string& file)>& is_ours);
 

@@ -1,4 +1,4 @@
-// Starts a thread, or returns an error where std::thread throws. Not a pool. Any thread.
+// Starts a thread; returns an error where std::thread throws. Not a pool. Any thread.
 #pragma once
 
 #include <exception>
@@ -10,8 +10,8 @@
 
 namespace psygen::core {
 
-// Runs `work` on a new thread, which the caller joins. Fails with kInternal when the system grants
-// no thread to this process (ulimit -u, container limits) or no memory for its stack.
+// Runs `work` on a new thread, which the caller joins. Fails with kInternal if the system grants
+// this process no thread (ulimit -u, container limits) or no memory for its stack.
 template <class Work>
 Result<std::thread> start_thread(Work&& work) {
   try {

@@ -1,13 +1,13 @@
-// What solid surfaces of models are made of, for their textures.
+// Materials of models' solid surfaces, which choose their textures.
 #pragma once
 
 #include <cstdint>
 
 namespace psygen::core {
 
-// Of all of a model but its leaves. The numbers are those of the shaders (PSYGEN_SURFACE_…).
+// Applies to all of a model except its leaves. The shaders use the same numbers (PSYGEN_SURFACE_…).
 enum class SurfaceKind : std::uint8_t {
-  kPlain = 0,  // the colours of the vertices alone
+  kPlain = 0,  // vertex colours only
   kStone = 1,
   kBark = 2,
 };

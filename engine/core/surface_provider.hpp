@@ -1,6 +1,6 @@
-// Where pictures are shown: something that can create a Vulkan surface, without this header knowing
-// Vulkan. platform implements it over GLFW, an editor over its own window system; headless
-// rendering has none. The interface between platform and render. Main thread.
+// A creator of Vulkan surfaces, declared without Vulkan. Platform implements it over GLFW, the
+// editor over its own window system; headless rendering has none. The interface between platform
+// and render. Main thread.
 #pragma once
 
 #include <cstdint>
@@ -21,14 +21,14 @@ struct Extent {
 // Must outlive the surfaces that it created.
 class SurfaceProvider {
  public:
-  // Its surfaces must be destroyed before.
+  // The surfaces must be destroyed before their provider.
   virtual ~SurfaceProvider() = default;
-  // Names of the Vulkan instance extensions that create_surface needs.
+  // Names of the Vulkan instance extensions that create_surface() needs.
   virtual std::vector<std::string> required_instance_extensions() const = 0;
-  // `instance` is a VkInstance with these extensions. The result is a VkSurfaceKHR that the caller
-  // owns.
+  // Creates a surface for `instance`, a VkInstance with these extensions. Returns a VkSurfaceKHR
+  // that the caller owns.
   virtual Result<std::uint64_t> create_surface(void* instance) = 0;
-  // The present size in pixels; 0 × 0 while minimised.
+  // Current size in pixels; 0 × 0 while minimised.
   virtual Extent framebuffer_size() const = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace psygen::core {
 
-// Which of the formats a mesh has.
+// The format of a mesh's vertices.
 enum class VertexLayout : std::uint8_t { kTerrain = 0, kModel = 1, kObject = 2 };
 
 // Octahedral normals here fold about y (up). With s = |x| + |y| + |z| of the unit normal, the
@@ -18,8 +18,8 @@ enum class VertexLayout : std::uint8_t { kTerrain = 0, kModel = 1, kObject = 2 }
 // ((1 - |b|) · sign a, (1 - |a|) · sign b); then normalise.
 
 // A terrain vertex. Its position in the block is x = grid_x · cell_m, z = grid_z · cell_m, y =
-// height_min + height/65535 · height_range. Both height figures are the same for the whole world,
-// so neighbouring blocks agree bit for bit. Bit 7 of grid_x marks a skirt vertex, which hangs below
+// height_min + height/65535 · height_range. Both heights are the same for the whole world, so
+// neighbouring blocks agree bit for bit. Bit 7 of grid_x marks a skirt vertex, which hangs below
 // its twin by the skirt depth of the draw; bits 0–6 hold the index (0 … 127).
 struct TerrainVertex {
   std::uint8_t grid_x;
@@ -28,31 +28,32 @@ struct TerrainVertex {
   std::uint16_t coarse_height;  // height of the next coarser level here, for morphing
   std::int8_t normal_x;         // octahedral normal, snorm8 twice
   std::int8_t normal_z;
-  std::uint8_t sun = 255;      // unorm8: visible share of the sun, 255 = unshadowed
-  std::uint8_t ambient = 255;  // unorm8: visible share of the sky, 255 = open
+  std::uint8_t sun = 255;      // unorm8: visible fraction of the sun, 255 = unshadowed
+  std::uint8_t ambient = 255;  // unorm8: visible fraction of the sky, 255 = open
   std::uint8_t cover = 0;      // unused, always 0: far forests are per draw (TerrainDraw::cover)
-  std::uint8_t road = 0;       // unorm8: share of a road
+  std::uint8_t road = 0;       // unorm8: fraction covered by a road
 };
 static_assert(sizeof(TerrainVertex) == 12);
 // Bit 7 of TerrainVertex::grid_x.
 inline constexpr std::uint8_t kTerrainSkirtBit = 0x80;
 
-// A vertex of a tree, rock or any other model. `position` is snorm16 within the mesh's box: p =
-// center + half_extent · position / 32767, in metres relative to the model's foot.
+// A vertex of a tree, a rock or any other model. `position` is snorm16 within the mesh's box: p =
+// center + half_extent · position / 32767, in metres relative to the model's base point.
 struct ModelVertex {
   std::int16_t position[3];
   std::uint8_t ambient;    // unorm8: baked ambient visibility, 255 = open sky
-  std::uint8_t sway;       // unorm8: how much the wind moves it, 0 = not at all
+  std::uint8_t sway;       // unorm8: strength of the wind's effect, 0 = none
   std::int16_t normal[2];  // octahedral, snorm16; see kBillboardBit
   std::uint8_t colour[3];  // linear-light albedo, stored with sqrt: albedo = (c/255)^2
   std::uint8_t material;   // 0 solid (bark, stone), 1 leaf (lit from both sides); bits below
 };
 static_assert(sizeof(ModelVertex) == 16);
 
-// A vertex of a game's own object: a model's vertex and its place in the textures of its material.
+// A vertex of a game's own object: a model's vertex and its texture coordinates.
 struct ObjectVertex {
   ModelVertex model;
-  float uv[2];  // (0, 0) is the corner of a texture's first texel; outside of [0, 1] it repeats
+  float uv[2];  // (0, 0) is the corner of a texture's first texel; the texture repeats outside of
+                // [0, 1]
 };
 static_assert(sizeof(ObjectVertex) == 24);
 
@@ -63,11 +64,12 @@ static_assert(sizeof(ObjectVertex) == 24);
 // the vertex is behind the line.
 inline constexpr std::uint8_t kBillboardBit = 2;
 inline constexpr float kBillboardReachM = 256;
-// A bit beside kBillboardBit: the vertex is a corner of a picture (model_picture.hpp). `colour`
-// then holds kPictureViews · number of the picture + views by which the model is turned, and the
-// place in the picture, u and v.
+// A bit that only occurs together with kBillboardBit: the vertex is a corner of an impostor
+// (model_picture.hpp). `colour` then holds kPictureViews · impostor index + number of views by
+// which the model is turned, and the texture coordinates u and v.
 inline constexpr std::uint8_t kPictureBit = 4;
-// An upper bound of how far turning moves the vertex from `position`, in metres.
+// Upper bound of the distance by which billboard rotation moves the vertex from `position`, in
+// metres.
 constexpr float billboard_reach_m(const ModelVertex& v) {
   if ((v.material & kBillboardBit) == 0) return 0;
   const int right = v.normal[0], behind = v.normal[1];

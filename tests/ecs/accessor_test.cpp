@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-TEST(Accessor, follows_entities_through_every_structural_change) {
+TEST(Accessor, FollowsEntitiesThroughEveryStructuralChange) {
   World world;
   const Accessor<Position> positions = world.accessor<Position>();
   const auto created = world.create<Position>(3);
@@ -27,7 +27,7 @@ TEST(Accessor, follows_entities_through_every_structural_change) {
   EXPECT_EQ(positions.get(entities[2]), world.get<Position>(entities[2]));
 }
 
-TEST(Accessor, gives_null_for_entities_without_the_component) {
+TEST(Accessor, ReturnsNullForEntitiesWithoutTheComponent) {
   World world;
   const Entity entity = world.create<Velocity>(1).entities[0];
   const Accessor<const Position> positions = world.accessor<const Position>();
@@ -35,7 +35,7 @@ TEST(Accessor, gives_null_for_entities_without_the_component) {
   EXPECT_EQ(positions.get(kNullEntity), nullptr);
 }
 
-TEST(Accessor, each_visits_every_handle_in_order_and_gives_null_for_the_dead) {
+TEST(Accessor, EachVisitsHandlesInOrderWithNullForDeadEntities) {
   World world;
   const auto created = world.create<Mesh>(100).entities;
   std::vector<Entity> entities(created.begin(), created.end());
@@ -57,7 +57,7 @@ TEST(Accessor, each_visits_every_handle_in_order_and_gives_null_for_the_dead) {
   }
 }
 
-TEST(Accessor, a_const_world_gives_reading_accessors_also_for_what_it_never_saw) {
+TEST(Accessor, AConstWorldMakesReadOnlyAccessorsEvenForUnknownComponents) {
   World world;
   const Entity entity = world.create<Position>(1).entities[0];
   const World& read_only = world;

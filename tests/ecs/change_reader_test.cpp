@@ -21,7 +21,7 @@ std::vector<Entity> drained(ChangeReader<Mesh>& reader) {
   return all;
 }
 
-TEST(ChangeReader, a_new_reader_sees_every_row_and_then_nothing) {
+TEST(ChangeReader, ANewReaderSeesEveryRowAndThenNothing) {
   World world;
   const auto entities = copy(world.create<Mesh>(5).entities);
   auto reader = world.reader<Mesh>();
@@ -29,7 +29,7 @@ TEST(ChangeReader, a_new_reader_sees_every_row_and_then_nothing) {
   EXPECT_TRUE(drained(reader).empty());
 }
 
-TEST(ChangeReader, creating_adding_landing_and_marking_are_changes) {
+TEST(ChangeReader, CreatingAddingWritingAndMarkingAreChanges) {
   World world;
   auto reader = world.reader<Mesh>();
   const auto with = copy(world.create<Mesh>(3).entities);
@@ -44,7 +44,7 @@ TEST(ChangeReader, creating_adding_landing_and_marking_are_changes) {
   EXPECT_EQ(drained(reader), std::vector<Entity>{with[2]});
 }
 
-TEST(ChangeReader, ten_thousand_scattered_changes_visit_ten_thousand_rows) {
+TEST(ChangeReader, TenThousandScatteredChangesVisitTenThousandRows) {
   World world;
   const auto entities = copy(world.create<Mesh>(1000000).entities);
   auto reader = world.reader<Mesh>();
@@ -57,7 +57,7 @@ TEST(ChangeReader, ten_thousand_scattered_changes_visit_ten_thousand_rows) {
   EXPECT_EQ(drained(reader), marked) << "exactly the marked rows";
 }
 
-TEST(ChangeReader, neighbouring_rows_come_as_one_run) {
+TEST(ChangeReader, NeighbouringRowsAreOneRun) {
   World world;
   const auto entities = copy(world.create<Mesh>(1000).entities);
   auto reader = world.reader<Mesh>();
@@ -70,7 +70,7 @@ TEST(ChangeReader, neighbouring_rows_come_as_one_run) {
   EXPECT_EQ(runs, (std::vector<std::size_t>{1000, 200, 1}));
 }
 
-TEST(ChangeReader, readers_do_not_see_each_other) {
+TEST(ChangeReader, ReadersDoNotSeeEachOther) {
   World world;
   const auto entities = copy(world.create<Mesh>(2).entities);
   auto first = world.reader<Mesh>();
@@ -81,7 +81,7 @@ TEST(ChangeReader, readers_do_not_see_each_other) {
   EXPECT_EQ(drained(second).size(), 2U);
 }
 
-TEST(ChangeReader, a_change_follows_its_entity_to_another_row_and_kind) {
+TEST(ChangeReader, AChangeFollowsItsEntityToAnotherRowAndArchetype) {
   World world;
   const auto entities = copy(world.create<Mesh>(100).entities);
   auto reader = world.reader<Mesh>();
@@ -96,7 +96,7 @@ TEST(ChangeReader, a_change_follows_its_entity_to_another_row_and_kind) {
   EXPECT_TRUE(drained(reader).empty());
 }
 
-TEST(ChangeReader, dead_rows_leave_no_mark_for_those_who_come_after) {
+TEST(ChangeReader, DeadRowsLeaveNoMarkForTheirSuccessors) {
   World world;
   const auto entities = copy(world.create<Mesh>(10).entities);
   auto reader = world.reader<Mesh>();
@@ -106,7 +106,7 @@ TEST(ChangeReader, dead_rows_leave_no_mark_for_those_who_come_after) {
   EXPECT_EQ(drained(reader), std::vector<Entity>{only});
 }
 
-TEST(ChangeReader, who_died_or_lost_the_component_is_reported_once) {
+TEST(ChangeReader, EntitiesThatDiedOrLostTheComponentAreReportedOnce) {
   World world;
   const auto entities = copy(world.create<Mesh, Position>(10).entities);
   const auto others = copy(world.create<Position>(3).entities);
@@ -122,7 +122,7 @@ TEST(ChangeReader, who_died_or_lost_the_component_is_reported_once) {
   EXPECT_EQ(reader.drain_removed(note), 0U);
 }
 
-TEST(ChangeReader, a_reader_may_be_moved_and_ends_alone) {
+TEST(ChangeReader, AMovedReaderEndsOnce) {
   World world;
   world.create<Mesh>(1);
   auto first = world.reader<Mesh>();

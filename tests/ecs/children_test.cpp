@@ -1,4 +1,4 @@
-// Parents find their children in one contiguous list; kinds do not multiply.
+// Children of a parent are one contiguous list; parents do not multiply archetypes.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -8,7 +8,7 @@
 namespace psygen::ecs::test {
 namespace {
 
-TEST(Children, a_thousand_parents_make_two_tables) {
+TEST(Children, AThousandParentsMakeTwoTables) {
   World world;
   const std::vector<Entity> parents = copy(world.create<Children, Position>(1000).entities);
   for (const Entity parent : parents)
@@ -21,7 +21,7 @@ TEST(Children, a_thousand_parents_make_two_tables) {
   }
 }
 
-TEST(Children, the_list_is_in_the_order_in_which_it_was_set_and_can_be_replaced) {
+TEST(Children, ListKeepsItsOrderAndCanBeReplaced) {
   World world;
   const Entity parent = world.create<Children>(1).entities[0];
   const std::vector<Entity> c = copy(world.create<Mesh>(9).entities);
@@ -35,7 +35,7 @@ TEST(Children, the_list_is_in_the_order_in_which_it_was_set_and_can_be_replaced)
   EXPECT_TRUE(world.children(parent).empty());
 }
 
-TEST(Children, who_is_no_parent_has_none_and_gets_none) {
+TEST(Children, EntitiesWithoutTheComponentHaveNoChildren) {
   World world;
   const Entity plain = world.create<Position>(1).entities[0];
   EXPECT_FALSE(world.set_children(plain, {}));
@@ -44,7 +44,7 @@ TEST(Children, who_is_no_parent_has_none_and_gets_none) {
   EXPECT_TRUE(world.children(Entity{}).empty());
 }
 
-TEST(Children, families_end_together) {
+TEST(Children, FamiliesDieTogether) {
   World world;
   const Entity root = world.create<Children>(1).entities[0];
   const std::vector<Entity> middle = copy(world.create<Children>(3).entities);
@@ -57,7 +57,7 @@ TEST(Children, families_end_together) {
   EXPECT_TRUE(world.alive(other));
 }
 
-TEST(Children, a_circle_of_parents_ends_once) {
+TEST(Children, ACycleOfParentsDiesOnce) {
   World world;
   const std::vector<Entity> two = copy(world.create<Children>(2).entities);
   world.set_children(two[0], std::vector{two[1]});
@@ -65,7 +65,7 @@ TEST(Children, a_circle_of_parents_ends_once) {
   EXPECT_EQ(world.destroy_with_children(two), 2U);
 }
 
-TEST(Children, lists_of_the_dead_are_used_again) {
+TEST(Children, ListsOfDeadParentsAreReused) {
   World world;
   const std::vector<Entity> children = copy(world.create<Mesh>(60).entities);
   std::size_t bytes = 0;
@@ -80,7 +80,7 @@ TEST(Children, lists_of_the_dead_are_used_again) {
   EXPECT_EQ(world.committed_bytes(), bytes);
 }
 
-TEST(Children, a_parent_that_moves_keeps_its_list) {
+TEST(Children, AParentThatMovesKeepsItsList) {
   World world;
   const std::vector<Entity> parents = copy(world.create<Children>(3).entities);
   const std::vector<Entity> children = copy(world.create<Mesh>(2).entities);
@@ -90,7 +90,7 @@ TEST(Children, a_parent_that_moves_keeps_its_list) {
   EXPECT_EQ(copy(world.children(parents[2])), children);
 }
 
-TEST(Children, commands_end_families_too) {
+TEST(Children, CommandsDestroyFamilies) {
   World world;
   const Entity root = world.create<Children>(1).entities[0];
   world.set_children(root, world.create<Mesh>(4).entities);
@@ -100,7 +100,7 @@ TEST(Children, commands_end_families_too) {
   EXPECT_EQ(world.size(), 0U);
 }
 
-TEST(Children, lists_that_share_children_end_in_linear_time) {
+TEST(Children, ListsThatShareChildrenDieInLinearTime) {
   World world;
   std::vector<Entity> chain = copy(world.create<Children>(200).entities);
   for (std::size_t i = 0; i + 1 < chain.size(); ++i)
@@ -108,7 +108,7 @@ TEST(Children, lists_that_share_children_end_in_linear_time) {
   EXPECT_EQ(world.destroy_with_children(std::vector{chain[0], chain[0]}), 200U);
 }
 
-TEST(Children, a_list_of_another_world_is_empty_here) {
+TEST(Children, AListOfAnotherWorldIsEmptyHere) {
   World world;
   World other;
   const Entity parent = world.create<Children>(1).entities[0];
@@ -117,7 +117,7 @@ TEST(Children, a_list_of_another_world_is_empty_here) {
   static_assert(!std::is_copy_constructible_v<Children> && !std::is_move_assignable_v<Children>);
 }
 
-TEST(Children, commands_set_them) {
+TEST(Children, CommandsSetChildren) {
   World world;
   const Entity parent = world.create<Children>(1).entities[0];
   const std::vector<Entity> children = copy(world.create<Mesh>(3).entities);
@@ -127,7 +127,7 @@ TEST(Children, commands_set_them) {
   EXPECT_EQ(copy(world.children(parent)), children);
 }
 
-TEST(ChildrenDeathTest, setting_them_while_iterating_ends_the_program) {
+TEST(ChildrenDeathTest, SettingChildrenWhileIteratingEndsTheProgram) {
   World world;
   const Entity parent = world.create<Children>(1).entities[0];
   EXPECT_DEATH(world.each<const Children>([&](auto, auto) { world.set_children(parent, {}); }),

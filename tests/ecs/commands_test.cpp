@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-TEST(Commands, structural_changes_are_recorded_while_iterating_and_applied_afterwards) {
+TEST(Commands, RecordStructuralChangesWhileIteratingAndApplyThemLater) {
   World world;
   const auto created = world.create<Health>(100);
   for (std::size_t i = 0; i < 100; ++i) {
@@ -35,7 +35,7 @@ TEST(Commands, structural_changes_are_recorded_while_iterating_and_applied_after
   });
 }
 
-TEST(Commands, are_applied_in_the_order_of_recording) {
+TEST(Commands, AreAppliedInTheOrderOfRecording) {
   World world;
   const Entity entity = world.create<Position>(1).entities[0];
   Commands commands;
@@ -51,7 +51,7 @@ TEST(Commands, are_applied_in_the_order_of_recording) {
   EXPECT_FALSE(world.alive(entity));
 }
 
-TEST(Commands, carry_move_only_values) {
+TEST(Commands, CarryMoveOnlyValues) {
   World world;
   Commands commands;
   commands.create(Owner{std::make_unique<int>(1)});
@@ -66,7 +66,7 @@ TEST(Commands, carry_move_only_values) {
   EXPECT_EQ(values, (std::vector<int>{1, 2}));
 }
 
-TEST(Commands, that_are_never_applied_leave_nothing_behind) {
+TEST(Commands, AreDroppedWithoutApply) {
   {
     Commands commands;
     commands.create(Throwing{}, Owner{std::make_unique<int>(1)});
@@ -74,7 +74,7 @@ TEST(Commands, that_are_never_applied_leave_nothing_behind) {
   EXPECT_EQ(Throwing::alive, 0);
 }
 
-TEST(Commands, what_follows_a_throwing_constructor_is_kept) {
+TEST(Commands, AfterAThrowingConstructorAreKept) {
   World world;
   const std::vector<Entity> entities = [&] {
     const auto created = world.create<Position>(2).entities;

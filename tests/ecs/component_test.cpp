@@ -23,17 +23,17 @@ static_assert(Component<test::Aligned>);
 static_assert(!Component<const test::Position> && !Component<int&> && !Component<int[4]>);
 static_assert(!Component<ThrowingMove> && !Component<TooAligned> && !Component<std::atomic<int>>);
 
-TEST(Component, a_name_comes_from_the_traits_or_from_the_type) {
+TEST(Component, ANameComesFromTheTraitsOrFromTheType) {
   EXPECT_EQ(component_name<test::Mesh>(), "mesh");
   EXPECT_EQ(component_name<test::Position>(), "psygen::ecs::test::Position");
 }
 
-TEST(Component, tracking_is_off_unless_the_traits_say_so) {
+TEST(Component, TrackingIsOffUnlessTheTraitsSaySo) {
   EXPECT_TRUE(is_tracked<test::Mesh>());
   EXPECT_FALSE(is_tracked<test::Position>());
 }
 
-TEST(Component, used_memory_is_value_initialised_again) {
+TEST(Component, UsedMemoryIsValueInitialisedAgain) {
   std::vector<test::Mesh> meshes(8, test::Mesh{5});
   detail::kComponentInfo<test::Mesh>.construct(reinterpret_cast<std::byte*>(meshes.data()), 2, 4,
                                                false);
@@ -43,7 +43,7 @@ TEST(Component, used_memory_is_value_initialised_again) {
   EXPECT_EQ(meshes[6].id, 5U);
 }
 
-TEST(Component, fresh_memory_still_gets_defaults_that_are_not_zero) {
+TEST(Component, FreshMemoryStillGetsDefaultsThatAreNotZero) {
   std::vector<test::Health> rows(4, test::Health{0});
   detail::kComponentInfo<test::Health>.construct(reinterpret_cast<std::byte*>(rows.data()), 0, 4,
                                                  true);

@@ -24,7 +24,7 @@ struct Velocity {
 struct Health {
   std::int32_t points = 100;
 };
-// Tracked, with a name of its own.
+// Tracked, with an explicit name.
 struct Mesh {
   std::uint64_t id = 0;
 };
@@ -49,7 +49,7 @@ struct Edited {
 // Counts its living objects. The constructor call after `fuse` further ones throws
 // std::runtime_error.
 struct Throwing {
-  // Throws when the fuse has run down; moving never throws.
+  // Throws once `fuse` reaches 0; moving never throws.
   Throwing() {
     if (fuse >= 0 && fuse-- == 0) throw std::runtime_error("fuse");
     ++alive;
@@ -69,7 +69,7 @@ struct Fused : Throwing {};
 struct Twin {};
 struct OtherTwin {};
 
-// Entities for as long as a test needs them: spans of the world's own end with its next change.
+// Copies entities, because the world's own spans end with its next change.
 inline std::vector<Entity> copy(std::span<const Entity> entities) {
   return {entities.begin(), entities.end()};
 }

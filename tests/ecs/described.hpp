@@ -1,5 +1,5 @@
-// Component types whose fields are described, for the tests of fields and snapshots. Together they
-// have a field of every kind.
+// Component types with described fields, for the tests of fields and snapshots. Together they have
+// a field of every kind.
 #pragma once
 
 #include <array>
@@ -58,7 +58,7 @@ struct psygen::ecs::ComponentTraits<psygen::ecs::test::Creature> {
   static constexpr bool tracked = true;
   static constexpr auto fields = std::tuple{
       field("name", &Creature::name),
-      field("place", &Creature::place, {.unit = "m", .doc = "where it stands"}),
+      field("place", &Creature::place, {.unit = "m", .doc = "its position"}),
       field("sizes", &Creature::sizes),
       field("path", &Creature::path),
       field("titles", &Creature::titles),

@@ -7,7 +7,7 @@
 namespace psygen::ecs::detail {
 namespace {
 
-TEST(EntitySlots, a_freed_slot_is_reused_with_the_next_generation) {
+TEST(EntitySlots, AFreedSlotIsReusedWithTheNextGeneration) {
   EntitySlots slots(100, 1);
   std::array<Entity, 3> first{};
   slots.issue(first, 4096);
@@ -22,7 +22,7 @@ TEST(EntitySlots, a_freed_slot_is_reused_with_the_next_generation) {
   EXPECT_EQ(slots.living(), 4U);
 }
 
-TEST(EntitySlots, a_slot_whose_generations_are_used_up_retires) {
+TEST(EntitySlots, ASlotWhoseGenerationsAreUsedUpRetires) {
   EntitySlots slots(100, UINT32_MAX - 1);
   std::array<Entity, 1> entity{};
   slots.issue(entity, 4096);
@@ -38,7 +38,7 @@ TEST(EntitySlots, a_slot_whose_generations_are_used_up_retires) {
   EXPECT_EQ(slots.living(), 1U);
 }
 
-TEST(EntitySlots, handles_that_were_never_given_out_are_not_found) {
+TEST(EntitySlots, HandlesThatWereNeverIssuedAreNotFound) {
   EntitySlots slots(100, 1);
   std::array<Entity, 1> entity{};
   slots.issue(entity, 4096);

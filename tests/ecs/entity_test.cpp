@@ -7,13 +7,13 @@
 namespace psygen::ecs {
 namespace {
 
-TEST(Entity, the_null_entity_equals_only_itself) {
+TEST(Entity, TheNullEntityEqualsOnlyItself) {
   EXPECT_EQ(Entity{}, kNullEntity);
   EXPECT_NE((Entity{0, 1}), kNullEntity);
   EXPECT_NE((Entity{0, 1}), (Entity{0, 2}));
 }
 
-TEST(Entity, hashes_of_neighbouring_handles_differ) {
+TEST(Entity, HashesOfNeighbouringHandlesDiffer) {
   std::unordered_set<std::size_t> hashes;
   for (std::uint32_t index = 0; index < 1000; ++index) {
     for (std::uint32_t generation = 1; generation < 10; ++generation) {

@@ -1,4 +1,4 @@
-// Events reach every reader once, and nobody who does not drain costs more than a bound.
+// Every reader sees every event once, and a reader that does not drain costs a bounded number.
 #include "ecs/event_queue.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ std::vector<int> drained(EventReader<int>& reader) {
   return all;
 }
 
-TEST(EventQueue, every_reader_sees_every_event_once_and_in_order) {
+TEST(EventQueue, EveryReaderSeesEveryEventOnceAndInOrder) {
   EventQueue<int> queue;
   EventReader<int> first = queue.reader();
   queue.emit(1);
@@ -29,7 +29,7 @@ TEST(EventQueue, every_reader_sees_every_event_once_and_in_order) {
   EXPECT_EQ(queue.size(), 0U);
 }
 
-TEST(EventQueue, without_readers_nothing_is_kept) {
+TEST(EventQueue, WithoutReadersNothingIsKept) {
   EventQueue<int> queue;
   queue.emit(1);
   EXPECT_FALSE(queue.has_readers());
@@ -43,7 +43,7 @@ TEST(EventQueue, without_readers_nothing_is_kept) {
   EXPECT_EQ(queue.size(), 0U);
 }
 
-TEST(EventQueue, a_million_events_that_nobody_drains_are_bounded_and_counted) {
+TEST(EventQueue, AMillionEventsWithoutADrainAreBoundedAndCounted) {
   EventQueue<int> queue(1000);
   EventReader<int> sleeper = queue.reader();
   EventReader<int> reader = queue.reader();
@@ -60,7 +60,7 @@ TEST(EventQueue, a_million_events_that_nobody_drains_are_bounded_and_counted) {
   EXPECT_EQ(left.front(), 1'000'000 - static_cast<int>(left.size()));
 }
 
-TEST(EventQueue, a_batch_larger_than_the_bound_keeps_its_newest_events) {
+TEST(EventQueue, ABatchLargerThanTheBoundKeepsItsNewestEvents) {
   EventQueue<int> queue(3);
   EventReader<int> reader = queue.reader();
   queue.emit(7);
@@ -71,7 +71,7 @@ TEST(EventQueue, a_batch_larger_than_the_bound_keeps_its_newest_events) {
   EXPECT_EQ(queue.dropped(), 8U);
 }
 
-TEST(EventQueue, a_reader_can_be_moved_and_outlive_its_queue) {
+TEST(EventQueue, AReaderCanBeMovedAndOutliveItsQueue) {
   auto queue = std::make_unique<EventQueue<int>>();
   EventReader<int> reader = queue->reader();
   queue->emit(1);

@@ -11,7 +11,7 @@
 
 namespace psygen::ecs::test {
 namespace {
-// A type whose first value cannot be made.
+// A type whose first construction fails.
 struct Reluctant {
   static inline int made = 0;
   int value = 0;
@@ -38,7 +38,7 @@ const FieldDescription* find(const TypeDescription& type, std::string_view name)
   return nullptr;
 }
 
-TEST(Fields, each_has_name_kind_and_notes_in_the_listed_order) {
+TEST(Fields, EachHasNameKindAndNotesInTheListedOrder) {
   const TypeDescription* type = describe<Creature>();
   ASSERT_NE(type, nullptr);
   ASSERT_EQ(type->fields.size(), 10U);
@@ -48,13 +48,13 @@ TEST(Fields, each_has_name_kind_and_notes_in_the_listed_order) {
   for (std::size_t i = 0; i < type->fields.size(); ++i)
     EXPECT_EQ(type->fields[i].type->kind, kinds[i]) << type->fields[i].name;
   EXPECT_EQ(find(*type, "place")->notes.unit, "m");
-  EXPECT_EQ(find(*type, "place")->notes.doc, "where it stands");
+  EXPECT_EQ(find(*type, "place")->notes.doc, "its position");
   EXPECT_EQ(find(*type, "age")->notes.max, 100);
   EXPECT_EQ(find(*type, "sizes")->type->count, 3U);
   EXPECT_EQ(find(*type, "path")->type->element->fields.size(), 3U);
 }
 
-TEST(Fields, values_are_reached_by_offset) {
+TEST(Fields, ValuesAreReachedByOffset) {
   Creature creature;
   auto* bytes = reinterpret_cast<std::byte*>(&creature);
   const TypeDescription& type = *describe<Creature>();
@@ -74,13 +74,13 @@ TEST(Fields, values_are_reached_by_offset) {
   EXPECT_EQ(path.type->length(bytes + path.offset_bytes), 2U);
 }
 
-TEST(Fields, a_type_that_says_nothing_is_not_described_and_an_empty_one_has_no_fields) {
+TEST(Fields, ATypeWithoutTraitsIsNotDescribedAndAnEmptyOneHasNoFields) {
   EXPECT_EQ(describe<Position>(), nullptr);
   ASSERT_NE(describe<Hidden>(), nullptr);
   EXPECT_TRUE(describe<Hidden>()->fields.empty());
 }
 
-// In a process of its own: a description stays for the rest of the process.
+// Runs in a separate process, because a description stays for the rest of the process.
 void describe_the_reluctant_twice_and_exit() {
   bool threw = false;
   try {
@@ -92,7 +92,7 @@ void describe_the_reluctant_twice_and_exit() {
   std::_Exit(threw && type != nullptr && type->fields.size() == 1 ? 0 : 1);
 }
 
-TEST(Fields, a_constructor_that_throws_is_tried_again_with_the_next_use) {
+TEST(Fields, AThrowingConstructorIsRetriedOnTheNextUse) {
   EXPECT_EXIT(describe_the_reluctant_twice_and_exit(), ::testing::ExitedWithCode(0), "");
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-TEST(Query, each_visits_every_matching_table_once_with_parallel_spans) {
+TEST(Query, EachVisitsEveryMatchingTableOnceWithParallelSpans) {
   World world;
   world.create<Position>(10);
   world.create<Position, Velocity>(20);
@@ -33,7 +33,7 @@ TEST(Query, each_visits_every_matching_table_once_with_parallel_spans) {
   EXPECT_EQ(rows, 50U);
 }
 
-TEST(Query, without_leaves_tables_out) {
+TEST(Query, WithoutSkipsTables) {
   World world;
   world.create<Position>(10);
   world.create<Position, Hidden>(20);
@@ -44,7 +44,7 @@ TEST(Query, without_leaves_tables_out) {
   EXPECT_EQ(rows, 10U);
 }
 
-TEST(Query, a_query_for_nothing_visits_everybody) {
+TEST(Query, AQueryWithoutComponentsVisitsAllEntities) {
   World world;
   world.create<Position>(10);
   world.create<Velocity>(5);
@@ -53,7 +53,7 @@ TEST(Query, a_query_for_nothing_visits_everybody) {
   EXPECT_EQ(rows, 15U);
 }
 
-TEST(Query, a_const_world_is_iterated_and_unknown_components_match_nothing) {
+TEST(Query, AConstWorldIsIteratedAndUnknownComponentsMatchNothing) {
   World world;
   world.create<Position>(3);
   const World& read_only = world;
@@ -64,14 +64,14 @@ TEST(Query, a_const_world_is_iterated_and_unknown_components_match_nothing) {
   EXPECT_EQ(read_only.count<Mesh>(), 0U);
 }
 
-TEST(Query, emptied_tables_are_not_visited) {
+TEST(Query, EmptiedTablesAreNotVisited) {
   World world;
   const auto created = world.create<Position>(3);
   world.destroy(created.entities);
   world.each<Position>([](auto, auto) { FAIL() << "no row is left"; });
 }
 
-TEST(Query, rows_are_marked_while_they_are_iterated) {
+TEST(Query, RowsAreMarkedWhileTheyAreIterated) {
   World world;
   world.create<Mesh>(1000);
   auto reader = world.reader<Mesh>();
@@ -90,7 +90,7 @@ TEST(Query, rows_are_marked_while_they_are_iterated) {
   EXPECT_EQ(ids, (std::vector<std::uint64_t>{10, 11, 12, 13, 14, 15, 16, 17, 18, 19}));
 }
 
-TEST(Query, each_of_groups_neighbours_and_keeps_the_order) {
+TEST(Query, EachOfGroupsNeighboursAndKeepsTheOrder) {
   World world;
   std::vector<Entity> all;
   const auto keep = [&](std::span<const Entity> entities) {
@@ -125,7 +125,7 @@ TEST(Query, each_of_groups_neighbours_and_keeps_the_order) {
   EXPECT_EQ(world.each_of<const Velocity>(all, [](auto, auto) { FAIL(); }), 0U);
 }
 
-TEST(Query, each_of_marks_the_rows_it_visits) {
+TEST(Query, EachOfMarksTheRowsItVisits) {
   World world;
   const auto created = world.create<Mesh>(10).entities;
   const std::vector<Entity> all(created.begin(), created.end());

@@ -1,4 +1,4 @@
-// Random sequences of every verb against a std::map that does the same slowly.
+// Random sequences of every verb against a slow model in a std::map.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -203,7 +203,7 @@ class Machine {
   void create_parent() {
     const Entity parent = world_.create<Children>(1).entities[0];
     std::vector<Entity> children = some();
-    if (pick(3) == 0) children.push_back(parent);  // a circle
+    if (pick(3) == 0) children.push_back(parent);  // a cycle
     ASSERT_TRUE(world_.set_children(parent, children));
     model_[pack(parent)].children = children;
   }
@@ -384,7 +384,7 @@ class Machine {
   std::vector<Entity> dead_;
 };
 
-TEST(RandomOperations, thousands_of_random_verbs_agree_with_a_map) {
+TEST(RandomOperations, ThousandsOfRandomVerbsAgreeWithAMap) {
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(seed);
     Machine machine(seed);

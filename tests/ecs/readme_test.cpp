@@ -1,4 +1,4 @@
-// The example of ecs/README.md, run; and the README shows this very text.
+// Runs the example of ecs/README.md, and compares its text with the README's.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -39,13 +39,13 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-TEST(Readme, the_example_runs) {
+TEST(Readme, TheExampleRuns) {
   psygen::ecs::World world;
   EXPECT_EQ(fly(world), 3.0F);
   EXPECT_EQ(world.size(), 500U);
 }
 
-TEST(Readme, the_readme_shows_the_example_as_it_is_tested) {
+TEST(Readme, TheReadmeShowsTheExampleAsItIsTested) {
   const std::string mark = "// [example]\n";
   const std::string source = text_of(psygen::source_file("tests/ecs/readme_test.cpp"));
   const std::size_t begin = source.find(mark) + mark.size();

@@ -12,7 +12,7 @@
 namespace psygen::ecs::detail {
 namespace {
 
-TEST(ReservedMemory, what_it_holds_never_moves_while_it_grows) {
+TEST(ReservedMemory, ContentsNeverMoveWhileItGrows) {
   ReservedMemory memory(std::size_t{64} << 20, 320);
   memory.commit(1);
   std::byte* first = memory.data();
@@ -27,21 +27,21 @@ TEST(ReservedMemory, what_it_holds_never_moves_while_it_grows) {
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(first) % 64, 0U);
 }
 
-TEST(ReservedMemory, fresh_memory_reads_as_zero_to_its_last_byte) {
+TEST(ReservedMemory, FreshMemoryReadsAsZeroToItsLastByte) {
   ReservedMemory memory(std::size_t{1} << 20);
   memory.commit(memory.capacity_bytes());
   EXPECT_GE(memory.capacity_bytes(), std::size_t{1} << 20);
   EXPECT_EQ(memory.data()[memory.capacity_bytes() - 1], std::byte{0});
 }
 
-TEST(ReservedMemory, an_absurd_reservation_is_cut_to_what_the_system_gives) {
+TEST(ReservedMemory, AnAbsurdReservationIsReducedToWhatTheSystemGrants) {
   ReservedMemory memory(std::size_t{1} << 60);
   EXPECT_GE(memory.capacity_bytes(), std::size_t{1} << 20);
   memory.commit(4096);
   memory.data()[4095] = std::byte{1};
 }
 
-TEST(ReservedMemory, more_than_was_reserved_is_no_memory) {
+TEST(ReservedMemory, CommittingMoreThanWasReservedThrows) {
   ReservedMemory memory(std::size_t{1} << 20);
   memory.commit(4096);
   EXPECT_THROW(memory.commit(memory.capacity_bytes() + 1), std::bad_alloc);
@@ -51,7 +51,7 @@ TEST(ReservedMemory, more_than_was_reserved_is_no_memory) {
 
 #ifdef PSYGEN_LIMITS_OF_MEMORY
 
-TEST(ReservedMemory, where_addresses_are_limited_a_reservation_leaves_the_most_of_them) {
+TEST(ReservedMemory, WithLimitedAddressSpaceAReservationTakesASmallPart) {
   constexpr std::size_t kGiB = std::size_t{1} << 30;
   rlimit before{};
   getrlimit(RLIMIT_AS, &before);
@@ -72,7 +72,7 @@ TEST(ReservedMemory, where_addresses_are_limited_a_reservation_leaves_the_most_o
 
 #endif
 
-TEST(ReservedMemory, moving_hands_the_range_over) {
+TEST(ReservedMemory, MovingTransfersTheRange) {
   ReservedMemory memory(std::size_t{1} << 20);
   memory.commit(1);
   std::byte* data = memory.data();

@@ -16,7 +16,7 @@ Runs drain(RowBits& bits) {
   return runs;
 }
 
-TEST(RowBits, runs_join_across_words_and_summary_words) {
+TEST(RowBits, RunsJoinAcrossWordsAndSummaryWords) {
   RowBits bits;
   bits.reserve_rows(20000);
   bits.mark_range(60, 10);
@@ -27,7 +27,7 @@ TEST(RowBits, runs_join_across_words_and_summary_words) {
   EXPECT_EQ(drain(bits), Runs{});
 }
 
-TEST(RowBits, the_first_row_and_whole_words_are_runs_of_their_own) {
+TEST(RowBits, TheFirstRowAndWholeWordsAreSeparateRuns) {
   RowBits bits;
   bits.reserve_rows(256);
   bits.mark(0);
@@ -35,7 +35,7 @@ TEST(RowBits, the_first_row_and_whole_words_are_runs_of_their_own) {
   EXPECT_EQ(drain(bits), (Runs{{0, 1}, {64, 64}}));
 }
 
-TEST(RowBits, rows_marked_while_draining_are_not_lost) {
+TEST(RowBits, RowsMarkedWhileDrainingAreNotLost) {
   RowBits bits;
   bits.reserve_rows(100000);
   for (std::uint32_t row = 0; row < 100000; row += 100)
@@ -53,7 +53,7 @@ TEST(RowBits, rows_marked_while_draining_are_not_lost) {
   EXPECT_EQ(drain(bits), Runs{});
 }
 
-TEST(RowBits, every_pattern_of_runs_within_a_word_is_drained) {
+TEST(RowBits, EveryPatternOfRunsWithinAWordIsDrained) {
   std::mt19937_64 random(7);
   for (int round = 0; round < 2000; ++round) {
     const std::uint64_t word = round == 0 ? ~std::uint64_t{0} : random() | (random() & random());
@@ -72,7 +72,7 @@ TEST(RowBits, every_pattern_of_runs_within_a_word_is_drained) {
   }
 }
 
-TEST(RowBits, random_marks_and_clears_agree_with_a_set) {
+TEST(RowBits, RandomMarksAndClearsAgreeWithASet) {
   for (const std::uint32_t seed : {1U, 2U, 3U}) {
     std::mt19937 engine(seed);
     const auto random = [&] { return static_cast<std::uint32_t>(engine()); };

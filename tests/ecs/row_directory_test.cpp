@@ -5,7 +5,7 @@
 namespace psygen::ecs::detail {
 namespace {
 
-TEST(RowDirectory, a_location_names_one_row_of_one_table) {
+TEST(RowDirectory, ALocationNamesOneRowOfOneTable) {
   RowDirectory directory;
   const std::uint32_t a = directory.add_chunk(1, 0);
   const std::uint32_t b = directory.add_chunk(2, 0);
@@ -18,7 +18,7 @@ TEST(RowDirectory, a_location_names_one_row_of_one_table) {
   EXPECT_EQ(directory.place_of(c + 5).row, 4101U);
 }
 
-TEST(RowDirectory, nowhere_is_in_no_table) {
+TEST(RowDirectory, NowhereBelongsToNoTable) {
   RowDirectory directory;
   directory.add_chunk(1, 0);
   EXPECT_EQ(directory.place_of(kNowhere).table, 0U);

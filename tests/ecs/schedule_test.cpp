@@ -1,4 +1,4 @@
-// Systems, what they declare, and that any number of threads gives the result of one.
+// Systems, their declared accesses, and equal results on any number of threads.
 #include "ecs/schedule.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ bool declares(const SystemInfo& system, std::string_view name, bool writes) {
                              [&](const Access& a) { return a.name == name && a.writes == writes; });
 }
 
-TEST(Schedule, what_a_system_reads_and_writes_is_taken_from_its_parameters) {
+TEST(Schedule, DerivesAccessesFromTheParametersOfASystem) {
   World world;
   Wind wind;
   Tally tally;
@@ -62,7 +62,7 @@ TEST(Schedule, what_a_system_reads_and_writes_is_taken_from_its_parameters) {
   EXPECT_EQ(info(schedule, "change").runs_on, RunsOn::kCallingThread);
 }
 
-TEST(Schedule, two_systems_conflict_when_one_writes_what_the_other_touches) {
+TEST(Schedule, TwoSystemsConflictWhenOneWritesWhatTheOtherTouches) {
   World world;
   Wind wind;
   Tally tally;
@@ -91,7 +91,7 @@ TEST(Schedule, two_systems_conflict_when_one_writes_what_the_other_touches) {
   EXPECT_FALSE(conflicts("resource", "alone"));
 }
 
-TEST(Schedule, systems_run_in_order_and_have_times) {
+TEST(Schedule, SystemsRunInOrderAndHaveTimes) {
   World world;
   std::vector<int> order;
   Schedule schedule(world);
@@ -105,7 +105,7 @@ TEST(Schedule, systems_run_in_order_and_have_times) {
     EXPECT_GT(system.last_seconds, 0.0);
 }
 
-TEST(Schedule, commands_have_happened_before_the_next_system) {
+TEST(Schedule, CommandsAreAppliedBeforeTheNextSystem) {
   for (const std::size_t threads : {1U, 4U}) {
     World world;
     Tally tally;
@@ -124,12 +124,12 @@ TEST(Schedule, commands_have_happened_before_the_next_system) {
   }
 }
 
-TEST(Schedule, systems_without_conflict_run_at_the_same_time) {
+TEST(Schedule, SystemsWithoutConflictRunAtTheSameTime) {
   World world;
   world.create<Position, Velocity>(1);
   std::atomic<int> inside = 0;
   Schedule schedule(world, 2);
-  // Each waits for the other: only together they end.
+  // Each waits for the other, so only together they end.
   const auto meet = [&inside] {
     ++inside;
     while (inside.load() < 2)
@@ -141,7 +141,7 @@ TEST(Schedule, systems_without_conflict_run_at_the_same_time) {
   EXPECT_EQ(inside.load(), 2);
 }
 
-TEST(Schedule, what_must_run_on_the_calling_thread_does) {
+TEST(Schedule, SystemsOfTheCallingThreadRunThere) {
   World world;
   std::set<std::thread::id> ids;
   Schedule schedule(world, 3);
@@ -158,7 +158,7 @@ TEST(Schedule, what_must_run_on_the_calling_thread_does) {
   EXPECT_EQ(ids, std::set{std::this_thread::get_id()});
 }
 
-// A small simulation in which every kind of access occurs and every order matters.
+// A small simulation with every kind of access, in which every order matters.
 void simulate(World& world, std::size_t threads) {
   auto meshes = world.reader<Mesh>(Removed::kReport);
   Wind wind;
@@ -217,7 +217,7 @@ void simulate(World& world, std::size_t threads) {
   EXPECT_GT(tally.seen, 100U);
 }
 
-TEST(Schedule, any_number_of_threads_gives_the_state_of_one) {
+TEST(Schedule, AnyNumberOfThreadsGivesTheSameState) {
   World serial;
   simulate(serial, 1);
   EXPECT_GT(serial.size(), 10U);
@@ -228,7 +228,7 @@ TEST(Schedule, any_number_of_threads_gives_the_state_of_one) {
   }
 }
 
-TEST(Schedule, threads_that_cannot_be_started_are_done_without) {
+TEST(Schedule, RunsOnFewerThreadsIfSomeCannotBeStarted) {
   World serial;
   simulate(serial, 1);
   for (const std::size_t left : {0U, 1U, 2U}) {
@@ -241,14 +241,14 @@ TEST(Schedule, threads_that_cannot_be_started_are_done_without) {
   }
 }
 
-TEST(ScheduleDeathTest, a_missing_resource_is_named) {
+TEST(ScheduleDeathTest, AMissingResourceIsNamed) {
   World world;
   Schedule schedule(world);
   EXPECT_DEATH(schedule.add("blow", [](const Wind&) {}),
                "the system 'blow' wants a Wind, which was not provided");
 }
 
-TEST(ScheduleDeathTest, a_second_resource_of_a_type_is_refused) {
+TEST(ScheduleDeathTest, ASecondResourceOfATypeIsRejected) {
   World world;
   Wind wind;
   Schedule schedule(world);
@@ -256,7 +256,7 @@ TEST(ScheduleDeathTest, a_second_resource_of_a_type_is_refused) {
   EXPECT_DEATH(schedule.provide(wind), "a second Wind");
 }
 
-TEST(Query, follows_handles_and_lands_only_where_it_may) {
+TEST(Query, FollowsHandlesAndWritesOnlyItsOwnComponents) {
   World world;
   const std::vector<Landing<Mesh>> results{{world.create<Mesh, Position>(1).entities[0], {8}}};
   const Query<Mesh, const Position> query(world);
@@ -271,7 +271,7 @@ TEST(Query, follows_handles_and_lands_only_where_it_may) {
 
 void quiet(Wind&) noexcept {}
 
-TEST(Schedule, takes_functions_that_do_not_throw_and_lambdas_that_only_move) {
+TEST(Schedule, TakesNoexceptFunctionsAndMoveOnlyLambdas) {
   World world;
   Wind wind;
   Schedule schedule(world);
@@ -283,7 +283,7 @@ TEST(Schedule, takes_functions_that_do_not_throw_and_lambdas_that_only_move) {
   EXPECT_EQ(wind.strength, 5.0F);
 }
 
-TEST(Schedule, a_system_may_name_its_commands_twice) {
+TEST(Schedule, ASystemMayNameItsCommandsTwice) {
   World world;
   Schedule schedule(world);
   schedule.add("both", [](Commands& a, Commands& b) {
@@ -297,7 +297,7 @@ TEST(Schedule, a_system_may_name_its_commands_twice) {
 struct Uploads;
 struct Sounds;
 
-TEST(Schedule, several_readers_of_a_component_are_told_apart_by_tag) {
+TEST(Schedule, TagsDistinguishReadersOfOneComponent) {
   World world;
   auto uploads = world.reader<Mesh, Uploads>();
   auto sounds = world.reader<Mesh, Sounds>();
@@ -317,7 +317,7 @@ TEST(Schedule, several_readers_of_a_component_are_told_apart_by_tag) {
   EXPECT_EQ(tally.seen, 20U);
 }
 
-TEST(ScheduleDeathTest, adding_and_running_from_inside_a_system_is_said) {
+TEST(ScheduleDeathTest, AddingAndRunningInsideASystemEndsWithAMessage) {
   World world;
   Schedule schedule(world);
   schedule.provide(schedule);
@@ -329,7 +329,7 @@ TEST(ScheduleDeathTest, adding_and_running_from_inside_a_system_is_said) {
   EXPECT_DEATH(again.run(), "run from inside a system");
 }
 
-TEST(Schedule, a_system_runs_at_the_place_that_it_names) {
+TEST(Schedule, ASystemRunsBeforeOrAfterTheSystemsThatItNames) {
   for (const std::size_t threads : {1U, 4U}) {
     World world;
     std::vector<int> order;
@@ -353,7 +353,7 @@ TEST(Schedule, a_system_runs_at_the_place_that_it_names) {
   }
 }
 
-TEST(Schedule, an_order_that_is_impossible_is_told_and_changes_nothing) {
+TEST(Schedule, AnImpossibleOrderIsReportedAndChangesNothing) {
   World world;
   Schedule schedule(world);
   schedule.add("a", [](World&) {});
@@ -364,7 +364,7 @@ TEST(Schedule, an_order_that_is_impossible_is_told_and_changes_nothing) {
   EXPECT_DEATH(schedule.run(), "schedule: systems wait for each other");
 }
 
-TEST(Schedule, events_of_one_run_reach_systems_of_this_run_or_the_next) {
+TEST(Schedule, EventsOfOneRunReachSystemsOfThisRunOrTheNext) {
   struct Fall {
     int height_m;
   };
@@ -393,7 +393,7 @@ TEST(Schedule, events_of_one_run_reach_systems_of_this_run_or_the_next) {
   }
 }
 
-TEST(Schedule, owns_what_it_emplaces_until_its_systems_are_gone) {
+TEST(Schedule, OwnsEmplacedResourcesLongerThanItsSystems) {
   const auto alive = std::make_shared<int>(1);
   struct Holder {
     std::shared_ptr<int> value;
@@ -406,7 +406,7 @@ TEST(Schedule, owns_what_it_emplaces_until_its_systems_are_gone) {
   EXPECT_EQ(alive.use_count(), 1);
 }
 
-TEST(Schedule, an_exception_of_a_system_ends_the_run_and_names_it) {
+TEST(Schedule, AnExceptionOfASystemEndsTheRunAndNamesIt) {
   for (const std::size_t threads : {1U, 4U}) {
     World world;
     Tally tally;

@@ -1,4 +1,4 @@
-// Worlds as bytes and back, and what happens to bytes that are no world.
+// Snapshots of worlds, and rejection of bytes that are no snapshot.
 #include "ecs/snapshot.hpp"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ void declare_all(World& world) {
   world.declare<Creature, Position, Mesh, Hidden, Selected, Edited, Children>();
 }
 
-// Every feature at once, with at least 8 creatures: several kinds, the dead, children, sparse
-// components, transient values.
+// Uses every feature, with at least 8 creatures: several archetypes, dead entities, children,
+// sparse components, transient values.
 void fill(World& world, std::size_t count = 20) {
   const std::vector<Entity> creatures = copy(world.create<Creature, Position>(count).entities);
   const std::vector<Entity> hidden = copy(world.create<Creature, Hidden>(3).entities);
@@ -59,7 +59,7 @@ void repair(std::vector<std::byte>& bytes) {
   std::memcpy(bytes.data() + bytes.size() - sizeof(sum), &sum, sizeof(sum));
 }
 
-TEST(Snapshot, a_world_comes_back_as_it_was) {
+TEST(Snapshot, AWorldIsRestoredExactly) {
   World before;
   fill(before);
   const std::vector<std::byte> bytes = save_snapshot(before);
@@ -92,7 +92,7 @@ TEST(Snapshot, a_world_comes_back_as_it_was) {
   EXPECT_EQ(state_hash(after), state_hash(before));
 }
 
-TEST(Snapshot, both_worlds_go_on_alike) {
+TEST(Snapshot, BothWorldsContinueAlike) {
   World before;
   fill(before);
   World after;
@@ -104,7 +104,7 @@ TEST(Snapshot, both_worlds_go_on_alike) {
   EXPECT_EQ(state_hash(after), state_hash(before));
 }
 
-TEST(Snapshot, stale_handles_stay_stale_and_retired_slots_retired) {
+TEST(Snapshot, StaleHandlesStayStaleAndRetiredSlotsRetired) {
   World before(WorldLimits{.first_generation = UINT32_MAX});
   const std::vector<Entity> dead = copy(before.create<Mesh>(3).entities);
   before.destroy(dead);
@@ -117,7 +117,7 @@ TEST(Snapshot, stale_handles_stay_stale_and_retired_slots_retired) {
   EXPECT_EQ(after.size(), 1U);
 }
 
-TEST(Snapshot, transient_components_stay_without_their_value) {
+TEST(Snapshot, TransientComponentsAreRestoredWithoutTheirValues) {
   World before;
   const Entity e = before.create<Position>(1).entities[0];
   before.get<Position>(e)->x = 5;
@@ -128,11 +128,11 @@ TEST(Snapshot, transient_components_stay_without_their_value) {
   EXPECT_EQ(after.get<Position>(e)->x, 0);
 }
 
-TEST(Snapshot, an_empty_world_is_one) {
+TEST(Snapshot, AnEmptyWorldHasASnapshot) {
   EXPECT_EQ(status_of(save_snapshot(World())), SnapshotStatus::kLoaded);
 }
 
-TEST(Snapshot, the_order_in_which_types_were_met_does_not_matter) {
+TEST(Snapshot, TheOrderOfRegistrationDoesNotMatter) {
   World a;
   World b;
   a.declare<Mesh, Creature, Hidden>();
@@ -142,7 +142,7 @@ TEST(Snapshot, the_order_in_which_types_were_met_does_not_matter) {
   EXPECT_EQ(save_snapshot(a), save_snapshot(b));
 }
 
-TEST(Snapshot, loaded_rows_are_new_to_a_reader) {
+TEST(Snapshot, LoadedRowsAreNewToAReader) {
   World before;
   fill(before);
   World after;
@@ -152,7 +152,7 @@ TEST(Snapshot, loaded_rows_are_new_to_a_reader) {
   EXPECT_EQ(reader.drain([](auto, auto) {}), 18U);
 }
 
-TEST(Snapshot, a_world_with_a_past_and_an_unknown_component_are_refused_by_name) {
+TEST(Snapshot, AUsedWorldAndAnUnknownComponentAreRejectedByName) {
   World before;
   fill(before);
   const std::vector<std::byte> bytes = save_snapshot(before);
@@ -164,7 +164,7 @@ TEST(Snapshot, a_world_with_a_past_and_an_unknown_component_are_refused_by_name)
   EXPECT_NE(result.sentence.find("'"), std::string::npos) << result.sentence;
 }
 
-TEST(Snapshot, more_than_the_limits_of_the_world_is_refused) {
+TEST(Snapshot, MoreThanTheLimitsOfTheWorldIsRejected) {
   World before;
   fill(before, 5000);
   const std::vector<std::byte> bytes = save_snapshot(before);
@@ -179,7 +179,7 @@ TEST(Snapshot, more_than_the_limits_of_the_world_is_refused) {
   EXPECT_EQ(load_snapshot(bytes, few_kinds).status, SnapshotStatus::kTooLarge);
 }
 
-TEST(Snapshot, more_members_of_a_sparse_component_than_rows_are_allowed_is_refused) {
+TEST(Snapshot, MoreMembersOfASparseComponentThanAllowedRowsAreRejected) {
   World before;
   for (const std::vector<Entity>& some :
        {copy(before.create<Position>(3000).entities), copy(before.create<Mesh>(3000).entities)})
@@ -189,7 +189,7 @@ TEST(Snapshot, more_members_of_a_sparse_component_than_rows_are_allowed_is_refus
   EXPECT_EQ(load_snapshot(save_snapshot(before), after).status, SnapshotStatus::kTooLarge);
 }
 
-TEST(Snapshot, a_free_slot_is_nobody) {
+TEST(Snapshot, AFreeSlotIsNoEntity) {
   World before;
   before.destroy(copy(before.create<Position>(3).entities));
   World after;
@@ -199,7 +199,7 @@ TEST(Snapshot, a_free_slot_is_nobody) {
   EXPECT_EQ(after.size(), 0U);
 }
 
-TEST(Snapshot, when_a_constructor_throws_the_world_is_empty_and_can_be_loaded) {
+TEST(Snapshot, AfterAThrowingConstructorTheWorldIsEmptyAndCanBeLoaded) {
   World before;
   const std::vector<Entity> all = copy(before.create<Creature, Throwing>(5).entities);
   before.add<Selected>(all);
@@ -216,7 +216,7 @@ TEST(Snapshot, when_a_constructor_throws_the_world_is_empty_and_can_be_loaded) {
   EXPECT_EQ(state_hash(after), state_hash(before));
 }
 
-// ---- forged by hand: what no Saver writes, with a checksum that fits ---------------------------
+// ---- forged by hand: content that no Saver writes, with a matching checksum --------------------
 
 class Forger {
  public:
@@ -263,12 +263,12 @@ Forger creature_with_path(std::uint32_t fields_of_element) {
   return f;
 }
 
-TEST(ForgedSnapshot, lists_of_nothing_are_refused) {
+TEST(ForgedSnapshot, ListsOfEmptyElementsAreRejected) {
   EXPECT_EQ(status_of(creature_with_path(0).done()), SnapshotStatus::kCorrupt);
 }
 
-// A crate's list whose elements take one byte there and half a kilobyte here.
-TEST(ForgedSnapshot, lists_that_would_grow_beyond_all_measure_are_refused) {
+// A crate's list whose elements take one byte in the snapshot and half a kilobyte in the program.
+TEST(ForgedSnapshot, ListsThatWouldTakeFarMoreMemoryThanBytesAreRejected) {
   const auto status_with = [](std::uint32_t length) {
     Forger f;
     f.number<std::uint32_t>(1).name("crate").number(kSparseNo).number(kDescribed);
@@ -290,7 +290,7 @@ TEST(ForgedSnapshot, lists_that_would_grow_beyond_all_measure_are_refused) {
   EXPECT_EQ(status_with(20'000), SnapshotStatus::kTooLarge);
 }
 
-TEST(ForgedSnapshot, lists_that_claim_more_than_there_is_are_refused) {
+TEST(ForgedSnapshot, ListsLongerThanTheDataAreRejected) {
   Forger f = creature_with_path(1);
   constexpr std::uint32_t kRows = 2000;
   f.name("lost").number<std::uint8_t>(0).number<std::uint32_t>(1);  // a bool of one byte
@@ -302,13 +302,13 @@ TEST(ForgedSnapshot, lists_that_claim_more_than_there_is_are_refused) {
   f.number<std::uint32_t>(kRows);
   for (std::uint32_t i = 0; i < kRows; ++i)
     f.number<std::uint32_t>(i).number<std::uint32_t>(1);
-  // Every list claims as many elements as there are bytes left: the first ones are too long.
+  // Every list claims as many elements as bytes are left: the first lists are too long.
   for (std::uint32_t i = 0; i < kRows; ++i)
     f.number<std::uint32_t>(0xFFFF);
   EXPECT_EQ(status_of(f.done()), SnapshotStatus::kCorrupt);
 }
 
-TEST(ForgedSnapshot, tables_without_rows_names_without_end_and_deep_types_are_refused) {
+TEST(ForgedSnapshot, EmptyTablesEndlessNamesAndDeepTypesAreRejected) {
   Forger empty;
   empty.number<std::uint32_t>(0).number<std::uint32_t>(0).number<std::uint32_t>(0);
   empty.number<std::uint32_t>(1).number<std::uint32_t>(0).number<std::uint32_t>(0);
@@ -325,7 +325,7 @@ TEST(ForgedSnapshot, tables_without_rows_names_without_end_and_deep_types_are_re
   EXPECT_EQ(status_of(deep.done()), SnapshotStatus::kCorrupt);
 }
 
-TEST(Snapshot, truncated_at_every_length_it_is_refused) {
+TEST(Snapshot, IsRejectedWhenTruncatedAtAnyLength) {
   World before;
   fill(before);
   const std::vector<std::byte> bytes = save_snapshot(before);
@@ -336,7 +336,7 @@ TEST(Snapshot, truncated_at_every_length_it_is_refused) {
   }
 }
 
-TEST(Snapshot, with_any_byte_flipped_it_is_refused) {
+TEST(Snapshot, IsRejectedWithAnyByteFlipped) {
   World before;
   fill(before, 8);
   std::vector<std::byte> bytes = save_snapshot(before);
@@ -350,7 +350,7 @@ TEST(Snapshot, with_any_byte_flipped_it_is_refused) {
   EXPECT_EQ(status_of(bytes), SnapshotStatus::kLoaded);
 }
 
-TEST(Snapshot, bytes_after_the_end_are_refused) {
+TEST(Snapshot, BytesAfterTheEndAreRejected) {
   World before;
   fill(before);
   std::vector<std::byte> bytes = save_snapshot(before);
@@ -358,8 +358,8 @@ TEST(Snapshot, bytes_after_the_end_are_refused) {
   EXPECT_EQ(status_of(bytes), SnapshotStatus::kCorrupt);
 }
 
-// Whoever forges a snapshot can forge its checksum: what is loaded then is at least a sound world.
-TEST(Snapshot, with_any_byte_forged_it_is_refused_or_a_sound_world) {
+// A forger of a snapshot can forge its checksum too; a load then gives at least a sound world.
+TEST(Snapshot, WithAnyByteForgedIsRejectedOrASoundWorld) {
   World before;
   fill(before, 8);
   const std::vector<std::byte> good = save_snapshot(before);
@@ -427,7 +427,7 @@ struct psygen::ecs::ComponentTraits<psygen::ecs::test::OtherCar> {
 namespace psygen::ecs::test {
 namespace {
 
-TEST(SnapshotOfAnOlderProgram, lost_fields_are_skipped_and_new_ones_keep_their_default) {
+TEST(SnapshotOfAnOlderProgram, SkipsRemovedFieldsAndNewOnesKeepTheirDefault) {
   World before;
   const auto cars = before.create<OldCar>(3);
   cars.column<OldCar>()[1] = {3, 99, {Vec{}, Vec{}}};
@@ -440,7 +440,7 @@ TEST(SnapshotOfAnOlderProgram, lost_fields_are_skipped_and_new_ones_keep_their_d
   EXPECT_EQ(after.get<NewCar>(car)->plate, "none");
 }
 
-TEST(SnapshotOfAnOlderProgram, a_field_of_another_type_is_refused_by_name) {
+TEST(SnapshotOfAnOlderProgram, AFieldOfAnotherTypeIsRejectedByName) {
   World before;
   before.create<OldCar>(1);
   World after;
@@ -450,7 +450,7 @@ TEST(SnapshotOfAnOlderProgram, a_field_of_another_type_is_refused_by_name) {
   EXPECT_NE(result.sentence.find("car.wheels"), std::string::npos) << result.sentence;
 }
 
-TEST(SnapshotOfAnOlderProgram, a_newer_version_is_refused) {
+TEST(SnapshotOfAnOlderProgram, ANewerVersionIsRejected) {
   std::vector<std::byte> bytes = save_snapshot(World());
   bytes[8] = std::byte{2};
   repair(bytes);
@@ -476,7 +476,7 @@ std::set<std::string> names_in(const World& world) {
   return names;
 }
 
-TEST(PartOfAWorld, has_the_entities_with_the_component_alone) {
+TEST(PartOfAWorld, HasOnlyTheEntitiesWithTheComponent) {
   World world;
   fill_with_others(world);
   const std::vector<std::byte> bytes = save_snapshot_of<Creature>(world);
@@ -489,7 +489,7 @@ TEST(PartOfAWorld, has_the_entities_with_the_component_alone) {
   EXPECT_EQ(loaded.count<Selected>(), world.count<Selected>());
 }
 
-TEST(PartOfAWorld, of_nothing_is_empty) {
+TEST(PartOfAWorld, WithoutEntitiesIsEmpty) {
   World world;
   world.create<Position>(3);
   const std::vector<std::byte> bytes = save_snapshot_of<Creature>(world);
@@ -498,7 +498,7 @@ TEST(PartOfAWorld, of_nothing_is_empty) {
   EXPECT_EQ(loaded.size(), 0U);
 }
 
-TEST(PartOfAWorld, is_appended_beside_what_is_there_and_its_handles_follow) {
+TEST(PartOfAWorld, IsAppendedToOtherEntitiesAndItsHandlesFollow) {
   World world;
   fill_with_others(world);
   const std::vector<std::byte> bytes = save_snapshot_of<Creature>(world);
@@ -527,7 +527,7 @@ TEST(PartOfAWorld, is_appended_beside_what_is_there_and_its_handles_follow) {
   EXPECT_EQ(versions, 1U);
 }
 
-TEST(PartOfAWorld, children_follow_their_parents_and_those_left_out_are_no_children) {
+TEST(PartOfAWorld, ChildrenFollowTheirParentsAndUnsavedOnesAreDropped) {
   World world;
   declare_all(world);
   const Entity parent = world.create<Children, Position>(1).entities[0];
@@ -550,7 +550,7 @@ TEST(PartOfAWorld, children_follow_their_parents_and_those_left_out_are_no_child
   EXPECT_EQ(parents, 1U);
 }
 
-TEST(PartOfAWorld, a_whole_snapshot_can_be_appended_again_and_again) {
+TEST(PartOfAWorld, AWholeSnapshotCanBeAppendedAgainAndAgain) {
   World world;
   declare_all(world);
   fill(world);
@@ -562,7 +562,7 @@ TEST(PartOfAWorld, a_whole_snapshot_can_be_appended_again_and_again) {
   }
 }
 
-TEST(PartOfAWorld, beyond_the_limits_it_is_refused_and_the_world_stays) {
+TEST(PartOfAWorld, BeyondTheLimitsIsRejectedAndTheWorldStays) {
   World small;
   declare_all(small);
   small.create<Creature, Position>(12);
@@ -578,7 +578,7 @@ TEST(PartOfAWorld, beyond_the_limits_it_is_refused_and_the_world_stays) {
   }
 }
 
-TEST(PartOfAWorld, damaged_bytes_leave_the_world_as_it_was) {
+TEST(PartOfAWorld, DamagedBytesLeaveTheWorldAsItWas) {
   World world;
   fill_with_others(world);
   const std::vector<std::byte> bytes = save_snapshot_of<Creature>(world);

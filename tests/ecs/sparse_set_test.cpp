@@ -1,4 +1,4 @@
-// Toggled components: kept aside, so that adding and removing them moves nothing else.
+// Sparse components: stored apart, so adding and removing them moves nothing else.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace psygen::ecs::test {
 namespace {
 
-TEST(SparseSet, toggling_moves_no_row_and_makes_no_table) {
+TEST(SparseSet, TogglingMovesNoRowAndMakesNoTable) {
   World world;
   const std::vector<Entity> all = copy(world.create<Position>(100).entities);
   const Position* before = world.get<Position>(all[50]);
@@ -24,7 +24,7 @@ TEST(SparseSet, toggling_moves_no_row_and_makes_no_table) {
   EXPECT_NE(world.get<Selected>(all[40]), nullptr);
 }
 
-TEST(SparseSet, who_has_it_or_is_dead_or_comes_twice_is_skipped) {
+TEST(SparseSet, SkipsMembersDeadEntitiesAndRepetitions) {
   World world;
   std::vector<Entity> all = copy(world.create<Position>(4).entities);
   world.destroy(std::span(all).first(1));
@@ -35,7 +35,7 @@ TEST(SparseSet, who_has_it_or_is_dead_or_comes_twice_is_skipped) {
   EXPECT_EQ(world.remove<Edited>(all), 0U);
 }
 
-TEST(SparseSet, a_new_value_is_value_initialised_and_then_kept) {
+TEST(SparseSet, ANewValueIsValueInitialisedAndThenKept) {
   World world;
   const std::vector<Entity> all = copy(world.create<Position>(3).entities);
   world.add<Edited>(all);
@@ -45,7 +45,7 @@ TEST(SparseSet, a_new_value_is_value_initialised_and_then_kept) {
   EXPECT_EQ(world.get<Edited>(all[2])->version, 7U);
 }
 
-TEST(SparseSet, the_dead_leave_and_their_index_starts_anew) {
+TEST(SparseSet, DeadEntitiesLeaveAndTheirIndexIsFree) {
   World world;
   const std::vector<Entity> all = copy(world.create<Position>(3).entities);
   world.add<Edited>(all);
@@ -60,7 +60,7 @@ TEST(SparseSet, the_dead_leave_and_their_index_starts_anew) {
   EXPECT_EQ(world.get<Edited>(all[0]), nullptr);
 }
 
-TEST(SparseSet, changes_are_tracked_like_those_of_columns) {
+TEST(SparseSet, TracksChangesLikeColumns) {
   World world;
   const std::vector<Entity> all = copy(world.create<Position>(1000).entities);
   world.add<Edited>(all);
@@ -78,10 +78,10 @@ TEST(SparseSet, changes_are_tracked_like_those_of_columns) {
   EXPECT_EQ(seen, (std::vector<Entity>{all[5], all[700]}));
 }
 
-TEST(SparseSet, it_is_iterated_by_itself) {
+TEST(SparseSet, IsIteratedByItself) {
   World world;
   const std::vector<Entity> all = copy(world.create<Position>(10).entities);
-  world.each<Edited>([](auto, auto) { FAIL() << "nobody has it"; });
+  world.each<Edited>([](auto, auto) { FAIL() << "no entity has it"; });
   world.add<Edited>(std::span(all).subspan(4));
   std::size_t calls = 0;
   world.each<Edited>([&](std::span<const Entity> entities, std::span<Edited> edited) {
@@ -115,7 +115,7 @@ struct Filters : testing::Test {
   }
 };
 
-TEST_F(Filters, with_visits_members_only) {
+TEST_F(Filters, WithVisitsMembersOnly) {
   const std::vector<Entity> some{plain[3], plain[4], moving[0]};
   EXPECT_TRUE(found(With<Selected>{}).empty());
   world.add<Selected>(some);
@@ -127,7 +127,7 @@ TEST_F(Filters, with_visits_members_only) {
   EXPECT_EQ(found(With<Selected, Edited>{}), std::vector<Entity>{plain[4]});
 }
 
-TEST_F(Filters, without_cuts_tables_into_runs) {
+TEST_F(Filters, WithoutCutsTablesIntoRuns) {
   EXPECT_EQ(found(Without<Selected>{}).size(), 40U);
   world.add<Selected>(std::vector{plain[0], plain[7], plain[8], moving[19]});
   std::vector<Entity> expected;
@@ -140,7 +140,7 @@ TEST_F(Filters, without_cuts_tables_into_runs) {
   EXPECT_EQ(found(With<Edited>{}, Without<Selected>{}), std::vector<Entity>{plain[1]});
 }
 
-TEST_F(Filters, runs_mark_their_own_rows) {
+TEST_F(Filters, RunsMarkTheirOwnRows) {
   const std::vector<Entity> meshes = copy(world.create<Mesh>(100).entities);
   auto reader = world.reader<Mesh>();
   reader.drain([](auto, auto) {});
@@ -155,7 +155,7 @@ TEST_F(Filters, runs_mark_their_own_rows) {
   EXPECT_EQ(seen, std::vector<Entity>{meshes[41]});
 }
 
-TEST(SparseSet, a_throwing_constructor_leaves_nobody_in_the_set) {
+TEST(SparseSet, AThrowingConstructorLeavesTheSetUnchanged) {
   World world;
   const std::vector<Entity> all = copy(world.create<Position>(8).entities);
   Throwing::fuse = 3;
@@ -166,7 +166,7 @@ TEST(SparseSet, a_throwing_constructor_leaves_nobody_in_the_set) {
   EXPECT_EQ(world.add<Fused>(all), 8U);
 }
 
-TEST(SparseSetDeathTest, toggling_while_iterating_is_a_broken_contract) {
+TEST(SparseSetDeathTest, TogglingWhileIteratingViolatesTheContract) {
   World world;
   const std::vector<Entity> all = copy(world.create<Position>(1).entities);
   world.declare<Selected>();
@@ -174,7 +174,7 @@ TEST(SparseSetDeathTest, toggling_while_iterating_is_a_broken_contract) {
                "structural change .add. while iterating <const .*Position>");
 }
 
-TEST(SparseSet, adding_members_again_needs_no_room) {
+TEST(SparseSet, AddingMembersAgainNeedsNoRoom) {
   World world(WorldLimits{.max_rows_per_table = 100});
   const std::vector<Entity> all = copy(world.create<Position>(60).entities);
   EXPECT_EQ(world.add<Selected>(all), 60U);

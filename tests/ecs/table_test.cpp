@@ -34,7 +34,7 @@ class Numbers {
   std::unique_ptr<Table> table_;
 };
 
-TEST(Table, closing_holes_keeps_exactly_the_others_and_moves_only_rows_from_the_end) {
+TEST(Table, ClosingHolesKeepsTheOtherRowsAndMovesOnlyRowsFromTheEnd) {
   std::mt19937 random(11);
   for (std::uint32_t rows = 1; rows < 300; rows += 7) {
     for (const std::uint32_t leaving_count : {1U, rows / 3 + 1, rows}) {
@@ -59,7 +59,7 @@ TEST(Table, closing_holes_keeps_exactly_the_others_and_moves_only_rows_from_the_
   }
 }
 
-TEST(Table, rows_that_were_used_before_are_initialised_again) {
+TEST(Table, ReusedRowsAreInitialisedAgain) {
   Numbers numbers(100);
   std::vector<std::uint32_t> all(100);
   std::iota(all.begin(), all.end(), 0U);
@@ -71,7 +71,7 @@ TEST(Table, rows_that_were_used_before_are_initialised_again) {
   EXPECT_EQ(std::ranges::count(numbers.values(), 0), 50);
 }
 
-TEST(Table, components_that_it_lacks_have_no_column) {
+TEST(Table, AbsentComponentsHaveNoColumn) {
   Numbers numbers(1);
   EXPECT_NE(numbers.table().column_data(3), nullptr);
   EXPECT_EQ(numbers.table().column_data(2), nullptr);

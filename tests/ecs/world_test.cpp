@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-TEST(World, created_columns_are_contiguous_aligned_and_value_initialised) {
+TEST(World, CreatedColumnsAreContiguousAlignedAndValueInitialised) {
   World world;
   for (int round = 0; round < 3; ++round) {
     const auto created = world.create<Position, Health, Aligned>(1000);
@@ -31,7 +31,7 @@ TEST(World, created_columns_are_contiguous_aligned_and_value_initialised) {
   EXPECT_EQ(world.size(), 300U);
 }
 
-TEST(World, creating_nothing_gives_empty_spans) {
+TEST(World, CreatingNoEntitiesReturnsEmptySpans) {
   World world;
   const auto created = world.create<Position>(0);
   EXPECT_TRUE(created.entities.empty());
@@ -39,14 +39,14 @@ TEST(World, creating_nothing_gives_empty_spans) {
   EXPECT_EQ(world.size(), 0U);
 }
 
-TEST(World, the_order_of_component_types_does_not_make_another_kind) {
+TEST(World, TheOrderOfComponentTypesMakesNoOtherArchetype) {
   World world;
   world.create<Position, Velocity>(1);
   world.create<Velocity, Position>(1);
   EXPECT_EQ(world.table_count(), 1U);
 }
 
-TEST(World, a_thousand_parents_do_not_make_a_thousand_tables) {
+TEST(World, AThousandParentsDoNotMakeAThousandTables) {
   World world;
   std::vector<std::vector<Entity>> children;
   for (int parent = 0; parent < 1000; ++parent) {
@@ -57,7 +57,7 @@ TEST(World, a_thousand_parents_do_not_make_a_thousand_tables) {
   EXPECT_EQ(world.size(), 9990U);
 }
 
-TEST(World, stale_handles_are_recognised_after_their_slot_is_reused) {
+TEST(World, StaleHandlesAreRecognisedAfterTheirSlotIsReused) {
   World world;
   const Entity old = world.create<Position>(1).entities[0];
   EXPECT_EQ(world.destroy({&old, 1}), 1U);
@@ -70,7 +70,7 @@ TEST(World, stale_handles_are_recognised_after_their_slot_is_reused) {
   EXPECT_FALSE(world.alive(kNullEntity));
 }
 
-TEST(World, a_forged_handle_to_a_free_slot_is_not_alive) {
+TEST(World, AForgedHandleToAFreeSlotIsNotAlive) {
   World world;
   const Entity entity = world.create<Position>(1).entities[0];
   world.destroy({&entity, 1});
@@ -80,7 +80,7 @@ TEST(World, a_forged_handle_to_a_free_slot_is_not_alive) {
   EXPECT_EQ(world.destroy({&forged, 1}), 0U);
 }
 
-TEST(World, a_handle_named_twice_dies_once) {
+TEST(World, ARepeatedHandleDiesOnce) {
   World world;
   const Entity a = world.create<Position>(2).entities[0];
   const std::vector<Entity> twice{a, a};
@@ -88,7 +88,7 @@ TEST(World, a_handle_named_twice_dies_once) {
   EXPECT_EQ(world.size(), 1U);
 }
 
-TEST(World, handles_stay_distinct_when_generations_run_out) {
+TEST(World, HandlesStayDistinctWhenGenerationsRunOut) {
   World world({.first_generation = UINT32_MAX - 2});
   std::vector<Entity> seen;
   for (int round = 0; round < 10; ++round) {
@@ -102,7 +102,7 @@ TEST(World, handles_stay_distinct_when_generations_run_out) {
     EXPECT_FALSE(world.alive(entity));
 }
 
-TEST(World, landing_writes_in_place_and_drops_stale_results) {
+TEST(World, WritingValuesHappensInPlaceAndDropsStaleHandles) {
   World world;
   const auto entities = copy(world.create<Mesh>(4).entities);
   const Entity meshless = world.create<Position>(1).entities[0];
@@ -116,14 +116,14 @@ TEST(World, landing_writes_in_place_and_drops_stale_results) {
   EXPECT_EQ(world.get<Mesh>(entities[3])->id, 15U);
 }
 
-TEST(World, landing_of_a_component_nobody_has_drops_everything) {
+TEST(World, WritingValuesOfAnAbsentComponentDropsAll) {
   World world;
   const Entity entity = world.create<Position>(1).entities[0];
   const std::vector<Landing<Mesh>> results{{entity, {1}}};
   EXPECT_EQ(world.land<Mesh>(results), (LandReport{0, 1}));
 }
 
-TEST(World, move_only_components_land_and_survive_every_verb) {
+TEST(World, MoveOnlyComponentsAreWrittenAndSurviveEveryVerb) {
   World world;
   const auto entities = copy(world.create<Owner, Position>(100).entities);
   std::vector<Landing<Owner>> results;
@@ -140,7 +140,7 @@ TEST(World, move_only_components_land_and_survive_every_verb) {
   EXPECT_EQ(world.get<Owner>(entities[99]), nullptr);
 }
 
-TEST(World, a_throwing_constructor_leaves_no_entity_and_no_object_behind) {
+TEST(World, AThrowingConstructorLeavesNoEntityAndNoObjectBehind) {
   {
     World world;
     world.create<Throwing, Owner>(5);
@@ -154,7 +154,7 @@ TEST(World, a_throwing_constructor_leaves_no_entity_and_no_object_behind) {
   EXPECT_EQ(Throwing::alive, 0);
 }
 
-TEST(World, a_throwing_constructor_while_adding_leaves_the_entities_as_they_were) {
+TEST(World, AThrowingConstructorWhileAddingLeavesTheEntitiesAsTheyWere) {
   {
     World world;
     const auto entities = copy(world.create<Position>(5).entities);
@@ -173,7 +173,7 @@ TEST(World, a_throwing_constructor_while_adding_leaves_the_entities_as_they_were
   EXPECT_EQ(Throwing::alive, 0);
 }
 
-TEST(World, adding_and_removing_keeps_the_other_values) {
+TEST(World, AddingAndRemovingKeepsTheOtherValues) {
   World world;
   const auto created = world.create<Position>(10);
   const auto entities = copy(created.entities);
@@ -191,7 +191,7 @@ TEST(World, adding_and_removing_keeps_the_other_values) {
   }
 }
 
-TEST(World, columns_keep_their_address_while_a_kind_grows) {
+TEST(World, ColumnsKeepTheirAddressWhileAnArchetypeGrows) {
   World world;
   const auto first = world.create<Position>(1);
   const Position* address = first.column<Position>().data();
@@ -201,7 +201,7 @@ TEST(World, columns_keep_their_address_while_a_kind_grows) {
   EXPECT_EQ(world.get<Position>(entity), address);
 }
 
-TEST(World, reserving_commits_memory_ahead) {
+TEST(World, ReservingCommitsMemoryAhead) {
   World world;
   world.reserve<Position>(100000);
   const std::size_t bytes = world.committed_bytes();
@@ -210,7 +210,7 @@ TEST(World, reserving_commits_memory_ahead) {
   EXPECT_EQ(world.get<Position>(created.entities[99999]), &created.column<Position>()[99999]);
 }
 
-TEST(WorldDeathTest, a_structural_change_while_iterating_names_the_query) {
+TEST(WorldDeathTest, AStructuralChangeWhileIteratingNamesTheQuery) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   World world;
   world.create<Mesh, Health>(1);
@@ -220,13 +220,13 @@ TEST(WorldDeathTest, a_structural_change_while_iterating_names_the_query) {
   EXPECT_DEATH(misuse(), "structural change .create. while iterating <const mesh, .*Health>");
 }
 
-TEST(WorldDeathTest, a_full_world_ends_with_a_message) {
+TEST(WorldDeathTest, AFullWorldEndsWithAMessage) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   World world({.max_entities = 10});
   EXPECT_DEATH(world.create<Position>(11), "max_entities");
 }
 
-TEST(World, change_kind_gives_and_takes_in_one_move) {
+TEST(World, ChangingTheArchetypeAddsAndRemovesInOneMove) {
   World world;
   const auto created = world.create<Mesh, Position>(5);
   created.column<Mesh>()[3].id = 7;
@@ -237,14 +237,14 @@ TEST(World, change_kind_gives_and_takes_in_one_move) {
   EXPECT_EQ(world.get<Mesh>(all[3])->id, 7U);
   EXPECT_EQ(world.get<Health>(all[3])->points, 100);
   EXPECT_EQ(world.get<Position>(all[3]), nullptr);
-  EXPECT_EQ(world.table_count(), 2U);  // no kind in between
+  EXPECT_EQ(world.table_count(), 2U);  // no archetype in between
 }
 
 struct Large {
   std::array<std::uint8_t, std::size_t{16} << 20> bytes{};
 };
 
-TEST(World, a_component_larger_than_the_stack_is_created) {
+TEST(World, AComponentLargerThanTheStackIsCreated) {
   World world;
   const Entity e = world.create<Large>(1).entities[0];
   EXPECT_EQ(world.get<Large>(e)->bytes.back(), 0);
@@ -264,7 +264,7 @@ void add_runs(World& world, Entity e, std::index_sequence<Runs...>) {
   (add_run<Runs * kRun>(world, e, std::make_index_sequence<kRun>{}), ...);
 }
 
-TEST(World, a_kind_may_have_all_256_component_types) {
+TEST(World, AnArchetypeMayHaveAll256ComponentTypes) {
   World world;
   const Entity e = world.create<>(1).entities[0];
   add_runs(world, e, std::make_index_sequence<256 / kRun>{});
@@ -272,26 +272,26 @@ TEST(World, a_kind_may_have_all_256_component_types) {
   EXPECT_EQ(world.get<Numbered<255>>(e)->value, 3);
 }
 
-TEST(World, limits_beyond_all_measure_are_fine) {
+TEST(World, HugeLimitsAreAccepted) {
   World world(WorldLimits{.max_entities = SIZE_MAX, .max_rows_per_table = SIZE_MAX});
   EXPECT_EQ(world.create<Position>(1000).entities.size(), 1000U);
 }
 
-TEST(WorldDeathTest, a_count_beyond_the_limits_is_said) {
+TEST(WorldDeathTest, ACountBeyondTheLimitsEndsWithAMessage) {
   World world;
   world.create<Position>(10);
   EXPECT_DEATH(world.create<Position>(SIZE_MAX), "max_rows_per_table");
   EXPECT_DEATH(world.reserve<Position>(SIZE_MAX - 5), "max_rows_per_table");
 }
 
-TEST(WorldDeathTest, reserving_while_iterating_ends_the_program) {
+TEST(WorldDeathTest, ReservingWhileIteratingEndsTheProgram) {
   World world;
   world.create<Position>(1);
   EXPECT_DEATH(world.each<const Position>([&](auto, auto) { world.reserve<Mesh>(1); }),
                "structural change .reserve. while iterating <const .*Position>");
 }
 
-TEST(WorldDeathTest, structural_changes_while_following_handles_end_the_program) {
+TEST(WorldDeathTest, StructuralChangesWhileFollowingHandlesEndTheProgram) {
   World world;
   const auto created = world.create<Position>(3).entities;
   const std::vector<Entity> all(created.begin(), created.end());
@@ -300,7 +300,7 @@ TEST(WorldDeathTest, structural_changes_while_following_handles_end_the_program)
       "structural change .destroy. while iterating <.*Position>");
 }
 
-TEST(WorldDeathTest, two_types_of_one_name_are_refused) {
+TEST(WorldDeathTest, TwoTypesWithOneNameAreRejected) {
   World world;
   world.declare<Twin>();
   EXPECT_DEATH(world.declare<OtherTwin>(), "two component types are named 'twin'");

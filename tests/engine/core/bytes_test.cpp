@@ -7,7 +7,7 @@
 namespace psygen::core {
 namespace {
 
-TEST(Bytes, WhatIsWrittenIsReadInEitherContainer) {
+TEST(Bytes, AreReadAsTheyWereWrittenInEitherContainer) {
   const auto check = [](auto out) {
     put(out, std::uint32_t{0x01020304});
     put(out, -2.5);
@@ -46,7 +46,7 @@ TEST(Bytes, VarintsTakeAsManyBytesAsTheyNeed) {
   EXPECT_TRUE(endless.failed());
 }
 
-TEST(Bytes, AReaderThatMissedSomethingStaysFailedAndGivesZeros) {
+TEST(Bytes, AReaderStaysFailedAfterAMissingByteAndReturnsZeros) {
   const auto fails = [](auto read) {
     ByteReader in(std::string_view("\x09\x08\x07\x06\x05", 5));
     read(in);

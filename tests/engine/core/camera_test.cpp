@@ -19,7 +19,7 @@ TEST(Camera, LooksAlongMinusZAtYawZeroAndToPlusXAfterAQuarterTurn) {
   EXPECT_NEAR(forward_of(pose).x, 1.0F, 1e-6F);
 }
 
-TEST(Camera, APointAheadIsInTheMiddleAndRightAndUpAreWhereVulkanWantsThem) {
+TEST(Camera, ProjectsAPointAheadToTheMiddleWithVulkansRightAndUp) {
   CameraPose pose;
   pose.yaw = 0.7;
   pose.pitch = -0.3;
@@ -41,7 +41,7 @@ TEST(Camera, DepthIsOneAtTheNearPlaneAndFallsTowardsZero) {
   EXPECT_LT(far_point.z / far_point.w, 1e-6F);
 }
 
-TEST(Camera, PosesThatAreNotNumbersAreInvalid) {
+TEST(Camera, PosesThatAreNotFiniteAreInvalid) {
   CameraPose pose;
   EXPECT_TRUE(is_valid(pose));
   pose.position.local.x = std::numeric_limits<double>::quiet_NaN();

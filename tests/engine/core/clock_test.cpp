@@ -13,7 +13,7 @@ void burn(double seconds) {
   }
 }
 
-TEST(Stopwatch, CountsWhatItsOwnThreadSpends) {
+TEST(Stopwatch, CountsTheTimeOfItsOwnThread) {
   const Stopwatch stopwatch;
   std::thread(burn, 0.02).join();
   const double while_it_waited_s = stopwatch.seconds();
@@ -22,7 +22,7 @@ TEST(Stopwatch, CountsWhatItsOwnThreadSpends) {
   EXPECT_GE(stopwatch.seconds() - while_it_waited_s, 0.005);
 }
 
-TEST(Stopwatch, OfVirtualTimeIsWhatItWasChargedWith) {
+TEST(Stopwatch, OfVirtualTimeShowsTheChargedSeconds) {
   Stopwatch stopwatch(true);
   burn(0.001);
   EXPECT_EQ(stopwatch.seconds(), 0.0);

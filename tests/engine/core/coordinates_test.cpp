@@ -37,13 +37,13 @@ TEST(Coordinates, BlocksMoveAcrossTheSeamOfTheIndices) {
   EXPECT_EQ(moved({1, 2}, std::int64_t{1} << 32, -(std::int64_t{1} << 32)), (BlockCoord{1, 2}));
 }
 
-TEST(Coordinates, TheUnitedBoxHoldsBothAndNoMore) {
+TEST(Coordinates, TheUnitedBoxIsTheSmallestAroundBoth) {
   const Bounds a{{0, 1, 2}, {3, 4, 5}}, b{{-1, 2, 1}, {2, 6, 4}};
   EXPECT_EQ(united(a, b), (Bounds{{-1, 1, 1}, {3, 6, 5}}));
   EXPECT_EQ(united(a, a), a);
 }
 
-TEST(Coordinates, OneComponentThatIsNotFiniteIsEnough) {
+TEST(Coordinates, OneInfiniteComponentMakesAVectorInfinite) {
   EXPECT_TRUE(is_finite(glm::dvec3(1e308)));
   EXPECT_TRUE(is_finite(glm::vec3(-1e38F)));
   for (int i = 0; i < 3; ++i) {

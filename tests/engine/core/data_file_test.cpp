@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// The environment variable with a value, until the end of the test.
+// Sets an environment variable until the end of the test.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
@@ -48,7 +48,7 @@ fs::path own_folder() {
   return fs::read_symlink("/proc/self/exe").parent_path();
 }
 
-TEST(DataFile, FoldersAreTheGivenTheVariablesTheExecutablesAndThatOfThePackage) {
+TEST(DataFile, SearchesTheGivenFolderTheVariablesTheExecutablesAndThePackages) {
   const Variable variable("PSYGEN_DATA", "/first:/second/./folder:");
   EXPECT_THAT(
       data_folders("/given", "/package"),
@@ -56,14 +56,14 @@ TEST(DataFile, FoldersAreTheGivenTheVariablesTheExecutablesAndThatOfThePackage) 
                   (own_folder() / PSYGEN_DATA_FROM_EXECUTABLE).lexically_normal(), "/package"));
 }
 
-TEST(DataFile, EmptyFoldersAreLeftOutAndEachIsThereOnce) {
+TEST(DataFile, SkipsEmptyAndRepeatedFolders) {
   const Variable variable("PSYGEN_DATA", "::/given::/given");
   EXPECT_THAT(data_folders("/given", ""),
               ElementsAre("/given", own_folder(),
                           (own_folder() / PSYGEN_DATA_FROM_EXECUTABLE).lexically_normal()));
 }
 
-TEST(DataFile, TheFirstFolderThatHasTheFileCounts) {
+TEST(DataFile, TakesTheFirstFolderThatHasTheFile) {
   const TemporaryFolder folder;
   const fs::path name = "worlds/psygen_test_data_file.toml";
   const Variable variable("PSYGEN_DATA", (folder / "variable").string());
@@ -75,14 +75,14 @@ TEST(DataFile, TheFirstFolderThatHasTheFileCounts) {
   EXPECT_EQ(data_file(name, folder / "given", folder / "package"), folder / "given" / name);
 }
 
-TEST(DataFile, WorldsThatComeWithPsygenAreFoundBesideTheExecutable) {
+TEST(DataFile, FindsTheWorldsOfPsygenNextToTheExecutable) {
   const Variable variable("PSYGEN_DATA", "");
   const auto file = data_file("worlds/paper.toml", "", "");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(*file, own_folder() / "worlds/paper.toml");
 }
 
-TEST(DataFile, WhereThereIsNoSuchFileTheErrorListsWhereItLooked) {
+TEST(DataFile, ListsAllFoldersIfNoneHasTheFile) {
   const TemporaryFolder folder;
   fs::create_directories(folder / "given/worlds/none.toml");  // a folder is not a file
   const Variable variable("PSYGEN_DATA", "/from/the/variable");
@@ -90,13 +90,13 @@ TEST(DataFile, WhereThereIsNoSuchFileTheErrorListsWhereItLooked) {
   ASSERT_FALSE(file);
   EXPECT_EQ(file.error().code, ErrorCode::kIo);
   for (const std::string& words :
-       {std::string("worlds/none.toml: there is no such data file; looked in "),
-        (folder / "given").string(), std::string("/from/the/variable"), own_folder().string(),
-        std::string("/of/the/package"), std::string("set PSYGEN_DATA")})
+       {std::string("worlds/none.toml: no such data file; looked in "), (folder / "given").string(),
+        std::string("/from/the/variable"), own_folder().string(), std::string("/of/the/package"),
+        std::string("set PSYGEN_DATA")})
     EXPECT_THAT(file.error().message, HasSubstr(words));
 }
 
-TEST(DataFile, NamesThatLeadOutOfTheFoldersAreRefused) {
+TEST(DataFile, RejectsNamesThatLeaveTheFolders) {
   for (const char* name : {"", "/etc/passwd", "../secret", "worlds/../../secret"}) {
     const auto file = data_file(name);
     ASSERT_FALSE(file) << name;
@@ -104,7 +104,7 @@ TEST(DataFile, NamesThatLeadOutOfTheFoldersAreRefused) {
   }
 }
 
-TEST(UserFolder, IsWhereTheUserSaysAndIsMade) {
+TEST(UserFolder, IsCreatedInTheConfiguredFolder) {
   const TemporaryFolder folder;
   const Variable home("HOME", folder.path().string());
   {
@@ -112,7 +112,7 @@ TEST(UserFolder, IsWhereTheUserSaysAndIsMade) {
     EXPECT_EQ(*user_folder(UserFolder::kData, "game"), folder.path() / "data" / "game");
     EXPECT_TRUE(fs::is_directory(folder.path() / "data" / "game"));
   }
-  // A relative one does not count, as the specification says.
+  // A relative path does not count, as the specification says.
   const Variable data("XDG_DATA_HOME", "data"), config("XDG_CONFIG_HOME", "");
   EXPECT_EQ(*user_folder(UserFolder::kData, "game"), folder.path() / ".local/share/game");
   EXPECT_EQ(*user_folder(UserFolder::kConfig, "game"), folder.path() / ".config/game");
@@ -120,7 +120,7 @@ TEST(UserFolder, IsWhereTheUserSaysAndIsMade) {
             folder.path() / "mine");
 }
 
-TEST(UserFolder, SaysWhyThereIsNone) {
+TEST(UserFolder, ReportsAMissingFolder) {
   const TemporaryFolder folder;
   const Variable home("HOME", ""), data("XDG_DATA_HOME", "");
   const auto none = user_folder(UserFolder::kData, "game");

@@ -8,16 +8,15 @@
 namespace psygen::core {
 namespace {
 
-TEST(Headroom, ThreadsAreCountedUpToWhatWasAskedFor) {
+TEST(Headroom, CountsThreadsUpToTheRequest) {
   EXPECT_EQ(threads_left(0), 0u);
   EXPECT_EQ(threads_left(5), 5u);
   const FewThreads few(3);
   EXPECT_EQ(threads_left(5), 3u);
-  EXPECT_EQ(threads_left(5), 0u)
-      << "what was counted is given back to the system, not to the fault";
+  EXPECT_EQ(threads_left(5), 0u) << "the counted threads return to the system, not to the fault";
 }
 
-TEST(Headroom, MoreThanAnyMachineHasIsNotLeft) {
+TEST(Headroom, ReportsThatNoMachineHasAnExabyte) {
   EXPECT_TRUE(memory_left(1 << 20));
   EXPECT_TRUE(addresses_left(1 << 20));
   constexpr std::uint64_t kTooMuch = std::uint64_t{1} << 60;

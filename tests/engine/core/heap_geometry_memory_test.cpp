@@ -7,7 +7,7 @@
 namespace psygen::core {
 namespace {
 
-TEST(HeapGeometryMemory, GivesWritableSpansOfTheSizesAskedFor) {
+TEST(HeapGeometryMemory, ReturnsWritableSpansOfTheRequestedSizes) {
   HeapGeometryMemory memory(1 << 20);
   const auto reservation = memory.reserve(VertexLayout::kModel, 10, 33);
   ASSERT_TRUE(reservation);
@@ -20,7 +20,7 @@ TEST(HeapGeometryMemory, GivesWritableSpansOfTheSizesAskedFor) {
   EXPECT_EQ(memory.indices(reservation->range)[32], 9);
 }
 
-TEST(HeapGeometryMemory, RefusesWhatDoesNotFitAndCountsExactly) {
+TEST(HeapGeometryMemory, RejectsMeshesThatDoNotFitAndCountsExactly) {
   HeapGeometryMemory memory(1500);
   const std::uint32_t bytes = memory.charged_bytes(VertexLayout::kTerrain, 50, 3);
   const auto first = memory.reserve(VertexLayout::kTerrain, 50, 3);
@@ -35,7 +35,7 @@ TEST(HeapGeometryMemory, RefusesWhatDoesNotFitAndCountsExactly) {
   EXPECT_TRUE(memory.reserve(VertexLayout::kTerrain, 50, 3));
 }
 
-TEST(HeapGeometryMemory, CountsWhatItReservedWhateverTheRangeSays) {
+TEST(HeapGeometryMemory, CountsItsOwnReservationsWhateverTheRangeSays) {
   HeapGeometryMemory memory(1 << 20);
   const auto kept = memory.reserve(VertexLayout::kModel, 10, 3);
   const auto released = memory.reserve(VertexLayout::kModel, 20, 3);
@@ -46,7 +46,7 @@ TEST(HeapGeometryMemory, CountsWhatItReservedWhateverTheRangeSays) {
   EXPECT_EQ(memory.used_bytes(), kept->range.bytes);
 }
 
-TEST(HeapGeometryMemory, RefusesMeshesWhoseBytesDoNotFit32Bits) {
+TEST(HeapGeometryMemory, RejectsMeshesOfMoreThan32BitsOfBytes) {
   HeapGeometryMemory memory(UINT64_MAX / 2);
   // 2^28 vertices of 16 bytes are 2^32 bytes, which would be 0.
   EXPECT_EQ(memory.charged_bytes(VertexLayout::kModel, 1u << 28, 0), UINT32_MAX);

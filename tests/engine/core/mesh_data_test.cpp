@@ -19,7 +19,7 @@ std::string complaint(const MeshData& mesh) {
   return checked ? "" : checked.error().message;
 }
 
-TEST(MeshData, IsRefusedWithASentenceThatNamesTheList) {
+TEST(MeshData, IsRejectedWithAMessageThatNamesTheList) {
   EXPECT_EQ(complaint(triangle()), "");
   EXPECT_EQ(complaint({}), "a mesh has no triangles");
   MeshData mesh = triangle();

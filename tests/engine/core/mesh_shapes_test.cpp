@@ -31,7 +31,7 @@ TEST(MeshShapes, AnEllipsoidIsClosedAndItsTrianglesFaceOutwards) {
   }
 }
 
-TEST(MeshShapes, AreAddedToWhatIsThere) {
+TEST(MeshShapes, AreAppendedToTheMesh) {
   MeshData mesh;
   add_triangle(mesh, {glm::vec3(0, 0, 0), {0, 0, 1}, {1, 0, 0}}, {1, 0, 0});
   add_ellipsoid(mesh, {}, {1, 1, 1}, {}, {});
@@ -40,7 +40,7 @@ TEST(MeshShapes, AreAddedToWhatIsThere) {
   EXPECT_EQ(mesh.indices.size(), 3 * (kEllipsoidTriangles + 2));
   EXPECT_EQ(mesh.indices.back() + 1, mesh.positions.size());
   EXPECT_GT(mesh.normals.front().y, 0);
-  EXPECT_GT(mesh.normals.back().y, 0) << "from whichever side it is seen";
+  EXPECT_GT(mesh.normals.back().y, 0) << "from either side";
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace psygen::core {
 namespace {
 
-TEST(NearestWord, FindsTyposAndNothingForOtherWords) {
+TEST(NearestWord, FindsTyposAndRejectsOtherWords) {
   const std::vector<std::string> known{"count", "max_height_m", "min_height_m", "model"};
   EXPECT_EQ(nearest_word("cuont", known), "count");
   EXPECT_EQ(nearest_word("max_heigth_m", known), "max_height_m");
@@ -15,7 +15,7 @@ TEST(NearestWord, FindsTyposAndNothingForOtherWords) {
   EXPECT_EQ(nearest_word("zebra", known), "");
 }
 
-TEST(NearestWord, AShortWordIsNearToFewAndASwapIsOneEdit) {
+TEST(NearestWord, AShortWordIsNearFewWordsAndASwapIsOneEdit) {
   const std::vector<std::string> options{"--out", "--help", "--seed", "tree"};
   EXPECT_EQ(nearest_word("--set", options), "");
   EXPECT_EQ(nearest_word("--hepl", options), "--help");
@@ -35,7 +35,7 @@ TEST(NearestWord, ASuggestionEndsAMessage) {
   EXPECT_EQ(suggestion("zebra", presets), "");
 }
 
-TEST(NearestWord, NothingIsNearToAVeryLongWordOrAmongNoWords) {
+TEST(NearestWord, FindsNothingForAVeryLongWordOrAmongNoWords) {
   EXPECT_EQ(nearest_word(std::string(100'000, 'x'), std::vector<std::string>{"x"}), "");
   EXPECT_EQ(nearest_word("count", std::vector<std::string>{}), "");
 }

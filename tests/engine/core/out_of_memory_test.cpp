@@ -12,7 +12,7 @@ bool starts_with(std::string_view text, std::string_view words) {
   return text.substr(0, words.size()) == words;
 }
 
-TEST(OutOfMemory, SaysForWhatItWasAndHowMuchWasWanted) {
+TEST(OutOfMemory, NamesThePurposeAndTheRequestedBytes) {
   note_refused_bytes(4096);
   const std::string sentence = out_of_memory("a mesh");
   EXPECT_TRUE(starts_with(sentence, "a mesh: memory ran out (4096 bytes more were wanted; "))
@@ -25,21 +25,21 @@ TEST(OutOfMemory, SaysForWhatItWasAndHowMuchWasWanted) {
       starts_with(out_of_memory("a mesh"), "a mesh: memory ran out (80 MiB more were wanted; "));
 }
 
-TEST(OutOfMemory, NamesWhatWasRefusedOnlyOnce) {
+TEST(OutOfMemory, NamesAFailedAllocationOnce) {
   note_refused_bytes(4096);
   (void)out_of_memory("a mesh");
   EXPECT_TRUE(starts_with(out_of_memory("another"), "another: memory ran out ("));
   EXPECT_EQ(out_of_memory("another").find("wanted"), std::string::npos);
 }
 
-TEST(OutOfMemory, WhatWasRefusedElsewhereIsNotNamedHere) {
+TEST(OutOfMemory, DoesNotNameFailedAllocationsOfOtherThreads) {
   note_refused_bytes(4096);
   std::string sentence;
   std::thread([&sentence] { sentence = out_of_memory("a mesh"); }).join();
   EXPECT_EQ(sentence.find("wanted"), std::string::npos) << sentence;
 }
 
-TEST(OutOfMemory, IsAnErrorWithinWhichBadAllocIsThrownAndNothingElseIs) {
+TEST(OutOfMemory, TurnsBadAllocIntoAnErrorAndNothingElse) {
   const auto ended = within_memory("a mesh", []() -> Result<void> { throw std::bad_alloc(); });
   ASSERT_FALSE(ended);
   EXPECT_EQ(ended.error().code, ErrorCode::kOutOfMemory);
@@ -47,7 +47,7 @@ TEST(OutOfMemory, IsAnErrorWithinWhichBadAllocIsThrownAndNothingElseIs) {
   EXPECT_TRUE(within_memory("a mesh", [] { return Result<void>{}; }));
 }
 
-TEST(OutOfMemory, IsCutToTheBufferThatThereIs) {
+TEST(OutOfMemory, IsCutToTheBuffer) {
   note_refused_bytes(1);
   const std::string whole = out_of_memory("a mesh");
   note_refused_bytes(1);

@@ -29,7 +29,7 @@ std::vector<std::uint8_t> text(std::string_view characters) {
   return {characters.begin(), characters.end()};
 }
 
-TEST(ReplaceFile, WritesANewFileAndReplacesAnOldOneAndLeavesNothingElse) {
+TEST(ReplaceFile, WritesANewFileReplacesAnOldOneAndLeavesNothingElse) {
   const TemporaryFolder folder;
   ASSERT_TRUE(replace_file(folder / "a.bin", text("old")));
   EXPECT_EQ(bytes_of(folder / "a.bin"), text("old"));
@@ -38,9 +38,9 @@ TEST(ReplaceFile, WritesANewFileAndReplacesAnOldOneAndLeavesNothingElse) {
   EXPECT_EQ(folder.file_count(), 1U);
 }
 
-TEST(ReplaceFile, WorksBesideALeftOverOfAnInterruptedWrite) {
+TEST(ReplaceFile, WorksNextToALeftoverOfAnInterruptedWrite) {
   const TemporaryFolder folder;
-  const FileReplacement other(folder / "a.bin");  // has the first name that there is
+  const FileReplacement other(folder / "a.bin");  // takes the first free name
   ASSERT_TRUE(replace_file(folder / "a.bin", text("new")));
   EXPECT_EQ(bytes_of(folder / "a.bin"), text("new"));
 }
@@ -60,15 +60,15 @@ TEST(ReplaceFile, DoesNotWaitForAReaderOfAPipe) {
   EXPECT_EQ(replace_file(folder / "pipe", text("x")).error().code, ErrorCode::kIo);
 }
 
-TEST(ReplaceFile, LeavesDevicesAndFoldersAlone) {
+TEST(ReplaceFile, DoesNotReplaceDevicesAndFolders) {
   const TemporaryFolder folder;
   EXPECT_EQ(replace_file("/dev/full", text("x")).error().code, ErrorCode::kIo);
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
   EXPECT_EQ(replace_file(folder.path(), text("x")).error().code, ErrorCode::kIo);
 }
 
-// Once with room for each number of calls, until there is room for all of them.
-TEST(ReplaceFile, WhereverTheDiskFillsTheOldContentStaysAndTheFailureHasItsReason) {
+// Repeats the write with room for one more call each time, until all calls have room.
+TEST(ReplaceFile, KeepsTheOldContentAndReportsTheReasonIfTheDiskFillsAtAnyPoint) {
   const TemporaryFolder folder;
   const auto path = folder / "a.bin";
   bool all_fits = false;
@@ -88,7 +88,7 @@ TEST(ReplaceFile, WhereverTheDiskFillsTheOldContentStaysAndTheFailureHasItsReaso
   EXPECT_EQ(bytes_of(path).size(), 100'000u);
 }
 
-TEST(ReplaceFile, KeepsTheOldContentWhenAFileMayNotBecomeThatLarge) {
+TEST(ReplaceFile, KeepsTheOldContentIfTheFileSizeIsLimited) {
   const TemporaryFolder folder;
   ASSERT_TRUE(replace_file(folder / "a.bin", text("old")));
   rlimit before{};
@@ -120,7 +120,7 @@ TEST(FileReplacement, HoldsEveryPieceInOrderWhateverTheirSizes) {
   EXPECT_TRUE(std::string(bytes.begin(), bytes.end()) == expected);
 }
 
-TEST(FileReplacement, WithoutACommitThereIsNothing) {
+TEST(FileReplacement, LeavesNothingWithoutACommit) {
   const TemporaryFolder folder;
   {
     FileReplacement file(folder / "a.txt");
@@ -130,13 +130,13 @@ TEST(FileReplacement, WithoutACommitThereIsNothing) {
   EXPECT_EQ(folder.file_count(), 0U);
 }
 
-TEST(FileReplacement, GoesOnQuietlyAfterAnErrorUntilItIsCommitted) {
+TEST(FileReplacement, IgnoresWritesAfterAnErrorUntilTheCommit) {
   FileReplacement file("/nowhere/a.txt");
   file.write("lost");
   EXPECT_FALSE(file.commit());
 }
 
-TEST(ReplaceFile, WhatAKilledProcessLeftBehindIsCleanedUpAndNothingElse) {
+TEST(ReplaceFile, RemovesOnlyLeftoversOfKilledProcesses) {
   const TemporaryFolder folder;
   const std::string mine = ".a.bin." + std::to_string(getpid()) + "-0.partial";
   // No process has a number beyond the kernel's limit of 2^22.
@@ -148,17 +148,18 @@ TEST(ReplaceFile, WhatAKilledProcessLeftBehindIsCleanedUpAndNothingElse) {
   }
   remove_stale_partials(folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder / ".a.bin.99999999-0.partial"));
-  EXPECT_EQ(folder.file_count(), 5u);  // that of another host, whose processes are unknown, stays
+  EXPECT_EQ(folder.file_count(), 5u);  // the file of another host, whose processes are unknown,
+                                       // stays
   remove_partials_of(folder.path(), [](const std::string& file) { return file == "a.bin"; });
   EXPECT_EQ(folder.file_count(), 3u);
   EXPECT_FALSE(std::filesystem::exists(folder / mine));
 }
 
-TEST(ReplaceFile, AProcessThatEndedWithoutAParentThatAsksLeavesNothingEither) {
+TEST(ReplaceFile, RemovesLeftoversOfZombies) {
   const TemporaryFolder folder;
   const pid_t child = fork();
   if (child == 0) _exit(0);
-  siginfo_t ended{};  // a zombie until it is waited for without WNOWAIT
+  siginfo_t ended{};  // a zombie until a wait without WNOWAIT
   ASSERT_EQ(waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT), 0);
   std::ofstream(folder / fmt::format(".a.bin.{}-0.partial", child)) << "half";
   remove_stale_partials(folder.path());

@@ -23,7 +23,7 @@ TEST(Utf8, CodePointsOfEveryLengthAreRead) {
   EXPECT_EQ(read("\xF4\x8F\xBF\xBF"), 0x10FFFFu);
 }
 
-TEST(Utf8, WhatIsNotUtf8IsOneInvalidByte) {
+TEST(Utf8, ReadsABrokenSequenceAsOneInvalidByte) {
   for (const char* text : {"\x80", "\xBF", "\xC0\x80", "\xC1\xBF", "\xC3", "\xC3(", "\xE0\x80\x80",
                            "\xE0\x9F\xBF", "\xE2\x82", "\xE2\x82(", "\xED\xA0\x80", "\xED\xBF\xBF",
                            "\xF0\x80\x80\x80", "\xF0\x8F\xBF\xBF", "\xF0\x9F\x98",
@@ -35,7 +35,7 @@ TEST(Utf8, WhatIsNotUtf8IsOneInvalidByte) {
   }
 }
 
-TEST(Utf8, WhatIsAppendedIsReadBackAndWhatIsNoCharacterIsReplaced) {
+TEST(Utf8, ReadsBackAppendedCharactersAndReplacesInvalidOnes) {
   for (const char32_t value : {U'\0', U'a', U'\x7F', U'\x80', U'\u07FF', U'\u0800', U'\uFFFD',
                                U'\uFFFF', U'\U00010000', U'\U0010FFFF'}) {
     std::string text = "x";
@@ -52,12 +52,12 @@ TEST(Utf8, WhatIsAppendedIsReadBackAndWhatIsNoCharacterIsReplaced) {
   }
 }
 
-TEST(Utf8, WhatCanBeSeenIsShownAsItIs) {
+TEST(Utf8, ShowsPrintableCharactersUnchanged) {
   for (const char* text : {"", "plain \"quoted\" \\ 'text'", "größe × 3", "木", "שלום", "😀"})
     EXPECT_EQ(shown(text), text);
 }
 
-TEST(Utf8, WhatCannotBeSeenIsShownAsAnEscape) {
+TEST(Utf8, EscapesUnprintableCharacters) {
   EXPECT_EQ(shown("a\nb\tc\r"), "a\\nb\\tc\\r");
   EXPECT_EQ(shown("\x1B[31mred\x7F"), "\\x1b[31mred\\x7f");
   EXPECT_EQ(shown(std::string_view("\0", 1)), "\\x00");

@@ -113,7 +113,7 @@ TEST(EveryModel, CostsAndErrorsAreOrderedByLevel) {
   });
 }
 
-TEST(EveryModel, ListsNoLevelThatIsTheOneBeforeOnceMore) {
+TEST(EveryModel, ListsNoLevelTwice) {
   const Registry registry = make_standard_registry();
   const ModelType& rock = registry[1];
   Parameters rough = default_parameters(rock);
@@ -175,7 +175,7 @@ TEST(EveryModel, HasTheSameBytesOnEveryThreadInAnyOrder) {
   EXPECT_EQ(serial, parallel);
 }
 
-TEST(Packing, OctahedralNormalsComeBack) {
+TEST(Packing, OctahedralNormalsAreRestored) {
   core::RandomStream random(2, 0, 0, 0, core::Purpose::kPosition);
   for (int i = 0; i < 2000; ++i) {
     const glm::vec3 n = glm::normalize(glm::vec3(static_cast<float>(random.next_real(-1, 1)),

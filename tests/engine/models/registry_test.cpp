@@ -48,7 +48,7 @@ std::string refusal(std::vector<ParameterSpec> specs, std::string_view name = "f
   return added ? "" : added.error().message;
 }
 
-TEST(Registry, KnowsWhatModelsAreMadeOf) {
+TEST(Registry, KnowsTheSurfaceKindOfModels) {
   const Registry registry = make_standard_registry();
   for (ModelIndex i = 0; i < registry.size(); ++i) {
     const std::string_view name = registry[i].name();
@@ -77,7 +77,7 @@ TEST(Registry, EveryStandardTypeMayFillAHoleOnTheMainThread) {
     EXPECT_TRUE(registry[i].may_run_on_main_thread()) << registry[i].name();
 }
 
-TEST(Registry, TakesTypesOfUsersAndRefusesASecondOfTheSameName) {
+TEST(Registry, AcceptsTypesOfUsersAndRejectsASecondOfTheSameName) {
   Registry registry;
   const auto first =
       registry.add(std::make_unique<SchemaOnly>("fence", std::vector{spec("height_m")}));
@@ -90,7 +90,7 @@ TEST(Registry, TakesTypesOfUsersAndRefusesASecondOfTheSameName) {
   EXPECT_EQ(registry.size(), 1u);
 }
 
-TEST(Registry, RefusesBrokenSchemasNamingTheParameter) {
+TEST(Registry, RejectsBrokenSchemasNamingTheParameter) {
   EXPECT_THAT(refusal({spec("a")}, "Fence Post"), HasSubstr("Fence Post"));
   EXPECT_THAT(refusal({spec("a"), spec("Height")}), HasSubstr("Height"));
   EXPECT_THAT(refusal({spec("width"), spec("width")}), HasSubstr("width occurs twice"));
@@ -122,7 +122,7 @@ TEST(Parameters, DefaultsAreValidAndFoundByName) {
   }
 }
 
-TEST(Parameters, EveryOneIsRefusedOutsideItsRangeByName) {
+TEST(Parameters, AreRejectedByNameOutsideTheirRange) {
   const Registry registry = make_standard_registry();
   for (ModelIndex m = 0; m < registry.size(); ++m) {
     const ModelType& type = registry[m];
@@ -156,7 +156,7 @@ TEST(Parameters, EveryOneIsRefusedOutsideItsRangeByName) {
   }
 }
 
-TEST(Parameters, HostileRocksAreRefusedWithTheirPredictedCost) {
+TEST(Parameters, OfHostileRocksAreRejectedWithTheirPredictedCost) {
   const auto type = make_rock_type();
   Parameters p = default_parameters(*type);
   p.set_integer(kRockSubdivisions, 40);
@@ -167,7 +167,7 @@ TEST(Parameters, HostileRocksAreRefusedWithTheirPredictedCost) {
   EXPECT_THAT(result.error().message, HasSubstr("2^82"));
 }
 
-TEST(Parameters, LegalValuesOverTheBudgetAreRefusedWithTheirCost) {
+TEST(Parameters, OverTheBudgetAreRejectedWithTheirCost) {
   const auto type = make_rock_type();
   Parameters p = default_parameters(*type);
   p.set_integer(kRockSubdivisions, 6);

@@ -30,7 +30,7 @@ double shaded_per_vertex(std::span<const std::uint16_t> indices) {
   return static_cast<double>(shaded) / static_cast<double>(named.size());
 }
 
-TEST(VertexCache, CountsWhatIsShadedAgain) {
+TEST(VertexCache, CountsVerticesThatAreShadedAgain) {
   std::vector<std::uint16_t> near, far;
   for (std::uint16_t i = 0; i < 100; ++i) {
     for (const int corner : {0, 1, 2})
@@ -44,7 +44,7 @@ TEST(VertexCache, CountsWhatIsShadedAgain) {
   EXPECT_EQ(shaded_per_vertex(far), 2);
 }
 
-TEST(VertexCache, TypesNameTheirVerticesInAnOrderThatSuitsIt) {
+TEST(VertexCache, OrderOfIndicesOfEveryTypeSuitsIt) {
   const Registry registry = make_standard_registry();
   for (ModelIndex m = 0; m < registry.size(); ++m) {
     const ModelType& type = registry[m];
@@ -57,7 +57,7 @@ TEST(VertexCache, TypesNameTheirVerticesInAnOrderThatSuitsIt) {
   }
 }
 
-TEST(VertexCache, TilesOfTheGroundNameTheirVerticesInAnOrderThatSuitsIt) {
+TEST(VertexCache, OrderOfIndicesOfGroundTilesSuitsIt) {
   for (const int size : {8, 64, 97, 128}) {
     const TerrainTiles tiles(size);
     std::vector<std::uint16_t> indices(tiles.index_count());

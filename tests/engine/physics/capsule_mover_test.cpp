@@ -36,7 +36,7 @@ class CapsuleMoving : public ::testing::Test {
   }
 };
 
-TEST_F(CapsuleMoving, StopsAtWhatIsInTheWay) {
+TEST_F(CapsuleMoving, StopsAtObstacles) {
   add({5, 0, 0}, 0, kModels);
   const Sweep sweep = mover.sweep({0, 0, 0}, {10, 0, 0});
   ASSERT_TRUE(sweep.hit);
@@ -57,13 +57,13 @@ TEST_F(CapsuleMoving, IgnoresTheGroundLightBodiesAndItself) {
   EXPECT_NEAR(mover.sweep({0, 0, 0}, {10, 0, 0}).fraction, 0.75, 0.006);
 }
 
-TEST_F(CapsuleMoving, IsNotHeldByWhatItLeaves) {
+TEST_F(CapsuleMoving, IsNotHeldByABodyThatItLeaves) {
   add({1.5, 0, 0}, 0, kModels);  // touches it
   EXPECT_FALSE(mover.sweep({0, 0, 0}, {-5, 0, 0}).hit);
   EXPECT_FALSE(mover.sweep({0, 0, 0}, {0, 0, 5}).hit);
 }
 
-TEST_F(CapsuleMoving, IsPushedOutOfWhatItOverlaps) {
+TEST_F(CapsuleMoving, IsPushedOutOfOverlappingBodies) {
   add({1.2, 0, 0}, 0, kModels);
   const btVector3 free = mover.pushed_out({0, 0, 0});
   EXPECT_NEAR(free.x(), -0.3, 0.05);

@@ -55,7 +55,7 @@ struct Floor {
   }
 };
 
-TEST(Character, RisesAndSinksAsToldInPlaceOfFalling) {
+TEST(Character, RisesAndSinksAsSetInsteadOfFalling) {
   Floor f;
   ASSERT_TRUE(f.scene.physics.tell(f.character, {.rise = 2}));
   f.scene.steps(60);
@@ -73,7 +73,7 @@ TEST(Character, RisesAndSinksAsToldInPlaceOfFalling) {
   EXPECT_TRUE(f.state().on_ground);
 }
 
-TEST(Character, RefusesSpeedsThatAreNone) {
+TEST(Character, RejectsInvalidSpeeds) {
   Floor f;
   for (const double speed : {-1.0, 1e4, testing::kNan})
     EXPECT_FALSE(f.scene.physics.tell(f.character, {.speed = speed})) << speed;
@@ -274,7 +274,7 @@ TEST(Character, DoesNotClimbGroundThatIsTooSteep) {
   EXPECT_GT(steep, 3);
 }
 
-TEST(Character, RefusesWhatIsNotLegal) {
+TEST(Character, RejectsIllegalValues) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Scene scene(Loaded::parsed(kBounded));
   const CharacterSettings sound{.feet = scene.above({1, 1}, 5, 5, 1)};

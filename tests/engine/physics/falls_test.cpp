@@ -101,7 +101,7 @@ TEST_P(Falls, BodiesThatAreThrownAtTheGroundStayAboveIt) {
   }
 }
 
-TEST(FallsAtTheEdge, NobodyLeavesABoundedWorld) {
+TEST(FallsAtTheEdge, ActorsDoNotLeaveABoundedWorld) {
   Scene scene(Loaded::parsed(kBounded));
   for (const glm::dvec2& way : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}}) {
     const auto id = scene.physics.add(CharacterSettings{.feet = scene.above({4, 2}, 1, 1, 1)});
@@ -122,7 +122,7 @@ TEST(FallsAtTheEdge, NobodyLeavesABoundedWorld) {
   }
 }
 
-TEST(FallsOfMany, CharactersAndBodiesFarApartAllStandOnTheirGround) {
+TEST(FallsOfMany, CharactersAndBodiesFarApartStayOnTheGround) {
   Scene scene(Loaded::shipped("silver_combe"));
   std::vector<CharacterId> characters;
   std::vector<BodyId> bodies;

@@ -54,7 +54,7 @@ core::WorldPosition beside(core::WorldPosition top, double metres) {
   return top;
 }
 
-TEST(ObjectBodies, ACharacterStandsOnThemUntilTheyDisappear) {
+TEST(ObjectBodies, CarryACharacterUntilTheyDisappear) {
   Platforms s;
   const auto top = s.place(20);
   const query::ObjectId slab = s.slab(top);
@@ -93,7 +93,7 @@ TEST(ObjectBodies, StopACharacterLikeAWallAndLetItClimbALowStep) {
   EXPECT_LT(s.at(id).feet.local.x, floor.local.x - 6);
 }
 
-TEST(ObjectBodies, CarryACharacterUpDownAsideAndAround) {
+TEST(ObjectBodies, MoveACharacterUpDownSidewaysAndAround) {
   Platforms s;
   auto top = s.place(20);
   const query::ObjectId slab = s.slab(top);
@@ -123,7 +123,7 @@ TEST(ObjectBodies, CarryACharacterUpDownAsideAndAround) {
   EXPECT_NEAR(s.at(id).feet.local.z, 2 * middle.z - before.z, 0.05);
 }
 
-TEST(ObjectBodies, ACharacterThatJumpsOffKeepsTheSpeedOfWhatItStoodOn) {
+TEST(ObjectBodies, ACharacterThatJumpsOffKeepsTheirVelocity) {
   Platforms s;
   const query::ObjectId slab = s.slab(s.place(20), 8);
   const CharacterId id = s.character(s.place(20.1));
@@ -140,7 +140,7 @@ TEST(ObjectBodies, ACharacterThatJumpsOffKeepsTheSpeedOfWhatItStoodOn) {
   EXPECT_GT(s.at(id).velocity.y, 4);
 }
 
-TEST(ObjectBodies, PushACharacterThatStandsInTheirWay) {
+TEST(ObjectBodies, PushACharacterOutOfTheirWay) {
   Platforms s;
   const auto floor = s.place(60);
   s.slab(floor, 20);
@@ -156,7 +156,7 @@ TEST(ObjectBodies, PushACharacterThatStandsInTheirWay) {
   EXPECT_NEAR(s.at(id).feet.local.y, floor.local.y, 0.05);
 }
 
-TEST(ObjectBodies, BodiesRestOnThemRideOnThemAndFallWhenTheyGo) {
+TEST(ObjectBodies, CarryBodiesThatFallWhenTheyAreRemoved) {
   Platforms s;
   const auto top = s.place(20);
   const query::ObjectId slab = s.slab(top);
@@ -179,7 +179,7 @@ TEST(ObjectBodies, BodiesRestOnThemRideOnThemAndFallWhenTheyGo) {
   EXPECT_GT(fallen.local.y, s.ground_m(fallen));
 }
 
-TEST(ObjectBodies, OneThatAppearsWhereACharacterIsPushesItOut) {
+TEST(ObjectBodies, PushOutACharacterWhenTheyAppear) {
   Platforms s;
   const auto floor = s.place(60);
   s.slab(floor, 20);
@@ -194,7 +194,7 @@ TEST(ObjectBodies, OneThatAppearsWhereACharacterIsPushesItOut) {
   EXPECT_LT(away.x, -0.1);
 }
 
-TEST(ObjectBodies, ThatJumpFarCarryNobodyAndThrowNothing) {
+TEST(ObjectBodies, ThatJumpFarCarryAndThrowNothing) {
   Platforms s;
   const auto top = s.place(20);
   const query::ObjectId slab = s.slab(top);
@@ -211,7 +211,7 @@ TEST(ObjectBodies, ThatJumpFarCarryNobodyAndThrowNothing) {
   EXPECT_LT(fallen.local.y, s.ground_m(fallen) + 1);
 }
 
-TEST(ObjectBodies, OneThatGetsAnotherSizeIsThereInItAtOnce) {
+TEST(ObjectBodies, ChangeTheirSizeImmediately) {
   Platforms s;
   const query::ObjectId slab = s.slab(s.place(20));
   const CharacterId id = s.character(s.place(20.1));
@@ -225,7 +225,7 @@ TEST(ObjectBodies, OneThatGetsAnotherSizeIsThereInItAtOnce) {
   EXPECT_TRUE(s.at(id).on_ground);
 }
 
-TEST(ObjectBodies, NobodyIsPressedThroughTheGround) {
+TEST(ObjectBodies, DoNotPressActorsThroughTheGround) {
   Platforms s;
   const CharacterId id = s.character(s.place(0));
   const BodyId crate = s.crate(s.place(0.3, 31, 30));

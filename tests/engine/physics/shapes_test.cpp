@@ -23,7 +23,7 @@ core::Bounds box_of(const OwnedShape& shape) {
   return {glm::vec3(to_glm(low)), glm::vec3(to_glm(high))};
 }
 
-TEST(Shapes, HaveTheBoxesOfTheirColliders) {
+TEST(Shapes, HaveTheBoundsOfTheirColliders) {
   const std::vector<glm::vec3> corners{{1, 0, 0}, {-1, 0, 0}, {0, 2, 0}, {0, -1, 0}, {0, 0, 3}};
   for (const Collider::Shape& shape :
        {Collider::Shape(Collider::Sphere{{1, 2, 3}, 0.5F}),
@@ -40,7 +40,7 @@ TEST(Shapes, HaveTheBoxesOfTheirColliders) {
   }
 }
 
-TEST(Shapes, OfSeveralPartsHaveAllOfThem) {
+TEST(Shapes, OfSeveralPartsHaveEveryPart) {
   Collider c = of(Collider::Sphere{{0, 0, 0}, 1});
   c.shapes.emplace_back(Collider::Box{{3, 0, 0}, {4, 1, 1}});
   const auto made = make_shape(c);
@@ -50,7 +50,7 @@ TEST(Shapes, OfSeveralPartsHaveAllOfThem) {
   EXPECT_NEAR(made->inner_m, 1, 1e-6);
 }
 
-TEST(Shapes, ThatAreNotLegalAreRefused) {
+TEST(Shapes, RejectIllegalColliders) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(make_shape({}));
   for (const Collider::Shape& shape :

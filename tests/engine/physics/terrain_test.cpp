@@ -50,7 +50,7 @@ TEST(PhysicsTerrain, HeightfieldsAreTheTrianglesOfTheFinestMesh) {
   }
 }
 
-TEST(PhysicsTerrain, ModelsAreThoseThatRaysMeet) {
+TEST(PhysicsTerrain, ModelsAreThoseThatRaysHit) {
   const Loaded loaded = Loaded::shipped("paper");
   query::World query(loaded.world, loaded.registry);
   Bare bare;
@@ -120,7 +120,7 @@ TEST(PhysicsTerrain, EndsAtTheWallsOfABoundedWorld) {
   EXPECT_NEAR(terrain.ground({-1000, 3, 1000}).height_m, border->height_m, 1e-5);
 }
 
-TEST(PhysicsTerrain, MovesWithTheOriginAndIsNotMadeAnew) {
+TEST(PhysicsTerrain, MovesWithTheOriginWithoutBeingRebuilt) {
   const Loaded loaded = Loaded::shipped("endless");
   query::World query(loaded.world, loaded.registry);
   Bare bare;

@@ -53,7 +53,7 @@ TEST(PhysicsBodies, StackOnOneAnother) {
   }
 }
 
-TEST(PhysicsBodies, WakeWhenWhatTheyLieOnGoesAndNotOtherwise) {
+TEST(PhysicsBodies, WakeOnlyWhenTheirSupportIsRemoved) {
   Scene scene(Loaded::shipped("five_species"));
   std::vector<BodyId> tables, crates, lids;
   for (int i = 0; i < 3; ++i) {
@@ -157,7 +157,7 @@ TEST(PhysicsBodies, ArePushedByImpulsesAndTeleported) {
   EXPECT_GE(rest->position.local.y, scene.ground_m(rest->position));
 }
 
-TEST(PhysicsBodies, RefuseWhatIsNotLegal) {
+TEST(PhysicsBodies, RejectIllegalValues) {
   Scene scene(Loaded::parsed(kBounded), {.most_bodies = 2});
   const BodySettings sound{.shape = ball(0.5F), .position = scene.above({1, 1}, 5, 5, 3)};
   const auto refused = [&](auto&& change) {

@@ -121,7 +121,7 @@ TEST(PhysicsWorld, CoordinatesFollowTheFirstActorOverManyKilometres) {
   EXPECT_GT(last.block.x, 70);
 }
 
-TEST(PhysicsWorld, RaysMeetBodiesAndCharactersAndNothingElse) {
+TEST(PhysicsWorld, RaysHitBodiesAndCharactersOnly) {
   Scene scene(Loaded::shipped("paper"));
   core::WorldPosition at = scene.above({9, 9}, 30, 30, 50);
   const auto body =
@@ -150,7 +150,7 @@ TEST(PhysicsWorld, RaysMeetBodiesAndCharactersAndNothingElse) {
   EXPECT_FALSE(scene.physics.cast(eye, {0, 1, 0}, 0));
 }
 
-TEST(PhysicsWorld, RefusesStepsAndSettingsOutOfTheirRanges) {
+TEST(PhysicsWorld, RejectsStepsAndSettingsOutOfTheirRanges) {
   Scene scene(Loaded::shipped("paper"));
   for (const double dt : {0.0, -1.0, 1.0, kNan})
     EXPECT_FALSE(scene.physics.step(dt));
@@ -159,7 +159,7 @@ TEST(PhysicsWorld, RefusesStepsAndSettingsOutOfTheirRanges) {
   EXPECT_FALSE(World::create(scene.query, {.most_bodies = 1'000'000'000}));
 }
 
-TEST(PhysicsWorld, TerrainIsThereBeforeTheFirstStepEndsAndGoesWhenNobodyIsThere) {
+TEST(PhysicsWorld, LoadsTerrainInTheFirstStepAndUnloadsItWithoutActors) {
   Scene scene(Loaded::shipped("paper"), {.keep_steps = 5});
   EXPECT_EQ(scene.physics.block_count(), 0U);
   const auto id = scene.physics.add(CharacterSettings{.feet = scene.above({50, 50}, 30, 30, 0)});
@@ -184,7 +184,7 @@ void let_sleep(Scene& scene, const std::vector<BodyId>& bodies) {
   ASSERT_TRUE(std::ranges::all_of(bodies, sleeps));
 }
 
-TEST(PhysicsWorld, EditsWakeTheBodiesThatTheyReachAndNoOthers) {
+TEST(PhysicsWorld, EditsWakeOnlyTheBodiesThatTheyReach) {
   Scene scene(Loaded::shipped("five_species"));
   std::vector<BodyId> bodies;
   for (const core::BlockCoord block : {core::BlockCoord{3, 4}, {9, 4}, {3, 12}})

@@ -9,7 +9,7 @@ namespace {
 using testing::kBounded;
 using testing::Loaded;
 
-TEST(BlockCache, HasWhatTheWorldHas) {
+TEST(BlockCache, EqualsTheWorld) {
   const Loaded loaded = Loaded::parsed(kBounded);
   BlockCache cache(loaded.world, loaded.registry, std::size_t{1} << 20);
   const core::BlockCoord block{3, 1};
@@ -25,7 +25,7 @@ TEST(BlockCache, HasWhatTheWorldHas) {
   EXPECT_EQ(cache.solids(block).solids.size(), 8U);  // every tree and every rock
 }
 
-TEST(BlockCache, StaysUnderItsBoundAndDropsWhatWasUsedLeastRecently) {
+TEST(BlockCache, StaysUnderItsBoundAndDropsTheLeastRecentlyUsedBlock) {
   const Loaded loaded = Loaded::parsed(kBounded);
   constexpr std::size_t kBound = 100'000;
   BlockCache cache(loaded.world, loaded.registry, kBound);
@@ -45,7 +45,7 @@ TEST(BlockCache, StaysUnderItsBoundAndDropsWhatWasUsedLeastRecently) {
   EXPECT_EQ(cache.bytes(), bytes);
 }
 
-TEST(BlockCache, KeepsOneBlockHoweverSmallTheBound) {
+TEST(BlockCache, KeepsOneBlockWithAnyBound) {
   const Loaded loaded = Loaded::parsed(kBounded);
   BlockCache cache(loaded.world, loaded.registry, 1);
   cache.ground({0, 0});

@@ -24,7 +24,7 @@ TEST(BlockSource, HeightsAreThoseOfTheFinestMesh) {
   }
 }
 
-TEST(BlockSource, ModelsAreThoseThatTheWorldPlaces) {
+TEST(BlockSource, ModelsAreThoseOfTheWorld) {
   const Loaded loaded = Loaded::shipped("silver_combe");
   std::vector<world::Placement> placed;
   world::place_models(loaded.world, loaded.registry, {5, 6}, placed);
@@ -36,7 +36,7 @@ TEST(BlockSource, ModelsAreThoseThatTheWorldPlaces) {
   }
 }
 
-TEST(BlockSource, StampsAndRoadsAreInTheGroundAndAreNoEdits) {
+TEST(BlockSource, StampsAndRoadsShapeTheGroundAndAreNoEdits) {
   world::World world = world::testing::shaped_world(world::testing::kShapes);
   const models::Registry& registry = world::testing::registry();
   const core::BlockCoord block{2, 2};
@@ -62,7 +62,7 @@ TEST(BlockSource, StampsAndRoadsAreInTheGroundAndAreNoEdits) {
   EXPECT_EQ(on_it->kind, world::GroundKind::kRock);
 }
 
-TEST(BlockSource, EditsOfABlockChangeItsHashAndWhatIsThere) {
+TEST(BlockSource, EditsOfABlockChangeItsHashAndItsContent) {
   Loaded loaded = Loaded::shipped("silver_combe");
   const core::BlockCoord block{5, 6}, far{50, 60};
   const std::vector<std::uint16_t> ground = ground_of_block(loaded.world, block);

@@ -43,7 +43,7 @@ struct Both {
   }
 };
 
-TEST(BoxTree, FindsWhatAListFindsWhileBoxesComeMoveAndGo) {
+TEST(BoxTree, FindsTheSameAsAListWhileBoxesAreAddedMovedAndRemoved) {
   Both both;
   for (int i = 0; i < 600; ++i)
     both.insert(both.some_box(300));
@@ -68,7 +68,7 @@ TEST(BoxTree, FindsWhatAListFindsWhileBoxesComeMoveAndGo) {
   EXPECT_EQ(both.tree.size(), static_cast<std::size_t>(alive));
 }
 
-TEST(BoxTree, StaysLowWhateverTheOrderOfItsBoxes) {
+TEST(BoxTree, StaysShallowForAnyOrderOfItsBoxes) {
   BoxTree tree;
   std::vector<BoxTree::Leaf> leaves;
   for (int i = 0; i < 20'000; ++i)
@@ -83,7 +83,7 @@ TEST(BoxTree, StaysLowWhateverTheOrderOfItsBoxes) {
   EXPECT_EQ(tree.height(), 0);
 }
 
-TEST(BoxTree, ARayVisitsEveryBoxThatItCrossesAndStopsWhereToldTo) {
+TEST(BoxTree, ARayVisitsEveryBoxThatItCrossesUntilItIsStopped) {
   Both both;
   for (int i = 0; i < 500; ++i)
     both.insert(both.some_box(200));

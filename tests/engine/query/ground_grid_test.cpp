@@ -46,7 +46,7 @@ double first_crossing(const GroundGrid& grid, const glm::dvec3& from, const glm:
   return first;
 }
 
-TEST(GroundGrid, RaysMeetTheFirstOfAllTriangles) {
+TEST(GroundGrid, RaysHitTheFirstOfAllTriangles) {
   const GroundGrid grid = rough(1);
   core::RandomStream random(2, 0, 0, 0, core::Purpose::kPosition);
   const auto r = [&](double low, double high) { return random.next_real(low, high); };
@@ -71,7 +71,7 @@ TEST(GroundGrid, RaysMeetTheFirstOfAllTriangles) {
   EXPECT_GT(from_below, 200);
 }
 
-TEST(GroundGrid, VerticalRaysMeetTheHeightOfThePoint) {
+TEST(GroundGrid, VerticalRaysHitTheHeightOfThePoint) {
   const GroundGrid grid = rough(3);
   core::RandomStream random(4, 0, 0, 0, core::Purpose::kPosition);
   for (int i = 0; i < 500; ++i) {
@@ -112,7 +112,7 @@ TEST(GroundGrid, NoRayPassesBetweenTwoTriangles) {
   }
 }
 
-TEST(GroundGrid, ARayThatBeginsOnTheGroundMeetsItUnlessItRises) {
+TEST(GroundGrid, ARayThatBeginsOnTheGroundHitsItUnlessItRises) {
   const GroundGrid grid = rough(7);
   core::RandomStream random(8, 0, 0, 0, core::Purpose::kPosition);
   for (int i = 0; i < 500; ++i) {
@@ -132,7 +132,7 @@ TEST(GroundGrid, ARayThatBeginsOnTheGroundMeetsItUnlessItRises) {
   }
 }
 
-TEST(GroundGrid, ARayAlongFlatGroundMeetsItWhereItBegins) {
+TEST(GroundGrid, ARayAlongFlatGroundHitsItAtItsOrigin) {
   const GroundGrid flat(std::vector<std::uint16_t>(kSize * kSize, 30000), kCell, kRelief);
   const double height = flat.metres(30000);
   Side side = Side::kUnknown;

@@ -17,7 +17,7 @@ glm::vec3 random_point(core::RandomStream& random) {
   return {x, y, z};
 }
 
-TEST(Hull, HoldsEveryPointAndEveryFaceTouchesSome) {
+TEST(Hull, HoldsEveryPointAndEachFaceTouchesPoints) {
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kPosition);
   for (int trial = 0; trial < 60; ++trial) {
     std::vector<glm::vec3> points;
@@ -53,7 +53,7 @@ TEST(Hull, IsNotLargerThanThePointsNeed) {
   }
 }
 
-TEST(Hull, OfACubeHasItsSixSidesDespiteEqualPointsAndPointsInside) {
+TEST(Hull, OfACubeHasSixSidesDespiteEqualAndInnerPoints) {
   std::vector<glm::vec3> points{{0, 0, 0}, {0.3F, 0.1F, -0.2F}};
   for (int i = 0; i < 16; ++i)
     points.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);

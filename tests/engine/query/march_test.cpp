@@ -67,7 +67,7 @@ TEST(March, FollowsALineOnABorder) {
   }
 }
 
-TEST(March, EndsWhenTold) {
+TEST(March, EndsWhenTheVisitorReturnsFalse) {
   int count = 0;
   march({{0, 0}, {1, 0.3}}, 1, 0, 1e9,
         [&](std::int64_t, std::int64_t, double, double) { return ++count < 7; });

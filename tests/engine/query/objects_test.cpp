@@ -117,7 +117,7 @@ TEST(Objects, SpheresAndCapsulesAreScaledByTheLargestAxisAndHullsExactly) {
   EXPECT_NEAR(distance(octahedron(1), {1, 5, 1}, {10, 0, 0}, {-1, 0, 0}), 9, 1e-4);
 }
 
-TEST(Objects, TheNearestOfGroundModelsAndObjectsIsHit) {
+TEST(Objects, RaysHitTheNearestOfGroundModelsAndObjects) {
   Scene scene;
   const core::BlockCoord block = scene.some_block();
   for (const StandingSolid& s : scene.query.solids(block).solids) {
@@ -145,7 +145,7 @@ TEST(Objects, TheNearestOfGroundModelsAndObjectsIsHit) {
   }
 }
 
-TEST(Objects, ARayThatBeginsInsideOneMeetsItAtOnce) {
+TEST(Objects, ARayThatBeginsInsideAnObjectHitsItAtItsOrigin) {
   Scene scene;
   scene.put(octahedron(3), {.position = scene.sky()});
   const Hit hit = scene.cast(scene.sky(0.1, 0.2, 0.1), {0, 1, 0});
@@ -155,7 +155,7 @@ TEST(Objects, ARayThatBeginsInsideOneMeetsItAtOnce) {
   EXPECT_EQ(hit.normal, glm::vec3(0, -1, 0));
 }
 
-TEST(Objects, RaysFindTheSameAsAListOfThemWhileTheyMove) {
+TEST(Objects, RaysFindTheSameObjectsAsAListWhileTheyMove) {
   Scene scene;
   std::mt19937 random(3);
   const auto pick = [&](double low, double high) {
@@ -207,7 +207,7 @@ TEST(Objects, AreAsExactFarOutAsNearTheOrigin) {
   }
 }
 
-TEST(Objects, ThatWereRemovedAreNoMoreAndTheirIdsAreRecognised) {
+TEST(Objects, RemovedOnesAreNotHitAndTheirIdsAreStale) {
   Scene scene;
   const ObjectId first = scene.put(box({1, 1, 1}), {.position = scene.sky(20)});
   EXPECT_TRUE(scene.objects.remove(first));
@@ -221,7 +221,7 @@ TEST(Objects, ThatWereRemovedAreNoMoreAndTheirIdsAreRecognised) {
   EXPECT_NE(scene.objects.find(second), nullptr);
 }
 
-TEST(Objects, ThatAreNotToldOfAgainGo) {
+TEST(Objects, ThatAreNotSetAgainAreRemoved) {
   Scene scene;
   const ObjectPose pose{.position = scene.sky(20)};
   const ObjectId kept = scene.put(box({1, 1, 1}), pose);
@@ -233,7 +233,7 @@ TEST(Objects, ThatAreNotToldOfAgainGo) {
   EXPECT_EQ(scene.objects.size(), 1u);
 }
 
-TEST(Objects, CollidersThatAreNoneAreRefusedWithASentenceThatNamesThePart) {
+TEST(Objects, InvalidCollidersAreRejectedWithAMessageThatNamesThePart) {
   const auto refusal = [](Collider collider) {
     const auto made = Objects::make_shape(std::move(collider));
     EXPECT_FALSE(made);
@@ -266,7 +266,7 @@ TEST(Objects, CollidersThatAreNoneAreRefusedWithASentenceThatNamesThePart) {
               HasSubstr("one plane"));
 }
 
-TEST(Objects, PosesThatAreNoneAreRefusedAndTheObjectStaysWhereItWas) {
+TEST(Objects, InvalidPosesAreRejectedAndTheObjectStays) {
   Scene scene(Loaded::parsed(testing::kBounded));
   const ObjectPose good{.position = {{3, 2}, {0, 5000, 0}}};
   const ObjectId id = scene.put(box({1, 1, 1}), good);

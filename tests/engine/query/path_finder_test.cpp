@@ -33,7 +33,7 @@ class Ways : public ::testing::Test {
   }
 };
 
-TEST_F(Ways, LeadFromHereToThereOnGroundThatCanBeWalkedOn) {
+TEST_F(Ways, LeadToTheDestinationOnWalkableGround) {
   PathFinder finder(query_);
   const core::WorldPosition from = dry(0, 0), to = dry(160, 90);
   const auto points = finder.find(from, to);
@@ -68,7 +68,7 @@ TEST_F(Ways, AreTheSameEachTimeAndFromAnyFinder) {
   }
 }
 
-TEST_F(Ways, AreTheSameIfTheyAreSearchedInPieces) {
+TEST_F(Ways, AreTheSameInOneSearchAndInSteps) {
   const core::WorldPosition from = dry(0, 0), to = dry(120, -60);
   PathFinder finder(query_);
   const auto whole = finder.find(from, to);
@@ -91,7 +91,7 @@ TEST_F(Ways, AreTheSameIfTheyAreSearchedInPieces) {
     EXPECT_EQ((*found)[i].local, whole[i].local);
 }
 
-TEST_F(Ways, LeaveOutWhatIsToBeAvoided) {
+TEST_F(Ways, AvoidGivenCircles) {
   PathFinder finder(query_);
   const core::WorldPosition from = dry(0, 0), to = dry(60, 30);
   const auto before = finder.find(from, to);
@@ -102,7 +102,7 @@ TEST_F(Ways, LeaveOutWhatIsToBeAvoided) {
     EXPECT_GT(glm::length(way(middle, at)), PathFinder::kCellM);
 }
 
-TEST_F(Ways, EndAtTheNearestPointWhereThereIsNone) {
+TEST_F(Ways, EndAtTheNearestReachablePoint) {
   const core::WorldPosition from = dry(0, 0), to = dry(300, 0);
   PathFinder finder(query_, {.most_cells = 200});
   const auto points = finder.find(from, to);

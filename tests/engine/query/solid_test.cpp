@@ -62,19 +62,19 @@ void expect_as_defined(Solid solid, const std::function<double(const glm::dvec3&
   EXPECT_GT(hits, 200);
 }
 
-TEST(Solid, RaysEnterASphereWhereItsSurfaceIs) {
+TEST(Solid, RaysEnterASphereAtItsSurface) {
   const glm::dvec3 centre(0.2, -0.3, 0.5);
   expect_as_defined(solid_of(Collider::Sphere{glm::vec3(centre), 1.1F}),
                     [&](const glm::dvec3& p) { return glm::length(p - centre) - 1.1; });
 }
 
-TEST(Solid, RaysEnterACapsuleWhereItsSurfaceIs) {
+TEST(Solid, RaysEnterACapsuleAtItsSurface) {
   const glm::dvec3 a(-0.5, -1, 0), b(0.5, 1.25, 0.75);
   expect_as_defined(solid_of(Collider::Capsule{glm::vec3(a), glm::vec3(b), 0.5F}),
                     [&](const glm::dvec3& p) { return distance_to_segment(p, a, b) - 0.5; });
 }
 
-TEST(Solid, RaysEnterABoxWhereItsSurfaceIs) {
+TEST(Solid, RaysEnterABoxAtItsSurface) {
   expect_as_defined(solid_of(Collider::Box{{-1, -0.5F, -0.25F}, {1, 0.75F, 0.5F}}),
                     [](const glm::dvec3& p) {
                       const glm::dvec3 q =
@@ -83,7 +83,7 @@ TEST(Solid, RaysEnterABoxWhereItsSurfaceIs) {
                     });
 }
 
-TEST(Solid, RaysEnterAHullWhereItsSurfaceIs) {
+TEST(Solid, RaysEnterAHullAtItsSurface) {
   expect_as_defined(solid_of(Collider::Hull{octahedron()}), [](const glm::dvec3& p) {
     return (std::abs(p.x) + std::abs(p.y) + std::abs(p.z) - 1) / std::sqrt(3.0);
   });
@@ -94,7 +94,7 @@ TEST(Solid, ACapsuleWithoutLengthIsASphere) {
                     [](const glm::dvec3& p) { return glm::length(p - glm::dvec3(0, 1, 0)) - 1; });
 }
 
-TEST(Solid, TheNearestOfSeveralShapesIsHit) {
+TEST(Solid, RaysHitTheNearestOfSeveralShapes) {
   Collider collider;
   for (const float x : {6.0F, 2.0F, 4.0F})
     collider.shapes.emplace_back(Collider::Sphere{{x, 0, 0}, 0.5F});
@@ -111,7 +111,7 @@ TEST(Solid, TheNearestOfSeveralShapesIsHit) {
   EXPECT_FALSE(solid.cast({{1.2, 0, 0}, {1, 0, 0}}, 0.25));
 }
 
-TEST(Solid, LeavesOutShapesThatAreNotSound) {
+TEST(Solid, SkipsInvalidShapes) {
   Collider collider;
   collider.shapes.emplace_back(Collider::Sphere{{0, kNan, 0}, 1});
   collider.shapes.emplace_back(Collider::Sphere{{0, 0, 0}, -1});

@@ -90,7 +90,7 @@ TEST(QueryWorld, NeighbouringBlocksAgreeAtTheirBorder) {
   }
 }
 
-TEST(QueryWorld, GroundHasTheKindThatIsSeen) {
+TEST(QueryWorld, GroundHasTheSurfaceKindThatIsDrawn) {
   const Loaded loaded = Loaded::shipped("lakes");
   World query(loaded.world, loaded.registry);
   std::array<int, world::kGroundKinds> count{};
@@ -132,7 +132,7 @@ TEST(QueryWorld, ThereIsNoGroundOutsideABoundedWorld) {
   }
 }
 
-TEST(QueryWorld, RefusesPositionsDirectionsAndSizesThatAreNotNumbers) {
+TEST(QueryWorld, RejectsPositionsDirectionsAndSizesThatAreNotFinite) {
   const Loaded loaded = Loaded::parsed(kBounded);
   World query(loaded.world, loaded.registry);
   const core::WorldPosition sound{{1, 1}, {5, 80, 5}};
@@ -162,7 +162,7 @@ TEST(QueryWorld, RefusesPositionsDirectionsAndSizesThatAreNotNumbers) {
   EXPECT_EQ(huge.error().code, core::ErrorCode::kOverBudget);
 }
 
-TEST(QueryWorld, RaysOfAnyLengthOfDirectionAreTheSame) {
+TEST(QueryWorld, RaysDoNotDependOnTheLengthOfTheirDirection) {
   const Loaded loaded = Loaded::parsed(kBounded);
   World query(loaded.world, loaded.registry);
   const auto hit = query.cast({.origin = {{1, 1}, {5, 90, 5}}, .direction = {1, -1, 0.5}});
@@ -176,7 +176,7 @@ TEST(QueryWorld, RaysOfAnyLengthOfDirectionAreTheSame) {
   }
 }
 
-TEST(QueryWorld, RaysMeetTheFirstTriangleOfTheMeshes) {
+TEST(QueryWorld, RaysHitTheFirstTriangleOfTheMeshes) {
   for (const char* name : {"paper", "lakes", "silver_combe"}) {
     const Loaded loaded = Loaded::shipped(name);
     World query(loaded.world, loaded.registry);
@@ -243,7 +243,7 @@ TEST(QueryWorld, RaysAreTheSameFromAnyBlockOfTheirOrigin) {
   }
 }
 
-TEST(QueryWorld, VerticalRaysMeetTheGroundFromAboveAndFromBelow) {
+TEST(QueryWorld, VerticalRaysHitTheGroundFromAboveAndFromBelow) {
   const Loaded loaded = Loaded::shipped("paper");
   World query(loaded.world, loaded.registry);
   for (int i = 0; i < 300; ++i) {
@@ -269,7 +269,7 @@ TEST(QueryWorld, VerticalRaysMeetTheGroundFromAboveAndFromBelow) {
   }
 }
 
-TEST(QueryWorld, EndlessRaysTakeBoundedWorkAndSayHowFarTheyWent) {
+TEST(QueryWorld, EndlessRaysTakeBoundedWorkAndReportTheirLength) {
   const Loaded loaded = Loaded::shipped("endless");
   World query(loaded.world, loaded.registry);
   const double relief = loaded.world.terrain.real(models::kTerrainReliefM);
@@ -351,7 +351,7 @@ struct AllSolids {
   }
 };
 
-TEST(QueryWorld, RaysMeetTheFirstModelOfAll) {
+TEST(QueryWorld, RaysHitTheFirstOfAllModels) {
   for (const char* name : kWorldNames) {
     const Loaded loaded = Loaded::shipped(name);
     World query(loaded.world, loaded.registry);
@@ -384,7 +384,7 @@ TEST(QueryWorld, RaysMeetTheFirstModelOfAll) {
   }
 }
 
-TEST(QueryWorld, ARayMeetsWhateverComesFirst) {
+TEST(QueryWorld, ARayHitsTheNearestOfGroundAndModels) {
   const Loaded loaded = Loaded::shipped("paper");
   World query(loaded.world, loaded.registry);
   std::vector<NearModel> rocks;
@@ -415,7 +415,7 @@ TEST(QueryWorld, ARayMeetsWhateverComesFirst) {
   EXPECT_GT(model_before_ground, 20);
 }
 
-TEST(QueryWorld, ModelsWithinARadiusAreAllOfThemNearestFirst) {
+TEST(QueryWorld, ModelsWithinARadiusAreCompleteAndNearestFirst) {
   for (const char* name : kWorldNames) {
     const Loaded loaded = Loaded::shipped(name);
     World query(loaded.world, loaded.registry);
@@ -458,7 +458,7 @@ TEST(QueryWorld, ModelsWithinARadiusAreAllOfThemNearestFirst) {
   }
 }
 
-TEST(QueryWorld, ARadiusOfZeroFindsWhatStandsExactlyThere) {
+TEST(QueryWorld, ARadiusOfZeroFindsModelsAtExactlyThisPoint) {
   const Loaded loaded = Loaded::parsed(kBounded);
   World query(loaded.world, loaded.registry);
   const auto any = query.nearest({{3, 2}, {30, 30, 30}}, 500);
@@ -473,7 +473,7 @@ TEST(QueryWorld, ARadiusOfZeroFindsWhatStandsExactlyThere) {
   EXPECT_FALSE(query.placement({-1, 2}, 0));
 }
 
-TEST(QueryWorld, AnswersDoNotDependOnWhatIsCached) {
+TEST(QueryWorld, AnswersDoNotDependOnTheCache) {
   const Loaded loaded = Loaded::shipped("silver_combe");
   World large(loaded.world, loaded.registry), tiny(loaded.world, loaded.registry, 1);
   core::RandomStream random(6, 0, 0, 0, core::Purpose::kPosition);
@@ -489,7 +489,7 @@ TEST(QueryWorld, AnswersDoNotDependOnWhatIsCached) {
   }
 }
 
-TEST(QueryWorld, RaysMeetModelsThatEditsHavePlacedHoweverFarTheyReach) {
+TEST(QueryWorld, RaysHitModelsOfEditsAtAnyDistanceFromTheirBlock) {
   Loaded loaded = Loaded::parsed(kBounded);
   World query(loaded.world, loaded.registry);
   const double size = loaded.world.block_size_m(), before_m = query.models_reach_m();

@@ -124,7 +124,7 @@ TEST_F(Grass, CoversAboutAsMuchAtEveryLevel) {
 }
 
 // From where blades are to the nearest of a dense set of points of the coarser level.
-TEST_F(Grass, LevelsAreOffByTheirError) {
+TEST_F(Grass, DeviatesByTheErrorOfItsLevel) {
   core::RandomStream random(4, 0, 0, 0, core::Purpose::kParameters);
   for (int trial = 0; trial < 12; ++trial) {
     Parameters p = random_parameters(*type, random);
@@ -157,7 +157,7 @@ TEST_F(Grass, LevelsAreOffByTheirError) {
   }
 }
 
-TEST_F(Grass, OfFewBladesHasFewLevels) {
+TEST_F(Grass, WithFewBladesHasFewLevels) {
   EXPECT_EQ(type->level_count_of(patch(1, 1)), 2);
   EXPECT_EQ(type->level_count_of(patch(1, 3, 2)), 3);
   EXPECT_EQ(type->level_count_of(patch(1, 4)), 4);
@@ -177,7 +177,7 @@ TEST_F(Grass, HasTheSameBytesEveryTimeAndOthersForEverySeed) {
   }
 }
 
-TEST_F(Grass, HostileParametersAreRefused) {
+TEST_F(Grass, HostileParametersAreRejected) {
   const auto refusal = [&](const Parameters& p) {
     const auto result = validate(*type, p);
     return result ? std::string() : result.error().message;
@@ -192,7 +192,7 @@ TEST_F(Grass, HostileParametersAreRefused) {
   EXPECT_LE(type->mesh_size(patch(1, 4096, 1024), 0).vertex_count, 65536U);
 }
 
-TEST_F(Grass, IsNotSeenFromFar) {
+TEST_F(Grass, IsInvisibleFromFar) {
   EXPECT_FALSE(type->is_seen_from_far());
 }
 

@@ -25,7 +25,7 @@ void expect_as_oracle(const ModelType& type, const Parameters& p, int level) {
   }
 }
 
-TEST(GrassOracle, HasEveryVertexOfEveryLevel) {
+TEST(GrassOracle, EqualsEveryVertexOfEveryLevel) {
   const auto type = make_grass_type();
   core::RandomStream random(12, 0, 0, 0, core::Purpose::kParameters);
   for (int trial = 0; trial < 100; ++trial) {

@@ -75,7 +75,7 @@ TEST(QuadMap, BehavesLikeAMapAndCopiesStayAsTheyWere) {
   }
 }
 
-TEST(QuadMap, EqualContentHasEqualHashesWhateverTheHistory) {
+TEST(QuadMap, EqualContentHasEqualHashesWithAnyHistory) {
   std::mt19937 random(3);
   std::vector<std::pair<QuadPlace, std::uint64_t>> content;
   for (int i = 0; i < 200; ++i) {
@@ -114,7 +114,7 @@ TEST(QuadMap, EqualContentHasEqualHashesWhateverTheHistory) {
   EXPECT_TRUE(other.empty());
 }
 
-TEST(QuadMap, TheSameValueAtAnotherPlaceHasAnotherHashInEverySquareAround) {
+TEST(QuadMap, AValueAtAnotherPositionChangesTheHashOfEverySquareAroundIt) {
   Map here, beside;
   here.set(QuadPlace::of({12, 7}), {5});
   beside.set(QuadPlace::of({13, 7}), {5});

@@ -128,7 +128,7 @@ TEST_F(SimdKernels, OfTerrainNoiseHaveTheSameBitsInTheLastColumns) {
   }
 }
 
-TEST_F(SimdKernels, OfTerrainMeshesWriteNoFurtherAtAnyAddressOnEveryTarget) {
+TEST_F(SimdKernels, OfTerrainMeshesWriteOnlyTheirRangeAtAnyAddressOnEveryTarget) {
   const auto type = make_terrain_type();
   constexpr std::size_t kGuard = 256;
   for (int trial = 0; trial < 32; ++trial) {

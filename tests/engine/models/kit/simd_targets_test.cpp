@@ -37,7 +37,7 @@ TEST(SimdTargets, ArePinnedAndUnpinned) {
   EXPECT_EQ(hwy::SupportedTargets(), best);
 }
 
-TEST(SimdTargetsDeathTest, RefuseUnknownNames) {
+TEST(SimdTargetsDeathTest, RejectUnknownNames) {
   EXPECT_DEATH(pin_simd_target("mmx"), "simd_targets");
 }
 

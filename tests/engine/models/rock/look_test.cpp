@@ -40,7 +40,7 @@ class RockLook : public ::testing::Test {
   }
 };
 
-TEST_F(RockLook, IsThatOfTheOracleOnEveryInstructionSetForEveryFamily) {
+TEST_F(RockLook, EqualsTheOracleOnEveryInstructionSetForEveryFamily) {
   for (int trial = 0; trial < 300; ++trial) {
     SCOPED_TRACE(trial);
     Parameters p = test::random_parameters(*type, random);
@@ -53,7 +53,7 @@ TEST_F(RockLook, IsThatOfTheOracleOnEveryInstructionSetForEveryFamily) {
 
 // Colours that reach their largest byte, no moss or nothing else, and all subdivisions that there
 // may be.
-TEST_F(RockLook, IsThatOfTheOracleAtTheEndsOfItsRanges) {
+TEST_F(RockLook, EqualsTheOracleAtTheEndsOfItsRanges) {
   for (int trial = 0; trial < 24; ++trial) {
     SCOPED_TRACE(trial);
     Parameters p = test::random_parameters(*type, random);

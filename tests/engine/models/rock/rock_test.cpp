@@ -63,7 +63,7 @@ TEST_F(Rock, TopologyIsClosedAtEveryStep) {
   }
 }
 
-TEST_F(Rock, PlacesEqualTheOracle) {
+TEST_F(Rock, PositionsEqualTheOracle) {
   core::RandomStream random(6, 0, 0, 0, core::Purpose::kParameters);
   for (int trial = 0; trial < 45; ++trial) {
     const int n = trial % 5;
@@ -87,7 +87,7 @@ TEST_F(Rock, PlacesEqualTheOracle) {
   }
 }
 
-TEST_F(Rock, SharedVerticesLookTheMeanWayOfTheirTriangles) {
+TEST_F(Rock, SharedVerticesHaveTheMeanNormalOfTheirTriangles) {
   core::RandomStream random(8, 0, 0, 0, core::Purpose::kParameters);
   for (int trial = 0; trial < 42; ++trial) {
     Parameters p = rock(static_cast<std::int64_t>(random.next_u64()), trial % 7,
@@ -138,7 +138,7 @@ TEST_F(Rock, IsWatertightAndFacesAwayFromItsCentreForLegalParameters) {
   }
 }
 
-TEST_F(Rock, LevelsKeepThePlacesOfTheirCorners) {
+TEST_F(Rock, LevelsKeepThePositionsOfTheirCorners) {
   for (int family = 0; family < kRockFamilyCount; ++family) {
     Parameters p = rock(77, 3, 0.3, 0.6);
     p.set_integer(kRockFamily, family);
@@ -190,7 +190,7 @@ TEST_F(Rock, FamiliesDifferInShadingShapeAndColour) {
   EXPECT_GT(contrast[kRockLayered], 1.15 * contrast[kRockFaceted]) << "layers show";
 }
 
-TEST_F(Rock, StepsOfFacetedRocksAreThoseOfTheirOwnVertices) {
+TEST_F(Rock, StepsOfFacetedRocksCountTheirOwnVertices) {
   Parameters p = rock(1, 4, 0.3, 0.5);
   p.set_integer(kRockFamily, 0);
   const double rounded = type->steps(p, 0);
@@ -211,7 +211,7 @@ TEST_F(Rock, SharesOneIndexListPerSubdivisionAndShading) {
   EXPECT_NE(b.shared_indices, type->mesh_size(faceted, 0).shared_indices);
 }
 
-TEST_F(Rock, StandsInTheGroundAndIsDarkerBelow) {
+TEST_F(Rock, StartsInTheGroundAndIsDarkerBelow) {
   for (int seed = 0; seed < 20; ++seed) {
     const Parameters p = rock(seed, 2, 0.24, 0.55);
     const Mesh mesh = synthesize(*type, p, 0);

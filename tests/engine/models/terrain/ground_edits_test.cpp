@@ -126,7 +126,7 @@ TEST_F(EditedTerrain, FlatteningMakesTheMiddleFlatAndCliffsHaveNoTransition) {
   }
 }
 
-TEST_F(EditedTerrain, HeightsStayBetweenZeroAndTheRelief) {
+TEST_F(EditedTerrain, HeightsStayWithinTheHeightRange) {
   add(raised({{0, 0}, {16, 0, 31}}, 15, 120));
   add(raised({{0, 0}, {48, 0, 31}}, 15, -120));
   const auto edited = vertices(node(0, 0, 0), 0);
@@ -166,7 +166,7 @@ TEST_F(EditedTerrain, SharedVerticesOfNeighboursAndLevelsAgreeWithManyEdits) {
   }
 }
 
-TEST_F(EditedTerrain, WhatTheHashDoesNotNameDoesNotChangeAnyBitOfAMesh) {
+TEST_F(EditedTerrain, EditsOutsideTheHashChangeNoBitOfAMesh) {
   std::mt19937 random(9);
   std::size_t untouched = 0, touched = 0;
   for (int round = 0; round < 600; ++round) {
@@ -213,7 +213,7 @@ TEST_F(EditedTerrain, ALargeHillDarkensTheGroundBehindIt) {
   EXPECT_LT(after, 0.95 * before);
 }
 
-TEST_F(EditedTerrain, TakingAnEditBackRestoresEveryHash) {
+TEST_F(EditedTerrain, UndoingAnEditRestoresEveryHash) {
   std::mt19937 random(2);
   for (int i = 0; i < 100; ++i)
     add(any_edit(random));
@@ -263,7 +263,7 @@ TEST_F(EditedTerrain, SameInNeverMissesAChangeOfTheHash) {
   EXPECT_GT(same, 200u);
 }
 
-TEST_F(EditedTerrain, TheHashNamesTheOrderOfTheEdits) {
+TEST_F(EditedTerrain, TheHashDependsOnTheOrderOfTheEdits) {
   GroundEdit flat = raised({{0, 0}, {31, 0, 31}}, 10, 60);
   flat.change = GroundChange::kFlatten;
   const GroundEdit first = add(flat);
@@ -304,7 +304,7 @@ TEST_F(EditedTerrain, EditsOfTwoBlocksWithTheSameIdAreTwoEdits) {
     ASSERT_EQ(here[i].height, again[i].height) << i;
 }
 
-TEST_F(EditedTerrain, SealingNotesHowFarAnEditMovesHeights) {
+TEST_F(EditedTerrain, SealingRecordsTheLargestHeightChangeOfAnEdit) {
   GroundEdit dug = raised({{0, 0}, {31, 0, 31}}, 10, -7);
   EXPECT_EQ(add(dug).most_m, 7);
   dug.change = GroundChange::kStampAdd;
@@ -339,7 +339,7 @@ TEST_F(EditedTerrain, ThePredictedStepsCountTheHeightsThatEditsChange) {
   EXPECT_LT(more(0, 0), 0.05 * one);
 }
 
-TEST_F(EditedTerrain, NoMeshIsFurtherFromTheGroundThanTheErrorSays) {
+TEST_F(EditedTerrain, NoMeshDeviatesFromTheGroundByMoreThanItsError) {
   std::mt19937 random(31);
   for (int round = 0; round < 20; ++round) {
     layer = {};
@@ -364,7 +364,7 @@ TEST_F(EditedTerrain, NoMeshIsFurtherFromTheGroundThanTheErrorSays) {
   }
 }
 
-TEST_F(EditedTerrain, TooManyOnTopOfEachOtherAreRefusedAndChangeNothing) {
+TEST_F(EditedTerrain, TooManyOverlappingEditsAreRejectedAndChangeNothing) {
   for (std::size_t i = 0; i < GroundEdits::kMostTogether; ++i)
     add(raised({{0, 0}, {31, 0, 31}}, 5, 0.01));
   const std::uint64_t hash = hash_of_all();

@@ -19,7 +19,7 @@ class Ground : public ::testing::Test {
   Parameters p = default_parameters(*type);
 };
 
-TEST_F(Ground, IsTheMeshAtItsVerticesAndThePlanesBetween) {
+TEST_F(Ground, EqualsTheMeshAtItsVerticesAndThePlanesBetween) {
   const core::BlockCoord block{-7, 12};
   p.set_integer(kTerrainBlockX, block.x);
   p.set_integer(kTerrainBlockZ, block.z);
@@ -73,7 +73,7 @@ TEST_F(Ground, NormalIsTheGradientOfTheHeight) {
   }
 }
 
-TEST_F(Ground, OfManyPointsIsThatOfEachPoint) {
+TEST_F(Ground, OfManyPointsEqualsEachPoint) {
   std::vector<glm::dvec2> points;
   for (int i = 0; i < 63; ++i)
     points.push_back({i * 0.97, 60 - i * 0.53});
@@ -92,7 +92,7 @@ void expect_same(const GroundPoint& a, const GroundPoint& b) {
     ASSERT_EQ(std::bit_cast<std::uint32_t>(a.normal[c]), std::bit_cast<std::uint32_t>(b.normal[c]));
 }
 
-TEST_F(Ground, OfAWholeBlockOrItsMeshHasTheBitsOfSinglePointsOnEveryTargetAnywhere) {
+TEST_F(Ground, OfABlockOrMeshHasTheBitsOfSinglePointsOnEveryTargetAnywhere) {
   constexpr std::int32_t kFar = std::numeric_limits<std::int32_t>::max();
   core::RandomStream random(9, 0, 0, 0, core::Purpose::kPosition);
   for (int trial = 0; trial < 16; ++trial) {

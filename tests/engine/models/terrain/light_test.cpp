@@ -152,7 +152,7 @@ TEST_F(Light, OfFlatGroundIsFull) {
   }
 }
 
-TEST_F(Light, OverheadCastsNoShadowsAndBelowTheHorizonLightsNothing) {
+TEST_F(Light, FromOverheadCastsNoShadowsAndFromBelowTheHorizonLightsNothing) {
   for (int level = 0; level < 4; ++level) {
     for (const TerrainVertex& v : surface(at(2, 9, 30, 90), level))
       ASSERT_EQ(v.sun, 255);
@@ -163,7 +163,7 @@ TEST_F(Light, OverheadCastsNoShadowsAndBelowTheHorizonLightsNothing) {
   }
 }
 
-TEST_F(Light, HillsShadowWhatLiesBehindThem) {
+TEST_F(Light, HillsShadowTheGroundBehindThem) {
   std::size_t lit = 0, not_lit = 0, dark = 0, not_dark = 0, behind = 0;
   for (std::int64_t block = 0; block < 80; ++block) {
     const auto east = surface(at(block, 3, 90, 12), 1), west = surface(at(block, 3, 270, 12), 1);
@@ -180,7 +180,7 @@ TEST_F(Light, HillsShadowWhatLiesBehindThem) {
   EXPECT_GT(behind, 50U);
 }
 
-TEST_F(Light, OfTheSkyIsLessInHollowsThanOnHumps) {
+TEST_F(Light, OfTheSkyIsWeakerInHollowsThanOnHumps) {
   double sums[2] = {};
   double counts[2] = {};
   for (std::int64_t block = 0; block < 80; ++block) {

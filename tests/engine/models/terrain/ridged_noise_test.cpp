@@ -71,7 +71,7 @@ TEST(RidgedNoise, EqualsTheOracleForRandomSettingsAnywhere) {
   }
 }
 
-TEST(RidgedNoise, HasTheSameBitsHoweverSamplesAreGrouped) {
+TEST(RidgedNoise, HasTheSameBitsInAnyGroupingOfSamples) {
   const RidgedNoise noise({.seed = 11, .cells_per_step = 0.013});
   const auto columns = range(-70, 1, 140), rows = range(1'000'000, 1, 20);
   const std::vector<float> all = evaluate(noise, columns, rows);
@@ -132,7 +132,7 @@ TEST(RidgedNoise, LooksTheSameInEveryDirection) {
     EXPECT_NEAR(e / mean, 1, 0.12);
 }
 
-TEST(RidgedNoise, WorkIsThatOfItsSamplesAndOfOctavesNarrowerThanTheirSpacing) {
+TEST(RidgedNoise, WorkCountsSamplesAndOctavesNarrowerThanTheirSpacing) {
   RidgedSettings settings;
   settings.cells_per_step = 1e-6;
   const double wide = RidgedNoise(settings).work(64, 64, 1);
@@ -144,7 +144,7 @@ TEST(RidgedNoise, WorkIsThatOfItsSamplesAndOfOctavesNarrowerThanTheirSpacing) {
   EXPECT_GT(RidgedNoise(settings).work(64, 64, 1), 5 * wide);
 }
 
-TEST(RidgedNoise, WithoutGainIsItsFirstOctave) {
+TEST(RidgedNoise, WithoutGainEqualsItsFirstOctave) {
   for (const double gain : {0.0, 1e-300, 1e-12, 1e-7, 0.01}) {
     const TerrainOracle oracle{.seed = 4, .gain = gain, .cells_per_step = 0.03};
     const auto axis = range(-5, 3, 9);
@@ -164,7 +164,7 @@ TEST(RidgedNoise, NeighbouringSeedsAndOctavesAreUnrelated) {
   }
 }
 
-TEST(ExactMath, PowersEqualTheLibrarys) {
+TEST(ExactMath, PowersEqualThoseOfTheLibrary) {
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kParameters);
   for (int i = 0; i < 2000; ++i) {
     const double base = random.next_real(1e-3, 1e3), exponent = random.next_real(-4, 4);

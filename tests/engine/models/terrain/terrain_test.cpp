@@ -40,7 +40,7 @@ bool same(const TerrainVertex& a, const TerrainVertex& b) {
   return a.height == b.height && a.normal_x == b.normal_x && a.normal_z == b.normal_z;
 }
 
-TEST_F(Terrain, OfThePaperHas7938TrianglesAndItsSkirtsApart) {
+TEST_F(Terrain, OfThePaperHas7938TrianglesWithoutSkirts) {
   EXPECT_EQ(terrain_surface_triangles(paper, 0), 7938u);
   const MeshSize size = type->mesh_size(paper, 0);
   EXPECT_EQ(size.vertex_count, 64u * 64 + 4 * 63);
@@ -306,7 +306,7 @@ TEST_F(Terrain, WithItsSkirtsFacesUpAndOutwards) {
 
 // As measured: 13.9 µs for a block, 65.7 µs for a node of level 9, about 3 µs for the coarsest mesh
 // of either.
-TEST_F(Terrain, StepsOfNodesGrowAsTheirTimesDo) {
+TEST_F(Terrain, StepsOfNodesGrowLikeTheirTimes) {
   Parameters far = paper;
   far.set_integer(kTerrainNodeLevel, 9);
   EXPECT_GT(type->steps(far, 0), 4 * type->steps(paper, 0));
@@ -319,7 +319,7 @@ TEST_F(Terrain, StepsOfNodesGrowAsTheirTimesDo) {
   EXPECT_GT(type->steps(shadows, 1), type->steps(paper, 1)) << "heights further away";
 }
 
-TEST_F(Terrain, LevelErrorIsAnHonestEstimate) {
+TEST_F(Terrain, LevelErrorIsCloseToTheMeasuredError) {
   for (int level = 1; level < 4; ++level) {
     double largest = 0;
     const TerrainGrid grid(64, level);

@@ -101,7 +101,7 @@ TEST(TerrainGrid, TilesOfEveryLevelAreTheCellsBetweenTheirLines) {
   }
 }
 
-TEST(TerrainTiles, AreTogetherTheSurfacesOfTheirTwoLevels) {
+TEST(TerrainTiles, FormTheSurfacesOfTheirTwoLevels) {
   for (const int size : kSizes) {
     const TerrainTiles tiles(size);
     EXPECT_EQ(all_of(tiles, kFine), surface_of(size, 0)) << size;
@@ -146,7 +146,7 @@ std::set<std::pair<std::uint16_t, std::uint16_t>> border_of(const std::vector<Tr
 
 // Any tiles fine: every side of a triangle is one of its neighbour's as well, with no vertex on it,
 // or lies on the border of the block.
-TEST(TerrainTiles, MeetWithoutAVertexOnASideWhicheverAreFine) {
+TEST(TerrainTiles, MeetWithoutAVertexOnASideInEveryCombination) {
   for (const int size : kSizes) {
     const TerrainTiles tiles(size);
     const int side = tiles.grid().tiles_per_side(), count = side * side;
@@ -191,7 +191,7 @@ TEST(TerrainTiles, HaveTheSkirtsOfTheWholeMeshAtTheEnd) {
   }
 }
 
-TEST(TerrainTiles, OfThePaperAreThreeToASide) {
+TEST(TerrainTiles, OfThePaperAreThreeASide) {
   const TerrainTiles tiles(64);
   EXPECT_EQ(tiles.grid().tiles_per_side(), 3);
   EXPECT_EQ(tiles.fine(1, 1).count, 882U * 3);

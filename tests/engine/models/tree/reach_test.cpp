@@ -162,7 +162,7 @@ TEST(TreeReach, HoldsTrunksThatAreThickerThanLong) {
   }
 }
 
-TEST(TreeReach, IsNotMuchMoreThanTreesNeed) {
+TEST(TreeReach, IsLittleMoreThanTreesNeed) {
   const auto type = make_tree_type();
   core::Bounds all{glm::vec3(1e9F), glm::vec3(-1e9F)};
   for (int seed = 0; seed < 300; ++seed) {

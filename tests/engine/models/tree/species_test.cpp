@@ -188,7 +188,7 @@ TEST(Species, ChangesColourButNotShapeWithTheSeason) {
   EXPECT_GT(redder, leaves * 9 / 10);
 }
 
-TEST(Species, RefusesHostileGrammarsBeforeTheyGrow) {
+TEST(Species, RejectsHostileGrammarsBeforeTheyGrow) {
   const auto message = [](const auto& change) {
     Species s = small_species();
     change(s);

@@ -181,7 +181,7 @@ TEST(Tree, LooksDifferentForEverySeed) {
   EXPECT_EQ(seen.size(), 100U);
 }
 
-TEST(Tree, BranchesAtLeastOnceWhereOneBranchIsAskedFor) {
+TEST(Tree, HasAtLeastOneBranchIfOneIsRequested) {
   const auto type = make_tree_type();
   for (int seed = 0; seed < 200; ++seed) {
     const TreeCount count = count_tree(plan_of_tree(with(*type, seed, 8, 1)), 8);
@@ -190,7 +190,7 @@ TEST(Tree, BranchesAtLeastOnceWhereOneBranchIsAskedFor) {
   }
 }
 
-TEST(Tree, DrawsFromTwoLessToTwoMoreBranchesEquallyOften) {
+TEST(Tree, HasFromTwoFewerToTwoMoreBranchesEquallyOften) {
   const auto type = make_tree_type();
   const TreePlan plan = plan_of_tree(with(*type, 1, 4, 4));
   std::map<std::uint32_t, int> seen;
@@ -245,7 +245,7 @@ TEST(Tree, FollowsPathsWhoseBranchesAreThoseOfTheWholeTree) {
   }
 }
 
-TEST(Tree, CountsAsStepsTheBranchesThatItGrowsAndTheirGroups) {
+TEST(Tree, CountsItsBranchesAndTheirGroupsAsSteps) {
   const auto type = make_tree_type();
   const auto grown = [](const TreePlan& plan, int depth, std::uint32_t paths) {
     const auto s = std::make_unique<TreeSkeleton>();
@@ -295,7 +295,7 @@ TEST(Tree, FindsTheSamePathsInTheWholeTreeAsItGrows) {
   }
 }
 
-TEST(Tree, TapersAndKeepsDirectionsUnits) {
+TEST(Tree, TapersAndKeepsItsDirectionsUnitVectors) {
   const auto type = make_tree_type();
   const auto tree = std::make_unique<TreeSkeleton>();
   const TreePlan plan = plan_of_tree(with(*type, 3, 5, 3));
@@ -334,7 +334,7 @@ TEST(Tree, FacesBarkAndHullsOutwards) {
   }
 }
 
-TEST(Tree, SwaysMoreTowardsItsTwigsAndStandsStillAtItsFoot) {
+TEST(Tree, SwaysMoreTowardsItsTwigsAndNotAtItsBase) {
   const auto type = make_tree_type();
   const Parameters p = with(*type, 21, 4, 3);
   for (int level = 0; level < type->level_count(); ++level) {
@@ -349,7 +349,7 @@ TEST(Tree, SwaysMoreTowardsItsTwigsAndStandsStillAtItsFoot) {
   }
 }
 
-TEST(Tree, KeepsItsCrownsPlaceSizeAndColourAtEveryLevel) {
+TEST(Tree, KeepsPositionSizeAndColourOfItsCrownAtEveryLevel) {
   const auto type = make_tree_type();
   for (int seed = 0; seed < 12; ++seed) {
     const Parameters p = with(*type, seed, 4, 3);
@@ -388,7 +388,7 @@ TEST(Tree, CostsBranchesToThePowerOfIterations) {
   EXPECT_DOUBLE_EQ(type->complexity(with(*type, 2, 3, 2), 0), 8.0);
 }
 
-TEST(Tree, RefusesHostileParametersWithoutOverflow) {
+TEST(Tree, RejectsHostileParametersWithoutOverflow) {
   const auto type = make_tree_type();
   const double inf = std::numeric_limits<double>::infinity();
   const auto refused = [&](std::size_t i, double real, std::int64_t integer) {

@@ -25,7 +25,7 @@ float outside(const Collider& collider, const glm::vec3& p) {
   return least;
 }
 
-TEST(Trunk, TheDrawnTrunkLiesAtTheCapsules) {
+TEST(Trunk, IsDrawnAlongItsCapsules) {
   const auto type = make_tree_type();
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kParameters);
   int checked = 0;
@@ -51,7 +51,7 @@ TEST(Trunk, TheDrawnTrunkLiesAtTheCapsules) {
   EXPECT_GT(checked, 100);
 }
 
-TEST(Trunk, StandsInTheGroundAndReachesItsEnd) {
+TEST(Trunk, StartsInTheGroundAndReachesItsEnd) {
   const auto type = make_tree_type();
   const Parameters p = default_parameters(*type);
   const Collider collider = type->collider(p);
