@@ -1,5 +1,5 @@
-// A window over a world that comes with psygen, turning slowly. With the name of a PNG file: a
-// picture of it, without a window.
+// Opens a window with a shipped world and turns the camera slowly. With the name of a PNG file, it
+// saves an image instead of opening a window.
 //   example_window [picture.png]
 #include <chrono>
 #include <cstdio>
@@ -13,7 +13,7 @@ using namespace psygen;
 namespace {
 
 int failed(const core::Error& error) {
-  if (error.code == core::ErrorCode::kInterrupted) return 0;  // the window was closed
+  if (error.code == core::ErrorCode::kInterrupted) return 0;  // the user closed the window
   std::fprintf(stderr, "%s\n", error.message.c_str());
   return 1;
 }
@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   auto session = app::Session::create(options);
   if (!session) return failed(session.error());
 
-  core::CameraPose pose = (*session)->home();  // above the middle of the world
+  core::CameraPose pose = (*session)->home();  // above the centre of the world
   if (auto ok = (*session)->prepare(pose); !ok) return failed(ok.error());
   if (argc > 1) {
     if (auto ok = (*session)->tick(pose, 1.0 / 60); !ok) return failed(ok.error());
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   }
   elapsed_s();
   double dt_s = 1.0 / 60;
-  while ((*session)->poll()) {  // until the window is closed
+  while ((*session)->poll()) {  // until the user closes the window
     pose.yaw += 0.1 * dt_s;     // radians
     if (auto ok = (*session)->tick(pose, dt_s); !ok) return failed(ok.error());
     dt_s = elapsed_s();

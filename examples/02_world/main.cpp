@@ -1,4 +1,4 @@
-// A world of our own: valley.toml beside the program. Takes a picture of it.
+// Loads its own world, valley.toml beside the program, and saves an image.
 //   example_world picture.png
 #include <cstdio>
 
@@ -13,8 +13,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   const auto failed = [](const core::Error& error) {
-    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the window was closed
-    // A mistake in the world file is told with its line: try one.
+    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the user closed the window
+    // An error in the world file is reported with its line: try one.
     std::fprintf(stderr, "%s\n", error.message.c_str());
     return 1;
   };

@@ -1,4 +1,4 @@
-// A model type of our own: a hurdle, as many panels as the world file says. Takes a picture.
+// Adds a model type: a fence with the number of panels given in the world file. Saves an image.
 //   example_model_type picture.png
 #include <algorithm>
 #include <cmath>
@@ -16,13 +16,13 @@ namespace {
 enum HurdleParameter : std::size_t { kSeed, kPanels, kHeightM };
 
 constexpr models::ParameterSpec kSchema[] = {
-    {"seed", models::ParameterType::kInteger, "", 1, -0x1p63, 0x1p63, 0, 1000, "which of all",
+    {"seed", models::ParameterType::kInteger, "", 1, -0x1p63, 0x1p63, 0, 1000, "random seed",
      models::ParameterSource::kPlaced},
     {"panels", models::ParameterType::kInteger, "1", 3, 1, 32, 1, 8, "number of panels"},
-    {"height_m", models::ParameterType::kReal, "m", 1.2, 0.2, 5, 0.6, 2, "of the panels"},
+    {"height_m", models::ParameterType::kReal, "m", 1.2, 0.2, 5, 0.6, 2, "height of the panels"},
 };
 
-// Panels of two triangles a side, one behind the other along x.
+// Panels of two triangles per side, in a row along x.
 class HurdleType final : public models::ModelType {
  public:
   std::string_view name() const override { return "hurdle"; }
@@ -52,7 +52,7 @@ class HurdleType final : public models::ModelType {
     std::size_t indices = 0;
     for (std::uint32_t i = 0; i < panels(p); ++i) {
       const float x = box.min.x + kPanelM * static_cast<float>(i);
-      const float z = i % 2 == 0 ? kTilt : -kTilt;  // a zigzag stands by itself
+      const float z = i % 2 == 0 ? kTilt : -kTilt;  // a zigzag, so that the fence is stable
       for (const float side : {1.0F, -1.0F}) {
         for (const int corner : {0, 1, 2, 0, 2, 3})
           out.indices[indices++] =

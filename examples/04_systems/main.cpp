@@ -1,5 +1,5 @@
-// Components and systems: a camera that glides on springs in fixed steps, and a count of the trees
-// that come into reach. Flies for some seconds and prints what it has seen.
+// Components and systems: a camera that glides on springs in fixed steps, and a counter of the
+// trees that are created around it. Flies for some seconds and prints the counter.
 //   example_systems [seconds]
 #include <cmath>
 #include <cstdio>
@@ -14,19 +14,19 @@ using namespace psygen;
 
 namespace {
 
-// A component. Its state of the step before is kept: pictures lie between the two.
+// A component. It keeps the state of the previous step, because frames interpolate between both.
 struct Glider {
-  double x_m = 0, x_before_m = 0;  // east of where it began
+  double x_m = 0, x_before_m = 0;  // metres east of the start
   double speed_m_s = 0;
 };
 
-// A resource: one of it, which all systems may use.
+// A resource: a single value that all systems can use.
 struct Trip {
   core::CameraPose start;
   std::size_t models_seen = 0;
 };
 
-// Once a fixed step: the same on every machine, whatever the frame rate is.
+// Runs once per fixed step: the same on every machine and at every frame rate.
 void glide(const scene::FixedStep& step, ecs::Query<Glider> gliders) {
   gliders.each([&](auto, std::span<Glider> all) {
     for (Glider& glider : all) {
@@ -37,7 +37,7 @@ void glide(const scene::FixedStep& step, ecs::Query<Glider> gliders) {
   });
 }
 
-// Once a frame, before the engine reads the pose: the camera is where the glider is now.
+// Runs once per frame, before the engine reads the pose: moves the camera to the glider.
 void follow(const scene::FixedStep& step, const Trip& trip, ecs::Query<const Glider> gliders,
             scene::Input& input) {
   gliders.each([&](auto, std::span<const Glider> all) {
@@ -48,7 +48,7 @@ void follow(const scene::FixedStep& step, const Trip& trip, ecs::Query<const Gli
   });
 }
 
-// Once a frame: events come in batches, each once.
+// Runs once per frame. Each event arrives exactly once, in batches.
 void count(Trip& trip, ecs::EventReader<scene::ModelCreated>& created) {
   trip.models_seen += created.drain([](std::span<const scene::ModelCreated>) {});
 }
@@ -58,7 +58,7 @@ void count(Trip& trip, ecs::EventReader<scene::ModelCreated>& created) {
 int main(int argc, char** argv) {
   const double seconds = argc > 1 ? std::atof(argv[1]) : 5;
   const auto failed = [](const core::Error& error) {
-    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the window was closed
+    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the user closed the window
     std::fprintf(stderr, "%s\n", error.message.c_str());
     return 1;
   };

@@ -1,6 +1,6 @@
-// Walking with collision: a character of physics, actions that can be rebound, and a camera in its
-// eyes. In a window: W A S D, mouse, space to jump, shift to run. With a number: walks by itself
-// for that many seconds, without a window, and prints how far it came.
+// Walking with collision: a physics character, rebindable actions, and a first-person camera. Keys:
+// W A S D, mouse, space to jump, shift to run. With a number, it walks for that many seconds
+// without a window and prints the distance.
 //   example_walking [seconds]
 #include <algorithm>
 #include <chrono>
@@ -29,7 +29,7 @@ struct Game {
   std::optional<physics::World> physics;
   physics::CharacterId player;
   double yaw = 0, pitch = 0, walked_m = 0;
-  core::WorldPosition feet, feet_before;  // of the last step and the one before
+  core::WorldPosition feet, feet_before;  // after the last two steps
   input::ActionId ahead = 0, aside = 0, run = 0, jump = 0, look_x = 0, look_y = 0;
 };
 
@@ -48,10 +48,10 @@ core::Result<void> add_actions(input::Actions& actions, Game& game) {
                   add(game.look_x, "look_x", {{Way::kRight, 0.002F}, {Way::kLeft, -0.002F}}) &&
                   add(game.look_y, "look_y", {{Way::kUp, 0.002F}, {Way::kDown, -0.002F}});
   return ok ? core::Result<void>()
-            : core::fail(core::ErrorCode::kInternal, "an action has a bad name");
+            : core::fail(core::ErrorCode::kInternal, "an action has an invalid name");
 }
 
-// One fixed step.
+// Runs one fixed step.
 void step(Game& game, const input::Actions& actions, bool by_itself, double step_s) {
   const auto value = [&](input::ActionId id) { return double{actions.state(id).value}; };
   game.yaw += value(game.look_x);
@@ -70,7 +70,7 @@ void step(Game& game, const input::Actions& actions, bool by_itself, double step
   game.walked_m += std::hypot(way.x + game.feet.local.x, way.z + game.feet.local.z);
 }
 
-// Where the eyes are between the last two steps.
+// Returns the eyes, interpolated between the last two steps.
 core::CameraPose eyes(const Game& game, double share) {
   core::CameraPose pose;
   pose.position = game.feet;
@@ -90,7 +90,7 @@ core::CameraPose eyes(const Game& game, double share) {
 int main(int argc, char** argv) {
   const bool by_itself = argc > 1;
   const auto failed = [](const core::Error& error) {
-    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the window was closed
+    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the user closed the window
     std::fprintf(stderr, "%s\n", error.message.c_str());
     return 1;
   };

@@ -1,5 +1,5 @@
-// Felling the nearest oak ahead, for good: an edit of the world that is seen from near and far, and
-// a saved game that keeps it. Every run fells one tree more, saves, and takes a picture.
+// Fells the nearest oak ahead for good: an edit of the world, visible from near and far, that a
+// saved game keeps. Every run fells one more tree, saves, and writes an image.
 //   example_felling game.save picture.png
 #include <cstdio>
 
@@ -14,7 +14,7 @@ using namespace psygen;
 
 namespace {
 
-// What the save has of the world's edits.
+// Loads the edits of the world from the save.
 core::Result<world::Edits> load_edits(const save::SaveGame& save, const scene::WorldFacts& facts) {
   world::Edits edits;
   core::Result<void> loaded;
@@ -26,7 +26,7 @@ core::Result<world::Edits> load_edits(const save::SaveGame& save, const scene::W
   return edits;
 }
 
-// The blocks that differ, and how often was felled, in one transaction.
+// Saves the changed blocks and the number of felled trees in one transaction.
 core::Result<void> store(save::SaveGame& save, const scene::WorldFacts& facts,
                          const world::Edits& before, const world::Edits& now) {
   for (const core::BlockCoord block : world::changed_blocks(before, now)) {
@@ -61,7 +61,7 @@ core::Result<void> fell(const char* save_file, const char* picture) {
   pose.position.local.y -= 15;
   if (auto ok = (*session)->prepare(pose); !ok) return ok;
 
-  // Models that stand there now: felled ones are not among them.
+  // Finds existing models only; felled trees are gone.
   query::World query(facts.world, facts.registry);
   const auto oak = static_cast<models::ModelIndex>(facts.registry.find("oak"));
   core::WorldPosition ahead = pose.position;

@@ -1,5 +1,5 @@
-// Text over the picture and a menu with Dear ImGui. In a window: Escape opens the menu and pauses.
-// With the name of a PNG file: a picture with both, without a window.
+// A text on the HUD and a menu with Dear ImGui. Escape opens the menu and pauses the game. With the
+// name of a PNG file, it saves an image with both instead of opening a window.
 //   example_hud [picture.png]
 #include <imgui/imgui.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 struct Menu {
   bool open = false;
-  float speed = 0.1F;  // radians a second
+  float speed = 0.1F;  // radians per second
 };
 
 void draw_menu(app::Session& session, Menu& menu) {
@@ -27,7 +27,7 @@ void draw_menu(app::Session& session, Menu& menu) {
   ImGui::SetNextWindowSize({360, 150}, ImGuiCond_Once);
   ImGui::Begin("Menu");
   ImGui::SliderFloat("turning", &menu.speed, 0, 1);
-  if (ImGui::Button("Go on")) {
+  if (ImGui::Button("Resume")) {
     menu.open = false;
     session.set_paused(false);
   }
@@ -40,7 +40,7 @@ void draw_hud(app::Session& session, double time_s) {
   std::snprintf(clock, sizeof(clock), "%.1f s", time_s);
   render::HudText text;
   text.text = clock;
-  text.at = {{0.5F, 0}, {0, 16}};  // the middle of the upper edge, 16 pixels below it
+  text.at = {{0.5F, 0}, {0, 16}};  // top centre, 16 pixels below the edge
   text.align = render::HudAlign::kCentre;
   text.size_px = 48;
   text.outline_px = 2;
@@ -51,7 +51,7 @@ void draw_hud(app::Session& session, double time_s) {
 
 int main(int argc, char** argv) {
   const auto failed = [](const core::Error& error) {
-    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the window was closed
+    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the user closed the window
     std::fprintf(stderr, "%s\n", error.message.c_str());
     return 1;
   };

@@ -1,5 +1,5 @@
-// Objects of your own: windmills, with meshes of code, a texture with holes, and sails that turn in
-// fixed steps. In a window, or with the name of a PNG file: a picture without a window.
+// Objects: windmills with meshes from code, a texture with holes, and sails that turn in fixed
+// steps. With the name of a PNG file, it saves an image instead of opening a window.
 //   example_objects [picture.png]
 #include <chrono>
 #include <cmath>
@@ -15,9 +15,9 @@ using namespace psygen;
 
 namespace {
 
-// A component of the sails. The angle of the step before is kept: pictures lie between the two.
+// Component of the sails. It keeps the previous angle, because frames interpolate between steps.
 struct Sails {
-  double speed = 1, angle = 0, angle_before = 0;  // radians a second, radians
+  double speed = 1, angle = 0, angle_before = 0;  // radians per second, radians
 };
 
 void turn(const scene::FixedStep& step, ecs::Query<Sails> mills) {
@@ -27,7 +27,7 @@ void turn(const scene::FixedStep& step, ecs::Query<Sails> mills) {
   });
 }
 
-// Before the engine draws its objects: the sails are where they are now.
+// Runs before the engine draws objects: writes the sails' rotation of this frame.
 void pose_sails(const scene::FixedStep& step, ecs::Query<const Sails, scene::Transform> mills) {
   mills.each([&](auto, std::span<const Sails> all, std::span<scene::Transform> transforms) {
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -44,7 +44,7 @@ void add_quad(core::MeshData& mesh, std::initializer_list<glm::vec3> corners) {
     mesh.indices.push_back(first + i);
 }
 
-// A tower of eight sides and its roof, in metres, counter-clockwise from outside.
+// An eight-sided tower with its roof, in metres. Front faces are counter-clockwise.
 core::MeshData tower() {
   constexpr float kRadius[] = {4, 2.6F, 3.2F, 0.05F}, kHeight[] = {-2, 10, 10, 14};
   const glm::vec3 wall(0.42F, 0.38F, 0.31F), roof(0.06F, 0.025F, 0.018F);
@@ -63,7 +63,7 @@ core::MeshData tower() {
   return mesh;
 }
 
-// Four sails around their hub, each with the whole texture.
+// Four sails around their hub. Each shows the whole texture.
 core::MeshData cross() {
   core::MeshData mesh;
   for (int sail = 0; sail < 4; ++sail) {
@@ -75,7 +75,7 @@ core::MeshData cross() {
   return mesh;
 }
 
-// A lattice of wood. Its holes have no opacity.
+// A wooden lattice. Its holes have alpha 0.
 image::Image lattice() {
   image::Image picture = image::make_image(64, 256, 78, 58, 42, 0);
   for (std::uint32_t i = 0; i < 64 * 256; ++i)

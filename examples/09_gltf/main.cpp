@@ -1,5 +1,5 @@
-// An object from a glTF file: a windmill with textures, a lamp that glows, sails that turn and a
-// door that opens. In a window, or with the name of a PNG file: a picture without a window.
+// An object from a glTF file: a windmill with textures, a glowing lamp, turning sails and a door
+// that opens. With the name of a PNG file, it saves an image instead of opening a window.
 //   example_gltf [picture.png]
 #include <chrono>
 #include <cstdio>
@@ -40,7 +40,7 @@ core::Result<void> build(app::Session& session, prefab::Library& prefabs,
 core::Result<void> run(const char* picture) {
   const auto world = core::data_file("worlds/five_species.toml");
   if (!world) return tl::unexpected(world.error());
-  prefab::Library prefabs;  // outlives the session
+  prefab::Library prefabs;  // must outlive the session
   app::Plugin plugin;
   plugin.name = "mills";
   plugin.add_systems = [&](scene::Systems& systems) { return prefabs.add_systems(systems); };

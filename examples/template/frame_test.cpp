@@ -1,7 +1,7 @@
-// The frame-time tests: fly through the game as the files say, and hold what was measured against
-// their budgets (docs/frame-tests.md in the package).
+// The frame-time tests: flies through the game as the test files define, and compares the
+// measurements with their budgets (docs/frame-tests.md in the package).
 //   my_game_frame_test FILE... [--junit FILE] [--out DIR] [--device NAME]
-// Exit codes: 0 within the budgets, 1 failed, 2 usage, 3 a budget is missed, 77 no device.
+// Exit codes: 0 within the budgets, 1 failure, 2 usage error, 3 over a budget, 77 no device.
 #include "engine/frametest/run.hpp"
 #include "game.hpp"
 

@@ -100,7 +100,7 @@ void Game::write_hud(app::Session& session) {
   std::snprintf(way, sizeof(way), "%.0f m", way_m_);
   render::HudText text;
   text.text = way;
-  text.at = {{0.5F, 0}, {0, 16}};  // the middle of the upper edge, 16 pixels below it
+  text.at = {{0.5F, 0}, {0, 16}};  // top centre, 16 pixels below the edge
   text.align = render::HudAlign::kCentre;
   text.size_px = 40;
   text.outline_px = 2;
@@ -119,7 +119,7 @@ void Game::draw_menu(app::Session& session) {
   ImGui::SetNextWindowSize({360, 150}, ImGuiCond_Once);
   ImGui::Begin("My game");
   ImGui::SliderFloat("mouse", &mouse_, 0.2F, 5);
-  if (ImGui::Button("Go on")) open_menu(session, false);
+  if (ImGui::Button("Resume")) open_menu(session, false);
   if (ImGui::Button("Quit")) session.close();
   ImGui::End();
 }

@@ -1,5 +1,5 @@
-// The game without its window and its loop: main.cpp plays it, frame_test.cpp flies through it. One
-// walker in the world of world.toml, who counts his way.
+// The game without window and loop: main.cpp plays it, frame_test.cpp flies through it. A walker in
+// the world of world.toml, with a counter of the distance walked.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,14 @@
 
 class Game {
  public:
-  // The options of a session with this game in it, which must outlive the session.
+  // Returns the options of a session that runs this game. The game must outlive the session.
   psygen::core::Result<psygen::app::SessionOptions> options();
-  // Once, before the first frame.
+  // Call once, before the first frame.
   psygen::core::Result<void> start(psygen::app::Session& session);
 
-  // The eyes of the walker, `share` of a step after the last but one. Camera of the next frame.
+  // Returns the walker's eyes, interpolated between the last two steps; `share` is 0 to 1.
   psygen::core::CameraPose eyes(double share) const;
-  // Writes over the next picture, and opens the menu when Escape was pressed. Once a frame.
+  // Call once per frame. Updates the HUD, and opens the menu when Escape is pressed.
   void write_hud(psygen::app::Session& session);
 
  private:
@@ -30,9 +30,9 @@ class Game {
   std::optional<psygen::query::World> query_;
   std::optional<psygen::physics::World> physics_;
   psygen::physics::CharacterId walker_;
-  psygen::core::WorldPosition feet_, feet_before_;  // of the last step and the one before
+  psygen::core::WorldPosition feet_, feet_before_;  // after the last two steps
   double yaw_ = 0, pitch_ = 0, way_m_ = 0;
-  float mouse_ = 1;  // how fast the view turns, from the menu
+  float mouse_ = 1;  // mouse sensitivity, set in the menu
   bool menu_ = false;
   psygen::input::ActionId ahead_ = 0, aside_ = 0, run_ = 0, jump_ = 0, look_x_ = 0, look_y_ = 0;
 };

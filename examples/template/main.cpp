@@ -1,5 +1,5 @@
 // The game in its window.
-//   my_game [picture.png]      with a picture: two seconds without a window, then the picture
+//   my_game [picture.png]      with a file name: runs two seconds without a window, saves an image
 #include <chrono>
 #include <cstdio>
 
@@ -11,7 +11,7 @@ using namespace psygen;
 namespace {
 
 core::Result<void> play(const char* picture) {
-  Game game;  // before the session, which calls it
+  Game game;  // must outlive the session
   auto options = game.options();
   if (!options) return tl::unexpected(options.error());
   options->headless = picture != nullptr;
