@@ -30,12 +30,12 @@ std::atomic<long> threads_left{kUnlimited};
 std::atomic<const char*> threads_of{"libstdc++"};
 std::atomic<double> monotonic_off_s{0}, boot_off_s{0};
 
-// Whether this call is one too many for what is left.
+// Returns true if this call exceeds the number of calls left.
 bool runs_out(std::atomic<long>& left) {
   return left.load() != kUnlimited && left.fetch_sub(1) <= 0;
 }
 
-// Whether the process dies where it would meet a full disk.
+// Returns true if the process dies at the point where the disk would be full.
 bool dies = false;
 
 bool is_on_disk(const char* path) {
@@ -62,7 +62,7 @@ bool is_concerned(const void* caller) {
   return dladdr(caller, &info) != 0 && std::strstr(info.dli_fname, threads_of.load()) != nullptr;
 }
 
-// Whether the caller is in the same file as this.
+// Returns true if the caller is in the same library as this function.
 bool is_our_own(const void* caller) {
   Dl_info info{}, own{};
   return dladdr(caller, &info) != 0 && dladdr(&monotonic_off_s, &own) != 0 &&
@@ -132,7 +132,7 @@ int open(const char* path, int flags, ...) {
 }
 ssize_t write(int file, const void* bytes, size_t count) {
   static const auto real = next<ssize_t(int, const void*, size_t)>("write");
-  // Who dies while writing has written a part.
+  // A process killed during a write leaves a partial file.
   const bool is_last = dies && calls_left.load() == 0 && is_on_disk(file);
   if (is_last && count > 1 && real(file, bytes, count / 2) < 0) return -1;
   return disk_refuses(file) ? -1 : real(file, bytes, count);
@@ -144,7 +144,7 @@ int fsync(int file) {
 int close(int file) {
   static const auto real = next<int(int)>("close");
   const bool refused = disk_refuses(file);
-  const int result = real(file);  // also a close that fails has closed it
+  const int result = real(file);  // a failed close() also closes the file
   if (refused) errno = ENOSPC;
   return refused ? -1 : result;
 }

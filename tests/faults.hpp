@@ -3,8 +3,8 @@
 // them while no fault is requested. As a library of its own (psygen_faults) it is preloaded into
 // whole programs, which take their faults from the environment:
 //   PSYGEN_FULL_DISK=FOLDER PSYGEN_CALLS_LEFT=N     FullDisk(FOLDER, N)
-//   the same with PSYGEN_DIES=1                     kill -9 at that call instead, in the middle of
-//   a write PSYGEN_THREADS_LEFT=N                           FewThreads(N)
+//   PSYGEN_DIES=1 in addition: kill -9 at that call instead, in the middle of a write
+//   PSYGEN_THREADS_LEFT=N                           FewThreads(N)
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ class FullDisk {
   FullDisk(const FullDisk&) = delete;
   FullDisk& operator=(const FullDisk&) = delete;
 
-  // Whether a call has failed.
+  // Returns true if a call has failed.
   bool was_met() const;
 };
 

@@ -1,5 +1,5 @@
-// The main function of a benchmark that ends with a table of its own: figures go to a JSON file by
-// default, to --benchmark_out=FILE where that is given.
+// Main function of a benchmark that prints a table at the end. All results go to a JSON file, or to
+// --benchmark_out=FILE.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -14,7 +14,7 @@ template <class Reporter>
 int run_with_table(int argc, char** argv, const std::string& json_file) {
   std::vector<char*> arguments(argv, argv + argc);
   std::string json = "--benchmark_out=" + json_file;
-  arguments.insert(arguments.begin() + 1, json.data());  // a later one wins
+  arguments.insert(arguments.begin() + 1, json.data());  // a later option wins
   argc = static_cast<int>(arguments.size());
   benchmark::Initialize(&argc, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(argc, arguments.data())) return 2;

@@ -1,4 +1,4 @@
-// libFuzzer on everything that reads files of people (tools/fuzz.sh).
+// Runs libFuzzer on all readers of user files (tools/fuzz.sh).
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -23,8 +23,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return 0;
 }
 
-// Half of the texts are libFuzzer's own, which knows what the program compares with. A few start
-// from examples of what is in no shipped file.
+// Half of the texts come from libFuzzer, which traces the comparisons of the program. A few start
+// from examples of features that no shipped file uses.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t most, unsigned seed) {
   static const std::vector<std::string> examples{
@@ -37,7 +37,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   const std::string before =
       random() % 16 == 0 ? examples[random() % examples.size()] : text_of(data, size);
   const std::string after = psygen::fuzz::mutated(before, others, most, random);
-  constexpr std::size_t kMostOthers = 64;  // of the texts that came by
+  constexpr std::size_t kMostOthers = 64;  // recent texts
   if (others.size() < kMostOthers) others.push_back(before);
   others[random() % others.size()] = before;
   std::memcpy(data, after.data(), after.size());

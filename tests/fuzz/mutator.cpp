@@ -21,8 +21,8 @@ const T& one_of(Random& random, const T (&items)[N]) {
 struct CodePoints {
   char32_t first, last;
 };
-// Marks that are mistaken for ASCII, that cannot be seen, that join or turn their neighbours; what
-// the TOML parser's table of spaces is about; the ends of planes; everything.
+// Characters that resemble ASCII, invisible characters, joiners and direction marks; the TOML
+// parser's table of spaces; the ends of planes; any code point.
 constexpr CodePoints kCodePoints[] = {
     {0x00A0, 0x00FF},   {0x00A1, 0x0499},   {0x0300, 0x036F},   {0x0590, 0x06FF},
     {0x1680, 0x1680},   {0x180E, 0x180E},   {0x2000, 0x206F},   {0x2010, 0x201F},
@@ -45,7 +45,7 @@ std::string code_point(Random& random) {
   return utf8(range.first + static_cast<char32_t>(below(random, range.last - range.first + 1)));
 }
 
-// Bytes that are no UTF-8: cut short, too long, surrogates, beyond the last plane.
+// Invalid UTF-8: truncated, overlong, surrogates, beyond the last plane.
 constexpr std::string_view kBroken[] = {
     "\x80",         "\xBF",         "\xC3",     "\xE2\x80",     "\xF0\x9F\x98",     "\xC0\xAF",
     "\xE0\x80\xAF", "\xED\xA0\x80", "\xED\xBF", "\xF0\x80\x80", "\xF4\x90\x80\x80", "\xFE\xFF",
@@ -77,7 +77,7 @@ bool goes_on(const std::string& text, std::size_t at) {
   return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
 }
 
-// A place between two characters, if the text is UTF-8.
+// Returns a position between two characters, if the text is UTF-8.
 std::size_t boundary(Random& random, const std::string& text) {
   std::size_t at = below(random, text.size() + 1);
   while (goes_on(text, at))
@@ -104,7 +104,7 @@ Piece line_of(Random& random, const std::string& text) {
   return {at, (end == std::string::npos ? text.size() : end + 1) - at};
 }
 
-// The next number from some place on.
+// Returns the next number after a random position.
 Piece number_of(Random& random, const std::string& text) {
   constexpr const char* kDigits = "0123456789+-._eE";
   const std::size_t at =
@@ -125,13 +125,13 @@ void change_characters(std::string& text, Random& random) {
     case 1:
       text.replace(at, character_bytes(text, at), code_point(random));
       return;
-    case 2:  // into the middle of one, maybe
+    case 2:  // possibly inside a character
       return insert(text, below(random, text.size() + 1), code_point(random));
-    case 3: {  // a string of them, after a key, a number or anything else
+    case 3: {  // several code points after a key, a number or any other text
       const char quote = below(random, 2) == 0 ? '"' : '\'';
       return insert(text, at, quote + code_point(random) + code_point(random) + quote);
     }
-    default:  // right behind a number
+    default:  // directly after a number
       const Piece number = number_of(random, text);
       return insert(text, number.at + number.size, code_point(random));
   }
@@ -158,7 +158,7 @@ void change_structure(std::string& text, std::span<const std::string> others, Ra
   switch (below(random, 7)) {
     case 0:
       return insert(text, boundary(random, text), one_of(random, kTokens));
-    case 1: {  // nested, or a long key
+    case 1: {  // deep nesting, or a long key
       const std::string_view token = one_of(random, kTokens);
       std::string many;
       for (std::size_t i = below(random, 40); i > 0; --i)

@@ -1,6 +1,6 @@
-// Changes texts as a fuzzer wants them: code points of all planes where they hurt, UTF-8 that is
-// split or wrong, TOML's own marks in wrong places, numbers at the ends of their ranges, lines of
-// other files. The same random numbers make the same text. Not a grammar: most texts are broken.
+// Mutates texts for fuzzing: code points of all planes at sensitive positions, split or invalid
+// UTF-8, misplaced TOML punctuation, numbers at the ends of their ranges, lines of other files. The
+// same random numbers give the same text. It follows no grammar, so most texts are invalid.
 #pragma once
 
 #include <random>
@@ -9,8 +9,8 @@
 
 namespace psygen::fuzz {
 
-// `text` with one to eight changes, of at most `most_bytes`. `others` are texts to take lines from;
-// there is at least one.
+// Returns `text` with one to eight changes and at most `most_bytes`. Lines are taken from `others`,
+// which must not be empty.
 std::string mutated(std::string text, std::span<const std::string> others, std::size_t most_bytes,
                     std::mt19937_64& random);
 

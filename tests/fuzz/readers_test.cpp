@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostBytes = 1 << 16;
 
-// In an order that does not depend on the file system.
+// Sorted, so that the order does not depend on the file system.
 std::vector<std::string> shipped_texts() {
   std::vector<std::filesystem::path> files;
   for (const char* folder : {"worlds", "paths"}) {
@@ -60,8 +60,8 @@ TEST(Readers, SurviveShippedFilesWithUnicodeAndOtherThingsInWrongPlaces) {
   EXPECT_GT(refused, 100);
 }
 
-// Text in wrong places breaks bytes at once: what comes after the first check is reached by changes
-// of single bytes.
+// Text in wrong places breaks binary formats at the first check. Changes of single bytes reach the
+// later checks.
 TEST(Readers, SurviveRecordingsAndEditsWithChangedBytes) {
   FileInMemory file;
   std::mt19937_64 random(2);

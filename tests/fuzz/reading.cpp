@@ -29,7 +29,7 @@
 namespace psygen::fuzz {
 namespace {
 
-// `name`: how the refusal names what is refused. `names_files`: it may name files that are missing.
+// `name`: the name in the error message. `names_files`: the message may name missing files.
 void check_refusal(const core::Error& error, const std::string& name, bool names_files = false) {
   using enum core::ErrorCode;
   PSYGEN_CHECK(error.code == kParse || error.code == kInvalidArgument ||
@@ -48,7 +48,7 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-// Whatever file a world names is the example.
+// Resolves every file that a world names to the example.
 class ExampleBeside final : public world::FilesBeside {
  public:
   ExampleBeside() { file_.write(example_gltf()); }
@@ -70,7 +70,7 @@ bool read_as_world(const std::filesystem::path& file) {
   static const ExampleBeside beside;
   static models::Registry registry = models::make_standard_registry();
   static const std::size_t before = registry.size();
-  registry.shrink(before);  // without the species of the text before
+  registry.shrink(before);  // removes the species of the previous text
   const auto world = world::load_world(file, registry, &beside);
   if (!world) {
     check_refusal(world.error(), file.string() + ":");
@@ -97,7 +97,7 @@ bool read_as_world(const std::filesystem::path& file) {
   return true;
 }
 
-// An edit of any text is refused, or gives a text that has it; what was removed is gone.
+// Checks that an edit of any text is rejected, or applied in the new text; removals too.
 void edit_as_text(std::string_view text) {
   for (const world::TextPath& path : {world::TextPath{"sky", "exposure"},
                                       {"scatter", 0, "count"},
@@ -197,7 +197,7 @@ bool is_recording(const core::Result<input::Recording>& read, const std::string&
   return true;
 }
 
-// The text with a right hash at its end: nobody guesses that.
+// Returns the text with the right hash at its end, which no fuzzer guesses.
 std::string with_right_hash(std::string_view text) {
   constexpr std::size_t kHashBytes = sizeof(std::uint64_t);
   std::string hashed(text.substr(0, text.size() - std::min(text.size(), kHashBytes)));

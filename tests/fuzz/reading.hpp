@@ -1,5 +1,5 @@
-// What is fuzzed: a text is read by everything that reads files of people, and what must hold of
-// any text is checked. A failed check aborts, so that fuzzer, sanitizers and tests see it.
+// The fuzz target: every reader of user files reads a text, and invariants that hold for any text
+// are checked. A failed check aborts, so that fuzzer, sanitizers and tests notice it.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace psygen::fuzz {
 
-// A file in memory, for functions that want one.
+// A file in memory, for functions that need a path.
 class FileInMemory {
  public:
   FileInMemory();
@@ -22,15 +22,15 @@ class FileInMemory {
   int descriptor_;
 };
 
-// Puts `text` into the file and reads it as a world, as a camera path, as bindings of actions, as a
-// frame test, as a recording of actions, as the stored edits of a block and as glTF, and edits it
-// as an editor does. A refusal is one printable line that names the file or the block and changes
-// nothing; what is taken reads back equal from what is written of it; paths, replayed actions and
-// edited ground have valid values. A recording with a wrong hash is read once more with the right
-// one. Returns how many readers took the text.
+// Writes `text` to the file and reads it as a world, a camera path, action bindings, a frame test,
+// an input recording, the stored edits of a block and glTF, and edits it as an editor does. Checks
+// that an error is one printable line that names the file or the block and changes nothing; that
+// accepted text survives a round trip; and that paths, replayed actions and edited ground have
+// valid values. A recording with a wrong hash is read again with the right hash. Returns the number
+// of readers that accepted the text.
 int read_as_everything(std::string_view text, FileInMemory& file);
 
-// Texts and bytes that read_as_everything() takes as what they are called.
+// Texts and bytes that read_as_everything() accepts as the named format.
 std::string example_bindings();
 std::string example_frame_test();
 std::string example_recording();

@@ -1,8 +1,8 @@
-// How long it takes until all meshes around a camera are there, of which some belong to a type that
-// takes long, on the ranks of mpirun: rank 0 ticks a scene without drawing, 60 times a second, with
-// one modeler; the others make meshes for it, with one thread each. Without mpirun it is alone. At
-// rank 0 the type computes. At the others it computes, or waits as long, for machines with fewer
-// processors than ranks: what remains is what sharing costs.
+// Time until all meshes around a camera are ready on the ranks of mpirun, including meshes of a
+// slow model type. Rank 0 ticks a scene without drawing, 60 times a second, with one modeler. The
+// other ranks synthesise meshes for it with one thread each. Without mpirun, rank 0 is alone. The
+// slow type computes on rank 0. On the other ranks it computes or sleeps equally long; sleeping
+// suits machines with fewer processors than ranks, and leaves only the cost of sharing.
 //
 //   mpirun -n RANKS psygen_bench_ranks [compute|wait [MS]]
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ model = "tree"
 count = 20
 )";
 
-// Of 100 KB a mesh, which takes a given time.
+// A model type with meshes of 100 KB and a given synthesis time.
 class SlowType final : public synthesis::testing::FakeModel {
  public:
   SlowType(double seconds, bool waits) : FakeModel("slow", 1), seconds_(seconds), waits_(waits) {}
@@ -68,7 +68,7 @@ core::CameraPose middle() {
   return pose;
 }
 
-// Ticks until everything around the camera is there. Seconds, and how many meshes that are.
+// Ticks until everything around the camera is ready. Returns seconds and the number of meshes.
 struct Filled {
   double seconds = 0;
   std::uint32_t meshes = 0;

@@ -1,9 +1,9 @@
-// How good the gate of `psygen compare` is, over the noise of real runs (docs/frame-tests.md):
+// Measures the quality of the gate in `psygen compare` with the noise of real runs
+// (docs/frame-tests.md):
 //   psygen_bench_gate RUNS [COMPARISONS]
-// RUNS is a folder with at least 32 runs of one program, named in the order in which they were
-// flown. As in a comparison, the two runs of a pair follow each other. Each comparison draws two
-// batches of 8 pairs and which of a pair is B, changes B's frames as the line says, and asks for
-// the verdict.
+// RUNS is a folder with at least 32 runs of one program, named in chronological order. The two runs
+// of a pair are consecutive, as in a comparison. Each comparison draws two batches of 8 pairs and
+// the order within each pair, changes the frames of B as the line states, and computes the verdict.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -27,7 +27,7 @@ void scale(RecordedRun& run, double factor) {
       ms *= factor;
 }
 
-// Three frames in 200, always the same ones or others in each run.
+// Three frames in 200, the same in every run or different ones.
 void double_frames(RecordedRun& run, Random random) {
   const std::size_t count = 3 * run.frame_ms.size() / 200;
   for (std::size_t i = 0; i < count; ++i) {

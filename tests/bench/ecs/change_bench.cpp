@@ -1,4 +1,4 @@
-// Results that land, scattered marks, and draining them.
+// Batched writes of results, scattered change marks, and draining them.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -15,7 +15,7 @@ void per_entity(benchmark::State& state, std::size_t entities) {
   state.SetItemsProcessed(static_cast<std::int64_t>(entities) * state.iterations());
 }
 
-// A thousand batches of results, a tenth of them for entities that are gone.
+// A thousand batches of results; a tenth of the entities are dead.
 template <class Target>
 std::vector<Landing<Mesh>> make_results(Target& target, std::span<const Entity> all) {
   std::vector<Entity> entities = permuted(all, 4);

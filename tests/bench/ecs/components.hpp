@@ -1,5 +1,6 @@
-// What the benchmarks of ecs measure with: components of a typical moving thing, the same shape as
-// arrays written by hand, and shuffled orders. Every benchmark has a twin on the arrays: the floor.
+// Fixtures of the ecs benchmarks: components of a typical moving object, the same layout as
+// hand-written arrays, and shuffled orders. Every benchmark has a counterpart on the arrays, the
+// floor.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace psygen::ecs::bench {
 // Entities per benchmark.
 inline constexpr std::size_t kEntities = 1'000'000;
 
-// The columns of the moving thing; Mesh is tracked.
+// The columns of the moving object; Mesh is tracked.
 struct Position {
   float x, y, z;
 };
@@ -54,7 +55,7 @@ inline std::vector<std::uint32_t> shuffled(std::size_t count, std::uint32_t seed
   return order;
 }
 
-// A copy of the values in the order of shuffled().
+// Returns a copy of the values in the order of shuffled().
 template <class T>
 std::vector<T> permuted(std::span<const T> values, std::uint32_t seed) {
   std::vector<T> result;

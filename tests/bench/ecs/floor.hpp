@@ -1,6 +1,6 @@
-// The floor: one table of one fixed shape, written by hand, with the same guarantees as the library
-// (8-byte handles with generations, no holes, memory that does not move, stale handles dropped).
-// Nothing here serves types that are unknown in advance. One thread uses it.
+// The floor: one hand-written table with fixed columns and the guarantees of the library (8-byte
+// handles with generations, no holes, stable addresses, stale handles dropped). It supports no
+// other component types. Single-threaded.
 #pragma once
 
 #include <cstring>
@@ -14,7 +14,7 @@ namespace psygen::ecs::bench {
 template <class T>
 class FloorColumn {
  public:
-  // Commits all of it.
+  // Commits the whole range.
   FloorColumn() : memory_(kEntities * 2 * sizeof(T)) { memory_.commit(kEntities * 2 * sizeof(T)); }
   // The value of a row, and the address of row 0.
   T& operator[](std::size_t row) { return data()[row]; }
@@ -60,7 +60,7 @@ struct FloorTable {
     return first;
   }
 
-  // Whether the handle is not stale.
+  // Returns true if the handle is not stale.
   bool alive(Entity e) { return e.index < slot_count && slots[e.index].generation == e.generation; }
 
   // Removes these entities; the last row fills each hole. Stale handles are skipped.

@@ -1,4 +1,4 @@
-// Walking columns, and following handles to single values.
+// Iteration over columns, and access to single values through handles.
 #include <benchmark/benchmark.h>
 
 #include "tests/bench/ecs/floor.hpp"
@@ -6,7 +6,7 @@
 namespace psygen::ecs::bench {
 namespace {
 
-// One copy for library and floor: what differs is how their arrays are found and laid out.
+// One copy for library and floor, which differ in the lookup and the layout of their arrays.
 [[gnu::noinline]] void integrate(Position* positions, const Velocity* velocities,
                                  std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {

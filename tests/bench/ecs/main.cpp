@@ -1,5 +1,5 @@
 // Runs the benchmarks and prints one line per operation: ns per entity of the library and of the
-// floor, and their ratio. All figures go to psygen_bench_ecs.json, or to --benchmark_out=FILE.
+// floor, and their ratio. All results go to psygen_bench_ecs.json, or to --benchmark_out=FILE.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Creating and destroying in batches, and moving between kinds. Time is taken by hand around the
-// verb, so that making and freeing worlds is not counted.
+// Batched creation, destruction and changes of archetype. Manual timing excludes the creation and
+// destruction of worlds.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -102,7 +102,7 @@ void churn(benchmark::State& state) {
   std::vector<Entity> all;
   std::size_t next = 0;
   for (auto _ : state) {
-    if (next + kPairs > all.size()) {  // a fresh random order of everybody
+    if (next + kPairs > all.size()) {  // a new random order of all entities
       all = permuted(std::span<const Entity>(all_entities(target)), ++seed);
       next = 0;
     }
@@ -117,8 +117,8 @@ void churn(benchmark::State& state) {
 BENCHMARK(churn<World>)->Name("destroy_create_1000_in_1M/ecs")->UseManualTime();
 BENCHMARK(churn<FloorTable>)->Name("destroy_create_1000_in_1M/floor")->UseManualTime();
 
-// A component that comes and goes, for a tenth of the world in random order. Its column is sparse
-// or one of the table's; the floor keeps one bit per entity and checks handles.
+// Adds and removes a component of a tenth of the world in random order. Its storage is sparse or a
+// table column; the floor keeps one bit per entity and checks handles.
 enum Toggle { kAdd, kRemove };
 template <class C, Toggle which>
 void toggle(benchmark::State& state) {

@@ -1,7 +1,6 @@
-// How long the editor takes to answer: from a change to the first picture with something of it, and
-// to the last mesh, in the window as a person has it, on a display of its own. While a slider is
-// held meshes are coarse. Where others use the processors too, the processor time of all threads
-// until then says more than the time on the clock.
+// Response time of the editor in its window on a private display: from a change to the first frame
+// that shows it, and to the last mesh. Meshes are coarse during a drag. On a busy machine, read the
+// processor time of all threads instead of the elapsed time.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -23,7 +22,7 @@ namespace {
 
 constexpr int kLongestMs = 300'000;
 
-// Milliseconds of the last answer and of the last mesh; below 0: not yet.
+// Milliseconds until the first frame and until the last mesh; negative: not yet.
 struct Answer {
   double first_ms = -1, last_ms = -1;
 };

@@ -1,5 +1,5 @@
-// What a move of the mouse costs in a tool of the view, on the main thread: the stroke of a brush
-// over masks of several sizes, the world that answers it, and marks on the ground of a new world.
+// Main-thread cost of a mouse move in an editor tool: a brush stroke over masks of several sizes,
+// the world update that follows, and overlays on the ground of a new world.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ PicturePtr white(std::uint32_t side) {
   return picture;
 }
 
-// Two pictures before are still held by others, as a view does.
+// Other owners still hold the two previous images, as in a view.
 void stroke(benchmark::State& state) {
   const auto side = static_cast<std::uint32_t>(state.range(0));
   MaskStroke stroke(white(side), {0, 0, 2.0 * side, 2.0 * side}, {20, 1, true});
@@ -31,7 +31,7 @@ void stroke(benchmark::State& state) {
   PicturePtr shown, prepared;
   int moves = 0;
   for (auto _ : state) {
-    const double angle = ++moves * 10.0 / radius_m;  // 10 m further, round and round
+    const double angle = ++moves * 10.0 / radius_m;  // 10 m further along a circle
     benchmark::DoNotOptimize(
         stroke.go_to(middle_m + radius_m * glm::dvec2(std::sin(angle), std::cos(angle))));
     shown = std::exchange(prepared, stroke.now());
@@ -44,7 +44,7 @@ std::string valley() {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-// The world of the same text, made anew.
+// Returns a new world from the same text.
 void read_world(benchmark::State& state) {
   const std::string text = valley();
   const std::string name = source_file("game/worlds/silver_combe.toml");
@@ -53,7 +53,7 @@ void read_world(benchmark::State& state) {
 }
 BENCHMARK(read_world)->Unit(benchmark::kMicrosecond);
 
-// The border of a mask and a road, on the ground of a world that came anew; 1: another sky.
+// Draws the border of a mask and a road on the ground of a new world. Argument 1: another sky.
 void marks_of_new_world(benchmark::State& state) {
   const std::string text = valley();
   const std::string name = source_file("game/worlds/silver_combe.toml");

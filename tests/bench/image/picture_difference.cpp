@@ -1,8 +1,8 @@
-// How far the pictures of two flights differ to the eye: of each pair, and in the mean, 1 - SSIM
-// and the share of the pixels that an eye tells apart, in percent (seen_difference.hpp).
+// Perceptual difference of the images of two flights: 1 - SSIM, and the percentage of visibly
+// different pixels (seen_difference.hpp), for each pair and as means.
 //   psygen_bench_pictures FOLDER REFERENCE
-// Both folders have as many pictures of psygen fly --images, of the same places in the order of
-// their names. tools/picture_difference.sh makes them.
+// Both folders hold the same number of images from psygen fly --images, of the same places in order
+// of name. tools/picture_difference.sh creates them.
 #include <fmt/format.h>
 
 #include <algorithm>

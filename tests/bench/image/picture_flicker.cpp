@@ -1,9 +1,9 @@
-// How much of the pictures of a flight changes and changes back from one to the next:
+// Measures flicker, pixels that change and change back between consecutive images of a flight:
 //   psygen_bench_flicker FOLDER FIRST [MARKS]
-// FOLDER has the pictures of psygen fly --images 1; those before the picture of number FIRST, from
-// 0, are left out. Prints the mean and the 95th percentile of the share of the picture, in percent,
-// over all pictures with one before and one after. With MARKS, a folder that exists, it writes
-// there each of them with what flickers in red. tools/transitions.sh makes the pictures.
+// FOLDER holds the images of psygen fly --images 1. Images before number FIRST (counted from 0) are
+// skipped. Prints the mean and the 95th percentile of the percentage of flickering pixels, over all
+// images with a predecessor and a successor. With MARKS, an existing folder, it writes each image
+// there with flicker in red. tools/transitions.sh creates the images.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ int fail(const std::string& why) {
   return 1;
 }
 
-// The picture as dim grey, and red where it is marked.
+// Returns the image in dim grey, with marked pixels in red.
 image::Image marked(image::Image picture, const std::vector<std::uint8_t>& marks) {
   for (std::size_t i = 0; i < marks.size(); ++i) {
     std::uint8_t* const p = &picture.rgba[4 * i];
@@ -38,7 +38,7 @@ image::Image marked(image::Image picture, const std::vector<std::uint8_t>& marks
   return picture;
 }
 
-// The value that 95 % of them do not exceed.
+// Returns the 95th percentile.
 double percentile_95(std::vector<double> values) {
   std::ranges::sort(values);
   const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(values.size())));
@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   std::vector<fs::path> files = psygen::bench::pictures_in(argv[1]);
   if (files.size() < first + 3) return fail("three pictures at least, from the first one on");
   files.erase(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(first));
-  std::vector<image::Image> last;  // three of them
+  std::vector<image::Image> last;  // the last three images
   std::vector<double> shares;
   for (std::size_t i = 0; i < files.size(); ++i) {
     auto next = image::read_image(files[i]);

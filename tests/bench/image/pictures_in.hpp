@@ -1,4 +1,4 @@
-// The pictures of psygen fly --images in a folder, in the order of their names.
+// Lists the images of psygen fly --images in a folder, sorted by name.
 #pragma once
 
 #include <algorithm>

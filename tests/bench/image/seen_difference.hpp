@@ -1,6 +1,6 @@
-// How many pixels of two pictures an eye tells apart (Yee 2004, "A Perceptual Metric for Production
-// Testing", as OpenImageIO has it: at 100 cd/m² and a field of view of 45 degrees). For programs of
-// tools; the engine keeps OpenImageIO in a library of its own. Any thread; seconds.
+// Fraction of visibly different pixels of two images (Yee 2004, "A Perceptual Metric for Production
+// Testing", as implemented by OpenImageIO: 100 cd/m², field of view of 45 degrees). For tools only,
+// because the engine hides OpenImageIO in a separate library. Any thread; takes seconds.
 #pragma once
 
 #include <OpenImageIO/imagebuf.h>
@@ -13,7 +13,7 @@
 
 namespace psygen::bench {
 
-// Linear light of the three colours; alpha is left out.
+// Returns linear light of the three colours, without alpha.
 inline OIIO::ImageBuf linear_light(const image::Image& image) {
   std::array<float, 256> linear{};
   for (std::size_t i = 0; i < linear.size(); ++i) {
@@ -30,7 +30,7 @@ inline OIIO::ImageBuf linear_light(const image::Image& image) {
   return buffer;
 }
 
-// The share of the picture, 0 to 1. Requires valid pictures of one size.
+// Returns the fraction of the image, 0 to 1. Requires valid images of equal size.
 inline double seen_difference(const image::Image& a, const image::Image& b) {
   OIIO::ImageBufAlgo::CompareResults results;
   const int told_apart = OIIO::ImageBufAlgo::compare_Yee(linear_light(a), linear_light(b), results);

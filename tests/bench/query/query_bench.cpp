@@ -1,4 +1,4 @@
-// How long queries take, with all blocks cached (warm) and with none (cold). The argument is the
+// Time of queries with all blocks cached (warm) and with none (cold). The argument selects the
 // world: 0 paper, 1 silver combe.
 #include <benchmark/benchmark.h>
 
@@ -46,8 +46,8 @@ void ground_under_a_point(benchmark::State& state) {
 }
 BENCHMARK(ground_under_a_point)->ArgName("world")->Arg(0)->Arg(1);
 
-// Rays of 1 km in all directions from 60 m above the ground, along the mean slope of the land, so
-// that most neither end soon nor leave the heights of the ground.
+// Rays of 1 km in all directions from 60 m above the ground, along the mean slope, so that most
+// rays neither end early nor leave the height range of the ground.
 template <bool kModels>
 void ray_over_a_kilometre(benchmark::State& state) {
   const Loaded loaded(state.range(0));
@@ -59,7 +59,8 @@ void ray_over_a_kilometre(benchmark::State& state) {
     Ray ray{.origin = place(query, i, 60), .direction = {std::cos(turn), 0, std::sin(turn)}};
     ray.models = kModels;
     for (ray.direction.y = -0.2; ray.direction.y < 0.5; ray.direction.y += 0.005) {
-      if (query.cast(ray)->kind == HitKind::kNothing) break;  // the lowest that clears the ground
+      if (query.cast(ray)->kind == HitKind::kNothing)
+        break;  // the lowest ray that clears the ground
     }
     rays.push_back(ray);
     followed_m += query.cast(ray)->distance_m / kPlaces;
@@ -133,7 +134,7 @@ struct Crowd {
   }
 };
 
-// Rays of 1 km through them, which miss: with the ground, models and objects, or objects alone.
+// Rays of 1 km past all boxes: against ground, models and objects, or objects alone.
 void ray_among_objects(benchmark::State& state) {
   Crowd crowd(state.range(0) != 0);
   std::vector<Ray> rays;
@@ -155,7 +156,7 @@ BENCHMARK(ray_among_objects)
     ->ArgsProduct({{0, 1}, {0, 1}})
     ->Unit(benchmark::kMicrosecond);
 
-// A step in which all of them move at 6 m/s and turn; or none does.
+// A step in which all boxes move at 6 m/s and turn, or none.
 void objects_move(benchmark::State& state) {
   Crowd crowd(false);
   double way_m = state.range(0) != 0 ? 0.1 : 0;
@@ -173,7 +174,7 @@ void objects_move(benchmark::State& state) {
 }
 BENCHMARK(objects_move)->ArgName("moving")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
-// The first query of a block: ground, and then models, and then colliders.
+// The first query of a block: ground, then models, then colliders.
 enum class Part { kGround, kModels, kSolids };
 template <Part kPart>
 void first_touch(benchmark::State& state) {

@@ -1,7 +1,7 @@
-// What a frame costs on the device of this machine: triangles, draws, sky pixels. Frames are the
-// renderer's own replays (the same lists again, two in flight). frame_ms is wall time; the ns_per
-// figures are CPU time of the whole process, which on a software device is the device's work and
-// holds on a busy machine too.
+// Cost of a frame on this machine's device: triangles, draws, sky pixels. Frames are replays by the
+// renderer (the same lists, two frames in flight). frame_ms is wall time. Values per item
+// (ns_per_*) are CPU time of the whole process, which on a software device is the work of the
+// device and stays valid on a busy machine.
 //   psygen_bench_render --benchmark_counters_tabular=true
 #include <benchmark/benchmark.h>
 
@@ -38,7 +38,7 @@ Submission submission_of(const benchmark::State& state) {
   return static_cast<Submission>(state.range(0));
 }
 
-// Wall and CPU milliseconds of one frame with these lists.
+// Returns wall and CPU milliseconds of one frame with these lists.
 std::pair<double, double> frame_cost(Renderer& renderer, const FrameInput& input) {
   constexpr int kRepeats = 12;
   if (!renderer.render(input)) return {};
@@ -46,10 +46,11 @@ std::pair<double, double> frame_cost(Renderer& renderer, const FrameInput& input
   const std::clock_t start = std::clock();
   const double wall_ms = renderer.replay_floor_ms(kRepeats).value_or(0.0);
   const double cpu_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  return {wall_ms, cpu_s * 1e3 / (kRepeats + 2)};  // the replay draws two more to fill the pipeline
+  return {wall_ms,
+          cpu_s * 1e3 / (kRepeats + 2)};  // the replay draws two extra frames to fill the pipeline
 }
 
-// Reports the cost of `input` less that of a frame without meshes, per `count` of something.
+// Reports the cost of `input` minus the cost of a frame without meshes, per `count` items.
 void measure(benchmark::State& state, Renderer& renderer, const FrameInput& input,
              const char* counter, double count, double base_cpu_ms) {
   std::pair<double, double> best{1e9, 1e9};
@@ -65,8 +66,8 @@ void measure(benchmark::State& state, Renderer& renderer, const FrameInput& inpu
   state.SetLabel(kNames[static_cast<std::size_t>(state.range(0))]);
 }
 
-// The CPU milliseconds that `more` takes beyond `base`, and the ratio `times` of the two, medians
-// over pairs of frames in turns.
+// Returns the CPU milliseconds that `more` adds to `base`, and the ratio `times` of both, as
+// medians over alternating pairs of frames.
 double compare(benchmark::State& state, Renderer& renderer, const FrameInput& base,
                const FrameInput& more) {
   std::vector<double> ratios, added_ms;
@@ -85,7 +86,7 @@ double compare(benchmark::State& state, Renderer& renderer, const FrameInput& ba
   return added_ms[added_ms.size() / 2];
 }
 
-// CPU ms of the frame without any mesh: sky over all pixels.
+// CPU ms of a frame without meshes: sky on all pixels.
 double sky_ms(Renderer& renderer) {
   const FrameInput input = synthetic::look(10, 0, kSize);
   return std::min(frame_cost(renderer, input).second, frame_cost(renderer, input).second);
@@ -97,8 +98,8 @@ void BM_sky(benchmark::State& state) {
           static_cast<double>(kSize.width) * kSize.height, 0);
 }
 
-// The sky of 60 % of width and height, scaled up to the picture; less that of a picture of so few
-// pixels.
+// Cost of upscaling: the sky at 60 % of width and height, upscaled to the full image, minus the
+// same sky without upscaling.
 void BM_scaling_up(benchmark::State& state) {
   const auto renderer = make_renderer(submission_of(state));
   FrameInput input = synthetic::look(10, 0.3, kSize);
@@ -110,8 +111,7 @@ void BM_scaling_up(benchmark::State& state) {
   measure(state, *renderer, input, "ns_per_pixel", double{kSize.width} * kSize.height, few_ms);
 }
 
-// Draws of `side`² vertices side by side that fill the picture; range(1): side, range(2): draws
-// per row.
+// Adjacent draws of `side`² vertices that fill the image. range(1): side; range(2): draws per row.
 void BM_sheets(benchmark::State& state) {
   const auto renderer = make_renderer(submission_of(state));
   const double base_ms = sky_ms(*renderer);
@@ -158,7 +158,7 @@ core::ModelPicture leafy_picture() {
   return picture;
 }
 
-// A row of trees across the box as one mesh of quads that turn to the camera; pictures, or plain.
+// A row of trees across the bounds as one mesh of billboards, textured or plain.
 core::Result<core::GeometryRange> make_row(core::GeometryMemory& memory, std::uint32_t trees,
                                            float half_width_m, bool pictured) {
   const auto reserved = memory.reserve(core::VertexLayout::kModel, 4 * trees, 6 * trees);
@@ -186,9 +186,9 @@ core::Result<core::GeometryRange> make_row(core::GeometryMemory& memory, std::ui
   return reserved->range;
 }
 
-// 60 rows of 64 trees, one behind the other, nearest first; range(1): how high a tree is, in
-// pixels; range(2): 0 plain quads, 1 pictures, 2 the plain ones in the pipeline of pictures.
-// `ns_per_tree` is CPU time beyond that of the frame without trees, a median over pairs of frames.
+// 60 rows of 64 trees behind each other, nearest first. range(1): height of a tree in pixels.
+// range(2): 0 plain quads, 1 impostors, 2 plain quads in the pipeline of impostors. `ns_per_tree`
+// is CPU time beyond a frame without trees, a median over pairs of frames.
 void BM_trees(benchmark::State& state) {
   const auto renderer = make_renderer(submission_of(state));
   const core::ModelPicture picture = leafy_picture();
@@ -213,7 +213,7 @@ void BM_trees(benchmark::State& state) {
   state.counters["ns_per_tree"] = compare(state, *renderer, sky, input) * 1e6 / (kRow * kRows);
 }
 
-// range(1) draws of one small mesh behind the camera: what a draw costs before a pixel is touched.
+// range(1) draws of one small mesh behind the camera: the cost of a draw without pixels.
 void BM_draws(benchmark::State& state) {
   const auto renderer = make_renderer(submission_of(state));
   const double base_ms = sky_ms(*renderer);
@@ -229,7 +229,7 @@ void BM_draws(benchmark::State& state) {
   measure(state, *renderer, input, "ns_per_draw", static_cast<double>(models.size()), base_ms);
 }
 
-// A landscape of range(1)² terrain blocks of 64² vertices seen from 30 m.
+// A landscape of range(1)² terrain blocks with 64² vertices each, seen from 30 m.
 void BM_terrain(benchmark::State& state) {
   const auto renderer = make_renderer(submission_of(state));
   const double base_ms = sky_ms(*renderer);
@@ -261,8 +261,8 @@ void BM_terrain(benchmark::State& state) {
   state.counters["triangles"] = triangles;
 }
 
-// Ground that fills the picture, all of it within some 40 m: what its near pipeline adds, of preset
-// low or medium (range(1)). `times` as of BM_lights.
+// Ground within about 40 m that fills the image: cost of the near pipeline in preset low or medium
+// (range(1)). `times` as in BM_lights.
 void BM_near_ground(benchmark::State& state) {
   RendererOptions options;
   options.size = kSize;
@@ -290,8 +290,8 @@ void BM_near_ground(benchmark::State& state) {
   state.counters["ns_per_pixel"] = added_ms * 1e6 / (double{kSize.width} * kSize.height);
 }
 
-// A landscape of 4² blocks with range(1) point lights of 15 m on it. `times` is the CPU time over
-// that of the same frame without lights, the median over pairs of frames.
+// A landscape of 4² blocks with range(1) point lights with a range of 15 m. `times` is the ratio of
+// CPU time to the same frame without lights, a median over pairs of frames.
 void BM_lights(benchmark::State& state) {
   const auto renderer = make_renderer(submission_of(state));
   const auto grid = renderer->upload_shared_indices(synthetic::grid_indices(64));
@@ -321,8 +321,8 @@ void BM_lights(benchmark::State& state) {
   compare(state, *renderer, dark, lit);
 }
 
-// range(1) particles of 20 cm in a box before the camera, in emitters of a thousand. `times` as of
-// BM_lights; `ns_per_particle` is CPU time.
+// range(1) particles of 20 cm in a box in front of the camera, a thousand per emitter. `times` as
+// in BM_lights; `ns_per_particle` is CPU time.
 void BM_particles(benchmark::State& state) {
   const auto renderer = make_renderer(submission_of(state));
   std::vector<ParticleDraw> emitters(static_cast<std::size_t>(state.range(1)) / 1000);
@@ -344,10 +344,9 @@ void BM_particles(benchmark::State& state) {
   state.counters["ns_per_particle"] = added_ms * 1e6 / static_cast<double>(state.range(1));
 }
 
-// Ten thousand meshes that all move in every frame, of 12 or of 128
-// triangles each: as models and as objects, in turns, with the lists made anew.
-// `objects_per_models` is the ratio of the CPU time of the whole process, the median over pairs of
-// frames.
+// Ten thousand meshes of 12 or 128 triangles that move in every frame: as models and as objects,
+// alternating, with new lists. `objects_per_models` is the ratio of the CPU times of the whole
+// process, a median over pairs of frames.
 void BM_moving(benchmark::State& state) {
   const auto renderer = make_renderer(submission_of(state));
   const bool boxes = state.range(1) == 0;

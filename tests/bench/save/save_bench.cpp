@@ -1,5 +1,5 @@
-// How long saving and opening take with a million edits, spread over a number of blocks. Files are
-// in the folder TMPDIR, or /tmp.
+// Time to save and to open a million edits, spread over a number of blocks. Files are in the folder
+// TMPDIR, or /tmp.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -13,10 +13,10 @@ namespace psygen::save {
 namespace {
 
 constexpr std::int64_t kEdits = 1'000'000;
-constexpr std::size_t kEditBytes = 24;  // of one edit: kind, place, rotation, scale
+constexpr std::size_t kEditBytes = 24;  // per edit: kind, position, rotation, scale
 const WorldIdentity kWorld{"bench", 1};
 
-// A file that is removed at the end.
+// A file that the destructor removes.
 class File {
  public:
   File()

@@ -1,6 +1,5 @@
-// What the main thread must know of a mesh that lands: what its modeler takes to note it (the boxes
-// of the parts of a merged mesh, the lines and the light of a node's ground), and what the main
-// thread takes to have it from there.
+// Cost of mesh annotations (bounds of the parts of a merged mesh, occluder lines and light of a
+// node's ground): on the modeler that writes them, and on the main thread that reads them.
 #include <benchmark/benchmark.h>
 
 #include <any>
@@ -68,7 +67,7 @@ void note_of_ground(benchmark::State& state) {
 }
 BENCHMARK(note_of_ground)->ArgName("level")->DenseRange(0, 1);
 
-// Of meshes that landed long after they were made: more notes than caches hold.
+// Meshes applied long after their synthesis: more annotations than the processor's caches hold.
 template <class T>
 void note_lands(benchmark::State& state) {
   constexpr std::size_t kNotes = 20'000;

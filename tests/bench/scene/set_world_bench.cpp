@@ -1,6 +1,6 @@
-// How long a scene takes to take over another world while it is drawn, at every step of a slider:
-// in all, of that the part of the main thread, while which nothing is drawn, and what modelers need
-// for the new meshes, fine ones and those of a draft.
+// Time for a scene to switch to another world at every step of a slider: in total, on the main
+// thread (during which no frame is drawn), and on the modelers for new meshes at full detail and as
+// a draft.
 #include <benchmark/benchmark.h>
 
 #include <fstream>
@@ -35,7 +35,7 @@ core::CameraPose usual_pose() {
   return pose;
 }
 
-// Steps a value of a shipped world back and forth, with all that its view holds.
+// Changes a value of a shipped world back and forth, with a full view.
 enum class Part { kAll, kMainThread };
 void set_world(benchmark::State& state, Part part, const world::TextPath& path, const char* low,
                const char* high) {
@@ -62,7 +62,7 @@ void set_world(benchmark::State& state, Part part, const world::TextPath& path, 
   }
 }
 
-// Processor seconds of the modelers until all new meshes of the view are there.
+// Processor seconds of the modelers until all new meshes of the view are ready.
 void make_meshes(benchmark::State& state, bool draft, const world::TextPath& path, const char* low,
                  const char* high) {
   const std::string text = text_of_world();

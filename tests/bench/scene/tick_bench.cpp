@@ -1,9 +1,9 @@
-// What the systems of a tick cost without drawing, along a flight on the null device: the same
-// flight several times, of each tick the median of the times, so that what other programs do to one
-// tick does not count. After each tick the modelers finish what they were given, as they do during
-// a frame that is drawn. Prints a table. With EDITS, every flight is also flown with so many edits
-// all over the world (removed, moved and raised), in turns, and a second table follows. With the
-// word "draw" pictures of 1280 × 720 are drawn, and `render` and the last row include that.
+// Cost of each system of a tick along a flight on the null device, without drawing. The flight runs
+// several times, and the table shows the median of each tick, so that other programs do not count.
+// After each tick the modelers finish their requests, as they do during a drawn frame. With EDITS,
+// flights alternate with flights through a world with that many edits (removals, moves and raised
+// ground), and a second table follows. With "draw", frames of 1280 × 720 are rendered, and `render`
+// and the last row include them.
 //
 //   psygen_bench_scene [PATH [WORLD [HZ [FLIGHTS [EDITS [draw]]]]]]
 #include <fmt/format.h>
@@ -27,14 +27,14 @@ namespace {
 
 const std::string kGame = source_file("game/");
 
-// Value `share` of the way up.
+// Returns the quantile `share` of the values, 0 to 1.
 double percentile(std::vector<double> values, double share) {
   const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(at));
   return values[at];
 }
 
-// So many edits, evenly over the world; in an endless one over 512 × 512 blocks.
+// Returns `count` edits, spread evenly over the world, or over 512 × 512 blocks of an endless one.
 world::Edits edits_of(const world::World& world, const models::Registry& registry, long count) {
   world::Edits edits;
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kPosition);
@@ -59,7 +59,8 @@ world::Edits edits_of(const world::World& world, const models::Registry& registr
   return edits;
 }
 
-// By system, by tick. The path leads over the ground without edits. `renderer` may be null.
+// Returns times by system and tick. The path follows the ground without edits. `renderer` may be
+// null.
 std::vector<std::vector<double>> fly(const world::World& world, const world::Edits& edits,
                                      const world::CameraPath& path, double hz,
                                      render::Renderer* renderer, std::vector<std::string>& names) {
@@ -85,7 +86,7 @@ std::vector<std::vector<double>> fly(const world::World& world, const world::Edi
   return times;
 }
 
-// Of each tick the median over the flights.
+// Returns the median over the flights for each tick.
 std::vector<double> typical(const std::vector<std::vector<double>>& flights) {
   std::vector<double> result(flights.front().size()), tick;
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -102,10 +103,10 @@ void print(const std::string& name, const std::vector<double>& ms) {
              percentile(ms, 0.95), percentile(ms, 0.99), percentile(ms, 1.0));
 }
 
-// What the flights with some edits took.
+// Times of the flights with edits.
 struct Flights {
   std::vector<std::vector<std::vector<double>>> systems;  // by system, by flight, by tick
-  std::vector<std::vector<double>> sums;                  // of all systems, render if it draws
+  std::vector<std::vector<double>> sums;  // all systems; includes render if it draws
 
   bool fly(const world::World& world, const world::Edits& edits, const world::CameraPath& path,
            double hz, render::Renderer* renderer, std::vector<std::string>& names) {

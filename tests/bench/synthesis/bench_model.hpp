@@ -1,4 +1,4 @@
-// The cheapest possible model, so that benchmarks measure what is around synthesis.
+// The cheapest possible model type, so that benchmarks measure the cost around synthesis.
 #pragma once
 
 #include <memory>
@@ -45,7 +45,7 @@ inline MeshKey key_of(std::uint32_t index) {
   return {{0, 0}, index, 0, 0, 1};
 }
 
-// Geometry memory that hands out nothing and only counts.
+// Geometry memory that allocates nothing and only counts.
 class CountingMemory final : public core::GeometryMemory {
  public:
   core::Result<core::GeometryReservation> reserve(core::VertexLayout layout, std::uint32_t vertices,

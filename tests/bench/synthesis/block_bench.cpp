@@ -1,7 +1,6 @@
-// Time of one whole block of the paper on one core: terrain of 64 vertices a side and 9 octaves, 23
-// trees of 3 to 5 iterations and 2 to 4 branches, 40 rocks of 2 subdivisions. On every instruction
-// set that kernels are compiled for, and as the double-precision references make it (without
-// packing vertices).
+// Time of one of the paper's blocks on one core: terrain with 64 vertices per side and 9 octaves,
+// 23 trees of 3 to 5 iterations and 2 to 4 branches, 40 rocks of 2 subdivisions. On every compiled
+// instruction set, and with the double-precision references (without packing vertices).
 #include <benchmark/benchmark.h>
 
 #include <vector>
@@ -19,10 +18,10 @@
 namespace psygen::models {
 namespace {
 
-// Parts of a block, to be added.
+// Parts of a block; combine them with |.
 constexpr int kTerrain = 1, kRocks = 2, kTrees = 4;
 
-// What stands on one block after the other.
+// Generates the models of consecutive blocks.
 struct Blocks {
   Registry registry = make_standard_registry();
   Parameters terrain = default_parameters(registry[0]), rock = default_parameters(registry[1]),

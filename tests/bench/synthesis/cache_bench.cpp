@@ -1,4 +1,4 @@
-// Look-ups, ranking, and the whole life of a mesh with and without pressure on the budget.
+// Lookups, ranking, and the life cycle of a mesh with and without pressure on the budget.
 #include <benchmark/benchmark.h>
 
 #include "engine/synthesis/geometry_cache.hpp"
@@ -61,7 +61,7 @@ void reserve_complete_release(benchmark::State& state) {
 }
 BENCHMARK(reserve_complete_release);
 
-// Ticks of `range` new meshes in a cache that is full: each evicts the worst one.
+// Ticks with `range` new meshes in a full cache: each new mesh evicts the worst one.
 void reserve_under_pressure(benchmark::State& state) {
   FullCache full;
   const auto batch = static_cast<std::uint32_t>(state.range(0));

@@ -1,6 +1,6 @@
-// Runs the benchmarks and prints one table of the kernels: each work on every instruction set of
-// this CPU and by the plain double-precision reference, medians of the repetitions. All figures go
-// to psygen_bench_synthesis.json, or to --benchmark_out=FILE.
+// Runs the benchmarks and prints one table of the kernels: medians of the repetitions on every
+// instruction set of this CPU and of the plain double-precision reference. All results go to
+// psygen_bench_synthesis.json, or to --benchmark_out=FILE.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ class TableReporter : public benchmark::ConsoleReporter {
   }
 
  private:
-  // The median of the repetitions; 0 where there was none.
+  // Returns the median of the repetitions, or 0 without any.
   double figure(const Row& row, const std::string& column) const {
     const auto found = figures_.find(std::string(row.work) + "/" + column + "|" + row.arguments +
                                      "|" + row.counter);

@@ -1,4 +1,4 @@
-// What a request costs beside its synthesis: claim, clocks, completion, collection.
+// Overhead of a request beyond its synthesis: claim, clocks, completion, collection.
 #include <benchmark/benchmark.h>
 
 #include "engine/core/clock.hpp"
@@ -34,9 +34,9 @@ void requests_through_manager(benchmark::State& state) {
 }
 BENCHMARK(requests_through_manager)->RangeMultiplier(2)->Range(1, 16)->UseRealTime();
 
-// Trees, one destination each: how throughput grows with modelers. CPU seconds of a tree that grow
-// with them would be contention; seconds that do not fall are missing processors. At full detail
-// the destinations are 35 MB together, more than the processor's caches; at level 2 they are 17 MB.
+// Throughput of trees by number of modelers, with one destination each. Growing CPU seconds per
+// tree would be contention; elapsed seconds that do not fall show a lack of processors. The
+// destinations take 35 MB at LOD 0, more than the processor's caches, and 17 MB at LOD 2.
 void trees_through_manager(benchmark::State& state) {
   const int level = static_cast<int>(state.range(1));
   const std::uint32_t count = level == 0 ? 512 : 2048;
@@ -71,7 +71,7 @@ BENCHMARK(trees_through_manager)
     ->ArgsProduct({{1, 2, 4, 8, 16}, {0, 2}})
     ->UseRealTime();
 
-// A tick's worth of re-planning while a modeler works: close, sort, carry over, publish.
+// Re-planning of one tick while a modeler works: close, sort, carry over, publish.
 void plan_with_carried_requests(benchmark::State& state) {
   const auto count = static_cast<std::uint32_t>(state.range(0));
   const models::Registry registry = trivial_registry();

@@ -1,5 +1,5 @@
-// Benchmarks of kernels once for every instruction set of this CPU, under the name "work/set"; the
-// same work by plain double-precision code is "work/reference". main.cpp makes a table of them.
+// Registers kernel benchmarks for every instruction set of this CPU as "work/set". "work/reference"
+// is the same work in plain double-precision code. main.cpp prints both in a table.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -12,7 +12,7 @@
 
 namespace psygen::models::bench {
 
-// Registers `body`, which runs with the set pinned; `adjust` gives the benchmark its arguments.
+// Registers `body`, which runs with the set pinned; `adjust` sets the arguments of the benchmark.
 // Returns true, for constants that register when the program starts.
 inline bool for_each_target(
     const std::string& work, const std::function<void(benchmark::State&)>& body,

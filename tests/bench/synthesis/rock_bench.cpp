@@ -1,5 +1,5 @@
 // Time of a rock per number of subdivisions on every instruction set of this CPU; the plain
-// double-precision reference in the same run, of places and triangles only, is the scale.
+// double-precision reference in the same run (positions and triangles only) gives the scale.
 #include <benchmark/benchmark.h>
 
 #include <vector>

@@ -1,5 +1,6 @@
 // Time of a terrain block per level, of its heights alone, and of ground queries, on every
-// instruction set of this CPU; the plain double-precision reference in the same run is the scale.
+// instruction set of this CPU; the plain double-precision reference in the same run gives the
+// scale.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -47,7 +48,7 @@ void noise_65x65_reference(benchmark::State& state) {
 }
 BENCHMARK(noise_65x65_reference)->Name("terrain_noise_65x65/reference");
 
-// Shadows and horizons of a block by themselves, with the sun at an elevation in degrees.
+// Shadows and horizons of a block alone. The argument is the sun's elevation in degrees.
 void terrain_light(benchmark::State& state) {
   const Parameters p = default_parameters(*make_terrain_type());
   const TerrainShape shape(p);
@@ -59,8 +60,8 @@ void terrain_light(benchmark::State& state) {
   bench::report_seconds_each(state, 1);
 }
 
-// Heights and vertices of level 0 as terrain_block has them, all in full light. Samples lie as in
-// TerrainType, vertices as in BlockSynthesizer: from a line of the cache on.
+// Heights and vertices of LOD 0 as in terrain_block, fully lit. Samples are aligned as in
+// TerrainType, vertices as in BlockSynthesizer: to a cache line.
 void terrain_block_unlit(benchmark::State& state) {
   const TerrainShape shape(default_parameters(*make_terrain_type()));
   constexpr std::size_t kSide = 66, kStride = 80;
@@ -104,7 +105,7 @@ void terrain_block(benchmark::State& state) {
   bench::report_seconds_each(state, 1);
 }
 
-// Where 63 models stand.
+// Base points of 63 models.
 void terrain_ground_63_points(benchmark::State& state) {
   const Parameters p = default_parameters(*make_terrain_type());
   std::vector<glm::dvec2> points;

@@ -1,6 +1,6 @@
 // Time of trees at each level of detail on every instruction set, averaged over the paper's ranges
-// (3 to 5 iterations, 2 to 4 branches), of the question for their size, and of the plain
-// double-precision reference in the same run, which is the scale.
+// (3 to 5 iterations, 2 to 4 branches), of the query of their size, and of the plain
+// double-precision reference in the same run for scale.
 #include <benchmark/benchmark.h>
 
 #include <vector>
@@ -53,7 +53,7 @@ void tree(benchmark::State& state) {
   }
   report(state, triangles);
 }
-// Full detail on every set, the other levels on the best one.
+// LOD 0 on every instruction set, the other LODs on the best set.
 const bool kRegistered = bench::for_each_target("tree", tree, [](auto* b, bool best) {
   b->DenseRange(0, best ? 5 : 0)->ArgName("level")->Unit(benchmark::kMicrosecond);
 });

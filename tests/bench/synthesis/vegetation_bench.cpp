@@ -1,5 +1,5 @@
-// Time of the merged mesh of all models of a node, by world and node level, with pictures of trees;
-// and of all pictures of a world.
+// Time of the merged mesh of all models of a node, by world and node level, with tree impostors,
+// and of all impostors of a world.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kFiles[] = {"paper", "five_species", "silver_combe"};
 
-// Nodes after nodes of one level. Arguments: world, node level, level of detail.
+// Consecutive nodes of one level. Arguments: world, node level, LOD.
 void vegetation(benchmark::State& state) {
   models::Registry registry = models::make_standard_registry();
   const std::string file = source_file("game/worlds/") + kFiles[state.range(0)] + ".toml";
@@ -50,7 +50,7 @@ BENCHMARK(vegetation)
     ->ArgNames({"world", "level", "detail"})
     ->Unit(benchmark::kMicrosecond);
 
-// Argument: world. An iteration bakes all pictures, and all stand-ins if the second is 1.
+// Arguments: world; 1 to bake the placeholders too. An iteration bakes all impostors.
 void pictures(benchmark::State& state) {
   models::Registry registry = models::make_standard_registry();
   const std::string file = source_file("game/worlds/") + kFiles[state.range(0)] + ".toml";

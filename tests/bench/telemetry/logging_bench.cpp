@@ -1,6 +1,5 @@
-// What logging itself costs in a frame of a flight: its row, the times of its systems, their spans
-// and two counters of the trace, samples of a busy frame, and reading the clocks. Bounded logs are
-// full, as after a long flight.
+// Cost of logging one frame of a flight: its row, system times, trace spans and two trace counters,
+// samples of a busy frame, and clock reads. Bounded logs are full, as after a long flight.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -13,7 +12,7 @@
 namespace psygen::telemetry {
 namespace {
 
-constexpr std::size_t kSystems = 20, kLandings = 8;  // of a frame
+constexpr std::size_t kSystems = 20, kLandings = 8;  // per frame
 
 void a_frame_is_logged(benchmark::State& state) {
   std::vector<std::string> systems;

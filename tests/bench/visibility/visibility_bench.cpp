@@ -1,6 +1,5 @@
-// How long visibility takes: PLP over about 100,000 blocks, box tests against the frustum and the
-// horizon, the cut through the quadtree, choosing levels. Run with --benchmark_repetitions=9 and
-// read the medians.
+// Cost of visibility: PLP over about 100,000 blocks, bounds against frustum and horizon, the
+// quadtree cut, and the choice of LODs. Run with --benchmark_repetitions=9 and read the medians.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -115,7 +114,7 @@ struct Leaves {
       if (!node.leaf) continue;
       std::vector<glm::vec3> line;
       core::Bounds box = node.box(1e9F, -1e9F);
-      // Across the direction of view, as well as a grid of heights has it.
+      // Perpendicular to the view direction, at the resolution of a height grid.
       const bool along_x = std::abs(box.center().z) > std::abs(box.center().x);
       for (int k = 0; k < 22; ++k) {
         const float f = static_cast<float>(k) / 21;
@@ -139,7 +138,7 @@ struct Leaves {
   }
 };
 
-// All 2,000 boxes are asked; the nearest `lines` leaves add a line, if they are not hidden.
+// Tests all 2,000 bounds; the nearest `lines` visible leaves add an occluder line.
 void horizon_is_built_and_asked(benchmark::State& state) {
   const QuadtreeScene scene(8000, 0.25);
   Cut cut;
