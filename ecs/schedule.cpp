@@ -210,8 +210,8 @@ struct Schedule::Parts {
 
 Schedule::Schedule(World& world, std::size_t threads)
     : world_(world), parts_(std::make_unique<Parts>(world)) {
-  constexpr std::size_t kMostThreads = 64;
-  const std::size_t wanted = std::clamp<std::size_t>(threads, 1, kMostThreads) - 1;
+  constexpr std::size_t kMaxThreads = 64;
+  const std::size_t wanted = std::clamp<std::size_t>(threads, 1, kMaxThreads) - 1;
   parts_->workers.reserve(wanted);
   try {
     while (parts_->workers.size() < wanted) {

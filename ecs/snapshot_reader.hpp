@@ -62,11 +62,11 @@ class SnapshotReader {
     if (const std::byte* from = take(sizeof(T))) std::memcpy(&value, from, sizeof(T));
     return value;
   }
-  // Reads a count of elements that take at least `least_bytes` each; 0 if the bytes left cannot
+  // Reads a count of elements that take at least `min_bytes` each; 0 if the bytes left cannot
   // hold them.
-  std::uint32_t length(std::size_t least_bytes) {
+  std::uint32_t length(std::size_t min_bytes) {
     const auto value = number<std::uint32_t>();
-    if (value <= left() / least_bytes) return value;
+    if (value <= left() / min_bytes) return value;
     corrupt("a list is longer than the data");
     return 0;
   }

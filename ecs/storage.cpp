@@ -18,9 +18,9 @@ std::size_t place_of(const ComponentInfo& info, std::size_t places) {
 }
 
 WorldLimits clamped(WorldLimits limits) {
-  constexpr std::size_t kMost = UINT32_MAX - 1;
-  limits.max_entities = std::min(limits.max_entities, kMost);
-  limits.max_rows_per_table = std::min(limits.max_rows_per_table, kMost);
+  constexpr std::size_t kMax = UINT32_MAX - 1;
+  limits.max_entities = std::min(limits.max_entities, kMax);
+  limits.max_rows_per_table = std::min(limits.max_rows_per_table, kMax);
   return limits;
 }
 

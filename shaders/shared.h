@@ -150,12 +150,12 @@ struct FrameData {
 
 // The data of a draw.
 // Terrain: x, z = origin + cell · grid; y = origin.y + range · height.
-// Models:  p = center + half_extent · position.
-// Objects: p = center + turn · (half_extent · position).
+// Models:  p = centre + half_extent · position.
+// Objects: p = centre + turn · (half_extent · position).
 // In views that colour draws, the cover of terrain and the phase of models are replaced by the
 // debug colour: red · 65536 + green · 256 + blue.
 struct DrawData {
-  vec4 origin;  // terrain: origin, w cell size in m; model: center, w phase of the wind, 0 to 1;
+  vec4 origin;  // terrain: origin, w cell size in m; model: centre, w phase of the wind, 0 to 1;
                 // object: the same, w number of the material + phase
   vec4 scale;  // terrain: height range, skirt, morph or < 0 (FrameData), cover; model: half extent,
                // w fade (fading.glsl), 1 if it does not fade

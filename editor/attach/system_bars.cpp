@@ -30,17 +30,17 @@ void SystemBars::show_bars(std::vector<Bar> bars) {
 
 void SystemBars::paintEvent(QPaintEvent*) {
   QPainter painter(this);
-  double most_ms = 0.1;
+  double max_ms = 0.1;
   int name_width = 0;
   for (const Bar& bar : bars_) {
-    most_ms = std::max(most_ms, bar.longest_ms);
+    max_ms = std::max(max_ms, bar.longest_ms);
     name_width = std::max(name_width, fontMetrics().horizontalAdvance(bar.name));
   }
   const int number_width = fontMetrics().horizontalAdvance("00.00 ms ");
   const int left = name_width + 8, room = std::max(10, width() - left - number_width - 4);
   int y = 2;
   for (const Bar& bar : bars_) {
-    const auto length = [&](double ms) { return static_cast<int>(room * ms / most_ms); };
+    const auto length = [&](double ms) { return static_cast<int>(room * ms / max_ms); };
     painter.setPen(palette().color(QPalette::Text));
     painter.drawText(2, y, name_width, row_height(), Qt::AlignVCenter, bar.name);
     painter.fillRect(left, y + 3, std::max(1, length(bar.mean_ms)), row_height() - 6,

@@ -7,7 +7,7 @@
 
 #include "editor/cost/block_survey.hpp"
 #include "editor/document/scale.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
 

@@ -4,21 +4,21 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/hash.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "engine/world/world_parts.hpp"
 
 namespace psygen::editor {
 namespace {
 
-constexpr int kBlocks = 4;                 // over which means are taken
-constexpr double kMostMeasuredS = 0.0125;  // predicted, of the block that is made
+constexpr int kBlocks = 4;                // over which means are taken
+constexpr double kMaxMeasuredS = 0.0125;  // predicted, of the block that is made
 
 // Seconds of this thread to make a mesh; nothing if it fails.
 std::optional<double> make_mesh(const models::ModelType& type, const models::Parameters& p) {
   const auto memory = synthesis::HeapDestination::make(type, p, 0);
   if (!memory) return std::nullopt;
   const double start_s = core::thread_cpu_seconds();
-  if (!synthesis::synthesize_guarded(type, p, 0, memory->view()).ok) return std::nullopt;
+  if (!synthesis::synthesise_guarded(type, p, 0, memory->view()).ok) return std::nullopt;
   return core::thread_cpu_seconds() - start_s;
 }
 
@@ -83,7 +83,7 @@ double BlockSurvey::measured_factor(const ParsedWorld& parsed, const synthesis::
   double predicted_s = 0, measured_s = 0;
   for (const world::Placement& placed : placements_)
     predicted_s += costs.predict(placed.model, placed.parameters, 0);
-  if (predicted_s <= 0 || predicted_s > kMostMeasuredS) return 0;
+  if (predicted_s <= 0 || predicted_s > kMaxMeasuredS) return 0;
   for (const world::Placement& placed : placements_)
     measured_s += make_mesh(parsed.registry[placed.model], placed.parameters).value_or(0);
   return measured_s / predicted_s;

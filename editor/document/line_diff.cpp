@@ -27,7 +27,7 @@ void add_middle(const Lines& a, const Lines& b, std::size_t from, std::size_t a_
   using enum DiffLine::Kind;
   const std::size_t n = a_end - from, m = b_end - from;
   // Lengths of the longest common subsequences of the ends of both.
-  const bool small = n * m <= kMostPairs;
+  const bool small = n * m <= kMaxPairs;
   std::vector<std::uint32_t> length(small ? (n + 1) * (m + 1) : 0);
   const auto at = [&](std::size_t i, std::size_t j) -> std::uint32_t& {
     return length[i * (m + 1) + j];

@@ -1,6 +1,6 @@
 // The lines in which two texts differ, as `diff -u` writes them, for "what will be saved". By the
 // longest common subsequence of lines; texts that differ in very many lines are shown as one block.
-// Pure, any thread. Time and memory are bounded by kMostPairs.
+// Pure, any thread. Time and memory are bounded by kMaxPairs.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 namespace psygen::editor {
 
 // Largest product of the numbers of lines that differ.
-inline constexpr std::size_t kMostPairs = 4'000'000;
+inline constexpr std::size_t kMaxPairs = 4'000'000;
 
 // A line with what happens to it.
 struct DiffLine {

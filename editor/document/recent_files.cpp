@@ -29,7 +29,7 @@ void note_recent_file(QSettings& settings, const std::filesystem::path& file) {
   QStringList names = settings.value(recent_key()).toStringList();
   names.removeAll(whole_name(file));
   names.prepend(whole_name(file));
-  settings.setValue(recent_key(), names.mid(0, static_cast<qsizetype>(kMostRecentFiles)));
+  settings.setValue(recent_key(), names.mid(0, static_cast<qsizetype>(kMaxRecentFiles)));
 }
 
 void forget_recent_file(QSettings& settings, const std::filesystem::path& file) {

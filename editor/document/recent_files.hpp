@@ -7,7 +7,7 @@
 
 namespace psygen::editor {
 
-inline constexpr std::size_t kMostRecentFiles = 12;
+inline constexpr std::size_t kMaxRecentFiles = 12;
 
 // The files, newest first. Files that are gone stay in the list: a disk may be back tomorrow.
 std::vector<std::filesystem::path> recent_files(const QSettings& settings);

@@ -20,7 +20,7 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kRecoveryFormat = 1;
-constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 20;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{16} << 20;
 constexpr const char* kEnding = ".recovery";
 constexpr const char* kPictureEnding = ".png";
 
@@ -85,7 +85,7 @@ core::Error open_elsewhere(const QLockFile& lock, const std::filesystem::path& w
 
 // Nothing where the file is damaged or of a newer version.
 std::optional<Recovery> read_recovery(const std::filesystem::path& file) {
-  const auto bytes = core::read_file(file, kMostBytes);
+  const auto bytes = core::read_file(file, kMaxBytes);
   if (!bytes) return {};
   const QJsonObject read =
       QJsonDocument::fromJson(QByteArray::fromRawData(reinterpret_cast<const char*>(bytes->data()),

@@ -21,7 +21,7 @@ using world::FieldKind;
 using world::WorldField;
 
 constexpr double kStepsOfRange = 100;
-constexpr std::uint64_t kMostLockBytes = 1 << 20;
+constexpr std::uint64_t kMaxLockBytes = 1 << 20;
 
 // 0 … 1, the same on every machine.
 double share(std::mt19937_64& random) {
@@ -180,7 +180,7 @@ void FieldLocks::renumber(const world::TextPath& array,
 FieldLocks FieldLocks::load(const std::filesystem::path& state_folder,
                             const std::filesystem::path& world_file) {
   FieldLocks locks;
-  const auto bytes = core::read_file(locks_file(state_folder, world_file), kMostLockBytes);
+  const auto bytes = core::read_file(locks_file(state_folder, world_file), kMaxLockBytes);
   if (!bytes) return locks;
   std::string line;
   for (const std::uint8_t byte : *bytes) {

@@ -18,7 +18,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr std::size_t kMostRunBytes = std::size_t{1} << 30;
+constexpr std::size_t kMaxRunBytes = std::size_t{1} << 30;
 constexpr double kBusyWindowS = 0.25;
 constexpr double kWallMargin = 1.5;
 
@@ -138,7 +138,7 @@ core::Result<FlightRun> parse_flight_run(const std::string& frames_csv, const st
 
 core::Result<FlightRun> read_flight_run(const std::filesystem::path& folder,
                                         const FlightSettings& settings) {
-  const auto frames = world::read_text_file(folder / "frames.csv", kMostRunBytes);
+  const auto frames = world::read_text_file(folder / "frames.csv", kMaxRunBytes);
   if (!frames) return tl::unexpected(frames.error());
   const auto summary = world::read_text_file(folder / "summary.json");
   if (!summary) return tl::unexpected(summary.error());

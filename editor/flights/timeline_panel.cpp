@@ -20,7 +20,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr double kSampleS = 0.1, kLeastFlightS = 0.3;
+constexpr double kSampleS = 0.1, kMinFlightS = 0.3;
 constexpr std::size_t kSpeeds = 200;
 
 // Metres a second along a path, at even steps.
@@ -168,7 +168,7 @@ void TimelinePanel::set_recording(bool on) {
     state_->setText(tr("Recording: fly through the view."));
   } else {
     recording_.invalidate();
-    if (poses_.size() < 2 || poses_.back().time_s - poses_.front().time_s < kLeastFlightS) {
+    if (poses_.size() < 2 || poses_.back().time_s - poses_.front().time_s < kMinFlightS) {
       state_->setText(tr("Nothing was recorded: the flight was too short."));
     } else {
       const QString name = QDateTime::currentDateTime().toString("yyyy-MM-dd HH.mm.ss");
@@ -193,7 +193,7 @@ void TimelinePanel::picture_drawn() {
     if (!poses_.empty() && now_s < poses_.back().time_s + kSampleS) return;
     poses_.push_back({now_s, host_.pose()});
     state_->setText(tr("Recording: %1 s. Ctrl+Shift+R ends it.").arg(now_s, 0, 'f', 1));
-    if (poses_.size() == world::kMostRecordedPoses) set_recording(false);
+    if (poses_.size() == world::kMaxRecordedPoses) set_recording(false);
   }
   if (playing_.isValid() && path_) {
     const double now_s = play_from_s_ + static_cast<double>(playing_.nsecsElapsed()) * 1e-9;

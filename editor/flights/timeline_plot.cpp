@@ -13,7 +13,7 @@ namespace {
 constexpr double kLeftPx = 150, kRightPx = 90, kAxisPx = 18, kGapPx = 4;
 constexpr double kKeyStepS = 0.1;
 
-double most_of(const std::vector<double>& values) {
+double max_of(const std::vector<double>& values) {
   double most = 0;
   for (const double value : values) {
     if (std::isfinite(value)) most = std::max(most, value);
@@ -118,7 +118,7 @@ void TimelinePlot::draw_row(QPainter& painter, const Row& row, const QRectF& pla
   QStringList now;
   for (const FlightRun& run : runs_) {
     const std::vector<double>& values = row.values(run);
-    most = std::max(most, most_of(values));
+    most = std::max(most, max_of(values));
     now.push_back(short_number(values[frame_at(run.time_s, cursor_s_)]));
   }
   painter.fillRect(place, palette().color(QPalette::Base));
@@ -143,7 +143,7 @@ void TimelinePlot::draw_row(QPainter& painter, const Row& row, const QRectF& pla
 
 void TimelinePlot::draw_speed(QPainter& painter, const QRectF& place) const {
   painter.fillRect(place, palette().color(QPalette::Base));
-  const double most = std::max(most_of(speed_m_s_), 1e-9);
+  const double most = std::max(max_of(speed_m_s_), 1e-9);
   QPainterPath line;
   const auto steps = static_cast<double>(std::max<std::size_t>(speed_m_s_.size(), 2) - 1);
   for (std::size_t i = 0; i < speed_m_s_.size(); ++i) {

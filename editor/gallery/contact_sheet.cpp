@@ -18,9 +18,9 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kMostSide = 8;  // cells along a side
+constexpr int kMaxSide = 8;  // cells along a side
 constexpr std::uint32_t kSheetWidth = 320;
-constexpr double kMostSmaller = 5;  // a model is drawn than the largest of its sheet
+constexpr double kMaxSmaller = 5;  // a model is drawn than the largest of its sheet
 constexpr const char* kGeometryKey = "contact_sheet/geometry";
 
 QString cost_text(const BlockCost& cost) {
@@ -70,7 +70,7 @@ ContactSheet::ContactSheet(Document& document, PictureService& service, AskView 
   const auto add_spin = [this](const QString& name) {
     auto* spin = new QSpinBox;
     spin->setAccessibleName(name);
-    spin->setRange(1, kMostSide);
+    spin->setRange(1, kMaxSide);
     spin->setValue(4);
     spin->setKeyboardTracking(false);
     connect(spin, &QSpinBox::valueChanged, this, &ContactSheet::fill);
@@ -307,7 +307,7 @@ void ContactSheet::ask_pictures() {
       shown_[i].widget->set_failure(QString::fromStdString(request.error().message));
       continue;
     }
-    request->distance_m = std::min(farthest_m, kMostSmaller * shown_[i].distance_m);
+    request->distance_m = std::min(farthest_m, kMaxSmaller * shown_[i].distance_m);
     service_.ask(*std::move(request), batch_, rank++, this,
                  [this, i](const PictureReply& reply) { note_picture(i, reply); });
   }

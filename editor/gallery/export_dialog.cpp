@@ -22,7 +22,7 @@ namespace psygen::editor {
 namespace {
 
 constexpr const char* kFolderKey = "export/folder";
-constexpr int kMostLevel = 6;
+constexpr int kMaxLevel = 6;
 
 QString quoted(const QString& word) {
   return word.contains(' ') ? "'" + word + "'" : word;
@@ -80,7 +80,7 @@ std::optional<PictureRequest> ask_export(QWidget* parent, const Document& docume
   model->setEnabled(has_model);
   (has_model ? model : whole)->setChecked(true);
   auto* level = new QSpinBox;
-  level->setRange(0, kMostLevel);
+  level->setRange(0, kMaxLevel);
   level->setSpecialValueText(QObject::tr("0, full"));
   QString folder =
       QSettings()

@@ -29,8 +29,8 @@ std::optional<WorldView::Stand> stand_of(const scene::State& state,
   // What its type usually fills of its box.
   const core::Bounds whole = facts.registry[model->model].bounds(model->parameters);
   const core::Bounds& part = facts.usual_boxes[model->model];
-  const core::Bounds box{whole.center() + part.min * whole.half_extent(),
-                         whole.center() + part.max * whole.half_extent()};
+  const core::Bounds box{whole.centre() + part.min * whole.half_extent(),
+                         whole.centre() + part.max * whole.half_extent()};
   const double block_m = facts.world.block_size_m();
   const PortraitPose front = pose_before(model->foot, box, block_m, state.camera.projection);
   if (!before || !before->pivot) return WorldView::Stand{front.pose, front.middle};

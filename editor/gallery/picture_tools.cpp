@@ -19,7 +19,7 @@ namespace psygen::editor {
 namespace {
 
 constexpr std::uint32_t kLargeWidth = 3840;
-constexpr double kLeastEyeOverGroundM = 1;
+constexpr double kMinEyeOverGroundM = 1;
 constexpr int kAttentionMs = 400;  // a mouse that passes over a field on its way is no attention
 
 QStringList server_arguments(const QString& device) {
@@ -64,8 +64,8 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
     if (what.testAnyFlags(Change::kTerrain | Change::kWorld | Change::kWater) &&
         !what.testFlag(Change::kFile) && on_world_) {
       const core::WorldPosition& at = view_.camera().pose().position;
-      if (at.local.y < world::surface_height_m(document_.world(), at) + kLeastEyeOverGroundM)
-        stand(kLeastEyeOverGroundM);
+      if (at.local.y < world::surface_height_m(document_.world(), at) + kMinEyeOverGroundM)
+        stand(kMinEyeOverGroundM);
     }
     show_shown();
   });

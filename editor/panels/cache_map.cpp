@@ -14,7 +14,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr double kLeastRadiusM = 100, kMostRadiusM = 30'000;
+constexpr double kMinRadiusM = 100, kMaxRadiusM = 30'000;
 constexpr double kOldestPower = 3;  // of 10 seconds: all older ones are blue
 const QColor kNothing(90, 90, 96), kFailed(190, 60, 190), kStale(230, 150, 40),
     kWaiting(225, 205, 70), kSeen(86, 176, 92), kUnseen(70, 110, 150);
@@ -236,8 +236,8 @@ bool CacheMap::event(QEvent* event) {
 }
 
 void CacheMap::wheelEvent(QWheelEvent* event) {
-  radius_m_ = std::clamp(radius_m_ * std::pow(0.8, event->angleDelta().y() / 120.0), kLeastRadiusM,
-                         kMostRadiusM);
+  radius_m_ = std::clamp(radius_m_ * std::pow(0.8, event->angleDelta().y() / 120.0), kMinRadiusM,
+                         kMaxRadiusM);
   update();
   event->accept();
 }

@@ -42,10 +42,10 @@ QSize CostStrip::sizeHint() const {
 
 void CostStrip::set_points(std::vector<CostPoint> points) {
   points_ = std::move(points);
-  most_s_ = 0;
+  max_s_ = 0;
   for (const CostPoint& point : points_) {
     if (point.cost)
-      most_s_ = std::max({most_s_, point.cost->seconds, point.cost->measured_seconds.value_or(0)});
+      max_s_ = std::max({max_s_, point.cost->seconds, point.cost->measured_seconds.value_or(0)});
   }
   update();
 }
@@ -62,7 +62,7 @@ double CostStrip::x_of(std::size_t point) const {
 }
 
 double CostStrip::y_of(double seconds) const {
-  return height() - 2 - (height() - 5) * (most_s_ > 0 ? seconds / most_s_ : 0);
+  return height() - 2 - (height() - 5) * (max_s_ > 0 ? seconds / max_s_ : 0);
 }
 
 std::size_t CostStrip::nearest(double value) const {

@@ -29,7 +29,7 @@ class CostStrip final : public QWidget {
   std::size_t nearest(double value) const;
 
   std::vector<CostPoint> points_;
-  double most_s_ = 0;  // of all points
+  double max_s_ = 0;  // of all points
   double value_ = 0;
 };
 

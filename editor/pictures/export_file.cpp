@@ -7,7 +7,7 @@
 #include "engine/amplify/block_files.hpp"
 #include "engine/exchange/unpack.hpp"
 #include "engine/exchange/write_document.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::editor {
@@ -37,7 +37,7 @@ core::Result<exchange::Document> model_document(const ParsedWorld& parsed,
   level = std::clamp(level, 0, type.level_count() - 1);
   const auto mesh = synthesis::HeapDestination::make(type, placed.parameters, level);
   if (!mesh) return tl::unexpected(mesh.error());
-  const auto outcome = synthesis::synthesize_guarded(type, placed.parameters, level, mesh->view());
+  const auto outcome = synthesis::synthesise_guarded(type, placed.parameters, level, mesh->view());
   if (!outcome.ok) return core::fail(core::ErrorCode::kSynthesisFailed, outcome.error);
   auto object = exchange::unpack(type, placed.parameters, level, mesh->size(), mesh->view(),
                                  world::drawn_palette(parsed.world));

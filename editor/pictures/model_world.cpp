@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/text_snippet.hpp"
 #include "engine/world/files/toml_values.hpp"
@@ -83,10 +83,10 @@ snow_blend_m = 18
 constexpr double kCountryHighM = 330;  // its relief
 constexpr double kSnowyM = 300;        // lower terrains have no snow
 
-constexpr int kTried = 4;         // blocks along a side, of which the most lonely model is taken
-constexpr double kPitch = -0.09;  // slightly from above
-constexpr double kAir = 1.12;     // around the model
-constexpr double kLeastHeight = 0.25;  // of the eye over the ground, in heights of the model
+constexpr int kTried = 4;            // blocks along a side, of which the most lonely model is taken
+constexpr double kPitch = -0.09;     // slightly from above
+constexpr double kAir = 1.12;        // around the model
+constexpr double kMinHeight = 0.25;  // of the eye over the ground, in heights of the model
 
 tl::unexpected<core::Error> no_such(std::string_view array, std::size_t index) {
   return core::fail(core::ErrorCode::kInvalidArgument,
@@ -202,7 +202,7 @@ std::optional<LonelyModel> lonely_model(const world::World& world,
                                         const models::Registry& registry) {
   const double block_m = world.block_size_m();
   std::optional<LonelyModel> found;
-  double most_lonely_m = -1;
+  double max_lonely_m = -1;
   std::vector<world::Placement> placements;
   for (int i = 0; i < kTried * kTried; ++i) {
     const core::BlockCoord block{i % kTried, i / kTried};
@@ -210,8 +210,8 @@ std::optional<LonelyModel> lonely_model(const world::World& world,
     if (placements.empty()) continue;
     const glm::dvec3 at(placements[0].position);
     const double lonely_m = std::min({at.x, at.z, block_m - at.x, block_m - at.z});
-    if (lonely_m <= most_lonely_m) continue;
-    most_lonely_m = lonely_m;
+    if (lonely_m <= max_lonely_m) continue;
+    max_lonely_m = lonely_m;
     found = LonelyModel{{block, at}, placements[0].model, placements[0].parameters};
   }
   return found;
@@ -219,7 +219,7 @@ std::optional<LonelyModel> lonely_model(const world::World& world,
 
 PortraitPose pose_before(const core::WorldPosition& foot, const core::Bounds& box, double block_m,
                          const core::Projection& projection, double distance_m) {
-  const glm::dvec3 half(box.half_extent()), middle(box.center());
+  const glm::dvec3 half(box.half_extent()), middle(box.centre());
   const double half_fov = static_cast<double>(projection.vertical_fov) / 2;
   const double up = std::tan(half_fov);
   const double across = up * static_cast<double>(projection.aspect);
@@ -231,7 +231,7 @@ PortraitPose pose_before(const core::WorldPosition& foot, const core::Bounds& bo
   pose.position = foot;
   pose.position.local += middle - glm::dvec3(core::forward_of(pose)) * distance_m;
   pose.position.local.y =
-      std::max(pose.position.local.y, foot.local.y + std::max(kLeastHeight * 2 * half.y, 0.05));
+      std::max(pose.position.local.y, foot.local.y + std::max(kMinHeight * 2 * half.y, 0.05));
   // Looks at the middle from wherever it is.
   pose.pitch = std::atan2(foot.local.y + middle.y - pose.position.local.y, distance_m);
   pose.position = core::normalised(pose.position, block_m);
@@ -246,7 +246,7 @@ std::optional<PortraitPose> portrait_pose(const ParsedWorld& parsed,
   core::Bounds box = type.bounds(model->parameters);
   const int level = std::min(1, type.level_count_of(model->parameters) - 1);
   if (const auto memory = synthesis::HeapDestination::make(type, model->parameters, level)) {
-    const auto made = synthesis::synthesize_guarded(type, model->parameters, level, memory->view());
+    const auto made = synthesis::synthesise_guarded(type, model->parameters, level, memory->view());
     if (made.ok) box = made.tight;
   }
   return pose_before(model->foot, box, parsed.world.block_size_m(), projection, distance_m);

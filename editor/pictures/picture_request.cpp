@@ -9,7 +9,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kMostPixels = 8192;  // along a side
+constexpr int kMaxPixels = 8192;  // along a side
 constexpr int kKinds = static_cast<int>(PictureKind::kExportBlock) + 1;
 
 QString json_text(const std::string& text) {
@@ -70,8 +70,8 @@ std::optional<PictureRequest> request_from(const QByteArray& line) {
   r.text = (*o)["text"].toString().toStdString();
   r.file = (*o)["file"].toString().toStdString();
   r.out = (*o)["out"].toString().toStdString();
-  r.size = {static_cast<std::uint32_t>(std::clamp((*o)["width"].toInt(), 1, kMostPixels)),
-            static_cast<std::uint32_t>(std::clamp((*o)["height"].toInt(), 1, kMostPixels))};
+  r.size = {static_cast<std::uint32_t>(std::clamp((*o)["width"].toInt(), 1, kMaxPixels)),
+            static_cast<std::uint32_t>(std::clamp((*o)["height"].toInt(), 1, kMaxPixels))};
   r.now_s = (*o)["now_s"].toDouble();
   r.distance_m = (*o)["distance_m"].toDouble();
   r.block_x = (*o)["block"].toArray().at(0).toInt();

@@ -33,7 +33,7 @@ constexpr double kServerWatchdogS = 12;
 constexpr double kErrorPixels = 1.5, kSmallErrorPixels = 3;
 constexpr std::uint32_t kSmallWidth = 1000;  // of pictures that need not be so fine
 constexpr std::uint64_t kServerBudgetBytes = 384ULL << 20;
-constexpr double kLeastEyeM = 0.6;  // over the ground, wherever the camera was
+constexpr double kMinEyeM = 0.6;  // over the ground, wherever the camera was
 constexpr int kHungExit = 3;
 constexpr const char* kNowhere = "the model stands nowhere";
 constexpr std::size_t kChunk = 1 << 16;
@@ -248,7 +248,7 @@ class PictureServer {
     double surface_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
     if (world.water.exists()) surface_m = std::max(surface_m, world.water.level_m);
     const double wanted_m = place.at_m.y + (place.above_ground ? surface_m : 0);
-    pose.position.local.y = std::max(wanted_m, surface_m + kLeastEyeM);
+    pose.position.local.y = std::max(wanted_m, surface_m + kMinEyeM);
     return pose;
   }
 

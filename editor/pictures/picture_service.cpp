@@ -14,7 +14,7 @@ constexpr const char* kChild = "PSYGEN_EDITOR_PICTURES";  // set in what it star
 
 constexpr int kPatienceMs = 1000;
 constexpr int kExportTimes = 10;  // as long as a picture
-constexpr int kMostOverdue = 10;  // limits: a process that sleeps is ended too
+constexpr int kMaxOverdue = 10;   // limits: a process that sleeps is ended too
 constexpr int kEndMs = 200;       // to end by itself
 
 // What a process has used of processors, in all its threads.
@@ -43,7 +43,7 @@ PictureService::PictureService(QString program, QStringList arguments, QObject* 
     if (!process_) return;
     // Where others take the processors it gets little of them and does nothing wrong.
     const double worked_ms = processor_ms(process_->processId()) - worked_before_ms_;
-    if (++overdue_ < kMostOverdue && worked_ms < limit_ms_) return limit_.start(limit_ms_);
+    if (++overdue_ < kMaxOverdue && worked_ms < limit_ms_) return limit_.start(limit_ms_);
     process_->kill();  // ended() does the rest
   });
   connect(&patience_, &QTimer::timeout, this, &PictureService::send_next);

@@ -25,14 +25,14 @@ namespace {
 constexpr int kSliderSteps = 1000, kHourPx = 200, kWeatherPx = 110;
 
 QSlider* add_slider(QToolBar& bar, const QString& label, const QString& help, int steps,
-                    int most_px) {
+                    int max_px) {
   bar.addWidget(new QLabel(" " + label + " "));
   auto* slider = new QSlider(Qt::Horizontal);
   slider->setAccessibleName(help);
   slider->setToolTip(help);
   slider->setFocusPolicy(Qt::StrongFocus);
   slider->setRange(0, steps);
-  slider->setMaximumWidth(most_px);
+  slider->setMaximumWidth(max_px);
   bar.addWidget(slider);
   return slider;
 }

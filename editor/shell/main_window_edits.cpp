@@ -23,8 +23,8 @@ namespace {
 constexpr int kCostsMs = 300;     // after the last change
 constexpr int kLearntMs = 1'000;  // what is known of the scene may be so old
 // Costs give way to what the view makes of a change, for so long.
-constexpr std::chrono::milliseconds kMostRest{2'000};
-constexpr int kMostPutOff = 10;  // times, for kCostsMs each
+constexpr std::chrono::milliseconds kMaxRest{2'000};
+constexpr int kMaxPutOff = 10;  // times, for kCostsMs each
 
 }  // namespace
 
@@ -128,7 +128,7 @@ void MainWindow::document_changed(Changes what) {
   last_parsed_ = document_.parsed();
   if (what.testFlag(Change::kFile) || view_->session() == nullptr || !before) return;
   look_at_scene();
-  costs_->rest(kMostRest);
+  costs_->rest(kMaxRest);
   costs_->ask_impact(before, last_parsed_, view_->camera().pose().position.block, contents_,
                      learnt_);
 }
@@ -146,7 +146,7 @@ void MainWindow::look_at_scene() {
 
 // Of the fields that are shown, once the view has what it needs.
 void MainWindow::ask_costs() {
-  if (view_->session() != nullptr && view_->awaits_meshes() && costs_put_off_++ < kMostPutOff)
+  if (view_->session() != nullptr && view_->awaits_meshes() && costs_put_off_++ < kMaxPutOff)
     return costs_timer_.start(kCostsMs);
   costs_put_off_ = 0;
   look_at_scene();

@@ -9,8 +9,8 @@
 namespace psygen::editor {
 namespace {
 
-constexpr double kHardShare = 0.5;       // of the radius, that is covered as a whole
-constexpr double kLeastRadiusPx = 0.75;  // so that the smallest brush meets a pixel
+constexpr double kHardShare = 0.5;     // of the radius, that is covered as a whole
+constexpr double kMinRadiusPx = 0.75;  // so that the smallest brush meets a pixel
 
 }  // namespace
 
@@ -26,7 +26,7 @@ MaskStroke::MaskStroke(PicturePtr before, const std::array<double, 4>& area_m, c
       brush_(brush),
       pixel_m_((area_m[2] - area_m[0]) / before_->width, (area_m[3] - area_m[1]) / before_->height),
       covered_(before_->pixels.size()) {
-  brush_.radius_m = std::max(brush_.radius_m, kLeastRadiusPx * std::max(pixel_m_.x, pixel_m_.y));
+  brush_.radius_m = std::max(brush_.radius_m, kMinRadiusPx * std::max(pixel_m_.x, pixel_m_.y));
 }
 
 bool MaskStroke::go_to(glm::dvec2 at_m) {

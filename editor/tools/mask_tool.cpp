@@ -138,7 +138,7 @@ void MaskTool::make_mask() {
 }
 
 void MaskTool::set_radius_m(double radius_m) {
-  brush_.radius_m = std::clamp(radius_m, kLeastRadiusM, kMostRadiusM);
+  brush_.radius_m = std::clamp(radius_m, kMinRadiusM, kMaxRadiusM);
 }
 
 void MaskTool::press(const ToolPoint& at) {

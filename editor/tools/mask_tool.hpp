@@ -16,7 +16,7 @@ namespace psygen::editor {
 
 class MaskTool final : public ViewTool {
  public:
-  static constexpr double kLeastRadiusM = 0.5, kMostRadiusM = 500;
+  static constexpr double kMinRadiusM = 0.5, kMaxRadiusM = 500;
 
   explicit MaskTool(ToolHost host) : host_(std::move(host)) {}
 

@@ -13,21 +13,21 @@ namespace {
 constexpr double kWholeWorldM = 4096;  // larger worlds get a mask around a place
 constexpr double kUsualPixels = 1024;  // a side, at most, unless the person wants more
 constexpr double kGridShare = 1.0 / 16;
-constexpr double kLeastFall = 0.01;  // of a view, below the horizon, that meets the ground
+constexpr double kMinFall = 0.01;  // of a view, below the horizon, that meets the ground
 
 glm::dvec2 size_m(const world::World& world) {
   return glm::dvec2(double(world.blocks_x), double(world.blocks_z)) * world.block_size_m();
 }
 
 core::Result<std::uint32_t> pixels_of(double side_m, double pixel_m) {
-  const double pixels = std::max(std::ceil(side_m / pixel_m), double{NewMask::kLeastPixels});
-  if (pixels <= NewMask::kMostPixels) return static_cast<std::uint32_t>(pixels);
+  const double pixels = std::max(std::ceil(side_m / pixel_m), double{NewMask::kMinPixels});
+  if (pixels <= NewMask::kMaxPixels) return static_cast<std::uint32_t>(pixels);
   return core::fail(
       core::ErrorCode::kOverBudget,
       fmt::format(
           "A mask of {:.0f} m with {:g} m a pixel would have {:.0f} pixels a side (allowed: "
           "{}): make the area smaller or the pixels larger.",
-          side_m, pixel_m, pixels, NewMask::kMostPixels));
+          side_m, pixel_m, pixels, NewMask::kMaxPixels));
 }
 
 }  // namespace
@@ -67,10 +67,10 @@ core::Result<MaskPlan> plan_of(const NewMask& mask, const world::World& world,
   const auto within = [](double value, double least, double most) {
     return value >= least && value <= most;
   };
-  if (!within(mask.side_m, NewMask::kLeastSideM, NewMask::kMostSideM))
-    return refuse("side", mask.side_m, NewMask::kLeastSideM, NewMask::kMostSideM);
-  if (!within(mask.pixel_m, NewMask::kLeastPixelM, NewMask::kMostPixelM))
-    return refuse("pixel", mask.pixel_m, NewMask::kLeastPixelM, NewMask::kMostPixelM);
+  if (!within(mask.side_m, NewMask::kMinSideM, NewMask::kMaxSideM))
+    return refuse("side", mask.side_m, NewMask::kMinSideM, NewMask::kMaxSideM);
+  if (!within(mask.pixel_m, NewMask::kMinPixelM, NewMask::kMaxPixelM))
+    return refuse("pixel", mask.pixel_m, NewMask::kMinPixelM, NewMask::kMaxPixelM);
   MaskPlan plan{area_of(mask, world, around_m)};
   const auto width = pixels_of(plan.area_m[2] - plan.area_m[0], mask.pixel_m);
   if (!width) return tl::unexpected(width.error());
@@ -80,11 +80,11 @@ core::Result<MaskPlan> plan_of(const NewMask& mask, const world::World& world,
   return plan;
 }
 
-glm::dvec2 middle_of_view(const core::CameraPose& pose, const world::World& world, double most_m) {
+glm::dvec2 middle_of_view(const core::CameraPose& pose, const world::World& world, double max_m) {
   const double above_m =
       std::max(0.0, pose.position.local.y - world::surface_height_m(world, pose.position));
   const double fall = -std::tan(pose.pitch);
-  const double away_m = fall > kLeastFall ? std::min(above_m / fall, most_m) : most_m;
+  const double away_m = fall > kMinFall ? std::min(above_m / fall, max_m) : max_m;
   const double block_m = world.block_size_m();
   const glm::dvec2 stands(double(pose.position.block.x) * block_m + pose.position.local.x,
                           double(pose.position.block.z) * block_m + pose.position.local.z);

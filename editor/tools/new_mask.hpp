@@ -13,9 +13,9 @@
 namespace psygen::editor {
 
 struct NewMask {
-  static constexpr double kLeastSideM = 16, kMostSideM = 65'536;
-  static constexpr double kLeastPixelM = 0.1, kMostPixelM = 256;
-  static constexpr std::uint32_t kLeastPixels = 2, kMostPixels = 4096;  // a side
+  static constexpr double kMinSideM = 16, kMaxSideM = 65'536;
+  static constexpr double kMinPixelM = 0.1, kMaxPixelM = 256;
+  static constexpr std::uint32_t kMinPixels = 2, kMaxPixels = 4096;  // a side
 
   bool whole_world = false;  // else a square around a place; never of an endless world
   double side_m = 1024;      // of that square
@@ -38,11 +38,11 @@ struct MaskPlan {
 // side, so that it rests while the place moves a little.
 std::array<double, 4> area_of(const NewMask& mask, const world::World& world, glm::dvec2 around_m);
 // Fails with kInvalidArgument for a side or a pixel beyond the limits, and with kOverBudget where a
-// side would have more than kMostPixels.
+// side would have more than kMaxPixels.
 core::Result<MaskPlan> plan_of(const NewMask& mask, const world::World& world, glm::dvec2 around_m);
 
 // The ground in the middle of a view (x and z in the world), at most so many metres before the
 // camera.
-glm::dvec2 middle_of_view(const core::CameraPose& pose, const world::World& world, double most_m);
+glm::dvec2 middle_of_view(const core::CameraPose& pose, const world::World& world, double max_m);
 
 }  // namespace psygen::editor

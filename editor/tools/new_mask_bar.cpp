@@ -22,10 +22,10 @@ NewMaskBar::NewMaskBar(QWidget* parent)
   where_->setToolTip(tr("Where the new mask lies: the blue border in the view"));
   where_->addItem(tr("Around the view"));
   layout->addWidget(where_);
-  side_ = add_metres(tr("Side"), tr("Side of the new mask in metres"), NewMask::kLeastSideM,
-                     NewMask::kMostSideM, 0);
+  side_ = add_metres(tr("Side"), tr("Side of the new mask in metres"), NewMask::kMinSideM,
+                     NewMask::kMaxSideM, 0);
   pixel_ = add_metres(tr("Pixel"), tr("Side of a pixel of the new mask in metres"),
-                      NewMask::kLeastPixelM, NewMask::kMostPixelM, 1);
+                      NewMask::kMinPixelM, NewMask::kMaxPixelM, 1);
   layout->addWidget(pixels_);
   const auto changed = [this] { Q_EMIT edited(shown()); };
   connect(where_, &QComboBox::activated, this, changed);

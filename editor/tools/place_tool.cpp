@@ -7,14 +7,14 @@
 #include <numbers>
 
 #include "editor/tools/circle_mark.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
 
 namespace psygen::editor {
 namespace {
 
-constexpr double kLeastOutlineM = 0.3;
+constexpr double kMinOutlineM = 0.3;
 const glm::vec3 kPlacedColour{1.0F, 0.62F, 0.1F}, kNextColour{0.85F, 0.88F, 0.95F};
 
 QString place_words(const char* text) {
@@ -34,8 +34,8 @@ bool is_placeable(const models::ModelType& type) {
 // How far a model reaches from its foot.
 double reach_m(const models::ModelType& type, const models::Parameters& parameters) {
   const core::Bounds box = type.bounds(parameters);
-  return std::max({double{-box.min.x}, double{-box.min.z}, double{box.max.x}, double{box.max.z},
-                   kLeastOutlineM});
+  return std::max(
+      {double{-box.min.x}, double{-box.min.z}, double{box.max.x}, double{box.max.z}, kMinOutlineM});
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr double kLeastStepM = 2, kStepShare = 1.0 / 2000;  // of a road, for its line
+constexpr double kMinStepM = 2, kStepShare = 1.0 / 2000;  // of a road, for its line
 const glm::vec3 kRoadColour{0.75F, 0.78F, 0.85F}, kChosenRoadColour{1.0F, 0.62F, 0.1F};
 
 QString words(const char* text) {
@@ -157,7 +157,7 @@ const ToolMarks& RoadTool::marks() {
     ToolMarks::Line& line = marks_.lines.emplace_back();
     std::vector<std::size_t>& parts = parts_.emplace_back();
     line.colour = shown_.road == i ? kChosenRoadColour : kRoadColour;
-    const double step_m = std::max(kLeastStepM, world::chords_m(roads[i]) * kStepShare);
+    const double step_m = std::max(kMinStepM, world::chords_m(roads[i]) * kStepShare);
     for (const world::RoadPoint& point :
          world::road_line(roads[i], step_m, [](glm::dvec2) { return 0.0; })) {
       line.points_m.push_back(point.at_m);

@@ -157,7 +157,7 @@ void ViewTools::add_brush() {
   QAction* const radius_label = add_of_tool(new QLabel(tr("  Radius ")));
   radius_ = new QDoubleSpinBox;
   radius_->setAccessibleName(tr("Radius of the brush in metres"));
-  radius_->setRange(MaskTool::kLeastRadiusM, MaskTool::kMostRadiusM);
+  radius_->setRange(MaskTool::kMinRadiusM, MaskTool::kMaxRadiusM);
   radius_->setDecimals(1);
   radius_->setSuffix(tr(" m"));
   radius_->setValue(mask_.brush().radius_m);

@@ -12,8 +12,8 @@
 namespace psygen::editor {
 namespace {
 
-constexpr double kPieceM = 3;    // of a line, so that it follows the ground
-constexpr int kMostPieces = 64;  // between two points
+constexpr double kPieceM = 3;   // of a line, so that it follows the ground
+constexpr int kMaxPieces = 64;  // between two points
 constexpr float kHandlePx = 9, kChosenPx = 13, kBorderPx = 2;
 constexpr float kReachHandlePx = 12, kReachLinePx = 7;  // of the mouse
 // Above the ground, so that it does not cover them: more of it where it is seen from afar.
@@ -105,7 +105,7 @@ std::vector<ToolOverlay::OnGround> ToolOverlay::line_on_ground(
   for (std::size_t i = 0; i < points.size(); ++i) {
     const glm::dvec2 from = points[i], to = i + 1 < points.size() ? points[i + 1] : from;
     const int pieces =
-        std::clamp(static_cast<int>(std::ceil(glm::length(to - from) / kPieceM)), 1, kMostPieces);
+        std::clamp(static_cast<int>(std::ceil(glm::length(to - from) / kPieceM)), 1, kMaxPieces);
     for (int k = 0; k < pieces; ++k)
       line.push_back({look_up(from + (to - from) * (static_cast<double>(k) / pieces), world), i});
   }

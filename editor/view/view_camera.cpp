@@ -8,7 +8,7 @@ namespace psygen::editor {
 namespace {
 
 constexpr double kTurnRadPx = 0.005;       // around the pivot
-constexpr double kMostPitch = 1.55;        // just less than straight up and down
+constexpr double kMaxPitch = 1.55;         // just less than straight up and down
 constexpr double kApproachPerStep = 0.85;  // of the distance that is left
 constexpr double kNearestM = 0.5;
 constexpr double kWheelM = 4;  // per step without a pivot
@@ -45,7 +45,7 @@ double ViewCamera::pivot_distance_m() const {
 void ViewCamera::orbit(double right_px, double down_px) {
   const double distance_m = pivot_ ? pivot_distance_m() : 0;
   pose_.yaw += right_px * kTurnRadPx;
-  pose_.pitch = std::clamp(pose_.pitch - down_px * kTurnRadPx, -kMostPitch, kMostPitch);
+  pose_.pitch = std::clamp(pose_.pitch - down_px * kTurnRadPx, -kMaxPitch, kMaxPitch);
   if (pivot_) focus(distance_m);
 }
 

@@ -18,7 +18,7 @@ namespace {
 constexpr int kBusyMs = 0, kIdleMs = 100;  // between pictures; idle: another program is in front
 constexpr int kYieldMs = 150;
 constexpr int kPreparedMs = 10;  // a picture waits for another world
-constexpr double kMostStepS = 0.1;
+constexpr double kMaxStepS = 0.1;
 constexpr int kLostAgainMs = 60'000;  // a device that is lost within that is not opened again
 
 }  // namespace
@@ -152,7 +152,7 @@ void WorldView::take_prepared() {
 
 void WorldView::tick() {
   if (!session_ || !isExposed()) return;
-  const double dt_s = std::min(static_cast<double>(since_tick_.nsecsElapsed()) * 1e-9, kMostStepS);
+  const double dt_s = std::min(static_cast<double>(since_tick_.nsecsElapsed()) * 1e-9, kMaxStepS);
   since_tick_.start();
   take_prepared();
   if (!paused_) take_text();
@@ -279,7 +279,7 @@ void WorldView::focus() {
   if (!selection_) return camera_.set_pose(session_->home());
   const float radius_m = glm::length(selection_->box.half_extent());
   core::WorldPosition middle = selection_->at;
-  middle.local += glm::dvec3(selection_->box.center());
+  middle.local += glm::dvec3(selection_->box.centre());
   camera_.set_pivot(middle);
   camera_.focus(std::max(2.5 * static_cast<double>(radius_m), 3.0));
 }

@@ -59,7 +59,7 @@ struct alignas(64) Worker {
   void work(Shared& shared);
   core::Result<void> make_blocks(Shared& shared);
   // The blocks of a run, until it is to stop. False: it was stopped.
-  core::Result<bool> make_run(Shared& shared, BlockSynthesizer& synthesizer, BlockSink* sink,
+  core::Result<bool> make_run(Shared& shared, BlockSynthesiser& synthesiser, BlockSink* sink,
                               const BlockRun& run, Totals& made);
 };
 
@@ -71,7 +71,7 @@ bool is_over(Shared& shared) {
   return true;
 }
 
-core::Result<bool> Worker::make_run(Shared& shared, BlockSynthesizer& synthesizer, BlockSink* sink,
+core::Result<bool> Worker::make_run(Shared& shared, BlockSynthesiser& synthesiser, BlockSink* sink,
                                     const BlockRun& run, Totals& made) {
   core::BlockCoord block;
   const std::function<void(const BlockMesh&)> visit = [&](const BlockMesh& mesh) {
@@ -83,7 +83,7 @@ core::Result<bool> Worker::make_run(Shared& shared, BlockSynthesizer& synthesize
     block = shared.region.block(i);
     const bool wanted = sink != nullptr && sink->wants(block);
     const std::uint64_t failed_before = made.failed;
-    synthesizer.synthesise(block, made, wanted ? visit : discard);
+    synthesiser.synthesise(block, made, wanted ? visit : discard);
     if (wanted && made.failed > failed_before) {
       sink->drop(block);
     } else if (wanted) {
@@ -96,14 +96,14 @@ core::Result<bool> Worker::make_run(Shared& shared, BlockSynthesizer& synthesize
 
 core::Result<void> Worker::make_blocks(Shared& shared) {
   const Options& options = shared.options;
-  BlockSynthesizer synthesizer(shared.world, shared.registry);
+  BlockSynthesiser synthesiser(shared.world, shared.registry);
   const std::unique_ptr<BlockSink> sink = options.make_sink ? options.make_sink() : nullptr;
   while (!shared.failed.load(std::memory_order_relaxed)) {
     const auto run = shared.source.next();
     if (!run) return tl::unexpected(run.error());
     if (!*run || is_over(shared)) break;
     Totals made;
-    const auto whole = make_run(shared, synthesizer, sink.get(), **run, made);
+    const auto whole = make_run(shared, synthesiser, sink.get(), **run, made);
     totals.add(made);
     if (!whole) return tl::unexpected(whole.error());
     if (!*whole) break;

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "engine/amplify/block_ranges.hpp"
-#include "engine/amplify/block_synthesizer.hpp"
+#include "engine/amplify/block_synthesiser.hpp"
 #include "engine/amplify/region.hpp"
 
 namespace psygen::amplify {

@@ -83,7 +83,7 @@ core::Result<exchange::Document> block_document(const world::World& world,
   exchange::Document document{name_of(block), {}};
   Totals totals;
   std::optional<core::Error> error;
-  BlockSynthesizer(world, registry, level).synthesise(block, totals, [&](const BlockMesh& mesh) {
+  BlockSynthesiser(world, registry, level).synthesise(block, totals, [&](const BlockMesh& mesh) {
     auto object = object_of(world, registry, mesh);
     if (object) document.objects.push_back(std::move(*object));
     if (!object && !error) error = object.error();

@@ -67,14 +67,14 @@ BlockRanges BlockRanges::joined(const BlockRanges& others) const {
 }
 
 std::string BlockRanges::text() const {
-  constexpr std::size_t kMostShown = 4;
+  constexpr std::size_t kMaxShown = 4;
   std::string text;
-  for (std::size_t i = 0; i < std::min(kMostShown, runs_.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMaxShown, runs_.size()); ++i) {
     const BlockRun& run = runs_[i];
     text += fmt::format("{}{}", i == 0 ? "" : ", ", run.first);
     if (run.count() > 1) text += fmt::format("-{}", run.end - 1);
   }
-  if (runs_.size() > kMostShown) text += ", …";
+  if (runs_.size() > kMaxShown) text += ", …";
   return text;
 }
 

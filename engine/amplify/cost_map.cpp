@@ -45,8 +45,8 @@ double predicted_block_seconds(const world::World& world, const models::Registry
 
 std::uint64_t sample_count(const Region& region) {
   const std::uint64_t blocks = region.block_count();
-  return std::min(blocks, std::clamp(blocks / CostMap::kBlocksPerSample, CostMap::kLeastSamples,
-                                     CostMap::kMostSamples));
+  return std::min(blocks, std::clamp(blocks / CostMap::kBlocksPerSample, CostMap::kMinSamples,
+                                     CostMap::kMaxSamples));
 }
 
 std::vector<double> prices_of(const world::World& world, const models::Registry& registry,

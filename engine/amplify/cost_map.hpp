@@ -50,8 +50,8 @@ class CostMap {
  public:
   // At most this many blocks are priced, and at most one in eight of regions with more than 512
   // blocks: together about 1 % of what synthesis takes.
-  static constexpr std::uint64_t kMostSamples = 4096;
-  static constexpr std::uint64_t kBlocksPerSample = 8, kLeastSamples = 64;
+  static constexpr std::uint64_t kMaxSamples = 4096;
+  static constexpr std::uint64_t kBlocksPerSample = 8, kMinSamples = 64;
 
   // Prices a region, which check_region() has accepted.
   static CostMap of(const world::World& world, const models::Registry& registry,

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/amplify/block_synthesizer.hpp"
+#include "engine/amplify/block_synthesiser.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::amplify {

@@ -72,7 +72,7 @@ std::vector<Finished> compacted(std::vector<Finished> finished) {
   std::vector<Finished> joined;
   for (Finished& f : finished) {
     if (!joined.empty() && joined.back().run.end == f.run.first &&
-        f.run.end - joined.back().run.first <= kMostCompacted) {
+        f.run.end - joined.back().run.first <= kMaxCompacted) {
       joined.back().run.end = f.run.end;
       joined.back().totals.add(f.totals);
     } else {

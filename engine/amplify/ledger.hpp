@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "engine/amplify/block_ranges.hpp"
-#include "engine/amplify/block_synthesizer.hpp"
+#include "engine/amplify/block_synthesiser.hpp"
 #include "engine/amplify/job_key.hpp"
 
 namespace psygen::amplify {
@@ -38,9 +38,9 @@ struct LedgerText {
 
 // The blocks of all entries. Fails with kInvalidArgument if two of them have a block in common.
 core::Result<BlockRanges> blocks_of(const std::vector<Finished>& finished);
-// Entries in ascending order; neighbours become one of at most kMostCompacted blocks, which is what
+// Entries in ascending order; neighbours become one of at most kMaxCompacted blocks, which is what
 // one lost file costs.
-inline constexpr std::uint64_t kMostCompacted = 4096;
+inline constexpr std::uint64_t kMaxCompacted = 4096;
 std::vector<Finished> compacted(std::vector<Finished> finished);
 
 // The text of a whole ledger, and the line of an entry.

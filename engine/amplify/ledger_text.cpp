@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMaxLedgerBytes = std::size_t{1} << 30;
 constexpr std::string_view kFirstWords = "psygen ledger 1";
 constexpr std::size_t kCheckBytes = 10;  // " ~" and eight digits
-constexpr std::size_t kMostNameBytes = 200;
+constexpr std::size_t kMaxNameBytes = 200;
 
 std::string check_of(std::string_view line) {
   const std::uint64_t hash = core::hash_bytes(std::as_bytes(std::span(line.data(), line.size())));
@@ -133,7 +133,7 @@ std::string ledger_text(const LedgerText& ledger) {
   std::string text = checked(std::string(kFirstWords)) +
                      checked(fmt::format("version {}", key.version)) +
                      checked(fmt::format("world {:016x} {}", key.world_hash,
-                                         core::shown(key.world, kMostNameBytes))) +
+                                         core::shown(key.world, kMaxNameBytes))) +
                      checked(fmt::format("sample {:016x}", key.sample_hash)) +
                      checked(fmt::format("region {},{},{},{}", r.x0, r.z0, r.x1, r.z1)) +
                      checked(fmt::format("format {}", name_of(key.format))) +

@@ -34,7 +34,7 @@ std::string ledger_name(const Shard& shard);
 class LedgerSource final : public RunSource {
  public:
   // The longest run: what a kill costs a thread at most.
-  static constexpr std::uint64_t kMostBlocks = 64;
+  static constexpr std::uint64_t kMaxBlocks = 64;
 
   // `ledger` must outlive it.
   LedgerSource(BlockRanges todo, unsigned threads, Ledger& ledger);
@@ -52,7 +52,7 @@ class LedgerSource final : public RunSource {
 // The next run from `position` of some blocks for one of `threads` threads: 1 to `most`
 // neighbours, fewer towards the end. Requires position < todo.count().
 BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads,
-                  std::uint64_t most = LedgerSource::kMostBlocks);
+                  std::uint64_t most = LedgerSource::kMaxBlocks);
 
 // Of what a ledger says, the entries of which every block has its whole file in the folder. An
 // entry without one of its files is left out as a whole.

@@ -29,7 +29,7 @@ namespace psygen::app {
 namespace {
 
 constexpr double kDefaultSeconds = 27.0;  // the paper's walk
-constexpr double kLeastFrameMs = 1e-3;    // of a frame in which the clock went back
+constexpr double kMinFrameMs = 1e-3;      // of a frame in which the clock went back
 constexpr double kEyeHeightM = 1.7;       // a flying user stays above the ground
 
 // On the virtual clock a flight must not depend on the device. What the GPU path draws is known
@@ -151,7 +151,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   record.has_picture = saves_picture();
   record.index = frames_;
   record.time_s = now_s;
-  record.frame_ms = std::max(frame_ms, kLeastFrameMs);
+  record.frame_ms = std::max(frame_ms, kMinFrameMs);
   if (is_gap(frame_ms, usual_ms_, core::suspended_seconds() - asleep_s))
     record.apart = telemetry::Apart::kGap;
   record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_start_s) * 1000.0;

@@ -16,9 +16,9 @@ core::Result<render::GroundPicture> read_picture(const std::filesystem::path& fo
   if (!world::is_below(folder, file))
     return core::fail(core::ErrorCode::kInvalidArgument,
                       file.string() + " leads out of the folder of the world's file");
-  constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20;
   const image::ImageLimits limits{render::kLargestGroundPicture, render::kLargestGroundPicture,
-                                  kMostBytes, kMostBytes};
+                                  kMaxBytes, kMaxBytes};
   auto image = image::read_image(file, limits);
   if (!image) return tl::unexpected(image.error());
   return render::ground_picture(image->width, image->height, image->rgba)

@@ -68,9 +68,9 @@ void add_ridge(const Ridge& ridge, std::uint64_t seed, render::HudDrawing& drawi
 }
 
 // Makes a text that is wider than `room_px` smaller, and shortens it where it would be too small.
-void fit(render::HudText& text, float least_px, float room_px) {
+void fit(render::HudText& text, float min_px, float room_px) {
   const float share = room_px / std::max(render::measure(text).x, 1.0F);
-  text.size_px = std::max(std::min(text.size_px, text.size_px * share), least_px);
+  text.size_px = std::max(std::min(text.size_px, text.size_px * share), min_px);
   std::string rest = text.text;
   while (render::measure(text).x > room_px && !rest.empty()) {
     while (rest.size() > 1 && (static_cast<unsigned char>(rest.back()) & 0xC0U) == 0x80)

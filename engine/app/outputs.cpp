@@ -1,7 +1,7 @@
 // Writes the outputs of a flight: the facts of the summary and the files of the output folder.
 #include <fmt/format.h>
 
-#include "engine/amplify/block_synthesizer.hpp"
+#include "engine/amplify/block_synthesiser.hpp"
 #include "engine/app/flight.hpp"
 #include "engine/app/virtual_frame.hpp"
 #include "engine/render/preset.hpp"

@@ -27,7 +27,7 @@ namespace {
 
 constexpr double kHomeHeightM = 25.0;  // of the camera before it is moved
 constexpr double kWindowHz = 60;       // held in windows unless the options say otherwise
-constexpr double kMostTargetHz = 1e6;
+constexpr double kMaxTargetHz = 1e6;
 constexpr double kMinimisedWaitSeconds = 0.1;  // between looks at a minimised window
 
 tl::unexpected<core::Error> closed_early() {
@@ -171,10 +171,10 @@ core::Result<void> Session::open_renderer(GroundPictures ground, Loading& loadin
 core::Result<void> Session::open_scene(world::World world, models::Registry registry,
                                        Loading& loading) {
   const double target_hz = options_.target_hz.value_or(options_.headless ? 0 : kWindowHz);
-  if (!(target_hz >= 0 && target_hz <= kMostTargetHz))
+  if (!(target_hz >= 0 && target_hz <= kMaxTargetHz))
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("the target must be 0 to {:.0f} frames a second, not {:g}",
-                                  kMostTargetHz, target_hz));
+                                  kMaxTargetHz, target_hz));
   options_.scene.target_frame_ms = target_hz > 0 ? 1000 / target_hz : 0;
   if (options_.trace) trace_ = std::make_unique<telemetry::TraceLog>();
   auto scene = scene::Scene::create(

@@ -17,7 +17,7 @@ namespace {
 // A missing device is looked for after so many seconds, and then twice as long each time: looking
 // takes milliseconds, because the system's sound server is asked.
 constexpr double kFirstRetryS = 2, kLongestRetryS = 64;
-constexpr double kMostSecondsAtOnce = 60;
+constexpr double kMaxSecondsAtOnce = 60;
 
 core::Result<void> check(const Play& how, std::uint32_t channels) {
   const auto refuse = [](std::string_view what) {
@@ -250,7 +250,7 @@ void Audio::set_paused(Bus bus, bool paused) {
 void Audio::update(const core::CameraPose& listener, double dt_s) {
   State& s = *state_;
   if (core::is_valid(listener)) s.listener = listener;
-  dt_s = dt_s > 0 ? std::min(dt_s, kMostSecondsAtOnce) : 0;
+  dt_s = dt_s > 0 ? std::min(dt_s, kMaxSecondsAtOnce) : 0;
   s.check_device(dt_s);
   if (s.output != nullptr) {
     s.choose();

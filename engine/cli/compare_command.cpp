@@ -34,7 +34,7 @@ CompareCommand::CompareCommand(CLI::App& cli)
   c.add_option("--out", out_, "Folder that keeps the runs, compare.json and compare.html");
   c.add_option("--pairs", pairs_, "Pairs of runs in a batch")
       ->capture_default_str()
-      ->transform(integer_between(compare::kFewestPairs, compare::kMostPairs));
+      ->transform(integer_between(compare::kFewestPairs, compare::kMaxPairs));
   c.add_option("--aa", aa_, "Compare A with itself so many times, for the rate of false alarms")
       ->transform(integer_between(0, 100'000));
   c.add_flag("--instructions", instructions_,

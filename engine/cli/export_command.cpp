@@ -15,13 +15,13 @@
 #include "engine/core/nearest_word.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/exchange/unpack.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
 namespace {
 
-constexpr std::size_t kMostShownBytes = 60;  // of a value
+constexpr std::size_t kMaxShownBytes = 60;  // of a value
 
 tl::unexpected<core::Error> refuse(std::string sentence) {
   return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
@@ -88,7 +88,7 @@ std::string wanted_by(const models::ParameterSpec& spec) {
 // "name=value" into `p`.
 core::Result<void> set(const models::ModelType& type, models::Parameters& p,
                        const std::string& setting) {
-  const auto shown = [](std::string_view text) { return core::shown(text, kMostShownBytes); };
+  const auto shown = [](std::string_view text) { return core::shown(text, kMaxShownBytes); };
   const std::size_t equals = setting.find('=');
   if (equals == std::string::npos)
     return refuse(fmt::format("'{}' is not name=value", shown(setting)));
@@ -202,7 +202,7 @@ core::Result<exchange::Document> ExportCommand::model_document(
   if (found < 0) {
     const std::vector<std::string_view> names = model_names(registry);
     return refuse(fmt::format("there is no model '{}'; there are {}{}",
-                              core::shown(model_, kMostShownBytes), fmt::join(names, ", "),
+                              core::shown(model_, kMaxShownBytes), fmt::join(names, ", "),
                               core::suggestion(model_, names)));
   }
   const models::ModelType& type = registry[static_cast<models::ModelIndex>(found)];
@@ -211,7 +211,7 @@ core::Result<exchange::Document> ExportCommand::model_document(
   if (auto ok = check_level(type, level_); !ok) return tl::unexpected(ok.error());
   const auto mesh = synthesis::HeapDestination::make(type, p, level_);
   if (!mesh) return tl::unexpected(mesh.error());
-  const auto outcome = synthesis::synthesize_guarded(type, p, level_, mesh->view());
+  const auto outcome = synthesis::synthesise_guarded(type, p, level_, mesh->view());
   if (!outcome.ok) return core::fail(core::ErrorCode::kSynthesisFailed, outcome.error);
   auto object = exchange::unpack(type, p, level_, mesh->size(), mesh->view(), palette);
   if (!object) return tl::unexpected(object.error());

@@ -60,7 +60,7 @@ int ExportCommand::export_heightmap(const world::World& world, unsigned threads)
     return exit_code_of(report.error());
   }
   core::log_info(fmt::format("wrote {}: {} x {} heights from {:.1f} to {:.1f} m", out_,
-                             report->width, report->height, report->least_m, report->most_m));
+                             report->width, report->height, report->min_m, report->max_m));
   return kOk;
 }
 

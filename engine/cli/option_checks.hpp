@@ -42,8 +42,8 @@ CLI::Validator decimal_between(Number low, Number high, std::string_view kind) {
           text = fmt::format("{}", value);
           return std::string();
         }
-        constexpr std::size_t kMostShownBytes = 60;
-        return fmt::format("'{}' is not {} from {} to {}", core::shown(text, kMostShownBytes), kind,
+        constexpr std::size_t kMaxShownBytes = 60;
+        return fmt::format("'{}' is not {} from {} to {}", core::shown(text, kMaxShownBytes), kind,
                            low, high);
       },
       fmt::format("{} to {}", low, high));
@@ -74,8 +74,8 @@ inline CLI::Validator one_of(std::vector<std::string_view> words) {
   return CLI::Validator(
       [words = std::move(words)](std::string& text) {
         if (std::ranges::find(words, text) != words.end()) return std::string();
-        constexpr std::size_t kMostShownBytes = 60;
-        return fmt::format("'{}' is unknown; allowed are {}{}", core::shown(text, kMostShownBytes),
+        constexpr std::size_t kMaxShownBytes = 60;
+        return fmt::format("'{}' is unknown; allowed are {}{}", core::shown(text, kMaxShownBytes),
                            fmt::join(words, ", "), core::suggestion(text, words));
       },
       shown);

@@ -67,7 +67,7 @@ PictureCommand::PictureCommand(CLI::App& cli)
       ->check(valid_if(parse_place, "X,Z"));
   c.add_option("--height", height_m_, "Metres above the ground there, or the water on it")
       ->capture_default_str()
-      ->check(number_between(CameraPath::kLeastHeightM, CameraPath::kMostHeightM));
+      ->check(number_between(CameraPath::kMinHeightM, CameraPath::kMaxHeightM));
   c.add_option("--yaw", yaw_deg_, "Where it looks, in degrees: 0 north, 90 east")
       ->capture_default_str()
       ->check(number_between(-36'000, 36'000));

@@ -16,7 +16,7 @@ TestCommand::TestCommand(CLI::App& cli)
   c.add_option("--worst", options_.worst_frames,
                "Pictures of the worst frames of a failed test, in --out; 0: none")
       ->capture_default_str()
-      ->transform(integer_between(0, frametest::kMostWorstFrames));
+      ->transform(integer_between(0, frametest::kMaxWorstFrames));
   c.add_option("--device", options_.device, "Part of the name of the Vulkan device");
 }
 

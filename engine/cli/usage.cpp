@@ -13,11 +13,11 @@
 namespace psygen::cli {
 namespace {
 
-constexpr std::size_t kMostShownBytes = 80;  // of an argument
-constexpr std::size_t kMostSaidBytes = 400;  // of what CLI11 says, with an argument in it
+constexpr std::size_t kMaxShownBytes = 80;  // of an argument
+constexpr std::size_t kMaxSaidBytes = 400;  // of what CLI11 says, with an argument in it
 
 std::string in_quotes(std::string_view argument) {
-  return fmt::format("'{}'", core::shown(argument, kMostShownBytes));
+  return fmt::format("'{}'", core::shown(argument, kMaxShownBytes));
 }
 
 // Of an app and its option groups, which are apps without a name.
@@ -38,7 +38,7 @@ std::string check_value(const std::string& text) {
   if (text.empty()) return "the value is empty";
   if (text.starts_with("--"))
     return fmt::format("a value is missing before {0} (a file of that name is ./{0})",
-                       core::shown(text, kMostShownBytes));
+                       core::shown(text, kMaxShownBytes));
   return {};
 }
 
@@ -142,7 +142,7 @@ std::string sentence_of(CLI::App& cli, CLI::App& command, const CLI::ParseError&
   // What is missing may be there under a misspelt name.
   const bool wrong_value = kind == CLI::ExitCodes::ValidationError;
   if (!wrong_value && !command.remaining().empty()) return about_extra_of(command);
-  return core::shown(error.what(), kMostSaidBytes);
+  return core::shown(error.what(), kMaxSaidBytes);
 }
 
 int refuse(CLI::App& cli, const CLI::ParseError& error) {

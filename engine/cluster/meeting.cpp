@@ -8,7 +8,7 @@
 #include "engine/cluster/one_mind.hpp"
 #include "engine/core/bytes.hpp"
 #include "engine/core/hash.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::cluster {
@@ -21,7 +21,7 @@ KnownType known_type(const models::ModelType& type) {
   const auto mesh = synthesis::HeapDestination::make(type, p, level);
   if (!mesh) return known;
   const models::MeshView view = mesh->view();
-  if (synthesis::synthesize_guarded(type, p, level, view).ok)
+  if (synthesis::synthesise_guarded(type, p, level, view).ok)
     known.sample_hash = core::combine(core::hash_bytes(view.vertices),
                                       core::hash_bytes(std::as_bytes(view.indices)));
   return known;

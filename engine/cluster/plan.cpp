@@ -59,7 +59,7 @@ Plan::Plan(BlockRanges todo, const CostMap& costs, unsigned ranks, const PlanOpt
   }
   if (rest_.count() == 0) return;
   const Costs rest(rest_, costs);
-  const double least = options.least_chunk * each;
+  const double least = options.min_chunk * each;
   chunks_.push_back(0);
   for (double done = 0; chunks_.back() < rest_.count();) {
     done += std::max((rest.total() - done) / (2.0 * ranks), least);

@@ -18,7 +18,7 @@ struct PlanOptions {
   double fixed_share = 0.5;
   // The least chunk, as a part of what a rank makes in the mean: how unevenly ranks end. Chunks
   // before are larger: a half of what each rank has left to claim in the mean.
-  double least_chunk = 0.0025;
+  double min_chunk = 0.0025;
 };
 
 class Plan {

@@ -19,9 +19,9 @@ RemoteModels::RemoteModels(FlightKey key, Peers& peers, const RemoteOptions& opt
       is_lost_(peers.count()) {}
 
 bool RemoteModels::takes(const models::ModelType& type, const synthesis::Request& request) const {
-  const double least_s =
+  const double min_s =
       send_above_s_ ? *send_above_s_ : way_.seconds(static_cast<double>(request.size.bytes()));
-  if (!(request.cost.warm_s() > least_s) || request.edits || request.parameters.edits() != nullptr)
+  if (!(request.cost.warm_s() > min_s) || request.edits || request.parameters.edits() != nullptr)
     return false;
   return std::ranges::any_of(key_.types, [&](const KnownType& known) {
     return known.name == type.name() && known.identity == type.identity();

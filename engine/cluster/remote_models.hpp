@@ -26,7 +26,7 @@ struct RemoteOptions {
   // Requests that are predicted to take longer, in seconds of a core, may go; not set: longer than
   // their way there and back, which is measured.
   std::optional<double> send_above_s;
-  unsigned most_places = 256;  // each has a thread here, which mostly sleeps
+  unsigned max_places = 256;  // each has a thread here, which mostly sleeps
 };
 
 // What a mesh takes there and back, beside being made.

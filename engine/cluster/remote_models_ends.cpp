@@ -15,7 +15,7 @@
 namespace psygen::cluster {
 namespace {
 
-constexpr unsigned kMostPinged = 16;           // ranks, spread over all of them
+constexpr unsigned kMaxPinged = 16;            // ranks, spread over all of them
 constexpr int kPings = 5;                      // of each size: their median counts
 constexpr std::uint64_t kPingBytes = 1 << 20;  // of the larger ones
 constexpr double kSilence_s = 10;              // after which a rank is taken for stalled
@@ -27,7 +27,7 @@ core::Result<std::unique_ptr<RemoteModels>> RemoteModels::start(
     FlightKey key, const std::vector<unsigned>& threads, Peers& peers,
     const RemoteOptions& options) {
   std::unique_ptr<RemoteModels> models(new RemoteModels(std::move(key), peers, options));
-  models->add_places(threads, options.most_places);
+  models->add_places(threads, options.max_places);
   models->measure_way();
   auto receiver = core::start_thread([m = models.get()] { m->receive_answers(); });
   if (!receiver) return tl::unexpected(receiver.error());
@@ -65,7 +65,7 @@ std::optional<double> RemoteModels::ping_s(unsigned rank, std::uint64_t bytes) {
 }
 
 void RemoteModels::measure_way() {
-  const unsigned others = peers_.count() - 1, pinged = std::min(others, kMostPinged);
+  const unsigned others = peers_.count() - 1, pinged = std::min(others, kMaxPinged);
   double slowest_s = 0;
   for (unsigned i = 0; i < pinged; ++i) {
     const unsigned rank = 1 + i * others / pinged;

@@ -17,7 +17,7 @@
 #include "engine/cluster/nap.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/start_thread.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "engine/synthesis/thread_priority.hpp"
 
 namespace psygen::cluster {
@@ -27,7 +27,7 @@ using synthesis::RemoteMesh;
 
 constexpr unsigned kFlyer = 0;  // the rank that asks
 constexpr std::chrono::milliseconds kLongestNap{1};
-constexpr std::uint64_t kMostPong = 1 << 24;  // bytes
+constexpr std::uint64_t kMaxPong = 1 << 24;  // bytes
 
 // What the threads of a rank share. Each holds it, so that one that hangs harms nobody.
 struct Shop {
@@ -78,7 +78,7 @@ Bytes answer_to(const MakeMessage& make, Shop& shop) {
   const auto& type =
       (*shop.registry)[static_cast<models::ModelIndex>(shop.registry->find(make.type))];
   synthesis::SynthesisOutcome outcome =
-      synthesis::synthesize_guarded(type, make.parameters, make.level, writer->mesh());
+      synthesis::synthesise_guarded(type, make.parameters, make.level, writer->mesh());
   if (!outcome.ok) {
     ++shop.failed;
     const auto answer =
@@ -179,7 +179,7 @@ bool take(Parcel&& parcel, Shop& shop) {
     shop.queue.push_back(std::move(message->make));
     shop.changed.notify_one();
   } else if (message && message->kind == MessageKind::kPing) {
-    shop.send(pong_message(message->ticket, std::min(message->wanted_bytes, kMostPong)));
+    shop.send(pong_message(message->ticket, std::min(message->wanted_bytes, kMaxPong)));
   } else {
     ++shop.refused;
     shop.send(failed_message(0, RemoteMesh::Answer::kNone, "a request came damaged"));

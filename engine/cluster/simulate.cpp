@@ -96,7 +96,7 @@ class Simulation {
   void make(Thread& thread) {
     Rank& rank = ranks_[thread.rank];
     const BlockRun run =
-        amplify::next_run(rank.blocks, rank.position, job_.threads, job_.most_blocks_per_run);
+        amplify::next_run(rank.blocks, rank.position, job_.threads, job_.max_blocks_per_run);
     rank.position += run.count();
     const double seconds = job_.seconds_of(run);
     report_.core_seconds += seconds;

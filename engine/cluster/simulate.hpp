@@ -33,7 +33,7 @@ struct VirtualJob {
   std::function<double(const amplify::BlockRun&)> bytes_of;
   MachineLimits limits;
   // A thread takes at most so many blocks at a time.
-  std::uint64_t most_blocks_per_run = 64;
+  std::uint64_t max_blocks_per_run = 64;
 };
 
 // Shares are 0 … 1.

@@ -77,12 +77,12 @@ core::Result<void> check(Runs a, Runs b) {
 // The frames that no run leaves out. Times below a microsecond count as one.
 Times times_of(Runs runs, const std::vector<bool>& left_out,
                std::vector<double> RecordedRun::*column) {
-  constexpr double kLeastMs = 1e-3;
+  constexpr double kMinMs = 1e-3;
   Times times;
   for (const RecordedRun& run : runs) {
     times.emplace_back();
     for (std::size_t k = 0; k < left_out.size(); ++k)
-      if (!left_out[k]) times.back().push_back(std::max((run.*column)[k], kLeastMs));
+      if (!left_out[k]) times.back().push_back(std::max((run.*column)[k], kMinMs));
   }
   return times;
 }
@@ -367,7 +367,7 @@ core::Result<Comparison> compare(Runs a, Runs b) {
     result = compare_exactly(a, b);
   } else {
     const bool two = a.size() >= 2 * kFewestPairs;
-    const std::size_t half = std::min(two ? a.size() / 2 : a.size(), kMostPairs);
+    const std::size_t half = std::min(two ? a.size() / 2 : a.size(), kMaxPairs);
     for (std::size_t from = 0; from == 0 || (two && from == half); from += half) {
       auto batch = judge_batch(a.subspan(from, half), b.subspan(from, half));
       if (!batch) return tl::unexpected(batch.error());

@@ -41,8 +41,8 @@ std::vector<double> at_times(const RecordedRun& run, const std::vector<double>& 
 }
 
 // Over the runs of a set: the least time of each frame, without those that any run leaves out.
-std::vector<double> least_times(Runs runs, const std::vector<double>& times,
-                                const std::vector<bool>& left_out) {
+std::vector<double> min_times(Runs runs, const std::vector<double>& times,
+                              const std::vector<bool>& left_out) {
   std::vector<double> least(times.size(), std::numeric_limits<double>::infinity());
   for (const RecordedRun& run : runs) {
     const std::vector<double> ms = at_times(run, run.frame_ms, times);
@@ -84,8 +84,8 @@ Plot overlay(const char* title, const char* unit, std::vector<double> a, std::ve
 std::string plots(Runs a, Runs b) {
   const std::vector<double>& times = a.front().time_s;
   const std::vector<bool> left_out = left_out_of_any(a, b, times.size());
-  const std::vector<double> a_ms = least_times(a, times, left_out);
-  const std::vector<double> b_ms = least_times(b, times, left_out);
+  const std::vector<double> a_ms = min_times(a, times, left_out);
+  const std::vector<double> b_ms = min_times(b, times, left_out);
   telemetry::PageRows rows;
   rows.times_s = times;
   rows.timed_series = 2;

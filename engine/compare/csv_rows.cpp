@@ -10,7 +10,7 @@
 namespace psygen::compare {
 namespace {
 
-constexpr std::size_t kMostShownBytes = 40;
+constexpr std::size_t kMaxShownBytes = 40;
 
 void split(std::string_view line, std::vector<std::string_view>& cells) {
   cells.clear();
@@ -68,7 +68,7 @@ core::Result<double> number_in(std::string_view cell, const std::string& where,
       value < 1e15)
     return value;
   return refuse_file(where, fmt::format("{}: '{}' is not a number from 0 on", name,
-                                        core::shown(cell, kMostShownBytes)));
+                                        core::shown(cell, kMaxShownBytes)));
 }
 
 }  // namespace psygen::compare

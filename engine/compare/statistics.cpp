@@ -41,7 +41,7 @@ struct LeastOfBoth {
 };
 
 // Bit i of the labelling exchanges the runs of pair i.
-LeastOfBoth least_of(const Times& a, const Times& b, std::uint32_t labelling) {
+LeastOfBoth min_of(const Times& a, const Times& b, std::uint32_t labelling) {
   LeastOfBoth least{Least(a[0].size()), Least(a[0].size())};
   for (std::size_t i = 0; i < a.size(); ++i) {
     const bool swapped = (labelling >> i & 1) != 0;
@@ -116,7 +116,7 @@ Tails ratio_tails(const Times& a, const Times& b, double scale) {
     for (double& ms : run)
       ms /= scale;
   return over_labellings(
-      a.size(), [&](std::uint32_t labelling) { return ratio_of(least_of(a, scaled, labelling)); });
+      a.size(), [&](std::uint32_t labelling) { return ratio_of(min_of(a, scaled, labelling)); });
 }
 
 // The ends of the interval: scales at which what is left is refused.
@@ -142,7 +142,7 @@ double log_choose(std::uint64_t n, std::uint64_t k) {
 }  // namespace
 
 double swap_test(std::span<const double> a, std::span<const double> b) {
-  PSYGEN_ASSERT(a.size() == b.size() && a.size() <= 2 * kMostPairs, "pairs");
+  PSYGEN_ASSERT(a.size() == b.size() && a.size() <= 2 * kMaxPairs, "pairs");
   return over_labellings(a.size(),
                          [&](std::uint32_t labelling) {
                            double difference = 0;
@@ -154,10 +154,10 @@ double swap_test(std::span<const double> a, std::span<const double> b) {
 }
 
 MinimaTest minima_test(const Times& a, const Times& b) {
-  PSYGEN_ASSERT(a.size() > 1 && a.size() == b.size() && a.size() <= kMostPairs, "pairs");
+  PSYGEN_ASSERT(a.size() > 1 && a.size() == b.size() && a.size() <= kMaxPairs, "pairs");
   MinimaTest test;
   const Times sums_a = windows_of(a, kSumWindow), sums_b = windows_of(b, kSumWindow);
-  test.ratio = ratio_of(least_of(sums_a, sums_b, 0));
+  test.ratio = ratio_of(min_of(sums_a, sums_b, 0));
   const Tails tails = ratio_tails(sums_a, sums_b, 1);
   test.p_slower = tails.p_larger;
   test.p_faster = tails.p_smaller;
@@ -166,14 +166,14 @@ MinimaTest minima_test(const Times& a, const Times& b) {
 }
 
 TailTest tail_test(const Times& a, const Times& b) {
-  PSYGEN_ASSERT(a.size() > 1 && a.size() == b.size() && a.size() <= 2 * kMostPairs, "pairs");
+  PSYGEN_ASSERT(a.size() > 1 && a.size() == b.size() && a.size() <= 2 * kMaxPairs, "pairs");
   const Times sums_a = windows_of(a, kTailWindow), sums_b = windows_of(b, kTailWindow);
-  const double seen = tail_of(least_of(sums_a, sums_b, 0));
+  const double seen = tail_of(min_of(sums_a, sums_b, 0));
   std::mt19937_64 random(1);
   std::uint32_t larger = 1;  // the labelling that was seen
   for (std::uint32_t i = 1; i < kTailLabellings; ++i) {
     const auto labelling = static_cast<std::uint32_t>(random());
-    larger += tail_of(least_of(sums_a, sums_b, labelling)) >= seen * kSame ? 1U : 0U;
+    larger += tail_of(min_of(sums_a, sums_b, labelling)) >= seen * kSame ? 1U : 0U;
   }
   return {seen, static_cast<double>(larger) / kTailLabellings};
 }

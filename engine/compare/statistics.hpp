@@ -13,10 +13,10 @@ namespace psygen::compare {
 
 // So many pairs can be judged: with fewer no p is below 0.01, with more there are too many
 // labellings.
-inline constexpr std::size_t kFewestPairs = 7, kMostPairs = 12;
+inline constexpr std::size_t kFewestPairs = 7, kMaxPairs = 12;
 
 // One figure of each run. p that the sum of b − a is at least what it is. Requires equal sizes, at
-// most 2 kMostPairs. O(n 2^n).
+// most 2 kMaxPairs. O(n 2^n).
 double swap_test(std::span<const double> a, std::span<const double> b);
 
 // Times of the frames of runs: [run][frame], all of one length of at least 1, above 0. Frame k does
@@ -31,7 +31,7 @@ struct MinimaTest {
   double p_faster = 1;       // … or a smaller one
   double low = 0, high = 0;  // of the ratio: what a two-sided test at 5 % does not refuse
 };
-// Requires equal sizes, 2 to kMostPairs. O(2^n n frames), some 100 times.
+// Requires equal sizes, 2 to kMaxPairs. O(2^n n frames), some 100 times.
 MinimaTest minima_test(const Times& a, const Times& b);
 
 // What the sum hides: of windows of 3 frames, the second least of a set's runs, B's over A's, and
@@ -40,7 +40,7 @@ struct TailTest {
   double ratio = 1;
   double p = 1;  // that chance alone gives this ratio or a larger one; of 4096 labellings at random
 };
-// Requires equal sizes, 2 to 2 kMostPairs.
+// Requires equal sizes, 2 to 2 kMaxPairs.
 TailTest tail_test(const Times& a, const Times& b);
 
 // Of each run, how slow its rare frames are: the mean logarithm of the largest 1.5 % of the ratios

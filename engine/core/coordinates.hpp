@@ -27,11 +27,11 @@ struct Bounds {
   glm::vec3 min{0.0F};
   glm::vec3 max{0.0F};
   // Returns the box with this centre and these half extents (>= 0), in metres.
-  static Bounds around(const glm::vec3& center, const glm::vec3& half_extent) {
-    return {center - half_extent, center + half_extent};
+  static Bounds around(const glm::vec3& centre, const glm::vec3& half_extent) {
+    return {centre - half_extent, centre + half_extent};
   }
   // Centre and half extents of the box, in metres.
-  glm::vec3 center() const { return (min + max) * 0.5F; }
+  glm::vec3 centre() const { return (min + max) * 0.5F; }
   glm::vec3 half_extent() const { return (max - min) * 0.5F; }
   friend bool operator==(const Bounds&, const Bounds&) = default;
 };

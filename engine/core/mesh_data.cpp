@@ -45,16 +45,16 @@ Result<void> check(const MeshData& mesh) {
                                 mesh.indices[i], count));
     }
   }
-  constexpr float kMostUv = 1e6F;
-  return check_list("positions", mesh.positions, count, kMostMeshReachM)
+  constexpr float kMaxUv = 1e6F;
+  return check_list("positions", mesh.positions, count, kMaxMeshReachM)
       .and_then([&] { return check_list("normals", mesh.normals, count, 1e6F); })
-      .and_then([&] { return check_list("uvs", mesh.uvs, count, kMostUv); })
+      .and_then([&] { return check_list("uvs", mesh.uvs, count, kMaxUv); })
       .and_then([&] { return check_list("colours", mesh.colours, count, 1e6F); });
 }
 
-std::vector<MeshData> split(const MeshData& mesh, std::uint32_t most_vertices) {
+std::vector<MeshData> split(const MeshData& mesh, std::uint32_t max_vertices) {
   std::vector<MeshData> parts;
-  if (mesh.positions.size() <= most_vertices) {
+  if (mesh.positions.size() <= max_vertices) {
     parts.push_back(mesh);
     return parts;
   }
@@ -72,7 +72,7 @@ std::vector<MeshData> split(const MeshData& mesh, std::uint32_t most_vertices) {
     part.indices.push_back(at->second);
   };
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    if (parts.empty() || parts.back().positions.size() + 3 > most_vertices) {
+    if (parts.empty() || parts.back().positions.size() + 3 > max_vertices) {
       parts.emplace_back();
       placed.clear();
     }

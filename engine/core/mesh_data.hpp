@@ -22,17 +22,17 @@ struct MeshData {
 };
 
 // Largest distance of a position from the mesh's origin, in metres.
-inline constexpr float kMostMeshReachM = 1e5F;
+inline constexpr float kMaxMeshReachM = 1e5F;
 
 // Fails with kInvalidArgument and a message that names the list and the element: no triangles,
 // lists of different lengths, indices out of range, numbers that are not finite or too large. O(n).
 Result<void> check(const MeshData& mesh);
 
 // The most vertices that a mesh for drawing can have.
-inline constexpr std::uint32_t kMostMeshVertices = 65535;
+inline constexpr std::uint32_t kMaxMeshVertices = 65535;
 
-// Splits the mesh into parts of at most `most_vertices` (>= 3) vertices, which share none. The mesh
+// Splits the mesh into parts of at most `max_vertices` (>= 3) vertices, which share none. The mesh
 // must have passed check(). Triangles keep their order. O(n).
-std::vector<MeshData> split(const MeshData& mesh, std::uint32_t most_vertices = kMostMeshVertices);
+std::vector<MeshData> split(const MeshData& mesh, std::uint32_t max_vertices = kMaxMeshVertices);
 
 }  // namespace psygen::core

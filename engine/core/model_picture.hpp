@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kPictureViews = 8;
 inline constexpr std::uint32_t kPictureLevels = 6;  // the last one has 4 x 4 texels
 // Limit of the renderer: one byte holds an impostor and a view, and every device has as many
 // layers.
-inline constexpr std::uint32_t kMostPictures = 31;
+inline constexpr std::uint32_t kMaxPictures = 31;
 
 using ModelPicture = std::vector<std::uint8_t>;
 

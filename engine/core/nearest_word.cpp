@@ -9,8 +9,8 @@
 namespace psygen::core {
 namespace {
 
-constexpr std::size_t kMostBytes = 64;
-constexpr std::size_t kLeastBeginning = 3;
+constexpr std::size_t kMaxBytes = 64;
+constexpr std::size_t kMinBeginning = 3;
 
 std::string_view letters_of(std::string_view word) {
   return word.substr(std::min(word.find_first_not_of('-'), word.size()));
@@ -18,7 +18,7 @@ std::string_view letters_of(std::string_view word) {
 
 // Optimal string alignment in bytes: Levenshtein's distance where a swap of neighbours is one edit.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  using Row = std::array<std::size_t, kMostBytes + 1>;
+  using Row = std::array<std::size_t, kMaxBytes + 1>;
   Row two_above{}, above{}, row{};
   for (std::size_t j = 0; j <= b.size(); ++j)
     row[j] = j;
@@ -44,13 +44,13 @@ std::vector<std::string_view> views_of(std::span<const std::string> words) {
 
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> known) {
   word = letters_of(word);
-  if (word.size() > kMostBytes) return {};
+  if (word.size() > kMaxBytes) return {};
   std::string_view nearest;
   std::size_t fewest = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string_view candidate : known) {
     const std::string_view letters = letters_of(candidate);
-    if (letters.size() > kMostBytes) continue;
-    const bool begun = word.size() >= kLeastBeginning && letters.starts_with(word);
+    if (letters.size() > kMaxBytes) continue;
+    const bool begun = word.size() >= kMinBeginning && letters.starts_with(word);
     const std::size_t edits = edit_distance(word, letters);
     const std::size_t distance = begun ? std::min<std::size_t>(edits, 1) : edits;
     if (distance < fewest) {

@@ -9,7 +9,7 @@
 namespace psygen::core {
 
 Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path,
-                                            std::uint64_t most_bytes) {
+                                            std::uint64_t max_bytes) {
   const auto refuse = [&](ErrorCode code, const std::string& sentence) {
     return fail(code, fmt::format("{}: {}", path.string(), sentence));
   };
@@ -18,10 +18,10 @@ Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path,
     return refuse(ErrorCode::kIo, error ? error.message() : "is not a regular file");
   const std::uint64_t size = std::filesystem::file_size(path, error);
   if (error) return refuse(ErrorCode::kIo, error.message());
-  if (size > most_bytes) {
+  if (size > max_bytes) {
     return refuse(ErrorCode::kOverBudget, fmt::format("the file has {} bytes; at most {} are "
                                                       "allowed",
-                                                      size, most_bytes));
+                                                      size, max_bytes));
   }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              &std::fclose);

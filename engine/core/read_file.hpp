@@ -10,9 +10,9 @@
 
 namespace psygen::core {
 
-// Returns the bytes of a regular file. Allocates nothing if the file has more than `most_bytes`
+// Returns the bytes of a regular file. Allocates nothing if the file has more than `max_bytes`
 // bytes. Fails with kIo or kOverBudget; the message starts with the path. Throws std::bad_alloc.
 Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path,
-                                            std::uint64_t most_bytes);
+                                            std::uint64_t max_bytes);
 
 }  // namespace psygen::core

@@ -39,9 +39,9 @@ CodePoint first_code_point(std::string_view text) {
     if ((byte(i) & 0xC0U) != 0x80) return invalid;
     value = value << 6 | (byte(i) & 0x3FU);
   }
-  constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
+  constexpr std::array<char32_t, 5> kMin{0, 0, 0x80, 0x800, 0x10000};
   const bool surrogate = value >= 0xD800 && value <= 0xDFFF;
-  if (value < kLeast[bytes] || surrogate || value > 0x10FFFF) return invalid;
+  if (value < kMin[bytes] || surrogate || value > 0x10FFFF) return invalid;
   return {value, bytes, true};
 }
 
@@ -64,12 +64,12 @@ void append_utf8(std::string& text, char32_t value) {
   rest(0);
 }
 
-std::string shown(std::string_view text, std::size_t most_bytes) {
+std::string shown(std::string_view text, std::size_t max_bytes) {
   std::string line;
   std::size_t taken = 0;
   while (taken < text.size()) {
     const CodePoint point = first_code_point(text.substr(taken));
-    if (taken + point.bytes > most_bytes) return line + "...";
+    if (taken + point.bytes > max_bytes) return line + "...";
     const std::string_view bytes = text.substr(taken, point.bytes);
     line += is_printable(point, bytes) ? std::string(bytes) : escape_of(point);
     taken += point.bytes;

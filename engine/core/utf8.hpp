@@ -23,7 +23,7 @@ void append_utf8(std::string& text, char32_t value);
 
 // Returns the text as one line of valid UTF-8. Control characters, invisible characters, characters
 // that change the direction of the text, and bytes that are not UTF-8 become escapes such as \n,
-// \x1b and \u202e. A text of more than `most_bytes` bytes is cut and ends in "...". O(bytes).
-std::string shown(std::string_view text, std::size_t most_bytes = std::string_view::npos);
+// \x1b and \u202e. A text of more than `max_bytes` bytes is cut and ends in "...". O(bytes).
+std::string shown(std::string_view text, std::size_t max_bytes = std::string_view::npos);
 
 }  // namespace psygen::core

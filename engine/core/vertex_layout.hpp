@@ -38,7 +38,7 @@ static_assert(sizeof(TerrainVertex) == 12);
 inline constexpr std::uint8_t kTerrainSkirtBit = 0x80;
 
 // A vertex of a tree, a rock or any other model. `position` is snorm16 within the mesh's box: p =
-// center + half_extent · position / 32767, in metres relative to the model's base point.
+// centre + half_extent · position / 32767, in metres relative to the model's base point.
 struct ModelVertex {
   std::int16_t position[3];
   std::uint8_t ambient;    // unorm8: baked ambient visibility, 255 = open sky

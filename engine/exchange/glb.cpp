@@ -15,7 +15,7 @@ namespace psygen::exchange {
 namespace {
 
 // The .glb header counts bytes in 32 bits. The rest is reserved for the JSON.
-constexpr std::size_t kMostBytes = (std::size_t{1} << 32) - (std::size_t{1} << 28);
+constexpr std::size_t kMaxBytes = (std::size_t{1} << 32) - (std::size_t{1} << 28);
 // The library ends the program where its JSON gets no memory, so there must be enough before: for
 // the JSON, and for copies of the bytes in its buffer, its stream and ours.
 constexpr std::uint64_t kWriterBytes = std::uint64_t{8} << 20, kWriterCopies = 5;
@@ -64,7 +64,7 @@ class GlbWriter {
     std::size_t bytes = 0;
     for (const auto& view : views_)
       bytes += view.size();
-    if (bytes > kMostBytes)
+    if (bytes > kMaxBytes)
       return core::fail(core::ErrorCode::kOverBudget, name + " is larger than a .glb file can be");
     if (!core::memory_left(kWriterBytes + kWriterCopies * bytes))
       return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory("writing " + name));

@@ -9,7 +9,7 @@
 
 namespace psygen::exchange {
 
-// The object of a mesh. `mesh` was written by type.synthesize(p, level, mesh), and `size` is
+// The object of a mesh. `mesh` was written by type.synthesise(p, level, mesh), and `size` is
 // type.mesh_size(p, level). Terrain is coloured by `palette` (world::drawn_palette). Its skirts
 // hang by `skirt_m` metres; 0: it loses them. Other models keep every vertex that a triangle uses.
 // Fails with kSynthesisFailed if an index is out of range or the type throws, and with kOutOfMemory

@@ -75,7 +75,7 @@ void show_failure(const FrameTest& test, std::span<const WorstFrame> worst,
 bool read_worst_count(std::string_view text, int& count) {
   const auto read = std::from_chars(text.data(), text.data() + text.size(), count);
   return read.ec == std::errc() && read.ptr == text.data() + text.size() && count >= 0 &&
-         count <= kMostWorstFrames;
+         count <= kMaxWorstFrames;
 }
 
 }  // namespace

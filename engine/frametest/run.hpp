@@ -27,7 +27,7 @@ struct Hooks {
   std::function<core::CameraPose(app::Session&, double)> camera = {};
 };
 
-inline constexpr int kMostWorstFrames = 100;
+inline constexpr int kMaxWorstFrames = 100;
 
 struct RunOptions {
   std::vector<std::filesystem::path> files;

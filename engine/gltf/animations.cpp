@@ -10,7 +10,7 @@
 namespace psygen::gltf {
 namespace {
 
-constexpr float kMostSeconds = 1e6F, kMostValue = 1e6F;
+constexpr float kMaxSeconds = 1e6F, kMaxValue = 1e6F;
 
 core::Result<std::vector<float>> read_times(Reading& reading, int accessor,
                                             const std::string& what) {
@@ -24,9 +24,9 @@ core::Result<std::vector<float>> read_times(Reading& reading, int accessor,
     times[i] = elements->real(i, 0);
     const float before = i == 0 ? 0.0F : times[i - 1];
     const bool grows = i == 0 ? times[i] >= 0 : times[i] > before;
-    if (!grows || !(times[i] <= kMostSeconds))
+    if (!grows || !(times[i] <= kMaxSeconds))
       return wrong(fmt::format("{}: time {} is {} s after {} s; times grow from 0 to {} s", what, i,
-                               times[i], before, kMostSeconds));
+                               times[i], before, kMaxSeconds));
   }
   return times;
 }
@@ -44,9 +44,9 @@ core::Result<std::vector<glm::vec4>> read_values(Reading& reading, int accessor,
   for (std::size_t i = 0; i < count; ++i) {
     values[i] = vector_of<glm::vec4>(*elements, i);
     for (int c = 0; c < width; ++c) {
-      if (!(std::abs(values[i][c]) <= kMostValue))
+      if (!(std::abs(values[i][c]) <= kMaxValue))
         return wrong(fmt::format("{}: value {} has {}; at most {} is allowed", what, i,
-                                 values[i][c], kMostValue));
+                                 values[i][c], kMaxValue));
     }
   }
   return values;

@@ -6,7 +6,7 @@ namespace psygen::gltf {
 namespace {
 
 // glTF itself needs seven; the rest is for what programs keep in "extras".
-constexpr std::uint32_t kMostDepth = 64;
+constexpr std::uint32_t kMaxDepth = 64;
 
 // The place behind a string that begins at `at`.
 std::size_t behind_string(std::string_view json, std::size_t at) {
@@ -17,7 +17,7 @@ std::size_t behind_string(std::string_view json, std::size_t at) {
 
 }  // namespace
 
-core::Result<void> check_shape(std::string_view json, std::uint32_t most_values) {
+core::Result<void> check_shape(std::string_view json, std::uint32_t max_values) {
   std::uint32_t depth = 0, values = 0;
   for (std::size_t at = 0; at < json.size();) {
     const char c = json[at];
@@ -30,16 +30,16 @@ core::Result<void> check_shape(std::string_view json, std::uint32_t most_values)
     if (c == ',') ++values;
     if (c != '[' && c != '{') continue;
     ++values;
-    if (++depth > kMostDepth) {
+    if (++depth > kMaxDepth) {
       return core::fail(core::ErrorCode::kOverBudget,
                         fmt::format("its JSON is nested more than {} levels deep at character {}",
-                                    kMostDepth, at));
+                                    kMaxDepth, at));
     }
-    if (values > most_values) break;
+    if (values > max_values) break;
   }
-  if (values <= most_values) return {};
+  if (values <= max_values) return {};
   return core::fail(core::ErrorCode::kOverBudget,
-                    fmt::format("its JSON has more than {} values", most_values));
+                    fmt::format("its JSON has more than {} values", max_values));
 }
 
 }  // namespace psygen::gltf

@@ -10,6 +10,6 @@
 namespace psygen::gltf {
 
 // Fails with kOverBudget, without the file's name. O(characters).
-core::Result<void> check_shape(std::string_view json, std::uint32_t most_values);
+core::Result<void> check_shape(std::string_view json, std::uint32_t max_values);
 
 }  // namespace psygen::gltf

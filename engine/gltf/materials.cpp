@@ -8,7 +8,7 @@
 namespace psygen::gltf {
 namespace {
 
-constexpr double kMostLight = 1e6;
+constexpr double kMaxLight = 1e6;
 
 // Pictures by their number in the file.
 using Pictures = std::map<std::uint32_t, std::uint32_t>;
@@ -81,22 +81,22 @@ core::Result<void> read_numbers(const tinygltf::Material& described, const std::
   const auto light = colour_of(described.emissiveFactor, 1, name + ".emissiveFactor");
   if (!light) return tl::unexpected(light.error());
   const auto strength =
-      number_in(emissive_strength(described), kMostLight, name + ".emissiveStrength");
+      number_in(emissive_strength(described), kMaxLight, name + ".emissiveStrength");
   if (!strength) return tl::unexpected(strength.error());
   out.emissive = *light * *strength;
   const auto normals =
-      number_in(std::abs(described.normalTexture.scale), kMostLight, name + ".normalTexture.scale");
+      number_in(std::abs(described.normalTexture.scale), kMaxLight, name + ".normalTexture.scale");
   if (!normals) return tl::unexpected(normals.error());
   out.normal_strength = static_cast<float>(described.normalTexture.scale);
   out.two_sided = described.doubleSided;
   if (described.alphaMode == "MASK") {
-    const auto cutoff = number_in(described.alphaCutoff, kMostLight, name + ".alphaCutoff");
+    const auto cutoff = number_in(described.alphaCutoff, kMaxLight, name + ".alphaCutoff");
     if (!cutoff) return tl::unexpected(cutoff.error());
-    out.least_opacity = *cutoff;
+    out.min_opacity = *cutoff;
     out.opacity = *opacity;
   } else if (described.alphaMode == "BLEND") {
     reading.note("has materials that blend, which are drawn solid where they hide at least half");
-    out.least_opacity = 0.5F;
+    out.min_opacity = 0.5F;
     out.opacity = *opacity;
   } else if (described.alphaMode != "OPAQUE") {
     return wrong(fmt::format("{}.alphaMode is none of OPAQUE, MASK and BLEND", name));

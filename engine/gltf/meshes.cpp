@@ -19,13 +19,13 @@ struct Part {
 
 // The elements of an attribute, null where it has none of this name.
 core::Result<Elements> attribute(const Part& part, const std::string& which, std::size_t count,
-                                 int least_width, int most_width) {
+                                 int min_width, int max_width) {
   const auto found = part.described.attributes.find(which);
   if (found == part.described.attributes.end()) return Elements{};
   const std::string what = which + " of " + part.name;
   auto elements = elements_of(part.reading.file, found->second, what);
   if (!elements) return elements;
-  if (elements->width < least_width || elements->width > most_width)
+  if (elements->width < min_width || elements->width > max_width)
     return wrong(fmt::format("{} has {} components", what, elements->width));
   if (count != SIZE_MAX && elements->count != count)
     return wrong(fmt::format("{} has {} elements for {} vertices", what, elements->count, count));
@@ -34,8 +34,8 @@ core::Result<Elements> attribute(const Part& part, const std::string& which, std
 
 template <class Vector>
 core::Result<void> read_attribute(const Part& part, const std::string& which, std::size_t count,
-                                  int most_width, std::vector<Vector>& out) {
-  const auto elements = attribute(part, which, count, Vector::length(), most_width);
+                                  int max_width, std::vector<Vector>& out) {
+  const auto elements = attribute(part, which, count, Vector::length(), max_width);
   if (!elements) return tl::unexpected(elements.error());
   if (elements->first == nullptr) return {};
   out.reserve(elements->count);

@@ -34,7 +34,7 @@ struct Material {
   std::string name;
   glm::vec3 base_colour{1.0F};  // linear albedo, multiplied with that of texture and vertices
   float opacity = 1;
-  float least_opacity = 0;    // pixels of less are left out; 0: all are drawn
+  float min_opacity = 0;      // pixels of less are left out; 0: all are drawn
   glm::vec3 emissive{0.0F};   // linear
   float normal_strength = 1;  // of the normal map
   std::uint32_t base_texture = kNone, normal_texture = kNone, emissive_texture = kNone;

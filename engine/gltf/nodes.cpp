@@ -11,7 +11,7 @@
 namespace psygen::gltf {
 namespace {
 
-constexpr float kMostOffset = 1e6F;
+constexpr float kMaxOffset = 1e6F;
 
 // `out` keeps its value where the file says nothing.
 template <class Vector>
@@ -22,8 +22,8 @@ core::Result<void> read_numbers(const std::vector<double>& from, const std::stri
   if (from.size() != width) return wrong(fmt::format("{} has {} numbers", what, from.size()));
   for (int i = 0; i < Vector::length(); ++i) {
     out[i] = static_cast<float>(from[static_cast<std::size_t>(i)]);
-    if (!(std::abs(out[i]) <= kMostOffset))
-      return wrong(fmt::format("{} has {}; at most {} is allowed", what, out[i], kMostOffset));
+    if (!(std::abs(out[i]) <= kMaxOffset))
+      return wrong(fmt::format("{} has {}; at most {} is allowed", what, out[i], kMaxOffset));
   }
   return {};
 }

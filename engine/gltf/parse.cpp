@@ -19,7 +19,7 @@ namespace {
 using core::ErrorCode;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kMostMessage = 300;  // of what a library says
+constexpr std::size_t kMaxMessage = 300;  // of what a library says
 
 // The only way in which TinyGLTF gets files. It wants function pointers.
 struct FileGate {
@@ -34,7 +34,7 @@ core::Result<std::filesystem::path> beside(const std::filesystem::path& file,
   const auto refuse = [&] {
     return core::fail(ErrorCode::kInvalidArgument,
                       fmt::format("names the file \"{}\"; only files in its own folder are read",
-                                  core::shown(name.string(), kMostMessage)));
+                                  core::shown(name.string(), kMaxMessage)));
   };
   const std::string& text = name.native();
   const bool has_scheme = text.find(':') != std::string::npos;
@@ -94,13 +94,13 @@ core::Result<void> check_version(const tinygltf::Model& model) {
   if (!model.asset.version.starts_with("2.")) {
     return core::fail(ErrorCode::kParse,
                       fmt::format("is glTF of version \"{}\"; version 2 can be read",
-                                  core::shown(model.asset.version, kMostMessage)));
+                                  core::shown(model.asset.version, kMaxMessage)));
   }
   for (const std::string& name : model.extensionsRequired) {
     if (!is_supported(name)) {
       return core::fail(ErrorCode::kInvalidArgument,
                         fmt::format("requires the extension \"{}\", which is not supported",
-                                    core::shown(name, kMostMessage)));
+                                    core::shown(name, kMaxMessage)));
     }
   }
   return {};
@@ -134,8 +134,8 @@ core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Lim
   const auto refuse = [&](ErrorCode code, std::string_view sentence) {
     return core::fail(code, fmt::format("{}: {}", path.string(), sentence));
   };
-  const std::uint64_t most_bytes = std::min<std::uint64_t>(limits.bytes, INT32_MAX);
-  const auto bytes = core::read_file(path, most_bytes);
+  const std::uint64_t max_bytes = std::min<std::uint64_t>(limits.bytes, INT32_MAX);
+  const auto bytes = core::read_file(path, max_bytes);
   if (!bytes) return tl::unexpected(bytes.error());
   const bool binary = characters(*bytes).starts_with("glTF");
   if (auto ok = check_length(*bytes, binary); !ok)
@@ -143,7 +143,7 @@ core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Lim
   if (auto ok = check_shape(json_of(*bytes, binary), limits.json_values); !ok)
     return refuse(ok.error().code, ok.error().message);
 
-  FileGate gate{path, most_bytes - bytes->size(), named, {}};
+  FileGate gate{path, max_bytes - bytes->size(), named, {}};
   tinygltf::TinyGLTF reader;
   tinygltf::FsCallbacks files{};
   files.FileExists = [](const std::string&, void*) { return true; };
@@ -167,7 +167,7 @@ core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Lim
     errors.erase(at, kNoError.size());
   if (!parsed || !errors.empty()) {
     return refuse(ErrorCode::kParse,
-                  "is not glTF that can be read: " + core::shown(first_line(errors), kMostMessage));
+                  "is not glTF that can be read: " + core::shown(first_line(errors), kMaxMessage));
   }
   if (auto ok = check_version(model); !ok) return refuse(ok.error().code, ok.error().message);
   return model;

@@ -14,7 +14,7 @@ namespace psygen::handmade {
 namespace {
 
 constexpr std::size_t kManyTriangles = 4000;  // of cards: from here on they are cut less finely
-constexpr int kMostSide = 1 << kMostCutDepth;
+constexpr int kMaxSide = 1 << kMaxCutDepth;
 constexpr int kTaps = 5;         // samples along each side of what a point stands for
 constexpr int kSteps = 12;       // in which the border is found
 constexpr float kNoise = 0.25F;  // makes holes in what is equally thin everywhere
@@ -29,20 +29,20 @@ struct Point {
 struct Lattice {
   float share = 0;  // of the triangle that is drawn
   // How much of the surroundings of each point is drawn.
-  std::array<std::array<float, kMostSide + 1>, kMostSide + 1> drawn{};
+  std::array<std::array<float, kMaxSide + 1>, kMaxSide + 1> drawn{};
   float at(Point p) const {
     return drawn[static_cast<std::size_t>(p.i)][static_cast<std::size_t>(p.j)];
   }
 };
 
-bool is_drawn(const image::Image& image, glm::vec2 uv, float opacity, float least_opacity) {
+bool is_drawn(const image::Image& image, glm::vec2 uv, float opacity, float min_opacity) {
   const auto along = [](float v, std::uint32_t size) {
     const float part = v - std::floor(v);
     const auto at = static_cast<std::uint32_t>(part * static_cast<float>(size));
     return std::isfinite(part) ? std::min(at, size - 1) : 0U;
   };
   const auto pixel = image.pixel(along(uv.x, image.width), along(uv.y, image.height));
-  return opacity * static_cast<float>(pixel[3]) / 255 >= least_opacity;
+  return opacity * static_cast<float>(pixel[3]) / 255 >= min_opacity;
 }
 
 // How far the border is from one point towards another one that is left out, as a part.
@@ -65,12 +65,12 @@ float part_in(float a, float b, float c, float border) {
 
 class Cutter {
  public:
-  Cutter(const core::MeshData& mesh, const image::Image& image, float opacity, float least_opacity,
+  Cutter(const core::MeshData& mesh, const image::Image& image, float opacity, float min_opacity,
          int depth)
       : mesh_(mesh),
         image_(image),
         opacity_(opacity),
-        least_opacity_(least_opacity),
+        min_opacity_(min_opacity),
         side_(1 << depth),
         copies_(mesh.positions.size(), kNone) {}
 
@@ -110,7 +110,7 @@ class Cutter {
 
   const core::MeshData& mesh_;
   const image::Image& image_;
-  const float opacity_, least_opacity_;
+  const float opacity_, min_opacity_;
   const int side_;
   std::vector<Lattice> lattices_;
   float border_ = 0.5F;
@@ -142,7 +142,7 @@ Lattice Cutter::lattice_of(std::size_t first) const {
         const auto offset = [](int tap) { return (static_cast<float>(tap) + 0.5F) / kTaps - 0.5F; };
         const glm::vec2 at = middle + offset(k % kTaps) * along + offset(k / kTaps) * across;
         drawn +=
-            is_drawn(image_, glm::clamp(at, low + inset, high - inset), opacity_, least_opacity_);
+            is_drawn(image_, glm::clamp(at, low + inset, high - inset), opacity_, min_opacity_);
       }
       const float part = static_cast<float>(drawn) / (kTaps * kTaps);
       // As many small triangles are around it.
@@ -278,15 +278,15 @@ std::uint32_t Cutter::add_vertex(glm::vec3 weights) {
 }  // namespace
 
 int cut_depth(std::size_t triangles) {
-  int depth = kMostCutDepth;
+  int depth = kMaxCutDepth;
   for (std::size_t most = kManyTriangles; depth > 0 && triangles > most; most *= 4)
     --depth;
   return depth;
 }
 
 core::MeshData cut_out(const core::MeshData& mesh, const image::Image& image, float opacity,
-                       float least_opacity, int depth) {
-  return Cutter(mesh, image, opacity, least_opacity, depth).cut();
+                       float min_opacity, int depth) {
+  return Cutter(mesh, image, opacity, min_opacity, depth).cut();
 }
 
 }  // namespace psygen::handmade

@@ -11,14 +11,14 @@
 namespace psygen::handmade {
 
 // How often sides are halved where the border of what is drawn runs.
-inline constexpr int kMostCutDepth = 3;
+inline constexpr int kMaxCutDepth = 3;
 // Less than that where a model has so many triangles of such materials that it would get too large.
 int cut_depth(std::size_t triangles);
 
 // The parts of a mesh with uvs that are drawn: where the texture times `opacity` has at least
-// `least_opacity`. Their area is that of the pixels that are drawn, also where these are finer than
+// `min_opacity`. Their area is that of the pixels that are drawn, also where these are finer than
 // what is cut. Linear in the triangles and in 4^depth.
 core::MeshData cut_out(const core::MeshData& mesh, const image::Image& image, float opacity,
-                       float least_opacity, int depth);
+                       float min_opacity, int depth);
 
 }  // namespace psygen::handmade

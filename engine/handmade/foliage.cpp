@@ -15,7 +15,7 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-constexpr float kMostReach = 0.5F;  // of a piece, as a part of that of all
+constexpr float kMaxReach = 0.5F;  // of a piece, as a part of that of all
 
 // The vertices in sets that are joined.
 class Sets {
@@ -122,7 +122,7 @@ double Foliage::add(std::size_t triangles, std::vector<Vertex>& vertices, Indice
   for (std::size_t i = 0; i < count; ++i) {
     const Piece& piece = pieces_[i];
     const float half = glm::length(piece.along);
-    const float grown = std::min(scale, std::max(1.0F, kMostReach * reach_m_ / half));
+    const float grown = std::min(scale, std::max(1.0F, kMaxReach * reach_m_ / half));
     error_m += static_cast<double>(half * (1.5F * grown - 1)) / static_cast<double>(count);
     const auto first = static_cast<std::uint32_t>(vertices.size());
     for (const glm::vec3& corner : {-piece.along, -piece.across, piece.along, piece.across})

@@ -9,8 +9,8 @@ namespace psygen::handmade {
 inline gltf::Limits gltf_limits() {
   gltf::Limits most;
   most.bytes = std::uint64_t{128} << 20;
-  most.vertices = kMostVertices;
-  most.indices = 6 * kMostVertices;
+  most.vertices = kMaxVertices;
+  most.indices = 6 * kMaxVertices;
   most.images = {4096, 4096, std::uint64_t{64} << 20, std::uint64_t{32} << 20};
   return most;
 }

@@ -67,7 +67,7 @@ class HandmadeType final : public models::ModelType {
   double log2_cost(const Parameters&) const override {
     return std::log2(static_cast<double>(at(0).indices.size()) / 3);
   }
-  core::Bounds synthesize(const Parameters& p, int level,
+  core::Bounds synthesise(const Parameters& p, int level,
                           const models::MeshView& out) const override;
   std::uint64_t identity() const override { return shape_->identity; }
   models::Collider collider(const Parameters& p) const override {
@@ -93,7 +93,7 @@ class HandmadeType final : public models::ModelType {
   std::shared_ptr<const Shape> shape_;
 };
 
-core::Bounds HandmadeType::synthesize(const Parameters& p, int level,
+core::Bounds HandmadeType::synthesise(const Parameters& p, int level,
                                       const models::MeshView& out) const {
   const Level& mesh = at(level);
   PSYGEN_CHECK(out.vertices.size() == mesh.vertices.size() * sizeof(core::ModelVertex) &&

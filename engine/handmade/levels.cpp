@@ -14,13 +14,13 @@
 namespace psygen::handmade {
 namespace {
 
-constexpr std::size_t kMostLevelVertices = 65'536;
-constexpr std::size_t kLeastTriangles = 12;
-constexpr std::size_t kManyPieces = 32, kLeastSolid = 8;
+constexpr std::size_t kMaxLevelVertices = 65'536;
+constexpr std::size_t kMinTriangles = 12;
+constexpr std::size_t kManyPieces = 32, kMinSolid = 8;
 constexpr std::size_t kStep = 4;      // triangles of a level over those of the next
-constexpr float kMostError = 0.5F;    // of the extent
+constexpr float kMaxError = 0.5F;     // of the extent
 constexpr float kNearlyThere = 1.3F;  // times the wanted triangles
-constexpr float kLeastGain = 0.8F;    // a level with more of the one before is not worth having
+constexpr float kMinGain = 0.8F;      // a level with more of the one before is not worth having
 
 using Indices = std::vector<std::uint32_t>;
 
@@ -122,7 +122,7 @@ Source source_of(const Mesh& finest, Keep keep) {
 // The mesh of some triangles of a source. Each corner has that of the finest mesh's normals there
 // which fits its triangle best: so smooth parts stay smooth and edges stay hard.
 Mesh with_normals(const Source& source, const Indices& indices) {
-  constexpr std::uint32_t kMostNormals = 64;  // of a vertex that are compared
+  constexpr std::uint32_t kMaxNormals = 64;  // of a vertex that are compared
   Mesh out;
   for (std::size_t k = 0; k < indices.size(); ++k) {
     const std::uint32_t* triangle = &indices[k / 3 * 3];
@@ -130,7 +130,7 @@ Mesh with_normals(const Source& source, const Indices& indices) {
     const glm::vec3 across = glm::cross(at(1) - at(0), at(2) - at(0));
     Vertex v = source.mesh.vertices[indices[k]];
     const std::uint32_t first = source.first[indices[k]], end = source.first[indices[k] + 1];
-    for (std::uint32_t n = first; n < std::min(end, first + kMostNormals); ++n) {
+    for (std::uint32_t n = first; n < std::min(end, first + kMaxNormals); ++n) {
       if (glm::dot(source.normals[n], across) > glm::dot(v.normal, across))
         v.normal = source.normals[n];
     }
@@ -156,9 +156,9 @@ Simplified simplified(const Mesh& mesh, std::size_t triangles, bool sloppily) {
   const std::size_t left =
       sloppily
           ? meshopt_simplifySloppy(result.indices.data(), mesh.indices.data(), mesh.indices.size(),
-                                   places, count, stride, target, kMostError, &error)
+                                   places, count, stride, target, kMaxError, &error)
           : meshopt_simplify(result.indices.data(), mesh.indices.data(), mesh.indices.size(),
-                             places, count, stride, target, kMostError, 0, &error);
+                             places, count, stride, target, kMaxError, 0, &error);
   result.indices.resize(left);
   result.error_m = static_cast<double>(error * meshopt_simplifyScale(places, count, stride));
   return result;
@@ -217,7 +217,7 @@ class Parts {
     if (!is_loose_) return coarser(sources_, wanted);
     const std::size_t leaves = leaves_.size() / 3;
     const std::size_t solid =
-        std::min(triangles_, std::max(wanted * triangles_ / (triangles_ + leaves), kLeastSolid));
+        std::min(triangles_, std::max(wanted * triangles_ / (triangles_ + leaves), kMinSolid));
     std::pair<Mesh, double> made;
     if (solid > 0) made = coarser(sources_, solid);
     const double error_m =
@@ -253,19 +253,19 @@ std::vector<Level> levels_of(const Triangles& triangles, int most) {
   const Parts parts(finest);
   std::vector<Level> levels;
   std::size_t wanted = finest.indices.size() / 3;
-  while (finest.vertices.size() > kMostLevelVertices) {
-    wanted = std::min(wanted * 9 / 10, wanted * kMostLevelVertices / finest.vertices.size());
+  while (finest.vertices.size() > kMaxLevelVertices) {
+    wanted = std::min(wanted * 9 / 10, wanted * kMaxLevelVertices / finest.vertices.size());
     finest = parts.coarse(wanted).first;
     if (finest.indices.empty()) return {};
   }
   wanted = finest.indices.size() / 3;
   levels.push_back(packed(std::move(finest), 0));
-  while (static_cast<int>(levels.size()) < most && wanted > kLeastTriangles) {
-    wanted = std::max(wanted / kStep, kLeastTriangles);
+  while (static_cast<int>(levels.size()) < most && wanted > kMinTriangles) {
+    wanted = std::max(wanted / kStep, kMinTriangles);
     auto [mesh, error_m] = parts.coarse(wanted);
     const float before = static_cast<float>(levels.back().indices.size());
-    if (mesh.indices.empty() || static_cast<float>(mesh.indices.size()) > kLeastGain * before ||
-        mesh.vertices.size() > kMostLevelVertices)
+    if (mesh.indices.empty() || static_cast<float>(mesh.indices.size()) > kMinGain * before ||
+        mesh.vertices.size() > kMaxLevelVertices)
       break;
     error_m = std::max(error_m, 1.01 * levels.back().error_m);
     levels.push_back(packed(std::move(mesh), std::max(error_m, 1e-4)));

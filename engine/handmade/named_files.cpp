@@ -12,7 +12,7 @@ namespace psygen::handmade {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr std::uint64_t kMostHashedBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMaxHashedBytes = std::uint64_t{1} << 30;
 }  // namespace
 
 core::Result<std::vector<fs::path>> files_named_by(const world::World& world,
@@ -43,7 +43,7 @@ core::Result<std::uint64_t> hash_of_files(const world::World& world, const fs::p
   if (!names) return tl::unexpected(names.error());
   std::uint64_t hash = 0;
   for (const fs::path& name : *names) {
-    const auto bytes = core::read_file(world_file.parent_path() / name, kMostHashedBytes);
+    const auto bytes = core::read_file(world_file.parent_path() / name, kMaxHashedBytes);
     if (!bytes) return tl::unexpected(bytes.error());
     hash = core::hash_bytes(std::as_bytes(std::span(*bytes)), hash);
   }

@@ -11,7 +11,7 @@
 namespace psygen::handmade {
 namespace {
 
-constexpr int kMostSteps = 8;  // samples along a side of a triangle, at most
+constexpr int kMaxSteps = 8;  // samples along a side of a triangle, at most
 
 // Linear light of the bytes of sRGB.
 const std::array<float, 256>& linear_light() {
@@ -45,16 +45,16 @@ int steps_of(const image::Image& image, const glm::vec2 (&uv)[3]) {
   float most = 0;
   for (int k = 0; k < 3; ++k)
     most = std::max(most, glm::length((uv[(k + 1) % 3] - uv[k]) * size));
-  return static_cast<int>(std::clamp(0.5F * most, 1.0F, static_cast<float>(kMostSteps)));
+  return static_cast<int>(std::clamp(0.5F * most, 1.0F, static_cast<float>(kMaxSteps)));
 }
 
 struct Sum {
   glm::vec3 drawn{0.0F}, all{0.0F};
   float drawn_weight = 0, all_weight = 0;
-  void add(const glm::vec4& pixel, float weight, float least_opacity) {
+  void add(const glm::vec4& pixel, float weight, float min_opacity) {
     all += glm::vec3(pixel) * weight;
     all_weight += weight;
-    if (pixel.w < least_opacity) return;
+    if (pixel.w < min_opacity) return;
     drawn += glm::vec3(pixel) * weight;
     drawn_weight += weight;
   }
@@ -75,7 +75,7 @@ struct Sum {
 }  // namespace
 
 std::vector<glm::vec3> texture_colours(const core::MeshData& mesh, const image::Image& image,
-                                       float least_opacity) {
+                                       float min_opacity) {
   std::vector<Sum> sums(mesh.positions.size());
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const std::uint32_t* corner = &mesh.indices[i];
@@ -88,9 +88,9 @@ std::vector<glm::vec3> texture_colours(const core::MeshData& mesh, const image::
         const float v = (static_cast<float>(b) + 1.0F / 3) / static_cast<float>(steps);
         const float w = 1 - u - v;
         const glm::vec4 pixel = pixel_at(image, u * uv[0] + v * uv[1] + w * uv[2]);
-        sums[corner[0]].add(pixel, u, least_opacity);
-        sums[corner[1]].add(pixel, v, least_opacity);
-        sums[corner[2]].add(pixel, w, least_opacity);
+        sums[corner[0]].add(pixel, u, min_opacity);
+        sums[corner[1]].add(pixel, v, min_opacity);
+        sums[corner[2]].add(pixel, w, min_opacity);
       }
     }
   }

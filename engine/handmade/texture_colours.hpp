@@ -13,6 +13,6 @@ namespace psygen::handmade {
 // One linear colour for each vertex of the mesh. Pixels of less opacity than the material draws do
 // not count; a vertex with no others around it has the mean of the mesh. Linear in the triangles.
 std::vector<glm::vec3> texture_colours(const core::MeshData& mesh, const image::Image& image,
-                                       float least_opacity);
+                                       float min_opacity);
 
 }  // namespace psygen::handmade

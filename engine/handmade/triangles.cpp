@@ -18,7 +18,7 @@
 namespace psygen::handmade {
 namespace {
 
-constexpr float kLeastSizeM = 0.01F, kMostSizeM = 1000;
+constexpr float kMinSizeM = 0.01F, kMaxSizeM = 1000;
 
 glm::mat4 matrix_of(const gltf::Pose& pose) {
   return glm::translate(glm::mat4(1.0F), pose.translation) * glm::mat4_cast(pose.rotation) *
@@ -29,7 +29,7 @@ glm::mat4 matrix_of(const gltf::Pose& pose) {
 bool is_cut(const gltf::Model& model, const gltf::Primitive& primitive) {
   if (primitive.material == gltf::kNone || primitive.mesh.uvs.empty()) return false;
   const gltf::Material& material = model.materials[primitive.material];
-  return material.least_opacity > 0 && material.base_texture != gltf::kNone;
+  return material.min_opacity > 0 && material.base_texture != gltf::kNone;
 }
 
 // Linear colours of the vertices of a primitive, of which `mesh` is drawn.
@@ -39,7 +39,7 @@ std::vector<glm::vec3> colours_of(const gltf::Model& model, const gltf::Primitiv
   if (primitive.material != gltf::kNone) {
     const gltf::Material& material = model.materials[primitive.material];
     if (material.base_texture != gltf::kNone && !mesh.uvs.empty())
-      colours = texture_colours(mesh, model.images[material.base_texture], material.least_opacity);
+      colours = texture_colours(mesh, model.images[material.base_texture], material.min_opacity);
     for (glm::vec3& colour : colours)
       colour *= material.base_colour;
   }
@@ -60,7 +60,7 @@ Drawn drawn_of(const gltf::Model& model, const gltf::Primitive& primitive, int d
   if (is_cut(model, primitive)) {
     const gltf::Material& material = model.materials[primitive.material];
     drawn.mesh = cut_out(primitive.mesh, model.images[material.base_texture], material.opacity,
-                         material.least_opacity, depth);
+                         material.min_opacity, depth);
   }
   drawn.colours = colours_of(model, primitive, drawn.mesh);
   return drawn;
@@ -87,7 +87,7 @@ void add(const gltf::Model& model, const gltf::Primitive& primitive, const Drawn
   const bool mirrored = glm::determinant(linear) < 0;
   const std::vector<glm::vec3>& colours = drawn.colours;
   const bool leaf =
-      primitive.material != gltf::kNone && model.materials[primitive.material].least_opacity > 0;
+      primitive.material != gltf::kNone && model.materials[primitive.material].min_opacity > 0;
   const auto first = static_cast<std::uint32_t>(out.vertices.size());
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     Vertex v;
@@ -129,10 +129,10 @@ core::Result<void> place(const world::HandmadeModel& how, Triangles& out) {
                       "it is flat, so size_m cannot say how high it is; use scale");
   const float scale =
       static_cast<float>(how.size_m > 0 ? how.size_m / static_cast<double>(size.y) : how.scale);
-  if (!(scale * most >= kLeastSizeM && scale * most <= kMostSizeM))
+  if (!(scale * most >= kMinSizeM && scale * most <= kMaxSizeM))
     return core::fail(core::ErrorCode::kParse,
                       fmt::format("it would be {:.3g} m large; {} to {} m are allowed",
-                                  scale * most, kLeastSizeM, kMostSizeM));
+                                  scale * most, kMinSizeM, kMaxSizeM));
   const glm::vec3 foot{0.5F * (box.min.x + box.max.x), box.min.y, 0.5F * (box.min.z + box.max.z)};
   for (Vertex& v : out.vertices)
     v.position = scale * (v.position - foot) - glm::vec3(0, static_cast<float>(how.sink_m), 0);
@@ -155,12 +155,12 @@ core::Result<Triangles> triangles_of(const gltf::Model& model, const world::Hand
       const auto [drawn, is_new] = known.try_emplace(&primitive);
       if (is_new) drawn->second = drawn_of(model, primitive, depth);
       const core::MeshData& mesh = drawn->second.mesh;
-      if (out.vertices.size() + mesh.positions.size() > kMostVertices ||
-          out.indices.size() + mesh.indices.size() > 6 * kMostVertices)
+      if (out.vertices.size() + mesh.positions.size() > kMaxVertices ||
+          out.indices.size() + mesh.indices.size() > 6 * kMaxVertices)
         return core::fail(core::ErrorCode::kOverBudget,
                           fmt::format("with all its nodes it has more than {} vertices or {} "
                                       "triangles",
-                                      kMostVertices, 2 * kMostVertices));
+                                      kMaxVertices, 2 * kMaxVertices));
       add(model, primitive, drawn->second, placed.back(), out);
     }
   }

@@ -15,7 +15,7 @@
 namespace psygen::handmade {
 
 // The largest models: of all nodes together, and twice as many triangles.
-inline constexpr std::size_t kMostVertices = 1U << 20;
+inline constexpr std::size_t kMaxVertices = 1U << 20;
 
 // A corner of triangles.
 struct Vertex {
@@ -33,7 +33,7 @@ struct Triangles {
 
 // The model as `how` says, with its foot in the middle below it. Fails with kParse where it is too
 // small or too large for a model: less than 1 cm or more than 1 km; with kOverBudget beyond
-// kMostVertices. Messages do not name the file.
+// kMaxVertices. Messages do not name the file.
 core::Result<Triangles> triangles_of(const gltf::Model& model, const world::HandmadeModel& how);
 
 }  // namespace psygen::handmade

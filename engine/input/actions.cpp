@@ -13,15 +13,15 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr float kMostScale = 1000;
-constexpr float kMostDeadZone = 0.95F;
+constexpr float kMaxScale = 1000;
+constexpr float kMaxDeadZone = 0.95F;
 // An axis counts as pressed from the first value on, and as released below the second.
 constexpr double kPressAt = 0.5, kReleaseAt = 0.4, kUsedAt = 0.3;
 // Presses and releases that wait for a step; more are left out in pairs.
-constexpr std::uint32_t kMostChanges = 16;
+constexpr std::uint32_t kMaxChanges = 16;
 
 bool is_name(std::string_view name) {
-  return !name.empty() && name.size() <= Actions::kMostNameBytes &&
+  return !name.empty() && name.size() <= Actions::kMaxNameBytes &&
          std::ranges::all_of(name, [](char c) {
            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                   c == '_';
@@ -29,22 +29,22 @@ bool is_name(std::string_view name) {
 }
 
 core::Result<void> check(std::string_view action, const std::vector<Binding>& bindings) {
-  if (bindings.size() > Actions::kMostBindings) {
+  if (bindings.size() > Actions::kMaxBindings) {
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("action {} has {} bindings; allowed: {}", action, bindings.size(),
-                                  Actions::kMostBindings));
+                                  Actions::kMaxBindings));
   }
   for (const Binding& binding : bindings) {
     const std::string_view control = name_of(binding.control);
-    if (!(std::abs(binding.scale) <= kMostScale) || binding.scale == 0) {
+    if (!(std::abs(binding.scale) <= kMaxScale) || binding.scale == 0) {
       return core::fail(ErrorCode::kInvalidArgument,
                         fmt::format("action {}, {}: scale is {}; allowed: -{} to {}, not 0", action,
-                                    control, binding.scale, kMostScale, kMostScale));
+                                    control, binding.scale, kMaxScale, kMaxScale));
     }
-    if (!(binding.dead_zone >= 0 && binding.dead_zone <= kMostDeadZone)) {
+    if (!(binding.dead_zone >= 0 && binding.dead_zone <= kMaxDeadZone)) {
       return core::fail(ErrorCode::kInvalidArgument,
                         fmt::format("action {}, {}: dead_zone is {}; allowed: 0 to {}", action,
-                                    control, binding.dead_zone, kMostDeadZone));
+                                    control, binding.dead_zone, kMaxDeadZone));
     }
   }
   return {};
@@ -56,7 +56,7 @@ double beyond_dead_zone(double value, double dead_zone) {
 
 void add_changes(std::uint32_t& changes, std::uint32_t more) {
   changes += more;
-  if (changes > kMostChanges) changes = kMostChanges - (changes - kMostChanges) % 2;
+  if (changes > kMaxChanges) changes = kMaxChanges - (changes - kMaxChanges) % 2;
 }
 
 }  // namespace
@@ -68,9 +68,9 @@ core::Result<ActionId> Actions::add(std::string_view name, std::vector<Binding> 
                                   is_name(name) ? "there is one of that name"
                                                 : "a name has 1 to 64 letters, digits and _"));
   }
-  if (actions_.size() >= kMostActions) {
+  if (actions_.size() >= kMaxActions) {
     return core::fail(ErrorCode::kOverBudget,
-                      fmt::format("there are {} actions, which is the most", kMostActions));
+                      fmt::format("there are {} actions, which is the most", kMaxActions));
   }
   if (auto ok = check(name, defaults); !ok) return tl::unexpected(ok.error());
   Action action{
@@ -127,7 +127,7 @@ void Actions::feed(Action& action, const platform::InputState& input) {
     if (is_relative(binding.control)) {
       at.moved += reading.value;
       if (binding.control.device != Device::kWheel) continue;
-      at.notches = std::min(at.notches + reading.value, double{kMostChanges});
+      at.notches = std::min(at.notches + reading.value, double{kMaxChanges});
       notches += static_cast<std::uint32_t>(at.notches);
       at.notches -= std::floor(at.notches);
       continue;

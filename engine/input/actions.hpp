@@ -40,11 +40,11 @@ using ActionId = std::size_t;
 
 class Actions {
  public:
-  static constexpr std::size_t kMostActions = 256, kMostBindings = 32, kMostNameBytes = 64;
+  static constexpr std::size_t kMaxActions = 256, kMaxBindings = 32, kMaxNameBytes = 64;
 
-  // Adds an action with its default bindings. A name has 1 to kMostNameBytes bytes of letters,
+  // Adds an action with its default bindings. A name has 1 to kMaxNameBytes bytes of letters,
   // digits and "_", and is new; scales and dead zones are those of set_bindings(). Fails with
-  // kInvalidArgument, and with kOverBudget beyond kMostActions.
+  // kInvalidArgument, and with kOverBudget beyond kMaxActions.
   core::Result<ActionId> add(std::string_view name, std::vector<Binding> defaults = {});
 
   // The actions, and the number of one by its name.
@@ -55,7 +55,7 @@ class Actions {
   std::span<const Binding> bindings(ActionId action) const { return actions_[action].bindings; }
   // Replaces the bindings. What the action holds is released in the next step, unless the new ones
   // hold it. Fails with kInvalidArgument for scales that are not finite, 0 or beyond ±1000, and
-  // dead zones outside 0 … 0.95, and with kOverBudget beyond kMostBindings; nothing changes then.
+  // dead zones outside 0 … 0.95, and with kOverBudget beyond kMaxBindings; nothing changes then.
   core::Result<void> set_bindings(ActionId action, std::vector<Binding> bindings);
   // Gives an action another control. Those of a gamepad stay if that is of keyboard or mouse, and
   // the other way round. Fails as set_bindings().

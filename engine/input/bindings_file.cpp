@@ -51,7 +51,7 @@ std::string no_action(const std::string& name, const Actions& actions) {
   for (ActionId id = 0; id < actions.size(); ++id)
     names.push_back(actions.name(id));
   const std::string_view nearest = core::nearest_word(name, names);
-  return fmt::format("there is no action \"{}\"{}", core::shown(name, Actions::kMostNameBytes),
+  return fmt::format("there is no action \"{}\"{}", core::shown(name, Actions::kMaxNameBytes),
                      nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest));
 }
 
@@ -61,14 +61,14 @@ ActionTable read_action(const Node& node, std::size_t number, const Actions& act
   TableReader reader(node, path, node.line, problems);
   ActionTable table;
   std::string name;
-  if (reader.read("name", name, Actions::kMostNameBytes, Presence::kRequired)) {
+  if (reader.read("name", name, Actions::kMaxNameBytes, Presence::kRequired)) {
     if (const auto id = actions.find(name)) {
       table.action = *id;
     } else {
       reader.problem(reader.find("name")->line, "name", no_action(name, actions));
     }
   }
-  for (const Node* binding : reader.tables("binding", Actions::kMostBindings)) {
+  for (const Node* binding : reader.tables("binding", Actions::kMaxBindings)) {
     table.bindings.push_back(read_binding(
         *binding, fmt::format("{}.binding[{}]", path, table.bindings.size()), problems));
   }
@@ -103,7 +103,7 @@ core::Result<void> apply_bindings(std::string_view text, std::string_view file_n
   if (problems.any()) return tl::unexpected(problems.first());
   std::vector<ActionTable> tables;
   std::vector<bool> seen(actions.size(), false);
-  for (const Node* node : root.tables("action", Actions::kMostActions)) {
+  for (const Node* node : root.tables("action", Actions::kMaxActions)) {
     tables.push_back(read_action(*node, tables.size(), actions, problems));
     if (problems.any()) continue;
     if (seen[tables.back().action]) {

@@ -41,10 +41,10 @@ constexpr std::array kHalves{Half{PadAxis::kLeftY, 1},       Half{PadAxis::kLeft
                              Half{PadAxis::kLeftTrigger, 1}, Half{PadAxis::kRightTrigger, 1}};
 static_assert(kHalves.size() == kPadNames.size());
 
-constexpr double kMostMoved = 1e6;
+constexpr double kMaxMoved = 1e6;
 
 double forward(double value) {
-  return std::isfinite(value) ? std::clamp(value, 0.0, kMostMoved) : 0.0;
+  return std::isfinite(value) ? std::clamp(value, 0.0, kMaxMoved) : 0.0;
 }
 
 Reading read_pads(Control control, const InputState& input, std::optional<std::size_t> slot) {

@@ -103,9 +103,9 @@ core::Result<void> Recording::add(std::span<const ActionState> states) {
     ++steps_;
     return {};
   }
-  if (changes_.size() + changed.size() > kMostBytes) {
+  if (changes_.size() + changed.size() > kMaxBytes) {
     return core::fail(ErrorCode::kOverBudget,
-                      fmt::format("a recording has at most {} MiB", kMostBytes >> 20));
+                      fmt::format("a recording has at most {} MiB", kMaxBytes >> 20));
   }
   ++steps_;
   put_varint(changes_, steps_ - std::exchange(last_changed_, steps_));
@@ -134,15 +134,15 @@ std::string Recording::bytes() const {
 core::Result<Recording> Recording::parse(std::string_view bytes, std::string_view name) {
   if (bytes.substr(0, kMagic.size()) != kMagic)
     return refused(name, "this is not a recording of input");
-  const std::size_t most_bytes = bytes.size() - std::min(bytes.size(), kHashBytes);
+  const std::size_t max_bytes = bytes.size() - std::min(bytes.size(), kHashBytes);
   ByteReader rest(bytes.substr(kMagic.size()));
   const auto format = rest.get<std::uint32_t>();
   if (!rest.failed() && format != kRecordingFormat) {
     return refused(name, fmt::format("its format is {}; this program reads format {}", format,
                                      kRecordingFormat));
   }
-  const auto hash = ByteReader(bytes.substr(most_bytes)).get<std::uint64_t>();
-  if (rest.failed() || hash != hash_of(bytes.substr(0, most_bytes)))
+  const auto hash = ByteReader(bytes.substr(max_bytes)).get<std::uint64_t>();
+  if (rest.failed() || hash != hash_of(bytes.substr(0, max_bytes)))
     return refused(name, "the recording is damaged or cut short");
   const tl::unexpected<core::Error> wrong = refused(name, "the recording contradicts itself");
   Recording recording;
@@ -150,8 +150,8 @@ core::Result<Recording> Recording::parse(std::string_view bytes, std::string_vie
   const auto actions = rest.get<std::uint32_t>();
   const auto steps = rest.get<std::uint64_t>();
   const auto changes = rest.get<std::uint64_t>();
-  if (rest.failed() || !(step_s > 0 && step_s <= kLongestStepS) ||
-      actions > Actions::kMostActions || steps > kMostSteps)
+  if (rest.failed() || !(step_s > 0 && step_s <= kLongestStepS) || actions > Actions::kMaxActions ||
+      steps > kMaxSteps)
     return wrong;
   for (std::uint32_t i = 0; i < actions; ++i)
     recording.names_.emplace_back(rest.get_text(rest.get<std::uint8_t>()));
@@ -169,7 +169,7 @@ core::Result<void> Recording::save(const std::filesystem::path& file) const {
 }
 
 core::Result<Recording> Recording::load(const std::filesystem::path& file) {
-  const core::Result<std::string> bytes = world::read_text_file(file, 2 * kMostBytes);
+  const core::Result<std::string> bytes = world::read_text_file(file, 2 * kMaxBytes);
   if (!bytes) return tl::unexpected(bytes.error());
   return parse(*bytes, file.string());
 }
@@ -186,7 +186,7 @@ core::Result<Replay> Replay::create(Recording recording, const Actions& actions,
     if (!id) {
       return core::fail(ErrorCode::kInvalidArgument,
                         fmt::format("the recording has the action \"{}\", which this game has not",
-                                    core::shown(name, Actions::kMostNameBytes)));
+                                    core::shown(name, Actions::kMaxNameBytes)));
     }
     replay.ids_.push_back(*id);
   }

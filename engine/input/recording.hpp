@@ -24,14 +24,14 @@ inline constexpr std::uint32_t kRecordingFormat = 1;
 // The states of all actions in every step, and the names of the actions.
 class Recording {
  public:
-  static constexpr std::uint64_t kMostBytes = 256ull << 20;
-  static constexpr std::uint64_t kMostSteps = 1ull << 40;
+  static constexpr std::uint64_t kMaxBytes = 256ull << 20;
+  static constexpr std::uint64_t kMaxSteps = 1ull << 40;
 
   // An empty recording of these actions, with the length of a fixed step in seconds, above 0.
   Recording(const Actions& actions, double step_s);
 
   // Appends the states of a step. Call it after Actions::step(), with the actions it was made for.
-  // Fails with kOverBudget once changes would take more than kMostBytes; nothing is added then.
+  // Fails with kOverBudget once changes would take more than kMaxBytes; nothing is added then.
   core::Result<void> add(std::span<const ActionState> states);
 
   // Names, in the order of the states.

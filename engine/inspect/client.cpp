@@ -15,12 +15,12 @@
 namespace psygen::inspect {
 namespace {
 
-constexpr std::size_t kMostAnswerBytes = std::size_t{64} << 20;
-constexpr std::size_t kMostCommandBytes = 4096;
+constexpr std::size_t kMaxAnswerBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxCommandBytes = 4096;
 
 std::string command_of(int pid) {
   std::ifstream file(fmt::format("/proc/{}/cmdline", pid), std::ios::binary);
-  std::string text(kMostCommandBytes, '\0');
+  std::string text(kMaxCommandBytes, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
   while (!text.empty() && text.back() == '\0')
@@ -69,7 +69,7 @@ struct Client::Parts {
 
   void receive() {
     std::array<char, 64 << 10> bytes;
-    while (fd && input.size() < kMostAnswerBytes) {
+    while (fd && input.size() < kMaxAnswerBytes) {
       const ssize_t got = ::recv(fd.get(), bytes.data(), bytes.size(), 0);
       if (got > 0) {
         input.append(bytes.data(), static_cast<std::size_t>(got));
@@ -79,7 +79,7 @@ struct Client::Parts {
       if (got == 0 || (errno != EAGAIN && errno != EWOULDBLOCK)) close();
       return;
     }
-    if (input.find('\n') == std::string::npos && input.size() >= kMostAnswerBytes) close();
+    if (input.find('\n') == std::string::npos && input.size() >= kMaxAnswerBytes) close();
   }
 };
 

@@ -13,7 +13,7 @@
 namespace psygen::inspect {
 namespace {
 
-constexpr int kMostRequestsAFrame = 16;
+constexpr int kMaxRequestsAFrame = 16;
 
 // A server with its visitor. A session's schedule owns it.
 struct Desk {
@@ -32,7 +32,7 @@ struct Desk {
     visit.note_frame(session.scene().state());
     server->receive();
     if (const auto late = visit.late_answer(session)) server->send(*late);
-    for (int i = 0; i < kMostRequestsAFrame && !visit.over() && !visit.is_busy(); ++i) {
+    for (int i = 0; i < kMaxRequestsAFrame && !visit.over() && !visit.is_busy(); ++i) {
       const auto line = server->take_line();
       if (!line) break;
       if (const auto answer = visit.answer(session, *line)) server->send(*answer);

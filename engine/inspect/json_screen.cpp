@@ -3,8 +3,8 @@
 namespace psygen::inspect {
 namespace {
 
-constexpr int kMostMarks = 64, kMostDepth = 4;
-constexpr std::size_t kMostOutside = 4096;  // bytes outside of strings: numbers, blanks
+constexpr int kMaxMarks = 64, kMaxDepth = 4;
+constexpr std::size_t kMaxOutside = 4096;  // bytes outside of strings: numbers, blanks
 
 }  // namespace
 
@@ -19,12 +19,12 @@ bool is_small_json(std::string_view text) {
       if (c == '"') in_string = false;
       continue;
     }
-    if (++outside > kMostOutside) return false;
+    if (++outside > kMaxOutside) return false;
     if (c == '"') in_string = true;
     if (c == '[' || c == '{') ++depth;
     if (c == ']' || c == '}') --depth;
     if (c == '[' || c == '{' || c == ',' || c == ':') ++marks;
-    if (depth > kMostDepth || marks > kMostMarks) return false;
+    if (depth > kMaxDepth || marks > kMaxMarks) return false;
   }
   return true;
 }

@@ -14,10 +14,10 @@
 namespace psygen::inspect {
 namespace {
 
-constexpr std::size_t kReadBytes = 16 << 10, kMostReads = 16;  // a frame
-constexpr std::size_t kMostUnread = std::size_t{1} << 20;      // bytes of answers
+constexpr std::size_t kReadBytes = 16 << 10, kMaxReads = 16;  // a frame
+constexpr std::size_t kMaxUnread = std::size_t{1} << 20;      // bytes of answers
 constexpr double kGreetingSeconds = 5, kStuckSeconds = 10;
-constexpr int kMostSockets = 16;  // of one process
+constexpr int kMaxSockets = 16;  // of one process
 
 tl::unexpected<core::Error> no_socket(const std::filesystem::path& path) {
   return core::fail(core::ErrorCode::kIo,
@@ -54,7 +54,7 @@ core::Result<void> LineServer::listen(const std::filesystem::path& folder) {
   Descriptor fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   // The mode of the file from its first moment on.
   if (!fd || ::fchmod(fd.get(), 0600) != 0) return no_socket(folder);
-  for (int i = 1; i <= kMostSockets; ++i) {
+  for (int i = 1; i <= kMaxSockets; ++i) {
     const std::string number = i > 1 ? fmt::format("-{}", i) : "";
     const auto path =
         folder / fmt::format("{}{}{}{}", kSocketPrefix, ::getpid(), number, kSocketSuffix);
@@ -63,7 +63,7 @@ core::Result<void> LineServer::listen(const std::filesystem::path& folder) {
       return core::fail(core::ErrorCode::kInvalidArgument,
                         fmt::format("{}: too long for the name of a socket", path.string()));
     if (::bind(fd.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof(*address)) != 0) {
-      if (errno == EADDRINUSE && i < kMostSockets) continue;
+      if (errno == EADDRINUSE && i < kMaxSockets) continue;
       return no_socket(path);
     }
     address_ = path;
@@ -113,11 +113,11 @@ void LineServer::refuse_others() const {
 void LineServer::receive() {
   refuse_others();
   std::array<char, kReadBytes> bytes;
-  for (std::size_t i = 0; i < kMostReads; ++i) {
+  for (std::size_t i = 0; i < kMaxReads; ++i) {
     // A whole line waits already, or too much of one is here.
     if (input_.find('\n', looked_at_) != std::string::npos) return;
     looked_at_ = input_.size();
-    if (input_.size() > kMostLineBytes) return drop();
+    if (input_.size() > kMaxLineBytes) return drop();
     const ssize_t got = ::recv(client_.get(), bytes.data(), bytes.size(), 0);
     if (got == 0) return drop();
     if (got < 0) {
@@ -131,7 +131,7 @@ void LineServer::receive() {
 }
 
 std::optional<std::string> LineServer::take_line() {
-  if (!attached() || output_.size() - sent_ > kMostUnread) return std::nullopt;
+  if (!attached() || output_.size() - sent_ > kMaxUnread) return std::nullopt;
   const std::size_t end = input_.find('\n', looked_at_);
   if (end == std::string::npos) return std::nullopt;
   std::string line = input_.substr(0, end);

@@ -18,7 +18,7 @@
 namespace psygen::inspect {
 
 // A longer line ends the connection. A world file has at most 1 MiB, and JSON escapes some of it.
-inline constexpr std::size_t kMostLineBytes = std::size_t{4} << 20;
+inline constexpr std::size_t kMaxLineBytes = std::size_t{4} << 20;
 
 class LineServer {
  public:

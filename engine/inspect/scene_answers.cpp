@@ -14,7 +14,7 @@
 namespace psygen::inspect {
 namespace {
 
-constexpr std::size_t kMostNodes = 20'000;
+constexpr std::size_t kMaxNodes = 20'000;
 
 // The flags of a node, as docs/inspect.md lists them.
 enum NodeFlag : unsigned { kInView = 1, kDrawn = 2, kStale = 4, kRequested = 8, kFailed = 16 };
@@ -49,7 +49,7 @@ Json node_list(const scene::State& state) {
       [&](std::span<const ecs::Entity>, std::span<const scene::Node> at,
           std::span<const scene::Visibility> seen, std::span<const scene::Lacking> lacking,
           std::span<const scene::Source> sources, std::span<const scene::Demand> demands) {
-        for (std::size_t i = 0; i < at.size() && nodes.size() < kMostNodes; ++i)
+        for (std::size_t i = 0; i < at.size() && nodes.size() < kMaxNodes; ++i)
           nodes.emplace_back(at[i].at.level,
                              node_json(state, at[i], seen[i], lacking[i], sources[i], demands[i]));
       });

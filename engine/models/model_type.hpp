@@ -137,7 +137,7 @@ class ModelType {
   // the block's corner). snorm16 positions are relative to it. For terrain its y range is the same
   // in every block of a world, and unorm16 heights span it. Works without synthesis.
   virtual core::Bounds bounds(const Parameters& p) const = 0;
-  // Exactly what synthesize() will write. vertex_count <= 65,536.
+  // Exactly what synthesise() will write. vertex_count <= 65,536.
   virtual MeshSize mesh_size(const Parameters& p, int level) const = 0;
   // Number of operations by the asymptotic formula, scaled so that level 0 matches the paper's
   // formula. Time is proportional to it.
@@ -156,7 +156,7 @@ class ModelType {
   // Fills `out`, whose spans have exactly the sizes of mesh_size(). Returns the tight box of the
   // vertices written, which lies inside bounds(p). Deterministic: same bits for the same (p, level)
   // on any thread and any CPU. No allocation that outlives the call, no I/O, no globals.
-  virtual core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const = 0;
+  virtual core::Bounds synthesise(const Parameters& p, int level, const MeshView& out) const = 0;
   // Distinguishes types of the same name with different functions, such as two editions of a
   // species. Part of every mesh's key (parameters_hash). 0 for types that never change.
   virtual std::uint64_t identity() const { return 0; }

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kGroundAcceleration = 40, kAirAcceleration = 6;  // m/s²
 constexpr double kRiseAcceleration = 20;                          // m/s², of CharacterInput::rise
-constexpr double kMostSlide = 12;  // m/s down ground that is too steep
-constexpr double kPieceM = 0.2;    // a longer way is gone in pieces
+constexpr double kMaxSlide = 12;  // m/s down ground that is too steep
+constexpr double kPieceM = 0.2;   // a longer way is gone in pieces
 constexpr int kSlides = 4;
 
 btVector3 along_plane(const btVector3& way, const btVector3& normal) {
@@ -34,7 +34,7 @@ Character::Character(btDynamicsWorld& bullet, Terrain& terrain, const CharacterS
     : bullet_(bullet),
       terrain_(terrain),
       settings_(settings),
-      least_up_(std::cos(glm::radians(settings.steepest_deg))),
+      min_up_(std::cos(glm::radians(settings.steepest_deg))),
       feet_(feet),
       capsule_(settings.radius_m, settings.height_m - 2 * settings.radius_m),
       body_(std::make_unique<btRigidBody>(0, &motion_, &capsule_)),
@@ -191,7 +191,7 @@ void Character::move_down(double drop) {
   if (on_ground) return;
   // Too steep: it slides down.
   const btVector3 downhill = wall(support.normal);
-  const double faster = kMostSlide - velocity.dot(downhill);
+  const double faster = kMaxSlide - velocity.dot(downhill);
   velocity += downhill * std::clamp(fall_speed * support.normal.y(), 0.0, std::max(faster, 0.0));
   if (support.height > ground.height_m) move_aside(downhill * std::max(drop, 0.02));
 }
@@ -238,15 +238,15 @@ void Character::step(double dt, double gravity, const btVector3& carried) {
     rising_ = true;
     input.jump = false;
   } else if (input.rise) {
-    const double most_change = kRiseAcceleration * dt;
-    velocity.setY(velocity.y() + std::clamp(*input.rise - velocity.y(), -most_change, most_change));
+    const double max_change = kRiseAcceleration * dt;
+    velocity.setY(velocity.y() + std::clamp(*input.rise - velocity.y(), -max_change, max_change));
     rising_ = velocity.y() > 0;
     if (rising_) leave_floor();
   } else {
     velocity.setY(on_ground && velocity.y() <= 0 ? 0 : velocity.y() - gravity * dt);
     rising_ = velocity.y() > 0;
   }
-  if (velocity.length() > kMostSpeed) velocity *= kMostSpeed / velocity.length();
+  if (velocity.length() > kMaxSpeed) velocity *= kMaxSpeed / velocity.length();
 
   const double way_m = btVector3(velocity.x(), 0, velocity.z()).length() * dt;
   const int pieces = std::max(static_cast<int>(std::ceil(way_m / kPieceM)), 1);

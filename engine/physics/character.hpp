@@ -56,13 +56,13 @@ class Character {
   void follow_ground();
   void ride(const btVector3& carried);
   void leave_floor();
-  bool is_walkable(const btVector3& normal) const { return normal.y() >= least_up_; }
+  bool is_walkable(const btVector3& normal) const { return normal.y() >= min_up_; }
   void publish(bool jumped_there);
 
   btDynamicsWorld& bullet_;
   Terrain& terrain_;
   CharacterSettings settings_;
-  double least_up_;  // y of the normal of the steepest walkable ground
+  double min_up_;  // y of the normal of the steepest walkable ground
   btVector3 feet_;
   bool rising_ = false;  // has jumped in this step
   query::ObjectId floor_;

@@ -74,7 +74,7 @@ void ObjectBodies::move(Body& body, const btTransform& pose, double dt) {
   body.motion.setWorldTransform(pose);
   rigid.setWorldTransform(pose);
   // Bullet takes its speed from the way since the last step.
-  body.carries = (pose.getOrigin() - body.before.getOrigin()).length() <= kMostSpeed * dt;
+  body.carries = (pose.getOrigin() - body.before.getOrigin()).length() <= kMaxSpeed * dt;
   if (!body.carries) rigid.setInterpolationWorldTransform(pose);
   bullet_.updateSingleAabb(&rigid);
 }

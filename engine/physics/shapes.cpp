@@ -31,7 +31,7 @@ PlacedShape make(const Collider::Capsule& c) {
 }
 
 PlacedShape make(const Collider::Box& b) {
-  return {std::make_unique<btBoxShape>(to_bt(b.half_extent())), at(to_bt(b.center()))};
+  return {std::make_unique<btBoxShape>(to_bt(b.half_extent())), at(to_bt(b.centre()))};
 }
 
 PlacedShape make(const Collider::Hull& h) {
@@ -46,13 +46,13 @@ bool is_legal(const Collider::Shape& shape) {
   if (const auto* hull = std::get_if<Collider::Hull>(&shape); hull && hull->points.size() < 4)
     return false;
   if (const auto* capsule = std::get_if<Collider::Capsule>(&shape);
-      capsule && !(capsule->radius * 2 >= kLeastSizeM))
+      capsule && !(capsule->radius * 2 >= kMinSizeM))
     return false;
   const core::Bounds box = models::bounds_of(shape);
   for (int i = 0; i < 3; ++i) {
     const double size = static_cast<double>(box.max[i]) - static_cast<double>(box.min[i]);
     const double far = std::max(std::abs(box.min[i]), std::abs(box.max[i]));
-    if (!(size >= kLeastSizeM && far <= kMostSizeM)) return false;  // nor NaN
+    if (!(size >= kMinSizeM && far <= kMaxSizeM)) return false;  // nor NaN
   }
   if (const auto* hull = std::get_if<Collider::Hull>(&shape))
     return std::ranges::all_of(hull->points, [](const glm::vec3& p) { return core::is_finite(p); });
@@ -70,7 +70,7 @@ core::Result<OwnedShape> make_shape(const models::Collider& collider) {
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("the shape of a body needs parts of {} to {} m, with finite "
                                   "values and at least four points for a hull",
-                                  kLeastSizeM, kMostSizeM));
+                                  kMinSizeM, kMaxSizeM));
   OwnedShape owned;
   auto whole = std::make_unique<btCompoundShape>();
   double inner = 0;

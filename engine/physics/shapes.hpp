@@ -19,7 +19,7 @@ struct OwnedShape {
 };
 
 // The shape of a collider around its origin. Fails with kInvalidArgument for a collider without
-// parts, values that are not finite, and sizes outside kLeastSizeM … kMostSizeM.
+// parts, values that are not finite, and sizes outside kMinSizeM … kMaxSizeM.
 core::Result<OwnedShape> make_shape(const models::Collider& collider);
 
 // One part and its place, unchecked.

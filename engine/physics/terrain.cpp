@@ -99,8 +99,8 @@ void Terrain::each_near(const glm::dvec2& low, const glm::dvec2& high, double re
   const double size = query_.world().block_size_m();
   glm::dvec2 first = glm::floor((low - reach_m) / size), last = glm::floor((high + reach_m) / size);
   const glm::dvec2 middle = glm::floor((low + high) / (2 * size));
-  first = glm::max(first, middle - double{kMostAside / 2});
-  last = glm::min(last, middle + double{kMostAside / 2});
+  first = glm::max(first, middle - double{kMaxAside / 2});
+  last = glm::min(last, middle + double{kMaxAside / 2});
   for (double z = first.y; z <= last.y; ++z)
     for (double x = first.x; x <= last.x; ++x)
       if (!visit(core::moved(origin_, static_cast<std::int64_t>(x), static_cast<std::int64_t>(z))))

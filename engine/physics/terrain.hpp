@@ -21,7 +21,7 @@ enum Group : int { kGround = 1, kModels = 2, kBodies = 4, kCharacters = 8, kObje
 class Terrain {
  public:
   // At most this many blocks along each axis are made around one thing.
-  static constexpr std::int64_t kMostAside = 32;
+  static constexpr std::int64_t kMaxAside = 32;
 
   // Both must outlive it.
   Terrain(btDynamicsWorld& bullet, query::World& query) : bullet_(bullet), query_(query) {}

@@ -24,9 +24,9 @@ struct CharacterId {
 };
 
 // No value may be larger than these.
-inline constexpr double kMostSpeed = 1000;  // m/s; what is faster after a step is slowed down
-inline constexpr double kMostSizeM = 1000;  // of a shape, along any axis
-inline constexpr double kLeastSizeM = 0.01;
+inline constexpr double kMaxSpeed = 1000;  // m/s; what is faster after a step is slowed down
+inline constexpr double kMaxSizeM = 1000;  // of a shape, along any axis
+inline constexpr double kMinSizeM = 0.01;
 
 // Whether and how a body moves.
 enum class Motion : std::uint8_t {
@@ -70,9 +70,9 @@ struct CharacterInput {
   glm::dvec2 direction{0.0};  // x and z; longer than 1 counts as 1
   bool run = false;
   bool jump = false;  // when it next stands
-  double speed = 0;   // m/s in that direction; 0: as it walks or runs. 0 … kMostSpeed
+  double speed = 0;   // m/s in that direction; 0: as it walks or runs. 0 … kMaxSpeed
   // Its speed upwards, in m/s, in place of gravity: it swims, climbs or glides. Ground and models
-  // stop it as ever. −kMostSpeed … kMostSpeed.
+  // stop it as ever. −kMaxSpeed … kMaxSpeed.
   std::optional<double> rise = std::nullopt;
 };
 

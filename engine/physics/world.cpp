@@ -19,11 +19,11 @@ tl::unexpected<core::Error> no_character(CharacterId id) {
 
 core::Result<void> check(const CharacterSettings& s) {
   const auto is_in = [](double v, double low, double high) { return v >= low && v <= high; };
-  if (!is_in(s.radius_m, kLeastSizeM, kMostSizeM) || !is_in(s.height_m, 2 * s.radius_m, kMostSizeM))
+  if (!is_in(s.radius_m, kMinSizeM, kMaxSizeM) || !is_in(s.height_m, 2 * s.radius_m, kMaxSizeM))
     return refuse(
         fmt::format("a character of radius {} m and height {} m: both are {} … {} m, and "
                     "the height at least twice the radius",
-                    s.radius_m, s.height_m, kLeastSizeM, kMostSizeM));
+                    s.radius_m, s.height_m, kMinSizeM, kMaxSizeM));
   if (!is_in(s.walk_speed, 0, 100) || !is_in(s.run_speed, 0, 100) || !is_in(s.jump_speed, 0, 100))
     return refuse("the speeds of a character are 0 … 100 m/s");
   if (!is_in(s.step_height_m, 0, s.height_m))
@@ -46,7 +46,7 @@ struct NearestBody : btCollisionWorld::ClosestRayResultCallback {
 core::Result<World> World::create(query::World& query, const Settings& settings) {
   if (!(settings.gravity >= 0 && settings.gravity <= 100))
     return refuse(fmt::format("gravity is 0 … 100 m/s², not {}", settings.gravity));
-  if (settings.most_bodies > 1'000'000) return refuse("at most 1,000,000 bodies");
+  if (settings.max_bodies > 1'000'000) return refuse("at most 1,000,000 bodies");
   return World(std::make_unique<Impl>(query, settings));
 }
 
@@ -82,9 +82,9 @@ core::Result<void> World::tell(CharacterId id, const CharacterInput& input) {
   if (character == nullptr) return no_character(id);
   if (!is_within({input.direction.x, 0, input.direction.y}, 1e6))
     return refuse("the direction of a character is finite and at most 10^6 long");
-  if (!(input.speed >= 0 && input.speed <= kMostSpeed))
+  if (!(input.speed >= 0 && input.speed <= kMaxSpeed))
     return refuse("the speed of a character is 0 to 1000 m/s");
-  if (input.rise && !(std::abs(*input.rise) <= kMostSpeed))
+  if (input.rise && !(std::abs(*input.rise) <= kMaxSpeed))
     return refuse("a character rises or sinks at no more than 1000 m/s");
   character->input = input;
   return {};
@@ -102,9 +102,9 @@ core::Result<void> World::set_feet(CharacterId id, const core::WorldPosition& fe
 core::Result<void> World::set_velocity(CharacterId id, const glm::dvec3& velocity) {
   Character* character = impl_->find(id);
   if (character == nullptr) return no_character(id);
-  if (!is_within(velocity, kMostSpeed))
+  if (!is_within(velocity, kMaxSpeed))
     return refuse(
-        fmt::format("a velocity is finite, and at most {} m/s along each axis", kMostSpeed));
+        fmt::format("a velocity is finite, and at most {} m/s along each axis", kMaxSpeed));
   character->velocity = to_bt(velocity);
   if (velocity.y > 0) character->on_ground = false;
   return {};

@@ -15,11 +15,11 @@
 namespace psygen::physics {
 
 struct Settings {
-  double gravity = 9.81;             // m/s², downwards; 0 … 100
-  std::size_t most_bodies = 10'000;  // with characters
+  double gravity = 9.81;            // m/s², downwards; 0 … 100
+  std::size_t max_bodies = 10'000;  // with characters
   // Blocks that nothing needs any more are kept for this many steps, and at most this many of them.
   std::uint32_t keep_steps = 120;
-  std::size_t most_idle_blocks = 64;
+  std::size_t max_idle_blocks = 64;
 };
 
 // The physics of one world. Functions fail with kInvalidArgument for values that are not finite or
@@ -32,8 +32,8 @@ class World {
   World& operator=(World&&) noexcept;
   ~World();
 
-  // Adds a body. Its shape has at least one part, each of kLeastSizeM … kMostSizeM. Fails with
-  // kOverBudget above Settings::most_bodies. A body below the ground is put on it in the next step.
+  // Adds a body. Its shape has at least one part, each of kMinSizeM … kMaxSizeM. Fails with
+  // kOverBudget above Settings::max_bodies. A body below the ground is put on it in the next step.
   core::Result<BodyId> add(const BodySettings& settings);
   // Removes a body, and wakes those that touch it. O(contacts).
   core::Result<void> remove(BodyId body);

@@ -23,9 +23,9 @@ core::Result<glm::dquat> checked_rotation(const glm::dquat& q) {
 }
 
 core::Result<void> check_speeds(const glm::dvec3& velocity, const glm::dvec3& spin) {
-  if (is_within(velocity, kMostSpeed) && is_within(spin, kMostSpeed)) return {};
+  if (is_within(velocity, kMaxSpeed) && is_within(spin, kMaxSpeed)) return {};
   return refuse(
-      fmt::format("velocity and spin are finite, and at most {} along each axis", kMostSpeed));
+      fmt::format("velocity and spin are finite, and at most {} along each axis", kMaxSpeed));
 }
 
 core::Result<void> check(const BodySettings& s) {
@@ -142,9 +142,9 @@ core::Result<void> World::push(BodyId id, const glm::dvec3& impulse) {
   if (body == nullptr) return no_body(id);
   if (body->kind != Motion::kDynamic) return refuse("only dynamic bodies can be pushed");
   const double mass = 1 / body->rigid->getInvMass();
-  if (!is_within(impulse / mass, kMostSpeed))
+  if (!is_within(impulse / mass, kMaxSpeed))
     return refuse(
-        fmt::format("an impulse is finite and changes the speed by at most {} m/s", kMostSpeed));
+        fmt::format("an impulse is finite and changes the speed by at most {} m/s", kMaxSpeed));
   body->rigid->applyCentralImpulse(to_bt(impulse));
   body->rigid->activate(true);
   return {};

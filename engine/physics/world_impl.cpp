@@ -10,7 +10,7 @@ namespace psygen::physics {
 namespace {
 
 // Coordinates stay below this near the first thing that moves.
-constexpr double kMostFromOriginM = 4096;
+constexpr double kMaxFromOriginM = 4096;
 // Terrain is made this much further than a thing can get in a step.
 constexpr double kMarginM = 2;
 
@@ -58,7 +58,7 @@ core::Result<btVector3> World::Impl::place(const core::WorldPosition& at) {
     return refuse(
         fmt::format("block ({}, {}) is outside the world", sound->block.x, sound->block.z));
   const btVector3 to = terrain.coordinates(*sound);
-  if (btVector3(to.x(), 0, to.z()).length() <= kMostFromOriginM || count() > 1) return to;
+  if (btVector3(to.x(), 0, to.z()).length() <= kMaxFromOriginM || count() > 1) return to;
   move_origin(sound->block);
   return terrain.coordinates(*sound);
 }
@@ -69,7 +69,7 @@ void World::Impl::shift_origin() {
   const btVector3 first = !characters.empty()
                               ? characters.begin()->second.feet()
                               : bodies.begin()->second.rigid->getCenterOfMassPosition();
-  if (btVector3(first.x(), 0, first.z()).length() > kMostFromOriginM)
+  if (btVector3(first.x(), 0, first.z()).length() > kMaxFromOriginM)
     move_origin(terrain.position(first).block);
 }
 
@@ -135,16 +135,16 @@ void World::Impl::step(double dt) {
   bullet.stepSimulation(dt, 0);
   for (auto& [number, body] : bodies)
     if (body.kind == Motion::kDynamic) put_back(body);
-  terrain.drop_idle(steps, settings.keep_steps, settings.most_idle_blocks);
+  terrain.drop_idle(steps, settings.keep_steps, settings.max_idle_blocks);
   objects.drop_idle(steps, settings.keep_steps);
 }
 
 core::Result<void> World::Impl::check_room() const {
-  if (count() < settings.most_bodies) return {};
+  if (count() < settings.max_bodies) return {};
   return core::fail(core::ErrorCode::kOverBudget,
                     fmt::format("there are {} bodies and characters already, the most that the "
                                 "settings allow",
-                                settings.most_bodies));
+                                settings.max_bodies));
 }
 
 // Contacts are kept while both bodies sleep.
@@ -214,8 +214,8 @@ void World::Impl::put_back(Body& body) {
     at.setY(ground.height_m + inner);
     stop_at(to_bt(ground.normal));
   }
-  if (velocity.length() > kMostSpeed) {
-    velocity = limited(velocity, kMostSpeed);
+  if (velocity.length() > kMaxSpeed) {
+    velocity = limited(velocity, kMaxSpeed);
     changed = true;
   }
   if (!changed) return;
@@ -224,7 +224,7 @@ void World::Impl::put_back(Body& body) {
   rigid.setInterpolationWorldTransform(transform);
   rigid.setLinearVelocity(velocity);
   rigid.setInterpolationLinearVelocity(velocity);
-  rigid.setAngularVelocity(limited(rigid.getAngularVelocity(), kMostSpeed));
+  rigid.setAngularVelocity(limited(rigid.getAngularVelocity(), kMaxSpeed));
   bullet.updateSingleAabb(&rigid);
 }
 

@@ -18,7 +18,7 @@ struct InputState {
   KeySet went_up;    // released during the frame, even if pressed again
   KeySet repeated;   // repeated by the keyboard while held, for text fields
   MouseButtonSet buttons_held, buttons_went_down, buttons_went_up;
-  std::string text;               // what was typed, UTF-8; at most kMostTextBytes
+  std::string text;               // what was typed, UTF-8; at most kMaxTextBytes
   glm::dvec2 pointer_px{0.0};     // in the picture, from its upper left corner; while the cursor is
                                   // captured it means nothing
   glm::dvec2 move_px{0.0};        // mouse movement: right, down; screen coordinates
@@ -30,7 +30,7 @@ struct InputState {
   bool resized = false;           // the framebuffer changed its size; ask the window for it
   Gamepads pads;
 
-  static constexpr std::size_t kMostTextBytes = 4096;
+  static constexpr std::size_t kMaxTextBytes = 4096;
 
   // Whether the key is down at the end of the frame, or was pressed or released during it.
   bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }

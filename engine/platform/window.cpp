@@ -202,7 +202,7 @@ struct Window::Implementation {
   static void on_text(GLFWwindow* window, unsigned int character) {
     std::string& text = of(window).input.text;
     constexpr std::size_t kLongest = 4;  // bytes of a character
-    if (text.size() + kLongest <= InputState::kMostTextBytes)
+    if (text.size() + kLongest <= InputState::kMaxTextBytes)
       core::append_utf8(text, static_cast<char32_t>(character));
   }
 

@@ -59,7 +59,7 @@ class Adder {
     if (!light) return tl::unexpected(light.error());
     return assets_.add_material({.base_colour = from.base_colour,
                                  .opacity = from.opacity,
-                                 .least_opacity = from.least_opacity,
+                                 .min_opacity = from.min_opacity,
                                  .emissive = from.emissive,
                                  .base_texture = *base,
                                  .normal_texture = *normal,
@@ -72,7 +72,7 @@ class Adder {
     const gltf::Mesh& mesh = model_.meshes[index];
     if (!objects_[index].empty()) return {};
     for (const gltf::Primitive& primitive : mesh.primitives) {
-      const bool fits = primitive.mesh.positions.size() <= core::kMostMeshVertices;
+      const bool fits = primitive.mesh.positions.size() <= core::kMaxMeshVertices;
       const auto parts = fits ? std::vector<core::MeshData>{} : core::split(primitive.mesh);
       const std::span<const core::MeshData> all =
           fits ? std::span(&primitive.mesh, 1) : std::span(parts);

@@ -19,8 +19,8 @@ void add(BlockSolids& all, StandingSolid solid) {
 }  // namespace
 
 BlockCache::BlockCache(const world::World& world, const models::Registry& registry,
-                       std::size_t most_bytes)
-    : world_(world), registry_(registry), most_bytes_(most_bytes), edits_(world.edits) {}
+                       std::size_t max_bytes)
+    : world_(world), registry_(registry), max_bytes_(max_bytes), edits_(world.edits) {}
 
 // Forgets the blocks that edits have changed since the last look.
 void BlockCache::follow_edits() {
@@ -51,7 +51,7 @@ BlockCache::Block& BlockCache::touch(core::BlockCoord block) {
 void BlockCache::charge(Block& block, std::size_t bytes) {
   block.bytes += bytes;
   bytes_ += bytes;
-  while (bytes_ > most_bytes_ && blocks_.size() > 1)
+  while (bytes_ > max_bytes_ && blocks_.size() > 1)
     forget(blocks_.back().at);
 }
 

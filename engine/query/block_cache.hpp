@@ -35,8 +35,8 @@ struct BlockSolids {
 // next call.
 class BlockCache {
  public:
-  // Empty. Both outlive it; `most_bytes` is the bound of what it keeps.
-  BlockCache(const world::World& world, const models::Registry& registry, std::size_t most_bytes);
+  // Empty. Both outlive it; `max_bytes` is the bound of what it keeps.
+  BlockCache(const world::World& world, const models::Registry& registry, std::size_t max_bytes);
   BlockCache(BlockCache&&) = default;
   BlockCache(const BlockCache&) = delete;
 
@@ -68,7 +68,7 @@ class BlockCache {
 
   const world::World& world_;
   const models::Registry& registry_;
-  std::size_t most_bytes_, bytes_ = 0;
+  std::size_t max_bytes_, bytes_ = 0;
   std::shared_ptr<const models::EditLayer> edits_;  // of the world when they were last looked at
   Order blocks_;
   std::unordered_map<core::BlockCoord, Order::iterator, core::BlockCoordHash> index_;

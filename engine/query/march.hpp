@@ -11,16 +11,16 @@
 
 namespace psygen::query {
 
-// The points from + t · step. Components of `step` are 0 or at least kLeastStep in size, so
+// The points from + t · step. Components of `step` are 0 or at least kMinStep in size, so
 // products with `inverse` are finite.
 struct PlaneLine {
-  static constexpr double kLeastStep = 1e-15;
+  static constexpr double kMinStep = 1e-15;
   glm::dvec2 from{0.0}, step{0.0}, inverse{0.0};
 
-  // `direction` may have any length; components below kLeastStep become 0.
+  // `direction` may have any length; components below kMinStep become 0.
   PlaneLine(glm::dvec2 first, glm::dvec2 direction) : from(first), step(direction) {
     for (int i = 0; i < 2; ++i) {
-      if (std::abs(step[i]) < kLeastStep) step[i] = 0;
+      if (std::abs(step[i]) < kMinStep) step[i] = 0;
       inverse[i] = step[i] == 0 ? 0 : 1 / step[i];
     }
   }

@@ -21,17 +21,17 @@ tl::unexpected<core::Error> refused(std::string message) {
 // What is wrong with the size of a part; empty if nothing is.
 std::string size_error(const Collider::Shape& shape) {
   if (const auto* capsule = std::get_if<Collider::Capsule>(&shape);
-      capsule && !(2 * double{capsule->radius} >= Objects::kLeastSizeM))
-    return fmt::format("the radius {} m is below {} m", capsule->radius, Objects::kLeastSizeM / 2);
+      capsule && !(2 * double{capsule->radius} >= Objects::kMinSizeM))
+    return fmt::format("the radius {} m is below {} m", capsule->radius, Objects::kMinSizeM / 2);
   const core::Bounds box = models::bounds_of(shape);
   for (int i = 0; i < 3; ++i) {
     const double low = double{box.min[i]}, high = double{box.max[i]};
     if (!std::isfinite(low) || !std::isfinite(high)) return "a value is not finite";
-    if (high - low < Objects::kLeastSizeM)
+    if (high - low < Objects::kMinSizeM)
       return fmt::format("it is {} m thick along {}, less than {} m", high - low, "xyz"[i],
-                         Objects::kLeastSizeM);
-    if (std::max(std::abs(low), std::abs(high)) > Objects::kMostSizeM)
-      return fmt::format("it reaches farther than {} m from its origin", Objects::kMostSizeM);
+                         Objects::kMinSizeM);
+    if (std::max(std::abs(low), std::abs(high)) > Objects::kMaxSizeM)
+      return fmt::format("it reaches farther than {} m from its origin", Objects::kMaxSizeM);
   }
   return {};
 }
@@ -40,8 +40,8 @@ std::string part_error(const Collider::Shape& shape) {
   const auto* hull = std::get_if<Collider::Hull>(&shape);
   if (hull == nullptr) return size_error(shape);
   const std::size_t count = hull->points.size();
-  if (count < 4 || count > Objects::kMostHullPoints)
-    return fmt::format("a hull has 4 … {} points, not {}", Objects::kMostHullPoints, count);
+  if (count < 4 || count > Objects::kMaxHullPoints)
+    return fmt::format("a hull has 4 … {} points, not {}", Objects::kMaxHullPoints, count);
   if (!std::ranges::all_of(hull->points, [](const glm::vec3& p) { return core::is_finite(p); }))
     return "a value is not finite";
   if (std::string error = size_error(shape); !error.empty()) return error;
@@ -96,9 +96,9 @@ bool ObjectPose::operator==(const ObjectPose& other) const {
 }
 
 core::Result<ObjectShape> Objects::make_shape(Collider collider) {
-  if (collider.empty() || collider.shapes.size() > kMostParts)
+  if (collider.empty() || collider.shapes.size() > kMaxParts)
     return refused(
-        fmt::format("a collider has 1 … {} parts, not {}", kMostParts, collider.shapes.size()));
+        fmt::format("a collider has 1 … {} parts, not {}", kMaxParts, collider.shapes.size()));
   for (std::size_t i = 0; i < collider.shapes.size(); ++i) {
     if (const std::string error = part_error(collider.shapes[i]); !error.empty())
       return refused(fmt::format("part {} of the collider is unusable: {}", i, error));
@@ -132,7 +132,7 @@ WideBox Objects::box_of(const PlacedObject& object) const {
   const glm::dvec3 half(box.half_extent());
   const glm::dvec3 reach =
       glm::abs(turn[0]) * half.x + glm::abs(turn[1]) * half.y + glm::abs(turn[2]) * half.z;
-  const glm::dvec3 centre = coordinates(object.position) + turn * glm::dvec3(box.center());
+  const glm::dvec3 centre = coordinates(object.position) + turn * glm::dvec3(box.centre());
   return {centre - reach, centre + reach};
 }
 
@@ -140,9 +140,9 @@ core::Result<ObjectId> Objects::add(ObjectName name, const ObjectShape& shape,
                                     const ObjectPose& pose) {
   if (world_ == nullptr || shape == nullptr || name == 0)
     return refused("an object needs a world, a shape and a name above 0");
-  if (size() >= kMostObjects)
+  if (size() >= kMaxObjects)
     return core::fail(core::ErrorCode::kOverBudget,
-                      fmt::format("there are {} objects already", kMostObjects));
+                      fmt::format("there are {} objects already", kMaxObjects));
   auto object = placed(pose);
   if (!object) return tl::unexpected(object.error());
   auto scaled = scaled_solid(shape, pose.scale);

@@ -59,22 +59,22 @@ struct ObjectHit {
 class Objects {
  public:
   // Sizes of an object's parts after scaling, along any axis and from its place.
-  static constexpr double kLeastSizeM = 0.01, kMostSizeM = 1000;
-  static constexpr std::size_t kMostParts = 64, kMostHullPoints = 256;
-  static constexpr std::size_t kMostObjects = 1'000'000;
+  static constexpr double kMinSizeM = 0.01, kMaxSizeM = 1000;
+  static constexpr std::size_t kMaxParts = 64, kMaxHullPoints = 256;
+  static constexpr std::size_t kMaxObjects = 1'000'000;
 
   Objects() = default;  // of no world: nothing can be added
   explicit Objects(const world::World& world) : world_(&world) {}
 
   // Checks a collider. Fails with kInvalidArgument, in a sentence that names the part, for
-  // colliders without parts or of more than kMostParts, values that are not finite, sizes outside
-  // of kLeastSizeM … kMostSizeM, and hulls of less than four or more than kMostHullPoints points,
+  // colliders without parts or of more than kMaxParts, values that are not finite, sizes outside
+  // of kMinSizeM … kMaxSizeM, and hulls of less than four or more than kMaxHullPoints points,
   // or in one plane.
   static core::Result<ObjectShape> make_shape(models::Collider collider);
 
   // Adds an object. Fails with kInvalidArgument for a name of 0, poses that are not finite or
   // without a rotation, places outside a bounded world, and sizes out of their range after scaling;
-  // with kOverBudget beyond kMostObjects.
+  // with kOverBudget beyond kMaxObjects.
   core::Result<ObjectId> add(ObjectName name, const ObjectShape& shape, const ObjectPose& pose);
   // Another pose for an object. Fails like add(), and for objects that there are not; the object
   // stays where it was then. O(1) for the pose that it has.

@@ -10,8 +10,8 @@
 namespace psygen::query {
 namespace ways {  // has a name, because PathFinder::Search has members of these types
 
-constexpr float kLeastUp = 0.72F;  // of the normal of ground that is walked on …
-constexpr double kGentle = 0.3;    // … unless the way leads down
+constexpr float kMinUp = 0.72F;  // of the normal of ground that is walked on …
+constexpr double kGentle = 0.3;  // … unless the way leads down
 constexpr double kNoWay = std::numeric_limits<double>::infinity();
 
 struct Cell {
@@ -58,7 +58,7 @@ class PathFinder::Search {
   // Looks at up to so many cells. Whether it has ended.
   bool run(std::size_t cells) {
     for (std::size_t i = 0; i < cells; ++i) {
-      if (open_.empty() || nodes_.size() >= settings_.most_cells) return true;
+      if (open_.empty() || nodes_.size() >= settings_.max_cells) return true;
       const Open next = open_.top();
       open_.pop();
       Node& node = nodes_[name_of(next.cell)];
@@ -161,7 +161,7 @@ class PathFinder::Search {
     const double slope = (level_m(to) - level_m(from)) / run;
     if (slope > settings_.steepest_up || slope < -settings_.steepest_down) return kNoWay;
     if (to.depth_m > settings_.wade_m) return run * settings_.swim_cost;
-    if (to.up < kLeastUp && slope > -kGentle) return kNoWay;
+    if (to.up < kMinUp && slope > -kGentle) return kNoWay;
     if (solids_ && is_narrow(b)) run *= settings_.narrow_cost;
     return run * (1 + 3 * slope * slope + (slope > 0 ? slope : 0));
   }

@@ -22,7 +22,7 @@ struct PathSettings {
   double step_m = 0.55;    // what is lower is stepped over
   double aside_m = 0.45;   // room that it needs beside what is solid
   // Cells that one search looks at, at most; some microseconds each.
-  std::size_t most_cells = 150'000;
+  std::size_t max_cells = 150'000;
 };
 
 class PathFinder {
@@ -37,7 +37,7 @@ class PathFinder {
 
   PathSettings& settings() { return settings_; }
   // Points from `from` to `to`, both included, a cell apart, on the ground. Where there is no way,
-  // or none was found within most_cells, to the nearest point that was reached. Positions are at
+  // or none was found within max_cells, to the nearest point that was reached. Positions are at
   // most 2^31 cells from the corner of block (0, 0).
   std::vector<core::WorldPosition> find(const core::WorldPosition& from,
                                         const core::WorldPosition& to);

@@ -114,10 +114,10 @@ bool is_sound(const Collider::Shape& shape) {
 }  // namespace
 
 BoxLine::BoxLine(const Line& line) : origin(line.origin) {
-  constexpr double kLeast = 1e-100;
+  constexpr double kMin = 1e-100;
   for (int i = 0; i < 3; ++i) {
     const double d = line.direction[i];
-    inverse[i] = 1 / (std::abs(d) < kLeast ? std::copysign(kLeast, d) : d);
+    inverse[i] = 1 / (std::abs(d) < kMin ? std::copysign(kMin, d) : d);
   }
 }
 

@@ -32,13 +32,13 @@ auto rank(const NearModel& m) {
 }  // namespace
 
 core::Result<core::WorldPosition> checked(const core::WorldPosition& at, double block_size_m) {
-  const auto is_sound = [](double v) { return std::abs(v) <= World::kMostLocalM; };  // not of NaN
+  const auto is_sound = [](double v) { return std::abs(v) <= World::kMaxLocalM; };  // not of NaN
   if (!is_sound(at.local.x) || !is_sound(at.local.y) || !is_sound(at.local.z))
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("the position ({}, {}, {}) m in block ({}, {}) is not finite or "
-                                  "farther than {} m from its block",
-                                  at.local.x, at.local.y, at.local.z, at.block.x, at.block.z,
-                                  World::kMostLocalM));
+    return core::fail(
+        ErrorCode::kInvalidArgument,
+        fmt::format("the position ({}, {}, {}) m in block ({}, {}) is not finite or "
+                    "farther than {} m from its block",
+                    at.local.x, at.local.y, at.local.z, at.block.x, at.block.z, World::kMaxLocalM));
   return core::normalised(at, block_size_m);
 }
 
@@ -95,7 +95,7 @@ core::Result<Hit> World::cast(const Ray& ray) {
                       fmt::format("the length {} m of the ray is not above 0", ray.longest_m));
   const glm::dvec3 scaled = ray.direction / largest;
   const Course course{*origin, scaled / std::sqrt(glm::dot(scaled, scaled)),
-                      std::min(ray.longest_m, kMostLocalM)};
+                      std::min(ray.longest_m, kMaxLocalM)};
   Hit hit;
   hit.distance_m = course.longest_m;
   if (ray.ground) cast_ground(course, hit);
@@ -108,7 +108,7 @@ core::Result<Hit> World::cast(const Ray& ray) {
 
 void World::cast_ground(const Course& course, Hit& hit) {
   Side side = Side::kUnknown;
-  std::int64_t left = kMostBlocks;
+  std::int64_t left = kMaxBlocks;
   const PlaneLine plane = course.plane();
   march(plane, block_m_, 0, course.longest_m,
         [&](std::int64_t x, std::int64_t z, double from, double to) {
@@ -172,11 +172,11 @@ void World::cast_block(const Course& course, glm::dvec3 corner_m, BlockCoord blo
 // Models reach beyond their block, so each step of the ray looks at all blocks within reach.
 void World::cast_models(const Course& course, Hit& hit) {
   std::vector<glm::dvec2> seen;
-  std::int64_t left = kMostBlocks;
+  std::int64_t left = kMaxBlocks;
   const PlaneLine plane = course.plane();
   const double longest_m = hit.distance_m;
-  const glm::dvec2 most_m(most_reach_m());
-  const double reach_m = most_m.x, top_m = relief_m_ + most_m.y;
+  const glm::dvec2 max_m(max_reach_m());
+  const double reach_m = max_m.x, top_m = relief_m_ + max_m.y;
   march(plane, block_m_, 0, longest_m, [&](std::int64_t x, std::int64_t z, double from, double to) {
     if (from > hit.distance_m) return false;
     if (course.lowest(from, to) > top_m) return course.direction.y < 0;
@@ -229,10 +229,10 @@ core::Result<std::vector<World::BlockAround>> World::blocks_within(const core::W
         fmt::format("the radius must be finite and not negative, not {} m", radius_m));
   const glm::dvec2 centre(at.local.x, at.local.z);
   const BlockRange range = blocks_around(centre - radius_m, centre + radius_m, block_m_);
-  if (!(range.count() <= static_cast<double>(kMostBlocks)))
+  if (!(range.count() <= static_cast<double>(kMaxBlocks)))
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("a radius of {} m covers {:.0f} blocks; at most {} are searched",
-                                  radius_m, range.count(), kMostBlocks));
+                                  radius_m, range.count(), kMaxBlocks));
   std::vector<BlockAround> blocks;
   for (double z = range.first.y; z <= range.last.y; ++z) {
     for (double x = range.first.x; x <= range.last.x; ++x) {

@@ -71,9 +71,9 @@ struct NearModel {
 class World {
  public:
   // A position's metres may have at most this size.
-  static constexpr double kMostLocalM = 1e9;
+  static constexpr double kMaxLocalM = 1e9;
   // One query looks at no more blocks than this: a ray ends there, a larger radius is refused.
-  static constexpr std::int64_t kMostBlocks = 4096;
+  static constexpr std::int64_t kMaxBlocks = 4096;
   static constexpr std::size_t kUsualBytes = std::size_t{32} << 20;
 
   // Keeps blocks that were asked about within `cache_bytes`, least recently used out first. Makes
@@ -101,7 +101,7 @@ class World {
   // Replaces `out` by the models whose feet lie within `radius_m` of `at` (in space), nearest
   // first, then by block and index. With `only`, those of these types. A radius of 0 finds what
   // stands exactly there. Fails with kInvalidArgument for a position as above and for a radius that
-  // is negative or not finite, with kOverBudget for one that reaches more than kMostBlocks.
+  // is negative or not finite, with kOverBudget for one that reaches more than kMaxBlocks.
   core::Result<void> models_within(const core::WorldPosition& at, double radius_m,
                                    std::vector<NearModel>& out,
                                    std::span<const models::ModelIndex> only = {});
@@ -119,7 +119,7 @@ class World {
 
   // How far models reach sideways from their feet at most, in metres, with those that edits have
   // placed. O(1).
-  double models_reach_m() const { return static_cast<double>(most_reach_m().x); }
+  double models_reach_m() const { return static_cast<double>(max_reach_m().x); }
 
   // What the world looks like to queries.
   const world::World& world() const { return *world_; }
@@ -132,7 +132,7 @@ class World {
     glm::dvec3 corner_m{0.0};  // from the corner of the position's block
     double distance_m = 0;     // in the plane
   };
-  glm::vec2 most_reach_m() const { return world::with_placed_models(scattered_reach_m_, *world_); }
+  glm::vec2 max_reach_m() const { return world::with_placed_models(scattered_reach_m_, *world_); }
   void cast_ground(const Course& course, Hit& hit);
   void cast_models(const Course& course, Hit& hit);
   void cast_objects(const Course& course, Hit& hit) const;
@@ -154,7 +154,7 @@ class World {
 };
 
 // The position with local x and z in [0, block size). Fails with kInvalidArgument for values that
-// are not finite or larger than World::kMostLocalM.
+// are not finite or larger than World::kMaxLocalM.
 core::Result<core::WorldPosition> checked(const core::WorldPosition& at, double block_size_m);
 
 }  // namespace psygen::query

@@ -9,7 +9,7 @@ namespace psygen::render {
 namespace {
 
 // Objects whose names differ by a multiple of it share a bit.
-constexpr std::uint32_t kMostNames = 1 << 20;
+constexpr std::uint32_t kMaxNames = 1 << 20;
 
 }  // namespace
 
@@ -107,7 +107,7 @@ void CandidateList::add_objects(std::span<const ObjectDraw> objects, MaterialKin
   for (const ObjectDraw& draw : objects) {
     const core::Bounds box = bounds_of(draw);
     const std::uint32_t group = group_for(draw, kind_of(materials, draw.material));
-    const std::uint32_t name = first_name + draw.name % kMostNames;
+    const std::uint32_t name = first_name + draw.name % kMaxNames;
     name_count_ = std::max(name_count_, name + 1);
     candidates_.push_back(
         {{box.min, 0.0F},

@@ -21,18 +21,18 @@ static_assert(static_cast<int>(core::SurfaceKind::kBark) == PSYGEN_SURFACE_BARK)
 
 shaders::DrawData data_of(const MeshDraw& draw) {
   // The phase depends on the mesh, not on the camera. Neighbours differ because their boxes do.
-  const float phase = 7.31F * (draw.box_half_extent.x + draw.box_center.x + draw.box_center.z);
-  return {.origin = {draw.origin + draw.box_center, phase - std::floor(phase)},
+  const float phase = 7.31F * (draw.box_half_extent.x + draw.box_centre.x + draw.box_centre.z);
+  return {.origin = {draw.origin + draw.box_centre, phase - std::floor(phase)},
           .scale = {draw.box_half_extent, draw.fade},
           .light = {draw.sun, static_cast<float>(draw.surface), 0, 0},
           .turn = {}};
 }
 
 shaders::DrawData data_of(const ObjectDraw& draw) {
-  const glm::vec3 center = draw.origin + object_axes(draw) * draw.box_center;
+  const glm::vec3 centre = draw.origin + object_axes(draw) * draw.box_centre;
   const auto number = static_cast<float>(std::min(draw.material, PSYGEN_MAX_MATERIALS - 1U));
   const float phase = 0.9375F * (draw.phase - std::floor(draw.phase));  // stays below the number
-  return {.origin = {center, number + phase},
+  return {.origin = {centre, number + phase},
           .scale = {draw.scale * draw.box_half_extent, draw.fade},
           .light = {draw.sun, 1.0F / draw.scale.x, 1.0F / draw.scale.y, 1.0F / draw.scale.z},
           .turn = {draw.rotation[0], draw.rotation[1], draw.rotation[2], draw.rotation[3]}};

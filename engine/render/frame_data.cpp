@@ -129,8 +129,8 @@ void set_palette(shaders::FrameData& out, const TerrainPalette& palette) {
 }
 
 void set_lamps(shaders::FrameData& out, const FrameInput& input) {
-  static_assert(kMostPointLights == PSYGEN_MAX_LAMPS);
-  const std::size_t count = std::min(input.point_lights.size(), kMostPointLights);
+  static_assert(kMaxPointLights == PSYGEN_MAX_LAMPS);
+  const std::size_t count = std::min(input.point_lights.size(), kMaxPointLights);
   out.lamp_count = {static_cast<float>(count), 0.0F, 0.0F, 0.0F};
   for (std::size_t i = 0; i < count; ++i) {
     const PointLight& light = input.point_lights[i];

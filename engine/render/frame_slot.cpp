@@ -48,7 +48,7 @@ Result<void> FrameSlot::create(const Device& device) {
   Result<Buffer> glyphs =
       storage_buffer(device, Overlay::kMaxQuads * 6 * sizeof(shaders::OverlayVertex));
   if (!glyphs) return tl::unexpected(glyphs.error());
-  Result<Buffer> emitters = make_buffer(device, kMostEmitters * sizeof(shaders::EmitterData),
+  Result<Buffer> emitters = make_buffer(device, kMaxEmitters * sizeof(shaders::EmitterData),
                                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::kWrite);
   if (!emitters) return tl::unexpected(emitters.error());
   emitters_ = std::move(*emitters);

@@ -22,7 +22,7 @@ class FrameSlot {
   void use(const Device& device, const Bindings& bindings, std::size_t number);
 
   // Copies a frame's data into the slot's buffers. They grow if needed, which can fail with
-  // kOutOfMemory. At most kMostEmitters emitters.
+  // kOutOfMemory. At most kMaxEmitters emitters.
   core::Result<void> write(const Device& device, const Bindings& bindings,
                            const shaders::FrameData& frame,
                            std::span<const shaders::DrawData> draws,

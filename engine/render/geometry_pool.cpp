@@ -18,7 +18,7 @@ namespace {
 
 // The largest distance in bytes from the start of a slot, at a whole unit, to its first vertex, at
 // a multiple of the stride.
-std::uint32_t most_padding(std::uint32_t stride) {
+std::uint32_t max_padding(std::uint32_t stride) {
   return stride - std::gcd(stride, GeometryPool::kUnitBytes);
 }
 
@@ -34,22 +34,22 @@ GeometryPool::GeometryPool(std::uint64_t budget_bytes, BlockSource source)
 std::uint32_t GeometryPool::charged_bytes(VertexLayout layout, std::uint32_t vertex_count,
                                           std::uint32_t index_count) const {
   const std::uint32_t stride = vertex_stride_bytes(layout);
-  const std::uint64_t bytes = most_padding(stride) + std::uint64_t{vertex_count} * stride +
+  const std::uint64_t bytes = max_padding(stride) + std::uint64_t{vertex_count} * stride +
                               std::uint64_t{index_count} * sizeof(std::uint16_t);
   const std::uint64_t whole =
       std::max<std::uint64_t>((bytes + kUnitBytes - 1) / kUnitBytes * kUnitBytes, kUnitBytes);
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(whole, UINT32_MAX));
 }
 
-Result<void> GeometryPool::add_block(std::uint32_t least_bytes) {
+Result<void> GeometryPool::add_block(std::uint32_t min_bytes) {
   std::uint64_t bytes = std::min(kBlockBytes, budget_bytes_ - block_bytes_total_);
-  if (bytes < least_bytes) {
+  if (bytes < min_bytes) {
     return core::fail(ErrorCode::kOutOfMemory,
                       "the geometry budget is used up or too fragmented for this mesh");
   }
   Result<std::byte*> mapped = source_(bytes);
   while (!mapped && mapped.error().code == ErrorCode::kOutOfMemory &&
-         bytes / 2 >= std::max<std::uint64_t>(kLeastBlockBytes, least_bytes)) {
+         bytes / 2 >= std::max<std::uint64_t>(kMinBlockBytes, min_bytes)) {
     bytes /= 2;
     mapped = source_(bytes);
   }

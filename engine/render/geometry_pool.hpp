@@ -23,7 +23,7 @@ class GeometryPool final : public core::GeometryMemory {
  public:
   static constexpr std::uint64_t kBlockBytes = 64ull << 20;
   // If there is no memory for a whole block, smaller ones are tried, down to this size.
-  static constexpr std::uint64_t kLeastBlockBytes = 4ull << 20;
+  static constexpr std::uint64_t kMinBlockBytes = 4ull << 20;
   static constexpr std::uint32_t kUnitBytes = 16;  // unit of allocation
 
   // Creates the next block of `bytes` and returns the memory to write, 16-byte aligned. The pool's
@@ -79,7 +79,7 @@ class GeometryPool final : public core::GeometryMemory {
   };
 
   core::Result<std::uint32_t> allocate_slot(std::uint32_t bytes);
-  core::Result<void> add_block(std::uint32_t least_bytes);
+  core::Result<void> add_block(std::uint32_t min_bytes);
   void free_slot(std::uint32_t id);
 
   std::uint64_t budget_bytes_;

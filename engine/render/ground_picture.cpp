@@ -59,12 +59,12 @@ bool has_seam(const Pixels& image, bool down) {
 }
 
 Result<void> check_picture(const Pixels& image) {
-  if (image.width != image.height || image.width < kLeastGroundPicture ||
+  if (image.width != image.height || image.width < kMinGroundPicture ||
       image.width > kLargestGroundPicture ||
       image.rgba.size() != std::size_t{image.width} * image.height * 4) {
     return refuse_picture(
         fmt::format("the picture is {} x {}; it must be square, with {} to {} pixels a side",
-                    image.width, image.height, kLeastGroundPicture, kLargestGroundPicture));
+                    image.width, image.height, kMinGroundPicture, kLargestGroundPicture));
   }
   for (std::size_t i = 3; i < image.rgba.size(); i += 4)
     if (image.rgba[i] != 255)
@@ -118,9 +118,9 @@ Result<GroundPicture> ground_picture(std::uint32_t width, std::uint32_t height,
   std::array<double, 3> sums{};
   for (std::size_t i = 0; i < out.rgb.size(); ++i)
     sums[i % 3] += static_cast<double>(out.rgb[i]);
-  constexpr double kLeastMean = 1e-3;
+  constexpr double kMinMean = 1e-3;
   for (const double sum : sums) {
-    if (sum < kLeastMean * static_cast<double>(out.rgb.size()) / 3)
+    if (sum < kMinMean * static_cast<double>(out.rgb.size()) / 3)
       return refuse_picture(
           "the picture is black in red, green or blue; its colours cannot be scaled");
   }

@@ -14,7 +14,7 @@ namespace psygen::render {
 // Kinds of ground with a texture that can be replaced, in the order of world::GroundKind.
 inline constexpr std::size_t kGroundPictures = 6;
 // Pixels along each side of a picture.
-inline constexpr std::uint32_t kLeastGroundPicture = 16, kLargestGroundPicture = 4096;
+inline constexpr std::uint32_t kMinGroundPicture = 16, kLargestGroundPicture = 4096;
 
 // 256 × 256 texels of red, green and blue, 0 to 1 and linear, row by row. Empty: there is none.
 struct GroundPicture {

@@ -10,7 +10,7 @@ namespace {
 constexpr int kShadeSide = PSYGEN_SHADE_SIDE;  // cells of 1 m
 
 // Most of the sun and of the sky that all spots together take, of 255: ground is never black.
-constexpr std::uint32_t kMostSun = 210, kMostSky = 170;
+constexpr std::uint32_t kMaxSun = 210, kMaxSky = 170;
 
 // What is missing, of 255, after a share of the rest is missing too.
 std::uint32_t with_more(std::uint32_t missing, float share, std::uint32_t most) {
@@ -47,8 +47,8 @@ void GroundShade::add(const GroundSpot& spot) {
       const float soft = inside * (2 - inside);
       std::uint32_t& word = words_[static_cast<std::size_t>(z * kShadeSide + x) / 2];
       const unsigned shift = (x & 1) * 16;
-      const std::uint32_t sun = with_more(word >> shift & 0xFF, soft * spot.sun, kMostSun);
-      const std::uint32_t sky = with_more(word >> (shift + 8) & 0xFF, soft * spot.sky, kMostSky);
+      const std::uint32_t sun = with_more(word >> shift & 0xFF, soft * spot.sun, kMaxSun);
+      const std::uint32_t sky = with_more(word >> (shift + 8) & 0xFF, soft * spot.sky, kMaxSky);
       word = (word & ~(0xFFFFU << shift)) | (sun | sky << 8) << shift;
     }
   }

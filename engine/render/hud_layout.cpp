@@ -13,8 +13,8 @@ namespace {
 
 using Vertices = std::vector<shaders::OverlayVertex>;
 
-constexpr float kLeastSizePx = 4, kMostSizePx = 2000;
-constexpr float kMostOffPx = 1e6F;
+constexpr float kMinSizePx = 4, kMaxSizePx = 2000;
+constexpr float kMaxOffPx = 1e6F;
 constexpr char32_t kReplacement = 0xFFFD;
 constexpr float kShadowSoftness = 0.06F;  // of the size
 
@@ -76,22 +76,22 @@ class TextLayout {
       : text_(text),
         atlas_(atlas),
         out_(out),
-        size_px_(std::clamp(text.size_px, kLeastSizePx, kMostSizePx)),
+        size_px_(std::clamp(text.size_px, kMinSizePx, kMaxSizePx)),
         scale_(size_px_ / hud_font().em),
         picture_(picture.width, picture.height) {}
 
   void add() {
     if (!is_finite(text_.at.share) || !is_finite(text_.at.px)) return;
     // No farther than the distances of the font go.
-    const float most_px = (hud_font().spread - 1) * scale_;
+    const float max_px = (hud_font().spread - 1) * scale_;
     const float bolder =
-        std::isfinite(text_.bolder_px) ? std::clamp(text_.bolder_px, -most_px, most_px) : 0.0F;
+        std::isfinite(text_.bolder_px) ? std::clamp(text_.bolder_px, -max_px, max_px) : 0.0F;
     if (is_finite(text_.shadow_px) && text_.shadow_px != glm::vec2(0.0F)) {
-      const float soft = std::clamp(kShadowSoftness * size_px_, 1.0F, most_px);
+      const float soft = std::clamp(kShadowSoftness * size_px_, 1.0F, max_px);
       add_letters(text_.shadow_px, text_.shadow_colour, {bolder, 1 + soft});
     }
     if (text_.outline_px > 0) {
-      add_letters({}, text_.outline_colour, {std::min(bolder + text_.outline_px, most_px), 1});
+      add_letters({}, text_.outline_colour, {std::min(bolder + text_.outline_px, max_px), 1});
     }
     add_letters({}, text_.colour, {bolder, 1});
   }
@@ -113,7 +113,7 @@ class TextLayout {
       if (text_.align == HudAlign::kCentre) at.x -= width / 2;
       if (text_.align == HudAlign::kRight) at.x -= width;
       at.x = std::round(at.x);
-      at = glm::clamp(at + moved, -kMostOffPx, kMostOffPx);
+      at = glm::clamp(at + moved, -kMaxOffPx, kMaxOffPx);
       each_letter(line, [&](const BakedLetter& letter) {
         const glm::vec2 from = at + glm::vec2(letter.x, letter.y) * scale_;
         const glm::vec2 size(letter.width, letter.height);
@@ -147,9 +147,8 @@ void lay_out_hud(const HudDrawing& drawing, core::Extent picture, const HudAtlas
     const glm::vec2 from = glm::round(pixels_of(area.at, picture));
     const glm::vec2 to = glm::round(from + pixels_of(area.size, picture));
     if (!is_finite(from) || !is_finite(to) || out.size() >= kMaxHudQuads * 6) continue;
-    add_quad(out, glm::clamp(from, -kMostOffPx, kMostOffPx),
-             glm::clamp(to, -kMostOffPx, kMostOffPx), atlas.white_uv, atlas.white_uv, area.colour,
-             glm::vec4(0.0F));
+    add_quad(out, glm::clamp(from, -kMaxOffPx, kMaxOffPx), glm::clamp(to, -kMaxOffPx, kMaxOffPx),
+             atlas.white_uv, atlas.white_uv, area.colour, glm::vec4(0.0F));
   }
   for (const HudText& text : drawing.texts)
     if (std::isfinite(text.size_px)) TextLayout(text, picture, atlas, out).add();
@@ -157,7 +156,7 @@ void lay_out_hud(const HudDrawing& drawing, core::Extent picture, const HudAtlas
 
 glm::vec2 measure(const HudText& text) {
   if (!std::isfinite(text.size_px)) return {};
-  const float size_px = std::clamp(text.size_px, kLeastSizePx, kMostSizePx);
+  const float size_px = std::clamp(text.size_px, kMinSizePx, kMaxSizePx);
   glm::vec2 extent{0.0F};
   each_line(text.text, [&](std::string_view line) {
     extent.x = std::max(extent.x, width_of(line, size_px / hud_font().em));

@@ -66,17 +66,17 @@ shaders::MaterialData data_of(const Material& m) {
   if (m.normal_texture != kNoTexture) bits |= PSYGEN_MATERIAL_NORMAL_MAP;
   if (m.two_sided) bits |= PSYGEN_MATERIAL_TWO_SIDED;
   return {.base = {m.base_colour, m.opacity},
-          .emissive = {m.emissive, m.least_opacity},
+          .emissive = {m.emissive, m.min_opacity},
           .options = {static_cast<float>(bits), m.normal_strength, 0, 0}};
 }
 
 bool is_valid(const Material& m) {
-  constexpr float kMost = 1e6F;
-  const auto ok = [](float v) { return v >= 0 && v <= kMost; };
+  constexpr float kMax = 1e6F;
+  const auto ok = [](float v) { return v >= 0 && v <= kMax; };
   for (int i = 0; i < 3; ++i) {
     if (!ok(m.base_colour[i]) || !ok(m.emissive[i])) return false;
   }
-  return ok(m.opacity) && ok(m.least_opacity) && std::abs(m.normal_strength) <= kMost;
+  return ok(m.opacity) && ok(m.min_opacity) && std::abs(m.normal_strength) <= kMax;
 }
 
 // The maps of a material.
@@ -233,7 +233,7 @@ Result<MaterialId> MaterialTable::add(const Device& device, const Material& mate
   const shaders::MaterialData data = data_of(material);
   std::memcpy(buffer_.mapped + kinds_.size() * sizeof(data), &data, sizeof(data));
   sets_.push_back(set);
-  kinds_.push_back({textured, material.least_opacity > 0});
+  kinds_.push_back({textured, material.min_opacity > 0});
   return static_cast<MaterialId>(kinds_.size() - 1);
 }
 

@@ -35,7 +35,7 @@ Result<UniqueSampler> make_picture_sampler(const Device& device) {
 
 Result<void> ModelPictures::create(const Device& device,
                                    std::span<const core::ModelPicture> pictures) {
-  PSYGEN_CHECK(pictures.size() <= core::kMostPictures, "a byte names the picture");
+  PSYGEN_CHECK(pictures.size() <= core::kMaxPictures, "a byte names the picture");
   if (sampler_.get() == VK_NULL_HANDLE) {
     Result<UniqueSampler> sampler = make_picture_sampler(device);
     if (!sampler) return tl::unexpected(sampler.error());

@@ -30,7 +30,7 @@ constexpr float kMargin = 8.0F;  // around a panel, and between it and its text
 constexpr float kBarHeight = 10.0F;
 constexpr float kSwatch = 9.0F;
 
-constexpr std::size_t kLeastColumns = 8, kBarColumns = 40;
+constexpr std::size_t kMinColumns = 8, kBarColumns = 40;
 constexpr std::size_t kSwatchColumns = 2;     // of a swatch before its text
 constexpr std::size_t kContinuedColumns = 2;  // indentation of continued rows
 
@@ -131,13 +131,13 @@ class Layout {
         advance_(font.FindGlyph(' ')->AdvanceX),
         width_(static_cast<float>(picture.width)),
         height_(static_cast<float>(picture.height)),
-        most_(out.size() + Overlay::kMaxQuads * 6),
+        max_(out.size() + Overlay::kMaxQuads * 6),
         out_(out) {}
 
   void add(const TextPanel& panel) {
     const float room = (width_ - 4 * margin()) / advance_;
     const std::size_t columns =
-        std::max(kLeastColumns, static_cast<std::size_t>(std::max(room, 0.0F)));
+        std::max(kMinColumns, static_cast<std::size_t>(std::max(room, 0.0F)));
     std::vector<Row> rows;
     for (const TextLine& line : panel.lines)
       add_rows(line, columns, rows);
@@ -153,7 +153,7 @@ class Layout {
     add_area(out_, box, atlas_, kPanelColour);
     float y = box.y0 + margin();
     for (const Row& row : rows) {
-      if (out_.size() >= most_) break;
+      if (out_.size() >= max_) break;
       draw(row, box.x0 + margin(), box.x1 - margin(), y);
       y += row_height(row);
     }
@@ -161,7 +161,7 @@ class Layout {
 
   // Leaves out what is too much.
   void cut_off() {
-    if (out_.size() > most_) out_.resize(most_);
+    if (out_.size() > max_) out_.resize(max_);
   }
 
  private:
@@ -214,7 +214,7 @@ class Layout {
   const float scale_, advance_;  // all characters of the font have the same advance
   const float width_, height_;   // of the picture
   Box left_{0, 0, -1e9F, 0};     // the last panel on the left
-  const std::size_t most_;       // vertices
+  const std::size_t max_;        // vertices
   std::vector<shaders::OverlayVertex>& out_;
 };
 

@@ -11,9 +11,9 @@ namespace psygen::render {
 namespace {
 
 // Without drag, closed forms would divide by it.
-constexpr float kLeastDrag = 0.01F;
+constexpr float kMinDrag = 0.01F;
 // Shares of a life that divide.
-constexpr float kLeastShare = 1e-3F;
+constexpr float kMinShare = 1e-3F;
 
 bool within(float value, float least, float greatest) {
   return value >= least && value <= greatest;
@@ -30,8 +30,8 @@ bool is_colour(const glm::vec4& c) {
 
 bool is_valid(const ParticleKind& k) {
   constexpr float kFast = 1000;
-  const float least_extent = k.volume == ParticleVolume::kAroundCamera ? 1.0F : 0.0F;
-  return within(k.half_extent_m, least_extent, 1000) && within(k.rate, 1e-3F, 1e9F) &&
+  const float min_extent = k.volume == ParticleVolume::kAroundCamera ? 1.0F : 0.0F;
+  return within(k.half_extent_m, min_extent, 1000) && within(k.rate, 1e-3F, 1e9F) &&
          within(k.lifetime_s, 0.01F, 1000) && within(k.lifetime_variation, 0, 1) &&
          within(k.velocity, -kFast, kFast) && within(k.spread, 0, kFast) &&
          within(k.gravity, -kFast, kFast) && within(k.drag, 0, 100) &&
@@ -47,11 +47,11 @@ bool is_valid(const ParticleKind& k) {
 std::uint32_t particle_count(const ParticleKind& kind) {
   const float alive = std::ceil(kind.rate * kind.lifetime_s);
   return static_cast<std::uint32_t>(
-      std::clamp(alive, 1.0F, static_cast<float>(kMostParticlesPerEmitter)));
+      std::clamp(alive, 1.0F, static_cast<float>(kMaxParticlesPerEmitter)));
 }
 
 float reach_m(const ParticleKind& kind, float scale, float half_diagonal_m) {
-  const float drag = std::max(kind.drag, kLeastDrag), life = kind.lifetime_s;
+  const float drag = std::max(kind.drag, kMinDrag), life = kind.lifetime_s;
   const float braked = (1 - std::exp(-drag * life)) / drag;
   const float start = (glm::length(kind.velocity) + kind.spread * 1.7321F) * scale;
   const float pull = glm::length(kind.wind) * drag + std::abs(kind.gravity);
@@ -77,9 +77,9 @@ shaders::EmitterData data_of(const ParticleDraw& draw) {
   out.last_colour = k.last_colour;
   out.size = {k.first_size_m * draw.scale, k.last_size_m * draw.scale, k.size_variation,
               k.streak_s};
-  out.shape = {std::max(k.fade_in, kLeastShare), std::max(k.fade_out, kLeastShare), k.softness,
+  out.shape = {std::max(k.fade_in, kMinShare), std::max(k.fade_out, kMinShare), k.softness,
                k.aspect};
-  out.motion = {std::max(k.drag, kLeastDrag), k.turbulence_m, k.spin, k.tumbling};
+  out.motion = {std::max(k.drag, kMinDrag), k.turbulence_m, k.spin, k.tumbling};
   out.light = {draw.sun, draw.opacity, k.glow, k.cover};
   out.names = {static_cast<float>(draw.seed), static_cast<float>(draw.next_seed), draw.youngest_s,
                draw.oldest_s};

@@ -13,9 +13,9 @@
 namespace psygen::render {
 
 // Bounds of a frame: particles of an emitter and of all, and emitters.
-inline constexpr std::uint32_t kMostParticlesPerEmitter = 8192;
-inline constexpr std::uint32_t kMostParticles = 65536;
-inline constexpr std::uint32_t kMostEmitters = 256;
+inline constexpr std::uint32_t kMaxParticlesPerEmitter = 8192;
+inline constexpr std::uint32_t kMaxParticles = 65536;
+inline constexpr std::uint32_t kMaxEmitters = 256;
 
 // Where particles are born. kBox: in a box around the emitter, or at a point if that has no size.
 // kAroundCamera: everywhere, drawn in a box around the camera; for rain and snow. The emitter's
@@ -61,7 +61,7 @@ struct ParticleDraw {
   glm::vec3 origin{0.0F};  // kAroundCamera: the camera in the lattice of boxes (box_place)
   std::array<glm::vec3, 3> axes{glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, 1)};
   float scale = 1;              // of sizes and speeds
-  std::uint32_t count = 0;      // of particles, 1 … kMostParticlesPerEmitter
+  std::uint32_t count = 0;      // of particles, 1 … kMaxParticlesPerEmitter
   std::uint32_t seed = 0;       // of the generation of the first particle …
   std::uint32_t next_seed = 0;  // … and of the next one; both below 2^24
   float cycle_s = 1;            // from a birth of a particle to its next one, > 0
@@ -73,7 +73,7 @@ struct ParticleDraw {
 
 // Whether all numbers of a kind are within their ranges.
 bool is_valid(const ParticleKind& kind);
-// How many particles live at a time: rate · lifetime, 1 … kMostParticlesPerEmitter.
+// How many particles live at a time: rate · lifetime, 1 … kMaxParticlesPerEmitter.
 std::uint32_t particle_count(const ParticleKind& kind);
 // A bound of the distance between where an emitter is and what it draws, in metres. `scale` as of
 // ParticleDraw, `half_diagonal_m` of its turned box.

@@ -11,7 +11,7 @@ using core::Result;
 namespace {
 
 // Largest number of pipelines of a preset, for the progress.
-constexpr double kMostPipelines = 34;
+constexpr double kMaxPipelines = 34;
 
 constexpr VkBool32 on(bool yes) {
   return yes ? VK_TRUE : VK_FALSE;
@@ -55,7 +55,7 @@ Result<void> Pipelines::make(Making& making, const PipelineShape& shape, UniqueP
   Result<UniquePipeline> made = make_pipeline(making.device, layout(), shape);
   if (!made) return tl::unexpected(made.error());
   out = std::move(*made);
-  const double fraction = static_cast<double>(++making.count) / kMostPipelines;
+  const double fraction = static_cast<double>(++making.count) / kMaxPipelines;
   return go_on(making.progress, fraction);
 }
 

@@ -56,7 +56,7 @@ class Renderer {
   core::Result<void> prepare_particles();
   // The pictures of models (MeshDraw::pictured), by number, for the scene that is drawn. Replaces
   // all. Waits for the device. Fails, and changes nothing, with kOverBudget for more than
-  // core::kMostPictures or beyond the budget of textures; kInvalidArgument for other sizes than
+  // core::kMaxPictures or beyond the budget of textures; kInvalidArgument for other sizes than
   // core::picture_bytes(); kOutOfMemory, kDeviceLost.
   core::Result<void> set_model_pictures(std::span<const core::ModelPicture> pictures);
   // Replaces one of them. kInvalidArgument for one that does not exist.

@@ -200,7 +200,7 @@ core::Extent RendererImpl::landscape_size(float resolution) {
     use_targets();
     if (!scales_up_) return whole;
   }
-  const auto side = [share = std::max(resolution, kLeastResolution)](std::uint32_t pixels) {
+  const auto side = [share = std::max(resolution, kMinResolution)](std::uint32_t pixels) {
     return std::max(1U,
                     static_cast<std::uint32_t>(std::lround(share * static_cast<float>(pixels))));
   };

@@ -152,14 +152,14 @@ Result<void> RendererImpl::prepare(const FrameInput& input) {
 
 Result<void> RendererImpl::set_pictures(std::span<const core::ModelPicture> pictures) {
   if (lost_) return core::fail(ErrorCode::kDeviceLost, "the device was lost before");
-  if (pictures.size() > core::kMostPictures ||
+  if (pictures.size() > core::kMaxPictures ||
       materials_.texture_bytes() + pictures.size() * core::picture_bytes() >
           options_.texture_budget_bytes) {
     return core::fail(
         ErrorCode::kOverBudget,
         fmt::format("{} pictures of models do not fit: at most {}, and {} bytes of all "
                     "textures",
-                    pictures.size(), core::kMostPictures, options_.texture_budget_bytes));
+                    pictures.size(), core::kMaxPictures, options_.texture_budget_bytes));
   }
   const auto whole = [](const core::ModelPicture& p) { return p.size() == core::picture_bytes(); };
   if (!std::ranges::all_of(pictures, whole))
@@ -209,7 +209,7 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
 void RendererImpl::list_draws(const FrameInput& input) {
   const bool coloured = colours_draws(input.view);
   std::uint32_t pushed_from = pushed_from_;
-  const std::size_t lamps = std::min(input.point_lights.size(), kMostPointLights);
+  const std::size_t lamps = std::min(input.point_lights.size(), kMaxPointLights);
   if (culling_) {
     culling_->set_frame(view_volume(frame_.clip_from_camera), frame_, input, drawn_,
                         shared_.lists(), materials_.kinds());
@@ -227,13 +227,13 @@ void RendererImpl::list_particles(const FrameInput& input) {
   emitter_runs_.clear();
   if (colours_draws(input.view) || input.view == View::kWireframe) return;
   const std::size_t last = input.particles.size();
-  for (std::size_t i = last - std::min<std::size_t>(last, kMostEmitters); i < last; ++i) {
+  for (std::size_t i = last - std::min<std::size_t>(last, kMaxEmitters); i < last; ++i) {
     const ParticleDraw& draw = input.particles[i];
     const MaterialId material = draw.kind.material;
     const bool textured = kind_of(materials_.kinds(), material).textured;
     emitters_.push_back(data_of(draw));
     emitter_runs_.push_back(
-        {std::min(draw.count, kMostParticlesPerEmitter), textured ? material : kPlainMaterial});
+        {std::min(draw.count, kMaxParticlesPerEmitter), textured ? material : kPlainMaterial});
   }
 }
 

@@ -15,7 +15,7 @@ namespace {
 // Largest distance outside a cascade, towards and away from the sun, of meshes that cast shadows
 // into it.
 constexpr float kCasterReachM = 1500;
-constexpr float kLeastElevation = 0.02F;  // of the sun, as a sine
+constexpr float kMinElevation = 0.02F;  // of the sun, as a sine
 
 Result<UniqueSampler> make_comparing_sampler(const Device& device) {
   VkSamplerCreateInfo info{};
@@ -108,7 +108,7 @@ void ShadowMaps::record(const Device& device, VkCommandBuffer commands,
 
 void set_shadows(const FrameInput& input, const PresetTraits& traits, shaders::FrameData& out) {
   const glm::vec3 sun(out.sun_direction);
-  const bool lit = sun.y > kLeastElevation;
+  const bool lit = sun.y > kMinElevation;
   out.shadow = {1.0F / static_cast<float>(traits.shadow_size),
                 lit ? static_cast<float>(traits.cascades) : 0.0F, 0.0F, 0.0F};
   out.shadow_reach = {traits.reach_m[0], traits.reach_m[1], traits.reach_m[2], 0.0F};

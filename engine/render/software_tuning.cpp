@@ -23,10 +23,10 @@ namespace psygen::render {
 namespace {
 
 // llvmpipe starts one thread per processor, at most this many.
-constexpr std::size_t kMostRasterThreads = 32;
+constexpr std::size_t kMaxRasterThreads = 32;
 // Other threads: the driver's queue and a modeler, without which there is no picture, and two
 // threads of the driver's shader cache.
-constexpr std::size_t kLeastThreads = 2, kOtherThreads = 4;
+constexpr std::size_t kMinThreads = 2, kOtherThreads = 4;
 
 }  // namespace
 
@@ -54,12 +54,12 @@ void prefer_huge_pages([[maybe_unused]] std::span<std::byte> memory) {
 
 core::Result<void> fit_software_rendering_to_threads() {
   const std::size_t processors = std::max(std::thread::hardware_concurrency(), 1u);
-  const std::size_t wanted = std::min(processors, kMostRasterThreads) + kOtherThreads;
+  const std::size_t wanted = std::min(processors, kMaxRasterThreads) + kOtherThreads;
   const std::size_t left = core::threads_left(wanted);
-  if (left < kLeastThreads) {
+  if (left < kMinThreads) {
     return core::fail(core::ErrorCode::kInternal,
                       fmt::format("drawing needs at least {} threads; the system allows {} more",
-                                  kLeastThreads, left));
+                                  kMinThreads, left));
   }
   const std::size_t raster = left - std::min(left, kOtherThreads);
   if (left < wanted) setenv("LP_NUM_THREADS", std::to_string(raster).c_str(), /*overwrite=*/0);

@@ -163,7 +163,7 @@ struct MeshDraw {
   core::GeometryRange range;
   std::uint32_t shared_indices = kNoSharedIndices;  // from upload_shared_indices
   glm::vec3 origin{0.0F};                           // the mesh's foot
-  glm::vec3 box_center{0.0F};                       // box of the snorm16 positions, from the foot
+  glm::vec3 box_centre{0.0F};                       // box of the snorm16 positions, from the foot
   glm::vec3 box_half_extent{1.0F};
   core::IndexPart part;   // of its indices; empty: all
   float fade = 1.0F;      // 1: all of its pixels
@@ -201,8 +201,8 @@ inline constexpr MaterialId kPlainMaterial = 0;
 // material and of the texture.
 struct Material {
   glm::vec3 base_colour{1.0F};  // linear albedo
-  float opacity = 1.0F;         // together with the texture's alpha; compared with least_opacity
-  float least_opacity = 0.0F;   // pixels of less opacity are left out; 0: all are drawn
+  float opacity = 1.0F;         // together with the texture's alpha; compared with min_opacity
+  float min_opacity = 0.0F;     // pixels of less opacity are left out; 0: all are drawn
   glm::vec3 emissive{0.0F};     // light that it emits, before the exposure; sunlit white is 1 to 2
   TextureId base_texture = kNoTexture;
   TextureId normal_texture = kNoTexture;    // +Y up, as in glTF
@@ -226,7 +226,7 @@ struct ObjectDraw {
   glm::vec3 origin{0.0F};                                 // of the mesh, relative to the camera
   std::array<float, 4> rotation{0.0F, 0.0F, 0.0F, 1.0F};  // unit quaternion x, y, z, w
   glm::vec3 scale{1.0F};                                  // not 0; before the rotation
-  glm::vec3 box_center{0.0F};                             // box of the snorm16 positions
+  glm::vec3 box_centre{0.0F};                             // box of the snorm16 positions
   glm::vec3 box_half_extent{1.0F};
   float fade = 1.0F;
   float sun = 1.0F;                       // share of the sun that no terrain hides, 0 … 1
@@ -243,7 +243,7 @@ struct PointLight {
   // On a surface that faces it from 1 m away, before the exposure; the sun at noon gives about 2.
   glm::vec3 light{1.0F};
 };
-inline constexpr std::size_t kMostPointLights = 40;
+inline constexpr std::size_t kMaxPointLights = 40;
 
 struct ParticleDraw;  // particles.hpp
 
@@ -269,7 +269,7 @@ struct Morph {
   float from_m = 0, to_m = 0;  // distances at which it begins, and at which heights are coarse
 };
 
-inline constexpr float kLeastResolution = 0.25F;  // FrameInput::resolution
+inline constexpr float kMinResolution = 0.25F;  // FrameInput::resolution
 
 // Everything that a frame shows. Spans must stay valid during render(). The pose is
 // core::is_valid(); the field of view is between 0.001 and 3.13 rad, aspect and near plane between
@@ -283,7 +283,7 @@ struct FrameInput {
   Canopy canopy;
   WorldEdge edge;
   View view = View::kNormal;
-  // Share of the picture's width and height that the landscape has, kLeastResolution … 1; it is
+  // Share of the picture's width and height that the landscape has, kMinResolution … 1; it is
   // scaled up to the picture. What lies over it always has all pixels.
   float resolution = 1;
   Morph morph;
@@ -293,8 +293,8 @@ struct FrameInput {
   std::span<const MeshDraw> models;          // nearest first, committed ranges only
   std::span<const ObjectDraw> objects;       // nearest first, committed ranges only
   std::span<const GroundSpot> spots;         // under what stands near the camera, in any order
-  std::span<const PointLight> point_lights;  // the first kMostPointLights are used
-  // Back to front; drawn over everything else of the landscape. At most kMostEmitters are drawn.
+  std::span<const PointLight> point_lights;  // the first kMaxPointLights are used
+  // Back to front; drawn over everything else of the landscape. At most kMaxEmitters are drawn.
   std::span<const ParticleDraw> particles;
   std::span<const Line> lines;  // at most kMaxLines are drawn, in every view
   // Over the picture, in this order.

@@ -45,7 +45,7 @@ core::Bounds bounds_of(const TerrainDraw& draw) {
 }
 
 core::Bounds bounds_of(const MeshDraw& draw) {
-  return core::Bounds::around(draw.origin + draw.box_center, draw.box_half_extent + kSwayM);
+  return core::Bounds::around(draw.origin + draw.box_centre, draw.box_half_extent + kSwayM);
 }
 
 // The box around the turned box: each of its half extents is the sum of the projections of the
@@ -55,7 +55,7 @@ core::Bounds bounds_of(const ObjectDraw& draw) {
   const glm::vec3 extent = glm::abs(axes[0]) * draw.box_half_extent.x +
                            glm::abs(axes[1]) * draw.box_half_extent.y +
                            glm::abs(axes[2]) * draw.box_half_extent.z;
-  return core::Bounds::around(draw.origin + axes * draw.box_center, extent + kSwayM);
+  return core::Bounds::around(draw.origin + axes * draw.box_centre, extent + kSwayM);
 }
 
 bool any_reaches(std::span<const PointLight> lights, const core::Bounds& box) {

@@ -52,7 +52,7 @@ struct Lacking {
 struct Placed {
   core::BlockCoord block;
   glm::vec3 position{0.0F};
-  glm::vec3 box_center{0.0F};
+  glm::vec3 box_centre{0.0F};
   glm::vec3 box_half_extent{0.0F};
   // The sphere around nearly everything of its mesh, from its foot: how near it is, how large.
   glm::vec3 middle{0.0F};
@@ -94,11 +94,11 @@ static_assert(sizeof(Mesh) == 68);
 
 // The Mesh of everything that stands on a node in runs of triangles, each with the box around them.
 struct MeshParts {
-  static constexpr std::size_t kMost = 16;
+  static constexpr std::size_t kMax = 16;
   std::uint32_t count = 0;
-  std::uint32_t indices_each = 0;           // of all parts but the last; 0: none landed yet
-  std::uint32_t index_count = 0;            // of all parts
-  std::array<core::Bounds, kMost> boxes{};  // from the foot
+  std::uint32_t indices_each = 0;          // of all parts but the last; 0: none landed yet
+  std::uint32_t index_count = 0;           // of all parts
+  std::array<core::Bounds, kMax> boxes{};  // from the foot
 };
 static_assert(sizeof(MeshParts) == 396);
 

@@ -10,7 +10,7 @@ namespace psygen::scene {
 namespace {
 
 constexpr std::size_t kNodesPerLevel = 2, kPerType = 24;
-constexpr int kMostBlocks = 48;
+constexpr int kMaxBlocks = 48;
 
 // Takes models of one block after the other until there are enough of each type.
 class ModelSamples {
@@ -52,7 +52,7 @@ std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
     }
   }
   ModelSamples models(facts);
-  for (int i = 0; i < kMostBlocks && !models.complete(); ++i)
+  for (int i = 0; i < kMaxBlocks && !models.complete(); ++i)
     models.take(any_block(facts.world, random), samples);
   return samples;
 }

@@ -45,7 +45,7 @@ MeshParts parts_of(const WorldFacts& facts, const synthesis::Request& request,
                    const models::MeshView& mesh) {
   const core::Bounds box = facts.registry[facts.merged_model].bounds(request.parameters);
   return mesh_parts(core::vertices_of<core::ModelVertex>(mesh.vertices), mesh.indices,
-                    core::Bounds::around(box.center(), box.half_extent()));  // as in Placed
+                    core::Bounds::around(box.centre(), box.half_extent()));  // as in Placed
 }
 
 }  // namespace

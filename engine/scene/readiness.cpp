@@ -14,7 +14,7 @@ namespace {
 
 // Meshes of places come before nodes that a camera is expected to see later than this.
 constexpr float kDeadlineSeconds = 1;
-constexpr double kMostShare = 0.5;  // of the memory for meshes
+constexpr double kMaxShare = 0.5;  // of the memory for meshes
 
 // The nodes that a camera at the position would draw up to the radius.
 visibility::Cut cut_at(const PlaceRules& s, const core::WorldPosition& position, double radius_m) {
@@ -91,10 +91,10 @@ core::Result<void> check(const core::WorldPosition& position, double radius_m) {
   const glm::dvec3& local = position.local;
   if (!core::is_finite(local))
     return core::fail(core::ErrorCode::kInvalidArgument, "the position of a place is not finite");
-  if (radius_m > 0 && radius_m <= kMostReadyRadiusM) return {};
+  if (radius_m > 0 && radius_m <= kMaxReadyRadiusM) return {};
   return core::fail(
       core::ErrorCode::kInvalidArgument,
-      fmt::format("the radius of a place must be above 0 and at most {} m", kMostReadyRadiusM));
+      fmt::format("the radius of a place must be above 0 and at most {} m", kMaxReadyRadiusM));
 }
 
 PlaceRules rules_for(const State& s) {
@@ -199,7 +199,7 @@ core::Result<PlaceId> ask_ready(State& state, const core::WorldPosition& positio
   for (const Foresight::Place& other : state.foresight.places)
     all += other.bytes;
   constexpr double kMiB = 1 << 20;
-  const double most = kMostShare * static_cast<double>(state.meshes.stats().budget_bytes);
+  const double most = kMaxShare * static_cast<double>(state.meshes.stats().budget_bytes);
   if (static_cast<double>(all) > most) {
     return core::fail(
         core::ErrorCode::kOverBudget,

@@ -31,9 +31,9 @@ struct Readiness {
 };
 
 // What a place of this radius needs now, and what of that is missing. Fails with kInvalidArgument
-// for a position that is not finite and for a radius outside (0, kMostReadyRadiusM]. Places models
+// for a position that is not finite and for a radius outside (0, kMaxReadyRadiusM]. Places models
 // anew on every block: about 20 µs a block.
-inline constexpr double kMostReadyRadiusM = 1000;
+inline constexpr double kMaxReadyRadiusM = 1000;
 core::Result<Readiness> readiness(const State& state, const core::WorldPosition& position,
                                   double radius_m);
 

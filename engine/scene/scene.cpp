@@ -83,7 +83,7 @@ core::Result<void> Scene::check(const Settings& settings) {
   if (!(settings.target_frame_ms >= 0 && settings.target_frame_ms <= 10'000)) {
     return refuse("the target of the frame time must be between 0 and 10000 ms");
   }
-  if (!(settings.min_resolution >= double{render::kLeastResolution} &&
+  if (!(settings.min_resolution >= double{render::kMinResolution} &&
         settings.min_resolution <= 1)) {
     return refuse("the resolution of the landscape may fall to a share between 0.25 and 1");
   }

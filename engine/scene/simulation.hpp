@@ -28,7 +28,7 @@ struct Simulation {
   ecs::Schedule systems;  // of one step
   // Steps that one frame runs at most. A program that cannot keep up slows its simulation down
   // instead of stopping.
-  std::uint32_t most_steps = 8;
+  std::uint32_t max_steps = 8;
   double behind_s = 0;         // by which the clock is ahead of the simulation
   double clock_s = 0;          // the clock at the last frame
   double lost_s = 0;           // what frames with too many steps left out

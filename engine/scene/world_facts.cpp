@@ -32,7 +32,7 @@ std::uint32_t largest_radius(const world::World& world, std::span<const NodeLeve
 }
 
 // How many nodes of a level can exist at most: they lie in a disc, and in the world.
-double most_nodes(const world::World& world, double radius, std::size_t level) {
+double max_nodes(const world::World& world, double radius, std::size_t level) {
   const auto along = [&](std::int64_t blocks) {
     const double window = 2 * radius + 1;
     return blocks == 0 ? window : std::min(window, static_cast<double>(nodes_along(blocks, level)));
@@ -49,7 +49,7 @@ core::Result<void> check_size(const world::World& world, std::span<const NodeLev
   double entities = 0, places = 0;
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const double radius = window_radius(levels, settings, k);
-    entities += most_nodes(world, radius, k) * (k == 0 ? 1 + models : 2);
+    entities += max_nodes(world, radius, k) * (k == 0 ? 1 + models : 2);
     const double side = 2.0 * largest_radius(world, levels, settings, k) + 1;
     places += side * side;
   }

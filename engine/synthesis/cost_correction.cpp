@@ -5,24 +5,24 @@
 
 namespace psygen::synthesis {
 namespace {
-constexpr double kLeastRate = 0.05;  // of one observation, however many there were
+constexpr double kMinRate = 0.05;  // of one observation, however many there were
 // One observation counts as off by this factor at most, and as so much faster than a guess: a
 // request may be slow by chance, but not fast.
 constexpr double kLargestSurprise = 2.0, kLargestDoubt = 1000.0;
 // Steps towards an observation of what cold caches add: some microseconds at first, whatever it
 // says, because the very first requests of a thread take milliseconds.
-constexpr double kFirstStep_s = 20e-6, kLeastStep_s = 1e-6;
+constexpr double kFirstStep_s = 20e-6, kMinStep_s = 1e-6;
 constexpr std::uint32_t kFirst = 4;
 
 double rate_of(std::uint32_t count) {
-  return std::max(kLeastRate, 1.0 / (1.0 + count));
+  return std::max(kMinRate, 1.0 / (1.0 + count));
 }
 }  // namespace
 
 void LearnedSeconds::observe(double seconds, double beside_s) {
   ++count_;
   const double limit =
-      std::max(count_ < kFirst ? kFirstStep_s : kLeastStep_s, 0.5 * (beside_s + value_));
+      std::max(count_ < kFirst ? kFirstStep_s : kMinStep_s, 0.5 * (beside_s + value_));
   const double off = std::clamp(seconds - value_, -limit, limit);
   value_ = std::max(0.0, value_ + rate_of(count_) * off);
 }

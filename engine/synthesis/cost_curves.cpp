@@ -9,7 +9,7 @@
 namespace psygen::synthesis {
 namespace {
 
-constexpr std::size_t kMostPoints = 13;
+constexpr std::size_t kMaxPoints = 13;
 
 CalibrationOptions with_clocks(CalibrationOptions options) {
   if (!options.wall_clock) options.wall_clock = core::monotonic_seconds;
@@ -30,11 +30,11 @@ bool is_cost_parameter(const models::ModelType& type, std::size_t i) {
   return type.complexity(low, 0) != type.complexity(high, 0);
 }
 
-// Up to kMostPoints integers from the least to the largest.
+// Up to kMaxPoints integers from the least to the largest.
 std::vector<std::int64_t> values_of(const models::ParameterSpec& spec) {
   const auto low = static_cast<std::int64_t>(spec.soft_min);
   const auto high = static_cast<std::int64_t>(spec.soft_max);
-  const auto count = std::min<std::int64_t>(high - low + 1, kMostPoints);
+  const auto count = std::min<std::int64_t>(high - low + 1, kMaxPoints);
   std::vector<std::int64_t> values;
   for (std::int64_t k = 0; k < count; ++k)
     values.push_back(count == 1 ? low : low + (high - low) * k / (count - 1));

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "engine/core/clock.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 
 namespace psygen::synthesis {
 namespace {
@@ -200,7 +200,7 @@ std::optional<Measurement> CostModel::measure(const CostSample& sample, int leve
     const double cpu_start = options.cpu_clock(), start = options.wall_clock();
     for (int i = 0; i < repeats; ++i) {
       const SynthesisOutcome outcome =
-          synthesize_guarded(type, sample.parameters, level, destination->view());
+          synthesise_guarded(type, sample.parameters, level, destination->view());
       if (!outcome.ok) {
         report.failures.push_back(outcome.error);
         return std::nullopt;

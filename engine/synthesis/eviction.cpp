@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kCandidateBatch = 256;
 // Parts of the limit: where less than the first is free the second is made free, and the third
 // where the memory has only pieces that are too small.
-constexpr std::uint64_t kLeastFreePart = 64, kFreePart = 24, kPiecesPart = 8;
+constexpr std::uint64_t kMinFreePart = 64, kFreePart = 24, kPiecesPart = 8;
 }  // namespace
 
 void GeometryCache::begin_batch() {
@@ -28,7 +28,7 @@ void GeometryCache::keep_room_free() {
   const auto lacks = [this](std::uint64_t free_bytes) {
     return last_used_bytes_ + free_bytes > limit_bytes_ + returning_bytes_;
   };
-  if (!lacks(limit_bytes_ / kLeastFreePart)) return;
+  if (!lacks(limit_bytes_ / kMinFreePart)) return;
   while (lacks(limit_bytes_ / kFreePart) && evict_unwanted()) {
   }
 }

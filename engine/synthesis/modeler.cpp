@@ -8,7 +8,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/synthesis/content_hash.hpp"
 #include "engine/synthesis/making.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "engine/synthesis/thread_priority.hpp"
 
 namespace psygen::synthesis {
@@ -71,7 +71,7 @@ void Modeler::perform(Workshop& workshop, const Request& request) {
 bool Modeler::write_mesh(const models::ModelType& type, const models::MeshView& mesh,
                          Completion& c) {
   SynthesisOutcome outcome =
-      synthesize_guarded(type, current_.parameters, current_.key.level, mesh);
+      synthesise_guarded(type, current_.parameters, current_.key.level, mesh);
   c.ok = outcome.ok;
   c.tight = outcome.tight;
   c.error = std::move(outcome.error);

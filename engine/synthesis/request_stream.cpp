@@ -12,7 +12,7 @@
 namespace psygen::synthesis {
 namespace {
 
-constexpr double kLeastNoticeSeconds = 0.002;  // deadlines are written in milliseconds
+constexpr double kMinNoticeSeconds = 0.002;  // deadlines are written in milliseconds
 constexpr std::string_view kHeader = "psygen requests 2";
 
 // The next word of a line, which it leaves.
@@ -59,7 +59,7 @@ std::vector<SimulatedJob> initial_fill(std::span<const SimulatedJob> jobs) {
 // Whether a request could be in time. Models that are due at once stand beside the picture on
 // ground in view: no policy could have them by then.
 bool is_due_later(const SimulatedJob& job) {
-  return job.deadline_s < kNoDeadline && job.deadline_s > job.arrival_s + kLeastNoticeSeconds;
+  return job.deadline_s < kNoDeadline && job.deadline_s > job.arrival_s + kMinNoticeSeconds;
 }
 
 PolicyFigures figures_of(std::span<const SimulatedJob> jobs, unsigned modelers, Policy policy) {

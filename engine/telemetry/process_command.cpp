@@ -9,7 +9,7 @@
 namespace psygen::telemetry {
 namespace {
 
-constexpr std::size_t kMostBytes = 2000;
+constexpr std::size_t kMaxBytes = 2000;
 
 bool is_plain(char c) {
   const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -35,7 +35,7 @@ std::string shell_text(std::string_view words) {
     text += quoted(words.substr(0, end));
     words.remove_prefix(std::min(end + 1, words.size()));
   }
-  return core::shown(text, kMostBytes);
+  return core::shown(text, kMaxBytes);
 }
 
 std::string process_command() {

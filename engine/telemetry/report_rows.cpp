@@ -10,7 +10,7 @@
 namespace psygen::telemetry {
 namespace {
 
-constexpr std::size_t kMostRows = 20'000;
+constexpr std::size_t kMaxRows = 20'000;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // Frames that are set apart come last.
@@ -65,7 +65,7 @@ std::vector<RowFigure> parts(const FrameLog& log, const ShownFrames& shown) {
 ShownFrames shown_frames(const FrameLog& log) {
   const auto frames = log.frames();
   ShownFrames shown;
-  shown.every = (frames.size() + kMostRows - 1) / kMostRows;
+  shown.every = (frames.size() + kMaxRows - 1) / kMaxRows;
   for (std::size_t first = 0; first < frames.size(); first += shown.every) {
     const auto group = frames.subspan(first, std::min(shown.every, frames.size() - first));
     shown.frames.push_back(

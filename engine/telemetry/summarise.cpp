@@ -10,7 +10,7 @@ namespace {
 
 using Frames = std::span<const FrameRecord>;
 
-constexpr double kLeastBusySeconds = 0.25;  // below it a share means nothing
+constexpr double kMinBusySeconds = 0.25;  // below it a share means nothing
 constexpr const char* kVirtual = "the clock is virtual";
 constexpr const char* kNoFrames = "no frame is left after the warm-up";
 
@@ -225,7 +225,7 @@ Figure busy_percent(Frames frames, std::uint32_t modelers, const Counts& counts)
     busy_s += r.synthesis_seconds;
     real_s += r.frame_ms * 1e-3;
   }
-  if (!(real_s >= kLeastBusySeconds) || modelers == 0)
+  if (!(real_s >= kMinBusySeconds) || modelers == 0)
     return Figure::missing("such frames took too little time together");
   return 100 * busy_s / (real_s * modelers);
 }

@@ -123,14 +123,14 @@ core::Result<void> write_pictures(const Pictures& pictures, const std::filesyste
                                   HeightmapReport& report) {
   const std::vector<float>& heights = pictures.heights.values;
   const auto [least, most] = std::ranges::minmax_element(heights);
-  report.least_m = static_cast<double>(*least);
-  report.most_m = static_cast<double>(*most);
+  report.min_m = static_cast<double>(*least);
+  report.max_m = static_cast<double>(*most);
   image::GreyImage spread{pictures.heights.width, pictures.heights.height, {}};
-  const double range_m = std::max(report.most_m - report.least_m, 1e-6);
+  const double range_m = std::max(report.max_m - report.min_m, 1e-6);
   spread.grey.reserve(heights.size());
   for (const float height : heights)
     spread.grey.push_back(static_cast<std::uint16_t>(
-        (static_cast<double>(height) - report.least_m) / range_m * 65535 + 0.5));
+        (static_cast<double>(height) - report.min_m) / range_m * 65535 + 0.5));
   if (auto ok = image::write_exr(folder / "heights.exr", pictures.heights); !ok) return ok;
   if (auto ok = image::write_png(folder / "heights.png", spread); !ok) return ok;
   for (std::size_t kind = 0; kind < world::kGroundKinds; ++kind) {
@@ -166,7 +166,7 @@ core::Result<HeightmapReport> write_heightmap(const world::World& world,
   const std::string json = fmt::format(
       "{{\"width\":{},\"height\":{},\"cell_m\":{},\"height_of_black_m\":{},"
       "\"height_of_white_m\":{},\"west_m\":{},\"north_m\":{}}}\n",
-      report.width, report.height, world.cell_m(), report.least_m, report.most_m,
+      report.width, report.height, world.cell_m(), report.min_m, report.max_m,
       static_cast<double>(region.x0) * world.block_size_m(),
       static_cast<double>(region.z0) * world.block_size_m());
   if (auto ok = core::replace_file(folder / "heightmap.json", json); !ok)

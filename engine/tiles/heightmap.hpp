@@ -18,7 +18,7 @@ inline constexpr std::uint64_t kMaxHeightmapSide = 16384;
 
 struct HeightmapReport {
   std::uint32_t width = 0, height = 0;  // pixels
-  double least_m = 0, most_m = 0;       // of the heights
+  double min_m = 0, max_m = 0;          // of the heights
 };
 
 // Writes the pictures into `folder`, which is created; heightmap.json comes last. Needs 8 bytes of

@@ -7,7 +7,7 @@
 
 #include "engine/amplify/block_files.hpp"
 #include "engine/exchange/unpack.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/placement.hpp"
 
@@ -57,7 +57,7 @@ core::Result<exchange::Object> TileMaker::object(const models::ModelType& type,
                                                  const models::Parameters& p, float skirt_m) const {
   const auto mesh = synthesis::HeapDestination::make(type, p, 0);
   if (!mesh) return tl::unexpected(mesh.error());
-  const auto outcome = synthesis::synthesize_guarded(type, p, 0, mesh->view());
+  const auto outcome = synthesis::synthesise_guarded(type, p, 0, mesh->view());
   if (!outcome.ok) return core::fail(core::ErrorCode::kSynthesisFailed, outcome.error);
   return exchange::unpack(type, p, 0, mesh->size(), mesh->view(), world::drawn_palette(world_),
                           skirt_m);

@@ -33,7 +33,7 @@ struct PathPoint {
 class CameraPath {
  public:
   // Range of a point's height. Below it, the near plane would cut into slopes.
-  static constexpr double kLeastHeightM = 0.5, kMostHeightM = 1e5;
+  static constexpr double kMinHeightM = 0.5, kMaxHeightM = 1e5;
   // Smallest distance of the camera from the ground. A path between jumps with a lower point uses
   // that point's height instead.
   static constexpr double kClearance_m = 2;

@@ -11,7 +11,7 @@ namespace psygen::world {
 namespace {
 
 // Smallest width of a blend; narrower ones are practically steps.
-constexpr float kLeastSpan = 1e-3F;
+constexpr float kMinSpan = 1e-3F;
 
 float lattice(std::uint32_t x, std::uint32_t z) {
   std::uint32_t h = ((x & 63u) * 0x9E3779B9u) ^ ((z & 63u) * 0x85EBCA6Bu);
@@ -32,7 +32,7 @@ float slow_noise(glm::vec2 p) {
 }
 
 float blend(double start, double width, float value) {
-  const float w = std::max(static_cast<float>(width), kLeastSpan);
+  const float w = std::max(static_cast<float>(width), kMinSpan);
   return (value - static_cast<float>(start)) / w;
 }
 
@@ -57,9 +57,9 @@ GroundBlends ground_blends(const Palette& palette, float height_m, const glm::ve
   const auto smooth = [](float t) { return glm::smoothstep(0.0F, 1.0F, t); };
   const auto rock_start = static_cast<float>(palette.rock_slope_start);
   const float rock_full =
-      std::max(static_cast<float>(palette.rock_slope_full), rock_start + kLeastSpan);
+      std::max(static_cast<float>(palette.rock_slope_full), rock_start + kMinSpan);
   const float snow = smooth(blend(palette.snow_start_m, palette.snow_blend_m, height_m) + uneven);
-  const float steep = std::max(static_cast<float>(palette.snow_slope_max), kLeastSpan);
+  const float steep = std::max(static_cast<float>(palette.snow_slope_max), kMinSpan);
   GroundBlends blends{
       1.0F,
       glm::smoothstep(0.35F, 0.62F, pattern + slope * 0.5F),

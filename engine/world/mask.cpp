@@ -11,7 +11,7 @@ namespace psygen::world {
 namespace {
 
 // Smaller patches are as small as this: lattice points of the largest world have 64 bits.
-constexpr double kLeastPatchM = 0.1;
+constexpr double kMinPatchM = 0.1;
 
 // A random number in [0, 1) for each point of a lattice.
 double lattice_value(std::uint64_t seed, std::int64_t x, std::int64_t z) {
@@ -92,7 +92,7 @@ double mask_share(const ScatterMask& mask, std::uint64_t seed, glm::dvec2 place_
   if (mask.noise_m > 0) {
     const std::uint64_t patches =
         core::combine(core::mix64(seed), static_cast<std::uint64_t>(mask.patches));
-    const double patch_m = std::max(mask.noise_m, kLeastPatchM);
+    const double patch_m = std::max(mask.noise_m, kMinPatchM);
     if (!(patch_noise(patches, place_m / patch_m) < noise_below(mask.share))) return 0;
   }
   if (!mask.picture) return 1;

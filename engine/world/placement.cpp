@@ -39,7 +39,7 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
       specs_(type.parameters()),
       defaults_(models::default_parameters(type)),
       block_(block),
-      least_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))),
+      min_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))),
       slope_(slope_parameters(type)) {
   if (scatter.mask.ground != 0) palette_ = drawn_palette(world);
   if (!world.shaped.roads.empty() && world.shaped.layer)
@@ -50,7 +50,7 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
 // Whether the limits allow this ground.
 bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const {
   if (!(ground.height_m >= scatter_.min_height_m && ground.height_m <= scatter_.max_height_m &&
-        ground.normal.y >= least_up_))
+        ground.normal.y >= min_up_))
     return false;
   if (!palette_) return true;
   const GroundKind kind = main_kind(

@@ -73,7 +73,7 @@ class Scattering {
   std::span<const models::ParameterSpec> specs_;
   models::Parameters defaults_;
   core::BlockCoord block_;
-  float least_up_;
+  float min_up_;
   std::optional<Palette> palette_;                // where kinds of ground matter
   std::vector<const models::GroundEdit*> roads_;  // that may pass the block
   SlopeParameters slope_;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRecordedSmoothing_s = 0.1;  // the least: poses are near where they were
 constexpr double kLeap_m_s = 1900;            // path files have 2000 at most
-constexpr double kMostHeading_deg = 36'000, kMostPitch_deg = 89;
+constexpr double kMaxHeading_deg = 36'000, kMaxPitch_deg = 89;
 constexpr double kProbeHeight_m = 1000;  // higher than any clearance
 
 // `heading` within half a turn of the one before.
@@ -24,7 +24,7 @@ double unwrapped(double heading, double before) {
 
 CameraPath recorded_path(const std::string& name, std::span<const TimedPose> poses,
                          const World& world) {
-  PSYGEN_ASSERT(!poses.empty() && poses.size() <= kMostRecordedPoses,
+  PSYGEN_ASSERT(!poses.empty() && poses.size() <= kMaxRecordedPoses,
                 "a path has 1 to 10,000 points");
   const core::BlockCoord origin = poses.front().pose.position.block;
   std::vector<PathPoint> points;
@@ -37,8 +37,8 @@ CameraPath recorded_path(const std::string& name, std::span<const TimedPose> pos
     point.at_m = {corner.x + place.local.x, corner.z + place.local.z};
     point.height_m = kProbeHeight_m;
     heading = unwrapped(glm::degrees(at.pose.yaw), heading);
-    point.heading_deg = std::clamp(heading, -kMostHeading_deg, kMostHeading_deg);
-    point.pitch_deg = std::clamp(glm::degrees(at.pose.pitch), -kMostPitch_deg, kMostPitch_deg);
+    point.heading_deg = std::clamp(heading, -kMaxHeading_deg, kMaxHeading_deg);
+    point.pitch_deg = std::clamp(glm::degrees(at.pose.pitch), -kMaxPitch_deg, kMaxPitch_deg);
     point.jump = !points.empty() && glm::distance(point.at_m, points.back().at_m) >
                                         kLeap_m_s * (point.time_s - points.back().time_s);
     points.push_back(point);
@@ -50,7 +50,7 @@ CameraPath recorded_path(const std::string& name, std::span<const TimedPose> pos
     const double ground_m =
         probe.pose_at(points[i].time_s, world).position.local.y - kProbeHeight_m;
     points[i].height_m = std::clamp(poses[i].pose.position.local.y - ground_m,
-                                    CameraPath::kLeastHeightM, CameraPath::kMostHeightM);
+                                    CameraPath::kMinHeightM, CameraPath::kMaxHeightM);
   }
   return {settings, std::move(points)};
 }

@@ -17,9 +17,9 @@ struct TimedPose {
 };
 
 // The most points of a path file.
-inline constexpr std::size_t kMostRecordedPoses = 10'000;
+inline constexpr std::size_t kMaxRecordedPoses = 10'000;
 
-// At least one valid pose, at most kMostRecordedPoses. At the time of each pose the camera is
+// At least one valid pose, at most kMaxRecordedPoses. At the time of each pose the camera is
 // there, within the limits of paths: at least 0.5 m above the ground, and 89° up and down. A
 // distance that no flight may have is a jump. 50 µs a pose.
 CameraPath recorded_path(const std::string& name, std::span<const TimedPose> poses,

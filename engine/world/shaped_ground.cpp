@@ -23,10 +23,10 @@ using models::RoadSegment;
 // A piece has at most this many segments, and as many heights are looked at to know how far it
 // moves them.
 constexpr std::size_t kPieceSegments = 12;
-constexpr double kMostLookedAt = 40'000;
+constexpr double kMaxLookedAt = 40'000;
 // Segments of a road that may lie near one of its pieces: it may cross itself, and not cover an
 // area.
-constexpr std::size_t kMostNear = 1000;
+constexpr std::size_t kMaxNear = 1000;
 
 struct Box {
   glm::dvec2 least{1e300}, most{-1e300};
@@ -96,11 +96,11 @@ class Shaper {
       if (const auto at = inside(point); !at) return refused("points_m", at.error());
     }
     length_m_ += chords_m(road);
-    if (length_m_ > kMostRoadsM)
+    if (length_m_ > kMaxRoadsM)
       return refused("points_m", {core::ErrorCode::kOverBudget,
                                   fmt::format("all roads together are longer than {:g} m, and no "
                                               "more is allowed",
-                                              kMostRoadsM)});
+                                              kMaxRoadsM)});
     models::Parameters terrain = world_.terrain;
     const models::EditLayer before = layer_;
     terrain.set_edits(&before, 0);
@@ -111,7 +111,7 @@ class Shaper {
     });
     std::vector<RoadPiece> pieces = pieces_of(road, line);
     for (RoadPiece& piece : pieces) {
-      if (piece.segments.size() > kMostNear) return too_much("points_m");
+      if (piece.segments.size() > kMaxNear) return too_much("points_m");
       if (auto ok = add_piece(std::move(piece), terrain); !ok) return ok;
     }
     return {};
@@ -151,7 +151,7 @@ class Shaper {
     return refused(key, {core::ErrorCode::kOverBudget,
                          fmt::format("more than {} stamps and pieces of roads lie on top of each "
                                      "other there",
-                                     kMostNear)});
+                                     kMaxNear)});
   }
 
   // The pieces of a road. Each has the segments of others that may be nearer to its places.
@@ -180,11 +180,11 @@ class Shaper {
           if (q == p || box_of(segments[i]).touches(boxes[p], within_m))
             piece.segments.push_back(segments[i]);
         }
-        if (piece.segments.size() > kMostNear) break;
+        if (piece.segments.size() > kMaxNear) break;
         if (q == p) piece.end = piece.segments.size();
       }
       pieces.push_back(std::move(piece));
-      if (pieces.back().segments.size() > kMostNear) break;
+      if (pieces.back().segments.size() > kMaxNear) break;
     }
     return pieces;
   }
@@ -203,16 +203,16 @@ class Shaper {
     centre.local.z += box.centre().y;
     edit.centre = core::normalised(centre, block_m_);
     edit.radius_m = box.half_side() + piece.reach_m();
-    edit.height_m = most_moved(piece, edit, before);
+    edit.height_m = max_moved(piece, edit, before);
     edit.road = std::make_shared<const RoadPiece>(std::move(piece));
     return add(std::move(edit), "points_m");
   }
 
   // How far a piece moves a vertex of the finest ground at most.
-  double most_moved(const RoadPiece& piece, const GroundEdit& edit,
-                    const models::Parameters& before) const {
+  double max_moved(const RoadPiece& piece, const GroundEdit& edit,
+                   const models::Parameters& before) const {
     const double cell_m = world_.cell_m(), radius_m = edit.radius_m + cell_m;
-    if (4 * radius_m * radius_m / (cell_m * cell_m) > kMostLookedAt) return relief_m_;
+    if (4 * radius_m * radius_m / (cell_m * cell_m) > kMaxLookedAt) return relief_m_;
     const core::WorldPosition& centre = edit.centre;
     const auto block_at = [&](double local_m) {
       return static_cast<std::int64_t>(std::floor(local_m / block_m_));
@@ -222,13 +222,13 @@ class Shaper {
          z <= block_at(centre.local.z + radius_m); ++z) {
       for (std::int64_t x = block_at(centre.local.x - radius_m);
            x <= block_at(centre.local.x + radius_m); ++x)
-        most = std::max(most, most_moved(piece, edit, core::moved(centre.block, x, z), before));
+        most = std::max(most, max_moved(piece, edit, core::moved(centre.block, x, z), before));
     }
     return most;
   }
 
-  double most_moved(const RoadPiece& piece, const GroundEdit& edit, core::BlockCoord block,
-                    const models::Parameters& before) const {
+  double max_moved(const RoadPiece& piece, const GroundEdit& edit, core::BlockCoord block,
+                   const models::Parameters& before) const {
     const auto last = world_.terrain.integer(models::kTerrainSize) - 1;
     const models::BlockGround ground(before, block, static_cast<std::size_t>(last * last));
     const glm::dvec3 corner = core::offset_m(block, piece.origin, block_m_);

@@ -48,9 +48,9 @@ struct Road {
   friend bool operator==(const Road&, const Road&) = default;
 };
 
-// Limits of a file. Points of a road lie at least kLeastRoadStepM apart.
+// Limits of a file. Points of a road lie at least kMinRoadStepM apart.
 inline constexpr std::size_t kMaxStamps = 64, kMaxRoads = 64, kMaxRoadPoints = 1000;
-inline constexpr double kLeastRoadStepM = 1, kMostRoadsM = 100'000;
+inline constexpr double kMinRoadStepM = 1, kMaxRoadsM = 100'000;
 inline constexpr double kFarthestShapeM = 1e8;  // from the world's origin along an axis
 
 // All of it, and the layer of edits that it becomes.
@@ -75,7 +75,7 @@ struct ShapeError {
 // world.terrain with its seed. Linear in heights of stamps and lengths of roads. Fails with
 // kInvalidArgument for what lies outside of the world or rises beyond the relief, and with
 // kOverBudget where too much lies on top of each other or all roads together are longer than
-// kMostRoadsM.
+// kMaxRoadsM.
 tl::expected<void, ShapeError> shape_ground(World& world);
 
 // Of the whole shaped ground; 0: there is nothing.

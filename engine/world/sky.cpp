@@ -12,12 +12,12 @@ namespace psygen::world {
 namespace {
 
 constexpr double kDeclinationDeg = 12;  // of the sun, as in spring
-constexpr float kMostChange = 32;       // largest factor, for files with a very low sun
+constexpr float kMaxChange = 32;        // largest factor, for files with a very low sun
 
 // Scales `colour`, which is correct for daylight `then`, to daylight `now`.
 glm::vec3 changed(glm::vec3 colour, glm::vec3 then, glm::vec3 now) {
   const glm::vec3 dark(1e-6F);
-  return colour * glm::min((now + dark) / (then + dark), glm::vec3(kMostChange));
+  return colour * glm::min((now + dark) / (then + dark), glm::vec3(kMaxChange));
 }
 
 }  // namespace

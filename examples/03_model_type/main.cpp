@@ -43,7 +43,7 @@ class HurdleType final : public models::ModelType {
     return std::log2(4.0 * std::max(1.0, static_cast<double>(p.integer(kPanels))));
   }
 
-  core::Bounds synthesize(const models::Parameters& p, int,
+  core::Bounds synthesise(const models::Parameters& p, int,
                           const models::MeshView& out) const override {
     const core::Bounds box = bounds(p);
     const models::BoxPacker packer(box);

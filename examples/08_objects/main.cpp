@@ -87,7 +87,7 @@ core::Result<void> build(app::Session& session, const core::CameraPose& pose) {
   scene::State& state = session.scene().state();
   const auto texture = state.assets.add_texture(lattice());
   if (!texture) return tl::unexpected(texture.error());
-  const auto wood = state.assets.add_material({.least_opacity = 0.5F, .base_texture = *texture});
+  const auto wood = state.assets.add_material({.min_opacity = 0.5F, .base_texture = *texture});
   const auto walls = state.assets.add_mesh(tower(), "tower");
   const auto sails = state.assets.add_mesh(cross(), "sails");
   if (!wood) return tl::unexpected(wood.error());

@@ -168,7 +168,7 @@ double CairnType::log2_cost(const models::Parameters& p) const {
   return std::log2(2.0 * kStoneSides[0] * kStoneRings[0] * stones);
 }
 
-core::Bounds CairnType::synthesize(const models::Parameters& p, int level,
+core::Bounds CairnType::synthesise(const models::Parameters& p, int level,
                                    const models::MeshView& out) const {
   StoneWriter writer(bounds(p), out, level);
   core::Bounds tight{glm::vec3(1e9F), glm::vec3(-1e9F)};

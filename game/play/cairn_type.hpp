@@ -23,7 +23,7 @@ class CairnType final : public models::ModelType {
   models::MeshSize mesh_size(const models::Parameters& p, int level) const override;
   double complexity(const models::Parameters& p, int level) const override;
   double log2_cost(const models::Parameters& p) const override;
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override;
   core::SurfaceKind surface() const override { return core::SurfaceKind::kStone; }
   models::Collider collider(const models::Parameters& p) const override;

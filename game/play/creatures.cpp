@@ -9,7 +9,7 @@ namespace cairns {
 namespace {
 
 constexpr double kCellM = 72, kNearM = 190, kFarM = 260;
-constexpr std::size_t kMost = 320;
+constexpr std::size_t kMax = 320;
 constexpr int kStepsBetween = 30;                   // steps between updates of the cells
 constexpr double kDeerSees = 14, kDeerHears = 3.2;  // m, and m per m/s of the player
 constexpr double kDeerWalk = 0.7, kDeerRun = 9, kBirdPace = 8, kFishPace = 0.5, kFishFlees = 3.5;
@@ -72,7 +72,7 @@ void Creatures::settle_cells(const core::WorldPosition& player) {
 }
 
 void Creatures::settle(std::int32_t x, std::int32_t z) {
-  if (all_.size() >= kMost) return;
+  if (all_.size() >= kMax) return;
   const world::World& world = query_->world();
   core::RandomStream random(world.seed, x, z, 0, kHabitat);
   core::WorldPosition home;

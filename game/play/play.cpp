@@ -179,7 +179,7 @@ void Play::refuse(const char* why) {
 }
 
 void Play::gather() {
-  if (progress_.stock.stones >= most_stones()) return refuse("You cannot carry more stones.");
+  if (progress_.stock.stones >= max_stones()) return refuse("You cannot carry more stones.");
   world::Edits next = edits_;
   if (!next.remove(world_, {target_.model.block, target_.model.index})) return;
   take_edits(std::move(next));

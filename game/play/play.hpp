@@ -107,7 +107,7 @@ class Play {
   // Returns the next cairn, or nullopt if all are found.
   std::optional<std::size_t> next_cairn() const;
   bool is_finished() const { return progress_.found.all(); }
-  int most_stones() const { return has(abilities(), Ability::kSatchel) ? 40 : 12; }
+  int max_stones() const { return has(abilities(), Ability::kSatchel) ? 40 : 12; }
   // Returns the nearest burning fire within reach, or null.
   const Fire* fire_near(double reach_m) const;
 

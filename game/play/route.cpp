@@ -12,21 +12,21 @@
 namespace cairns {
 namespace {
 
-constexpr double kLeastSiteUp = 0.90, kStartUp = 0.966;  // normal.y of slopes of 26° and 15°
+constexpr double kMinSiteUp = 0.90, kStartUp = 0.966;  // normal.y of slopes of 26° and 15°
 constexpr double kHighestStartM = 110, kHighestM = 200, kDryM = 1.5;
 constexpr double kProminentM = 9;  // more gains nothing
-constexpr double kLeastWayM = 200, kMostWayM = 360;
-constexpr std::size_t kMostCells = 60'000;  // enough for a path of a few hundred metres
-constexpr int kTries = 24, kMostTries = 192, kRings = 60, kTurns = 5;
+constexpr double kMinWayM = 200, kMaxWayM = 360;
+constexpr std::size_t kMaxCells = 60'000;  // enough for a path of a few hundred metres
+constexpr int kTries = 24, kMaxTries = 192, kRings = 60, kTurns = 5;
 constexpr double kSeenFromM = 45;  // radius of the surroundings that a site is compared with
 constexpr core::Purpose kPurpose = core::Purpose::kStructure;
 
 // Returns the ground at a position if the player can stand there, and sets the position's height.
-std::optional<query::Ground> dry_ground(query::World& query, core::WorldPosition& at,
-                                        double least_up, double highest_m) {
+std::optional<query::Ground> dry_ground(query::World& query, core::WorldPosition& at, double min_up,
+                                        double highest_m) {
   at = core::normalised(at, query.world().block_size_m());
   const auto ground = query.ground(at);
-  if (!ground || ground->normal.y < least_up || ground->height_m > highest_m) return std::nullopt;
+  if (!ground || ground->normal.y < min_up || ground->height_m > highest_m) return std::nullopt;
   if (ground->height_m < query.world().water.level_m + kDryM) return std::nullopt;
   at.local.y = ground->height_m;
   return *ground;
@@ -68,12 +68,12 @@ struct Candidate {
 std::vector<Candidate> candidates(query::World& query, const core::WorldPosition& from,
                                   double heading, core::RandomStream& random) {
   std::vector<Candidate> found;
-  for (int k = 0; k < kMostTries && (k < kTries || found.empty()); ++k) {
+  for (int k = 0; k < kMaxTries && (k < kTries || found.empty()); ++k) {
     const double angle = heading + random.next_real(-0.6, 0.6) * (1 + 3.0 * k / kTries);
-    const double far_m = random.next_real(kLeastWayM, kMostWayM);
+    const double far_m = random.next_real(kMinWayM, kMaxWayM);
     core::WorldPosition at = from;
     at.local += far_m * glm::dvec3(std::sin(angle), 0, -std::cos(angle));
-    if (!dry_ground(query, at, kLeastSiteUp, kHighestM)) continue;
+    if (!dry_ground(query, at, kMinSiteUp, kHighestM)) continue;
     found.push_back({at, angle, std::min(prominence_m(query, at), kProminentM)});
   }
   std::ranges::stable_sort(found, std::greater(), &Candidate::score);
@@ -99,7 +99,7 @@ core::Result<Route> find_route(query::World& query) {
   const auto start = find_start(query);
   if (!start) return fail();
   Route route{*start, {}};
-  query::PathFinder finder(query, {.most_cells = kMostCells});
+  query::PathFinder finder(query, {.max_cells = kMaxCells});
   core::WorldPosition from = *start;
   core::RandomStream course(query.world().seed, 0, 0, 0, kPurpose);
   double heading = course.next_real(0, 2 * std::numbers::pi);

@@ -17,12 +17,12 @@ constexpr double kSwimDepthM = 1.15, kRaftDepthM = 0.15, kFloat = 3;  // 1/s
 constexpr double kClimbSpeed = 1.7, kBreathS = 3.5, kGripBreathS = 10, kWallM = 0.9;
 constexpr float kWallUp = 0.64F;  // normal.y of the flattest ground to climb: 50°
 constexpr double kGlideSpeed = 10, kSinkSpeed = 2.1, kWingSinkSpeed = 1.3;
-constexpr double kDive = 9;                        // m/s gained when looking straight down
-constexpr double kUpdraft = 1.2;                   // lift per m/s of wind against a slope,
-constexpr double kMostLift = 1.6, kUpdraftM = 35;  // its limit in m/s, and the height where it ends
+constexpr double kDive = 9;                       // m/s gained when looking straight down
+constexpr double kUpdraft = 1.2;                  // lift per m/s of wind against a slope,
+constexpr double kMaxLift = 1.6, kUpdraftM = 35;  // its limit in m/s, and the height where it ends
 constexpr double kGustS = 1.2, kGustSpeed = 4.5;
 constexpr double kStrideM = 0.82;  // length of a stride
-constexpr double kMostPitch = 1.5;
+constexpr double kMaxPitch = 1.5;
 constexpr double kFellFarSpeed = 3;  // m/s; faster landings make a sound
 
 glm::dvec2 ahead_of(double yaw) {
@@ -107,7 +107,7 @@ physics::CharacterInput Walker::glide(const Abilities& abilities, const Intent& 
   if (const auto ground = query_->ground(feet_)) {
     const double against = -glm::dot(weather.wind, glm::dvec3(ground->normal));
     const double near = 1 - (feet_.local.y - ground->height_m) / kUpdraftM;
-    rise += std::clamp(kUpdraft * against, 0.0, kMostLift) * std::clamp(near, 0.0, 1.0);
+    rise += std::clamp(kUpdraft * against, 0.0, kMaxLift) * std::clamp(near, 0.0, 1.0);
   }
   if (intent.jump && has(abilities, Ability::kWind)) gust_s_ = kGustS;
   if (gust_s_ > 0) rise = kGustSpeed;
@@ -119,7 +119,7 @@ void Walker::decide(const Intent& intent, const Abilities& abilities, const Weat
                     double dt) {
   yaw_before_ = std::exchange(yaw_, yaw_ + intent.turn);
   pitch_before_ = pitch_;
-  pitch_ = std::clamp(pitch_ + intent.look, -kMostPitch, kMostPitch);
+  pitch_ = std::clamp(pitch_ + intent.look, -kMaxPitch, kMaxPitch);
   gust_s_ = std::max(gust_s_ - dt, 0.0);
   const Gait before = std::exchange(gait_, next_gait(intent, abilities));
   splashed_ = gait_ == Gait::kSwim && before != Gait::kSwim && velocity_.y < -1;

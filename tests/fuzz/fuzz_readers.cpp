@@ -37,8 +37,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   const std::string before =
       random() % 16 == 0 ? examples[random() % examples.size()] : text_of(data, size);
   const std::string after = psygen::fuzz::mutated(before, others, most, random);
-  constexpr std::size_t kMostOthers = 64;  // recent texts
-  if (others.size() < kMostOthers) others.push_back(before);
+  constexpr std::size_t kMaxOthers = 64;  // recent texts
+  if (others.size() < kMaxOthers) others.push_back(before);
   others[random() % others.size()] = before;
   std::memcpy(data, after.data(), after.size());
   return after.size();

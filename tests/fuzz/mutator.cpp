@@ -189,7 +189,7 @@ void change_structure(std::string& text, std::span<const std::string> others, Ra
 
 }  // namespace
 
-std::string mutated(std::string text, std::span<const std::string> others, std::size_t most_bytes,
+std::string mutated(std::string text, std::span<const std::string> others, std::size_t max_bytes,
                     std::mt19937_64& random) {
   for (std::size_t changes = 1 + below(random, 8); changes > 0; --changes) {
     switch (below(random, 4)) {
@@ -204,7 +204,7 @@ std::string mutated(std::string text, std::span<const std::string> others, std::
         change_structure(text, others, random);
     }
   }
-  text.resize(std::min(text.size(), most_bytes));
+  text.resize(std::min(text.size(), max_bytes));
   return text;
 }
 

@@ -9,9 +9,9 @@
 
 namespace psygen::fuzz {
 
-// Returns `text` with one to eight changes and at most `most_bytes`. Lines are taken from `others`,
+// Returns `text` with one to eight changes and at most `max_bytes`. Lines are taken from `others`,
 // which must not be empty.
-std::string mutated(std::string text, std::span<const std::string> others, std::size_t most_bytes,
+std::string mutated(std::string text, std::span<const std::string> others, std::size_t max_bytes,
                     std::mt19937_64& random);
 
 }  // namespace psygen::fuzz

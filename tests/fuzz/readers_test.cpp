@@ -12,7 +12,7 @@
 namespace psygen::fuzz {
 namespace {
 
-constexpr std::size_t kMostBytes = 1 << 16;
+constexpr std::size_t kMaxBytes = 1 << 16;
 
 // Sorted, so that the order does not depend on the file system.
 std::vector<std::string> shipped_texts() {
@@ -54,7 +54,7 @@ TEST(Readers, SurviveShippedFilesWithUnicodeAndOtherThingsInWrongPlaces) {
   int taken = 0, refused = 0;
   for (const std::string& text : texts) {
     for (int i = 0; i < kTextsOfEachFile; ++i)
-      ++(read_as_everything(mutated(text, texts, kMostBytes, random), file) > 0 ? taken : refused);
+      ++(read_as_everything(mutated(text, texts, kMaxBytes, random), file) > 0 ? taken : refused);
   }
   EXPECT_GT(taken, 10) << "only texts that are taken reach what comes after the parser";
   EXPECT_GT(refused, 100);

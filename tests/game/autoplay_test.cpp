@@ -10,7 +10,7 @@ namespace cairns {
 namespace {
 
 constexpr double kStep = 1.0 / 60;
-constexpr int kMostSteps = 40 * 3600;
+constexpr int kMaxSteps = 40 * 3600;
 constexpr std::size_t kHappenings = static_cast<std::size_t>(Happening::Kind::kSplashed) + 1;
 constexpr std::size_t kGaits = static_cast<std::size_t>(Gait::kClimb) + 1;
 
@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Autoplay, ::testing::Range<std::uint64_t>(1, 11)
 
 TEST_P(Autoplay, FinishesTheGameOnTheGround) {
   Played game(GetParam());
-  for (int k = 0; k < kMostSteps && !game.play->is_finished(); ++k) {
+  for (int k = 0; k < kMaxSteps && !game.play->is_finished(); ++k) {
     game.step();
     const core::WorldPosition& feet = game.play->walker().feet();
     const auto ground = game.play->query().ground(feet);
@@ -61,7 +61,7 @@ TEST(Autoplay, SwimsClimbsAndSleeps) {
   bool swum = false, climbed = false, slept = false;
   for (std::uint64_t seed = 1; seed <= 10 && !(swum && climbed && slept); ++seed) {
     Played game(seed);
-    for (int k = 0; k < kMostSteps && !game.play->is_finished(); ++k)
+    for (int k = 0; k < kMaxSteps && !game.play->is_finished(); ++k)
       game.step();
     swum |= game.count(Gait::kSwim) > 0;
     climbed |= game.count(Gait::kClimb) > 0;

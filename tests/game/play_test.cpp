@@ -256,7 +256,7 @@ TEST(CairnType, WritesTheDeclaredSizeWithinItsBounds) {
       const models::MeshSize size = type.mesh_size(p, level);
       std::vector<std::byte> vertices(size.vertex_count * sizeof(core::ModelVertex));
       std::vector<std::uint16_t> indices(size.index_count, 0xFFFF);
-      const core::Bounds tight = type.synthesize(p, level, {vertices, indices});
+      const core::Bounds tight = type.synthesise(p, level, {vertices, indices});
       const core::Bounds box = type.bounds(p);
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_GE(tight.min[axis], box.min[axis] - 1e-4F);

@@ -607,7 +607,7 @@ def renamed_names(tree):
 
 
 def old_names(tree, names):
-    """Uses of names that have a successor, and of kMost…, kLeast…, most_… and least_…."""
+    """Uses of names that have a successor, and of kMax…, kMin…, max_… and min_…."""
     names = sorted(n for n in names if not re.search(r"[^\w:]", n))
     old = re.compile(r"(?<![\w:])(?:" + "|".join(map(re.escape, names)) + r")\b") if names else None
     for name, text in tree.select((*CODE, "tests", "examples", "shaders"), CXX + SHADERS):
@@ -724,7 +724,7 @@ MEASURES = [
     ("fragments", 7.2, 3.0, fragments, "% of subjects (a header with its source) under 40 lines"),
     ("lines", 111600, 109000, lines, "lines of C++ in ecs, engine, editor and game"),
     ("test-names", 325, 0, test_names, "names of tests that are no sentence in UpperCamel"),
-    ("old-names", 918, 0, names_left, "old names of the changelog's table in code, kMost…, kLeast…, most_…, least_…"),
+    ("old-names", 918, 0, names_left, "old names of the changelog's table in code, kMax…, kMin…, max_…, min_…"),
 ]
 
 
@@ -753,7 +753,7 @@ def report(tree, by_folder, worst=5):
         counts = collections.Counter()
         for file, at in figure.found.items():
             counts[folder_of(file) if by_folder else file] += len(at)
-        for file, number in counts.most_common(60 if by_folder else worst):
+        for file, number in counts.max_common(60 if by_folder else worst):
             print(f"{'':15} {number:8}   {file}")
 
 
@@ -816,7 +816,7 @@ auto p = Preset{.a = 1, .b = 2, .c = 3, .d = 4, .e = 5};
                               "class C {\n private:\n  int h();\n};\n",
         "engine/scene/c/d.hpp": '#include "engine/scene/b.hpp"\n',
         "CHANGELOG.md": "## Names\n\n| old | new |\n| --- | --- |\n| `kOld`, `World::land` | `kNew` |\n",
-        "game/x.cpp": "int kOld = kMostThings;\n"})
+        "game/x.cpp": "int kOld = kMaxThings;\n"})
     names = {f: p for _, f, p in tree.functions("engine/scene/a.cpp")}
     assert len(names["eight"]) == 8 and len(names["load_system"]) == 2 and names["get"] == [], names
     assert names["set"] == ["bool near", "bool far"] and "A::A" in names and "call" not in names, names

@@ -93,7 +93,7 @@ class GrassType final : public ModelType {
     const auto flowers = std::max(static_cast<double>(p.integer(kGrassFlowers)), 0.0);
     return std::log2(kBladeTriangles * blades + kFlowerTriangles * flowers);
   }
-  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
+  core::Bounds synthesise(const Parameters& p, int level, const MeshView& out) const override;
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
     PSYGEN_CHECK(false, "grass shares no indices");
   }
@@ -132,7 +132,7 @@ MeshSize GrassType::mesh_size(const Parameters& p, int level) const {
   return {3 * (blades + flowers), 3 * (blades + flowers)};
 }
 
-core::Bounds GrassType::synthesize(const Parameters& p, int level, const MeshView& out) const {
+core::Bounds GrassType::synthesise(const Parameters& p, int level, const MeshView& out) const {
   const MeshSize size = mesh_size(p, level);
   PSYGEN_CHECK(out.vertices.size() == size.vertex_count * sizeof(core::ModelVertex) &&
                    out.indices.size() == size.index_count,

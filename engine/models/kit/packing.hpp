@@ -54,30 +54,30 @@ inline glm::vec3 decode_octahedral(glm::vec2 e) {
   return n * (1.0F / std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z));
 }
 
-// Packs points of one box as snorm16: p = center + half_extent · packed / 32767.
+// Packs points of one box as snorm16: p = centre + half_extent · packed / 32767.
 class BoxPacker {
  public:
   // Along an axis where `box` has no extent, every point packs to 0.
-  explicit BoxPacker(const core::Bounds& box) : center_(box.center()) {
+  explicit BoxPacker(const core::Bounds& box) : centre_(box.centre()) {
     const glm::vec3 half = box.half_extent();
     scale_ = {half.x > 0 ? 1 / half.x : 0, half.y > 0 ? 1 / half.y : 0,
               half.z > 0 ? 1 / half.z : 0};
   }
   // Points outside the box are clamped to its faces.
   void pack(const glm::vec3& p, std::int16_t (&out)[3]) const {
-    out[0] = pack_snorm16((p.x - center_.x) * scale_.x);
-    out[1] = pack_snorm16((p.y - center_.y) * scale_.y);
-    out[2] = pack_snorm16((p.z - center_.z) * scale_.z);
+    out[0] = pack_snorm16((p.x - centre_.x) * scale_.x);
+    out[1] = pack_snorm16((p.y - centre_.y) * scale_.y);
+    out[2] = pack_snorm16((p.z - centre_.z) * scale_.z);
   }
 
  private:
-  glm::vec3 center_;
+  glm::vec3 centre_;
   glm::vec3 scale_;
 };
 
 // The position of a vertex in metres. `box` is the one that it was packed in.
 inline glm::vec3 unpack_position(const core::ModelVertex& v, const core::Bounds& box) {
-  return box.center() +
+  return box.centre() +
          box.half_extent() *
              (glm::vec3(v.position[0], v.position[1], v.position[2]) * (1.0F / 32767.0F));
 }

@@ -24,8 +24,8 @@ using Wide = hn::CappedTag<float, kPad>;
 using Narrow = hn::CappedTag<float, 8>;  // for few midpoints
 using Small = hn::CappedTag<float, 4>;   // for the last two vertices: their count is 2 + 2 · 4^n
 
-// The mesh of a rock of at most kMost subdivisions.
-template <int kMost>
+// The mesh of a rock of at most kMax subdivisions.
+template <int kMax>
 class RockMesher {
  public:
   RockMesher(const RockShape& shape, const RockTopology& topology, int subdivisions)
@@ -46,7 +46,7 @@ class RockMesher {
   }
 
  private:
-  static constexpr std::size_t kVertices = rock_vertices(kMost);
+  static constexpr std::size_t kVertices = rock_vertices(kMax);
 
   // ---- Places ----
 
@@ -243,7 +243,7 @@ class RockMesher {
     const std::array<RockTopology::Offsets, 6>& rings = topology_.rings(subdivisions_);
     const auto ring = [&](std::size_t i) { return rings[i].data() + v; };
     Vectors<D> a, b;
-    if constexpr (hn::MaxLanes(D()) == 16 && kMost == 2) {
+    if constexpr (hn::MaxLanes(D()) == 16 && kMax == 2) {
       const Vectors<D> p1 = look_up(d, ring(1)), p4 = look_up(d, ring(4));
       a = cross(minus(look_up(d, ring(3)), p1), minus(p4, look_up(d, ring(2))));
       b = cross(minus(look_up(d, ring(5)), p1), minus(look_up(d, ring(0)), p4));

@@ -84,7 +84,7 @@ RockShape shape_of(const Parameters& p, const core::Bounds& box) {
       glm::vec3(0.35F * layers.f[1], 1.0F, 0.35F * layers.f[2]) * (2.2F + 0.6F * layers.f[3]);
   shape.layer_phase = layers.f[0];
   const glm::vec3 half = box.half_extent();
-  shape.box_centre = box.center();
+  shape.box_centre = box.centre();
   shape.box_scale = {32767.0F / half.x, 32767.0F / half.y, 32767.0F / half.z};
   return shape;
 }
@@ -125,7 +125,7 @@ class RockType final : public ModelType {
   double log2_cost(const Parameters& p) const override {
     return 2 + 2 * static_cast<double>(p.integer(kRockSubdivisions));
   }
-  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
+  core::Bounds synthesise(const Parameters& p, int level, const MeshView& out) const override;
   void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override;
 
  private:
@@ -194,7 +194,7 @@ void RockType::write_shared_indices(std::uint32_t id, std::span<std::uint16_t> o
   }
 }
 
-core::Bounds RockType::synthesize(const Parameters& p, int level, const MeshView& out) const {
+core::Bounds RockType::synthesise(const Parameters& p, int level, const MeshView& out) const {
   const int n = subdivisions_at(p, level);
   PSYGEN_CHECK(out.vertices.size() ==
                    rock_mesh_vertices(n, family_of(p).facet > 0) * sizeof(core::ModelVertex),
@@ -226,10 +226,10 @@ std::vector<glm::vec3> farthest(const std::vector<glm::vec3>& points) {
 // subdivisions, and of its corners only the farthest in 56 directions.
 Collider RockType::collider(const Parameters& p) const {
   constexpr int kAll = 2, kFinest = 4;
-  constexpr std::uint32_t kMost = rock_mesh_vertices(kFinest, true);
+  constexpr std::uint32_t kMax = rock_mesh_vertices(kFinest, true);
   const int n = std::min(subdivisions_at(p, 0), kFinest);
   const core::Bounds box = bounds(p);
-  std::array<core::ModelVertex, kMost> vertices;
+  std::array<core::ModelVertex, kMax> vertices;
   const std::span mesh = std::span(vertices).first(rock_mesh_vertices(n, family_of(p).facet > 0));
   mesh_rock(shape_of(p, box), topology_, n, std::as_writable_bytes(mesh).data());
   // Triangles of faceted rocks share no vertices.

@@ -179,7 +179,7 @@ class CoarseHeights {
   // the rounding errors of single precision.
   static constexpr std::size_t kLargestRatio = 32;
   // Largest number of coarse samples along one side.
-  static constexpr std::size_t kMost = kMaxTerrainSize / 2 + 2;
+  static constexpr std::size_t kMax = kMaxTerrainSize / 2 + 2;
 
   const TerrainSurface& s_;
   const CoarseSamples& c_;
@@ -192,7 +192,7 @@ class CoarseHeights {
   HWY_ALIGN std::int32_t slot_[kRow];
   std::size_t first_[kRow];
   std::size_t stride_;
-  HWY_ALIGN float heights_[kMost * (kMost + 16) + 32];
+  HWY_ALIGN float heights_[kMax * (kMax + 16) + 32];
   HWY_ALIGN float left_[kRow], right_[kRow];  // coarse heights beside the vertices, of one row
   HWY_ALIGN float low_[kRow];
   HWY_ALIGN float low_rise_[kRow];

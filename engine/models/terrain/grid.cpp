@@ -41,7 +41,7 @@ std::array<int, kTerrainLevels> terrain_strides(int size) {
 TerrainGrid::TerrainGrid(int size_at_level_0, int level_stride, int tile_step)
     : size(size_at_level_0), stride(level_stride), n((size - 1) / stride + 1) {
   const int steps = (n - 1) / tile_step;
-  tiles_ = std::min(steps, kMostTilesPerSide);
+  tiles_ = std::min(steps, kMaxTilesPerSide);
   for (int i = 0; i <= tiles_; ++i)
     tile_lines_[static_cast<std::size_t>(i)] = steps * i / tiles_ * tile_step;
 }

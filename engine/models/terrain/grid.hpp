@@ -14,7 +14,7 @@ namespace psygen::models {
 inline constexpr int kTerrainLevels = 4;
 inline constexpr int kMinTerrainSize = 4;    // vertices per side at level 0
 inline constexpr int kMaxTerrainSize = 128;  // grid indices have seven bits
-inline constexpr int kMostTilesPerSide = 3;
+inline constexpr int kMaxTilesPerSide = 3;
 
 // Grid distance between neighbouring vertices of each level: 1, then growing by whole factors up to
 // size − 1. So the vertices of a level are a subset of those of the level before. The factors are
@@ -70,7 +70,7 @@ struct TerrainGrid {
   TerrainGrid(int size_at_level_0, int level_stride, int tile_step);
 
   int tiles_;
-  std::array<int, kMostTilesPerSide + 1> tile_lines_{};
+  std::array<int, kMaxTilesPerSide + 1> tile_lines_{};
 };
 
 }  // namespace psygen::models

@@ -74,7 +74,7 @@ std::uint64_t content_hash(const GroundEdit& edit) {
 }
 
 // How far an edit moves a height at most.
-float most_of(const GroundEdit& edit) {
+float max_of(const GroundEdit& edit) {
   if (edit.change == GroundChange::kRaise || edit.change == GroundChange::kRoad)
     return static_cast<float>(std::abs(edit.height_m));
   if (edit.change != GroundChange::kStampAdd) return 1e30F;  // the relief limits it
@@ -111,7 +111,7 @@ float steepness_of(const GroundEdit& edit) {
     const double points = std::max(edit.map->columns, edit.map->rows);
     slope += points / edit.radius_m;
   }
-  return std::min(edit.most_m, 1e6F) * static_cast<float>(slope);
+  return std::min(edit.max_m, 1e6F) * static_cast<float>(slope);
 }
 
 void add_hashes(const Cell* cell, const Area& area, int whole, double block_m,
@@ -164,7 +164,7 @@ bool any_reaches(const Cell* cell, const Area& area, double block_m) {
 }
 
 // The most that edits change one after the other on a path from `cell` down, within an area.
-GroundCell::Summary most_in(const Cell* cell, const Area& area, double block_m) {
+GroundCell::Summary max_in(const Cell* cell, const Area& area, double block_m) {
   GroundCell::Summary most;
   if (cell == nullptr) return most;
   const Area own = area_of(cell->place);
@@ -173,12 +173,12 @@ GroundCell::Summary most_in(const Cell* cell, const Area& area, double block_m) 
   if (cell->value) {
     for (const EditPtr& edit : cell->value->edits) {
       if (!area_of(*edit, edit->reach_m(), block_m).touches(area)) continue;
-      most.change_m += edit->most_m;
+      most.change_m += edit->max_m;
       most.steepness += steepness_of(*edit);
     }
   }
   for (const auto& quarter : cell->quarters)
-    most.add(most_in(quarter.get(), area, block_m));
+    most.add(max_in(quarter.get(), area, block_m));
   return most;
 }
 
@@ -223,7 +223,7 @@ void add_roads(const Cell* cell, const Area& area, double block_m,
 
 void seal(GroundEdit& edit) {
   edit.content = content_hash(edit);
-  edit.most_m = most_of(edit);
+  edit.max_m = max_of(edit);
 }
 
 void GroundCell::Summary::add(const Summary& quarter) {
@@ -243,7 +243,7 @@ std::uint64_t GroundCell::hash() const {
 GroundCell::Summary GroundCell::summary() const {
   Summary sum;
   for (const EditPtr& edit : edits) {
-    sum.change_m += edit->most_m;
+    sum.change_m += edit->max_m;
     sum.steepness += steepness_of(*edit);
     sum.work_m2 += weight_of(*edit) * 4 * edit->reach_m() * edit->reach_m();
     sum.has_roads = sum.has_roads || edit->road != nullptr;
@@ -255,7 +255,7 @@ bool GroundEdits::add(const EditPtr& edit, double block_m) {
   bool full = false;
   each_place(*edit, block_m, [&](const QuadPlace& place) {
     const GroundCell* cell = cells_.find(place);
-    full = full || (cell != nullptr && cell->edits.size() >= kMostTogether);
+    full = full || (cell != nullptr && cell->edits.size() >= kMaxTogether);
   });
   if (full) return false;
   each_place(*edit, block_m, [&](const QuadPlace& place) {
@@ -311,7 +311,7 @@ std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadPlace& node, doub
 double GroundEdits::error_m(const QuadPlace& node, double spacing_m, double block_m) const {
   double change_m = 0, steepness = 0;
   for (const auto* cells : {&below_, &cells_}) {
-    const GroundCell::Summary most = most_in(cells->root(), area_of(node), block_m);
+    const GroundCell::Summary most = max_in(cells->root(), area_of(node), block_m);
     change_m += double{most.change_m} + double{most.below_change_m};
     steepness += double{most.steepness} + double{most.below_steepness};
   }

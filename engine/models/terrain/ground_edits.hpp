@@ -84,7 +84,7 @@ struct GroundEdit {
   std::uint32_t id = 0;                   // unique in the block of the centre
   // Set by seal():
   std::uint64_t content = 0;  // identifies everything above
-  float most_m = 0;  // how far it moves a height at most; 1e30: as far as the relief allows
+  float max_m = 0;  // how far it moves a height at most; 1e30: as far as the relief allows
 
   // Half the side of the square along the axes that holds all of it.
   double reach_m() const { return radius_m * (std::abs(turn.x) + std::abs(turn.y)); }
@@ -134,7 +134,7 @@ class GroundEdits {
   // mesh depends on it.
   static constexpr double kInfluence = 5.5;
   // Largest number of edits that begin in one square of the quadtree.
-  static constexpr std::size_t kMostTogether = 1024;
+  static constexpr std::size_t kMaxTogether = 1024;
 
   // Whether there is no edit.
   bool empty() const { return cells_.empty() && below_.empty(); }
@@ -148,8 +148,8 @@ class GroundEdits {
   GroundEdits own() const { return over({}); }
   bool lies_on(const GroundEdits& below) const { return below_.root() == below.cells_.root(); }
 
-  // Adds a sealed edit, or takes the one with this id and block away, in O(log n + kMostTogether).
-  // add() returns false, and changes nothing, where kMostTogether are there already.
+  // Adds a sealed edit, or takes the one with this id and block away, in O(log n + kMaxTogether).
+  // add() returns false, and changes nothing, where kMaxTogether are there already.
   bool add(const std::shared_ptr<const GroundEdit>& edit, double block_m);
   void remove(const GroundEdit& edit, double block_m);
 

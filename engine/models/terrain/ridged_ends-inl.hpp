@@ -70,7 +70,7 @@ class EndColumns {
   // The number of columns, from the last, that are faster with rows as lanes.
   static std::size_t count(std::size_t columns, std::size_t rows) {
     const std::size_t lanes = hn::Lanes(FloatTag()), rest = columns % lanes;
-    return rest <= kMost && columns > lanes && rows >= 16 * rest ? rest : 0;
+    return rest <= kMax && columns > lanes && rows >= 16 * rest ? rest : 0;
   }
 
   // Prepares count() columns. `kernel` and `rows` must outlive it.
@@ -96,7 +96,7 @@ class EndColumns {
   }
 
  private:
-  static constexpr std::size_t kMost = 3;
+  static constexpr std::size_t kMax = 3;
   static constexpr std::size_t kLines = kMaxNoiseAxis + 3 * kPad;
 
   // The position of one column on the lattice of each octave.
@@ -170,8 +170,8 @@ class EndColumns {
   const RidgedKernel& kernel_;
   const RowOctaves& rows_;
   const std::size_t count_;
-  Place places_[kMost];
-  HWY_ALIGN float values_[kMost][kMaxOctaves][kLines], slopes_[kMost][kMaxOctaves][kLines];
+  Place places_[kMax];
+  HWY_ALIGN float values_[kMax][kMaxOctaves][kLines], slopes_[kMax][kMaxOctaves][kLines];
 };
 
 }  // namespace psygen::models::HWY_NAMESPACE

@@ -88,7 +88,7 @@ class TerrainType final : public ModelType {
   double steps(const Parameters& p, int level) const override;
   double step_seconds() const override { return 0.6e-9; }
   double log2_cost(const Parameters& p) const override;
-  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
+  core::Bounds synthesise(const Parameters& p, int level, const MeshView& out) const override;
   void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const override {
     TerrainGrid::of_index_list(id).write_indices(out);
   }
@@ -213,7 +213,7 @@ double TerrainType::log2_cost(const Parameters& p) const {
   return 1 + std::log2(cells) + std::log2(cells + 4);  // with skirts
 }
 
-core::Bounds TerrainType::synthesize(const Parameters& p, int level, const MeshView& out) const {
+core::Bounds TerrainType::synthesise(const Parameters& p, int level, const MeshView& out) const {
   const TerrainShape shape(p);
   const TerrainGrid grid = grid_of(p, level);
   PSYGEN_CHECK(out.vertices.size() ==

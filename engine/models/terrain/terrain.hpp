@@ -39,7 +39,7 @@ enum TerrainParameter : std::size_t {
 // The model type "terrain". Level 0 has every vertex, levels 1 … 3 every Nth one (terrain_strides()
 // in grid.hpp). Vertices are core::TerrainVertex: n² of the surface, then 4·(n − 1) of the skirt.
 // The first 3 · terrain_surface_triangles() indices are the surface, the others the skirt. bounds()
-// and the box that synthesize() returns are those of the surface. Synthesis needs 448 KiB of stack
+// and the box that synthesise() returns are those of the surface. Synthesis needs 448 KiB of stack
 // and nothing on the heap.
 std::unique_ptr<ModelType> make_terrain_type();
 

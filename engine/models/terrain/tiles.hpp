@@ -57,7 +57,7 @@ class TerrainTiles {
   TerrainGrid grid_;
   int stride_;  // cells along one side of a coarser cell
   // First index of each tile in each form, then that of the skirts.
-  std::array<std::uint32_t, kForms * kMostTilesPerSide * kMostTilesPerSide + 1> firsts_{};
+  std::array<std::uint32_t, kForms * kMaxTilesPerSide * kMaxTilesPerSide + 1> firsts_{};
 };
 
 }  // namespace psygen::models

@@ -26,12 +26,12 @@ constexpr std::size_t kVertexBytes = sizeof(core::TerrainVertex);
 // The three words of vertices, one array each. Whole vertices would be slower: a vector load stalls
 // on memory that scalar stores have just written.
 struct VertexWords {
-  static constexpr std::size_t kMost = 4 * kMaxTerrainSize + 16;
-  HWY_ALIGN std::uint32_t low[kMost];
-  HWY_ALIGN std::uint32_t high[kMost];
-  HWY_ALIGN std::uint32_t light[kMost];
+  static constexpr std::size_t kMax = 4 * kMaxTerrainSize + 16;
+  HWY_ALIGN std::uint32_t low[kMax];
+  HWY_ALIGN std::uint32_t high[kMax];
+  HWY_ALIGN std::uint32_t light[kMax];
 
-  // Sets vertex i < kMost.
+  // Sets vertex i < kMax.
   HWY_INLINE void put(std::size_t i, std::uint32_t to_low, std::uint32_t to_high,
                       std::uint32_t to_light) {
     low[i] = to_low;

@@ -115,7 +115,7 @@ HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWrit
   const float end = job.tip ? 0.0F : plan.taper;
   const VF radius = b.radius * (f1(1.0F) - t * f1(1.0F - end));
 
-  const Vec3 c{f1(job.crown.center.x), f1(job.crown.center.y), f1(job.crown.center.z)};
+  const Vec3 c{f1(job.crown.centre.x), f1(job.crown.centre.y), f1(job.crown.centre.z)};
   const Vec3 inverse{f1(job.crown.inverse_half.x), f1(job.crown.inverse_half.y),
                      f1(job.crown.inverse_half.z)};
   const VF contact =
@@ -125,7 +125,7 @@ HWY_INLINE void write_ring(const BarkJob& job, const Branches& b, const MeshWrit
                    hn::ShiftLeft<24>(rounded_word(sway));
 
   const Vec3 scale = set3(box.scale);
-  const Vec3 at = scaled(middle - set3(box.center), scale);
+  const Vec3 at = scaled(middle - set3(box.centre), scale);
   Vec3 across = b.u, beyond = b.v;
   if constexpr (kAt == RingAt::kAny) {
     const Vec3 turn = (f1(2.0F) * t) * b.bend;
@@ -343,8 +343,8 @@ void write_cone(const TreePlan& plan, const glm::vec3& from, float radius, std::
     const glm::vec3 normal{unit.x[side], 0.0F, unit.z[side]};
     out.vertex(from + radius * normal, {ambient, 20, normal, colour, 0});
   }
-  const std::uint8_t inside = pack_unorm8(crown_ambient(crown, crown.center));
-  out.vertex(crown.center, {inside, 100, {0.0F, 1.0F, 0.0F}, colour, 0});
+  const std::uint8_t inside = pack_unorm8(crown_ambient(crown, crown.centre));
+  out.vertex(crown.centre, {inside, 100, {0.0F, 1.0F, 0.0F}, colour, 0});
   for (std::uint32_t side = 0; side < 3; ++side)
     out.triangle(first + side, first + 3, first + (side + 1) % 3);
 }

@@ -57,16 +57,16 @@ TreeCrown crown_of(const TreePlan& plan, const TreeSkeleton& skeleton, bool whol
   for (std::uint32_t i = 0; i < ends.count; ++i)
     sum += ends.at[i];
   const float inverse = 1.0F / static_cast<float>(std::max(ends.count, 1U));
-  const glm::vec3 center = sum * inverse;
+  const glm::vec3 centre = sum * inverse;
   for (std::uint32_t i = 0; i < ends.count; ++i) {
-    const glm::vec3 d = ends.at[i] - center;
+    const glm::vec3 d = ends.at[i] - centre;
     squares += d * d;
   }
   const float least = 0.3F * plan.size_m;
   const float across = least + 1.5F * std::sqrt((squares.x + squares.z) * 0.5F * inverse);
   const float up = least + 1.5F * std::sqrt(squares.y * inverse);
   const glm::vec3 half{across, up, across};
-  return {center, half, 1.0F / half, (2.0F * across + up) * (1.0F / 3.0F)};
+  return {centre, half, 1.0F / half, (2.0F * across + up) * (1.0F / 3.0F)};
 }
 
 CrownOutline outline_of(const TreePlan& plan, const TreeSkeleton& paths, const TreeCrown& crown) {
@@ -81,7 +81,7 @@ CrownOutline outline_of(const TreePlan& plan, const TreeSkeleton& paths, const T
   const float middle = 0.5F * (top + bottom), half_height = 0.5F * (top - bottom) + leaves;
   float squares[2] = {0.0F, 0.0F}, weights[2] = {0.0F, 0.0F};
   for (std::uint32_t i = 0; i < ends.count; ++i) {
-    const glm::vec3 d = ends.at[i] - crown.center;
+    const glm::vec3 d = ends.at[i] - crown.centre;
     const float up = 0.5F + 0.5F * (ends.at[i].y - middle) / half_height;
     const float squared[2] = {up * up, (1.0F - up) * (1.0F - up)};
     const float weight[2] = {squared[0] * squared[0], squared[1] * squared[1]};
@@ -95,7 +95,7 @@ CrownOutline outline_of(const TreePlan& plan, const TreeSkeleton& paths, const T
 }
 
 float crown_ambient(const TreeCrown& crown, const glm::vec3& p) {
-  const glm::vec3 r = (p - crown.center) * crown.inverse_half;
+  const glm::vec3 r = (p - crown.centre) * crown.inverse_half;
   const float squared = std::min(r.x * r.x + r.y * r.y + r.z * r.z, 1.44F);
   return (0.3F + 0.7F / 1.44F * squared) * std::min(std::max(0.8F + 0.2F * r.y, 0.6F), 1.0F);
 }

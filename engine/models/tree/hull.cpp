@@ -82,7 +82,7 @@ void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, const Cr
   const bool ball = level == 4;
   const LeafTint tint = leaf_tint(plan);
   const std::uint32_t first = out.vertex_count();
-  const glm::vec3 middle{crown.center.x, outline.middle, crown.center.z};
+  const glm::vec3 middle{crown.centre.x, outline.middle, crown.centre.z};
   for (std::uint32_t k = 0; k < (ball ? kBallVertices : kOctahedronVertices); ++k) {
     const auto& corner = ball ? kBall[k] : kOctahedron[k];
     const std::uint32_t h = number_of(plan.key, plan.salt, kHullNumber + k);

@@ -7,9 +7,9 @@ namespace psygen::models {
 
 MeshWriter::MeshWriter(const core::Bounds& box, const MeshView& out)
     : half_(box.half_extent()), vertices_(out.vertices.data()), indices_(out.indices.data()) {
-  const glm::vec3 middle = box.center();
+  const glm::vec3 middle = box.centre();
   for (int c = 0; c < 3; ++c) {
-    center[c] = middle[c];
+    centre[c] = middle[c];
     scale[c] = 32767.0F / half_[c];
   }
 }
@@ -17,7 +17,7 @@ MeshWriter::MeshWriter(const core::Bounds& box, const MeshView& out)
 void MeshWriter::vertex(const glm::vec3& position, const Look& look) {
   core::ModelVertex v;
   for (int c = 0; c < 3; ++c) {
-    const float packed = (position[c] - center[c]) * scale[c];
+    const float packed = (position[c] - centre[c]) * scale[c];
     const auto q =
         static_cast<std::int16_t>(round_to_int(std::min(std::max(packed, -32767.0F), 32767.0F)));
     v.position[c] = q;
@@ -42,7 +42,7 @@ void MeshWriter::triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
 }
 
 core::Bounds MeshWriter::written() const {
-  const glm::vec3 middle{center[0], center[1], center[2]};
+  const glm::vec3 middle{centre[0], centre[1], centre[2]};
   const glm::vec3 least{low[0], low[1], low[2]}, most{high[0], high[1], high[2]};
   return {middle + half_ * least / 32767.0F, middle + half_ * most / 32767.0F};
 }
@@ -129,7 +129,7 @@ void mesh_tree(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
 
 }  // namespace
 
-core::Bounds synthesize_tree(const TreePlan& plan, int level, const MeshView& out) {
+core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& out) {
   MeshWriter writer(plan.bounds, out);
   const bool leafy = plan.foliage.near != nullptr;
   const bool whole = paths_of(plan, level) == kWholeTree;

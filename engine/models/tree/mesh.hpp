@@ -23,7 +23,7 @@ inline constexpr double kLevelErrors[kTreeLevels] = {0.0, 0.05, 0.085, 0.17, 0.3
 inline constexpr std::uint32_t kCrownPaths = 16;
 
 // Appends to a destination, which may be mapped device memory and is never read. The caller takes
-// care that it is large enough. Positions are packed = (position − center) · scale, clamped to
+// care that it is large enough. Positions are packed = (position − centre) · scale, clamped to
 // ±32767 and rounded to nearest.
 class MeshWriter {
  public:
@@ -60,7 +60,7 @@ class MeshWriter {
   core::Bounds written() const;
 
   // The packing of positions, and the smallest and largest packed positions so far.
-  float center[3], scale[3];
+  float centre[3], scale[3];
   std::int16_t low[3] = {32767, 32767, 32767}, high[3] = {-32767, -32767, -32767};
 
  private:
@@ -73,7 +73,7 @@ class MeshWriter {
 // The ellipsoid around the ends of kCrownPaths paths. Hulls, ambient light and the normals of
 // leaves follow it.
 struct TreeCrown {
-  glm::vec3 center;  // metres from the tree's foot
+  glm::vec3 centre;  // metres from the tree's foot
   glm::vec3 half;    // half axes in metres; x and z are equal
   glm::vec3 inverse_half;
   float radius;  // mean of the half axes
@@ -147,10 +147,10 @@ void mesh_sprays(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
 void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, const CrownOutline& outline,
                MeshWriter& out);
 
-// ModelType::synthesize(), mesh_size() and steps() of every tree. A step is about the time of one
+// ModelType::synthesise(), mesh_size() and steps() of every tree. A step is about the time of one
 // branch; steps count the branches that are grown and a fixed cost of each group. Synthesis needs
 // about 900 KiB of stack.
-core::Bounds synthesize_tree(const TreePlan& plan, int level, const MeshView& out);
+core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& out);
 MeshSize tree_mesh_size(const TreePlan& plan, int level);
 double tree_steps(const TreePlan& plan, int level);
 

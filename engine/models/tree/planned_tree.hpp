@@ -33,8 +33,8 @@ class PlannedTree : public ModelType {
   double step_seconds() const final { return 18e-9; }
   core::SurfaceKind surface() const final { return core::SurfaceKind::kBark; }
   Collider collider(const Parameters& p) const final { return trunk_collider(plan(p)); }
-  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const final {
-    return synthesize_tree(plan(p), level, out);
+  core::Bounds synthesise(const Parameters& p, int level, const MeshView& out) const final {
+    return synthesise_tree(plan(p), level, out);
   }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const final {
     PSYGEN_CHECK(false, "trees share no indices");

@@ -41,8 +41,8 @@ inline double trunk_side(const TreePlan& plan) {
 
 // The largest distance of a ring's vertex from a crooked branch, over the branch's radius at its
 // foot.
-inline double ring_reach(double most_bend) {
-  return 1.15 * (1 + 2 * most_bend * most_bend);  // above sqrt(1 + (2 bend)²)
+inline double ring_reach(double max_bend) {
+  return 1.15 * (1 + 2 * max_bend * max_bend);  // above sqrt(1 + (2 bend)²)
 }
 
 }  // namespace psygen::models

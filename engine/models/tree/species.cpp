@@ -15,7 +15,7 @@ using Fault = std::optional<SpeciesFault>;
 
 // Above kMaxTreeNodes, so only trees with unlucky seeds are cut short.
 constexpr double kMaxLog2Branches = 13;
-constexpr double kLeastCrownLimit = 0.05;  // smaller crowns hold nothing
+constexpr double kMinCrownLimit = 0.05;  // smaller crowns hold nothing
 
 Fault fault(std::string part, std::size_t number, std::string_view field, std::string sentence,
             core::ErrorCode code = core::ErrorCode::kInvalidArgument) {
@@ -43,10 +43,10 @@ struct NumberCheck {
 Fault check_numbers(const Species& s) {
   Fault first;
   visit_numbers(s, NumberCheck{"", 0, first});
-  if (!first && s.crown_limit > 0 && s.crown_limit < kLeastCrownLimit)
+  if (!first && s.crown_limit > 0 && s.crown_limit < kMinCrownLimit)
     first = fault("", 0, "crown_limit",
                   fmt::format("{:g} is not allowed: it must be 0, or a number from {:g} to 4",
-                              s.crown_limit, kLeastCrownLimit));
+                              s.crown_limit, kMinCrownLimit));
   for (std::size_t i = 0; i < s.kinds.size(); ++i)
     visit_kind_numbers(s.kinds[i], NumberCheck{"kind", i, first});
   visit_foliage_numbers(s.foliage, NumberCheck{"foliage", 0, first});

@@ -11,7 +11,7 @@ namespace psygen::models {
 namespace {
 
 using enum ParameterType;
-constexpr std::size_t kMostBranches = 8;
+constexpr std::size_t kMaxBranches = 8;
 constexpr float kTurnsPerDegree = 1.0F / 360.0F;
 
 float f(double v) {
@@ -101,11 +101,11 @@ class SpeciesType final : public PlannedTree {
         grammar_(grammar_of(species_)),
         axiom_(kind_of(species_, species_.axiom)) {
     set_schema();
-    for (std::size_t m = 0; m <= kMostBranches; ++m) {
+    for (std::size_t m = 0; m <= kMaxBranches; ++m) {
       weights_[m] = path_weights(grammar_, static_cast<int>(m));
       for (std::size_t n = 0; n <= kMaxTreeIterations; ++n) {
         mean_log2_[m][n] = branches_log2(static_cast<double>(n), static_cast<double>(m), false);
-        most_log2_[m][n] = branches_log2(static_cast<double>(n), static_cast<double>(m), true);
+        max_log2_[m][n] = branches_log2(static_cast<double>(n), static_cast<double>(m), true);
       }
     }
     identity_ = identity_of(species_);
@@ -127,7 +127,7 @@ class SpeciesType final : public PlannedTree {
     const auto n = static_cast<std::size_t>(
         std::clamp<std::int64_t>(p.integer(kSpeciesIterations), 0, kMaxTreeIterations));
     const auto m = static_cast<std::size_t>(
-        std::clamp<std::int64_t>(p.integer(kSpeciesBranches), 0, kMostBranches));
+        std::clamp<std::int64_t>(p.integer(kSpeciesBranches), 0, kMaxBranches));
     return kLevelShares[level] * std::min(std::exp2(mean_log2_[m][n]), double{kMaxTreeNodes});
   }
   double log2_cost(const Parameters& p) const override {
@@ -137,7 +137,7 @@ class SpeciesType final : public PlannedTree {
     const double each = 30 + 8 * std::max(species_.foliage.density, 0.0);
     const double grown =
         std::max(branches_log2(n, std::max(m, 0.0), true) + std::log2(each), 12.0) + 0.9;
-    return n <= kMaxTreeIterations && m <= kMostBranches ? std::min(grown, 16.3) : grown;
+    return n <= kMaxTreeIterations && m <= kMaxBranches ? std::min(grown, 16.3) : grown;
   }
   TreePlan plan(const Parameters& p) const override;
 
@@ -155,8 +155,8 @@ class SpeciesType final : public PlannedTree {
   Grammar grammar_;
   std::uint8_t axiom_;
   std::array<ParameterSpec, kSpeciesParameterCount> schema_;
-  std::array<PathWeights, kMostBranches + 1> weights_;
-  std::array<std::array<double, kMaxTreeIterations + 1>, kMostBranches + 1> mean_log2_, most_log2_;
+  std::array<PathWeights, kMaxBranches + 1> weights_;
+  std::array<std::array<double, kMaxTreeIterations + 1>, kMaxBranches + 1> mean_log2_, max_log2_;
   std::array<TreeReach, kMaxTreeIterations + 1> reach_;  // indexed by iterations
   std::uint64_t identity_ = 0;
   float decay_ = 0.3F;  // length over the parent's, of the longest kind
@@ -172,7 +172,7 @@ void SpeciesType::set_schema() {
        ParameterSource::kPlaced},
       {"iterations", kInteger, "1", n, 1, kMaxTreeIterations, std::max(n - 1, 1.0), n,
        "times that the rules are applied"},
-      {"branches", kInteger, "1", m, 1, kMostBranches, std::max(m - 1, 1.0), m,
+      {"branches", kInteger, "1", m, 1, kMaxBranches, std::max(m - 1, 1.0), m,
        "branches that a starred symbol fills up to, on average"},
       {"size_m", kReal, "m", species_.size_m, 0.05, 30, 0.7 * species_.size_m,
        std::min(1.4 * species_.size_m, 30.0), "length of the trunk up to its end"},
@@ -269,7 +269,7 @@ TreePlan SpeciesType::plan(const Parameters& p) const {
   tree.iterations = static_cast<int>(p.integer(kSpeciesIterations));
   tree.branches = static_cast<int>(branches);
   const auto n = static_cast<std::size_t>(tree.iterations);
-  tree.always_complete = most_log2_[branches][n] < 11.5;  // 2^11.5 < kMaxTreeNodes
+  tree.always_complete = max_log2_[branches][n] < 11.5;  // 2^11.5 < kMaxTreeNodes
   tree.weights = &weights_[branches];
   tree.size_m = f(p.real(kSpeciesSizeM));
   tree.radius_m = f(p.real(kSpeciesRadiusM));

@@ -40,7 +40,7 @@ struct SprayJob {
   float random_raw, out, branch, up;  // of the axis
   float side_random_raw, side_out, side_up, normal_up;
   float length, length_raw;        // of a spray
-  float scale[3], center[3];       // packed = (place from the crown's centre) · scale + center
+  float scale[3], centre[3];       // packed = (place from the crown's centre) · scale + centre
   float room;                      // distance to keep from the box, in lengths of the spray
   float colour[3], colour_raw[3];  // outer corners, stored bytes
   float bright, bright_raw;
@@ -118,7 +118,7 @@ HWY_INLINE void orient_sprays(const SprayJob& job, std::size_t count, Chunk& c) 
     const Vec3 side = unit(cross(row3(c.side, i), axis));
     const VF size = hn::Load(DF(), c.size + i);
     const Vec3 k = (f1(job.length) + f1(job.length_raw) * size) * set3(job.scale);
-    const Vec3 middle = scaled(row3(c.place, i), set3(job.scale)) + set3(job.center);
+    const Vec3 middle = scaled(row3(c.place, i), set3(job.scale)) + set3(job.centre);
     const VF most = f1(32767.0F), room = f1(job.room);
     const Vec3 limit{most - room * k.x, most - room * k.y, most - room * k.z};
     const Vec3 kept{hn::Max(hn::Min(middle.x, limit.x), hn::Neg(limit.x)),
@@ -202,7 +202,7 @@ HWY_INLINE void write_corners(const Chunk& c, std::size_t i, std::uint32_t* bloc
 void collect(const TreePlan& plan, const TreeSkeleton& s, const TreeCrown& crown, float pull,
              Bearers& b) {
   const DF d;
-  const VF center[3] = {f1(crown.center.x), f1(crown.center.y), f1(crown.center.z)};
+  const VF centre[3] = {f1(crown.centre.x), f1(crown.centre.y), f1(crown.centre.z)};
   const bool by_leaves = has_bearers(plan, s);
   b.count = 0;
   for (std::size_t g = 0; g < s.group_count; ++g) {
@@ -213,7 +213,7 @@ void collect(const TreePlan& plan, const TreeSkeleton& s, const TreeCrown& crown
       const VF length = hn::Load(d, &s.rows[kLength][from]) * f1(pull);
 #pragma GCC unroll 3
       for (std::size_t c = 0; c < 3; ++c)
-        hn::StoreU(f1(pull) * (hn::Load(d, &s.rows[kBase + c][from]) - center[c]), d,
+        hn::StoreU(f1(pull) * (hn::Load(d, &s.rows[kBase + c][from]) - centre[c]), d,
                    &b.rows[c][to]);
 #pragma GCC unroll 6
       for (std::size_t r = 3; r < Bearers::kRows; ++r)
@@ -349,7 +349,7 @@ SprayJob spray_job(const TreePlan& plan, int level, const TreeCrown& crown, std:
     job.inverse_half[c] = crown.inverse_half[c];
     job.outward[c] = crown.radius * crown.inverse_half[c] * crown.inverse_half[c];
     job.scale[c] = box.scale[c];
-    job.center[c] = (crown.center[c] - box.center[c]) * box.scale[c];
+    job.centre[c] = (crown.centre[c] - box.centre[c]) * box.scale[c];
   }
   set_colours(plan, job);
   return job;

@@ -20,7 +20,7 @@ namespace {
 constexpr float kEmPixels = 48;  // of the texture, from ascender to descender
 constexpr int kSpread = 6;       // pixels of distance around an edge
 constexpr int kWidth = 1000;     // of the texture
-constexpr int kMostRows = 2000;
+constexpr int kMaxRows = 2000;
 constexpr unsigned char kEdge = 128;
 
 // Latin with all European letters, punctuation, a few arrows and signs.
@@ -82,7 +82,7 @@ int main(int count, char** arguments) {
   }
   stbrp_context packer;
   std::vector<stbrp_node> nodes(kWidth);
-  stbrp_init_target(&packer, kWidth, kMostRows, nodes.data(), kWidth);
+  stbrp_init_target(&packer, kWidth, kMaxRows, nodes.data(), kWidth);
   if (stbrp_pack_rects(&packer, places.data(), static_cast<int>(places.size())) == 0)
     fail(arguments[1], "its letters need a larger texture");
   int rows = 0;

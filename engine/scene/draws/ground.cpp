@@ -36,7 +36,7 @@ class FineTiles {
   }
 
  private:
-  static constexpr std::size_t kWide = models::kMostTilesPerSide + 2;
+  static constexpr std::size_t kWide = models::kMaxTilesPerSide + 2;
   static std::size_t place(int column, int row) {
     return static_cast<std::size_t>(row + 1) * kWide + static_cast<std::size_t>(column + 1);
   }
@@ -135,7 +135,7 @@ void add_tiles(const NodeTiles& tiles, std::uint32_t in_view, const models::Terr
     core::IndexPart part;
     bool near = false;
   };
-  std::array<Chosen, models::kMostTilesPerSide * models::kMostTilesPerSide> chosen;
+  std::array<Chosen, models::kMaxTilesPerSide * models::kMaxTilesPerSide> chosen;
   auto end = chosen.begin();
   for (int i = 0; i < count; ++i) {
     const int column = i % side, row = i / side;

@@ -10,9 +10,9 @@ namespace {
 
 // Spots end at render::kNearGroundM; these are the largest that reach into it from beyond.
 constexpr float kReachM = render::kNearGroundM + 12.0F;
-constexpr float kLeastRadiusM = 0.9F;   // what cells of one metre can show
-constexpr float kTreeM = 2.0F;          // what is higher stands on a stem
-constexpr float kLeastSunrise = 0.25F;  // of the sun's height: shadows of a low sun fade instead
+constexpr float kMinRadiusM = 0.9F;   // what cells of one metre can show
+constexpr float kTreeM = 2.0F;        // what is higher stands on a stem
+constexpr float kMinSunrise = 0.25F;  // of the sun's height: shadows of a low sun fade instead
 
 }  // namespace
 
@@ -24,7 +24,7 @@ void add_spots(const core::Bounds& tight, bool grass, glm::vec3 foot, glm::vec3 
   const glm::vec2 middle(foot.x + 0.5F * (tight.min.x + tight.max.x),
                          foot.z + 0.5F * (tight.min.z + tight.max.z));
   const auto add = [&](glm::vec2 at, float reach_m, float of_sun, float of_sky) {
-    spots.push_back({at, std::max(reach_m, kLeastRadiusM), of_sun, of_sky});
+    spots.push_back({at, std::max(reach_m, kMinRadiusM), of_sun, of_sky});
   };
   if (grass) return add(middle, radius, 0, 0.12F);
   const bool tree = height > kTreeM && radius < height;
@@ -35,8 +35,8 @@ void add_spots(const core::Bounds& tight, bool grass, glm::vec3 foot, glm::vec3 
     add(middle, 1.3F * radius + 0.25F, shadow ? 0.5F : 0, 0.75F);
   }
   if (!shadow || sun.y <= 0) return;
-  const float aside = height * (tree ? 0.6F : 0.35F) / std::max(sun.y, kLeastSunrise);
-  const float strength = 0.65F * std::min(sun.y / kLeastSunrise, 1.0F);
+  const float aside = height * (tree ? 0.6F : 0.35F) / std::max(sun.y, kMinSunrise);
+  const float strength = 0.65F * std::min(sun.y / kMinSunrise, 1.0F);
   add(middle - glm::vec2(sun.x, sun.z) * aside, tree ? 0.95F * radius : 1.1F * radius, strength,
       0.05F);
 }

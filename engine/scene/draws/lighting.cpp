@@ -14,7 +14,7 @@ namespace {
 // Extinction over the view distance that hides where the world ends (contrast e^−1.5, 22 %).
 constexpr double kOpaque = 1.5;
 constexpr float kGlow = 1.0F / 0.13F;  // the shader's glow is 0.13 of the colour at its brightest
-constexpr float kMostCloud = 32.0F;    // times brighter than under the sun of the file
+constexpr float kMaxCloud = 32.0F;     // times brighter than under the sun of the file
 
 }  // namespace
 
@@ -25,7 +25,7 @@ render::Light light_of(const world::World& world, double view_distance_m, double
   light.sun_direction = sky.sun_direction();
   light.glow_colour = sky.haze_colour * kGlow * now.glow / now.haze;
   const glm::vec3 then = world::daylight(world.sky.sun_elevation_deg).cloud;
-  light.cloud_colour = world.sky.sun_colour * glm::min(now.cloud / (then + 1e-4F), kMostCloud);
+  light.cloud_colour = world.sky.sun_colour * glm::min(now.cloud / (then + 1e-4F), kMaxCloud);
   light.sun_colour = sky.sun_colour;
   light.zenith_colour = sky.zenith_colour;
   light.horizon_colour = sky.horizon_colour;

@@ -36,8 +36,8 @@ core::Bounds box_of(std::span<const core::ModelVertex> vertices,
   }
   const glm::vec3 scale = box.half_extent() / 32767.0F;
   const glm::vec3 around(reach_m, 0, reach_m);
-  return {box.center() + glm::vec3(low) * scale - around,
-          box.center() + glm::vec3(high) * scale + around};
+  return {box.centre() + glm::vec3(low) * scale - around,
+          box.centre() + glm::vec3(high) * scale + around};
 }
 
 glm::vec2 flat(glm::vec3 v) {
@@ -58,7 +58,7 @@ MeshParts mesh_parts(std::span<const core::ModelVertex> vertices,
   const std::size_t triangles = used_triangles(indices);
   parts.index_count = static_cast<std::uint32_t>(3 * triangles);
   const std::size_t each =
-      std::max<std::size_t>((triangles + MeshParts::kMost - 1) / MeshParts::kMost, 1);
+      std::max<std::size_t>((triangles + MeshParts::kMax - 1) / MeshParts::kMax, 1);
   parts.indices_each = static_cast<std::uint32_t>(3 * each);
   for (std::size_t first = 0; first < triangles; first += each) {
     const std::size_t count = std::min(each, triangles - first);

@@ -9,9 +9,9 @@
 
 namespace psygen::scene {
 
-// Share of the picture, in percent, that a ball around `center` (metres from the camera) covers.
-inline double covered_percent(const Camera& camera, glm::vec3 center, float radius_m) {
-  const double distance_m = std::max(glm::length(center), radius_m);
+// Share of the picture, in percent, that a ball around `centre` (metres from the camera) covers.
+inline double covered_percent(const Camera& camera, glm::vec3 centre, float radius_m) {
+  const double distance_m = std::max(glm::length(centre), radius_m);
   const double radius_px = camera.pixels_per_radian * radius_m / distance_m;
   const double picture = static_cast<double>(camera.size.width) * camera.size.height;
   return std::min(100.0, 100.0 * std::numbers::pi * radius_px * radius_px / picture);
@@ -19,7 +19,7 @@ inline double covered_percent(const Camera& camera, glm::vec3 center, float radi
 
 // Something that is in the picture, or should be.
 struct SeenPiece {
-  glm::vec3 center{0.0F};  // metres from the camera
+  glm::vec3 centre{0.0F};  // metres from the camera
   float radius_m = 0;
   bool hole = false;    // drawn at no level
   bool coarse = false;  // … by more than one level too coarse
@@ -29,7 +29,7 @@ struct SeenPiece {
 
 // Counts a piece in all figures of what is missing.
 inline void count_seen(const Camera& camera, const SeenPiece& piece, Counters& counters) {
-  const double percent = covered_percent(camera, piece.center, piece.radius_m);
+  const double percent = covered_percent(camera, piece.centre, piece.radius_m);
   const bool lacks = piece.hole || piece.coarse;
   ++counters.nodes_in_view;
   if (piece.hole) ++counters.holes;

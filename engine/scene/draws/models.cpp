@@ -39,7 +39,7 @@ void each_model(const RenderQuery& entities, const ecs::Children& children, bool
 bool add_mesh(const ModelGround& ground, const View& view, const Placed& placed,
               const MeshParts* parts, render::MeshDraw draw, std::vector<render::MeshDraw>& draws) {
   draw.origin = ground.corner + placed.position;
-  draw.box_center = placed.box_center;
+  draw.box_centre = placed.box_centre;
   draw.box_half_extent = placed.box_half_extent;
   draw.surface = placed.surface;
   if (parts == nullptr) {
@@ -130,7 +130,7 @@ void add_models(const ModelGround& ground, NodeEntry entry, bool twice, const Ca
     const bool fades_in = appears || entry == NodeEntry::kReplaces;
     if (!hole && !add_coming(ground, view, model, fades_in, draws)) return;
     count_seen(camera,
-               {.center = ground.corner + model.placed.position + model.placed.middle,
+               {.centre = ground.corner + model.placed.position + model.placed.middle,
                 .radius_m = model.placed.radius_m,
                 .hole = hole,
                 .coarse = !hole && demand.drawn_level > demand.wanted_level + 1,

@@ -45,7 +45,7 @@ std::uint32_t coarser_by(const View& view, std::uint32_t index) {
   return cut[index].node.level - finest;
 }
 
-float least_distance_m(const visibility::CutNode& node, std::uint8_t drawn_level, double split_m) {
+float min_distance_m(const visibility::CutNode& node, std::uint8_t drawn_level, double split_m) {
   const bool as_wanted = node.leaf && (!node.fine || drawn_level == 0);
   return as_wanted ? 0.0F : static_cast<float>(split_m / 2);
 }

@@ -23,7 +23,7 @@ std::uint32_t coarser_by(const View& view, std::uint32_t index);
 // Half of the distance up to which a node's mesh is finer than what is drawn of it: nearer, that
 // has more than twice the error that it might have. 0 for what is drawn as wanted. `split_m` of the
 // node's level (visibility::LevelDistances).
-float least_distance_m(const visibility::CutNode& node, std::uint8_t drawn_level, double split_m);
+float min_distance_m(const visibility::CutNode& node, std::uint8_t drawn_level, double split_m);
 
 // How near the camera comes to what is in view of the node `index` of the cut, whose ground is at
 // most `highest_m` above the camera. +inf if nothing is in view.

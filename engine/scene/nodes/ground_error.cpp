@@ -45,7 +45,7 @@ double measured_ground_error_m(const world::World& world, const models::Registry
     const models::MeshSize size = terrain.mesh_size(p, 0);
     vertices.resize(size.vertex_count * sizeof(core::TerrainVertex));
     indices.resize(size.own_index_count());
-    terrain.synthesize(p, 0, {vertices, indices});
+    terrain.synthesise(p, 0, {vertices, indices});
     add_distances(core::vertices_of<core::TerrainVertex>(vertices), distances);
   }
   const auto usual =

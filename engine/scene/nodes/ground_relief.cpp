@@ -8,7 +8,7 @@
 namespace psygen::scene {
 namespace {
 
-constexpr std::size_t kMostPoints = GroundRelief::kMostPoints;
+constexpr std::size_t kMaxPoints = GroundRelief::kMaxPoints;
 
 // Lowers the ends of each straight piece of a line by what it lies above the vertices at most.
 // `point(i)` is the vertex that is the line's point i, `height(v)` that of a vertex; `lattice` is
@@ -16,7 +16,7 @@ constexpr std::size_t kMostPoints = GroundRelief::kMostPoints;
 template <class PointOf, class Height>
 void lower_line(std::size_t points, const PointOf& point, const Height& height, float* lattice,
                 std::size_t step) {
-  std::array<float, kMostPoints> lower_by{};
+  std::array<float, kMaxPoints> lower_by{};
   for (std::size_t i = 0; i + 1 < points; ++i) {
     const std::size_t first = point(i), last = point(i + 1);
     const float from = height(first), rise = height(last) - from;
@@ -34,7 +34,7 @@ void lower_line(std::size_t points, const PointOf& point, const Height& height, 
 
 template <class Height>
 void set_lines(std::size_t n, const Height& lowest, GroundRelief& relief) {
-  const std::size_t points = std::min(n, kMostPoints);
+  const std::size_t points = std::min(n, kMaxPoints);
   const auto point = [&](std::size_t i) { return i * (n - 1) / (points - 1); };
   relief.points = points;
   relief.height_m.fill(std::numeric_limits<float>::infinity());
@@ -92,8 +92,8 @@ void add_lines(const GroundRelief& relief, const glm::vec3& corner, float size_m
                               size_m * relief.place[z]);
   };
   // Only lines that are the highest somewhere: of a slope one or two.
-  std::array<float, kMostPoints> highest;
-  std::array<std::size_t, kMostPoints> line_of{};
+  std::array<float, kMaxPoints> highest;
+  std::array<std::size_t, kMaxPoints> line_of{};
   highest.fill(-std::numeric_limits<float>::infinity());
   for (std::size_t across = 0; across < points; ++across) {
     for (std::size_t along = 0; along < points; ++along) {
@@ -104,10 +104,10 @@ void add_lines(const GroundRelief& relief, const glm::vec3& corner, float size_m
       line_of[along] = across;
     }
   }
-  std::array<bool, kMostPoints> added{};
+  std::array<bool, kMaxPoints> added{};
   for (std::size_t i = 0; i < points; ++i) {
     if (std::exchange(added[line_of[i]], true)) continue;
-    std::array<glm::vec3, kMostPoints> line;
+    std::array<glm::vec3, kMaxPoints> line;
     for (std::size_t along = 0; along < points; ++along)
       line[along] = point(line_of[i], along);
     horizon.add(std::span(line).first(points));

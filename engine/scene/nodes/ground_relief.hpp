@@ -15,13 +15,13 @@ namespace psygen::scene {
 // Component of nodes. Of vertices that morph the lines have the lower height and the tiles the
 // higher one, so that both hold however they are drawn.
 struct GroundRelief {
-  static constexpr std::size_t kMostPoints = 22;
-  static constexpr std::size_t kTiles = models::kMostTilesPerSide * models::kMostTilesPerSide;
+  static constexpr std::size_t kMaxPoints = 22;
+  static constexpr std::size_t kTiles = models::kMaxTilesPerSide * models::kMaxTilesPerSide;
   std::size_t points = 0;  // along each line, and as many lines along each axis; 0: no lines
-  std::array<float, kMostPoints> place{};  // along a side, 0 … 1
+  std::array<float, kMaxPoints> place{};  // along a side, 0 … 1
   // Heights where the lines of both families meet, row by row: straight from one to the next along
   // either axis the ground is nowhere lower.
-  std::array<float, kMostPoints * kMostPoints> height_m{};
+  std::array<float, kMaxPoints * kMaxPoints> height_m{};
   std::array<float, kTiles> top_m{};  // row by row, of as many tiles as there are
 };
 

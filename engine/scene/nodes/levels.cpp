@@ -23,7 +23,7 @@ constexpr double kAheadFactor = 1.1;
 // (medians of 60 each). The largest of 16 each in four worlds are 1.6 and 3.2.
 constexpr double kBlockBound = 1.75, kNodeBound = 3.5;
 // How far a border hangs down, in metres per metre of the bound, and at least.
-constexpr float kSkirtPerBound = 0.8F, kLeastSkirtM = 1.0F;
+constexpr float kSkirtPerBound = 0.8F, kMinSkirtM = 1.0F;
 // What a merged mesh of level 1 is off, in parts of the height of what it stands for; with every
 // level twice as much.
 constexpr double kMergedErrorPerHeight = 0.06;
@@ -106,7 +106,7 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
                                : measured_ground_error_m(world, registry, static_cast<int>(k));
     if (k > 0) level.ground_error_m = std::max(level.ground_error_m, levels[k - 1].ground_error_m);
     level.error_m = level.ground_error_m;
-    level.skirt_m = kLeastSkirtM + kSkirtPerBound * static_cast<float>(level.ground_bound_m);
+    level.skirt_m = kMinSkirtM + kSkirtPerBound * static_cast<float>(level.ground_bound_m);
     if (merged == nullptr || k == 0 || k > world::kMaxMergedLevel) continue;
     const models::Parameters all = world::merged_parameters({}, static_cast<int>(k));
     level.merged = merged->mesh_size(all, 0).vertex_count > 0;

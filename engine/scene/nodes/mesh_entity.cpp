@@ -10,9 +10,9 @@ Placed placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds&
   Placed placed;
   placed.block = block;
   placed.position = position;
-  placed.box_center = box.center();
+  placed.box_centre = box.centre();
   placed.box_half_extent = box.half_extent();
-  placed.middle = placed.box_center + placed.box_half_extent * usual.center();
+  placed.middle = placed.box_centre + placed.box_half_extent * usual.centre();
   placed.radius_m = glm::length(placed.box_half_extent * usual.half_extent());
   return placed;
 }
@@ -48,14 +48,14 @@ std::uint8_t level_of(const Detail& detail, const Source& source, const synthesi
   return static_cast<std::uint8_t>(picture ? detail.picture_level : key.level - source.first_level);
 }
 
-float distance_to(const Placed& placed, const glm::vec3& foot, float least_m) {
-  return std::max(glm::length(foot + placed.middle) - placed.radius_m, least_m);
+float distance_to(const Placed& placed, const glm::vec3& foot, float min_m) {
+  return std::max(glm::length(foot + placed.middle) - placed.radius_m, min_m);
 }
 
 float size_pixels(const Placed& placed, const Detail& detail, float distance_m,
-                  float pixels_per_radian, float least_m) {
+                  float pixels_per_radian, float min_m) {
   const float size_m = detail.seen_size_m > 0 ? detail.seen_size_m : 2 * placed.radius_m;
-  return size_m * pixels_per_radian / std::max(distance_m + placed.radius_m, least_m);
+  return size_m * pixels_per_radian / std::max(distance_m + placed.radius_m, min_m);
 }
 
 }  // namespace psygen::scene

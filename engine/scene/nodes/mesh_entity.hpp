@@ -26,12 +26,12 @@ synthesis::MeshKey key_of(const Placed& placed, const Detail& detail, const Sour
 // more).
 std::uint8_t level_of(const Detail& detail, const Source& source, const synthesis::MeshKey& key);
 
-// Metres from a point to the nearest of what is usually drawn of an entity, at least `least_m`.
+// Metres from a point to the nearest of what is usually drawn of an entity, at least `min_m`.
 // `foot` is the entity's, relative to the point.
-float distance_to(const Placed& placed, const glm::vec3& foot, float least_m);
+float distance_to(const Placed& placed, const glm::vec3& foot, float min_m);
 
 // Pixels that an entity at this distance covers at most, along any axis.
 float size_pixels(const Placed& placed, const Detail& detail, float distance_m,
-                  float pixels_per_radian, float least_m);
+                  float pixels_per_radian, float min_m);
 
 }  // namespace psygen::scene

@@ -4,7 +4,7 @@
 #include <glm/common.hpp>
 #include <optional>
 
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -19,7 +19,7 @@ std::optional<core::Bounds> tight_box(const models::ModelType& type,
   const auto destination = synthesis::HeapDestination::make(type, parameters, level);
   if (!destination) return std::nullopt;
   const synthesis::SynthesisOutcome outcome =
-      synthesis::synthesize_guarded(type, parameters, level, destination->view());
+      synthesis::synthesise_guarded(type, parameters, level, destination->view());
   if (!outcome.ok) return std::nullopt;
   return outcome.tight;
 }
@@ -36,8 +36,8 @@ std::vector<core::Bounds> usual_boxes(const models::Registry& registry,
     const core::Bounds whole = type.bounds(sample.parameters);
     const core::Bounds tight = tight_box(type, sample.parameters).value_or(whole);
     const glm::vec3 extent = glm::max(whole.half_extent(), glm::vec3(1e-6F));
-    const core::Bounds part{glm::clamp((tight.min - whole.center()) / extent, -1.0F, 1.0F),
-                            glm::clamp((tight.max - whole.center()) / extent, -1.0F, 1.0F)};
+    const core::Bounds part{glm::clamp((tight.min - whole.centre()) / extent, -1.0F, 1.0F),
+                            glm::clamp((tight.max - whole.centre()) / extent, -1.0F, 1.0F)};
     std::optional<core::Bounds>& all = found[sample.model];
     all = all ? core::united(*all, part) : part;
   }

@@ -57,7 +57,7 @@ core::Result<MeshId> Assets::add(ObjectSource source, models::ModelIndex type) {
   if (!added) {
     return core::fail(
         ErrorCode::kOverBudget,
-        fmt::format("{}: a scene has at most {} meshes of objects", name, ObjectSources::kMost));
+        fmt::format("{}: a scene has at most {} meshes of objects", name, ObjectSources::kMax));
   }
   mesh.id = {*added};
   mesh.parameters = object_parameters(*added);
@@ -94,7 +94,7 @@ core::Result<MeshId> Assets::add_mesh(const core::MeshData& mesh, std::string na
   ObjectSource source;
   source.name = std::move(name);
   source.box = packed->box;
-  source.copied = object_levels(mesh, std::move(*packed), ObjectMesh::kMostLevels);
+  source.copied = object_levels(mesh, std::move(*packed), ObjectMesh::kMaxLevels);
   source.level_count = static_cast<int>(source.copied.size());
   return add(std::move(source), copied_);
 }
@@ -126,7 +126,7 @@ core::Result<MeshId> Assets::add_model(std::string_view type, const models::Para
   source.type = &model;
   source.parameters = parameters;
   source.first_level = first_level;
-  const int most = std::min(there_are - first_level, static_cast<int>(ObjectMesh::kMostLevels));
+  const int most = std::min(there_are - first_level, static_cast<int>(ObjectMesh::kMaxLevels));
   source.level_count = level_count == 0 ? most : std::min(level_count, most);
   source.box = model.bounds(parameters);
   return add(std::move(source), synthesised_);

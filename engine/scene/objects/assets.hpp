@@ -35,12 +35,12 @@ struct ObjectMeshLevel {
 
 // One mesh.
 struct ObjectMesh {
-  static constexpr std::size_t kMostLevels = 8;
+  static constexpr std::size_t kMaxLevels = 8;
   MeshId id;  // none: it was removed
   core::Bounds box;
   models::Parameters parameters;
   std::uint32_t level_count = 0;
-  std::array<ObjectMeshLevel, kMostLevels> levels;
+  std::array<ObjectMeshLevel, kMaxLevels> levels;
 };
 
 class Assets {
@@ -91,7 +91,7 @@ class Assets {
   std::vector<std::pair<MeshId, std::uint32_t>> used, used_before;  // mesh, level
 
  private:
-  static std::uint32_t slot_of(MeshId mesh) { return mesh.index % ObjectSources::kMost; }
+  static std::uint32_t slot_of(MeshId mesh) { return mesh.index % ObjectSources::kMax; }
   core::Result<MeshId> add(ObjectSource source, models::ModelIndex type);
   core::Result<void> add_types(models::Registry& registry);
 

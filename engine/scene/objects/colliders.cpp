@@ -22,10 +22,10 @@ core::Result<ColliderId> Colliders::box_of(const Assets& assets, MeshId mesh) {
   if (const auto known = boxes_.find(mesh.index); known != boxes_.end()) return known->second;
   const core::Bounds& box = assets.box(mesh);
   // A little more than the least, as floats round.
-  constexpr auto kLeastHalf = static_cast<float>(0.501 * query::Objects::kLeastSizeM);
+  constexpr auto kMinHalf = static_cast<float>(0.501 * query::Objects::kMinSizeM);
   models::Collider collider;
   collider.shapes.emplace_back(
-      core::Bounds::around(box.center(), glm::max(box.half_extent(), glm::vec3(kLeastHalf))));
+      core::Bounds::around(box.centre(), glm::max(box.half_extent(), glm::vec3(kMinHalf))));
   const auto added = add(std::move(collider), fmt::format("the box of mesh {}", mesh.index));
   if (added) boxes_.emplace(mesh.index, *added);
   return added;

@@ -10,8 +10,8 @@ namespace psygen::scene {
 namespace {
 
 constexpr std::size_t kFewestIndices = 3 * 48;  // of a mesh that has a coarser level
-constexpr std::size_t kLeastIndices = 3 * 8;    // of any level
-constexpr double kLeastArea = 0.5;              // of any level, of that of the finest
+constexpr std::size_t kMinIndices = 3 * 8;      // of any level
+constexpr double kMinArea = 0.5;                // of any level, of that of the finest
 
 // Of all triangles, in square metres. Loose ones vanish one by one where a surface would only
 // become coarser: then there is less of it.
@@ -48,7 +48,7 @@ std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh fi
   const float* const places = &mesh.positions.front().x;
   const std::size_t count = mesh.positions.size(), stride = sizeof(glm::vec3);
   const auto scale = static_cast<double>(meshopt_simplifyScale(places, count, stride));
-  const double least_area = kLeastArea * area_m2(mesh, levels[0].mesh.indices);
+  const double min_area = kMinArea * area_m2(mesh, levels[0].mesh.indices);
   // Each from the one before: all of them together cost little more than the first.
   std::vector<std::uint16_t> last = levels[0].mesh.indices;
   while (levels.size() < most && last.size() >= kFewestIndices) {
@@ -57,8 +57,8 @@ std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh fi
     float error = 0;
     indices.resize(meshopt_simplify(indices.data(), last.data(), before, places, count, stride,
                                     before / 12 * 3, std::numeric_limits<float>::max(), 0, &error));
-    if (indices.size() < kLeastIndices || 2 * indices.size() > before ||
-        area_m2(mesh, indices) < least_area)
+    if (indices.size() < kMinIndices || 2 * indices.size() > before ||
+        area_m2(mesh, indices) < min_area)
       break;
     const double error_m = levels.back().error_m + error * scale;
     levels.push_back({with_indices(levels[0].mesh, indices), error_m});

@@ -6,10 +6,10 @@
 namespace psygen::scene {
 namespace {
 
-constexpr int kMostLevels = 8;
-constexpr double kMostName = UINT32_MAX;
+constexpr int kObjectLevels = 8;
+constexpr double kMaxName = UINT32_MAX;
 constexpr std::array kSchema{models::ParameterSpec{"mesh", models::ParameterType::kInteger, "", 0,
-                                                   0, kMostName, 0, kMostName, "name of the mesh",
+                                                   0, kMaxName, 0, kMaxName, "name of the mesh",
                                                    models::ParameterSource::kPlaced}};
 
 class ObjectType final : public models::ModelType {
@@ -20,7 +20,7 @@ class ObjectType final : public models::ModelType {
   std::string_view name() const override { return copied_ ? "object_mesh" : "object_model"; }
   std::string_view doc() const override { return "a mesh of an object of the game"; }
   std::span<const models::ParameterSpec> parameters() const override { return kSchema; }
-  int level_count() const override { return kMostLevels; }
+  int level_count() const override { return kObjectLevels; }
   int level_count_of(const models::Parameters& p) const override { return of(p)->level_count; }
   double level_error_m(const models::Parameters& p, int level) const override {
     const auto held = of(p);
@@ -67,7 +67,7 @@ class ObjectType final : public models::ModelType {
   bool may_run_on_main_thread() const override { return copied_; }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {}
 
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     const auto held = of(p);
     const ObjectSource& source = *held;
@@ -107,7 +107,7 @@ class ObjectType final : public models::ModelType {
     std::vector<core::ModelVertex> narrow(size.vertex_count);
     const bool shared = size.shared_indices != 0;
     const core::Bounds tight =
-        source.type->synthesize(source.parameters, level,
+        source.type->synthesise(source.parameters, level,
                                 {std::as_writable_bytes(std::span(narrow)),
                                  shared ? std::span<std::uint16_t>() : out.indices});
     if (shared) source.type->write_shared_indices(size.shared_indices, out.indices);
@@ -129,7 +129,7 @@ class ObjectType final : public models::ModelType {
 std::optional<std::uint32_t> ObjectSources::add(ObjectSource source) {
   const std::scoped_lock lock(mutex_);
   if (free_.empty()) {
-    if (slots_.size() == kMost) return std::nullopt;
+    if (slots_.size() == kMax) return std::nullopt;
     free_.push_back(static_cast<std::uint32_t>(slots_.size()));
     slots_.push_back({nullptr, free_.back()});
   }
@@ -142,19 +142,19 @@ std::optional<std::uint32_t> ObjectSources::add(ObjectSource source) {
 void ObjectSources::remove(std::uint32_t name) {
   std::shared_ptr<const ObjectSource> gone;  // destroyed after the lock is
   const std::scoped_lock lock(mutex_);
-  const std::uint32_t number = name % kMost;
+  const std::uint32_t number = name % kMax;
   if (number >= slots_.size() || slots_[number].name != name) return;
   Slot& slot = slots_[number];
   if (slot.source == nullptr) return;
   gone.swap(slot.source);
-  slot.name += kMost;
+  slot.name += kMax;
   // All names of the last round stay unused: one of them means "none".
-  if (slot.name / kMost < kMost - 1) free_.push_back(number);
+  if (slot.name / kMax < kMax - 1) free_.push_back(number);
 }
 
 std::shared_ptr<const ObjectSource> ObjectSources::find(std::uint32_t name) const {
   const std::scoped_lock lock(mutex_);
-  const std::uint32_t number = name % kMost;
+  const std::uint32_t number = name % kMax;
   return number < slots_.size() && slots_[number].name == name ? slots_[number].source : nullptr;
 }
 

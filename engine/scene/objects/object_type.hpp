@@ -31,9 +31,9 @@ struct ObjectSource {
 // All of a scene. Any thread.
 class ObjectSources {
  public:
-  static constexpr std::uint32_t kMost = 1 << 16;
+  static constexpr std::uint32_t kMax = 1 << 16;
 
-  // The name of a new entry; nothing if kMost exist. The lower 16 bits are a slot, which is
+  // The name of a new entry; nothing if kMax exist. The lower 16 bits are a slot, which is
   // used again after remove(), the upper ones count how often it was. No name comes twice.
   std::optional<std::uint32_t> add(ObjectSource source);
   // Ignores unknown names.

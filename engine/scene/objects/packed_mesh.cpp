@@ -50,10 +50,10 @@ core::ModelVertex pack_vertex(const models::BoxPacker& packer, const glm::vec3& 
 
 core::Result<PackedMesh> pack(const core::MeshData& mesh) {
   if (auto ok = core::check(mesh); !ok) return tl::unexpected(ok.error());
-  if (mesh.positions.size() > core::kMostMeshVertices) {
+  if (mesh.positions.size() > core::kMaxMeshVertices) {
     return core::fail(core::ErrorCode::kOverBudget,
                       fmt::format("a mesh has {} vertices; at most {} can be drawn as one",
-                                  mesh.positions.size(), core::kMostMeshVertices));
+                                  mesh.positions.size(), core::kMaxMeshVertices));
   }
   PackedMesh packed;
   packed.box = box_of(mesh.positions);

@@ -16,7 +16,7 @@ struct PackedMesh {
   core::Bounds box;  // of the snorm16 positions
 };
 
-// Fails like core::check(), and with kOverBudget beyond core::kMostMeshVertices (core::split).
+// Fails like core::check(), and with kOverBudget beyond core::kMaxMeshVertices (core::split).
 // Missing normals are the means of those of the triangles around a vertex, by area. O(n).
 core::Result<PackedMesh> pack(const core::MeshData& mesh);
 

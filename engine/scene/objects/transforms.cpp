@@ -11,11 +11,11 @@ bool is_place(const core::WorldPosition& position) {
 }
 
 bool is_valid(const Transform& transform) {
-  constexpr float kLeastScale = 1e-4F, kMostScale = 1e4F;
+  constexpr float kMinScale = 1e-4F, kMaxScale = 1e4F;
   if (!is_place(transform.position)) return false;
   const glm::vec3 size = glm::abs(transform.scale);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(size[axis] >= kLeastScale && size[axis] <= kMostScale)) return false;
+    if (!(size[axis] >= kMinScale && size[axis] <= kMaxScale)) return false;
   }
   const float length = glm::length(transform.rotation);
   return length > 1e-6F && length < 1e6F;

@@ -8,10 +8,10 @@ namespace {
 constexpr double kSmoothing = 0.1;  // share of the newest frame; the first counts wholly
 // Steps of a frame whose time is off by kFullStepAt: at 60 Hz the relief doubles in a second and
 // halves in four, at the start in one. Frames that take far too long are answered by up to
-// kMostSteps of them.
+// kMaxSteps of them.
 constexpr double kStepUp = 0.012, kStepDown = 0.003, kStartStepDown = 0.012;
 constexpr double kFullStepAt = 0.25;
-constexpr double kMostSteps = 3;
+constexpr double kMaxSteps = 3;
 // With too many triangles in view, the relief also grows by at most this share in a frame.
 constexpr double kJump = 0.12;
 
@@ -56,7 +56,7 @@ void Governor::follow() {
   const double under = settings_.rest_share - smoothed_ms_ / target_ms;
   if (under <= 0) refining_ = false;
   if (over > 0) {
-    relief_ *= 1 + kStepUp * std::min(over / kFullStepAt, kMostSteps);
+    relief_ *= 1 + kStepUp * std::min(over / kFullStepAt, kMaxSteps);
   } else if (under > 0) {
     relief_ *= 1 - (refining_ ? kStartStepDown : kStepDown) * std::min(under / kFullStepAt, 1.0);
   }

@@ -14,7 +14,7 @@ using synthesis::RankGroup;
 
 // How long a hole waits for the request that would fill it.
 constexpr double kHolePatienceSeconds = 0.02;
-// A picture is kept up to so much more than kMostPicturePixels.
+// A picture is kept up to so much more than kMaxPicturePixels.
 constexpr float kKept = 1.1F;
 
 // The allowed error of a single model at this distance. That of near trees falls towards
@@ -107,7 +107,7 @@ std::uint8_t model_level(const ChoiceRules& rules, const NodeView& node, const D
   const std::uint8_t level = level_with(model_error_pixels(rules, detail, distance_m));
   if (level != detail.picture_level || level == 0) return level;
   // Pictures have no gaps that could hide a larger error.
-  const float most = kMostPicturePixels * (keep && drawn_level == level ? kKept : 1.0F);
+  const float most = kMaxPicturePixels * (keep && drawn_level == level ? kKept : 1.0F);
   const bool fits = size_pixels <= most && level_with(rules.model_error_pixels) == level;
   return fits ? level : static_cast<std::uint8_t>(level - 1);
 }

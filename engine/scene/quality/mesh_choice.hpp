@@ -40,7 +40,7 @@ inline constexpr int kDraftLevels = 2;
 inline constexpr float kNearLeaves = 2;
 
 // Models that are larger on screen have no picture: its texels would be seen.
-inline constexpr float kMostPicturePixels = 160;
+inline constexpr float kMaxPicturePixels = 160;
 
 // A node in this tick, as far as it matters to the meshes on it.
 struct NodeView {

@@ -88,7 +88,7 @@ ChoiceRules choice_rules(const Settings& settings, const Rules& rules, const Clo
 // eviction.
 core::Bounds box_of(const MeshEntity& row, bool shadows) {
   if (row.mesh.tight != core::Bounds{} && !shadows) return row.mesh.tight;
-  return core::Bounds::around(row.placed.box_center, row.placed.box_half_extent);
+  return core::Bounds::around(row.placed.box_centre, row.placed.box_half_extent);
 }
 
 void note_in_view(const CacheTick& tick, bool leaf, Demand& demand, Counters& counters) {

@@ -1,4 +1,4 @@
-// Chooses the point lights of a frame: those in view that matter most, at most kMostLit of them.
+// Chooses the point lights of a frame: those in view that matter most, at most kMaxLit of them.
 // Others fade out, in places of their own. O(lights); nothing is allocated once there were as many.
 #include <algorithm>
 #include <array>
@@ -11,12 +11,12 @@
 namespace psygen::scene {
 namespace {
 
-constexpr std::size_t kMostLit = 32;
-constexpr std::size_t kMostGoing = render::kMostPointLights - kMostLit;
+constexpr std::size_t kMaxLit = 32;
+constexpr std::size_t kMaxGoing = render::kMaxPointLights - kMaxLit;
 // A light that is lit stays so until another matters more by this factor.
 constexpr float kSlack = 1.25F;
 // Lights whose range covers fewer pixels than this are left out.
-constexpr float kLeastPixels = 3;
+constexpr float kMinPixels = 3;
 
 struct LightTick {
   std::uint32_t tick = 0;
@@ -74,7 +74,7 @@ class LightChoice {
     state.fresh = false;
     found.importance = importance_of(light, distance_m);
     const float pixels = 2 * light.range_m * tick_.pixels_per_radian / std::max(distance_m, 1e-3F);
-    if (!light.visible || found.importance <= 0 || pixels < kLeastPixels) return go(found);
+    if (!light.visible || found.importance <= 0 || pixels < kMinPixels) return go(found);
     propose(found);
   }
 
@@ -100,7 +100,7 @@ class LightChoice {
   // Among the best so far, which are a heap with the least on top.
   void propose(const LightCandidate& found) {
     const auto begin = best_.begin();
-    if (lit_ == kMostLit) {
+    if (lit_ == kMaxLit) {
       ++counters_.lights_left_out;
       if (!matters_more(found, best_[0])) return go(found);
       std::pop_heap(begin, best_.end(), matters_more);
@@ -113,7 +113,7 @@ class LightChoice {
   // One that is lit no more.
   void go(const LightCandidate& found) {
     if (found.light->state.share <= 0) return;
-    if (found.at_once || going_count_ == kMostGoing) {
+    if (found.at_once || going_count_ == kMaxGoing) {
       found.light->state.share = 0;
       return;
     }
@@ -130,8 +130,8 @@ class LightChoice {
   const Camera& camera_;
   const View& view_;
   Counters& counters_;
-  std::array<LightCandidate, kMostLit> best_;
-  std::array<LightCandidate, kMostGoing> going_;
+  std::array<LightCandidate, kMaxLit> best_;
+  std::array<LightCandidate, kMaxGoing> going_;
   std::size_t lit_ = 0, going_count_ = 0;
 };
 
@@ -140,8 +140,8 @@ class LightChoice {
 void lights_system(const Settings& settings, const Clock& clock, const Camera& camera,
                    const WorldFacts& facts, const View& view, LightQuery entities,
                    LightDraws& draws, Counters& counters) {
-  constexpr double kLeastSeconds = 1.0 / 240.0;
-  const double passed_s = std::max(clock.now_s - draws.now_s, kLeastSeconds);
+  constexpr double kMinSeconds = 1.0 / 240.0;
+  const double passed_s = std::max(clock.now_s - draws.now_s, kMinSeconds);
   LightTick tick;
   tick.tick = clock.tick;
   tick.step = settings.fade_seconds <= passed_s

@@ -27,7 +27,7 @@ struct ObjectTick {
   std::uint32_t tick = 0;
   float step = 1;         // of a whole fade
   bool continues = true;  // the last tick was drawn too
-  float pixels_per_radian = 1, error_pixels = 1, least_pixels = 1, near_m = 0.1F;
+  float pixels_per_radian = 1, error_pixels = 1, min_pixels = 1, near_m = 0.1F;
   float view_distance_m = 0;
   double block_size_m = 64;
   bool levels = true;
@@ -36,7 +36,7 @@ struct ObjectTick {
 
 // An object's place relative to the camera.
 struct Place {
-  glm::vec3 foot{0.0F}, center{0.0F};
+  glm::vec3 foot{0.0F}, centre{0.0F};
   glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
   float radius_m = 0, distance_m = 0, scale = 1;
 };
@@ -48,9 +48,9 @@ bool place_of(const Transform& transform, const core::Bounds& box,
   place.foot = offset_of(transform.position, camera, block_size_m);
   const glm::vec3 size = glm::abs(transform.scale);
   place.scale = std::max({size.x, size.y, size.z});
-  place.center = place.foot + place.rotation * (transform.scale * box.center());
+  place.centre = place.foot + place.rotation * (transform.scale * box.centre());
   place.radius_m = glm::length(box.half_extent() * size);
-  place.distance_m = glm::length(place.center);
+  place.distance_m = glm::length(place.centre);
   return true;
 }
 
@@ -169,13 +169,13 @@ class ObjectWalk {
     }
     forget_other_levels(object.state, mesh.level_count);
     const float away = place.distance_m - place.radius_m;
-    const core::Bounds box = core::Bounds::around(place.center, glm::vec3(place.radius_m));
+    const core::Bounds box = core::Bounds::around(place.centre, glm::vec3(place.radius_m));
     const bool in_view = can_be_seen(box, view_);
     const bool near = in_view || (facts_.shadows && away < kShadowReachM);
     const float pixels =
         2 * place.radius_m * tick_.pixels_per_radian / std::max(place.distance_m, tick_.near_m);
     const bool wanted =
-        object.visible && pixels >= tick_.least_pixels && away <= tick_.view_distance_m;
+        object.visible && pixels >= tick_.min_pixels && away <= tick_.view_distance_m;
     if (wanted) use(object, place, in_view, near, mesh);
     if (near) draw(entity, transform, object, place, in_view, wanted);
     if (!in_view) return;
@@ -237,7 +237,7 @@ class ObjectWalk {
     draw.origin = place.foot;
     draw.rotation = {place.rotation.x, place.rotation.y, place.rotation.z, place.rotation.w};
     draw.scale = transform.scale;
-    draw.box_center = mesh.box.center();
+    draw.box_centre = mesh.box.centre();
     draw.box_half_extent = mesh.box.half_extent();
     draw.fade = fade;
     draw.sun = object.state.sun;
@@ -289,8 +289,8 @@ void objects_system(const Settings& settings, const Rules& rules, const Input& i
                     const WorldFacts& facts, const Streaming& streaming, const View& view,
                     ObjectQuery entities, synthesis::MeshSupply& meshes, Assets& assets,
                     ObjectDraws& draws, Counters& counters) {
-  constexpr double kLeastSeconds = 1.0 / 240.0;
-  const double passed_s = std::max(clock.now_s - draws.now_s, kLeastSeconds);
+  constexpr double kMinSeconds = 1.0 / 240.0;
+  const double passed_s = std::max(clock.now_s - draws.now_s, kMinSeconds);
   ObjectTick tick;
   tick.tick = clock.tick;
   tick.step = rules.settle || settings.fade_seconds <= passed_s
@@ -299,7 +299,7 @@ void objects_system(const Settings& settings, const Rules& rules, const Input& i
   tick.continues = draws.tick + 1 == clock.tick;
   tick.pixels_per_radian = camera.pixels_per_radian;
   tick.error_pixels = static_cast<float>(quality.model_error_pixels);
-  tick.least_pixels = static_cast<float>(settings.min_size_pixels);
+  tick.min_pixels = static_cast<float>(settings.min_size_pixels);
   tick.near_m = camera.projection.near_m;
   tick.view_distance_m = static_cast<float>(settings.view_distance_m);
   tick.block_size_m = facts.world.block_size_m();

@@ -129,7 +129,7 @@ class EmitterChoice {
   const Camera& camera_;
   const View& view_;
   Counters& counters_;
-  std::array<EmitterCandidate, render::kMostEmitters> best_;
+  std::array<EmitterCandidate, render::kMaxEmitters> best_;
   std::size_t count_ = 0;
 };
 
@@ -176,7 +176,7 @@ void particles_system(const Settings& settings, const Clock& clock, const Camera
         for (std::size_t i = 0; i < emitters.size(); ++i)
           choice.visit(transforms[i], emitters[i]);
       });
-  std::uint64_t left = render::kMostParticles;
+  std::uint64_t left = render::kMaxParticles;
   for (const EmitterCandidate& found : choice.chosen()) {
     render::ParticleDraw draw = draw_of(found, tick, camera, streaming, entities);
     if (draw.count > left) {

@@ -95,7 +95,7 @@ void count_missing(const Camera& camera, const WorldFacts& facts, const visibili
                    Counters& counters) {
   const core::Bounds& box = facts.levels[node.level].bounds;
   count_seen(camera,
-             {.center = corner_of(node, camera, facts) + box.center(),
+             {.centre = corner_of(node, camera, facts) + box.centre(),
               .radius_m = glm::length(box.half_extent()),
               .hole = true,
               .awaits = false},
@@ -114,7 +114,7 @@ void add_ground(const DrawTick& tick, const WorldFacts& facts, const View& view,
   draw.shared_indices = mesh->shared_indices;
   draw.origin = ground.corner;
   draw.cell_m = facts.cell_m * static_cast<float>(1U << node.node.level);
-  draw.height_min_m = placed->box_center.y - placed->box_half_extent.y;
+  draw.height_min_m = placed->box_centre.y - placed->box_half_extent.y;
   draw.height_range_m = 2 * placed->box_half_extent.y;
   draw.skirt_m = level.skirt_m;
   draw.side_m = node.side_m;
@@ -145,12 +145,12 @@ void draw_node(const DrawTick& tick, const Camera& camera, const WorldFacts& fac
   const glm::vec3 corner = corner_of(node.node, camera, facts);
   const bool hole = demand.drawn_level == kNoLevel;
   const std::uint32_t coarser = node.leaf ? 0 : coarser_by(view, index);
-  const float least_m =
-      least_distance_m(node, demand.drawn_level, streaming.distances[node.node.level].split_m);
-  const bool twice = !hole && least_m > 0 && nearest_m(view, index, corner.y + at.high_m) < least_m;
+  const float min_m =
+      min_distance_m(node, demand.drawn_level, streaming.distances[node.node.level].split_m);
+  const bool twice = !hole && min_m > 0 && nearest_m(view, index, corner.y + at.high_m) < min_m;
   count_seen(
       camera,
-      {.center = corner + glm::vec3(node.side_m / 2, (at.low_m + at.high_m) / 2, node.side_m / 2),
+      {.centre = corner + glm::vec3(node.side_m / 2, (at.low_m + at.high_m) / 2, node.side_m / 2),
        .radius_m = entities.get<Placed>(entity)->radius_m,
        .hole = hole,
        .coarse = coarser > 1,
@@ -171,8 +171,8 @@ void draw_node(const DrawTick& tick, const Camera& camera, const WorldFacts& fac
 
 // A clock that stands still does not stop what fades.
 FadeStep fade_step(const Settings& settings, const Clock& clock, const DrawLists& draws) {
-  constexpr double kLeastSeconds = 1.0 / 240.0;
-  const double passed_s = std::max(clock.now_s - draws.now_s, kLeastSeconds);
+  constexpr double kMinSeconds = 1.0 / 240.0;
+  const double passed_s = std::max(clock.now_s - draws.now_s, kMinSeconds);
   const bool at_once = settings.fade_seconds <= passed_s;
   return {clock.tick, at_once ? 1.0F : static_cast<float>(passed_s / settings.fade_seconds)};
 }

@@ -34,10 +34,10 @@ void simulation_system(const Clock& clock, ecs::World&, Simulation& simulation, 
   // A clock that is set back does not undo steps.
   simulation.behind_s += std::max(clock.now_s - simulation.clock_s, 0.0);
   simulation.clock_s = clock.now_s;
-  const double most_s = step.step_s * simulation.most_steps;
-  if (simulation.behind_s > most_s) {
-    simulation.lost_s += simulation.behind_s - most_s;
-    simulation.behind_s = most_s;
+  const double max_s = step.step_s * simulation.max_steps;
+  if (simulation.behind_s > max_s) {
+    simulation.lost_s += simulation.behind_s - max_s;
+    simulation.behind_s = max_s;
   }
   simulation.step_ms.assign(simulation.systems.systems().size(), 0.0F);
   while (simulation.behind_s >= step.step_s * (1 - kEarly)) {

@@ -174,7 +174,7 @@ core::Result<EditName> Edits::edit_ground(const World& world, GroundEdit edit) {
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("{} edits of the ground lie on top of each other at {}, and no "
                                   "more are allowed; a heightmap can replace many of them",
-                                  models::GroundEdits::kMostTogether, text_of(at->block)));
+                                  models::GroundEdits::kMaxTogether, text_of(at->block)));
   }
   layer.next_id = *id + 1;
   commit(std::move(layer), at->block, std::move(edits));

@@ -27,7 +27,7 @@ core::Bounds FormWriter::finish() {
   std::fill(out_.indices.begin() + static_cast<std::ptrdiff_t>(indices_), out_.indices.end(),
             std::uint16_t{0});
   const auto place = [this](const std::array<std::int16_t, 3>& q) {
-    return box_.center() + box_.half_extent() * (glm::vec3(q[0], q[1], q[2]) * (1.0F / 32767.0F));
+    return box_.centre() + box_.half_extent() * (glm::vec3(q[0], q[1], q[2]) * (1.0F / 32767.0F));
   };
   const glm::vec3 around(reach_m_, 0, reach_m_);  // inside the box, up to rounding
   return {glm::max(place(low_) - around, box_.min), glm::min(place(high_) + around, box_.max)};

@@ -151,11 +151,11 @@ void make_form(Form form, const Outline& outline, float width, glm::vec2 turn, F
 
 Billboard billboard_of(Form form, const Outline& outline, const Silhouette& silhouette,
                        float models) {
-  constexpr float kMostElongation = 2, kLean = 0.5F;
+  constexpr float kMaxElongation = 2, kLean = 0.5F;
   const float trunk = form == Form::kKiteTrunk ? seen_trunk_m2(outline) : 0;
   const float one = std::max(silhouette.side_m2 - trunk, 0.1F * silhouette.side_m2);
   const float plan = models * silhouette.plan_m2, side = models * one;
-  const float most = std::max(kMostElongation * std::sqrt(plan), half_width(outline, one, 1));
+  const float most = std::max(kMaxElongation * std::sqrt(plan), half_width(outline, one, 1));
   const float half = std::min(half_width(outline, side, models), most);
   if (!(half > 0 && side > 0)) return {0, 0, 0};
   const float top = std::max(outline.top.position.y, 1e-3F);

@@ -87,7 +87,7 @@ class MergedType final : public models::ModelType {
   double log2_cost(const Parameters& p) const override {
     return std::log2(static_cast<double>(std::max<std::uint64_t>(plan(p, 0).triangles, 1)));
   }
-  core::Bounds synthesize(const Parameters& p, int level, const MeshView& out) const override;
+  core::Bounds synthesise(const Parameters& p, int level, const MeshView& out) const override;
   std::uint64_t identity() const override { return identity_; }
   bool may_run_on_main_thread() const override { return may_run_on_main_thread_; }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
@@ -95,7 +95,7 @@ class MergedType final : public models::ModelType {
   }
 
  private:
-  struct Making;    // state of one call of synthesize()
+  struct Making;    // state of one call of synthesise()
   struct Instance;  // an instance to be added to the mesh
 
   void make_plans(int level) {
@@ -267,7 +267,7 @@ void MergedType::add_placed(const models::BlockEdits& edits, const NodeBlock& bl
   }
 }
 
-core::Bounds MergedType::synthesize(const Parameters& p, int level, const MeshView& out) const {
+core::Bounds MergedType::synthesise(const Parameters& p, int level, const MeshView& out) const {
   const LevelPlan& made = plan(p, level);
   const MeshSize size = mesh_size(p, level);
   PSYGEN_CHECK(out.vertices.size() == size.vertex_count * sizeof(core::ModelVertex) &&

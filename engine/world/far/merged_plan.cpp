@@ -11,15 +11,15 @@ namespace {
 
 // A node of side s is drawn from a distance of about 2.4 s, at 700 pixels per radian. Models
 // smaller than 1.2 pixels there are left out. Trees and bushes first share a form, up to
-// kMostTogether of them or twice the thinning.
-constexpr double kNearestSides = 2.4, kPixelsPerRadian = 700, kLeastPixels = 1.2;
-constexpr std::uint32_t kMostTogether = 8;
-constexpr std::uint32_t kMostThinning = 1U << 26;  // more than the instances of any node
-constexpr std::uint64_t kMostVertices = 65'536;
+// kMaxTogether of them or twice the thinning.
+constexpr double kNearestSides = 2.4, kPixelsPerRadian = 700, kMinPixels = 1.2;
+constexpr std::uint32_t kMaxTogether = 8;
+constexpr std::uint32_t kMaxThinning = 1U << 26;  // more than the instances of any node
+constexpr std::uint64_t kMaxVertices = 65'536;
 
 // The number of models of this size, in pixels, that must share a form to be visible.
-std::uint32_t least_together(double pixels) {
-  const double ratio = kLeastPixels / pixels;
+std::uint32_t min_together(double pixels) {
+  const double ratio = kMinPixels / pixels;
   return static_cast<std::uint32_t>(std::ceil(std::min(ratio * ratio, 1e6)));
 }
 
@@ -31,9 +31,9 @@ void plan_scatters(std::span<const FarScatter> scatters, const PictureSet* pictu
   for (const FarScatter& far : scatters) {
     ScatterPlan how;
     const double size_m = std::sqrt(far.mean_silhouette().side_m2);
-    const std::uint32_t least = far.empty() ? 0 : least_together(size_m * pixels_per_m);
+    const std::uint32_t least = far.empty() ? 0 : min_together(size_m * pixels_per_m);
     how.together = std::max(thinning, far.is_leafy() ? least : 1);
-    const std::uint32_t most = far.is_leafy() ? std::max(2 * thinning, kMostTogether) : thinning;
+    const std::uint32_t most = far.is_leafy() ? std::max(2 * thinning, kMaxTogether) : thinning;
     if (!far.empty() && least <= most) {
       const bool pictured = pictures != nullptr && plan.form_level <= kMaxPicturedLevel &&
                             pictures->has(far.scatter().model);
@@ -45,8 +45,8 @@ void plan_scatters(std::span<const FarScatter> scatters, const PictureSet* pictu
       how.each_is_synthesised = plan.form_level == 1 && !is_billboard(how.form) && far.is_cheap();
     }
     // Only worlds with thousands of scatters do not fit, even with the largest thinning.
-    if (thinning >= kMostThinning &&
-        plan.vertices + how.forms * size_of(how.form).vertices > kMostVertices)
+    if (thinning >= kMaxThinning &&
+        plan.vertices + how.forms * size_of(how.form).vertices > kMaxVertices)
       how.forms = 0;
     plan.vertices += how.forms * size_of(how.form).vertices;
     plan.triangles += how.forms * size_of(how.form).triangles;
@@ -81,7 +81,7 @@ LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters,
   plan.form_level = form_level;
   std::uint32_t thinning = form_level <= 3 ? 1 : 3U << (2 * (form_level - 4));
   plan_scatters(scatters, pictures, side, thinning, plan);
-  while (plan.vertices > kMostVertices)
+  while (plan.vertices > kMaxVertices)
     plan_scatters(scatters, pictures, side, thinning *= 2, plan);
   plan.box = box_of(world, scatters, std::ldexp(world.block_size_m(), level), plan);
   return plan;

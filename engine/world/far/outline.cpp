@@ -23,12 +23,12 @@ struct Extremes {
   void add(const core::ModelVertex& v, std::size_t i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int16_t q = v.position[axis];
-      if (count == 0 || q < least_[axis]) {
-        least_[axis] = q;
+      if (count == 0 || q < min_[axis]) {
+        min_[axis] = q;
         at[axis] = i;
       }
-      if (count == 0 || q > most_[axis]) {
-        most_[axis] = q;
+      if (count == 0 || q > max_[axis]) {
+        max_[axis] = q;
         at[3 + axis] = i;
       }
     }
@@ -36,7 +36,7 @@ struct Extremes {
   }
 
  private:
-  std::array<std::int16_t, 3> least_{}, most_{};
+  std::array<std::int16_t, 3> min_{}, max_{};
 };
 
 // Sets the foot to the mean of the vertices that are not leaves, and the trunk's radius to the

@@ -63,10 +63,10 @@ float usual_light(const glm::vec3& n, glm::vec2 ahead, float ambient, bool leaf)
 // shoulder. It keeps the contrast between leaves, which the mean over directions loses, and says
 // nothing of where the sun is.
 float leaf_contrast(const glm::vec3& n, const glm::vec3& crown, glm::vec2 ahead) {
-  constexpr float kLeast = 0.35F;
+  constexpr float kMin = 0.35F;
   const glm::vec3 sun = sun_at(ahead, {-kDiagonal, -kDiagonal});
-  return (direct_light(n, sun, ahead, true) + kLeast) /
-         (direct_light(crown, sun, ahead, true) + kLeast);
+  return (direct_light(n, sun, ahead, true) + kMin) /
+         (direct_light(crown, sun, ahead, true) + kMin);
 }
 
 // The usual light of the quad that shows the picture, at its upper or lower edge

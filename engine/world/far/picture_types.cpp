@@ -17,8 +17,8 @@ using models::Parameters;
 using models::ParameterSpec;
 
 constexpr ParameterSpec kPictureSchema[] = {
-    {"number", models::ParameterType::kInteger, "", 0, 0, core::kMostPictures - 1, 0,
-     core::kMostPictures - 1, "which of the world's pictures", models::ParameterSource::kPlaced}};
+    {"number", models::ParameterType::kInteger, "", 0, 0, core::kMaxPictures - 1, 0,
+     core::kMaxPictures - 1, "which of the world's pictures", models::ParameterSource::kPlaced}};
 
 class PictureType final : public ModelType {
  public:
@@ -35,7 +35,7 @@ class PictureType final : public ModelType {
   double steps(const Parameters&, int) const override { return 1; }
   double step_seconds() const override { return 10e-3; }
   double log2_cost(const Parameters&) const override { return 0; }
-  core::Bounds synthesize(const Parameters&, int, const MeshView& out) const override {
+  core::Bounds synthesise(const Parameters&, int, const MeshView& out) const override {
     std::ranges::fill(out.vertices, std::byte{0});
     std::ranges::fill(out.indices, std::uint16_t{0});
     return {glm::vec3(0.5F), glm::vec3(0.5F)};
@@ -77,7 +77,7 @@ class QuadType final : public ModelType {
     return core::combine(pictures_->identity_of_quads(model_), type_->identity());
   }
   bool may_run_on_main_thread() const override { return true; }
-  core::Bounds synthesize(const Parameters& p, int, const MeshView& out) const override {
+  core::Bounds synthesise(const Parameters& p, int, const MeshView& out) const override {
     FormMesh quad;
     SampleMesh scratch;
     pictures_->make_quad(model_, p, &scratch, quad);

@@ -6,7 +6,7 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::uint64_t kMostVertices = 65'536;
+constexpr std::uint64_t kMaxVertices = 65'536;
 
 // The largest form that a placed model may have in a mesh with the forms of this node level.
 FormSize largest(int form_level) {
@@ -38,8 +38,8 @@ Form form_of(const Outline& outline, const PlacedPlan& plan) {
 PlacedPlan::PlacedPlan(int level, std::uint64_t models, std::uint64_t vertices)
     : form_level(level) {
   const std::uint64_t room =
-      (kMostVertices - std::min(vertices, kMostVertices)) / largest(level).vertices;
-  const std::uint64_t most = std::min(kMostForms, room);
+      (kMaxVertices - std::min(vertices, kMaxVertices)) / largest(level).vertices;
+  const std::uint64_t most = std::min(kMaxForms, room);
   if (models == 0 || most == 0) return;
   together = (models + most - 1) / most;
   forms = (models + together - 1) / together;

@@ -16,7 +16,7 @@ namespace psygen::world {
 // How many forms the placed models of a node get. Where there are more models, each form stands for
 // several.
 struct PlacedPlan {
-  static constexpr std::uint64_t kMostForms = 1024;
+  static constexpr std::uint64_t kMaxForms = 1024;
 
   int form_level = 1;          // node level whose forms are used
   std::uint64_t forms = 0;     // at most

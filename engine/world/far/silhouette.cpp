@@ -93,7 +93,7 @@ void SampleMesh::make(const models::ModelType& type, const models::Parameters& p
   box_ = type.bounds(p);
   vertices_.resize(size_.vertex_count * sizeof(core::ModelVertex));
   indices_.resize(size_.own_index_count());
-  type.synthesize(p, level, {vertices_, indices_});
+  type.synthesise(p, level, {vertices_, indices_});
 }
 
 std::vector<std::uint16_t> SampleMesh::indices(const models::ModelType& type) const {

@@ -17,8 +17,8 @@ using models::Parameters;
 
 // The first level with at most this many triangles is the last mesh that looks like a tree. A type
 // whose finest level has no more needs no pictures.
-constexpr std::uint32_t kMostTriangles = 320;
-constexpr std::uint32_t kMostBaked = 200'000;  // triangles: larger trees keep their hulls
+constexpr std::uint32_t kMaxTriangles = 320;
+constexpr std::uint32_t kMaxBaked = 200'000;  // triangles: larger trees keep their hulls
 // Instances that pictures are chosen from, by their heights.
 constexpr std::uint32_t kCandidates = FarScatter::kRepresentatives;
 // The part of a picture's half width and height that is left free around the model.
@@ -39,10 +39,10 @@ std::vector<Corner> corners_of(const SampleMesh& mesh) {
 // Whether pictures are of use for this type, and can be made of it.
 bool suits(const ModelType& type, const Parameters& p) {
   const models::MeshSize finest = type.mesh_size(p, 0);
-  if (finest.layout != core::VertexLayout::kModel || finest.triangle_count() > kMostBaked)
+  if (finest.layout != core::VertexLayout::kModel || finest.triangle_count() > kMaxBaked)
     return false;
   return type.turn_deg(p) ||
-         (type.level_count_of(p) > 1 && finest.triangle_count() > kMostTriangles);
+         (type.level_count_of(p) > 1 && finest.triangle_count() > kMaxTriangles);
 }
 
 // Without std::hypot, which may differ between C libraries.
@@ -144,8 +144,7 @@ PictureSet::PictureSet(const World& world, const models::Registry& registry,
     if (scatter.count > 0 && type.is_seen_from_far() && type.may_run_on_main_thread()) ++scatters;
   }
   if (scatters == 0) return;
-  const std::size_t most =
-      std::clamp<std::size_t>(core::kMostPictures / scatters, 1, kMostOfScatter);
+  const std::size_t most = std::clamp<std::size_t>(core::kMaxPictures / scatters, 1, kMaxOfScatter);
   for (std::size_t s = 0; s < world.scatter.size(); ++s) {
     try {  // user types may throw; our own code throws only when memory is exhausted
       add_scatter(world, world.scatter[s], firsts[s], most, before);
@@ -170,7 +169,7 @@ void PictureSet::add_scatter(const World& world, const Scatter& scatter, std::ui
   if (candidates.empty()) return;
   if (type.turn_deg(candidates.front().second)) most = 1;
   std::ranges::stable_sort(candidates, {}, [](const auto& c) { return c.first; });
-  for (std::size_t k = 0; k < most && models_.size() < core::kMostPictures; ++k) {
+  for (std::size_t k = 0; k < most && models_.size() < core::kMaxPictures; ++k) {
     const Parameters& p = candidates[(2 * k + 1) * candidates.size() / (2 * most)].second;
     const bool known = std::ranges::any_of(models_, [&](const PicturedModel& m) {
       return m.model == scatter.model && (m.parameters == p || type.turn_deg(p));
@@ -208,7 +207,7 @@ int PictureSet::first_level(models::ModelIndex model, const Parameters& p) const
   const ModelType& type = *types_[model];
   int level = 0;
   while (level + 1 < type.level_count_of(p) &&
-         type.mesh_size(p, level).triangle_count() > kMostTriangles)
+         type.mesh_size(p, level).triangle_count() > kMaxTriangles)
     ++level;
   // The last one that still looks like a tree is kept.
   return level + 1;

@@ -38,7 +38,7 @@ struct PicturedModel {
 class PictureSet {
  public:
   // Of at most this many instances of a scatter, and fewer where there are many scatters.
-  static constexpr std::size_t kMostOfScatter = 8;
+  static constexpr std::size_t kMaxOfScatter = 8;
 
   // Synthesises one instance for each picture (some 100 µs each). There are none for types that are
   // not seen from far, that may not run on the main thread, that throw, or whose finest mesh has no

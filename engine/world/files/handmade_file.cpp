@@ -13,12 +13,12 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::size_t kMostHandmadeBytes = 200;  // of a name of a file
+constexpr std::size_t kMaxHandmadeBytes = 200;  // of a name of a file
 
 // Reads a table, without its file. False after a problem.
 bool read_table(TableReader& reader, HandmadeModel& model) {
   bool sound = reader.read("name", model.name, 64, Presence::kRequired);
-  if (reader.read("file", model.file, kMostHandmadeBytes, Presence::kRequired))
+  if (reader.read("file", model.file, kMaxHandmadeBytes, Presence::kRequired))
     check_name_beside(reader, "file", model.file);
   visit_handmade(model, [&reader](std::string_view key, auto& field, const FieldSpec& spec) {
     reader.read(key, field, {spec.low, spec.high});

@@ -14,8 +14,8 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::size_t kMostMaskBytes = 200;  // of a name of a picture
-constexpr Limits kMaskPlaces{-1e12, 1e12};   // metres
+constexpr std::size_t kMaxMaskBytes = 200;  // of a name of a picture
+constexpr Limits kMaskPlaces{-1e12, 1e12};  // metres
 
 void read_grounds(TableReader& reader, ScatterMask& mask) {
   const Member* member = reader.find("on_ground");
@@ -61,7 +61,7 @@ void read_mask(TableReader& reader, const World& world, const Beside& beside, Sc
     reader.read(key, field, {spec.low, spec.high});
   });
   read_grounds(reader, mask);
-  const bool named = reader.read("mask_image", mask.image, kMostMaskBytes);
+  const bool named = reader.read("mask_image", mask.image, kMaxMaskBytes);
   read_area(reader, world, mask);
   if (!named) return;
   if (!check_name_beside(reader, "mask_image", mask.image)) return;

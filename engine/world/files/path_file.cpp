@@ -18,7 +18,7 @@ constexpr std::size_t kMaxNameBytes = 128;
 constexpr double kMaxSpeed_m_s = 2000;  // between two points
 constexpr Limits kTimes{0, 1e6};
 constexpr Limits kPlaces{-1e9, 1e9};
-constexpr Limits kHeights{CameraPath::kLeastHeightM, CameraPath::kMostHeightM};
+constexpr Limits kHeights{CameraPath::kMinHeightM, CameraPath::kMaxHeightM};
 constexpr Limits kHeadings{-36'000, 36'000};
 constexpr Limits kPitches{-89, 89};
 constexpr Limits kSmoothing{0.1, 10};

@@ -14,11 +14,11 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::size_t kMostStampBytes = 200;  // of a name of a picture
+constexpr std::size_t kMaxStampBytes = 200;  // of a name of a picture
 constexpr Limits kShapePlaces{-kFarthestShapeM, kFarthestShapeM};
 
 void read_stamp_picture(TableReader& reader, const Beside& beside, Stamp& stamp) {
-  if (!reader.read("image", stamp.image, kMostStampBytes, Presence::kRequired)) return;
+  if (!reader.read("image", stamp.image, kMaxStampBytes, Presence::kRequired)) return;
   if (!check_name_beside(reader, "image", stamp.image)) return;
   const int line = reader.find("image")->line;
   auto picture = beside.read_grey(stamp.image);
@@ -77,9 +77,9 @@ void read_points(TableReader& reader, std::vector<glm::dvec2>& points) {
     const glm::dvec2 point{item.items[0].real, item.items[1].real};
     if (!points.empty()) {
       const double x = point.x - points.back().x, z = point.y - points.back().y;
-      if (x * x + z * z < kLeastRoadStepM * kLeastRoadStepM)
+      if (x * x + z * z < kMinRoadStepM * kMinRoadStepM)
         return refuse(item, fmt::format("point {} must be {:g} m or more from the one before it",
-                                        points.size(), kLeastRoadStepM));
+                                        points.size(), kMinRoadStepM));
     }
     points.push_back(point);
   }

@@ -12,7 +12,7 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::size_t kMostShownBytes = 60;  // of an unknown key, in messages
+constexpr std::size_t kMaxShownBytes = 60;  // of an unknown key, in messages
 
 // The allowed values: "an integer from 1 to 9".
 std::string allowed_text(Limits limits, bool integer) {
@@ -241,7 +241,7 @@ void TableReader::finish() {
     if (std::ranges::find(known_, member.key) != known_.end()) continue;
     std::string more = core::suggestion(member.key, known_);
     if (more.empty()) more = fmt::format("; known here: {}", fmt::join(known_, ", "));
-    problem(member.line, core::shown(member.key, kMostShownBytes), "this key is unknown" + more);
+    problem(member.line, core::shown(member.key, kMaxShownBytes), "this key is unknown" + more);
   }
 }
 

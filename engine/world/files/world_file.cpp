@@ -42,13 +42,13 @@ void read_seed(TableReader& reader, std::uint64_t& seed) {
     seed = value;
     return;
   }
-  constexpr std::size_t kMostShownBytes = 40;
+  constexpr std::size_t kMaxShownBytes = 40;
   reader.problem(
       node.line, "seed",
       fmt::format("{} is not allowed: it must be an integer from 0 to {}, or a string of digits up "
                   "to \"{}\"",
                   node.kind == Node::Kind::kText
-                      ? fmt::format("\"{}\"", core::shown(node.text, kMostShownBytes))
+                      ? fmt::format("\"{}\"", core::shown(node.text, kMaxShownBytes))
                       : value_text(node),
                   INT64_MAX, UINT64_MAX));
 }

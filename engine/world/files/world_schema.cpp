@@ -383,7 +383,7 @@ std::string field_label(std::string_view key, std::string_view unit) {
   return label;
 }
 
-std::size_t most_tables(SectionKind kind) {
+std::size_t max_tables(SectionKind kind) {
   switch (kind) {
     case SectionKind::kSpecies:
       return kMaxSpecies;

@@ -98,6 +98,6 @@ std::string field_label(std::string_view key, std::string_view unit);
 
 // How many tables a file may have at most: species, kinds and rules of one of them, handmade
 // models, scatters, places, stamps, roads.
-std::size_t most_tables(SectionKind kind);
+std::size_t max_tables(SectionKind kind);
 
 }  // namespace psygen::world

@@ -48,13 +48,13 @@ class SlowType final : public synthesis::testing::FakeModel {
  public:
   SlowType(double seconds, bool waits) : FakeModel("slow", 1), seconds_(seconds), waits_(waits) {}
   bool is_seen_from_far() const override { return false; }
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     if (waits_) std::this_thread::sleep_for(std::chrono::duration<double>(seconds_));
     const double begin_s = core::thread_cpu_seconds();
     while (!waits_ && core::thread_cpu_seconds() - begin_s < seconds_) {
     }
-    return FakeModel::synthesize(p, level, out);
+    return FakeModel::synthesise(p, level, out);
   }
 
  private:

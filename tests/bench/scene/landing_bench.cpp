@@ -32,7 +32,7 @@ struct Synthesised {
     const models::MeshSize size = type.mesh_size(p, level);
     vertices.resize(size.vertex_count);
     indices.resize(size.shared_indices == 0 ? size.index_count : 0);
-    type.synthesize(p, level, {std::as_writable_bytes(std::span(vertices)), indices});
+    type.synthesise(p, level, {std::as_writable_bytes(std::span(vertices)), indices});
   }
 };
 

@@ -23,7 +23,7 @@ class TrivialModel final : public models::ModelType {
   }
   double complexity(const models::Parameters&, int) const override { return 1; }
   double log2_cost(const models::Parameters&) const override { return 0; }
-  core::Bounds synthesize(const models::Parameters&, int, const models::MeshView&) const override {
+  core::Bounds synthesise(const models::Parameters&, int, const models::MeshView&) const override {
     return {};
   }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {}

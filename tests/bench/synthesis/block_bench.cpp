@@ -64,7 +64,7 @@ void paper_block(benchmark::State& state) {
       const std::size_t bytes = size.vertex_count * core::vertex_stride_bytes(size.layout);
       const std::size_t own = size.shared_indices == 0 ? size.index_count : 0;
       benchmark::DoNotOptimize(
-          type.synthesize(p, 0, {std::span(vertices).first(bytes), std::span(indices).first(own)}));
+          type.synthesise(p, 0, {std::span(vertices).first(bytes), std::span(indices).first(own)}));
       triangles += size.triangle_count();
     });
   }

@@ -3,7 +3,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/synthesis/planner.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "tests/bench/synthesis/bench_model.hpp"
 
 namespace psygen::synthesis::bench {

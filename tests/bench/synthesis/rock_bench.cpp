@@ -11,7 +11,7 @@
 namespace psygen::models {
 namespace {
 
-void synthesize_rocks(benchmark::State& state, RockFamily family, std::int64_t subdivisions) {
+void synthesise_rocks(benchmark::State& state, RockFamily family, std::int64_t subdivisions) {
   const auto type = make_rock_type();
   Parameters p = default_parameters(*type);
   p.set_integer(kRockFamily, family);
@@ -21,26 +21,26 @@ void synthesize_rocks(benchmark::State& state, RockFamily family, std::int64_t s
   std::int64_t seed = 0;
   for (auto _ : state) {
     p.set_integer(kRockSeed, seed++);
-    benchmark::DoNotOptimize(type->synthesize(p, 0, {vertices, {}}));
+    benchmark::DoNotOptimize(type->synthesise(p, 0, {vertices, {}}));
   }
   bench::report_triangles(state, size.triangle_count() * static_cast<double>(state.iterations()));
   bench::report_seconds_each(state, 1);
 }
 
 void rock(benchmark::State& state) {
-  synthesize_rocks(state, kRockRounded, state.range(0));
+  synthesise_rocks(state, kRockRounded, state.range(0));
 }
 const bool kRegistered = bench::for_each_target(
     "rock", rock, [](auto* b, bool) { b->DenseRange(0, 6, 2)->ArgName("subdivisions"); });
 
 void rock_faceted(benchmark::State& state) {
-  synthesize_rocks(state, kRockFaceted, state.range(0));
+  synthesise_rocks(state, kRockFaceted, state.range(0));
 }
 const bool kFacetedRegistered = bench::for_each_target(
     "rock_faceted", rock_faceted, [](auto* b, bool) { b->Arg(2)->ArgName("subdivisions"); });
 
 void rock_layered(benchmark::State& state) {
-  synthesize_rocks(state, kRockLayered, state.range(0));
+  synthesise_rocks(state, kRockLayered, state.range(0));
 }
 const bool kLayeredRegistered = bench::for_each_target(
     "rock_layered", rock_layered, [](auto* b, bool) { b->Arg(2)->ArgName("subdivisions"); });

@@ -61,7 +61,7 @@ void terrain_light(benchmark::State& state) {
 }
 
 // Heights and vertices of LOD 0 as in terrain_block, fully lit. Samples are aligned as in
-// TerrainType, vertices as in BlockSynthesizer: to a cache line.
+// TerrainType, vertices as in BlockSynthesiser: to a cache line.
 void terrain_block_unlit(benchmark::State& state) {
   const TerrainShape shape(default_parameters(*make_terrain_type()));
   constexpr std::size_t kSide = 66, kStride = 80;
@@ -100,7 +100,7 @@ void terrain_block(benchmark::State& state) {
   std::int64_t block = 0;
   for (auto _ : state) {
     p.set_integer(kTerrainBlockX, block++);
-    benchmark::DoNotOptimize(type->synthesize(p, level, {vertices, {}}));
+    benchmark::DoNotOptimize(type->synthesise(p, level, {vertices, {}}));
   }
   bench::report_seconds_each(state, 1);
 }

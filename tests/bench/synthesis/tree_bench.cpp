@@ -46,7 +46,7 @@ void tree(benchmark::State& state) {
   for (auto _ : state) {
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       const std::size_t bytes = sizes[i].vertex_count * sizeof(core::ModelVertex);
-      benchmark::DoNotOptimize(type->synthesize(
+      benchmark::DoNotOptimize(type->synthesise(
           parameters[i], level,
           {std::span(vertices).first(bytes), std::span(indices).first(sizes[i].index_count)}));
     }

@@ -34,7 +34,7 @@ void vegetation(benchmark::State& state) {
   std::int32_t node = 0;
   for (auto _ : state) {
     const models::Parameters p = merged_parameters({node & 7, node >> 3 & 7}, level);
-    benchmark::DoNotOptimize(type->synthesize(p, detail, {vertices, indices}));
+    benchmark::DoNotOptimize(type->synthesise(p, detail, {vertices, indices}));
     ++node;
   }
   state.SetLabel(kFiles[state.range(0)]);

@@ -115,10 +115,10 @@ struct Leaves {
       std::vector<glm::vec3> line;
       core::Bounds box = node.box(1e9F, -1e9F);
       // Perpendicular to the view direction, at the resolution of a height grid.
-      const bool along_x = std::abs(box.center().z) > std::abs(box.center().x);
+      const bool along_x = std::abs(box.centre().z) > std::abs(box.centre().x);
       for (int k = 0; k < 22; ++k) {
         const float f = static_cast<float>(k) / 21;
-        glm::vec3 p = box.center();
+        glm::vec3 p = box.centre();
         (along_x ? p.x : p.z) =
             along_x ? std::lerp(box.min.x, box.max.x, f) : std::lerp(box.min.z, box.max.z, f);
         p.y = hills(p.x, p.z);

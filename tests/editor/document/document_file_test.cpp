@@ -195,7 +195,7 @@ TEST(RecentFiles, AreNewestFirstAndOnlyOnce) {
   EXPECT_THAT(recent_files(settings), ElementsAre("/a/two.toml"));
   for (int i = 0; i < 30; ++i)
     note_recent_file(settings, "/" + std::to_string(i));
-  EXPECT_EQ(recent_files(settings).size(), kMostRecentFiles);
+  EXPECT_EQ(recent_files(settings).size(), kMaxRecentFiles);
   EXPECT_EQ(recent_files(settings).front(), "/29");
 }
 

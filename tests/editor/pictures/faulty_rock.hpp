@@ -17,11 +17,11 @@ inline const models::ModelType& usual_rock() {
 class FaultyRock final : public scene::ForwardingType {
  public:
   FaultyRock() : ForwardingType("faulty_rock", usual_rock()) {}
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     const int i = models::parameter_index(of(), "subdivisions");
     if (p.integer(static_cast<std::size_t>(i)) == 6) std::abort();
-    return of().synthesize(p, level, out);
+    return of().synthesise(p, level, out);
   }
 };
 

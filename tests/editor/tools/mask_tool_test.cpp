@@ -128,7 +128,7 @@ TEST(MaskTool, StrengthAndShiftAreOfTheBrush) {
   click(bench.tool, ground(100, 100));
   EXPECT_NEAR(bench.share(100, 100), 0.625, 0.01);
   bench.tool.set_radius_m(0.01);
-  EXPECT_EQ(bench.tool.brush().radius_m, MaskTool::kLeastRadiusM);
+  EXPECT_EQ(bench.tool.brush().radius_m, MaskTool::kMinRadiusM);
   bench.tool.set_strength(1);
   click(bench.tool, ground(101, 101));
   EXPECT_EQ(bench.steps(), 5) << "the smallest brush meets a pixel";

@@ -79,7 +79,7 @@ TEST(NewMask, BeyondItsLimitsIsRefusedWithASentence) {
   EXPECT_EQ(refused({false, 4096, 1}), "");
   const auto tiny = plan_of({false, 16, 256}, world_of(0), kPlace);
   ASSERT_TRUE(tiny);
-  EXPECT_EQ(tiny->width, NewMask::kLeastPixels);
+  EXPECT_EQ(tiny->width, NewMask::kMinPixels);
 }
 
 TEST(NewMask, TheMiddleOfAViewIsTheGroundBeforeTheCamera) {

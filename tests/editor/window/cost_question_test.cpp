@@ -13,7 +13,7 @@ namespace psygen::editor {
 namespace {
 
 const world::TextPath kScattered{"scatter", 0}, kScatteredCount{"scatter", 0, "count"};
-constexpr double kMostCount = 30;
+constexpr double kMaxCount = 30;
 
 // More than 30 trees on a block are too many bytes, whatever this machine needs for them.
 class CostQuestion : public EditorWindow {
@@ -45,11 +45,11 @@ TEST_F(CostQuestion, TheImpactOfAChangeIsShownBesideIt) {
   slider->setSliderDown(true);
   slider->setValue(slider->value() + 4);
   slider->setSliderDown(false);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return said().contains("meshes change"); }, kMostMs))
+  ASSERT_TRUE(QTest::qWaitFor([&] { return said().contains("meshes change"); }, kMaxMs))
       << said().toStdString();
   EXPECT_FALSE(bar().asks());
   ASSERT_TRUE(document().set_value({"sky", "exposure"}, "1.5"));
-  ASSERT_TRUE(QTest::qWaitFor([&] { return said() == "No mesh changes."; }, kMostMs))
+  ASSERT_TRUE(QTest::qWaitFor([&] { return said() == "No mesh changes."; }, kMaxMs))
       << said().toStdString();
 }
 
@@ -83,10 +83,10 @@ TEST_F(CostQuestion, ADragOverCostlyValuesMakesNothingOfThem) {
   QSlider& slider = *properties().row(kScatteredCount)->findChild<QSlider*>();
   drag(slider, slider.width());
   EXPECT_TRUE(bar().asks());
-  EXPECT_GT(in_box(), kMostCount) << "the slider stays under the mouse";
-  EXPECT_LE(document().world().scatter[0].count, kMostCount);
+  EXPECT_GT(in_box(), kMaxCount) << "the slider stays under the mouse";
+  EXPECT_LE(document().world().scatter[0].count, kMaxCount);
   QTest::qWait(200);
-  EXPECT_LE(most, kMostCount);
+  EXPECT_LE(most, kMaxCount);
   click("Keep the old value");
   EXPECT_EQ(in_box(), document().world().scatter[0].count);
 }
@@ -103,11 +103,11 @@ TEST_F(CostQuestion, PicturesAreCoarseWhileASliderIsHeld) {
   const QPoint at(slider.width() * slider.value() / slider.maximum(), slider.height() / 2);
   QTest::mousePress(&slider, Qt::LeftButton, {}, at);
   QTest::mouseMove(&slider, at - QPoint(slider.width() / 10, 0));
-  ASSERT_TRUE(QTest::qWaitFor([&] { return quality.draft && answered > 0; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return quality.draft && answered > 0; }, kMaxMs));
   EXPECT_EQ(document().undo_stack().count(), 1);
   const int before = settled_;
   QTest::mouseRelease(&slider, Qt::LeftButton, {}, at - QPoint(slider.width() / 10, 0));
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !quality.draft && settled_ > before; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !quality.draft && settled_ > before; }, kMaxMs));
 }
 
 }  // namespace

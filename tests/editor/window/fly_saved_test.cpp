@@ -53,7 +53,7 @@ TEST_F(FlySaved, TheGameFliesTheSpeciesThatWasEditedInTheWindow) {
   EXPECT_GT(large_m, small_m);
   settle();
   QTest::keyClick(window_.get(), Qt::Key_S, Qt::ControlModifier);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !window_->isWindowModified(); }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !window_->isWindowModified(); }, kMaxMs));
   const QJsonObject after = flown(file_, folder_.path() / "after");
   const auto hash = [](const QJsonObject& summary) {
     return summary["hash"].toObject()["world"].toString();

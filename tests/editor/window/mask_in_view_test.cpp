@@ -39,17 +39,17 @@ TEST_F(MaskInView, IsPaintedUndoneSavedAndOpenedAgain) {
   EXPECT_LT(share(place(0, 0)), 0.05);
   EXPECT_EQ(share(place(0, 40)), 1);
   // The view shows the world of the stroke, though nothing is written.
-  ASSERT_TRUE(QTest::qWaitFor([&] { return share(shown(), place(0, 0)) < 0.05; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return share(shown(), place(0, 0)) < 0.05; }, kMaxMs));
   const auto file = file_.parent_path() / document().world().scatter[0].mask.image;
   EXPECT_FALSE(std::filesystem::exists(file));
   document().undo_stack().undo();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return share(shown(), place(0, 0)) == 1; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return share(shown(), place(0, 0)) == 1; }, kMaxMs));
   document().undo_stack().redo();
   const auto painted = document().world().scatter[0].mask.picture;
   save_and_reopen();
   EXPECT_TRUE(std::filesystem::exists(file));
   EXPECT_EQ(document().world().scatter[0].mask.picture->pixels, painted->pixels);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return share(shown(), place(0, 0)) < 0.05; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return share(shown(), place(0, 0)) < 0.05; }, kMaxMs));
 }
 
 TEST_F(MaskInView, ANewMaskHasTheAreaAndPixelsOfTheBar) {
@@ -119,7 +119,7 @@ TEST_F(MaskInView, TheBrushIsShownAndItsKeysChangeIt) {
 
 TEST_F(MaskInView, AWorldWithoutAFileKeepsItsStrokes) {
   command("New world");
-  ASSERT_TRUE(QTest::qWaitFor([&] { return opened_ > 1; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return opened_ > 1; }, kMaxMs));
   command("Paint masks");
   EXPECT_EQ(mask().scatter(), 0U) << "the first one";
   command("New mask");
@@ -131,7 +131,7 @@ TEST_F(MaskInView, AWorldWithoutAFileKeepsItsStrokes) {
   mask().press(at);
   mask().release();
   EXPECT_EQ(steps(), 2);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return share(shown(), *at.ground_m) < 0.05; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return share(shown(), *at.ground_m) < 0.05; }, kMaxMs));
   const auto file = folder_.path() / "named.toml";
   ASSERT_TRUE(document().save_as(file));
   ASSERT_TRUE(window_->open_file(file));

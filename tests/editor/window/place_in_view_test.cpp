@@ -41,13 +41,13 @@ TEST_F(PlaceInView, IsPlacedDraggedTurnedSavedAndOpenedAgain) {
   for (QComboBox* box : bar->findChildren<QComboBox*>())
     if (box->accessibleName() == "The model to place") types = box;
   ASSERT_NE(types, nullptr);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return types->isVisible(); }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return types->isVisible(); }, kMaxMs));
   EXPECT_EQ(types->currentText(), "windmill");
   const image::Image plain = picture();
   click(place(-4, 0));
   ASSERT_EQ(count(), 1U);
   EXPECT_TRUE(near(placed().at_m, place(-4, 0)));
-  EXPECT_TRUE(QTest::qWaitFor([&] { return difference(picture(), plain) > 0.001; }, kMostMs))
+  EXPECT_TRUE(QTest::qWaitFor([&] { return difference(picture(), plain) > 0.001; }, kMaxMs))
       << "it stands there";
   drag(placed().at_m, place(4, 2));
   EXPECT_TRUE(near(placed().at_m, place(4, 2)));

@@ -28,7 +28,7 @@ class ToolInView : public EditorWindow {
     int drawn = 0;
     const auto count =
         QObject::connect(&view(), &WorldView::drawn, window_.get(), [&] { ++drawn; });
-    ASSERT_TRUE(QTest::qWaitFor([&] { return drawn >= pictures; }, kMostMs));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return drawn >= pictures; }, kMaxMs));
     QObject::disconnect(count);
   }
   // East and south of the middle.

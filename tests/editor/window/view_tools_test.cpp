@@ -55,7 +55,7 @@ TEST_F(EditorWindow, AModelStandsAloneAndFollowsEditsAndSeeds) {
   const double yaw = window_->view().camera().pose().yaw;
   QTest::mousePress(&window_->view(), Qt::LeftButton, {}, {200, 200});
   QTest::mouseMove(&window_->view(), {260, 200});
-  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().camera().pose().yaw != yaw; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().camera().pose().yaw != yaw; }, kMaxMs));
   QTest::mouseRelease(&window_->view(), Qt::LeftButton, {}, {260, 200});
   command("Model alone");
   settle();
@@ -67,12 +67,12 @@ TEST_F(EditorWindow, AModelStandsAloneAndFollowsEditsAndSeeds) {
 TEST_F(EditorWindow, AGridLiesOnTheGround) {
   const image::Image plain = picture();
   command("10 m");
-  ASSERT_TRUE(QTest::qWaitFor([&] { return difference(picture(), plain) > 0; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return difference(picture(), plain) > 0; }, kMaxMs));
   EXPECT_EQ(window_->view().grid().spacing_m(), 10);
   command("Next grid");
   EXPECT_EQ(window_->view().grid().spacing_m(), 100);
   command("None");
-  EXPECT_TRUE(QTest::qWaitFor([&] { return difference(picture(), plain) == 0; }, kMostMs));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return difference(picture(), plain) == 0; }, kMaxMs));
 }
 
 TEST_F(EditorWindow, WeatherBesideTheHourIsAFieldOfTheSky) {
@@ -128,11 +128,11 @@ TEST_F(EditorWindow, TheMapKnowsHowOldMeshesAre) {
     }
     return found;
   };
-  ASSERT_TRUE(QTest::qWaitFor([&] { return middle().saturationF() > 0.5F; }, kMostMs / 10))
+  ASSERT_TRUE(QTest::qWaitFor([&] { return middle().saturationF() > 0.5F; }, kMaxMs / 10))
       << middle().name().toStdString() << " of a map " << map->width() << " wide, visible "
       << map->isVisible();
   const float hue = middle().hueF();
-  EXPECT_TRUE(QTest::qWaitFor([&] { return middle().hueF() > hue + 0.02F; }, kMostMs))
+  EXPECT_TRUE(QTest::qWaitFor([&] { return middle().hueF() > hue + 0.02F; }, kMaxMs))
       << "they get older, from red to blue";
 }
 
@@ -157,10 +157,10 @@ TEST_F(EditorWindow, AFlightIsPlayedByAClick) {
   int moved = 0;
   QObject::connect(&window_->view(), &WorldView::drawn, window_.get(),
                    [&] { moved += !same_place(window_->view().camera().pose(), start); });
-  ASSERT_TRUE(QTest::qWaitFor([&] { return play->isVisible(); }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return play->isVisible(); }, kMaxMs));
   QTest::mouseClick(play, Qt::LeftButton);
   EXPECT_TRUE(play->isChecked());
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !play->isChecked(); }, kMostMs)) << "it ends by itself";
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !play->isChecked(); }, kMaxMs)) << "it ends by itself";
   EXPECT_GT(moved, 0);
   EXPECT_EQ(play->text(), "Play");
 }

@@ -65,7 +65,7 @@ inline void drag(QSlider& slider, int by_px) {
 
 class EditorWindow : public testing::Test {
  protected:
-  static constexpr int kMostMs = 120'000;  // only so that a hanging test ends
+  static constexpr int kMaxMs = 120'000;  // only so that a hanging test ends
 
   void SetUp() override {
     file_ = folder_.path() / "small.toml";
@@ -92,7 +92,7 @@ class EditorWindow : public testing::Test {
                      });
     window_->show();
     ASSERT_TRUE(window_->open_file(file_));
-    ASSERT_TRUE(QTest::qWaitFor([this] { return opened_ > 0 && settled_ > 0; }, kMostMs));
+    ASSERT_TRUE(QTest::qWaitFor([this] { return opened_ > 0 && settled_ > 0; }, kMaxMs));
   }
   void TearDown() override {
     if (window_ && window_->view().session() != nullptr) {
@@ -117,7 +117,7 @@ class EditorWindow : public testing::Test {
   // Waits until a change that was made is in the picture.
   void settle() {
     const int before = settled_;
-    ASSERT_TRUE(QTest::qWaitFor([&] { return settled_ > before; }, kMostMs));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return settled_ > before; }, kMaxMs));
   }
   image::Image picture() { return window_->view().session()->picture().value(); }
 

@@ -48,7 +48,7 @@ TEST_F(EditorWindow, WhatIsSavedOpensAsTheSameWorld) {
   const world::World saved = shown();
   const int opened = opened_;
   ASSERT_TRUE(window_->open_file(file_));
-  ASSERT_TRUE(QTest::qWaitFor([&] { return opened_ > opened; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return opened_ > opened; }, kMaxMs));
   settle();
   EXPECT_EQ(shown(), saved);
   EXPECT_EQ(shown().scatter[0].count, 9u);
@@ -95,16 +95,16 @@ TEST_F(EditorWindow, ASeedCanBeSteppedAndLocked) {
 TEST_F(EditorWindow, ShortcutsWorkWhileTheViewHasTheKeyboard) {
   ASSERT_TRUE(document().set_value(kCount, "9"));
   window_->view().requestActivate();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().isActive(); }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().isActive(); }, kMaxMs));
   QTest::keyClick(&window_->view(), Qt::Key_Z, Qt::ControlModifier);
-  EXPECT_TRUE(QTest::qWaitFor([&] { return document().text() == kSmallWorld; }, kMostMs / 10));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return document().text() == kSmallWorld; }, kMaxMs / 10));
 }
 
 TEST_F(EditorWindow, AClickSelectsWhatIsUnderIt) {
   const QSize size = window_->view().size();
   QTest::mouseClick(&window_->view(), Qt::LeftButton, {},
                     QPoint(size.width() / 2, size.height() - 5));
-  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().selection().has_value(); }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().selection().has_value(); }, kMaxMs));
   EXPECT_LT(window_->view().selection()->distance_m, 300);
 }
 
@@ -113,7 +113,7 @@ TEST_F(EditorWindow, KeysFlyTheCamera) {
   QTest::keyPress(&window_->view(), Qt::Key_W);
   ASSERT_TRUE(QTest::qWaitFor(
       [&] { return window_->view().camera().pose().position.local.z != before.position.local.z; },
-      kMostMs));
+      kMaxMs));
   QTest::keyRelease(&window_->view(), Qt::Key_W);
 }
 
@@ -128,9 +128,9 @@ TEST_F(EditorWindow, ResizingHidingAndChangingAtOnceHarmsNothing) {
       window_->show();
     }
   }
-  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().isExposed(); }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().isExposed(); }, kMaxMs));
   ASSERT_TRUE(document().set_value(kCount, "6"));
-  ASSERT_TRUE(QTest::qWaitFor([&] { return shown().scatter[0].count == 6; }, kMostMs));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return shown().scatter[0].count == 6; }, kMaxMs));
   // Closed while it makes something.
   ASSERT_TRUE(document().set_value(kCount, "40"));
   QTest::qWait(5);

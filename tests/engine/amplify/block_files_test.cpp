@@ -198,7 +198,7 @@ TEST(BlockFiles, ADocumentHoldsEverythingOnTheBlockWhereItStands) {
   const auto document = block_document(world, registry(), {2, 1}, 0);
   ASSERT_TRUE(document);
   Totals totals;
-  BlockSynthesizer(world, registry()).synthesise({2, 1}, totals);
+  BlockSynthesiser(world, registry()).synthesise({2, 1}, totals);
   EXPECT_EQ(document->triangle_count(), totals.triangles);
   ASSERT_EQ(document->objects.size(), 9u);
   std::vector<world::Placement> placements;

@@ -7,7 +7,7 @@
 #include <ostream>
 #include <string>
 
-#include "engine/amplify/block_synthesizer.hpp"
+#include "engine/amplify/block_synthesiser.hpp"
 #include "engine/models/kit/simd_targets.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
@@ -39,7 +39,7 @@ TEST_P(GoldenHash, IsTheSameInEveryBuildAndOnEveryInstructionSet) {
   for (const std::string_view target : models::simd_targets()) {
     models::pin_simd_target(target);
     Totals totals;
-    BlockSynthesizer(*world, registry, kAllLevels).synthesise(GetParam().block, totals);
+    BlockSynthesiser(*world, registry, kAllLevels).synthesise(GetParam().block, totals);
     EXPECT_EQ(totals.hash.value(), GetParam().hash)
         << target << " 0x" << std::hex << totals.hash.value();
     EXPECT_EQ(totals.failed, 0u);

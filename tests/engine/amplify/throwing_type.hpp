@@ -24,7 +24,7 @@ class ThrowingType final : public models::ModelType {
   models::MeshSize mesh_size(const models::Parameters&, int) const override { return {3, 3}; }
   double complexity(const models::Parameters&, int) const override { return 1; }
   double log2_cost(const models::Parameters&) const override { return 0; }
-  core::Bounds synthesize(const models::Parameters&, int,
+  core::Bounds synthesise(const models::Parameters&, int,
                           const models::MeshView& out) const override {
     if (throws_) throw std::runtime_error("no geometry today");
     std::fill(out.vertices.begin(), out.vertices.end(), std::byte{0});

@@ -1,7 +1,7 @@
 // docs/add-a-model.md quotes this test and fence.hpp: a model type of a user's own.
 #include <fstream>
 
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "tests/engine/app/fence.hpp"
 #include "tests/engine/app/fixture.hpp"
 #include "tests/temporary_folder.hpp"
@@ -87,8 +87,8 @@ TEST(AddAModel, TheTypeKeepsItsPromises) {
       const auto mesh = synthesis::HeapDestination::make(type, p, level);
       const auto again = synthesis::HeapDestination::make(type, p, level);
       ASSERT_TRUE(mesh && again);
-      const core::Bounds tight = type.synthesize(p, level, mesh->view());
-      type.synthesize(p, level, again->view());
+      const core::Bounds tight = type.synthesise(p, level, mesh->view());
+      type.synthesise(p, level, again->view());
       EXPECT_TRUE(std::ranges::equal(mesh->view().vertices, again->view().vertices));
       EXPECT_LE(std::log2(mesh->size().triangle_count()), type.log2_cost(p) + 1e-9);
       for (const std::uint16_t index : mesh->view().indices)

@@ -37,7 +37,7 @@ class BoxWriter {
         v[(axis + 2) % 3] = 1.0F;
         const std::uint16_t first = vertices_;
         for (const glm::vec2 corner : {glm::vec2(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
-          add_vertex(box.center() + box.half_extent() * (normal + u * corner.x + v * corner.y),
+          add_vertex(box.centre() + box.half_extent() * (normal + u * corner.x + v * corner.y),
                      normal, albedo);
         for (const int i : {0, 1, 2, 0, 2, 3})
           out_.indices[indices_++] = static_cast<std::uint16_t>(first + i);
@@ -95,7 +95,7 @@ class FenceType final : public models::ModelType {
     return std::log2(12.0 * (2.0 + std::max(0.0, static_cast<double>(p.integer(kPosts)))));
   }
 
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     BoxWriter writer(bounds(p), out);
     const float half = half_length(p), height = static_cast<float>(p.real(kHeightM));

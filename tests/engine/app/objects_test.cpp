@@ -110,7 +110,7 @@ void furnish(Session& session, const core::CameraPose& pose) {
   const auto board = assets.add_mesh(panel(), "fence");
   const auto slats = assets.add_texture(fence());
   ASSERT_TRUE(wood && lamp && boulder && board && slats);
-  const auto holes = assets.add_material({.least_opacity = 0.5F, .base_texture = *slats});
+  const auto holes = assets.add_material({.min_opacity = 0.5F, .base_texture = *slats});
   ASSERT_TRUE(holes);
   for (int i = 0; i < 5; ++i)
     put(session, pose, {-8.0 + 4.0 * i, -18.0 - i}, {.mesh = *mesh, .material = *wood},

@@ -9,7 +9,7 @@ namespace psygen::app {
 namespace {
 
 // By how much the ground of a node may be off, of what its level of detail is off as a rule.
-constexpr double kLeastToleranceM = 0.5;
+constexpr double kMinToleranceM = 0.5;
 
 }  // namespace
 
@@ -105,7 +105,7 @@ bool Studio::is_hole(const glm::dvec3& direction) {
     const double ray_m = height_at(run_m);
     while (level + 1 < levels.size() && s.streaming.distances[level + 1].split_m <= run_m)
       ++level;
-    const double tolerance_m = kLeastToleranceM + levels[level].ground_bound_m;
+    const double tolerance_m = kMinToleranceM + levels[level].ground_bound_m;
     if (ray_m > levels.back().bounds.max.y) {
       if (direction.y >= 0) return false;
       continue;

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 // Ends tests that would go on for ever: many more frames than any of them needs.
-constexpr std::uint64_t kMostFrames = 20'000;
+constexpr std::uint64_t kMaxFrames = 20'000;
 
 class WindowFlight : public ::testing::Test {
  protected:
@@ -73,8 +73,7 @@ class WindowFlight : public ::testing::Test {
                                         ++next;
                                         pressed = kFramesForAKey;
                                       }
-                                      if (next == steps.size() || frames > kMostFrames)
-                                        stop_ = true;
+                                      if (next == steps.size() || frames > kMaxFrames) stop_ = true;
                                       if (!stop_ && pressed++ >= kFramesForAKey) {
                                         EXPECT_TRUE(press(steps[next].key));
                                         pressed = 0;

@@ -15,7 +15,7 @@
 #include "engine/cluster/serve_models.hpp"
 #include "engine/synthesis/content_hash.hpp"
 #include "engine/synthesis/synthesis_manager.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "tests/engine/cluster/threads_as_ranks.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 

@@ -174,7 +174,7 @@ TEST(RemoteModels, WaitingForAllMakesHereWhatCameBackWithoutAMesh) {
               for (const Completion& c : done) {
                 const auto p = synthesis::testing::parameters_of(c.key.index, 40 + c.key.index);
                 const auto mesh = *HeapDestination::make(registry[kCostly], p, 0);
-                (void)registry[kCostly].synthesize(p, 0, mesh.view());
+                (void)registry[kCostly].synthesise(p, 0, mesh.view());
                 alone.add(synthesis::content_hash(c.key, mesh.view()));
               }
               return alone.value();

@@ -46,7 +46,7 @@ TEST(ServeModels, AFailureThereIsTheSameSentenceAsHere) {
     const auto p = synthesis::testing::parameters_of(1, 41);
     const auto place = *HeapDestination::make(registry[kCostly], p, 0);
     EXPECT_EQ(mesh.error,
-              synthesis::synthesize_guarded(registry[kCostly], p, 0, place.view()).error);
+              synthesis::synthesise_guarded(registry[kCostly], p, 0, place.view()).error);
     EXPECT_TRUE(remote.is_usable(0));
   });
   EXPECT_EQ(reports[kAnswerer].failed, 1u);

@@ -35,7 +35,7 @@ TEST(MeshData, IsRejectedWithAMessageThatNamesTheList) {
   mesh.positions[2].y = std::numeric_limits<float>::quiet_NaN();
   EXPECT_NE(complaint(mesh).find("positions[2] of a mesh is nan"), std::string::npos);
   mesh = triangle();
-  mesh.positions[0].x = 2 * kMostMeshReachM;
+  mesh.positions[0].x = 2 * kMaxMeshReachM;
   EXPECT_NE(complaint(mesh), "");
   mesh = triangle();
   mesh.uvs = {{0, 0}, {0, std::numeric_limits<float>::infinity()}, {1, 1}};

@@ -5,7 +5,7 @@
 
 #include "engine/exchange/unpack.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 
 namespace psygen::exchange {
 
@@ -17,7 +17,7 @@ inline const models::ModelType& standard_type(std::string_view name) {
 inline Object synthesised(const models::ModelType& type, const models::Parameters& p, int level) {
   const auto mesh = synthesis::HeapDestination::make(type, p, level);
   EXPECT_TRUE(mesh);
-  EXPECT_TRUE(synthesis::synthesize_guarded(type, p, level, mesh->view()).ok);
+  EXPECT_TRUE(synthesis::synthesise_guarded(type, p, level, mesh->view()).ok);
   auto object = unpack(type, p, level, mesh->size(), mesh->view(), world::Palette{});
   EXPECT_TRUE(object) << object.error().message;
   return *object;

@@ -85,7 +85,7 @@ TEST(Unpack, AnIndexThatNamesNoVertexIsRefused) {
   const models::ModelType& type = standard_type("tree");
   const models::Parameters p = models::default_parameters(type);
   const auto mesh = synthesis::HeapDestination::make(type, p, 0);
-  ASSERT_TRUE(synthesis::synthesize_guarded(type, p, 0, mesh->view()).ok);
+  ASSERT_TRUE(synthesis::synthesise_guarded(type, p, 0, mesh->view()).ok);
   mesh->view().indices[4] = 65535;
   const auto object = unpack(type, p, 0, mesh->size(), mesh->view(), world::Palette{});
   ASSERT_FALSE(object);
@@ -111,7 +111,7 @@ class LateThrower final : public models::ModelType {
   }
   double complexity(const models::Parameters&, int) const override { return 1; }
   double log2_cost(const models::Parameters&) const override { return 0; }
-  core::Bounds synthesize(const models::Parameters&, int, const models::MeshView&) const override {
+  core::Bounds synthesise(const models::Parameters&, int, const models::MeshView&) const override {
     return {};
   }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override { thrower_(); }

@@ -59,7 +59,7 @@ TEST_F(ReadFile, TakesMeshesMaterialsNodesAndAnimationsOfAGlb) {
   const Material& material = model.materials[0];
   EXPECT_EQ(material.base_colour, glm::vec3(0.5F, 0.25F, 0.125F));
   EXPECT_EQ(material.emissive, glm::vec3(0.5F, 0, 0));
-  EXPECT_EQ(material.least_opacity, 0.25F);
+  EXPECT_EQ(material.min_opacity, 0.25F);
   EXPECT_TRUE(material.two_sided);
 }
 

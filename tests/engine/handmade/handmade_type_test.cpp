@@ -36,7 +36,7 @@ Made made(const models::ModelType& type, const models::Parameters& p, int level)
   Made m{std::vector<std::byte>(size.vertex_count * sizeof(core::ModelVertex)),
          std::vector<std::uint16_t>(size.index_count),
          {}};
-  m.tight = type.synthesize(p, level, {m.vertices, m.indices});
+  m.tight = type.synthesise(p, level, {m.vertices, m.indices});
   return m;
 }
 

@@ -323,7 +323,7 @@ TEST(Actions, RefuseNamesAndBindingsThatMakeNoSense) {
   }
   EXPECT_FALSE(actions.set_bindings(0, std::vector<Binding>(33)));
   EXPECT_EQ(actions.bindings(0)[0].control, Control(Key::kSpace)) << "nothing changed";
-  for (std::size_t i = 1; i < Actions::kMostActions; ++i)
+  for (std::size_t i = 1; i < Actions::kMaxActions; ++i)
     ASSERT_TRUE(actions.add(std::to_string(i)));
   EXPECT_EQ(actions.add("more").error().code, core::ErrorCode::kOverBudget);
 }

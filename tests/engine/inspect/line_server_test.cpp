@@ -104,7 +104,7 @@ TEST_F(LineServerTest, EndsTheConnectionAtALineWithoutEnd) {
     EXPECT_EQ(server_->take_line(), std::nullopt);
   }
   EXPECT_FALSE(server_->attached());
-  EXPECT_LT(sent, 2 * kMostLineBytes);
+  EXPECT_LT(sent, 2 * kMaxLineBytes);
 }
 
 TEST_F(LineServerTest, TakesNoMoreLinesFromAClientThatDoesNotRead) {

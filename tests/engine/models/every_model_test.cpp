@@ -17,7 +17,7 @@ namespace {
 
 using test::Mesh;
 using test::random_parameters;
-using test::synthesize;
+using test::synthesise;
 
 bool holds(const core::Bounds& outer, const core::Bounds& inner) {
   const glm::vec3 slack = (outer.max - outer.min) * 1e-5F;
@@ -43,7 +43,7 @@ void for_random_models(int per_type, const Visit& visit) {
 
 TEST(EveryModel, StaysWithinItsBoundsAndItsPromisedSize) {
   for_random_models(12, [](const ModelType& type, const Parameters& p, int level) {
-    const Mesh mesh = synthesize(type, p, level);
+    const Mesh mesh = synthesise(type, p, level);
     ASSERT_LE(mesh.size.vertex_count, 65536u);
     ASSERT_EQ(mesh.size.index_count % 3, 0u);
     ASSERT_TRUE(holds(type.bounds(p), mesh.box)) << type.name() << " level " << level;
@@ -91,7 +91,7 @@ TEST(EveryModel, OfTerrainAndRocksHasExactSizesForAMillionParameterSets) {
       ASSERT_EQ(size.vertex_count, vertices);
       ASSERT_EQ(size.triangle_count(), triangles);
       ASSERT_EQ(size.index_count, 3 * triangles);
-      if (trial % 100 == 0) synthesize(type, p, level);  // between canaries, of exactly this size
+      if (trial % 100 == 0) synthesise(type, p, level);  // between canaries, of exactly this size
     }
   }
 }
@@ -126,7 +126,7 @@ TEST(EveryModel, ListsNoLevelTwice) {
     ASSERT_GE(needed, 1);
     ASSERT_LE(needed, type.level_count());
     if (level == 0) return;
-    const Mesh mesh = synthesize(type, p, level), before = synthesize(type, p, level - 1);
+    const Mesh mesh = synthesise(type, p, level), before = synthesise(type, p, level - 1);
     if (level >= needed) {
       ASSERT_EQ(mesh.vertex_bytes, before.vertex_bytes) << type.name() << " level " << level;
       ASSERT_EQ(type.level_error_m(p, level), type.level_error_m(p, level - 1));
@@ -153,7 +153,7 @@ TEST(EveryModel, HasTheSameBytesOnEveryThreadInAnyOrder) {
     }
   }
   const auto hash = [&](const Job& job) {
-    const Mesh mesh = synthesize(registry[job.type], job.p, job.level);
+    const Mesh mesh = synthesise(registry[job.type], job.p, job.level);
     return core::combine(core::hash_bytes(mesh.vertex_bytes),
                          core::hash_bytes(std::as_bytes(std::span(mesh.indices))));
   };

@@ -35,7 +35,7 @@ struct Mesh {
   }
 };
 
-inline Mesh synthesize(const ModelType& type, const Parameters& p, int level) {
+inline Mesh synthesise(const ModelType& type, const Parameters& p, int level) {
   constexpr std::size_t kGuard = 256;
   constexpr std::byte kCanary{0xC5};
   Mesh mesh;
@@ -44,7 +44,7 @@ inline Mesh synthesize(const ModelType& type, const Parameters& p, int level) {
   const std::size_t own = mesh.size.shared_indices == 0 ? mesh.size.index_count : 0;
   std::vector<std::byte> vertices(bytes + 2 * kGuard, kCanary);
   std::vector<std::uint16_t> indices(own + 2 * kGuard, 0xC5C5);
-  mesh.box = type.synthesize(
+  mesh.box = type.synthesise(
       p, level,
       {std::span(vertices).subspan(kGuard, bytes), std::span(indices).subspan(kGuard, own)});
   for (std::size_t i = 0; i < kGuard; ++i) {

@@ -28,7 +28,7 @@ class SchemaOnly final : public ModelType {
   MeshSize mesh_size(const Parameters&, int) const override { return {}; }
   double complexity(const Parameters&, int) const override { return 1; }
   double log2_cost(const Parameters&) const override { return 0; }
-  core::Bounds synthesize(const Parameters&, int, const MeshView&) const override { return {}; }
+  core::Bounds synthesise(const Parameters&, int, const MeshView&) const override { return {}; }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {}
 
  private:

@@ -50,7 +50,7 @@ TEST(VertexCache, OrderOfIndicesOfEveryTypeSuitsIt) {
     const ModelType& type = registry[m];
     const Parameters p = default_parameters(type);
     for (int level = 0; level < type.level_count_of(p); ++level) {
-      const test::Mesh mesh = test::synthesize(type, p, level);
+      const test::Mesh mesh = test::synthesise(type, p, level);
       // Ground in tiles shades the vertices between tiles twice.
       EXPECT_LT(shaded_per_vertex(mesh.indices), 1.35) << type.name() << " level " << level;
     }

@@ -95,7 +95,7 @@ TEST_P(Falls, BodiesThatAreThrownAtTheGroundStayAboveIt) {
         const BodyState s = *scene.physics.state(id);
         ASSERT_TRUE(scene.loaded.world.contains(s.position.block));
         ASSERT_GE(s.position.local.y, scene.ground_m(s.position) - 1e-4) << round << " " << k;
-        ASSERT_LE(glm::length(s.velocity), kMostSpeed * 1.001);
+        ASSERT_LE(glm::length(s.velocity), kMaxSpeed * 1.001);
       }
     }
   }

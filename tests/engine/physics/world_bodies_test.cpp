@@ -158,7 +158,7 @@ TEST(PhysicsBodies, ArePushedByImpulsesAndTeleported) {
 }
 
 TEST(PhysicsBodies, RejectIllegalValues) {
-  Scene scene(Loaded::parsed(kBounded), {.most_bodies = 2});
+  Scene scene(Loaded::parsed(kBounded), {.max_bodies = 2});
   const BodySettings sound{.shape = ball(0.5F), .position = scene.above({1, 1}, 5, 5, 3)};
   const auto refused = [&](auto&& change) {
     BodySettings s = sound;

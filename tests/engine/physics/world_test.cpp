@@ -156,7 +156,7 @@ TEST(PhysicsWorld, RejectsStepsAndSettingsOutOfTheirRanges) {
     EXPECT_FALSE(scene.physics.step(dt));
   EXPECT_FALSE(World::create(scene.query, {.gravity = kNan}));
   EXPECT_FALSE(World::create(scene.query, {.gravity = -1}));
-  EXPECT_FALSE(World::create(scene.query, {.most_bodies = 1'000'000'000}));
+  EXPECT_FALSE(World::create(scene.query, {.max_bodies = 1'000'000'000}));
 }
 
 TEST(PhysicsWorld, LoadsTerrainInTheFirstStepAndUnloadsItWithoutActors) {

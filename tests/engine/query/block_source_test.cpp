@@ -14,7 +14,7 @@ TEST(BlockSource, HeightsAreThoseOfTheFinestMesh) {
   for (const char* name : testing::kWorldNames) {
     const Loaded loaded = Loaded::shipped(name);
     const core::BlockCoord block{(1 << 30) + 7, -3};
-    const auto mesh = models::test::synthesize(loaded.registry[loaded.world.terrain_model],
+    const auto mesh = models::test::synthesise(loaded.registry[loaded.world.terrain_model],
                                                world::terrain_parameters(loaded.world, block), 0);
     const auto vertices = mesh.vertices<core::TerrainVertex>();
     const std::vector<std::uint16_t> heights = ground_of_block(loaded.world, block);
@@ -40,7 +40,7 @@ TEST(BlockSource, StampsAndRoadsShapeTheGroundAndAreNoEdits) {
   world::World world = world::testing::shaped_world(world::testing::kShapes);
   const models::Registry& registry = world::testing::registry();
   const core::BlockCoord block{2, 2};
-  const auto mesh = models::test::synthesize(registry[world.terrain_model],
+  const auto mesh = models::test::synthesise(registry[world.terrain_model],
                                              world::terrain_parameters(world, block), 0);
   const auto vertices = mesh.vertices<core::TerrainVertex>();
   const std::vector<std::uint16_t> heights = ground_of_block(world, block);

@@ -104,12 +104,12 @@ TEST_F(Ways, AvoidGivenCircles) {
 
 TEST_F(Ways, EndAtTheNearestReachablePoint) {
   const core::WorldPosition from = dry(0, 0), to = dry(300, 0);
-  PathFinder finder(query_, {.most_cells = 200});
+  PathFinder finder(query_, {.max_cells = 200});
   const auto points = finder.find(from, to);
   ASSERT_GE(points.size(), 2U);
   EXPECT_LT(glm::length(way(points.back(), to)), glm::length(way(from, to)));
   EXPECT_FALSE(finder.reaches(from, to));
-  PathFinder none(query_, {.most_cells = 0});
+  PathFinder none(query_, {.max_cells = 0});
   EXPECT_EQ(none.find(from, to).size(), 1U);
 }
 

@@ -32,7 +32,7 @@ struct MeshGround {
   MeshGround(const Loaded& loaded, core::BlockCoord block) {
     const models::Parameters p = world::terrain_parameters(loaded.world, block);
     const models::ModelType& type = loaded.registry[loaded.world.terrain_model];
-    const auto mesh = models::test::synthesize(type, p, 0);
+    const auto mesh = models::test::synthesise(type, p, 0);
     for (const core::TerrainVertex& v : mesh.vertices<core::TerrainVertex>())
       vertices.emplace_back(v.grid_x * loaded.world.cell_m(),
                             v.height / 65535.0 * p.real(models::kTerrainReliefM),

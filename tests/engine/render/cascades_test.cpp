@@ -35,7 +35,7 @@ class Cascades : public testing::Test {
     terrain_.cell_m = 16.0F;
     wall_.range = *box;
     wall_.origin = {-10.0F, -kHeight, -500.0F};
-    wall_.box_center = {0, 12, 0};
+    wall_.box_centre = {0, 12, 0};
     wall_.box_half_extent = {3, 12, 500};
   }
   void TearDown() override {

@@ -90,17 +90,17 @@ class Landscape {
       draw.range = *fine;
       draw.origin = {place(random), -25, place(random)};
       draw.box_half_extent = glm::vec3(size(random));
-      draw.box_center = {0, draw.box_half_extent.y, 0};
+      draw.box_centre = {0, draw.box_half_extent.y, 0};
       models.push_back(draw);
     }
   }
   // A box of its own mesh, so that it has a bit of its own.
-  void add_box(glm::vec3 center, glm::vec3 half_extent, glm::vec3 albedo) {
+  void add_box(glm::vec3 centre, glm::vec3 half_extent, glm::vec3 albedo) {
     const auto range = synthetic::make_box(renderer->geometry(), albedo);
     ASSERT_TRUE(range);
     MeshDraw draw;
     draw.range = *range;
-    draw.origin = center;
+    draw.origin = centre;
     draw.box_half_extent = half_extent;
     models.push_back(draw);
   }

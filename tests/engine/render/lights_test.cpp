@@ -74,7 +74,7 @@ TEST_P(PointLights, have_a_colour_and_add_up) {
 }
 
 TEST_P(PointLights, beyond_the_most_are_ignored) {
-  std::vector<PointLight> many(kMostPointLights + 100, {{0, 1, 60}, 5, glm::vec3(1.0F)});
+  std::vector<PointLight> many(kMaxPointLights + 100, {{0, 1, 60}, 5, glm::vec3(1.0F)});
   many.back() = {{0, 1, -8}, 30, glm::vec3(20.0F)};
   EXPECT_NEAR(object_of(lit_by(many)), object_of(lit_by({})), 1.01);
   many.front() = many.back();

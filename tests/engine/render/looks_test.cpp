@@ -48,7 +48,7 @@ class Looks : public testing::Test {
     terrain_.debug_colour = 0x20C040;
     box_.range = *box;
     box_.origin = {8.0F, -42.0F, -110.0F};
-    box_.box_center = {0, 12, 0};
+    box_.box_centre = {0, 12, 0};
     box_.box_half_extent = {6, 12, 6};
     box_.debug_colour = 0xE03020;
     input_ = synthetic::look(60.0, -0.3, kPictureSize);
@@ -175,7 +175,7 @@ TEST_P(LooksOfPresets, near_leaves_of_trees_have_gaps_also_while_they_fade) {
   ASSERT_TRUE(leaf);
   box_.range = *leaf;
   box_.origin = {0.0F, -2.0F, -8.0F};
-  box_.box_center = {0, 0, 0};
+  box_.box_centre = {0, 0, 0};
   box_.box_half_extent = {3, 2, 0.01F};
   input_.models = {&box_, 1};
   const std::size_t whole = image::compare(sky, draw(), 0).pixels_over;

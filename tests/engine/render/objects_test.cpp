@@ -102,7 +102,7 @@ class Objects : public OnAPath {
 
 TEST_P(Objects, look_like_models_where_they_are_not_turned) {
   model_.box_half_extent = object_.box_half_extent = {2, 3, 1};
-  model_.box_center = object_.box_center = {0.5F, 0.25F, -1};
+  model_.box_centre = object_.box_centre = {0.5F, 0.25F, -1};
   const Picture expected = draw_models({&model_, 1});
   EXPECT_LT(difference(draw_objects({&object_, 1}), expected), 0.01);
   EXPECT_GT(difference(draw_objects({}), expected), 1);
@@ -110,12 +110,12 @@ TEST_P(Objects, look_like_models_where_they_are_not_turned) {
 
 TEST_P(Objects, are_turned_and_scaled_as_their_box_says) {
   model_.box_half_extent = {1, 3, 2};
-  model_.box_center = {0, 1, -0.5F};
+  model_.box_centre = {0, 1, -0.5F};
   const Picture expected = draw_models({&model_, 1});
   object_.rotation = about(1, std::numbers::pi_v<float> / 2);  // +z to +x, +x to -z
   object_.scale = {2, 3, 0.5F};
   object_.box_half_extent = {1, 1, 2};
-  object_.box_center = {0.25F, 1.0F / 3, 0};
+  object_.box_centre = {0.25F, 1.0F / 3, 0};
   EXPECT_LT(difference(draw_objects({&object_, 1}), expected), 0.05);
 }
 
@@ -133,7 +133,7 @@ TEST_P(Objects, with_holes_show_what_is_behind_them) {
   object_.box_half_extent = {3, 3, 1};
   object_.material = material({.base_texture = texture});
   const Picture whole = draw_objects({&object_, 1});
-  object_.material = material({.least_opacity = 0.5F, .base_texture = texture});
+  object_.material = material({.min_opacity = 0.5F, .base_texture = texture});
   const Picture holes = draw_objects({&object_, 1});
   EXPECT_GT(difference(holes, whole), 1);
   EXPECT_LT(difference(holes, draw_objects({})), 0.8 * difference(whole, draw_objects({})));
@@ -196,10 +196,10 @@ TEST_P(Objects, of_all_kinds_look_as_they_did) {
     draw.box_half_extent = {1.3F, 1.3F, 1.3F};
   objects[0].material = material({.base_colour = {1, 2, 1}});
   objects[1].material = material({.base_texture = pattern, .normal_texture = relief});
-  objects[2].material = material({.least_opacity = 0.5F, .base_texture = pattern});
+  objects[2].material = material({.min_opacity = 0.5F, .base_texture = pattern});
   objects[3].material = material({.emissive = {2, 1, 0.2F}, .emissive_texture = pattern});
   objects[4].box_half_extent = {7, 0.2F, 5};
-  objects[4].box_center = {0, -0.2F, -2};
+  objects[4].box_centre = {0, -0.2F, -2};
   input_.pose.pitch = -0.12;
   input_.pose.position.local.y = 20;
   for (ObjectDraw& draw : objects)

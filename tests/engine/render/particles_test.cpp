@@ -60,7 +60,7 @@ TEST(ParticleKinds, WithNumbersOutsideOfTheirRangesAreRefused) {
 TEST(ParticleKinds, HaveBoundedNumbersOfParticles) {
   EXPECT_EQ(particle_count({.rate = 20, .lifetime_s = 3}), 60u);
   EXPECT_EQ(particle_count({.rate = 0.01F, .lifetime_s = 3}), 1u);
-  EXPECT_EQ(particle_count({.rate = 1e9F, .lifetime_s = 1000}), kMostParticlesPerEmitter);
+  EXPECT_EQ(particle_count({.rate = 1e9F, .lifetime_s = 1000}), kMaxParticlesPerEmitter);
 }
 
 TEST(ParticleKinds, ReachAsFarAsTheFastestParticle) {
@@ -196,7 +196,7 @@ TEST_P(Particles, show_the_texture_of_their_material) {
 }
 
 TEST_P(Particles, of_many_emitters_are_bounded_and_survive_views_and_presets) {
-  std::vector<ParticleDraw> many(kMostEmitters + 50, emitter_);
+  std::vector<ParticleDraw> many(kMaxEmitters + 50, emitter_);
   for (ParticleDraw& one : many)
     one.count = 3;
   EXPECT_GT(changed(with(many), with({})), 100);

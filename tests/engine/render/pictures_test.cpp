@@ -224,7 +224,7 @@ TEST_P(Pictures, StayWithAnotherPreset) {
 }
 
 TEST_P(Pictures, RefusedOnesLeaveTheOthers) {
-  const std::vector<core::ModelPicture> many(core::kMostPictures + 1,
+  const std::vector<core::ModelPicture> many(core::kMaxPictures + 1,
                                              core::ModelPicture(core::picture_bytes()));
   const auto refused = renderer_->set_model_pictures(many);
   ASSERT_FALSE(refused);

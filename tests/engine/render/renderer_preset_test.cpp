@@ -49,7 +49,7 @@ class RendererPreset : public testing::TestWithParam<RenderPath> {
       hills.height_range_m = 80.0F;
       box.range = *cube;
       box.origin = {8.0F, -42.0F, -110.0F};
-      box.box_center = {0, 12, 0};
+      box.box_centre = {0, 12, 0};
       box.box_half_extent = {6, 12, 6};
     }
     ~Scene() {

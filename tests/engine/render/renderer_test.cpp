@@ -69,7 +69,7 @@ class RendererTest : public testing::TestWithParam<Submission> {
     MeshDraw draw;
     draw.range = *range;
     draw.origin = foot;
-    draw.box_center = {0, size_m / 2, 0};
+    draw.box_centre = {0, size_m / 2, 0};
     draw.box_half_extent = glm::vec3(size_m / 2);
     models_.push_back(draw);
   }

@@ -110,7 +110,7 @@ TEST_P(Resolutions, TextAloneAfterThemIsAsBefore) {
 }
 
 TEST_P(Resolutions, OutOfTheirRangeAreTheNearestOne) {
-  const Picture whole = picture_at(1), least = picture_at(kLeastResolution);
+  const Picture whole = picture_at(1), least = picture_at(kMinResolution);
   for (const float share : {1.5F, std::numeric_limits<float>::quiet_NaN()})
     EXPECT_EQ(picture_at(share).rgba, whole.rgba) << share;
   for (const float share : {-1.0F, 0.0F})

@@ -16,9 +16,9 @@ struct Random {
     return std::uniform_real_distribution<float>(least, greatest)(engine);
   }
   core::Bounds box() {
-    const glm::vec3 center(in(-500, 500), in(-60, 60), in(-500, 500));
+    const glm::vec3 centre(in(-500, 500), in(-60, 60), in(-500, 500));
     const glm::vec3 extent(in(0.1F, 30), in(0.1F, 30), in(0.1F, 30));
-    return {center - extent, center + extent};
+    return {centre - extent, centre + extent};
   }
 };
 
@@ -62,7 +62,7 @@ TEST(ViewVolume, puts_skirts_and_wind_into_the_boxes) {
   EXPECT_EQ(bounds_of(terrain), (core::Bounds{{10, -6, 20}, {74, 5, 84}}));
   MeshDraw mesh;
   mesh.origin = {1, 2, 3};
-  mesh.box_center = {0, 4, 0};
+  mesh.box_centre = {0, 4, 0};
   mesh.box_half_extent = {1, 4, 1};
   const core::Bounds box = bounds_of(mesh);
   EXPECT_FLOAT_EQ(box.min.y, 2.0F);

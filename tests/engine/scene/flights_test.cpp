@@ -23,7 +23,7 @@ TEST(Flights, OnThePapersWalkOneModelerIsEnoughForNoHoles) {
   gated.gate.set_open(false);
   const State& s = gated.scene->state();
   ASSERT_EQ(s.settings.modelers, 1u);
-  std::size_t holes_before = 0, made = 0, most_in_view = 0;
+  std::size_t holes_before = 0, made = 0, max_in_view = 0;
   for (int tick = 0; tick / 60.0 < path->duration_seconds(); ++tick) {
     tick_at(*gated.scene, path->pose_at(tick / 60.0, s.facts.world));
     if (tick >= kWarmupTicks) {
@@ -32,12 +32,12 @@ TEST(Flights, OnThePapersWalkOneModelerIsEnoughForNoHoles) {
       holes_before += s.counters.holes;
     }
     made += s.counters.models_synthesised;
-    most_in_view = std::max<std::size_t>(most_in_view, s.counters.nodes_in_view);
+    max_in_view = std::max<std::size_t>(max_in_view, s.counters.nodes_in_view);
     gated.make(kMeshesPerTick);
   }
   EXPECT_GT(holes_before, 0u);
   EXPECT_GT(made, 5000u);
-  EXPECT_GT(most_in_view, 300u);
+  EXPECT_GT(max_in_view, 300u);
   const synthesis::CacheStats& made_and_drawn = s.meshes.stats();
   EXPECT_GT(made_and_drawn.triangles_drawn, made_and_drawn.triangles * 7 / 10);
 }

@@ -46,10 +46,10 @@ class CountingType final : public ForwardingType {
  public:
   CountingType(std::string name, const models::ModelType& of, std::atomic<int>& made)
       : ForwardingType(std::move(name), of), made_(made) {}
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     made_ += level + 1 < level_count_of(p);
-    return of().synthesize(p, level, out);
+    return of().synthesise(p, level, out);
   }
   int level_count_of(const models::Parameters& p) const override { return of().level_count_of(p); }
   double steps(const models::Parameters& p, int level) const override {

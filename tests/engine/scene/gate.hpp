@@ -62,10 +62,10 @@ class SlowType final : public ForwardingType {
  public:
   SlowType(std::string name, const models::ModelType& fast, Gate& gate)
       : ForwardingType(std::move(name), fast), gate_(gate) {}
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     if (std::this_thread::get_id() != main_thread_) gate_.pass();
-    return of().synthesize(p, level, out);
+    return of().synthesise(p, level, out);
   }
   bool may_run_on_main_thread() const override { return of().may_run_on_main_thread(); }
 

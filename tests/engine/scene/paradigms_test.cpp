@@ -132,7 +132,7 @@ class TestRock : public ForwardingType {
 class FailingRock final : public TestRock {
  public:
   using TestRock::TestRock;
-  core::Bounds synthesize(const models::Parameters&, int, const models::MeshView&) const override {
+  core::Bounds synthesise(const models::Parameters&, int, const models::MeshView&) const override {
     throw std::runtime_error("out of stone");
   }
 };
@@ -142,10 +142,10 @@ class HangingRock final : public TestRock {
  public:
   HangingRock(const models::ModelType& rock, const std::atomic<bool>& release)
       : TestRock(rock), release_(release) {}
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     if (std::this_thread::get_id() != main_thread_ && !hung_.exchange(true)) release_.wait(false);
-    return of().synthesize(p, level, out);
+    return of().synthesise(p, level, out);
   }
 
  private:

@@ -315,11 +315,11 @@ TEST(Scene, SettlingEndsUnderAnyBudget) {
       settings.max_error_pixels = 0.5;
       settings.budget_bytes = mib << 20;
       const auto scene = make_scene(settings);
-      constexpr std::uint32_t kMostTicks = 1500;
+      constexpr std::uint32_t kMaxTicks = 1500;
       scene->settle(pose_at(256, 256), [&](std::string_view, double) {
-        return scene->state().clock.tick < kMostTicks;
+        return scene->state().clock.tick < kMaxTicks;
       });
-      EXPECT_LT(scene->state().clock.tick, kMostTicks) << mib << " MiB, levels " << levels;
+      EXPECT_LT(scene->state().clock.tick, kMaxTicks) << mib << " MiB, levels " << levels;
       const std::uint64_t evicted = scene->state().meshes.stats().evictions;
       for (int i = 0; i < 60; ++i) {
         tick_at(*scene, pose_at(256, 256));
@@ -348,7 +348,7 @@ std::map<std::uint64_t, int> check_parts(Scene& scene) {
           const MeshParts now = mesh_parts(
               core::vertices_of<core::ModelVertex>(s.memory->vertex_bytes(meshes[i].range)),
               s.memory->indices(meshes[i].range),
-              core::Bounds::around(placed[i].box_center, placed[i].box_half_extent));
+              core::Bounds::around(placed[i].box_centre, placed[i].box_half_extent));
           EXPECT_GT(parts[i].count, 0u);
           EXPECT_EQ(parts[i].count, now.count);
           EXPECT_EQ(parts[i].indices_each, now.indices_each);

@@ -171,7 +171,7 @@ TEST(Steady, LookingAroundWhatWasDrawnStaysUntilAllThatReplacesItIsThere) {
 }
 
 // Entities that can exist at most: all nodes of all windows with what stands on them.
-std::size_t most_entities(const State& s) {
+std::size_t max_entities(const State& s) {
   std::size_t most = 0;
   for (const NodeGrid& grid : s.streaming.grids)
     most += std::size_t{grid.side()} * grid.side() *
@@ -183,7 +183,7 @@ void expect_bounded(const Scene& scene) {
   const State& s = scene.state();
   expect_within_budget(scene);
   EXPECT_LE(s.meshes.outstanding(), s.settings.plan_max_requests + 64u);
-  EXPECT_LE(s.entities.size(), most_entities(s));
+  EXPECT_LE(s.entities.size(), max_entities(s));
 }
 
 // One second at 60 Hz, with modelers that keep up; then what is in view is there.

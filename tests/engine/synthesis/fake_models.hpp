@@ -46,7 +46,7 @@ class FakeModel : public models::ModelType {
     return static_cast<double>(p.integer(1) >> level);
   }
   double log2_cost(const models::Parameters&) const override { return 10; }
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     const std::uint64_t base =
         core::combine(static_cast<std::uint64_t>(p.integer(0)), static_cast<std::uint64_t>(level));
@@ -76,10 +76,10 @@ class ScriptedModel : public FakeModel {
   ScriptedModel(std::string name, Script script)
       : FakeModel(std::move(name)), script_(std::move(script)) {}
   bool may_run_on_main_thread() const override { return name() != "wild"; }
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
     script_(p, level);
-    return FakeModel::synthesize(p, level, out);
+    return FakeModel::synthesise(p, level, out);
   }
 
  private:
@@ -90,9 +90,9 @@ class ScriptedModel : public FakeModel {
 class LyingModel : public FakeModel {
  public:
   LyingModel() : FakeModel("lying") {}
-  core::Bounds synthesize(const models::Parameters& p, int level,
+  core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
-    FakeModel::synthesize(p, level, out);
+    FakeModel::synthesise(p, level, out);
     return {glm::vec3(std::numeric_limits<float>::quiet_NaN()), glm::vec3(1)};
   }
 };

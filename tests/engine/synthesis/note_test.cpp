@@ -7,7 +7,7 @@
 #include "engine/synthesis/content_hash.hpp"
 #include "engine/synthesis/landing.hpp"
 #include "engine/synthesis/synthesis_manager.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 
 namespace psygen::synthesis {
@@ -161,7 +161,7 @@ TEST_F(NoteTest, IsMadeBeforeTheMeshIsCopiedToItsDestination) {
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NE(places[i], plan[i].destination.vertices.data());
     const auto alone = HeapDestination::make(registry[kNoted], plan[i].parameters, 0);
-    ASSERT_TRUE(synthesize_guarded(registry[kNoted], plan[i].parameters, 0, alone->view()).ok);
+    ASSERT_TRUE(synthesise_guarded(registry[kNoted], plan[i].parameters, 0, alone->view()).ok);
     EXPECT_EQ(content_hash(plan[i].key, plan[i].destination),
               content_hash(plan[i].key, alone->view()));
     EXPECT_EQ(seen(done[i].note)->hash, done[i].content_hash);

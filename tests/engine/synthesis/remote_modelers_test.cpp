@@ -12,7 +12,7 @@
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/synthesis/planner.hpp"
 #include "engine/synthesis/synthesis_manager.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 
 namespace psygen::synthesis {
@@ -38,7 +38,7 @@ class MadeAtOnce final : public RemoteModelers {
     if (answers_nothing) return mesh;
     const auto place = HeapDestination::make(type, request.parameters, request.key.level).value();
     const SynthesisOutcome outcome =
-        synthesize_guarded(type, request.parameters, request.key.level, place.view());
+        synthesise_guarded(type, request.parameters, request.key.level, place.view());
     for (const std::byte byte : place.view().vertices)
       mesh.storage.push_back(byte);
     for (const std::byte byte : std::as_bytes(place.view().indices))
@@ -222,7 +222,7 @@ TEST_F(Planned, NotesAreMadeHereOfMeshesThatCame) {
     ASSERT_TRUE(record != nullptr && record->state == MeshState::kReady);
     EXPECT_EQ(std::any_cast<std::size_t>(record->note), 40 * 16 + std::size_t{c.key.index});
     const auto place = HeapDestination::make(registry_[0], parameters_[c.key.index], 0).value();
-    (void)registry_[0].synthesize(parameters_[c.key.index], 0, place.view());
+    (void)registry_[0].synthesise(parameters_[c.key.index], 0, place.view());
     EXPECT_TRUE(std::ranges::equal(memory_.vertex_bytes(record->range), place.view().vertices));
     EXPECT_TRUE(std::ranges::equal(memory_.indices(record->range), place.view().indices));
   }

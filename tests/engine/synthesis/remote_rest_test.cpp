@@ -9,7 +9,7 @@
 
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 
 namespace psygen::synthesis {
@@ -30,7 +30,7 @@ class MadeBehindAGate final : public RemoteModelers {
     if (!answers) return mesh;
     const auto place = HeapDestination::make(type, request.parameters, request.key.level).value();
     mesh.tight =
-        synthesize_guarded(type, request.parameters, request.key.level, place.view()).tight;
+        synthesise_guarded(type, request.parameters, request.key.level, place.view()).tight;
     std::ranges::copy(place.view().vertices, std::back_inserter(mesh.storage));
     std::ranges::copy(std::as_bytes(place.view().indices), std::back_inserter(mesh.storage));
     mesh.answer = RemoteMesh::Answer::kMade;

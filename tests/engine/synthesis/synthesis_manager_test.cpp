@@ -9,7 +9,7 @@
 #include <map>
 
 #include "engine/synthesis/content_hash.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 #include "tests/faults.hpp"
 
@@ -82,7 +82,7 @@ TEST(SynthesisManager, OneToEightModelersAndAnyOrderMakeTheSameWorld) {
   const std::vector<Request> plan = jobs.make_many(0, 200);
   WorldHash serial;
   for (const Request& r : plan) {
-    ASSERT_TRUE(synthesize_guarded(registry[0], r.parameters, r.key.level, r.destination).ok);
+    ASSERT_TRUE(synthesise_guarded(registry[0], r.parameters, r.key.level, r.destination).ok);
     serial.add(content_hash(r.key, r.destination));
   }
   core::RandomStream random(3, 0, 0, 0, core::Purpose::kParameters);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/synthesis/synthesis_manager.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 
 namespace psygen::synthesis {

@@ -29,7 +29,7 @@ TEST(Heightmap, HasTheHeightsOfTheGroundWhereTheyAre) {
   const auto png = image::read_grey(folder / "heights.png");
   ASSERT_TRUE(png) << png.error().message;
   const double black = json["height_of_black_m"], white = json["height_of_white_m"];
-  EXPECT_EQ(black, report->least_m);
+  EXPECT_EQ(black, report->min_m);
   for (const auto& [x, z] : {std::pair{0, 0}, {96, 64}, {32, 5}, {50, 40}, {96, 0}}) {
     const core::BlockCoord block{2 + std::min(x / 32, 2), 1 + std::min(z / 32, 1)};
     const double height =

@@ -154,7 +154,7 @@ TEST(Mask, FarModelsAgreeWithNearOnes) {
     const models::MeshSize size = merged.mesh_size(p, 0);
     std::vector<std::byte> vertices(size.vertex_count * sizeof(core::ModelVertex));
     std::vector<std::uint16_t> indices(size.index_count);
-    const core::Bounds tight = merged.synthesize(p, 0, {vertices, indices});
+    const core::Bounds tight = merged.synthesise(p, 0, {vertices, indices});
     return glm::vec2(tight.min.x, tight.max.x);
   };
   const auto merged = make_merged_type(world, registry());

@@ -80,7 +80,7 @@ TEST(Places, EveryModelTypeCanBePlaced) {
         parsed(std::string(kSmallWorld) + "[[place]]\nmodel = \"" + name + "\"\nat_m = [10, 10]\n");
     const auto placed = placed_on(world, {0, 0});
     ASSERT_EQ(placed.size(), 1U) << name;
-    const auto mesh = models::test::synthesize(registry()[i], placed[0].parameters, 0);
+    const auto mesh = models::test::synthesise(registry()[i], placed[0].parameters, 0);
     EXPECT_FALSE(mesh.vertex_bytes.empty()) << name;
   }
 }
@@ -116,7 +116,7 @@ TEST(Places, AreInMergedModelsAndTheirIdentity) {
   const auto make = [](const std::shared_ptr<const World>& world, core::BlockCoord node) {
     const auto merged = make_merged_type(world, registry());
     const models::Parameters p = merged_parameters(*world, node, 1);
-    const auto mesh = models::test::synthesize(*merged, p, 0);
+    const auto mesh = models::test::synthesise(*merged, p, 0);
     const core::Bounds box = merged->bounds(p);
     EXPECT_LE(mesh.box.max.y, box.max.y);
     return mesh.box;

@@ -60,7 +60,7 @@ TEST(RecordedPath, JumpsWhereTheCameraLeapt) {
   const CameraPath path = recorded_path("leap", poses, world);
   EXPECT_TRUE(path.points()[20].jump);
   EXPECT_FALSE(path.points()[19].jump || path.points()[21].jump);
-  EXPECT_EQ(path.points()[5].height_m, CameraPath::kLeastHeightM);
+  EXPECT_EQ(path.points()[5].height_m, CameraPath::kMinHeightM);
   EXPECT_TRUE(parse_camera_path(write_camera_path(path), "p.toml"));
 }
 

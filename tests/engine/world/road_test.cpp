@@ -127,7 +127,7 @@ TEST(Road, IsMarkedInTheGround) {
   const models::ModelType& terrain = registry()[world.terrain_model];
   for (int level = 0; level < 3; ++level) {
     const auto vertices =
-        models::test::synthesize(terrain, terrain_parameters(world, {0, 0}, level), 0)
+        models::test::synthesise(terrain, terrain_parameters(world, {0, 0}, level), 0)
             .vertices<core::TerrainVertex>();
     const int step_m = 2 << level;
     for (int k = 0; k < 33; ++k) {

@@ -35,7 +35,7 @@ TEST(ShapedGround, IsTheSameInEveryNodeThatHasAVertex) {
   const World base = parsed(kSmallWorld);
   const auto heights = [&](const World& of, core::BlockCoord node, int level) {
     std::vector<int> values;
-    for (const auto& v : models::test::synthesize(terrain, terrain_parameters(of, node, level), 0)
+    for (const auto& v : models::test::synthesise(terrain, terrain_parameters(of, node, level), 0)
                              .vertices<core::TerrainVertex>())
       values.push_back(v.height);
     return values;
@@ -153,7 +153,7 @@ TEST(ShapedGround, MergedModelsAreOnItAndNotOnRoads) {
   const auto make = [&](const World& world) {
     const auto merged = make_merged_type(std::make_shared<const World>(world), registry());
     const models::Parameters p = merged_parameters(world, {0, 0}, 1);
-    return models::test::synthesize(*merged, p, 0);
+    return models::test::synthesise(*merged, p, 0);
   };
   const auto plain = make(parsed(many)), shaped = make(*read_shaped_world(tables, many));
   EXPECT_LT(shaped.box.max.y, plain.box.max.y + 30);

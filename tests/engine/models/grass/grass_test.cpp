@@ -15,7 +15,7 @@ namespace {
 using core::ModelVertex;
 using test::Mesh;
 using test::random_parameters;
-using test::synthesize;
+using test::synthesise;
 using ::testing::HasSubstr;
 
 class Grass : public ::testing::Test {
@@ -51,7 +51,7 @@ TEST_F(Grass, HasExactSizesForAnyParameters) {
     EXPECT_EQ(type->mesh_size(p, 3).triangle_count(), (blades + 8) / 9 + (flowers + 8) / 9);
     if (trial % 200 != 0) continue;
     for (int level = 0; level < type->level_count(); ++level)
-      synthesize(*type, p, level);  // between canaries, of exactly this size
+      synthesise(*type, p, level);  // between canaries, of exactly this size
   }
 }
 
@@ -69,7 +69,7 @@ TEST_F(Grass, StaysWithinItsBoundsAtTheCornersOfItsRanges) {
     p.set_integer(kGrassSeed, corner);
     const core::Bounds box = type->bounds(p);
     for (int level = 0; level < type->level_count(); ++level) {
-      const core::Bounds tight = synthesize(*type, p, level).box;
+      const core::Bounds tight = synthesise(*type, p, level).box;
       ASSERT_TRUE(glm::all(glm::lessThanEqual(box.min, tight.min)) &&
                   glm::all(glm::lessThanEqual(tight.max, box.max)))
           << "corner " << corner << " level " << level;
@@ -82,7 +82,7 @@ TEST_F(Grass, GrowsUpOutOfSlopingGround) {
   p.set_real(kGrassSlopeX, 0.5);
   p.set_real(kGrassSlopeZ, -0.3);
   const auto above_ground = [](const glm::vec3& at) { return at.y - 0.5F * at.x + 0.3F * at.z; };
-  const Mesh mesh = synthesize(*type, p, 0);
+  const Mesh mesh = synthesise(*type, p, 0);
   const std::vector<glm::vec3> at = places(p, mesh);
   const std::vector<ModelVertex> vertices = mesh.vertices<ModelVertex>();
   for (std::size_t i = 0; i < at.size(); i += 5) {
@@ -114,9 +114,9 @@ float area(const std::vector<glm::vec3>& at, const Mesh& mesh) {
 TEST_F(Grass, CoversAboutAsMuchAtEveryLevel) {
   for (int seed = 0; seed < 8; ++seed) {
     const Parameters p = patch(seed, 270);
-    const Mesh full = synthesize(*type, p, 0);
+    const Mesh full = synthesise(*type, p, 0);
     for (int level = 1; level < type->level_count(); ++level) {
-      const Mesh mesh = synthesize(*type, p, level);
+      const Mesh mesh = synthesise(*type, p, level);
       EXPECT_NEAR(area(places(p, mesh), mesh) / area(places(p, full), full), 1, 0.25)
           << "level " << level;
     }
@@ -129,9 +129,9 @@ TEST_F(Grass, DeviatesByTheErrorOfItsLevel) {
   for (int trial = 0; trial < 12; ++trial) {
     Parameters p = random_parameters(*type, random);
     p.set_integer(kGrassFlowers, 0);
-    const std::vector<glm::vec3> full = places(p, synthesize(*type, p, 0));
+    const std::vector<glm::vec3> full = places(p, synthesise(*type, p, 0));
     for (int level = 1; level < type->level_count(); ++level) {
-      const Mesh mesh = synthesize(*type, p, level);
+      const Mesh mesh = synthesise(*type, p, level);
       const std::vector<glm::vec3> at = places(p, mesh);
       std::vector<glm::vec3> points;
       for (std::size_t i = 0; i < at.size(); i += 3) {
@@ -163,17 +163,17 @@ TEST_F(Grass, WithFewBladesHasFewLevels) {
   EXPECT_EQ(type->level_count_of(patch(1, 4)), 4);
   EXPECT_EQ(type->level_count_of(patch(1, 1, 9)), 4);
   const Parameters one = patch(5, 1, 1);
-  EXPECT_EQ(synthesize(*type, one, 1).vertex_bytes, synthesize(*type, one, 3).vertex_bytes);
+  EXPECT_EQ(synthesise(*type, one, 1).vertex_bytes, synthesise(*type, one, 3).vertex_bytes);
   EXPECT_EQ(type->level_error_m(one, 1), type->level_error_m(one, 3));
 }
 
 TEST_F(Grass, HasTheSameBytesEveryTimeAndOthersForEverySeed) {
   const Parameters p = patch(-42, 150, 12);
   for (int level = 0; level < type->level_count(); ++level) {
-    const Mesh a = synthesize(*type, p, level), b = synthesize(*type, p, level);
+    const Mesh a = synthesise(*type, p, level), b = synthesise(*type, p, level);
     EXPECT_EQ(a.vertex_bytes, b.vertex_bytes);
     EXPECT_EQ(a.indices, b.indices);
-    EXPECT_NE(a.vertex_bytes, synthesize(*type, patch(-43, 150, 12), level).vertex_bytes);
+    EXPECT_NE(a.vertex_bytes, synthesise(*type, patch(-43, 150, 12), level).vertex_bytes);
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 void expect_as_oracle(const ModelType& type, const Parameters& p, int level) {
   const auto expected = test::GrassOracle(p).mesh(level);
-  const auto vertices = test::synthesize(type, p, level).vertices<core::ModelVertex>();
+  const auto vertices = test::synthesise(type, p, level).vertices<core::ModelVertex>();
   ASSERT_EQ(vertices.size(), expected.size());
   const core::Bounds box = type.bounds(p);
   // Half a step of the packing, and single precision over the size of the patch.

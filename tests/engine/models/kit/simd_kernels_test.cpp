@@ -49,10 +49,10 @@ class SimdKernels : public ::testing::Test {
   void expect_same_bytes(const ModelType& type, const Parameters& p) {
     for (int level = 0; level < type.level_count(); ++level) {
       pin_simd_target(simd_targets().front());
-      const test::Mesh best = test::synthesize(type, p, level);
+      const test::Mesh best = test::synthesise(type, p, level);
       for (const std::string_view target : simd_targets()) {
         pin_simd_target(target);
-        const test::Mesh mesh = test::synthesize(type, p, level);
+        const test::Mesh mesh = test::synthesise(type, p, level);
         ASSERT_EQ(mesh.vertex_bytes, best.vertex_bytes) << target << " level " << level;
         ASSERT_EQ(mesh.box.min, best.box.min) << target << " level " << level;
         ASSERT_EQ(mesh.box.max, best.box.max) << target << " level " << level;
@@ -139,9 +139,9 @@ TEST_F(SimdKernels, OfTerrainMeshesWriteOnlyTheirRangeAtAnyAddressOnEveryTarget)
     const auto at = static_cast<std::size_t>(kGuard + trial);
     for (const std::string_view target : simd_targets()) {
       pin_simd_target(target);
-      const auto expected = test::synthesize(*type, p, level).vertex_bytes;
+      const auto expected = test::synthesise(*type, p, level).vertex_bytes;
       std::vector<std::byte> memory(at + bytes + kGuard, std::byte{0xA5});
-      type->synthesize(p, level, {std::span(memory).subspan(at, bytes), {}});
+      type->synthesise(p, level, {std::span(memory).subspan(at, bytes), {}});
       ASSERT_TRUE(std::equal(expected.begin(), expected.end(), memory.begin() + at)) << target;
       for (std::size_t i = 0; i < memory.size(); ++i)
         ASSERT_TRUE((i >= at && i < at + bytes) || memory[i] == std::byte{0xA5}) << target;
@@ -177,7 +177,7 @@ TEST_F(SimdKernels, OfRocksPlaceVerticesAsTheOracleOnEveryTarget) {
       p.set_integer(kRockFamily, trial % kRockFamilyCount);
       const test::RockOracle oracle = test::rock_oracle(p);
       const core::Bounds box = type->bounds(p);
-      const test::Mesh mesh = test::synthesize(*type, p, 0);
+      const test::Mesh mesh = test::synthesise(*type, p, 0);
       const auto vertices = mesh.vertices<core::ModelVertex>();
       const glm::vec3 tolerance =
           box.half_extent() / 60000.0F + static_cast<float>(1e-5 * oracle.radius);

@@ -45,12 +45,12 @@ class FoliageOracle : public BranchOracle {
     for (const Branch& b : bearers(grow(16)))
       ends.push_back(b.at(1));
     const double n = static_cast<double>(ends.size());
-    center_ = glm::dvec3(0);
+    centre_ = glm::dvec3(0);
     for (const glm::dvec3& e : ends)
-      center_ += e / n;
+      centre_ += e / n;
     double across = 0, up = 0;
     for (const glm::dvec3& e : ends) {
-      const glm::dvec3 v = e - center_;
+      const glm::dvec3 v = e - centre_;
       across += (v.x * v.x + v.z * v.z) / (2 * n);
       up += v.y * v.y / n;
     }
@@ -61,7 +61,7 @@ class FoliageOracle : public BranchOracle {
 
   // Of the sky, at a place in or about the crown.
   double ambient(const glm::dvec3& place) const {
-    const glm::dvec3 q = (place - center_) / half_;
+    const glm::dvec3 q = (place - centre_) / half_;
     return (0.3 + 0.7 * std::min(glm::dot(q, q), 1.44) / 1.44) *
            std::clamp(0.8 + 0.2 * q.y, 0.6, 1.0);
   }
@@ -107,7 +107,7 @@ class FoliageOracle : public BranchOracle {
     const double cluster = d(f.cluster) * crown_radius_ * std::min(2.1 / std::sqrt(m), 0.6);
     const glm::dvec3 o{whole(h[0]), whole(h[0] >> 16), whole(h[1])};
     const glm::dvec3 random{whole(h[2]), whole(h[2] >> 16), whole(h[3])};
-    glm::dvec3 place = pull * (on.at(t) - center_ + cluster * (1 - 0.2 * glm::dot(o, o)) * o);
+    glm::dvec3 place = pull * (on.at(t) - centre_ + cluster * (1 - 0.2 * glm::dot(o, o)) * o);
     const glm::dvec3 out = crown_radius_ * place / (half_ * half_);
     const glm::dvec3 along = glm::normalize(on.direction + 2 * t * on.bend);
     const glm::dvec3 axis = glm::normalize(d(f.random) * o + d(f.out) * out + d(f.branch) * along +
@@ -117,10 +117,10 @@ class FoliageOracle : public BranchOracle {
     const glm::dvec3 face = glm::cross(axis, side);
     const glm::dvec3 normal = glm::normalize(out + 0.3 * axis + glm::dvec3{0, d(f.normal_up), 0});
     std::array<std::uint32_t, 2> numbers{};  // of the looks of corner 0 and of the others
-    if (with_looks_) numbers = spray_looks(center_ + place, h[3], h[4]);
+    if (with_looks_) numbers = spray_looks(centre_ + place, h[3], h[4]);
     const glm::dvec3 limit = room - 1.3 * length;
-    place = glm::clamp(place + center_ - glm::dvec3(p_.bounds.center()), -limit, limit) +
-            glm::dvec3(p_.bounds.center());
+    place = glm::clamp(place + centre_ - glm::dvec3(p_.bounds.centre()), -limit, limit) +
+            glm::dvec3(p_.bounds.centre());
     std::vector<Vertex> result;
     for (std::uint32_t c = 0; c < form.vertices; ++c)
       result.push_back({place + length * ((d(form.along[c]) - 0.45) * axis +
@@ -157,7 +157,7 @@ class FoliageOracle : public BranchOracle {
       double sum = 0, weights = 0;
       for (const glm::dvec3& e : ends) {
         const double up = 0.5 + 0.5 * (e.y - middle) / half, w = std::pow(upper ? up : 1 - up, 4);
-        sum += w * (std::pow(e.x - center_.x, 2) + std::pow(e.z - center_.z, 2));
+        sum += w * (std::pow(e.x - centre_.x, 2) + std::pow(e.z - centre_.z, 2));
         weights += w;
       }
       return leaves + 1.25 * std::sqrt(sum / weights);
@@ -165,7 +165,7 @@ class FoliageOracle : public BranchOracle {
     const double upper = radius(true), lower = radius(false);
     auto add = [&, k = 0U](const glm::dvec3& place, const glm::dvec3& corner) mutable {
       const std::uint32_t h = number(p_.key, 16 + k++);
-      const glm::dvec3 at = glm::dvec3(center_.x, middle, center_.z) +
+      const glm::dvec3 at = glm::dvec3(centre_.x, middle, centre_.z) +
                             d(p_.foliage.hull) * (0.85 + 0.3 * low(h)) * place;
       const double hue = own_hue() + 0.1 * d(p_.colour_variation) * (high(h) - 0.5);
       const Look seen{{},
@@ -198,7 +198,7 @@ class FoliageOracle : public BranchOracle {
 
   bool with_looks_;
   std::vector<Look> looks_;
-  glm::dvec3 center_{0}, half_{1};
+  glm::dvec3 centre_{0}, half_{1};
   double crown_radius_ = 1;
 };
 

@@ -56,8 +56,8 @@ class TreeOracle : public FoliageOracle {
       const glm::dvec3 o = corner(side, 3, {1, 0, 0}, {0, 0, 1});
       vertices_.push_back({from + r * o, o, false, foot});
     }
-    const std::uint32_t tip = look({{}, colour, ambient(center_), 100.0 / 255});
-    vertices_.push_back({center_, {0, 1, 0}, false, tip});
+    const std::uint32_t tip = look({{}, colour, ambient(centre_), 100.0 / 255});
+    vertices_.push_back({centre_, {0, 1, 0}, false, tip});
   }
 
   // ---- Bark ----

@@ -30,7 +30,7 @@ class RockLook : public ::testing::Test {
     for (const std::string_view target : simd_targets()) {
       SCOPED_TRACE(target);
       pin_simd_target(target);
-      const test::Mesh mesh = test::synthesize(*type, p, level);
+      const test::Mesh mesh = test::synthesise(*type, p, level);
       const auto vertices = mesh.vertices<core::ModelVertex>();
       ASSERT_EQ(mesh.indices.size(), expected.size());
       for (std::size_t i = 0; i < expected.size(); ++i)

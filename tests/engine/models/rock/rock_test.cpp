@@ -16,7 +16,7 @@ namespace {
 
 using core::ModelVertex;
 using test::Mesh;
-using test::synthesize;
+using test::synthesise;
 
 class Rock : public ::testing::Test {
  protected:
@@ -73,7 +73,7 @@ TEST_F(Rock, PositionsEqualTheOracle) {
     p.set_integer(kRockFamily, trial % kRockFamilyCount);
     const test::RockOracle oracle = test::rock_oracle(p);
     const core::Bounds box = type->bounds(p);
-    const Mesh mesh = synthesize(*type, p, 0);
+    const Mesh mesh = synthesise(*type, p, 0);
     const auto vertices = mesh.vertices<ModelVertex>();
     ASSERT_EQ(mesh.indices.size(), oracle.triangles.size() * 3);
     const glm::vec3 tolerance =
@@ -95,7 +95,7 @@ TEST_F(Rock, SharedVerticesHaveTheMeanNormalOfTheirTriangles) {
     p.set_integer(kRockFamily, trial % 2 == 0 ? kRockRounded : kRockLayered);
     const test::RockOracle oracle = test::rock_oracle(p);
     const auto expected = oracle.normals();
-    const auto vertices = synthesize(*type, p, 0).vertices<ModelVertex>();
+    const auto vertices = synthesise(*type, p, 0).vertices<ModelVertex>();
     ASSERT_EQ(vertices.size(), expected.size());
     for (std::size_t v = 0; v < vertices.size(); ++v) {
       const glm::vec3 normal =
@@ -113,7 +113,7 @@ TEST_F(Rock, IsWatertightAndFacesAwayFromItsCentreForLegalParameters) {
         rock(static_cast<std::int64_t>(random.next_u64()), trial % 4,
              extreme ? 0.6 : random.next_real(0, 0.6), extreme ? 1.0 : random.next_real(0, 1));
     p.set_integer(kRockFamily, trial / 4 % kRockFamilyCount);
-    const Mesh mesh = synthesize(*type, p, 0);
+    const Mesh mesh = synthesise(*type, p, 0);
     const auto v = mesh.vertices<ModelVertex>();
     EXPECT_TRUE(test::is_watertight(mesh.indices, [&](std::uint16_t i) { return place(v[i]); }));
     test::RockOracle oracle{.seed = static_cast<std::uint64_t>(p.integer(kRockSeed))};
@@ -145,7 +145,7 @@ TEST_F(Rock, LevelsKeepThePositionsOfTheirCorners) {
     std::set<std::uint64_t> finer;
     for (int level = 0; level < 4; ++level) {
       std::set<std::uint64_t> places;
-      for (const ModelVertex& v : synthesize(*type, p, level).vertices<ModelVertex>())
+      for (const ModelVertex& v : synthesise(*type, p, level).vertices<ModelVertex>())
         places.insert(place(v));
       EXPECT_EQ(places.size(), rock_vertices(3 - level));
       if (level > 0) {
@@ -163,7 +163,7 @@ TEST_F(Rock, FamiliesDifferInShadingShapeAndColour) {
       Parameters p = rock(seed, 3, 0.24, 0.55);
       p.set_integer(kRockFamily, family);
       p.set_real(kRockMoss, 0);
-      const Mesh mesh = synthesize(*type, p, 0);
+      const Mesh mesh = synthesise(*type, p, 0);
       const auto v = mesh.vertices<ModelVertex>();
       const core::Bounds box = type->bounds(p);
       const auto index = static_cast<std::size_t>(family);
@@ -214,7 +214,7 @@ TEST_F(Rock, SharesOneIndexListPerSubdivisionAndShading) {
 TEST_F(Rock, StartsInTheGroundAndIsDarkerBelow) {
   for (int seed = 0; seed < 20; ++seed) {
     const Parameters p = rock(seed, 2, 0.24, 0.55);
-    const Mesh mesh = synthesize(*type, p, 0);
+    const Mesh mesh = synthesise(*type, p, 0);
     EXPECT_LT(mesh.box.min.y, 0);
     EXPECT_GT(mesh.box.max.y, -mesh.box.min.y);
     int lowest = 255, highest = 0;
@@ -244,7 +244,7 @@ TEST_F(Rock, ColliderHoldsItsMeshUpToASmallError) {
       const double error_m = subdivisions <= 2 ? 1e-3 : 0.15 * p.real(kRockRadiusM);
       // No corner of the whole mesh stands out of the hull further than that, as seen along the
       // line from its foot.
-      const Mesh mesh = synthesize(*type, p, 0);
+      const Mesh mesh = synthesise(*type, p, 0);
       for (const ModelVertex& v : mesh.vertices<ModelVertex>()) {
         const glm::vec3 at = unpack_position(v, type->bounds(p));
         double support = -1e9;

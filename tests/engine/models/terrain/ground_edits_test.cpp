@@ -15,7 +15,7 @@ namespace psygen::models {
 namespace {
 
 using core::TerrainVertex;
-using test::synthesize;
+using test::synthesise;
 
 constexpr double kBlockM = 63;
 
@@ -87,7 +87,7 @@ class EditedTerrain : public ::testing::Test {
     return layer.ground.hash_of({QuadPlace::kMaxLevel, 0, 0}, 0, kBlockM);
   }
   std::vector<TerrainVertex> vertices(const Parameters& p, int mesh_level) const {
-    return synthesize(*type, p, mesh_level).vertices<TerrainVertex>();
+    return synthesise(*type, p, mesh_level).vertices<TerrainVertex>();
   }
 };
 
@@ -183,8 +183,8 @@ TEST_F(EditedTerrain, EditsOutsideTheHashChangeNoBitOfAMesh) {
     Parameters forced = p;
     forced.set_edits(&layer, 1);
     const int mesh_level = static_cast<int>(random() % 3);
-    const auto base = synthesize(*type, node(x, z, level, false), mesh_level);
-    const auto edited = synthesize(*type, forced, mesh_level);
+    const auto base = synthesise(*type, node(x, z, level, false), mesh_level);
+    const auto edited = synthesise(*type, forced, mesh_level);
     if (p.edits_hash() == 0) {
       EXPECT_TRUE(base.vertex_bytes == edited.vertex_bytes) << round;
       ++untouched;
@@ -306,12 +306,12 @@ TEST_F(EditedTerrain, EditsOfTwoBlocksWithTheSameIdAreTwoEdits) {
 
 TEST_F(EditedTerrain, SealingRecordsTheLargestHeightChangeOfAnEdit) {
   GroundEdit dug = raised({{0, 0}, {31, 0, 31}}, 10, -7);
-  EXPECT_EQ(add(dug).most_m, 7);
+  EXPECT_EQ(add(dug).max_m, 7);
   dug.change = GroundChange::kStampAdd;
   dug.map = std::make_shared<Heightmap>(Heightmap{2, 2, {1, -9, 3, 4}});
-  EXPECT_EQ(add(dug).most_m, 9);
+  EXPECT_EQ(add(dug).max_m, 9);
   dug.change = GroundChange::kStampSet;
-  EXPECT_GT(add(dug).most_m, 1e6);
+  EXPECT_GT(add(dug).max_m, 1e6);
 }
 
 TEST_F(EditedTerrain, ThePredictedStepsCountTheHeightsThatEditsChange) {
@@ -365,7 +365,7 @@ TEST_F(EditedTerrain, NoMeshDeviatesFromTheGroundByMoreThanItsError) {
 }
 
 TEST_F(EditedTerrain, TooManyOverlappingEditsAreRejectedAndChangeNothing) {
-  for (std::size_t i = 0; i < GroundEdits::kMostTogether; ++i)
+  for (std::size_t i = 0; i < GroundEdits::kMaxTogether; ++i)
     add(raised({{0, 0}, {31, 0, 31}}, 5, 0.01));
   const std::uint64_t hash = hash_of_all();
   GroundEdit more = raised({{0, 0}, {31, 0, 31}}, 5, 0.01);

@@ -24,7 +24,7 @@ TEST_F(Ground, EqualsTheMeshAtItsVerticesAndThePlanesBetween) {
   p.set_integer(kTerrainBlockX, block.x);
   p.set_integer(kTerrainBlockZ, block.z);
   p.set_real(kTerrainCellM, 1.5);
-  const auto mesh = test::synthesize(*type, p, 0).vertices<core::TerrainVertex>();
+  const auto mesh = test::synthesise(*type, p, 0).vertices<core::TerrainVertex>();
   const auto height = [&](std::size_t x, std::size_t z) {
     return mesh[z * 64 + x].height / 65535.0 * p.real(kTerrainReliefM);
   };
@@ -112,7 +112,7 @@ TEST_F(Ground, OfABlockOrMeshHasTheBitsOfSinglePointsOnEveryTargetAnywhere) {
       pin_simd_target(target);
       p.set_integer(kTerrainBlockX, block.x);
       p.set_integer(kTerrainBlockZ, block.z);
-      const test::Mesh mesh = test::synthesize(*type, p, 0);
+      const test::Mesh mesh = test::synthesise(*type, p, 0);
       const BlockGround whole(p, block, 1000), single(p, block, 0),
           drawn(p, block, mesh.vertex_bytes);
       for (const glm::dvec2& point : points) {

@@ -35,7 +35,7 @@ class Light : public ::testing::Test {
     return p;
   }
   std::vector<TerrainVertex> surface(const Parameters& p, int level) const {
-    auto mesh = test::synthesize(*type, p, level).vertices<TerrainVertex>();
+    auto mesh = test::synthesise(*type, p, level).vertices<TerrainVertex>();
     mesh.resize(TerrainGrid(static_cast<int>(p.integer(kTerrainSize)), level).surface_vertices());
     return mesh;
   }

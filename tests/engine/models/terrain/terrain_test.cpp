@@ -18,7 +18,7 @@ namespace {
 using core::TerrainVertex;
 using test::kFar;
 using test::Mesh;
-using test::synthesize;
+using test::synthesise;
 
 class Terrain : public ::testing::Test {
  protected:
@@ -32,7 +32,7 @@ class Terrain : public ::testing::Test {
     return p;
   }
   std::vector<TerrainVertex> vertices(const Parameters& p, int level) const {
-    return synthesize(*type, p, level).vertices<TerrainVertex>();
+    return synthesise(*type, p, level).vertices<TerrainVertex>();
   }
 };
 
@@ -274,7 +274,7 @@ TEST_F(Terrain, NormalsFollowTheSlopesAndPointUp) {
 TEST_F(Terrain, WithItsSkirtsFacesUpAndOutwards) {
   for (int level = 0; level < 4; ++level) {
     const TerrainGrid grid(64, level);
-    const Mesh mesh = synthesize(*type, paper, level);
+    const Mesh mesh = synthesise(*type, paper, level);
     const auto v = mesh.vertices<TerrainVertex>();
     const auto place = [&](std::uint16_t i) {
       const bool skirt = (v[i].grid_x & core::kTerrainSkirtBit) != 0;

@@ -94,7 +94,7 @@ TEST(TreeOracle, MakesEveryVertexOfEveryLevelTheSameOnEveryInstructionSet) {
       const TreePlan plan = plan_of_tree(p);
       TreeOracle oracle(plan, true);
       for (int level = 0; level < type->level_count(); ++level) {
-        const test::Mesh mesh = test::synthesize(*type, p, level);
+        const test::Mesh mesh = test::synthesise(*type, p, level);
         ASSERT_NO_FATAL_FAILURE(
             expect_as_oracle(oracle, oracle.mesh(level), type->bounds(p), mesh, level));
       }
@@ -109,7 +109,7 @@ TEST(TreeTargets, GiveTheSameBytes) {
     std::vector<std::uint64_t> found;
     for (int i = 0; i < 60; ++i) {
       for (int level = 0; level < type->level_count(); ++level) {
-        const test::Mesh mesh = test::synthesize(*type, tree(*type, i), level);
+        const test::Mesh mesh = test::synthesise(*type, tree(*type, i), level);
         found.push_back(core::combine(core::hash_bytes(mesh.vertex_bytes),
                                       core::hash_bytes(std::as_bytes(std::span(mesh.indices)))));
       }

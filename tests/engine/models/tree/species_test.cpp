@@ -89,7 +89,7 @@ TEST(Species, HasExactSizesForRandomGrammarsAndSeeds) {
       Parameters p = default_parameters(*type);
       p.set_integer(kSpeciesSeed, static_cast<std::int64_t>(random.next_u64()));
       for (int level = 0; level < type->level_count(); ++level) {
-        const test::Mesh mesh = test::synthesize(*type, p, level);  // checks canaries
+        const test::Mesh mesh = test::synthesise(*type, p, level);  // checks canaries
         ASSERT_LE(mesh.size.vertex_count, 65536U);
         ASSERT_LE(std::log2(mesh.size.triangle_count()), type->log2_cost(p));
         for (const std::uint16_t index : mesh.indices)
@@ -119,7 +119,7 @@ TEST(Species, MeetsTheOracleOnEveryInstructionSet) {
       test::TreeOracle oracle(plan, true);
       for (int level = 0; level < type->level_count(); ++level) {
         SCOPED_TRACE(target);
-        const test::Mesh mesh = test::synthesize(*type, p, level);
+        const test::Mesh mesh = test::synthesise(*type, p, level);
         ASSERT_NO_FATAL_FAILURE(
             expect_as_oracle(oracle, oracle.mesh(level), plan.bounds, mesh, level));
       }
@@ -167,7 +167,7 @@ TEST(Species, ShedsLeavesOfTheSameSizeWithTheSeason) {
               type->mesh_size(at(1), level).vertex_count);
     EXPECT_LT(type->mesh_size(at(3), level).vertex_count,
               type->mesh_size(at(2.5), level).vertex_count);
-    test::synthesize(*type, at(3), level);
+    test::synthesise(*type, at(3), level);
   }
 }
 
@@ -175,8 +175,8 @@ TEST(Species, ChangesColourButNotShapeWithTheSeason) {
   const auto type = make_species_type(small_species()).value();
   Parameters summer = default_parameters(*type), autumn = summer;
   autumn.set_real(kSpeciesSeason, 2);
-  const auto a = test::synthesize(*type, summer, 0).vertices<core::ModelVertex>();
-  const auto b = test::synthesize(*type, autumn, 0).vertices<core::ModelVertex>();
+  const auto a = test::synthesise(*type, summer, 0).vertices<core::ModelVertex>();
+  const auto b = test::synthesise(*type, autumn, 0).vertices<core::ModelVertex>();
   ASSERT_EQ(a.size(), b.size());
   int redder = 0, leaves = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -239,7 +239,7 @@ TEST(Tree, PredictsTheSizeOfAMillionTrees) {
         vertices[bytes - sizeof(core::ModelVertex) + offsetof(core::ModelVertex, material)];
     last_material = std::byte{0xC5};
     indices[size.index_count - 1] = 0xC5C5;
-    type->synthesize(
+    type->synthesise(
         p, level, {std::span(vertices).first(bytes), std::span(indices).first(size.index_count)});
     ASSERT_EQ(vertices[bytes], std::byte{0xC5});
     ASSERT_EQ(indices[size.index_count], 0xC5C5);

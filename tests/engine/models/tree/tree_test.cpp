@@ -64,7 +64,7 @@ TEST(Tree, WritesExactlyTheSizesThatItPredictsForAnyLegalParameters) {
     const Parameters p =
         i % 2 == 0 ? test::random_parameters(*type, random) : anything_legal(*type, random);
     for (int level = 0; level < type->level_count(); ++level) {
-      const Mesh mesh = test::synthesize(*type, p, level);  // checks canaries around the mesh
+      const Mesh mesh = test::synthesise(*type, p, level);  // checks canaries around the mesh
       ASSERT_LE(mesh.size.vertex_count, 65536U);
       ASSERT_EQ(mesh.size.index_count % 3, 0U);
       for (const std::uint16_t index : mesh.indices)
@@ -76,7 +76,7 @@ TEST(Tree, WritesExactlyTheSizesThatItPredictsForAnyLegalParameters) {
 TEST(Tree, UsesEveryVertexAndRepeatsNoneWithinATriangle) {
   const auto type = make_tree_type();
   for (int level = 0; level < type->level_count(); ++level) {
-    const Mesh mesh = test::synthesize(*type, with(*type, 5, 4, 3), level);
+    const Mesh mesh = test::synthesise(*type, with(*type, 5, 4, 3), level);
     std::vector<bool> used(mesh.size.vertex_count);
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
       const std::uint16_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
@@ -122,7 +122,7 @@ TEST(Tree, ReportsTheTightBoxOfItsVerticesInsideItsBounds) {
     const Parameters p =
         i % 3 == 0 ? anything_legal(*type, random) : test::random_parameters(*type, random);
     const core::Bounds bounds = type->bounds(p);
-    const Mesh mesh = test::synthesize(*type, p, i % 6);
+    const Mesh mesh = test::synthesise(*type, p, i % 6);
     glm::vec3 low(1e9F), high(-1e9F);
     for (const glm::vec3& place : places_of(*type, p, mesh)) {
       low = glm::min(low, place);
@@ -143,7 +143,7 @@ TEST(Tree, IsNotCutByItsBoundsWithOrdinaryParameters) {
   for (int i = 0; i < 300; ++i) {
     const Parameters p = with(*type, 77 * i, 3 + i % 3, 2 + i / 3 % 3);
     const core::Bounds bounds = type->bounds(p);
-    const core::Bounds box = test::synthesize(*type, p, i % 6).box;
+    const core::Bounds box = test::synthesise(*type, p, i % 6).box;
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_GT(box.min[axis], bounds.min[axis] + 1e-3F * bounds.half_extent()[axis]);
       EXPECT_LT(box.max[axis], bounds.max[axis] - 1e-3F * bounds.half_extent()[axis]);
@@ -156,7 +156,7 @@ TEST(Tree, GivesTheSameBytesOnEveryThread) {
   const auto hashes = [&] {
     std::vector<std::uint64_t> result;
     for (int i = 0; i < 12; ++i) {
-      const Mesh mesh = test::synthesize(*type, with(*type, i, 3 + i % 2, 3), i % 6);
+      const Mesh mesh = test::synthesise(*type, with(*type, i, 3 + i % 2, 3), i % 6);
       result.push_back(core::hash_bytes(mesh.vertex_bytes) ^
                        core::hash_bytes(std::as_bytes(std::span(mesh.indices))));
     }
@@ -177,7 +177,7 @@ TEST(Tree, LooksDifferentForEverySeed) {
   const auto type = make_tree_type();
   std::map<std::uint64_t, int> seen;
   for (int seed = 0; seed < 100; ++seed)
-    ++seen[core::hash_bytes(test::synthesize(*type, with(*type, seed, 3, 3), 4).vertex_bytes)];
+    ++seen[core::hash_bytes(test::synthesise(*type, with(*type, seed, 3, 3), 4).vertex_bytes)];
   EXPECT_EQ(seen.size(), 100U);
 }
 
@@ -316,7 +316,7 @@ TEST(Tree, FacesBarkAndHullsOutwards) {
   const auto type = make_tree_type();
   for (int level = 0; level < type->level_count(); ++level) {
     const Parameters p = with(*type, 9, 4, 3);
-    const Mesh mesh = test::synthesize(*type, p, level);
+    const Mesh mesh = test::synthesise(*type, p, level);
     const auto vertices = mesh.vertices<ModelVertex>();
     const auto places = places_of(*type, p, mesh);
     int outward = 0, all = 0;
@@ -338,7 +338,7 @@ TEST(Tree, SwaysMoreTowardsItsTwigsAndNotAtItsBase) {
   const auto type = make_tree_type();
   const Parameters p = with(*type, 21, 4, 3);
   for (int level = 0; level < type->level_count(); ++level) {
-    const Mesh mesh = test::synthesize(*type, p, level);
+    const Mesh mesh = test::synthesise(*type, p, level);
     const auto vertices = mesh.vertices<ModelVertex>();
     const auto places = places_of(*type, p, mesh);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -353,10 +353,10 @@ TEST(Tree, KeepsPositionSizeAndColourOfItsCrownAtEveryLevel) {
   const auto type = make_tree_type();
   for (int seed = 0; seed < 12; ++seed) {
     const Parameters p = with(*type, seed, 4, 3);
-    glm::vec3 center[6], colour[6];
+    glm::vec3 centre[6], colour[6];
     float spread[6] = {};
     for (int level = 0; level < 6; ++level) {
-      const Mesh mesh = test::synthesize(*type, p, level);
+      const Mesh mesh = test::synthesise(*type, p, level);
       const auto vertices = mesh.vertices<ModelVertex>();
       const auto places = places_of(*type, p, mesh);
       glm::vec3 sum(0), squares(0), tint(0);
@@ -368,13 +368,13 @@ TEST(Tree, KeepsPositionSizeAndColourOfItsCrownAtEveryLevel) {
         squares += places[i] * places[i];
         tint += glm::vec3(vertices[i].colour[0], vertices[i].colour[1], vertices[i].colour[2]);
       }
-      center[level] = sum / leaves;
+      centre[level] = sum / leaves;
       colour[level] = tint / leaves;
-      const glm::vec3 variance = squares / leaves - center[level] * center[level];
+      const glm::vec3 variance = squares / leaves - centre[level] * centre[level];
       spread[level] = std::sqrt(variance.x + variance.y + variance.z);
     }
     for (int level = 1; level < 6; ++level) {
-      EXPECT_LT(glm::distance(center[level], center[0]), 0.75F * spread[0]) << "level " << level;
+      EXPECT_LT(glm::distance(centre[level], centre[0]), 0.75F * spread[0]) << "level " << level;
       EXPECT_LT(glm::distance(colour[level], colour[0]), 24.0F) << "level " << level;
       EXPECT_GT(spread[level], 0.6F * spread[0]) << "level " << level;
       EXPECT_LT(spread[level], (level < 4 ? 1.6F : 2.2F) * spread[0]) << "level " << level;

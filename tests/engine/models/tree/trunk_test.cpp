@@ -36,7 +36,7 @@ TEST(Trunk, IsDrawnAlongItsCapsules) {
     const TreePlan plan = plan_of_tree(p);
     const Collider collider = type->collider(p);
     ASSERT_FALSE(collider.empty());
-    const auto mesh = test::synthesize(*type, p, 0);
+    const auto mesh = test::synthesise(*type, p, 0);
     const auto vertices = mesh.vertices<core::ModelVertex>();
     // The trunk is the first tube of the mesh.
     const TubePlan& tube = tube_plan(plan, 0, 0, false);

@@ -73,7 +73,7 @@ TEST(MeshParts, HoldBillboardsHoweverTheyAreTurned) {
 TEST(MeshParts, EveryTriangleIsInOnePartAndTheBoxesAreTight) {
   for (const int count : {1, 15, 16, 17, 100, 1000}) {
     const MeshParts parts = Row(count).parts();
-    ASSERT_LE(parts.count, MeshParts::kMost);
+    ASSERT_LE(parts.count, MeshParts::kMax);
     EXPECT_EQ(parts.index_count, static_cast<std::uint32_t>(3 * count));
     EXPECT_GE(parts.count * parts.indices_each, parts.index_count);
     EXPECT_LT((parts.count - 1) * parts.indices_each, parts.index_count);
@@ -152,11 +152,11 @@ TEST(MeshParts, OfEverythingOnANodeLieNearEachOther) {
   const auto type = world::make_merged_type(world, registry);
   for (int level = 1; level <= world::kMaxMergedLevel; ++level) {
     const models::Parameters p = world::merged_parameters({5, 7}, level);
-    const models::test::Mesh mesh = models::test::synthesize(*type, p, 0);
+    const models::test::Mesh mesh = models::test::synthesise(*type, p, 0);
     const core::Bounds box = type->bounds(p);
     const auto vertices = mesh.vertices<core::ModelVertex>();
     const MeshParts parts = mesh_parts(vertices, mesh.indices, box);
-    ASSERT_EQ(parts.count, MeshParts::kMost);
+    ASSERT_EQ(parts.count, MeshParts::kMax);
     double area = 0;
     for (const core::Bounds& part : std::span(parts.boxes).first(parts.count)) {
       area += double{part.max.x - part.min.x} * (part.max.z - part.min.z);

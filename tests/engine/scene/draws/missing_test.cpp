@@ -18,7 +18,7 @@ Camera camera() {
 // A ball that covers one percent of the picture.
 SeenPiece ball() {
   SeenPiece piece;
-  piece.center = {0, 0, -1000};
+  piece.centre = {0, 0, -1000};
   piece.radius_m = static_cast<float>(std::sqrt(0.01 * 500'000 / std::numbers::pi));
   return piece;
 }

@@ -35,7 +35,7 @@ Drawn drawn_at(Scene& scene) {
     if (!quad) continue;
     const float size_m = 2 * std::min(draw.box_half_extent.x, draw.box_half_extent.y);
     drawn.largest = std::max(drawn.largest, size_m * s.camera.pixels_per_radian /
-                                                glm::length(draw.origin + draw.box_center));
+                                                glm::length(draw.origin + draw.box_centre));
   }
   return drawn;
 }
@@ -45,7 +45,7 @@ TEST(TreesInTheScene, ArePicturesWhereTheyAreSmall) {
   const Drawn drawn = drawn_at(*coarse);
   EXPECT_GT(drawn.quads, 20U);
   EXPECT_GT(drawn.merged, 5U);
-  EXPECT_LT(drawn.largest, kMostPicturePixels);
+  EXPECT_LT(drawn.largest, kMaxPicturePixels);
   expect_consistent(*coarse);
   const auto fine = make_scene(wide_settings(1));
   EXPECT_LT(drawn_at(*fine).largest, drawn.largest / 2);

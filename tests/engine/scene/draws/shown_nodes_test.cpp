@@ -91,12 +91,12 @@ TEST(ShownNodes, AreCoarserByTheLevelsOfTheFinestNodeInView) {
 
 TEST(ShownNodes, LeavesAreAsWantedUnlessTheyLackTheirFinestMesh) {
   visibility::CutNode node;
-  EXPECT_EQ(least_distance_m(node, 1, 100), 0);
+  EXPECT_EQ(min_distance_m(node, 1, 100), 0);
   node.fine = true;
-  EXPECT_EQ(least_distance_m(node, 0, 100), 0);
-  EXPECT_EQ(least_distance_m(node, 1, 100), 50);
+  EXPECT_EQ(min_distance_m(node, 0, 100), 0);
+  EXPECT_EQ(min_distance_m(node, 1, 100), 50);
   node.leaf = node.fine = false;
-  EXPECT_EQ(least_distance_m(node, 0, 100), 50);
+  EXPECT_EQ(min_distance_m(node, 0, 100), 50);
 }
 
 TEST(ShownNodes, AreAsNearAsTheirNearestLeafInView) {

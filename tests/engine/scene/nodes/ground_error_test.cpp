@@ -25,7 +25,7 @@ double share_within(const world::World& world, const visibility::NodeCoord& node
   const models::MeshSize size = terrain.mesh_size(p, 0);
   std::vector<std::byte> vertices(size.vertex_count * sizeof(core::TerrainVertex));
   std::vector<std::uint16_t> indices(size.shared_indices == 0 ? size.index_count : 0);
-  terrain.synthesize(p, 0, {vertices, indices});
+  terrain.synthesise(p, 0, {vertices, indices});
   const double step_m = p.real(models::kTerrainReliefM) / 65535;
   int within = 0, all = 0;
   for (const core::TerrainVertex& v : core::vertices_of<core::TerrainVertex>(vertices)) {

@@ -32,7 +32,7 @@ TEST(ObjectSources, NamesAreNotUsedTwiceThoughSlotsAre) {
   EXPECT_EQ(held->copied.size(), 1u) << "lives on while it is used";
   const auto third = sources.add(triangle());
   ASSERT_TRUE(third);
-  EXPECT_EQ(*third % ObjectSources::kMost, 0u);
+  EXPECT_EQ(*third % ObjectSources::kMax, 0u);
   EXPECT_NE(*third, *first);
   sources.remove(*first);
   EXPECT_NE(sources.find(*third), nullptr) << "an old name removes nothing";
@@ -43,7 +43,7 @@ TEST(ObjectSources, NamesAreNotUsedTwiceThoughSlotsAre) {
 
 TEST(ObjectSources, HaveABoundAtATime) {
   ObjectSources sources;
-  for (std::uint32_t i = 0; i < ObjectSources::kMost; ++i)
+  for (std::uint32_t i = 0; i < ObjectSources::kMax; ++i)
     ASSERT_EQ(sources.add({}), i);
   EXPECT_FALSE(sources.add({}));
   sources.remove(4711);
@@ -55,19 +55,19 @@ TEST(ObjectSources, HaveABoundAtATime) {
 TEST(ObjectSources, ASlotThatHasHadAllItsNamesIsNotUsedAgain) {
   ObjectSources sources;
   std::uint32_t last = 0;
-  for (std::uint32_t i = 0; i < 2 * ObjectSources::kMost; ++i) {
+  for (std::uint32_t i = 0; i < 2 * ObjectSources::kMax; ++i) {
     const auto name = sources.add({});
     ASSERT_TRUE(name);
     ASSERT_NE(*name, UINT32_MAX);
-    if (*name % ObjectSources::kMost == last % ObjectSources::kMost) {
+    if (*name % ObjectSources::kMax == last % ObjectSources::kMax) {
       ASSERT_TRUE(i == 0 || *name > last);
     } else {
-      ASSERT_EQ(*name, last % ObjectSources::kMost + 1) << "the next slot";
+      ASSERT_EQ(*name, last % ObjectSources::kMax + 1) << "the next slot";
     }
     last = *name;
     sources.remove(*name);
   }
-  EXPECT_EQ(last % ObjectSources::kMost, 2u);
+  EXPECT_EQ(last % ObjectSources::kMax, 2u);
 }
 
 // It was asked for, and its room is reserved.
@@ -81,11 +81,11 @@ TEST(ObjectType, AMeshThatIsRemovedBeforeItIsMadeIsEmpty) {
   std::vector<core::ObjectVertex> vertices(3);
   std::vector<std::uint16_t> indices(3, 7);
   const models::MeshView out{std::as_writable_bytes(std::span(vertices)), indices};
-  EXPECT_EQ(type->synthesize(parameters, 0, out), triangle().box);
+  EXPECT_EQ(type->synthesise(parameters, 0, out), triangle().box);
   EXPECT_EQ(indices, (std::vector<std::uint16_t>{0, 1, 2}));
   sources->remove(*name);
   EXPECT_EQ(type->mesh_size(parameters, 0).vertex_count, 0u);
-  EXPECT_EQ(type->synthesize(parameters, 0, out), core::Bounds{});
+  EXPECT_EQ(type->synthesise(parameters, 0, out), core::Bounds{});
   EXPECT_EQ(indices, (std::vector<std::uint16_t>{0, 0, 0}));
 }
 
@@ -104,7 +104,7 @@ TEST(ObjectType, MeshesAreAddedAndRemovedWhileModelersMakeThem) {
       while (!ended) {
         const models::Parameters parameters = object_parameters(newest);
         const core::Bounds box =
-            type->synthesize(parameters, 0, {std::as_writable_bytes(std::span(vertices)), indices});
+            type->synthesise(parameters, 0, {std::as_writable_bytes(std::span(vertices)), indices});
         EXPECT_TRUE(box == triangle().box || box == core::Bounds{});
         ++began;
       }

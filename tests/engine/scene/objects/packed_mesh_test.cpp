@@ -23,10 +23,10 @@ TEST(PackedMesh, HoldsPositionsToAPartOfItsBox) {
   const auto packed = pack(mesh);
   ASSERT_TRUE(packed) << packed.error().message;
   EXPECT_EQ(packed->box, (core::Bounds{{-2, 0, -1}, {2, 3, 1}}));
-  const glm::vec3 center = packed->box.center(), half = packed->box.half_extent();
+  const glm::vec3 centre = packed->box.centre(), half = packed->box.half_extent();
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const auto& p = packed->vertices[i].model.position;
-    const glm::vec3 at = center + half * glm::vec3(p[0], p[1], p[2]) * (1.0F / 32767.0F);
+    const glm::vec3 at = centre + half * glm::vec3(p[0], p[1], p[2]) * (1.0F / 32767.0F);
     EXPECT_LT(glm::distance(at, mesh.positions[i]), 1e-3F);
     EXPECT_EQ(packed->vertices[i].uv[0], mesh.uvs[i].x);
     EXPECT_EQ(packed->vertices[i].model.colour[0], 128);

@@ -122,7 +122,7 @@ TEST(MeshChoice, WhatIsTooLargeForItsPictureIsAMesh) {
   ChoiceRules rules;
   rules.pixels_per_radian = 1000;
   const NodeView node;
-  const float small = kMostPicturePixels - 1, large = kMostPicturePixels + 1;
+  const float small = kMaxPicturePixels - 1, large = kMaxPicturePixels + 1;
   EXPECT_EQ(model_level(rules, node, pictured(), small, 1700, kNoLevel), 3);
   EXPECT_EQ(model_level(rules, node, pictured(), large, 1700, kNoLevel), 2);
   // One that is drawn stays for a while, but not beyond.

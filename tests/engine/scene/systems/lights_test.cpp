@@ -119,7 +119,7 @@ TEST_F(Lights, TakeTurnsWithoutAJumpOfLight) {
     pose_.position.local.z -= 0.4;
     pose_.position.local.y -= 0.08;
     tick();
-    EXPECT_LE(lit().size(), render::kMostPointLights);
+    EXPECT_LE(lit().size(), render::kMaxPointLights);
     EXPECT_NEAR(sum(), before, 1.01F)
         << "no light comes or goes within a frame, but leaves the view";
   }

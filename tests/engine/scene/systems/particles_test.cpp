@@ -138,7 +138,7 @@ TEST_F(Emitters, OfAbsurdRatesAndNumbersAreBounded) {
   put(20, {.kind = {.rate = 1e9F, .lifetime_s = 1000}});
   tick();
   ASSERT_EQ(drawn().size(), 1u);
-  EXPECT_EQ(drawn()[0].count, render::kMostParticlesPerEmitter);
+  EXPECT_EQ(drawn()[0].count, render::kMaxParticlesPerEmitter);
   EXPECT_GT(counters().particles_left_out, std::uint64_t{1} << 39);
   const auto made = state().entities.create<Transform, ParticleEmitter>(100000);
   for (Transform& transform : made.column<Transform>()) {
@@ -146,9 +146,9 @@ TEST_F(Emitters, OfAbsurdRatesAndNumbersAreBounded) {
     transform.position.local.z -= 30;
   }
   tick(2);
-  EXPECT_EQ(drawn().size(), render::kMostEmitters);
-  EXPECT_LE(counters().particles_drawn, render::kMostParticles);
-  EXPECT_EQ(counters().emitters_left_out, 100001u - render::kMostEmitters);
+  EXPECT_EQ(drawn().size(), render::kMaxEmitters);
+  EXPECT_LE(counters().particles_drawn, render::kMaxParticles);
+  EXPECT_EQ(counters().emitters_left_out, 100001u - render::kMaxEmitters);
 }
 
 TEST_F(Emitters, FadeOutTowardsTheViewDistance) {

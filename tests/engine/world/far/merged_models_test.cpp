@@ -25,7 +25,7 @@ namespace psygen::world {
 namespace {
 
 using models::test::Mesh;
-using models::test::synthesize;
+using models::test::synthesise;
 using testing::game_file;
 using testing::kSmallWorld;
 using testing::replaced;
@@ -47,7 +47,7 @@ struct Scenery {
     return far_cover(*world, *far_scatters(world, registry), placed_per_block(*world, registry));
   }
   Mesh mesh(core::BlockCoord node, int level, int detail = 0) const {
-    return synthesize(*type, merged_parameters(node, level), detail);
+    return synthesise(*type, merged_parameters(node, level), detail);
   }
   glm::vec3 corner_m(core::BlockCoord block, core::BlockCoord node, int level) const {
     const auto steps = [level](std::int32_t b, std::int32_t n) {
@@ -161,7 +161,7 @@ Silhouette area_of_billboard(std::span<const core::ModelVertex> vertices,
 // Areas of the forms of a mesh, each by itself. Forms are runs of triangles that share vertices;
 // those of a tree and of its trunk are two.
 Silhouette area_of_forms(const Scenery& scenery, const Mesh& mesh, int level, core::BlockCoord node,
-                         float least_height_m) {
+                         float min_height_m) {
   const core::Bounds box = scenery.type->bounds(merged_parameters(node, level));
   const auto vertices = mesh.vertices<core::ModelVertex>();
   Silhouette sum;
@@ -189,7 +189,7 @@ Silhouette area_of_forms(const Scenery& scenery, const Mesh& mesh, int level, co
     for (; i < end; ++i)
       indices.push_back(static_cast<std::uint16_t>(mesh.indices[i] - first));
     const std::uint8_t material = vertices[first].material;
-    if (highest - lowest < least_height_m || (material & kLeaf) == 0) continue;
+    if (highest - lowest < min_height_m || (material & kLeaf) == 0) continue;
     const Silhouette one =
         (material & core::kBillboardBit) != 0
             ? area_of_billboard(std::span(vertices).subspan(first), places, indices)
@@ -336,7 +336,7 @@ void expect_same_places(const Scenery& scenery, core::BlockCoord node, int level
     const glm::vec3 foot = corners[i + each - 3];  // of the trunk, which comes last
     float best = 1e9F;
     for (const CoarsestModel& single : singles) {
-      const glm::vec3 apart = box.center() - single.foot - single.box.center();
+      const glm::vec3 apart = box.centre() - single.foot - single.box.centre();
       const float top = std::abs(box.max.y - single.foot.y - single.box.max.y);
       const glm::vec3 beside = foot - single.foot;
       const float aside = level == 1 ? std::max(std::abs(apart.x), std::abs(apart.z))
@@ -490,7 +490,7 @@ class ThrowingType final : public models::ModelType {
   models::MeshSize mesh_size(const models::Parameters&, int) const override { return {3, 3}; }
   double complexity(const models::Parameters&, int) const override { return 1; }
   double log2_cost(const models::Parameters&) const override { return 0; }
-  core::Bounds synthesize(const models::Parameters&, int, const models::MeshView&) const override {
+  core::Bounds synthesise(const models::Parameters&, int, const models::MeshView&) const override {
     throw std::runtime_error("broken");
   }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {}

@@ -81,7 +81,7 @@ TEST(NodeWalk, FindsTheGroundThatIsDrawn) {
       const core::BlockCoord node{5, 7};
       models::Parameters p = terrain_parameters(*world, node);
       p.set_integer(models::kTerrainNodeLevel, level);
-      const models::test::Mesh mesh = models::test::synthesize(type, p, mesh_level);
+      const models::test::Mesh mesh = models::test::synthesise(type, p, mesh_level);
       const models::TerrainGrid grid(static_cast<int>(p.integer(models::kTerrainSize)), mesh_level);
       const NodeWalk walk(*world, node, level);
       EXPECT_EQ(walk.drawn_stride(), grid.stride);

@@ -14,7 +14,7 @@ namespace psygen::world {
 namespace {
 
 using models::test::Mesh;
-using models::test::synthesize;
+using models::test::synthesise;
 
 class FarEdits : public ::testing::Test, protected testing::EditedWorld {
  protected:
@@ -23,7 +23,7 @@ class FarEdits : public ::testing::Test, protected testing::EditedWorld {
 
   Mesh mesh(core::BlockCoord node, int level) {
     apply();
-    return synthesize(*type, merged_parameters(world, node, level), 0);
+    return synthesise(*type, merged_parameters(world, node, level), 0);
   }
   // The mesh's vertices near a place of the node, in metres.
   std::size_t vertices_near(const Mesh& mesh, core::BlockCoord node, int level, glm::vec2 at) {
@@ -104,12 +104,12 @@ TEST_F(FarEdits, APlacedTreeIsInTheMeshesOfItsNodesAndInsideTheirBox) {
   const auto placed = edits.place(world, registry, {tree.model, tree.parameters, place, 0});
   ASSERT_TRUE(placed);
   const std::size_t unedited_near =
-      vertices_near(synthesize(*type, merged_parameters({2, 2}, 1), 0), {2, 2}, 1, {64, 64});
+      vertices_near(synthesise(*type, merged_parameters({2, 2}, 1), 0), {2, 2}, 1, {64, 64});
   EXPECT_GT(vertices_near(mesh({2, 2}, 1), {2, 2}, 1, {64, 64}), unedited_near);
   for (int level = 1; level <= kMaxMergedLevel; ++level) {
     const models::Parameters p = merged_parameters(world, {4 >> level, 4 >> level}, level);
     for (const int detail : {0, 1}) {
-      const Mesh made = synthesize(*type, p, detail);
+      const Mesh made = synthesise(*type, p, detail);
       EXPECT_EQ(made.size, type->mesh_size(p, detail));
     }
   }
@@ -124,7 +124,7 @@ TEST_F(FarEdits, ManyPlacedModelsShareForms) {
   }
   apply();
   const models::Parameters p = merged_parameters(world, {0, 0}, 2);
-  const Mesh made = synthesize(*type, p, 0);
+  const Mesh made = synthesise(*type, p, 0);
   EXPECT_LE(made.size.vertex_count, 65'536u);
   const PlacedPlan plan(2, 3000, 0);
   EXPECT_EQ(plan.together, 3u);
@@ -147,7 +147,7 @@ TEST_F(FarEdits, MergedModelsStandOnTheEditedGround) {
     }
     return lowest;
   };
-  const float before = lowest_near(synthesize(*type, merged_parameters({2, 2}, 1), 0));
+  const float before = lowest_near(synthesise(*type, merged_parameters({2, 2}, 1), 0));
   EXPECT_NEAR(lowest_near(mesh({2, 2}, 1)) - before, 40, 4);
 }
 

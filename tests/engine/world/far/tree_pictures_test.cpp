@@ -127,7 +127,7 @@ TEST(TreePictures, AreTheSameOnEveryCall) {
 
 TEST(TreePictures, EverySpeciesHasSome) {
   const Forest forest("five_species.toml");
-  EXPECT_LE(forest.pictures->count(), core::kMostPictures);
+  EXPECT_LE(forest.pictures->count(), core::kMaxPictures);
   for (const Scatter& scatter : forest.world.scatter) {
     const models::ModelType& type = forest.registry[scatter.model];
     const bool tree = type.name() != "rock" && type.name() != "grass" && scatter.count > 0;
@@ -148,7 +148,7 @@ TEST(TreePictures, QuadsStandWhereTheirModelsStand) {
   const auto type = make_quad_type(forest.pictures, forest.registry, tree);
   for (const PicturedModel& model : forest.pictures->models()) {
     const core::Bounds tight = registry[tree].bounds(model.parameters);
-    const models::test::Mesh mesh = models::test::synthesize(*type, model.parameters, 0);
+    const models::test::Mesh mesh = models::test::synthesise(*type, model.parameters, 0);
     const auto vertices = mesh.vertices<core::ModelVertex>();
     ASSERT_EQ(vertices.size(), 4U);
     for (const core::ModelVertex& v : vertices) {

@@ -15,7 +15,7 @@ namespace psygen::world {
 namespace {
 
 using models::test::Mesh;
-using models::test::synthesize;
+using models::test::synthesise;
 
 struct Shipped {
   const char* world;
@@ -67,10 +67,10 @@ class SpeciesModels : public ::testing::TestWithParam<Shipped> {
 TEST_P(SpeciesModels, HaveTheSameBytesOnEveryInstructionSetAtEveryLevel) {
   for_trees([](const models::ModelType& type, const models::Parameters& p, int level) {
     models::pin_simd_target(models::simd_targets().front());
-    const Mesh best = synthesize(type, p, level);
+    const Mesh best = synthesise(type, p, level);
     for (const std::string_view target : models::simd_targets()) {
       models::pin_simd_target(target);
-      const Mesh mesh = synthesize(type, p, level);
+      const Mesh mesh = synthesise(type, p, level);
       ASSERT_EQ(mesh.vertex_bytes, best.vertex_bytes) << target << " level " << level;
       ASSERT_EQ(mesh.indices, best.indices) << target << " level " << level;
       ASSERT_EQ(mesh.box.min, best.box.min) << target << " level " << level;
@@ -87,7 +87,7 @@ TEST_P(SpeciesModels, MeetTheOracleOnEveryInstructionSetAtEveryLevel) {
     for (const std::string_view target : models::simd_targets()) {
       SCOPED_TRACE(target);
       models::pin_simd_target(target);
-      expect_as_oracle(oracle, expected, plan.bounds, synthesize(type, p, level), level);
+      expect_as_oracle(oracle, expected, plan.bounds, synthesise(type, p, level), level);
     }
   });
 }

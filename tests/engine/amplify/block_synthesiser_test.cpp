@@ -1,4 +1,4 @@
-#include "engine/amplify/block_synthesizer.hpp"
+#include "engine/amplify/block_synthesiser.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,17 +16,17 @@ using world::testing::registry;
 
 Totals totals_of(const world::World& world, core::BlockCoord block, int level = 0) {
   Totals totals;
-  BlockSynthesizer(world, registry(), level).synthesise(block, totals);
+  BlockSynthesiser(world, registry(), level).synthesise(block, totals);
   return totals;
 }
 
-TEST(BlockSynthesizer, MakesTheTerrainAndEverythingOnIt) {
+TEST(BlockSynthesiser, MakesTheTerrainAndEverythingOnIt) {
   const world::World world = parsed(kSmallWorld);
   Totals totals;
   std::uint64_t triangles = 0, bytes = 0;
   std::vector<std::uint32_t> indices;
-  BlockSynthesizer synthesizer(world, registry());
-  synthesizer.synthesise({2, 1}, totals, [&](const BlockMesh& mesh) {
+  BlockSynthesiser synthesiser(world, registry());
+  synthesiser.synthesise({2, 1}, totals, [&](const BlockMesh& mesh) {
     indices.push_back(mesh.placement.index);
     EXPECT_EQ(mesh.size, registry()[mesh.placement.model].mesh_size(mesh.placement.parameters, 0));
     triangles += mesh.size.triangle_count();
@@ -41,7 +41,7 @@ TEST(BlockSynthesizer, MakesTheTerrainAndEverythingOnIt) {
   EXPECT_EQ(totals.triangles + 2 * 4 * 32, triangles);
 }
 
-TEST(BlockSynthesizer, TheHashDependsOnWorldBlockAndLevelsOnly) {
+TEST(BlockSynthesiser, TheHashDependsOnWorldBlockAndLevelsOnly) {
   world::World world = parsed(kSmallWorld);
   const std::uint64_t hash = totals_of(world, {2, 1}).hash.value();
   EXPECT_EQ(totals_of(world, {2, 1}).hash.value(), hash);
@@ -51,7 +51,7 @@ TEST(BlockSynthesizer, TheHashDependsOnWorldBlockAndLevelsOnly) {
   EXPECT_NE(totals_of(world, {2, 1}).hash.value(), hash);
 }
 
-TEST(BlockSynthesizer, EditsChangeTheHashOfTheirBlocksUntilTheyAreTakenBack) {
+TEST(BlockSynthesiser, EditsChangeTheHashOfTheirBlocksUntilTheyAreTakenBack) {
   const world::World function = parsed(kSmallWorld);
   const std::uint64_t felled_block = totals_of(function, {2, 1}).hash.value();
   const std::uint64_t other_block = totals_of(function, {6, 3}).hash.value();
@@ -71,10 +71,10 @@ TEST(BlockSynthesizer, EditsChangeTheHashOfTheirBlocksUntilTheyAreTakenBack) {
   EXPECT_EQ(totals_of(world, {2, 1}).hash.value(), felled_block);
 }
 
-TEST(BlockSynthesizer, ALevelIsTheCoarsestOfTypesThatHaveFewer) {
+TEST(BlockSynthesiser, ALevelIsTheCoarsestOfTypesThatHaveFewer) {
   const world::World world = parsed(kSmallWorld);
   Totals totals;
-  BlockSynthesizer(world, registry(), 99).synthesise({2, 1}, totals, [](const BlockMesh& mesh) {
+  BlockSynthesiser(world, registry(), 99).synthesise({2, 1}, totals, [](const BlockMesh& mesh) {
     EXPECT_EQ(mesh.level,
               registry()[mesh.placement.model].level_count_of(mesh.placement.parameters) - 1);
   });
@@ -82,7 +82,7 @@ TEST(BlockSynthesizer, ALevelIsTheCoarsestOfTypesThatHaveFewer) {
   EXPECT_LT(totals.triangles, totals_of(world, {2, 1}).triangles / 50);
 }
 
-TEST(BlockSynthesizer, TheHashNoticesAModelThatStandsElsewhere) {
+TEST(BlockSynthesiser, TheHashNoticesAModelThatStandsElsewhere) {
   // A filter that lets the same models find other places: the meshes of rocks stay the same.
   const world::World world = parsed(kSmallWorld);
   world::World moved = world;
@@ -93,19 +93,19 @@ TEST(BlockSynthesizer, TheHashNoticesAModelThatStandsElsewhere) {
   EXPECT_NE(a.hash.value(), b.hash.value());
 }
 
-TEST(BlockSynthesizer, MemoryThatWasUsedBeforeLeavesNoTrace) {
+TEST(BlockSynthesiser, MemoryThatWasUsedBeforeLeavesNoTrace) {
   const world::World world = parsed(kSmallWorld);
-  BlockSynthesizer synthesizer(world, registry());
+  BlockSynthesiser synthesiser(world, registry());
   Totals first, second;
-  synthesizer.synthesise({0, 0}, first);
-  synthesizer.synthesise({2, 1}, second);
+  synthesiser.synthesise({0, 0}, first);
+  synthesiser.synthesise({2, 1}, second);
   EXPECT_EQ(second.hash.value(), totals_of(world, {2, 1}).hash.value());
 }
 
-TEST(BlockSynthesizer, AModelThatThrowsIsCountedAndTheOthersGoOn) {
+TEST(BlockSynthesiser, AModelThatThrowsIsCountedAndTheOthersGoOn) {
   const ThrowingWorld throwing;
   Totals totals;
-  BlockSynthesizer(throwing.world, throwing.registry).synthesise({0, 0}, totals);
+  BlockSynthesiser(throwing.world, throwing.registry).synthesise({0, 0}, totals);
   EXPECT_EQ(totals.failed, 2u);
   EXPECT_EQ(totals.models, 10u);
   EXPECT_NE(totals.first_failure.find("no geometry today"), std::string::npos);

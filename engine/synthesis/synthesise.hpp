@@ -19,8 +19,8 @@ struct SynthesisOutcome {
   bool out_of_memory = false;  // that is why: elsewhere, or later, it may not fail
 };
 
-// Calls type.synthesize(); `out` has exactly the sizes of mesh_size(p, level).
-SynthesisOutcome synthesize_guarded(const models::ModelType& type, const models::Parameters& p,
+// Calls type.synthesise(); `out` has exactly the sizes of mesh_size(p, level).
+SynthesisOutcome synthesise_guarded(const models::ModelType& type, const models::Parameters& p,
                                     int level, const models::MeshView& out);
 
 // type.mesh_size(). Fails with kSynthesisFailed if the type throws, kOverBudget beyond 16-bit

@@ -22,7 +22,7 @@ struct BlockMesh {
   const world::Placement& placement;  // of terrain: position 0, index world::kTerrainIndex
   int level;                          // of detail
   models::MeshSize size;
-  core::Bounds tight;  // box of the vertices, as ModelType::synthesize() returned it
+  core::Bounds tight;  // box of the vertices, as ModelType::synthesise() returned it
   models::MeshView view;
 };
 
@@ -42,11 +42,11 @@ struct Totals {
 inline constexpr int kAllLevels = -1;
 
 // Synthesises blocks one by one.
-class BlockSynthesizer {
+class BlockSynthesiser {
  public:
   // `world` and `registry` must outlive it. `level` is used for all types (or their coarsest level,
   // where they have fewer), or it is kAllLevels.
-  BlockSynthesizer(const world::World& world, const models::Registry& registry, int level = 0);
+  BlockSynthesiser(const world::World& world, const models::Registry& registry, int level = 0);
 
   // Synthesises `block` and adds it to `totals`. `visit`, if given, is called for each mesh,
   // terrain first. A mesh that fails is counted and left out. Needs the stack of the types'

@@ -1,4 +1,4 @@
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 
 #include <fmt/format.h>
 
@@ -25,10 +25,10 @@ SynthesisOutcome failed(const Sentence& sentence) noexcept {
 }
 }  // namespace
 
-SynthesisOutcome synthesize_guarded(const models::ModelType& type, const models::Parameters& p,
+SynthesisOutcome synthesise_guarded(const models::ModelType& type, const models::Parameters& p,
                                     int level, const models::MeshView& out) {
   try {  // types of users may throw; nothing of ours does unless memory ends
-    const core::Bounds tight = type.synthesize(p, level, out);
+    const core::Bounds tight = type.synthesise(p, level, out);
     if (core::is_box(tight)) return {true, tight, {}};
     return {false, {}, named(type, level, " returned bounds that are not a box")};
   } catch (const std::bad_alloc&) {

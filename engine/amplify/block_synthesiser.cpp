@@ -1,4 +1,4 @@
-#include "engine/amplify/block_synthesizer.hpp"
+#include "engine/amplify/block_synthesiser.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <bit>
 
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/synthesis/synthesize.hpp"
+#include "engine/synthesis/synthesise.hpp"
 
 namespace psygen::amplify {
 namespace {
@@ -33,11 +33,11 @@ void Totals::add(const Totals& part) {
   hash.add(part.hash);
 }
 
-BlockSynthesizer::BlockSynthesizer(const world::World& world, const models::Registry& registry,
+BlockSynthesiser::BlockSynthesiser(const world::World& world, const models::Registry& registry,
                                    int level)
     : world_(world), registry_(registry), level_(level) {}
 
-models::MeshView BlockSynthesizer::room_for(const models::MeshSize& size) {
+models::MeshView BlockSynthesiser::room_for(const models::MeshSize& size) {
   const std::size_t vertex_bytes = size.vertex_bytes(), own_indices = size.own_index_count();
   const std::size_t vertex_lines = lines_of(vertex_bytes);
   const std::size_t needed = vertex_lines + lines_of(own_indices * sizeof(std::uint16_t));
@@ -50,7 +50,7 @@ models::MeshView BlockSynthesizer::room_for(const models::MeshSize& size) {
           {reinterpret_cast<std::uint16_t*>(memory_.get() + vertex_lines), own_indices}};
 }
 
-void BlockSynthesizer::synthesise(core::BlockCoord block, Totals& totals,
+void BlockSynthesiser::synthesise(core::BlockCoord block, Totals& totals,
                                   const std::function<void(const BlockMesh&)>& visit) {
   const world::Placement terrain{world_.terrain_model, world::kTerrainIndex, glm::vec3(0.0F),
                                  world::terrain_parameters(world_, block)};
@@ -68,7 +68,7 @@ void BlockSynthesizer::synthesise(core::BlockCoord block, Totals& totals,
   totals.models += placements_.size();
 }
 
-bool BlockSynthesizer::make_levels(const world::Placement& placement, core::BlockCoord block,
+bool BlockSynthesiser::make_levels(const world::Placement& placement, core::BlockCoord block,
                                    Totals& totals,
                                    const std::function<void(const BlockMesh&)>& visit) {
   const int coarsest = registry_[placement.model].level_count_of(placement.parameters) - 1;
@@ -80,7 +80,7 @@ bool BlockSynthesizer::make_levels(const world::Placement& placement, core::Bloc
   return totals.failed == failed;
 }
 
-void BlockSynthesizer::make(const world::Placement& placement, core::BlockCoord block, int level,
+void BlockSynthesiser::make(const world::Placement& placement, core::BlockCoord block, int level,
                             Totals& totals, const std::function<void(const BlockMesh&)>& visit) {
   const models::ModelType& type = registry_[placement.model];
   const auto size = synthesis::mesh_size_guarded(type, placement.parameters, level);
@@ -90,7 +90,7 @@ void BlockSynthesizer::make(const world::Placement& placement, core::BlockCoord 
   };
   if (!size) return fail(size.error().message);
   const models::MeshView view = room_for(*size);
-  const auto outcome = synthesis::synthesize_guarded(type, placement.parameters, level, view);
+  const auto outcome = synthesis::synthesise_guarded(type, placement.parameters, level, view);
   if (!outcome.ok) return fail(outcome.error);
   totals.triangles += placement.index == world::kTerrainIndex
                           ? models::terrain_surface_triangles(placement.parameters, level)
@@ -107,13 +107,13 @@ void BlockSynthesizer::make(const world::Placement& placement, core::BlockCoord 
 std::optional<std::uint64_t> sample_world_hash(const world::World& world,
                                                const models::Registry& registry,
                                                core::BlockCoord block) {
-  BlockSynthesizer synthesizer(world, registry, kAllLevels);
+  BlockSynthesiser synthesiser(world, registry, kAllLevels);
   Totals totals;
   for (std::int64_t z = std::int64_t{block.z} - 1; z <= std::int64_t{block.z} + 1; ++z) {
     for (std::int64_t x = std::int64_t{block.x} - 1; x <= std::int64_t{block.x} + 1; ++x) {
       const core::BlockCoord coord{static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
       const bool exists = coord.x == x && coord.z == z && world.contains(coord);
-      if (exists) synthesizer.synthesise(coord, totals);
+      if (exists) synthesiser.synthesise(coord, totals);
     }
   }
   if (totals.failed > 0) return std::nullopt;
