@@ -34,7 +34,7 @@ class EveryBlock final : public RunSource {
   alignas(64) std::atomic<std::uint64_t> next_{0};
 };
 
-// State that the threads share. Each thread takes the lock once, when it ends.
+// State shared by the threads. Each thread takes the lock once, when it ends.
 struct Shared {
   const world::World& world;
   const models::Registry& registry;
@@ -58,7 +58,7 @@ struct alignas(64) Worker {
 
   void work(Shared& shared);
   core::Result<void> make_blocks(Shared& shared);
-  // The blocks of a run, until it is to stop. False: it was stopped.
+  // Makes the blocks of a run. Returns false if it was stopped.
   core::Result<bool> make_run(Shared& shared, BlockSynthesiser& synthesiser, BlockSink* sink,
                               const BlockRun& run, Totals& made);
 };
@@ -126,7 +126,7 @@ void Worker::work(Shared& shared) {
         core::Error{core::ErrorCode::kSynthesisFailed, fmt::format("a block failed: {}", e.what())};
   } catch (...) {
     error = core::Error{core::ErrorCode::kSynthesisFailed,
-                        "a block failed: something threw that is no std::exception"};
+                        "a block failed: an exception that is not a std::exception"};
   }
   if (error) shared.failed.store(true, std::memory_order_relaxed);
   cpu_seconds = core::thread_cpu_seconds();
@@ -181,7 +181,7 @@ struct Crew {
   }
 };
 
-// Starts the wanted threads, at most one per block, or as many as the system allows. Fails if it
+// Starts the requested threads, at most one per block, or as many as the system allows. Fails if it
 // allows none.
 core::Result<void> start(Crew& crew) {
   const std::uint64_t wanted =
@@ -204,7 +204,7 @@ core::Result<Report> amplify(const world::World& world, const models::Registry& 
   if (auto ok = check_region(world, region); !ok) return tl::unexpected(ok.error());
   if (options.threads < 1 || options.threads > kMaxThreads) {
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("there may be 1 to {} threads", kMaxThreads));
+                      fmt::format("the number of threads must be 1 to {}", kMaxThreads));
   }
   EveryBlock every_block(region.block_count());
   RunSource& source = options.source != nullptr ? *options.source : every_block;

@@ -17,7 +17,7 @@
 namespace psygen::amplify {
 
 inline constexpr unsigned kMaxThreads = 256;
-// One thread per processor, within 1 … kMaxThreads. 0 processors: their number is unknown.
+// One thread per processor, within 1 … kMaxThreads. `processors` is 0 if their number is unknown.
 constexpr unsigned threads_for(unsigned processors) {
   return std::clamp(processors, 1u, kMaxThreads);
 }
@@ -31,9 +31,9 @@ class BlockSink {
   virtual void add(core::BlockCoord block, const BlockMesh& mesh) = 0;  // terrain first
   // All meshes of the block have been added. A failure ends the whole run.
   virtual core::Result<void> finish(core::BlockCoord block) = 0;
-  // Called instead of finish() if a mesh of the block failed: forget the meshes that were added.
+  // Called instead of finish() if a mesh of the block failed: discards the added meshes.
   virtual void drop(core::BlockCoord block) = 0;
-  // Whether to pass the meshes of the block to this sink.
+  // Returns true if this sink needs the meshes of the block.
   virtual bool wants(core::BlockCoord block) = 0;
 };
 
@@ -41,23 +41,22 @@ class BlockSink {
 class RunSource {
  public:
   virtual ~RunSource() = default;
-  // The next blocks of the calling thread; nothing: there are no more. A failure ends the whole
-  // run.
+  // The next blocks for the calling thread, or nothing at the end. A failure ends the whole run.
   virtual core::Result<std::optional<BlockRun>> next() = 0;
-  // Every mesh of these blocks was made, and the sink has finished them: one call for each run of
-  // next() of which no mesh failed and that was not stopped. A failure ends the whole run.
+  // Called once for each run of next() whose meshes are all made and whose sink has finished,
+  // unless a mesh failed or the run was stopped. A failure ends the whole run.
   virtual core::Result<void> finished(const BlockRun& run, const Totals& totals) = 0;
 };
 
-// How to run.
+// Options of a run.
 struct Options {
   unsigned threads = 1;         // 1 … kMaxThreads
-  bool lowest_priority = true;  // of the threads, for the system's scheduler
-  // Makes the sink of a thread, in that thread. Empty: the meshes are discarded.
+  bool lowest_priority = true;  // scheduling priority of the threads
+  // Makes the sink of a thread, in that thread. Empty: meshes are discarded.
   std::function<std::unique_ptr<BlockSink>()> make_sink;
-  // Which blocks of the region, in which order. Null: all of them, once.
+  // Selects the blocks of the region and their order. Null: all of them, once.
   RunSource* source = nullptr;
-  // Called in the calling thread, once in `progress_period_ms`, with the number of finished blocks.
+  // Called in the calling thread every `progress_period_ms` with the number of finished blocks.
   std::function<void(std::uint64_t)> progress;
   unsigned progress_period_ms = 100;
   // Set it to true from any thread to stop after the blocks in progress. May be null.
@@ -69,8 +68,8 @@ struct Report {
   Totals totals;
   unsigned threads = 0;    // threads that were started
   double seconds = 0;      // wall-clock time
-  double cpu_seconds = 0;  // of all threads together
-  bool stopped = false;    // by Options::stop, before there were no more blocks
+  double cpu_seconds = 0;  // all threads together
+  bool stopped = false;    // by Options::stop, before all blocks were done
   bool complete = false;   // not stopped, and no mesh failed
   // Triangles per second of CPU time; 0 if no time was measured.
   double triangles_per_second_per_core() const {

@@ -23,7 +23,7 @@ std::string name_of(core::BlockCoord block) {
   return fmt::format("block_{}_{}", block.x, block.z);
 }
 
-// The block of a file name as name_of() begins it.
+// The block of a file name that name_of() made.
 std::optional<core::BlockCoord> block_of(std::string_view file) {
   constexpr std::string_view kBegin = "block_";
   if (!file.starts_with(kBegin)) return std::nullopt;
@@ -53,10 +53,10 @@ core::Result<exchange::Object> object_of(const world::World& world,
   return object;
 }
 
-// This many bytes of a text that lost its end identify its origin.
+// This many bytes of a truncated text identify its origin.
 constexpr std::size_t kTelling = 8;
 
-// The hash of the file of a block in the middle of the world, and of the meshes around it. Nothing
+// The hash of the file of a block in the middle of the world and of the meshes around it. Nothing
 // if one of its models fails.
 std::optional<std::uint64_t> sample_of(const world::World& world, const models::Registry& registry,
                                        exchange::Format format) {
@@ -160,8 +160,8 @@ core::Result<std::unique_ptr<BlockFolder>> BlockFolder::open(std::filesystem::pa
   return opened;
 }
 
-// Writes a text into the folder, unless the same text is there; a text that lost its end is
-// replaced. Refuses another text, and a missing text beside blocks, whose origin is then unknown.
+// Writes a text into the folder, unless the same text exists; replaces a truncated text. Fails for
+// another text, and for a missing text next to blocks, whose origin is then unknown.
 core::Result<void> BlockFolder::claim(const char* file, const std::string& text,
                                       const char* others) const {
   const std::filesystem::path path = folder_ / file;
@@ -178,14 +178,13 @@ core::Result<void> BlockFolder::claim(const char* file, const std::string& text,
         core::ErrorCode::kInvalidArgument,
         fmt::format("{}: {} ({}); choose another folder", folder_.string(), why, path.string()));
   };
-  if (theirs.empty() && has_blocks())
-    return refuse("holds blocks, and nothing tells whose they are");
+  if (theirs.empty() && has_blocks()) return refuse("has blocks of unknown origin");
   const bool rest = theirs.size() >= kTelling && text.starts_with(theirs);
-  if (!theirs.empty() && !rest) return refuse(fmt::format("holds the blocks of {}", others));
+  if (!theirs.empty() && !rest) return refuse(fmt::format("has blocks of {}", others));
   return core::replace_file(path, text);
 }
 
-// Whether the folder has blocks of this format.
+// True if the folder has blocks of this format.
 bool BlockFolder::has_blocks() const {
   const std::string extension = fmt::format(".{}", exchange::name_of(format_));
   std::error_code error;
@@ -207,7 +206,7 @@ core::Result<void> BlockFolder::claim() const {
   const auto sample = sample_of(world_, registry_, format_);
   if (!sample) return {};  // a later run with a sample will refuse these blocks
   return claim(format_ == exchange::Format::kGlb ? "sample_glb.hash" : "sample_obj.hash",
-               fmt::format("{:016x}\n", *sample), "this world made by another version");
+               fmt::format("{:016x}\n", *sample), "this world from another version");
 }
 
 std::unique_ptr<BlockSink> BlockFolder::make_sink() {

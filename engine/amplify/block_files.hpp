@@ -1,9 +1,9 @@
 // A folder with one file per block: glTF or OBJ with all its meshes at one level of detail. A run
-// can be continued: existing files are not written again unless they have lost their end, and
+// can be continued: existing files are not written again unless they are truncated, and
 // half-written files of a killed process are removed. A block with a failed mesh gets no file. The
-// folder also holds the world file and a hash of some sample blocks. They prevent that blocks of
-// two worlds mix, and, as far as the sample shows, blocks of one world from two versions of the
-// engine. Sinks are per thread; the folder may be shared.
+// folder also has the world file and a hash of some sample blocks. They prevent mixing blocks of
+// two worlds, and, as far as the sample shows, blocks of one world from two versions of the engine.
+// Sinks are per thread; the folder may be shared.
 #pragma once
 
 #include <atomic>
@@ -20,12 +20,12 @@ core::Result<exchange::Document> block_document(const world::World& world,
                                                 const models::Registry& registry,
                                                 core::BlockCoord block, int level);
 
-// Whether a folder has the whole file of a block, as BlockFolder writes it.
+// True if a folder has the whole file of a block, as BlockFolder writes it.
 bool has_block_file(const std::filesystem::path& folder, core::BlockCoord block,
                     exchange::Format format);
 
-// Removes what killed processes left half-written of blocks, on whatever host. For those who alone
-// write these blocks.
+// Removes half-written files that killed processes, on any host, have left for these blocks. Only
+// for a caller that is the sole writer of these blocks.
 void remove_partial_blocks(const std::filesystem::path& folder,
                            const std::function<bool(core::BlockCoord)>& is_ours);
 
@@ -33,8 +33,8 @@ void remove_partial_blocks(const std::filesystem::path& folder,
 class BlockFolder {
  public:
   // Creates the folder if needed. `world` and `registry` must outlive it. Fails with kIo if the
-  // folder cannot be written. Fails with kInvalidArgument if it holds blocks of another world
-  // or of other files that it names, blocks that this version of the engine and these model types
+  // folder cannot be written. Fails with kInvalidArgument if it has blocks of another world or of
+  // other files that the world names, blocks that this version of the engine and these model types
   // would make differently, or blocks of unknown origin.
   static core::Result<std::unique_ptr<BlockFolder>> open(std::filesystem::path folder,
                                                          const world::World& world,
@@ -45,7 +45,7 @@ class BlockFolder {
   std::unique_ptr<BlockSink> make_sink();
   // The file of a block: "block_X_Z.glb" in the folder.
   std::filesystem::path file_of(core::BlockCoord block) const;
-  // Whether that file is there and has its end. Any thread.
+  // True if that file exists and is whole. Any thread.
   bool has(core::BlockCoord block) const;
   // Blocks written, and blocks skipped because their file exists; any thread.
   std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }

@@ -9,8 +9,8 @@
 namespace psygen::amplify {
 
 void BlockRanges::append(BlockRun run) {
-  PSYGEN_ASSERT(run.first <= run.end, "a run ends before it begins");
-  PSYGEN_ASSERT(runs_.empty() || run.first >= runs_.back().end, "runs are in ascending order");
+  PSYGEN_ASSERT(run.first <= run.end, "a run must not end before it begins");
+  PSYGEN_ASSERT(runs_.empty() || run.first >= runs_.back().end, "runs must be in ascending order");
   if (run.first == run.end) return;
   const std::uint64_t total = count() + run.count();
   if (!runs_.empty() && runs_.back().end == run.first) {
@@ -23,7 +23,7 @@ void BlockRanges::append(BlockRun run) {
 }
 
 std::uint64_t BlockRanges::at(std::uint64_t position) const {
-  PSYGEN_ASSERT(position < count(), "there is no block at this position");
+  PSYGEN_ASSERT(position < count(), "the position must be below count()");
   const auto after = std::ranges::upper_bound(ends_, position);
   const auto i = static_cast<std::size_t>(after - ends_.begin());
   return runs_[i].end - (ends_[i] - position);

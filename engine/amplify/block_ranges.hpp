@@ -1,5 +1,5 @@
-// Numbers of blocks of a region (Region::block) as sorted, disjoint, half-open ranges, so that a
-// share of billions of blocks is a few numbers. Plain values and pure functions, any thread;
+// Indices of blocks of a region (Region::block) as sorted, disjoint, half-open ranges, so that a
+// part of billions of blocks is a few numbers. Plain values and pure functions, any thread;
 // O(number of ranges) each, at() and sub() O(log). It knows no blocks and no meshes.
 #pragma once
 
@@ -24,20 +24,20 @@ class BlockRanges {
   BlockRanges() = default;
   explicit BlockRanges(BlockRun run) { append(run); }
 
-  // Appends a run that begins at or behind the end of the last one. Neighbours become one range.
+  // Appends a run that begins at or after the end of the last one. Adjacent runs become one range.
   void append(BlockRun run);
   std::uint64_t count() const { return ends_.empty() ? 0 : ends_.back(); }
   std::span<const BlockRun> runs() const& { return runs_; }
   std::span<const BlockRun> runs() && = delete;
-  // The block number at a position. Requires position < count().
+  // The block index at a position. Requires position < count().
   std::uint64_t at(std::uint64_t position) const;
   // The blocks at positions first … end − 1. Requires first <= end <= count().
   BlockRanges sub(std::uint64_t first, std::uint64_t end) const;
   // These blocks without those of `others`.
   BlockRanges without(const BlockRanges& others) const;
-  // These blocks and those of `others`, which has none of them.
+  // These blocks and those of `others`. The two sets must be disjoint.
   BlockRanges joined(const BlockRanges& others) const;
-  // For messages: "0-7, 12, 20-31", cut after the first few.
+  // For messages: "0-7, 12, 20-31", truncated after the first few.
   std::string text() const;
   friend bool operator==(const BlockRanges&, const BlockRanges&) = default;
 

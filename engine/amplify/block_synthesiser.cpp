@@ -11,7 +11,7 @@
 namespace psygen::amplify {
 namespace {
 
-// Hash of the data of a mesh that is in neither its bytes nor its key.
+// Hash of the mesh data that is neither in its bytes nor in its key.
 std::uint64_t frame_hash(const world::Placement& placement, const models::MeshSize& size,
                          const core::Bounds& tight) {
   const glm::vec3& at = placement.position;
@@ -55,7 +55,7 @@ void BlockSynthesiser::synthesise(core::BlockCoord block, Totals& totals,
   const world::Placement terrain{world_.terrain_model, world::kTerrainIndex, glm::vec3(0.0F),
                                  world::terrain_parameters(world_, block)};
   const bool made = make_levels(terrain, block, totals, visit);
-  if (made && level_ == 0) {  // the terrain is still in the memory
+  if (made && level_ == 0) {  // the memory still has the terrain
     const models::BlockGround ground(world_.terrain, block,
                                      std::as_bytes(std::span(memory_.get(), line_count_)));
     world::place_models(world_, registry_, block, ground, placements_);

@@ -1,6 +1,6 @@
-// Synthesises all meshes of a block, one after the other, in the same memory. It has a few hundred
-// KiB and so stays in the processor's cache, where each mesh is also hashed. Keeps no mesh. One
-// object per thread; no locks, and only the immutable world is shared.
+// Synthesises all meshes of a block, one after the other, in the same memory. The memory has a few
+// hundred KiB and so stays in the processor's cache, where each mesh is also hashed. Keeps no mesh.
+// One object per thread; no locks, and only the immutable world is shared.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +19,20 @@ namespace psygen::amplify {
 
 // One finished mesh. Valid until the next one is made.
 struct BlockMesh {
-  const world::Placement& placement;  // of terrain: position 0, index world::kTerrainIndex
-  int level;                          // of detail
+  const world::Placement& placement;  // for terrain: position 0, index world::kTerrainIndex
+  int level;                          // level of detail
   models::MeshSize size;
-  core::Bounds tight;  // box of the vertices, as ModelType::synthesise() returned it
+  core::Bounds tight;  // tight bounds, as ModelType::synthesise() returned them
   models::MeshView view;
 };
 
 // Sums over blocks. Parts may be added in any order.
 struct Totals {
-  std::uint64_t blocks = 0, models = 0;  // models: without terrain
-  std::uint64_t triangles = 0;           // of terrain without its skirts
+  std::uint64_t blocks = 0, models = 0;  // models excludes terrain
+  std::uint64_t triangles = 0;           // terrain counts without its skirts
   std::uint64_t bytes = 0;               // packed vertices and indices, without shared index lists
   std::uint64_t failed = 0;              // meshes of types that threw
-  std::string first_failure;             // a sentence; empty: none
+  std::string first_failure;             // an error message; empty: none
   synthesis::WorldHash hash;
   // Adds the sums of other blocks. Keeps the first failure.
   void add(const Totals& part);
@@ -44,13 +44,12 @@ inline constexpr int kAllLevels = -1;
 // Synthesises blocks one by one.
 class BlockSynthesiser {
  public:
-  // `world` and `registry` must outlive it. `level` is used for all types (or their coarsest level,
-  // where they have fewer), or it is kAllLevels.
+  // `world` and `registry` must outlive it. `level` applies to all types (types with fewer levels
+  // use their coarsest), or is kAllLevels.
   BlockSynthesiser(const world::World& world, const models::Registry& registry, int level = 0);
 
-  // Synthesises `block` and adds it to `totals`. `visit`, if given, is called for each mesh,
-  // terrain first. A mesh that fails is counted and left out. Needs the stack of the types'
-  // synthesis.
+  // Synthesises `block` and adds it to `totals`. Calls `visit`, if given, for each mesh, terrain
+  // first. A mesh that fails is counted and left out. Needs the stack of the types' synthesis.
   void synthesise(core::BlockCoord block, Totals& totals,
                   const std::function<void(const BlockMesh&)>& visit = {});
 
@@ -63,7 +62,7 @@ class BlockSynthesiser {
     return (bytes + sizeof(CacheLine) - 1) / sizeof(CacheLine);
   }
 
-  // Makes the levels of one model. False if one of them failed.
+  // Makes the levels of one model. Returns false if one of them failed.
   bool make_levels(const world::Placement& placement, core::BlockCoord block, Totals& totals,
                    const std::function<void(const BlockMesh&)>& visit);
   void make(const world::Placement& placement, core::BlockCoord block, int level, Totals& totals,
@@ -78,8 +77,8 @@ class BlockSynthesiser {
   std::size_t line_count_ = 0;
 };
 
-// The hash of the 3 × 3 blocks around `block` at every level of detail; blocks that do not exist
-// are left out. Nothing if a mesh failed.
+// The hash of the existing blocks among the 3 × 3 around `block`, at every level of detail. Nothing
+// if a mesh failed.
 std::optional<std::uint64_t> sample_world_hash(const world::World& world,
                                                const models::Registry& registry,
                                                core::BlockCoord block);

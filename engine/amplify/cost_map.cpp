@@ -11,7 +11,8 @@
 namespace psygen::amplify {
 namespace {
 
-// Where the k-th of n stretches begins. They differ by one block at most: the first ones have more.
+// The start of the k-th of n stretches. Their sizes differ by at most one block; the first are
+// larger.
 std::uint64_t stretch_begin(std::uint64_t blocks, std::uint64_t n, std::uint64_t k) {
   return k * (blocks / n) + std::min(k, blocks % n);
 }
@@ -76,7 +77,7 @@ CostMap CostMap::flat(std::uint64_t blocks) {
 }
 
 CostMap CostMap::from(std::uint64_t blocks, std::vector<double> seconds) {
-  PSYGEN_ASSERT(!seconds.empty() && blocks >= seconds.size(), "a stretch has a block at least");
+  PSYGEN_ASSERT(!seconds.empty() && blocks >= seconds.size(), "a stretch must have a block");
   CostMap map;
   map.blocks_ = blocks;
   map.each_ = std::move(seconds);
@@ -130,7 +131,7 @@ std::uint64_t CostMap::block_at(double seconds) const {
 }
 
 BlockRun shard_of(const CostMap& costs, std::uint64_t i, std::uint64_t n) {
-  PSYGEN_ASSERT(i >= 1 && i <= n, "shards count from 1");
+  PSYGEN_ASSERT(i >= 1 && i <= n, "the index of a shard must be 1 to n");
   const auto border = [&](std::uint64_t shard) {
     if (shard == 0) return std::uint64_t{0};
     if (shard == n) return costs.block_count();

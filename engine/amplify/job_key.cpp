@@ -25,7 +25,7 @@ core::Result<JobKey> job_key(const world::World& world, const models::Registry& 
   const auto sample = sample_world_hash(world, registry, middle);
   if (!sample) {
     return core::fail(core::ErrorCode::kSynthesisFailed,
-                      fmt::format("the world {} cannot be shared out: a model on the blocks around "
+                      fmt::format("the world {} cannot be divided: a model on the blocks around "
                                   "{},{} fails",
                                   world.name, middle.x, middle.z));
   }

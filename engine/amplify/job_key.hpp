@@ -1,5 +1,6 @@
-// What all parts of one job have in common: the world, its region, the files, and what makes them.
-// Parts whose keys differ would make other bits and are never joined. Plain values; any thread.
+// The common properties of all parts of one job: the world, its region, the files, and the version
+// that makes them. Parts with different keys would make different bits and are never joined. Plain
+// values; any thread.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +13,17 @@
 
 namespace psygen::amplify {
 
-// The format of a job's files; none: only figures.
+// The format of a job's files; nothing: no files, only statistics.
 using JobFormat = std::optional<exchange::Format>;
 inline constexpr std::string_view kNoFiles = "none";
 // "glb", "obj" or "none".
 std::string_view name_of(const JobFormat& format);
 
 struct JobKey {
-  std::string version;            // of psygen
-  std::string world;              // its name, for messages
+  std::string version;            // version of psygen
+  std::string world;              // the world's name, for messages
   std::uint64_t world_hash = 0;   // world::world_hash()
-  std::uint64_t sample_hash = 0;  // of blocks in the middle of the region, at all levels of detail
+  std::uint64_t sample_hash = 0;  // of blocks in the middle of the region, all levels of detail
   Region region;
   JobFormat format;
   friend bool operator==(const JobKey&, const JobKey&) = default;
@@ -32,8 +33,8 @@ struct JobKey {
 core::Result<JobKey> job_key(const world::World& world, const models::Registry& registry,
                              const Region& region, JobFormat format, std::string_view version);
 
-// Where `theirs` differs from `mine`, as in "the region 0,0,8,8 instead of 0,0,4,4"; empty if
-// equal.
+// The difference between `theirs` and `mine`, as in "the region 0,0,8,8 instead of 0,0,4,4"; empty
+// if they are equal.
 std::string difference(const JobKey& mine, const JobKey& theirs);
 
 }  // namespace psygen::amplify

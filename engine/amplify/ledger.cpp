@@ -21,8 +21,8 @@ tl::unexpected<core::Error> io_error(const std::filesystem::path& file, const ch
                     fmt::format("{}: {}: {}", file.string(), action, std::strerror(errno)));
 }
 
-// Held by one process at a time while it looks for a ledger, makes or replaces it. File systems
-// without locks are taken as they are.
+// Held by one process at a time while it looks for a ledger, creates or replaces it. File systems
+// without locks are used unlocked.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& file)
@@ -40,7 +40,7 @@ class FolderLock {
   int handle_;
 };
 
-// Whether the name still leads to the open file.
+// True if the name still leads to the open file.
 bool is_at(const std::filesystem::path& file, int handle) {
   struct stat named {
   }, opened{};
@@ -60,7 +60,7 @@ core::Result<BlockRanges> blocks_of(const std::vector<Finished>& finished) {
     if (i > 0 && runs[i].first < runs[i - 1].end)
       return core::fail(
           core::ErrorCode::kInvalidArgument,
-          fmt::format("the blocks {} are there twice",
+          fmt::format("the blocks {} are listed twice",
                       BlockRanges({runs[i].first, std::min(runs[i].end, runs[i - 1].end)}).text()));
     blocks.append(runs[i]);
   }
@@ -106,7 +106,7 @@ core::Result<std::unique_ptr<Ledger>> Ledger::open(std::filesystem::path file, L
   return opened;
 }
 
-// Opens the file to append and locks it. File systems without locks are taken as they are.
+// Opens the file to append and locks it. File systems without locks are used unlocked.
 core::Result<void> Ledger::lock() {
   const int handle = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (handle < 0) return io_error(file_, "cannot be opened");
@@ -124,7 +124,7 @@ core::Result<void> Ledger::lock() {
 core::Result<void> Ledger::take_over(LedgerText theirs) {
   const auto refuse = [this](const std::string& why) {
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: is of {}; choose another folder", file_.string(), why));
+                      fmt::format("{}: belongs to {}; choose another folder", file_.string(), why));
   };
   const std::string other = difference(content_.key, theirs.key);
   if (!other.empty()) return refuse(other);
@@ -137,7 +137,7 @@ core::Result<void> Ledger::take_over(LedgerText theirs) {
                       fmt::format("{}: {}", file_.string(), once.error().message));
   content_ = std::move(theirs);
   if (ftruncate(handle_, static_cast<off_t>(content_.whole_bytes)) != 0)
-    return io_error(file_, "cannot be cut");
+    return io_error(file_, "cannot be truncated");
   return {};
 }
 
@@ -161,9 +161,9 @@ core::Result<void> Ledger::add(const Finished& finished) {
   } while (written < 0 && errno == EINTR);
   if (written != static_cast<ssize_t>(line.size())) {
     const int reason = written < 0 ? errno : ENOSPC;
-    // A half line would stand before those of other threads, and damage the ledger.
+    // A half line would corrupt the lines of other threads after it.
     if (written > 0 && ftruncate(handle_, lseek(handle_, 0, SEEK_END) - written) != 0)
-      return io_error(file_, "cannot be cut");
+      return io_error(file_, "cannot be truncated");
     errno = reason;
     return io_error(file_, "cannot write");
   }

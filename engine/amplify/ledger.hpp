@@ -1,8 +1,8 @@
-// What a part of a job has finished, as a text file beside the blocks: who it is, then one line for
-// each run of blocks with its figures. Lines are appended whole and have checksums, so that a part
-// that is killed at any moment goes on where it was: a line that lost its end counts as not
-// written. A line is written after the files of its blocks. Not a log for people, and not a lock of
-// the folder. `add()` from any thread, everything else from one.
+// The finished blocks of a part of a job, as a text file next to the blocks: an identification,
+// then one line with totals for each run of blocks. Lines are appended whole and have checksums, so
+// a part that is killed at any moment can be resumed: a truncated line counts as not written. A
+// line is written after the files of its blocks. Not a log for people, and not a lock of the
+// folder. `add()` from any thread, everything else from one.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ namespace psygen::amplify {
 
 inline constexpr std::string_view kLedgerExtension = ".ledger";
 
-// Blocks that are finished, and their figures. No mesh of them failed.
+// Finished blocks and their totals. None of their meshes failed.
 struct Finished {
   BlockRun run;
   Totals totals;
@@ -31,33 +31,33 @@ struct Finished {
 struct LedgerText {
   JobKey key;
   std::string part;  // "shard 3 of 8", "rank 2"
-  BlockRun share;    // the blocks that the part has to finish, at most
+  BlockRun share;    // the blocks that the part has to finish
   std::vector<Finished> finished;
-  std::size_t whole_bytes = 0;  // up to the end of the last whole line
+  std::size_t whole_bytes = 0;  // size up to the end of the last whole line
 };
 
-// The blocks of all entries. Fails with kInvalidArgument if two of them have a block in common.
+// The blocks of all entries. Fails with kInvalidArgument if two entries have a block in common.
 core::Result<BlockRanges> blocks_of(const std::vector<Finished>& finished);
-// Entries in ascending order; neighbours become one of at most kMaxCompacted blocks, which is what
-// one lost file costs.
+// Entries in ascending order. Adjacent entries are joined up to kMaxCompacted blocks, which is the
+// cost of one lost file.
 inline constexpr std::uint64_t kMaxCompacted = 4096;
 std::vector<Finished> compacted(std::vector<Finished> finished);
 
 // The text of a whole ledger, and the line of an entry.
 std::string line_of(const Finished& finished);
 std::string ledger_text(const LedgerText& ledger);
-// Reads such a text; `name` is for messages. A cut last line is left out; nothing is read from a
-// head that is cut, which gives kParse as anything else does that psygen did not write.
+// Reads such a text; `name` is for messages. A truncated last line is ignored. A truncated head,
+// like any other text that psygen did not write, fails with kParse.
 core::Result<LedgerText> parse_ledger(std::string_view text, const std::string& name);
 core::Result<LedgerText> read_ledger(const std::filesystem::path& file);
 
-// A ledger that is being written. The file is locked meanwhile, where its file system can.
+// A ledger that is being written. The file is locked meanwhile, if its file system can lock.
 class Ledger {
  public:
-  // Opens or creates `file` for a part whose key, name and share are those of `ledger`; what the
-  // file has is in finished() then, and `ledger.finished` is ignored. Fails with kIo, with
-  // kInvalidArgument if the file is of another job, part or share or another process writes it, and
-  // with kParse if psygen did not write it.
+  // Opens or creates `file` for the part with the key, name and share of `ledger`;
+  // `ledger.finished` is ignored. finished() then has the entries of the file. Fails with kIo, with
+  // kInvalidArgument if the file belongs to another job, part or share or another process writes
+  // it, and with kParse if psygen did not write it.
   static core::Result<std::unique_ptr<Ledger>> open(std::filesystem::path file, LedgerText ledger);
   ~Ledger();
   Ledger(const Ledger&) = delete;

@@ -28,8 +28,8 @@ std::string checked(const std::string& line) {
   return line + check_of(line) + "\n";
 }
 
-// The next whole line without its checksum; nothing at the end, and where a line is not as it was
-// written.
+// The next whole line without its checksum. Nothing at the end and for a line that does not match
+// its checksum.
 std::optional<std::string_view> take_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   if (end == std::string_view::npos || end < kCheckBytes) return std::nullopt;
@@ -39,7 +39,7 @@ std::optional<std::string_view> take_line(std::string_view& text) {
   return line;
 }
 
-// Takes numbers off the front of a line, separated by single spaces.
+// Reads numbers from the front of a line, separated by single spaces.
 class Words {
  public:
   explicit Words(std::string_view line) : rest_(line) {}
@@ -91,7 +91,7 @@ bool read_region(Words& words, Region& region) {
   return parsed.has_value();
 }
 
-// The lines before the entries. False: one of them is missing or means nothing.
+// Reads the lines before the entries. Returns false if one is missing or malformed.
 bool read_head(std::string_view& text, LedgerText& ledger) {
   JobKey& key = ledger.key;
   const auto line = [&text](std::string_view name, auto&& take) {

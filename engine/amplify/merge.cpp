@@ -25,7 +25,7 @@ core::Result<std::vector<std::filesystem::path>> ledger_files(const std::filesys
                       fmt::format("{}: cannot be read: {}", path.string(), error.message()));
   if (files.empty())
     return cannot_join(
-        fmt::format("{}: holds no ledger of a shard (shard_I_of_N.ledger)", path.string()));
+        fmt::format("{}: has no ledger of a shard (shard_I_of_N.ledger)", path.string()));
   return files;
 }
 
@@ -42,7 +42,7 @@ std::string blocks_text(const Region& region, const BlockRun& run) {
                      last.z);
 }
 
-// Whose share a block is, of the ledgers that there are.
+// The part, of these ledgers, that has the block.
 std::string owner_of(std::span<const NamedLedger> ledgers, std::uint64_t block) {
   for (const NamedLedger& l : ledgers)
     if (block >= l.ledger.share.first && block < l.ledger.share.end)
@@ -59,7 +59,7 @@ core::Result<void> check_files(const NamedLedger& named) {
       const core::BlockCoord block = key.region.block(i);
       if (has_block_file(folder, block, *key.format)) continue;
       return cannot_join(
-          fmt::format("{}: the file of block {},{} is missing or has lost its end; "
+          fmt::format("{}: the file of block {},{} is missing or truncated; "
                       "run {} again",
                       folder.string(), block.x, block.z, named.ledger.part));
     }
@@ -91,7 +91,7 @@ core::Result<Totals> merge(std::span<const NamedLedger> ledgers) {
   for (const NamedLedger& named : ledgers) {
     const std::string other = difference(key, named.ledger.key);
     if (!other.empty())
-      return cannot_join(fmt::format("{}: is of another job than {}: {}", named.file.string(),
+      return cannot_join(fmt::format("{}: belongs to another job than {}: {}", named.file.string(),
                                      ledgers.front().file.string(), other));
     for (const Finished& finished : named.ledger.finished)
       entries.push_back({&finished, &named});

@@ -49,10 +49,10 @@ core::Result<Region> parse_region(std::string_view text) {
   if (at != end) return refuse("it needs four integers");
   const Region region{values[0], values[1], values[2], values[3]};
   if (region.x0 >= region.x1 || region.z0 >= region.z1)
-    return refuse("its end must lie beyond its start (the end does not belong to it)");
+    return refuse("its end must be greater than its start (the end is exclusive)");
   if (region.x0 < kFirstBlock || region.z0 < kFirstBlock || region.x1 > kEndBlock ||
       region.z1 > kEndBlock)
-    return refuse(fmt::format("blocks go from {} to {}", kFirstBlock, kEndBlock - 1));
+    return refuse(fmt::format("block coordinates must be {} to {}", kFirstBlock, kEndBlock - 1));
   return region;
 }
 
@@ -60,7 +60,7 @@ core::Result<Region> whole(const world::World& world) {
   if (world.is_endless()) {
     return core::fail(
         core::ErrorCode::kInvalidArgument,
-        fmt::format("the world {} has no end: choose a region, such as --region 0,0,16,16",
+        fmt::format("the world {} is endless: choose a region, such as --region 0,0,16,16",
                     world.name));
   }
   return Region{0, 0, world.blocks_x, world.blocks_z};
@@ -78,7 +78,7 @@ core::Result<void> check_region(const world::World& world, const Region& region)
   };
   return core::fail(
       core::ErrorCode::kInvalidArgument,
-      fmt::format("the region {},{},{},{} reaches beyond the world {}, whose blocks are x {}, z {}",
+      fmt::format("the region {},{},{},{} extends beyond the world {}, whose blocks are x {}, z {}",
                   region.x0, region.z0, region.x1, region.z1, world.name, range(world.blocks_x),
                   range(world.blocks_z)));
 }

@@ -20,7 +20,7 @@ struct Region {
   std::uint64_t block_count() const;
   // The i-th block, row by row (z outer, x inner). Requires i < block_count().
   core::BlockCoord block(std::uint64_t i) const;
-  // The number of a block; nothing outside.
+  // The index of a block; nothing outside.
   std::optional<std::uint64_t> number_of(core::BlockCoord block) const;
   friend bool operator==(const Region&, const Region&) = default;
 };
@@ -33,7 +33,7 @@ core::Result<Region> parse_region(std::string_view text);
 core::Result<Region> whole(const world::World& world);
 
 // Fails with kInvalidArgument if part of `region` is outside the world. The message names the
-// blocks that exist.
+// existing blocks.
 core::Result<void> check_region(const world::World& world, const Region& region);
 
 }  // namespace psygen::amplify

@@ -35,7 +35,7 @@ std::string ledger_name(const Shard& shard) {
 
 BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads,
                   std::uint64_t most) {
-  constexpr std::uint64_t kRunsPerThread = 4;  // of what is left
+  constexpr std::uint64_t kRunsPerThread = 4;  // of the remaining blocks
   const std::uint64_t left = todo.count() - position;
   const std::uint64_t wanted =
       std::clamp<std::uint64_t>(left / (kRunsPerThread * threads), 1, most);
@@ -96,7 +96,7 @@ core::Result<Report> amplify_shard(const Job& job, const Shard& shard,
   if (!report) return report;
   for (const Finished& f : known)
     report->totals.add(f.totals);
-  // Everything is noted already, in more lines.
+  // The ledger already has everything, in more lines.
   if (auto ok = (*ledger)->rewrite(compacted((*ledger)->finished())); !ok)
     core::log_warning(ok.error().message);
   return report;

@@ -1,7 +1,7 @@
-// A share of a job that one process makes alone, without any other: shard I of N of a region. Cut
-// by predicted cost (cost_map.hpp), noted in a ledger beside its blocks, gone on with after a kill
-// at any moment, joined with the others at the end. Nothing here knows other processes: shards run
-// where and when anybody likes. One thread, except where RunSource says otherwise.
+// Shards: shard I of N is the part of a job that one process makes without any other. Shards are
+// cut by predicted cost (cost_map.hpp), recorded in a ledger next to their blocks, resumed after a
+// kill at any moment, and merged at the end. Processes do not communicate, so shards can run
+// anywhere at any time. One thread, except as stated for RunSource.
 #pragma once
 
 #include <filesystem>
@@ -19,21 +19,21 @@ namespace psygen::amplify {
 
 inline constexpr std::uint64_t kMaxShards = 1'000'000;
 
-// Shard `index` of `count`, from 1 on.
+// Shard `index` of `count`; indices start at 1.
 struct Shard {
   std::uint64_t index = 1, count = 1;
 };
 // Parses "I/N". Fails with kInvalidArgument for anything but 1 <= I <= N <= kMaxShards.
 core::Result<Shard> parse_shard(std::string_view text);
-// "shard 3 of 8", and the name of its ledger, "shard_3_of_8.ledger".
+// "shard 3 of 8"; and the name of its ledger, "shard_3_of_8.ledger".
 std::string text_of(const Shard& shard);
 std::string ledger_name(const Shard& shard);
 
 // Hands out blocks in runs that become shorter towards the end, so that threads end together, and
-// notes in a ledger what is finished. Any thread.
+// records finished blocks in a ledger. Any thread.
 class LedgerSource final : public RunSource {
  public:
-  // The longest run: what a kill costs a thread at most.
+  // The longest run: the maximum work that a kill costs a thread.
   static constexpr std::uint64_t kMaxBlocks = 64;
 
   // `ledger` must outlive it.
@@ -54,20 +54,20 @@ class LedgerSource final : public RunSource {
 BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads,
                   std::uint64_t most = LedgerSource::kMaxBlocks);
 
-// Of what a ledger says, the entries of which every block has its whole file in the folder. An
-// entry without one of its files is left out as a whole.
+// The entries of a ledger whose blocks all have whole files in the folder. An entry with a missing
+// file is dropped as a whole.
 std::vector<Finished> with_files(std::vector<Finished> finished, const JobKey& key,
                                  const std::filesystem::path& folder);
 
-// Whose blocks they are.
+// The job that the blocks belong to.
 struct Job {
   const world::World& world;
   const models::Registry& registry;
   JobKey key;
 };
 
-// Makes what is missing of a shard and notes it in its ledger in `folder`, which exists. `options`
-// says how; its source is ignored. The report covers the whole shard, earlier runs included.
+// Makes the missing blocks of a shard and records them in its ledger in `folder`, which must exist.
+// The source in `options` is ignored. The report covers the whole shard, including earlier runs.
 // Fails like Ledger::open() and amplify().
 core::Result<Report> amplify_shard(const Job& job, const Shard& shard,
                                    const std::filesystem::path& folder, const Options& options);

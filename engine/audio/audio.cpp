@@ -14,8 +14,8 @@
 namespace psygen::audio {
 namespace {
 
-// A missing device is looked for after so many seconds, and then twice as long each time: looking
-// takes milliseconds, because the system's sound server is asked.
+// Delay before the first search for a missing device; it doubles with each search. A search asks
+// the system's sound server, which takes milliseconds.
 constexpr double kFirstRetryS = 2, kLongestRetryS = 64;
 constexpr double kMaxSecondsAtOnce = 60;
 
@@ -26,16 +26,17 @@ core::Result<void> check(const Play& how, std::uint32_t channels) {
   const auto in = [](double value, double low, double high) {  // false for NaN
     return value >= low && value <= high;
   };
-  if (!in(how.gain, 0, 4)) return refuse(fmt::format("has gain {}; 0 to 4 are allowed", how.gain));
+  if (!in(how.gain, 0, 4)) return refuse(fmt::format("has gain {}; it must be 0 to 4", how.gain));
   if (!in(how.pitch, 0.25, 4))
-    return refuse(fmt::format("has pitch {}; 0.25 to 4 are allowed", how.pitch));
+    return refuse(fmt::format("has pitch {}; it must be 0.25 to 4", how.pitch));
   if (!in(how.range.near_m, 1e-3, 1e9) || !in(how.range.far_m, 1e-3, 1e9) ||
       how.range.near_m >= how.range.far_m)
-    return refuse(fmt::format("has a range of {} to {} m; 0.001 to 10^9 m are allowed",
+    return refuse(fmt::format("has a range of {} to {} m; it must be within 0.001 to 10^9 m",
                               how.range.near_m, how.range.far_m));
   if (!how.at) return {};
-  if (channels != 1) return refuse("with a place must have one channel (mono())");
-  if (!core::is_valid({*how.at, 0, 0})) return refuse("has a place that is not in any world");
+  if (channels != 1) return refuse("with a position must have one channel (mono())");
+  if (!core::is_valid({*how.at, 0, 0}))
+    return refuse("has a position that is not finite or is out of range");
   return {};
 }
 
@@ -45,7 +46,7 @@ struct Audio::State {
   AudioOptions options;
   std::unique_ptr<Output> output;
   double retry_in_s = kFirstRetryS, next_retry_s = kFirstRetryS;
-  core::CameraPose listener;  // the last that was valid
+  core::CameraPose listener;  // the last valid pose
   bool told = false;
   std::uint64_t last_id = 0;
   std::vector<Sound> sounds;
@@ -74,7 +75,7 @@ void Audio::State::open() {
   output = Output::open(options.destination == Destination::kRendered);
   if (output == nullptr && !told) {
     told = true;
-    core::log_warning("there is no sound device; the program goes on without sound");
+    core::log_warning("no sound device was found; the program continues without sound");
   }
 }
 
@@ -93,7 +94,7 @@ void Audio::State::check_device(double dt_s) {
   if (output != nullptr) {
     output->use();
     if (output->connected()) return;
-    core::log_warning("the sound device is gone; the program goes on without sound");
+    core::log_warning("the sound device was lost; the program continues without sound");
     told = true;
     close();
     retry_in_s = next_retry_s = kFirstRetryS;
@@ -111,14 +112,14 @@ Sound* Audio::State::find(SoundId id) {
   return at == sounds.end() ? nullptr : &*at;
 }
 
-// Metres from the listener; of no meaning for a sound without a place.
+// The position in metres from the listener; meaningless for a sound without a position.
 glm::vec3 Audio::State::place_of(const Sound& sound) const {
   if (!sound.how.at) return glm::vec3(0);
   return glm::vec3(core::offset_m(sound.how.at->block, listener.position, options.block_size_m) +
                    sound.how.at->local);
 }
 
-// The loudest get voices. One that has a voice keeps it against one that is hardly louder.
+// Gives voices to the loudest sounds. A sound keeps its voice against one that is hardly louder.
 void Audio::State::choose() {
   std::vector<Sound*> order;
   for (Sound& sound : sounds) {

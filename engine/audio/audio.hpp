@@ -1,11 +1,11 @@
-// Sound: clips and streams, with or without a place in the world, heard by a listener at the
-// camera. Most calls only change values, and update() makes them heard, once a frame. The
-// constructor and set_destination() open a device, and stream() opens a file. Without a device
-// everything works and nothing is heard. Not a mixer of effects (no echo). Main thread only; one
-// object that is audible per process, because OpenAL has one current context.
+// Sound: clips and streams, with or without a position in the world, for a listener at the camera.
+// Most calls only change values; update(), once a frame, makes them audible. The constructor and
+// set_destination() open a device, and stream() opens a file. Without a device everything works
+// silently. No effects such as echo. Main thread only; at most one audible object per process,
+// because OpenAL has one current context.
 //
-// Streams are decoded by update(), in pieces of a quarter of a second: at most two in one update,
-// up to one second ahead.
+// update() decodes streams in pieces of a quarter of a second: at most two pieces per update, up to
+// one second ahead.
 #pragma once
 
 #include <cstdint>
@@ -23,27 +23,27 @@
 
 namespace psygen::audio {
 
-// Groups of sounds with a volume and a pause of their own.
+// Groups of sounds with separate volume and pause.
 enum class Bus : std::uint8_t { kEffects, kMusic };
 
-// Where the sound goes.
+// The destination of the sound.
 enum class Destination : std::uint8_t {
-  kDevice,    // the system's default device; none is no error
-  kNowhere,   // time passes, nothing is heard
+  kDevice,    // the system's default device; a missing one is no error
+  kNowhere,   // silence, but sounds advance
   kRendered,  // to render(), for recordings and tests
 };
 
 struct AudioOptions {
   Destination destination = Destination::kDevice;
-  // Metres along a block of the world.
+  // Side of a block of the world in metres.
   double block_size_m = 60;
-  // How many sounds are heard at once, 1 to 256: the loudest. The others go on silently.
+  // Maximum number of audible sounds, 1 to 256: the loudest. Others advance silently.
   std::uint32_t max_voices = 32;
 };
 
-// How a sound is played.
+// The parameters of a playing sound.
 struct Play {
-  // Where it is, for sounds of one channel; without a place it is heard the same everywhere.
+  // The position, for sounds of one channel; without one, the sound is the same everywhere.
   std::optional<core::WorldPosition> at = std::nullopt;
   Range range = {};
   double gain = 1;   // 0 to 4
@@ -52,53 +52,52 @@ struct Play {
   Bus bus = Bus::kEffects;
 };
 
-// A sound that plays. Never used twice.
+// Identifies a playing sound. Ids are never reused.
 enum class SoundId : std::uint64_t { kNone = 0 };
 
 class Audio {
  public:
-  // Opens the device. A missing one is told once as a warning. Options outside their ranges are
-  // clamped.
+  // Opens the device. Logs one warning if there is none. Options outside their ranges are clamped.
   explicit Audio(const AudioOptions& options);
   ~Audio();
   Audio(const Audio&) = delete;
   Audio& operator=(const Audio&) = delete;
 
-  // Starts a clip, at the next update(). Fails with kInvalidArgument: check_clip(), values outside
-  // of their ranges or not finite, two channels with a place.
+  // Starts a clip at the next update(). Fails with kInvalidArgument for clips that check_clip()
+  // rejects, for values out of range or not finite, and for two channels with a position.
   core::Result<SoundId> play(std::shared_ptr<const Clip> clip, const Play& how);
-  // Starts a file, decoded while it plays. Fails as play() and read_clip().
+  // Starts a file, which is decoded while it plays. Fails like play() and read_clip().
   core::Result<SoundId> stream(const std::filesystem::path& file, const Play& how);
 
-  // Changes a sound that plays; nothing where it has ended. Fails as play().
+  // Changes a playing sound; does nothing if it has ended. Fails like play().
   core::Result<void> change(SoundId sound, const Play& how);
   // Ends a sound. O(sounds).
   void stop(SoundId sound);
-  // Whether it has not ended.
+  // True if the sound has not ended.
   bool plays(SoundId sound) const;
   std::size_t playing() const;
-  // How many were given a voice by the last update().
+  // The number of sounds with a voice since the last update().
   std::size_t heard() const;
 
   // Volumes, 0 to 1; values outside are clamped, NaN is 0.
   void set_master_volume(double volume);
   void set_volume(Bus bus, double volume);
-  // Sounds of a paused bus keep their place and are silent.
+  // Sounds of a paused bus keep their position in time and are silent.
   void set_paused(Bus bus, bool paused);
 
-  // Moves the listener, lets `dt_s` seconds pass for what is not heard, gives voices to the
-  // loudest, decodes streams. Where a pose is not finite, the last good one counts; a time above 60
-  // s counts as 60 s, and one that is no number or negative as 0. A device that is lost is told
-  // once, and looked for again after 2, 4, 8 … 64 seconds, which takes milliseconds each time.
-  // O(sounds · log sounds).
+  // Moves the listener, advances sounds without a voice by `dt_s` seconds, gives voices to the
+  // loudest sounds, decodes streams. A pose that is not finite is replaced by the last valid one; a
+  // time above 60 s counts as 60 s; NaN or a negative time counts as 0. A lost device is logged
+  // once and searched for after 2, 4, 8 … 64 seconds, which takes milliseconds each time. O(sounds
+  // · log sounds).
   void update(const core::CameraPose& listener, double dt_s);
 
-  // Changes where the sound goes; sounds go on.
+  // Changes the destination; sounds continue.
   void set_destination(Destination destination);
-  // Whether anything can be heard or rendered.
+  // True if there is a device or a rendered output.
   bool has_output() const;
-  // With kRendered: the next frames at 48 kHz, left and right interleaved in −1 to 1. Else silence.
-  // At most 2^20 frames a call.
+  // With kRendered: the next frames at 48 kHz, left and right interleaved, −1 to 1. Otherwise
+  // silence. At most 2^20 frames per call.
   std::vector<float> render(std::size_t frames);
 
  private:

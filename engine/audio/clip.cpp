@@ -10,7 +10,7 @@ core::Result<Clip> read_clip(const std::filesystem::path& file) {
   auto opened = SoundFile::open(file);
   if (!opened) return tl::unexpected(opened.error());
   Clip clip{opened->rate_hz(), opened->channels(), {}};
-  // The head of a file may claim any length: memory grows with what is really there.
+  // The header of a file may state any length, so memory grows with the samples read.
   constexpr std::size_t kPiece = std::size_t{1} << 16;
   for (std::size_t read = kPiece; read == kPiece;) {
     const std::size_t before = clip.samples.size();
@@ -44,8 +44,8 @@ core::Result<void> check_clip(const Clip& clip) {
                      clip.samples.size() * sizeof(std::int16_t) <= kMaxClipBytes;
   if (sound) return {};
   return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("a clip has {} samples, {} channels and {} Hz; allowed are whole "
-                                "frames up to {} MiB, 1 or 2 channels, {} to {} Hz",
+                    fmt::format("a clip has {} samples, {} channels and {} Hz; it must have "
+                                "whole frames up to {} MiB, 1 or 2 channels, {} to {} Hz",
                                 clip.samples.size(), clip.channels, clip.rate_hz,
                                 kMaxClipBytes >> 20, kMinRate, kMaxRate));
 }

@@ -1,4 +1,4 @@
-// How loud a sound is at a distance. Pure; any thread.
+// The loudness of a sound at a distance. Pure; any thread.
 #pragma once
 
 namespace psygen::audio {
@@ -10,7 +10,7 @@ struct Range {
   double far_m = 200;
 };
 
-// The share of the gain that is left, 0 to 1: near / d · (far − d) / (far − near) between the two.
+// The remaining fraction of the gain, 0 to 1: near / d · (far − d) / (far − near) between the two.
 double attenuation(double distance_m, const Range& range);
 
 }  // namespace psygen::audio

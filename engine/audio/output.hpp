@@ -1,4 +1,4 @@
-// A device of OpenAL with its context and listener. Not the sources (voice.hpp). Private to
+// A device of OpenAL with its context and listener. Sources are in voice.hpp. Private to
 // engine/audio. Main thread only.
 #pragma once
 
@@ -14,21 +14,21 @@
 
 namespace psygen::audio {
 
-inline constexpr int kRenderRate = 48'000;  // of a rendered output, in Hz
+inline constexpr int kRenderRate = 48'000;  // rate of a rendered output in Hz
 
 class Output {
  public:
-  // Null where there is no device, or none that renders.
+  // Null if there is no device, or no device that can render.
   static std::unique_ptr<Output> open(bool rendered);
   ~Output();
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
-  // Makes it the target of the calls below and of all calls of OpenAL.
+  // Makes this output the target of the calls below and of all calls of OpenAL.
   void use();
-  // False once a device was unplugged.
+  // False after the device was unplugged.
   bool connected() const;
-  // Unit vectors of the listener, who is at the origin.
+  // The orientation of the listener, who is at the origin, as unit vectors.
   void set_listener(const glm::vec3& forward, const glm::vec3& up);
   std::vector<float> render(std::size_t frames);
 
@@ -39,7 +39,7 @@ class Output {
   bool rendered_;
 };
 
-// A buffer with these samples; 0 when there is no memory.
+// A buffer with these samples; 0 if out of memory.
 ALuint make_buffer(std::span<const std::int16_t> samples, std::uint32_t channels,
                    std::uint32_t rate_hz);
 

@@ -42,12 +42,12 @@ core::Result<SoundFile> SoundFile::open(const std::filesystem::path& file) {
   SoundFile opened;
   opened.file_ = {raw, &close_file};
   if (!is_known(info.format))
-    return refuse(core::ErrorCode::kParse, "is neither WAV nor Ogg Vorbis nor FLAC");
+    return refuse(core::ErrorCode::kParse, "is not a WAV, Ogg Vorbis or FLAC file");
   if (info.channels < 1 || info.channels > 2)
     return refuse(core::ErrorCode::kOverBudget,
-                  fmt::format("has {} channels; 1 or 2 are allowed", info.channels));
+                  fmt::format("has {} channels; it must have 1 or 2", info.channels));
   if (info.samplerate < int{kMinRate} || info.samplerate > int{kMaxRate})
-    return refuse(core::ErrorCode::kOverBudget, fmt::format("has {} Hz; {} to {} are allowed",
+    return refuse(core::ErrorCode::kOverBudget, fmt::format("has {} Hz; it must have {} to {}",
                                                             info.samplerate, kMinRate, kMaxRate));
   opened.rate_hz_ = static_cast<std::uint32_t>(info.samplerate);
   opened.channels_ = static_cast<std::uint32_t>(info.channels);

@@ -1,5 +1,5 @@
-// A sound file that is decoded piece by piece, by libsndfile, which stays hidden. Files are not
-// trusted. Private to engine/audio. One thread per object.
+// Decodes a sound file piece by piece with libsndfile, which only this file's source includes.
+// Files are not trusted. Private to engine/audio. One thread per object.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,18 @@ namespace psygen::audio {
 
 class SoundFile {
  public:
-  // Fails as read_clip().
+  // Fails like read_clip().
   static core::Result<SoundFile> open(const std::filesystem::path& file);
 
-  // Decodes the next frames into whole frames of `samples`; returns how many. 0 at the end, and
-  // where the file is damaged.
+  // Decodes the next frames into whole frames of `samples` and returns their number. Returns 0 at
+  // the end and if the file is damaged.
   std::size_t read(std::span<std::int16_t> samples);
-  // Goes to a frame; to the end if there are fewer.
+  // Seeks to a frame, or to the end if there are fewer frames.
   void seek(std::uint64_t frame);
 
   std::uint32_t rate_hz() const { return rate_hz_; }
   std::uint32_t channels() const { return channels_; }
-  // As its head says.
+  // The number of frames that the header states.
   std::uint64_t frames() const { return frames_; }
 
  private:

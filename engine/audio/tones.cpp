@@ -11,10 +11,10 @@ namespace psygen::audio {
 namespace {
 
 constexpr float kTwoPi = 2 * std::numbers::pi_v<float>;
-constexpr float kAttack = 90;      // a tone is there after 1/90 s …
-constexpr double kDecaysLong = 6;  // … and gone after so many times its decay
+constexpr float kAttack = 90;      // a tone fades in over 1/90 s …
+constexpr double kDecaysLong = 6;  // … and ends after this many decay times
 
-// Of a low-pass of first order.
+// The coefficient of a first-order low-pass filter.
 float share_of(float hz) {
   return 1 - std::exp(-kTwoPi * hz / static_cast<float>(kToneRateHz));
 }
@@ -80,7 +80,8 @@ Samples looped(const Samples& samples, double overlap_s) {
 }
 
 Clip clip_of(std::span<const float> left, std::span<const float> right) {
-  PSYGEN_CHECK(right.empty() || right.size() == left.size(), "both channels are as long");
+  PSYGEN_CHECK(right.empty() || right.size() == left.size(),
+               "both channels must have the same length");
   Clip clip{kToneRateHz, right.empty() ? 1U : 2U, {}};
   clip.samples.reserve(left.size() + right.size());
   for (std::size_t i = 0; i < left.size(); ++i) {

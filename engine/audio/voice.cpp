@@ -8,10 +8,10 @@
 namespace psygen::audio {
 namespace {
 
-// Pieces of a stream that are queued at most, and how many are too few for slow frames.
+// Maximum number of queued pieces of a stream, and the number below which slow frames need another.
 constexpr std::size_t kPieces = 4, kFewPieces = 3;
 
-// Decodes the next quarter of a second and queues it; notices the end.
+// Decodes the next quarter of a second and queues it; detects the end.
 void queue_piece(Sound& sound) {
   const std::uint32_t channels = sound.file->channels();
   std::vector<std::int16_t> samples(std::size_t{sound.file->rate_hz()} / 4 * channels);
@@ -36,7 +36,7 @@ void queue_piece(Sound& sound) {
   sound.pieces.push_back({buffer, filled / channels});
 }
 
-// Drops the pieces that were heard and decodes new ones.
+// Drops the pieces that have been played and decodes new ones.
 void feed(Sound& sound) {
   ALint played = 0;
   for (alGetSourcei(sound.source, AL_BUFFERS_PROCESSED, &played); played > 0; --played) {
@@ -74,7 +74,7 @@ void take_voice(Sound& sound) {
   ALint offset = 0, state = AL_INITIAL;
   alGetSourcei(sound.source, AL_SAMPLE_OFFSET, &offset);
   alGetSourcei(sound.source, AL_SOURCE_STATE, &state);
-  if (sound.clip && state == AL_STOPPED) sound.ended = true;  // since the last update
+  if (sound.clip && state == AL_STOPPED) sound.ended = true;  // it ended since the last update
   sound.frame = sound.clip ? offset : sound.frame + offset;
   if (sound.how.loop && sound.frames() > 0) sound.frame = std::fmod(sound.frame, sound.frames());
   alSourceStop(sound.source);
@@ -100,7 +100,7 @@ void follow(Sound& sound) {
   alGetSourcei(sound.source, AL_SOURCE_STATE, &state);
   if (state == AL_PLAYING) return;
   if (sound.clip ? state == AL_INITIAL : !sound.pieces.empty()) {
-    alSourcePlay(sound.source);  // new, or a stream that was fed too late
+    alSourcePlay(sound.source);  // a new voice, or a stream whose queue ran empty
   } else {
     sound.ended = true;
   }

@@ -1,6 +1,6 @@
-// A sound that plays, and its voice: the source of OpenAL that it has while it is heard. Free
-// functions on the values of one sound; Audio decides which sounds have voices. Private to
-// engine/audio. Main thread, with the context of the output in use.
+// A playing sound, and its voice: the OpenAL source that it has while it is audible. Free functions
+// on the values of one sound; Audio decides which sounds have voices. Private to engine/audio. Main
+// thread, with the context of the output in use.
 #pragma once
 
 #include <AL/al.h>
@@ -15,7 +15,7 @@
 
 namespace psygen::audio {
 
-// A piece of a stream that OpenAL has: a quarter of a second.
+// A piece of a stream that is queued in OpenAL: a quarter of a second.
 struct Piece {
   ALuint buffer = 0;
   std::size_t frames = 0;
@@ -23,12 +23,12 @@ struct Piece {
 
 struct Sound {
   SoundId id = SoundId::kNone;
-  std::shared_ptr<const Clip> clip;  // or
+  std::shared_ptr<const Clip> clip;  // or `file`
   std::optional<SoundFile> file;
   Play how;
-  double frame = 0;  // of a clip without a voice, or of the stream's first piece
+  double frame = 0;  // position of a clip without a voice, or of a stream's first piece
   bool ended = false;
-  double gain = 0;  // as heard, in this update
+  double gain = 0;  // at the listener, in this update
   bool chosen = false;
   ALuint source = 0;  // 0: no voice
   std::deque<Piece> pieces;
@@ -40,17 +40,16 @@ struct Sound {
   }
 };
 
-// Gives a sound a voice that is not started yet. `buffer` has the samples of a clip. Nothing where
-// the device has no more voices.
+// Gives a sound a voice that is not started yet. `buffer` has the samples of a clip. Does nothing
+// if the device has no more voices.
 void give_voice(Sound& sound, ALuint buffer);
-// Takes the voice, if there is one; the sound keeps its place in time.
+// Removes the voice, if any; the sound keeps its position in time.
 void take_voice(Sound& sound);
-// Tells the voice the sound's gain, pitch and place, in metres from the listener.
+// Sets the voice's gain, pitch and position, in metres from the listener.
 void set_source(const Sound& sound, const glm::vec3& place);
-// Starts a new voice, notices ends, and decodes the next piece of a stream, or two where few are
-// left.
+// Starts a new voice, detects ends, and decodes the next piece of a stream, or two if few are left.
 void follow(Sound& sound);
-// Lets time pass for a sound without a voice. 0 <= dt_s, finite.
+// Advances a sound without a voice. 0 <= dt_s, finite.
 void pass_silently(Sound& sound, double dt_s);
 
 }  // namespace psygen::audio

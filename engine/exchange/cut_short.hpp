@@ -1,6 +1,6 @@
-// Detects files from write_document() that have lost their end, for example because a disk was full
-// while they were copied. It does not detect damage within a file. Any thread; reads a whole .obj,
-// but only the head of a .glb.
+// Detects files from write_document() that are truncated, for example because a disk was full while
+// they were copied. It does not detect damage within a file. Any thread; reads a whole .obj, but
+// only the head of a .glb.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@
 
 namespace psygen::exchange {
 
-// True if `path` is empty, or begins like such a file and lacks its end (a .glb: is shorter than
-// its header says). Also true for the .obj of a document of this name whose .mtl is missing or
-// empty. False for a whole file, even with additions to it or to its materials. False too for a
-// file that begins differently, does not exist or cannot be read.
+// True if `path` is empty, or starts like such a file but is truncated (a .glb: shorter than its
+// header states). Also true for the .obj of a document of this name whose .mtl is missing or empty.
+// False for a whole file, even with additions to it or to its materials, and for a file that starts
+// differently, does not exist or cannot be read.
 bool is_cut_short(const std::filesystem::path& path, Format format, std::string_view document_name);
 
 }  // namespace psygen::exchange

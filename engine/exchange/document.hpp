@@ -1,7 +1,7 @@
-// Meshes in a form for other programs: full precision, one list of vertices per material, metres,
-// +Y up, right-handed, counter-clockwise seen from outside. Plain values with the content of the
-// engine's packed formats (core/vertex_layout.hpp), but without level-of-detail morphing, skirts,
-// sway and ambient visibility. Not a scene graph.
+// Meshes for other programs: full precision, one list of vertices per material, metres, +Y up,
+// right-handed, counter-clockwise from outside. Plain values with the content of the engine's
+// packed formats (core/vertex_layout.hpp), but without level-of-detail morphing, skirts, sway and
+// ambient visibility. Not a scene graph.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct Part {
 // One model or terrain block.
 struct Object {
   std::string name;
-  glm::vec3 position{0.0F};  // of its origin in the document
+  glm::vec3 position{0.0F};  // position of its origin in the document
   std::vector<Part> parts;
 };
 
@@ -36,7 +36,7 @@ struct Object {
 struct Document {
   std::string name;
   std::vector<Object> objects;
-  glm::dvec3 origin{0.0};  // where all of it stands; files other than .glb leave it out
+  glm::dvec3 origin{0.0};  // position of the document; written to .glb files only
   // Sums over all parts.
   std::uint64_t vertex_count() const;
   std::uint64_t triangle_count() const;

@@ -16,8 +16,8 @@ namespace {
 
 // The .glb header counts bytes in 32 bits. The rest is reserved for the JSON.
 constexpr std::size_t kMaxBytes = (std::size_t{1} << 32) - (std::size_t{1} << 28);
-// The library ends the program where its JSON gets no memory, so there must be enough before: for
-// the JSON, and for copies of the bytes in its buffer, its stream and ours.
+// The library terminates the program if its JSON cannot allocate. So there must be enough memory
+// first: for the JSON, and for copies of the bytes in its buffer, its stream and ours.
 constexpr std::uint64_t kWriterBytes = std::uint64_t{8} << 20, kWriterCopies = 5;
 
 enum View : std::size_t { kPositions, kNormals, kColours, kIndices, kViewCount };
@@ -49,7 +49,7 @@ class GlbWriter {
     model_.nodes.push_back(std::move(node));
   }
 
-  // Puts everything below a node that stands at `origin`.
+  // Moves everything below a new node at `origin`.
   void move_all_to(const glm::dvec3& origin) {
     if (origin == glm::dvec3(0.0) || model_.nodes.empty()) return;
     tinygltf::Node root;
@@ -65,7 +65,8 @@ class GlbWriter {
     for (const auto& view : views_)
       bytes += view.size();
     if (bytes > kMaxBytes)
-      return core::fail(core::ErrorCode::kOverBudget, name + " is larger than a .glb file can be");
+      return core::fail(core::ErrorCode::kOverBudget,
+                        name + " exceeds the size limit of .glb files");
     if (!core::memory_left(kWriterBytes + kWriterCopies * bytes))
       return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory("writing " + name));
     if (bytes > 0) join_views();

@@ -41,7 +41,7 @@ Vertex model_vertex(const models::MeshView& mesh, std::uint32_t i, const core::B
           glm::vec3(albedo(0), albedo(1), albedo(2)), v.material};
 }
 
-// Values that all vertices of one terrain mesh share.
+// Values shared by all vertices of one terrain mesh.
 struct Ground {
   const world::Palette& palette;
   core::BlockCoord block;
@@ -67,7 +67,7 @@ Vertex terrain_vertex(const models::MeshView& mesh, std::uint32_t i, const Groun
           kGround};
 }
 
-// Distributes vertices to the parts of an object by material, when a triangle first uses them.
+// Distributes vertices to the parts of an object by material, at their first use by a triangle.
 class Builder {
  public:
   Builder(Object& object, std::size_t vertices) : object_(object), places_(vertices) {}

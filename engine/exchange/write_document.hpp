@@ -1,5 +1,5 @@
 // Writes documents as files: binary glTF 2.0 (.glb), or Wavefront OBJ with its materials in a .mtl
-// beside it. Every file is replaced as a whole, so none is ever half-written. Any thread, linear in
+// next to it. Every file is replaced as a whole, so it is never half-written. Any thread, linear in
 // the document. Reads no files.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace psygen::exchange {
 
-// File formats, and their names, which are also their extensions.
+// File formats; and their names, which are also their extensions.
 enum class Format : std::uint8_t { kGlb, kObj };
 std::optional<Format> format_from(std::string_view name);  // "glb", "obj"
 std::string_view name_of(Format format);
@@ -23,14 +23,14 @@ std::string_view name_of(Format format);
 // linear albedo (COLOR_0, 16 bits each). Fails with kOverBudget beyond the 4 GiB of the format.
 core::Result<std::vector<std::uint8_t>> glb_bytes(const Document& document);
 
-// The texts of an OBJ file and of its materials.
+// The texts of an OBJ file and of its materials file.
 struct ObjText {
   std::string obj, mtl;
 };
-// The texts of a document. Colours follow the coordinates of each vertex, as sRGB, which other
-// programs expect there. The Kd of a material is the mean of its vertices.
+// The texts of a document. The colour of each vertex follows its coordinates, as sRGB, which other
+// programs expect. The Kd of a material is the mean colour of its vertices.
 ObjText obj_text(const Document& document, std::string_view mtl_file_name);
-// The last line of both texts, by which is_cut_short() recognises a whole file, and the first line
+// The last line of both texts, by which is_cut_short() recognises a whole file. And the first line
 // of an .obj, a comment with the document's name.
 inline constexpr std::string_view kObjLastLine = "# end\n";
 std::string obj_first_line(std::string_view document_name);

@@ -7,15 +7,15 @@
 
 namespace psygen::gltf {
 
-// The value of a channel. Before the first time it has the first value, after the last time the
-// last one. Rotations are unit quaternions (x, y, z, w). O(log keys).
+// The value of a channel. Times outside its range give the first or the last value. Rotations are
+// unit quaternions (x, y, z, w). O(log keys).
 glm::vec4 value_at(const Channel& channel, float time_s);
 
-// Writes the value of a channel into the pose of its node; the rest of it stays as it is.
+// Writes the value of a channel into the pose of its node; the rest of the pose does not change.
 void apply(const Channel& channel, float time_s, Pose& pose);
 
-// The place in an animation after `passed_s` seconds of it (any sign): from its start again, or
-// staying at its ends.
+// The time in an animation after `passed_s` seconds (any sign), which wraps around if it `loops`
+// and otherwise stops at the ends.
 float place_in(const Animation& animation, double passed_s, bool loops);
 
 }  // namespace psygen::gltf

@@ -25,8 +25,8 @@ core::Result<std::vector<float>> read_times(Reading& reading, int accessor,
     const float before = i == 0 ? 0.0F : times[i - 1];
     const bool grows = i == 0 ? times[i] >= 0 : times[i] > before;
     if (!grows || !(times[i] <= kMaxSeconds))
-      return wrong(fmt::format("{}: time {} is {} s after {} s; times grow from 0 to {} s", what, i,
-                               times[i], before, kMaxSeconds));
+      return wrong(fmt::format("{}: time {} is {} s after {} s; times must ascend from 0 to {} s",
+                               what, i, times[i], before, kMaxSeconds));
   }
   return times;
 }
@@ -59,7 +59,7 @@ std::optional<Property> property_of(const std::string& path) {
   return {};
 }
 
-// What one channel says; nothing where it moves no node of the scene.
+// Reads one channel. Returns nothing if it moves no node of the scene.
 core::Result<std::optional<Channel>> read_channel(Reading& reading,
                                                   const tinygltf::Animation& animation,
                                                   std::size_t index, const std::string& name) {
@@ -71,11 +71,11 @@ core::Result<std::optional<Channel>> read_channel(Reading& reading,
   const auto node = index_in(described.target_node, reading.node_numbers.size(), what + ".node");
   if (!node) return tl::unexpected(node.error());
   if (described.target_path == "weights") {
-    reading.note("has morph targets, which are not supported: it keeps the shape without them");
+    reading.note("has morph targets, which are not supported; it keeps its base shape");
     return std::optional<Channel>{};
   }
   const auto property = property_of(described.target_path);
-  if (!property) return wrong(what + ".path is none of translation, rotation, scale and weights");
+  if (!property) return wrong(what + ".path must be translation, rotation, scale or weights");
   if (reading.node_numbers[*node] == kNone) return std::optional<Channel>{};
 
   const tinygltf::AnimationSampler& sampler = animation.samplers[*sampler_number];
@@ -88,7 +88,7 @@ core::Result<std::optional<Channel>> read_channel(Reading& reading,
   } else if (sampler.interpolation == "CUBICSPLINE") {
     channel.interpolation = Interpolation::kCubic;
   } else if (sampler.interpolation != "LINEAR") {
-    return wrong(source + ".interpolation is none of STEP, LINEAR and CUBICSPLINE");
+    return wrong(source + ".interpolation must be STEP, LINEAR or CUBICSPLINE");
   }
   auto times = read_times(reading, sampler.input, source + ".input");
   if (!times) return tl::unexpected(times.error());

@@ -5,10 +5,10 @@
 namespace psygen::gltf {
 namespace {
 
-// glTF itself needs seven; the rest is for what programs keep in "extras".
+// glTF itself needs seven; the rest is for program data in "extras".
 constexpr std::uint32_t kMaxDepth = 64;
 
-// The place behind a string that begins at `at`.
+// The position after a string that begins at `at`.
 std::size_t behind_string(std::string_view json, std::size_t at) {
   for (++at; at < json.size() && json[at] != '"'; ++at)
     at += json[at] == '\\' ? 1 : 0;

@@ -1,5 +1,5 @@
-// Refuses JSON that is far larger in memory than as a text, before it is parsed: lists in lists
-// without end, and millions of small values. Not a parser: what is no JSON passes. Pure.
+// Rejects JSON that is far larger in memory than as text, before it is parsed: endlessly nested
+// lists, and millions of small values. Not a parser: it accepts text that is not JSON. Pure.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace psygen::gltf {
 
-// Fails with kOverBudget, without the file's name. O(characters).
+// Fails with kOverBudget; the message does not name the file. O(characters).
 core::Result<void> check_shape(std::string_view json, std::uint32_t max_values);
 
 }  // namespace psygen::gltf

@@ -1,4 +1,4 @@
-// Materials, and those pictures that they use as colours, normals or light.
+// Materials, and the images that they use as colours, normals or light.
 #include <fmt/format.h>
 
 #include <map>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMaxLight = 1e6;
 
-// Pictures by their number in the file.
+// Maps the number of an image in the file to its number in Model::images.
 using Pictures = std::map<std::uint32_t, std::uint32_t>;
 
 core::Result<image::Image> decode(const Reading& reading, std::uint32_t number) {
@@ -24,7 +24,7 @@ core::Result<image::Image> decode(const Reading& reading, std::uint32_t number) 
       });
 }
 
-// The number of a texture's picture in Model::images, which is decoded with its first use.
+// The number of a texture's image in Model::images. Decodes the image at its first use.
 core::Result<std::uint32_t> picture_of(Reading& reading, Pictures& pictures, int texture,
                                        const std::string& what) {
   if (texture == -1) return kNone;
@@ -48,13 +48,13 @@ core::Result<std::uint32_t> picture_of(Reading& reading, Pictures& pictures, int
 
 core::Result<float> number_in(double value, double most, const std::string& what) {
   if (value >= 0 && value <= most) return static_cast<float>(value);
-  return wrong(fmt::format("{} is {}; 0 to {} are allowed", what, value, most));
+  return wrong(fmt::format("{} is {}; it must be 0 to {}", what, value, most));
 }
 
 core::Result<glm::vec3> colour_of(const std::vector<double>& from, double most,
                                   const std::string& what) {
   glm::vec3 colour(0.0F);
-  if (from.size() < 3) return wrong(what + " has less than three numbers");
+  if (from.size() < 3) return wrong(what + " has fewer than three numbers");
   for (int i = 0; i < 3; ++i) {
     const auto channel = number_in(from[static_cast<std::size_t>(i)], most, what);
     if (!channel) return tl::unexpected(channel.error());
@@ -95,11 +95,12 @@ core::Result<void> read_numbers(const tinygltf::Material& described, const std::
     out.min_opacity = *cutoff;
     out.opacity = *opacity;
   } else if (described.alphaMode == "BLEND") {
-    reading.note("has materials that blend, which are drawn solid where they hide at least half");
+    reading.note(
+        "has blended materials, which are drawn opaque where their opacity is at least one half");
     out.min_opacity = 0.5F;
     out.opacity = *opacity;
   } else if (described.alphaMode != "OPAQUE") {
-    return wrong(fmt::format("{}.alphaMode is none of OPAQUE, MASK and BLEND", name));
+    return wrong(fmt::format("{}.alphaMode must be OPAQUE, MASK or BLEND", name));
   }
   return {};
 }
@@ -126,8 +127,8 @@ core::Result<void> read_materials(Reading& reading) {
       if (out == kNone) return {};
       if (set >= 0 && set != coordinates)
         reading.note(
-            "has textures with coordinates of their own in one material, which are "
-            "placed like its first texture");
+            "has a material whose textures use different coordinates; all of them use "
+            "those of its first texture");
       if (set < 0) set = coordinates;
       return {};
     };

@@ -10,14 +10,14 @@ namespace {
 
 using core::MeshData;
 
-// One primitive while it is read.
+// One primitive that is being read.
 struct Part {
   Reading& reading;
   const tinygltf::Primitive& described;
   std::string name;  // "meshes[0].primitives[0]"
 };
 
-// The elements of an attribute, null where it has none of this name.
+// The elements of an attribute. `first` is null if the primitive has none of this name.
 core::Result<Elements> attribute(const Part& part, const std::string& which, std::size_t count,
                                  int min_width, int max_width) {
   const auto found = part.described.attributes.find(which);
@@ -85,7 +85,7 @@ core::Result<std::vector<std::uint32_t>> read_corners(const Part& part, std::siz
   return corners;
 }
 
-// Three indices a triangle, all counter-clockwise.
+// Three indices per triangle, all counter-clockwise.
 std::vector<std::uint32_t> triangles_of(int mode, std::vector<std::uint32_t> corners) {
   if (mode == TINYGLTF_MODE_TRIANGLES) return corners;
   std::vector<std::uint32_t> triangles;
@@ -100,7 +100,7 @@ std::vector<std::uint32_t> triangles_of(int mode, std::vector<std::uint32_t> cor
   return triangles;
 }
 
-// What glTF asks for where a mesh has no normals: triangles that share no vertices.
+// The mesh that glTF requires if there are no normals: triangles that share no vertices.
 MeshData flat(const MeshData& mesh) {
   MeshData out;
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
@@ -141,11 +141,11 @@ core::Result<void> read_primitive(const Part& part, Mesh& out) {
   if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN)
     return wrong(fmt::format("{} has the mode {}", part.name, mode));
   if (mode < TINYGLTF_MODE_TRIANGLES) {
-    reading.note("has points or lines, which are left out");
+    reading.note("has points or lines, which are ignored");
     return {};
   }
   if (!part.described.targets.empty())
-    reading.note("has morph targets, which are not supported: it keeps the shape without them");
+    reading.note("has morph targets, which are not supported; it keeps its base shape");
   Primitive primitive;
   if (part.described.material != -1) {
     const auto material =

@@ -1,6 +1,6 @@
-// What a glTF file holds, as plain values: meshes, materials, pictures, a hierarchy of nodes and
+// The content of a glTF file as plain values: meshes, materials, images, a hierarchy of nodes and
 // their animations (read_file.hpp reads them). Metres, seconds, +Y up, right-handed, as in glTF.
-// Not what is drawn: scene/objects/prefab.hpp puts it into a world. Values; any thread.
+// Draws nothing: scene/objects/prefab.hpp puts it into a world. Values; any thread.
 #pragma once
 
 #include <cstdint>
@@ -16,32 +16,32 @@
 
 namespace psygen::gltf {
 
-// In place of a number: there is none.
+// Stands for no index.
 inline constexpr std::uint32_t kNone = UINT32_MAX;
 
 // The triangles of one material. They have passed core::check().
 struct Primitive {
   core::MeshData mesh;
-  std::uint32_t material = kNone;  // of Model::materials
+  std::uint32_t material = kNone;  // index into Model::materials
 };
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;  // not empty, unless it had only points and lines
 };
 
-// Textures are numbers of Model::images.
+// Textures are indices into Model::images.
 struct Material {
   std::string name;
-  glm::vec3 base_colour{1.0F};  // linear albedo, multiplied with that of texture and vertices
+  glm::vec3 base_colour{1.0F};  // linear albedo, multiplied with texture and vertex colours
   float opacity = 1;
-  float min_opacity = 0;      // pixels of less are left out; 0: all are drawn
+  float min_opacity = 0;      // pixels below it are not drawn; 0: all are drawn
   glm::vec3 emissive{0.0F};   // linear
-  float normal_strength = 1;  // of the normal map
+  float normal_strength = 1;  // scale of the normal map
   std::uint32_t base_texture = kNone, normal_texture = kNone, emissive_texture = kNone;
   bool two_sided = false;
 };
 
-// Where something is relative to its parent: scaled, then turned, then moved.
+// The transform relative to the parent: scale, then rotation, then translation.
 struct Pose {
   glm::vec3 translation{0.0F};
   glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};  // w, x, y, z; unit length
@@ -50,17 +50,16 @@ struct Pose {
 
 struct Node {
   std::string name;
-  std::uint32_t parent = kNone;  // a smaller number than its own
-  std::uint32_t mesh = kNone;    // of Model::meshes
-  Pose rest;                     // without animations
+  std::uint32_t parent = kNone;  // a smaller index than its own
+  std::uint32_t mesh = kNone;    // index into Model::meshes
+  Pose rest;                     // pose without animations
 };
 
 enum class Interpolation : std::uint8_t { kStep, kLinear, kCubic };
 enum class Property : std::uint8_t { kTranslation, kRotation, kScale };
 
-// How one property of one node changes. Times grow; a value has x, y, z, and w for rotations
-// (x, y, z, w). kCubic has three values for each time: the tangent before, the value, the one
-// after.
+// The animation of one property of one node. Times ascend; a value has x, y, z, and w for rotations
+// (x, y, z, w). kCubic has three values for each time: the in-tangent, the value, the out-tangent.
 struct Channel {
   std::uint32_t node = 0;
   Property property = Property::kTranslation;
@@ -76,16 +75,16 @@ struct Animation {
 
 // The content of one file.
 struct Model {
-  std::string name;  // of the file, without its folder
+  std::string name;  // file name without its folder
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
   std::vector<image::Image> images;
-  std::vector<Node> nodes;  // of the file's scene, parents before their children
+  std::vector<Node> nodes;  // the nodes of the file's scene, parents before their children
   std::vector<Animation> animations;
-  // What the file has and this does not, a sentence each: skins, morph targets, blending, points
-  // and lines, extensions. Begins with the file's path.
+  // Features of the file that the engine does not support, one sentence each: skins, morph targets,
+  // blending, points and lines, extensions. Each begins with the file's path.
   std::vector<std::string> notes;
-  // Those that the file names, in its folder or below: buffers and pictures.
+  // The files that this file names, in its folder or below: buffers and images.
   std::vector<std::filesystem::path> files;
 };
 

@@ -1,5 +1,5 @@
-// The nodes of the file's scene, parents first. The order is found without recursion, so that no
-// depth is too deep, and each node is visited once, so that cycles end.
+// The nodes of the file's scene, parents first. The order is found without recursion, so any depth
+// is allowed, and each node is visited once, so cycles end.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kMaxOffset = 1e6F;
 
-// `out` keeps its value where the file says nothing.
+// `out` keeps its value if the file has none.
 template <class Vector>
 core::Result<void> read_numbers(const std::vector<double>& from, const std::string& what,
                                 Vector& out) {
@@ -28,7 +28,7 @@ core::Result<void> read_numbers(const std::vector<double>& from, const std::stri
   return {};
 }
 
-// A matrix as a pose. glTF allows only those that are one.
+// A matrix as a pose. glTF allows only matrices that are poses.
 core::Result<Pose> pose_of_matrix(const std::vector<double>& matrix, const std::string& what) {
   if (matrix.size() != 16) return wrong(fmt::format("{} has {} numbers", what, matrix.size()));
   glm::mat3 columns;
@@ -45,7 +45,7 @@ core::Result<Pose> pose_of_matrix(const std::vector<double>& matrix, const std::
   if (glm::determinant(columns) < 0) pose.scale.x = -pose.scale.x;
   constexpr float kSkew = 1e-3F;
   for (int c = 0; c < 3; ++c) {
-    if (pose.scale[c] == 0) return wrong(what + " flattens what it moves");
+    if (pose.scale[c] == 0) return wrong(what + " has a scale of 0");
     columns[c] /= pose.scale[c];
   }
   for (int c = 0; c < 3; ++c) {
@@ -71,7 +71,7 @@ core::Result<Pose> pose_of(const tinygltf::Node& node, const std::string& name) 
   return pose;
 }
 
-// The parents of all nodes. Nobody has two of them, and nobody is above itself.
+// The parents of all nodes. Fails for a node with two parents and for a cycle.
 core::Result<std::vector<std::uint32_t>> parents_of(const tinygltf::Model& file) {
   const std::size_t count = file.nodes.size();
   std::vector<std::uint32_t> parents(count, kNone);
@@ -85,7 +85,7 @@ core::Result<std::vector<std::uint32_t>> parents_of(const tinygltf::Model& file)
       parents[*index] = static_cast<std::uint32_t>(i);
     }
   }
-  // Going up from each node, until something is met that is known to have an end.
+  // Walks up from each node to the first node that is known to have a root.
   std::vector<std::uint32_t> seen_by(count, kNone);
   for (std::uint32_t start = 0; start < count; ++start) {
     for (std::uint32_t node = start; node != kNone && seen_by[node] != start;
@@ -93,7 +93,7 @@ core::Result<std::vector<std::uint32_t>> parents_of(const tinygltf::Model& file)
       if (seen_by[node] != kNone) break;
       seen_by[node] = start;
       if (parents[node] != kNone && seen_by[parents[node]] == start)
-        return wrong(fmt::format("nodes[{}] is above itself: the nodes form a cycle", node));
+        return wrong(fmt::format("nodes[{}] is its own ancestor: the nodes form a cycle", node));
     }
   }
   return parents;
@@ -117,7 +117,7 @@ core::Result<std::vector<std::uint32_t>> roots_of(const tinygltf::Model& file,
     if (!index) return tl::unexpected(index.error());
     if (parents[*index] != kNone || listed[*index])
       return wrong(
-          fmt::format("nodes[{}] of scenes[{}] is there twice, or not a root", *index, *scene));
+          fmt::format("nodes[{}] of scenes[{}] occurs twice, or is not a root", *index, *scene));
     listed[*index] = true;
     roots.push_back(*index);
   }
@@ -139,7 +139,7 @@ core::Result<void> add_node(Reading& reading, std::uint32_t number, std::uint32_
     node.mesh = *mesh;
   }
   if (described.skin != -1)
-    reading.note("has skins, which are not supported: what they bend keeps its rest pose");
+    reading.note("has skins, which are not supported; skinned meshes keep their rest pose");
   reading.node_numbers[number] = static_cast<std::uint32_t>(reading.out.nodes.size());
   reading.out.nodes.push_back(std::move(node));
   return {};

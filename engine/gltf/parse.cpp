@@ -19,14 +19,14 @@ namespace {
 using core::ErrorCode;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kMaxMessage = 300;  // of what a library says
+constexpr std::size_t kMaxMessage = 300;  // length of a library's message
 
-// The only way in which TinyGLTF gets files. It wants function pointers.
+// The only access of TinyGLTF to files. The library needs function pointers.
 struct FileGate {
   std::filesystem::path file;
   std::uint64_t left_bytes = 0;
-  std::vector<std::filesystem::path>& named;  // that were read
-  std::optional<core::Error> error;           // the first one
+  std::vector<std::filesystem::path>& named;  // the files that were read
+  std::optional<core::Error> error;           // the first error
 };
 
 core::Result<std::filesystem::path> beside(const std::filesystem::path& file,
@@ -68,8 +68,8 @@ bool read_beside(std::vector<unsigned char>* out, std::string* message, const st
   return true;
 }
 
-// Keeps the bytes of a picture that is not in a buffer. `bytes` of one in a buffer may lie outside
-// of it.
+// Keeps the encoded bytes of an image that is not in a buffer. The `bytes` of an image in a buffer
+// may be out of its range.
 bool keep_picture(tinygltf::Image* image, int, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int size, void*) {
   if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
@@ -80,7 +80,7 @@ std::string_view characters(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// The JSON in a file. Where a .glb is too short for it, nothing, which TinyGLTF refuses.
+// The JSON in a file. Empty if a .glb is too short for it; TinyGLTF then rejects it.
 std::string_view json_of(const Bytes& bytes, bool binary) {
   constexpr std::size_t kHeader = 20, kLengthAt = 12;
   if (!binary) return characters(bytes);
@@ -93,7 +93,7 @@ std::string_view json_of(const Bytes& bytes, bool binary) {
 core::Result<void> check_version(const tinygltf::Model& model) {
   if (!model.asset.version.starts_with("2.")) {
     return core::fail(ErrorCode::kParse,
-                      fmt::format("is glTF of version \"{}\"; version 2 can be read",
+                      fmt::format("is glTF of version \"{}\"; only version 2 is supported",
                                   core::shown(model.asset.version, kMaxMessage)));
   }
   for (const std::string& name : model.extensionsRequired) {
@@ -106,7 +106,7 @@ core::Result<void> check_version(const tinygltf::Model& model) {
   return {};
 }
 
-// The header of a .glb says how long the file is.
+// Compares the length with the header of a .glb.
 core::Result<void> check_length(const Bytes& bytes, bool binary) {
   if (bytes.empty()) return core::fail(ErrorCode::kParse, "the file is empty");
   if (!binary || bytes.size() < 12) return {};
@@ -115,10 +115,10 @@ core::Result<void> check_length(const Bytes& bytes, bool binary) {
   if (length <= bytes.size()) return {};
   return core::fail(
       ErrorCode::kParse,
-      fmt::format("the file is cut short: {} of its {} bytes are there", bytes.size(), length));
+      fmt::format("the file is cut short: it has {} of its {} bytes", bytes.size(), length));
 }
 
-// The first line of what a library says.
+// The first line of a library's message.
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
@@ -161,7 +161,8 @@ core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Lim
              : reader.LoadASCIIFromString(&model, &errors, &warnings, characters(*bytes).data(),
                                           size, "");
   if (gate.error) return refuse(gate.error->code, gate.error->message);
-  // TinyGLTF goes on after many errors, without what is wrong. This one is none in glTF 2.0.
+  // TinyGLTF continues after many errors and loses the faulty parts. This message is no error in
+  // glTF 2.0.
   constexpr std::string_view kNoError = "'inverseBindMatrices' property is missing in Skin.\n";
   for (std::size_t at = errors.find(kNoError); at != std::string::npos; at = errors.find(kNoError))
     errors.erase(at, kNoError.size());

@@ -1,5 +1,5 @@
-// The JSON and the bytes of a file as TinyGLTF gives them, with the files that it names. Indices in
-// it are not checked, and pictures are not decoded. Private to engine/gltf.
+// Parses the JSON and the bytes of a file with TinyGLTF, and lists the files that it names. Indices
+// in the result are not checked, and images are not decoded. Private to engine/gltf.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -13,12 +13,12 @@
 
 namespace psygen::gltf {
 
-// `image` of a picture with a URI holds the bytes of its file. Fails like read_file(). Throws
-// std::bad_alloc, and what TinyGLTF may throw. Appends the files that it names to `named`.
+// The member `image` of an image with a URI has the bytes of its file. Appends the files that it
+// names to `named`. Fails like read_file(). Throws std::bad_alloc and exceptions of TinyGLTF.
 core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Limits& limits,
                                     std::vector<std::filesystem::path>& named);
 
-// Whether an extension of glTF is read.
+// True if the reader supports this extension of glTF.
 bool is_supported(std::string_view extension);
 
 }  // namespace psygen::gltf

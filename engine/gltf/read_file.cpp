@@ -23,7 +23,7 @@ core::Result<Model> read_parsed(const std::filesystem::path& path, const tinyglt
   for (const std::string& name : file.extensionsUsed) {
     if (!is_supported(name))
       reading.note(
-          fmt::format("uses the extension \"{}\", which is left out", core::shown(name, 100)));
+          fmt::format("uses the extension \"{}\", which is ignored", core::shown(name, 100)));
   }
   const auto ok = read_materials(reading)
                       .and_then([&] { return read_meshes(reading); })

@@ -17,7 +17,7 @@ T number_at(const std::uint8_t* at) {
   return value;
 }
 
-// Bytes of a component; 0 for what glTF does not have.
+// Bytes of a component; 0 for types that glTF does not have.
 std::size_t component_bytes(int component) {
   switch (component) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
@@ -55,7 +55,7 @@ core::Result<void> count_up(std::uint64_t& sum, std::uint64_t more, std::uint64_
                             std::string_view what) {
   if (more > most || sum > most - more) {
     return core::fail(ErrorCode::kOverBudget,
-                      fmt::format("has more than {} {}, which is what is allowed", most, what));
+                      fmt::format("has more than the allowed {} {}", most, what));
   }
   sum += more;
   return {};

@@ -1,4 +1,4 @@
-// What the parts of the reader share: the parsed file, the limits, and how numbers are taken out of
+// State shared by the parts of the reader: the parsed file, the limits, and access to numbers in
 // its buffers. Nothing in the file is trusted. Private to engine/gltf.
 #pragma once
 
@@ -18,42 +18,42 @@ struct Reading {
   const tinygltf::Model& file;
   const Limits& limits;
   Model& out;
-  std::vector<int> uv_sets;                 // of each material: which coordinates it has
-  std::vector<std::uint32_t> node_numbers;  // of each node of the file, in Model::nodes
-  std::uint64_t vertices = 0, indices = 0, keys = 0, pixel_bytes = 0;  // so far
+  std::vector<int> uv_sets;                 // for each material: its set of texture coordinates
+  std::vector<std::uint32_t> node_numbers;  // for each node of the file: its index in Model::nodes
+  std::uint64_t vertices = 0, indices = 0, keys = 0, pixel_bytes = 0;  // sums so far
 
-  // Says something once that the file has and the engine does not.
+  // Adds, once, a warning about a feature that the engine does not support.
   void note(std::string sentence);
 };
 
-// kParse, without the file's name.
+// An error with kParse; the message does not name the file.
 tl::unexpected<core::Error> wrong(std::string sentence);
 // Fails unless 0 <= index < count. `what`: "meshes[3].primitives[0].material".
 core::Result<std::uint32_t> index_in(int index, std::size_t count, std::string_view what);
-// Fails with kOverBudget beyond a limit; else adds.
+// Adds `more` to `sum`. Fails with kOverBudget if the result exceeds `most`.
 core::Result<void> count_up(std::uint64_t& sum, std::uint64_t more, std::uint64_t most,
                             std::string_view what);
 
-// The bytes of a view, which lie in its buffer.
+// The bytes of a view. Fails if they are not within its buffer.
 core::Result<std::span<const std::uint8_t>> bytes_of_view(const tinygltf::Model& file, int view,
                                                           std::string_view what);
 
-// The elements of an accessor, all of which lie in its buffer.
+// The elements of an accessor, all within its buffer.
 struct Elements {
   const std::uint8_t* first = nullptr;
   std::size_t stride_bytes = 0, count = 0;
   int component = 0, width = 0;  // TinyGLTF's numbers; components of an element
   bool normalised = false;
 
-  // Component `c` of element `i` as what it stands for.
+  // The value of component `c` of element `i`, after normalisation.
   float real(std::size_t i, int c) const;
-  std::uint32_t whole(std::size_t i) const;  // of unsigned integers
+  std::uint32_t whole(std::size_t i) const;  // for unsigned integers
 };
 // `what` names the accessor in messages: "POSITION of meshes[0].primitives[0]".
 core::Result<Elements> elements_of(const tinygltf::Model& file, int accessor,
                                    std::string_view what);
 
-// Element `i` in as many components as a vector has.
+// Element `i` as a vector; missing components are 0.
 template <class Vector>
 Vector vector_of(const Elements& elements, std::size_t i) {
   Vector v(0.0F);
@@ -62,8 +62,8 @@ Vector vector_of(const Elements& elements, std::size_t i) {
   return v;
 }
 
-// The parts, in this order. Messages do not name the file.
-core::Result<void> read_materials(Reading& reading);  // and pictures
+// The parts of the reader, in this order. Messages do not name the file.
+core::Result<void> read_materials(Reading& reading);  // and images
 core::Result<void> read_meshes(Reading& reading);
 core::Result<void> read_nodes(Reading& reading);
 core::Result<void> read_animations(Reading& reading);

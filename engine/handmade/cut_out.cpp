@@ -13,22 +13,22 @@
 namespace psygen::handmade {
 namespace {
 
-constexpr std::size_t kManyTriangles = 4000;  // of cards: from here on they are cut less finely
+constexpr std::size_t kManyTriangles = 4000;  // of cards; models with more are cut less finely
 constexpr int kMaxSide = 1 << kMaxCutDepth;
-constexpr int kTaps = 5;         // samples along each side of what a point stands for
-constexpr int kSteps = 12;       // in which the border is found
-constexpr float kNoise = 0.25F;  // makes holes in what is equally thin everywhere
+constexpr int kTaps = 5;         // samples along each side of a point's area
+constexpr int kSteps = 12;       // bisections to find the border
+constexpr float kNoise = 0.25F;  // makes holes in evenly thin surfaces
 constexpr std::uint32_t kNone = ~0U;
 
-// Points on a triangle whose sides are divided: i of `side` towards its second corner, j towards
-// its third.
+// Points on a triangle with subdivided sides: i of `side` towards its second corner, j towards its
+// third.
 struct Point {
   int i = 0, j = 0;
   friend auto operator<=>(const Point&, const Point&) = default;
 };
 struct Lattice {
-  float share = 0;  // of the triangle that is drawn
-  // How much of the surroundings of each point is drawn.
+  float share = 0;  // drawn fraction of the triangle
+  // The drawn fraction of the surroundings of each point.
   std::array<std::array<float, kMaxSide + 1>, kMaxSide + 1> drawn{};
   float at(Point p) const {
     return drawn[static_cast<std::size_t>(p.i)][static_cast<std::size_t>(p.j)];
@@ -45,17 +45,17 @@ bool is_drawn(const image::Image& image, glm::vec2 uv, float opacity, float min_
   return opacity * static_cast<float>(pixel[3]) / 255 >= min_opacity;
 }
 
-// How far the border is from one point towards another one that is left out, as a part.
+// The fraction of the way from a drawn point to a cut one at which the border lies.
 float way_to_border(float from, float to, float border) {
   return std::clamp((from - border) / (from - to), 0.02F, 0.98F);
 }
 
-// The part of a triangle that is cut out.
+// The kept fraction of a triangle.
 float part_in(float a, float b, float c, float border) {
   const bool in_a = a >= border, in_b = b >= border, in_c = c >= border;
   const int count = int{in_a} + int{in_b} + int{in_c};
   if (count == 0 || count == 3) return count == 0 ? 0.0F : 1.0F;
-  // The corner that is alone.
+  // The corner that is alone on its side of the border.
   const bool alone = count == 1;
   if (in_b == alone && in_a != alone && in_c != alone) return part_in(b, c, a, border);
   if (in_c == alone && in_a != alone && in_b != alone) return part_in(c, a, b, border);
@@ -115,17 +115,18 @@ class Cutter {
   std::vector<Lattice> lattices_;
   float border_ = 0.5F;
   core::MeshData out_;
-  std::vector<std::uint32_t> copies_;  // of each vertex of the mesh; kNone: there is none yet
-  // Of the triangle that is cut:
+  std::vector<std::uint32_t> copies_;  // for each vertex of the mesh; kNone: not yet copied
+  // State of the triangle that is being cut:
   std::size_t first_ = 0;
   const Lattice* lattice_ = nullptr;
-  std::map<std::pair<Point, Point>, std::uint32_t> points_;  // between two, or twice the same
+  std::map<std::pair<Point, Point>, std::uint32_t>
+      points_;  // between two points, or the same point twice
 };
 
 Lattice Cutter::lattice_of(std::size_t first) const {
   const glm::vec2 uv[3] = {mesh_.uvs[mesh_.indices[first]], mesh_.uvs[mesh_.indices[first + 1]],
                            mesh_.uvs[mesh_.indices[first + 2]]};
-  // A texture may show something else beyond.
+  // The texture may have other content outside of this area.
   const glm::vec2 low = glm::min(glm::min(uv[0], uv[1]), uv[2]);
   const glm::vec2 high = glm::max(glm::max(uv[0], uv[1]), uv[2]);
   const float step = 1 / static_cast<float>(side_);
@@ -145,7 +146,7 @@ Lattice Cutter::lattice_of(std::size_t first) const {
             is_drawn(image_, glm::clamp(at, low + inset, high - inset), opacity_, min_opacity_);
       }
       const float part = static_cast<float>(drawn) / (kTaps * kTaps);
-      // As many small triangles are around it.
+      // Number of small triangles around the point.
       const int sides = int{i == 0} + int{j == 0} + int{i + j == side_};
       const auto weight = static_cast<float>(sides == 0 ? 6 : sides == 1 ? 3 : 1);
       share += weight * part;
@@ -160,7 +161,7 @@ Lattice Cutter::lattice_of(std::size_t first) const {
   return lattice;
 }
 
-// From which part on a point is taken as drawn, so that the area is right.
+// The drawn fraction from which on a point counts as drawn, chosen so that the area is right.
 float Cutter::border() const {
   const double wanted = drawn_area();
   float low = 0, high = 1;
@@ -178,7 +179,7 @@ double Cutter::area_of(std::size_t triangle) const {
   return static_cast<double>(glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))));
 }
 
-// Twice the area of the pixels that are drawn.
+// Twice the area of the drawn pixels.
 double Cutter::drawn_area() const {
   double area = 0;
   for (std::size_t t = 0; t < lattices_.size(); ++t)
@@ -186,7 +187,7 @@ double Cutter::drawn_area() const {
   return area;
 }
 
-// Twice the area that would be cut out.
+// Twice the area that this border would keep.
 double Cutter::area_with(float border) const {
   double area = 0;
   for (std::size_t t = 0; t < lattices_.size(); ++t) {
@@ -203,7 +204,8 @@ double Cutter::area_with(float border) const {
   return area;
 }
 
-// The part with a corner at a point: that and those `size` further; below 0: nearer.
+// Cuts the part with a corner at a point, which extends by `size` along both sides; below 0:
+// backwards.
 void Cutter::cut_part(Point at, int size) {
   const int reach = std::abs(size), way = size < 0 ? -1 : 1;
   bool all = true, any = false;

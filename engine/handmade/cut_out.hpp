@@ -1,6 +1,6 @@
-// Cuts out of triangles what their texture leaves out: cards of leaves get the outline of the
-// leaves. So they are right wherever only triangles and colours of vertices are known: at all
-// levels, in shadows, in pictures for afar and in exports. Pure; any thread.
+// Cuts triangles along the transparent parts of their texture, so that cards of leaves get the
+// outline of the leaves. They then look right everywhere that knows only triangles and vertex
+// colours: at all levels, in shadows, in impostors and in exports. Pure; any thread.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace psygen::handmade {
 
-// How often sides are halved where the border of what is drawn runs.
+// Maximum number of times that sides are halved along the border.
 inline constexpr int kMaxCutDepth = 3;
-// Less than that where a model has so many triangles of such materials that it would get too large.
+// The depth for a model with so many triangles of such materials; large models get less.
 int cut_depth(std::size_t triangles);
 
-// The parts of a mesh with uvs that are drawn: where the texture times `opacity` has at least
-// `min_opacity`. Their area is that of the pixels that are drawn, also where these are finer than
-// what is cut. Linear in the triangles and in 4^depth.
+// The drawn parts of a mesh with uvs: where the texture times `opacity` is at least
+// `min_opacity`. Their area equals the area of the drawn pixels, even if these are finer than the
+// cuts. Linear in the triangles and in 4^depth.
 core::MeshData cut_out(const core::MeshData& mesh, const image::Image& image, float opacity,
                        float min_opacity, int depth);
 

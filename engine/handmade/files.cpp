@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 using ShapePtr = std::shared_ptr<const Shape>;
 
-// What was made of a file, and of which others it names.
+// The result of reading a file, and the other files that it names.
 template <class Made>
 struct Read {
   std::shared_ptr<const Made> made;
@@ -57,7 +57,7 @@ core::Result<Read<world::GreyPicture>> read_picture(const fs::path& file) {
   return Read<world::GreyPicture>{std::move(picture), {}};
 }
 
-// A file as it was: its path, its time and its size.
+// The state of a file: its path, its time and its size.
 using FileState = std::tuple<std::string, std::int64_t, std::uintmax_t>;
 
 std::optional<FileState> state_of(const fs::path& file) {
@@ -68,12 +68,12 @@ std::optional<FileState> state_of(const fs::path& file) {
   return FileState{fs::absolute(file, error).string(), time.time_since_epoch().count(), bytes};
 }
 
-// What was made of files and is in use.
+// The results of reading files that are still in use.
 template <class Key, class Made>
 class InUse {
  public:
-  // What is known for a key, or what `make` reads, which is known from then on. Without a key it is
-  // read.
+  // The known result for a key, else the result of `make`, which is kept. Without a key nothing is
+  // kept.
   template <class Make>
   core::Result<std::shared_ptr<const Made>> find_or(const std::optional<Key>& key,
                                                     const Make& make) {

@@ -15,9 +15,9 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-constexpr float kMaxReach = 0.5F;  // of a piece, as a part of that of all
+constexpr float kMaxReach = 0.5F;  // extent of a piece relative to the extent of all
 
-// The vertices in sets that are joined.
+// Groups vertices into connected sets.
 class Sets {
  public:
   explicit Sets(std::size_t count) : parents_(count) {
@@ -28,7 +28,7 @@ class Sets {
       i = parents_[i] = parents_[parents_[i]];
     return i;
   }
-  // The smaller number stays, so that sets keep the order of the file.
+  // The smaller number becomes the root, so sets keep the order of the file.
   void join(std::uint32_t a, std::uint32_t b) {
     a = of(a), b = of(b);
     parents_[std::max(a, b)] = std::min(a, b);

@@ -1,6 +1,6 @@
-// Loose leaves in coarser levels, where there is nothing to be merged: each piece becomes a flat
-// kite, and further away fewer and larger kites have the area of all (Cook, Halstead, Planck and
-// Ryu, "Stochastic Simplification of Aggregate Detail", SIGGRAPH 2007). Coarser levels show some of
+// Simplifies loose leaves, which offer nothing to merge: each piece becomes a flat kite, and in
+// coarser levels fewer and larger kites keep the total area (Cook, Halstead, Planck and Ryu,
+// "Stochastic Simplification of Aggregate Detail", SIGGRAPH 2007). Coarser levels show a subset of
 // the pieces of finer ones. Pure; any thread.
 #pragma once
 
@@ -16,18 +16,18 @@ namespace psygen::handmade {
 
 class Foliage {
  public:
-  // Of triangles of leaves; those that share places are one piece. O(n log n).
+  // From triangles of leaves; triangles that share positions form one piece. O(n log n).
   Foliage(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices);
 
   std::size_t piece_count() const { return pieces_.size(); }
-  // About so many triangles, at the end of a mesh. Returns how far they may be from the leaves, in
-  // metres.
+  // Appends kites with about `triangles` triangles to a mesh. Returns their maximum distance from
+  // the leaves, in metres.
   double add(std::size_t triangles, std::vector<Vertex>& vertices,
              std::vector<std::uint32_t>& indices) const;
 
  private:
   struct Piece {
-    glm::vec3 middle{0.0F}, along{0.0F}, across{0.0F};  // half of its diagonals
+    glm::vec3 middle{0.0F}, along{0.0F}, across{0.0F};  // along, across: half its diagonals
     glm::vec3 normal{0.0F};
     std::array<std::uint8_t, 3> colour{};
     float area_m2 = 0;
@@ -35,8 +35,8 @@ class Foliage {
   static Piece piece_of(const std::vector<Vertex>& vertices,
                         const std::vector<std::uint32_t>& indices);
 
-  std::vector<Piece> pieces_;  // in the order in which they are left out last
-  float reach_m_ = 0;          // of all of them from their middle
+  std::vector<Piece> pieces_;  // the first pieces are left out last
+  float reach_m_ = 0;          // of all pieces from their centre
   double area_m2_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// The largest files of models that a world file may name.
+// The limits for model files that a world file names.
 #pragma once
 
 #include "engine/gltf/read_file.hpp"

@@ -17,12 +17,13 @@ using models::Parameters;
 enum HandmadeParameter : std::size_t { kScale, kTurn };
 
 constexpr models::ParameterSpec kHandmadeSchema[] = {
-    {"scale", models::ParameterType::kReal, "1", 1, 0.01, 100, 0.5, 2, "times the model's size"},
+    {"scale", models::ParameterType::kReal, "1", 1, 0.01, 100, 0.5, 2,
+     "factor on the model's size"},
     {"turn_deg", models::ParameterType::kReal, "degrees", 0, 0, 360, 0, 360,
-     "turned about the vertical axis; [0, 360]: every way"},
+     "rotation about the vertical axis; [0, 360]: all directions"},
 };
 
-// Turns from +Z towards +X, like a positive rotation about +Y.
+// A rotation from +Z towards +X, like a positive rotation about +Y.
 struct Turn {
   float sine, cosine, scale;
   explicit Turn(const Parameters& p)
@@ -48,7 +49,7 @@ class HandmadeType final : public models::ModelType {
     return p.real(kScale) * at(level).error_m;
   }
   core::Bounds bounds(const Parameters& p) const override {
-    constexpr float kRoom = 1.00001F;  // for the rounding of turned places
+    constexpr float kRoom = 1.00001F;  // for the rounding of rotated positions
     const auto scale = static_cast<float>(p.real(kScale));
     const float radius = kRoom * scale * shape_->radius_m;
     return {{-radius, scale * shape_->box.min.y, -radius},
@@ -98,7 +99,7 @@ core::Bounds HandmadeType::synthesise(const Parameters& p, int level,
   const Level& mesh = at(level);
   PSYGEN_CHECK(out.vertices.size() == mesh.vertices.size() * sizeof(core::ModelVertex) &&
                    out.indices.size() == mesh.indices.size(),
-               "the destination has exactly the size of the mesh");
+               "the destination must have exactly the size of the mesh");
   const core::Bounds box = bounds(p);
   const models::BoxPacker packer(box);
   const Turn turn(p);

@@ -1,4 +1,4 @@
-// A handmade model as a model type: one shape, which instances scale and turn. Any thread.
+// A handmade model as a model type: one shape, which instances scale and rotate. Any thread.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace psygen::handmade {
 
-// `doc` is a line for users.
+// `doc` is a one-line description for users.
 std::unique_ptr<models::ModelType> make_handmade_type(std::string name, std::string doc,
                                                       std::shared_ptr<const Shape> shape);
 

@@ -17,14 +17,14 @@ namespace {
 constexpr std::size_t kMaxLevelVertices = 65'536;
 constexpr std::size_t kMinTriangles = 12;
 constexpr std::size_t kManyPieces = 32, kMinSolid = 8;
-constexpr std::size_t kStep = 4;      // triangles of a level over those of the next
-constexpr float kMaxError = 0.5F;     // of the extent
-constexpr float kNearlyThere = 1.3F;  // times the wanted triangles
-constexpr float kMinGain = 0.8F;      // a level with more of the one before is not worth having
+constexpr std::size_t kStep = 4;      // ratio of the triangles of two successive levels
+constexpr float kMaxError = 0.5F;     // relative to the extent
+constexpr float kNearlyThere = 1.3F;  // accepted ratio of triangles to the target
+constexpr float kMinGain = 0.8F;      // a level with a larger ratio to the previous one is dropped
 
 using Indices = std::vector<std::uint32_t>;
 
-// What tells vertices apart. Without padding, as its bytes are compared.
+// The values that distinguish vertices. Without padding, because its bytes are compared.
 struct Key {
   glm::vec3 position;
   std::array<std::int16_t, 2> normal;
@@ -50,8 +50,8 @@ struct Mesh {
   Indices indices;
 };
 
-// The mesh with one vertex for all that are alike, whose colour is their mean. `remap`: the new
-// numbers of vertices; of those that no triangle has ~0.
+// The mesh with equal vertices merged; the colour is their mean. `remap` gets the new indices of
+// vertices, and ~0 for unused ones.
 Mesh welded(const std::vector<Vertex>& vertices, const Indices& indices, Keep keep,
             std::vector<unsigned>& remap) {
   std::vector<Key> keys;
@@ -65,7 +65,7 @@ Mesh welded(const std::vector<Vertex>& vertices, const Indices& indices, Keep ke
   mesh.vertices.resize(count);
   std::vector<std::array<std::uint32_t, 4>> sums(count);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (remap[i] == ~0U) continue;  // no triangle has it
+    if (remap[i] == ~0U) continue;  // no triangle uses it
     auto& sum = sums[remap[i]];
     if (sum[3]++ == 0) mesh.vertices[remap[i]] = vertices[i];
     for (std::size_t c = 0; c < 3; ++c)
@@ -80,8 +80,8 @@ Mesh welded(const std::vector<Vertex>& vertices, const Indices& indices, Keep ke
   return mesh;
 }
 
-// Triangles thinner than a millionth of their length cover no pixel, and their normals mean
-// nothing.
+// Triangles thinner than a millionth of their length cover no pixel, and their normals are
+// meaningless.
 Indices without_slivers(const std::vector<Vertex>& vertices, const Indices& indices) {
   constexpr float kSliver = 1e-6F;
   Indices kept;
@@ -96,7 +96,7 @@ Indices without_slivers(const std::vector<Vertex>& vertices, const Indices& indi
   return kept;
 }
 
-// What is simplified, and the normals that the finest mesh has at each of its vertices:
+// The input of simplification, and the normals that the finest mesh has at each of its vertices:
 // normals[first[i] … first[i + 1] − 1].
 struct Source {
   Mesh mesh;
@@ -119,10 +119,10 @@ Source source_of(const Mesh& finest, Keep keep) {
   return source;
 }
 
-// The mesh of some triangles of a source. Each corner has that of the finest mesh's normals there
-// which fits its triangle best: so smooth parts stay smooth and edges stay hard.
+// The mesh of some triangles of a source. Each corner gets the normal of the finest mesh there that
+// fits its triangle best, so smooth parts stay smooth and edges stay hard.
 Mesh with_normals(const Source& source, const Indices& indices) {
-  constexpr std::uint32_t kMaxNormals = 64;  // of a vertex that are compared
+  constexpr std::uint32_t kMaxNormals = 64;  // normals compared per vertex
   Mesh out;
   for (std::size_t k = 0; k < indices.size(); ++k) {
     const std::uint32_t* triangle = &indices[k / 3 * 3];
@@ -141,7 +141,7 @@ Mesh with_normals(const Source& source, const Indices& indices) {
   return welded(out.vertices, out.indices, Keep::kAll, remap);
 }
 
-// Fewer triangles over some of the same vertices, and how far they are from all of them.
+// Fewer triangles over some of the same vertices, and their distance from all triangles.
 struct Simplified {
   Indices indices;
   double error_m = 0;
@@ -164,12 +164,12 @@ Simplified simplified(const Mesh& mesh, std::size_t triangles, bool sloppily) {
   return result;
 }
 
-// The source of all levels: vertices that differ in colour are kept apart, or are not.
+// The sources of all levels: with vertices of different colour kept apart, and with them merged.
 struct Sources {
   Source coloured, plain;
 };
 
-// About as many triangles as wanted.
+// A mesh with about as many triangles as requested, and its error.
 std::pair<Mesh, double> coarser(const Sources& sources, std::size_t triangles) {
   const float most = kNearlyThere * static_cast<float>(3 * triangles);
   for (const bool sloppily : {false, true}) {
@@ -198,7 +198,7 @@ Level packed(Mesh mesh, double error_m) {
   return level;
 }
 
-// What coarser levels are made of: loose leaves are on their own where there are many.
+// The input of coarser levels: loose leaves are kept apart if there are many.
 class Parts {
  public:
   explicit Parts(const Mesh& finest)
@@ -212,7 +212,7 @@ class Parts {
     sources_ = {source_of(rest, Keep::kColours), source_of(rest, Keep::kPositions)};
   }
 
-  // About as many triangles as wanted, and how far they are from the finest ones.
+  // About as many triangles as wanted, and their distance from the finest ones.
   std::pair<Mesh, double> coarse(std::size_t wanted) const {
     if (!is_loose_) return coarser(sources_, wanted);
     const std::size_t leaves = leaves_.size() / 3;
@@ -239,7 +239,7 @@ class Parts {
   Indices leaves_;
   Foliage foliage_;
   bool is_loose_ = false;
-  std::size_t triangles_ = 0;  // of the rest
+  std::size_t triangles_ = 0;  // of the parts that are not leaves
   Sources sources_;
 };
 

@@ -13,12 +13,12 @@ namespace psygen::handmade {
 struct Level {
   std::vector<Vertex> vertices;
   std::vector<std::uint16_t> indices;
-  double error_m = 0;  // as the simplifier measures it; 0 at level 0, and grows
+  double error_m = 0;  // measured by the simplifier; 0 at level 0, ascending
 };
 
-// One to `most` levels, each with about a quarter of the triangles of the one before. The first has
-// all triangles, or as many as 65,536 vertices can have. Where seams and loose parts leave nothing
-// to be merged, coarse levels keep the outline alone. Empty where all triangles are degenerate.
+// One to `most` levels, each with about a quarter of the triangles of the previous one. The first
+// has all triangles, or as many as 65,536 vertices allow. If seams and loose parts leave nothing to
+// merge, coarse levels keep only the outline. Empty if all triangles are degenerate.
 std::vector<Level> levels_of(const Triangles& triangles, int most);
 
 }  // namespace psygen::handmade

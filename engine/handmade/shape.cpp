@@ -13,9 +13,9 @@
 namespace psygen::handmade {
 namespace {
 
-constexpr std::uint64_t kShapeEdition = 2;  // of how levels are made
+constexpr std::uint64_t kShapeEdition = 2;  // version of the level generation
 
-// Of what the file and the settings say, not of what a simplifier makes of it.
+// A hash of the file and the settings, independent of the simplifier.
 std::uint64_t identity_of(const Triangles& triangles, const world::HandmadeModel& how) {
   std::uint64_t hash = core::combine(kShapeEdition, static_cast<std::uint64_t>(how.levels));
   hash = core::combine(hash, core::hash_bytes(std::as_bytes(std::span(how.collider))));
@@ -43,7 +43,7 @@ core::Result<std::shared_ptr<const Shape>> shape_of(const gltf::Model& model,
   auto shape = std::make_shared<Shape>();
   shape->levels = levels_of(*triangles, static_cast<int>(how.levels));
   if (shape->levels.empty())
-    return core::fail(core::ErrorCode::kParse, "all of its triangles are without area");
+    return core::fail(core::ErrorCode::kParse, "all of its triangles have no area");
   shape->solid = solid_points(*triangles, how.collider);
   shape->box = triangles->box;
   for (const Level& level : shape->levels) {

@@ -8,14 +8,14 @@
 namespace psygen::handmade {
 namespace {
 
-constexpr float kFlat = 1e-3F;  // of the extent
+constexpr float kFlat = 1e-3F;  // relative to the extent
 
 template <class Far>
 glm::vec3 farthest(const std::vector<glm::vec3>& points, const Far& far) {
   return *std::ranges::max_element(points, {}, far);
 }
 
-// Whether all points lie near one plane.
+// True if all points are near one plane.
 bool is_flat(const std::vector<glm::vec3>& points) {
   const glm::vec3 a = points.front();
   const glm::vec3 b = farthest(points, [&](const glm::vec3& p) { return glm::dot(p - a, p - a); });
@@ -35,8 +35,8 @@ std::vector<glm::vec3> corners_of(const core::Bounds& box) {
   return corners;
 }
 
-// In the directions of the surface of a lattice of 5 x 5 x 5 points. The first of equals, so that
-// the order of the vertices decides, not that of a sort.
+// The extreme points in the directions of the surface of a lattice of 5 x 5 x 5 points. Of equal
+// points the first in the mesh, so that the result does not depend on a sort.
 std::vector<glm::vec3> extremes_of(const Triangles& triangles) {
   std::vector<glm::vec3> points;
   for (int i = 0; i < 125; ++i) {

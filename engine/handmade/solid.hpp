@@ -1,4 +1,4 @@
-// The solid part of a handmade model: few points whose convex hull it is. Pure; any thread.
+// The collider of a handmade model: a few points that span a convex hull. Pure; any thread.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -9,9 +9,8 @@
 
 namespace psygen::handmade {
 
-// `kind` is one of world::kHandmadeColliders: the points that are farthest in 98 directions, the
-// corners of the box, or none. None too where all points lie in one plane, up to a thousandth of
-// their extent.
+// `kind` is one of world::kHandmadeColliders: the extreme points in 98 directions, the corners of
+// the box, or none. Also none if all points lie in one plane, up to a thousandth of their extent.
 std::vector<glm::vec3> solid_points(const Triangles& triangles, std::string_view kind);
 
 }  // namespace psygen::handmade

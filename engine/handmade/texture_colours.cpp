@@ -11,9 +11,9 @@
 namespace psygen::handmade {
 namespace {
 
-constexpr int kMaxSteps = 8;  // samples along a side of a triangle, at most
+constexpr int kMaxSteps = 8;  // maximum number of samples along a side of a triangle
 
-// Linear light of the bytes of sRGB.
+// Linear light for each byte of sRGB.
 const std::array<float, 256>& linear_light() {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> t{};
@@ -27,7 +27,7 @@ const std::array<float, 256>& linear_light() {
   return table;
 }
 
-// The pixel at a place of the texture, which repeats: linear colour, opacity.
+// The pixel at a point of the texture, which repeats: linear colour, opacity.
 glm::vec4 pixel_at(const image::Image& image, glm::vec2 uv) {
   const auto along = [](float v, std::uint32_t size) {
     const float part = v - std::floor(v);
@@ -39,7 +39,7 @@ glm::vec4 pixel_at(const image::Image& image, glm::vec2 uv) {
   return {light[p[0]], light[p[1]], light[p[2]], static_cast<float>(p[3]) / 255};
 }
 
-// About one sample for two texels.
+// About one sample per two texels.
 int steps_of(const image::Image& image, const glm::vec2 (&uv)[3]) {
   const glm::vec2 size(image.width, image.height);
   float most = 0;
@@ -64,7 +64,7 @@ struct Sum {
     drawn += other.drawn;
     drawn_weight += other.drawn_weight;
   }
-  // `others`: of the whole mesh, where nothing is drawn here.
+  // The mean here; `others`, the mean of the whole mesh, if no pixel is drawn here.
   glm::vec3 mean(const Sum& others) const {
     if (drawn_weight > 0) return drawn / drawn_weight;
     if (others.drawn_weight > 0) return others.drawn / others.drawn_weight;
@@ -83,7 +83,7 @@ std::vector<glm::vec3> texture_colours(const core::MeshData& mesh, const image::
     const int steps = steps_of(image, uv);
     for (int a = 0; a < steps; ++a) {
       for (int b = 0; a + b < steps; ++b) {
-        // Inside the triangle: a texture may show something else beyond its border.
+        // Inside the triangle: the texture may have other content beyond its border.
         const float u = (static_cast<float>(a) + 1.0F / 3) / static_cast<float>(steps);
         const float v = (static_cast<float>(b) + 1.0F / 3) / static_cast<float>(steps);
         const float w = 1 - u - v;

@@ -1,4 +1,4 @@
-// The colours of vertices that stand for a texture: means over the triangles around each. Pure; any
+// Vertex colours that replace a texture: means over the triangles around each vertex. Pure; any
 // thread.
 #pragma once
 
@@ -10,8 +10,9 @@
 
 namespace psygen::handmade {
 
-// One linear colour for each vertex of the mesh. Pixels of less opacity than the material draws do
-// not count; a vertex with no others around it has the mean of the mesh. Linear in the triangles.
+// One linear colour for each vertex of the mesh. Pixels below the material's least opacity do not
+// count; a vertex without other pixels around it gets the mean of the mesh. Linear in the
+// triangles.
 std::vector<glm::vec3> texture_colours(const core::MeshData& mesh, const image::Image& image,
                                        float min_opacity);
 

@@ -25,7 +25,7 @@ glm::mat4 matrix_of(const gltf::Pose& pose) {
          glm::scale(glm::mat4(1.0F), pose.scale);
 }
 
-// Whether a material leaves out pixels of the primitive.
+// True if a material leaves out pixels of the primitive.
 bool is_cut(const gltf::Model& model, const gltf::Primitive& primitive) {
   if (primitive.material == gltf::kNone || primitive.mesh.uvs.empty()) return false;
   const gltf::Material& material = model.materials[primitive.material];
@@ -49,7 +49,7 @@ std::vector<glm::vec3> colours_of(const gltf::Model& model, const gltf::Primitiv
   return colours;
 }
 
-// What is drawn of a primitive, wherever it is placed.
+// The drawn part of a primitive, independent of its nodes.
 struct Drawn {
   core::MeshData mesh;
   std::vector<glm::vec3> colours;
@@ -66,7 +66,7 @@ Drawn drawn_of(const gltf::Model& model, const gltf::Primitive& primitive, int d
   return drawn;
 }
 
-// How finely cards are cut, by how many there are in all nodes.
+// The cutting depth, by the number of cards in all nodes.
 int depth_for(const gltf::Model& model) {
   std::size_t triangles = 0;
   for (const gltf::Node& node : model.nodes) {
@@ -81,7 +81,7 @@ void add(const gltf::Model& model, const gltf::Primitive& primitive, const Drawn
          const glm::mat4& placed, Triangles& out) {
   const core::MeshData& mesh = drawn.mesh;
   const glm::mat3 linear(placed);
-  // The matrix of cofactors: it turns normals, whatever the scales.
+  // The matrix of cofactors, which transforms normals correctly for any scale.
   const glm::mat3 normals(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                           glm::cross(linear[0], linear[1]));
   const bool mirrored = glm::determinant(linear) < 0;
@@ -108,7 +108,7 @@ void add(const gltf::Model& model, const gltf::Primitive& primitive, const Drawn
   }
 }
 
-// Of all triangles; files may have more vertices.
+// Bounds of all triangles; files may have more vertices.
 core::Bounds box_of(const Triangles& triangles) {
   const glm::vec3 first = triangles.vertices[triangles.indices.front()].position;
   core::Bounds box{first, first};
@@ -119,20 +119,20 @@ core::Bounds box_of(const Triangles& triangles) {
   return box;
 }
 
-// Scales the model, and puts its foot into the middle of its base.
+// Scales the model, and puts its base point at the centre of its base.
 core::Result<void> place(const world::HandmadeModel& how, Triangles& out) {
   const core::Bounds box = box_of(out);
   const glm::vec3 size = box.max - box.min;
   const float most = std::max({size.x, size.y, size.z});
   if (how.size_m > 0 && !(size.y > 1e-4F * most))
     return core::fail(core::ErrorCode::kParse,
-                      "it is flat, so size_m cannot say how high it is; use scale");
+                      "it is flat, so size_m cannot set its height; use scale");
   const float scale =
       static_cast<float>(how.size_m > 0 ? how.size_m / static_cast<double>(size.y) : how.scale);
   if (!(scale * most >= kMinSizeM && scale * most <= kMaxSizeM))
     return core::fail(core::ErrorCode::kParse,
-                      fmt::format("it would be {:.3g} m large; {} to {} m are allowed",
-                                  scale * most, kMinSizeM, kMaxSizeM));
+                      fmt::format("its size would be {:.3g} m; allowed: {} to {} m", scale * most,
+                                  kMinSizeM, kMaxSizeM));
   const glm::vec3 foot{0.5F * (box.min.x + box.max.x), box.min.y, 0.5F * (box.min.z + box.max.z)};
   for (Vertex& v : out.vertices)
     v.position = scale * (v.position - foot) - glm::vec3(0, static_cast<float>(how.sink_m), 0);
@@ -169,7 +169,7 @@ core::Result<Triangles> triangles_of(const gltf::Model& model, const world::Hand
   };
   if (out.indices.empty()) return core::fail(core::ErrorCode::kParse, "it has no triangles");
   if (!std::ranges::all_of(out.vertices, finite))
-    return core::fail(core::ErrorCode::kParse, "its nodes place it at infinity");
+    return core::fail(core::ErrorCode::kParse, "its nodes move it to infinity");
   if (auto ok = place(how, out); !ok) return tl::unexpected(ok.error());
   return out;
 }

@@ -8,7 +8,7 @@
 namespace psygen::image {
 namespace {
 
-// The largest difference of a channel of the pixel whose first byte is `at`.
+// The largest channel difference of the pixel whose first byte is `at`.
 int difference_of(const Image& a, const Image& b, std::size_t at) {
   int largest = 0;
   for (std::size_t channel = at; channel < at + 4; ++channel)
@@ -19,7 +19,7 @@ int difference_of(const Image& a, const Image& b, std::size_t at) {
 }  // namespace
 
 ImageDifference compare(const Image& a, const Image& b, std::uint8_t threshold) {
-  PSYGEN_CHECK(is_valid(a) && is_valid(b), "comparing a picture whose bytes do not fit its size");
+  PSYGEN_CHECK(is_valid(a) && is_valid(b), "the bytes of an image must match its size");
   if (a.width != b.width || a.height != b.height) {
     return {false, 255, std::max(a.rgba.size(), b.rgba.size()) / 4, 1.0};
   }
@@ -38,9 +38,9 @@ ImageDifference compare(const Image& a, const Image& b, std::uint8_t threshold) 
 
 core::Result<Image> picture_of_difference(const Image& expected, const Image& seen,
                                           std::uint8_t threshold) {
-  PSYGEN_CHECK(is_valid(expected) && is_valid(seen), "a picture whose bytes do not fit its size");
+  PSYGEN_CHECK(is_valid(expected) && is_valid(seen), "the bytes of an image must match its size");
   if (expected.width != seen.width || expected.height != seen.height)
-    return core::fail(core::ErrorCode::kInvalidArgument, "the pictures have different sizes");
+    return core::fail(core::ErrorCode::kInvalidArgument, "the images have different sizes");
   constexpr int kGreyShare = 5, kFull = 64;  // grey is a fifth of the mean of the channels
   Image image = expected;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {

@@ -1,6 +1,6 @@
-// How far two pictures differ, channel by channel. For golden images: the same picture drawn by
-// another driver may differ by 5/255 and, at edges, by more on at most 0.1 % of its pixels. Not a
-// perceptual metric. Pure; any thread; linear in the pixels.
+// Compares two images channel by channel. For golden images: the same image from another driver may
+// differ by 5/255 and, at edges, by more on at most 0.1 % of its pixels. Not a perceptual metric.
+// Pure; any thread; linear in the pixels.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace psygen::image {
 
-// What a picture may differ from its golden image.
+// The allowed difference of an image from its golden image.
 inline constexpr std::uint8_t kGoldenThreshold = 5;    // of 255
-inline constexpr double kGoldenShareAllowed = 0.1e-2;  // of all pixels
+inline constexpr double kGoldenShareAllowed = 0.1e-2;  // fraction of all pixels
 
 // The result of a comparison.
 struct ImageDifference {
@@ -25,16 +25,16 @@ struct ImageDifference {
   friend bool operator==(const ImageDifference&, const ImageDifference&) = default;
 };
 
-// Compares two valid pictures. `threshold` is the difference of a channel, 0 … 255, that still
-// counts as equal.
+// Compares two valid images. `threshold` is the channel difference, 0 … 255, that still counts as
+// equal.
 ImageDifference compare(const Image& a, const Image& b, std::uint8_t threshold = kGoldenThreshold);
 
-// True for two pictures of the same size with at most 0.1 % of the pixels over the threshold.
+// True if two images have the same size and at most 0.1 % of the pixels over the threshold.
 bool matches_golden(const ImageDifference& difference);
 
-// Where two valid pictures of one size differ, for people: `expected` dark and grey, and over it in
-// yellow to red what differs by more than `threshold`; red from 64 on. Fails with kInvalidArgument
-// for other sizes.
+// Shows the differences of two valid images of one size: `expected` in dark grey, and over it, from
+// yellow to red, the pixels that differ by more than `threshold`; red from 64 on. Fails with
+// kInvalidArgument for different sizes.
 core::Result<Image> picture_of_difference(const Image& expected, const Image& seen,
                                           std::uint8_t threshold = kGoldenThreshold);
 

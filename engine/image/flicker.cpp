@@ -20,7 +20,7 @@ bool differ(const std::uint8_t* a, const std::uint8_t* b) {
 std::vector<std::uint8_t> flickering(const Image& before, const Image& now, const Image& after) {
   for (const Image* image : {&before, &now, &after})
     PSYGEN_CHECK(is_valid(*image) && image->width == now.width && image->height == now.height,
-                 "three pictures of one size");
+                 "three images of one size");
   std::vector<std::uint8_t> marks(now.rgba.size() / 4);
   for (std::size_t i = 0; i < marks.size(); ++i) {
     const std::uint8_t *a = &before.rgba[4 * i], *b = &now.rgba[4 * i], *c = &after.rgba[4 * i];

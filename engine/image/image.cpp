@@ -7,7 +7,7 @@ namespace psygen::image {
 namespace {
 
 std::size_t offset_of(const Image& image, std::uint32_t x, std::uint32_t y) {
-  PSYGEN_ASSERT(x < image.width && y < image.height, "a pixel outside the picture");
+  PSYGEN_ASSERT(x < image.width && y < image.height, "the pixel is in the image");
   return (std::size_t{y} * image.width + x) * 4;
 }
 

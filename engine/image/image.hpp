@@ -1,4 +1,4 @@
-// A picture in memory: 8 bits per channel, red, green, blue, alpha, rows from top to bottom without
+// An image in memory: 8 bits per channel, red, green, blue, alpha, rows from top to bottom without
 // padding. A plain value: no files (image_io.hpp), no colour management (bytes are sRGB as stored,
 // alpha is not premultiplied). Any thread.
 #pragma once
@@ -10,7 +10,7 @@
 
 namespace psygen::image {
 
-// A picture. Valid when `rgba` has width · height · 4 bytes.
+// An image. Valid if `rgba` has width · height · 4 bytes.
 struct Image {
   std::uint32_t width = 0;         // pixels
   std::uint32_t height = 0;        // pixels
@@ -24,15 +24,15 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
-// A picture of grey values with 16 bits, such as masks and heights; no colour management. Valid
-// when `grey` has width · height values.
+// A greyscale image with 16 bits, such as masks and heights; no colour management. Valid if `grey`
+// has width · height values.
 struct GreyImage {
   std::uint32_t width = 0;          // pixels
   std::uint32_t height = 0;         // pixels
   std::vector<std::uint16_t> grey;  // 0 … 65535
 };
 
-// A picture of one number a pixel, such as heights in metres. Valid when `values` has width ·
+// An image with one number per pixel, such as heights in metres. Valid if `values` has width ·
 // height values.
 struct FloatImage {
   std::uint32_t width = 0;    // pixels
@@ -40,11 +40,11 @@ struct FloatImage {
   std::vector<float> values;  // any
 };
 
-// A picture of one colour (transparent black by default). Sizes in pixels, channels 0 … 255.
+// An image of one colour (transparent black by default). Sizes in pixels, channels 0 … 255.
 Image make_image(std::uint32_t width, std::uint32_t height, std::uint8_t red = 0,
                  std::uint8_t green = 0, std::uint8_t blue = 0, std::uint8_t alpha = 0);
 
-// True when the size of `rgba` matches width and height.
+// True if the size of `rgba` matches width and height.
 bool is_valid(const Image& image);
 
 // A hash of the size and of every byte; the same on every machine. O(bytes).

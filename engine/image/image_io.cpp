@@ -30,18 +30,18 @@ core::Result<PictureHeader> checked_header(const std::filesystem::path& path,
   if (!header || (header->format == PictureFormat::kExr && !may_be_exr))
     return fail_at(
         ErrorCode::kParse, path,
-        may_be_exr ? "is not a PNG, JPEG or OpenEXR picture" : "is not a PNG or JPEG picture");
+        may_be_exr ? "is not a PNG, JPEG or OpenEXR image" : "is not a PNG or JPEG image");
   const std::uint64_t pixels = std::uint64_t{header->width} * header->height;
-  if (pixels == 0) return fail_at(ErrorCode::kParse, path, "the picture has no pixels");
+  if (pixels == 0) return fail_at(ErrorCode::kParse, path, "the image has no pixels");
   if (header->width > limits.max_width || header->height > limits.max_height ||
       pixels > limits.max_bytes / 4) {
-    return fail_at(ErrorCode::kOverBudget, path,
-                   fmt::format("the picture is {} x {}; at most {} x {} and {} bytes are allowed",
-                               header->width, header->height, limits.max_width, limits.max_height,
-                               limits.max_bytes));
+    return fail_at(
+        ErrorCode::kOverBudget, path,
+        fmt::format("the image is {} x {}; at most {} x {} and {} bytes are allowed", header->width,
+                    header->height, limits.max_width, limits.max_height, limits.max_bytes));
   }
   if (header->format == PictureFormat::kPng && !png_is_whole(bytes)) {
-    return fail_at(ErrorCode::kParse, path, "the PNG is cut off or damaged");
+    return fail_at(ErrorCode::kParse, path, "the PNG is truncated or damaged");
   }
   return *header;
 }
@@ -52,7 +52,7 @@ core::Result<T> with_path(const std::filesystem::path& path, core::Result<T> res
   return fail_at(result.error().code, path, result.error().message);
 }
 
-// OpenImageIO and the decoders below it may throw; no exception leaves this file.
+// OpenImageIO and its decoders may throw; no exception leaves this file.
 template <class Function>
 auto without_exceptions(const std::filesystem::path& path, ErrorCode code, const Function& function)
     -> decltype(function()) {
@@ -106,14 +106,14 @@ namespace {
 
 constexpr std::uint32_t kLargest = 1U << 20;  // pixels per side
 
-// `bytes_given` are those of the pixels.
+// `bytes_given` is the size of the pixel data.
 template <class Picture, class Encode>
 core::Result<void> write_any(const std::filesystem::path& path, const Picture& image, bool is_sound,
                              std::size_t bytes_given, const Encode& encode) {
   if (image.width == 0 || image.height == 0 || !is_sound || image.width > kLargest ||
       image.height > kLargest) {
     return fail_at(ErrorCode::kInvalidArgument, path,
-                   fmt::format("a picture of {} x {} pixels with {} bytes cannot be written",
+                   fmt::format("an image of {} x {} pixels with {} bytes cannot be written",
                                image.width, image.height, bytes_given));
   }
   return without_exceptions(path, ErrorCode::kIo, [&]() -> core::Result<void> {

@@ -1,7 +1,7 @@
-// Pictures from and to files. Reads PNG and JPEG (recognised by their first bytes, not by the
-// name); writes PNG. Files are not trusted: sizes are checked before anything is allocated for
-// them, and errors of the decoder are returned as errors. OpenImageIO does the work and stays
-// hidden here. Any thread; too slow for the tick.
+// Reads and writes images in files. Reads PNG and JPEG (recognised by their first bytes, not by the
+// name); writes PNG. Files are not trusted: sizes are checked before any allocation for them, and
+// errors of the decoder become errors. OpenImageIO is used only here. Any thread; too slow for the
+// tick.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace psygen::image {
 
-// The largest pictures that read_image accepts.
+// The limits for images that read_image accepts.
 struct ImageLimits {
   std::uint32_t max_width = 16384;                          // pixels
   std::uint32_t max_height = 16384;                         // pixels
@@ -21,31 +21,31 @@ struct ImageLimits {
   std::uint64_t max_file_bytes = std::uint64_t{256} << 20;  // encoded
 };
 
-// Loads the libraries for reading and writing, 0.2 s of work that the first picture would do
-// otherwise. Fails with kOutOfMemory or kInternal.
+// Loads the libraries for reading and writing, which takes 0.2 s; otherwise the first image loads
+// them. Fails with kOutOfMemory or kInternal.
 core::Result<void> load_picture_libraries();
 
 // Reads any PNG or JPEG as four channels: grey is repeated, a missing alpha is 255, 16 bits become
-// 8. Fails with kIo (not readable), kParse (not a picture, truncated, damaged), kOverBudget (larger
+// 8. Fails with kIo (not readable), kParse (not an image, truncated, damaged), kOverBudget (larger
 // than the limits) or kOutOfMemory; the message starts with the path. Also fails like
 // load_picture_libraries().
 core::Result<Image> read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
-// The same for the bytes of such a file, which `name` names in messages.
+// The same for the bytes of such a file; messages call it `name`.
 core::Result<Image> decode_image(std::span<const std::uint8_t> bytes,
                                  const std::filesystem::path& name, const ImageLimits& limits = {});
 
-// Reads any PNG or JPEG as grey values with 16 bits: colours become their mean, 8 bits are spread,
-// alpha is left out. OpenEXR files of one part are read too: 0 is black, 1 is white, and what is no
-// number is black. Fails like read_image(), whose limits count 4 bytes a pixel.
+// Reads any PNG or JPEG as grey values with 16 bits: colours become their mean, 8 bits are
+// expanded, alpha is ignored. Also reads OpenEXR files of one part: 0 is black, 1 is white, NaN is
+// black. Fails like read_image(), whose limits count 4 bytes per pixel.
 core::Result<GreyImage> read_grey(const std::filesystem::path& path,
                                   const ImageLimits& limits = {});
 
-// Writes a temporary file next to `path`, flushes it to the disk and renames it: `path` holds the
-// old picture or the new one, never a mix. Refuses to replace anything that is not a regular file.
-// Fails with kInvalidArgument (no pixels, more than 2^20 per side, or bytes that do not match the
-// size) or kIo. Also fails like load_picture_libraries().
+// Writes a temporary file next to `path`, flushes it to the disk and renames it, so `path` has the
+// old image or the new one, never a mix. Never replaces anything but a regular file. Fails with
+// kInvalidArgument (no pixels, more than 2^20 per side, or bytes that do not match the size) or
+// kIo. Also fails like load_picture_libraries().
 core::Result<void> write_png(const std::filesystem::path& path, const Image& image);
-// The same for grey values, with 16 bits: read_grey() reads them back equal.
+// The same for 16-bit grey values: read_grey() reads them back equal.
 core::Result<void> write_png(const std::filesystem::path& path, const GreyImage& image);
 // The same as OpenEXR, with all 32 bits of each value, in one channel, Y.
 core::Result<void> write_exr(const std::filesystem::path& path, const FloatImage& image);

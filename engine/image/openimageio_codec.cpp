@@ -1,4 +1,4 @@
-// The library that picture_codec() loads. Nothing else links OpenImageIO.
+// The library that picture_codec() loads. It alone links OpenImageIO.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 

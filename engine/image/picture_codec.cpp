@@ -11,15 +11,15 @@
 namespace psygen::image {
 namespace {
 
-// What loading takes: measured 101 MB of memory in 325 MB of address space, and 4 threads.
+// Requirements of loading: measured 101 MB of memory in 325 MB of address space, and 4 threads.
 constexpr std::uint64_t kMemoryBytes = std::uint64_t{128} << 20;
 constexpr std::uint64_t kAddressBytes = std::uint64_t{512} << 20;
 constexpr std::size_t kThreads = 6;
 
 }  // namespace
 
-// The initialisers of these libraries end the program when they do not get what they need. This
-// asks for as much first.
+// The initialisers of these libraries terminate the program if they lack memory or threads, so this
+// function checks first that both exist.
 core::Result<void> check_room_for_codec() {
   if (!core::addresses_left(kAddressBytes) || !core::memory_left(kMemoryBytes)) {
     return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory("loading OpenImageIO"));

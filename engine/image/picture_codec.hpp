@@ -1,8 +1,7 @@
-// The decoder and encoder of pictures: OpenImageIO behind three functions. They are in a library of
-// their own, which is loaded when the first picture is read or written. OpenImageIO depends on
-// about 250 more libraries. Linked directly, they would cost every start 0.2 s and 100 MB; they
-// also start threads, and end the program when they cannot. Not for files, limits and headers:
-// image_io handles those. Any thread.
+// The codec of images: OpenImageIO behind a few functions, in a separate library that is loaded at
+// the first read or write of an image. OpenImageIO depends on about 250 more libraries. Linked
+// directly, they would cost every start 0.2 s and 100 MB; they also start threads, and terminate
+// the program if they cannot. Files, limits and headers are left to image_io. Any thread.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +16,14 @@ namespace psygen::image {
 
 // The functions of the loaded library. Error messages have no path.
 struct PictureCodec {
-  // Decodes a file whose header has been read to four channels of 8 bits. Fails with kParse, or
-  // with kInternal when OpenImageIO lacks the format.
+  // Decodes a file, whose header has been read, to four channels of 8 bits. Fails with kParse, or
+  // with kInternal if OpenImageIO lacks the format.
   core::Result<Image> (*decode)(std::span<const std::uint8_t> bytes, const PictureHeader& header);
-  // The same to one grey value of 16 bits.
+  // The same for one grey value of 16 bits.
   core::Result<GreyImage> (*decode_grey)(std::span<const std::uint8_t> bytes,
                                          const PictureHeader& header);
-  // Encodes a valid picture as a PNG file. Fails with kIo, or with kInternal when OpenImageIO lacks
-  // the format.
+  // Encodes a valid image as a PNG file. Fails with kIo, or with kInternal if OpenImageIO lacks the
+  // format.
   core::Result<std::vector<std::uint8_t>> (*encode_png)(const Image& image);
   // The same for grey values, with all their bits.
   core::Result<std::vector<std::uint8_t>> (*encode_grey_png)(const GreyImage& image);
@@ -32,12 +31,11 @@ struct PictureCodec {
   core::Result<std::vector<std::uint8_t>> (*encode_exr)(const FloatImage& image);
 };
 
-// Checks that the memory and the threads exist which the library takes while it is loaded. Fails
-// with kOutOfMemory.
+// Checks that enough memory and threads are available to load the library. Fails with kOutOfMemory.
 core::Result<void> check_room_for_codec();
 
-// Loads the library, once; it stays loaded. Fails like check_room_for_codec(), and with kInternal
-// when the library is missing.
+// Loads the library once; it stays loaded. Fails like check_room_for_codec(), and with kInternal if
+// the library is missing.
 core::Result<const PictureCodec*> picture_codec();
 
 }  // namespace psygen::image

@@ -85,8 +85,8 @@ std::uint32_t little_endian(Bytes bytes) {
   return value;
 }
 
-// Signature, version, then attributes up to an empty name: name, type, size, value. The picture is
-// as large as the box "dataWindow": least x and y, greatest x and y (OpenEXR file layout).
+// Signature, version, then attributes up to an empty name: name, type, size, value. The size of the
+// image is that of the box "dataWindow": minimum x and y, maximum x and y (OpenEXR file layout).
 std::optional<PictureHeader> exr_header(Bytes bytes) {
   constexpr std::uint32_t kPlain = 0xFF | 0x200 | 0x400;  // version, tiles, long names
   if (bytes.size() < 8 || (little_endian(bytes.subspan(4)) & ~kPlain) != 0) return std::nullopt;

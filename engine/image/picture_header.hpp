@@ -1,6 +1,6 @@
-// The size that a PNG, JPEG or OpenEXR file claims to have, read from its first markers without a
-// decoder and without allocating. A claim can thus be refused before anything is allocated for it.
-// Not a validation: the rest of the file may still be damaged. Pure; any thread.
+// Reads the stated size of a PNG, JPEG or OpenEXR file from its first markers, without a decoder
+// and without allocating, so that sizes can be rejected before any allocation for them. Not a
+// validation: the rest of the file may be damaged. Pure; any thread.
 #pragma once
 
 #include <cstddef>
@@ -10,22 +10,21 @@
 
 namespace psygen::image {
 
-// The formats that are read; kExr as grey values only.
+// The formats that can be read; kExr as grey values only.
 enum class PictureFormat : std::uint8_t { kPng, kJpeg, kExr };
 
-// What a file claims to be. Sizes in pixels, not checked against any limit.
+// The stated properties of a file. Sizes in pixels, not checked against any limit.
 struct PictureHeader {
   PictureFormat format = PictureFormat::kPng;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
 };
 
-// True when a PNG's chunks follow each other up to its end marker and each matches its checksum:
-// the file is neither truncated nor damaged. Decoders then do not fail in ways that leak memory.
-// O(bytes).
+// True if a PNG's chunks follow each other up to its end marker and match their checksums: the file
+// is neither truncated nor damaged. Decoders then do not fail in ways that leak memory. O(bytes).
 bool png_is_whole(std::span<const std::uint8_t> bytes);
 
-// Empty when the bytes are no such format or end before the size, and for OpenEXR files of several
+// Nothing if the bytes have another format or end before the size, and for OpenEXR files of several
 // parts or with deep pixels. O(markers).
 std::optional<PictureHeader> read_picture_header(std::span<const std::uint8_t> bytes);
 

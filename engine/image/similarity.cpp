@@ -20,7 +20,7 @@ std::vector<float> luma_of(const Image& image) {
   return luma;
 }
 
-// Of the windows whose first pixels these are.
+// The similarity of the windows that start at these pixels.
 double similarity_of(const float* a, const float* b, std::size_t width) {
   double sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0, sum_ab = 0;
   for (std::size_t y = 0; y < kSimilarityWindow; ++y) {
@@ -46,7 +46,7 @@ double similarity_of(const float* a, const float* b, std::size_t width) {
 
 double structural_similarity(const Image& a, const Image& b) {
   PSYGEN_CHECK(is_valid(a) && is_valid(b) && a.width == b.width && a.height == b.height,
-               "two pictures of one size");
+               "two images of one size");
   PSYGEN_CHECK(std::min(a.width, a.height) >= kSimilarityWindow, "a window fits");
   const std::vector<float> luma_a = luma_of(a), luma_b = luma_of(b);
   double sum = 0;

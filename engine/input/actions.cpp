@@ -17,7 +17,7 @@ constexpr float kMaxScale = 1000;
 constexpr float kMaxDeadZone = 0.95F;
 // An axis counts as pressed from the first value on, and as released below the second.
 constexpr double kPressAt = 0.5, kReleaseAt = 0.4, kUsedAt = 0.3;
-// Presses and releases that wait for a step; more are left out in pairs.
+// Maximum number of presses and releases waiting for a step; further ones are dropped in pairs.
 constexpr std::uint32_t kMaxChanges = 16;
 
 bool is_name(std::string_view name) {
@@ -65,12 +65,12 @@ core::Result<ActionId> Actions::add(std::string_view name, std::vector<Binding> 
   if (!is_name(name) || find(name)) {
     return core::fail(ErrorCode::kInvalidArgument,
                       fmt::format("\"{}\" cannot be an action: {}", core::shown(name, 80),
-                                  is_name(name) ? "there is one of that name"
+                                  is_name(name) ? "the name is taken"
                                                 : "a name has 1 to 64 letters, digits and _"));
   }
   if (actions_.size() >= kMaxActions) {
     return core::fail(ErrorCode::kOverBudget,
-                      fmt::format("there are {} actions, which is the most", kMaxActions));
+                      fmt::format("the maximum of {} actions is reached", kMaxActions));
   }
   if (auto ok = check(name, defaults); !ok) return tl::unexpected(ok.error());
   Action action{
@@ -114,8 +114,8 @@ void Actions::feed(const platform::InputState& input) {
     feed(action, input);
 }
 
-// Whether the action as a whole went down or up is seen from all of its bindings: pressing a second
-// control while a first is held is no new press.
+// An action counts as pressed or released from the sum of its bindings: pressing a second control
+// while a first is held is not another press.
 void Actions::feed(Action& action, const platform::InputState& input) {
   bool down = false, pressed = false, any_was_down = false, all_went_up = true;
   std::uint32_t notches = 0;
@@ -152,7 +152,7 @@ void Actions::feed(Action& action, const platform::InputState& input) {
   const bool was_down = action.down;
   action.down = down;
   std::uint32_t changes = was_down != down ? 1 : 0;
-  // Down and up, or up and down again, within the frame.
+  // Pressed and released, or released and pressed again, within the frame.
   if (pressed && (was_down ? any_was_down && all_went_up : !down)) changes += 2;
   add_changes(action.changes, changes + 2 * notches);
 }
@@ -182,7 +182,7 @@ void Actions::step() {
 }
 
 void Actions::step_to(std::span<const ActionState> states) {
-  PSYGEN_ASSERT(states.size() == states_.size(), "states of other actions");
+  PSYGEN_ASSERT(states.size() == states_.size(), "one state for each action");
   std::ranges::copy(states, states_.begin());
 }
 

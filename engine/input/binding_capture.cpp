@@ -3,7 +3,7 @@
 namespace psygen::input {
 namespace {
 
-constexpr double kPressedAt = 0.7, kAtRest = 0.3;  // of axes
+constexpr double kPressedAt = 0.7, kAtRest = 0.3;  // values of axes
 
 bool can_be_captured(Control control) {
   using platform::Key;

@@ -1,5 +1,5 @@
-// "Press a key ...": waits for the next control that a person presses, for a new binding. Movement
-// of the mouse is not taken, because it always moves. Plain value, one thread; linear in controls.
+// "Press a key ...": waits for the next control that the user presses, for a new binding. Ignores
+// mouse movement, because the mouse always moves. Plain value, one thread; linear in controls.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,14 @@ namespace psygen::input {
 
 class BindingCapture {
  public:
-  // Starts at `now`: what is held then must be released before it counts.
+  // Starts at `now`. Controls held then must be released before they count.
   explicit BindingCapture(const platform::InputState& now);
-  // The control pressed in this frame; nothing if there was none. Once per frame. Keys are told as
-  // the left or the right one. Which key cancels is the caller's choice.
+  // The control pressed in this frame, or nothing. Call it once per frame. Modifier keys are
+  // reported as left or right. The caller chooses the key that cancels.
   std::optional<Control> update(const platform::InputState& input);
 
  private:
-  std::vector<bool> armed_;  // of all_controls(): it has been at rest
+  std::vector<bool> armed_;  // for each of all_controls(): it has been at rest
 };
 
 }  // namespace psygen::input

@@ -40,7 +40,7 @@ Binding read_binding(const Node& node, const std::string& path, Problems& proble
     }
   }
   if (reader.read("scale", binding.scale, kScales) && binding.scale == 0)
-    reader.problem(reader.find("scale")->line, "scale", "0 would take no notice of the control");
+    reader.problem(reader.find("scale")->line, "scale", "0 would ignore the control");
   reader.read("dead_zone", binding.dead_zone, kDeadZones);
   reader.finish();
   return binding;
@@ -108,7 +108,7 @@ core::Result<void> apply_bindings(std::string_view text, std::string_view file_n
     if (problems.any()) continue;
     if (seen[tables.back().action]) {
       problems.add(node->line, fmt::format("action[{}].name", tables.size() - 1),
-                   fmt::format("\"{}\" comes twice", actions.name(tables.back().action)));
+                   fmt::format("\"{}\" is a duplicate", actions.name(tables.back().action)));
     }
     seen[tables.back().action] = true;
   }

@@ -140,12 +140,11 @@ core::Result<Control> control_named(std::string_view name) {
     names.emplace_back(name_of(control));
   }
   const std::string_view nearest = core::nearest_word(name, names);
-  return core::fail(
-      core::ErrorCode::kInvalidArgument,
-      fmt::format("there is no control \"{}\"{}", core::shown(name, 64),
-                  nearest.empty() ? "; controls are such as \"Space\", \"Mouse Left\", "
-                                    "\"Wheel Up\", \"Gamepad A\""
-                                  : fmt::format("; did you mean \"{}\"?", nearest)));
+  return core::fail(core::ErrorCode::kInvalidArgument,
+                    fmt::format("there is no control \"{}\"{}", core::shown(name, 64),
+                                nearest.empty() ? "; examples: \"Space\", \"Mouse Left\", "
+                                                  "\"Wheel Up\", \"Gamepad A\""
+                                                : fmt::format("; did you mean \"{}\"?", nearest)));
 }
 
 bool is_relative(Control control) {

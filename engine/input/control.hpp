@@ -1,5 +1,5 @@
-// Anything that a person can move: a key, a mouse button, the wheel, the mouse itself, a button or
-// half an axis of a gamepad. Each has a name and a value of 0 or more, so an axis is two controls
+// Everything that a user can move: a key, a mouse button, the wheel, the mouse itself, a button or
+// half an axis of a gamepad. Each has a name and a value of 0 or more, so an axis is two controls,
 // and a game gives them signs. Plain values, any thread. Knows no actions (actions.hpp).
 #pragma once
 
@@ -13,10 +13,10 @@
 
 namespace psygen::input {
 
-// What kind of control `code` counts in: Key, MouseButton, WheelWay, MouseWay, PadButton, PadWay.
+// The enum of `code`: Key, MouseButton, WheelWay, MouseWay, PadButton, PadWay.
 enum class Device : std::uint8_t { kKey, kMouseButton, kWheel, kMouse, kPadButton, kPadAxis };
 
-// Whether it is a gamepad.
+// True for controls of a gamepad.
 constexpr bool is_of_pad(Device device) {
   return device == Device::kPadButton || device == Device::kPadAxis;
 }
@@ -42,7 +42,7 @@ struct Control {
   std::uint8_t code = 0;
 
   Control() = default;
-  // A key, button, or half of an axis by its own name.
+  // A key, button, or half of an axis by its enumerator.
   Control(platform::Key key) : code(static_cast<std::uint8_t>(key)) {}
   Control(platform::MouseButton button)
       : device(Device::kMouseButton), code(static_cast<std::uint8_t>(button)) {}
@@ -60,22 +60,24 @@ std::span<const Control> all_controls();
 
 // "W", "Mouse Left", "Wheel Up", "Mouse Move Left", "Gamepad A", "Gamepad Left Stick Up".
 std::string_view name_of(Control control);
-// The control of a name; kInvalidArgument with the nearest name otherwise. Linear in the controls.
+// The control with a name; fails with kInvalidArgument and the nearest name. Linear in the
+// controls.
 core::Result<Control> control_named(std::string_view name);
 
-// Moved by an amount since the last frame (wheel, mouse), rather than held at a value.
+// True for controls that move by an amount since the last frame (wheel, mouse) instead of being
+// held.
 bool is_relative(Control control);
-// Held or not, without anything between.
+// True for controls that are held or not, without values in between.
 bool is_digital(Control control);
 
-// What a control does in a frame.
+// The state of a control in a frame.
 struct Reading {
   double value = 0;  // digital: 0 or 1; axes: 0 … 1; wheel: steps; mouse: screen coordinates
   bool went_down = false;  // digital only; pressed during the frame
   bool went_up = false;
 };
-// With a gamepad control: the strongest of all gamepads, or that of one slot. Never NaN, at most
-// 1e6.
+// For a gamepad control: the strongest value of all gamepads, or the value of one slot. Never NaN,
+// at most 1e6.
 Reading read(Control control, const platform::InputState& input,
              std::optional<std::size_t> pad_slot = {});
 

@@ -40,7 +40,7 @@ void put_change(std::string& out, std::uint8_t action, const ActionState& before
   if (value) put(out, now.value);
 }
 
-// Reads a change on top of the states before it; false for one that cannot be.
+// Reads a change relative to the previous states. Returns false for an impossible one.
 bool take_change(ByteReader& bytes, std::span<ActionState> states) {
   const auto action = bytes.get<std::uint8_t>();
   const auto flags = bytes.get<std::uint8_t>();
@@ -58,7 +58,7 @@ bool take_change(ByteReader& bytes, std::span<ActionState> states) {
   return true;
 }
 
-// Whether all changes can be read, and belong to steps that there are.
+// True if all changes can be read and belong to existing steps.
 bool are_whole(std::string_view changes, std::size_t actions, std::uint64_t steps) {
   ByteReader bytes(changes);
   std::vector<ActionState> states(actions);
@@ -85,13 +85,14 @@ bool same(const ActionState& a, const ActionState& b) {
 
 Recording::Recording(const Actions& actions, double step_s)
     : step_s_(step_s), last_(actions.size()) {
-  PSYGEN_ASSERT(step_s > 0 && step_s <= kLongestStepS, "a fixed step has a length");
+  PSYGEN_ASSERT(step_s > 0 && step_s <= kLongestStepS,
+                "the length of a fixed step must be positive");
   for (ActionId id = 0; id < actions.size(); ++id)
     names_.push_back(actions.name(id));
 }
 
 core::Result<void> Recording::add(std::span<const ActionState> states) {
-  PSYGEN_ASSERT(states.size() == last_.size(), "states of other actions");
+  PSYGEN_ASSERT(states.size() == last_.size(), "one state for each action");
   std::string changed;
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < states.size(); ++i) {
@@ -105,7 +106,7 @@ core::Result<void> Recording::add(std::span<const ActionState> states) {
   }
   if (changes_.size() + changed.size() > kMaxBytes) {
     return core::fail(ErrorCode::kOverBudget,
-                      fmt::format("a recording has at most {} MiB", kMaxBytes >> 20));
+                      fmt::format("a recording may have at most {} MiB", kMaxBytes >> 20));
   }
   ++steps_;
   put_varint(changes_, steps_ - std::exchange(last_changed_, steps_));
@@ -144,7 +145,7 @@ core::Result<Recording> Recording::parse(std::string_view bytes, std::string_vie
   const auto hash = ByteReader(bytes.substr(max_bytes)).get<std::uint64_t>();
   if (rest.failed() || hash != hash_of(bytes.substr(0, max_bytes)))
     return refused(name, "the recording is damaged or cut short");
-  const tl::unexpected<core::Error> wrong = refused(name, "the recording contradicts itself");
+  const tl::unexpected<core::Error> wrong = refused(name, "the recording is inconsistent");
   Recording recording;
   const auto step_s = rest.get<double>();
   const auto actions = rest.get<std::uint32_t>();
@@ -176,16 +177,17 @@ core::Result<Recording> Recording::load(const std::filesystem::path& file) {
 
 core::Result<Replay> Replay::create(Recording recording, const Actions& actions, double step_s) {
   if (recording.step_s_ != step_s) {
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("the recording has {:.6g} steps a second, and this game {:.6g}",
-                                  1 / recording.step_s_, 1 / step_s));
+    return core::fail(
+        ErrorCode::kInvalidArgument,
+        fmt::format("the recording has {:.6g} steps per second, but this game has {:.6g}",
+                    1 / recording.step_s_, 1 / step_s));
   }
   Replay replay(std::move(recording));
   for (const std::string& name : replay.recording_.names_) {
     const auto id = actions.find(name);
     if (!id) {
       return core::fail(ErrorCode::kInvalidArgument,
-                        fmt::format("the recording has the action \"{}\", which this game has not",
+                        fmt::format("the recording has the action \"{}\", which this game lacks",
                                     core::shown(name, Actions::kMaxNameBytes)));
     }
     replay.ids_.push_back(*id);

@@ -16,7 +16,7 @@ double axis(const InputState& input, Key positive, Key negative) {
   return (input.is_held(positive) ? 1.0 : 0.0) - (input.is_held(negative) ? 1.0 : 0.0);
 }
 
-// Lets `rate` approach `target` exponentially for dt and returns its integral over that time. Exact
+// Moves `rate` exponentially towards `target` for dt and returns its integral over that time. Exact
 // for a constant target: many short steps and one long step give the same result.
 template <class Vector>
 Vector integrate(Vector& rate, const Vector& target, double response_s, double dt_s) {

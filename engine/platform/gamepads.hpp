@@ -1,6 +1,6 @@
-// Gamepads as values: what is held, and what changed since the last poll. Where readings come from
-// is the caller's (the window asks GLFW, tests make them up). Gamepads come and go at run time;
-// none is no error. Knows no mapping of devices. Main thread.
+// Gamepads as values: held buttons, and changes since the last poll. The caller provides the
+// readings (the window asks GLFW, tests make them up). Gamepads can be connected and disconnected
+// at run time; having none is no error. Knows no mappings of devices. Main thread.
 #pragma once
 
 #include <array>
@@ -11,13 +11,14 @@
 
 namespace psygen::platform {
 
-inline constexpr std::size_t kGamepads = 16;  // slots; a gamepad keeps its slot while it is there
+inline constexpr std::size_t kGamepads =
+    16;  // slots; a gamepad keeps its slot while it is connected
 
 // One slot. Everything is 0 and false without a gamepad.
 struct Gamepad {
   bool connected = false;
   bool came = false, went = false;        // connected or disconnected since the last poll
-  PadButtonSet held, went_down, went_up;  // as InputState's
+  PadButtonSet held, went_down, went_up;  // as in InputState
   std::array<float, kPadAxes> axes{};     // without a dead zone; see PadAxis
 
   // The state of one button or axis; false and 0 without a gamepad.
@@ -26,18 +27,18 @@ struct Gamepad {
 };
 using Gamepads = std::array<Gamepad, kGamepads>;
 
-// What a device reports now.
+// The current state reported by a device.
 struct PadReading {
   PadButtonSet buttons;
   std::array<float, kPadAxes> axes{};
 };
-// The reading of a slot, 0 … kGamepads − 1; nothing where there is no gamepad.
+// Returns the reading of a slot, 0 … kGamepads − 1, or nothing if it has no gamepad.
 using ReadPad = std::function<std::optional<PadReading>(std::size_t slot)>;
 
-// Adds new readings to `pads`. Changes add up until clear_changes(). Axes are clamped to their
-// range, and those that are not finite count as 0. What a lost gamepad held goes up.
+// Adds new readings to `pads`. Changes accumulate until clear_changes(). Axes are clamped to their
+// range; values that are not finite count as 0. Buttons of a disconnected gamepad are released.
 void update_gamepads(const ReadPad& read, Gamepads& pads);
-// Forgets came, went, went_down and went_up.
+// Clears came, went, went_down and went_up.
 void clear_changes(Gamepads& pads);
 
 }  // namespace psygen::platform

@@ -17,7 +17,7 @@ void clear_changes(InputState& input) {
 
 namespace {
 
-// `taken` is what goes to someone else, `before` what the last result held.
+// `taken` is the input that another reader takes, `before` the input that the last result held.
 template <std::size_t kCount>
 void leave_out(std::bitset<kCount>& held, std::bitset<kCount>& went_down,
                std::bitset<kCount>& went_up, std::bitset<kCount>& before,

@@ -1,5 +1,5 @@
 // Keyboard, mouse, text and gamepads since the last frame. A plain value that the window fills in
-// and tests make up. Knows no window system. What a game calls its actions is engine/input's.
+// and tests make up. Knows no window system. Actions of a game are in engine/input.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ struct InputState {
   KeySet held;       // down at the end of the frame
   KeySet went_down;  // pressed during the frame, even if released again; not repeated while held
   KeySet went_up;    // released during the frame, even if pressed again
-  KeySet repeated;   // repeated by the keyboard while held, for text fields
+  KeySet repeated;   // repeated by the keyboard while held; for text fields
   MouseButtonSet buttons_held, buttons_went_down, buttons_went_up;
-  std::string text;               // what was typed, UTF-8; at most kMaxTextBytes
+  std::string text;               // typed text, UTF-8; at most kMaxTextBytes
   glm::dvec2 pointer_px{0.0};     // in the picture, from its upper left corner; while the cursor is
                                   // captured it means nothing
   glm::dvec2 move_px{0.0};        // mouse movement: right, down; screen coordinates
@@ -32,7 +32,7 @@ struct InputState {
 
   static constexpr std::size_t kMaxTextBytes = 4096;
 
-  // Whether the key is down at the end of the frame, or was pressed or released during it.
+  // True if the key is down at the end of the frame; was pressed; was released during it.
   bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }
   bool was_pressed(Key key) const { return went_down[static_cast<std::size_t>(key)]; }
   bool was_released(Key key) const { return went_up[static_cast<std::size_t>(key)]; }
@@ -46,14 +46,15 @@ struct InputState {
   }
 };
 
-// Forgets what happened during a frame; what is held stays.
+// Clears the events of a frame; held controls stay.
 void clear_changes(InputState& input);
 
-// Leaves out of frames what someone else takes, a text field or a menu. One for each reader.
+// Removes input that another reader takes, such as a text field or a menu. One filter per reader.
 class InputFilter {
  public:
-  // `now` without keyboard and text, or without the mouse. What the last result held is released
-  // once. What went down while it was taken stays away until it goes up. Gamepads stay.
+  // `now` without keyboard and text, or without the mouse. Releases once what the last result held.
+  // A control that was pressed while taken stays hidden until it is released. Gamepads are not
+  // filtered.
   InputState apply(const InputState& now, bool keyboard, bool mouse);
 
  private:

@@ -1,6 +1,6 @@
-// Keys, mouse buttons, and the buttons and axes of gamepads, with their names. The names are those
-// of binding files and menus; what a key's cap shows is Window::label_of(). Plain values, any
-// thread. Searching a name is linear.
+// Keys, mouse buttons, and the buttons and axes of gamepads, with their names for binding files and
+// menus. Window::label_of() gives the label on a key's cap. Plain values, any thread. Searching a
+// name is linear.
 #pragma once
 
 #include <bitset>
@@ -11,8 +11,8 @@
 
 namespace psygen::platform {
 
-// Keys by their place on a US keyboard: WASD is the same block of keys on every layout. kShift,
-// kControl and kAlt are down while the left or the right one is.
+// Keys by their position on a US keyboard: WASD is the same block of keys on every layout. kShift,
+// kControl and kAlt are down if the left or the right one is.
 // clang-format off
 enum class Key : std::uint8_t {
   kA, kB, kC, kD, kE, kF, kG, kH, kI, kJ, kK, kL, kM, kN, kO, kP, kQ, kR, kS, kT, kU, kV, kW, kX,
@@ -34,7 +34,7 @@ enum class Key : std::uint8_t {
   kCount
 };
 enum class MouseButton : std::uint8_t { kLeft, kRight, kMiddle, k4, k5, k6, k7, k8, kCount };
-// Buttons by their place on a gamepad with the layout of an Xbox controller.
+// Buttons by their position on a gamepad with the layout of an Xbox controller.
 enum class PadButton : std::uint8_t {
   kA, kB, kX, kY, kLeftBumper, kRightBumper, kBack, kStart, kGuide, kLeftThumb, kRightThumb,
   kUp, kRight, kDown, kLeft, kCount
@@ -63,7 +63,7 @@ using PadButtonSet = std::bitset<kPadButtons>;
 std::string_view name_of(Key key);
 std::string_view name_of(MouseButton button);
 std::string_view name_of(PadButton button);
-// The key of a name, which must match exactly; nothing for another text.
+// The key with exactly this name, or nothing.
 std::optional<Key> key_named(std::string_view name);
 
 }  // namespace psygen::platform

@@ -16,7 +16,8 @@
 #include "engine/core/assert.hpp"
 #include "engine/core/utf8.hpp"
 
-// As GLFW declares it when vulkan.h is known; the handles are pointers on every 64-bit platform.
+// GLFW declares it like this if vulkan.h is included; the handles are pointers on every 64-bit
+// platform.
 extern "C" int glfwCreateWindowSurface(void* instance, GLFWwindow* window, const void* allocator,
                                        std::uint64_t* surface);
 
@@ -25,14 +26,14 @@ namespace {
 
 static_assert(sizeof(void*) == 8, "Vulkan surfaces are pointers only on 64-bit platforms");
 
-// GLFW is initialised once per process and keeps no count of its own.
+// GLFW is initialised once per process and does not count its users.
 int& window_count() {
   static int count = 0;
   return count;
 }
 
-// GLFW gets text through the locale's encoding, and would lose letters that it lacks. As GLFW does
-// itself, only the kind of characters is set, never the format of numbers.
+// GLFW converts text to the locale's encoding, and would lose characters that it lacks. Like GLFW
+// itself, this sets only the character type, never the number format.
 void use_unicode() {
   if (std::strcmp(std::setlocale(LC_CTYPE, nullptr), "C") == 0) std::setlocale(LC_CTYPE, "");
   if (std::strcmp(nl_langinfo(CODESET), "UTF-8") != 0) std::setlocale(LC_CTYPE, "C.UTF-8");
@@ -44,7 +45,7 @@ std::string glfw_error() {
   return description != nullptr ? description : "the window system gave no reason";
 }
 
-// Keys of GLFW and ours, apart from ranges (key_of).
+// Keys of GLFW and ours, without ranges (key_of).
 // clang-format off
 constexpr std::pair<int, Key> kOtherKeys[] = {
     {GLFW_KEY_UP, Key::kUp}, {GLFW_KEY_DOWN, Key::kDown}, {GLFW_KEY_LEFT, Key::kLeft},
@@ -84,7 +85,7 @@ std::optional<Key> key_of(int glfw_key) {
   return found == std::end(kOtherKeys) ? std::nullopt : std::optional(found->second);
 }
 
-// GLFW's number of a key; GLFW_KEY_UNKNOWN for those that stand for two.
+// GLFW's number of a key; GLFW_KEY_UNKNOWN for keys that stand for two.
 int glfw_key_of(Key key) {
   for (int number = GLFW_KEY_SPACE; number <= GLFW_KEY_LAST; ++number) {
     if (key_of(number) == key) return number;
@@ -92,7 +93,7 @@ int glfw_key_of(Key key) {
   return GLFW_KEY_UNKNOWN;
 }
 
-// A key that is down while either of two is, and what happened to one of them.
+// Updates a key that is down while either of two keys is, with the events of one of them.
 void set_key(InputState& input, Key key, bool down) {
   const auto bit = static_cast<std::size_t>(key);
   if (input.held[bit] == down) return;
@@ -135,7 +136,8 @@ std::int64_t common_area(const Rectangle& a, const Rectangle& b) {
   return std::int64_t{std::max(width, 0)} * std::max(height, 0);
 }
 
-// The monitor that shows most of a rectangle, or the first one if none does; null without monitors.
+// The monitor that shows the largest part of a rectangle, or the first one if none does; null
+// without monitors.
 GLFWmonitor* monitor_of(const Rectangle& place) {
   int count = 0;
   GLFWmonitor** const monitors = glfwGetMonitors(&count);
@@ -158,9 +160,9 @@ GLFWmonitor* monitor_of(const Rectangle& place) {
 
 struct Window::Implementation {
   GLFWwindow* window = nullptr;
-  Rectangle windowed;       // its place before it covered a monitor
+  Rectangle windowed;       // its position before it covered a monitor
   InputState input;         // collected since the last poll
-  glm::dvec2 pointer{0.0};  // last reported place; leaves the window while looking
+  glm::dvec2 pointer{0.0};  // last reported position; leaves the window while looking
   bool right_looks = true;
 
   explicit Implementation(GLFWwindow* created) : window(created) {
@@ -229,7 +231,7 @@ struct Window::Implementation {
   }
   static void on_resize(GLFWwindow* window, int, int) { of(window).input.resized = true; }
 
-  // While looking, the pointer is hidden and the screen's edge does not stop it.
+  // While looking, the pointer is hidden and can move beyond the screen's edge.
   void update_cursor() {
     const bool looking = input.captured || (right_looks && input.is_held(MouseButton::kRight));
     if (looking == input.looking) return;
@@ -238,7 +240,7 @@ struct Window::Implementation {
     glfwGetCursorPos(window, &pointer.x, &pointer.y);  // changing the mode is not a movement
   }
 
-  // Screen coordinates → pixels of the picture.
+  // Screen coordinates → pixels of the image.
   glm::dvec2 pointer_px() const {
     int width = 0, height = 0, wide = 0, high = 0;
     glfwGetWindowSize(window, &width, &height);
@@ -249,7 +251,8 @@ struct Window::Implementation {
 };
 
 core::Result<std::unique_ptr<Window>> Window::create(const WindowSettings& settings) {
-  PSYGEN_ASSERT(settings.size.width > 0 && settings.size.height > 0, "a window without a size");
+  PSYGEN_ASSERT(settings.size.width > 0 && settings.size.height > 0,
+                "the size of a window must be positive");
   if (window_count() == 0) use_unicode();
   if (glfwInit() != GLFW_TRUE) {
     return core::fail(core::ErrorCode::kNoDevice,
@@ -343,7 +346,7 @@ std::string Window::gamepad_name(std::size_t slot) const {
 
 std::string Window::clipboard() const {
   const char* const text = glfwGetClipboardString(implementation_->window);
-  (void)glfwGetError(nullptr);  // no text there is none
+  (void)glfwGetError(nullptr);  // an empty clipboard is no error
   return text == nullptr ? "" : text;
 }
 
@@ -385,7 +388,7 @@ core::Result<void> Window::set_fullscreen(bool fullscreen) {
   GLFWmonitor* const monitor = monitor_of(now);
   if (monitor == nullptr) {
     return core::fail(core::ErrorCode::kNoDevice,
-                      fmt::format("there is no monitor to fill: {}", glfw_error()));
+                      fmt::format("there is no monitor for full screen: {}", glfw_error()));
   }
   place = now;
   const GLFWvidmode* const mode = glfwGetVideoMode(monitor);
@@ -408,7 +411,7 @@ void Window::set_title(const std::string& title) {
 }
 
 void Window::set_size(core::Extent size) {
-  PSYGEN_ASSERT(size.width > 0 && size.height > 0, "a window without a size");
+  PSYGEN_ASSERT(size.width > 0 && size.height > 0, "the size of a window must be positive");
   glfwSetWindowSize(implementation_->window, static_cast<int>(size.width),
                     static_cast<int>(size.height));
 }

@@ -1,6 +1,6 @@
-// A window with keyboard, mouse and gamepads, over GLFW. GLFW stays hidden here and is initialised
-// only when a window is created: headless runs never touch a window system. Vulkan appears only as
-// opaque handles. Not a renderer. Main thread.
+// A window with keyboard, mouse and gamepads, over GLFW. Only this file's source includes GLFW, and
+// it initialises GLFW only when a window is created: headless runs never use a window system.
+// Vulkan appears only as opaque handles. Not a renderer. Main thread.
 #pragma once
 
 #include <memory>
@@ -18,17 +18,17 @@ struct WindowSettings {
   bool visible = true;
 };
 
-// Owns its window; the last window ends GLFW.
+// Owns its window; the last window terminates GLFW.
 class Window final : public core::SurfaceProvider {
  public:
-  // Opens a window. Fails with kNoDevice when there is no display.
+  // Opens a window. Fails with kNoDevice if there is no display.
   static core::Result<std::unique_ptr<Window>> create(const WindowSettings& settings);
-  // Closes the window. Surfaces created from it must be destroyed before.
+  // Closes the window. Surfaces created from it must already be destroyed.
   ~Window() override;
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  // As in SurfaceProvider. The names are empty where GLFW finds no Vulkan; create_surface fails
+  // See SurfaceProvider. The names are empty if GLFW finds no Vulkan; create_surface then fails
   // with kNoDevice.
   std::vector<std::string> required_instance_extensions() const override;
   core::Result<std::uint64_t> create_surface(void* instance) override;
@@ -43,42 +43,42 @@ class Window final : public core::SurfaceProvider {
   // above 0.
   void wait_events(double timeout_s);
 
-  // Hides the pointer and keeps it in the window: movement is not stopped by an edge, and
+  // Hides the pointer and confines it to the window: edges do not stop movement, and
   // InputState::captured and looking are set. Released by capture_cursor(false), not by any key.
   void capture_cursor(bool captured);
   bool cursor_captured() const;
-  // Whether the right button looks around while it is held (InputState::looking), as the fly camera
-  // wants it; on at first. Games that use the button for something else switch it off.
+  // Lets the right button look around while it is held (InputState::looking), for the fly camera;
+  // on by default. Games that use the button otherwise switch this off.
   void set_right_button_looks(bool looks);
 
-  // What a key's cap shows in the user's layout: "Z" for Key::kY on a German keyboard. The key's
-  // name where the layout has none for it.
+  // The label on a key's cap in the user's layout: "Z" for Key::kY on a German keyboard. The key's
+  // name if the layout has no label for it.
   std::string label_of(Key key) const;
-  // The name of a gamepad in a slot of InputState::pads; empty without one.
+  // The name of the gamepad in a slot of InputState::pads; empty without one.
   std::string gamepad_name(std::size_t slot) const;
-  // The text of the clipboard, UTF-8; empty where there is none.
+  // The text of the clipboard, UTF-8; empty if there is none.
   std::string clipboard() const;
   void set_clipboard(const std::string& text);
 
-  // True when the user asked to close the window, or request_close() did.
+  // True if the user asked to close the window, or request_close() was called.
   bool should_close() const;
   void request_close();
-  // Whether the window is minimised.
+  // True if the window is minimised.
   bool minimised() const;
 
-  // Covers the monitor that shows most of the window, in the monitor's current mode; leaving full
-  // screen restores size and place. Fails with kNoDevice when the window system has no monitor; the
-  // window then stays as it is.
+  // Covers the monitor that shows the largest part of the window, in the monitor's current mode;
+  // leaving full screen restores size and position. Fails with kNoDevice, without a change, if the
+  // window system has no monitor.
   core::Result<void> set_fullscreen(bool fullscreen);
-  // Whether the window covers a monitor.
+  // True if the window covers a monitor.
   bool fullscreen() const;
-  // Pixels per unit of text and controls: 1 on usual displays, 2 on high-density ones.
+  // Pixels per unit of text and controls: 1 on standard displays, 2 on high-density ones.
   float content_scale() const;
 
   // Set the title (UTF-8) and the size (in screen coordinates, each at least 1).
   void set_title(const std::string& title);
   void set_size(core::Extent size);
-  // Minimise the window, and bring it back.
+  // Minimises the window; restores it.
   void minimise();
   void restore();
 

@@ -76,7 +76,7 @@ Value Statement::value(int column) const {
 }
 
 core::Result<std::filesystem::path> absolute_path(const std::filesystem::path& file) {
-  if (file.empty()) return core::fail(core::ErrorCode::kIo, "the file of a save needs a name");
+  if (file.empty()) return core::fail(core::ErrorCode::kIo, "the file name of the save is empty");
   std::error_code error;
   std::filesystem::path path = std::filesystem::absolute(file, error);
   if (!error) return path;
@@ -85,7 +85,7 @@ core::Result<std::filesystem::path> absolute_path(const std::filesystem::path& f
 
 core::Result<Database> Database::open(const std::filesystem::path& file) {
   sqlite3* raw = nullptr;
-  // An absolute path: SQLite takes names that begin with "file:" for URIs.
+  // An absolute path, because SQLite takes names that begin with "file:" for URIs.
   const auto name = absolute_path(file);
   if (!name) return tl::unexpected(name.error());
   const int code =
@@ -145,7 +145,7 @@ core::Result<Statement> Database::prepare(std::string_view sql, std::string_view
   return statement;
 }
 
-// What the system said when a call on the file or on its journal failed; 0 if nothing.
+// The system's error code after a failed call on the file or its journal; 0: none.
 int Database::system_error() const {
   int code = 0;
   sqlite3_file_control(get(), "main", SQLITE_FCNTL_LAST_ERRNO, &code);

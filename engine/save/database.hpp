@@ -1,6 +1,5 @@
 // SQLite as values: a connection to one file, and prepared statements. The only header of the
-// project that includes SQLite; it is private to engine/save. Not a query builder. One thread at a
-// time.
+// project that includes SQLite; private to engine/save. Not a query builder. One thread at a time.
 #pragma once
 
 #include <sqlite3.h>
@@ -32,10 +31,10 @@ class Statement {
   void bind(int index, const Value& value);
   // Runs up to the next row: SQLITE_ROW, SQLITE_DONE or an error code.
   int step() { return sqlite3_step(get()); }
-  // Ends the run and forgets the parameters, so that the statement can be run again.
+  // Ends the run and clears the parameters, so that the statement can run again.
   void reset();
 
-  // Whether a column has exactly this type (SQLITE_INTEGER, ...), and its content.
+  // True if a column has exactly this type (SQLITE_INTEGER, ...); and its content.
   bool is(int column, int type) const { return sqlite3_column_type(get(), column) == type; }
   std::int64_t integer(int column) const { return sqlite3_column_int64(get(), column); }
   std::string_view text(int column) const;
@@ -46,8 +45,8 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> statement_{nullptr, &sqlite3_finalize};
 };
 
-// The absolute path of a file that need not exist. Fails with kIo for an empty name, and where the
-// working folder is gone.
+// The absolute path of a file that need not exist. Fails with kIo for an empty name and if the
+// working folder no longer exists.
 core::Result<std::filesystem::path> absolute_path(const std::filesystem::path& file);
 
 // An open file. Holds no lock until it is used.
@@ -55,20 +54,20 @@ class Database {
  public:
   // Opens an existing file for reading and writing, without reading it. Fails with kIo.
   static core::Result<Database> open(const std::filesystem::path& file);
-  // Opens an existing file for reading, as if nobody ever changed it: takes no lock, and leaves the
-  // locks of this process alone. Fails with kIo.
+  // Opens an existing file read-only and as immutable: takes no lock and keeps the locks of this
+  // process. Fails with kIo.
   static core::Result<Database> open_unlocked(const std::filesystem::path& file);
   // A database in memory.
   static core::Result<Database> in_memory();
 
-  // Runs statements without parameters and rows. Fails as error() says.
+  // Runs statements without parameters and rows. Fails like error().
   core::Result<void> run(const char* sql, std::string_view action);
-  // Fails as error() says.
+  // Prepares a statement. Fails like error().
   core::Result<Statement> prepare(std::string_view sql, std::string_view action) const;
-  // The latest failure as a sentence: file, action, reason. kIo, kParse for damaged files, or
+  // The latest failure as a message with file, action and reason. kIo, kParse for damaged files, or
   // kOutOfMemory.
   tl::unexpected<core::Error> error(std::string_view action) const;
-  // Whether a transaction is open.
+  // True if a transaction is open.
   bool in_transaction() const { return sqlite3_get_autocommit(get()) == 0; }
 
   sqlite3* get() const { return database_.get(); }

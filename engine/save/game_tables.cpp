@@ -12,13 +12,14 @@ namespace {
 
 using core::ErrorCode;
 
-// As SQLite compares names.
+// Compares names as SQLite does.
 bool starts_with(std::string_view name, std::string_view prefix) {
   return name.size() >= prefix.size() &&
          sqlite3_strnicmp(name.data(), prefix.data(), static_cast<int>(prefix.size())) == 0;
 }
 
-// What SQL of the game may do. SQLite asks it about each part of a statement while preparing it.
+// Decides which SQL the game may run. SQLite calls it for each part of a statement that it
+// prepares.
 int authorise(void* names_changed, int action, const char* first, const char* second,
               const char* /*schema*/, const char* /*trigger*/) {
   const auto game = [](const char* name) { return name != nullptr && is_game_table(name); };
@@ -50,7 +51,7 @@ int authorise(void* names_changed, int action, const char* first, const char* se
   }
 }
 
-// Restricts what is prepared while it lives.
+// Restricts statements that are prepared during its lifetime.
 class Restriction {
  public:
   explicit Restriction(const Database& database) : database_(database.get()) {
@@ -59,7 +60,7 @@ class Restriction {
   ~Restriction() { sqlite3_set_authorizer(database_, nullptr, nullptr); }
   Restriction(const Restriction&) = delete;
   Restriction& operator=(const Restriction&) = delete;
-  // Whether a statement may have renamed something.
+  // True if a statement may have renamed something.
   bool names_changed() const { return names_changed_; }
 
  private:
@@ -89,7 +90,7 @@ core::Result<Statement> prepare(Database& database, std::string_view sql,
   if (left.find_first_not_of(" \t\r\n;") != std::string_view::npos)
     return refuse(sql, "has more than one statement");
   if (static_cast<std::size_t>(sqlite3_bind_parameter_count(raw)) != values.size())
-    return refuse(sql, fmt::format("has {} parameters and was given {} values",
+    return refuse(sql, fmt::format("has {} parameters but was given {} values",
                                    sqlite3_bind_parameter_count(raw), values.size()));
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (auto ok = check_value(values[i], "SQL"); !ok) return tl::unexpected(ok.error());
@@ -98,7 +99,7 @@ core::Result<Statement> prepare(Database& database, std::string_view sql,
   return statement;
 }
 
-// A failed step: the file's fault or the statement's.
+// A failed step: an error of the file or of the statement.
 tl::unexpected<core::Error> step_error(const Database& database, std::string_view sql) {
   switch (sqlite3_errcode(database.get()) & 0xFF) {
     case SQLITE_FULL:
@@ -166,7 +167,7 @@ core::Result<Rows> GameTables::query(Database& database, std::string_view sql,
   auto statement = prepare(database, sql, values);
   if (!statement) return tl::unexpected(statement.error());
   if (sqlite3_stmt_readonly(statement->get()) == 0)
-    return refuse(sql, "changes the save; give it to execute()");
+    return refuse(sql, "changes the save; pass it to execute()");
   Rows result;
   const int columns = sqlite3_column_count(statement->get());
   for (int c = 0; c < columns; ++c)

@@ -1,7 +1,6 @@
-// SQL of the game on tables of its own, in the file of the save. Names of these tables and indices
-// begin with "game_"; everything else is out of their reach. Changes belong to the open transaction
-// and are logged, so that they can be made again after a failed save. Private to engine/save. One
-// thread at a time.
+// SQL of the game on its own tables in the save file. Names of these tables and indices begin with
+// "game_"; other tables are out of reach. Changes belong to the open transaction and are logged, so
+// that they can be repeated after a failed save. Private to engine/save. One thread at a time.
 #pragma once
 
 #include <string>
@@ -14,23 +13,23 @@
 
 namespace psygen::save {
 
-// Whether a table or index of this name belongs to the game.
+// True if a table or index of this name belongs to the game.
 bool is_game_table(std::string_view name);
 
 class GameTables {
  public:
-  // Runs one statement that changes tables or their rows. All of it happens or nothing. Fails with
+  // Runs one statement that changes tables or their rows, completely or not at all. Fails with
   // kInvalidArgument for wrong SQL, forbidden names and wrong numbers of values.
   core::Result<void> execute(Database& database, std::string_view sql,
                              const std::vector<Value>& values);
-  // Runs one statement that only reads. Fails as execute().
+  // Runs one statement that only reads. Fails like execute().
   core::Result<Rows> query(Database& database, std::string_view sql,
                            const std::vector<Value>& values) const;
-  // Opens a transaction, unless one is open, and repeats in it what was executed since forget().
+  // Opens a transaction, unless one is open, and repeats in it everything executed since forget().
   core::Result<void> begin(Database& database) const;
-  // Whether anything was executed since forget().
+  // True if anything was executed since forget().
   bool has_changes() const { return !log_.empty(); }
-  // The changes are saved, or no longer wanted.
+  // Clears the log, after the changes were saved or discarded.
   void forget() { log_.clear(); }
 
  private:

@@ -1,5 +1,5 @@
-// Which process has a file locked, as far as Linux tells (/proc/locks). For messages only: the
-// answer may be out of date when it arrives. Any thread.
+// The process that has locked a file, if Linux tells (/proc/locks). For messages only: the answer
+// may be outdated on return. Any thread.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace psygen::save {
 
-// "process 123 (name)", "this program", or "another program" where the system does not tell.
+// "process 123 (name)", "this program", or "another program" if the system does not tell.
 std::string lock_holder(const std::filesystem::path& file);
 
 }  // namespace psygen::save

@@ -19,7 +19,7 @@ namespace {
 
 struct Table {
   std::string_view name;
-  std::string_view sql;  // as sqlite_schema keeps it
+  std::string_view sql;  // exactly as in sqlite_schema
 };
 constexpr std::array kTables{
     Table{"psygen_facts", "CREATE TABLE psygen_facts(name TEXT PRIMARY KEY, value ANY) STRICT"},
@@ -75,15 +75,15 @@ std::uint32_t big_endian(const unsigned char* bytes) {
 // https://www.sqlite.org/fileformat2.html#the_database_header
 using Header = std::array<unsigned char, 100>;
 
-// SQLite's own file. A descriptor of our own would be wrong: closing it drops all locks that this
-// process has on the file. Null where there is none.
+// SQLite's own file. A second descriptor must not be opened: closing it drops all locks that this
+// process has on the file. Null if there is none.
 sqlite3_file* file_of(const Database& database) {
   sqlite3_file* raw = nullptr;
   sqlite3_file_control(database.get(), "main", SQLITE_FCNTL_FILE_POINTER, &raw);
   return raw == nullptr || raw->pMethods == nullptr ? nullptr : raw;
 }
 
-// SQLITE_OK, or why the header could not be read.
+// SQLITE_OK, or the error code of reading the header.
 int read_header(const Database& database, Header& header) {
   sqlite3_file* raw = file_of(database);
   return raw == nullptr
@@ -91,7 +91,7 @@ int read_header(const Database& database, Header& header) {
              : raw->pMethods->xRead(raw, header.data(), static_cast<int>(header.size()), 0);
 }
 
-// Looks at the first bytes before SQLite acts on them.
+// Checks the first bytes before SQLite acts on them.
 core::Result<void> check_header(const Database& database) {
   Header header{};
   const int read = read_header(database, header);
@@ -100,10 +100,10 @@ core::Result<void> check_header(const Database& database) {
     return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot be read", file.string()));
   if (read != SQLITE_OK || std::memcmp(header.data(), "SQLite format 3", 16) != 0 ||
       big_endian(&header[68]) != kApplicationId)
-    return refuse(file, "is not a saved game of psygen; it is left as it is");
+    return refuse(file, "is not a saved game of psygen; it was not changed");
   if (const std::uint32_t format = big_endian(&header[60]); format > kSaveFormat)
-    return refuse(file, fmt::format("is of format {}, made by a newer version; this version reads "
-                                    "up to format {}",
+    return refuse(file, fmt::format("has format {} of a newer version; this version reads up to "
+                                    "format {}",
                                     format, kSaveFormat));
   else if (format == 0)
     return refuse(file, "has no format number; the file is damaged");
@@ -113,7 +113,7 @@ core::Result<void> check_header(const Database& database) {
   return {};
 }
 
-// Takes the lock, which also rolls back what a killed process left unfinished.
+// Takes the lock, which also rolls back the unfinished transaction of a killed process.
 core::Result<void> lock(Database& database) {
   const int code =
       sqlite3_exec(database.get(), "PRAGMA locking_mode=EXCLUSIVE; BEGIN EXCLUSIVE; COMMIT",
@@ -126,8 +126,8 @@ core::Result<void> lock(Database& database) {
   return {};
 }
 
-// After lock(), which may have mended the size. SQLite takes what is missing at the end of the last
-// page for zeros.
+// Call it after lock(), which may have restored the size. SQLite treats missing bytes at the end of
+// the last page as zeros.
 core::Result<void> check_size(const Database& database) {
   Header header{};
   sqlite3_file* raw = file_of(database);
@@ -138,13 +138,13 @@ core::Result<void> check_size(const Database& database) {
   const std::int64_t page =
       header[16] == 0 && header[17] == 1 ? 65536 : header[16] << 8 | header[17];
   const std::int64_t needed = page * std::int64_t{big_endian(&header[28])};
-  // Other programs may have left the count of pages behind (bytes 24 and 92 tell).
+  // Other programs may have left an old page count (bytes 24 and 92 differ then).
   if (bytes >= needed || std::memcmp(&header[24], &header[92], 4) != 0) return {};
   return refuse(database.file(),
-                fmt::format("the file is cut short: {} of its {} bytes are there", bytes, needed));
+                fmt::format("the file is cut short: it has {} of its {} bytes", bytes, needed));
 }
 
-// The content of the file is not trusted.
+// Sets SQLite up for a file that is not trusted.
 void distrust(const Database& database) {
   sqlite3* raw = database.get();
   sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -155,8 +155,8 @@ void distrust(const Database& database) {
   sqlite3_limit(raw, SQLITE_LIMIT_ATTACHED, 0);
 }
 
-// After lock(): most of these read the file. A journal that persists is invalidated by zeros in its
-// head, which is faster than removing it at every save.
+// Call it after lock(): most of these pragmas read the file. The journal persists and is
+// invalidated by zeros in its header, which is faster than removing it at every save.
 core::Result<void> configure(Database& database) {
   distrust(database);
   return database.run(
@@ -182,7 +182,7 @@ core::Result<void> check_regular(const std::filesystem::path& file) {
   return core::fail(core::ErrorCode::kIo,
                     fmt::format("{}: {}", file.string(),
                                 std::filesystem::exists(status) ? "is not a regular file"
-                                                                : "there is no such file"));
+                                                                : "the file does not exist"));
 }
 
 core::Result<void> check_folder(const std::filesystem::path& file,
@@ -192,8 +192,8 @@ core::Result<void> check_folder(const std::filesystem::path& file,
   if (std::filesystem::is_directory(status)) return {};
   const bool missing = status.type() == std::filesystem::file_type::not_found;
   if (!error || missing)
-    return core::fail(core::ErrorCode::kIo,
-                      fmt::format("{}: there is no folder {}", file.string(), folder.string()));
+    return core::fail(core::ErrorCode::kIo, fmt::format("{}: the folder {} does not exist",
+                                                        file.string(), folder.string()));
   return core::fail(core::ErrorCode::kIo, fmt::format("{}: {}", file.string(), error.message()));
 }
 
@@ -213,7 +213,7 @@ core::Result<void> check_writable(const std::filesystem::path& file) {
 int rename_without_replacing(const char* from, const char* to) {
   if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return 0;
   if (errno != EINVAL && errno != ENOSYS) return errno;
-  // The file system or the kernel does not know how.
+  // The file system or the kernel does not support this call.
   if (link(from, to) != 0) return errno;
   unlink(from);
   return 0;
@@ -236,7 +236,7 @@ core::Result<bool> create_file(const std::filesystem::path& file, const WorldIde
     message.replace(0, fresh.string().size(), file.string());
     return tl::unexpected(written.error());
   }
-  // The save appears under its name only if nobody else has made it meanwhile.
+  // The save gets its name only if no other process has created the file in the meantime.
   const int reason = rename_without_replacing(fresh.c_str(), file.c_str());
   if (reason == 0) return true;
   unlink(fresh.c_str());
@@ -303,7 +303,7 @@ core::Result<void> check_tables(const Database& database) {
       found += known ? 1 : 0;
     }
     if (!known)
-      return refuse(database.file(), fmt::format("has a {} '{}' that is not of this program",
+      return refuse(database.file(), fmt::format("has a {} '{}' that this program did not make",
                                                  core::shown(type, 20), core::shown(name, 60)));
   }
   if (code != SQLITE_DONE) return database.error("cannot be read");
@@ -319,7 +319,7 @@ core::Result<WorldIdentity> read_world(const Database& database) {
   if (!select) return tl::unexpected(select.error());
   if (select->step() != SQLITE_ROW) return database.error("cannot be read");
   if (!select->is(0, SQLITE_TEXT) || !select->is(1, SQLITE_INTEGER))
-    return refuse(database.file(), "does not say which world it belongs to; the file is damaged");
+    return refuse(database.file(), "does not name its world; the file is damaged");
   return WorldIdentity{std::string(select->text(0)),
                        static_cast<std::uint64_t>(select->integer(1))};
 }

@@ -1,5 +1,5 @@
-// The file of a save: makes a new one, and opens, locks and checks an existing one. What is inside
-// is the business of SaveGame. Private to engine/save. One thread per file.
+// The file of a save: creates a new one, and opens, locks and checks an existing one. SaveGame
+// handles the content. Private to engine/save. One thread per file.
 #pragma once
 
 #include <filesystem>
@@ -10,30 +10,31 @@
 
 namespace psygen::save {
 
-// In the header of every save: "psyg".
+// The application id in the header of every save: "psyg".
 inline constexpr std::int32_t kApplicationId = 0x70737967;
 
-// Writes a new, empty save beside `file` and renames it: `file` is whole or absent. False where
-// somebody else has made the file meanwhile, which stays as it is. Fails with kIo.
+// Writes a new, empty save next to `file` and renames it, so `file` is whole or absent. Returns
+// false, and keeps the existing file, if another process has created it in the meantime. Fails with
+// kIo.
 core::Result<bool> create_file(const std::filesystem::path& file, const WorldIdentity& world);
 
-// Opens a save, takes its lock until the connection is closed, and checks all of it. Fails with
-// kParse (not a save, damaged, newer), kIo (missing, read-only, locked, unreadable) or
-// kOutOfMemory, with a sentence; the file is as it was then. O(bytes).
+// Opens a save, locks it until the connection is closed, and checks all of it. Fails with kParse
+// (not a save, damaged, newer), kIo (missing, read-only, locked, unreadable) or kOutOfMemory, with
+// a message; the file is then unchanged. O(bytes).
 core::Result<Database> open_file(const std::filesystem::path& file);
 
-// Opens a save to read facts from it, without a lock and without a look at its journal. What
-// another connection writes meanwhile may be read in part. Fails with kParse (not a save, damaged,
+// Opens a save to read facts from it, without a lock and without reading its journal. Changes that
+// another connection is writing may be visible in part. Fails with kParse (not a save, damaged,
 // newer) and kIo. O(number of tables).
 core::Result<Database> open_to_look(const std::filesystem::path& file);
 
-// Gives the lock back and removes the journal, so that one file is left.
+// Releases the lock and removes the journal, so that one file is left.
 void close_file(Database& database);
 
 // Fails with kParse unless all tables are those of a save or belong to the game.
 core::Result<void> check_tables(const Database& database);
 
-// The world that the save was made for. Fails with kParse where the file does not say.
+// The world of the save. Fails with kParse if the file does not name it.
 core::Result<WorldIdentity> read_world(const Database& database);
 
 }  // namespace psygen::save

@@ -17,19 +17,19 @@ using core::ErrorCode;
 
 constexpr std::string_view kEntities = "entities";
 
-// Blocks with nothing in place of edits are to be erased.
+// A block without a value is to be erased.
 using UnsavedEdits =
     std::unordered_map<core::BlockCoord, std::optional<BlockEdits>, core::BlockCoordHash>;
 
 tl::unexpected<core::Error> already_there(const std::filesystem::path& file) {
-  return core::fail(ErrorCode::kIo, fmt::format("{}: is already there", file.string()));
+  return core::fail(ErrorCode::kIo, fmt::format("{}: already exists", file.string()));
 }
 
 }  // namespace
 
 struct SaveGame::State {
   SaveTables tables;
-  // What save() will write.
+  // The changes for the next save().
   UnsavedEdits edits;
   std::unordered_map<std::string, Value> values;
   std::optional<Bytes> entities;
@@ -149,7 +149,7 @@ core::Result<bool> SaveGame::with_snapshot(
 core::Result<void> SaveGame::put_value(std::string_view name, Value value) {
   if (name.empty() || name.size() > kMaxNameBytes)
     return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("the name of a value has {} bytes; 1 to {} are allowed",
+                      fmt::format("the name of a value has {} bytes; it must have 1 to {}",
                                   name.size(), kMaxNameBytes));
   if (auto ok = check_value(value, fmt::format("value '{}'", core::shown(name))); !ok) return ok;
   state_->values.insert_or_assign(std::string(name), std::move(value));
@@ -177,7 +177,7 @@ core::Result<void> SaveGame::save() {
   if (auto written = s.write_all(); !written) {
     Database& database = s.tables.database();
     if (database.in_transaction()) (void)database.run("ROLLBACK", "cannot be saved");
-    written.error().message += "; the file holds the last save, and nothing unsaved is lost";
+    written.error().message += "; the file has the last save, and no unsaved change is lost";
     return written;
   }
   discard();

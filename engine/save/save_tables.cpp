@@ -85,7 +85,7 @@ tl::unexpected<core::Error> SaveTables::damaged(std::string_view what) const {
                     fmt::format("{}: {}; the file is damaged", database_.file().string(), what));
 }
 
-// A row that begins with version, checksum and bytes.
+// Checks a row that begins with version, checksum and bytes.
 core::Result<void> SaveTables::check_row(const Statement& row, core::BlockCoord block) const {
   const std::int64_t version = row.integer(0);
   const auto bytes = row.bytes(2);

@@ -1,5 +1,5 @@
-// The tables of a save: one edit, value or fact at a time, with its checksum. Not what is unsaved
-// (SaveGame) and not the file as a whole (save_file.hpp). Private to engine/save. One thread.
+// The tables of a save: one edit, value or fact at a time, with its checksum. SaveGame keeps
+// unsaved changes; save_file.hpp handles the file as a whole. Private to engine/save. One thread.
 #pragma once
 
 #include <functional>
@@ -14,27 +14,27 @@ namespace psygen::save {
 
 class SaveTables {
  public:
-  // Owns a file of open_file(). Call prepare() before everything else.
+  // Owns a file of open_file(). Call prepare() before all other functions.
   explicit SaveTables(Database opened) : database_(std::move(opened)) {}
-  // Gives the lock back.
+  // Releases the lock.
   ~SaveTables();
   SaveTables(const SaveTables&) = delete;
   SaveTables& operator=(const SaveTables&) = delete;
 
   Database& database() { return database_; }
-  // All functions fail with kParse where the file is damaged, else as Database::error().
+  // All functions fail with kParse if the file is damaged, else like Database::error().
   core::Result<void> prepare();
 
-  // What the file has: nothing, std::monostate or false where it has none.
+  // Values in the file; nothing, std::monostate or false if it has none.
   core::Result<std::optional<BlockEdits>> edits(core::BlockCoord block);
   core::Result<void> for_each_edits(const EditVisitor& visit);
   core::Result<Value> value(std::string_view name);
-  // Calls use() with a fact of bytes, which live until it returns.
+  // Calls use() with the bytes of a fact, which are valid during the call.
   core::Result<bool> with_fact(
       std::string_view name,
       const std::function<core::Result<bool>(std::span<const std::byte>)>& use);
 
-  // Inside a transaction. Nothing, and std::monostate, erase.
+  // Call inside a transaction. std::nullopt and std::monostate erase.
   core::Result<void> put_edits(core::BlockCoord block, const std::optional<BlockEdits>& edits);
   core::Result<void> put_value(std::string_view name, const Value& value);
   core::Result<void> put_fact(std::string_view name, std::span<const std::byte> bytes);

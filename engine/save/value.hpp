@@ -1,4 +1,4 @@
-// A value that a save can hold: nothing, an integer, a real number, a text or bytes. These are the
+// A value that a save can store: nothing, an integer, a real number, a text or bytes. These are the
 // types of SQLite, without its header. Plain values; any thread.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace psygen::save {
 using Bytes = std::vector<std::byte>;
 using Value = std::variant<std::monostate, std::int64_t, double, std::string, Bytes>;
 
-// The longest text or bytes of one value.
+// The maximum size of the text or bytes of one value.
 inline constexpr std::size_t kMaxValueBytes = std::size_t{256} << 20;
 
 // The rows of a query, each with one value per column.
@@ -24,8 +24,8 @@ struct Rows {
   std::vector<std::vector<Value>> rows;
 };
 
-// Fails with kInvalidArgument for NaN, which SQLite cannot hold, and with kOverBudget for texts and
-// bytes above kMaxValueBytes. `what` names the value in the message. O(1).
+// Fails with kInvalidArgument for NaN, which SQLite cannot store, and with kOverBudget for texts
+// and bytes above kMaxValueBytes. `what` names the value in the message. O(1).
 core::Result<void> check_value(const Value& value, const std::string& what);
 
 }  // namespace psygen::save

@@ -12,7 +12,7 @@
 namespace psygen::save {
 namespace {
 
-// A hash of named values. Numbers that are the usual ones leave no trace.
+// A hash of named values. Default values do not contribute.
 class Facts {
  public:
   void add(std::string_view text) {
@@ -35,7 +35,7 @@ class Facts {
   std::uint64_t hash_ = 0;
 };
 
-// The numbers that visit() shows, with the name of each.
+// Hashes the numbers that visit() visits, with their names.
 template <class Visit>
 void add_numbers(Facts& facts, const Visit& visit) {
   std::vector<double> usual;
@@ -77,7 +77,7 @@ void add_scatter(Facts& facts, const models::ModelType& type, const world::Scatt
   }
 }
 
-// What stands and stops; the identity of a type has what its file says.
+// Hashes name and shape of a handmade model. The identity of its type covers the file.
 void add_handmade(Facts& facts, const models::Registry& registry,
                   const world::HandmadeModel& model) {
   facts.add("model");
@@ -86,7 +86,7 @@ void add_handmade(Facts& facts, const models::Registry& registry,
     facts.add("shape", registry[static_cast<models::ModelIndex>(index)].identity());
 }
 
-// The branches of a species. Leaves and colours are looks.
+// Hashes the branches of a species. Leaves and colours do not matter.
 void add_species(Facts& facts, models::Species species) {
   const models::Species usual;
   species.colour_variation = usual.colour_variation;

@@ -35,7 +35,7 @@ struct Pictures {
   }
 };
 
-// Draws one block: all its vertices. Neighbours have the same values at the border that they share.
+// Draws one block with all its vertices. Neighbours have equal values at their common border.
 class Painter {
  public:
   Painter(const world::World& world, const amplify::Region& region, Pictures& pictures)
@@ -45,7 +45,7 @@ class Painter {
         palette_(world::drawn_palette(world)),
         side_(static_cast<std::uint32_t>(world.terrain.integer(models::kTerrainSize))) {}
 
-  // Blocks on the eastern and southern border of the region have a column and a row more.
+  // Blocks at the eastern and southern border of the region have one more column and row.
   void paint(core::BlockCoord block) const {
     const models::BlockGround ground(world::terrain_parameters(world_, block), block,
                                      std::size_t{side_} * side_);
@@ -70,7 +70,7 @@ class Painter {
     const world::GroundBlends blends =
         world::ground_blends(palette_, height_m, point.normal, place,
                              static_cast<float>(world::road_at(world_, block, local)));
-    float seen = 1;  // of what later kinds leave
+    float seen = 1;  // fraction that later kinds leave uncovered
     for (std::size_t kind = blends.size(); kind-- > 0;) {
       pictures_.kinds[kind].grey[pixel] =
           static_cast<std::uint16_t>(seen * blends[kind] * kWhite + 0.5F);
@@ -115,7 +115,7 @@ core::Result<void> paint_all(const Painter& painter, const amplify::Region& regi
   if (lacks_memory)
     return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory("the ground of a block"));
   if (next.load() < region.block_count())
-    return core::fail(core::ErrorCode::kInterrupted, "interrupted: nothing is written");
+    return core::fail(core::ErrorCode::kInterrupted, "interrupted: no file was written");
   return {};
 }
 
@@ -154,8 +154,8 @@ core::Result<HeightmapReport> write_heightmap(const world::World& world,
   if (width > kMaxHeightmapSide || height > kMaxHeightmapSide)
     return core::fail(
         core::ErrorCode::kInvalidArgument,
-        fmt::format("a heightmap of {} x {} pixels is too large: at most {} along a "
-                    "side, which are {} blocks of this world",
+        fmt::format("a heightmap of {} x {} pixels is too large: at most {} per "
+                    "side are allowed ({} blocks of this world)",
                     width, height, kMaxHeightmapSide, (kMaxHeightmapSide - 1) / cells));
   if (auto ok = telemetry::create_output_folder(folder); !ok) return tl::unexpected(ok.error());
   HeightmapReport report{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};

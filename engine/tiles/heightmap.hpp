@@ -1,7 +1,7 @@
-// A region's ground as pictures for other programs: heights in metres (heights.exr, 32 bits) and
-// spread over 16 bits (heights.png), how much of each kind of ground is seen (ground_grass.png and
-// so on, 16 bits), and heightmap.json with what the numbers mean. A pixel is a vertex of the ground
-// at full detail; the first row is the northern border. Without models and water.
+// A region's ground as images for other programs: heights in metres (heights.exr, 32 bits) and
+// scaled to 16 bits (heights.png), the visible fraction of each kind of ground (ground_grass.png
+// and so on, 16 bits), and heightmap.json, which explains the numbers. A pixel is a vertex of the
+// ground at full detail; the first row is the northern border. Without models and water.
 #pragma once
 
 #include <atomic>
@@ -13,15 +13,15 @@
 
 namespace psygen::tiles {
 
-// The most pixels along a side.
+// The maximum number of pixels along a side.
 inline constexpr std::uint64_t kMaxHeightmapSide = 16384;
 
 struct HeightmapReport {
   std::uint32_t width = 0, height = 0;  // pixels
-  double min_m = 0, max_m = 0;          // of the heights
+  double min_m = 0, max_m = 0;          // lowest and highest point
 };
 
-// Writes the pictures into `folder`, which is created; heightmap.json comes last. Needs 8 bytes of
+// Writes the images into `folder`, which is created; heightmap.json comes last. Needs 8 bytes of
 // memory for each pixel, and 2 for each kind of ground. Fails with kInvalidArgument for regions
 // with more than kMaxHeightmapSide pixels along a side, with kInterrupted, and like
 // image::write_png().

@@ -29,7 +29,7 @@ Tile descendant(const Tile& root, int steps, std::uint32_t morton) {
 
 class SubtreeWriter {
  public:
-  // One bit for each tile, lowest bits first; the JSON of the availability.
+  // The JSON of an availability: one bit for each tile, lowest bits first.
   std::string availability(const std::vector<bool>& bits) {
     std::string bytes((bits.size() + 7) / 8, '\0');
     std::size_t count = 0;
@@ -43,7 +43,7 @@ class SubtreeWriter {
     return fmt::format(R"({{"bitstream":{},"availableCount":{}}})", view(bytes), count);
   }
 
-  // Adds a buffer view; its number.
+  // Adds a buffer view and returns its number.
   std::size_t view(const std::string& bytes) {
     views_ += fmt::format(R"({}{{"buffer":0,"byteOffset":{},"byteLength":{}}})",
                           view_count_ == 0 ? "" : ",", binary_.size(), bytes.size());

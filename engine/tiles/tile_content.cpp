@@ -14,11 +14,11 @@
 namespace psygen::tiles {
 namespace {
 
-// Skirts hang this many errors of their node.
+// The length of skirts, as a multiple of their node's error.
 constexpr double kSkirtErrors = 2;
 
-// Triangles without an area stand for models that found no place. Drops them, and the vertices that
-// nothing else uses.
+// Drops triangles without area, which represent models that found no position, and the vertices
+// that no other triangle uses.
 void drop_empty_triangles(exchange::Part& part) {
   exchange::Part kept{part.material, {}, {}, {}, {}};
   std::vector<std::uint32_t> places(part.positions.size(), UINT32_MAX);

@@ -1,4 +1,4 @@
-// What a tile shows, as a document: a block with everything on it, or the ground and the merged
+// The content of a tile as a document: a block with all its models, or the ground and the merged
 // vegetation of a coarser node. Ground has skirts, which hide gaps between tiles of different
 // levels. One object per thread; the world and the registry are shared.
 #pragma once
@@ -20,10 +20,10 @@ class TileMaker {
   ~TileMaker();
 
   // The document of a tile with content, in metres from its own north-west corner; its origin is
-  // the place of that corner in the tileset. Any thread. Fails with kSynthesisFailed or
+  // the position of that corner in the tileset. Any thread. Fails with kSynthesisFailed or
   // kOutOfMemory.
   core::Result<exchange::Document> document(const TileTree& tree, const Tile& tile) const;
-  // The height in metres of the error of nodes of a level: the distance of their vertices.
+  // The height error of nodes of a level in metres: the distance of their vertices.
   double error_m(int node_level) const;
 
  private:
@@ -32,7 +32,7 @@ class TileMaker {
 
   const world::World& world_;
   const models::Registry& registry_;
-  std::unique_ptr<models::ModelType> merged_;  // null: nothing stands on the ground
+  std::unique_ptr<models::ModelType> merged_;  // null: the world has no models
 };
 
 // The smallest box around a document, relative to its origin. Requires a vertex.

@@ -44,8 +44,8 @@ core::Result<TileTree> TileTree::over(const amplify::Region& region, NodeLevels 
   const std::int64_t side = std::int64_t{1} << tree.depth_;
   if (tree.depth_ > kMaxNodeLevel || x + side - 1 > INT32_MAX || z + side - 1 > INT32_MAX)
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the region is too large for one tileset, or too near to the end "
-                                  "of all blocks: at most {} blocks along a side",
+                      fmt::format("the region is too large for one tileset (at most {} blocks per "
+                                  "side), or too near the limit of block coordinates",
                                   std::uint64_t{1} << kMaxNodeLevel));
   tree.corner_ = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
   return tree;

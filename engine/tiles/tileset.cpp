@@ -30,9 +30,9 @@ TileBox tile_box(const Box& box) {
   return {centre.x, -centre.z, centre.y, half.x, 0, 0, 0, half.z, 0, 0, 0, half.y};
 }
 
-// The tiles of a level that exist: a rectangle.
+// The existing tiles of a level: a rectangle.
 struct Grid {
-  Tile first;  // of the smallest x and y
+  Tile first;  // tile with the smallest x and y
   std::uint32_t columns = 0, rows = 0;
   std::vector<std::optional<Box>> boxes{};
 
@@ -125,12 +125,13 @@ class Writer {
     return {};
   }
 
-  // Takes tiles one by one until there are none, or something fails.
+  // Processes tiles one by one until none are left or one fails.
   void work(Grid& grid) {
     core::Result<void> result{};
     while (result && !failed_.load(std::memory_order_relaxed)) {
       if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) {
-        result = core::fail(core::ErrorCode::kInterrupted, "interrupted: the tileset is not whole");
+        result =
+            core::fail(core::ErrorCode::kInterrupted, "interrupted: the tileset is incomplete");
         break;
       }
       const std::size_t i = next_.fetch_add(1, std::memory_order_relaxed);
@@ -163,7 +164,7 @@ class Writer {
     return {};
   }
 
-  // A tile's box holds those of its children.
+  // Extends each tile's box to enclose those of its children.
   void enclose_children(Grid& grid) {
     if (grid.first.level + 1 == tree_.level_count()) return;
     Grid& below = grids_[static_cast<std::size_t>(grid.first.level) + 1];
@@ -187,7 +188,7 @@ class Writer {
     return {};
   }
 
-  // The box of the whole square, which implicit tiling cuts, with the heights of all tiles.
+  // The box of the whole square, as implicit tiling subdivides it, with the heights of all tiles.
   std::string tileset_json() {
     const Box& all = *grids_.front().boxes.front();
     const double side_m = static_cast<double>(tree_.side_blocks()) * world_.block_size_m();

@@ -22,13 +22,13 @@ constexpr double kDust = 0.004, kDustExtinction = 0.0044, kDustForward = 0.76;
 constexpr dvec3 kOzoneDepth{0.0098, 0.0282, 0.0013};  // straight up through all of it
 constexpr double kCloudHeight = 2.0;
 constexpr int kSteps = 24;
-// Light that was scattered more than once, relative to single scattering.
+// Light scattered more than once, relative to single scattering.
 constexpr double kMoreScattering = 0.5;
 // Stars and airglow, relative to the radiance of a clear day. Then the exponent of adaptation: the
-// share of a change in brightness (in logarithms) that the eye compensates.
+// fraction of a change in brightness (in logarithms) that the eye compensates.
 constexpr double kNight = 2e-4;
 constexpr double kAdaptation = 0.36;
-// Light that the sky scatters again is equally bright but much bluer. Below: its share in the
+// Light that the sky scatters again is equally bright but much bluer. Below: its fraction in the
 // directions away from the sun.
 constexpr dvec3 kSkyBlue{0.72, 1.0, 1.55};
 constexpr double kZenithFill = 0.55, kHorizonFill = 0.6, kHazeFill = 0.7;
@@ -45,7 +45,7 @@ double air_mass(double x, double cosine) {
   return 2 * std::sqrt(std::numbers::pi / 2 * lowest) * std::exp(std::min(x - lowest, 30.0)) - up;
 }
 
-// Share of light that reaches height `h` in km. `cosine`: of the angle between the light and the
+// Fraction of light that reaches height `h` in km. `cosine`: of the angle between the light and the
 // vertical.
 dvec3 transmittance(double h, double cosine) {
   const double r = kEarth + h;
@@ -116,7 +116,7 @@ Daylight daylight(double sun_elevation_deg) {
   const dvec3 glow =
       glm::max(sky(direction(near_sun, 0), sun) - sky(direction(near_sun, aside), sun), dvec3(0.0));
   const dvec3 direct = transmittance(0, sun.y);
-  // Light from below: sun and sky reflected by the ground.
+  // Light from below: the ground reflects sun and sky.
   const dvec3 ground = std::max(sun.y, 0.0) * direct + std::numbers::pi * 0.5 * (zenith + horizon);
   const double bright = std::pow(glm::dot(ground, kLuminance), -kAdaptation);
   const auto seen = [bright](dvec3 light) { return glm::vec3(light * bright); };

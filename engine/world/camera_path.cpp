@@ -67,8 +67,8 @@ double b_spline(double u) {
 
 CameraPath::CameraPath(Settings settings, std::vector<PathPoint> points)
     : settings_(std::move(settings)), points_(std::move(points)) {
-  PSYGEN_ASSERT(!points_.empty(), "a path has a point");
-  PSYGEN_ASSERT(settings_.smoothing_s > 0, "the smoothing time is positive");
+  PSYGEN_ASSERT(!points_.empty(), "a path needs a point");
+  PSYGEN_ASSERT(settings_.smoothing_s > 0, "the smoothing time must be positive");
   for (auto first = points_.begin(); first != points_.end();) {
     const auto end = std::find_if(first + 1, points_.end(), std::mem_fn(&PathPoint::jump));
     runs_.emplace_back(std::span(first, end));
@@ -95,16 +95,16 @@ const CameraPath::Run& CameraPath::run_at(double t) const {
   return after == runs_.begin() ? runs_.front() : *std::prev(after);
 }
 
-// The place on the path at time `t`, in metres from the corner of `block`.
+// The position on the path at time `t`, in metres from the corner of `block`.
 glm::dvec2 CameraPath::local_of(double t, const Run& run, double block_size_m,
                                 core::BlockCoord block) const {
   const glm::dvec3 corner = core::offset_m(settings_.origin_block, {block, {}}, block_size_m);
   return {corner.x + run.x.value(t), corner.z + run.z.value(t)};
 }
 
-// The height of a smooth curve above the ground along the path. Samples lie at fixed times. Each
-// takes the highest ground within smoothing_s, and a smooth kernel of the same width averages them.
-// Every one is at least as high as the samples around `t`, so the average is too.
+// The height of a smooth curve above the ground along the path. Samples lie at fixed times. Each is
+// the highest ground within smoothing_s, and a smooth kernel of the same width averages them. Every
+// sample is at least as high as the samples around `t`, so the average is too.
 double CameraPath::smooth_ground_m(double t, const Run& run, const World& world,
                                    core::BlockCoord block, double& ground_here_m) const {
   const double step = settings_.smoothing_s / kSteps;

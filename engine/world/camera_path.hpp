@@ -1,6 +1,6 @@
-// A flight of the camera: points in time over the ground, joined with smooth velocity and rotation
-// except at jumps. Read from TOML files (files/path_file.hpp). Heights are above the ground of the
-// world that is flown through. Not a simulation: pose_at() works for any time in any order.
+// A flight of the camera: points in time over the ground. Velocity and rotation are smooth except
+// at jumps. Read from TOML files (files/path_file.hpp). Heights are above the ground of the world
+// that the camera flies through. pose_at() works for any time in any order; nothing is simulated.
 // Immutable, any thread.
 #pragma once
 
@@ -21,11 +21,12 @@ struct PathPoint {
   double time_s = 0;
   glm::dvec2 at_m{0.0};  // x and z from the corner of the path's origin block
   double height_m = 2;   // above the ground
-  // The view direction: a heading, towards a place, or, with neither, along the flight.
+  // The view direction: a heading, a point to look at, or, with neither, the direction of flight.
   std::optional<double> heading_deg;  // 0 along −Z (north), 90 along +X (east)
   std::optional<glm::dvec2> look_at_m;
   double pitch_deg = 0;  // upwards
-  // The camera jumps here and stays at the previous point until then. Not for the first point.
+  // The camera stays at the previous point until this time and then jumps here. Not for the first
+  // point.
   bool jump = false;
 };
 
@@ -34,38 +35,38 @@ class CameraPath {
  public:
   // Range of a point's height. Below it, the near plane would cut into slopes.
   static constexpr double kMinHeightM = 0.5, kMaxHeightM = 1e5;
-  // Smallest distance of the camera from the ground. A path between jumps with a lower point uses
-  // that point's height instead.
+  // Smallest distance of the camera from the ground. If a point between two jumps is lower, the
+  // path between them uses the height of that point instead.
   static constexpr double kClearance_m = 2;
 
   // Settings of the whole path.
   struct Settings {
     std::string name;
     core::BlockCoord origin_block;
-    // The height follows the highest ground within this time before and after, which makes flights
-    // over rough ground calm. In (0, 10].
+    // The height follows the highest ground within this time before and after, so flights over
+    // rough ground stay calm. In (0, 10].
     double smoothing_s = 1.5;
   };
 
   // At least one point; times grow strictly. Linear in the points.
   CameraPath(Settings settings, std::vector<PathPoint> points);
 
-  // The inputs.
+  // The arguments of the constructor.
   const Settings& settings() const { return settings_; }
   const std::string& name() const { return settings_.name; }
   const std::vector<PathPoint>& points() const { return points_; }
   // The time of the last point.
   double duration_seconds() const { return points_.back().time_s; }
 
-  // A hash of all that decides on the poses, without the name; the same on every machine.
+  // A hash of everything that affects the poses, without the name. The same on every machine.
   std::uint64_t hash() const;
 
-  // The pose at time `t` in seconds. Before the first and after the last point it is that of the
-  // end; for NaN that of the beginning. Normalised and valid. About 50 µs.
+  // The pose at time `t` in seconds: normalised and valid. Before the first and after the last
+  // point it is the pose of that point; NaN gives the first pose. About 50 µs.
   core::CameraPose pose_at(double t, const World& world) const;
 
-  // Whether one of its points is less than `reach_m` beside the world, or over it. Linear in the
-  // points.
+  // True if one of the path's points is over the world or less than `reach_m` beside it. Linear in
+  // the points.
   bool comes_within(double reach_m, const World& world) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace psygen::world {
 namespace {
 
-// Smallest width of a blend; narrower ones are practically steps.
+// Smallest width of a blend; narrower blends are practically steps.
 constexpr float kMinSpan = 1e-3F;
 
 float lattice(std::uint32_t x, std::uint32_t z) {

@@ -10,7 +10,8 @@
 namespace psygen::world {
 namespace {
 
-// Smaller patches are as small as this: lattice points of the largest world have 64 bits.
+// Smaller patches are enlarged to this size, so that lattice points of the largest world fit in 64
+// bits.
 constexpr double kMinPatchM = 0.1;
 
 // A random number in [0, 1) for each point of a lattice.
@@ -36,7 +37,7 @@ double patch_noise(std::uint64_t seed, glm::dvec2 p) {
   return (smooth_noise(seed, p) + 0.4 * smooth_noise(seed + 1, 2.3 * p)) / 1.4;
 }
 
-// The value below which the noise is on this share of the ground, measured once on 2^14 places.
+// The noise value that this fraction of the ground stays below, measured once at 2^14 positions.
 double noise_below(double share) {
   static const std::vector<double> sorted = [] {
     std::vector<double> values;

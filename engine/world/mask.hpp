@@ -1,6 +1,6 @@
-// Masks: where instances of a scatter may stand, beside limits of height and slope. A picture and
-// patches of noise leave some instances out; kinds of ground are limits. Pure functions of the
-// place, the same on every machine; any thread. They read no files (files/scatter_file.hpp).
+// Masks restrict the instances of a scatter beyond limits of height and slope. An image and patches
+// of noise thin instances out; kinds of ground are limits. Pure functions of the position, the same
+// on every machine; any thread. They read no files (files/scatter_file.hpp).
 #pragma once
 
 #include <array>
@@ -12,43 +12,43 @@
 
 namespace psygen::world {
 
-// Grey values, row by row from the top, 0 … 65535.
+// A greyscale image: values 0 … 65535, row by row from the top.
 struct GreyPicture {
   std::uint32_t width = 0, height = 0;
   std::vector<std::uint16_t> pixels;
-  std::uint64_t hash = 0;  // of everything above
+  std::uint64_t hash = 0;  // content_hash() of all members above
 
-  // Linear between the middles of pixels, 0 … 1; (0, 0) is the upper left corner, (1, 1) the lower
-  // right one. Outside, the value of the border.
+  // Linear interpolation between pixel centres, 0 … 1. (0, 0) is the upper left corner, (1, 1) the
+  // lower right one. Outside, the value of the border.
   double at(double u, double v) const;
 };
 
-// What GreyPicture::hash must be: the sum, modulo 2^64, of the shares of its rows and its width. So
-// the hash of a picture of which rows have changed follows from theirs.
+// The required value of GreyPicture::hash: the sum modulo 2^64 of the row hashes and the width.
+// After some rows have changed, their row hashes are enough to update it.
 std::uint64_t content_hash(const GreyPicture& picture);
-// The share of one row.
+// The contribution of one row.
 std::uint64_t row_hash(const GreyPicture& picture, std::uint32_t row);
 
 struct ScatterMask {
   std::string image;  // relative to the folder of the world's file; empty: none
   std::shared_ptr<const GreyPicture> picture;
-  // The rectangle of the picture in metres of the world: x and z of its upper left corner, of its
-  // lower right one. All 0: the whole world. Beyond it nothing stands.
+  // The rectangle that the image covers, in metres of the world: x and z of its upper left and
+  // lower right corner. All 0: the whole world. Nothing stands outside the rectangle.
   std::array<double, 4> area_m{};
-  double noise_m = 0;        // size of patches; 0: none
-  double share = 0.5;        // of the ground that patches cover
-  std::int64_t patches = 0;  // which ones: equal numbers, sizes and shares are equal patches
-  std::uint32_t ground = 0;  // allowed kinds, 1 << GroundKind; 0: all
+  double noise_m = 0;        // size of the patches; 0: no patches
+  double share = 0.5;        // fraction of the ground that the patches cover
+  std::int64_t patches = 0;  // seed: equal seed, size and share give equal patches
+  std::uint32_t ground = 0;  // allowed kinds, bits 1 << GroundKind; 0: all
 
   bool thins() const { return picture != nullptr || noise_m > 0; }
-  // Equal pictures are equal in content.
+  // Compares images by content.
   friend bool operator==(const ScatterMask& a, const ScatterMask& b);
 };
 
-// The share of instances that stand at a place of the world, 0 … 1.
+// The fraction of instances that the mask keeps at a position of the world, 0 … 1.
 double mask_share(const ScatterMask& mask, std::uint64_t seed, glm::dvec2 place_m);
 
-// Of everything that decides what stands where; 0 for a mask that allows everything.
+// A hash of everything that decides which instances stand; 0 for a mask that allows all.
 std::uint64_t mask_hash(const ScatterMask& mask);
 
 }  // namespace psygen::world

@@ -12,7 +12,7 @@
 namespace psygen::world {
 
 glm::vec2 models_reach_m(const World& world, const models::Registry& registry) {
-  // How many parameters with a range are tried at both ends in all combinations.
+  // Maximum number of ranged parameters whose ends are tried in all combinations.
   constexpr std::size_t kMaxVaried = 12;
   glm::vec2 reach_m(0.0F);
   for (const Scatter& scatter : world.scatter) {

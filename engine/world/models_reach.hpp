@@ -1,4 +1,4 @@
-// How far the models of a world reach from their feet. Pure, any thread.
+// The extent of a world's models from their base points. Pure, any thread.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -8,13 +8,13 @@
 
 namespace psygen::world {
 
-// How far models may reach from their foot in metres: sideways along x or z, and up. The largest
-// boxes (ModelType::bounds) over the corners of the ranges of every scatter. Takes up to 4096 boxes
-// a scatter.
+// The largest extent of any scattered model from its base point in metres: sideways along x or z,
+// and up. Takes the largest bounds (ModelType::bounds) over the corners of every scatter's
+// parameter ranges; up to 4096 bounds a scatter.
 glm::vec2 models_reach_m(const World& world, const models::Registry& registry);
 
-// The larger of two reaches: `scattered` as above, and of the models that edits of the world have
-// placed. O(1).
+// The maximum of `scattered`, a result of models_reach_m(), and the extents of the models that
+// edits have placed. O(1).
 glm::vec2 with_placed_models(glm::vec2 scattered, const World& world);
 
 }  // namespace psygen::world

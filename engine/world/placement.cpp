@@ -14,14 +14,14 @@
 namespace psygen::world {
 namespace {
 
-// A random coordinate inside the block that a float represents exactly. So the height is that of
-// the returned point.
+// A random coordinate inside the block that a float represents exactly, so that the height belongs
+// to the returned point.
 double draw_coordinate(core::RandomStream& random, float block_size_m) {
   const auto drawn = static_cast<float>(random.next_unit() * static_cast<double>(block_size_m));
   return static_cast<double>(drawn < block_size_m ? drawn : std::nextafter(block_size_m, 0.0F));
 }
 
-// The world's terrain as the function has it, with its stamps and roads.
+// The terrain of the world's function, with stamps and roads but without edits.
 models::Parameters unedited_terrain(const World& world) {
   models::Parameters p = world.terrain;
   p.set_edits(world.shaped.layer.get(), 0);
@@ -47,7 +47,7 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
         world.shaped.layer->ground.roads_in(models::QuadPlace::of(block), world.block_size_m());
 }
 
-// Whether the limits allow this ground.
+// True if the limits allow this ground.
 bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const {
   if (!(ground.height_m >= scatter_.min_height_m && ground.height_m <= scatter_.max_height_m &&
         ground.normal.y >= min_up_))
@@ -59,7 +59,7 @@ bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m
   return (scatter_.mask.ground >> static_cast<unsigned>(kind) & 1U) != 0;
 }
 
-// Whether a road or a mask leaves the instance out that has found this place.
+// True if a road or a mask excludes the instance at this position.
 bool Scattering::is_left_out(std::uint32_t index, glm::dvec2 local_m) const {
   for (const models::GroundEdit* road : roads_) {
     if (keeps_clear(*road->road, block_, local_m, static_cast<double>(size_m_))) return true;
@@ -153,19 +153,19 @@ std::size_t models_per_block(const World& world) {
 
 namespace {
 
-// Whether edits may change heights in a block.
+// True if edits may change heights in a block.
 bool has_edited_ground(const World& world, core::BlockCoord block) {
   return world.edits &&
          world.edits->ground.own().reaches(models::QuadPlace::of(block), world.block_size_m());
 }
 
-// Where instances find their places, and where they stand.
+// The ground on which instances find their positions, and the ground on which they stand.
 struct Grounds {
   const models::BlockGround &base, &shown;
 };
 
-// The placements of the world's function that nobody removed, of the scatters that are wanted;
-// null: of all.
+// The placements of the world's function that were not removed. `wanted` selects scatters; null:
+// all.
 void place_instances(const World& world, const models::Registry& registry, core::BlockCoord block,
                      const Grounds& grounds, const models::BlockEdits* edits,
                      const std::vector<bool>* wanted, std::vector<Placement>& out) {
@@ -239,7 +239,7 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
 
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const std::vector<bool>& wanted, std::vector<Placement>& out) {
-  PSYGEN_ASSERT(wanted.size() == world.scatter.size(), "one entry for each scatter");
+  PSYGEN_ASSERT(wanted.size() == world.scatter.size(), "wanted needs one entry for each scatter");
   std::size_t count = 0;
   for (std::size_t s = 0; s < world.scatter.size(); ++s)
     count += wanted[s] ? world.scatter[s].count : 0;

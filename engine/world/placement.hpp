@@ -1,6 +1,6 @@
-// Places models: the models of a block with their parameters, as a pure function of world, its
-// edits and block. The same on every machine and in any order of blocks. Any thread. Knows no
-// meshes. docs/models.md.
+// Placement: the models of a block with their parameters, as a pure function of the world
+// definition, its edits and the block. The same on every machine and in any order of blocks. Any
+// thread. Knows no meshes. docs/models.md.
 #pragma once
 
 #include <array>
@@ -17,48 +17,48 @@
 
 namespace psygen::world {
 
-// The index of a block's terrain among its meshes. Models count from 0.
+// The index of a block's terrain among its meshes. Indices of models start at 0.
 inline constexpr std::uint32_t kTerrainIndex = UINT32_MAX;
-// Models that edits have placed have this index plus their id. Ids end at kMaxEditId.
+// A model that an edit has placed has this index plus its id. Ids end at kMaxEditId.
 inline constexpr std::uint32_t kPlacedIndex = 1U << 30;
 inline constexpr std::uint32_t kMaxEditId = (1U << 30) - 1;
-// Those of the world's file (places.hpp) have this index plus their number, from 1.
+// A model that the world file places (places.hpp) has this index plus its number, from 1.
 inline constexpr std::uint32_t kFilePlacedIndex = 1U << 31;
 
 // One model on a block.
 struct Placement {
   models::ModelIndex model = 0;
-  std::uint32_t index = 0;   // of the instance within the block
-  glm::vec3 position{0.0F};  // metres from the block's corner; y is the ground under the foot
+  std::uint32_t index = 0;   // within the block
+  glm::vec3 position{0.0F};  // metres from the block's corner; y is the ground at the base point
   models::Parameters parameters;
 };
 
-// Number of random places that an instance tries until its Scatter allows one.
+// An instance tries this many random positions until its Scatter allows one.
 inline constexpr int kPlacementTries = 24;
 
-// Positions of the placed parameters `slope_x` and `slope_z` in a schema; −1 where it has none.
+// Indices of the parameters `slope_x` and `slope_z` in a schema; −1 if the type lacks them.
 using SlopeParameters = std::array<int, 2>;
-// The positions in the schema of a type.
+// The indices for a model type.
 SlopeParameters slope_parameters(const models::ModelType& type);
 
-// One scatter on one block: the steps of place_models(), instance by instance.
+// One scatter on one block, with the single steps of place_models().
 class Scattering {
  public:
-  // All arguments must outlive it, except `block`.
+  // All arguments except `block` must outlive it.
   Scattering(const World& world, const models::ModelType& type, const Scatter& scatter,
              core::BlockCoord block);
 
-  // A place of an instance, in metres from the block's corner.
+  // The position of an instance, in metres from the block's corner.
   struct Foothold {
     glm::vec3 position{0.0F};
     glm::vec3 normal{0, 1, 0};  // of the ground
   };
-  // The first allowed place that instance `index` of the block tries, or nothing, also where a mask
-  // or a road leaves it out there. `ground` is that of the block, or of a larger node that has the
-  // block's corner at `corner_m`.
+  // The first allowed position that instance `index` of the block tries. Nothing if no position is
+  // allowed, or if a mask or a road excludes the one found. `ground` is the ground of the block, or
+  // of a larger node in which the block's corner is at `corner_m`.
   std::optional<Foothold> place(const models::BlockGround& ground, std::uint32_t index,
                                 glm::dvec2 corner_m = {0, 0}) const;
-  // The parameters of instance `index` on ground with this normal. Types with the placed parameters
+  // The parameters of instance `index` on ground with this normal. Types with the parameters
   // `slope_x` and `slope_z` get the slope.
   models::Parameters parameters(std::uint32_t index, const glm::vec3& normal = {0, 1, 0}) const;
 
@@ -74,58 +74,59 @@ class Scattering {
   models::Parameters defaults_;
   core::BlockCoord block_;
   float min_up_;
-  std::optional<Palette> palette_;                // where kinds of ground matter
-  std::vector<const models::GroundEdit*> roads_;  // that may pass the block
+  std::optional<Palette> palette_;                // set if the mask selects kinds of ground
+  std::vector<const models::GroundEdit*> roads_;  // roads that may cross the block
   SlopeParameters slope_;
 };
 
-// Steps in degrees in which the terrain's shadows follow the sun. Every step needs new meshes.
+// The terrain's shadows follow the sun in steps of this many degrees. Every step needs new meshes.
 inline constexpr double kSunAzimuthStep = 2, kSunElevationStep = 1;
 
-// Sets the sun of a terrain to the nearest step. All suns below the horizon get the same values,
+// Sets the sun of a terrain to the nearest step. All suns below the horizon give the same values,
 // and so do all suns in the zenith.
 void set_sun(models::Parameters& terrain, double azimuth_deg, double elevation_deg);
 
-// The terrain of one block in the light of the world's sky, with the edits that reach it.
+// The parameters of one block's terrain under the world's sky, with the edits that reach the block.
 models::Parameters terrain_parameters(const World& world, core::BlockCoord block);
-// The same for a node of 2^level × 2^level blocks, counted in nodes of its level.
+// The parameters for a node of 2^level × 2^level blocks. `node` counts nodes of this level.
 models::Parameters terrain_parameters(const World& world, core::BlockCoord node, int node_level);
-// How far beyond a node's border its ground mesh depends on heights, in blocks.
+// Distance beyond a node's border up to which heights affect the node's ground mesh, in blocks.
 double ground_margin(const World& world, int node_level);
 
-// An upper bound of the placements of one block without edits: the sum of all counts. Exact where
-// no scatter has a filter and no road passes.
+// An upper bound of the placements of one block without edits: the sum of all counts. Exact for
+// worlds in which no scatter has a filter and no road crosses the block.
 std::size_t models_per_block(const World& world);
 
-// Replaces `out` by the placements of `block`, by growing index. An instance that finds no allowed
-// place in kPlacementTries tries is left out; the indices of the others do not change. About 10 µs
-// for the block's heights and 0.1 µs for each model. Does not check whether the world contains the
-// block. Needs 350 KiB of stack.
-// With edits: instances find their places on the ground without edits, and stand on the ground with
-// them. Removed ones are left out; those that edits have placed follow, by growing id, and those of
-// the world's file.
+// Replaces `out` by the placements of `block`, by ascending index. An instance that finds no
+// allowed position in kPlacementTries tries is skipped; the indices of the others do not change.
+// Takes about 10 µs for the block's heights and 0.1 µs for each model. Does not check that the
+// world contains the block. Needs 350 KiB of stack.
+// Edits: instances find their positions on the unedited ground and stand on the edited ground.
+// Removed instances are skipped. The models placed by edits follow, by ascending id, then those
+// placed by the world file.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out);
-// The same with the block's ground already made, which has the block's edits.
+// The same for a caller that already has the block's ground, with the block's edits.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const models::BlockGround& ground, std::vector<Placement>& out);
 
-// The same without the instances of scatters that are not `wanted`, which has one entry for each of
-// World::scatter; what was placed by hand is there. Takes as much less time.
+// The same without the instances of the scatters whose entry in `wanted` is false (one entry for
+// each of World::scatter). Models placed by hand are included. Takes correspondingly less time.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const std::vector<bool>& wanted, std::vector<Placement>& out);
 
-// How much of the ground at a place of a block is a road, 0 … 1. O(log n + pieces of roads there).
+// The fraction of the ground that is road at a point of a block, 0 … 1. O(log n + road pieces
+// there).
 float road_at(const World& world, core::BlockCoord block, glm::dvec2 local_m);
 
-// The mean number of instances of each scatter that find a place in a block. Exact if no scatter
-// has a filter and there are no roads; otherwise the mean over kSizeBlocks blocks, always the same
-// ones.
-// `known`: those of some scatters, as from a world that has them in common (world_parts.hpp).
+// The mean number of instances per block that find a position, for each scatter. Exact if no
+// scatter has a filter and there are no roads; otherwise the mean over kSizeBlocks blocks, always
+// the same ones. `known` holds results that the caller already has, such as those of a world with
+// the same scatters (world_parts.hpp).
 std::vector<double> placed_per_block(const World& world, const models::Registry& registry,
                                      std::span<const std::optional<double>> known = {});
 
-// Sets parameter `i`, of either type. Integers are rounded to nearest and limited to 64 bits.
+// Sets parameter `i`, integer or real. Integers are rounded to nearest and limited to 64 bits.
 void set_parameter(const models::ModelType& type, models::Parameters& parameters, std::size_t i,
                    double value);
 
@@ -138,7 +139,7 @@ void set_slope(const models::ModelType& type, const SlopeParameters& indices, gl
 models::Parameters scatter_parameters(const models::Registry& registry, const Scatter& scatter);
 
 // The parameters of instance `index` of `block`, which must belong to `scatter`: those of
-// place_models(), but on level ground.
+// place_models() on level ground.
 models::Parameters draw_parameters(const World& world, const models::Registry& registry,
                                    const Scatter& scatter, core::BlockCoord block,
                                    std::uint32_t index);

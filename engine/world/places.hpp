@@ -1,5 +1,5 @@
-// Models that a world's file places by hand, each at a point. They are part of the world's
-// function, beside what scatters place and what edits place (edits/edits.hpp). Plain values;
+// Models that a world file places one by one, each at a point. They are part of the world's
+// function, next to scattered models and models placed by edits (edits/edits.hpp). Plain values;
 // immutable in use, any thread. They read no files (files/place_file.hpp). docs/world-files.md.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace psygen::world {
 
 struct World;
 
-// One model. Its foot stands on the ground, or `above_m` over it.
+// One placed model. Its base point is on the ground, or `above_m` over it.
 struct Place {
   models::ModelIndex model = 0;
   models::Parameters parameters;  // legal for the type; the slope of the ground is set later
@@ -26,19 +26,19 @@ struct Place {
 
 inline constexpr std::size_t kMaxPlaces = 4096;  // per file
 
-// All of them.
+// All models that the file places.
 struct Places {
   std::vector<Place> all;
-  // Them by blocks, with the position in `all` plus 1 as id; null: there are none. Made by
-  // sort_places(). It follows from the rest, and is not compared.
+  // The same models by block; an id is the position in `all` plus 1. Null: there are none.
+  // sort_places() derives it from `all`, so it is not compared.
   std::shared_ptr<const models::EditLayer> by_block;
   friend bool operator==(const Places& a, const Places& b) { return a.all == b.all; }
 };
 
-// Makes Places::by_block. Requires places in the world. O(n log n).
+// Derives Places::by_block. Every place must lie in the world. O(n log n).
 void sort_places(World& world, const models::Registry& registry);
 
-// Of all places, by names of types; 0: there are none.
+// A hash of all places, with types by name; 0: there are none.
 std::uint64_t places_hash(const World& world, const models::Registry& registry);
 
 }  // namespace psygen::world

@@ -10,8 +10,8 @@
 namespace psygen::world {
 namespace {
 
-constexpr double kRecordedSmoothing_s = 0.1;  // the least: poses are near where they were
-constexpr double kLeap_m_s = 1900;            // path files have 2000 at most
+constexpr double kRecordedSmoothing_s = 0.1;  // the minimum, so poses stay near the recorded ones
+constexpr double kLeap_m_s = 1900;            // path files allow at most 2000
 constexpr double kMaxHeading_deg = 36'000, kMaxPitch_deg = 89;
 constexpr double kProbeHeight_m = 1000;  // higher than any clearance
 
@@ -25,7 +25,7 @@ double unwrapped(double heading, double before) {
 CameraPath recorded_path(const std::string& name, std::span<const TimedPose> poses,
                          const World& world) {
   PSYGEN_ASSERT(!poses.empty() && poses.size() <= kMaxRecordedPoses,
-                "a path has 1 to 10,000 points");
+                "a path needs 1 to 10,000 points");
   const core::BlockCoord origin = poses.front().pose.position.block;
   std::vector<PathPoint> points;
   double heading = 0;
@@ -44,7 +44,7 @@ CameraPath recorded_path(const std::string& name, std::span<const TimedPose> pos
     points.push_back(point);
   }
   const CameraPath::Settings settings{name, origin, kRecordedSmoothing_s};
-  // How high the ground is that a path adds its heights to, only the path knows.
+  // Only the path knows the height of the ground to which its heights are added.
   const CameraPath probe(settings, points);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const double ground_m =

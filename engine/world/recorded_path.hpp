@@ -1,4 +1,4 @@
-// Poses of a camera as it was moved, as a path that flies through them again. Pure, any thread.
+// Turns the recorded poses of a camera into a path that flies through them. Pure, any thread.
 #pragma once
 
 #include <span>
@@ -10,18 +10,18 @@
 
 namespace psygen::world {
 
-// Where a camera was. Times are seconds from any start and grow strictly.
+// A recorded pose. Times are seconds from any start and ascend strictly.
 struct TimedPose {
   double time_s = 0;
   core::CameraPose pose;
 };
 
-// The most points of a path file.
+// The maximum number of points in a path file.
 inline constexpr std::size_t kMaxRecordedPoses = 10'000;
 
-// At least one valid pose, at most kMaxRecordedPoses. At the time of each pose the camera is
-// there, within the limits of paths: at least 0.5 m above the ground, and 89° up and down. A
-// distance that no flight may have is a jump. 50 µs a pose.
+// A path through 1 to kMaxRecordedPoses valid poses. At the time of each pose the camera is there,
+// within the limits of paths: at least 0.5 m above the ground and a pitch of at most 89°. Poses too
+// far apart for a flight are joined by a jump. 50 µs a pose.
 CameraPath recorded_path(const std::string& name, std::span<const TimedPose> poses,
                          const World& world);
 

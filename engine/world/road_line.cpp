@@ -21,7 +21,7 @@ std::vector<double> chords_to(const Road& road) {
   return chords;
 }
 
-// Means of the heights, weighted by a tent over `smoothing_m` on both sides, or less at the ends.
+// Averages the heights, weighted by a tent over `smoothing_m` on both sides, or less at the ends.
 void smooth(std::vector<RoadPoint>& line, double smoothing_m) {
   std::vector<double> means;
   const double end_m = line.back().along_m;
@@ -73,7 +73,7 @@ std::vector<RoadPoint> road_line(const Road& road, double step_m,
   }
   for (RoadPoint& point : line)
     point.height_m = height_at(point.at_m);
-  // Twice a tent is a smooth bell.
+  // Two passes with a tent make a smooth bell.
   smooth(line, road.smoothing_m / 2);
   smooth(line, road.smoothing_m / 2);
   return line;

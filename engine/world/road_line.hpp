@@ -1,5 +1,5 @@
-// The middle of a road as short straight segments: a natural cubic spline through its points, with
-// heights that follow the ground calmly. The same bits on every machine. Any thread.
+// The centre line of a road as short straight segments: a natural cubic spline through its points
+// with smoothed ground heights. The same bits on every machine. Any thread.
 #pragma once
 
 #include <functional>
@@ -10,20 +10,20 @@
 
 namespace psygen::world {
 
-// A point of the middle.
+// A point of the centre line.
 struct RoadPoint {
   glm::dvec2 at_m{0.0};  // x and z in the world
-  double along_m = 0;    // from the road's begin
+  double along_m = 0;    // distance from the start of the road
   double height_m = 0;
-  std::size_t after = 0;  // the last of the road's own points up to here
+  std::size_t after = 0;  // index of the last control point up to here
 };
 
-// The length of the straight lines between a road's points.
+// The total length of the straight lines between a road's points.
 double chords_m(const Road& road);
 
-// The points of the middle, about `step_m` apart. `height_at` is the ground. The heights are its
-// mean over road.smoothing_m before and behind each point, less at the ends, where the road meets
-// the ground. Linear in points times smoothing over step.
+// The points of the centre line, about `step_m` apart. `height_at` returns the height of the
+// ground. Heights are means of the ground over road.smoothing_m in both directions, and over less
+// at the ends, where the road meets the ground. Linear in points times smoothing over step.
 std::vector<RoadPoint> road_line(const Road& road, double step_m,
                                  const std::function<double(glm::dvec2)>& height_at);
 

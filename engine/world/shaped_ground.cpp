@@ -20,12 +20,11 @@ using models::GroundEdit;
 using models::RoadPiece;
 using models::RoadSegment;
 
-// A piece has at most this many segments, and as many heights are looked at to know how far it
-// moves them.
+// Maximum number of segments of a piece. As many heights are sampled to find how far it moves them.
 constexpr std::size_t kPieceSegments = 12;
 constexpr double kMaxLookedAt = 40'000;
-// Segments of a road that may lie near one of its pieces: it may cross itself, and not cover an
-// area.
+// Maximum number of segments of a road near one of its pieces: a road may cross itself but not
+// cover an area.
 constexpr std::size_t kMaxNear = 1000;
 
 struct Box {
@@ -71,10 +70,11 @@ class Shaper {
     const double lowest = sets ? 0 : -relief_m_;
     for (const double height_m : {stamp.base_m, stamp.base_m + stamp.height_m}) {
       if (height_m >= lowest && height_m <= relief_m_) continue;
-      return refused("height_m",
-                     fmt::format("the stamp has {:g} m, and must have {:g} to {:g} m: the relief "
-                                 "of the terrain (relief_m)",
-                                 height_m, lowest, relief_m_));
+      return refused(
+          "height_m",
+          fmt::format("the stamp reaches {:g} m, but must stay within {:g} to {:g} m: the "
+                      "height range of the terrain (relief_m)",
+                      height_m, lowest, relief_m_));
     }
     const auto centre = inside(stamp.centre_m);
     if (!centre) return refused("centre_m", centre.error());
@@ -98,8 +98,8 @@ class Shaper {
     length_m_ += chords_m(road);
     if (length_m_ > kMaxRoadsM)
       return refused("points_m", {core::ErrorCode::kOverBudget,
-                                  fmt::format("all roads together are longer than {:g} m, and no "
-                                              "more is allowed",
+                                  fmt::format("all roads together are longer than the "
+                                              "allowed {:g} m",
                                               kMaxRoadsM)});
     models::Parameters terrain = world_.terrain;
     const models::EditLayer before = layer_;
@@ -127,7 +127,7 @@ class Shaper {
     const core::WorldPosition at = position(at_m);
     if (world_.contains(at.block)) return at;
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{:g}, {:g} m is outside of the world", at_m.x, at_m.y));
+                      fmt::format("{:g}, {:g} m is outside the world", at_m.x, at_m.y));
   }
 
   static std::shared_ptr<const models::Heightmap> map_of(const Stamp& stamp) {
@@ -148,13 +148,12 @@ class Shaper {
   }
 
   static tl::unexpected<ShapeError> too_much(std::string_view key) {
-    return refused(key, {core::ErrorCode::kOverBudget,
-                         fmt::format("more than {} stamps and pieces of roads lie on top of each "
-                                     "other there",
-                                     kMaxNear)});
+    return refused(
+        key, {core::ErrorCode::kOverBudget,
+              fmt::format("more than {} stamps and pieces of roads overlap there", kMaxNear)});
   }
 
-  // The pieces of a road. Each has the segments of others that may be nearer to its places.
+  // The pieces of a road. Each has the segments of other pieces that may be nearest to its points.
   std::vector<RoadPiece> pieces_of(const Road& road, const std::vector<RoadPoint>& line) const {
     const core::WorldPosition origin = position(line.front().at_m);
     const glm::dvec2 from = line.front().at_m;
@@ -208,7 +207,7 @@ class Shaper {
     return add(std::move(edit), "points_m");
   }
 
-  // How far a piece moves a vertex of the finest ground at most.
+  // The largest distance by which a piece moves a vertex of the finest ground.
   double max_moved(const RoadPiece& piece, const GroundEdit& edit,
                    const models::Parameters& before) const {
     const double cell_m = world_.cell_m(), radius_m = edit.radius_m + cell_m;
@@ -233,7 +232,7 @@ class Shaper {
     const models::BlockGround ground(before, block, static_cast<std::size_t>(last * last));
     const glm::dvec3 corner = core::offset_m(block, piece.origin, block_m_);
     const glm::dvec3 away = core::offset_m(block, edit.centre, block_m_);
-    // Vertices in the square of the edit, along one axis.
+    // Indices of the vertices in the square of the edit, along one axis.
     const auto first_of = [&](double from_m) {
       return std::clamp<std::int64_t>(
           static_cast<std::int64_t>(std::floor((-from_m - edit.radius_m) / world_.cell_m())), 0,
@@ -259,11 +258,11 @@ class Shaper {
 
   const World& world_;
   double block_m_, relief_m_;
-  double length_m_ = 0;  // of all roads so far
+  double length_m_ = 0;  // total length of all roads so far
   models::EditLayer layer_;
 };
 
-// Adds all of one kind.
+// Adds all shapes of one type.
 template <class Shapes>
 Shaped add_all(const Shapes& shapes, std::string_view place, Shaper& shaper) {
   for (std::size_t i = 0; i < shapes.size(); ++i) {

@@ -1,4 +1,4 @@
-// The place of the sun, and the colours of the sky under it.
+// The position of the sun, and the colours of the sky for it.
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -12,7 +12,7 @@ namespace psygen::world {
 namespace {
 
 constexpr double kDeclinationDeg = 12;  // of the sun, as in spring
-constexpr float kMaxChange = 32;        // largest factor, for files with a very low sun
+constexpr float kMaxChange = 32;        // largest factor, needed for files with a very low sun
 
 // Scales `colour`, which is correct for daylight `then`, to daylight `now`.
 glm::vec3 changed(glm::vec3 colour, glm::vec3 then, glm::vec3 now) {

@@ -11,7 +11,8 @@ Spline::Spline(std::span<const double> times, std::span<const double> values)
     : times_(times.begin(), times.end()),
       values_(values.begin(), values.end()),
       bends_(times.size(), 0.0) {
-  PSYGEN_ASSERT(!times.empty() && times.size() == values.size(), "every point has time and value");
+  PSYGEN_ASSERT(!times.empty() && times.size() == values.size(),
+                "every point needs a time and a value");
   const std::size_t n = times_.size();
   std::vector<double> factors(n, 0.0);
   for (std::size_t i = 1; i + 1 < n; ++i) {

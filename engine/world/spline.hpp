@@ -10,10 +10,10 @@ namespace psygen::world {
 // One value over time.
 class Spline {
  public:
-  // Empty; only to be assigned to.
+  // Empty; assign before use.
   Spline() = default;
-  // At least one point, as many times as values; times grow strictly. One point makes a constant.
-  // Linear in the points.
+  // At least one point, and as many values as times; times ascend strictly. One point makes a
+  // constant. Linear in the points.
   Spline(std::span<const double> times, std::span<const double> values);
 
   // The value at a time. Before the first and after the last point it is the value of that point.

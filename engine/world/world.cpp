@@ -25,7 +25,7 @@ void set_edits(World& world, std::shared_ptr<const models::EditLayer> edits) {
     edits = std::make_shared<const models::EditLayer>(std::move(layer));
   }
   world.edits = std::move(edits);
-  // Without a hash: which of the edits matter is known only for a node (placement.hpp).
+  // Without a hash: only for a node is it known which edits matter (placement.hpp).
   world.terrain.set_edits(world.layer().get(), 0);
 }
 

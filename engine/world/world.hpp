@@ -1,7 +1,7 @@
-// A world: a few numbers that define terabytes of geometry (paper, section 4.1). Read from and
-// written to TOML files (files/world_file.hpp). Plain values, valid if they come from a file. It
-// has no geometry; models synthesise that from the parameters. Immutable in use, so any thread may
-// read.
+// A world definition: a few numbers that define terabytes of geometry (paper, section 4.1). Read
+// from and written to TOML files (files/world_file.hpp). Plain values; valid if read from a file.
+// It has no geometry: modelers synthesise that from the parameters. Immutable in use, so any thread
+// may read.
 #pragma once
 
 #include <array>
@@ -31,33 +31,33 @@ struct ParameterRange {
   friend bool operator==(const ParameterRange&, const ParameterRange&) = default;
 };
 
-// How a handmade model can be solid: the hull of its points, their box, or not at all.
+// Collider of a handmade model: the hull of its points, their box, or none.
 inline constexpr std::array<std::string_view, 3> kHandmadeColliders{"hull", "box", "none"};
 
-// A model that was made by hand: a glTF file, and how it stands in the world.
+// A handmade model: a glTF file, with its size and its position relative to the ground.
 struct HandmadeModel {
   std::string name;   // of its model type
   std::string file;   // relative to the folder of the world's file
   double size_m = 0;  // height; 0: that of the file, times `scale`
   double scale = 1;
-  double sink_m = 0;        // how deep its lowest point is in the ground
-  std::int64_t levels = 5;  // of detail, at most
+  double sink_m = 0;        // depth of its lowest point in the ground
+  std::int64_t levels = 5;  // maximum number of levels of detail
   std::string collider{kHandmadeColliders[0]};
   friend bool operator==(const HandmadeModel&, const HandmadeModel&) = default;
 };
 
-// One kind of model that is scattered over every block.
+// A model type that is scattered over every block.
 struct Scatter {
   models::ModelIndex model = 0;
   std::uint32_t count = 0;             // instances per block
   std::vector<ParameterRange> ranges;  // one per parameter of the schema; kPlaced ones are unused
-  // Limits of the ground under an instance. One that finds no such place is left out
+  // Limits of the ground under an instance. An instance that finds no such position is skipped
   // (placement.hpp).
   double min_height_m = -std::numeric_limits<double>::infinity();
   double max_height_m = std::numeric_limits<double>::infinity();
-  double max_slope_deg = 90;  // of the ground, against the horizontal
-  ScatterMask mask;           // where they may stand within these limits
-  // Whether any limit or mask excludes ground.
+  double max_slope_deg = 90;  // of the ground, from the horizontal
+  ScatterMask mask;           // further restriction within these limits
+  // True if any limit or mask excludes ground.
   bool has_filter() const {
     return mask.thins() || mask.ground != 0 ||
            min_height_m > -std::numeric_limits<double>::infinity() ||
@@ -66,14 +66,14 @@ struct Scatter {
   friend bool operator==(const Scatter&, const Scatter&) = default;
 };
 
-// The place of the sun: azimuth from −Z (north) over +X (east), elevation above the horizon.
+// The position of the sun: azimuth from −Z (north) over +X (east), elevation above the horizon.
 struct SunPlace {
   double azimuth_deg = 0, elevation_deg = 0;
   glm::vec3 direction() const;  // unit vector towards the sun
 };
 
-// Sun, sky and air. Colours are linear radiance before `exposure`, at the sun's elevation given
-// here.
+// Sun, sky and air. Colours are linear radiance before `exposure`, valid for the sun's elevation
+// given here.
 struct Sky {
   double sun_azimuth_deg = 128;  // from −Z (north) over +X (east)
   double sun_elevation_deg = 44;
@@ -83,14 +83,14 @@ struct Sky {
   glm::vec3 ground_colour{0.16F, 0.15F, 0.11F};  // light from below
   glm::vec3 haze_colour{0.66F, 0.72F, 0.80F};
   double visibility_m = 32000;  // distance at height 0 at which 2 % of the contrast is left
-  double haze_height_m = 1200;  // height in which the haze thins out by a factor e
+  double haze_height_m = 1200;  // the haze thins by a factor e over this height
   double exposure = 1;
   double cloud_cover = 0.5;  // 0 clear … 1 overcast
   double day_length_s = 0;   // seconds for 24 hours; 0: the sun stays at the two angles
   double start_hour = 9;     // hour of the day at time 0; the sun is highest at 12
-  double latitude_deg = 42;  // decides how high the sun climbs
+  double latitude_deg = 42;  // affects the sun's highest elevation
 
-  // The place of the sun at a time, and the unit vector towards the sun at the two angles.
+  // The position of the sun at a time; and the unit vector towards the sun at the two angles.
   SunPlace sun_at(double time_s) const;
   glm::vec3 sun_direction() const {
     return SunPlace{sun_azimuth_deg, sun_elevation_deg}.direction();
@@ -100,7 +100,7 @@ struct Sky {
   friend bool operator==(const Sky&, const Sky&) = default;
 };
 
-// The same air with the sun at another place. Every colour changes as in the atmosphere
+// The same air with the sun at another position. Colours change by the ratios of the atmosphere
 // (atmosphere.hpp); at the same elevation no colour changes.
 Sky with_sun(const Sky& sky, SunPlace sun);
 // The sky at a time, in seconds.
@@ -108,12 +108,12 @@ inline Sky sky_at(const Sky& sky, double time_s) {
   return with_sun(sky, sky.sun_at(time_s));
 }
 
-// A plane of water. There is none by default.
+// A plane of water; absent by default.
 struct Water {
   double level_m = -1e7;  // height of the surface in metres of the world; below −10^6: no water
   glm::vec3 colour{0.010F, 0.045F, 0.050F};  // of deep water: linear albedo
-  double shore_m = 1.5;                      // height of the beach above the surface
-  // Whether there is water.
+  double shore_m = 1.5;                      // height of the beach above the water
+  // True if there is water.
   bool exists() const { return level_m > -1e6; }
   friend bool operator==(const Water&, const Water&) = default;
 };
@@ -122,7 +122,7 @@ struct Water {
 inline constexpr std::array<std::string_view, 6> kPaletteImages{
     "grass_image", "forest_image", "dry_image", "sand_image", "rock_image", "snow_image"};
 
-// Linear albedos of the ground, and the extent of each kind of ground. Heights are in metres of the
+// Linear albedos of the ground, and the range of each kind of ground. Heights are in metres of the
 // world; slopes are 1 − normal.y: 0 flat, 0.29 at 45°, 1 vertical.
 struct Palette {
   glm::vec3 grass{0.085F, 0.125F, 0.030F};
@@ -135,13 +135,13 @@ struct Palette {
   double dry_start_m = 60, dry_blend_m = 40;     // dry meadow above this height
   double snow_start_m = 1e6, snow_blend_m = 15;  // snow above this height, except where steep
   double rock_slope_start = 0.16, rock_slope_full = 0.34;
-  double snow_slope_max = 0.40;  // no snow on steeper ground
-  // Pictures in place of textures: names relative to the folder of the world's file, or empty.
+  double snow_slope_max = 0.40;  // steeper ground has no snow
+  // Images that replace the textures: names relative to the folder of the world file, or empty.
   std::array<std::string, kPaletteImages.size()> images;
   friend bool operator==(const Palette&, const Palette&) = default;
 };
 
-// A whole world: a function, and the edits that lie over it.
+// A whole world: a function, and the edits over it.
 struct World {
   int format = kWorldFormat;
   std::string name;
@@ -149,50 +149,49 @@ struct World {
   std::int64_t blocks_x = 512, blocks_z = 512;  // 0: endless; else blocks 0 … n − 1 exist
   models::ModelIndex terrain_model = 0;
   models::Parameters terrain;            // of the block (0, 0)
-  std::vector<models::Species> species;  // defined by the file; types of the registry
-  std::vector<HandmadeModel> models;     // the same
+  std::vector<models::Species> species;  // defined by the file; also types of the registry
+  std::vector<HandmadeModel> models;     // as `species`
   std::vector<Scatter> scatter;
   ShapedGround shaped;  // stamps and roads; part of the function
-  Places places;        // what is placed by hand; the same
+  Places places;        // models placed by the file; part of the function
   Sky sky;
   Water water;
   Palette palette;
-  // What was changed by hand (edits/edits.hpp), over the shaped ground; null: nothing. Not part of
-  // world files. `terrain` names the same layer: use set_edits().
+  // Changes made by hand (edits/edits.hpp), over the shaped ground; null: none. Not part of world
+  // files. `terrain` refers to the same layer, so change it with set_edits().
   std::shared_ptr<const models::EditLayer> edits;
-  // Of what the files hold that are named here (handmade::hash_of_files()), where it was asked for;
+  // A hash of the contents of the files named here (handmade::hash_of_files()) if it was requested,
   // else 0. Not part of world files.
   std::uint64_t files_hash = 0;
 
-  // What lies over the terrain's function: the edits, or the shaped ground without edits; null:
-  // nothing.
+  // The layer over the terrain's function: the edits, or the shaped ground if there are no edits;
+  // null: neither.
   const std::shared_ptr<const models::EditLayer>& layer() const {
     return edits ? edits : shaped.layer;
   }
 
   double block_size_m() const;  // metres along one side of a block
-  double cell_m() const;        // between neighbouring vertices of the terrain
-  // Whether a block exists, and whether the world is endless along any axis.
+  double cell_m() const;        // distance of neighbouring terrain vertices
+  // True if a block exists; true if the world is endless along any axis.
   bool contains(core::BlockCoord block) const;
   bool is_endless() const { return blocks_x == 0 || blocks_z == 0; }
   friend bool operator==(const World&, const World&) = default;
 };
 
-// Replaces the edits of a world; null: none. They lie over its shaped ground from then on, so
-// World::edits is another layer where there is such ground. O(1).
+// Replaces the edits of a world; null: none. They then include its shaped ground: if there is any,
+// World::edits differs from `edits`. O(1).
 void set_edits(World& world, std::shared_ptr<const models::EditLayer> edits);
 
-// The palette with which ground is drawn and exported: World::palette with sand on the shore of the
-// water.
+// The palette for drawing and exporting ground: World::palette with sand on the shore of the water.
 Palette drawn_palette(const World& world);
 
-// The world if all of it were generated at full detail. Terrain counts without its skirts. An
-// endless world has 0 blocks, models, triangles and bytes.
+// The size of the world if all of it were generated at full detail. Terrain counts without its
+// skirts. An endless world has 0 blocks, models, triangles and bytes.
 struct WorldSize {
   std::uint64_t blocks = 0;
   std::uint64_t models = 0;  // at most 2^64 − 1
   double triangles = 0;
-  double bytes = 0;        // packed vertices and indices, without shared index lists
+  double bytes = 0;        // packed vertices and indices; without shared index lists
   double bytes_paper = 0;  // 256 bytes per triangle, as in the paper
   bool endless = false;
   // Means per block, also for endless worlds.
@@ -200,9 +199,9 @@ struct WorldSize {
 };
 
 // The size of a world, computed without synthesis. Exact for models whose size depends on no random
-// parameter (terrain, rocks with a fixed subdivision). Without what is placed by hand. For others
-// it is the mean over kSizeSamples parameter sets, always the same ones. With filters, the share of
-// instances that find a place is measured on kSizeBlocks blocks.
+// parameter (terrain, rocks with a fixed subdivision). For other models it is the mean over
+// kSizeSamples parameter sets, always the same ones. With filters, the fraction of instances that
+// find a position is measured on kSizeBlocks blocks. Models placed by hand do not count.
 inline constexpr std::uint32_t kSizeSamples = 1024;
 inline constexpr std::uint32_t kSizeBlocks = 64;
 WorldSize world_size(const World& world, const models::Registry& registry);

@@ -26,7 +26,7 @@ std::uint64_t hash_of_ground(const World& world, const models::Registry& registr
   return hash;
 }
 
-// `first`: the index of its first instance in a block.
+// `first`: the index of the scatter's first instance in a block.
 std::uint64_t hash_of_places(const models::ModelType& type, const Scatter& scatter,
                              std::uint32_t first, std::uint64_t ground) {
   std::uint64_t hash = core::hash_bytes(std::as_bytes(std::span(type.name())), ground);

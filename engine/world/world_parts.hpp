@@ -1,6 +1,7 @@
-// What two worlds have in common, part by part: hashes of everything that a part depends on. Where
-// they are equal, what was derived of that part of one world is that of the other, to the bit.
-// Values without edits; any thread. It compares no looks: sky, water and colours are cheap.
+// Compares two worlds part by part, by hashes of everything that a part depends on. If two hashes
+// are equal, results derived from that part of one world are valid for the other, to the bit.
+// Values without edits; any thread. Sky, water and colours are not compared, because they are
+// cheap.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +13,9 @@
 namespace psygen::world {
 
 struct WorldParts {
-  std::uint64_t ground = 0;  // heights, and what decides where models may stand
-  // Of each scatter, in the world's order:
-  std::vector<std::uint64_t> places;  // its type by name, which instances find a place, and where
+  std::uint64_t ground = 0;  // heights, and the limits of placement
+  // One hash for each scatter, in the world's order:
+  std::vector<std::uint64_t> places;  // type name, placed instances, positions
   std::vector<std::uint64_t>
       models;  // the type and the parameters of its instances, on flat ground
   friend bool operator==(const WorldParts&, const WorldParts&) = default;

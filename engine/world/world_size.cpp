@@ -6,8 +6,8 @@
 namespace psygen::world {
 namespace {
 
-// Mean size of one instance of a scatter whose first instance has the index `first`. The samples
-// are real instances of the world, from consecutive blocks.
+// Mean size of one instance of a scatter. `first` is the index of its first instance in a block.
+// The samples are real instances of the world, from consecutive blocks.
 struct MeanSize {
   double triangles = 0, bytes = 0;
 };

@@ -31,11 +31,11 @@ class BlockReader {
       : world_(world), registry_(registry), block_(block), in_(bytes) {}
 
   core::Result<BlockEdits> read() {
-    if (in_.get<std::uint32_t>() != kMagic) return broken("they are not edits of a block");
+    if (in_.get<std::uint32_t>() != kMagic) return broken("these bytes are not edits of a block");
     const auto version = in_.get<std::uint16_t>();
     if (version != kEditFormat) {
       return broken(
-          fmt::format("their version is {}, and this program reads {}", version, kEditFormat));
+          fmt::format("their version is {}, but this program reads {}", version, kEditFormat));
     }
     BlockEdits edits;
     for (const auto read :
@@ -44,7 +44,7 @@ class BlockReader {
       if (in_.failed()) return broken("they end too early");
       if (!ok) return broken(ok.error().message);
     }
-    if (in_.left() > 0) return broken("there are more than belong to it");
+    if (in_.left() > 0) return broken("there are extra bytes at the end");
     if (edits.removed.size() + edits.placed.size() + edits.ground.size() > kMaxEditsPerBlock)
       return broken(fmt::format("more than {} edits", kMaxEditsPerBlock));
     return edits;
@@ -59,11 +59,11 @@ class BlockReader {
   static tl::unexpected<core::Error> wrong(std::string why) {
     return core::fail(core::ErrorCode::kParse, std::move(why));
   }
-  // Where an edit is, from the block's corner. It must lie in the block.
+  // The position of an edit from the block's corner must lie in the block.
   core::Result<void> check_inside(double x, double z) const {
     const auto at = check_place(world_, {block_, {x, 0, z}});
     if (!at) return tl::unexpected(at.error());
-    if (at->block != block_) return wrong("an edit lies in another block");
+    if (at->block != block_) return wrong("an edit is in another block");
     return {};
   }
   bool is_next_id(std::uint32_t id, std::uint32_t before) const {
@@ -82,14 +82,14 @@ class BlockReader {
       if (r.index >= models_per_block(world_))
         return wrong(fmt::format("the block has no model {}", r.index));
       if (r.moved_id > kMaxEditId)
-        return wrong(
-            fmt::format("a moved model has the id {}, and {} is the last", r.moved_id, kMaxEditId));
+        return wrong(fmt::format("a moved model has the id {}, but the maximum is {}", r.moved_id,
+                                 kMaxEditId));
       edits.removed.push_back(r);
     }
     return {};
   }
 
-  // A model type by its name. A name of 255 letters is the longest.
+  // Reads the name of a model type; it has at most 255 characters.
   core::Result<models::ModelIndex> read_type() {
     const std::string_view name = in_.get_text(in_.get<std::uint8_t>());
     if (in_.failed()) return wrong("");
@@ -133,7 +133,7 @@ class BlockReader {
       e.id = in_.get<std::uint32_t>();
       const auto change = in_.get<std::uint8_t>();
       if (change > static_cast<std::uint8_t>(models::GroundChange::kStampSet))
-        return wrong(fmt::format("there is no change of the ground {}", change));
+        return wrong(fmt::format("{} is not a type of ground edit", change));
       e.change = static_cast<models::GroundChange>(change);
       e.square = in_.get<std::uint8_t>() != 0;
       e.centre.block = block_;

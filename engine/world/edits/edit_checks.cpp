@@ -60,14 +60,14 @@ core::Result<void> check_heights(const BlockEdits& edits, core::BlockCoord block
     count += edit->map ? edit->map->heights_m.size() : 0;
   if (count <= kMaxHeightsPerBlock) return {};
   return core::fail(ErrorCode::kOverBudget,
-                    fmt::format("the heightmaps of {} have {} heights, and at most {} are allowed",
-                                text_of(block), count, kMaxHeightsPerBlock));
+                    fmt::format("the heightmaps of {} have {} heights (limit: {})", text_of(block),
+                                count, kMaxHeightsPerBlock));
 }
 
 core::Result<void> check_room(const BlockEdits& edits, core::BlockCoord block) {
   const std::size_t count = edits.removed.size() + edits.placed.size() + edits.ground.size();
   if (count < kMaxEditsPerBlock) return {};
-  return core::fail(ErrorCode::kOverBudget, fmt::format("{} has {} edits, and no more are allowed",
+  return core::fail(ErrorCode::kOverBudget, fmt::format("{} already has the maximum of {} edits",
                                                         text_of(block), kMaxEditsPerBlock));
 }
 
@@ -82,8 +82,8 @@ core::Result<core::WorldPosition> check_place(const World& world, const core::Wo
   constexpr double kFarthest = 1e9;
   const auto usable = [](double v) { return std::abs(v) <= kFarthest; };  // false for NaN
   if (!usable(at.local.x) || !usable(at.local.z)) {
-    return refuse(fmt::format("the place {:g}, {:g} m from {} is not a place in the world",
-                              at.local.x, at.local.z, text_of(at.block)));
+    return refuse(fmt::format("the position {:g}, {:g} m from {} is out of range", at.local.x,
+                              at.local.z, text_of(at.block)));
   }
   const double size = world.block_size_m();
   const auto index = [size](std::int32_t block, double local) {
@@ -93,7 +93,7 @@ core::Result<core::WorldPosition> check_place(const World& world, const core::Wo
   core::WorldPosition place = core::normalised(at, size);
   const bool inside = fits(index(at.block.x, at.local.x)) && fits(index(at.block.z, at.local.z));
   if (!inside || !world.contains(place.block)) {
-    return refuse(fmt::format("the place {:g}, {:g} m from {} is outside the world", at.local.x,
+    return refuse(fmt::format("the position {:g}, {:g} m from {} is outside the world", at.local.x,
                               at.local.z, text_of(at.block)));
   }
   place.local.y = 0;
@@ -116,17 +116,18 @@ core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
                       edit.height_m, relief_m));
     case models::GroundChange::kFlatten:
       if (edit.height_m >= 0 && edit.height_m <= relief_m) return {};
-      return refuse(fmt::format(
-          "ground at {:g} m is not allowed: it must be 0 to {:g} m, the relief of the terrain",
-          edit.height_m, relief_m));
+      return refuse(
+          fmt::format("ground at {:g} m is not allowed: it must be 0 to {:g} m, the height range "
+                      "of the terrain",
+                      edit.height_m, relief_m));
     case models::GroundChange::kStampAdd:
       return check_heightmap(edit.map.get(), relief_m, true);
     case models::GroundChange::kStampSet:
       return check_heightmap(edit.map.get(), relief_m, false);
     case models::GroundChange::kRoad:
-      return refuse("roads are in world files, and not among edits");
+      return refuse("roads can be in world files only");
   }
-  return refuse("there is no such change of the ground");
+  return refuse("this type of ground edit does not exist");
 }
 
 core::Result<void> check_model(const models::Registry& registry, models::ModelIndex model,
@@ -141,7 +142,7 @@ core::Result<void> check_model(const models::Registry& registry, models::ModelIn
   const models::ModelType& type = registry[model];
   if (auto ok = models::validate(type, parameters); !ok) return ok;
   if (type.mesh_size(parameters, 0).layout != core::VertexLayout::kModel)
-    return refuse(fmt::format("{} is not a model that can be placed", type.name()));
+    return refuse(fmt::format("models of type {} cannot be placed", type.name()));
   return {};
 }
 

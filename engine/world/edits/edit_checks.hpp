@@ -1,6 +1,5 @@
-// What edits of a world may be: every check that world::Edits and the decoder of stored edits make,
-// and the sentences of their refusals. Changes nothing. Pure functions, any thread. Internal to
-// world/edits.
+// The limits of edits: every check of world::Edits and of the decoder of stored edits, with its
+// error message. Changes nothing. Pure functions, any thread. Internal to world/edits.
 #pragma once
 
 #include <cstdint>
@@ -13,27 +12,27 @@
 
 namespace psygen::world {
 
-// A refusal (kInvalidArgument) with this sentence, and a block as its sentences name it.
+// An error (kInvalidArgument) with this message; and a block's name in messages.
 tl::unexpected<core::Error> refuse(std::string sentence);
 std::string text_of(core::BlockCoord block);
 
 // Fails for a block outside the world.
 core::Result<void> check_block(const World& world, core::BlockCoord block);
-// Fails with kOverBudget for more heights in heightmaps than kMaxHeightsPerBlock, and where a block
-// has no room for one more edit.
+// Fails with kOverBudget for more heights in heightmaps than kMaxHeightsPerBlock; and for a block
+// that already has the maximum number of edits.
 core::Result<void> check_heights(const models::BlockEdits& edits, core::BlockCoord block);
 core::Result<void> check_room(const models::BlockEdits& edits, core::BlockCoord block);
-// Fails where a block has no model of this index.
+// Fails if a block has no model with this index.
 core::Result<void> check_removed(const World& world, core::BlockCoord block, std::uint32_t index);
 
-// The normalised place, or why there is none: not finite, or outside the world.
+// The normalised position. Fails if it is not finite or outside the world.
 core::Result<core::WorldPosition> check_place(const World& world, const core::WorldPosition& at);
 // Fails for an edit of the ground that is not legal. O(heights) for a stamp.
 core::Result<void> check_ground(const World& world, const models::GroundEdit& edit);
-// Fails for a model that cannot be placed so high above the ground.
+// Fails for a model that cannot be placed at this height above the ground.
 core::Result<void> check_model(const models::Registry& registry, models::ModelIndex model,
                                const models::Parameters& parameters, double above_m);
-// PlacedModel::reach_m of a model with its foot so high above the ground.
+// PlacedModel::reach_m of a model whose base point is at this height above the ground.
 glm::vec3 placed_reach(const models::ModelType& type, const models::Parameters& parameters,
                        double above_m);
 

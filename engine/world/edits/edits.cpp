@@ -26,7 +26,7 @@ float within(double local_m, const World& world) {
   return std::min(static_cast<float>(local_m), std::nextafter(size_m, 0.0F));
 }
 
-// The usual edits of the ground.
+// An edit of a disc of the ground.
 GroundEdit disc(models::GroundChange change, const core::WorldPosition& at, double radius_m,
                 double height_m) {
   GroundEdit edit;
@@ -49,7 +49,7 @@ core::Result<std::uint32_t> Edits::next_id() const {
   const std::uint32_t id = layer_ ? layer_->next_id : 1;
   if (id <= kMaxEditId) return id;
   return core::fail(ErrorCode::kOverBudget,
-                    fmt::format("there were {} edits, and no more are allowed", kMaxEditId));
+                    fmt::format("no ids are left: at most {} edits may be made", kMaxEditId));
 }
 
 EditLayer Edits::copy() const {
@@ -89,7 +89,7 @@ core::Result<EditName> Edits::move(const World& world, const models::Registry& r
   const auto at = std::ranges::lower_bound(placements, model.index, {}, &Placement::index);
   if (at == placements.end() || at->index != model.index ||
       edits_of(model.block).is_removed(model.index)) {
-    return refuse(fmt::format("model {} of {} is not there", model.index, text_of(model.block)));
+    return refuse(fmt::format("model {} of {} does not exist", model.index, text_of(model.block)));
   }
   Edits moved = *this;
   auto placed = moved.place(world, registry, {at->model, at->parameters, to, 0});
@@ -142,7 +142,7 @@ core::Result<void> Edits::remove_placed(const EditName& model) {
   BlockEdits edits = edits_of(model.block);
   if (std::erase_if(edits.placed, [&](const PlacedModel& p) { return p.id == model.id; }) == 0) {
     return refuse(
-        fmt::format("{} has no placed model of the id {}", text_of(model.block), model.id));
+        fmt::format("{} has no placed model with the id {}", text_of(model.block), model.id));
   }
   commit(copy(), model.block, std::move(edits));
   return {};
@@ -172,8 +172,8 @@ core::Result<EditName> Edits::edit_ground(const World& world, GroundEdit edit) {
   if (auto ok = check_heights(edits, at->block); !ok) return tl::unexpected(ok.error());
   if (!layer.ground.add(shared, world.block_size_m())) {
     return core::fail(ErrorCode::kOverBudget,
-                      fmt::format("{} edits of the ground lie on top of each other at {}, and no "
-                                  "more are allowed; a heightmap can replace many of them",
+                      fmt::format("at most {} ground edits may overlap in one place ({}); a "
+                                  "heightmap can replace many of them",
                                   models::GroundEdits::kMaxTogether, text_of(at->block)));
   }
   layer.next_id = *id + 1;
@@ -196,7 +196,7 @@ core::Result<void> Edits::remove_ground(const World& world, const EditName& edit
   const auto at = std::ranges::find(edits.ground, edit.id, &GroundEdit::id);
   if (at == edits.ground.end()) {
     return refuse(
-        fmt::format("{} has no edit of the ground of the id {}", text_of(edit.block), edit.id));
+        fmt::format("{} has no ground edit with the id {}", text_of(edit.block), edit.id));
   }
   EditLayer layer = copy();
   layer.ground.remove(**at, world.block_size_m());
@@ -218,8 +218,7 @@ core::Result<void> Edits::replace_block(const World& world, core::BlockCoord blo
   for (const auto& edit : edits.ground) {
     if (!layer.ground.add(edit, block_m)) {
       return core::fail(ErrorCode::kOverBudget,
-                        fmt::format("too many edits of the ground lie on top of each other at {}",
-                                    text_of(block)));
+                        fmt::format("too many ground edits overlap at {}", text_of(block)));
     }
     layer.next_id = std::max(layer.next_id, edit->id + 1);
   }

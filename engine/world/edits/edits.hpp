@@ -1,11 +1,11 @@
-// Edits of a world that persist: models are removed, moved and placed, ground is raised, flattened
-// and shaped by heightmaps. A sparse layer over the world's function. Everything that shows the
-// world shows its edits: set_edits(world, edits.layer()), or Scene::edit() for a running scene.
-// A value: copies are O(1), and a copy that was kept takes everything back, exactly. A change
-// copies a path of the tree and the edits of its block; one of the ground also the edits that
-// overlap it: O(log n + edits copied). What is impossible is refused with a sentence and changes
-// nothing. One thread at a time may change an object; layers that it gave away are immutable, for
-// any thread.
+// Persistent edits of a world: remove, move and place models; raise, flatten and shape ground by
+// heightmaps. A sparse layer over the world's function. Everything that shows the world shows its
+// edits, after set_edits(world, edits.layer()), or Scene::edit() for a running scene. A value:
+// copies are O(1), and an earlier copy restores everything exactly. A change copies a path of the
+// tree and the edits of its block; an edit of the ground also copies the edits that overlap it:
+// O(log n + edits copied). Impossible edits are rejected with an error message and change nothing.
+// One thread at a time may change an object; layers that layer() returned are immutable, for any
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct EditName {
   friend bool operator==(const EditName&, const EditName&) = default;
 };
 
-// A model to place. Its foot stands on the ground, at any time, or `above_m` over it.
+// A model to place. Its base point stays on the ground after later edits, or `above_m` over it.
 struct NewModel {
   models::ModelIndex model = 0;
   models::Parameters parameters;  // legal for the type; the slope of the ground is set
@@ -40,15 +40,15 @@ struct NewModel {
   double above_m = 0;             // −1000 … 1000
 };
 
-// Limits of edits. Heights must lie between 0 and the relief of the terrain (relief_m): all ground
-// does. What raised ground would exceed is cut off there.
+// Limits of edits. Heights must be between 0 and the terrain's height range (relief_m), as all
+// ground is. Raised ground is cut off at these limits.
 inline constexpr double kMinEditRadiusM = 0.1, kMaxEditRadiusM = 20'000;
 inline constexpr std::uint32_t kMaxHeightmapSide = 1024;
 inline constexpr std::size_t kMaxEditsPerBlock = 16'384;
 // Heights in all heightmaps of one block, so that its bytes stay below 16 MiB (save/save_game.hpp).
 inline constexpr std::size_t kMaxHeightsPerBlock = std::size_t{3} << 20;
 
-// How many edits there are.
+// Numbers of edits.
 struct EditCounts {
   std::uint64_t removed = 0, placed = 0, ground = 0;  // a moved model is removed and placed
 };
@@ -58,41 +58,41 @@ class Edits {
  public:
   // No edits.
   Edits() = default;
-  // Those of a world, or of another layer of the same world; null: none.
+  // Wraps the edits of a world, or of another layer of the same world; null: none.
   explicit Edits(std::shared_ptr<const models::EditLayer> layer) : layer_(std::move(layer)) {}
 
-  // For set_edits(). Null where there are no edits.
+  // The layer for set_edits(). Null if there are no edits.
   const std::shared_ptr<const models::EditLayer>& layer() const { return layer_; }
   bool empty() const { return layer_ == nullptr; }
   EditCounts counts() const;
 
   // Models -------------------------------------------------------------------------------------
-  // Removes a model, such as a felled tree. Nothing happens if it is removed already.
+  // Removes a model, such as a felled tree. Does nothing if it is already removed.
   core::Result<void> remove(const World& world, const InstanceName& model);
-  // Moves a model; it keeps its parameters. It is a placed model from then on. Fails also for one
+  // Moves a model, which keeps its parameters and becomes a placed model. Also fails for a model
   // that does not exist or is removed.
   core::Result<EditName> move(const World& world, const models::Registry& registry,
                               const InstanceName& model, const core::WorldPosition& to);
-  // Takes remove() or move() back.
+  // Undoes remove() or move().
   core::Result<void> restore(const InstanceName& model);
-  // Places a model. The types of placed models must stay at their places in the registry.
+  // Places a model. The types of placed models must keep their indices in the registry.
   core::Result<EditName> place(const World& world, const models::Registry& registry,
                                const NewModel& model);
-  // Removes a placed model; one that was moved is gone then.
+  // Removes a placed model, also one that was moved.
   core::Result<void> remove_placed(const EditName& model);
 
   // Ground -------------------------------------------------------------------------------------
-  // Adds an edit of the ground, after all others. Stamps are always squares along the axes, and
-  // only they have a heightmap. `id` of the argument, and what seal() sets, are not used. Roads and
-  // turned stamps are in world files only (shaped_ground.hpp).
+  // Adds an edit of the ground, after all others. Stamps are squares along the axes; only they have
+  // a heightmap. Ignores `id` of the argument and the members that seal() sets. Roads and rotated
+  // stamps exist in world files only (shaped_ground.hpp).
   core::Result<EditName> edit_ground(const World& world, models::GroundEdit edit);
-  // The usual ones: raises ground (or digs, with a negative height), and flattens it to a height,
-  // in a disc of this radius whose outer half fades out.
+  // Common edits: raises ground (or digs, with a negative height), or flattens it to a height, in a
+  // disc of this radius whose outer half fades out.
   core::Result<EditName> raise(const World& world, const core::WorldPosition& at, double radius_m,
                                double height_m);
   core::Result<EditName> flatten(const World& world, const core::WorldPosition& at, double radius_m,
                                  double height_m);
-  // Takes one edit of the ground back, whatever came after it.
+  // Undoes one edit of the ground and keeps all later ones.
   core::Result<void> remove_ground(const World& world, const EditName& edit);
 
   // Whole blocks (edit_bytes.hpp) -----------------------------------------------------------------
@@ -102,17 +102,17 @@ class Edits {
 
  private:
   core::Result<std::uint32_t> next_id() const;
-  // Copies, to be changed: of all edits, and of those of a block.
+  // Copies to be changed: of all edits, and of the edits of a block.
   models::EditLayer copy() const;
   models::BlockEdits edits_of(core::BlockCoord block) const;
-  // Takes over a changed layer with these edits of a block.
+  // Stores a changed layer with these edits of a block.
   void commit(models::EditLayer layer, core::BlockCoord block, models::BlockEdits edits);
 
   std::shared_ptr<const models::EditLayer> layer_;
 };
 
-// The blocks whose edits differ, in no particular order: those that must be stored again.
-// O(differences · log n).
+// The blocks whose edits differ, in no particular order: the blocks to store again. O(differences ·
+// log n).
 std::vector<core::BlockCoord> changed_blocks(const Edits& before, const Edits& after);
 
 }  // namespace psygen::world

@@ -1,4 +1,4 @@
-// The share of the ground that a world's models cover, and its colour.
+// The fraction of the ground that a world's models cover, and its colour.
 #include <algorithm>
 
 #include "engine/models/kit/exact_math.hpp"
@@ -8,7 +8,7 @@
 namespace psygen::world {
 namespace {
 
-// The albedo of an instance seen from above, weighted like that of its upper half.
+// The albedo of an instance from above, weighted like that of its upper half.
 glm::vec3 albedo_of(const Outline& outline) {
   const auto reflected = [](const Corner& c) { return c.colour * c.colour * c.ambient; };
   glm::vec3 sum = reflected(outline.top) * 0.5F;
@@ -34,7 +34,7 @@ FarCover far_cover(const World& world, const FarScatters& scatters,
     }
   }
   if (covered <= 0) return {};
-  // Models at random places overlap at random.
+  // Models at random positions overlap at random.
   return {light / static_cast<float>(covered),
           static_cast<float>(1 - models::exact_exp(-std::min(covered, 100.0)))};
 }

@@ -33,7 +33,7 @@ core::Bounds FormWriter::finish() {
   return {glm::max(place(low_) - around, box_.min), glm::min(place(high_) + around, box_.max)};
 }
 
-// `aside` shortened to the room that the box leaves around `axis` in every direction.
+// Shortens `aside` to the room in `box_` around `axis` in every direction.
 glm::vec2 FormWriter::limited(glm::vec2 aside, const glm::vec3& axis) const {
   const float room = std::min(
       {axis.x - box_.min.x, box_.max.x - axis.x, axis.z - box_.min.z, box_.max.z - axis.z});

@@ -1,6 +1,5 @@
-// Writes far forms into the mesh of a node, and fills the rest of the mesh with degenerate
-// triangles. One writer per mesh, one thread. It decides neither forms nor places
-// (merged_models.cpp).
+// Writes forms into the mesh of a node, and fills the rest of the mesh with degenerate triangles.
+// One writer per mesh, one thread. It chooses neither forms nor positions (merged_models.cpp).
 #pragma once
 
 #include <array>
@@ -18,11 +17,11 @@ class FormWriter {
   FormWriter(const core::Bounds& box, const models::MeshView& out)
       : box_(box), packer_(box), out_(out) {}
 
-  // Appends a form. `foot` is the place of the model in the frame of the box, in metres. Without
-  // `sways` the sway of all vertices is 0.
+  // Appends a form. `foot` is the base point of the model in the frame of the box, in metres.
+  // Without `sways` the sway of all vertices is 0.
   void add(Form form, const FormMesh& mesh, const glm::vec3& foot, bool sways);
-  // Fills the rest of the mesh and returns the box of the forms added, in metres. Without any forms
-  // it is the centre of the whole box. Call it once, last.
+  // Fills the rest of the mesh and returns the bounds of the added forms, in metres; without any
+  // form the centre of the whole box. Call it once, last.
   core::Bounds finish();
 
  private:

@@ -9,10 +9,10 @@ namespace psygen::world {
 namespace {
 
 constexpr glm::vec3 kUp{0, 1, 0};
-// Height of a chunk's second upper corner below the first, over the chunk's height.
+// Height difference of a chunk's two upper corners, relative to the chunk's height.
 constexpr float kChunkStep = 0.4F;
 
-// Ambient light of flat billboards over that of a crown, which shades itself.
+// Ambient light of flat billboards relative to a crown, which shades itself.
 constexpr float kBillboardShade = 0.6F;
 
 template <std::size_t N>
@@ -143,7 +143,7 @@ void make_tent(const Outline& o, const Billboard& b, FormMesh& out) {
 }  // namespace
 
 void make_form(Form form, const Outline& outline, float width, glm::vec2 turn, FormMesh& out) {
-  PSYGEN_CHECK(!is_billboard(form), "billboards are made to measure");
+  PSYGEN_CHECK(!is_billboard(form), "make_form() makes solids; use make_billboard()");
   if (form == Form::kChunk) return make_chunk(outline, width, turn, out);
   make_spindle(outline, width, out);
   if (form == Form::kSpindleTrunk) add_trunk(outline, 6, 24, out);
@@ -163,7 +163,8 @@ Billboard billboard_of(Form form, const Outline& outline, const Silhouette& silh
 }
 
 void make_billboard(Form form, const Outline& outline, const Billboard& billboard, FormMesh& out) {
-  PSYGEN_CHECK(is_billboard(form) && form != Form::kPicture, "a form that is made to measure");
+  PSYGEN_CHECK(is_billboard(form) && form != Form::kPicture,
+               "make_billboard() makes billboards other than impostors");
   if (form == Form::kTent) return make_tent(outline, billboard, out);
   make_kite(outline, billboard, out);
   if (form == Form::kKiteTrunk) add_trunk(outline, 4, 6, out);

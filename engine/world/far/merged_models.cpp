@@ -102,10 +102,10 @@ class MergedType final : public models::ModelType {
     auto& [own, next] = plans_[static_cast<std::size_t>(level)];
     own = plan_level(*world_, scatters_, pictures_.get(), level, level);
     next = plan_level(*world_, scatters_, pictures_.get(), level, level + 1);
-    if (next.vertices == 0) next = own;  // all too small: keep the finer forms
+    if (next.vertices == 0) next = own;  // all models too small: keep the finer forms
     own.box = next.box = core::united(own.box, next.box);
   }
-  // What edits and the file have placed on the blocks of a node, counted.
+  // The number of models that edits and the file have placed on the blocks of a node.
   models::BlockEdits::Summary placed_on(const Parameters& p) const {
     const core::BlockCoord node{static_cast<std::int32_t>(p.integer(kMergedBlockX)),
                                 static_cast<std::int32_t>(p.integer(kMergedBlockZ))};
@@ -131,10 +131,10 @@ class MergedType final : public models::ModelType {
   std::shared_ptr<const World> world_;
   std::shared_ptr<const PictureSet> pictures_;  // null: none
   std::uint64_t identity_;
-  std::vector<const models::ModelType*> types_;  // of the registry, for what is placed by hand
+  std::vector<const models::ModelType*> types_;  // the registry's types, for placed models
   std::shared_ptr<const FarScatters> held_scatters_;
   std::span<const FarScatter> scatters_;  // of these
-  bool may_run_on_main_thread_ = true;    // true if it is for all scattered types
+  bool may_run_on_main_thread_ = true;    // true if true for all scattered types
   // Indexed by node level (0 is unused) and level of detail. Plans of one node level have equal
   // boxes.
   std::array<std::array<LevelPlan, kDetails>, kMaxMergedLevel + 1> plans_;
@@ -142,22 +142,22 @@ class MergedType final : public models::ModelType {
 
 struct MergedType::Making {
   const LevelPlan& plan;
-  std::uint64_t key;  // of the node's random numbers
+  std::uint64_t key;  // key of the node's random numbers
   FormWriter writer;
-  models::BlockGround node_ground;            // of the whole node
-  int drawn_stride;                           // stride at which it is drawn
-  std::optional<models::BlockGround> ground;  // of the current tile, for slopes and heights
+  models::BlockGround node_ground;            // ground of the whole node
+  int drawn_stride;                           // stride of the drawn ground
+  std::optional<models::BlockGround> ground;  // ground of the current tile, for slopes and heights
   SampleMesh mesh;
   FormMesh form;
   PlacedPlan placed;
-  std::uint64_t placed_count = 0;             // so far
-  const models::BlockEdits* edits = nullptr;  // of the current block; may be null
+  std::uint64_t placed_count = 0;             // number of placed models so far
+  const models::BlockEdits* edits = nullptr;  // edits of the current block; may be null
 };
 
 struct MergedType::Instance {
   std::size_t scatter;
   const NodeBlock& block;
-  std::uint32_t index;     // in the block
+  std::uint32_t index;     // within the block
   std::uint32_t together;  // number of models that it represents
   std::uint64_t hash;
   glm::vec3 place{0.0F};  // metres from the block's corner
@@ -225,8 +225,8 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   making.writer.add(how.form, making.form, corner + instance.place, making.plan.form_level == 1);
 }
 
-// Instances of the whole node are numbered block by block. Every `together` consecutive numbers
-// form a group, and one random member represents all of it.
+// Numbers the instances of the whole node block by block. Every `together` consecutive instances
+// form a group, which one random member represents.
 void MergedType::add_scatter(std::size_t s, const NodeBlock& block, Making& making) const {
   const FarScatter& far = scatters_[s];
   const ScatterPlan& how = making.plan.scatters[s];
@@ -272,12 +272,12 @@ core::Bounds MergedType::synthesise(const Parameters& p, int level, const MeshVi
   const MeshSize size = mesh_size(p, level);
   PSYGEN_CHECK(out.vertices.size() == size.vertex_count * sizeof(core::ModelVertex) &&
                    out.indices.size() == size.index_count,
-               "the destination has exactly the size of the mesh");
+               "the destination must have exactly the size of the mesh");
   const NodeWalk walk(*world_,
                       {static_cast<std::int32_t>(p.integer(kMergedBlockX)),
                        static_cast<std::int32_t>(p.integer(kMergedBlockZ))},
                       level_of(p));
-  Parameters node = p;  // which models stand for others does not depend on edits
+  Parameters node = p;  // edits do not change the members that represent groups
   node.set_edits(nullptr, 0);
   Making making{made,
                 core::combine(world_->seed, node.hash()),

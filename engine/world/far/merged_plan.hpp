@@ -1,6 +1,6 @@
 // Plans the merged mesh of a node level and level of detail: the form of each scatter, the number
 // of models per form, and from these the size of the mesh. Depends only on counts and sizes, not on
-// the places that models find. Pure functions, any thread, linear in the scatters.
+// the positions of models. Pure functions, any thread, linear in the scatters.
 #pragma once
 
 #include <cstdint>
@@ -30,12 +30,11 @@ struct LevelPlan {
 };
 
 // The plan for nodes of `level` with the forms of `form_level`. At most 65,536 vertices: if needed,
-// more models share a form. Up to kMaxPicturedLevel, models that `pictures` has are pictures.
+// more models share a form. Up to kMaxPicturedLevel, models in `pictures` are impostors.
 LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters,
                      const PictureSet* pictures, int level, int form_level);
 
-// Relative time of making the mesh. The unit is close to a nanosecond; only ratios are meant to be
-// used.
+// Relative time for making the mesh. The unit is close to a nanosecond; use only ratios.
 double work_of(const World& world, std::span<const FarScatter> scatters, const LevelPlan& plan);
 
 }  // namespace psygen::world

@@ -8,7 +8,7 @@ namespace psygen::world {
 namespace {
 
 constexpr std::size_t kMany = 65'536;  // expected calls of at(), enough to evaluate all heights
-// Meshes of nodes have at least this many triangles; otherwise the next finer level is used.
+// Meshes of nodes have at least this many triangles; otherwise they use the next finer level.
 constexpr std::uint32_t kFewestTriangles = 98;
 
 // Every other bit of `v`, from bit 0 on.

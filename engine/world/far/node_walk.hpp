@@ -1,7 +1,7 @@
-// The blocks of a node in Morton order, and the ground under them: evaluated in square tiles of
-// blocks, which follow each other in the same order, and as the node draws it. Tiles are without
-// edits, because models find their places there; stamps and roads are part of the world. Pure
-// functions, any thread. Places no models.
+// The blocks of a node in Morton order, and the ground under them. The ground is evaluated in
+// square tiles of blocks in the same order, and for the whole node as it is drawn. Tiles are
+// without edits, because models find their positions there; stamps and roads are part of the world.
+// Pure functions, any thread. Places no models.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace psygen::world {
 
-// A block, its number in Morton order, and the position of its corner in the node and in its tile,
+// A block, its index in Morton order, and the position of its corner in the node and in its tile,
 // in metres.
 struct NodeBlock {
   core::BlockCoord coord;
@@ -22,7 +22,7 @@ struct NodeBlock {
 };
 
 // Node level of the tiles of a node. Nodes of levels 1 and 2 have the terrain's own lattice (such
-// as 1 m). From there on the lattice doubles with each level. So no node has more than 16 tiles.
+// as 1 m). From there on the spacing doubles with each level, so no node has more than 16 tiles.
 constexpr int tile_level(int node_level) {
   return node_level <= 2 ? 0 : node_level - 2;
 }
@@ -37,21 +37,21 @@ int node_mesh_level(const World& world);
 // The walk over one node.
 class NodeWalk {
  public:
-  // `node` is counted in nodes of its level, 1 … 15. Block coordinates beyond 2^31 wrap around.
-  // `world`, which has no edits, must outlive it.
+  // `node` is in nodes of its level, 1 … 15. Block coordinates beyond 2^31 wrap around. `world`,
+  // which must have no edits, must outlive it.
   NodeWalk(const World& world, core::BlockCoord node, int node_level);
 
-  // Number of blocks, and the block with a number below it.
+  // Number of blocks; and the block with an index below it.
   std::uint32_t block_count() const { return 1U << (2 * level_); }
   NodeBlock block(std::uint32_t ordinal) const;
-  // Whether a block is the first one of its tile.
+  // True if a block is the first one of its tile.
   bool starts_tile(std::uint32_t ordinal) const {
     return (ordinal & ((1U << (2 * tile_)) - 1)) == 0;
   }
-  // Makes the ground of the tile that a block lies on. Needs 256 KiB of stack.
+  // Evaluates the ground of the tile with this block. Needs 256 KiB of stack.
   void make_ground(std::uint32_t ordinal, std::optional<models::BlockGround>& out) const;
-  // The ground of the whole node with these edits (null: that of the world), which must outlive it,
-  // and the stride for BlockGround::at() that gives the drawn ground.
+  // The ground of the whole node with these edits (null: without), which must outlive it; and the
+  // stride for BlockGround::at() that gives the drawn ground.
   models::BlockGround whole_ground(const models::EditLayer* edits) const;
   int drawn_stride() const;
 

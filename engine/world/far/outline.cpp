@@ -15,7 +15,7 @@ core::ModelVertex vertex_at(std::span<const std::byte> vertices, std::size_t i) 
   return v;
 }
 
-// The vertices furthest along ±x, ±y, ±z, among those that are added.
+// The vertices furthest along ±x, ±y, ±z of all that were added.
 struct Extremes {
   std::array<std::size_t, 6> at{};  // −x, −y, −z, +x, +y, +z
   std::size_t count = 0;

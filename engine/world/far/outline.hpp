@@ -1,6 +1,6 @@
-// Measures a model for views where it is a few pixels large: the extreme corners of its mesh, its
-// trunk, and its areas from the side and from above. Knows no model type: everything is measured on
-// a mesh. Pure functions, any thread, linear in the vertices; the same bits on every machine.
+// Measures a model for views in which it is a few pixels large: the extreme corners of its mesh,
+// its trunk, and its areas from the side and from above. Knows no model type: it measures a mesh.
+// Pure functions, any thread, linear in the vertices; the same bits on every machine.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ namespace psygen::world {
 
 inline constexpr std::uint8_t kLeaf = 1;  // core::ModelVertex::material
 
-// An unpacked vertex: position in metres from the model's foot, unit normal, stored colour (square
-// root of the albedo), ambient and sway in [0, 1].
+// An unpacked vertex: position in metres from the model's base point, unit normal, stored colour
+// (square root of the albedo), ambient and sway in [0, 1].
 struct Corner {
   glm::vec3 position{0.0F};
   glm::vec3 normal{0, 1, 0};
@@ -29,7 +29,7 @@ struct Corner {
   std::uint8_t material = 0;
 };
 
-// A vertex packed in `box`. Of its material, only whether it is a leaf.
+// Unpacks a vertex that is packed in `box`. Of its material it keeps only leaf or not.
 Corner corner_of(const core::ModelVertex& v, const core::Bounds& box);
 
 // Linear interpolation from `a` (t = 0) to `b` (t = 1). The material is that of `a`; the normal is
@@ -37,15 +37,15 @@ Corner corner_of(const core::ModelVertex& v, const core::Bounds& box);
 Corner mixed(const Corner& a, const Corner& b, float t);
 
 // The corners furthest up, down and along +x, +z, −x, −z: of the leaves, or of the whole mesh if it
-// has none. The corners of a crown that is an octahedron are returned exactly.
+// has none. Exact for a crown that is an octahedron.
 struct Outline {
   Corner top, bottom;
   std::array<Corner, 4> ring;
-  Corner foot;             // mean of the vertices that are not leaves, at their lowest height
-  float trunk_radius = 0;  // at the foot; 0: no trunk apart from the crown
+  Corner foot;             // mean of the other vertices, at their lowest height
+  float trunk_radius = 0;  // at the foot; 0: no trunk outside of the crown
   bool leafy = false;      // the mesh has leaves
 
-  glm::vec2 axis() const;     // x and z of the middle of the ring
+  glm::vec2 axis() const;     // x and z of the centre of the ring
   float ring_height() const;  // mean y of the ring
   float ring_radius() const;  // mean distance of the ring from the axis
   Corner mean_ring() const;   // mean of the ring, with the normal upwards
@@ -53,10 +53,11 @@ struct Outline {
   Outline scaled(float across, float up) const;
 };
 
-// The outline of core::ModelVertex whose positions are packed in `box`. Nothing for no vertices.
+// The outline of core::ModelVertex whose positions are packed in `box`. Nothing if there are no
+// vertices.
 std::optional<Outline> outline_of(std::span<const std::byte> vertices, const core::Bounds& box);
 
-// Areas in m² of a mesh: from the side (mean of four directions, only above y = 0), and from above.
+// Areas of a mesh in m²: from the side (mean of four directions, only above y = 0), and from above.
 // Overlapping triangles count once. Accurate to about 3 %.
 struct Silhouette {
   float side_m2 = 0, plan_m2 = 0;
@@ -69,11 +70,11 @@ struct Silhouette {
 // The silhouette of triangles over `places`, in metres.
 Silhouette silhouette_of(std::span<const glm::vec3> places, std::span<const std::uint16_t> indices);
 
-// Holds the mesh of one model, to be measured. The memory is reused from model to model.
+// A synthesised mesh of one model, for measuring. Reuses its memory for the next model.
 class SampleMesh {
  public:
-  // Synthesises a level of the mesh, or the coarsest. User types may throw. The layout must be
-  // core::VertexLayout::kModel.
+  // Synthesises a level of the mesh, by default the coarsest. User types may throw. The layout must
+  // be core::VertexLayout::kModel.
   void make(const models::ModelType& type, const models::Parameters& p, int level);
   void make(const models::ModelType& type, const models::Parameters& p) {
     make(type, p, type.level_count() - 1);
@@ -82,8 +83,8 @@ class SampleMesh {
   std::span<const std::byte> vertices() const { return vertices_; }
   const core::Bounds& box() const { return box_; }
   std::optional<Outline> outline() const { return outline_of(vertices_, box_); }
-  // Its triangles and its silhouette. `type` is that of make(); its shared indices are read if
-  // needed.
+  // Its triangles and its silhouette. `type` must be that of make(), because its shared indices may
+  // be needed.
   std::vector<std::uint16_t> indices(const models::ModelType& type) const;
   Silhouette silhouette(const models::ModelType& type) const;
 

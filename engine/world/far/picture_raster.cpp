@@ -25,8 +25,8 @@ constexpr std::array<glm::vec2, 8> kAhead{{{1, 0},
                                            {0, -1},
                                            {kDiagonal, -kDiagonal}}};
 
-// Usual light, over that of a white surface in the sun (render::Light): from the sky above, from
-// the ground below, and of the sun at a usual height, from all sides alike.
+// Typical light relative to a white surface in the sun (render::Light): from the sky above, from
+// the ground below, and from the sun at a typical height, averaged over all sides.
 constexpr float kSkyLight = 0.31F, kGroundLight = 0.10F, kSunLight = 2.0F;
 constexpr glm::vec2 kSunUp{0.77F, 0.64F};  // horizontal and vertical part of its direction
 
@@ -34,14 +34,14 @@ float of_sky(const glm::vec3& n, float ambient) {
   return ambient * (kGroundLight + (kSkyLight - kGroundLight) * (0.5F + 0.5F * n.y));
 }
 
-// The direction to a sun at the usual height; `side` is the horizontal part of it as the viewer
-// sees it: ahead and to the right, a unit vector.
+// The direction to a sun at the typical height. `side` is its horizontal part from the viewer:
+// ahead and to the right, a unit vector.
 glm::vec3 sun_at(glm::vec2 ahead, glm::vec2 side) {
   const glm::vec2 turned = side.x * ahead + side.y * glm::vec2(-ahead.y, ahead.x);
   return {kSunUp.x * turned.x, kSunUp.y, kSunUp.x * turned.y};
 }
 
-// shaders/lighting.glsl: the share of the sun's light that a surface shows.
+// As in shaders/lighting.glsl: the fraction of the sun's light that a surface reflects.
 float direct_light(const glm::vec3& n, const glm::vec3& sun, glm::vec2 ahead, bool leaf) {
   const float facing = glm::dot(n, sun);
   if (!leaf) return std::max(facing, 0.0F);
@@ -50,7 +50,7 @@ float direct_light(const glm::vec3& n, const glm::vec3& sun, glm::vec2 ahead, bo
   return wrapped * wrapped * 0.85F + 0.35F * through * through * (1 - 0.5F * wrapped);
 }
 
-// The mean over four directions of the sun about the view's.
+// The mean over four directions of the sun relative to the view.
 float usual_light(const glm::vec3& n, glm::vec2 ahead, float ambient, bool leaf) {
   float direct = 0;
   for (const glm::vec2 side :
@@ -59,9 +59,9 @@ float usual_light(const glm::vec3& n, glm::vec2 ahead, float ambient, bool leaf)
   return of_sky(n, ambient) + kSunLight * direct * (0.35F + 0.65F * ambient);
 }
 
-// How much brighter than the whole crown here a leaf is where the sun is behind the viewer's left
-// shoulder. It keeps the contrast between leaves, which the mean over directions loses, and says
-// nothing of where the sun is.
+// Brightness of a leaf relative to the whole crown, with the sun behind the viewer's left shoulder.
+// It keeps the contrast between leaves, which the mean over directions loses, and does not depend
+// on the position of the sun.
 float leaf_contrast(const glm::vec3& n, const glm::vec3& crown, glm::vec2 ahead) {
   constexpr float kMin = 0.35F;
   const glm::vec3 sun = sun_at(ahead, {-kDiagonal, -kDiagonal});
@@ -69,7 +69,7 @@ float leaf_contrast(const glm::vec3& n, const glm::vec3& crown, glm::vec2 ahead)
          (direct_light(crown, sun, ahead, true) + kMin);
 }
 
-// The usual light of the quad that shows the picture, at its upper or lower edge
+// The typical light of the quad that shows the impostor, at its upper or lower edge
 // (shaders/model.vert).
 float light_of_edge(bool top, glm::vec2 ahead, float ambient) {
   float sum = 0;
@@ -81,7 +81,7 @@ float light_of_edge(bool top, glm::vec2 ahead, float ambient) {
   return sum;
 }
 
-// The middle of all leaves.
+// The centre of all leaves.
 glm::vec3 middle_of_leaves(std::span<const Corner> corners) {
   glm::vec3 sum(0.0F);
   float count = 0;
@@ -93,7 +93,7 @@ glm::vec3 middle_of_leaves(std::span<const Corner> corners) {
   return sum / std::max(count, 1.0F);
 }
 
-// A corner in a view: texels from the upper left corner of the picture, and how far behind the
+// A corner in a view: texels from the upper left corner of the image, and the distance behind the
 // axis.
 struct Point {
   float x, y, depth;
@@ -157,7 +157,7 @@ View draw_view(std::span<const Corner> corners, std::span<const std::uint16_t> i
   return view;
 }
 
-// The next smaller level: mean opacity, and the mean colour of what is opaque.
+// The next smaller level: mean opacity, and the mean colour of the opaque parts.
 std::vector<glm::vec4> half(const std::vector<glm::vec4>& from, std::size_t side) {
   std::vector<glm::vec4> to(side * side / 4);
   for (std::size_t y = 0; y < side / 2; ++y) {
@@ -175,7 +175,7 @@ std::vector<glm::vec4> half(const std::vector<glm::vec4>& from, std::size_t side
   return to;
 }
 
-// The factor of all opacities with which the same share of the texels is drawn, `covered`.
+// The factor on all opacities at which the fraction `covered` of the texels is drawn.
 float opacity_factor(const std::vector<glm::vec4>& texels, float covered) {
   std::vector<float> opacities;
   for (const glm::vec4& t : texels)
@@ -185,7 +185,7 @@ float opacity_factor(const std::vector<glm::vec4>& texels, float covered) {
   if (drawn == 0) return 1;
   std::ranges::nth_element(opacities, opacities.begin() + static_cast<std::ptrdiff_t>(drawn - 1),
                            std::ranges::greater());
-  constexpr float kDrawn = 128.25F / 255;  // a byte of 128, whatever is rounded
+  constexpr float kDrawn = 128.25F / 255;  // gives a byte of 128 after any rounding
   return kDrawn / std::max(opacities[drawn - 1], 0.02F);
 }
 
@@ -215,7 +215,7 @@ core::ModelPicture bake_picture(std::span<const Corner> corners,
     glm::vec4 sum(0.0F);
     for (const glm::vec4& t : view.texels)
       sum += t;
-    // The colour of what is transparent shows in filtered edges.
+    // The colour of transparent texels shows in filtered edges.
     const glm::vec3 around = glm::vec3(sum) / std::max(sum.w, 1.0F);
     const float covered = sum.w / static_cast<float>(kTexels);
     std::size_t at = 0, side = kSide;

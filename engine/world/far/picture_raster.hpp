@@ -1,6 +1,6 @@
-// Bakes the picture of a model (core/model_picture.hpp): rasterises its triangles seen from around,
-// with the light that a tree's own crown leaves them, and makes the smaller levels, which keep the
-// area that is opaque. Pure, any thread, the same bits on every machine; linear in the triangles.
+// Bakes the impostor of a model (core/model_picture.hpp): rasterises its triangles from several
+// directions, lit through its own crown, and makes the smaller levels, which keep the opaque area.
+// Pure, any thread, the same bits on every machine; linear in the triangles.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace psygen::world {
 
-// What every view of a picture shows: so far to both sides of the foot's axis, from `bottom_m` to
-// `top_m`; and the ambient visibility of the quad that it is shown on.
+// The area that every view of an impostor shows: `half_width_m` to both sides of the axis through
+// the base point, from `bottom_m` to `top_m`. And the ambient visibility of its quad.
 struct PictureFrame {
   float half_width_m = 0, bottom_m = 0, top_m = 0;
   float ambient = 1;
 };
 
-// The picture of triangles over `corners`, in metres from the foot. Only the first `views` differ;
-// they repeat. Positions are as seen from the side, without perspective.
+// The impostor of triangles over `corners`, in metres from the base point. Only the first `views`
+// differ; they repeat. The projection is from the side, without perspective.
 core::ModelPicture bake_picture(std::span<const Corner> corners,
                                 std::span<const std::uint16_t> indices, const PictureFrame& frame,
                                 std::uint32_t views);

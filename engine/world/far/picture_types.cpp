@@ -1,4 +1,4 @@
-// The two model types of pictures: the request that bakes one, and the quads that show them.
+// The two model types of impostors: the request that bakes one, and the quads that show it.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -18,12 +18,12 @@ using models::ParameterSpec;
 
 constexpr ParameterSpec kPictureSchema[] = {
     {"number", models::ParameterType::kInteger, "", 0, 0, core::kMaxPictures - 1, 0,
-     core::kMaxPictures - 1, "which of the world's pictures", models::ParameterSource::kPlaced}};
+     core::kMaxPictures - 1, "number of the impostor", models::ParameterSource::kPlaced}};
 
 class PictureType final : public ModelType {
  public:
   std::string_view name() const override { return "tree_picture"; }
-  std::string_view doc() const override { return "a tree seen from around, as a texture"; }
+  std::string_view doc() const override { return "a tree from several directions, as a texture"; }
   std::span<const ParameterSpec> parameters() const override { return kPictureSchema; }
   int level_count() const override { return 1; }
   double level_error_m(const Parameters&, int) const override { return 0; }
@@ -41,7 +41,7 @@ class PictureType final : public ModelType {
     return {glm::vec3(0.5F), glm::vec3(0.5F)};
   }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
-    PSYGEN_CHECK(false, "pictures share no indices");
+    PSYGEN_CHECK(false, "impostors share no indices");
   }
 };
 
@@ -55,7 +55,7 @@ class QuadType final : public ModelType {
         name_("picture_of_" + std::string(type_->name())) {}
 
   std::string_view name() const override { return name_; }
-  std::string_view doc() const override { return "a quad that shows a picture of a model"; }
+  std::string_view doc() const override { return "a quad that shows a model's impostor"; }
   std::span<const ParameterSpec> parameters() const override { return type_->parameters(); }
   int level_count() const override { return 1; }
   double level_error_m(const Parameters&, int) const override { return 0; }
@@ -64,7 +64,7 @@ class QuadType final : public ModelType {
     const FormSize size = size_of(Form::kPicture);
     return {size.vertices, 3 * size.triangles, 0, core::VertexLayout::kModel};
   }
-  // What the coarsest mesh takes, which is measured.
+  // The time to make the coarsest mesh, which is measured.
   double complexity(const Parameters& p, int) const override {
     return type_->complexity(p, type_->level_count() - 1);
   }
@@ -86,7 +86,7 @@ class QuadType final : public ModelType {
     return writer.finish();
   }
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
-    PSYGEN_CHECK(false, "pictures share no indices");
+    PSYGEN_CHECK(false, "impostors share no indices");
   }
 
  private:

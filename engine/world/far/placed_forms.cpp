@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint64_t kMaxVertices = 65'536;
 
-// The largest form that a placed model may have in a mesh with the forms of this node level.
+// The largest form of a placed model in a mesh with the forms of this node level.
 FormSize largest(int form_level) {
   FormSize most{0, 0, 0};
   const auto add = [&most](Form form) {
@@ -57,7 +57,7 @@ std::optional<Form> make_placed_form(const models::ModelType& type,
                                      const models::Parameters& parameters, const PlacedPlan& plan,
                                      SampleMesh& mesh, glm::vec2 turn, FormMesh& out) {
   if (plan.forms == 0) return std::nullopt;
-  try {  // types of users may throw; our own code throws only when memory is exhausted
+  try {  // user types may throw; our own code throws only when memory is exhausted
     mesh.make(type, parameters);
     const auto outline = mesh.outline();
     if (!outline) return std::nullopt;
@@ -79,7 +79,7 @@ std::optional<Form> make_placed_form(const models::ModelType& type,
 
 core::Bounds with_reach(const core::Bounds& box, const glm::vec3& reach_m) {
   if (reach_m == glm::vec3(0.0F)) return box;
-  // Placed models stand in the node, whose side lies within the box.
+  // Placed models stand in the node, whose square lies within the box.
   return {box.min - glm::vec3(reach_m.x, reach_m.z, reach_m.x),
           box.max + glm::vec3(reach_m.x, reach_m.y, reach_m.x)};
 }

@@ -10,13 +10,13 @@
 namespace psygen::world {
 namespace {
 
-// A coarsest mesh with more vertices than this is not made for every instance.
+// Maximum number of vertices of a coarsest mesh that is made for every instance.
 constexpr std::size_t kCheapVertices = 128;
-// Bounds that differ by less than this factor are alike.
+// Bounds whose sizes differ by less than this factor are similar.
 constexpr float kAlike = 1.04F;
-// Up to this size on screen, a flat form cannot be told from a solid one.
+// Up to this size on screen, a flat form looks the same as a solid one.
 constexpr double kSmallPixels = 6;
-// Other instances may be larger than the representatives by this factor; parts beyond are cut.
+// Other instances may exceed the representatives by this factor; parts beyond are cut.
 constexpr float kRoom = 1.25F;
 
 FarScatter::Reach reach_of(const core::Bounds& box) {

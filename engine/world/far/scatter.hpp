@@ -1,5 +1,5 @@
-// One scatter as it appears from far away: a few instances, measured once, represent all of them.
-// Immutable after construction, any thread. Places nothing (node_walk.hpp, placement.hpp).
+// One scatter at a great distance: a few instances, measured once, represent all of them. Immutable
+// after construction, any thread. Places nothing (node_walk.hpp, placement.hpp).
 #pragma once
 
 #include <array>
@@ -20,18 +20,18 @@ struct Representative {
   float bounds_width_m = 0, bounds_height_m = 0;
 };
 
-// The match of an instance: a representative, and its factors of width and height.
+// The match for an instance: a representative, and the factors of its width and height.
 struct Likeness {
   const Representative* model;
   float across, up;
 };
 
-// The largest factor between two sizes, along either axis; 1: they are equal.
+// The largest ratio between two sizes, along either axis; 1: they are equal.
 float unlikeness(glm::vec2 a, glm::vec2 b);
 
-// The parameters of one of the instances that stand for all of a scatter, numbered from 0. The
-// blocks of these exist in every world; instances of one block vary as much as those of many.
-// `first` is the index of the scatter's first instance in a block.
+// The parameters of one of the sample instances of a scatter, numbered from 0. Their blocks exist
+// in every world; instances of one block vary as much as those of many. `first` is the index of the
+// scatter's first instance in a block.
 models::Parameters sample_parameters(const World& world, const models::ModelType& type,
                                      const Scatter& scatter, std::uint32_t first,
                                      std::uint32_t number);
@@ -43,18 +43,18 @@ class FarScatter {
 
   // Draws and synthesises kRepresentatives instances of `scatter`, whose first instance in a block
   // has the index `first`. `world`, `type` and `scatter` must outlive it. There are no
-  // representatives if the type throws, makes nothing visible or is not seen from far.
+  // representatives if the type throws, makes nothing visible or is not visible from far.
   FarScatter(const World& world, const models::ModelType& type, const Scatter& scatter,
              std::uint32_t first);
 
-  // The same representatives for a scatter that is equal to this one, in another world.
+  // The same representatives for an equal scatter in another world.
   FarScatter(const FarScatter& equal, const models::ModelType& type, const Scatter& scatter)
       : FarScatter(equal) {
     type_ = &type;
     scatter_ = &scatter;
   }
 
-  // The inputs, and the representatives; empty() if there are none.
+  // The arguments of the constructor; and the representatives; empty() if there are none.
   bool empty() const { return representatives_.empty(); }
   const models::ModelType& type() const { return *type_; }
   const Scatter& scatter() const { return *scatter_; }
@@ -62,28 +62,28 @@ class FarScatter {
   std::span<const Representative> representatives() const { return representatives_; }
   // Mean silhouette of one instance.
   Silhouette mean_silhouette() const { return mean_; }
-  // Whether most representatives have leaves.
+  // True if most representatives have leaves.
   bool is_leafy() const { return leafy_; }
-  // Whether the coarsest meshes are small enough to be made for every instance.
+  // True if the coarsest meshes are small enough to be made for every instance.
   bool is_cheap() const { return cheap_; }
 
-  // The form of single instances at a node level >= 1, if `pixels_per_m` is their size on screen at
+  // The form of single instances at a node level >= 1. `pixels_per_m` is their scale on screen at
   // the distance where such nodes begin.
   Form form_at(int node_level, double pixels_per_m) const;
-  // The factor of a form's width with which it covers, on average, as many pixels as the coarsest
-  // mesh. Not for billboards, which have dimensions of their own.
+  // The factor on a form's width at which it covers, on average, as many pixels as the coarsest
+  // mesh. Not for billboards, which have their own dimensions.
   float width_of(Form form) const { return widths_[static_cast<std::size_t>(form)]; }
 
-  // A representative like an instance with bounds of this size. `hash` selects one of those that
-  // are close enough. Requires !empty(); linear in the representatives. The pointer lives as long
-  // as this object.
+  // A representative similar to an instance with bounds of this size. `hash` selects one of those
+  // that are similar enough. Requires !empty(); linear in the representatives. The pointer lives as
+  // long as this object.
   Likeness like(float width_m, float height_m, std::uint64_t hash) const;
 
-  // Largest distances in metres of any corner from the foot; all >= 0.
+  // Largest distances in metres of any corner from the base point; all >= 0.
   struct Reach {
     float aside = 0, up = 0, down = 0;
   };
-  // The reach of forms that represent up to `models` instances.
+  // The extent of forms that represent up to `models` instances.
   Reach reach(float models) const;
 
  private:
@@ -96,28 +96,28 @@ class FarScatter {
   std::uint32_t first_;
   std::vector<Representative> representatives_;
   Silhouette mean_;
-  Reach reach_;         // of the type's bounds
+  Reach reach_;         // extent of the type's bounds
   float extent_m_ = 0;  // mean of the larger of width and height
   std::array<float, kFormCount> widths_{};
   bool leafy_ = false, conical_ = false, trunk_ = false, slender_ = false, cheap_ = false;
 };
 
-// Those of all scatters of a world, in its order.
+// The representatives of all scatters of a world, in its order.
 class FarScatters {
  public:
-  // `registry` must be that of the world; its types must outlive this. Scatters that are the same
-  // in another world (WorldParts::models) are taken over from there: `before` may be null, and its
-  // types may be gone.
+  // `registry` must be that of the world; its types must outlive this object. Scatters that are
+  // equal in another world (WorldParts::models) are copied from `before`, which may be null and
+  // whose types may be destroyed.
   FarScatters(std::shared_ptr<const World> world, const models::Registry& registry,
               const FarScatters* before = nullptr);
   std::span<const FarScatter> all() const { return all_; }
 
  private:
-  // What is known of a scatter; null: nothing.
+  // The scatter with this hash, or null.
   const FarScatter* find(std::uint64_t hash) const;
 
   std::shared_ptr<const World> world_;  // the scatters refer to it
-  std::vector<std::uint64_t> hashes_;   // of each of them
+  std::vector<std::uint64_t> hashes_;   // one for each scatter
   std::vector<FarScatter> all_;
 };
 

@@ -1,4 +1,4 @@
-// Areas of meshes from the side and from above, and the meshes that are measured.
+// Areas of meshes from the side and from above, and the meshes to measure.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -89,7 +89,7 @@ Silhouette silhouette_of(std::span<const glm::vec3> places,
 
 void SampleMesh::make(const models::ModelType& type, const models::Parameters& p, int level) {
   size_ = type.mesh_size(p, level);
-  PSYGEN_CHECK(size_.layout == core::VertexLayout::kModel, "models are made of ModelVertex");
+  PSYGEN_CHECK(size_.layout == core::VertexLayout::kModel, "models must consist of ModelVertex");
   box_ = type.bounds(p);
   vertices_.resize(size_.vertex_count * sizeof(core::ModelVertex));
   indices_.resize(size_.own_index_count());

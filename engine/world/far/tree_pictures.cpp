@@ -15,16 +15,16 @@ namespace {
 using models::ModelType;
 using models::Parameters;
 
-// The first level with at most this many triangles is the last mesh that looks like a tree. A type
-// whose finest level has no more needs no pictures.
+// The first level with at most this many triangles is the coarsest mesh that looks like a tree. A
+// type whose finest level has no more needs no impostors.
 constexpr std::uint32_t kMaxTriangles = 320;
-constexpr std::uint32_t kMaxBaked = 200'000;  // triangles: larger trees keep their hulls
-// Instances that pictures are chosen from, by their heights.
+constexpr std::uint32_t kMaxBaked = 200'000;  // triangles; larger trees keep their hulls
+// Number of instances, sorted by height, from which impostors are chosen.
 constexpr std::uint32_t kCandidates = FarScatter::kRepresentatives;
-// The part of a picture's half width and height that is left free around the model.
+// Fraction of an impostor's half width and height that stays free around the model.
 constexpr float kMargin = 0.03F;
-// How far the top of a quad leans away from the viewer, as a part of its half width. So the crown
-// can be seen from above too.
+// Distance by which the top of a quad leans away from the viewer, relative to its half width, so
+// that the crown is visible from above too.
 constexpr float kLean = 0.5F;
 constexpr float kTopSway = 0.5F;
 constexpr std::uint64_t kPictureEdition = 1;
@@ -36,7 +36,7 @@ std::vector<Corner> corners_of(const SampleMesh& mesh) {
   return corners;
 }
 
-// Whether pictures are of use for this type, and can be made of it.
+// True if impostors are useful and possible for this type.
 bool suits(const ModelType& type, const Parameters& p) {
   const models::MeshSize finest = type.mesh_size(p, 0);
   if (finest.layout != core::VertexLayout::kModel || finest.triangle_count() > kMaxBaked)
@@ -54,7 +54,7 @@ glm::vec2 size_of_bounds(const core::Bounds& box) {
   return {box.max.x - box.min.x, box.max.y - box.min.y};
 }
 
-// How far the coarsest mesh reaches to any side, and up.
+// The extent of the coarsest mesh to any side, and up.
 glm::vec2 coarse_size(const ModelType& type, const Parameters& p, SampleMesh& mesh) {
   mesh.make(type, p);
   const std::optional<Outline> outline = mesh.outline();
@@ -65,13 +65,13 @@ glm::vec2 coarse_size(const ModelType& type, const Parameters& p, SampleMesh& me
   return {radius_m, outline->top.position.y};
 }
 
-// Registries may number the same type differently.
+// Uses the type's name, because registries may number the same type differently.
 std::uint64_t key_of(const ModelType& type, const Parameters& p) {
   return core::combine(core::hash_bytes(std::as_bytes(std::span(type.name()))),
                        models::parameters_hash(type, p));
 }
 
-// Nothing for a mesh without leaves or without any extent.
+// Returns nothing for a mesh without leaves or without any extent.
 std::optional<PicturedModel> measured(models::ModelIndex index, const ModelType& type,
                                       const Parameters& p) {
   SampleMesh mesh;
@@ -97,21 +97,21 @@ std::optional<PicturedModel> measured(models::ModelIndex index, const ModelType&
   frame.ambient /= std::max(m.leafy ? leaves : solids, 1.0F);
   m.turn_deg = type.turn_deg(p).value_or(0);
   m.key = key_of(type, p);
-  frame.bottom_m = std::max(frame.bottom_m, 0.0F);  // what is in the ground is not seen
+  frame.bottom_m = std::max(frame.bottom_m, 0.0F);  // parts in the ground are invisible
   frame.half_width_m *= 1 + kMargin;
   frame.top_m += kMargin * (frame.top_m - frame.bottom_m);
   const bool flat = !(frame.half_width_m > 1e-3F && frame.top_m - frame.bottom_m > 1e-3F);
   return (m.leafy || type.turn_deg(p)) && !flat ? std::optional(m) : std::nullopt;
 }
 
-// What another set has measured.
+// The measurements that another set has made.
 std::optional<PicturedModel> taken_over(const PictureSet* before, std::uint64_t key) {
   if (before == nullptr) return std::nullopt;
   const auto found = std::ranges::find(before->models(), key, &PicturedModel::key);
   return found != before->models().end() ? std::optional(*found) : std::nullopt;
 }
 
-// By how many views of a picture a model is turned that was turned by `from` degrees there.
+// The number of views between two rotations of a model.
 std::uint32_t views_between(double from_deg, double to_deg) {
   const double views = (to_deg - from_deg) * core::kPictureViews / 360;
   const auto whole = static_cast<std::int64_t>(std::floor(views + 0.5));
@@ -119,7 +119,7 @@ std::uint32_t views_between(double from_deg, double to_deg) {
   return static_cast<std::uint32_t>((whole % kAll + kAll) % kAll);
 }
 
-// The factors that make `from` as large as `to`, within reason.
+// The factors that make `from` as large as `to`, within limits.
 glm::vec2 stretch(glm::vec2 from, glm::vec2 to) {
   const auto factor = [](float u, float v) {
     return u > 1e-6F ? std::clamp(v / u, 0.5F, 2.0F) : 1.0F;
@@ -189,7 +189,7 @@ std::uint64_t PictureSet::identity_of_picture(std::size_t number) const {
   return core::combine(kPictureEdition, models::parameters_hash(*types_[m.model], m.parameters));
 }
 
-// Quads name pictures by number, and begin to look for theirs at one of all of them.
+// Quads refer to impostors by number, and start their search at any one of them.
 std::uint64_t PictureSet::identity_of_quads(models::ModelIndex model) const {
   std::uint64_t identity = models_.size();
   for (std::size_t i = 0; i < models_.size(); ++i) {
@@ -215,7 +215,7 @@ int PictureSet::first_level(models::ModelIndex model, const Parameters& p) const
 
 void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, SampleMesh* scratch,
                            FormMesh& out) const {
-  PSYGEN_CHECK(has(model), "a type that has pictures");
+  PSYGEN_CHECK(has(model), "the type must have impostors");
   const ModelType& type = *types_[model];
   if (type.turn_deg(p)) scratch = nullptr;  // one shape: bounds say all
   const glm::vec2 own_m =

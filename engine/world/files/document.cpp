@@ -11,7 +11,7 @@
 #define TOML_HEADER_ONLY 1
 #define TOML_ENABLE_FORMATTERS 0
 #define TOML_MAX_NESTED_VALUES 16
-// A program may use toml++ with other settings, and some of its names would be the same.
+// Renames toml++, because a program may use it with other settings under the same names.
 #define toml psygen_toml
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -23,7 +23,7 @@
 #define TOML_ASSERT_ASSUME(condition) static_assert(true)
 // The parser calls is_non_ascii_horizontal_whitespace() for characters after a key or a number. For
 // U+00A1 to 0499, U+2C5E to 3057 and U+FB26 to FEFE (ö, for example) this is undefined behaviour.
-// text_screen.hpp refuses these outside strings. But after a number the parser reads on into a
+// text_screen.hpp rejects these outside strings. But after a number the parser reads on into a
 // string (1"ö"), so the missing case must return false.
 #pragma push_macro("TOML_UNREACHABLE")
 #undef TOML_UNREACHABLE
@@ -82,7 +82,7 @@ Node convert(const toml::node& from) {
   return to;
 }
 
-// The parser's message ("Error while parsing WHAT: WHY") as a part of a sentence, with a hint about
+// The parser's message ("Error while parsing WHAT: WHY") as part of a sentence, with a hint about
 // large integers.
 std::string sentence_of(const toml::parse_error& error) {
   constexpr std::string_view kBegin = "Error while parsing ";

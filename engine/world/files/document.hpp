@@ -1,6 +1,6 @@
-// A TOML document as a plain tree with line numbers. Only this file's source knows the parser;
-// world and path files are read from these nodes. Not a validator: table_reader.hpp checks what is
-// allowed. Safe for hostile texts. Plain values, any thread. docs/world-files.md.
+// A TOML document as a plain tree with line numbers. Only this file's source includes the parser;
+// world and path files are read from these nodes. It validates nothing: table_reader.hpp does that.
+// Safe for hostile texts. Plain values, any thread. docs/world-files.md.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace psygen::world {
 
 struct Member;
 
-// A value. Only the field of its kind is set.
+// A value. Only the member for its kind is set.
 struct Node {
   // kTime: any date or time; its value is not kept.
   enum class Kind : std::uint8_t { kInteger, kReal, kText, kBoolean, kTime, kArray, kTable };
@@ -28,14 +28,14 @@ struct Node {
   std::vector<Member> members;  // of a table, sorted by key
 };
 
-// A key of a table, with its line, and its value.
+// A key of a table with its line and its value.
 struct Member {
   std::string key;
   int line = 1;
   Node value;
 };
 
-// Largest depth of nested values and tables.
+// Maximum depth of nested values and tables.
 inline constexpr int kMaxNesting = 16;
 
 // Parses a text and returns its root table. Fails with kParse, naming file and line, for anything

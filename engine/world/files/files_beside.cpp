@@ -20,13 +20,13 @@ core::Result<std::filesystem::path> Beside::path_of(std::string_view name) const
   const std::filesystem::path file = folder / name;
   if (is_below(folder.empty() ? "." : folder, file)) return file;
   return core::fail(core::ErrorCode::kInvalidArgument,
-                    file.string() + " leads out of the folder of the world's file");
+                    file.string() + " leads out of the folder of the world file");
 }
 
 core::Result<std::shared_ptr<const GreyPicture>> Beside::read_grey(std::string_view name) const {
   if (files == nullptr)
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      "this program reads no files beside world files (engine/handmade)");
+                      "this program cannot read glTF models and images (engine/handmade)");
   const auto file = path_of(name);
   if (!file) return tl::unexpected(file.error());
   return files->read_grey(*file);

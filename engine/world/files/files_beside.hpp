@@ -1,6 +1,5 @@
-// What a world file names beside itself and world cannot read: models in glTF files, and pictures.
-// Implemented by engine/handmade, handed to parse_world() by whoever reads world files. One virtual
-// seam; any thread.
+// Reads the files that a world file names but world itself cannot read: glTF models and images.
+// engine/handmade implements it; callers of parse_world() pass it. One virtual seam; any thread.
 #pragma once
 
 #include <filesystem>
@@ -16,29 +15,28 @@ namespace psygen::world {
 class FilesBeside {
  public:
   virtual ~FilesBeside() = default;
-  // The model type of a [[model]], whose file is `file`. Equal files and settings give types of
-  // equal identity(). Fails with a sentence that names the file, and with the codes of
-  // gltf::read_file().
+  // The model type of a [[model]] with this file. Equal files and settings give types of equal
+  // identity(). Error messages name the file; error codes are those of gltf::read_file().
   virtual core::Result<std::unique_ptr<models::ModelType>> read_model(
       const std::filesystem::path& file, const HandmadeModel& model) const = 0;
-  // A picture of at most 4096 × 4096 pixels as grey values. Fails likewise.
+  // An image of at most 4096 × 4096 pixels as grey values. Same errors.
   virtual core::Result<std::shared_ptr<const GreyPicture>> read_grey(
       const std::filesystem::path& file) const = 0;
 };
 
-// The files beside one world file.
+// The files that one world file names.
 struct Beside {
   std::string_view world_file;  // names are relative to its folder
-  const FilesBeside* files;     // null: this program reads none
+  const FilesBeside* files;     // null: this program cannot read any
 
-  // The file of a name. Fails with kInvalidArgument where links lead out of the folder.
+  // The path of a name. Fails with kInvalidArgument if links lead out of the folder.
   core::Result<std::filesystem::path> path_of(std::string_view name) const;
-  // The picture in it. Fails also without a reader of files, with kInvalidArgument.
+  // The image with this name. Also fails with kInvalidArgument if `files` is null.
   core::Result<std::shared_ptr<const GreyPicture>> read_grey(std::string_view name) const;
 };
 
-// Whether a file, with all links followed, is in the folder or below. Files that do not exist are:
-// reading tells.
+// True if a file, after following all links, is in the folder or below. Also true for files that do
+// not exist; reading them fails later.
 bool is_below(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 }  // namespace psygen::world

@@ -20,26 +20,26 @@ constexpr const char* kDoubleQuote = "write \"";
 constexpr const char* kSingleQuote = "write '";
 constexpr const char* kDelete = "delete it";
 constexpr const char* kLatin = "write the Latin letter if it was meant";
-constexpr const char* kTurn = "an invisible mark that turns the direction of the text";
+constexpr const char* kTurn = "an invisible mark that reverses the direction of the text";
 constexpr const char* kInvisible = "an invisible character";
 
 constexpr Range kRanges[] = {
     {0x0080, 0x0084, Sight::kUnseen, "a control character", kDelete},
-    {0x0085, 0x0085, Sight::kUnseen, "a line break that is not ASCII", "end the line anew"},
+    {0x0085, 0x0085, Sight::kUnseen, "a line break that is not ASCII", "insert a plain line break"},
     {0x0086, 0x009F, Sight::kUnseen, "a control character", kDelete},
     {0x00A0, 0x00A0, Sight::kUnseen, "a non-breaking space", kSpace},
     {0x00AB, 0x00AB, Sight::kSeen, "a typographic quotation mark", kDoubleQuote},
     {0x00AD, 0x00AD, Sight::kUnseen, "a soft hyphen, which is invisible", kDelete},
     {0x00B4, 0x00B4, Sight::kSeen, "an accent", kSingleQuote},
     {0x00BB, 0x00BB, Sight::kSeen, "a typographic quotation mark", kDoubleQuote},
-    {0x0300, 0x036F, Sight::kUnseen, "a mark upon the letter before it", kDelete},
+    {0x0300, 0x036F, Sight::kUnseen, "a mark on the previous letter", kDelete},
     {0x0370, 0x03FF, Sight::kSeen, "a Greek letter", kLatin},
     {0x0400, 0x052F, Sight::kSeen, "a Cyrillic letter", kLatin},
     {0x061C, 0x061C, Sight::kUnseen, kTurn, kDelete},
     {0x1680, 0x1680, Sight::kUnseen, "a space that is not ASCII", kSpace},
     {0x180E, 0x180E, Sight::kUnseen, kInvisible, kDelete},
-    {0x1AB0, 0x1AFF, Sight::kUnseen, "a mark upon the letter before it", kDelete},
-    {0x1DC0, 0x1DFF, Sight::kUnseen, "a mark upon the letter before it", kDelete},
+    {0x1AB0, 0x1AFF, Sight::kUnseen, "a mark on the previous letter", kDelete},
+    {0x1DC0, 0x1DFF, Sight::kUnseen, "a mark on the previous letter", kDelete},
     {0x2000, 0x200A, Sight::kUnseen, "a space that is not ASCII", kSpace},
     {0x200B, 0x200B, Sight::kUnseen, "a zero-width space, which is invisible", kDelete},
     {0x200C, 0x200D, Sight::kUnseen, kInvisible, kDelete},
@@ -47,7 +47,7 @@ constexpr Range kRanges[] = {
     {0x2010, 0x2015, Sight::kSeen, "a typographic hyphen or dash", kHyphen},
     {0x2018, 0x201B, Sight::kSeen, "a typographic quotation mark", kSingleQuote},
     {0x201C, 0x201F, Sight::kSeen, "a typographic quotation mark", kDoubleQuote},
-    {0x2028, 0x2029, Sight::kUnseen, "a line break that is not ASCII", "end the line anew"},
+    {0x2028, 0x2029, Sight::kUnseen, "a line break that is not ASCII", "insert a plain line break"},
     {0x202A, 0x202E, Sight::kUnseen, kTurn, kDelete},
     {0x202F, 0x202F, Sight::kUnseen, "a non-breaking space", kSpace},
     {0x2032, 0x2032, Sight::kSeen, "a prime", kSingleQuote},
@@ -57,11 +57,11 @@ constexpr Range kRanges[] = {
     {0x2060, 0x2064, Sight::kUnseen, kInvisible, kDelete},
     {0x2066, 0x2069, Sight::kUnseen, kTurn, kDelete},
     {0x206A, 0x206F, Sight::kUnseen, kInvisible, kDelete},
-    {0x20D0, 0x20FF, Sight::kUnseen, "a mark upon the letter before it", kDelete},
+    {0x20D0, 0x20FF, Sight::kUnseen, "a mark on the previous letter", kDelete},
     {0x2212, 0x2212, Sight::kSeen, "a minus sign that is not ASCII", kHyphen},
     {0x3000, 0x3000, Sight::kUnseen, "a space that is not ASCII", kSpace},
     {0xFE00, 0xFE0F, Sight::kUnseen, kInvisible, kDelete},
-    {0xFE20, 0xFE2F, Sight::kUnseen, "a mark upon the letter before it", kDelete},
+    {0xFE20, 0xFE2F, Sight::kUnseen, "a mark on the previous letter", kDelete},
     {0xFE58, 0xFE58, Sight::kSeen, "a typographic hyphen or dash", kHyphen},
     {0xFE63, 0xFE63, Sight::kSeen, "a typographic hyphen or dash", kHyphen},
     {0xFEFF, 0xFEFF, Sight::kUnseen, "a byte order mark, which may only start a file", kDelete},

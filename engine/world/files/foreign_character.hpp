@@ -1,6 +1,6 @@
-// Describes non-ASCII characters in places where only ASCII is allowed. Gives the glyph, the
-// number, and a description in words for characters that are invisible or easily mistaken for
-// ASCII. It does not find them (text_screen.hpp). Pure, any thread.
+// Describes non-ASCII characters where only ASCII is allowed: the glyph, the number, and a
+// description in words for characters that are invisible or easily mistaken for ASCII. It does not
+// find them (text_screen.hpp). Pure, any thread.
 #pragma once
 
 #include <string>

@@ -13,9 +13,9 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::size_t kMaxHandmadeBytes = 200;  // of a name of a file
+constexpr std::size_t kMaxHandmadeBytes = 200;  // of a file name
 
-// Reads a table, without its file. False after a problem.
+// Reads a table, except its file. Returns false after a problem.
 bool read_table(TableReader& reader, HandmadeModel& model) {
   bool sound = reader.read("name", model.name, 64, Presence::kRequired);
   if (reader.read("file", model.file, kMaxHandmadeBytes, Presence::kRequired))
@@ -30,7 +30,7 @@ bool read_table(TableReader& reader, HandmadeModel& model) {
   }
   if (model.size_m > 0 && model.scale != 1)
     reader.problem(reader.find("scale")->line, "scale",
-                   "size_m says how high the model is already; only one of them is allowed");
+                   "size_m already sets the height of the model; give only one of the two");
   reader.finish();
   return sound;
 }
@@ -45,7 +45,7 @@ void register_model(const HandmadeModel& model, const HandmadeSource& source, co
     problems.add(line, fmt::format("model[{}].{}", number, key), sentence, code);
   };
   if (source.beside.files == nullptr)
-    return refuse("file", "this program reads no files beside world files (engine/handmade)",
+    return refuse("file", "this program cannot read glTF models (engine/handmade)",
                   core::ErrorCode::kInvalidArgument);
   auto type = source.beside.path_of(model.file).and_then([&](const std::filesystem::path& file) {
     return source.beside.files->read_model(file, model);
@@ -54,9 +54,9 @@ void register_model(const HandmadeModel& model, const HandmadeSource& source, co
   if (const int known = source.registry.find(model.name); known >= 0) {
     const models::ModelType& there = source.registry[static_cast<models::ModelIndex>(known)];
     if (there.identity() != (*type)->identity())
-      refuse("name", fmt::format("there is another model called {}", model.name));
+      refuse("name", fmt::format("another model is named {}", model.name));
   } else if (source.grown == nullptr) {
-    refuse("name", "models cannot be added here");
+    refuse("name", "this registry does not accept new models");
   } else if (auto added = source.grown->add(std::move(*type)); !added) {
     refuse("name", added.error().message);
   }
@@ -70,7 +70,7 @@ bool check_name_beside(TableReader& reader, std::string_view key, const std::str
       path.has_root_path() || std::find(path.begin(), path.end(), "..") != path.end();
   if (leads_out)
     reader.problem(reader.find(key)->line, key,
-                   "it must be a name relative to the folder of the world's file, without ..");
+                   "it must be relative to the folder of the world file, without ..");
   return !leads_out;
 }
 

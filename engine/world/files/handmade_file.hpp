@@ -1,6 +1,5 @@
-// Reads and writes the [[model]] tables of world files: models that were made by hand, in glTF
-// files beside the world file. It knows no glTF (files_beside.hpp). Internal to world; one thread
-// per file. Format: docs/world-files.md.
+// Reads and writes the [[model]] tables of world files: handmade models in glTF files. It knows no
+// glTF (files_beside.hpp). Internal to world; one thread per file. Format: docs/world-files.md.
 #pragma once
 
 #include <string>
@@ -15,22 +14,22 @@ namespace psygen::world {
 
 inline constexpr std::size_t kMaxHandmadeModels = 64;  // per file
 
-// What handmade models are read with.
+// The inputs for reading handmade models.
 struct HandmadeSource {
   Beside beside;
   const models::Registry& registry;
-  models::Registry* grown;  // the same, or null where it cannot grow
+  models::Registry* grown;  // the same registry, or null if it cannot grow
 };
 
-// Reads all models from the root table, and adds them to the registry as model types, unless it has
-// equal ones. Faults are added to `problems`; then the result must not be used.
+// Reads all models from the root table and adds their model types to the registry, unless it
+// already has equal ones. Adds problems to `problems`; after a problem, do not use the result.
 std::vector<HandmadeModel> read_handmade(TableReader& root, const HandmadeSource& source,
                                          Problems& problems);
 
-// Appends tables to `out` from which read_handmade() makes equal models.
+// Appends tables to `out` that read_handmade() reads back as equal models.
 void write_handmade(const std::vector<HandmadeModel>& models, std::string& out);
 
-// Adds a problem for a name that leads out of the folder of the world file, and returns false.
+// Returns false and adds a problem if a name leads out of the folder of the world file.
 bool check_name_beside(TableReader& reader, std::string_view key, const std::string& name);
 
 }  // namespace psygen::world

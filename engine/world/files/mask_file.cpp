@@ -14,7 +14,7 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::size_t kMaxMaskBytes = 200;  // of a name of a picture
+constexpr std::size_t kMaxMaskBytes = 200;  // of an image's name
 constexpr Limits kMaskPlaces{-1e12, 1e12};  // metres
 
 void read_grounds(TableReader& reader, ScatterMask& mask) {
@@ -42,9 +42,9 @@ void read_area(TableReader& reader, const World& world, ScatterMask& mask) {
   const Member* const image = reader.find("mask_image");
   if (image == nullptr) {
     if (area != nullptr)
-      reader.problem(area->line, "mask_area_m", "it is the place of mask_image, which is missing");
+      reader.problem(area->line, "mask_area_m", "it is the area of mask_image, which is missing");
   } else if (area == nullptr && world.is_endless()) {
-    reader.problem(image->line, "mask_image", "in an endless world it needs mask_area_m");
+    reader.problem(image->line, "mask_image", "an endless world also needs mask_area_m");
   } else if (area == nullptr) {
     mask.area_m = {0, 0, static_cast<double>(world.blocks_x) * world.block_size_m(),
                    static_cast<double>(world.blocks_z) * world.block_size_m()};

@@ -1,5 +1,5 @@
-// Reads and writes the keys of a [[scatter]] that are its mask. It reads no pictures
-// (files_beside.hpp). Internal to world; one thread per file. Format: docs/world-files.md.
+// Reads and writes the mask keys of a [[scatter]]. It reads no images (files_beside.hpp). Internal
+// to world; one thread per file. Format: docs/world-files.md.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace psygen::world {
 
-// Reads the mask of a table, and the picture that it names. `world` has its terrain and number of
-// blocks. Faults are problems of the reader.
+// Reads the mask of a table and the image that it names. `world` must have its terrain and number
+// of blocks. Adds problems to the reader's.
 void read_mask(TableReader& reader, const World& world, const Beside& beside, ScatterMask& mask);
 
-// Appends the keys from which read_mask() makes an equal mask.
+// Appends keys that read_mask() reads back as an equal mask.
 void write_mask(const ScatterMask& mask, std::string& out);
 
 // Allowed kinds of ground as TOML: ["grass", "dry"].

@@ -7,8 +7,8 @@
 namespace psygen::world {
 namespace {
 
-// The parameter to blame: one outside its hard range or, where all together cost too much, the one
-// on the last line.
+// The parameter to blame: one outside its hard range or, if all together cost too much, the one on
+// the last line.
 std::size_t culprit_of(const ModelFields& fields, const models::Parameters& p) {
   const auto specs = fields.type->parameters();
   std::size_t last = 0;

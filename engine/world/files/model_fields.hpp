@@ -1,4 +1,4 @@
-// The parameters of one model in a world file: reads them and checks them against the model's type.
+// The parameters of one model in a world file: reads them and checks them against the model type.
 // Internal to world; one thread per file. It knows no tables (scatter_file.cpp, world_file.cpp).
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace psygen::world {
 
-// The ranges of one model in the file, in the order of its schema, with lines and names for
-// messages.
+// The parameter ranges of one model in the file, in the order of its schema, with lines and names
+// for messages.
 struct ModelFields {
   const models::ModelType* type = nullptr;
   std::vector<ParameterRange> ranges;
@@ -21,23 +21,23 @@ struct ModelFields {
   std::vector<std::string> names;  // full names in the file
 };
 
-// All parameters at their defaults, attributed to `line`. `type` must outlive the result.
+// All parameters at their defaults, with the line `line`. `type` must outlive the result.
 ModelFields fields_of(const models::ModelType& type, int line);
 
-// Reads parameter `i` from `key`: a number or, if `is_range`, also [lowest, highest]. Adds problems
-// to the reader's; then and for missing keys the range keeps its value.
+// Reads parameter `i` from `key`: a number or, if `is_range`, also [lowest, highest]. After a
+// problem or for a missing key, the range keeps its value.
 void read_parameter(TableReader& reader, std::string_view key, std::size_t i, bool is_range,
                     ModelFields& fields);
 
-// The parameters at one corner of the ranges: bit b of `corner` selects the end of the b-th range
-// that is not a single value.
+// The parameters at one corner of the ranges: bit b of `corner` selects an end of the b-th range
+// whose ends differ.
 models::Parameters corner_of(const ModelFields& fields, std::uint32_t corner);
 
 // Validates every corner of the ranges. Adds the first problem and returns false if there is one.
 // Exponential in the number of ranges, which is at most Parameters::kMaxCount.
 bool check_model(const ModelFields& fields, Problems& problems);
 
-// The largest cost of any corner, as log2 of triangles, for allowed and for refused corners.
+// log2 of the largest number of triangles of any corner, allowed or rejected.
 double log2_cost(const ModelFields& fields);
 
 }  // namespace psygen::world

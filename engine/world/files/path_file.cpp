@@ -50,25 +50,26 @@ PathPoint read_point(const Node& node, std::size_t number, Problems& problems) {
   if (reader.read("look_at_m", target, kPlaces)) point.look_at_m = target;
   if (point.heading_deg && point.look_at_m)
     reader.problem(reader.find("look_at_m")->line, "look_at_m",
-                   "a point has a heading_deg or a look_at_m, not both");
+                   "a point may have heading_deg or look_at_m, not both");
   reader.read("pitch_deg", point.pitch_deg, kPitches);
   if (reader.read("jump", point.jump) && point.jump && number == 0)
-    reader.problem(node.line, "jump", "the first point has none before it to jump from");
+    reader.problem(node.line, "jump", "the first point cannot be a jump");
   reader.finish();
   return point;
 }
 
-// Checks a point against the one before it.
+// Checks a point against the previous one.
 void check_order(const PathPoint& before, const PathPoint& point, const Node& node,
                  std::size_t number, Problems& problems) {
   const double dt = point.time_s - before.time_s;
   if (!(dt > 0)) {
-    problems.add(node.line, fmt::format("point[{}].time_s", number),
-                 fmt::format("{} is not after the point before it, which is at {}: times must grow",
-                             point.time_s, before.time_s));
+    problems.add(
+        node.line, fmt::format("point[{}].time_s", number),
+        fmt::format("{} is not after the previous point, which is at {}: times must ascend",
+                    point.time_s, before.time_s));
   } else if (!point.jump && glm::distance(point.at_m, before.at_m) > kMaxSpeed_m_s * dt) {
     problems.add(node.line, fmt::format("point[{}].at_m", number),
-                 fmt::format("it is {:.0f} m in {} s from the point before it; allowed: {} m/s, or "
+                 fmt::format("it is {:.0f} m in {} s from the previous point; allowed: {} m/s, or "
                              "jump = true",
                              glm::distance(point.at_m, before.at_m), dt, kMaxSpeed_m_s));
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr Limits kPlacePoints{-kFarthestShapeM, kFarthestShapeM};
 
-// What differs between two equal models at different places.
+// A seed that distinguishes equal models at different positions.
 std::int64_t seed_at(const World& world, glm::dvec2 at_m) {
   const std::uint64_t x = std::bit_cast<std::uint64_t>(at_m.x + 0.0);
   const std::uint64_t z = std::bit_cast<std::uint64_t>(at_m.y + 0.0);
@@ -33,9 +33,8 @@ void read_place(const Node& node, std::size_t number, const models::Registry& re
     const core::WorldPosition at =
         core::normalised({{0, 0}, {place.at_m.x, 0, place.at_m.y}}, world.block_size_m());
     if (!world.contains(at.block))
-      reader.problem(
-          reader.find("at_m")->line, "at_m",
-          fmt::format("{:g}, {:g} m is outside of the world", place.at_m.x, place.at_m.y));
+      reader.problem(reader.find("at_m")->line, "at_m",
+                     fmt::format("{:g}, {:g} m is outside the world", place.at_m.x, place.at_m.y));
   }
   visit_placed(place, [&reader](std::string_view key, auto& field, const FieldSpec& spec) {
     reader.read(key, field, {spec.low, spec.high});
@@ -54,7 +53,7 @@ void read_place(const Node& node, std::size_t number, const models::Registry& re
       seed >= 0 && specs[static_cast<std::size_t>(seed)].source == models::ParameterSource::kPlaced)
     place.parameters.set_integer(static_cast<std::size_t>(seed), seed_at(world, place.at_m));
   if (type.mesh_size(place.parameters, 0).layout != core::VertexLayout::kModel)
-    return reader.problem(reader.find("model")->line, "model", "it cannot be placed");
+    return reader.problem(reader.find("model")->line, "model", "this model type cannot be placed");
   places.push_back(place);
 }
 

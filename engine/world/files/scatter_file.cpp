@@ -14,11 +14,11 @@
 namespace psygen::world {
 namespace {
 
-// log2 of the largest allowed number of triangles of all models of one block.
+// log2 of the maximum number of triangles of all models of one block.
 constexpr double kMaxLog2BlockCost = 26;
 
-// The number of models of a [[scatter]] per block, or 0 after a problem. Too large numbers are
-// returned too, so the caller can refuse them with their cost.
+// The number of models of a [[scatter]] per block, or 0 after a problem. Numbers that are too large
+// are returned too, so the caller can reject them with their cost.
 std::int64_t read_count(TableReader& reader) {
   const Member* member = reader.find("count");
   if (member != nullptr && member->value.kind == Node::Kind::kInteger &&
@@ -100,9 +100,9 @@ void read_scatters(TableReader& root, const models::Registry& registry, const Be
                  core::ErrorCode::kOverBudget);
   if (triangles > std::exp2(kMaxLog2BlockCost))
     problems.add(line, "scatter",
-                 fmt::format("the models of one block together are too large (predicted cost: up "
-                             "to {:.3g} triangles; allowed: 2^{:g})",
-                             triangles, kMaxLog2BlockCost),
+                 fmt::format("the models of one block together are too large (predicted: up to "
+                             "{:.3g} million triangles; allowed: {:.0f} million)",
+                             triangles / 1e6, std::exp2(kMaxLog2BlockCost) / 1e6),
                  core::ErrorCode::kOverBudget);
 }
 

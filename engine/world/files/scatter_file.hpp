@@ -11,12 +11,12 @@ namespace psygen::world {
 inline constexpr std::size_t kMaxScatters = 64;  // per file
 
 // Reads the key "model" of a table: the index of the model type, or −1 after a problem. The terrain
-// is none of them.
+// is not allowed.
 int read_model_name(TableReader& reader, const World& world, const models::Registry& registry);
 
 // Reads all tables into world.scatter. Adds problems for unknown models, for parameters that their
-// types refuse, and for too many models or triangles on a block. Requires all of the world's
-// table and its terrain.
+// types reject, and for too many models or triangles on a block. `world` must already have the
+// values of [world] and its terrain.
 void read_scatters(TableReader& root, const models::Registry& registry, const Beside& beside,
                    World& world, Problems& problems);
 

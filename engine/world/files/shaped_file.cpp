@@ -14,7 +14,7 @@
 namespace psygen::world {
 namespace {
 
-constexpr std::size_t kMaxStampBytes = 200;  // of a name of a picture
+constexpr std::size_t kMaxStampBytes = 200;  // of an image's name
 constexpr Limits kShapePlaces{-kFarthestShapeM, kFarthestShapeM};
 
 void read_stamp_picture(TableReader& reader, const Beside& beside, Stamp& stamp) {
@@ -25,7 +25,7 @@ void read_stamp_picture(TableReader& reader, const Beside& beside, Stamp& stamp)
   if (!picture) return reader.problem(line, "image", picture.error().message, picture.error().code);
   if ((*picture)->width < 2 || (*picture)->height < 2)
     return reader.problem(line, "image",
-                          fmt::format("the picture is {} x {}; a stamp needs 2 x 2 pixels or more",
+                          fmt::format("the image has {} x {} pixels; a stamp needs at least 2 x 2",
                                       (*picture)->width, (*picture)->height));
   stamp.picture = std::move(*picture);
 }
@@ -52,7 +52,7 @@ Stamp read_stamp(const Node& node, std::size_t number, const Beside& beside, Pro
   return stamp;
 }
 
-// Points of two numbers each. The first problem of a point ends it.
+// Points of two numbers each. Reports one problem a point.
 void read_points(TableReader& reader, std::vector<glm::dvec2>& points) {
   const Member* member = reader.find("points_m", Presence::kRequired);
   if (member == nullptr) return;
@@ -78,7 +78,7 @@ void read_points(TableReader& reader, std::vector<glm::dvec2>& points) {
     if (!points.empty()) {
       const double x = point.x - points.back().x, z = point.y - points.back().y;
       if (x * x + z * z < kMinRoadStepM * kMinRoadStepM)
-        return refuse(item, fmt::format("point {} must be {:g} m or more from the one before it",
+        return refuse(item, fmt::format("point {} must be at least {:g} m from the previous one",
                                         points.size(), kMinRoadStepM));
     }
     points.push_back(point);

@@ -1,5 +1,5 @@
-// Reads and writes [[stamp]] and [[road]] of a world file. Internal to world; one thread per file.
-// Format: docs/world-files.md.
+// Reads and writes the [[stamp]] and [[road]] tables of a world file. Internal to world; one thread
+// per file. Format: docs/world-files.md.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace psygen::world {
 
-// Reads all tables, and the pictures that stamps name. Faults are problems.
+// Reads all tables and the images of stamps. Adds problems to `problems`.
 ShapedGround read_shaped(TableReader& root, const Beside& beside, Problems& problems);
 
-// shape_ground() for a world that was read from this file. Faults are problems.
+// Calls shape_ground() for a world that was read from this file. Errors become problems.
 void shape_world(TableReader& root, World& world, Problems& problems);
 
-// Appends tables to `out` from which read_shaped() makes equal ground.
+// Appends tables to `out` that read_shaped() reads back as equal ground.
 void write_shaped(const ShapedGround& shaped, std::string& out);
 
 // Points as TOML: [[1, 2], [3, 4]].

@@ -42,7 +42,7 @@ bool has_control_characters(std::string_view text) {
 void Problems::keep_first(int line, int rank, std::string_view field, std::string_view sentence,
                           core::ErrorCode code) {
   if (first_ && rank >= first_rank_) return;
-  // shown(), because the sentence may contain text from the file.
+  // Uses shown(), because the sentence may contain text from the file.
   first_ = core::Error{code, fmt::format("{}:{}: {}", file_, line,
                                          core::shown(fmt::format("{}: {}", field, sentence)))};
   first_rank_ = rank;
@@ -203,7 +203,7 @@ std::optional<NumberRange> TableReader::read_range(std::string_view key) {
   }
   if (low.real > high.real) {
     problem(node.line, key,
-            fmt::format("[{}, {}] is upside down: the lowest value comes first", value_text(low),
+            fmt::format("[{}, {}] is reversed: give the lowest value first", value_text(low),
                         value_text(high)));
     return std::nullopt;
   }

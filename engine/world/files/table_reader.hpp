@@ -1,7 +1,7 @@
 // Reads the fields of a table into variables and checks types, ranges, missing keys and unknown
-// keys. Errors name file, line and field and say what is allowed. The user gets the first problem
-// of the file, by line. Missing fields come last, because they may be misspelt. One thread per
-// file. It parses no text (document.hpp).
+// keys. Messages name file, line, field and allowed values. The user gets the problem on the lowest
+// line. Missing fields come last, because they may be misspelt. One thread per file. It parses no
+// text (document.hpp).
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ class Problems {
   void add(int line, std::string_view field, std::string_view sentence,
            core::ErrorCode code = core::ErrorCode::kParse);
   void add_missing(int line, std::string_view field);
-  // Whether there was a problem, and the first one; first() requires any().
+  // True if there was a problem; and the first one. first() requires any().
   bool any() const { return first_.has_value(); }
   core::Error first() const { return *first_; }
 
@@ -46,10 +46,10 @@ struct Limits {
   double high = 0;
 };
 
-// Whether a missing key is a problem.
+// A missing required key is a problem.
 enum class Presence : std::uint8_t { kOptional, kRequired };
 
-// A value written as one number or as [low, high], not yet checked against limits. Both are finite
+// A value written as one number or as [low, high], without a check against limits. Both are finite
 // and low <= high.
 struct NumberRange {
   double low = 0, high = 0;
@@ -64,9 +64,9 @@ class TableReader {
   // the first line of the table. The node and the problems must outlive the reader.
   TableReader(const Node& table, std::string path, int line, Problems& problems);
 
-  // Read the value of a key. They register the key as known, and leave `value` unchanged if the key
-  // is missing or its value is wrong. Return true if `value` was set. Strings have 1 to `max_bytes`
-  // bytes and no control characters; read_range() returns nothing instead of false.
+  // Each reads the value of a key, registers the key as known, and returns true if it set `value`.
+  // A missing key or a wrong value leaves `value` unchanged. Strings have 1 to `max_bytes` bytes
+  // and no control characters; read_range() returns nothing instead of false.
   bool read(std::string_view key, double& value, Limits limits, Presence = Presence::kOptional);
   bool read(std::string_view key, float& value, Limits limits, Presence = Presence::kOptional);
   bool read(std::string_view key, std::int64_t& value, Limits limits,
@@ -87,8 +87,8 @@ class TableReader {
   // The tables of an array of tables; empty if it is missing or wrong.
   std::vector<const Node*> tables(std::string_view key, std::size_t max_count);
 
-  // Call it last: adds a problem for every key that was never read, and suggests the nearest known
-  // key.
+  // Adds a problem for every key that was never read and suggests the nearest known key. Call it
+  // last.
   void finish();
 
   // A member of the table, or null. Registers the key as known.

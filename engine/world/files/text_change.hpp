@@ -1,5 +1,5 @@
-// What edits of texts share (text_edit.cpp, text_tables.cpp): checks of what goes in and comes out,
-// and places for new tables. Internal to world. Pure, any thread.
+// Helpers of text_edit.cpp and text_tables.cpp: checks of their inputs and outputs, and positions
+// for new tables. Internal to world. Pure, any thread.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace psygen::world {
 
-// How messages call the text.
+// The name of the text in messages.
 inline constexpr std::string_view kEditedText = "the text";
 
 // The layout of the text to edit.
@@ -19,12 +19,12 @@ core::Result<TextLayout> lay_out_edited(std::string_view text);
 tl::unexpected<core::Error> refuse_edit(const TextPath& path, std::string_view sentence);
 // The text if it parses, else kInternal.
 core::Result<std::string> checked_edit(std::string text, const TextPath& path);
-// Where a new table with this path goes: before the first header of a later section, or at the end
-// of the table that it is in.
+// The offset for a new table with this path: before the first header of a later section, or at the
+// end of its parent table.
 std::size_t place_of_new_table(const TextLayout& layout, const TextPath& path);
-// The text with a table at `at`, a begin of a line, and a blank line before and behind it.
+// The text with a table at `at`, the start of a line, and a blank line before and after it.
 std::string with_table_at(const TextLayout& layout, std::size_t at, std::string table);
-// The blanks at the begin of a line.
+// The blanks at the start of a line.
 std::string_view indent_at(std::string_view text, std::size_t line_begin);
 // "[a.b]" or "[[a.b]]", with the indentation of its siblings.
 std::string header_line(const TextLayout& layout, const TextPath& path, bool is_item);

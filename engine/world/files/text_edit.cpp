@@ -1,4 +1,4 @@
-// Single values. Tables are in text_tables.cpp.
+// Edits of single values. Edits of tables are in text_tables.cpp.
 #include "engine/world/files/text_edit.hpp"
 
 #include <fmt/format.h>
@@ -10,14 +10,14 @@
 namespace psygen::world {
 namespace {
 
-// Whether this text is one value and nothing else.
+// Fails if this text is not exactly one value.
 core::Result<void> check_value(const TextPath& path, std::string_view value) {
   const std::string line = fmt::format("v = {}", value);
   const auto layout = lay_out(line, "value");
   if (layout && layout->places.front().path == TextPath{"v"} &&
       layout->places.front().value.begin + value.size() == layout->places.front().value.end)
     return {};
-  return refuse_edit(path, layout ? "what is to be written must be one value, without blanks or "
+  return refuse_edit(path, layout ? "the new value must be a single value, without blanks or "
                                     "comments around it"
                                   : layout.error().message);
 }
@@ -46,7 +46,7 @@ std::string with_member(const TextLayout& layout, const TextPlace& table, std::s
                                at + 1 == table.value.end && empty ? " " : ""));
 }
 
-// The text with one more item in an array that is not of tables with headers.
+// The text with one more item in an array, except an array of tables with headers.
 std::string with_item(const TextLayout& layout, const TextPlace& array, std::string_view value) {
   std::size_t at = array.value.begin + 1;
   for (const TextPlace& place : layout.places) {
@@ -57,7 +57,7 @@ std::string with_item(const TextLayout& layout, const TextPlace& array, std::str
   return with_span(layout.text, {at, at}, fmt::format("{}{}", empty ? "" : ", ", value));
 }
 
-// The text with a new line behind `lines`, indented like them.
+// The text with a new line after `lines`, indented like them.
 std::string with_line_behind(const TextLayout& layout, TextSpan lines, std::string_view line) {
   const std::string_view end = layout.line_break();
   const bool cut = lines.end > 0 && layout.text[lines.end - 1] != '\n';
@@ -66,7 +66,7 @@ std::string with_line_behind(const TextLayout& layout, TextSpan lines, std::stri
       fmt::format("{}{}{}{}", cut ? end : "", indent_at(layout.text, lines.begin), line, end));
 }
 
-// Adds a key to a table that is there: with a header, or the root.
+// Adds a key to an existing table: one with a header, or the root.
 std::string with_statement(const TextLayout& layout, int header, std::string_view line) {
   const std::size_t next = layout.next_header(header);
   for (std::size_t i = next; i-- > static_cast<std::size_t>(header + 1);) {
@@ -78,7 +78,8 @@ std::string with_statement(const TextLayout& layout, int header, std::string_vie
                    fmt::format("{}{}", line, layout.line_break()));
 }
 
-// Adds a key to a table that exists only by dotted keys ("a.b = 1"). Nothing if there are none.
+// Adds a key to a table that exists only by dotted keys ("a.b = 1"). Returns nothing if it has
+// none.
 std::optional<std::string> with_dotted_key(const TextLayout& layout, const TextPath& path,
                                            std::string_view value) {
   const TextPath table = path.parent();
@@ -106,7 +107,7 @@ core::Result<std::string> with_new_value(const TextLayout& layout, const TextPat
     if (at < 0 || layout.text[layout.places[static_cast<std::size_t>(at)].value.begin] != '[' ||
         layout.places[static_cast<std::size_t>(at)].is_header() ||
         path.back().index != layout.item_count(parent))
-      return refuse_edit(path, fmt::format("there are only {} of them", layout.item_count(parent)));
+      return refuse_edit(path, fmt::format("there are only {} items", layout.item_count(parent)));
     return with_item(layout, layout.places[static_cast<std::size_t>(at)], value);
   }
   const std::string member = fmt::format("{} = {}", toml_key(path.back().key), value);
@@ -119,9 +120,9 @@ core::Result<std::string> with_new_value(const TextLayout& layout, const TextPat
   }
   if (auto dotted = with_dotted_key(layout, path, value)) return *std::move(dotted);
   if (parent.back().is_index)
-    return refuse_edit(
-        parent, fmt::format("there are only {} of them", layout.item_count(parent.parent())));
-  // A table that is missing: within an inline table it becomes one, else it gets a header.
+    return refuse_edit(parent,
+                       fmt::format("there are only {} items", layout.item_count(parent.parent())));
+  // A missing table becomes an inline table inside an inline table, else it gets a header.
   if (parent.size() > 1) {
     const int within = layout.find(parent.parent());
     if (within >= 0 && !layout.places[static_cast<std::size_t>(within)].is_header())
@@ -134,7 +135,8 @@ core::Result<std::string> with_new_value(const TextLayout& layout, const TextPat
                        fmt::format("{}{}{}{}", header, indent, member, layout.line_break()));
 }
 
-// Without a member of an inline table or an item of an array, and without a comma beside it.
+// The text without a member of an inline table or an item of an array, and without one comma next
+// to it.
 std::string without_nested(std::string_view text, TextSpan span) {
   const auto is_blank = [&](std::size_t i) { return text[i] == ' ' || text[i] == '\t'; };
   std::size_t behind = span.end;
@@ -157,7 +159,7 @@ std::string without_nested(std::string_view text, TextSpan span) {
 
 core::Result<std::string> with_value(std::string_view text, const TextPath& path,
                                      std::string_view toml_value) {
-  if (path.empty()) return refuse_edit(path, "a value has a key");
+  if (path.empty()) return refuse_edit(path, "a value needs a key");
   if (auto checked = check_value(path, toml_value); !checked)
     return tl::unexpected(std::move(checked.error()));
   const auto layout = lay_out_edited(text);
@@ -205,7 +207,8 @@ core::Result<std::string> with_values(std::string_view text, const TextPath& pat
   core::Result<std::string> changed = std::string(text);
   for (std::size_t i = 0; i < layout->places.size(); ++i) {
     const TextPlace& place = layout->places[i];
-    if (place.is_header()) return refuse_edit(place.path, "a part of a table has no headers");
+    if (place.is_header())
+      return refuse_edit(place.path, "the keys of a table must not contain headers");
     if (place.nested) continue;
     TextPath full = path;
     for (const TextStep& step : place.path.steps)

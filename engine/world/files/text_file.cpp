@@ -19,7 +19,7 @@ core::Result<std::string> read_text_file(const std::filesystem::path& file,
   const auto fail = [&file](std::string_view why) {
     return core::fail(core::ErrorCode::kIo, fmt::format("{}: {}", file.string(), why));
   };
-  if (file.empty()) return core::fail(core::ErrorCode::kIo, "a file to read must have a name");
+  if (file.empty()) return core::fail(core::ErrorCode::kIo, "the file name is empty");
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (status.type() == std::filesystem::file_type::not_found) return fail("there is no such file");

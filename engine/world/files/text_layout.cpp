@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kMark = "\xEF\xBB\xBF";  // byte order mark
 
-// The key that a quoted key with escapes stands for.
+// The key that a quoted key with escapes denotes.
 std::string unescaped(std::string_view quoted) {
   const auto parsed = parse_document("k = " + std::string(quoted), "key");
   return parsed && !parsed->members.empty() ? parsed->members.front().value.text : std::string();
@@ -23,7 +23,7 @@ class LayoutScanner {
     at_ = layout.begin();
   }
 
-  // False where the text is not what a parser takes.
+  // Returns false for a text that a parser would not accept.
   bool run() {
     while (ok_ && at_ < text_.size()) {
       const std::size_t line = at_;
@@ -62,7 +62,7 @@ class LayoutScanner {
       }
     }
   }
-  // The end of the line with at_, behind its line break.
+  // The end of the line with at_, after its line break.
   std::size_t line_end() const {
     const std::size_t end = text_.find('\n', at_);
     return end == std::string_view::npos ? text_.size() : end + 1;
@@ -105,7 +105,7 @@ class LayoutScanner {
     return parts;
   }
 
-  // The path of a header's key: within the newest items of arrays.
+  // The path of a header's key, through the newest items of arrays.
   TextPath path_of(const std::vector<std::string>& parts, bool is_item) {
     TextPath path;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -140,7 +140,7 @@ class LayoutScanner {
     if (ok_) layout_.places[index].lines = {line, line_end()};
   }
 
-  // "key = value" from at_ on, within `table`. Returns the index of its place.
+  // Reads "key = value" from at_ on, within `table`. Returns the index of its place.
   std::size_t take_member(const TextPath& table, bool nested) {
     const std::size_t begin = at_;
     TextPath path = table;
@@ -225,13 +225,13 @@ class LayoutScanner {
   TextLayout& layout_;
   std::string_view text_;
   std::size_t at_ = 0;
-  TextPath table_;                            // of the header above
-  std::map<std::string, std::size_t> items_;  // numbers of [[headers]] so far, by their paths
+  TextPath table_;                            // path of the header above
+  std::map<std::string, std::size_t> items_;  // number of [[headers]] so far, by path
   int depth_ = 0;
   bool ok_ = true;
 };
 
-// The line above `line_begin`, without its line break. Nothing at the begin of the text.
+// The line above `line_begin`, without its line break. Nothing at the start of the text.
 std::optional<TextSpan> line_above(std::string_view text, std::size_t line_begin) {
   if (line_begin == 0) return {};
   const std::size_t end = line_begin - 1;

@@ -1,6 +1,6 @@
-// Where the tables and values of a TOML text are, in bytes: what an edit needs to change one of
-// them and leave all else alone. Not a parser: it requires a text that parse_document() takes.
-// Internal to world. Plain values, any thread; linear in the text, as finding a path is.
+// The positions of tables and values in a TOML text, in bytes, so that an edit can change one of
+// them and keep the rest. Not a parser: the text must pass parse_document(). Internal to world.
+// Plain values, any thread; layout and find() are linear in the text.
 #pragma once
 
 #include <cstddef>
@@ -27,12 +27,12 @@ struct TextPlace {
   };
   Kind kind = Kind::kValue;
   TextPath path;
-  TextSpan value;  // the value; of a header: from "[" to "]"
-  // Whole lines of the statement or header, with the line break. Of a nested value: from its key
+  TextSpan value;  // the value; for a header from "[" to "]"
+  // Whole lines of the statement or header, with the line break. For a nested value, from its key
   // to its end.
   TextSpan lines;
   bool nested = false;        // in an inline table or an array
-  std::size_t key_parts = 1;  // of the key of a statement: 2 in "a.b = 1"
+  std::size_t key_parts = 1;  // parts of a statement's key: 2 in "a.b = 1"
   bool is_header() const { return kind != Kind::kValue; }
 };
 
@@ -41,17 +41,16 @@ struct TextLayout {
   std::string_view text;
   std::vector<TextPlace> places;
 
-  std::size_t begin() const;  // behind a byte order mark
+  std::size_t begin() const;  // after a byte order mark
   // The index of the place with this path, or -1.
   int find(const TextPath& path) const;
-  // Where what belongs to a header begins: at the comment lines directly above it, unless they
-  // begin the file.
+  // The start of a header with the comment lines directly above it, unless these begin the file.
   std::size_t start_of(const TextPlace& header) const;
-  // The index of the first header behind place `i` (-1: of all), or places.size().
+  // The index of the first header after place `i` (-1: of all headers), or places.size().
   std::size_t next_header(int i) const;
-  // How many items an array has, of tables or inline; 0 if there is no such array.
+  // The number of items of an array, of tables or inline; 0 if there is no such array.
   std::size_t item_count(const TextPath& array) const;
-  // The line break of the text: "\r\n" if its first line ends like that.
+  // The line break of the text: "\r\n" if its first line ends with it.
   std::string_view line_break() const;
 };
 

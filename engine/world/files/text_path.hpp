@@ -1,5 +1,5 @@
-// The path of a value in a TOML text: scatter[2].branches. Names places for edits of texts
-// (text_edit.hpp) and for controls of an editor; it knows no text. Plain value, any thread.
+// The path of a value in a TOML text: scatter[2].branches. It addresses text edits (text_edit.hpp)
+// and an editor's controls; it knows no text. Plain value, any thread.
 #pragma once
 
 #include <concepts>
@@ -39,22 +39,23 @@ struct TextPath {
   std::size_t size() const { return steps.size(); }
   bool empty() const { return steps.empty(); }
   const TextStep& back() const { return steps.back(); }
-  // The first `count` steps, count <= size(); and all but the last, for a path that is not empty.
+  // The first `count` steps, count <= size(); and all but the last step. parent() requires
+  // !empty().
   TextPath first(std::size_t count) const;
   TextPath parent() const { return first(size() - 1); }
   // This path with one more step.
   TextPath with(TextStep step) const;
-  // Whether this path is `start` or leads further.
+  // True if `start` is this path or the beginning of it.
   bool starts_with(const TextPath& start) const;
-  // As messages about files write it: "scatter[2].branches". Keys that are not bare are in quotes.
+  // The path as messages write it: "scatter[2].branches". Keys that are not bare are in quotes.
   std::string text() const;
   friend bool operator==(const TextPath&, const TextPath&) = default;
 };
 
-// A key as TOML writes it: bare where that is allowed, else in quotes.
+// A key as TOML writes it: bare if allowed, else in quotes.
 std::string toml_key(std::string_view key);
 
-// The path that text() wrote, for paths with bare keys only. Nothing for other texts.
+// Parses the result of text(), for paths with bare keys only. Returns nothing for other texts.
 std::optional<TextPath> parse_text_path(std::string_view text);
 
 }  // namespace psygen::world

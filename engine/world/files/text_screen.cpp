@@ -73,8 +73,8 @@ class Screen {
   }
 
   // The parser limits the nesting of values, but not the parts of a dotted key. Each part is a
-  // table, so long keys would exhaust the stack. Because strings over several lines are refused, a
-  // line break ends every string and comment.
+  // table, so long keys would exhaust the stack. Strings over several lines are rejected, so a line
+  // break ends every string and comment.
   core::Result<void> take_plain(char c) {
     if (c == '#') {
       within_ = Within::kComment;
@@ -104,8 +104,8 @@ class Screen {
   int max_parts_;
   std::size_t at_ = 0, line_start_ = 0, line_ = 1;
   Within within_ = Within::kNothing;
-  char quote_ = '"';      // of the string
-  bool escaped_ = false;  // by a backslash in it
+  char quote_ = '"';      // the string's delimiter
+  bool escaped_ = false;  // by a backslash in the string
   int dots_ = 0;
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kSnippet = "the pasted text";
 
-// Without the indices: what headers name.
+// The path without indices, as headers write it.
 TextPath keys_of(const TextPath& path) {
   TextPath keys;
   for (const TextStep& step : path.steps)
@@ -27,7 +27,7 @@ std::string named(const TextPath& keys) {
   return keys.empty() ? "keys without a table" : fmt::format("[{}]", keys.text());
 }
 
-// The path in the text of what has this path in the snippet, whose table has `depth` steps.
+// Maps a path in the snippet, whose table has `depth` steps, to the path in the text.
 TextPath moved_path(const TextPath& to, const TextPath& from, std::size_t depth) {
   TextPath path = to;
   path.steps.insert(path.steps.end(),
@@ -36,7 +36,7 @@ TextPath moved_path(const TextPath& to, const TextPath& from, std::size_t depth)
   return path;
 }
 
-// Removes the arrays of tables that the snippet brings, one item after the other.
+// Removes, item by item, the arrays of tables that the snippet replaces.
 core::Result<std::string> without_replaced(std::string text, const TextPath& path,
                                            const TextLayout& snippet, std::size_t depth) {
   for (const TextPlace& place : snippet.places) {
@@ -68,7 +68,7 @@ core::Result<std::string> copied_snippet(std::string_view text, const TextPath& 
   if (auto table = table_text(text, path)) return *std::move(table);
   const auto value = value_text(text, path);
   if (!value || path.back().is_index)
-    return refuse_edit(path, "this is not set in the text, so it cannot be copied");
+    return refuse_edit(path, "the text does not set this, so it cannot be copied");
   const std::string line = fmt::format("{} = {}\n", toml_key(path.back().key), *value);
   if (path.size() == 1) return line;
   return header_line(TextLayout{}, path.parent(), path.parent().back().is_index) + line;
@@ -81,8 +81,9 @@ core::Result<std::string> with_snippet(std::string_view text, const TextPath& pa
   const bool bare = layout->places.empty() || !layout->places.front().is_header();
   const TextPath base = bare ? TextPath{} : layout->places.front().path;
   if (!bare && keys_of(base) != keys_of(path))
-    return refuse_edit(path, fmt::format("the pasted text is of {}, which does not fit into {}",
-                                         named(keys_of(base)), named(keys_of(path))));
+    return refuse_edit(path,
+                       fmt::format("the pasted text belongs to {}, which does not fit into {}",
+                                   named(keys_of(base)), named(keys_of(path))));
   auto changed = without_replaced(std::string(text), path, *layout, base.size());
   for (std::size_t i = 0; changed && i < layout->places.size(); ++i) {
     const TextPlace& place = layout->places[i];
@@ -115,12 +116,12 @@ core::Result<std::string> read_preset(std::string_view text, std::string_view fi
   if (version.empty()) return refuse("partial: this field is missing; the file is not a preset");
   if (version != fmt::format("{}", kPresetFormat))
     return refuse(
-        fmt::format("partial: the file has version {}, which this program does not know; "
+        fmt::format("partial: this program does not know version {} of presets; "
                     "allowed: {}",
                     version, kPresetFormat));
   const std::size_t first = layout->next_header(-1);
   if (first != 1 || first == layout->places.size())
-    return refuse("a preset has the line partial and one table");
+    return refuse("a preset must have the line partial and one table");
   return std::string(text.substr(layout->start_of(layout->places[first])));
 }
 

@@ -1,4 +1,4 @@
-// Tables with headers. Single values are in text_edit.cpp.
+// Edits of tables with headers. Edits of single values are in text_edit.cpp.
 #include <fmt/format.h>
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace psygen::world {
 namespace {
 
 // The parts of the text that belong to a table and the tables in it, with the comments above their
-// headers and the blank lines behind them. Most often there is one.
+// headers and the blank lines after them. Usually there is one part.
 std::vector<TextSpan> parts_of(const TextLayout& layout, const TextPath& table) {
   std::vector<TextSpan> parts;
   for (std::size_t i = layout.next_header(-1); i < layout.places.size();) {
@@ -32,7 +32,7 @@ std::vector<TextSpan> parts_of(const TextLayout& layout, const TextPath& table) 
   return parts;
 }
 
-// Without the blank lines at its end, and with one line break there.
+// The table without blank lines at its end, and with one line break there.
 std::string trimmed_table(std::string_view text, std::string_view line_break) {
   const std::size_t last = text.find_last_not_of(" \t\r\n");
   return last == std::string_view::npos ? std::string()
@@ -57,7 +57,7 @@ std::string without_parts(std::string_view text, const std::vector<TextSpan>& pa
   return out;
 }
 
-// Whether the text is a whole table with headers of this array, and nothing else.
+// True if the text is one whole table with headers of this array.
 bool has_headers_of(const TextLayout& table, const TextPath& array) {
   if (table.places.empty() || !table.places.front().is_header()) return false;
   std::vector<std::string> keys;  // the headers name arrays without indices
@@ -82,7 +82,7 @@ core::Result<void> require_item(const TextLayout& layout, const TextPath& path) 
   return refuse_edit(path, "there is no such table with a header in the text");
 }
 
-// Where a new item with this index goes: before the item that has it, or behind the last.
+// The offset for a new item with this index: before the item that has the index, or after the last.
 std::size_t place_of_item(const TextLayout& layout, const TextPath& array, std::size_t index) {
   if (const int at = layout.find(array.with(index)); at >= 0)
     return layout.start_of(layout.places[static_cast<std::size_t>(at)]);
@@ -98,7 +98,7 @@ std::size_t place_of_item(const TextLayout& layout, const TextPath& array, std::
 core::Result<std::string> with_table_appended(std::string_view text, const TextPath& array,
                                               std::string_view table) {
   if (array.empty() || array.back().is_index)
-    return refuse_edit(array, "a table is added to an array");
+    return refuse_edit(array, "tables can be added to an array only");
   const auto layout = lay_out_edited(text);
   if (!layout) return tl::unexpected(layout.error());
   const auto added = lay_out(table, "the table");
@@ -123,7 +123,7 @@ core::Result<std::string> with_table_appended(std::string_view text, const TextP
 core::Result<std::string> without_table(std::string_view text, const TextPath& path) {
   const auto layout = lay_out_edited(text);
   if (!layout) return tl::unexpected(layout.error());
-  if (path.empty()) return refuse_edit(path, "the whole text is not a table to remove");
+  if (path.empty()) return refuse_edit(path, "the whole text cannot be removed");
   if (const int at = layout->find(path);
       at >= 0 && !layout->places[static_cast<std::size_t>(at)].is_header())
     return without_value(text, path);
@@ -151,7 +151,7 @@ core::Result<std::string> with_table_moved(std::string_view text, const TextPath
     return tl::unexpected(std::move(there.error()));
   const TextPath array = item.parent();
   if (to >= layout->item_count(array))
-    return refuse_edit(item, fmt::format("there are only {} of them", layout->item_count(array)));
+    return refuse_edit(item, fmt::format("there are only {} items", layout->item_count(array)));
   if (to == item.back().index) return std::string(text);
   const std::vector<TextSpan> parts = parts_of(*layout, item);
   const std::string table = joined(*layout, parts);

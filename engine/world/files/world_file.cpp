@@ -1,6 +1,6 @@
 // World files: text → World. The [[scatter]] tables are read in scatter_file.cpp, the species in
 // species_file.cpp, the handmade models in handmade_file.cpp, stamps and roads in shaped_file.cpp,
-// what is placed by hand in place_file.cpp. Writing is in write_world.cpp. docs/world-files.md
+// models placed by hand in place_file.cpp. Writing is in write_world.cpp. docs/world-files.md
 // describes the format.
 #include "engine/world/files/world_file.hpp"
 
@@ -103,7 +103,7 @@ void read_fields(TableReader& root, std::string_view name, Problems& problems,
   reader.finish();
 }
 
-// The palette with the names of its pictures, which may not lead out of the world's folder.
+// The palette with the names of its images, which must not lead out of the world's folder.
 void read_palette(TableReader& root, Palette& palette, Problems& problems) {
   constexpr std::size_t kLongestName = 200;  // bytes
   const Member* member = root.table("palette");
@@ -133,7 +133,7 @@ Sky usual_sky(TableReader& root) {
   return with_sun(usual, sun);
 }
 
-// Adds the species of a world to the registry `grown`, which is null if the registry cannot grow.
+// Adds the species of a world to the registry `grown`; null: the registry cannot grow.
 void register_species(TableReader& root, const World& world, const models::Registry& registry,
                       models::Registry* grown, Problems& problems) {
   const std::vector<const Node*> nodes = root.tables("species", kMaxSpecies);
@@ -148,9 +148,9 @@ void register_species(TableReader& root, const World& world, const models::Regis
     if (known >= 0) {
       const models::ModelType& there = registry[static_cast<models::ModelIndex>(known)];
       if (there.identity() != (*type)->identity())
-        return refuse(fmt::format("there is another model called {}", species.name));
+        return refuse(fmt::format("another model is named {}", species.name));
     } else if (grown == nullptr) {
-      return refuse("species cannot be added here");
+      return refuse("this registry does not accept new species");
     } else if (auto added = grown->add(std::move(*type)); !added) {
       return refuse(added.error().message);
     }
@@ -162,7 +162,7 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
                                const FilesBeside* beside) {
   const int terrain_model = registry.find("terrain");
   if (terrain_model < 0)
-    return core::fail(core::ErrorCode::kInvalidArgument, "no model type is called terrain");
+    return core::fail(core::ErrorCode::kInvalidArgument, "there is no model type named terrain");
   const core::Result<Node> document = parse_document(text, file_name);
   if (!document) return tl::unexpected(document.error());
 

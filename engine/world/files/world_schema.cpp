@@ -17,7 +17,7 @@
 namespace psygen::world {
 namespace {
 
-// Values of all types of fields: how TOML writes them, their numbers and their kind.
+// Field values of all types: their TOML text, their numbers and their kind.
 struct FieldValue {
   FieldKind kind;
   std::string toml;
@@ -44,7 +44,7 @@ FieldValue text_value(const std::string& v, FieldKind kind = FieldKind::kText) {
   return {kind, v.empty() ? "" : toml_string(v), {}, v};
 }
 
-constexpr double kDecades = 100;  // highest over lowest value of a logarithmic scale, at least
+constexpr double kDecades = 100;  // minimum ratio of the ends of a logarithmic scale
 
 class SchemaBuilder {
  public:
@@ -128,7 +128,7 @@ class SchemaBuilder {
     add(to, key, text_value(now, FieldKind::kChoice), toml_string(usual), {0, 0, 0, 0, "", doc})
         .choices.assign(choices.begin(), choices.end());
   }
-  // Adds what `visit_fields` visits.
+  // Adds the fields that `visit_fields` visits.
   template <class T, class VisitFields>
   void add_all(WorldSection& to, const T& now, const T& usual,
                const VisitFields& visit_fields) const {
@@ -160,14 +160,13 @@ class SchemaBuilder {
 
   WorldSection world_section() const {
     WorldSection made = section(SectionKind::kWorld, {"world"}, "World");
-    add_required(made, "name", text_value(world_.name),
-                 {0, 0, 0, 0, "", "what the world is called"});
+    add_required(made, "name", text_value(world_.name), {0, 0, 0, 0, "", "name of the world"});
     FieldValue seed{FieldKind::kSeed,
                     toml_seed(world_.seed),
                     {static_cast<double>(world_.seed)},
                     fmt::format("{}", world_.seed)};
     add_required(made, "seed", std::move(seed),
-                 {0, 0x1.0p64, 0, 0x1.0p63, "", "which of all worlds with these numbers"});
+                 {0, 0x1.0p64, 0, 0x1.0p63, "", "random seed of the world"});
     const double x = static_cast<double>(world_.blocks_x), z = static_cast<double>(world_.blocks_z);
     FieldValue blocks{
         FieldKind::kIntegerPair, fmt::format("[{}, {}]", world_.blocks_x, world_.blocks_z), {x, z}};
@@ -196,7 +195,7 @@ class SchemaBuilder {
     add_all(made, world_.palette, Palette{}, [](auto& o, const auto& v) { visit_palette(o, v); });
     for (std::size_t i = 0; i < kPaletteImages.size(); ++i)
       add(made, kPaletteImages[i], text_value(world_.palette.images[i], FieldKind::kImage), "",
-          {0, 0, 0, 0, "", "a square picture that repeats, in place of the texture"});
+          {0, 0, 0, 0, "", "a square image that repeats and replaces the texture"});
     return made;
   }
 
@@ -204,10 +203,10 @@ class SchemaBuilder {
     const models::Species usual;
     WorldSection made = section(SectionKind::kSpecies, path, s.name);
     add_required(made, "name", text_value(s.name),
-                 {0, 0, 0, 0, "", "snake_case, unlike any other model"});
-    add(made, "doc", text_value(s.doc), "", {0, 0, 0, 0, "", "what it is, in a sentence"});
+                 {0, 0, 0, 0, "", "snake_case, different from all other models"});
+    add(made, "doc", text_value(s.doc), "", {0, 0, 0, 0, "", "description in one sentence"});
     add_required(made, "axiom", text_value(s.axiom),
-                 {0, 0, 0, 0, "", "the symbol of the kind that is the trunk"});
+                 {0, 0, 0, 0, "", "the symbol of the trunk's kind"});
     add_all(made, s, usual, [](auto& o, const auto& v) { models::visit_counts(o, v); });
     add_all(made, s, usual, [](auto& o, const auto& v) { models::visit_numbers(o, v); });
     for (std::size_t i = 0; i < s.kinds.size(); ++i)
@@ -216,7 +215,7 @@ class SchemaBuilder {
       made.parts.push_back(rule_section(s.rules[i], path.with("rule").with(i)));
     made.parts.push_back(section(SectionKind::kSpeciesFoliage, path.with("foliage"), "Foliage"));
     add_choice(made.parts.back(), "form", s.foliage.form, usual.foliage.form, models::kFoliageForms,
-               "what a spray of leaves is");
+               "shape of a spray of leaves");
     add_all(made.parts.back(), s.foliage, usual.foliage,
             [](auto& o, const auto& v) { models::visit_foliage_numbers(o, v); });
     made.parts.push_back(section(SectionKind::kSpeciesColours, path.with("colours"), "Colours"));
@@ -229,11 +228,11 @@ class SchemaBuilder {
     const models::SpeciesKind usual;
     WorldSection made = section(SectionKind::kSpeciesKind, std::move(path), k.symbol);
     add_required(made, "symbol", text_value(k.symbol),
-                 {0, 0, 0, 0, "", "one letter, by which rules name this kind"});
+                 {0, 0, 0, 0, "", "the letter of this kind in rules"});
     add(made, "leader", value_of(k.leader), "false",
         {0, 0, 0, 0, "", "continues its parent from the end, in its direction"});
     add_choice(made, "leaves", k.leaves, usual.leaves, models::kLeavesChoices,
-               "where leaves grow; tips: where nothing grows from the branch");
+               "branches with leaves; tips: branches that do not branch further");
     add_all(made, k, usual, [](auto& o, const auto& v) { models::visit_kind_numbers(o, v); });
     return made;
   }
@@ -253,25 +252,24 @@ class SchemaBuilder {
     const HandmadeModel usual;
     WorldSection made = section(SectionKind::kModel, path, m.name);
     add_required(made, "name", text_value(m.name),
-                 {0, 0, 0, 0, "", "snake_case, unlike any other model"});
+                 {0, 0, 0, 0, "", "snake_case, different from all other models"});
     add_required(
         made, "file", text_value(m.file),
         {0, 0, 0, 0, "", "a glTF file (.glb or .gltf) in the folder of the world or below"});
     add_all(made, m, usual, [](auto& o, const auto& v) { visit_handmade(o, v); });
     add_choice(made, "collider", m.collider, usual.collider, kHandmadeColliders,
-               "what is solid of it: the hull of its points, their box, or nothing");
+               "collider: the hull of its points, their box, or none");
     return made;
   }
 
   void add_mask(WorldSection& to, const ScatterMask& mask) const {
     const bool whole_world = mask.area_m == std::array<double, 4>{};
     add(to, "on_ground", {FieldKind::kToml, mask.ground == 0 ? "" : toml_grounds(mask.ground), {}},
-        "", {0, 0, 0, 0, "", "kinds of ground on which instances stand: [\"grass\", \"forest\"]"});
+        "", {0, 0, 0, 0, "", "kinds of ground with instances: [\"grass\", \"forest\"]"});
     add(to, "mask_image", text_value(mask.image, FieldKind::kImage), "",
-        {0, 0, 0, 0, "",
-         "a picture whose grey is the share of instances that stand: white is all"});
+        {0, 0, 0, 0, "", "an image whose grey is the fraction of instances kept; white: all"});
     add(to, "mask_area_m", {FieldKind::kToml, whole_world ? "" : toml_vector(mask.area_m), {}}, "",
-        {0, 0, 0, 0, "m", "where the picture lies: [x0, z0, x1, z1]; without it the whole world"});
+        {0, 0, 0, 0, "m", "area of the image: [x0, z0, x1, z1]; default: the whole world"});
     add_all(to, mask, ScatterMask{}, [](auto& o, const auto& v) { visit_mask(o, v); });
   }
 
@@ -279,7 +277,7 @@ class SchemaBuilder {
     const models::ModelType& type = registry_[s.model];
     WorldSection made = section(SectionKind::kScatter, path, std::string(type.name()));
     WorldField& model = add(made, "model", text_value(std::string(type.name()), FieldKind::kChoice),
-                            "", {0, 0, 0, 0, "", "what stands on every block"});
+                            "", {0, 0, 0, 0, "", "model type of the instances"});
     model.required = true;
     for (models::ModelIndex i = 0; i < registry_.size(); ++i)
       if (i != world_.terrain_model) model.choices.emplace_back(registry_[i].name());
@@ -298,12 +296,12 @@ class SchemaBuilder {
     const models::ModelType& type = registry_[p.model];
     WorldSection made = section(SectionKind::kPlace, path, std::string(type.name()));
     WorldField& model = add(made, "model", text_value(std::string(type.name()), FieldKind::kChoice),
-                            "", {0, 0, 0, 0, "", "what stands there"});
+                            "", {0, 0, 0, 0, "", "model type"});
     model.required = true;
     for (models::ModelIndex i = 0; i < registry_.size(); ++i)
       if (i != world_.terrain_model) model.choices.emplace_back(registry_[i].name());
     add_required(made, "at_m", {FieldKind::kToml, toml_vector(std::array{p.at_m.x, p.at_m.y}), {}},
-                 {0, 0, 0, 0, "m", "where it stands: [x, z]"});
+                 {0, 0, 0, 0, "m", "position: [x, z]"});
     add_all(made, p, Place{}, [](auto& o, const auto& v) { visit_placed(o, v); });
     const auto specs = type.parameters();
     for (std::size_t i = 0; i < specs.size(); ++i) {
@@ -318,13 +316,12 @@ class SchemaBuilder {
     const Stamp usual;
     WorldSection made = section(SectionKind::kStamp, path, s.image);
     add_required(made, "image", text_value(s.image, FieldKind::kImage),
-                 {0, 0, 0, 0, "", "a picture whose grey is the height, black to white"});
+                 {0, 0, 0, 0, "", "an image whose grey is the height"});
     add_required(made, "centre_m",
                  {FieldKind::kToml, toml_vector(std::array{s.centre_m.x, s.centre_m.y}), {}},
-                 {0, 0, 0, 0, "m", "where its middle lies: [x, z]"});
+                 {0, 0, 0, 0, "m", "centre of the square: [x, z]"});
     add_all(made, s, usual, [](auto& o, const auto& v) { visit_stamp(o, v); });
-    add_choice(made, "mode", s.mode, usual.mode, kStampModes,
-               "whether it is added to the ground, or takes its place");
+    add_choice(made, "mode", s.mode, usual.mode, kStampModes, "adds to the ground, or replaces it");
     return made;
   }
 
@@ -332,7 +329,7 @@ class SchemaBuilder {
     WorldSection made =
         section(SectionKind::kRoad, path, fmt::format("road {}", path.back().index + 1));
     add_required(made, "points_m", {FieldKind::kToml, toml_points(r.points_m), {}},
-                 {0, 0, 0, 0, "m", "where it leads: [[x, z], [x, z]]"});
+                 {0, 0, 0, 0, "m", "points on the road: [[x, z], [x, z]]"});
     add_all(made, r, Road{}, [](auto& o, const auto& v) { visit_road(o, v); });
     return made;
   }
@@ -354,7 +351,7 @@ core::Result<std::vector<WorldSection>> world_schema(std::string_view text, cons
       layout->item_count({"place"}) != world.places.all.size() ||
       layout->item_count({"stamp"}) != world.shaped.stamps.size() ||
       layout->item_count({"road"}) != world.shaped.roads.size())
-    return core::fail(core::ErrorCode::kInvalidArgument, "the world is not that of the text");
+    return core::fail(core::ErrorCode::kInvalidArgument, "the world does not belong to the text");
   return SchemaBuilder(*layout, world, registry).all();
 }
 
@@ -370,6 +367,27 @@ const WorldField* find_field(const std::vector<WorldSection>& sections, const Te
 }
 
 std::string field_label(std::string_view key, std::string_view unit) {
+  // Plain words for keys that are short or rare.
+  static constexpr std::pair<std::string_view, std::string_view> kLabels[] = {
+      {"above_m", "Height above ground"},
+      {"at_m", "Position"},
+      {"axiom", "Start symbol"},
+      {"clear_m", "Clearance"},
+      {"doc", "Description"},
+      {"dry", "Dry grass"},
+      {"mask_noise_m", "Mask patch size"},
+      {"mask_patches", "Mask patch seed"},
+      {"mask_share", "Mask coverage"},
+      {"out", "Outward"},
+      {"relief_m", "Height range"},
+      {"side_out", "Side outward"},
+      {"side_up", "Side upward"},
+      {"sink_m", "Depth in ground"},
+      {"turn_deg", "Rotation"},
+      {"up", "Upward"},
+  };
+  for (const auto& [name, text] : kLabels)
+    if (key == name) return std::string(text);
   const std::string_view suffix = unit == "degrees" ? "_deg"
                                   : unit == "m"     ? "_m"
                                   : unit == "s"     ? "_s"

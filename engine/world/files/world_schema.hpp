@@ -1,7 +1,7 @@
-// Every field of a world file as data, from which an editor makes its controls: where it is in the
-// text, what it may be, what it is, and a line of help. It comes from the lists that readers use
-// (fields.hpp, tree/species.hpp) and from the schemas of model types, so a program's own types are
-// here without further code. It changes nothing (text_edit.hpp). Plain values, any thread.
+// Every field of a world file as data, from which an editor makes its controls: position in the
+// text, type, limits, and a line of help. It uses the lists of the readers (fields.hpp,
+// tree/species.hpp) and the schemas of model types, so a program's own model types appear without
+// further code. It changes nothing (text_edit.hpp). Plain values, any thread.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace psygen::world {
 
-// What a field holds, and how TOML writes it.
+// The type of a field's value, and its form in TOML.
 enum class FieldKind : std::uint8_t {
   kInteger,
   kReal,
@@ -25,10 +25,10 @@ enum class FieldKind : std::uint8_t {
   kColour,       // [red, green, blue]
   kSeed,         // 0 to 2^64 - 1; in quotes from 2^63 on
   kText,
-  kImage,   // the name of a picture, relative to the folder of the file
+  kImage,   // the name of an image, relative to the folder of the file
   kChoice,  // one of `choices`
   kBoolean,
-  kToml,  // of several parts, shown and written as TOML
+  kToml,  // several parts, shown and written as TOML
 };
 
 // One field.
@@ -38,23 +38,23 @@ struct WorldField {
   FieldKind kind = FieldKind::kReal;
   std::string unit;  // "m", "degrees"; empty: none
   std::string doc;   // one line
-  // Of each of its numbers: what is refused beyond, and what a slider shows. The value and the
-  // default may be outside the soft range.
+  // For each of its numbers: the limits beyond which values are rejected, and the range of a
+  // slider. The value and the default may be outside the soft range.
   double hard_min = 0, hard_max = 0, soft_min = 0, soft_max = 0;
   bool logarithmic = false;          // the soft range is positive and spans two decades or more
-  std::vector<std::string> choices;  // of kChoice
+  std::vector<std::string> choices;  // for kChoice
   bool required = false;             // has no default and cannot be removed
   bool is_set = false;               // the text has it
-  // The present value: as TOML (as the text writes it, else the default), as numbers (one, two for
-  // ranges and pairs, three for colours) and, of texts, choices and seeds, without quotes. Empty
-  // where there is no value, such as a limit that is not set.
+  // The present value, in three forms: as TOML (from the text, else the default); as numbers (one,
+  // two for ranges and pairs, three for colours); and, for texts, choices and seeds, without
+  // quotes. Empty if there is no value, such as a limit that is not set.
   std::string value;
   std::vector<double> numbers;
   std::string plain;
-  std::string usual;  // the default as TOML; empty: there is none
+  std::string usual;  // the default as TOML; empty: no default
 };
 
-// What a section is.
+// The type of a section.
 enum class SectionKind : std::uint8_t {
   kWorld,
   kTerrain,
@@ -80,24 +80,24 @@ struct WorldSection {
   std::string title;  // "Sky"; the name of a species, the model of a scatter, the symbol of a kind
   bool is_set = false;  // the text has the table
   std::vector<WorldField> fields;
-  std::vector<WorldSection> parts;  // of a species: kinds, rules, foliage, colours
+  std::vector<WorldSection> parts;  // for a species: kinds, rules, foliage, colours
 };
 
 // The sections of a world: World, Terrain, Sky, Water, Palette, each species, each handmade model,
-// each scatter, each place, each stamp, each road. `world` must be what parse_world() made of
-// `text` with `registry`. Fails with kParse where the text is not TOML, and with kInvalidArgument
-// where the world is of another text.
+// each scatter, each place, each stamp, each road. `world` must be the result of parse_world() for
+// `text` with `registry`. Fails with kParse if the text is not TOML, and with kInvalidArgument if
+// the world belongs to another text.
 core::Result<std::vector<WorldSection>> world_schema(std::string_view text, const World& world,
                                                      const models::Registry& registry);
 
 // The field with this path, or null.
 const WorldField* find_field(const std::vector<WorldSection>& sections, const TextPath& path);
 
-// A name of a file as a label: "sun_elevation_deg" in degrees is "Sun elevation".
+// The label for a key: "sun_elevation_deg" in degrees gives "Sun elevation".
 std::string field_label(std::string_view key, std::string_view unit);
 
-// How many tables a file may have at most: species, kinds and rules of one of them, handmade
-// models, scatters, places, stamps, roads.
+// The maximum number of tables in a file: species, kinds and rules of one species, handmade models,
+// scatters, places, stamps, roads.
 std::size_t max_tables(SectionKind kind);
 
 }  // namespace psygen::world

@@ -133,7 +133,7 @@ TEST(PlaceTool, WhatCannotBeIsRefusedWithASentence) {
   click(bench.tool, sky());
   EXPECT_EQ(bench.said.back(), "There is no ground under the mouse: click on the ground.");
   click(bench.tool, ground(-1e6, 0));
-  EXPECT_THAT(bench.said.back(), HasSubstr("outside of the world"));
+  EXPECT_THAT(bench.said.back(), HasSubstr("outside the world"));
   EXPECT_EQ(bench.document.text(), kWorld);
   EXPECT_EQ(bench.steps(), 0);
   click(bench.tool, ground(40, 50));

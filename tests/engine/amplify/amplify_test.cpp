@@ -56,7 +56,7 @@ TEST(Amplify, TheHashOfShapedGroundIsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(Amplify, GoesOnWithTheThreadsThatThereAreAndFailsWithoutAny) {
+TEST(Amplify, ContinuesWithFewerThreadsAndFailsWithoutAny) {
   const world::World world = parsed(kSmallWorld);
   const Region region = *whole(world);
   const auto all = amplify(world, registry(), region, with_threads(8));
@@ -84,7 +84,7 @@ TEST(Amplify, PartsOfARegionAddUpToIt) {
   EXPECT_EQ(sum.triangles, all->totals.triangles);
 }
 
-TEST(Amplify, WorksAtTheEndOfAllBlocks) {
+TEST(Amplify, WorksAtTheLimitOfBlockCoordinates) {
   world::World world = parsed(kSmallWorld);
   world.blocks_x = world.blocks_z = 0;
   const std::int64_t end = std::int64_t{INT32_MAX} + 1;
@@ -94,14 +94,14 @@ TEST(Amplify, WorksAtTheEndOfAllBlocks) {
   EXPECT_EQ(corner->totals.failed, 0u);
 }
 
-TEST(Amplify, RefusesRegionsAndThreadsThatAreOutOfRange) {
+TEST(Amplify, RejectsRegionsAndThreadsThatAreOutOfRange) {
   const world::World world = parsed(kSmallWorld);
   EXPECT_FALSE(amplify(world, registry(), {0, 0, 9, 1}, with_threads(1)));
   EXPECT_FALSE(amplify(world, registry(), {0, 0, 1, 1}, with_threads(0)));
   EXPECT_FALSE(amplify(world, registry(), {0, 0, 1, 1}, with_threads(257)));
 }
 
-TEST(Amplify, ThatIsStoppedIsNotCompleteAndKeepsWhatWasDone) {
+TEST(Amplify, ThatIsStoppedIsIncompleteAndKeepsFinishedBlocks) {
   const world::World world = parsed(kSmallWorld);
   const std::atomic<bool> stop{true};
   Options options = with_threads(2);
@@ -112,7 +112,7 @@ TEST(Amplify, ThatIsStoppedIsNotCompleteAndKeepsWhatWasDone) {
   EXPECT_EQ(report->totals.blocks, 0u);
 }
 
-// Notes what it is given; fails at one block, if asked to.
+// Records its calls; fails at one block on request.
 struct Notes {
   std::mutex mutex;
   std::multiset<core::BlockCoord> finished;
@@ -156,7 +156,7 @@ TEST(Amplify, GivesEachWantedBlockToOneSinkAndHashesTheOthersToo) {
             amplify(world, registry(), *whole(world), with_threads(1))->totals.hash.value());
 }
 
-TEST(Amplify, ASinkThatFailsEndsItWithItsSentence) {
+TEST(Amplify, ASinkThatFailsEndsItWithItsError) {
   const world::World world = parsed(kSmallWorld);
   Notes notes;
   const core::BlockCoord bad{2, 1};
@@ -167,7 +167,7 @@ TEST(Amplify, ASinkThatFailsEndsItWithItsSentence) {
   EXPECT_EQ(report.error().message, "disk full");
 }
 
-TEST(Amplify, ABlockThatLacksAMeshIsDroppedAndTheReportIsNotComplete) {
+TEST(Amplify, ABlockThatLacksAMeshIsDroppedAndTheReportIsIncomplete) {
   ThrowingWorld throwing;
   Notes notes;
   Options options = with_threads(2);
@@ -189,7 +189,7 @@ TEST(Amplify, ABlockThatLacksAMeshIsDroppedAndTheReportIsNotComplete) {
   EXPECT_EQ(notes.meshes, 28u * 11);
 }
 
-// Throws whatever it is told to.
+// Throws the given exception.
 class ThrowingSink final : public BlockSink {
  public:
   explicit ThrowingSink(const std::function<void()>& thrower) : thrower_(thrower) {}
@@ -202,7 +202,7 @@ class ThrowingSink final : public BlockSink {
   const std::function<void()>& thrower_;
 };
 
-TEST(Amplify, ExceptionsEndItAndOnlyThoseOfMemoryAreCalledSo) {
+TEST(Amplify, ExceptionsEndItAndOnlyBadAllocIsOutOfMemory) {
   const world::World world = parsed(kSmallWorld);
   const auto error_of = [&](const std::function<void()>& thrower) {
     Options options = with_threads(3);
@@ -217,7 +217,7 @@ TEST(Amplify, ExceptionsEndItAndOnlyThoseOfMemoryAreCalledSo) {
   EXPECT_EQ(error_of([] { throw std::bad_alloc(); }).code, core::ErrorCode::kOutOfMemory);
 }
 
-// What is called while threads run may throw as well: they end, and the exception comes through.
+// Callbacks during a run may throw: the threads end, and the exception is passed on.
 TEST(Amplify, EndsItsThreadsWhenItsCallerThrows) {
   const world::World world = parsed(kSmallWorld);
   std::atomic<bool> thrown{false};
@@ -232,7 +232,7 @@ TEST(Amplify, EndsItsThreadsWhenItsCallerThrows) {
   EXPECT_THROW((void)amplify(world, registry(), *whole(world), options), std::bad_alloc);
 }
 
-TEST(Amplify, TakesNoMoreThreadsByItselfThanItAllows) {
+TEST(Amplify, NeverDefaultsToMoreThreadsThanItAllows) {
   const world::World world = parsed(kSmallWorld);
   EXPECT_EQ(threads_for(0), 1u);
   EXPECT_EQ(threads_for(6), 6u);

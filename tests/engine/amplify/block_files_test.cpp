@@ -43,7 +43,7 @@ std::string content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-TEST(BlockFiles, OneFileABlockAndTheWorldBesideThem) {
+TEST(BlockFiles, WritesOneFilePerBlockAndTheWorldNextToThem) {
   const TemporaryFolder folder;
   const auto made = make_files(parsed(kSmallWorld), folder.path(), Format::kGlb);
   ASSERT_TRUE(made) << made.error().message;
@@ -57,7 +57,7 @@ TEST(BlockFiles, OneFileABlockAndTheWorldBesideThem) {
   }
 }
 
-TEST(BlockFiles, WhatIsThereIsNotWrittenAgainAndTheHashIsStillThatOfEverything) {
+TEST(BlockFiles, ExistingFilesAreNotWrittenAgainAndTheHashCoversAllBlocks) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
   const auto first = make_files(world, folder.path(), Format::kGlb);
@@ -94,7 +94,7 @@ TEST(BlockFiles, ABlockThatLacksAMeshHasNoFileUntilItIsWhole) {
   EXPECT_EQ(folder.file_count(), 8u);
 }
 
-TEST(BlockFiles, WhatAKilledRunLeftHalfDoneIsRemoved) {
+TEST(BlockFiles, HalfWrittenFilesOfAKilledRunAreRemoved) {
   const TemporaryFolder folder;
   std::ofstream(folder / ".block_1_1.glb.99999999-0.partial") << "half";
   ASSERT_TRUE(make_files(parsed(kSmallWorld), folder.path(), Format::kGlb));
@@ -114,7 +114,7 @@ TEST(BlockFiles, TheBlocksOfAnotherWorldAreNotMixedIn) {
   const TemporaryFolder folder;
   world::World world = parsed(kSmallWorld);
   ASSERT_TRUE(make_files(world, folder.path(), Format::kObj));
-  EXPECT_EQ(folder.file_count(), 14u);  // an .mtl beside each .obj
+  EXPECT_EQ(folder.file_count(), 14u);  // with an .mtl for each .obj
   world.seed += 1;
   const auto other = make_files(world, folder.path(), Format::kObj);
   ASSERT_FALSE(other);
@@ -139,7 +139,7 @@ TEST(BlockFiles, TheBlocksOfAnotherVersionOfTheEngineAreNotMixedIn) {
   EXPECT_TRUE(make_files(world, folder.path(), Format::kObj)) << "another format has its own";
 }
 
-TEST(BlockFiles, BlocksOfWhichNothingTellsWhoseTheyAreAreNotClaimed) {
+TEST(BlockFiles, BlocksOfUnknownOriginAreNotClaimed) {
   const world::World world = parsed(kSmallWorld);
   for (const char* lost : {"world.toml", "sample_glb.hash"}) {
     const TemporaryFolder folder;
@@ -156,7 +156,7 @@ TEST(BlockFiles, BlocksOfWhichNothingTellsWhoseTheyAreAreNotClaimed) {
   }
 }
 
-TEST(BlockFiles, WhatIsLeftOfTheFilesThatTellWhoseBlocksTheseAreIsEnough) {
+TEST(BlockFiles, TruncatedOriginFilesStillIdentifyTheBlocks) {
   const world::World world = parsed(kSmallWorld);
   const TemporaryFolder folder;
   ASSERT_TRUE(make_files(world, folder.path(), Format::kGlb));
@@ -169,7 +169,7 @@ TEST(BlockFiles, WhatIsLeftOfTheFilesThatTellWhoseBlocksTheseAreIsEnough) {
   }
 }
 
-TEST(BlockFiles, WhatHasLostItsEndIsWrittenAgain) {
+TEST(BlockFiles, TruncatedFilesAreWrittenAgain) {
   for (const Format format : {Format::kGlb, Format::kObj}) {
     const TemporaryFolder folder;
     const world::World world = parsed(kSmallWorld);
@@ -193,7 +193,7 @@ TEST(BlockFiles, AFolderThatCannotBeWrittenIsNamed) {
   EXPECT_NE(made.error().message.find("/proc/nowhere"), std::string::npos);
 }
 
-TEST(BlockFiles, ADocumentHoldsEverythingOnTheBlockWhereItStands) {
+TEST(BlockFiles, ADocumentHasAllModelsOfTheBlockAtTheirPositions) {
   const world::World world = parsed(kSmallWorld);
   const auto document = block_document(world, registry(), {2, 1}, 0);
   ASSERT_TRUE(document);
@@ -218,11 +218,11 @@ TEST(BlockFiles, GroundAtTheWaterIsSandAsItIsDrawn) {
     return sum;
   };
   const double dry = red();
-  world.water.level_m = 200;  // above everything
+  world.water.level_m = 200;  // above all ground
   EXPECT_GT(red(), 1.5 * dry);
 }
 
-// Each number of calls is another place where the disk fills; a later run finishes what is missing.
+// The disk fills at each possible call; a later run writes the missing files.
 TEST(BlockFiles, WhereverTheDiskFillsFilesAreWholeAndALaterRunWritesTheRest) {
   const TemporaryFolder top;
   const world::World world = parsed(kSmallWorld);

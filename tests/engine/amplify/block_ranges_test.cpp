@@ -30,7 +30,7 @@ BlockRanges from(const std::set<std::uint64_t>& all) {
   return blocks;
 }
 
-TEST(BlockRanges, NeighboursAreOneRangeAndEmptyRunsAreNone) {
+TEST(BlockRanges, AdjacentRunsAreOneRangeAndEmptyRunsAreDropped) {
   const BlockRanges blocks = ranges({{1, 4}, {4, 4}, {4, 6}, {9, 10}});
   ASSERT_EQ(blocks.runs().size(), 2u);
   EXPECT_EQ(blocks.runs()[0], (BlockRun{1, 6}));

@@ -20,7 +20,7 @@ Totals totals_of(const world::World& world, core::BlockCoord block, int level = 
   return totals;
 }
 
-TEST(BlockSynthesiser, MakesTheTerrainAndEverythingOnIt) {
+TEST(BlockSynthesiser, MakesTheTerrainAndAllModelsOnIt) {
   const world::World world = parsed(kSmallWorld);
   Totals totals;
   std::uint64_t triangles = 0, bytes = 0;
@@ -37,7 +37,7 @@ TEST(BlockSynthesiser, MakesTheTerrainAndEverythingOnIt) {
   EXPECT_EQ(totals.models, 8u);
   EXPECT_EQ(totals.failed, 0u);
   EXPECT_EQ(totals.bytes, bytes);
-  // Skirts are no ground: two triangles for each of the 4 · 32 border vertices.
+  // Skirts do not count: two triangles for each of the 4 · 32 border vertices.
   EXPECT_EQ(totals.triangles + 2 * 4 * 32, triangles);
 }
 
@@ -51,7 +51,7 @@ TEST(BlockSynthesiser, TheHashDependsOnWorldBlockAndLevelsOnly) {
   EXPECT_NE(totals_of(world, {2, 1}).hash.value(), hash);
 }
 
-TEST(BlockSynthesiser, EditsChangeTheHashOfTheirBlocksUntilTheyAreTakenBack) {
+TEST(BlockSynthesiser, EditsChangeTheHashOfTheirBlocksUntilTheyAreUndone) {
   const world::World function = parsed(kSmallWorld);
   const std::uint64_t felled_block = totals_of(function, {2, 1}).hash.value();
   const std::uint64_t other_block = totals_of(function, {6, 3}).hash.value();
@@ -82,8 +82,8 @@ TEST(BlockSynthesiser, ALevelIsTheCoarsestOfTypesThatHaveFewer) {
   EXPECT_LT(totals.triangles, totals_of(world, {2, 1}).triangles / 50);
 }
 
-TEST(BlockSynthesiser, TheHashNoticesAModelThatStandsElsewhere) {
-  // A filter that lets the same models find other places: the meshes of rocks stay the same.
+TEST(BlockSynthesiser, TheHashDetectsAMovedModel) {
+  // A filter that moves the same models: the meshes of rocks do not change.
   const world::World world = parsed(kSmallWorld);
   world::World moved = world;
   for (world::Scatter& scatter : moved.scatter)
@@ -102,7 +102,7 @@ TEST(BlockSynthesiser, MemoryThatWasUsedBeforeLeavesNoTrace) {
   EXPECT_EQ(second.hash.value(), totals_of(world, {2, 1}).hash.value());
 }
 
-TEST(BlockSynthesiser, AModelThatThrowsIsCountedAndTheOthersGoOn) {
+TEST(BlockSynthesiser, AModelThatThrowsIsCountedAndTheOthersAreMade) {
   const ThrowingWorld throwing;
   Totals totals;
   BlockSynthesiser(throwing.world, throwing.registry).synthesise({0, 0}, totals);
@@ -112,7 +112,7 @@ TEST(BlockSynthesiser, AModelThatThrowsIsCountedAndTheOthersGoOn) {
   EXPECT_EQ(totals.hash.count(), 9u);
 }
 
-TEST(SampleWorldHash, NamesTheWorldAndThePlace) {
+TEST(SampleWorldHash, DependsOnTheWorldAndThePosition) {
   world::World world = parsed(kSmallWorld);
   const auto hash = sample_world_hash(world, registry(), {2, 2});
   ASSERT_TRUE(hash);
@@ -122,7 +122,7 @@ TEST(SampleWorldHash, NamesTheWorldAndThePlace) {
   EXPECT_NE(sample_world_hash(world, registry(), {2, 2}), hash);
 }
 
-TEST(SampleWorldHash, IsDefinedAtTheEndOfAllBlocks) {
+TEST(SampleWorldHash, IsDefinedAtTheLimitOfBlockCoordinates) {
   world::World world = parsed(kSmallWorld);
   world.blocks_x = world.blocks_z = 0;
   const auto corner = sample_world_hash(world, registry(), {INT32_MAX, INT32_MAX});
@@ -130,7 +130,7 @@ TEST(SampleWorldHash, IsDefinedAtTheEndOfAllBlocks) {
   EXPECT_NE(corner, sample_world_hash(world, registry(), {INT32_MAX, INT32_MAX - 2}));
 }
 
-TEST(SampleWorldHash, IsNothingWhereAMeshFails) {
+TEST(SampleWorldHash, IsNothingIfAMeshFails) {
   ThrowingWorld throwing;
   EXPECT_FALSE(sample_world_hash(throwing.world, throwing.registry, {0, 0}));
   throwing.throws = false;

@@ -14,7 +14,7 @@ using world::testing::kSmallWorld;
 using world::testing::parsed;
 using world::testing::registry;
 
-TEST(CostMap, CountsUpStretchByStretch) {
+TEST(CostMap, AccumulatesStretchByStretch) {
   const CostMap map = CostMap::from(7, {1, 10, 100});  // 3, 2 and 2 blocks
   EXPECT_DOUBLE_EQ(map.total_s(), 223);
   EXPECT_DOUBLE_EQ(map.seconds_before(0), 0);
@@ -28,7 +28,7 @@ TEST(CostMap, CountsUpStretchByStretch) {
   EXPECT_DOUBLE_EQ(map.seconds_of(BlockRanges({2, 5})), 1 + 20.0);
 }
 
-TEST(CostMap, SharesHoldEveryBlockOnceAndCostTheSame) {
+TEST(CostMap, ShardsHaveEveryBlockOnceAndEqualCosts) {
   const CostMap map = CostMap::from(1000, {1, 1, 1, 50, 1});
   for (const std::uint64_t n : {1u, 2u, 3u, 7u, 64u, 2000u}) {
     std::uint64_t next = 0;
@@ -44,8 +44,8 @@ TEST(CostMap, SharesHoldEveryBlockOnceAndCostTheSame) {
   }
 }
 
-// What is shared out is what the blocks of the world have on them.
-TEST(CostMap, OfAForestInTheCornerOfADesertSaysWhereTheWorkIs) {
+// The costs follow the models on the blocks of the world.
+TEST(CostMap, OfAForestInTheCornerOfADesertLocatesTheWork) {
   const world::World world = world::testing::forest_in_a_desert();
   const Region region = *whole(world);
   const double desert = predicted_block_seconds(world, registry(), {10, 10}, {});
@@ -59,7 +59,7 @@ TEST(CostMap, OfAForestInTheCornerOfADesertSaysWhereTheWorkIs) {
   EXPECT_LE(shard_of(map, 1, 2).end, region.block_count() / 8);
 }
 
-TEST(CostMap, IsTheSameWhenItIsMadeAgainAndKnowsTheCostOfFiles) {
+TEST(CostMap, IsReproducibleAndIncludesTheCostOfFiles) {
   const world::World world = parsed(kSmallWorld);
   const Region region = *whole(world);
   const CostMap one = CostMap::of(world, registry(), region, {}),

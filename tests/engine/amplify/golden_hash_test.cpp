@@ -1,6 +1,5 @@
-// Worlds are the same on every machine and in every build: hashes of a few blocks at all levels of
-// detail, written down. A change that alters the bits of geometry alters them; it says so in
-// CHANGELOG.md.
+// Worlds are the same on every machine and in every build: recorded hashes of a few blocks at all
+// levels of detail. A change to the bits of geometry changes them and is noted in CHANGELOG.md.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -16,7 +16,7 @@
 namespace psygen::amplify {
 namespace {
 
-TEST(Ledger, IsReadAsItWasWritten) {
+TEST(Ledger, ReadsBackEqual) {
   const LedgerText ledger = some_ledger({{0, 5}, {7, 9}});
   const auto read = parse_ledger(ledger_text(ledger), "a.ledger");
   ASSERT_TRUE(read) << read.error().message;
@@ -35,7 +35,7 @@ TEST(Ledger, IsReadAsItWasWritten) {
   }
 }
 
-TEST(Ledger, ThatIsCutAnywhereLosesItsLastLineOrIsRefused) {
+TEST(Ledger, ThatIsTruncatedAnywhereLosesItsLastLineOrIsRejected) {
   const std::string text = ledger_text(some_ledger({{0, 5}, {7, 9}}));
   const std::size_t head = ledger_text(some_ledger({})).size();
   const std::size_t one = ledger_text(some_ledger({{0, 5}})).size();
@@ -48,7 +48,7 @@ TEST(Ledger, ThatIsCutAnywhereLosesItsLastLineOrIsRefused) {
   }
 }
 
-TEST(Ledger, WithAnyOtherByteIsRefused) {
+TEST(Ledger, WithAnyOtherByteIsRejected) {
   const std::string text = ledger_text(some_ledger({{0, 5}, {7, 9}}));
   for (std::size_t i = 0; i + 1 < text.size(); ++i) {
     std::string other = text;
@@ -61,7 +61,7 @@ TEST(Ledger, WithAnyOtherByteIsRefused) {
   EXPECT_FALSE(parse_ledger(std::string(1000, '\0'), "a.ledger"));
 }
 
-TEST(Ledger, HoldsNoBlockThatIsNotOfItsShare) {
+TEST(Ledger, HasOnlyBlocksOfItsShare) {
   LedgerText ledger = some_ledger({{0, 5}, {7, 9}});
   ledger.share.end = 8;
   const auto read = parse_ledger(ledger_text(ledger), "a.ledger");
@@ -69,7 +69,7 @@ TEST(Ledger, HoldsNoBlockThatIsNotOfItsShare) {
   EXPECT_EQ(read.error().message, "a.ledger:10: is not a line of a ledger");
 }
 
-TEST(Ledger, GoesOnWhereItWasAndDropsALineWithoutAnEnd) {
+TEST(Ledger, ResumesAndDropsATruncatedLine) {
   const TemporaryFolder folder;
   const auto file = folder / "shard_1_of_2.ledger";
   {
@@ -102,8 +102,8 @@ TEST(Ledger, IsWrittenByOneAtATime) {
   EXPECT_NE(second.error().message.find("another process is writing it"), std::string::npos);
 }
 
-// Whoever is first makes it; the others see that it is there and locked.
-TEST(Ledger, IsMadeByOneOfManyThatBeginAtOnce) {
+// The first process creates it; the others find it locked.
+TEST(Ledger, IsCreatedByOneOfManyConcurrentProcesses) {
   const TemporaryFolder folder;
   for (int round = 0; round < 40; ++round) {
     const auto file = folder / (std::to_string(round) + ".ledger");
@@ -122,7 +122,7 @@ TEST(Ledger, IsMadeByOneOfManyThatBeginAtOnce) {
   }
 }
 
-TEST(Ledger, OfAnotherJobPartOrShareIsLeftAlone) {
+TEST(Ledger, OfAnotherJobPartOrShareIsNotChanged) {
   const TemporaryFolder folder;
   const auto file = folder / "a.ledger";
   ASSERT_TRUE(Ledger::open(file, some_ledger({})));
@@ -149,8 +149,8 @@ TEST(Ledger, OfAnotherJobPartOrShareIsLeftAlone) {
   EXPECT_EQ(contents_of(folder.path()).at("b.ledger"), "a letter\n");
 }
 
-// A full disk may cost the line that was being written, and no other.
-TEST(Ledger, OnAFullDiskKeepsWhatItHad) {
+// A full disk may lose the line that is being written, and no other.
+TEST(Ledger, OnAFullDiskKeepsItsEntries) {
   for (std::size_t calls = 0; calls < 3; ++calls) {
     const TemporaryFolder folder;
     auto ledger = Ledger::open(folder / "a.ledger", some_ledger({}));
@@ -172,7 +172,7 @@ TEST(Ledger, OnAFullDiskKeepsWhatItHad) {
   }
 }
 
-// A line that the disk takes half of goes again: those of other threads come behind it.
+// A half-written line is removed, because lines of other threads follow it.
 TEST(Ledger, KeepsNoHalfLine) {
   const TemporaryFolder folder;
   const auto file = folder / "a.ledger";

@@ -1,4 +1,4 @@
-// Ledgers with made-up figures.
+// Ledgers with made-up totals.
 #pragma once
 
 #include <initializer_list>

@@ -10,7 +10,7 @@
 namespace psygen::amplify {
 namespace {
 
-// Shard `i` of 2 without files, whose share is `share`.
+// Shard `i` of 2, without files, with this share.
 NamedLedger shard(int i, BlockRun share, std::initializer_list<BlockRun> finished) {
   LedgerText ledger = some_ledger(finished);
   ledger.key.format.reset();
@@ -34,7 +34,7 @@ TEST(Merge, AddsUpToTheWhole) {
   EXPECT_EQ(totals->hash.value(), whole.hash.value());
 }
 
-TEST(Merge, NamesWhatIsMissing) {
+TEST(Merge, NamesMissingBlocks) {
   EXPECT_EQ(refused({}), "there is no ledger to merge");
   EXPECT_EQ(refused({shard(1, {0, 6}, {{0, 6}})}),
             "4 blocks from 6,0 to 9,0 are missing: the ledger of their shard is missing");
@@ -44,17 +44,18 @@ TEST(Merge, NamesWhatIsMissing) {
             "the block 2,0 is missing: shard 1 of 2 has not finished (s/shard_1_of_2.ledger)");
 }
 
-TEST(Merge, NamesWhatIsThereTwiceOrOfAnotherJob) {
+TEST(Merge, NamesDuplicateBlocksAndOtherJobs) {
   EXPECT_EQ(refused({shard(1, {0, 6}, {{0, 6}}), shard(2, {4, 10}, {{4, 10}})}),
             "2 blocks from 4,0 to 5,0 are in both s/shard_1_of_2.ledger and s/shard_2_of_2.ledger");
   NamedLedger other = shard(2, {6, 10}, {{6, 10}});
   other.ledger.key.version = "0.2.0";
-  EXPECT_EQ(refused({shard(1, {0, 6}, {{0, 6}}), other}),
-            "s/shard_2_of_2.ledger: is of another job than s/shard_1_of_2.ledger: psygen 0.2.0 "
-            "instead of 0.1.0");
+  EXPECT_EQ(
+      refused({shard(1, {0, 6}, {{0, 6}}), other}),
+      "s/shard_2_of_2.ledger: belongs to another job than s/shard_1_of_2.ledger: psygen 0.2.0 "
+      "instead of 0.1.0");
 }
 
-TEST(Merge, LooksForTheFilesOfBlocks) {
+TEST(Merge, ChecksTheFilesOfBlocks) {
   const TemporaryFolder folder;
   LedgerText whole = some_ledger({{0, 10}});
   whole.key.format = exchange::Format::kObj;
@@ -65,7 +66,7 @@ TEST(Merge, LooksForTheFilesOfBlocks) {
 TEST(Merge, ReadsLedgersFromFoldersAndFiles) {
   const TemporaryFolder folder;
   const std::vector<std::filesystem::path> paths{folder.path()};
-  EXPECT_NE(read_ledgers(paths).error().message.find("holds no ledger"), std::string::npos);
+  EXPECT_NE(read_ledgers(paths).error().message.find("has no ledger"), std::string::npos);
   std::ofstream(folder / "b.ledger") << ledger_text(some_ledger({{0, 5}}));
   std::ofstream(folder / "a.ledger") << ledger_text(some_ledger({{5, 10}}));
   std::ofstream(folder / "world.toml") << "format = 1\n";

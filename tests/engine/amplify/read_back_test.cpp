@@ -1,4 +1,4 @@
-// Whole blocks of the worlds of the game as another library reads them.
+// Whole blocks of the game's worlds, read by another library.
 #include "tests/engine/exchange/read_back.hpp"
 
 #include <gtest/gtest.h>

@@ -18,7 +18,7 @@ TEST(Region, IsReadFromFourIntegers) {
             (Region{INT32_MIN, -2, std::int64_t{INT32_MAX} + 1, 7}));
 }
 
-TEST(Region, RefusesWhatIsNoRegionInOneSentence) {
+TEST(Region, RejectsInvalidRegionsWithOneSentence) {
   for (const char* text : {"", "1", "1,2,3", "1,2,3,", "1,2,3,4,5", "a,b,c,d", "1 ,2,3,4",
                            "1,2,3,4 ", "1.5,2,3,4", "0,0,0,1", "0,0,1,0", "3,0,2,1",
                            "0,0,2147483649,1", "-2147483649,0,1,1", "0,0,99999999999999999999,1"}) {
@@ -58,12 +58,12 @@ TEST(Region, MustLieInsideTheWorld) {
   }
 }
 
-TEST(Region, OfAnEndlessWorldHasToBeNamed) {
+TEST(Region, OfAnEndlessWorldMustBeGiven) {
   world::World world = parsed(kSmallWorld);
   world.blocks_x = 0;
   const auto endless = whole(world);
   ASSERT_FALSE(endless);
-  EXPECT_NE(endless.error().message.find("has no end: choose a region"), std::string::npos);
+  EXPECT_NE(endless.error().message.find("is endless: choose a region"), std::string::npos);
   EXPECT_TRUE(check_region(world, {INT32_MIN, 0, -5, 4}));
   EXPECT_FALSE(check_region(world, {0, 0, 1, 5}));
 }

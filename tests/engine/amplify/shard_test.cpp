@@ -44,7 +44,7 @@ core::Result<Totals> merged(const std::filesystem::path& folder) {
   return merge(*ledgers);
 }
 
-// The files of blocks and of whose they are, without ledgers.
+// The files of blocks and of their origin, without ledgers.
 FileContents blocks_in(const std::filesystem::path& folder) {
   FileContents contents = contents_of(folder);
   std::erase_if(contents, [](const auto& file) { return file.first.ends_with(kLedgerExtension); });
@@ -69,7 +69,7 @@ TEST(Shard, IsWrittenAsIOfN) {
   }
 }
 
-TEST(Shard, AllOfThemMakeTheFilesAndTheHashOfOneProcess) {
+TEST(Shard, AllTogetherMakeTheFilesAndTheHashOfOneProcess) {
   const world::World world = parsed(kSmallWorld);
   for (const Format format : {Format::kGlb, Format::kObj}) {
     const TemporaryFolder top;
@@ -92,7 +92,7 @@ TEST(Shard, AllOfThemMakeTheFilesAndTheHashOfOneProcess) {
   }
 }
 
-TEST(Shard, WithoutFilesHasTheSameFigures) {
+TEST(Shard, WithoutFilesHasTheSameTotals) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
   for (std::uint64_t i = 1; i <= 2; ++i)
@@ -102,11 +102,11 @@ TEST(Shard, WithoutFilesHasTheSameFigures) {
             amplify(world, registry(), kSharedRegion, {})->totals.hash.value());
 }
 
-TEST(Shard, ThatIsFinishedMakesNothingAndKnowsItsFigures) {
+TEST(Shard, ThatIsFinishedMakesNothingAndKnowsItsTotals) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
   const auto first = make(world, {1, 2}, folder.path(), Format::kGlb);
-  const std::atomic<bool> stop{true};  // whatever would be made would be stopped
+  const std::atomic<bool> stop{true};  // stops before any block
   const auto second = make(world, {1, 2}, folder.path(), Format::kGlb, &stop);
   ASSERT_TRUE(first && second);
   EXPECT_TRUE(second->complete);
@@ -119,7 +119,7 @@ TEST(Shard, ThatIsFinishedMakesNothingAndKnowsItsFigures) {
             std::string::npos);
 }
 
-TEST(Shard, MakesAgainWhatLostItsFile) {
+TEST(Shard, RemakesBlocksWithMissingFiles) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
   const auto first = make(world, {1, 1}, folder.path(), Format::kGlb);
@@ -133,7 +133,7 @@ TEST(Shard, MakesAgainWhatLostItsFile) {
   EXPECT_TRUE(contents_of(folder.path()) == whole);
 }
 
-TEST(Shard, ClearsAwayWhatAProcessOnAnyHostLeftHalfDoneOfItsBlocks) {
+TEST(Shard, RemovesHalfWrittenFilesOfItsBlocksFromAnyHost) {
   const TemporaryFolder folder;
   const auto left = [&](const char* block) {
     return folder / ("." + std::string(block) + ".glb.99999999-0@another.partial");
@@ -146,7 +146,7 @@ TEST(Shard, ClearsAwayWhatAProcessOnAnyHostLeftHalfDoneOfItsBlocks) {
   EXPECT_TRUE(std::filesystem::exists(left("block_9_9")));
 }
 
-TEST(Shard, WhoseModelsFailIsNotComplete) {
+TEST(Shard, WithFailingModelsIsIncomplete) {
   const TemporaryFolder folder;
   ThrowingWorld throwing;
   const auto run = [&]() -> core::Result<Report> {
@@ -164,7 +164,7 @@ TEST(Shard, WhoseModelsFailIsNotComplete) {
   EXPECT_EQ(merged(folder.path())->hash.value(), mended->totals.hash.value());
 }
 
-TEST(Shard, WhereverTheDiskFillsALaterRunFinishesIt) {
+TEST(Shard, AfterAFullDiskALaterRunFinishesIt) {
   const TemporaryFolder top;
   const world::World world = parsed(kSmallWorld);
   const Report whole = one_process(world, top / "whole", Format::kGlb);

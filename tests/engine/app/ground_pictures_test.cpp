@@ -58,7 +58,7 @@ TEST_F(GroundPicturesTest, AMissingOneIsNamed) {
 TEST_F(GroundPicturesTest, ADamagedOneIsRefused) {
   write("whole.png", image::make_image(64, 64, 90, 80, 40, 255));
   std::filesystem::resize_file(place("whole.png"), 60);
-  EXPECT_THAT(error_of("whole.png"), HasSubstr("cut off or damaged"));
+  EXPECT_THAT(error_of("whole.png"), HasSubstr("truncated or damaged"));
   std::ofstream(place("text.png")) << "not a picture";
   EXPECT_THAT(error_of("text.png"), HasSubstr("is not a PNG or JPEG"));
 }

@@ -1,4 +1,4 @@
-// What is heard, measured in the samples that OpenAL renders.
+// Audible sound, measured in the samples that OpenAL renders.
 #include "engine/audio/audio.hpp"
 
 #include <algorithm>
@@ -16,13 +16,13 @@ using testing::shared_tone;
 constexpr double kBlock_m = 60;
 constexpr double kFrame_s = 0.02;  // 960 rendered frames
 
-// The loudness of each ear: root of the mean square.
+// The loudness at each ear: root mean square.
 struct Heard {
   double left = 0, right = 0;
   double both() const { return left + right; }
 };
 
-// Lets time pass for a listener and measures the last half of it.
+// Advances time for a listener and measures the last half of it.
 Heard listen(Audio& audio, const core::CameraPose& listener, double seconds = 0.4) {
   Heard heard;
   const int steps = static_cast<int>(std::lround(seconds / kFrame_s));
@@ -70,7 +70,7 @@ TEST(Audio, ASoundToTheRightIsLouderOnTheRightAlsoFarFromTheOrigin) {
   }
 }
 
-TEST(Audio, ASoundThatIsChangedIsHeardAsItIsFromThenOn) {
+TEST(Audio, AChangedSoundIsHeardWithItsNewValues) {
   const core::CameraPose listener = at({7, 7});
   Audio audio(rendered());
   Play how = placed(listener, 3, 0);
@@ -93,7 +93,7 @@ TEST(Audio, ASoundThatIsChangedIsHeardAsItIsFromThenOn) {
   EXPECT_TRUE(audio.change(*sound, how)) << "it has ended";
 }
 
-TEST(Audio, ASoundFallsOffWithDistanceAsItsRangeSays) {
+TEST(Audio, ASoundFallsOffWithDistanceByItsRange) {
   const core::CameraPose listener = at({7, 7});
   double near = 0;
   for (const double distance_m : {1.0, 2.0, 8.0, 50.0, 99.0, 200.0}) {
@@ -108,7 +108,7 @@ TEST(Audio, ASoundFallsOffWithDistanceAsItsRangeSays) {
   EXPECT_GT(near, 0.05);
 }
 
-TEST(Audio, WithoutAPlaceASoundIsTheSameEverywhereAndVolumesScaleIt) {
+TEST(Audio, WithoutAPositionASoundIsTheSameEverywhereAndVolumesScaleIt) {
   Audio audio(rendered());
   ASSERT_TRUE(audio.play(shared_tone(1), {.loop = true, .bus = Bus::kMusic}));
   const double full = listen(audio, at({0, 0})).both();
@@ -132,7 +132,7 @@ TEST(Audio, TheChannelsOfAClipStayApart) {
   EXPECT_NEAR(heard.right, 0, 1e-3);
 }
 
-TEST(Audio, ASoundStopsWhenToldAndAtItsEnd) {
+TEST(Audio, ASoundStopsOnRequestAndAtItsEnd) {
   Audio audio(rendered());
   const auto loop = audio.play(shared_tone(0.1), {.loop = true});
   EXPECT_GT(listen(audio, at({0, 0}), 2).both(), 0.1);
@@ -151,7 +151,7 @@ TEST(Audio, ASoundStopsWhenToldAndAtItsEnd) {
   audio.stop(*once);
 }
 
-TEST(Audio, APausedBusIsSilentAndGoesOnWhereItWas) {
+TEST(Audio, APausedBusIsSilentAndResumesAtItsPosition) {
   Audio audio(rendered());
   const auto sound = audio.play(shared_tone(1), {});
   listen(audio, at({0, 0}), 0.6);
@@ -165,7 +165,7 @@ TEST(Audio, APausedBusIsSilentAndGoesOnWhereItWas) {
   EXPECT_FALSE(audio.plays(*sound));
 }
 
-TEST(Audio, TheLoudestHaveTheVoicesAndTheOthersGoOnSilently) {
+TEST(Audio, TheLoudestHaveTheVoicesAndTheOthersAdvanceSilently) {
   Audio audio(rendered(4));
   const core::CameraPose listener = at({0, 0});
   for (int i = 0; i < 20; ++i)
@@ -220,7 +220,7 @@ TEST(Audio, WithoutADeviceTimePassesAndSoundsEnd) {
   EXPECT_EQ(audio.render(10), std::vector<float>(20));
 }
 
-TEST(Audio, SoundsGoOnWhenTheOutputGoesAndComes) {
+TEST(Audio, SoundsContinueWhenTheOutputIsLostAndFound) {
   const TemporaryFolder folder;
   testing::write_sound(folder / "tone.wav", testing::tone(3), SF_FORMAT_WAV | SF_FORMAT_PCM_16);
   Audio audio(rendered());
@@ -236,21 +236,21 @@ TEST(Audio, SoundsGoOnWhenTheOutputGoesAndComes) {
   EXPECT_FALSE(audio.plays(*clip) || audio.plays(*stream));
 }
 
-TEST(Audio, WrongValuesAreSentences) {
+TEST(Audio, WrongValuesAreErrors) {
   Audio audio({Destination::kNowhere, kBlock_m, 0});
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto refusal = [&](const Play& how, std::uint32_t channels = 1) {
     const auto played = audio.play(shared_tone(0.1, channels), how);
     return played ? std::string("it was played") : played.error().message;
   };
-  EXPECT_EQ(refusal({.gain = kNan}), "a sound has gain nan; 0 to 4 are allowed");
-  EXPECT_EQ(refusal({.pitch = 0}), "a sound has pitch 0; 0.25 to 4 are allowed");
+  EXPECT_EQ(refusal({.gain = kNan}), "a sound has gain nan; it must be 0 to 4");
+  EXPECT_EQ(refusal({.pitch = 0}), "a sound has pitch 0; it must be 0.25 to 4");
   EXPECT_EQ(refusal({.range = {5, 5}}),
-            "a sound has a range of 5 to 5 m; 0.001 to 10^9 m are allowed");
+            "a sound has a range of 5 to 5 m; it must be within 0.001 to 10^9 m");
   EXPECT_EQ(refusal({.at = core::WorldPosition{}}, 2),
-            "a sound with a place must have one channel (mono())");
+            "a sound with a position must have one channel (mono())");
   EXPECT_EQ(refusal({.at = core::WorldPosition{{}, {kNan, 0, 0}}}),
-            "a sound has a place that is not in any world");
+            "a sound has a position that is not finite or is out of range");
   EXPECT_FALSE(audio.play(nullptr, {}));
   EXPECT_FALSE(audio.stream("/none.ogg", {}));
   EXPECT_EQ(audio.playing(), 0U);
@@ -264,7 +264,7 @@ TEST(Audio, WrongValuesAreSentences) {
   EXPECT_FALSE(audio.plays(*sound)) << "time passes also where the listener is ignored";
 }
 
-TEST(Audio, AListenerThatIsNotFiniteStaysWhereItWasAndStreamsGoOn) {
+TEST(Audio, AListenerThatIsNotFiniteKeepsItsPositionAndStreamsContinue) {
   const TemporaryFolder folder;
   testing::write_sound(folder / "tone.wav", testing::tone(4), SF_FORMAT_WAV | SF_FORMAT_PCM_16);
   Audio audio(rendered());
@@ -298,7 +298,7 @@ TEST(Audio, AStreamIsDecodedPieceByPiece) {
   Audio audio(rendered());
   ASSERT_TRUE(audio.stream(file, {}));
   audio.update(at({0, 0}), kFrame_s);
-  // From now on the file is silent, so what is heard later was decoded in the first update.
+  // The file is silent from here on, so later sound was decoded in the first update.
   std::fstream out(file, std::ios::binary | std::ios::in | std::ios::out);
   out.seekp(44);
   out << std::string(std::size_t{3} * 48'000 * 2, '\0') << std::flush;
@@ -307,7 +307,7 @@ TEST(Audio, AStreamIsDecodedPieceByPiece) {
   EXPECT_NEAR(listen(audio, at({0, 0}), 0.3).both(), 0, 1e-4) << "0.6 to 0.9 s";
 }
 
-TEST(Audio, AStreamGoesOnWithFewFramesASecond) {
+TEST(Audio, AStreamContinuesAtLowFrameRates) {
   const TemporaryFolder folder;
   testing::write_sound(folder / "tone.wav", testing::tone(5), SF_FORMAT_WAV | SF_FORMAT_PCM_16);
   Audio audio(rendered());

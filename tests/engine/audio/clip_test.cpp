@@ -1,4 +1,4 @@
-// Sound files that are read, and those that are refused.
+// Sound files that are read, and those that are rejected.
 #include "engine/audio/clip.hpp"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ std::string refusal(const std::filesystem::path& file, core::ErrorCode code) {
   return clip.error().message.substr(file.string().size() + 2);
 }
 
-TEST(Clip, WavAndFlacComeBackAsTheyWere) {
+TEST(Clip, WavAndFlacReadBackEqual) {
   const TemporaryFolder folder;
   for (const std::uint32_t channels : {1U, 2U}) {
     const Clip made = tone(1.7, channels, 22'050);
@@ -43,7 +43,7 @@ TEST(Clip, WavAndFlacComeBackAsTheyWere) {
   }
 }
 
-TEST(Clip, OggVorbisComesBackAboutAsItWas) {
+TEST(Clip, OggVorbisReadsBackApproximately) {
   const TemporaryFolder folder;
   const Clip made = tone(1, 1, 44'100);
   write_sound(folder / "tone.ogg", made, SF_FORMAT_OGG | SF_FORMAT_VORBIS);
@@ -56,7 +56,7 @@ TEST(Clip, OggVorbisComesBackAboutAsItWas) {
   EXPECT_LT(difference / static_cast<double>(made.samples.size()), 200);
 }
 
-TEST(Clip, OtherFilesAreRefusedWithASentence) {
+TEST(Clip, OtherFilesAreRejectedWithAMessage) {
   const TemporaryFolder folder;
   EXPECT_EQ(refusal(folder / "none.wav", core::ErrorCode::kIo), "there is no such file");
   EXPECT_EQ(refusal(folder.path(), core::ErrorCode::kIo), "is not a regular file");
@@ -66,10 +66,10 @@ TEST(Clip, OtherFilesAreRefusedWithASentence) {
             0U);
   write_sound(folder / "tone.aiff", tone(0.1), SF_FORMAT_AIFF | SF_FORMAT_PCM_16);
   EXPECT_EQ(refusal(folder / "tone.aiff", core::ErrorCode::kParse),
-            "is neither WAV nor Ogg Vorbis nor FLAC");
+            "is not a WAV, Ogg Vorbis or FLAC file");
   write_sound(folder / "six.wav", Clip{48'000, 6, std::vector<std::int16_t>(600)}, kWav);
   EXPECT_EQ(refusal(folder / "six.wav", core::ErrorCode::kOverBudget),
-            "has 6 channels; 1 or 2 are allowed");
+            "has 6 channels; it must have 1 or 2");
   write_sound(folder / "slow.wav", tone(1, 1, 1000), kWav);
   EXPECT_EQ(refusal(folder / "slow.wav", core::ErrorCode::kOverBudget),
             "has 1000 Hz; 4000 to 192000 are allowed");
@@ -77,7 +77,7 @@ TEST(Clip, OtherFilesAreRefusedWithASentence) {
   EXPECT_EQ(refusal(folder / "empty.wav", core::ErrorCode::kParse), "has no samples");
 }
 
-TEST(Clip, AClipThatIsTooLongIsRefused) {
+TEST(Clip, AClipThatIsTooLongIsRejected) {
   const TemporaryFolder folder;
   for (const std::size_t more : {std::size_t{1}, std::size_t{1} << 17}) {
     const Clip silence{48'000, 1, std::vector<std::int16_t>(kMaxClipBytes / 2 + more)};
@@ -92,8 +92,8 @@ TEST(Clip, AClipThatIsTooLongIsRefused) {
   EXPECT_TRUE(check_clip(*clip));
 }
 
-// Puts right checksums into the pages of an Ogg file (RFC 3533), as far as there are whole pages:
-// otherwise no damaged page reaches the decoder.
+// Writes correct checksums into the whole pages of an Ogg file (RFC 3533); otherwise no damaged
+// page would reach the decoder.
 void mend_checksums(std::string& ogg) {
   constexpr std::size_t kHead = 27, kChecksum = 22, kSegments = 26;
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(ogg[at]); };
@@ -131,7 +131,7 @@ bool streams(Audio& audio, const std::filesystem::path& file, bool loop) {
   return true;
 }
 
-TEST(Clip, ChangedBytesAreASentenceOrASound) {
+TEST(Clip, ChangedBytesAreAnErrorOrASound) {
   const TemporaryFolder folder;
   Audio audio({.destination = Destination::kRendered});
   core::RandomStream random(4, 0, 0, 0, core::Purpose::kStructure);

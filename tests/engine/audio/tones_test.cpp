@@ -16,7 +16,7 @@ double power(std::span<const float> samples) {
   return sum / static_cast<double>(std::max<std::size_t>(samples.size(), 1));
 }
 
-// How much of a frequency is in the samples: 0.25 of a full sine.
+// The power of a frequency in the samples: 0.25 for a full sine.
 double share_of_hz(const Samples& samples, double hz) {
   double re = 0, im = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -28,7 +28,7 @@ double share_of_hz(const Samples& samples, double hz) {
   return (re * re + im * im) / (n * n);
 }
 
-TEST(Tones, NoiseIsOfItsSeedAndHasItsFrequenciesAlone) {
+TEST(Tones, NoiseDependsOnItsSeedAndHasOnlyItsFrequencies) {
   const Samples a = noise(1, 200, 800, 3);
   EXPECT_EQ(a.size(), kToneRateHz);
   EXPECT_EQ(a, noise(1, 200, 800, 3));
@@ -43,7 +43,7 @@ TEST(Tones, NoiseIsOfItsSeedAndHasItsFrequenciesAlone) {
   EXPECT_GT(around(400), 4 * around(6000));
 }
 
-TEST(Tones, AToneHasItsPitchBeginsAtItsTimeAndDiesAway) {
+TEST(Tones, AToneHasItsPitchStartsAtItsTimeAndDecays) {
   Samples out(samples_of(2));
   add_tone(out, 0.5, 441, 0.5F, 0.2, {0.5F});
   EXPECT_EQ(power(std::span(out).first(samples_of(0.5))), 0);
@@ -53,11 +53,11 @@ TEST(Tones, AToneHasItsPitchBeginsAtItsTimeAndDiesAway) {
             20 * power(std::span(out).subspan(samples_of(1.0), 1000)));
   EXPECT_EQ(power(std::span(out).subspan(samples_of(1.8))), 0) << "six decays are over";
   Samples none;
-  add_tone(none, 1, 441, 1, 1);  // behind the end
+  add_tone(none, 1, 441, 1, 1);  // after the end
   EXPECT_TRUE(none.empty());
 }
 
-TEST(Tones, WhatIsAddedFallsFromOneGainToTheOtherAndEndsWithTheSound) {
+TEST(Tones, AddedSamplesFadeBetweenTheGainsAndEndWithTheSound) {
   Samples out(samples_of(0.1), 0.0F);
   const Samples ones(samples_of(0.1), 1.0F);
   add(out, 0.05, ones, 1, 0);
@@ -80,7 +80,7 @@ TEST(Tones, ALoopHasNoSeam) {
   EXPECT_EQ(looped(Samples(10, 1.0F), 5).size(), 5U);
 }
 
-TEST(Tones, AClipHasOneChannelOrTwoAndIsCutOffWhereItIsTooLoud) {
+TEST(Tones, AClipHasOneChannelOrTwoAndIsClipped) {
   Samples left{0, 0.5F, 2}, right{-3, 0, 1};
   shape(left, [](float) { return 1.0F; });
   const Clip mono_clip = clip_of(left);

@@ -74,7 +74,7 @@ TEST_F(Shards, OfOtherWorldsAndRegionsAreNotMixed) {
             0);
   const Outcome mixed = run("merge s p");
   EXPECT_EQ(mixed.code, 1);
-  EXPECT_TRUE(mentions(mixed.err, "is of another job than")) << mixed.err;
+  EXPECT_TRUE(mentions(mixed.err, "belongs to another job than")) << mixed.err;
 }
 
 // The text of the world is the same, but what a mask holds is not.
@@ -97,8 +97,7 @@ TEST_F(Shards, OfWorldsWhoseFilesHaveChangedAreNotMixed) {
   EXPECT_TRUE(mentions(goes_on.err, "or of the files that it names")) << goes_on.err;
   const Outcome blocks = make("--out blocks");
   EXPECT_EQ(blocks.code, 1);
-  EXPECT_TRUE(mentions(blocks.err, "holds the blocks of this world with other files"))
-      << blocks.err;
+  EXPECT_TRUE(mentions(blocks.err, "has blocks of this world with other files")) << blocks.err;
   ASSERT_EQ(make("--shard 2/2 --out s --format none").code, 0);
   EXPECT_EQ(run("merge s").code, 1);
   paint(255);

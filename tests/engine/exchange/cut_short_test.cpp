@@ -22,7 +22,7 @@ class CutShort : public ::testing::TestWithParam<Format> {
   const TemporaryFolder folder_;
 };
 
-TEST_P(CutShort, AFileIsWholeWithItsLastByteOnly) {
+TEST_P(CutShort, AFileWithoutItsLastByteIsCutShort) {
   EXPECT_FALSE(is_short());
   for (std::uintmax_t size = std::filesystem::file_size(file()); size > 0;) {
     size = size > 40 ? size - size / 7 : size - 1;  // every length near the start
@@ -31,7 +31,7 @@ TEST_P(CutShort, AFileIsWholeWithItsLastByteOnly) {
   }
 }
 
-TEST_P(CutShort, WhatOthersWroteAndWhatIsNotThereIsNot) {
+TEST_P(CutShort, ForeignAndMissingFilesAreNotCutShort) {
   std::ofstream(file()) << "mine";
   EXPECT_FALSE(is_short());
   std::filesystem::remove(file());
@@ -41,23 +41,23 @@ TEST_P(CutShort, WhatOthersWroteAndWhatIsNotThereIsNot) {
 INSTANTIATE_TEST_SUITE_P(Formats, CutShort, ::testing::Values(Format::kGlb, Format::kObj),
                          [](const auto& format) { return std::string(name_of(format.param)); });
 
-TEST(CutShortObj, ItsMaterialsBelongToIt) {
+TEST(CutShortObj, NeedsItsMaterials) {
   const TemporaryFolder folder;
   const auto obj = folder / "rock.obj", mtl = folder / "rock.mtl";
   ASSERT_TRUE(write_document(obj, Format::kObj, {kName, {synthesised("rock", 0)}}));
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, kName));
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, "another"));
-  std::ofstream(mtl, std::ios::app) << "Kd 1 0 0\n";  // somebody's own
+  std::ofstream(mtl, std::ios::app) << "Kd 1 0 0\n";  // an addition by the user
   std::ofstream(obj, std::ios::app) << "o mine\n";
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, kName));
   std::filesystem::resize_file(mtl, 0);
   EXPECT_TRUE(is_cut_short(obj, Format::kObj, kName));
   std::filesystem::remove(mtl);
   EXPECT_TRUE(is_cut_short(obj, Format::kObj, kName));
-  EXPECT_FALSE(is_cut_short(obj, Format::kObj, "another"));  // nobody's who asks
+  EXPECT_FALSE(is_cut_short(obj, Format::kObj, "another"));  // not this document's file
 }
 
-TEST(CutShortFile, WhatCannotBeReadIsNot) {
+TEST(CutShortFile, UnreadableFilesAreNotCutShort) {
   const TemporaryFolder folder;
   for (const Format format : {Format::kGlb, Format::kObj}) {
     std::filesystem::create_symlink("itself", folder / "itself");
@@ -67,7 +67,7 @@ TEST(CutShortFile, WhatCannotBeReadIsNot) {
   }
 }
 
-TEST(CutShortGlb, AFileWithMoreBehindItIsWhole) {
+TEST(CutShortGlb, AFileWithExtraBytesIsWhole) {
   const TemporaryFolder folder;
   const auto glb = folder / "rock.glb";
   ASSERT_TRUE(write_document(glb, Format::kGlb, {kName, {synthesised("rock", 0)}}));

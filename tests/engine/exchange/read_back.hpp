@@ -1,4 +1,4 @@
-// A glTF or OBJ file as another library (assimp) reads it.
+// Reads a glTF or OBJ file with another library (assimp).
 #pragma once
 
 #include <assimp/mesh.h>
@@ -25,7 +25,7 @@ inline Counts counts_of(const aiScene& scene) {
   return counts;
 }
 
-// Everything that stands in the file; the scene is null where it cannot be read.
+// The whole content of the file; the scene is null if it cannot be read.
 class ReadBack {
  public:
   explicit ReadBack(const std::filesystem::path& file)

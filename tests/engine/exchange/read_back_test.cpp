@@ -31,7 +31,7 @@ void expect_read_back(const Document& document, const TemporaryFolder& folder, F
   ASSERT_NE(back.scene(), nullptr) << back.error();
   const Counts counts = counts_of(*back.scene());
   EXPECT_EQ(counts.triangles, document.triangle_count());
-  // Of an .obj it makes a vertex of each corner.
+  // For an .obj the library makes one vertex per corner.
   if (format == Format::kGlb) {
     EXPECT_EQ(counts.vertices, document.vertex_count());
   }

@@ -62,7 +62,7 @@ TEST(Unpack, PartsAreSoundAndFaceOutwards) {
                         &c = part.positions[part.indices[i + 2]];
         agreeing += glm::dot(glm::cross(b - a, c - a), part.normals[part.indices[i]]) > 0 ? 1 : 0;
       }
-      // Leaves are lit as the crown they belong to, not as they lie.
+      // Leaves have the normals of their crown, not of their triangles.
       if (part.material != kLeaf) {
         EXPECT_GT(static_cast<double>(agreeing), 0.9 * static_cast<double>(part.indices.size() / 3))
             << name;
@@ -81,7 +81,7 @@ TEST(Unpack, SeparatesBarkFromLeaves) {
   EXPECT_NE(tree.parts[0].material, tree.parts[1].material);
 }
 
-TEST(Unpack, AnIndexThatNamesNoVertexIsRefused) {
+TEST(Unpack, AnIndexOutOfRangeIsRejected) {
   const models::ModelType& type = standard_type("tree");
   const models::Parameters p = models::default_parameters(type);
   const auto mesh = synthesis::HeapDestination::make(type, p, 0);
@@ -92,7 +92,7 @@ TEST(Unpack, AnIndexThatNamesNoVertexIsRefused) {
   EXPECT_NE(object.error().message.find("65535"), std::string::npos);
 }
 
-// Behaves until its mesh is to be unpacked, then throws as it is told to.
+// Throws the given exception when its mesh is unpacked, not earlier.
 class LateThrower final : public models::ModelType {
  public:
   explicit LateThrower(std::function<void()> thrower, std::uint32_t shared = 0)

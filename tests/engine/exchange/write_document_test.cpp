@@ -29,7 +29,7 @@ TEST(WriteDocument, AGlbReadByAnotherLibraryHasTheSameCounts) {
   EXPECT_EQ(counts.vertices, document.vertex_count());
   EXPECT_EQ(counts.triangles, document.triangle_count());
   EXPECT_GT(counts.triangles, 10'000u);
-  // Objects are nodes; bark, leaves and ground are materials (a reader may add one of its own).
+  // Objects are nodes; bark, leaves and ground are materials (a reader may add its own).
   EXPECT_EQ(back.scene()->mRootNode->mNumChildren, 4u);
   EXPECT_GE(back.scene()->mNumMaterials, 3u);
 }
@@ -108,7 +108,7 @@ TEST(WriteDocument, AnObjHasOneLineForEveryVertexAndTriangle) {
   EXPECT_NE(text.mtl.find("newmtl leaf"), std::string::npos);
 }
 
-TEST(WriteDocument, AnEmptyDocumentIsStillAFileThatOthersRead) {
+TEST(WriteDocument, AnEmptyDocumentIsAFileThatOthersRead) {
   const auto bytes = glb_bytes({"nothing", {}});
   ASSERT_TRUE(bytes);
   EXPECT_GT(bytes->size(), 20u);
@@ -139,7 +139,7 @@ TEST(WriteDocument, AFolderThatDoesNotExistIsNamed) {
   EXPECT_NE(written.error().message.find("/nonexistent/a.glb"), std::string::npos);
 }
 
-TEST(WriteDocument, WhereverTheDiskFillsEachFileIsWholeOrNotThere) {
+TEST(WriteDocument, OnAFullDiskEachFileIsWholeOrMissing) {
   const Document document{"rock", {synthesised("rock", 0)}};
   for (const Format format : {Format::kGlb, Format::kObj}) {
     expect_whole_files([&](const auto& folder) {
@@ -149,7 +149,7 @@ TEST(WriteDocument, WhereverTheDiskFillsEachFileIsWholeOrNotThere) {
   }
 }
 
-TEST(WriteDocument, AnObjThatDoesNotFitLeavesTheMaterialsOfTheOldOne) {
+TEST(WriteDocument, AnObjThatDoesNotFitKeepsTheOldMaterials) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_document(folder / "a.obj", Format::kObj, {"rock", {synthesised("rock", 0)}}));
   const FileContents before = contents_of(folder.path());

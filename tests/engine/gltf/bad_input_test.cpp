@@ -1,5 +1,5 @@
-// Files that are damaged or lie. Each is refused with one printable sentence that begins with its
-// path, and nothing is allocated for what it claims.
+// Files that are damaged or state false sizes. Each is rejected with one printable message that
+// begins with its path, without an allocation of the stated size.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ class BadGltf : public testing::Test {
   std::filesystem::path file_ = folder_ / "a.glb";
 };
 
-TEST_F(BadGltf, CutAtAnyByteIsRefused) {
+TEST_F(BadGltf, CutAtAnyByteIsRejected) {
   const std::string whole = square().glb();
   ASSERT_TRUE(read(whole));
   for (std::size_t size = 0; size < whole.size(); ++size)
@@ -67,7 +67,7 @@ TEST_F(BadGltf, CutAtAnyByteIsRefused) {
     EXPECT_FALSE(read(std::string_view(text).substr(0, size))) << size << " bytes";
 }
 
-TEST_F(BadGltf, WithAnyByteChangedIsReadOrRefusedWithASentence) {
+TEST_F(BadGltf, WithAnyByteChangedIsReadOrRejectedWithAMessage) {
   const std::string whole = square().glb();
   std::mt19937 random(1);
   int taken = 0, refused = 0;
@@ -80,7 +80,7 @@ TEST_F(BadGltf, WithAnyByteChangedIsReadOrRefusedWithASentence) {
   EXPECT_GT(refused, 200);
 }
 
-TEST_F(BadGltf, OfOtherKindsIsRefused) {
+TEST_F(BadGltf, OfOtherKindsIsRejected) {
   refuse_bytes("", "the file is empty");
   const std::string whole = square().glb();
   refuse_bytes(whole.substr(0, whole.size() - 1), "the file is cut short: ");
@@ -97,7 +97,7 @@ TEST_F(BadGltf, OfOtherKindsIsRefused) {
   EXPECT_FALSE(read_file("/dev/zero"));
 }
 
-TEST_F(BadGltf, WhoseJsonIsABombIsRefusedBeforeItIsParsed) {
+TEST_F(BadGltf, WhoseJsonIsABombIsRejectedBeforeItIsParsed) {
   const std::string head = R"({"asset":{"version":"2.0"},"extras":)";
   refuse_bytes(head + std::string(1'000'000, '['), "nested", ErrorCode::kOverBudget);
   std::string wide = head + "[0";
@@ -106,7 +106,7 @@ TEST_F(BadGltf, WhoseJsonIsABombIsRefusedBeforeItIsParsed) {
   refuse_bytes(wide + "]}", "values", ErrorCode::kOverBudget);
 }
 
-TEST_F(BadGltf, LargerThanTheLimitsIsRefusedBeforeAnythingIsAllocated) {
+TEST_F(BadGltf, LargerThanTheLimitsIsRejectedBeforeAnythingIsAllocated) {
   const Sample sample = square();
   Limits limits;
   limits.bytes = 100;
@@ -123,7 +123,7 @@ TEST_F(BadGltf, LargerThanTheLimitsIsRefusedBeforeAnythingIsAllocated) {
   limits = {};
   limits.nodes = 0;
   refuse(sample, "more than 0 nodes", ErrorCode::kOverBudget, limits);
-  // Many small things that name one large thing.
+  // Many small items that refer to one large item.
   Sample many = square();
   for (int i = 0; i < 20'000; ++i)
     many.json["meshes"][0]["primitives"].push_back(nlohmann::json(primitive_of(many)));
@@ -132,7 +132,7 @@ TEST_F(BadGltf, LargerThanTheLimitsIsRefusedBeforeAnythingIsAllocated) {
   refuse(many, "more than 50000 vertices", ErrorCode::kOverBudget, limits);
 }
 
-TEST_F(BadGltf, WithAccessorsOutOfTheirBufferIsRefused) {
+TEST_F(BadGltf, WithAccessorsOutOfTheirBufferIsRejected) {
   for (const std::uint64_t count :
        {std::uint64_t{5}, std::uint64_t{1} << 31, std::uint64_t{1} << 32, UINT64_MAX}) {
     Sample sample = square();
@@ -176,7 +176,7 @@ TEST_F(BadGltf, WithAccessorsOutOfTheirBufferIsRefused) {
   refuse(sample, "3 elements for 4 vertices");
 }
 
-TEST_F(BadGltf, WithIndicesOutOfRangeIsRefused) {
+TEST_F(BadGltf, WithIndicesOutOfRangeIsRejected) {
   Sample sample = square();
   primitive_of(sample)["indices"] =
       sample.accessor(std::vector<std::uint32_t>{0, 1, 4'000'000'000U}, "SCALAR", kInts);
@@ -206,7 +206,7 @@ TEST_F(BadGltf, WithIndicesOutOfRangeIsRefused) {
   refuse(sample, "materials[0].normalTexture is 2");
 }
 
-TEST_F(BadGltf, WithNumbersThatAreNoneIsRefused) {
+TEST_F(BadGltf, WithNonFiniteNumbersIsRejected) {
   for (const float bad : {NAN, INFINITY, -1e6F}) {
     Sample sample = square();
     std::memcpy(sample.binary.data() + 4, &bad, sizeof bad);
@@ -236,7 +236,7 @@ TEST_F(BadGltf, WithNumbersThatAreNoneIsRefused) {
   refuse(sample, "9 of 3 are needed");
 }
 
-TEST_F(BadGltf, WhoseNodesFormACycleOrHaveTwoParentsIsRefused) {
+TEST_F(BadGltf, WhoseNodesFormACycleOrHaveTwoParentsIsRejected) {
   Sample sample = square();
   sample.json["nodes"] = parsed(R"([{"mesh": 0}, {"children": [2]}, {"children": [1]}])");
   refuse(sample, "cycle");
@@ -248,7 +248,7 @@ TEST_F(BadGltf, WhoseNodesFormACycleOrHaveTwoParentsIsRefused) {
   refuse(sample, "a child of nodes[0] is 7");
 }
 
-TEST_F(BadGltf, OfADepthOf100000IsRefusedOrReadWithoutRecursion) {
+TEST_F(BadGltf, OfADepthOf100000IsRejectedOrReadWithoutRecursion) {
   constexpr int kDepth = 100'000;
   Sample sample = square();
   std::string nodes = R"([{"mesh": 0})";
@@ -264,7 +264,7 @@ TEST_F(BadGltf, OfADepthOf100000IsRefusedOrReadWithoutRecursion) {
   EXPECT_EQ(model->nodes.size(), std::size_t{kDepth});
 }
 
-TEST_F(BadGltf, ThatNeedsWhatIsNotSupportedIsRefused) {
+TEST_F(BadGltf, ThatRequiresUnsupportedFeaturesIsRejected) {
   Sample sample = square();
   sample.json["extensionsRequired"][0] = "KHR_draco_mesh_compression";
   refuse(sample, "KHR_draco_mesh_compression", ErrorCode::kInvalidArgument);
@@ -275,7 +275,7 @@ TEST_F(BadGltf, ThatNeedsWhatIsNotSupportedIsRefused) {
   refuse(sample, "sparse", ErrorCode::kInvalidArgument);
 }
 
-TEST_F(BadGltf, ThatNamesFilesOutsideOfItsFolderIsRefused) {
+TEST_F(BadGltf, ThatNamesFilesOutsideOfItsFolderIsRejected) {
   std::filesystem::create_directories(folder_ / "inside");
   file_ = folder_ / "inside/a.gltf";
   const Sample sample = square();
@@ -292,7 +292,7 @@ TEST_F(BadGltf, ThatNamesFilesOutsideOfItsFolderIsRefused) {
   EXPECT_TRUE(read(sample.text("near.bin"))) << "a link within the folder";
 }
 
-TEST_F(BadGltf, WithoutItsBufferOrPictureIsRefused) {
+TEST_F(BadGltf, WithoutItsBufferOrPictureIsRejected) {
   Sample sample = square();
   refuse_bytes(sample.text("missing.bin"), "missing.bin", ErrorCode::kIo);
   refuse_bytes(sample.text(), "uri");
@@ -304,7 +304,7 @@ TEST_F(BadGltf, WithoutItsBufferOrPictureIsRefused) {
   refuse(sample, "missing.png", ErrorCode::kIo);
   write_bytes(folder_ / "text.png", "no picture");
   sample.json["images"][0]["uri"] = "text.png";
-  refuse(sample, "images[0]: is not a PNG or JPEG picture");
+  refuse(sample, "images[0]: is not a PNG or JPEG image");
   sample.json["images"][0] = {{"bufferView", 99}, {"mimeType", "image/png"}};
   EXPECT_FALSE(read(sample.glb()));
   sample.json["textures"][0].erase("source");
@@ -312,15 +312,15 @@ TEST_F(BadGltf, WithoutItsBufferOrPictureIsRefused) {
   refuse(sample, "source of textures[0] is -1");
 }
 
-TEST_F(BadGltf, WithTexturesOfAbsurdSizeIsRefused) {
-  // The header of a picture of 65,536 x 65,536 pixels.
+TEST_F(BadGltf, WithTexturesOfAbsurdSizeIsRejected) {
+  // The header of an image of 65,536 x 65,536 pixels.
   std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\1\0\0\0\1\0\0\x08\6\0\0\0....", 33);
   Sample sample = square();
   const int view = sample.view(png);
   sample.json["images"][0] = {{"bufferView", view}, {"mimeType", "image/png"}};
   sample.json["textures"][0]["source"] = 0;
   sample.json["materials"][0]["emissiveTexture"]["index"] = 0;
-  refuse(sample, "images[0]: the picture is 65536 x 65536", ErrorCode::kOverBudget);
+  refuse(sample, "images[0]: the image is 65536 x 65536", ErrorCode::kOverBudget);
   ASSERT_TRUE(image::write_png(folder_ / "b.png", image::make_image(64, 64)));
   sample.json["images"][0] = nlohmann::json::object({{"uri", "b.png"}});
   Limits limits;

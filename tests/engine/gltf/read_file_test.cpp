@@ -1,4 +1,4 @@
-// What is read of files: against the values that were written, and against another library.
+// Compares the content of read files with the written values, and with another library.
 #include "engine/gltf/read_file.hpp"
 
 #include <assimp/postprocess.h>
@@ -52,7 +52,7 @@ void expect_square(const Model& model) {
   EXPECT_THAT(model.notes, testing::IsEmpty());
 }
 
-TEST_F(ReadFile, TakesMeshesMaterialsNodesAndAnimationsOfAGlb) {
+TEST_F(ReadFile, ReadsMeshesMaterialsNodesAndAnimationsOfAGlb) {
   const Model model = read(square());
   expect_square(model);
   ASSERT_EQ(model.materials.size(), 1u);
@@ -63,7 +63,7 @@ TEST_F(ReadFile, TakesMeshesMaterialsNodesAndAnimationsOfAGlb) {
   EXPECT_TRUE(material.two_sided);
 }
 
-TEST_F(ReadFile, TakesABufferBesideAGltf) {
+TEST_F(ReadFile, ReadsABufferNextToAGltf) {
   const Sample sample = square();
   write_bytes(folder_ / "a b.bin", sample.binary);
   write_bytes(folder_ / "a.gltf", sample.text("a%20b.bin"));
@@ -72,7 +72,7 @@ TEST_F(ReadFile, TakesABufferBesideAGltf) {
   expect_square(*beside);
 }
 
-TEST_F(ReadFile, DecodesPicturesInBuffersAndBesideTheFile) {
+TEST_F(ReadFile, DecodesImagesInBuffersAndNextToTheFile) {
   ASSERT_TRUE(image::write_png(folder_ / "wood.png", image::make_image(4, 2, 9, 8, 7, 255)));
   std::ifstream stream(folder_ / "wood.png", std::ios::binary);
   const std::string png(std::istreambuf_iterator<char>(stream), {});
@@ -92,7 +92,7 @@ TEST_F(ReadFile, DecodesPicturesInBuffersAndBesideTheFile) {
   EXPECT_EQ(model.materials[0].normal_strength, 0.5F);
 }
 
-TEST_F(ReadFile, MakesTrianglesOfStripsAndFansAndFlatNormalsWhereThereAreNone) {
+TEST_F(ReadFile, MakesTrianglesOfStripsAndFansAndFlatNormalsIfNoneAreGiven) {
   Sample sample = square();
   nlohmann::json& primitive = sample.json["meshes"][0]["primitives"][0];
   primitive.erase("indices");
@@ -113,7 +113,7 @@ TEST_F(ReadFile, MakesTrianglesOfStripsAndFansAndFlatNormalsWhereThereAreNone) {
     EXPECT_EQ(normal, glm::vec3(0, 0, 1)) << "every second triangle is turned";
 }
 
-TEST_F(ReadFile, OrdersNodesAndTakesMatricesApart) {
+TEST_F(ReadFile, OrdersNodesAndDecomposesMatrices) {
   Sample sample = square();
   sample.json["nodes"] = parsed(R"([
       {"mesh": 0, "name": "leaf", "scale": [2, 3, 4]},
@@ -130,7 +130,7 @@ TEST_F(ReadFile, OrdersNodesAndTakesMatricesApart) {
   EXPECT_LT(glm::length(pose.rotation * glm::vec3(1, 0, 0) - glm::vec3(0, 1, 0)), 1e-6F);
 }
 
-TEST_F(ReadFile, SaysWhatTheFileHasAndTheEngineDoesNot) {
+TEST_F(ReadFile, WarnsOfUnsupportedFeatures) {
   Sample sample = square();
   sample.json["extensionsUsed"][0] = "KHR_materials_clearcoat";
   sample.json["skins"] = parsed(R"([{"joints": [0]}])");
@@ -183,7 +183,7 @@ std::vector<glm::vec3> corners_of(const Model& model) {
   return out;
 }
 
-TEST(ShippedModel, HasItsCornersWhereAnotherLibraryFindsThem) {
+TEST(ShippedModel, HasTheSameCornersInAnotherLibrary) {
   const std::string file = source_file("examples/09_gltf/windmill.glb");
   const auto model = read_file(file);
   ASSERT_TRUE(model) << model.error().message;

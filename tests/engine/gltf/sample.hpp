@@ -1,4 +1,4 @@
-// A small glTF file in the making: JSON that a test may change at will, and one buffer.
+// Builds a small glTF file: JSON that a test may change, and one buffer.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace psygen::gltf {
 
 inline constexpr int kBytes = 5121, kShorts = 5123, kInts = 5125, kFloats = 5126;
 
-// Lists of one value look like that value to nlohmann::json in some compilers.
+// With some compilers, nlohmann::json takes a list of one value for the value.
 template <class... Values>
 nlohmann::json list(const Values&... values) {
   return nlohmann::json::array({nlohmann::json(values)...});
@@ -54,7 +54,7 @@ struct Sample {
                              {"type", type}});
   }
 
-  // The JSON with its buffer's size; `uri`: of the buffer in a file of its own.
+  // The JSON with its buffer's size. `uri` names the buffer's file if it is separate.
   std::string text(const std::string& uri = "") const {
     nlohmann::json whole = json;
     if (!binary.empty() && !whole.contains("buffers")) {

@@ -90,7 +90,7 @@ TEST(HandmadeType, TurnsAboutTheVerticalAxis) {
   }
 }
 
-TEST(HandmadeType, IsAsSolidAsItsFileSays) {
+TEST(HandmadeType, HasTheColliderOfItsFile) {
   for (const auto kind : world::kHandmadeColliders) {
     const auto type = type_of({.name = {}, .file = {}, .collider = std::string(kind)});
     const models::Parameters p = parameters(2, 30);

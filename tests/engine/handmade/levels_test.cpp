@@ -23,8 +23,8 @@ TEST(Levels, HaveAQuarterOfTheTrianglesEachAndGrowingErrors) {
   }
 }
 
-// Every point of a coarse level is as near to the sphere as its error says.
-TEST(Levels, HaveErrorsThatHold) {
+// Every point of a coarse level is within its error of the sphere.
+TEST(Levels, HaveErrorsThatBoundTheDistance) {
   for (const Level& level : levels_of(sphere(64, 128), 4)) {
     for (std::size_t i = 0; i < level.indices.size(); i += 3) {
       glm::vec3 middle(0.0F);
@@ -53,7 +53,7 @@ TEST(Levels, NeverHaveMoreVerticesThanAnIndexCanName) {
   EXPECT_GT(levels[0].vertices.size(), 20'000U);
 }
 
-TEST(Levels, EndWhereNothingIsLeftToBeMerged) {
+TEST(Levels, EndWhenNothingIsLeftToMerge) {
   Triangles one;
   one.vertices = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
   one.indices = {0, 1, 2};
@@ -83,7 +83,7 @@ TEST(Levels, AreTheSameEveryTime) {
   }
 }
 
-// The area of the triangles of leaves, or of all others.
+// The area of the triangles of leaves, or of all other triangles.
 double area_in(const Level& level, bool leaves) {
   double area = 0;
   for (std::size_t i = 0; i < level.indices.size(); i += 3) {
@@ -98,7 +98,7 @@ double area_in(const Level& level, bool leaves) {
   return area;
 }
 
-// Nothing of loose leaves can be merged: fewer of them get larger.
+// Loose leaves cannot be merged: coarser levels have fewer and larger ones.
 TEST(Levels, OfATreeOfCardsKeepItsTrunkAndTheAreaOfItsLeaves) {
   const TemporaryFolder folder;
   write_card_tree(folder / "tree.glb");

@@ -71,7 +71,7 @@ inline Triangles sphere(int rows, int columns) {
   return t;
 }
 
-// A picture of a few leaves side by side: green within them, magenta and left out around them.
+// An image of a few leaves side by side: green inside, transparent magenta around them.
 inline image::Image leaf_picture(std::uint32_t side = 64) {
   image::Image image = image::make_image(side, side, 255, 0, 255, 0);
   for (std::uint32_t y = 0; y < side; ++y) {
@@ -89,8 +89,8 @@ inline image::Image leaf_picture(std::uint32_t side = 64) {
   return image;
 }
 
-// A tree as artists make them: a trunk, and cards with leaves, of which a texture leaves out what
-// is between them. `leaves`: its PNG.
+// A typical tree by an artist: a trunk, and cards with a texture of leaves that is transparent
+// between them. `leaves` is the texture's PNG.
 inline gltf::Sample card_tree(std::string_view leaves, int cards = 160) {
   gltf::Sample s;
   struct Part {

@@ -21,7 +21,7 @@ gltf::Model model_of(const gltf::Sample& sample) {
   return gltf::read_file(folder / "m.glb").value();
 }
 
-TEST(Triangles, StandOnTheirFootAndAreAsHighAsIsSaid) {
+TEST(Triangles, StandOnTheirBasePointAndHaveTheirStatedHeight) {
   gltf::Sample sample = ball(16, 24);
   sample.json["nodes"][0]["translation"] = gltf::list(100, 7, -30);
   const Triangles t =
@@ -71,7 +71,7 @@ core::MeshData card() {
   return mesh;
 }
 
-TEST(CutOut, LeavesWhatIsDrawnWithItsAreaAndItsFront) {
+TEST(CutOut, KeepsAreaAndFrontOfTheDrawnParts) {
   const image::Image leaves = leaf_picture();
   const core::MeshData cut = cut_out(card(), leaves, 1, 0.5F, kMaxCutDepth);
   EXPECT_NEAR(area_of(cut), share_drawn(leaves), 0.15 * share_drawn(leaves));
@@ -89,8 +89,8 @@ TEST(CutOut, LeavesWhatIsDrawnWithItsAreaAndItsFront) {
   EXPECT_LT(outside, 0.25 * area_of(cut)) << "a leaf is not three steps large";
 }
 
-// Needles are finer than what is cut: as much of the card stays as they cover.
-TEST(CutOut, KeepsTheAreaOfWhatIsFinerThanItCuts) {
+// Needles are finer than the cuts: the card keeps the area that they cover.
+TEST(CutOut, KeepsTheAreaOfDetailsFinerThanTheCuts) {
   image::Image needles = image::make_image(256, 256, 0, 90, 0, 0);
   for (std::uint32_t y = 0; y < 256; ++y)
     for (std::uint32_t x = 0; x < 256; ++x)
@@ -101,7 +101,7 @@ TEST(CutOut, KeepsTheAreaOfWhatIsFinerThanItCuts) {
     EXPECT_NEAR(area_of(cut_out(card(), needles, 1, 0.5F, depth)), drawn, 0.35 * drawn) << depth;
 }
 
-TEST(CutOut, OfOnePictureIsAllOrNothing) {
+TEST(CutOut, OfAUniformImageKeepsAllOrNothing) {
   const core::MeshData whole =
       cut_out(card(), image::make_image(8, 8, 1, 2, 3, 255), 1, 0.5F, kMaxCutDepth);
   EXPECT_EQ(whole.indices.size(), 6U) << "no more triangles than it had";
@@ -141,14 +141,15 @@ TEST(Triangles, KeepTheirFrontsWhereANodeMirrorsThem) {
   }
 }
 
-TEST(Triangles, RefuseWhatCannotStandInAWorld) {
+TEST(Triangles, RejectModelsThatCannotStandInAWorld) {
   const auto error = [](const gltf::Sample& sample, const world::HandmadeModel& how) {
     const auto made = triangles_of(model_of(sample), how);
     return made ? std::string() : made.error().message;
   };
   EXPECT_THAT(error(ball(8, 8), {.name = {}, .file = {}, .scale = 1000}),
-              HasSubstr("m large; 0.01 to 1000 m are allowed"));
-  EXPECT_THAT(error(ball(8, 8), {.name = {}, .file = {}, .scale = 1e-4}), HasSubstr("m large"));
+              HasSubstr("m; allowed: 0.01 to 1000 m"));
+  EXPECT_THAT(error(ball(8, 8), {.name = {}, .file = {}, .scale = 1e-4}),
+              HasSubstr("its size would be"));
   gltf::Sample flat = gltf::square();
   flat.json["nodes"][0]["rotation"] = gltf::list(0.70710678, 0, 0, 0.70710678);
   EXPECT_THAT(error(flat, {.name = {}, .file = {}, .size_m = 3}), HasSubstr("flat"));
@@ -162,7 +163,7 @@ TEST(Triangles, RefuseWhatCannotStandInAWorld) {
   EXPECT_THAT(error(many, {}), HasSubstr("more than 1048576 vertices"));
 }
 
-TEST(TextureColours, AreMeansOfWhatEachVertexShows) {
+TEST(TextureColours, AreMeansAroundEachVertex) {
   core::MeshData quad;
   quad.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   quad.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};

@@ -7,12 +7,12 @@
 namespace psygen::image {
 namespace {
 
-TEST(Compare, FindsNoDifferenceBetweenAPictureAndItself) {
+TEST(Compare, FindsNoDifferenceBetweenAnImageAndItself) {
   const Image image = noise_image(16, 16);
   EXPECT_EQ(compare(image, image), (ImageDifference{true, 0, 0, 0.0}));
 }
 
-TEST(Compare, CountsAPixelOnceHoweverManyOfItsChannelsDiffer) {
+TEST(Compare, CountsAPixelOnceEvenIfSeveralChannelsDiffer) {
   const Image a = make_image(10, 10, 100, 100, 100, 255);
   Image b = a;
   b.pixel(3, 3)[0] = 120;
@@ -46,18 +46,18 @@ TEST(Compare, AllowsOnePixelInAThousandForAGoldenImageButNotTwo) {
   EXPECT_FALSE(matches_golden(compare(golden, image)));
 }
 
-TEST(Compare, NeverMatchesPicturesOfDifferentSizes) {
+TEST(Compare, NeverMatchesImagesOfDifferentSizes) {
   const ImageDifference difference = compare(make_image(4, 2), make_image(2, 4));
   EXPECT_FALSE(difference.same_size);
   EXPECT_EQ(difference.pixels_over, 8U);
   EXPECT_FALSE(matches_golden(difference));
 }
 
-TEST(Compare, TwoPicturesWithoutPixelsAreEqual) {
+TEST(Compare, TwoImagesWithoutPixelsAreEqual) {
   EXPECT_TRUE(matches_golden(compare(Image{}, Image{})));
 }
 
-TEST(Compare, ShowsWhereTwoPicturesDifferOverADarkGreyPicture) {
+TEST(Compare, ShowsDifferencesOverADarkGreyImage) {
   const Image expected = make_image(3, 1, 90, 60, 30, 255);
   Image seen = expected;
   seen.pixel(1, 0)[2] = 36;   // 6 more

@@ -22,17 +22,17 @@ TEST(Flicker, APixelThatChangesAndStaysDoesNot) {
   EXPECT_EQ(flickering(grey({100, 100}), grey({120, 100}), grey({120, 120})), (Marks{0, 0}));
 }
 
-TEST(Flicker, APixelThatChangesOnDoesNot) {
+TEST(Flicker, APixelThatKeepsChangingDoesNot) {
   EXPECT_EQ(flickering(grey({100}), grey({120}), grey({140})), Marks{0});
 }
 
-TEST(Flicker, ChangesOfEightStepsAreNone) {
+TEST(Flicker, ChangesOfEightStepsAreIgnored) {
   EXPECT_EQ(flickering(grey({100}), grey({108}), grey({100})), Marks{0});
   EXPECT_EQ(flickering(grey({100}), grey({91}), grey({108})), Marks{1}) << "back by eight";
   EXPECT_EQ(flickering(grey({100}), grey({91}), grey({109})), Marks{0}) << "not back";
 }
 
-TEST(Flicker, OneChannelIsEnoughAndAlphaIsNone) {
+TEST(Flicker, OneChannelIsEnoughAndAlphaIsIgnored) {
   for (std::size_t channel = 0; channel < 4; ++channel) {
     Image now = grey({100});
     now.rgba[channel] -= 50;

@@ -129,7 +129,7 @@ std::vector<std::uint8_t> small_exr() {
   return bytes;
 }
 
-TEST(ImageIo, ReadsOpenExrAsGreyValuesAndAsNothingElse) {
+TEST(ImageIo, ReadsOpenExrAsGreyValuesOnly) {
   const TemporaryFolder folder;
   write_bytes(folder / "a.exr", small_exr());
   const auto grey = read_grey(folder / "a.exr");
@@ -143,7 +143,7 @@ TEST(ImageIo, ReadsOpenExrAsGreyValuesAndAsNothingElse) {
   EXPECT_EQ(read_grey(folder / "a.exr", {2, 2, 800, 1000}).error().code, ErrorCode::kOverBudget);
 }
 
-TEST(ImageIo, DamagedOpenExrFilesAreErrorsOrPicturesOfTheSameLimits) {
+TEST(ImageIo, DamagedOpenExrFilesAreErrorsOrImagesWithinTheLimits) {
   const TemporaryFolder folder;
   const std::vector<std::uint8_t> whole = small_exr();
   const ImageLimits limits{64, 64, 64 * 64 * 4, 10'000};
@@ -164,7 +164,7 @@ TEST(ImageIo, DamagedOpenExrFilesAreErrorsOrPicturesOfTheSameLimits) {
   }
 }
 
-TEST(ImageIo, ReadsAJpegWhateverItIsCalled) {
+TEST(ImageIo, ReadsAJpegWithAnyFileName) {
   const TemporaryFolder folder;
   std::filesystem::copy_file(kJpegFile, folder / "picture.png");
   const auto read = read_image(folder / "picture.png");
@@ -176,7 +176,7 @@ TEST(ImageIo, ReadsAJpegWhateverItIsCalled) {
   EXPECT_EQ(read->pixel(2, 8)[3], 255);
 }
 
-TEST(ImageIo, RefusesAHugeHeaderInASmallFileBeforeAllocating) {
+TEST(ImageIo, RejectsAHugeHeaderInASmallFileBeforeAllocating) {
   const TemporaryFolder folder;
   std::vector<std::uint8_t> bytes = png_that_claims(folder / "a.png", 65536, 65536);
   bytes.resize(100);
@@ -187,7 +187,7 @@ TEST(ImageIo, RefusesAHugeHeaderInASmallFileBeforeAllocating) {
   EXPECT_NE(read.error().message.find("65536 x 65536"), std::string::npos);
 }
 
-TEST(ImageIo, RefusesAHugeJpegHeaderBeforeTheDecoderSeesIt) {
+TEST(ImageIo, RejectsAHugeJpegHeaderBeforeTheDecoderSeesIt) {
   const TemporaryFolder folder;
   std::vector<std::uint8_t> bytes = bytes_of(kJpegFile);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -211,7 +211,7 @@ TEST(ImageIo, EachLimitIsChecked) {
   }
 }
 
-TEST(ImageIo, RefusesAPictureWithoutPixels) {
+TEST(ImageIo, RejectsAnImageWithoutPixels) {
   const TemporaryFolder folder;
   write_bytes(folder / "a.png", png_that_claims(folder / "a.png", 0, 7));
   EXPECT_EQ(read_image(folder / "a.png").error().code, ErrorCode::kParse);
@@ -230,7 +230,7 @@ TEST(ImageIo, APngCutOffAtAnyByteIsAnErrorWithThePath) {
   }
 }
 
-TEST(ImageIo, AnyDamagedByteGivesAPictureOfTheSameSizeOrAnError) {
+TEST(ImageIo, AnyDamagedByteGivesAnImageOfTheSameSizeOrAnError) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", noise_image(5, 5)));
   // Every byte of the PNG; every fifth of the JPEG, whose decoder goes on after damage.
@@ -258,13 +258,13 @@ TEST(ImageIo, PixelsThatTheDecoderCannotUnpackAreAnError) {
   EXPECT_EQ(read_image(folder / "broken.png").error().code, ErrorCode::kParse);
 }
 
-TEST(ImageIo, AHeaderThatClaimsMorePixelsThanThereAreIsAnError) {
+TEST(ImageIo, AHeaderThatClaimsTooManyPixelsIsAnError) {
   const TemporaryFolder folder;
   write_bytes(folder / "more.png", png_that_claims(folder / "a.png", 40, 30));
   EXPECT_EQ(read_image(folder / "more.png").error().code, ErrorCode::kParse);
 }
 
-TEST(ImageIo, AFileOfAnotherKindIsAParseErrorAndAMissingOneIsAnIoError) {
+TEST(ImageIo, AFileOfAnotherTypeIsAParseErrorAndAMissingOneIsAnIoError) {
   const TemporaryFolder folder;
   write_bytes(folder / "empty.png", {});
   EXPECT_EQ(read_image(folder / "empty.png").error().code, ErrorCode::kParse);
@@ -274,7 +274,7 @@ TEST(ImageIo, AFileOfAnotherKindIsAParseErrorAndAMissingOneIsAnIoError) {
   EXPECT_EQ(read_image(folder.path()).error().code, ErrorCode::kIo);
 }
 
-TEST(ImageIo, DoesNotWriteAPictureThatIsNotValid) {
+TEST(ImageIo, DoesNotWriteAnInvalidImage) {
   const TemporaryFolder folder;
   EXPECT_EQ(write_png(folder / "a.png", Image{}).error().code, ErrorCode::kInvalidArgument);
   EXPECT_EQ(write_png(folder / "a.png", Image{4, 4, std::vector<std::uint8_t>(63)}).error().code,
@@ -282,14 +282,14 @@ TEST(ImageIo, DoesNotWriteAPictureThatIsNotValid) {
   EXPECT_EQ(folder.file_count(), 0U);
 }
 
-TEST(ImageIo, AnUnwritablePlaceIsAnIoErrorWithThePath) {
+TEST(ImageIo, AnUnwritablePathIsAnIoErrorWithThePath) {
   const auto result = write_png("/proc/psygen/a.png", make_image(1, 1));
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, ErrorCode::kIo);
   EXPECT_NE(result.error().message.find("/proc/psygen/a.png"), std::string::npos);
 }
 
-TEST(ImageIo, APngIsWholeOrNotThereWhereverTheDiskFills) {
+TEST(ImageIo, OnAFullDiskAPngIsWholeOrMissing) {
   expect_whole_files(
       [](const auto& folder) { return write_png(folder / "noise.png", noise_image(67, 31)); });
 }

@@ -7,7 +7,7 @@
 namespace psygen::image {
 namespace {
 
-TEST(PictureCodec, IsNotLoadedWhereItsLibrariesWouldFindNoThreads) {
+TEST(PictureCodec, IsNotLoadedIfItsLibrariesCannotStartThreads) {
   EXPECT_TRUE(check_room_for_codec());
   const FewThreads few(2);
   const auto room = check_room_for_codec();

@@ -47,7 +47,7 @@ TEST(PictureHeader, IsNoneForEveryTruncationBeforeTheSize) {
   }
 }
 
-TEST(PngIsWhole, OnlyUpToItsEndMarkerWithFittingChecksums) {
+TEST(PngIsWhole, OnlyUpToItsEndMarkerWithMatchingChecksums) {
   constexpr auto kSmall =
       "\x89PNG\r\n\x1A\n\0\0\0\x03tEST"
       "abc\x2B\x67\x05\xA7\0\0\0\0IEND\xAE\x42\x60\x82"sv;

@@ -15,7 +15,7 @@ Image with_noise(Image image, std::uint32_t every) {
   return image;
 }
 
-TEST(Similarity, IsOneForAPictureAndItselfWhateverItsAlpha) {
+TEST(Similarity, IsOneForAnImageAndItselfWithAnyAlpha) {
   const Image image = noise_image(64, 48);
   EXPECT_DOUBLE_EQ(structural_similarity(image, image), 1.0);
   Image clear = image;

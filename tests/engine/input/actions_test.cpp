@@ -61,7 +61,7 @@ TEST_F(ActionsOfAPerson, ArePressedInOneStepHeldInAllAndReleasedInOne) {
   EXPECT_EQ(step(jump), ActionState{});
 }
 
-TEST_F(ActionsOfAPerson, GetAnotherKeyAndKeepTheButtonOfThePad) {
+TEST_F(ActionsOfAPerson, GetAnotherKeyAndKeepTheGamepadButton) {
   const ActionId jump = add("jump", {{Key::kSpace}, {Key::kJ}, {PadButton::kA}});
   ASSERT_TRUE(actions_.rebind(jump, Key::kK));
   ASSERT_EQ(actions_.bindings(jump).size(), 2U);
@@ -73,7 +73,7 @@ TEST_F(ActionsOfAPerson, GetAnotherKeyAndKeepTheButtonOfThePad) {
   EXPECT_EQ(actions_.bindings(jump)[1].control, Control(Key::kK));
 }
 
-TEST_F(ActionsOfAPerson, TellWhetherAPadWasUsedLast) {
+TEST_F(ActionsOfAPerson, KnowWhetherAGamepadWasUsedLast) {
   add("jump", {{Key::kSpace}, {PadButton::kA}});
   add("look", {{MouseWay::kRight}, {PadWay::kRightStickRight}});
   EXPECT_FALSE(actions_.uses_pad());
@@ -120,7 +120,7 @@ TEST_F(ActionsOfAPerson, SeeATapWithinAFrameAndATapOfAHeldKey) {
   EXPECT_EQ(edges(jump, 5), std::pair(1, 1));
 }
 
-TEST_F(ActionsOfAPerson, CountEveryPressWhateverTheStepsOfFrames) {
+TEST_F(ActionsOfAPerson, CountEveryPressForAnyNumberOfStepsPerFrame) {
   const ActionId jump = add("jump", {{Key::kSpace}});
   std::mt19937 random(7);
   int presses = 0, pressed = 0;
@@ -133,7 +133,7 @@ TEST_F(ActionsOfAPerson, CountEveryPressWhateverTheStepsOfFrames) {
   EXPECT_EQ(pressed + edges(jump, 20).first, presses);
 }
 
-TEST_F(ActionsOfAPerson, DropPressesInPairsWhereNoStepTakesThem) {
+TEST_F(ActionsOfAPerson, DropPressesInPairsIfNoStepTakesThem) {
   const ActionId jump = add("jump", {{Key::kSpace}});
   for (int i = 0; i < 100; ++i) {
     person_.press(Key::kSpace);
@@ -185,7 +185,7 @@ TEST_F(ActionsOfAPerson, AddUpControlsOfOppositeSignWithinOne) {
   EXPECT_NEAR(step(move).value, -0.25F, 1e-6F);
 }
 
-TEST_F(ActionsOfAPerson, TakeNoNoticeOfADeadZoneAndReachOneAtTheEnd) {
+TEST_F(ActionsOfAPerson, IgnoreADeadZoneAndReachOneAtTheEnd) {
   const ActionId move = add("move", {{PadWay::kLeftStickUp, 1, 0.25F}});
   for (const auto& [axis, value] :
        {std::pair{0.0F, 0.0F}, {0.25F, 0.0F}, {0.625F, 0.5F}, {1.0F, 1.0F}, {-1.0F, 0.0F}}) {
@@ -195,7 +195,7 @@ TEST_F(ActionsOfAPerson, TakeNoNoticeOfADeadZoneAndReachOneAtTheEnd) {
   }
 }
 
-TEST_F(ActionsOfAPerson, PressAnAxisWithoutTremblingAtItsThreshold) {
+TEST_F(ActionsOfAPerson, PressAnAxisWithoutFlutterAtItsThreshold) {
   const ActionId fire = add("fire", {{PadWay::kRightTrigger, 1, 0}});
   int pressed = 0;
   for (int i = 0; i < 100; ++i) {
@@ -250,7 +250,7 @@ TEST_F(ActionsOfAPerson, AreReleasedWhenTheirGamepadIsUnplugged) {
   EXPECT_TRUE(step(jump).pressed);
 }
 
-TEST_F(ActionsOfAPerson, ReadTheGamepadThatWasChosenAlsoWhereAnotherIsMovedMore) {
+TEST_F(ActionsOfAPerson, ReadTheSelectedGamepadEvenIfAnotherIsMovedMore) {
   const ActionId move = add("move", {{PadWay::kLeftStickRight, 1, 0}});
   const ActionId jump = add("jump", {{PadButton::kA}});
   person_.set_axis(PadAxis::kLeftX, 1);
@@ -278,7 +278,7 @@ TEST_F(ActionsOfAPerson, ReadTheGamepadThatWasChosenAlsoWhereAnotherIsMovedMore)
   EXPECT_TRUE(actions_.state(jump).pressed);
 }
 
-TEST_F(ActionsOfAPerson, CanBeBoundAnewAtAnyTime) {
+TEST_F(ActionsOfAPerson, CanBeReboundAtAnyTime) {
   const ActionId jump = add("jump", {{Key::kSpace}});
   person_.press(Key::kSpace);
   frame();
@@ -295,7 +295,7 @@ TEST_F(ActionsOfAPerson, CanBeBoundAnewAtAnyTime) {
   EXPECT_TRUE(actions_.state(jump).held);
 }
 
-TEST_F(ActionsOfAPerson, StartAnewWhenTheyAreCleared) {
+TEST_F(ActionsOfAPerson, StartOverAfterClear) {
   const ActionId jump = add("jump", {{Key::kSpace}});
   person_.tap(Key::kSpace);
   person_.move(3, 3);
@@ -305,7 +305,7 @@ TEST_F(ActionsOfAPerson, StartAnewWhenTheyAreCleared) {
   EXPECT_EQ(edges(jump, 4), std::pair(0, 0));
 }
 
-TEST(Actions, RefuseNamesAndBindingsThatMakeNoSense) {
+TEST(Actions, RejectInvalidNamesAndBindings) {
   Actions actions;
   ASSERT_TRUE(actions.add("jump", {{Key::kSpace}}));
   for (const char* name : {"jump", "", "two words", "\"", "\n"}) {

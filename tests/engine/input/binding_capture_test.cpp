@@ -28,7 +28,7 @@ TEST(BindingCapture, TakesTheNextControlOfEveryKind) {
             Control(PadWay::kRightStickDown));
 }
 
-TEST(BindingCapture, TakesASideOfShiftAndNoMovementOfTheMouse) {
+TEST(BindingCapture, DistinguishesShiftsAndIgnoresMouseMovement) {
   Person person;
   BindingCapture capture(person.frame());
   person.move(500, 500);
@@ -37,7 +37,7 @@ TEST(BindingCapture, TakesASideOfShiftAndNoMovementOfTheMouse) {
   EXPECT_EQ(capture.update(person.frame()), Control(Key::kRightShift));
 }
 
-TEST(BindingCapture, WaitsUntilWhatWasHeldIsReleased) {
+TEST(BindingCapture, WaitsUntilHeldControlsAreReleased) {
   Person person;
   person.press(Key::kEnter);
   person.set_axis(platform::PadAxis::kLeftTrigger, 0.9F);

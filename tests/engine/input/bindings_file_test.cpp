@@ -32,7 +32,7 @@ std::vector<std::vector<Binding>> all_bindings(const Actions& actions) {
   return all;
 }
 
-TEST(BindingsFile, WhatIsSavedIsLoadedAgain) {
+TEST(BindingsFile, SavedBindingsLoadEqual) {
   const TemporaryFolder folder;
   Actions saved = game();
   ASSERT_TRUE(saved.set_bindings(0, {}));
@@ -59,7 +59,7 @@ TEST(BindingsFile, ActionsThatAreNotMentionedKeepTheirBindings) {
   EXPECT_TRUE(actions.bindings(0).empty());
 }
 
-TEST(BindingsFile, ABadFileIsASentenceWithItsLineAndChangesNothing) {
+TEST(BindingsFile, ABadFileIsAnErrorWithItsLineAndChangesNothing) {
   const std::string good =
       "format = 1\n[[action]]\nname = \"move_x\"\n[[action.binding]]\n"
       "control = \"Left\"\n";
@@ -89,7 +89,7 @@ TEST(BindingsFile, ABadFileIsASentenceWithItsLineAndChangesNothing) {
   }
 }
 
-TEST(BindingsFile, EveryBeginningOfAFileIsTakenOrRefusedAsAWhole) {
+TEST(BindingsFile, EveryPrefixOfAFileIsAcceptedOrRejectedAsAWhole) {
   const std::string whole = bindings_text(game());
   for (std::size_t bytes = 0; bytes <= whole.size(); ++bytes) {
     Actions actions = game();
@@ -102,7 +102,7 @@ TEST(BindingsFile, EveryBeginningOfAFileIsTakenOrRefusedAsAWhole) {
   }
 }
 
-TEST(BindingsFile, AFileThatIsNotThereOrCannotBeWrittenIsASentence) {
+TEST(BindingsFile, MissingAndUnwritableFilesAreErrors) {
   Actions actions = game();
   const auto missing = load_bindings("/nowhere/bindings.toml", actions);
   ASSERT_FALSE(missing);

@@ -16,7 +16,7 @@ using platform::PadAxis;
 using platform::PadButton;
 using ::testing::HasSubstr;
 
-TEST(Control, EveryOneHasANameOfItsOwnByWhichItIsFound) {
+TEST(Control, EveryControlHasAUniqueNameByWhichItIsFound) {
   std::set<std::string_view> names;
   for (const Control control : all_controls()) {
     EXPECT_TRUE(names.insert(name_of(control)).second) << name_of(control);
@@ -25,7 +25,7 @@ TEST(Control, EveryOneHasANameOfItsOwnByWhichItIsFound) {
   EXPECT_GT(names.size(), 130u);
 }
 
-TEST(Control, AWrongNameIsToldWithTheNearestOne) {
+TEST(Control, AWrongNameIsReportedWithTheNearestOne) {
   const auto wrong = control_named("Gamepad Left Stik Up");
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().code, core::ErrorCode::kInvalidArgument);
@@ -33,7 +33,7 @@ TEST(Control, AWrongNameIsToldWithTheNearestOne) {
   EXPECT_THAT(control_named("quite something else").error().message, HasSubstr("such as"));
 }
 
-TEST(Control, HalvesOfAnAxisAreControlsOfTheirOwn) {
+TEST(Control, HalvesOfAnAxisAreSeparateControls) {
   Person person;
   person.set_axis(PadAxis::kLeftY, -0.75F);
   person.set_axis(PadAxis::kRightTrigger, 0.5F);
@@ -43,7 +43,7 @@ TEST(Control, HalvesOfAnAxisAreControlsOfTheirOwn) {
   EXPECT_EQ(read(PadWay::kRightTrigger, input).value, 0.5);
 }
 
-TEST(Control, WheelAndMouseMoveOneWayOrTheOther) {
+TEST(Control, WheelAndMouseMoveInOneDirectionAtATime) {
   Person person;
   person.roll(-2);
   person.move(5, -3);

@@ -1,4 +1,4 @@
-// Frames of input that a test makes up: what a person at keyboard, mouse and gamepad does.
+// Frames of input that a test makes up: the actions of a person at keyboard, mouse and gamepad.
 #pragma once
 
 #include "engine/platform/input.hpp"
@@ -27,7 +27,7 @@ class Person {
   }
   void unplug(std::size_t slot = 0) { pad_[slot].reset(); }
 
-  // What happened since the last frame.
+  // The events since the last frame.
   platform::InputState frame() {
     platform::update_gamepads([this](std::size_t slot) { return pad_[slot]; }, state_.pads);
     platform::InputState result = state_;

@@ -30,7 +30,7 @@ Actions recording_actions() {
 
 struct Played {
   Recording recording;
-  std::vector<std::vector<ActionState>> states;  // of every step
+  std::vector<std::vector<ActionState>> states;  // for every step
 };
 
 // A person who does something every now and then.
@@ -62,7 +62,7 @@ bool same_bits(std::span<const ActionState> a, std::span<const ActionState> b) {
   });
 }
 
-TEST(Recording, ReplaysTheVerySameStatesFromItsFile) {
+TEST(Recording, ReplaysTheSameStatesFromItsFile) {
   const TemporaryFolder folder;
   const Played played = play(3000);
   const auto file = folder.path() / "a.input";
@@ -97,7 +97,7 @@ TEST(Recording, AppliesToActionsInAnotherOrderAndWithMoreOfThem) {
   }
 }
 
-TEST(Recording, TakesNoSpaceWhereNothingHappens) {
+TEST(Recording, NeedsNoSpaceWithoutChanges) {
   Actions actions = recording_actions();
   Recording recording(actions, kStepS);
   const std::size_t empty = recording.bytes().size();
@@ -110,7 +110,7 @@ TEST(Recording, TakesNoSpaceWhereNothingHappens) {
   EXPECT_TRUE(replay->step(actions));
 }
 
-TEST(Recording, RefusesActionsAndStepsThatTheGameHasNot) {
+TEST(Recording, RejectsActionsAndStepsThatTheGameLacks) {
   const Played played = play(10);
   Actions other;
   ASSERT_TRUE(other.add("jump"));
@@ -120,7 +120,7 @@ TEST(Recording, RefusesActionsAndStepsThatTheGameHasNot) {
               HasSubstr("60 steps a second"));
 }
 
-TEST(Recording, RefusesEveryFileThatIsCutShortOrDamagedInAByte) {
+TEST(Recording, RejectsEveryFileThatIsTruncatedOrDamagedInAByte) {
   const std::string whole = play(60).recording.bytes();
   ASSERT_TRUE(Recording::parse(whole, "a.input"));
   for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) {
@@ -137,7 +137,7 @@ TEST(Recording, RefusesEveryFileThatIsCutShortOrDamagedInAByte) {
   EXPECT_FALSE(Recording::parse(whole + "x", "a.input"));
 }
 
-TEST(Recording, RefusesForeignFilesAndNewerFormatsByName) {
+TEST(Recording, RejectsForeignFilesAndNewerFormatsByName) {
   EXPECT_THAT(Recording::parse("PK\x03\x04 something", "a.zip").error().message,
               HasSubstr("a.zip: this is not a recording of input"));
   std::string newer = play(5).recording.bytes();
@@ -146,8 +146,8 @@ TEST(Recording, RefusesForeignFilesAndNewerFormatsByName) {
   EXPECT_EQ(Recording::load("/nowhere/a.input").error().code, core::ErrorCode::kIo);
 }
 
-// Contents that contradict themselves under a right hash: as if someone had made them.
-TEST(Recording, RefusesWhatContradictsItselfAlthoughItsHashIsRight) {
+// Inconsistent contents under a right hash, as a forger could make them.
+TEST(Recording, RejectsInconsistentContentsWithARightHash) {
   const std::string whole = play(60).recording.bytes();
   std::mt19937 random(1);
   int refused = 0;

@@ -41,7 +41,7 @@ TEST(FlyCamera, StandsStillWithoutInput) {
   EXPECT_EQ(pose.pitch, 0.0);
 }
 
-TEST(FlyCamera, FliesForwardUpToItsSpeedAndSmoothlyComesToRest) {
+TEST(FlyCamera, AcceleratesToItsSpeedAndStopsSmoothly) {
   FlyCamera camera;
   core::CameraPose pose = fly(camera, {}, holding({Key::kW}), 2.0);
   expect_near(camera.velocity_m_s(), {0, 0, -20}, 1e-3);
@@ -82,7 +82,7 @@ TEST(FlyCamera, ShiftIsFasterAndControlSlower) {
   EXPECT_NEAR(glm::length(camera.velocity_m_s()), 4.0, 1e-2);
 }
 
-TEST(FlyCamera, GetsToTheSamePlaceAtEveryFrameRate) {
+TEST(FlyCamera, ReachesTheSamePositionAtEveryFrameRate) {
   for (const double dt : {0.002, 0.02, 0.1, 0.25}) {
     FlyCamera camera;
     const core::CameraPose pose = fly(camera, {}, holding({Key::kW, Key::kE}), 1.0, dt);
@@ -145,7 +145,7 @@ TEST(FlyCamera, InputThatIsNotANumberChangesNothing) {
   EXPECT_TRUE(core::is_valid(camera.update(pose, input, 0.01)));
 }
 
-TEST(FlyCamera, TimeNeverRunsBackwardsAndALongFrameIsCutOff) {
+TEST(FlyCamera, NegativeTimeIsIgnoredAndALongFrameIsClamped) {
   FlyCamera camera;
   EXPECT_EQ(camera.update({}, holding({Key::kW}), -1.0).position.local, glm::dvec3(0.0));
   const core::CameraPose pose = camera.update({}, holding({Key::kW}), 1e9);
@@ -164,7 +164,7 @@ TEST(FlyCamera, KeepsTheLastValidPoseAtTheEndOfTheWorld) {
   EXPECT_EQ(camera.update(broken, {}, 0.1).position.local.x, 1e30);
 }
 
-TEST(FlyCamera, StopsAtOnceWhenToldTo) {
+TEST(FlyCamera, StopsImmediatelyOnRequest) {
   FlyCamera camera;
   fly(camera, {}, holding({Key::kW, Key::kRight}), 1.0);
   camera.stop();

@@ -22,7 +22,7 @@ PadReading holding(PadButton button) {
   return reading;
 }
 
-TEST(Gamepads, NoneIsNoErrorAndNothingIsHeld) {
+TEST(Gamepads, MissingGamepadsAreNoErrorAndHoldNothing) {
   Devices devices;
   Gamepads pads;
   update_gamepads(devices.read(), pads);
@@ -32,7 +32,7 @@ TEST(Gamepads, NoneIsNoErrorAndNothingIsHeld) {
   }
 }
 
-TEST(Gamepads, ComeAndGoInTheirSlotAndReleaseWhatTheyHeld) {
+TEST(Gamepads, ReleaseHeldButtonsWhenDisconnected) {
   Devices devices;
   Gamepads pads;
   devices.slots[3] = holding(PadButton::kA);
@@ -68,7 +68,7 @@ TEST(Gamepads, ChangesAddUpUntilTheyAreCleared) {
   EXPECT_TRUE(pads[0].went_down.none() && pads[0].went_up.none());
 }
 
-TEST(Gamepads, AxesStayInTheirRangeWhateverADriverSays) {
+TEST(Gamepads, AxesStayInTheirRangeForAnyReading) {
   Devices devices;
   Gamepads pads;
   devices.slots[0] = PadReading{

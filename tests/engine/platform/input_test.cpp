@@ -16,7 +16,7 @@ InputState frame(bool held, bool down = false, bool up = false) {
   return input;
 }
 
-TEST(InputState, ForgetsWhatHappenedAndKeepsWhatIsHeld) {
+TEST(InputState, ClearsEventsAndKeepsHeldControls) {
   InputState input = frame(true, true);
   input.text.push_back('a');
   input.wheel = 1;
@@ -31,14 +31,14 @@ TEST(InputState, ForgetsWhatHappenedAndKeepsWhatIsHeld) {
   EXPECT_FALSE(input.pads[2].went);
 }
 
-TEST(InputFilter, LetsEverythingThroughThatNobodyTakes) {
+TEST(InputFilter, PassesEverythingThatIsNotTaken) {
   InputFilter filter;
   EXPECT_TRUE(filter.apply(frame(true, true), false, false).was_pressed(Key::kW));
   EXPECT_TRUE(filter.apply(frame(true), false, false).is_held(Key::kW));
   EXPECT_TRUE(filter.apply(frame(false, false, true), false, false).was_released(Key::kW));
 }
 
-TEST(InputFilter, ReleasesOnceWhatWasHeldWhenItIsTaken) {
+TEST(InputFilter, ReleasesHeldControlsOnceWhenTheyAreTaken) {
   InputFilter filter;
   filter.apply(frame(true, true), false, false);
   const InputState taken = filter.apply(frame(true), true, false);
@@ -47,7 +47,7 @@ TEST(InputFilter, ReleasesOnceWhatWasHeldWhenItIsTaken) {
   EXPECT_FALSE(filter.apply(frame(true), true, false).was_released(Key::kW));
 }
 
-TEST(InputFilter, KeepsAwayWhatWentDownWhileItWasTakenUntilItGoesUp) {
+TEST(InputFilter, HidesControlsPressedWhileTakenUntilTheirRelease) {
   InputFilter filter;
   InputState typed = frame(true, true);
   typed.text.push_back('w');

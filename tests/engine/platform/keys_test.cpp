@@ -8,7 +8,7 @@
 namespace psygen::platform {
 namespace {
 
-TEST(Keys, EveryKeyHasANameOfItsOwnByWhichItIsFound) {
+TEST(Keys, EveryKeyHasAUniqueNameByWhichItIsFound) {
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < kKeys; ++i) {
     const Key key = static_cast<Key>(i);
@@ -21,12 +21,12 @@ TEST(Keys, EveryKeyHasANameOfItsOwnByWhichItIsFound) {
   EXPECT_EQ(name_of(Key::kPause), "Pause");
 }
 
-TEST(Keys, TextsThatNameNoKeyFindNothing) {
+TEST(Keys, UnknownNamesFindNothing) {
   for (const char* text : {"", "w", "W ", "Keypad", "\xFF"})
     EXPECT_EQ(key_named(text), std::nullopt) << text;
 }
 
-TEST(Keys, ButtonsHaveNamesOfTheirOwn) {
+TEST(Keys, ButtonsHaveUniqueNames) {
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < kMouseButtons; ++i)
     EXPECT_TRUE(names.insert(name_of(static_cast<MouseButton>(i))).second);

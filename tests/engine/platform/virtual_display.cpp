@@ -42,8 +42,7 @@ void end(pid_t child) {
   waitpid(child, nullptr, 0);
 }
 
-// The first line that the child writes into its pipe and that `wanted` accepts; empty when the
-// child ends before.
+// The first line in the child's pipe that `wanted` accepts; empty if the child ends before.
 template <class Start, class Wanted>
 std::string line_from(pid_t& child, const Start& start, const Wanted& wanted) {
   std::array<int, 2> ends{-1, -1};

@@ -1,6 +1,5 @@
-// A display of its own for a test: Xvfb with the openbox window manager, and xdotool in place of
-// the user's keyboard and mouse. Ends with the object; DISPLAY points to it until then. One at a
-// time.
+// A separate display for a test: Xvfb with the openbox window manager, and xdotool in place of the
+// user's keyboard and mouse. Ends with the object; DISPLAY points to it until then. One at a time.
 #pragma once
 
 #include <sys/types.h>
@@ -23,7 +22,7 @@ class VirtualDisplay {
 
   // Runs xdotool with these arguments and waits for it; true when it succeeded.
   bool xdotool(std::vector<std::string> arguments) const;
-  // What a command on this display prints on stdout; waits for its end.
+  // Runs a command on this display, waits for its end and returns its stdout.
   std::string output(std::vector<std::string> command) const;
 
  private:

@@ -34,7 +34,7 @@ class WindowOnADisplay : public testing::Test {
       return window_->framebuffer_size() == core::Extent{640, 360};
     }));
   }
-  // The window manager gives the keyboard to the window; the pointer is put into its middle.
+  // The window manager gives the window the keyboard; the pointer is moved to its centre.
   void take_focus() {
     ASSERT_TRUE(display_->xdotool({"search", "--sync", "--onlyvisible", "--name",
                                    "psygen window test", "windowactivate", "--sync", "mousemove",
@@ -46,7 +46,7 @@ class WindowOnADisplay : public testing::Test {
   std::unique_ptr<Window> window_;
 };
 
-TEST(Window, WithoutADisplayIsOneSentenceInsteadOfAWindow) {
+TEST(Window, WithoutADisplayCreationFailsWithOneSentence) {
   unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
   const auto created = Window::create({});
@@ -56,7 +56,7 @@ TEST(Window, WithoutADisplayIsOneSentenceInsteadOfAWindow) {
   EXPECT_EQ(created.error().message.find('\n'), std::string::npos);
 }
 
-TEST_F(WindowOnADisplay, TellsWhenAndToWhatItWasResized) {
+TEST_F(WindowOnADisplay, ReportsResizesWithTheNewSize) {
   EXPECT_FALSE(window_->poll().resized);
   window_->set_size({801, 455});
   bool told = false;
@@ -66,7 +66,7 @@ TEST_F(WindowOnADisplay, TellsWhenAndToWhatItWasResized) {
   }));
 }
 
-TEST_F(WindowOnADisplay, CoversTheScreenAndComesBackToItsSizeAndPlace) {
+TEST_F(WindowOnADisplay, CoversTheScreenAndRestoresItsSizeAndPosition) {
   ASSERT_TRUE(display_->xdotool({"search", "--sync", "--onlyvisible", "--name",
                                  "psygen window test", "windowmove", "%1", "210", "130"}));
   window_->set_size({700, 400});
@@ -97,7 +97,7 @@ TEST_F(WindowOnADisplay, CoversTheScreenAndComesBackToItsSizeAndPlace) {
   }
 }
 
-TEST_F(WindowOnADisplay, StaysOnTheScreenWhenAnotherWindowIsUsed) {
+TEST_F(WindowOnADisplay, StaysFullScreenWhenAnotherWindowIsUsed) {
   take_focus();
   ASSERT_TRUE(window_->set_fullscreen(true));
   ASSERT_TRUE(eventually(*window_, [&](const InputState&) {
@@ -115,7 +115,7 @@ TEST_F(WindowOnADisplay, StaysOnTheScreenWhenAnotherWindowIsUsed) {
   EXPECT_TRUE(window_->fullscreen());
 }
 
-TEST_F(WindowOnADisplay, TellsHowFineTheDisplayIs) {
+TEST_F(WindowOnADisplay, ReportsTheContentScale) {
   EXPECT_EQ(window_->content_scale(), 1.0F);
   window_.reset();  // the window system is asked when the first window is made
   display_->output({"xprop", "-root", "-format", "RESOURCE_MANAGER", "8s", "-set",
@@ -135,11 +135,11 @@ TEST_F(WindowOnADisplay, HasNoPixelsWhileItIsMinimised) {
   EXPECT_EQ(window_->framebuffer_size(), (core::Extent{640, 360}));
 }
 
-TEST_F(WindowOnADisplay, ClosesWhenThePersonAsksForIt) {
+TEST_F(WindowOnADisplay, ClosesOnTheUsersRequest) {
   EXPECT_FALSE(window_->should_close());
   take_focus();
-  // The first key of a new display changes its keyboard, for which the window manager binds its own
-  // keys anew: it may miss that press.
+  // The first key of a new display changes its keyboard; the window manager then rebinds its own
+  // keys and may miss that press.
   bool closes = false;
   for (int press = 0; press < 10 && !closes; ++press) {
     ASSERT_TRUE(display_->xdotool({"key", "alt+F4"}));
@@ -149,7 +149,7 @@ TEST_F(WindowOnADisplay, ClosesWhenThePersonAsksForIt) {
   EXPECT_TRUE(closes);
 }
 
-TEST_F(WindowOnADisplay, TellsWhichKeysAreHeldAndWhichWentDown) {
+TEST_F(WindowOnADisplay, ReportsHeldAndPressedKeys) {
   take_focus();
   ASSERT_TRUE(display_->xdotool({"keydown", "w"}));
   EXPECT_TRUE(
@@ -165,7 +165,7 @@ TEST_F(WindowOnADisplay, TellsWhichKeysAreHeldAndWhichWentDown) {
       eventually(*window_, [](const InputState& input) { return input.was_pressed(Key::kF12); }));
 }
 
-TEST_F(WindowOnADisplay, TellsWhatHappenedWhileTheProgramWasBusy) {
+TEST_F(WindowOnADisplay, ReportsEventsOfABusyProgram) {
   take_focus();
   ASSERT_TRUE(display_->xdotool({"key", "F3"}));
   for (int i = 0; i < 20; ++i) {
@@ -211,7 +211,7 @@ TEST_F(WindowOnADisplay, TheWheelCountsItsSteps) {
   EXPECT_EQ(steps, 3.0);
 }
 
-TEST_F(WindowOnADisplay, TellsAllButtonsOfTheMouseAndWhereThePointerIs) {
+TEST_F(WindowOnADisplay, ReportsAllMouseButtonsAndThePointer) {
   take_focus();
   EXPECT_TRUE(eventually(*window_, [](const InputState& input) {
     return std::abs(input.pointer_px.x - 320) < 2 && std::abs(input.pointer_px.y - 180) < 2;
@@ -252,7 +252,7 @@ TEST_F(WindowOnADisplay, CapturesTheCursorBeyondTheEdgeAndReleasesIt) {
   EXPECT_FALSE(window_->cursor_captured());
 }
 
-TEST_F(WindowOnADisplay, LeavesTheRightButtonToGamesThatWantIt) {
+TEST_F(WindowOnADisplay, LeavesTheRightButtonToGamesOnRequest) {
   take_focus();
   window_->set_right_button_looks(false);
   ASSERT_TRUE(display_->xdotool({"mousedown", "3"}));
@@ -263,7 +263,7 @@ TEST_F(WindowOnADisplay, LeavesTheRightButtonToGamesThatWantIt) {
   ASSERT_TRUE(display_->xdotool({"mouseup", "3"}));
 }
 
-TEST_F(WindowOnADisplay, TakesTextInUnicode) {
+TEST_F(WindowOnADisplay, ReadsUnicodeText) {
   take_focus();
   std::string text;
   display_->output({"setxkbmap", "de"});
@@ -294,7 +294,7 @@ TEST_F(WindowOnADisplay, KnowsBothShiftsApartAndAsOne) {
   }));
 }
 
-TEST_F(WindowOnADisplay, SaysWhatIsOnAKeyAndKeepsTheClipboard) {
+TEST_F(WindowOnADisplay, NamesKeyCapsAndKeepsTheClipboard) {
   EXPECT_EQ(window_->label_of(Key::kY), "Y");
   EXPECT_EQ(window_->label_of(Key::kSpace), "Space");
   EXPECT_EQ(window_->label_of(Key::kShift), "Shift");

@@ -7,7 +7,7 @@
 namespace psygen::save {
 namespace {
 
-TEST(Database, ValuesComeBackWithTheirTypes) {
+TEST(Database, ValuesKeepTheirTypes) {
   auto database = Database::in_memory();
   ASSERT_TRUE(database);
   auto echo = database->prepare("SELECT ?", "test");
@@ -23,7 +23,7 @@ TEST(Database, ValuesComeBackWithTheirTypes) {
   }
 }
 
-TEST(Database, AFileThatIsFullIsASentence) {
+TEST(Database, AFullFileIsAnErrorWithAMessage) {
   auto database = Database::in_memory();
   ASSERT_TRUE(database);
   ASSERT_TRUE(database->run("CREATE TABLE t(b); PRAGMA max_page_count=3", "test"));
@@ -33,7 +33,7 @@ TEST(Database, AFileThatIsFullIsASentence) {
   EXPECT_EQ(full.error().message, "memory: cannot be saved: the disk is full");
 }
 
-TEST(Database, WrongSqlIsASentence) {
+TEST(Database, WrongSqlIsAnErrorWithAMessage) {
   auto database = Database::in_memory();
   ASSERT_TRUE(database);
   const auto wrong = database->prepare("SELEC 1", "cannot be read");

@@ -1,4 +1,4 @@
-// Edits of a world in a saved game: what was felled, placed and dug is there after a restart.
+// Edits of a world in a saved game: felled, placed and dug parts are kept over a restart.
 #include "engine/world/edits/edits.hpp"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ TEST_F(SavedEdits, AFelledTreeStaysFelledAfterARestart) {
     EXPECT_NE(model.index, tree);
 }
 
-TEST_F(SavedEdits, WhatWasTakenBackIsNotStoredAnyMore) {
+TEST_F(SavedEdits, UndoneEditsAreNotStored) {
   ASSERT_TRUE(edits.remove(world, {{2, 3}, 5}));
   ASSERT_TRUE(edits.remove(world, {{9, 9}, 5}));
   store({}, edits);
@@ -76,7 +76,7 @@ TEST_F(SavedEdits, WhatWasTakenBackIsNotStoredAnyMore) {
   EXPECT_EQ(loaded().counts().removed, 1u);
 }
 
-// The identity of the save is that of the world's function.
+// The identity of a save is the identity of the world's function.
 TEST_F(SavedEdits, ASaveBelongsToTheSameWorldWithAndWithoutEdits) {
   store({}, edits);
   ASSERT_TRUE(edits.flatten(world, {{2, 3}, {5, 0, 5}}, 12, 30));

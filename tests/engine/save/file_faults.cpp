@@ -14,8 +14,8 @@ namespace {
 Fault fault_now = Fault::kKill;
 long left = 0;
 
-// Whether the call must fail with ENOSPC. Does not return where the process is to be killed;
-// `half` then does what is to be done before.
+// Returns true if the call must fail with ENOSPC. If the process is to be killed, it first calls
+// `half` and does not return.
 template <class Half>
 bool meets(const Half& half) {
   if (left-- > 0) return false;

@@ -1,5 +1,5 @@
-// Faults of the file system below SQLite: its calls that change files can be made to kill the
-// process or to find the disk full. One at a time; one thread.
+// Injects faults below SQLite: calls that change files kill the process or find the disk full. One
+// at a time; one thread.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,15 @@ enum class Fault {
   kFullDisk,  // ENOSPC, for this call and all later ones
 };
 
-// While it lives, SQLite's calls that write, cut, remove or create files meet the fault, after the
-// first `calls_left` of them.
+// During its lifetime, SQLite's calls that write, truncate, remove or create files meet the fault,
+// after the first `calls_left` of them.
 class FileFaults {
  public:
   FileFaults(Fault fault, std::size_t calls_left);
   ~FileFaults();
   FileFaults(const FileFaults&) = delete;
   FileFaults& operator=(const FileFaults&) = delete;
-  // Whether a call has met it.
+  // True if a call has met the fault.
   bool was_met() const;
 };
 

@@ -1,4 +1,4 @@
-// SQL of games on tables of their own.
+// SQL of games on their own tables.
 #include "engine/save/game_tables.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(GameTables, KeepRowsBetweenRuns) {
   ASSERT_TRUE(save.save());
 }
 
-TEST(GameTables, WhatIsNotSavedIsNotThereNextTime) {
+TEST(GameTables, UnsavedChangesAreLost) {
   const TemporaryFolder folder;
   {
     SaveGame save = testing::opened(folder / "game.save");
@@ -57,7 +57,7 @@ TEST(GameTables, WhatIsNotSavedIsNotThereNextTime) {
   EXPECT_FALSE(save.has_unsaved());
 }
 
-TEST(GameTables, TouchNothingButThemselves) {
+TEST(GameTables, ReachNoOtherTables) {
   const TemporaryFolder folder;
   SaveGame save = testing::opened(folder / "game.save");
   ASSERT_TRUE(save.execute("CREATE TABLE game_a(x)"));
@@ -91,14 +91,14 @@ TEST(GameTables, TouchNothingButThemselves) {
   EXPECT_TRUE(save.query("SELECT x FROM game_b"));
 }
 
-TEST(GameTables, MistakesAreSentences) {
+TEST(GameTables, MistakesAreErrorsWithAMessage) {
   const TemporaryFolder folder;
   SaveGame save = testing::opened(folder / "game.save");
   ASSERT_TRUE(save.execute("CREATE TABLE game_a(x UNIQUE)"));
   EXPECT_EQ(refusal(save, "INSERT INTO game_b VALUES(1)"),
             "SQL \"INSERT INTO game_b VALUES(1)\": no such table: game_b");
   EXPECT_EQ(refusal(save, "INSERT INTO game_a VALUES(?)"),
-            "SQL \"INSERT INTO game_a VALUES(?)\": has 1 parameters and was given 0 values");
+            "SQL \"INSERT INTO game_a VALUES(?)\": has 1 parameters but was given 0 values");
   EXPECT_EQ(refusal(save, "DELETE FROM game_a; DELETE FROM game_a"),
             "SQL \"DELETE FROM game_a; DELETE FROM game_a\": has more than one statement");
   EXPECT_EQ(refusal(save, ""), "SQL \"\": is empty");
@@ -106,10 +106,10 @@ TEST(GameTables, MistakesAreSentences) {
   const auto changing = save.query("DELETE FROM game_a");
   ASSERT_FALSE(changing);
   EXPECT_EQ(changing.error().message,
-            "SQL \"DELETE FROM game_a\": changes the save; give it to execute()");
+            "SQL \"DELETE FROM game_a\": changes the save; pass it to execute()");
 }
 
-TEST(GameTables, AStatementThatFailsHalfWayChangesNothing) {
+TEST(GameTables, AStatementThatFailsHalfwayChangesNothing) {
   const TemporaryFolder folder;
   SaveGame save = testing::opened(folder / "game.save");
   ASSERT_TRUE(save.execute("CREATE TABLE game_a(x UNIQUE)"));
@@ -122,7 +122,7 @@ TEST(GameTables, AStatementThatFailsHalfWayChangesNothing) {
   EXPECT_EQ(save.query("SELECT x FROM game_a")->rows.size(), 1U);
 }
 
-TEST(GameTables, AreToldApartByTheirNames) {
+TEST(GameTables, AreIdentifiedByTheirNames) {
   EXPECT_TRUE(is_game_table("game_chest"));
   EXPECT_TRUE(is_game_table("GAME_Chest"));
   EXPECT_FALSE(is_game_table("game"));

@@ -8,13 +8,13 @@
 namespace psygen::save {
 namespace {
 
-TEST(LockHolder, IsThisProgramWhereItHasTheSaveOpenItself) {
+TEST(LockHolder, IsThisProgramIfItHasTheSaveOpen) {
   const TemporaryFolder folder;
   const SaveGame save = testing::opened(folder / "game.save");
   EXPECT_EQ(lock_holder(folder / "game.save"), "this program");
 }
 
-TEST(LockHolder, IsUnknownForFilesThatNobodyHasOrThatAreMissing) {
+TEST(LockHolder, IsUnknownForUnlockedAndMissingFiles) {
   const TemporaryFolder folder;
   testing::write_file(folder / "file", "text");
   EXPECT_EQ(lock_holder(folder / "file"), "another program");

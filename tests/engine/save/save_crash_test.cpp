@@ -1,5 +1,5 @@
-// Saves are killed and disks fill up at every possible moment; what is left is the old state or the
-// new one.
+// Processes are killed and disks fill up at every possible moment; the file then has the old state
+// or the new one.
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/resource.h>
@@ -82,7 +82,7 @@ TEST(SaveCrash, KilledInTheMiddleOfAnyWriteLeavesTheOldOrTheNewState) {
   _exit(1);
 }
 
-TEST(SaveCrash, KilledAtAnyTimeLeavesTheLastSaveOrTheOneThatWasUnderWay) {
+TEST(SaveCrash, KilledAtAnyTimeLeavesTheLastSaveOrTheNextOne) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "game.save";
   make_first_generation(file);
@@ -93,7 +93,7 @@ TEST(SaveCrash, KilledAtAnyTimeLeavesTheLastSaveOrTheOneThatWasUnderWay) {
     ASSERT_EQ(pipe(pipes), 0);
     const pid_t child = fork();
     if (child == 0) {
-      close(pipes[0]);  // so that it ends with the test, by SIGPIPE
+      close(pipes[0]);  // so the child ends with the test, by SIGPIPE
       save_forever(file, pipes[1]);
     }
     close(pipes[1]);
@@ -116,7 +116,7 @@ TEST(SaveCrash, KilledAtAnyTimeLeavesTheLastSaveOrTheOneThatWasUnderWay) {
   }
 }
 
-TEST(SaveCrash, AFullDiskAtAnyWriteIsASentenceAndTheNextSaveHasEverything) {
+TEST(SaveCrash, AFullDiskAtAnyWriteIsAnErrorAndTheNextSaveHasEverything) {
   const TemporaryFolder folder;
   make_first_generation(folder / "first");
   std::size_t refused = 0;
@@ -135,8 +135,8 @@ TEST(SaveCrash, AFullDiskAtAnyWriteIsASentenceAndTheNextSaveHasEverything) {
         EXPECT_EQ(saved.error().code, core::ErrorCode::kIo);
         EXPECT_EQ(saved.error().message,
                   (folder / "game.save").string() +
-                      ": cannot be saved: the disk is full; the file holds the last save, and "
-                      "nothing unsaved is lost");
+                      ": cannot be saved: the disk is full; the file has the last save, and "
+                      "no unsaved change is lost");
         EXPECT_TRUE(save.has_unsaved());
       }
     }
@@ -165,7 +165,7 @@ TEST(SaveCrash, AFullDiskLeavesTheOldStateInTheFile) {
   }
 }
 
-TEST(SaveCrash, ALimitOnTheSizeOfFilesIsASentence) {
+TEST(SaveCrash, ALimitOnTheSizeOfFilesIsAnError) {
   const TemporaryFolder folder;
   make_first_generation(folder / "game.save");
   const int status = testing::in_child([&] {

@@ -1,4 +1,4 @@
-// Files that are not saves, or not as this program leaves them.
+// Files that are not saves, or not as this program writes them.
 #include "engine/save/save_file.hpp"
 
 #include <dlfcn.h>
@@ -56,7 +56,7 @@ class WorkingFolder {
   std::filesystem::path before_;
 };
 
-// The sentence with which a file is refused, after checking that it is left as it is.
+// The error message for a file, after checking that the file is not changed.
 std::string refusal(const TemporaryFolder& folder, core::ErrorCode code,
                     const std::string& name = "game.save") {
   const std::string before = file_content(folder / name);
@@ -76,7 +76,7 @@ void make_save(const std::filesystem::path& file) {
   ASSERT_TRUE(save.save());
 }
 
-// Changes a save as a stranger with SQLite would.
+// Changes a save like another program with SQLite.
 void tamper(const std::filesystem::path& file, const std::string& sql) {
   auto database = Database::open(file);
   ASSERT_TRUE(database);
@@ -85,9 +85,9 @@ void tamper(const std::filesystem::path& file, const std::string& sql) {
   ASSERT_TRUE(done) << done.error().message;
 }
 
-constexpr const char* kForeign = "is not a saved game of psygen; it is left as it is";
+constexpr const char* kForeign = "is not a saved game of psygen; it was not changed";
 
-TEST(SaveFile, OtherFilesAreRefused) {
+TEST(SaveFile, OtherFilesAreRejected) {
   const TemporaryFolder folder;
   const std::string magic("SQLite format 3\0", 16);
   for (const std::string& content :
@@ -98,7 +98,7 @@ TEST(SaveFile, OtherFilesAreRefused) {
   }
 }
 
-TEST(SaveFile, DatabasesOfOtherProgramsAreRefused) {
+TEST(SaveFile, DatabasesOfOtherProgramsAreRejected) {
   const TemporaryFolder folder;
   sqlite3* other = nullptr;
   ASSERT_EQ(sqlite3_open((folder / "game.save").c_str(), &other), SQLITE_OK);
@@ -109,30 +109,30 @@ TEST(SaveFile, DatabasesOfOtherProgramsAreRefused) {
   EXPECT_EQ(refusal(folder, core::ErrorCode::kParse), kForeign);
 }
 
-TEST(SaveFile, FilesThatLostTheirEndAreRefusedAndLeftAsTheyAre) {
+TEST(SaveFile, TruncatedFilesAreRejectedAndNotChanged) {
   const TemporaryFolder folder;
   make_save(folder / "game.save");
   const std::string whole = file_content(folder / "game.save");
   for (const std::size_t lost : {1UL, 3UL, 60UL, 4000UL, 4095UL, 4096UL, 8000UL}) {
     const std::string cut = whole.substr(0, whole.size() - lost);
     write_file(folder / "game.save", cut);
-    // SQLite itself misses whole pages.
+    // SQLite itself detects missing whole pages.
     const std::string sentence =
         lost >= 4096 ? "cannot be opened: the file is damaged"
-                     : fmt::format("the file is cut short: {} of its {} bytes are there",
-                                   cut.size(), whole.size());
+                     : fmt::format("the file is cut short: it has {} of its {} bytes", cut.size(),
+                                   whole.size());
     EXPECT_EQ(refusal(folder, core::ErrorCode::kParse), sentence);
     EXPECT_TRUE(file_content(folder / "game.save") == cut) << lost;
   }
 }
 
-TEST(SaveFile, NamesThatLeadNowhereAreSentences) {
+TEST(SaveFile, NamesThatLeadNowhereAreErrors) {
   const TemporaryFolder folder;
   const auto sentence = [](const std::filesystem::path& file) {
     const auto save = SaveGame::open(file, testing::kWorld);
     return save ? "opened" : save.error().message;
   };
-  EXPECT_EQ(sentence(""), "the file of a save needs a name");
+  EXPECT_EQ(sentence(""), "the file name of the save is empty");
   std::filesystem::create_symlink("loop", folder / "loop");
   EXPECT_THAT(sentence(folder / "loop/x.save"), HasSubstr("loop/x.save: Too many levels"));
   EXPECT_THAT(sentence(folder / std::string(300, 'a') / "x.save"), HasSubstr("name too long"));
@@ -146,15 +146,15 @@ TEST(SaveFile, NamesThatLeadNowhereAreSentences) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "the working folder is gone";
 }
 
-TEST(SaveFile, NewerFormatsAreRefused) {
+TEST(SaveFile, NewerFormatsAreRejected) {
   const TemporaryFolder folder;
   make_save(folder / "game.save");
   tamper(folder / "game.save", "PRAGMA user_version=2");
   EXPECT_EQ(refusal(folder, core::ErrorCode::kParse),
-            "is of format 2, made by a newer version; this version reads up to format 1");
+            "has format 2 of a newer version; this version reads up to format 1");
 }
 
-TEST(SaveFile, AJournalOfAForeignFileIsLeftAlone) {
+TEST(SaveFile, AJournalOfAForeignFileIsNotChanged) {
   const TemporaryFolder folder;
   write_file(folder / "game.save", "not a save");
   write_file(folder / "game.save-journal", "not a journal");
@@ -162,27 +162,28 @@ TEST(SaveFile, AJournalOfAForeignFileIsLeftAlone) {
   EXPECT_EQ(file_content(folder / "game.save-journal"), "not a journal");
 }
 
-TEST(SaveFile, ForeignTablesAndChangedOnesAreRefused) {
+TEST(SaveFile, ForeignTablesAndChangedOnesAreRejected) {
   const TemporaryFolder folder;
   const std::pair<const char*, const char*> cases[] = {
-      {"CREATE TABLE other(x)", "has a table 'other' that is not of this program"},
-      {"CREATE VIEW game_view AS SELECT 1", "has a view 'game_view' that is not of this program"},
+      {"CREATE TABLE other(x)", "has a table 'other' that this program did not make"},
+      {"CREATE VIEW game_view AS SELECT 1",
+       "has a view 'game_view' that this program did not make"},
       {"CREATE TRIGGER game_trigger AFTER INSERT ON psygen_edits BEGIN DELETE FROM psygen_edits; "
        "END",
-       "has a trigger 'game_trigger' that is not of this program"},
+       "has a trigger 'game_trigger' that this program did not make"},
       {"CREATE VIRTUAL TABLE game_text USING fts5(x)",
-       "has a table 'game_text' that is not of this program"},
+       "has a table 'game_text' that this program did not make"},
       {"CREATE INDEX game_index ON psygen_edits(version)",
-       "has a index 'game_index' that is not of this program"},
+       "has a index 'game_index' that this program did not make"},
       {"DROP TABLE psygen_values", "lacks a table; the file is damaged"},
       {"ALTER TABLE psygen_values ADD COLUMN more ANY",
-       "has a table 'psygen_values' that is not of this program"},
+       "has a table 'psygen_values' that this program did not make"},
       {"PRAGMA journal_mode=WAL",
        "was changed by another program (its journal mode is not \"delete\")"},
       {"DELETE FROM psygen_facts WHERE name = 'world hash'",
-       "does not say which world it belongs to; the file is damaged"},
+       "does not name its world; the file is damaged"},
       {"UPDATE psygen_facts SET value = 5 WHERE name = 'world name'",
-       "does not say which world it belongs to; the file is damaged"},
+       "does not name its world; the file is damaged"},
   };
   for (const auto& [sql, sentence] : cases) {
     std::filesystem::remove(folder / "game.save");
@@ -192,7 +193,7 @@ TEST(SaveFile, ForeignTablesAndChangedOnesAreRefused) {
   }
 }
 
-TEST(SaveFile, RowsThatWereChangedAreASentenceWhenTheyAreRead) {
+TEST(SaveFile, ChangedRowsAreErrorsWhenRead) {
   const TemporaryFolder folder;
   make_save(folder / "game.save");
   tamper(folder / "game.save",
@@ -217,12 +218,12 @@ TEST(SaveFile, RowsThatWereChangedAreASentenceWhenTheyAreRead) {
   EXPECT_FALSE(save.load_entities(world));
 }
 
-TEST(SaveFile, MissingFoldersAndThingsThatAreNoFilesAreRefused) {
+TEST(SaveFile, MissingFoldersAndNonFilesAreRejected) {
   const TemporaryFolder folder;
   const auto missing = SaveGame::open(folder / "none/game.save", testing::kWorld);
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().message,
-            fmt::format("{}: there is no folder {}", (folder / "none/game.save").string(),
+            fmt::format("{}: the folder {} does not exist", (folder / "none/game.save").string(),
                         (folder / "none").string()));
   std::filesystem::create_directory(folder / "folder");
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
@@ -232,10 +233,10 @@ TEST(SaveFile, MissingFoldersAndThingsThatAreNoFilesAreRefused) {
   };
   EXPECT_EQ(sentence("folder"), (folder / "folder").string() + ": is not a regular file");
   EXPECT_EQ(sentence("pipe"), (folder / "pipe").string() + ": is not a regular file");
-  EXPECT_EQ(sentence("link"), (folder / "link").string() + ": there is no such file");
+  EXPECT_EQ(sentence("link"), (folder / "link").string() + ": the file does not exist");
 }
 
-// As a user without rights: root may write to files that are read-only.
+// Runs as an unprivileged user: root may write to read-only files.
 std::string refusal_without_rights(const std::filesystem::path& file) {
   const std::filesystem::path answer = file.parent_path().parent_path() / "answer";
   write_file(answer, "");
@@ -249,7 +250,7 @@ std::string refusal_without_rights(const std::filesystem::path& file) {
   return file_content(answer);
 }
 
-TEST(SaveFile, ReadOnlyFilesAndFoldersAreRefused) {
+TEST(SaveFile, ReadOnlyFilesAndFoldersAreRejected) {
   const TemporaryFolder folder;
   using std::filesystem::perms;
   std::filesystem::create_directory(folder / "saves");
@@ -294,7 +295,7 @@ TEST(SaveFile, AFullDiskLeavesNoNewSave) {
   EXPECT_GT(refused, 2);
 }
 
-TEST(SaveFile, AFileThatAppearsMeanwhileIsLeftAlone) {
+TEST(SaveFile, AFileThatAppearsMeanwhileIsNotChanged) {
   const TemporaryFolder folder;
   write_file(folder / "game.save", "made by somebody else");
   for (const bool knows_how : {true, false}) {
@@ -330,7 +331,7 @@ TEST(SaveFile, ASaveThatAppearsMeanwhileIsNotANewOne) {
     const auto save = SaveGame::open(file, testing::kWorld, mode);
     if (mode == OpenMode::kCreateNew) {
       ASSERT_FALSE(save);
-      EXPECT_EQ(save.error().message, file.string() + ": is already there");
+      EXPECT_EQ(save.error().message, file.string() + ": already exists");
       EXPECT_EQ(folder.file_count(), 1U);
     } else {
       ASSERT_TRUE(save) << save.error().message;
@@ -339,7 +340,7 @@ TEST(SaveFile, ASaveThatAppearsMeanwhileIsNotANewOne) {
   }
 }
 
-TEST(SaveFile, NamesThatLookLikeAddressesAreNames) {
+TEST(SaveFile, NamesThatLookLikeUrisAreFileNames) {
   const TemporaryFolder folder;
   const WorkingFolder inside(folder.path());
   for (const char* name : {"file:game.save?mode=memory", "a%20b#c&d=e", "naïve %"}) {
@@ -351,7 +352,7 @@ TEST(SaveFile, NamesThatLookLikeAddressesAreNames) {
   }
 }
 
-TEST(SaveFile, TheWorldOfASaveIsToldWithoutALockAndWithoutReadingTheRest) {
+TEST(SaveFile, TheWorldOfASaveIsReadWithoutALockAndWithoutTheRest) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "game.save";
   std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
@@ -381,13 +382,13 @@ TEST(SaveFile, TheWorldOfASaveIsToldWithoutALockAndWithoutReadingTheRest) {
   EXPECT_TRUE(file_content(file) == text);
 }
 
-TEST(SaveFile, TheWorldOfWhatIsNoSaveIsASentence) {
+TEST(SaveFile, TheWorldOfAnotherFileIsAnError) {
   const TemporaryFolder folder;
   const auto sentence = [&](const char* name) {
     const auto world = world_of(folder / name);
     return world ? "a world" : world.error().message.substr((folder / name).string().size() + 2);
   };
-  EXPECT_EQ(sentence("none"), "there is no such file");
+  EXPECT_EQ(sentence("none"), "the file does not exist");
   EXPECT_EQ(sentence("."), "is not a regular file");
   write_file(folder / "text", "hello");
   EXPECT_EQ(sentence("text"), kForeign);
@@ -395,11 +396,11 @@ TEST(SaveFile, TheWorldOfWhatIsNoSaveIsASentence) {
   tamper(folder / "view",
          "DROP TABLE psygen_facts; CREATE VIEW psygen_facts AS SELECT 'world name' AS name, 'x' AS "
          "value");
-  EXPECT_EQ(sentence("view"), "has a view 'psygen_facts' that is not of this program");
+  EXPECT_EQ(sentence("view"), "has a view 'psygen_facts' that this program did not make");
   make_save(folder / "newer");
   tamper(folder / "newer", "PRAGMA user_version=2");
   EXPECT_EQ(sentence("newer"),
-            "is of format 2, made by a newer version; this version reads up to format 1");
+            "has format 2 of a newer version; this version reads up to format 1");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Saves with changed bytes: refused, or read with the content that was written, or a sentence.
+// Saves with changed bytes: rejected, or read with the original content, or an error on reading.
 #include <gtest/gtest.h>
 
 #include "engine/core/hash.hpp"
@@ -16,8 +16,8 @@ void expect_printable(const core::Error& error) {
 
 enum class Read { kWhole, kWithErrors, kWithSilentLosses };
 
-// Reads all that has checksums. Whatever is read must be as it was written. A silent loss: nothing
-// fails, but something that was written is not there.
+// Reads all data with checksums. All values read must equal the written ones. A silent loss means
+// that no call fails but data is missing.
 Read read_everything(const SaveGame& save) {
   std::int32_t blocks = 0;
   const auto visited = save.for_each_edits([&](core::BlockCoord block, std::uint32_t, auto bytes) {
@@ -42,7 +42,7 @@ Read read_everything(const SaveGame& save) {
   return whole ? Read::kWhole : Read::kWithSilentLosses;
 }
 
-TEST(SaveFuzz, ChangedBytesAreNoticedOrDoNotMatter) {
+TEST(SaveFuzz, ChangedBytesAreDetectedOrDoNotMatter) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "game.save";
   {
@@ -57,7 +57,7 @@ TEST(SaveFuzz, ChangedBytesAreNoticedOrDoNotMatter) {
     std::string text = sound;
     const auto last = static_cast<std::int64_t>(text.size()) - 1;
     for (std::int64_t changes = random.next_integer(1, 4); changes > 0; --changes) {
-      // Half of the changes are in the heads of pages, where SQLite keeps its structure.
+      // Half of the changes are in the headers of pages, where SQLite keeps its structure.
       const std::int64_t any = random.next_integer(0, last);
       const std::int64_t at = changes % 2 == 0 ? any : any / 4096 * 4096 + any % 64;
       text[static_cast<std::size_t>(at)] = static_cast<char>(random.next_u64());

@@ -1,4 +1,4 @@
-// What a save holds, before and after it is written.
+// The content of a save, before and after it is written.
 #include "engine/save/save_game.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::map<core::BlockCoord, Bytes> all_edits(const SaveGame& save) {
   return all;
 }
 
-TEST(SaveGame, HoldsEverythingAfterItWasClosed) {
+TEST(SaveGame, KeepsEverythingAfterClosing) {
   const TemporaryFolder folder;
   {
     SaveGame save = opened(folder / "game.save");
@@ -41,7 +41,7 @@ struct Tree {
   int height_m = 9;
 };
 
-TEST(SaveGame, HoldsTheEntitiesOfTheGameAloneAndAddsThemToAWorldWithOthers) {
+TEST(SaveGame, SavesOnlyTheGamesEntitiesAndAppendsThemToAWorld) {
   const TemporaryFolder folder;
   ecs::World scene;
   scene.create<Tree>(100);
@@ -66,7 +66,7 @@ TEST(SaveGame, HoldsTheEntitiesOfTheGameAloneAndAddsThemToAWorldWithOthers) {
   EXPECT_EQ(sum, 7);
 }
 
-TEST(SaveGame, WhatIsNotSavedIsNotInTheFile) {
+TEST(SaveGame, UnsavedChangesAreNotInTheFile) {
   const TemporaryFolder folder;
   {
     SaveGame save = opened(folder / "game.save");
@@ -104,7 +104,7 @@ TEST(SaveGame, EditsOfBlocksAreFoundVisitedReplacedAndErased) {
   }
 }
 
-TEST(SaveGame, EditsOfAbsurdSizeAreRefused) {
+TEST(SaveGame, EditsOfAbsurdSizeAreRejected) {
   const TemporaryFolder folder;
   SaveGame save = opened(folder / "game.save");
   ASSERT_TRUE(save.put_edits({1, 2}, 1, Bytes(kMaxEditBytes)));
@@ -147,7 +147,7 @@ TEST(SaveGame, ValuesNeedANameOfSensibleLength) {
     EXPECT_EQ(save.put_value(name, 1.0).error().code, core::ErrorCode::kInvalidArgument);
 }
 
-TEST(SaveGame, EntitiesThatDoNotFitAreASentenceAndLeaveTheWorldAsItWas) {
+TEST(SaveGame, EntitiesThatDoNotFitAreAnErrorAndDoNotChangeTheWorld) {
   const TemporaryFolder folder;
   SaveGame save = opened(folder / "game.save");
   ecs::World empty;
@@ -162,7 +162,7 @@ TEST(SaveGame, EntitiesThatDoNotFitAreASentenceAndLeaveTheWorldAsItWas) {
   EXPECT_EQ(without_type.size(), 0U);
 }
 
-TEST(SaveGame, ASaveOfAnotherWorldIsRefusedAndLeftAsItWas) {
+TEST(SaveGame, ASaveOfAnotherWorldIsRejectedAndNotChanged) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "game.save";
   {
@@ -191,7 +191,7 @@ TEST(SaveGame, TheWorldMayBeRenamed) {
   EXPECT_TRUE(save) << save.error().message;
 }
 
-TEST(SaveGame, TheModeDecidesAboutFilesThatExistAndThatDoNot) {
+TEST(SaveGame, TheModeDecidesAboutExistingAndMissingFiles) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "game.save";
   const auto missing = SaveGame::open(file, testing::kWorld, OpenMode::kOpenExisting);
@@ -201,10 +201,10 @@ TEST(SaveGame, TheModeDecidesAboutFilesThatExistAndThatDoNot) {
   ASSERT_TRUE(SaveGame::open(file, testing::kWorld, OpenMode::kOpenExisting));
   const auto there = SaveGame::open(file, testing::kWorld, OpenMode::kCreateNew);
   ASSERT_FALSE(there);
-  EXPECT_EQ(there.error().message, file.string() + ": is already there");
+  EXPECT_EQ(there.error().message, file.string() + ": already exists");
 }
 
-TEST(SaveGame, ASecondOneOnTheSameFileIsRefusedAndTheFirstKeepsItsLock) {
+TEST(SaveGame, ASecondOneOnTheSameFileIsRejectedAndTheFirstKeepsItsLock) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "game.save";
   SaveGame first = opened(file);

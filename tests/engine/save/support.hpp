@@ -1,4 +1,4 @@
-// Saves for tests: whole states of a game that can be told apart, and processes that are killed.
+// Saves for tests: distinguishable states of a whole game, and processes that are killed.
 #pragma once
 
 #include <fmt/format.h>

@@ -7,14 +7,14 @@
 namespace psygen::save {
 namespace {
 
-TEST(Value, NaNIsRefusedAndInfinityIsNot) {
+TEST(Value, NaNIsRejectedAndInfinityIsNot) {
   const auto nan = check_value(std::numeric_limits<double>::quiet_NaN(), "value 'speed'");
   ASSERT_FALSE(nan);
   EXPECT_EQ(nan.error().message, "value 'speed': NaN cannot be stored");
   EXPECT_TRUE(check_value(std::numeric_limits<double>::infinity(), ""));
 }
 
-TEST(Value, AbsurdSizesAreRefused) {
+TEST(Value, AbsurdSizesAreRejected) {
   EXPECT_TRUE(check_value(Bytes(kMaxValueBytes), "map"));
   const auto large = check_value(std::string(kMaxValueBytes + 1, 'x'), "map");
   ASSERT_FALSE(large);

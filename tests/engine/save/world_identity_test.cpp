@@ -23,7 +23,7 @@ TEST(WorldIdentity, IsTheSameForTheSameWorld) {
   EXPECT_EQ(one, identity_of(parsed(kSmallWorld), registry()));
 }
 
-TEST(WorldIdentity, DiffersWhereThingsStandElsewhere) {
+TEST(WorldIdentity, DiffersIfModelsStandElsewhere) {
   const auto hash = identity_of(parsed(kSmallWorld), registry()).hash;
   for (const auto& [from, to] : {std::pair{"seed = 5", "seed = 6"},
                                  {"count = 3", "count = 4"},
@@ -32,7 +32,7 @@ TEST(WorldIdentity, DiffersWhereThingsStandElsewhere) {
     EXPECT_NE(identity_of(parsed(replaced(kSmallWorld, from, to)), registry()).hash, hash) << to;
 }
 
-TEST(WorldIdentity, IsNoMatterOfColoursAndOfTheName) {
+TEST(WorldIdentity, IgnoresColoursAndTheName) {
   const auto hash = identity_of(parsed(kSmallWorld), registry()).hash;
   world::World world = parsed(kSmallWorld);
   world.sky.start_hour = 17;
@@ -44,7 +44,7 @@ TEST(WorldIdentity, IsNoMatterOfColoursAndOfTheName) {
   EXPECT_EQ(identity_of(world, registry()), (WorldIdentity{"other", hash}));
 }
 
-TEST(WorldIdentity, KnowsMasksAndTheKindsOfGroundThatTheyAskFor) {
+TEST(WorldIdentity, CoversMasksAndTheirKindsOfGround) {
   world::World world = parsed(kSmallWorld);
   const auto hash = identity_of(world, registry()).hash;
   world.scatter[1].mask.share = 0.3;  // of no patches
@@ -63,7 +63,7 @@ TEST(WorldIdentity, KnowsMasksAndTheKindsOfGroundThatTheyAskFor) {
   EXPECT_EQ(identity_of(world, registry()).hash, by_ground);
 }
 
-TEST(WorldIdentity, KnowsStampsAndRoadsAndNoEdits) {
+TEST(WorldIdentity, CoversStampsAndRoadsButNotEdits) {
   using world::testing::kShapes;
   world::World world = world::testing::shaped_world(kShapes);
   const auto hash = identity_of(world, registry()).hash;
@@ -77,7 +77,7 @@ TEST(WorldIdentity, KnowsStampsAndRoadsAndNoEdits) {
   EXPECT_EQ(hash, identity_of(world, registry()).hash);
 }
 
-TEST(WorldIdentity, KnowsTheHeightOfWaterButNotThatThereIsNone) {
+TEST(WorldIdentity, CoversTheWaterLevelIfThereIsWater) {
   world::World world = parsed(kSmallWorld);
   const auto hash = identity_of(world, registry()).hash;
   world.water.level_m = -2e6;
@@ -89,7 +89,7 @@ TEST(WorldIdentity, KnowsTheHeightOfWaterButNotThatThereIsNone) {
   EXPECT_NE(identity_of(world, registry()).hash, wet);
 }
 
-TEST(WorldIdentity, KnowsTheBranchesOfSpeciesAndNotTheirLooks) {
+TEST(WorldIdentity, CoversTheBranchesOfSpeciesButNotTheirLooks) {
   models::Registry species = models::make_standard_registry();
   world::World world =
       *world::load_world(world::testing::game_file("worlds/five_species.toml"), species);
@@ -158,7 +158,7 @@ std::uint64_t with_reeds(std::size_t parameters, std::string_view more) {
   return identity_of(*world, known).hash;
 }
 
-TEST(WorldIdentity, StaysWhenTheEngineGetsANewParameterWithItsUsualValue) {
+TEST(WorldIdentity, IsUnchangedByANewParameterWithItsDefault) {
   const std::uint64_t hash = with_reeds(1, "");
   EXPECT_EQ(with_reeds(2, ""), hash);
   EXPECT_EQ(with_reeds(3, ""), hash);

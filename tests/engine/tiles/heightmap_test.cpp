@@ -16,7 +16,7 @@ namespace {
 using world::testing::kSmallWorld;
 using world::testing::parsed;
 
-TEST(Heightmap, HasTheHeightsOfTheGroundWhereTheyAre) {
+TEST(Heightmap, HasTheHeightsOfTheGround) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
   const auto report = write_heightmap(world, {2, 1, 5, 3}, folder.path(), 3, nullptr);
@@ -58,7 +58,7 @@ TEST(Heightmap, MasksAddUpToWhite) {
 }
 
 // The floats are read back as grey values, for which they must lie from 0 to 1.
-TEST(Heightmap, OfFloatsIsReadBackAsItWas) {
+TEST(Heightmap, OfFloatsReadsBackEqual) {
   const TemporaryFolder folder;
   const image::FloatImage values{3, 2, {0.0F, 0.25F, 0.5F, 0.75F, 1.0F, 0.125F}};
   ASSERT_TRUE(image::write_exr(folder / "a.exr", values));
@@ -73,7 +73,7 @@ TEST(Heightmap, HasLimitsAndCanBeStopped) {
   const world::World world = parsed(kSmallWorld);
   const auto large = write_heightmap(world, {0, 0, 513, 1}, folder / "a", 1, nullptr);
   ASSERT_FALSE(large);
-  EXPECT_NE(large.error().message.find("at most 16384 along a side, which are 511 blocks"),
+  EXPECT_NE(large.error().message.find("at most 16384 per side are allowed (511 blocks"),
             std::string::npos)
       << large.error().message;
   const std::atomic<bool> stop{true};

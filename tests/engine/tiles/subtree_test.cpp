@@ -32,7 +32,7 @@ bool bit(const Parts& parts, const nlohmann::json& availability, std::size_t i) 
   return ((static_cast<unsigned char>(byte) >> (i % 8)) & 1U) != 0;
 }
 
-TEST(Subtree, SaysInMortonOrderWhichTilesThereAre) {
+TEST(Subtree, ListsExistingTilesInMortonOrder) {
   // The south-eastern quarter of the root's square alone: x = 1, y = 0 of level 1.
   const auto tree = TileTree::over({2, 2, 4, 4}, {0, 2});
   ASSERT_TRUE(tree);
@@ -64,7 +64,7 @@ TEST(Subtree, SaysInMortonOrderWhichTilesThereAre) {
   EXPECT_EQ(first[2], 0);
 }
 
-TEST(Subtree, LeadsToTheNextOnes) {
+TEST(Subtree, LeadsToTheNextSubtrees) {
   const auto tree = TileTree::over({0, 0, 64, 1}, {0, 6});
   const Parts parts =
       parts_of(subtree_bytes(*tree, {0, 0, 0}, [](const Tile&) { return TileBox{}; }));

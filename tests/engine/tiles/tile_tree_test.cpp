@@ -12,7 +12,7 @@ TEST(TileTree, LevelsAreReadFromTheFinestToTheCoarsest) {
     EXPECT_FALSE(parse_levels(text)) << text;
 }
 
-// Every block of the region lies in one tile of each level, and that tile's node has it.
+// Every block of the region is in one tile of each level, and in that tile's node.
 TEST(TileTree, EveryBlockHasATileOfEachLevelWithItsNode) {
   const amplify::Region region{-5, 3, 9, 10};
   const auto tree = TileTree::over(region, {1, 3});

@@ -36,7 +36,7 @@ subdivisions = 1
 
 
 def install(folder):
-    """Whether what package.json names is there."""
+    """True if the packages in package.json are installed."""
     wanted = (HERE / "package.json").read_text(encoding="utf-8")
     done = folder / "installed.json"
     if done.exists() and done.read_text(encoding="utf-8") == wanted:

@@ -46,7 +46,7 @@ TEST(Tileset, HasAFileForEachTileAndIsTheSameForAnyNumberOfThreads) {
   EXPECT_TRUE(files_in(top / "three") == files);
 }
 
-TEST(Tileset, BlocksStandWhereTheyAreAndEndInSkirts) {
+TEST(Tileset, BlocksHaveTheirPositionsAndEndInSkirts) {
   const world::World world = parsed(kSmallWorld);
   const auto tree = TileTree::over({0, 0, 8, 4}, {0, 2});
   const TileMaker maker(world, registry());

@@ -124,7 +124,7 @@ TEST(CameraPath, EveryPathOfTheGameLoads) {
   }
 }
 
-TEST(CameraPath, ComesNearTheWorldOrDoesNot) {
+TEST(CameraPath, KnowsWhetherItComesNearTheWorld) {
   const World world = paper();  // 0 … 32768 m
   const auto near = [&](core::BlockCoord origin, glm::dvec2 at_m) {
     return CameraPath({"", origin}, {point(0, at_m)}).comes_within(100, world);
@@ -145,7 +145,7 @@ TEST(CameraPath, ComesNearTheWorldOrDoesNot) {
       << "one point suffices";
 }
 
-TEST(CameraPath, HoldsItsEndsAndTakesNanForTheBeginning) {
+TEST(CameraPath, HoldsItsEndsAndTreatsNanAsTheStart) {
   const World world = parsed(kSmallWorld);
   const CameraPath path({"p", {}, 1}, {point(1, {0, 0}), point(3, {40, 0})});
   const core::CameraPose begin = path.pose_at(1, world), end = path.pose_at(3, world);
@@ -156,7 +156,7 @@ TEST(CameraPath, HoldsItsEndsAndTakesNanForTheBeginning) {
     EXPECT_EQ(glm::length(move(end, path.pose_at(t, world), world)), 0);
 }
 
-TEST(CameraPath, LooksAlongTheFlightAtPlacesAndAtHeadings) {
+TEST(CameraPath, LooksAlongTheFlightAtPointsAndAtHeadings) {
   const World world = parsed(kSmallWorld);
   std::vector<PathPoint> points{point(0, {0, 0}), point(1, {10, 0}), point(2, {20, 0})};
   EXPECT_NEAR(CameraPath({"p", {}, 1}, points).pose_at(1, world).yaw, glm::radians(90.0), 1e-6);
@@ -170,7 +170,7 @@ TEST(CameraPath, LooksAlongTheFlightAtPlacesAndAtHeadings) {
   EXPECT_NEAR(pose.pitch, glm::radians(-12.0), 1e-6);
 }
 
-TEST(CameraPath, HasAHashOfAllThatDecidesOnThePoses) {
+TEST(CameraPath, HashCoversEverythingThatAffectsPoses) {
   const auto hash_of = [](auto change) {
     std::vector<PathPoint> points(2);
     points[0].heading_deg = 90;
@@ -194,12 +194,12 @@ TEST(CameraPath, HasAHashOfAllThatDecidesOnThePoses) {
 
 TEST(CameraPath, TurnsTheShortWayAcrossTheBack) {
   const World world = parsed(kSmallWorld);
-  // South-east, then south-west: through the south.
+  // From south-east to south-west through the south.
   const CameraPath path({"p", {}, 1}, {point(0, {0, 0}), point(1, {10, 30}), point(2, {0, 60})});
   EXPECT_LT(std::abs(path.pose_at(2, world).yaw - path.pose_at(0, world).yaw), glm::radians(90.0));
 }
 
-TEST(CameraPath, JumpsWithoutAPlaceBetweenAndWithoutATraceOfIt) {
+TEST(CameraPath, JumpsWithoutIntermediatePosesOrTraces) {
   const World world = paper();
   std::vector<PathPoint> before{point(0, {100, 200}), point(2, {160, 200})};
   std::vector<PathPoint> after{point(4, {9000, 300}), point(6, {9000, 400})};

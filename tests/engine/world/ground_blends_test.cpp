@@ -11,7 +11,7 @@
 namespace psygen::world {
 namespace {
 
-// The text of shaders/ground.glsl as C++: GLM has its functions, and the build puts an F behind its
+// The text of shaders/ground.glsl as C++: GLM has its functions, and the build appends an F to its
 // numbers (CMakeLists.txt).
 namespace shader {
 using glm::clamp, glm::floor, glm::ivec2, glm::mix, glm::smoothstep, glm::uvec2, glm::vec2,
@@ -48,7 +48,7 @@ void set_frame(const Palette& p) {
   shader::frame.ground_colour.w = 1;
 }
 
-// Each kind has a colour of its own, so a difference in any blend shows.
+// Each kind has its own colour, so a difference in any blend shows.
 Palette telling_palette() {
   Palette p;
   p.grass = {1, 0, 0};

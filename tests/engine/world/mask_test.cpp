@@ -18,7 +18,7 @@ using testing::kSmallWorld;
 using testing::registry;
 using testing::replaced;
 
-// Every picture is black on its left half and white on its right half.
+// Every image is black on its left half and white on its right half.
 class HalfPictures final : public testing::PicturesAlone {
  public:
   core::Result<std::shared_ptr<const GreyPicture>> read_grey(
@@ -61,14 +61,14 @@ std::vector<Placement> rocks_of(const World& world) {
   return all;
 }
 
-TEST(Mask, PicturesSayWhichInstancesStand) {
+TEST(Mask, ImagesSelectInstances) {
   const World world = masked("mask_image = \"m.png\"");
   const double middle_m = 4 * world.block_size_m();
   const std::vector<Placement> all = rocks_of(masked("")), rocks = rocks_of(world);
   EXPECT_NEAR(static_cast<double>(rocks.size()), 0.5 * static_cast<double>(all.size()), 40);
   for (const Placement& rock : rocks)
     EXPECT_GT(static_cast<double>(rock.position.x), 0.74 * middle_m);
-  // Beyond its area nothing stands.
+  // Outside its area nothing stands.
   const World small = masked("mask_image = \"m.png\"\nmask_area_m = [-100, 0, 300, 100]");
   for (const Placement& rock : rocks_of(small)) {
     EXPECT_LE(rock.position.x, 300);
@@ -76,7 +76,7 @@ TEST(Mask, PicturesSayWhichInstancesStand) {
   }
 }
 
-TEST(Mask, NoiseCoversTheShareOfTheGroundThatIsAskedFor) {
+TEST(Mask, NoiseCoversTheRequestedFractionOfTheGround) {
   ScatterMask mask;
   mask.noise_m = 30;
   for (const double share : {0.0, 0.1, 0.5, 0.9, 1.0}) {
@@ -105,8 +105,8 @@ TEST(Mask, PatchesOfAnySizeHaveValuesFarAway) {
   }
 }
 
-// What stands is where it was, as it was: a mask takes away and moves nothing.
-TEST(Mask, InstancesThatStayKeepPlaceAndParameters) {
+// Remaining instances do not change: a mask removes instances and moves none.
+TEST(Mask, RemainingInstancesKeepPositionAndParameters) {
   const std::vector<Placement> all = rocks_of(masked(""));
   const std::vector<Placement> some = rocks_of(masked("mask_noise_m = 50\nmask_share = 0.4"));
   EXPECT_LT(some.size(), all.size() * 6 / 10);
@@ -119,7 +119,7 @@ TEST(Mask, InstancesThatStayKeepPlaceAndParameters) {
   }
 }
 
-TEST(Mask, InstancesStandOnTheKindsOfGroundThatAreAllowed) {
+TEST(Mask, InstancesStandOnAllowedKindsOfGroundOnly) {
   const World world = masked("on_ground = [\"forest\", \"rock\"]");
   const Palette palette = drawn_palette(world);
   const std::vector<Placement> rocks = rocks_of(world);
@@ -139,7 +139,7 @@ TEST(Mask, InstancesStandOnTheKindsOfGroundThatAreAllowed) {
   }
 }
 
-// The merged mesh of a node has its rocks where single ones stand.
+// The merged mesh of a node has its rocks at the positions of the single ones.
 TEST(Mask, FarModelsAgreeWithNearOnes) {
   const std::string text =
       replaced(replaced(kSmallWorld, "count = 3", "count = 0"), "count = 5",
@@ -165,7 +165,7 @@ TEST(Mask, FarModelsAgreeWithNearOnes) {
   EXPECT_NE(merged->identity(), all->identity());
 }
 
-TEST(Mask, ReadsBackAsItWasWritten) {
+TEST(Mask, ReadsBackEqual) {
   const World world = masked(
       "on_ground = [\"snow\", \"grass\"]\nmask_image = \"a b.png\"\nmask_noise_m = 12.5\n"
       "mask_share = 0.25\nmask_patches = 3");
@@ -178,7 +178,7 @@ TEST(Mask, ReadsBackAsItWasWritten) {
   EXPECT_EQ(mask_hash(world.scatter[0].mask), 0U);
 }
 
-TEST(Mask, IsRefusedWithLineAndField) {
+TEST(Mask, IsRejectedWithLineAndField) {
   EXPECT_THAT(
       mask_error("mask_image = \"missing.png\""),
       HasSubstr("maps/w.toml:23: scatter[1].mask_image: maps/missing.png: there is no such"));
@@ -201,7 +201,7 @@ TEST(Mask, IsRefusedWithLineAndField) {
   const auto unread = parse_world(
       replaced(kSmallWorld, "count = 5", "count = 5\nmask_image = \"m.png\""), "w", registry());
   ASSERT_FALSE(unread.has_value());
-  EXPECT_THAT(unread.error().message, HasSubstr("reads no files beside"));
+  EXPECT_THAT(unread.error().message, HasSubstr("cannot read glTF models and images"));
   const std::string endless = replaced(replaced(kSmallWorld, "[8, 4]", "[0, 4]"), "count = 5",
                                        "count = 5\nmask_image = \"m.png\"");
   static const HalfPictures pictures;

@@ -117,7 +117,7 @@ TEST(Placement, ParametersLieInTheirRangesAndFillThem) {
   EXPECT_GT(highest, 2.48);
 }
 
-TEST(Placement, AChangedRangeLeavesTheOtherParametersAndPlacesAsTheyAre) {
+TEST(Placement, AChangedRangeAffectsNoOtherParametersOrPositions) {
   const World before = parsed(kSmallWorld);
   const World after = parsed(replaced(kSmallWorld, "iterations = [2, 3]", "iterations = 4"));
   const std::vector<Placement> a = placed(before, {3, 1}), b = placed(after, {3, 1});

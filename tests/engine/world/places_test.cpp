@@ -46,7 +46,7 @@ std::vector<Placement> placed_on(const World& world, core::BlockCoord block) {
   return all;
 }
 
-TEST(Places, StandWhereTheFileSaysWithTheirParameters) {
+TEST(Places, HavePositionAndParametersOfTheFile) {
   const World world = parsed(std::string(kSmallWorld) + kPlaces);
   const auto placed = placed_on(world, {1, 1});
   ASSERT_EQ(placed.size(), 2U);
@@ -63,7 +63,7 @@ TEST(Places, StandWhereTheFileSaysWithTheirParameters) {
   ASSERT_EQ(placed_on(world, {6, 3}).size(), 1U);
   EXPECT_NE(placed_on(world, {6, 3})[0].parameters.hash(), placed[0].parameters.hash());
   EXPECT_TRUE(placed_on(world, {0, 0}).empty());
-  // What is scattered stays as it was.
+  // Scattered models do not change.
   std::vector<Placement> before, now;
   place_models(parsed(kSmallWorld), registry(), {1, 1}, before);
   place_models(world, registry(), {1, 1}, now);
@@ -85,7 +85,7 @@ TEST(Places, EveryModelTypeCanBePlaced) {
   }
 }
 
-TEST(Places, StandOnEditedGroundBesideWhatEditsPlace) {
+TEST(Places, StandOnEditedGroundTogetherWithPlacedModels) {
   World world = parsed(std::string(kSmallWorld) + kPlaces);
   const float before_m = placed_on(world, {1, 1})[0].position.y;
   Edits edits;
@@ -103,7 +103,7 @@ TEST(Places, StandOnEditedGroundBesideWhatEditsPlace) {
   EXPECT_TRUE(std::ranges::is_sorted(all, {}, &Placement::index));
   EXPECT_EQ(std::ranges::count_if(all, [](const Placement& p) { return p.index >= kPlacedIndex; }),
             3);
-  // They are no edits: a save does not have them, and edits cannot take them away.
+  // They are no edits: saves do not store them, and edits cannot remove them.
   EXPECT_EQ(edits.counts().placed, 1U);
   EXPECT_FALSE(edits.remove(world, {{1, 1}, placed[0].index}));
 }
@@ -131,7 +131,7 @@ TEST(Places, AreInMergedModelsAndTheirIdentity) {
   EXPECT_EQ(world_size(*base, registry()).models, world_size(*high, registry()).models);
 }
 
-TEST(Places, ReadBackAsTheyWereWrittenAndEditorsSeeThem) {
+TEST(Places, ReadBackEqualAndAppearInEditors) {
   const std::string text = std::string(kSmallWorld) + kPlaces;
   const World world = parsed(text);
   const World again = parsed(write_world(world, registry()));
@@ -147,7 +147,7 @@ TEST(Places, ReadBackAsTheyWereWrittenAndEditorsSeeThem) {
   EXPECT_FALSE(world_schema(text, parsed(kSmallWorld), registry()));
 }
 
-TEST(Places, BadOnesAreRefusedWithLineAndField) {
+TEST(Places, BadOnesAreRejectedWithLineAndField) {
   const auto error = [](const std::string& tables) {
     const auto world = parse_world(kSmallWorld + tables, "w.toml", registry());
     return world ? "" : world.error().message;

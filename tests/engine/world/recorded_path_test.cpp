@@ -28,7 +28,7 @@ std::vector<TimedPose> recorded_walk(const World& world) {
   return poses;
 }
 
-TEST(RecordedPath, IsWhereTheCameraWas) {
+TEST(RecordedPath, PassesTheRecordedPoses) {
   const World world = recorded_world();
   const std::vector<TimedPose> poses = recorded_walk(world);
   const CameraPath path = recorded_path("walk", poses, world);
@@ -51,7 +51,7 @@ TEST(RecordedPath, IsReadBackFromItsFile) {
   EXPECT_EQ(read->hash(), path.hash());
 }
 
-TEST(RecordedPath, JumpsWhereTheCameraLeapt) {
+TEST(RecordedPath, JumpsBetweenDistantPoses) {
   const World world = recorded_world();
   std::vector<TimedPose> poses = recorded_walk(world);
   for (std::size_t i = 20; i < poses.size(); ++i)

@@ -1,4 +1,4 @@
-// Roads of a world's file: flat, clear of models, marked in the ground.
+// Roads of a world file: flat, clear of models, marked in the ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ TEST(Road, IsFlatAcrossItsWidth) {
 }
 
 // Everywhere on a road that bends, crosses a stamp and comes near itself, the ground has the height
-// of the nearest part of its middle.
+// of the nearest point of the centre line.
 TEST(Road, HasTheHeightOfItsMiddleAlsoInBends) {
   const World world = shaped_world(kShapes);
   const Road& road = world.shaped.roads[0];
@@ -91,7 +91,7 @@ TEST(Road, FollowsTheGroundCalmlyAndMeetsItAtItsEnds) {
     EXPECT_EQ(point.height_m, ground(point.at_m));
 }
 
-TEST(Road, NothingStandsOnItAndWhatStandsBesideItStaysThere) {
+TEST(Road, ClearsItsOwnStripOfModelsOnly) {
   const std::string many = replaced(kSmallWorld, "count = 5", "count = 400");
   const World base = parsed(many);
   const World world = *read_shaped_world(
@@ -120,7 +120,7 @@ TEST(Road, NothingStandsOnItAndWhatStandsBesideItStaysThere) {
   EXPECT_LT(world_size(world, registry()).models, world_size(base, registry()).models);
 }
 
-// Vertices know the share of a road, in meshes of all levels, as queries do.
+// Vertices have the fraction of road in meshes of all levels, as in queries.
 TEST(Road, IsMarkedInTheGround) {
   const World world =
       shaped_world("[[road]]\npoints_m = [[40, 100], [440, 100]]\nwidth_m = 16\nborder_m = 12\n");

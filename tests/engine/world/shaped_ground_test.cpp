@@ -66,7 +66,7 @@ TEST(ShapedGround, WorldsWithoutItHaveTheirOldHashes) {
   EXPECT_NE(shape_hash(shaped), 0U);
   EXPECT_EQ(shape_hash(shaped), shape_hash(shaped_world(kShapes)));
   EXPECT_NE(merged_identity(world, registry()), merged_identity(shaped, registry()));
-  // Blocks that nothing reaches keep the keys of their meshes.
+  // Blocks outside of all shapes keep the keys of their meshes.
   const World small = shaped_world(
       "[[stamp]]\nimage = \"white.png\"\ncentre_m = [20, 20]\nsize_m = 4\nborder_m = 1\n");
   EXPECT_NE(terrain_parameters(small, {0, 0}), terrain_parameters(world, {0, 0}));
@@ -102,7 +102,7 @@ TEST(ShapedGround, EditsLieOverItAndAreStoredWithoutIt) {
   EXPECT_NEAR(height_at(world, 140, 140), road_m + 3, 2 * kQuantumM);
   EXPECT_EQ(height_at(world, 480, 240), far_m);
   EXPECT_EQ(terrain_parameters(world, {7, 3}), terrain_parameters(function, {7, 3}));
-  // What a save holds makes the same world again.
+  // The bytes of a save restore the same world.
   Edits loaded;
   const core::BlockCoord block{2, 2};
   const auto bytes = encode_block(edits, registry(), block);
@@ -112,12 +112,12 @@ TEST(ShapedGround, EditsLieOverItAndAreStoredWithoutIt) {
   set_edits(again, loaded.layer());
   EXPECT_EQ(height_at(again, 140, 140), height_at(world, 140, 140));
   EXPECT_EQ(terrain_parameters(again, {2, 2}), terrain_parameters(world, {2, 2}));
-  // Those of the world, set again, are the same ones.
+  // Setting the world's own edits again changes nothing.
   const Edits of_world(world.edits);
   EXPECT_TRUE(changed_blocks(edits, of_world).empty());
   set_edits(again, of_world.layer());
   EXPECT_EQ(height_at(again, 140, 140), height_at(world, 140, 140));
-  // Another world has another ground below the same edits.
+  // Another world has different ground below the same edits.
   World other = parsed(kSmallWorld);
   const double plain_m = height_at(other, 140, 140);
   set_edits(other, of_world.layer());

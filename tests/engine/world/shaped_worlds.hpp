@@ -1,4 +1,4 @@
-// Worlds with stamps and roads for tests, whose pictures are in memory.
+// Worlds with stamps and roads for tests, with images in memory.
 #pragma once
 
 #include <cstdio>
@@ -15,7 +15,7 @@
 
 namespace psygen::world::testing {
 
-// Files beside a world of which only pictures can be read.
+// Reads only images, no models.
 class PicturesAlone : public FilesBeside {
  public:
   core::Result<std::unique_ptr<models::ModelType>> read_model(const std::filesystem::path& file,
@@ -24,7 +24,7 @@ class PicturesAlone : public FilesBeside {
   }
 };
 
-// Pictures by name: "ramp.png" has 17 × 17 different values, "white.png" 3 × 3, "dot.png" one
+// Images by name: "ramp.png" has 17 × 17 different values, "white.png" 3 × 3, "dot.png" one
 // pixel; others are missing.
 class MadePictures final : public PicturesAlone {
  public:
@@ -63,7 +63,7 @@ inline World shaped_world(const std::string& tables) {
   return std::move(*world);
 }
 
-inline constexpr double kQuantumM = 60.0 / 65535;  // of its heights
+inline constexpr double kQuantumM = 60.0 / 65535;  // step of its heights
 inline constexpr double kShapedBlockM = 64;
 
 inline double height_at(const World& world, double x, double z) {

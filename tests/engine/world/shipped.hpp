@@ -1,4 +1,4 @@
-// Where the project's own world and path files lie, and small ones for tests.
+// The folders of the project's own world and path files, and small files for tests.
 #pragma once
 
 #include <algorithm>

@@ -63,7 +63,7 @@ TEST(Sky, AFileWithoutColoursHasThoseOfItsSun) {
   EXPECT_EQ(low.sky.haze_colour, glm::vec3(1, 2, 3));
 }
 
-TEST(Sky, WaterIsWhereAFileSaysSo) {
+TEST(Sky, WaterExistsOnlyInFilesThatDefineIt) {
   EXPECT_FALSE(parsed(kSmallWorld).water.exists());
   const World wet = parsed(std::string(kSmallWorld) + "\n[water]\nlevel_m = 12.5\n");
   EXPECT_TRUE(wet.water.exists());

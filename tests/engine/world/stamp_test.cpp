@@ -1,4 +1,4 @@
-// Heightmaps that a world's file stamps into its ground.
+// Heightmaps that a world file stamps into its ground.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +77,7 @@ TEST(Stamp, IsTurnedLikeAModel) {
       EXPECT_NEAR(height_at(half, 128 - x, 128 - z), height_m, 1.01 * kQuantumM);
     }
   }
-  // A square that stands on its corner reaches further along the axes.
+  // A square turned by 45 degrees extends further along the axes.
   const World corner = shaped_world(stamp + "turn_deg = 45\n");
   const World base = parsed(kSmallWorld);
   EXPECT_NE(height_at(corner, 128 + 44, 128), height_at(base, 128 + 44, 128));

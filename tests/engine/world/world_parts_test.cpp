@@ -10,7 +10,7 @@ namespace {
 
 using testing::registry;
 
-// The two scatters of the small world, and one behind them.
+// The two scatters of the small world, and one after them.
 World three_scatters() {
   return parse_world(std::string(testing::kSmallWorld) +
                          "\n[[scatter]]\nmodel = \"tree\"\ncount = 7\nmax_slope_deg = 40\n",
@@ -18,7 +18,7 @@ World three_scatters() {
       .value();
 }
 
-TEST(WorldParts, LooksAreNoPart) {
+TEST(WorldParts, IgnoreColoursAndSky) {
   World world = three_scatters();
   const WorldParts before = parts_of(world, registry());
   world.name = "another";
@@ -27,7 +27,7 @@ TEST(WorldParts, LooksAreNoPart) {
   EXPECT_EQ(parts_of(world, registry()), before);
 }
 
-TEST(WorldParts, OtherRangesOfAScatterLeaveItsPlacesAndAllOthers) {
+TEST(WorldParts, OtherRangesOfAScatterChangeOnlyItsModels) {
   World world = three_scatters();
   const WorldParts before = parts_of(world, registry());
   world.scatter.back().ranges[1].high += 1;
@@ -38,8 +38,8 @@ TEST(WorldParts, OtherRangesOfAScatterLeaveItsPlacesAndAllOthers) {
   EXPECT_NE(after.models.back(), before.models.back());
 }
 
-// The instances behind have other indices, so all about them is drawn anew.
-TEST(WorldParts, AnotherCountChangesAllScattersBehind) {
+// Later instances get other indices, so all their values are drawn again.
+TEST(WorldParts, AnotherCountChangesAllLaterScatters) {
   World world = three_scatters();
   const WorldParts before = parts_of(world, registry());
   ++world.scatter.front().count;
@@ -60,7 +60,7 @@ TEST(WorldParts, OtherGroundMovesAllPlacesAndNoModel) {
   }
 }
 
-TEST(WorldParts, SomeScattersAreWhatTheyAreAmongAll) {
+TEST(WorldParts, SelectedScattersArePlacedAsAmongAll) {
   const World world = three_scatters();
   std::vector<Placement> all, some;
   place_models(world, registry(), {1, 2}, all);
@@ -73,7 +73,7 @@ TEST(WorldParts, SomeScattersAreWhatTheyAreAmongAll) {
     EXPECT_EQ(some[i].parameters, all[first + i].parameters);
   }
   const std::vector<double> placed = placed_per_block(world, registry());
-  // What is known is not counted again.
+  // Known counts are not measured again.
   const std::optional<double> known[] = {placed[0] + 1, std::nullopt, std::nullopt};
   const std::vector<double> counted = placed_per_block(world, registry(), known);
   EXPECT_EQ(counted[0], placed[0] + 1);

@@ -40,7 +40,7 @@ TEST(WorldSize, IsExactForTerrainAndRocks) {
   EXPECT_EQ(size.bytes_paper, size.triangles * 256);
 }
 
-TEST(WorldSize, OfThePapersWorldIsThatOfThePaper) {
+TEST(WorldSize, OfThePapersWorldMatchesThePaper) {
   const World world = load_world(game_file("worlds/paper.toml"), registry()).value();
   const WorldSize size = world_size(world, registry());
   EXPECT_EQ(size.blocks, 262'144U);

@@ -39,7 +39,7 @@ TEST(World, AnEndlessWorldHasEveryBlock) {
   EXPECT_FALSE(strip.contains({0, 4}));
 }
 
-TEST(Sky, TheSunStandsWhereAzimuthAndElevationSay) {
+TEST(Sky, TheSunHasItsAzimuthAndElevation) {
   Sky sky;
   sky.sun_azimuth_deg = 90;
   sky.sun_elevation_deg = 30;

@@ -64,7 +64,7 @@ TEST_F(EditBytes, BlocksWithoutEditsHaveNoBytes) {
   EXPECT_TRUE(encode_block({}, registry, {2, 3}).empty());
 }
 
-TEST_F(EditBytes, WhatIsCutShortAtAnyByteOrGoesOnIsRefused) {
+TEST_F(EditBytes, TruncatedOrExtendedBytesAreRejected) {
   const std::vector<std::byte> whole = encode_block(edits, registry, {2, 3});
   Edits loaded;
   for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -79,7 +79,7 @@ TEST_F(EditBytes, WhatIsCutShortAtAnyByteOrGoesOnIsRefused) {
   EXPECT_TRUE(loaded.empty());
 }
 
-TEST_F(EditBytes, ANewerVersionIsRefusedByItsNumber) {
+TEST_F(EditBytes, ANewerVersionIsRejectedByItsNumber) {
   std::vector<std::byte> newer = encode_block(edits, registry, {2, 3});
   newer[4] = std::byte{9};
   Edits loaded;
@@ -88,8 +88,8 @@ TEST_F(EditBytes, ANewerVersionIsRefusedByItsNumber) {
   EXPECT_THAT(ok.error().message, HasSubstr("version is 9"));
 }
 
-// The block that the model was moved to is not loaded.
-TEST_F(EditBytes, TheIdOfAMovedModelIsNotGivenToAnother) {
+// The target block of the moved model is not loaded.
+TEST_F(EditBytes, TheIdOfAMovedModelIsNotReused) {
   Edits one;
   const auto moved = one.move(world, registry, {{2, 3}, unedited({2, 3})[3].index}, {{4, 3}, {}});
   ASSERT_TRUE(moved) << moved.error().message;
@@ -104,7 +104,7 @@ TEST_F(EditBytes, TheIdOfAMovedModelIsNotGivenToAnother) {
   EXPECT_EQ(loaded.counts().placed, 1u) << "the rock stays";
 }
 
-TEST_F(EditBytes, AMovedModelWithAnIdBeyondAllIsRefused) {
+TEST_F(EditBytes, AMovedModelWithAnIdAboveTheMaximumIsRejected) {
   Edits one;
   ASSERT_TRUE(one.move(world, registry, {{2, 3}, unedited({2, 3})[3].index}, {{4, 3}, {}}));
   std::vector<std::byte> bytes = encode_block(one, registry, {2, 3});
@@ -117,7 +117,7 @@ TEST_F(EditBytes, AMovedModelWithAnIdBeyondAllIsRefused) {
   EXPECT_THAT(ok.error().message, HasSubstr("id 4294967295"));
 }
 
-TEST_F(EditBytes, AStoredStampIsSquareWhateverItsBytesSay) {
+TEST_F(EditBytes, AStoredStampIsAlwaysSquare) {
   const std::vector<std::byte> whole = encode_block(edits, registry, {2, 4});
   constexpr std::size_t kSquare = 4 + 2 + 3 * 4 + 4 + 1;  // magic, version, counts, id, change
   ASSERT_EQ(whole[kSquare], std::byte{1});
@@ -144,8 +144,8 @@ TEST_F(EditBytes, BlocksFromDifferentEditsMayHaveTheSameIds) {
   EXPECT_NE(left, 0u);
 }
 
-// Whatever is decoded is legal: it can be used, and is the same when stored again.
-TEST_F(EditBytes, AnyBytesAreRefusedOrGiveLegalEdits) {
+// All decoded edits are legal: they can be used, and are equal when stored again.
+TEST_F(EditBytes, AnyBytesAreRejectedOrGiveLegalEdits) {
   std::mt19937 random(17);
   std::size_t accepted = 0, refused = 0;
   for (const core::BlockCoord block : {core::BlockCoord{2, 3}, core::BlockCoord{2, 4}}) {

@@ -15,7 +15,7 @@
 
 namespace psygen::world::testing {
 
-// Identifies all edits; 0: none.
+// A hash of all edits; 0: none.
 inline std::uint64_t hash_of(const Edits& edits) {
   return edits.empty() ? 0 : edits.layer()->blocks.root()->hash;
 }

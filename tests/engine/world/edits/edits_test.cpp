@@ -23,7 +23,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class EditsTest : public ::testing::Test, protected EditedWorld {};
 
-TEST_F(EditsTest, ARemovedModelIsGoneAndTheOthersAreAsTheyWere) {
+TEST_F(EditsTest, ARemovedModelIsGoneAndTheOthersDoNotChange) {
   const std::vector<Placement> before = placements({2, 3});
   const std::uint32_t index = before[before.size() / 2].index;
   ASSERT_TRUE(edits.remove(world, {{2, 3}, index}));
@@ -59,7 +59,7 @@ TEST_F(EditsTest, AMovedModelKeepsItsParametersAndStandsOnTheGroundOfItsNewPlace
   EXPECT_EQ(there.size(), unedited({4, 3}).size() + 1);
   EXPECT_EQ(edits.counts().removed, 1u);
   EXPECT_EQ(edits.counts().placed, 1u);
-  // Moving it again would move what is not there any more.
+  // A second move would move a model that no longer exists.
   const std::uint64_t hash = hash_of(edits);
   EXPECT_FALSE(edits.move(world, registry, {{2, 3}, tree.index}, {{4, 3}, {1, 0, 1}}));
   EXPECT_EQ(hash_of(edits), hash);
@@ -112,7 +112,7 @@ TEST_F(EditsTest, KeysOfUneditedNodesAreThoseOfAnUneditedWorld) {
   EXPECT_EQ(terrain_parameters(world, {9, 3}).edits(), nullptr);
 }
 
-TEST_F(EditsTest, ACopyTakesEverythingBackExactly) {
+TEST_F(EditsTest, AnEarlierCopyRestoresEverythingExactly) {
   ASSERT_TRUE(edits.remove(world, {{2, 3}, 1}));
   const Edits kept = edits;
   const std::uint64_t hash = hash_of(kept);
@@ -126,7 +126,7 @@ TEST_F(EditsTest, ACopyTakesEverythingBackExactly) {
   EXPECT_TRUE(changed_blocks(edits, edits).empty());
 }
 
-TEST_F(EditsTest, WhatIsImpossibleIsRefusedWithASentenceAndChangesNothing) {
+TEST_F(EditsTest, ImpossibleEditsAreRejectedWithAMessageAndChangeNothing) {
   const auto refused = [&](const auto& result, const char* why) {
     ASSERT_FALSE(result);
     EXPECT_THAT(result.error().message, HasSubstr(why));
@@ -145,9 +145,9 @@ TEST_F(EditsTest, WhatIsImpossibleIsRefusedWithASentenceAndChangesNothing) {
   refused(edits.remove(world, {{2, 3}, 1'000'000}), "has no model 1000000");
   refused(edits.restore({{2, 3}, 0}), "was not removed");
   refused(edits.remove_placed({{2, 3}, 4}), "has no placed model");
-  refused(edits.remove_ground(world, {{2, 3}, 4}), "has no edit of the ground");
-  refused(rock_at({{2, 3}, {kNan, 0, 1}}), "not a place");
-  refused(rock_at({{2, 3}, {1, 0, 1e300}}), "not a place");
+  refused(edits.remove_ground(world, {{2, 3}, 4}), "has no ground edit");
+  refused(rock_at({{2, 3}, {kNan, 0, 1}}), "out of range");
+  refused(rock_at({{2, 3}, {1, 0, 1e300}}), "out of range");
   refused(rock_at({{2, 3}, {-1000, 0, 1}}), "outside the world");
   refused(rock_at(good, kNan), "above the ground");
   refused(edits.raise(world, {{2, 3}, {1e8, 0, 1}}, 5, 1), "outside the world");
@@ -156,8 +156,8 @@ TEST_F(EditsTest, WhatIsImpossibleIsRefusedWithASentenceAndChangesNothing) {
   refused(edits.raise(world, good, 0, 1), "radius");
   refused(edits.raise(world, good, 5, kNan), "raising ground by nan m");
   refused(edits.raise(world, good, 5, 1e5), "not allowed");
-  refused(edits.flatten(world, good, 5, -1), "relief of the terrain");
-  refused(edits.flatten(world, good, 5, 1e4), "relief of the terrain");
+  refused(edits.flatten(world, good, 5, -1), "height range of the terrain");
+  refused(edits.flatten(world, good, 5, 1e4), "height range of the terrain");
   models::GroundEdit stamp;
   stamp.centre = good;
   stamp.change = models::GroundChange::kStampSet;
@@ -183,7 +183,7 @@ TEST_F(EditsTest, WhatIsImpossibleIsRefusedWithASentenceAndChangesNothing) {
   wrong = rock;
   wrong.model = world.terrain_model;
   wrong.parameters = world.terrain;
-  refused(edits.place(world, registry, wrong), "not a model that can be placed");
+  refused(edits.place(world, registry, wrong), "cannot be placed");
   wrong = rock;
   wrong.parameters.set_integer(0, -5);
   wrong.parameters.set_real(1, kNan);

@@ -30,7 +30,7 @@ Outline crown() {
 constexpr Form kSolids[] = {Form::kSpindleTrunk, Form::kSpindle, Form::kChunk};
 constexpr Form kBillboards[] = {Form::kKiteTrunk, Form::kKite, Form::kTent};
 
-// As someone sees it who looks into this direction, of length 1.
+// As a viewer who looks in this unit direction sees it.
 std::vector<glm::vec3> places_of(Form form, const FormMesh& mesh, glm::vec2 ahead = {0, -1}) {
   std::vector<glm::vec3> places;
   const glm::vec2 right{-ahead.y, ahead.x};
@@ -58,7 +58,7 @@ FormMesh form_of_crown(Form form) {
   return mesh;
 }
 
-TEST(FarForms, HaveTheSizesThatAreTold) {
+TEST(FarForms, HaveTheirStatedSizes) {
   for (const Form form : {Form::kSpindleTrunk, Form::kSpindle, Form::kChunk, Form::kKiteTrunk,
                           Form::kKite, Form::kTent}) {
     const FormMesh mesh = form_of_crown(form);
@@ -103,7 +103,7 @@ TEST(FarForms, EndAtTheTopAndTurnAboutTheAxis) {
   }
 }
 
-TEST(FarForms, AreAsManyTimesAsWideAsAsked) {
+TEST(FarForms, HaveTheRequestedWidth) {
   FormMesh mesh;
   make_form(Form::kChunk, crown(), 3, {1, 0}, mesh);
   EXPECT_FLOAT_EQ(mesh.corners[2].position.y, 2);
@@ -118,8 +118,8 @@ float area_of(std::span<const glm::vec3> places, const glm::vec3& from) {
   return 0.5F * std::abs(glm::dot(twice, from));
 }
 
-// From the side from wherever one looks, and half of it from above.
-TEST(FarForms, BillboardsHaveTheAreasOfTheModelsThatTheyStandFor) {
+// The full area from every side, and half of it from above.
+TEST(FarForms, BillboardsHaveTheAreasOfTheirModels) {
   const Silhouette one{7.2F, 8};
   for (const float models : {1.0F, 3.0F}) {
     const Billboard billboard = billboard_of(Form::kTent, crown(), one, models);
@@ -129,14 +129,14 @@ TEST(FarForms, BillboardsHaveTheAreasOfTheModelsThatTheyStandFor) {
       const std::vector<glm::vec3> places = places_of(Form::kTent, mesh, ahead);
       EXPECT_NEAR(area_of(places, {ahead.x, 0, ahead.y}), models * one.side_m2, 1e-3F);
       EXPECT_NEAR(area_of(places, {0, 1, 0}), 0.5F * models * one.plan_m2, 1e-3F);
-      // Its upper corner is behind, so that it is seen from above as well.
+      // Its upper corner is behind the axis, so that it is visible from above too.
       EXPECT_GT(glm::dot(glm::vec2(places[2].x, places[2].z), ahead), 0);
     }
   }
 }
 
 TEST(FarForms, KitesAreAsWideAndHighAsTheCrownsWhereTheirAreaAllowsIt) {
-  const Silhouette full{8, 12};  // of the crown, which is a double cone
+  const Silhouette full{8, 12};  // the crown's, which is a double cone
   const Billboard billboard = billboard_of(Form::kKite, crown(), full, 1);
   EXPECT_FLOAT_EQ(billboard.half_width_m, 2);
   EXPECT_FLOAT_EQ(billboard.base_m, 2);
@@ -147,7 +147,7 @@ TEST(FarForms, KitesAreAsWideAndHighAsTheCrownsWhereTheirAreaAllowsIt) {
   EXPECT_FLOAT_EQ(mesh.corners[3].position.y, 2);
 }
 
-// Flat things have no parts that turn away from the light or are shaded by others, crowns do.
+// Unlike flat forms, crowns have parts that face away from the light or are shaded by others.
 TEST(FarForms, BillboardsOfLeavesAreDarkerThanTheirCorners) {
   Outline leafy = crown(), stone = crown();
   for (Outline* o : {&leafy, &stone}) {
@@ -172,7 +172,7 @@ TEST(FarForms, TrunksReachFromTheGroundIntoTheCrown) {
   }
 }
 
-TEST(FarForms, BillboardsOfVeryManyAreNoLongWalls) {
+TEST(FarForms, BillboardsOfVeryManyModelsAreNotLongWalls) {
   const Billboard billboard = billboard_of(Form::kTent, crown(), {7.2F, 8}, 1000);
   EXPECT_NEAR(billboard.half_width_m * billboard.lean_m, 4000, 1);
   EXPECT_LE(billboard.half_width_m, 8.01F * billboard.lean_m);
@@ -180,7 +180,7 @@ TEST(FarForms, BillboardsOfVeryManyAreNoLongWalls) {
   EXPECT_EQ(billboard_of(Form::kTent, crown(), {0, 0}, 3).half_width_m, 0);
 }
 
-// Bare branches reach far and cover little: a narrow billboard from the foot up, none in the air.
+// Bare branches extend far and cover little: a narrow billboard from the base up, not in the air.
 TEST(FarForms, BillboardsOfSparseThingsStandOnTheGround) {
   Outline bare = crown();
   bare.bottom.position.y = 0;
@@ -188,15 +188,15 @@ TEST(FarForms, BillboardsOfSparseThingsStandOnTheGround) {
   const Billboard billboard = billboard_of(Form::kTent, bare, {1.8F, 3}, 1);
   EXPECT_FLOAT_EQ(billboard.base_m, 0);
   EXPECT_FLOAT_EQ(billboard.half_width_m, 0.3F);
-  // And a wall, which covers no ground, is still seen.
+  // A wall, which covers no ground, is still visible.
   EXPECT_FLOAT_EQ(billboard_of(Form::kTent, bare, {6, 0}, 1).half_width_m, 1);
 }
 
-TEST(FarForms, KitesLeaveToTrunksWhatTheseCover) {
+TEST(FarForms, KitesOmitTheAreaThatTrunksCover) {
   const Billboard alone = billboard_of(Form::kKite, crown(), {8, 12}, 1);
   const Billboard with = billboard_of(Form::kKiteTrunk, crown(), {8, 12}, 1);
   const auto area = [](const Billboard& b) { return b.half_width_m * (6 - b.base_m); };
-  // Half of the triangle's height is in the crown, so three quarters of it are seen.
+  // Half of the triangle's height is in the crown, so three quarters of it are visible.
   EXPECT_NEAR(area(alone) - area(with), 0.75F * 0.2F * 4, 1e-3F);
 }
 

@@ -30,7 +30,7 @@ using testing::game_file;
 using testing::kSmallWorld;
 using testing::replaced;
 
-// A world with a registry of its own and its vegetation.
+// A world with its own registry and its vegetation.
 struct Scenery {
   models::Registry registry = models::make_standard_registry();
   std::shared_ptr<const World> world;
@@ -68,8 +68,8 @@ std::string text_of(const char* file) {
 
 constexpr const char* kWorldFiles[] = {"paper.toml", "five_species.toml", "silver_combe.toml"};
 
-// Metres from the node's corner of all vertices of triangles that are not degenerate; those of
-// billboards on their axes, or as far towards +x and +z, or −x and −z, as they get.
+// Metres from the node's corner of all vertices of triangles that are not degenerate. Vertices of
+// billboards are on their axes, or as far towards +x and +z, or −x and −z, as they can turn.
 std::vector<glm::vec3> shown_triangles(const Scenery& scenery, const Mesh& mesh, int level,
                                        core::BlockCoord node, float reach = 0) {
   const core::Bounds box = scenery.type->bounds(merged_parameters(node, level));
@@ -139,13 +139,13 @@ std::vector<CoarsestModel> single_models(const Scenery& scenery, core::BlockCoor
   return all;
 }
 
-// Of a billboard, however one looks at it.
+// The area of a billboard from any side.
 Silhouette area_of_billboard(std::span<const core::ModelVertex> vertices,
                              std::span<const glm::vec3> places,
                              std::span<const std::uint16_t> indices) {
   Silhouette sum;
   for (std::size_t i = 0; i < indices.size(); i += 3) {
-    glm::vec3 corners[3];  // as one sees them who looks along −z
+    glm::vec3 corners[3];  // for a viewer who looks along −z
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int16_t* aside = vertices[indices[i + k]].normal;
       corners[k] = places[indices[i + k]] +
@@ -158,8 +158,8 @@ Silhouette area_of_billboard(std::span<const core::ModelVertex> vertices,
   return sum;
 }
 
-// Areas of the forms of a mesh, each by itself. Forms are runs of triangles that share vertices;
-// those of a tree and of its trunk are two.
+// Areas of the single forms of a mesh. Forms are runs of triangles that share vertices; a tree and
+// its trunk are two forms.
 Silhouette area_of_forms(const Scenery& scenery, const Mesh& mesh, int level, core::BlockCoord node,
                          float min_height_m) {
   const core::Bounds box = scenery.type->bounds(merged_parameters(node, level));
@@ -200,7 +200,7 @@ Silhouette area_of_forms(const Scenery& scenery, const Mesh& mesh, int level, co
   return sum;
 }
 
-TEST(MergedModels, KeepTheirPromisesAtEveryNodeLevelOfEveryWorld) {
+TEST(MergedModels, KeepTheirContractAtEveryNodeLevelOfEveryWorld) {
   for (const char* file : kWorldFiles) {
     const Scenery scenery(text_of(file));
     for (int i = 0; i < 2 * kMaxMergedLevel; ++i) {
@@ -244,7 +244,7 @@ TEST(MergedModels, AreAtMostTwoFifthsAsManyTrianglesInTheCoarserLevelOfDetail) {
   }
 }
 
-// What is left out for its size would leave nothing.
+// A mesh of all models that are too small would be empty.
 TEST(MergedModels, AreNeverEmptyInTheCoarserLevelOfDetailOnly) {
   const Scenery scenery(replaced(
       text_of("paper.toml"),
@@ -299,7 +299,7 @@ TEST(MergedModels, OfLevelOneHaveTheExtentsOfTheSingleTrees) {
     for (const CoarsestModel& single : single_models(scenery, node, 1)) {
       if (!single.leafy || single.box.max.y < 2) continue;
       ++trees;
-      // The highest corner near its place is its top; there may be a higher neighbour.
+      // The highest corner near its position is its top; a neighbour may be higher.
       const glm::vec3 top = single.foot + glm::vec3(0, single.box.max.y, 0);
       float nearest = 1e9F;
       for (const glm::vec3& c : corners)
@@ -311,14 +311,14 @@ TEST(MergedModels, OfLevelOneHaveTheExtentsOfTheSingleTrees) {
   }
 }
 
-// Trees only, of kSmallWorld; `blocks` and `filter` are lines of it.
+// kSmallWorld with trees only; `blocks` and `filter` are lines of its text.
 std::string trees(const std::string& blocks = "blocks = [0, 0]", const std::string& filter = "") {
   const std::string text = replaced(kSmallWorld, "blocks = [8, 4]", blocks);
   return text.substr(0, text.rfind("[[scatter]]")) + filter;
 }
 
-// Every form of the mesh is where the tree of a placement is, and there are as many: at level 1
-// with the extents of its own crown, at level 2, where it is one that is like it, with its foot.
+// The mesh has one form at each placed tree. At level 1 the form has the extents of the tree's own
+// crown; at level 2, which uses representatives, it has the tree's base point.
 void expect_same_places(const Scenery& scenery, core::BlockCoord node, int level) {
   const Mesh mesh = scenery.mesh(node, level);
   const auto corners = shown_triangles(scenery, mesh, level, node);
@@ -333,7 +333,7 @@ void expect_same_places(const Scenery& scenery, core::BlockCoord node, int level
     core::Bounds box{low[i], high[i]};
     for (std::size_t k = 0; k < each; ++k)
       box = {glm::min(box.min, low[i + k]), glm::max(box.max, high[i + k])};
-    const glm::vec3 foot = corners[i + each - 3];  // of the trunk, which comes last
+    const glm::vec3 foot = corners[i + each - 3];  // the trunk's, which comes last
     float best = 1e9F;
     for (const CoarsestModel& single : singles) {
       const glm::vec3 apart = box.centre() - single.foot - single.box.centre();
@@ -373,14 +373,14 @@ TEST(MergedModels, BeginAboveTheGroundThatIsDrawn) {
       double lowest = 1e9;
       for (const glm::vec3& c : corners)
         lowest = std::min(lowest, c.y - ground.at({c.x, c.z}, walk.drawn_stride()).height_m);
-      // Axes of crowns are beside the foot, where the ground is higher or lower.
+      // Axes of crowns are beside the base point, where the ground is higher or lower.
       EXPECT_GT(lowest, -2.5) << file << " level " << level;
       EXPECT_LT(lowest, 3) << file << " level " << level;
     }
   }
 }
 
-// At the edge of a finite world only the blocks that exist have models.
+// At the edge of a finite world only existing blocks have models.
 TEST(MergedModels, EndWithTheWorld) {
   const Scenery scenery(trees("blocks = [3, 7]"));
   expect_same_places(scenery, {1, 3}, 1);
@@ -407,8 +407,8 @@ TEST(MergedModels, AreFilteredAsTheSingleModelsAre) {
   }
 }
 
-// From level 3 on slopes are those of a coarser lattice: about as many find a place.
-TEST(MergedModels, KeepAboutAsManyOnTheCoarserGround) {
+// From level 3 on slopes come from a coarser lattice: about as many models find a position.
+TEST(MergedModels, KeepAboutAsManyModelsOnTheCoarserGround) {
   const Scenery scenery(text_of("silver_combe.toml"));
   const core::BlockCoord node{1, 1};
   std::size_t fine = 0;
@@ -452,7 +452,7 @@ TEST(MergedModels, OfAUsersTypeAreBuiltFromItsCoarsestMesh) {
 
 constexpr const char* kGrass = "\n[[scatter]]\nmodel = \"grass\"\ncount = 40\n";
 
-TEST(MergedModels, LeaveOutWhatIsNotSeenFromFar) {
+TEST(MergedModels, LeaveOutModelsThatAreInvisibleFromFar) {
   const Scenery with(trees() + kGrass), without(trees());
   for (int level = 1; level <= kMaxMergedLevel; ++level) {
     const models::Parameters p = merged_parameters({0, 0}, level);
@@ -466,7 +466,7 @@ TEST(MergedModels, LeaveOutWhatIsNotSeenFromFar) {
   EXPECT_EQ(green.albedo, bare.albedo);
 }
 
-TEST(MergedModels, OfNothingButGrassAreEmpty) {
+TEST(MergedModels, OfGrassAloneAreEmpty) {
   const std::string text = trees();
   const Scenery grass(text.substr(0, text.find("[[scatter]]")) + kGrass);
   ASSERT_EQ(grass.world->scatter.size(), 1U);
@@ -496,13 +496,13 @@ class ThrowingType final : public models::ModelType {
   void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {}
 };
 
-TEST(MergedModels, DoWithoutATypeThatThrows) {
+TEST(MergedModels, LeaveOutATypeThatThrows) {
   const std::string broken = trees() + "\n[[scatter]]\nmodel = \"fence\"\ncount = 12\n";
   const Scenery with(broken, std::make_unique<ThrowingType>()), without(trees());
   EXPECT_EQ(with.mesh({0, 0}, 1).vertex_bytes, without.mesh({0, 0}, 1).vertex_bytes);
 }
 
-TEST(MergedModels, MayRunOnTheMainThreadWhereAllThatTheyAreMadeOfMay) {
+TEST(MergedModels, MayRunOnTheMainThreadIfAllTheirTypesMay) {
   for (const char* file : kWorldFiles)
     EXPECT_TRUE(Scenery(text_of(file)).type->may_run_on_main_thread())
         << file << ": grass is no part";
@@ -560,8 +560,8 @@ TEST(FarCover, GrowsWithTheNumberOfTreesAndIsGreen) {
   EXPECT_EQ(none.share, 0);
 }
 
-// Trees of more than 2 m; smaller things are left out sooner or later.
-TEST(MergedModels, CoverAsMuchOfThePictureAsTheSingleTrees) {
+// Trees of more than 2 m; at some level smaller models are left out.
+TEST(MergedModels, CoverAsMuchOfTheImageAsTheSingleTrees) {
   for (const char* file : kWorldFiles) {
     const Scenery scenery(text_of(file));
     for (int level = 1; level <= 4; ++level) {
@@ -575,7 +575,7 @@ TEST(MergedModels, CoverAsMuchOfThePictureAsTheSingleTrees) {
       const Silhouette merged =
           area_of_forms(scenery, scenery.mesh(node, level), level, node, 1.2F);
       EXPECT_NEAR(merged.side_m2 / single.side_m2, 1, 0.25F) << file << " level " << level;
-      // From above billboards have half the area, as from aslant they have as much of the other.
+      // From above billboards have half the area, because a slanted view also shows their side.
       const float share = level == 1 ? 1.0F : 0.5F;
       EXPECT_NEAR(merged.plan_m2 / single.plan_m2, share, 0.25F * share)
           << file << " level " << level;

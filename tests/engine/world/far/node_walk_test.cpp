@@ -55,7 +55,7 @@ TEST(NodeWalk, FindsTheGroundOfTheBlocksUnderItsTiles) {
   }
 }
 
-// The height of the mesh that a node draws, at a place in parts of its side: on the triangle.
+// The height of a node's drawn mesh on its triangle, at a point in fractions of its side.
 double height_of_mesh(const models::test::Mesh& mesh, const models::TerrainGrid& grid,
                       double relief_m, glm::dvec2 place) {
   const auto vertices = mesh.vertices<core::TerrainVertex>();

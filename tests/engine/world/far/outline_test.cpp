@@ -82,8 +82,8 @@ TEST(Outline, ScalesAboutTheFoot) {
   EXPECT_NEAR(twice.ring_radius(), 2 * outline->ring_radius(), kPrecision);
 }
 
-// A box of 2 × 3 × 4 m whose lower metre is in the ground: turned by 45° it is as wide as its
-// diagonals' mean.
+// A box of 2 × 3 × 4 m whose lower metre is in the ground. Turned by 45° it is as wide as the mean
+// of its diagonals.
 TEST(Silhouette, OfABoxIsItsAreaAboveTheGround) {
   std::vector<glm::vec3> places;
   for (int i = 0; i < 8; ++i)

@@ -25,7 +25,7 @@ class FarEdits : public ::testing::Test, protected testing::EditedWorld {
     apply();
     return synthesise(*type, merged_parameters(world, node, level), 0);
   }
-  // The mesh's vertices near a place of the node, in metres.
+  // The mesh's vertices near a point of the node, in metres.
   std::size_t vertices_near(const Mesh& mesh, core::BlockCoord node, int level, glm::vec2 at) {
     const core::Bounds box = type->bounds(merged_parameters(world, node, level));
     std::set<std::size_t> used;
@@ -39,7 +39,7 @@ class FarEdits : public ::testing::Test, protected testing::EditedWorld {
     }
     return near;
   }
-  // A tree of block (4, 4) with nothing else so near.
+  // A tree of block (4, 4) with no other model that near.
   Placement lonely_tree() {
     const std::vector<Placement> all = unedited({4, 4});
     for (const Placement& tree : all) {
@@ -56,7 +56,7 @@ class FarEdits : public ::testing::Test, protected testing::EditedWorld {
   }
 };
 
-TEST_F(FarEdits, AFelledTreeIsMissingInTheMeshesOfAllNodesThatShowItAlone) {
+TEST_F(FarEdits, AFelledTreeIsMissingFromAllMeshesThatShowIt) {
   const Placement tree = lonely_tree();
   const Mesh before = mesh({2, 2}, 1);
   const glm::vec2 at(tree.position.x, tree.position.z);
@@ -71,7 +71,7 @@ TEST_F(FarEdits, AFelledTreeIsMissingInTheMeshesOfAllNodesThatShowItAlone) {
   EXPECT_EQ(merged_parameters(world, {3, 2}, 1).hash(), merged_parameters({3, 2}, 1).hash());
 }
 
-TEST_F(FarEdits, FellingTheSameTreeOfANeighbouringBlockIsAnotherMesh) {
+TEST_F(FarEdits, FellingTheSameTreeOfANeighbouringBlockGivesAnotherMesh) {
   World beside = world;
   Edits other;
   ASSERT_TRUE(edits.remove(world, {{12, 7}, 3}));

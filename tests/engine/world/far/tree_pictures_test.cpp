@@ -43,7 +43,7 @@ std::array<std::uint8_t, 4> texel(const core::ModelPicture& picture, std::uint32
   return {picture[at], picture[at + 1], picture[at + 2], picture[at + 3]};
 }
 
-// The share of a view's texels that is drawn.
+// The fraction of a view's texels that is drawn.
 double covered(const core::ModelPicture& picture, std::uint32_t level, std::uint32_t view) {
   const std::size_t side = kPictureSide >> level;
   std::size_t count = 0;
@@ -68,7 +68,7 @@ core::ModelPicture triangle_picture() {
 
 TEST(TreePictures, ViewsShowTheModelFromTheirSide) {
   const core::ModelPicture picture = triangle_picture();
-  // Looking along +x, +z is to the right; along -x, to the left. Along z it is seen from its edge.
+  // Looking along +x, +z is to the right; along -x, to the left. Along z the view is edge-on.
   const std::size_t middle = kPictureSide / 2, quarter = kPictureSide / 4;
   const std::size_t y = kPictureSide * 3 / 8;
   EXPECT_EQ(texel(picture, 0, 0, middle + quarter, y)[3], 255);
@@ -81,7 +81,7 @@ TEST(TreePictures, ViewsShowTheModelFromTheirSide) {
   EXPECT_NEAR(covered(picture, 0, 1), 2.0 / 64 * 0.707, 0.002);
   EXPECT_GT(texel(picture, 0, 0, middle + quarter, y)[0], 100);
   EXPECT_EQ(texel(picture, 0, 0, middle + quarter, y)[1], 0);
-  // What is transparent has the colour of the rest.
+  // Transparent texels have the colour of the others.
   EXPECT_EQ(texel(picture, 0, 0, 0, 0)[3], 0);
   EXPECT_GT(texel(picture, 0, 0, 0, 0)[0], 100);
 }
@@ -89,7 +89,7 @@ TEST(TreePictures, ViewsShowTheModelFromTheirSide) {
 TEST(TreePictures, NearerTrianglesHideThoseBehind) {
   std::vector<Corner> corners(6);
   for (std::size_t i = 0; i < 6; ++i) {
-    const bool near = i < 3;  // for who looks along +x
+    const bool near = i < 3;  // for a viewer along +x
     corners[i].position = {near ? -1 : 1, i % 3 == 2 ? 6 : 2, i % 3 == 0 ? -2 : i % 3 == 1 ? 2 : 0};
     corners[i].colour = near ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
   }
@@ -102,7 +102,7 @@ TEST(TreePictures, NearerTrianglesHideThoseBehind) {
   EXPECT_GT(texel(picture, 0, 4, middle, middle)[1], 0);
 }
 
-TEST(TreePictures, SmallerLevelsKeepTheAreaThatIsDrawn) {
+TEST(TreePictures, SmallerLevelsKeepTheDrawnArea) {
   const Forest forest("paper.toml");
   ASSERT_GT(forest.pictures->count(), 0U);
   const core::ModelPicture picture = forest.pictures->bake(0);
@@ -125,7 +125,7 @@ TEST(TreePictures, AreTheSameOnEveryCall) {
   EXPECT_NE(a.pictures->identity(), Forest("five_species.toml").pictures->identity());
 }
 
-TEST(TreePictures, EverySpeciesHasSome) {
+TEST(TreePictures, EverySpeciesHasImpostors) {
   const Forest forest("five_species.toml");
   EXPECT_LE(forest.pictures->count(), core::kMaxPictures);
   for (const Scatter& scatter : forest.world.scatter) {
@@ -158,14 +158,14 @@ TEST(TreePictures, QuadsStandWhereTheirModelsStand) {
       EXPECT_NEAR(at.x, 0, 0.01);
       EXPECT_NEAR(at.z, 0, 0.01);
     }
-    // A model shows its own picture, or one as large, at its own size.
+    // A model shows its own impostor, or one of the same size, at its own size.
     EXPECT_EQ(forest.pictures->models()[vertices[0].colour[0] / kPictureViews].coarse_m,
               model.coarse_m);
     EXPECT_NEAR(models::unpack_position(vertices[2], tight).y, model.frame.top_m, 0.02);
   }
 }
 
-TEST(TreePictures, StartAtTheLevelThatNoLongerLooksLikeATree) {
+TEST(TreePictures, ReplaceLevelsThatNoLongerLookLikeATree) {
   const Forest forest("paper.toml");
   const PicturedModel& model = forest.pictures->models()[0];
   const int first = forest.pictures->first_level(model.model, model.parameters);

@@ -69,14 +69,14 @@ TEST(Document, ABracketWithoutAKeyIsAnError) {
     EXPECT_THAT(document_error(text), StartsWith("f.toml:1:")) << text;
 }
 
-TEST(Document, HundredThousandNestedArraysAreRefused) {
+TEST(Document, HundredThousandNestedArraysAreRejected) {
   EXPECT_THAT(document_error("a = " + repeated("[", 100'000)), StartsWith("f.toml:1:"));
   EXPECT_THAT(document_error("a = " + repeated("[", 100'000) + repeated("]", 100'000)),
               StartsWith("f.toml:1:"));
   EXPECT_THAT(document_error("a = " + repeated("{b = ", 100'000)), StartsWith("f.toml:1:"));
 }
 
-TEST(Document, HundredThousandDottedPartsOfAKeyAreRefused) {
+TEST(Document, HundredThousandDottedPartsOfAKeyAreRejected) {
   const std::string deep = repeated("a.", 100'000) + "a";
   const std::string quoted_deep = repeated("\"=\" . ", 100'000) + "a";
   for (const std::string& key : {deep, quoted_deep, repeated("1.", 100'000) + "1"}) {
@@ -97,19 +97,19 @@ TEST(Document, DotsInStringsCommentsAndNumbersAreNotKeys) {
                   .has_value());
 }
 
-TEST(Document, StringsOverSeveralLinesAreRefused) {
+TEST(Document, StringsOverSeveralLinesAreRejected) {
   EXPECT_THAT(document_error("a = \"\"\"x\ny\"\"\"\n"), HasSubstr("several lines"));
   EXPECT_THAT(document_error("a = '''x'''\n"), HasSubstr("several lines"));
   EXPECT_TRUE(parse_document("a = \"\"\nb = ''\n", "f.toml").has_value());
 }
 
-TEST(Document, InvalidUtf8IsRefused) {
+TEST(Document, InvalidUtf8IsRejected) {
   EXPECT_THAT(document_error("a = \"\xff\xfe\"\n"), StartsWith("f.toml:1:"));
   EXPECT_THAT(document_error("a = 1\n# \xc3\x28\n"), StartsWith("f.toml:2:"));
   EXPECT_THAT(document_error("\xed\xa0\x80 = 1\n"), StartsWith("f.toml:1:"));
 }
 
-TEST(Document, BinaryFilesAreRefusedWithAPrintableMessage) {
+TEST(Document, BinaryFilesAreRejectedWithAPrintableMessage) {
   std::string binary =
       "\x7f"
       "ELF";
@@ -120,7 +120,7 @@ TEST(Document, BinaryFilesAreRefusedWithAPrintableMessage) {
   EXPECT_THAT(document_error(std::string(64, '\0')), StartsWith("f.toml:1:"));
 }
 
-TEST(Document, DatesAreAKindOfTheirOwn) {
+TEST(Document, DatesHaveTheirOwnKind) {
   const auto root = parse_document("a = 1979-05-27\n", "f.toml");
   ASSERT_TRUE(root.has_value());
   EXPECT_EQ(root->members[0].value.kind, Node::Kind::kTime);

@@ -9,7 +9,7 @@ ForeignCharacter described(std::string_view text) {
   return describe(core::first_code_point(text), text);
 }
 
-TEST(ForeignCharacter, IsNamedAsItIsSeenAndByItsNumber) {
+TEST(ForeignCharacter, IsNamedByItsGlyphAndItsNumber) {
   EXPECT_EQ(described("ö").name, "'ö' (U+00F6)");
   EXPECT_EQ(described("×").name, "'×' (U+00D7)");
   EXPECT_EQ(described("字").name, "'字' (U+5B57)");
@@ -17,7 +17,7 @@ TEST(ForeignCharacter, IsNamedAsItIsSeenAndByItsNumber) {
   EXPECT_EQ(described("ö").advice, "");
 }
 
-TEST(ForeignCharacter, WhatCannotBeSeenHasOnlyWords) {
+TEST(ForeignCharacter, InvisibleCharactersHaveADescriptionOnly) {
   EXPECT_EQ(described("\xC2\xA0").name, "U+00A0 (a non-breaking space)");
   EXPECT_EQ(described("\xC2\xA0").advice, "write a plain space");
   EXPECT_EQ(described("\xE2\x80\x8B").name, "U+200B (a zero-width space, which is invisible)");
@@ -25,13 +25,13 @@ TEST(ForeignCharacter, WhatCannotBeSeenHasOnlyWords) {
   EXPECT_EQ(described("\xEF\xBB\xBF").name,
             "U+FEFF (a byte order mark, which may only start a file)");
   EXPECT_EQ(described("\xE2\x80\xAE").name,
-            "U+202E (an invisible mark that turns the direction of the text)");
-  EXPECT_EQ(described("\xCC\x88").name, "U+0308 (a mark upon the letter before it)");
+            "U+202E (an invisible mark that reverses the direction of the text)");
+  EXPECT_EQ(described("\xCC\x88").name, "U+0308 (a mark on the previous letter)");
   EXPECT_EQ(described("\xEE\x80\x80").name, "U+E000") << "nobody knows what it looks like";
   EXPECT_EQ(described("\xF4\x8F\xBF\xBF").name, "U+10FFFF");
 }
 
-TEST(ForeignCharacter, WhatIsMistakenForAsciiComesWithWhatToWrite) {
+TEST(ForeignCharacter, LookalikesOfAsciiComeWithACorrection) {
   EXPECT_EQ(described("“").name, "'“' (U+201C, a typographic quotation mark)");
   for (const auto& [text, advice] :
        {std::pair("“", "write \""), std::pair("”", "write \""), std::pair("„", "write \""),

@@ -46,7 +46,7 @@ std::string path_error_with(std::string_view from, std::string_view to) {
   return path_error(replaced(kPath, from, to));
 }
 
-TEST(PathFile, ReadsWhatItSays) {
+TEST(PathFile, ReadsEveryField) {
   const auto path = parse_camera_path(kPath, "p.toml");
   ASSERT_TRUE(path.has_value()) << path.error().message;
   EXPECT_EQ(path->name(), "p");
@@ -59,20 +59,20 @@ TEST(PathFile, ReadsWhatItSays) {
   EXPECT_EQ(path->points()[1].pitch_deg, -10);
 }
 
-TEST(PathFile, APathWithoutPointsIsRefused) {
+TEST(PathFile, APathWithoutPointsIsRejected) {
   EXPECT_THAT(path_error("format = 1\n[path]\nname = \"p\"\n"), HasSubstr("at least one point"));
   EXPECT_THAT(path_error("format = 1\npoint = []\n[path]\nname = \"p\"\n"),
               HasSubstr("at least one point"));
 }
 
-TEST(PathFile, TimesThatDoNotGrowAreRefused) {
+TEST(PathFile, TimesThatDoNotAscendAreRejected) {
   EXPECT_THAT(path_error_with("time_s = 2.5", "time_s = 0"),
               AllOf(StartsWith("p.toml:14: point[1].time_s: 0 is not after"),
-                    HasSubstr("times must grow")));
+                    HasSubstr("times must ascend")));
   EXPECT_THAT(path_error_with("time_s = 0", "time_s = 3"), HasSubstr("point[1].time_s"));
 }
 
-TEST(PathFile, NumbersOutOfRangeAndWrongTypesAreRefused) {
+TEST(PathFile, NumbersOutOfRangeAndWrongTypesAreRejected) {
   EXPECT_THAT(path_error_with("time_s = 0", "time_s = nan"), HasSubstr("point[0].time_s: nan"));
   EXPECT_THAT(path_error_with("time_s = 0", "time_s = -1"), HasSubstr("point[0].time_s: -1"));
   EXPECT_THAT(path_error_with("at_m = [1, 2]", "at_m = [1e30, 2]"), HasSubstr("point[0].at_m[0]"));
@@ -89,12 +89,12 @@ TEST(PathFile, NumbersOutOfRangeAndWrongTypesAreRefused) {
   EXPECT_THAT(path_error_with("[3, 4]", "[3, 2147483648]"), HasSubstr("path.origin_block[1]"));
 }
 
-TEST(PathFile, FlightsFasterThanAnythingAreRefused) {
+TEST(PathFile, FlightsAboveTheMaximumSpeedAreRejected) {
   EXPECT_THAT(path_error_with("at_m = [30, 2.5]", "at_m = [1e6, 2.5]"),
               AllOf(HasSubstr("point[1].at_m"), HasSubstr("2000 m/s")));
 }
 
-TEST(PathFile, OnlyAJumpIsFasterAndTheFirstPointHasNowhereToJumpFrom) {
+TEST(PathFile, OnlyJumpsExceedTheMaximumSpeedAndTheFirstPointCannotJump) {
   const std::string far = replaced(kPath, "at_m = [30, 2.5]", "at_m = [30000, 2.5]");
   EXPECT_THAT(path_error(far), HasSubstr("or jump = true"));
   const auto path = parse_camera_path(replaced(far, "pitch_deg = -10", "jump = true"), "p.toml");
@@ -102,12 +102,12 @@ TEST(PathFile, OnlyAJumpIsFasterAndTheFirstPointHasNowhereToJumpFrom) {
   EXPECT_FALSE(path->points()[0].jump);
   EXPECT_TRUE(path->points()[1].jump);
   EXPECT_THAT(path_error_with("heading_deg = 90", "jump = true"),
-              AllOf(StartsWith("p.toml:8: point[0].jump"), HasSubstr("none before it")));
+              AllOf(StartsWith("p.toml:8: point[0].jump"), HasSubstr("cannot be a jump")));
   EXPECT_THAT(path_error_with("heading_deg = 90", "jump = 1"), HasSubstr("true or false"));
   EXPECT_EQ(path_error_with("heading_deg = 90", "jump = false"), "accepted");
 }
 
-TEST(PathFile, APointLooksOneWay) {
+TEST(PathFile, APointHasOneViewDirection) {
   EXPECT_THAT(path_error_with("heading_deg = 90", "heading_deg = 90\nlook_at_m = [0, 0]"),
               HasSubstr("not both"));
 }
@@ -121,7 +121,7 @@ TEST(PathFile, MissingAndUnknownFieldsAreNamed) {
   EXPECT_THAT(path_error_with("[path]", "[paths]"), HasSubstr("did you mean path?"));
 }
 
-TEST(PathFile, EmptyNewerBinaryAndUnreadableFilesAreRefused) {
+TEST(PathFile, EmptyNewerBinaryAndUnreadableFilesAreRejected) {
   EXPECT_THAT(path_error(""), HasSubstr("format: this field is missing"));
   EXPECT_THAT(path_error_with("format = 1", "format = 2"), HasSubstr("newer than this program"));
   EXPECT_THAT(path_error(std::string("\x00\x01\x02\xff", 4)), StartsWith("p.toml:1:"));

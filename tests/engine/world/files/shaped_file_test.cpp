@@ -19,7 +19,7 @@ using testing::registry;
 using testing::replaced;
 using testing::shaped_world;
 
-TEST(ShapedFile, ReadsBackAsItWasWritten) {
+TEST(ShapedFile, ReadsBackEqual) {
   const World world = shaped_world(std::string(kShapes) + "smoothing_m = 12.5\n" +
                                    "[[stamp]]\nimage = \"a b/white.png\"\ncentre_m = [3.25e-1, 7]\n"
                                    "mode = \"set\"\n");
@@ -45,7 +45,7 @@ TEST(ShapedFile, EditorsSeeItsFields) {
   EXPECT_EQ(value({"road", 0, "smoothing_m"}), "30");
   EXPECT_THAT(value({"road", 0, "points_m"}), ::testing::StartsWith("[[20, 30], [140, 140]"));
   EXPECT_EQ(sections->back().title, "road 1");
-  // Values that are written as they are usual change nothing.
+  // Writing default values changes nothing.
   std::string all = text;
   for (const WorldSection& section : *sections)
     for (const WorldField& field : section.fields)
@@ -62,7 +62,7 @@ std::string shape_error(const std::string& tables) {
   return world ? "" : world.error().message;
 }
 
-TEST(ShapedFile, BadStampsAreRefusedWithLineAndField) {
+TEST(ShapedFile, BadStampsAreRejectedWithLineAndField) {
   const std::string stamp = "[[stamp]]\nimage = \"white.png\"\ncentre_m = [100, 100]\n";
   ASSERT_EQ(shape_error(stamp), "");
   const auto with = [&](const std::string& from, const std::string& to) {
@@ -70,7 +70,8 @@ TEST(ShapedFile, BadStampsAreRefusedWithLineAndField) {
   };
   EXPECT_THAT(with("white.png", "no.png"),
               HasSubstr("maps/w.toml:25: stamp[0].image: maps/no.png: there is no such file"));
-  EXPECT_THAT(with("white.png", "dot.png"), HasSubstr("1 x 1; a stamp needs 2 x 2"));
+  EXPECT_THAT(with("white.png", "dot.png"),
+              HasSubstr("1 x 1 pixels; a stamp needs at least 2 x 2"));
   EXPECT_THAT(with("white.png", "../white.png"), HasSubstr("without .."));
   EXPECT_THAT(with("image = \"white.png\"\n", ""), HasSubstr("stamp[0].image"));
   EXPECT_THAT(with("centre_m = [100, 100]\n", ""), HasSubstr("stamp[0].centre_m"));
@@ -89,10 +90,10 @@ TEST(ShapedFile, BadStampsAreRefusedWithLineAndField) {
   EXPECT_THAT(shape_error(many), HasSubstr("stamp: it must be at most 64 tables"));
   const auto unread = parse_world(kSmallWorld + stamp, "w", registry());
   ASSERT_FALSE(unread);
-  EXPECT_THAT(unread.error().message, HasSubstr("reads no files beside"));
+  EXPECT_THAT(unread.error().message, HasSubstr("cannot read glTF models and images"));
 }
 
-TEST(ShapedFile, BadRoadsAreRefusedWithLineAndField) {
+TEST(ShapedFile, BadRoadsAreRejectedWithLineAndField) {
   const auto with = [&](const std::string& points, const std::string& more = "") {
     return shape_error("[[road]]\npoints_m = " + points + "\n" + more);
   };
@@ -113,16 +114,16 @@ TEST(ShapedFile, BadRoadsAreRefusedWithLineAndField) {
   points = "[[0, 0]";
   for (int i = 1; i < 300; ++i)
     points += i % 2 == 0 ? ", [0, 0]" : ", [500, 200]";
-  EXPECT_THAT(with(points + "]"), HasSubstr("longer than 100000 m"));
+  EXPECT_THAT(with(points + "]"), HasSubstr("longer than the allowed 100000 m"));
 }
 
-TEST(ShapedFile, TooMuchOnTopOfEachOtherIsRefused) {
+TEST(ShapedFile, TooManyOverlappingShapesAreRejected) {
   std::string points = "[[10, 10]";
   for (int i = 1; i < 1000; ++i)
     points += i % 2 == 0 ? ", [10, 10]" : ", [90, 60]";
   std::string tables;
   const std::string road = "[[road]]\npoints_m = " + points + "]\nwidth_m = 0.5\n";
-  EXPECT_THAT(shape_error(road), HasSubstr("on top of each other"));
+  EXPECT_THAT(shape_error(road), HasSubstr("overlap there"));
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ iterations = [2, 3]
 season = 2
 )";
 
-// The message for the file with a change; what was registered before stays, nothing else.
+// The message for the file with a change. The registry must keep its types and get no new ones.
 std::string species_error_with(std::string_view from, std::string_view to) {
   models::Registry registry = models::make_standard_registry();
   const auto world = parse_world(replaced(kFile, from, to), "w.toml", registry);
@@ -73,7 +73,7 @@ TEST(SpeciesFile, ReadsWhatItWrites) {
   EXPECT_EQ(parse_world(write_world(world, registry), "w.toml", other).value(), world);
 }
 
-TEST(SpeciesFile, KeepsOneModelForEqualSpeciesAndRefusesOthersOfTheName) {
+TEST(SpeciesFile, KeepsOneModelForEqualSpeciesAndRejectsOthersWithItsName) {
   models::Registry registry = models::make_standard_registry();
   ASSERT_TRUE(parse_world(kFile, "w.toml", registry).has_value());
   EXPECT_TRUE(parse_world(kFile, "w.toml", registry).has_value());
@@ -81,14 +81,14 @@ TEST(SpeciesFile, KeepsOneModelForEqualSpeciesAndRefusesOthersOfTheName) {
   const auto edited =
       parse_world(replaced(kFile, "length = 0.7", "length = 0.71"), "w.toml", registry);
   ASSERT_FALSE(edited.has_value());
-  EXPECT_THAT(edited.error().message, HasSubstr("there is another model called ash"));
+  EXPECT_THAT(edited.error().message, HasSubstr("another model is named ash"));
   const models::Registry& constant = registry;
   EXPECT_TRUE(parse_world(kFile, "w.toml", constant).has_value());
   const models::Registry standard = models::make_standard_registry();
   EXPECT_FALSE(parse_world(kFile, "w.toml", standard).has_value());
 }
 
-TEST(SpeciesFile, RefusesWithFileLineAndField) {
+TEST(SpeciesFile, RejectsWithFileLineAndField) {
   EXPECT_THAT(
       species_error_with("to = \"S2\"", "to = \"Q2\""),
       AllOf(StartsWith("w.toml:40: species[0].rule[1].to: "), HasSubstr("symbol Q is unknown")));
@@ -111,7 +111,7 @@ TEST(SpeciesFile, RefusesWithFileLineAndField) {
   EXPECT_THAT(species_error_with("name = \"ash\"", "name = \"Ash Tree\""), HasSubstr("snake_case"));
 }
 
-TEST(SpeciesFile, RefusesGrammarsThatGrowTooFastWithTheirCost) {
+TEST(SpeciesFile, RejectsGrammarsThatGrowTooFastWithTheirCost) {
   EXPECT_THAT(species_error_with("to = \"S3\"", "to = \"S99999999999999999999\""),
               AllOf(HasSubstr("species[0].rule[2].to"), HasSubstr("predicted cost")));
   EXPECT_THAT(species_error_with("iterations = 3\n", "iterations = 1000000000\n"),

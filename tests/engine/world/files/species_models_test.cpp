@@ -38,7 +38,7 @@ class SpeciesModels : public ::testing::TestWithParam<Shipped> {
   }
   void TearDown() override { models::unpin_simd_target(); }
 
-  // Some trees of every species: in the middle of each season as the species is, then any.
+  // Some trees of every species: the default tree in the middle of each season, then random ones.
   template <class Visit>
   void for_trees(const Visit& visit) {
     core::RandomStream random(31, 0, 0, 0, core::Purpose::kParameters);

@@ -21,7 +21,7 @@ std::string problem_of(std::string_view text, const Read& read) {
   return problems.any() ? problems.first().message : "";
 }
 
-TEST(TableReader, ReadsValuesThatAreAllowed) {
+TEST(TableReader, ReadsAllowedValues) {
   const std::string_view text =
       "a = 1\nb = 2\nc = \"x\"\nd = [1, 0.5, 0]\ne = [-3, 4]\nf = [2, 3]\ng = [1.5, 2]\nh = 7\n";
   EXPECT_EQ(problem_of(text,
@@ -56,7 +56,7 @@ TEST(TableReader, ReadsValuesThatAreAllowed) {
             "");
 }
 
-TEST(TableReader, ProblemsNameFileLineFieldAndWhatIsAllowed) {
+TEST(TableReader, ProblemsNameFileLineFieldAndAllowedValues) {
   const auto read_number = [](TableReader& r) {
     double a = 3;
     EXPECT_FALSE(r.read("a", a, {0, 1}));
@@ -71,7 +71,7 @@ TEST(TableReader, ProblemsNameFileLineFieldAndWhatIsAllowed) {
   EXPECT_THAT(problem_of("a = true\n", read_number), HasSubstr("a boolean is not allowed"));
 }
 
-TEST(TableReader, AnIntegerMustBeWrittenAsOne) {
+TEST(TableReader, AnIntegerMustHaveNoDecimalPoint) {
   std::int64_t value = 0;
   EXPECT_EQ(problem_of("a = 1.0\n",
                        [&](TableReader& r) {
@@ -90,7 +90,7 @@ TEST(TableReader, ArraysMustHaveTheRightLength) {
 
 TEST(TableReader, RangesMustBeNumbersInOrder) {
   const auto read = [](TableReader& r) { EXPECT_FALSE(r.read_range("a").has_value()); };
-  EXPECT_THAT(problem_of("a = [2, 1]\n", read), HasSubstr("upside down"));
+  EXPECT_THAT(problem_of("a = [2, 1]\n", read), HasSubstr("is reversed"));
   EXPECT_THAT(problem_of("a = [1, 2, 3]\n", read), HasSubstr("[lowest, highest]"));
   EXPECT_THAT(problem_of("a = []\n", read), HasSubstr("[lowest, highest]"));
   EXPECT_THAT(problem_of("a = [1, \"2\"]\n", read), HasSubstr("[lowest, highest]"));

@@ -108,7 +108,7 @@ TEST(TextEdit, RemovesAValueWithItsLine) {
   EXPECT_EQ(*without_value(kText, {"water", "shore_m"}), kText);
 }
 
-TEST(TextEdit, RefusesWhatIsNotOneValueAndPathsThatLeadNowhere) {
+TEST(TextEdit, RejectsTextsThatAreNotOneValueAndPathsThatDoNotExist) {
   for (const char* value : {"", " ", "1 ", "1 # x", "1\nb = 2", "[1", "x", "1, 2", "\"", "{", "]",
                             "1}", "\"\"\"a\nb\"\"\""}) {
     const auto changed = with_value(kText, {"world", "seed"}, value);
@@ -117,7 +117,7 @@ TEST(TextEdit, RefusesWhatIsNotOneValueAndPathsThatLeadNowhere) {
     EXPECT_THAT(changed.error().message, ::testing::StartsWith("world.seed: "));
   }
   EXPECT_EQ(with_value(kText, {"scatter", 2, "count"}, "1").error().message,
-            "scatter[2]: there are only 2 of them");
+            "scatter[2]: there are only 2 items");
   EXPECT_EQ(with_value(kText, {"world"}, "1").error().message,
             "world: this is a table with a header, not a value");
   EXPECT_FALSE(with_value(kText, {"world", "seed", "low"}, "1"));

@@ -34,7 +34,7 @@ TEST(TextFile, AFolderAndADeviceAreNotFiles) {
   EXPECT_EQ(read_text_file("/dev/zero").error().code, core::ErrorCode::kIo);
 }
 
-TEST(TextFile, AFileAboveTheLimitIsRefused) {
+TEST(TextFile, AFileAboveTheLimitIsRejected) {
   const std::string most(kMaxFileBytes, '#');
   EXPECT_EQ(read_text_file(written("psygen_most.txt", most)).value().size(), kMaxFileBytes);
   const auto more = read_text_file(written("psygen_more.txt", most + "#"));

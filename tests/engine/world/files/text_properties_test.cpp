@@ -1,4 +1,4 @@
-// What must hold for every key of every world that comes with psygen, and for broken texts.
+// Properties that hold for every key of every world that comes with psygen, and for broken texts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Node* node_at(Node& root, const TextPath& path) {
   return node;
 }
 
-// All but the lines.
+// Compares everything except lines.
 std::string dump(const Node& node) {
   std::string out = std::to_string(static_cast<int>(node.kind)) + ":" +
                     std::to_string(node.integer) + ":" + std::to_string(node.real) + ":" +
@@ -68,7 +68,7 @@ std::string written(const std::string& text, const TextPlace& place) {
   return text.substr(place.value.begin, place.value.end - place.value.begin);
 }
 
-TEST(TextProperties, EveryValueOfEveryWorldIsFoundAndIsTheSameWhenItIsWrittenAgain) {
+TEST(TextProperties, EveryValueOfEveryWorldIsFoundAndRewritesUnchanged) {
   std::size_t values = 0;
   for (const auto& [name, text] : testing::shipped_worlds()) {
     Node root = document_of(text);
@@ -104,7 +104,7 @@ TEST(TextProperties, AValueThatIsRemovedAndSetAgainGivesAnEqualDocumentWithAllCo
   }
 }
 
-// The paths at which a random edit may write: all values, and keys that are not there.
+// The paths at which a random edit may write: all values, and missing keys.
 TextPath random_path(const std::vector<TextPlace>& values, std::mt19937_64& random) {
   TextPath path = values[random() % values.size()].path;
   if (random() % 3 != 0 || path.back().is_index) return path;
@@ -128,7 +128,7 @@ void set_node(Node& root, const TextPath& path, const Node& value) {
   parent->members.insert(behind, Member{path.back().key, 0, value});
 }
 
-TEST(TextProperties, RandomEditsGiveTheDocumentThatWasChangedDirectly) {
+TEST(TextProperties, RandomEditsMatchDirectChangesOfTheDocument) {
   const std::vector<std::string> values{
       "1",     "-2.5", "[1, 2]", "[0.5, 1, 0.25]", "\"ä#b\"", "true", "{ a = 1, b = [2] }",
       "1e+20", "[]",   "{}"};
@@ -182,7 +182,7 @@ TEST(TextProperties, TablesOfEveryWorldCanBeRemovedMovedAndCopied) {
   }
 }
 
-TEST(TextProperties, BrokenTextsAreRefusedOrStayWhole) {
+TEST(TextProperties, BrokenTextsAreRejectedOrStayWhole) {
   const std::string small = testing::shipped_text("worlds/silver_combe.toml").substr(0, 3000);
   constexpr std::string_view kMarks = "\"'[]{}=,.#\n\r\\ \t0ae-\xC3\xBC\0";
   std::mt19937_64 random(5);

@@ -33,7 +33,7 @@ std::string utf8(char32_t c) {
   return text + static_cast<char>(0x80 | (c & 0x3F));
 }
 
-TEST(TextScreen, ACharacterBeyondAsciiIsNamedWithItsPlaceAndWhatIsAllowed) {
+TEST(TextScreen, ANonAsciiCharacterIsNamedWithItsPositionAndTheRule) {
   EXPECT_EQ(screen_error("größe = 1\n"),
             "f.toml:1:3: 'ö' (U+00F6) is not allowed here; outside of strings and comments only "
             "ASCII characters are");
@@ -52,8 +52,8 @@ TEST(TextScreen, ColumnsCountCharactersAndNoByteOrderMark) {
   EXPECT_THAT(screen_error("a = '\xC3\xB6'\r\n\n  \xC3\xB6"), StartsWith("f.toml:3:3: 'ö'"));
 }
 
-// Every plane, and all that the parser's function has no answer for.
-TEST(TextScreen, EveryCharacterBeyondAsciiIsRefusedWhereverItIsNoStringOrComment) {
+// Every plane, and all characters that the parser's function does not handle.
+TEST(TextScreen, EveryNonAsciiCharacterOutsideStringsAndCommentsIsRejected) {
   for (char32_t c = 0x80; c <= 0x10FFFF; c = c < 0x10000 ? c + 1 : c + 997) {
     if (c >= 0xD800 && c <= 0xDFFF) continue;
     const std::string foreign = utf8(c);
@@ -103,7 +103,7 @@ TEST(TextScreen, StringsAndCommentsMayHaveAnyCharacter) {
   }
 }
 
-// Here the parser does not take for a string what the screen does.
+// Here the screen sees a string but the parser does not.
 TEST(TextScreen, AQuoteRightAfterANumberIsAnErrorOfTheParser) {
   for (const char* text : {"a = 1\"ö\"\n", "a = 1'ö'\n", "a = [1\"×\"]\n", "a = 1=\"ö\"\n",
                            "a = 1.\"ö\"\n", "a = 1979-05-27 1\"ö\"\n", "a = +\"ö\"\n"}) {
@@ -112,7 +112,7 @@ TEST(TextScreen, AQuoteRightAfterANumberIsAnErrorOfTheParser) {
   }
 }
 
-TEST(TextScreen, BytesThatAreNotUtf8AreRefusedEvenInStringsAndComments) {
+TEST(TextScreen, BytesThatAreNotUtf8AreRejectedEvenInStringsAndComments) {
   EXPECT_EQ(screen_error("a = 1\nname = \"Gr\xF6\xDF"
                          "e\"\n"),
             "f.toml:2:11: the byte 0xF6 is not UTF-8; save the file as UTF-8");

@@ -36,7 +36,7 @@ TEST(TextSnippet, KeysArePastedIntoATableOfTheSameName) {
             std::string(kSnippetText) + "\n[water]\nlevel_m = 5\n");
   const auto refused = with_snippet(kSnippetText, {"water"}, "[sky]\nexposure = 2");
   EXPECT_EQ(refused.error().message,
-            "water: the pasted text is of [sky], which does not fit into [water]");
+            "water: the pasted text belongs to [sky], which does not fit into [water]");
   EXPECT_FALSE(with_snippet(kSnippetText, {"sky"}, "[sky]\nexposure = 2\n[water]\nlevel_m = 1\n"));
   EXPECT_FALSE(with_snippet(kSnippetText, {"sky"}, "exposure = "));
   EXPECT_FALSE(with_snippet(kSnippetText, {"scatter", 0}, "[[scatter]]\ncount = 2"));
@@ -66,7 +66,7 @@ TEST(TextSnippet, PresetsAreSnippetsInFiles) {
   EXPECT_EQ(snippet_table(snippet)->text(), "sky");
   EXPECT_EQ(snippet_table("[[species.kind]]\nlength = 1")->text(), "species.kind");
   EXPECT_THAT(read_preset("partial = 2\n[sky]\n", "new.toml").error().message,
-              HasSubstr("new.toml: partial: the file has version 2"));
+              HasSubstr("new.toml: partial: this program does not know version 2"));
   EXPECT_THAT(read_preset(snippet, "old.toml").error().message, HasSubstr("not a preset"));
   EXPECT_FALSE(read_preset("partial = 1\n", "empty.toml"));
   EXPECT_FALSE(read_preset("partial = 1\nx = 2\n[sky]\n", "more.toml"));

@@ -33,7 +33,7 @@ std::string error_with(std::string_view from, std::string_view to) {
   return error_of(replaced(kSmallWorld, from, to)).message;
 }
 
-TEST(WorldFile, ReadsWhatItSays) {
+TEST(WorldFile, ReadsEveryField) {
   const World world = parsed(kSmallWorld);
   EXPECT_EQ(world.name, "small");
   EXPECT_EQ(world.seed, 5U);
@@ -67,7 +67,7 @@ TEST(WorldFile, ASeedHasAll64Bits) {
   EXPECT_EQ(seed_of("'18446744073709551615'"), UINT64_MAX);
 }
 
-TEST(WorldFile, WhatIsLeftOutHasTheDefaultsOfTheSchema) {
+TEST(WorldFile, MissingFieldsHaveTheDefaultsOfTheSchema) {
   const World world = parsed("format = 1\n[world]\nname = \"w\"\nseed = 1\nblocks = [1, 1]\n");
   const models::ModelType& terrain = registry()[world.terrain_model];
   for (std::size_t i = 0; i < terrain.parameters().size(); ++i) {
@@ -98,7 +98,7 @@ TEST(WorldFile, ReadsSkyPaletteAndPlaces) {
   EXPECT_TRUE(world.scatter[1].has_filter());
 }
 
-TEST(WorldFile, ThePapersWorldIsThePapers) {
+TEST(WorldFile, ThePapersWorldHasThePapersValues) {
   const auto world = load_world(game_file("worlds/paper.toml"), registry());
   ASSERT_TRUE(world.has_value()) << world.error().message;
   EXPECT_EQ(world->blocks_x, 512);
@@ -126,7 +126,7 @@ TEST(WorldFile, EveryWorldOfTheGameLoads) {
   EXPECT_GE(count, 3);
 }
 
-TEST(WorldFile, HugeAndNonsensicalParametersAreRefusedWithFieldAndPredictedCost) {
+TEST(WorldFile, HugeAndNonsensicalParametersAreRejectedWithFieldAndPredictedCost) {
   EXPECT_THAT(error_with("subdivisions = 1", "subdivisions = 40"),
               AllOf(StartsWith("w.toml:23: scatter[1].subdivisions: "),
                     HasSubstr("predicted cost: 2^82.0 triangles")));
@@ -146,14 +146,14 @@ TEST(WorldFile, HugeAndNonsensicalParametersAreRefusedWithFieldAndPredictedCost)
               HasSubstr("terrain.octaves"));
 }
 
-TEST(WorldFile, LegalValuesWhoseProductIsTooLargeAreRefused) {
+TEST(WorldFile, LegalValuesWhoseProductIsTooLargeAreRejected) {
   const core::Error error = error_of(replaced(replaced(kSmallWorld, "count = 5", "count = 16000"),
                                               "subdivisions = 1", "subdivisions = 6"));
   EXPECT_EQ(error.code, core::ErrorCode::kOverBudget);
   EXPECT_THAT(error.message, AllOf(HasSubstr("together are too large"), HasSubstr("predicted")));
 }
 
-TEST(WorldFile, TooManyModelsAreRefused) {
+TEST(WorldFile, TooManyModelsAreRejected) {
   EXPECT_THAT(error_with("count = 5", "count = 1000000000"),
               AllOf(HasSubstr("scatter[1].count: 1000000000"), HasSubstr("from 0 to 16384"),
                     HasSubstr("predicted cost: 16000000000 triangles on each block")));
@@ -173,7 +173,7 @@ TEST(WorldFile, TooManyModelsAreRefused) {
   EXPECT_THAT(error_of(many).message, HasSubstr("at most 64 tables"));
 }
 
-TEST(WorldFile, NegativesNanInfinitiesAndWrongTypesAreRefused) {
+TEST(WorldFile, NegativesNanInfinitiesAndWrongTypesAreRejected) {
   EXPECT_THAT(error_with("cell_m = 2", "cell_m = -2"), HasSubstr("world.cell_m"));
   EXPECT_THAT(error_with("relief_m = 60", "relief_m = nan"),
               AllOf(HasSubstr("terrain.relief_m"), HasSubstr("finite")));
@@ -212,7 +212,7 @@ TEST(WorldFile, MissingFieldsAreNamed) {
   EXPECT_THAT(error_of("format = 1\n").message, HasSubstr("world: this field is missing"));
 }
 
-TEST(WorldFile, UnknownKeysAreRefusedAndTheNearestIsSuggested) {
+TEST(WorldFile, UnknownKeysAreRejectedAndTheNearestIsSuggested) {
   EXPECT_EQ(error_with("octaves = 4", "octavs = 4"),
             "w.toml:11: terrain.octavs: this key is unknown; did you mean octaves?");
   EXPECT_THAT(error_with("iterations = [2, 3]", "iteration = 2"),
@@ -222,19 +222,19 @@ TEST(WorldFile, UnknownKeysAreRefusedAndTheNearestIsSuggested) {
   EXPECT_THAT(error_with("octaves = 4", "block_x = 4"), HasSubstr("this key is unknown"));
 }
 
-TEST(WorldFile, UnknownModelsAreRefusedAndTheKnownOnesListed) {
+TEST(WorldFile, UnknownModelsAreRejectedAndTheKnownOnesListed) {
   EXPECT_THAT(error_with("\"rock\"", "\"rocket\""),
               AllOf(StartsWith("w.toml:21: scatter[1].model"), HasSubstr("rock, tree")));
   EXPECT_THAT(error_with("\"rock\"", "\"terrain\""), HasSubstr("no such model to scatter"));
 }
 
-TEST(WorldFile, DuplicateKeysAndTablesAreRefused) {
+TEST(WorldFile, DuplicateKeysAndTablesAreRejected) {
   EXPECT_THAT(error_with("octaves = 4", "octaves = 4\noctaves = 5"), StartsWith("w.toml:12:"));
   EXPECT_THAT(error_of(std::string(kSmallWorld) + "[terrain]\ngain = 1\n").message,
               StartsWith("w.toml:24:"));
 }
 
-TEST(WorldFile, ANewerFormatIsTheFirstThingToBeRefused) {
+TEST(WorldFile, ANewerFormatIsReportedFirst) {
   EXPECT_THAT(error_of("format = 2\n[worlds]\nnew_thing = 1\n").message,
               AllOf(StartsWith("w.toml:1: format: "), HasSubstr("newer than this program")));
   EXPECT_THAT(error_with("format = 1", "format = 0"), HasSubstr("it must be 1"));
@@ -242,7 +242,7 @@ TEST(WorldFile, ANewerFormatIsTheFirstThingToBeRefused) {
   EXPECT_THAT(error_of("").message, AllOf(StartsWith("w.toml:1: format"), HasSubstr("missing")));
 }
 
-TEST(WorldFile, APlaceThatCannotBeIsRefused) {
+TEST(WorldFile, ImpossibleLimitsOfPlacesAreRejected) {
   EXPECT_THAT(error_of(std::string(kSmallWorld) + "min_height_m = 9\nmax_height_m = 8\n").message,
               HasSubstr("must not be above max_height_m"));
   EXPECT_THAT(error_of(std::string(kSmallWorld) + "max_slope_deg = 91\n").message,
@@ -283,7 +283,7 @@ TEST(WorldFile, WithRandomBytesChangedItIsAWorldOrAnError) {
   }
 }
 
-TEST(WorldFile, NamesOfPicturesStayInTheFolderOfTheWorld) {
+TEST(WorldFile, NamesOfImagesStayInTheFolderOfTheWorld) {
   const auto with = [](std::string_view name) {
     return std::string(kSmallWorld) + "\n[palette]\nsand_image = \"" + std::string(name) + "\"\n";
   };
@@ -292,18 +292,18 @@ TEST(WorldFile, NamesOfPicturesStayInTheFolderOfTheWorld) {
   for (const std::string_view name : {"/beach.png", "../beach.png", "ground/../../beach.png"})
     EXPECT_THAT(error_of(with(name)).message,
                 AllOf(StartsWith("w.toml:"), HasSubstr("palette.sand_image"),
-                      HasSubstr("relative to the folder of the world's file")))
+                      HasSubstr("relative to the folder of the world file")))
         << name;
   EXPECT_THAT(error_of(with("")).message, HasSubstr("palette.sand_image"));
   EXPECT_THAT(error_of(with(std::string(201, 'a'))).message, HasSubstr("palette.sand_image"));
 }
 
-TEST(WorldFile, MissingFilesFoldersAndHugeFilesAreRefused) {
+TEST(WorldFile, MissingFilesFoldersAndHugeFilesAreRejected) {
   EXPECT_EQ(load_world("no/such.toml", registry()).error().code, core::ErrorCode::kIo);
   EXPECT_EQ(load_world(game_file("worlds"), registry()).error().code, core::ErrorCode::kIo);
 }
 
-TEST(WorldFile, ARegistryWithoutTerrainIsRefused) {
+TEST(WorldFile, ARegistryWithoutTerrainIsRejected) {
   const auto world = parse_world(kSmallWorld, "w.toml", models::Registry());
   ASSERT_FALSE(world.has_value());
   EXPECT_EQ(world.error().code, core::ErrorCode::kInvalidArgument);

@@ -84,7 +84,7 @@ TEST(WorldSchema, EveryFieldHasALabelALineOfHelpAndSoundRanges) {
   EXPECT_GT(fields, 300U);
 }
 
-// What is left out is the default: writing the default changes nothing.
+// Missing fields have their defaults: writing the default changes nothing.
 void expect_usual_values_change_nothing(const std::string& text) {
   const Read read = schema_of(text);
   std::string all = text;
@@ -131,7 +131,7 @@ TEST(WorldSchema, ShowsValuesAsNumbersWithTheirUnits) {
   EXPECT_EQ(find_field(read.sections, {"sky", "seed"}), nullptr);
 }
 
-TEST(WorldSchema, AModelTypeOfTheProgramAppearsByItself) {
+TEST(WorldSchema, AModelTypeOfTheProgramAppearsWithoutFurtherCode) {
   const std::string donor = testing::shipped_text("worlds/five_species.toml");
   Read read = schema_of(donor);
   models::Species own = read.world.species.front();
@@ -150,7 +150,7 @@ TEST(WorldSchema, AModelTypeOfTheProgramAppearsByItself) {
               ElementsAre("rock", "tree", "grass", "mine"));
 }
 
-TEST(WorldSchema, RefusesAWorldOfAnotherText) {
+TEST(WorldSchema, RejectsAWorldOfAnotherText) {
   const Read read = schema_of(testing::kSmallWorld);
   EXPECT_EQ(world_schema("a = ", read.world, read.registry).error().code, core::ErrorCode::kParse);
   EXPECT_EQ(world_schema("a = 1", read.world, read.registry).error().code,

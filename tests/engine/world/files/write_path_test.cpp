@@ -6,7 +6,7 @@
 namespace psygen::world {
 namespace {
 
-TEST(WritePath, WritesWhatReadsBackEqual) {
+TEST(WritePath, WrittenPathsReadBackEqual) {
   CameraPath::Settings settings{"a \"name\"", {-3, 7}, 0.25};
   std::vector<PathPoint> points(4);
   points[0].at_m = {0.1, -2e6};

@@ -11,7 +11,7 @@ using testing::kSmallWorld;
 using testing::parsed;
 using testing::registry;
 
-TEST(WriteWorld, WhatIsWrittenReadsBackEqual) {
+TEST(WriteWorld, AWrittenWorldReadsBackEqual) {
   const World world = parsed(kSmallWorld);
   EXPECT_EQ(parsed(write_world(world, registry())), world);
 }
