@@ -18,7 +18,7 @@ namespace psygen::ecs::detail {
 // The members of one sparse component of one world, with their values.
 class SparseSet {
  public:
-  // What row_of returns for entities that are not members.
+  // Result of row_of() for entities that are not members.
   static constexpr std::uint32_t kNoRow = UINT32_MAX;
 
   // Reserves address space for `max_rows` members among `max_entities` entities. Throws

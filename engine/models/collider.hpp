@@ -1,6 +1,6 @@
 // The solid parts of a model as simple shapes, for rays and physics. Values in metres from the
-// model's foot; no behaviour beyond their box. Not the mesh: leaves and grass have none. Any
-// thread.
+// model's base point; no behaviour beyond their bounds. Not the mesh: leaves and grass have no
+// collider. Any thread.
 #pragma once
 
 #include <glm/common.hpp>
@@ -12,7 +12,7 @@
 
 namespace psygen::models {
 
-// The union of some shapes. Without shapes, a model stops nothing.
+// The union of some shapes. A model without shapes stops nothing.
 struct Collider {
   // All points within `radius` >= 0 of `centre`.
   struct Sphere {
@@ -32,11 +32,11 @@ struct Collider {
   using Shape = std::variant<Sphere, Capsule, Box, Hull>;
 
   std::vector<Shape> shapes;
-  // Whether it stops nothing.
+  // True without shapes: the collider stops nothing.
   bool empty() const { return shapes.empty(); }
 };
 
-// The box around one shape. Linear in its points.
+// Returns the bounds of one shape. Linear in its points.
 inline core::Bounds bounds_of(const Collider::Shape& shape) {
   struct Visitor {
     core::Bounds operator()(const Collider::Sphere& s) const {

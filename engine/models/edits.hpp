@@ -1,7 +1,7 @@
-// What was changed of a world by hand, in the form that model types read: edits of the ground, and
-// of the models of single blocks. A sparse layer over the world's function; where it has nothing,
-// the function holds. Parameters name the layer that their mesh shows (model_type.hpp). Immutable
-// in use: any thread may read. Made, checked and stored by world/edits.
+// Changes of a world made by hand, in the form that model types read: edits of the ground, and of
+// the models of single blocks. A sparse layer over the world's function, which applies wherever the
+// layer has nothing. Parameters name the layer that their mesh shows (model_type.hpp). Immutable in
+// use: any thread may read. Made, checked and stored by world/edits.
 #pragma once
 
 #include <algorithm>
@@ -23,15 +23,15 @@ struct PlacedModel {
   std::uint32_t id = 0;  // unique in the layer, from 1
   ModelIndex model = 0;
   glm::vec2 local_m{0.0F};  // from the block's corner along x and z
-  float above_m = 0;        // of its foot, over the ground
-  glm::vec3 reach_m{0.0F};  // of its bounds from the foot: sideways, up, down; all >= 0
+  float above_m = 0;        // of its base point, over the ground
+  glm::vec3 reach_m{0.0F};  // of its bounds from the base point: sideways, up, down; all >= 0
   Parameters parameters;    // without the slope of the ground
 };
 
-// A model of the world's function that is not there any more.
+// A removed model of the world's function.
 struct RemovedModel {
   std::uint32_t index = 0;     // among the instances of its block
-  std::uint32_t moved_id = 0;  // the PlacedModel that it became; 0: none
+  std::uint32_t moved_id = 0;  // the PlacedModel that replaces it; 0: none
   core::BlockCoord moved_to;   // its block, if it was moved
   friend bool operator==(const RemovedModel&, const RemovedModel&) = default;
 };
@@ -46,7 +46,7 @@ struct BlockEdits {
   struct Summary {
     std::uint64_t removed = 0, placed = 0, ground = 0;
     glm::vec3 reach_m{0.0F};  // the largest of PlacedModel::reach_m
-    // Takes in the blocks of another summary.
+    // Adds the numbers of another summary.
     void add(const Summary& part) {
       removed += part.removed;
       placed += part.placed;
@@ -55,13 +55,13 @@ struct BlockEdits {
         reach_m[i] = std::max(reach_m[i], part.reach_m[i]);
     }
   };
-  // Whether the block is as the world's function makes it.
+  // True if the block is as the world's function makes it.
   bool empty() const { return removed.empty() && placed.empty() && ground.empty(); }
-  // Of all edits of the block; equal edits have equal hashes. Linear in the edits.
+  // Hash of all edits of the block; equal edits have equal hashes. Linear in the edits.
   std::uint64_t hash() const;
-  // Linear in the edits.
+  // Counts the edits. Linear in the edits.
   Summary summary() const;
-  // Whether an instance of the world's function was removed or moved. O(log n).
+  // True if an instance of the world's function was removed or moved. O(log n).
   bool is_removed(std::uint32_t index) const {
     const auto at = std::ranges::lower_bound(removed, index, {}, &RemovedModel::index);
     return at != removed.end() && at->index == index;
@@ -70,11 +70,11 @@ struct BlockEdits {
 
 // The whole layer. A value: copies are O(1) and independent.
 struct EditLayer {
-  GroundEdits ground;          // by place
-  QuadMap<BlockEdits> blocks;  // everything, by the block that it belongs to; keys are blocks
+  GroundEdits ground;          // by position
+  QuadMap<BlockEdits> blocks;  // all edits, by the block that they belong to; keys are blocks
   std::uint32_t next_id = 1;   // of placed models and edits of the ground
 
-  // The edits of one block, or null. O(log n).
+  // Returns the edits of one block, or null. O(log n).
   const BlockEdits* block(core::BlockCoord at) const { return blocks.find(QuadPlace::of(at)); }
 };
 

@@ -12,7 +12,7 @@ std::string value_text(const ParameterSpec& spec, const Parameters& p, std::size
                                               : fmt::format("{:g}", p.real(i));
 }
 
-// For example "an integer from 4 to 128 vertices".
+// Returns for example "an integer from 4 to 128 vertices".
 std::string allowed_text(const ParameterSpec& spec) {
   const bool has_unit = !spec.unit.empty() && spec.unit != "1";
   return fmt::format("{} from {:g} to {:g}{}{}",

@@ -22,7 +22,7 @@ bool is_snake_case(std::string_view name) {
   return true;
 }
 
-// How this parameter breaks the rules of schemas, as the end of a sentence; empty if it does not.
+// Returns the violation of the rules of schemas, as the end of a sentence; empty if there is none.
 std::string_view fault_of(const ParameterSpec& spec) {
   if (!is_snake_case(spec.name)) return "has a name that is not snake_case";
   for (const double v :
@@ -33,7 +33,7 @@ std::string_view fault_of(const ParameterSpec& spec) {
     if (v < spec.hard_min || v > spec.hard_max)
       return "has a default or a soft range outside its hard range";
   }
-  if (spec.soft_min > spec.soft_max) return "has a soft range that is upside down";
+  if (spec.soft_min > spec.soft_max) return "has a soft range whose ends are swapped";
   return {};
 }
 
@@ -45,7 +45,7 @@ core::Result<void> check_schema(const ModelType& type) {
   const std::span<const ParameterSpec> specs = type.parameters();
   if (specs.size() > Parameters::kMaxCount)
     return refuse(specs[Parameters::kMaxCount].name,
-                  fmt::format("is one more than the {} that are allowed", Parameters::kMaxCount));
+                  fmt::format("is one more than the {} allowed ones", Parameters::kMaxCount));
   for (std::size_t i = 0; i < specs.size(); ++i) {
     if (const std::string_view fault = fault_of(specs[i]); !fault.empty())
       return refuse(specs[i].name, fault);
@@ -65,7 +65,7 @@ core::Result<ModelIndex> Registry::add(std::unique_ptr<ModelType> type) {
                       fmt::format("model type \"{}\": its name is not snake_case", type->name()));
   if (find(type->name()) >= 0)
     return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("model type {}: there is one of this name", type->name()));
+                      fmt::format("model type {}: the name is already taken", type->name()));
   if (types_.size() > std::numeric_limits<ModelIndex>::max())
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("model type {}: the registry is full", type->name()));

@@ -1,5 +1,5 @@
-// The model types that a program knows, by name and by small index. Filled at start-up by one
-// thread, then read-only and usable from any thread. Knows no worlds and no meshes.
+// The model types of a program, by name and by small index. Filled at start-up by one thread, then
+// read-only and usable from any thread. Knows no worlds and no meshes.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace psygen::models {
 
-// Position of a type in its registry.
+// Index of a type in its registry.
 using ModelIndex = std::uint16_t;
 
 // Owns its types. References to them stay valid while the registry lives, until shrink().
@@ -29,14 +29,14 @@ class Registry {
   // Number of types, and the type of an index below it.
   std::size_t size() const { return types_.size(); }
   const ModelType& operator[](ModelIndex index) const { return *types_[index]; }
-  // The index of a name, or -1. Linear in size().
+  // Returns the index of a name, or -1. Linear in size().
   int find(std::string_view name) const;
 
  private:
   std::vector<std::unique_ptr<ModelType>> types_;
 };
 
-// A registry of terrain, rock and tree (paper, section 5.2) and grass, in this order.
+// Makes a registry of terrain, rock and tree (paper, section 5.2) and grass, in this order.
 Registry make_standard_registry();
 
 }  // namespace psygen::models

@@ -6,30 +6,31 @@
 
 namespace psygen::physics {
 
-// How far a sweep came.
+// Result of a sweep.
 struct Sweep {
-  double fraction = 1;        // of the way
-  btVector3 normal{0, 1, 0};  // of what was hit
+  double fraction = 1;        // of the distance
+  btVector3 normal{0, 1, 0};  // of the surface that was hit
   bool hit = false;
-  const btCollisionObject* object = nullptr;  // that was hit
+  const btCollisionObject* object = nullptr;  // the object that was hit
 };
 
 class CapsuleMover {
  public:
-  // The capsule keeps this distance from what it meets.
+  // Distance that the capsule keeps from obstacles.
   static constexpr double kSkinM = 0.01;
 
   // `self` is the character's body, `mass_kg` its mass: lighter dynamic bodies are ignored. All
-  // must outlive it.
+  // must outlive the mover.
   CapsuleMover(const btCollisionWorld& world, const btCollisionObject& self,
                const btConvexShape& capsule, double mass_kg)
       : world_(world), self_(self), capsule_(capsule), mass_kg_(mass_kg) {}
 
-  // Sweeps the capsule's centre from one point to another. What it moves away from is ignored.
+  // Sweeps the capsule's centre from one point to another. Ignores bodies that it moves away from.
   Sweep sweep(const btVector3& from, const btVector3& to) const;
-  // Where a capsule at `at` has to go to overlap nothing, as far as a few steps find it.
+  // Returns a position near `at` where the capsule overlaps nothing, as far as a few steps find
+  // one.
   btVector3 pushed_out(const btVector3& at) const;
-  // Whether something is in the way of the character.
+  // True if the other object blocks the character.
   bool stops(const btCollisionObject& other) const;
 
  private:

@@ -14,14 +14,14 @@ namespace {
 constexpr double kGroundAcceleration = 40, kAirAcceleration = 6;  // m/s²
 constexpr double kRiseAcceleration = 20;                          // m/s², of CharacterInput::rise
 constexpr double kMaxSlide = 12;  // m/s down ground that is too steep
-constexpr double kPieceM = 0.2;   // a longer way is gone in pieces
+constexpr double kPieceM = 0.2;   // longer distances are split into pieces
 constexpr int kSlides = 4;
 
 btVector3 along_plane(const btVector3& way, const btVector3& normal) {
   return way - normal * std::min(way.dot(normal), btScalar(0));
 }
 
-// The normal of a wall: without its part along y. Zero for a ceiling.
+// Returns the normal of a wall, without its y component. Zero for a ceiling.
 btVector3 wall(const btVector3& normal) {
   const btVector3 flat(normal.x(), 0, normal.z());
   return flat.length2() > 1e-12 ? flat.normalized() : btVector3(0, 0, 0);
@@ -51,7 +51,7 @@ Character::~Character() {
   bullet_.removeRigidBody(body_.get());
 }
 
-// `jumped_there`: without pushing what is in between.
+// `jumped_there`: without pushing bodies in between.
 void Character::publish(bool jumped_there) {
   const btTransform place(btQuaternion::getIdentity(), centre(feet_));
   motion_.setWorldTransform(place);
@@ -74,7 +74,7 @@ void Character::shift(const btVector3& by) {
   publish(true);
 }
 
-// The way without its part up ground that is too steep.
+// Returns the displacement without its component up ground that is too steep.
 btVector3 Character::climb_limited(const btVector3& way) {
   btVector3 left = way;
   for (int i = 0; i < 2; ++i) {
@@ -95,8 +95,9 @@ void Character::stop_at(const btVector3& normal) {
   velocity = btVector3(left.x(), velocity.y(), left.z());
 }
 
-// Over an obstacle: up, ahead and down again. Refused if it gains nothing, or if no walkable place
-// is where the capsule's round foot comes off the edge, which may be steps of time ahead.
+// Climbs an obstacle: up, ahead and down again. Rejected if it gains no distance, or if the
+// capsule's round bottom would leave the edge at a position that is not walkable, which may be
+// several steps ahead.
 bool Character::step_up(const btVector3& way) {
   const btVector3 from = centre(feet_), up(0, settings_.step_height_m, 0);
   const Sweep raise = mover_.sweep(from, from + up);
@@ -112,7 +113,7 @@ bool Character::step_up(const btVector3& way) {
   const btVector3 probe = above + ahead * (gained_m / ahead.length());
   const Sweep top = mover_.sweep(probe, probe + down);
   if (!top.hit || !is_walkable(top.normal)) return false;
-  // Only as far as the way reaches, perhaps onto the edge.
+  // Only as far as the displacement reaches, perhaps onto the edge.
   const btVector3 there = above + way * std::min(gained_m / way_m, 1.0);
   const Sweep landing = mover_.sweep(there, there + down);
   const double dropped_m = std::max(lifted * landing.fraction - CapsuleMover::kSkinM, 0.0);
@@ -155,7 +156,7 @@ void Character::move_up(double rise) {
   if (sweep.hit) velocity.setY(0);
 }
 
-// Falls by `drop`, or, where it stands, follows what it stands on.
+// Falls by `drop`, or follows the ground or object that it stands on.
 void Character::move_down(double drop) {
   if (std::exchange(on_edge_, false)) {
     velocity.setY(0);
@@ -189,7 +190,7 @@ void Character::move_down(double drop) {
   on_ground = is_walkable(support.normal);
   velocity.setY(0);
   if (on_ground) return;
-  // Too steep: it slides down.
+  // Too steep: the character slides down.
   const btVector3 downhill = wall(support.normal);
   const double faster = kMaxSlide - velocity.dot(downhill);
   velocity += downhill * std::clamp(fall_speed * support.normal.y(), 0.0, std::max(faster, 0.0));
@@ -201,7 +202,7 @@ void Character::follow_ground() {
   if (feet_.y() < height) feet_.setY(height);
 }
 
-// Moves with the object that it stands on, unless something is in the way.
+// Moves with the object that it stands on, unless something blocks it.
 void Character::ride(const btVector3& carried) {
   if (carried.length2() == 0) return;
   const Sweep sweep = mover_.sweep(centre(feet_), centre(feet_) + carried);
@@ -209,7 +210,7 @@ void Character::ride(const btVector3& carried) {
   feet_ = terrain_.inside(feet_ + carried * std::max(share, 0.0), settings_.radius_m);
 }
 
-// What it stood on moves no more with it, but has given it its speed.
+// The character leaves its platform and keeps the platform's velocity.
 void Character::leave_floor() {
   velocity += floor_velocity_;
   floor_velocity_ = {0, 0, 0};

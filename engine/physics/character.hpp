@@ -1,4 +1,4 @@
-// A walking character: speeds, slopes, steps, jumps. It follows the ground by queries, exactly, and
+// A walking character: speeds, slopes, steps, jumps. It follows the ground by exact queries, and
 // everything else by sweeps of its capsule. Internal to physics. One thread.
 #pragma once
 
@@ -23,15 +23,16 @@ class Character {
   Character(const Character&) = delete;
   Character& operator=(const Character&) = delete;
 
-  // Moves it for `dt` seconds. `carried` is the way of what it stands on in this time.
+  // Moves the character for `dt` seconds. `carried` is the displacement of the object that it
+  // stands on in this time.
   void step(double dt, double gravity, const btVector3& carried);
-  // Puts it somewhere, but not below the ground and not beyond the walls of a bounded world.
+  // Teleports the character, but not below the ground and not beyond the walls of a bounded world.
   void teleport(const btVector3& feet);
-  // Bullet's coordinates have moved by −`by`.
+  // Adapts to a move of Bullet's origin by `by`.
   void shift(const btVector3& by);
 
   const btVector3& feet() const { return feet_; }
-  // The object that it stands on, or none.
+  // The object that the character stands on, or none.
   query::ObjectId floor() const { return on_ground ? floor_ : query::ObjectId(); }
   double reach_m() const { return settings_.height_m + settings_.step_height_m; }
 
@@ -67,7 +68,7 @@ class Character {
   bool rising_ = false;  // has jumped in this step
   query::ObjectId floor_;
   btVector3 floor_velocity_{0, 0, 0};
-  bool on_edge_ = false;  // stands on the edge of a step that it climbs
+  bool on_edge_ = false;  // on the edge of a step that it climbs
   btCapsuleShape capsule_;
   btDefaultMotionState motion_;
   std::unique_ptr<btRigidBody> body_;

@@ -1,4 +1,4 @@
-// Between GLM's types and Bullet's. Internal to physics.
+// Conversions between GLM's types and Bullet's. Internal to physics.
 #pragma once
 
 #include <LinearMath/btQuaternion.h>

@@ -73,7 +73,7 @@ void ObjectBodies::move(Body& body, const btTransform& pose, double dt) {
   rigid.forceActivationState(ACTIVE_TAG);
   body.motion.setWorldTransform(pose);
   rigid.setWorldTransform(pose);
-  // Bullet takes its speed from the way since the last step.
+  // Bullet derives the velocity from the displacement since the last step.
   body.carries = (pose.getOrigin() - body.before.getOrigin()).length() <= kMaxSpeed * dt;
   if (!body.carries) rigid.setInterpolationWorldTransform(pose);
   bullet_.updateSingleAabb(&rigid);
@@ -83,7 +83,7 @@ void ObjectBodies::follow(double dt) {
   const query::Objects* objects = query_.objects();
   for (auto body = bodies_.begin(); body != bodies_.end();) {
     const query::PlacedObject* object = objects == nullptr ? nullptr : objects->find(body->first);
-    // One of another size is made anew where it is needed.
+    // A body of another size is rebuilt where it is needed.
     if (object == nullptr || object->scaled != body->second->solid) {
       body = erase(body);
       continue;

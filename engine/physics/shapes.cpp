@@ -21,7 +21,7 @@ PlacedShape make(const Collider::Sphere& s) {
   return {std::make_unique<btSphereShape>(s.radius), at(to_bt(s.centre))};
 }
 
-// Bullet's capsules stand upright.
+// Bullet's capsules are upright.
 PlacedShape make(const Collider::Capsule& c) {
   const btVector3 from = to_bt(c.from), axis = to_bt(c.to) - from;
   const btScalar length = axis.length();
@@ -52,7 +52,7 @@ bool is_legal(const Collider::Shape& shape) {
   for (int i = 0; i < 3; ++i) {
     const double size = static_cast<double>(box.max[i]) - static_cast<double>(box.min[i]);
     const double far = std::max(std::abs(box.min[i]), std::abs(box.max[i]));
-    if (!(size >= kMinSizeM && far <= kMaxSizeM)) return false;  // nor NaN
+    if (!(size >= kMinSizeM && far <= kMaxSizeM)) return false;  // rejects NaN too
   }
   if (const auto* hull = std::get_if<Collider::Hull>(&shape))
     return std::ranges::all_of(hull->points, [](const glm::vec3& p) { return core::is_finite(p); });

@@ -1,6 +1,6 @@
-// The blocks that physics has in Bullet: ground as a heightfield with the triangles of the finest
-// mesh, trunks and rocks as static objects. Made from queries when something comes near, removed
-// when nothing has needed them for a while. Internal to physics. One thread.
+// The blocks that physics has loaded into Bullet: ground as a heightfield with the triangles of the
+// finest mesh, trunks and rocks as static objects. Loaded from queries when something comes near,
+// and removed when unused for a while. Internal to physics. One thread.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -20,43 +20,44 @@ enum Group : int { kGround = 1, kModels = 2, kBodies = 4, kCharacters = 8, kObje
 
 class Terrain {
  public:
-  // At most this many blocks along each axis are made around one thing.
+  // Most blocks along each axis that are loaded around one body or character.
   static constexpr std::int64_t kMaxAside = 32;
 
-  // Both must outlive it.
+  // Both arguments must outlive it.
   Terrain(btDynamicsWorld& bullet, query::World& query) : bullet_(bullet), query_(query) {}
   ~Terrain() { clear(); }
   Terrain(const Terrain&) = delete;
   Terrain& operator=(const Terrain&) = delete;
 
-  // The block from whose corner Bullet's coordinates count. Moves the blocks that were needed last,
+  // Sets the block at whose corner Bullet's origin is. Moves the blocks that the last step needed,
   // and removes the others. O(objects).
   void set_origin(core::BlockCoord origin);
-  // Makes what is missing of the blocks that reach into the square from `low` to `high`, in
-  // Bullet's x and z, and keeps them for this step.
+  // Loads the missing blocks that extend into the square from `low` to `high`, in Bullet's x and z,
+  // and keeps all of them for this step.
   void need(const glm::dvec2& low, const glm::dvec2& high, std::uint64_t step);
-  // Removes blocks that were not needed for `keep_steps`, and the oldest of more than `most`
-  // others.
+  // Removes blocks that were not needed for `keep_steps`; of the other idle blocks, keeps the
+  // `most` newest.
   void drop_idle(std::uint64_t step, std::uint32_t keep_steps, std::size_t most);
   void remove(core::BlockCoord block);
-  // Blocks that edits of the world have changed, and how far their models reached, before or after.
+  // Blocks that edits of the world have changed, and the larger reach of their models before and
+  // after.
   struct Changes {
     std::unordered_set<core::BlockCoord, core::BlockCoordHash> blocks;
     double reach_m = 0;
   };
   // Removes the blocks that have changed since the last call, and returns them.
   Changes follow_edits();
-  // Whether what has changed reaches into the square from `low` to `high`.
+  // True if the changes extend into the square from `low` to `high`.
   bool is_near(const Changes& changes, const glm::dvec2& low, const glm::dvec2& high) const;
   void clear();
   std::size_t size() const { return blocks_.size(); }
 
-  // The ground under a point in Bullet's coordinates, moved into a bounded world. As queries have
-  // it now, also where Bullet gets it in the next step only.
+  // Returns the ground under a point in Bullet's coordinates, clamped to a bounded world. Always
+  // the present ground of queries, even if Bullet gets it only in the next step.
   models::GroundPoint ground(const btVector3& at);
-  // The point inside the walls of a bounded world, at least `margin_m` from them.
+  // Returns the point inside the walls of a bounded world, at least `margin_m` from them.
   btVector3 inside(const btVector3& at, double margin_m) const;
-  // Between Bullet's coordinates and the world's.
+  // Conversions between Bullet's coordinates and the world's.
   core::WorldPosition position(const btVector3& at) const;
   btVector3 coordinates(const core::WorldPosition& at) const;
 
@@ -64,11 +65,11 @@ class Terrain {
   struct Part {
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btCollisionObject> object;
-    btVector3 from_corner{0, 0, 0};  // of the block
+    btVector3 from_corner{0, 0, 0};  // of its block
   };
   struct Block {
-    std::uint64_t needed = 0;     // the last step in which it was
-    std::uint64_t edits = 0;      // query::edits_of_block() when it was made
+    std::uint64_t needed = 0;     // the last step that needed the block
+    std::uint64_t edits = 0;      // query::edits_of_block() at the time of loading
     std::vector<double> heights;  // of the ground; Bullet refers to them
     std::vector<Part> parts;
   };
@@ -76,7 +77,7 @@ class Terrain {
 
   glm::dvec3 corner_of(core::BlockCoord block) const;
   void make(core::BlockCoord at, Block& block);
-  // `place` counts from the block's corner.
+  // `place` is relative to the block's corner.
   void add(core::BlockCoord at, Block& block, std::unique_ptr<btCollisionShape> shape,
            const btTransform& place, Group group);
   // Visits the blocks that reach into a square, until visit() returns false.
@@ -87,9 +88,9 @@ class Terrain {
 
   btDynamicsWorld& bullet_;
   query::World& query_;
-  std::shared_ptr<const models::EditLayer> edits_;  // when they were last looked at
-  double reach_m_ = 0;                              // of models, then
-  std::uint64_t last_step_ = 0;                     // of need()
+  std::shared_ptr<const models::EditLayer> edits_;  // at the last look
+  double reach_m_ = 0;                              // of the models at that time
+  std::uint64_t last_step_ = 0;                     // the last step of need()
   core::BlockCoord origin_;
   Blocks blocks_;
 };

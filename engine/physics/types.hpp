@@ -1,5 +1,5 @@
-// What goes into physics and comes out: bodies, characters, rays. Plain values without Bullet's
-// types. Metres, seconds, kilograms; +Y is up.
+// The values of physics: bodies, characters, rays. Plain values without Bullet's types. Metres,
+// seconds, kilograms; +Y is up.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace psygen::physics {
 
-// Names a body or character of one World. Names of removed things are never used again.
+// Identifies a body or character of one World. Numbers of removed ones are never reused.
 struct BodyId {
   std::uint32_t number = 0;  // 0: none
   friend auto operator<=>(const BodyId&, const BodyId&) = default;
@@ -23,15 +23,15 @@ struct CharacterId {
   friend auto operator<=>(const CharacterId&, const CharacterId&) = default;
 };
 
-// No value may be larger than these.
-inline constexpr double kMaxSpeed = 1000;  // m/s; what is faster after a step is slowed down
+// Limits of all values.
+inline constexpr double kMaxSpeed = 1000;  // m/s; a step slows faster bodies down
 inline constexpr double kMaxSizeM = 1000;  // of a shape, along any axis
 inline constexpr double kMinSizeM = 0.01;
 
-// Whether and how a body moves.
+// The way in which a body moves.
 enum class Motion : std::uint8_t {
   kDynamic,    // by forces
-  kKinematic,  // by set_pose(); pushes dynamic bodies and characters' way is blocked by it
+  kKinematic,  // by set_pose(); pushes dynamic bodies and blocks characters
 };
 
 // A body to be added.
@@ -54,25 +54,25 @@ struct BodyState {
   bool asleep = false;
 };
 
-// A character to be added: an upright capsule that walks.
+// A character to be added: an upright, walking capsule.
 struct CharacterSettings {
   core::WorldPosition feet;
   double radius_m = 0.3, height_m = 1.8;  // height >= 2 · radius
   double walk_speed = 1.6, run_speed = 5;
-  double jump_speed = 4.5;  // upwards, when a jump begins
+  double jump_speed = 4.5;  // upwards, at the start of a jump
   double step_height_m = 0.4;
-  double steepest_deg = 50;  // 0 … 89: what it can climb and stand on
+  double steepest_deg = 50;  // 0 … 89: steepest ground that it climbs and stands on
   double mass_kg = 80;       // lighter bodies are pushed aside, heavier ones stop it
 };
 
-// What a character is told to do in the following steps.
+// Commands to a character for the following steps.
 struct CharacterInput {
   glm::dvec2 direction{0.0};  // x and z; longer than 1 counts as 1
   bool run = false;
-  bool jump = false;  // when it next stands
-  double speed = 0;   // m/s in that direction; 0: as it walks or runs. 0 … kMaxSpeed
-  // Its speed upwards, in m/s, in place of gravity: it swims, climbs or glides. Ground and models
-  // stop it as ever. −kMaxSpeed … kMaxSpeed.
+  bool jump = false;  // at the next moment on the ground
+  double speed = 0;   // m/s in `direction`; 0: walk_speed or run_speed. 0 … kMaxSpeed
+  // Vertical speed in m/s, which replaces gravity: the character swims, climbs or glides. Ground
+  // and models stop it as always. −kMaxSpeed … kMaxSpeed.
   std::optional<double> rise = std::nullopt;
 };
 
@@ -83,10 +83,10 @@ struct CharacterState {
   bool on_ground = false;  // stands on ground, a model or a body
 };
 
-// What a ray met among the bodies and characters.
+// The body or character that a ray hit.
 struct BodyHit {
   BodyId body;            // or
-  CharacterId character;  // the other is 0
+  CharacterId character;  // the other one is 0
   double distance_m = 0;
   core::WorldPosition position;
   glm::dvec3 normal{0, 1, 0};

@@ -12,7 +12,7 @@ namespace psygen::physics {
 namespace {
 
 tl::unexpected<core::Error> no_body(BodyId id) {
-  return refuse(fmt::format("there is no body {}", id.number));
+  return refuse(fmt::format("body {} does not exist", id.number));
 }
 
 core::Result<glm::dquat> checked_rotation(const glm::dquat& q) {
@@ -25,7 +25,7 @@ core::Result<glm::dquat> checked_rotation(const glm::dquat& q) {
 core::Result<void> check_speeds(const glm::dvec3& velocity, const glm::dvec3& spin) {
   if (is_within(velocity, kMaxSpeed) && is_within(spin, kMaxSpeed)) return {};
   return refuse(
-      fmt::format("velocity and spin are finite, and at most {} along each axis", kMaxSpeed));
+      fmt::format("velocity and spin must be finite, and at most {} along each axis", kMaxSpeed));
 }
 
 core::Result<void> check(const BodySettings& s) {
@@ -144,7 +144,7 @@ core::Result<void> World::push(BodyId id, const glm::dvec3& impulse) {
   const double mass = 1 / body->rigid->getInvMass();
   if (!is_within(impulse / mass, kMaxSpeed))
     return refuse(
-        fmt::format("an impulse is finite and changes the speed by at most {} m/s", kMaxSpeed));
+        fmt::format("an impulse must be finite and change the speed by at most {} m/s", kMaxSpeed));
   body->rigid->applyCentralImpulse(to_bt(impulse));
   body->rigid->activate(true);
   return {};

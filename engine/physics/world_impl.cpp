@@ -9,9 +9,9 @@
 namespace psygen::physics {
 namespace {
 
-// Coordinates stay below this near the first thing that moves.
+// Limit of coordinates near the first moving body or character.
 constexpr double kMaxFromOriginM = 4096;
-// Terrain is made this much further than a thing can get in a step.
+// Terrain is loaded this much further than a body can move in a step.
 constexpr double kMarginM = 2;
 
 bool is_finite(const btVector3& v) {
@@ -26,7 +26,8 @@ btVector3 limited(const btVector3& v, double most) {
 }  // namespace
 
 bool is_within(const glm::dvec3& v, double most) {
-  return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;  // not NaN
+  return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;  // rejects NaN
+                                                                                   // too
 }
 
 World::Impl::Impl(query::World& queries, const Settings& wanted)
@@ -75,7 +76,7 @@ void World::Impl::shift_origin() {
 
 void World::Impl::move_origin(core::BlockCoord to) {
   const btVector3 by = terrain.coordinates({to, glm::dvec3(0)});
-  // Everything moves alike, so no new pairs are to be found.
+  // All objects move alike, so there are no new pairs to find.
   broadphase.m_deferedcollide = true;
   terrain.set_origin(to);
   for (auto& [number, character] : characters)
@@ -142,8 +143,8 @@ void World::Impl::step(double dt) {
 core::Result<void> World::Impl::check_room() const {
   if (count() < settings.max_bodies) return {};
   return core::fail(core::ErrorCode::kOverBudget,
-                    fmt::format("there are {} bodies and characters already, the most that the "
-                                "settings allow",
+                    fmt::format("there are {} bodies and characters already, the limit of the "
+                                "settings",
                                 settings.max_bodies));
 }
 
@@ -172,8 +173,8 @@ void World::Impl::follow_edits() {
   }
 }
 
-// Bullet finds contacts at the end of a step only, so what is fast can be beyond the ground by
-// then. The way of the centre is checked against the exact ground.
+// Bullet finds contacts only at the end of a step, so fast bodies may be below the ground by then.
+// Checks the path of the centre against the exact ground.
 void World::Impl::put_back(Body& body) {
   btRigidBody& rigid = *body.rigid;
   if (!rigid.isActive()) return;

@@ -1,5 +1,5 @@
-// The insides of physics::World: Bullet's world, the terrain, bodies and characters by number, and
-// the step. Internal to physics. One thread.
+// Implementation of physics::World: Bullet's world, the terrain, bodies and characters by number,
+// and the step. Internal to physics. One thread.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -24,14 +24,14 @@ struct World::Impl {
     btDefaultMotionState motion;
     std::unique_ptr<btRigidBody> rigid;
     btVector3 before{0, 0, 0};  // centre before the step
-    bool is_moved = false;      // a kinematic body has a new pose for the next step
+    bool is_moved = false;      // true if a kinematic body has a new pose for the next step
   };
 
   Impl(query::World& queries, const Settings& wanted);
   ~Impl();
 
-  // Bullet's coordinates of a place. Moves the origin there if nothing is near the present one.
-  // Fails outside a bounded world and for values that are not finite.
+  // Returns Bullet's coordinates of a position. Moves the origin there if nothing is near the
+  // present one. Fails outside a bounded world and for values that are not finite.
   core::Result<btVector3> place(const core::WorldPosition& at);
   Body* find(BodyId id);
   Character* find(CharacterId id);
@@ -40,14 +40,14 @@ struct World::Impl {
   void step(double dt);
   void shift_origin();
   void move_origin(core::BlockCoord to);
-  // Ground, models and objects, wherever something can get in this step.
+  // Loads ground, models and objects wherever something can move in this step.
   void make_surroundings(double dt);
-  // Fails with kOverBudget if there are as many bodies and characters as the settings allow.
+  // Fails with kOverBudget if the settings allow no more bodies and characters.
   core::Result<void> check_room() const;
   void put_back(Body& body);
-  // Wakes the dynamic bodies that touch an object, which is about to go.
+  // Wakes the dynamic bodies that touch an object, which will be removed.
   void wake_touching(const btCollisionObject& object);
-  // Removes terrain that edits changed, and wakes the bodies that may lie on it or in it.
+  // Removes terrain that edits changed, and wakes the bodies that may be on it or in it.
   void follow_edits();
 
   query::World& query;
@@ -66,11 +66,11 @@ struct World::Impl {
   std::uint64_t steps = 0;
 };
 
-// An error with code kInvalidArgument.
+// Makes an error with code kInvalidArgument.
 inline tl::unexpected<core::Error> refuse(std::string message) {
   return core::fail(core::ErrorCode::kInvalidArgument, std::move(message));
 }
-// Whether every component is finite and no larger than `most`.
+// True if every component is finite and its absolute value at most `most`.
 bool is_within(const glm::dvec3& v, double most);
 
 }  // namespace psygen::physics

@@ -5,7 +5,7 @@
 namespace psygen::query {
 namespace {
 
-// A block's list node and its entry of the index.
+// Bytes of a block's list node and its entry in the index.
 constexpr std::size_t kBlockBytes = 256;
 
 void add(BlockSolids& all, StandingSolid solid) {
@@ -22,7 +22,7 @@ BlockCache::BlockCache(const world::World& world, const models::Registry& regist
                        std::size_t max_bytes)
     : world_(world), registry_(registry), max_bytes_(max_bytes), edits_(world.edits) {}
 
-// Forgets the blocks that edits have changed since the last look.
+// Drops the blocks that edits have changed since the last call.
 void BlockCache::follow_edits() {
   if (world_.edits == edits_) return;
   edits_ = world_.edits;
@@ -47,7 +47,7 @@ BlockCache::Block& BlockCache::touch(core::BlockCoord block) {
   return blocks_.front();
 }
 
-// Charges the first block of the order, and evicts from its end.
+// Charges bytes to the block, which is first in the order, and evicts blocks from the end.
 void BlockCache::charge(Block& block, std::size_t bytes) {
   block.bytes += bytes;
   bytes_ += bytes;

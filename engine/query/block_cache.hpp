@@ -1,5 +1,6 @@
-// The blocks that queries asked for last: ground, models and colliders, each made when first needed
-// and kept under a byte bound, least recently used out first. Not the cache of meshes. One thread.
+// Caches the blocks that queries used last: ground, models and colliders, each made on first use
+// and kept within a byte bound. Evicts the least recently used block first. Not the geometry cache.
+// One thread.
 #pragma once
 
 #include <cstddef>
@@ -18,35 +19,34 @@ namespace psygen::query {
 
 // A model with a collider.
 struct StandingSolid {
-  std::size_t model;     // position in BlockCache::models()
+  std::size_t model;     // index into BlockCache::models()
   glm::dvec3 foot{0.0};  // metres from the block's corner
   Solid solid;
 };
 
-// The models of a block that have colliders.
+// The models with colliders of a block.
 struct BlockSolids {
   std::vector<StandingSolid> solids;
-  std::vector<core::Bounds> boxes;  // of each, in metres from the block's corner
-  core::Bounds box;                 // around all of them; of no meaning without any
+  std::vector<core::Bounds> boxes;  // of each solid, in metres from the block's corner
+  core::Bounds box;                 // around all solids; meaningless without solids
 };
 
-// World and registry must outlive it and must not change, except for the world's edits, between two
-// calls: what they changed is made anew. Spans and references that it returns are valid until the
-// next call.
+// World and registry must outlive the cache. Between two calls, only the world's edits may change;
+// the cache then rebuilds the blocks that they reach. Returned spans and references are valid until
+// the next call.
 class BlockCache {
  public:
-  // Empty. Both outlive it; `max_bytes` is the bound of what it keeps.
+  // An empty cache. `max_bytes` bounds the memory of the cached blocks.
   BlockCache(const world::World& world, const models::Registry& registry, std::size_t max_bytes);
   BlockCache(BlockCache&&) = default;
   BlockCache(const BlockCache&) = delete;
 
-  // The parts of a block, which exists whether or not the world contains it. Constant time for the
-  // blocks that are kept.
+  // The parts of a block, inside or outside the world. Constant time for cached blocks.
   const GroundGrid& ground(core::BlockCoord block);
   std::span<const world::Placement> models(core::BlockCoord block);
   BlockSolids& solids(core::BlockCoord block);
 
-  // Held now. Above the bound only if a single block is.
+  // Bytes and number of the cached blocks. The bytes exceed the bound only if a single block does.
   std::size_t bytes() const { return bytes_; }
   std::size_t size() const { return blocks_.size(); }
 
@@ -54,7 +54,7 @@ class BlockCache {
   struct Block {
     core::BlockCoord at;
     std::size_t bytes = 0;
-    std::uint64_t edits = 0;  // edits_of_block() when it was made
+    std::uint64_t edits = 0;  // edits_of_block() at the time of construction
     std::optional<GroundGrid> ground{};
     std::optional<std::vector<world::Placement>> models{};
     std::optional<BlockSolids> solids{};
@@ -69,7 +69,7 @@ class BlockCache {
   const world::World& world_;
   const models::Registry& registry_;
   std::size_t max_bytes_, bytes_ = 0;
-  std::shared_ptr<const models::EditLayer> edits_;  // of the world when they were last looked at
+  std::shared_ptr<const models::EditLayer> edits_;  // the world's edits at the last call
   Order blocks_;
   std::unordered_map<core::BlockCoord, Order::iterator, core::BlockCoordHash> index_;
 };

@@ -5,14 +5,14 @@
 namespace psygen::query {
 namespace {
 
-// A leaf reaches this many moves ahead.
+// A leaf extends this many moves ahead.
 constexpr double kMovesAhead = 4;
 
 WideBox united(const WideBox& a, const WideBox& b) {
   return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
 }
 
-// Half of the surface.
+// Returns half of the surface area.
 double area(const WideBox& box) {
   const glm::dvec3 size = box.max - box.min;
   return size.x * size.y + size.y * size.z + size.z * size.x;
@@ -55,7 +55,7 @@ void BoxTree::remove(Leaf leaf) {
 
 bool BoxTree::move(Leaf leaf, const WideBox& box, const glm::dvec3& way_m) {
   const WideBox wanted = leaf_box(box, way_m);
-  // A leaf that is far too large, after a fast move, is made anew too.
+  // Also rebuilds a leaf that became far too large after a fast move.
   if (nodes_[leaf].box.contains(box) && area(nodes_[leaf].box) <= 2 * area(wanted)) return false;
   remove_leaf(leaf);
   nodes_[leaf].box = wanted;
@@ -63,12 +63,12 @@ bool BoxTree::move(Leaf leaf, const WideBox& box, const glm::dvec3& way_m) {
   return true;
 }
 
-// The node beside which a box adds least surface to the tree.
+// Returns the node as whose sibling a box adds the least surface area to the tree.
 std::uint32_t BoxTree::best_sibling(const WideBox& box) const {
   std::uint32_t node = root_;
   while (nodes_[node].height > 0) {
     const double here = area(united(nodes_[node].box, box));
-    const double grown = here - area(nodes_[node].box);  // of all its ancestors in any case
+    const double grown = here - area(nodes_[node].box);  // added to all ancestors in any case
     std::uint32_t best = node;
     double best_cost = here;
     for (const std::uint32_t child : nodes_[node].child) {
@@ -135,7 +135,7 @@ void BoxTree::fit_upwards(std::uint32_t node) {
   }
 }
 
-// The higher child takes the place of its parent, which gets the child's lower child.
+// The taller child takes the position of its parent, which gets the child's shorter child.
 std::uint32_t BoxTree::rotate(std::uint32_t node, int side) {
   const auto at = static_cast<std::size_t>(side);
   const std::uint32_t up = nodes_[node].child[at];

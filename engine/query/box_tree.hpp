@@ -1,8 +1,7 @@
-// A tree over boxes that come, move and go: which boxes overlap another, and which lie on a ray.
-// Its leaves are larger than their boxes, so that small moves cost nothing. It knows nothing of
-// shapes. Balanced by rotations: insert, remove and a move out of the leaf take O(log n). One
-// thread. (The dynamic tree of Box2D and Bullet: insertion by surface area, heights as in AVL
-// trees.)
+// A tree over moving boxes that finds the boxes which overlap a box or a ray. Its leaves are larger
+// than their boxes, so that small moves cost nothing. It knows nothing of shapes. Balanced by
+// rotations: insert, remove, and a move out of the leaf take O(log n). One thread. (The dynamic
+// tree of Box2D and Bullet: insertion by surface area, heights as in AVL trees.)
 #pragma once
 
 #include <array>
@@ -19,12 +18,12 @@ namespace psygen::query {
 // An axis-aligned box in metres.
 struct WideBox {
   glm::dvec3 min{0.0}, max{0.0};
-  // Whether they share a point.
+  // True if the boxes share a point.
   bool overlaps(const WideBox& other) const {
     return min.x <= other.max.x && other.min.x <= max.x && min.y <= other.max.y &&
            other.min.y <= max.y && min.z <= other.max.z && other.min.z <= max.z;
   }
-  // Whether all of `other` lies in it.
+  // True if this box contains all of `other`.
   bool contains(const WideBox& other) const {
     return min.x <= other.min.x && min.y <= other.min.y && min.z <= other.min.z &&
            max.x >= other.max.x && max.y >= other.max.y && max.z >= other.max.z;
@@ -34,14 +33,15 @@ struct WideBox {
 class BoxTree {
  public:
   using Leaf = std::uint32_t;
-  // Leaves are larger than their boxes by this, on each side, in metres.
+  // Leaves exceed their boxes by this margin on each side, in metres.
   static constexpr double kMarginM = 0.1;
 
-  // A box with the number that visitors get. Its values must be finite. Leaves stay valid until
-  // they are removed.
+  // Adds a box with the number that visitors receive. Its values must be finite. A leaf stays valid
+  // until it is removed.
   Leaf insert(const WideBox& box, std::uint32_t item);
   void remove(Leaf leaf);
-  // The box is another now; it moves on by about `way_m` a call. True if the tree changed.
+  // Replaces the box of a leaf, which moves by about `way_m` a call. Returns true if the tree
+  // changed.
   bool move(Leaf leaf, const WideBox& box, const glm::dvec3& way_m);
 
   std::size_t size() const { return size_; }  // leaves
@@ -65,7 +65,7 @@ class BoxTree {
   }
 
   // Calls longest = visit(item, longest) for leaves on a ray up to parameter `longest`, roughly
-  // nearest first. A visitor that returns less ends the ray there.
+  // nearest first. A visitor that returns less shortens the ray.
   template <class Visit>
   void each_on(const BoxLine& line, double longest, const Visit& visit) const {
     Stack stack(root_);
@@ -92,7 +92,7 @@ class BoxTree {
     std::uint32_t item = 0;
     int height = 0;  // 0: a leaf
   };
-  // Nodes to visit: at most one a level, and the heights of balanced trees are small.
+  // Nodes to visit: at most one a level, and balanced trees are not deep.
   class Stack {
    public:
     explicit Stack(std::uint32_t root) {
@@ -107,7 +107,7 @@ class BoxTree {
     std::size_t count_ = 0;
   };
 
-  // Where a ray enters a box; infinite where it passes by.
+  // Returns the parameter at which a ray enters a box; infinite if it misses.
   static double enters(const BoxLine& line, const WideBox& box) {
     const glm::dvec3 a = (box.min - line.origin) * line.inverse;
     const glm::dvec3 b = (box.max - line.origin) * line.inverse;
@@ -127,7 +127,7 @@ class BoxTree {
   std::uint32_t rotate(std::uint32_t node, int side);
 
   std::vector<Node> nodes_;
-  std::uint32_t root_ = kNone, free_ = kNone;  // free nodes are a list by `parent`
+  std::uint32_t root_ = kNone, free_ = kNone;  // free nodes form a list by `parent`
   std::size_t size_ = 0;
 };
 

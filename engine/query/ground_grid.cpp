@@ -10,7 +10,7 @@ namespace psygen::query {
 namespace {
 
 constexpr int kTileCells = 8;
-// A ray does not begin in a triangle that it crosses in a shorter interval, which is rounding.
+// Shorter intervals of a ray in a triangle are rounding errors, and the ray does not begin there.
 constexpr double kShortest = 1e-12;
 
 }  // namespace
@@ -23,7 +23,7 @@ GroundGrid::GroundGrid(std::vector<std::uint16_t> heights, double cell_m, double
       relief_m_(relief_m),
       tile_heights_(static_cast<std::size_t>(tiles_ * tiles_)) {
   PSYGEN_CHECK(size_ >= 2 && heights_.size() == static_cast<std::size_t>(size_ * size_),
-               "the heights are those of a square of vertices");
+               "the heights must form a square of vertices");
   Tile all;
   for (int tz = 0; tz < tiles_; ++tz) {
     for (int tx = 0; tx < tiles_; ++tx) {
@@ -57,7 +57,7 @@ models::GroundPoint GroundGrid::at(glm::dvec2 local_xz) const {
   const std::size_t below = first + static_cast<std::size_t>(size_);
   const double h[4] = {metres(heights_[first]), metres(heights_[first + 1]),
                        metres(heights_[below]), metres(heights_[below + 1])};
-  // The same sums as in models::BlockGround::at(), for the same bits.
+  // Sums as in models::BlockGround::at(), for the same bits.
   if (u + v <= 1)
     return {h[0] + u * (h[1] - h[0]) + v * (h[2] - h[0]),
             models::unit_normal((h[1] - h[0]) / cell_m_, (h[2] - h[0]) / cell_m_)};
@@ -77,8 +77,8 @@ GroundGrid::Plane GroundGrid::plane_of(std::int64_t x, std::int64_t z, bool lowe
   return {right + front - opposite, (opposite - front) / cell_m_, (opposite - right) / cell_m_};
 }
 
-// The height of the ray above the triangle is linear, and so is decided by its value at `from` and
-// its rate. The side is carried from triangle to triangle, so rounding opens no gap between two.
+// The height of the ray above the triangle is linear, so its value at `from` and its rate decide.
+// The side is carried from triangle to triangle, so rounding opens no gap between two.
 std::optional<GroundHit> GroundGrid::cast_triangle(const GroundRay& ray, std::int64_t x,
                                                    std::int64_t z, bool lower, double from,
                                                    double to, Side& side) const {
@@ -122,7 +122,7 @@ std::optional<GroundHit> GroundGrid::cast_cell(const GroundRay& ray, std::int64_
 std::optional<GroundHit> GroundGrid::cast(const GroundRay& ray, double from, double to,
                                           Side& side) const {
   std::optional<GroundHit> hit;
-  // Whether the ray passes heights of [low, high] metres without meeting any.
+  // True if the ray passes heights of [low, high] metres without touching any.
   const auto passes = [&](double low, double high, double t0, double t1) {
     const double a = ray.height_at(t0), b = ray.height_at(t1);
     if (side == Side::kAbove) return std::min(a, b) > high;

@@ -1,6 +1,6 @@
-// The ground of one block as its finest mesh has it: quantised heights and two triangles a cell,
-// cut from (x, z + 1) to (x + 1, z). Answers heights, and where a ray meets the surface. It knows
-// no neighbours, materials or water. Immutable after construction; any thread.
+// The ground of one block as in its finest mesh: quantised heights and two triangles per cell, cut
+// from (x, z + 1) to (x + 1, z). Returns heights and intersections of rays. It knows no neighbours,
+// materials or water. Immutable after construction; any thread.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@
 
 namespace psygen::query {
 
-// Side of a ray on which the ground is.
+// The side of the ground on which a ray is.
 enum class Side : std::uint8_t {
-  kUnknown,  // the ray has not begun
+  kUnknown,  // before the start of the ray
   kAbove,    // the ray is above the ground
   kBelow,
 };
@@ -27,11 +27,11 @@ enum class Side : std::uint8_t {
 struct GroundRay {
   PlaneLine plane;
   double height = 0, rise = 0;
-  // Its height in metres at parameter `t`.
+  // Height in metres at parameter `t`.
   double height_at(double t) const { return height + rise * t; }
 };
 
-// Where a ray meets the surface.
+// Intersection of a ray with the surface.
 struct GroundHit {
   double t = 0;
   glm::vec3 normal{0, 1, 0};  // of the triangle, upwards
@@ -41,32 +41,32 @@ struct GroundHit {
 // The heights of a block, with the lowest and highest of each tile of cells.
 class GroundGrid {
  public:
-  // A ray that begins within this distance of the ground, measured vertically, begins on it.
+  // A ray that begins within this vertical distance of the ground begins on the ground.
   static constexpr double kTouchM = 1e-6;
 
-  // `heights` are size² values as models::BlockGround::heights() gives them. `relief_m` is the
-  // height of 65535, `cell_m` the distance of vertices. Linear in the vertices.
+  // `heights` are size² values as models::BlockGround::heights() returns them. `relief_m` is the
+  // height of the value 65535, `cell_m` the distance between vertices. Linear in the vertices.
   GroundGrid(std::vector<std::uint16_t> heights, double cell_m, double relief_m);
 
-  int size() const { return size_; }  // vertices along a side
+  int size() const { return size_; }  // vertices per side
   // Metres between vertices, and all heights in rows along x.
   double cell_m() const { return cell_m_; }
   std::span<const std::uint16_t> heights() const { return heights_; }
   // Metres of a quantised height; the same bits as models::BlockGround::at().
   double metres(std::uint16_t height) const { return relief_m_ * height / 65535.0; }
-  // The least and the greatest height in metres.
+  // Lowest and highest height in metres.
   double lowest_m() const { return lowest_m_; }
   double highest_m() const { return highest_m_; }
-  // Memory that it holds.
+  // Memory of this object.
   std::size_t bytes() const;
 
-  // Height and normal at a point in metres from the corner. Points outside are moved to the border.
-  // Constant time.
+  // Height and normal at a point in metres from the corner. Points outside are clamped to the
+  // border. Constant time.
   models::GroundPoint at(glm::dvec2 local_xz) const;
 
-  // The first point of [from, to] where the ray meets the surface. `side` is where the ray was
-  // before `from`; afterwards, where it is at `to`. A ray that begins on the ground (kTouchM) and
-  // does not rise above it meets it at once. Linear in the cells below the ray that reach its
+  // Returns the first point of [from, to] where the ray hits the surface. `side` is the ray's side
+  // before `from`; on return, its side at `to`. A ray that begins on the ground (kTouchM) and does
+  // not rise above it hits it at its origin. Linear in the cells below the ray that reach its
   // height.
   std::optional<GroundHit> cast(const GroundRay& ray, double from, double to, Side& side) const;
 
@@ -84,7 +84,7 @@ class GroundGrid {
                                          bool lower, double from, double to, Side& side) const;
 
   std::vector<std::uint16_t> heights_;
-  int size_, tiles_;  // along a side
+  int size_, tiles_;  // per side
   double cell_m_, relief_m_, lowest_m_, highest_m_;
   std::vector<Tile> tile_heights_;
 };

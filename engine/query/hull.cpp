@@ -16,7 +16,7 @@ struct Face {
   double above(const glm::dvec3& p) const { return glm::dot(normal, p) - distance; }
 };
 
-// Points with the tolerance below which they lie on a face.
+// Points, and the largest distance of a point that counts as on a face.
 struct Cloud {
   std::vector<glm::dvec3> points;
   double tolerance = 0;
@@ -42,7 +42,7 @@ struct Cloud {
   }
 };
 
-// A tetrahedron with corners far apart; empty where the points lie in one plane.
+// Makes a tetrahedron with corners far apart; empty if the points lie in one plane.
 std::vector<Face> tetrahedron(const Cloud& cloud) {
   const auto& p = cloud.points;
   const std::size_t a = 0;
@@ -60,7 +60,7 @@ std::vector<Face> tetrahedron(const Cloud& cloud) {
   return {cloud.face(a, c, b), cloud.face(a, b, d), cloud.face(b, c, d), cloud.face(c, a, d)};
 }
 
-// Replaces the faces that point `i` sees by ones from their common border to it.
+// Replaces the faces visible from point `i` by faces from their common border to the point.
 void add_point(const Cloud& cloud, std::size_t i, std::vector<Face>& faces) {
   std::vector<std::pair<std::size_t, std::size_t>> edges;
   std::erase_if(faces, [&](const Face& f) {
@@ -93,7 +93,7 @@ std::vector<HalfSpace> hull_faces(std::span<const glm::vec3> points) {
     add_point(cloud, i, faces);
   std::vector<HalfSpace> result;
   for (const Face& f : faces) {
-    // Slivers have no usable normal; their neighbours bound the hull.
+    // Slivers have no usable normal. Their neighbours bound the hull.
     if (f.normal != glm::dvec3(0))
       result.push_back({glm::vec3(f.normal), static_cast<float>(f.distance)});
   }

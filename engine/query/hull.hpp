@@ -1,5 +1,5 @@
-// The faces of the convex hull of some points, found one point at a time. For the few points of a
-// collider: quadratic time. Pure, any thread.
+// The faces of the convex hull of a set of points, built one point at a time. For the few points of
+// a collider: quadratic time. Pure, any thread.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -14,8 +14,8 @@ struct HalfSpace {
   float distance = 0;
 };
 
-// The half-spaces whose intersection is the hull, up to 1e-5 of its extent. Empty for points that
-// lie in one plane, for fewer than four, and for values that are not finite.
+// Returns the half-spaces whose intersection is the hull, up to 1e-5 of its extent. Empty for
+// points in one plane, for fewer than four points, and for values that are not finite.
 std::vector<HalfSpace> hull_faces(std::span<const glm::vec3> points);
 
 }  // namespace psygen::query

@@ -1,4 +1,4 @@
-// A straight line over a plane of squares: which squares it crosses, and between which parameters.
+// Walks along a straight line over a plane of squares, with the parameters of each crossed square.
 // Plain values and one template; linear in the squares (Amanatides and Woo, "A fast voxel traversal
 // algorithm", Eurographics 1987).
 #pragma once
@@ -11,8 +11,8 @@
 
 namespace psygen::query {
 
-// The points from + t · step. Components of `step` are 0 or at least kMinStep in size, so
-// products with `inverse` are finite.
+// The points from + t · step. The absolute value of a component of `step` is 0 or at least
+// kMinStep, so products with `inverse` are finite.
 struct PlaneLine {
   static constexpr double kMinStep = 1e-15;
   glm::dvec2 from{0.0}, step{0.0}, inverse{0.0};
@@ -26,8 +26,8 @@ struct PlaneLine {
   }
   // The point at parameter `t`.
   glm::dvec2 at(double t) const { return from + t * step; }
-  // The parameter at which coordinate `axis` leaves the square `index` of this side; infinite where
-  // the line does not move along the axis.
+  // The parameter at which coordinate `axis` leaves the square `index` of this side length;
+  // infinite if the line does not move along the axis.
   double leaves(int axis, std::int64_t index, double side) const {
     if (step[axis] == 0) return std::numeric_limits<double>::infinity();
     const auto border = static_cast<double>(step[axis] > 0 ? index + 1 : index) * side;
@@ -37,7 +37,7 @@ struct PlaneLine {
 
 // Calls visit(x, z, from, to) for each square [x · side, (x + 1) · side) × … that `line` crosses
 // for t in [from, to], in order. Successive intervals touch; some may be empty. Ends when `visit`
-// returns false. Rounding may start it in a neighbour of the first square.
+// returns false. Rounding may start the walk in a neighbour of the first square.
 template <class Visit>
 void march(const PlaneLine& line, double side, double from, double to, Visit&& visit) {
   const glm::dvec2 first = line.at(from) / side;

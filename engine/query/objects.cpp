@@ -18,7 +18,7 @@ tl::unexpected<core::Error> refused(std::string message) {
   return core::fail(core::ErrorCode::kInvalidArgument, std::move(message));
 }
 
-// What is wrong with the size of a part; empty if nothing is.
+// Returns the error of a part's size; empty if there is none.
 std::string size_error(const Collider::Shape& shape) {
   if (const auto* capsule = std::get_if<Collider::Capsule>(&shape);
       capsule && !(2 * double{capsule->radius} >= Objects::kMinSizeM))
@@ -74,7 +74,7 @@ Collider::Shape scaled_shape(const Collider::Shape& shape, const glm::vec3& scal
   return std::visit(Visitor{scale, most}, shape);
 }
 
-// The collider of an object of this scale; one for all that are not scaled.
+// Returns the collider of an object with this scale. Unscaled objects share one collider.
 core::Result<ObjectShape> scaled_solid(const ObjectShape& shape, const glm::vec3& scale) {
   if (scale == glm::vec3(1.0F)) return shape;
   Collider collider;
@@ -106,7 +106,7 @@ core::Result<ObjectShape> Objects::make_shape(Collider collider) {
   return std::make_shared<Solid>(std::move(collider));
 }
 
-// The pose, checked, without a shape.
+// Returns the checked pose, without a shape.
 core::Result<PlacedObject> Objects::placed(const ObjectPose& pose) const {
   const auto at = checked(pose.position, world_->block_size_m());
   if (!at) return tl::unexpected(at.error());
@@ -167,7 +167,7 @@ core::Result<ObjectId> Objects::add(ObjectName name, const ObjectShape& shape,
 }
 
 core::Result<void> Objects::move(ObjectId id, const ObjectPose& pose) {
-  if (find(id) == nullptr) return refused("there is no such object");
+  if (find(id) == nullptr) return refused("the object does not exist");
   Slot& slot = slots_[id.slot];
   if (slot.object.pose == pose) {
     slot.told = true;
@@ -185,7 +185,7 @@ core::Result<void> Objects::move(ObjectId id, const ObjectPose& pose) {
   }
   const glm::dvec3 way_m = coordinates(object->position) - coordinates(slot.object.position);
   slot.object = std::move(*object);
-  // What jumps far will not do so again and again.
+  // A long jump predicts no further jumps.
   const bool jumps = glm::dot(way_m, way_m) > 4;
   tree_.move(slot.leaf, box_of(slot.object), jumps ? glm::dvec3(0.0) : way_m);
   slot.told = true;

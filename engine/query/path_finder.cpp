@@ -8,10 +8,10 @@
 #include <utility>
 
 namespace psygen::query {
-namespace ways {  // has a name, because PathFinder::Search has members of these types
+namespace ways {  // named, because PathFinder::Search has members of these types
 
-constexpr float kMinUp = 0.72F;  // of the normal of ground that is walked on …
-constexpr double kGentle = 0.3;  // … unless the way leads down
+constexpr float kMinUp = 0.72F;  // y of the normal of walkable ground …
+constexpr double kGentle = 0.3;  // … unless the path leads down
 constexpr double kNoWay = std::numeric_limits<double>::infinity();
 
 struct Cell {
@@ -23,7 +23,7 @@ std::uint64_t name_of(Cell c) {
   return std::uint64_t{static_cast<std::uint32_t>(c.x)} << 32 | static_cast<std::uint32_t>(c.z);
 }
 
-// In metres from the corner of block (0, 0).
+// Returns the cell at metres from the corner of block (0, 0).
 Cell cell_at(double x_m, double z_m) {
   const auto number = [](double m) {
     return static_cast<std::int32_t>(std::floor(m / PathFinder::kCellM));
@@ -39,7 +39,7 @@ Cell cell_at(const core::WorldPosition& at, double block_m) {
 
 using namespace ways;
 
-// One search between two places.
+// One search between two positions.
 class PathFinder::Search {
  public:
   Search(const PathFinder& finder, const core::WorldPosition& from, const core::WorldPosition& to,
@@ -55,7 +55,7 @@ class PathFinder::Search {
     open(best_, 0, best_);
   }
 
-  // Looks at up to so many cells. Whether it has ended.
+  // Expands up to this many cells. Returns true if the search has ended.
   bool run(std::size_t cells) {
     for (std::size_t i = 0; i < cells; ++i) {
       if (open_.empty() || nodes_.size() >= settings_.max_cells) return true;
@@ -77,7 +77,7 @@ class PathFinder::Search {
 
   bool has_arrived() const { return best_ == to_; }
 
-  // The way to the nearest cell to the end.
+  // Returns the path to the reached cell that is nearest to the destination.
   std::vector<core::WorldPosition> way() {
     std::vector<core::WorldPosition> points{start_};
     for (const Cell c : trace()) {
@@ -127,7 +127,7 @@ class PathFinder::Search {
     return it->second;
   }
 
-  // Whether a tree or a boulder stands in a cell.
+  // True if a tree or a boulder is in the cell.
   bool is_narrow(Cell c) {
     const core::BlockCoord block = middle(c).block;
     if (blocks_.insert(name_of({block.x, block.z})).second) {
@@ -149,12 +149,12 @@ class PathFinder::Search {
     }
   }
 
-  // Of a step between neighbours; infinite where there is no way.
+  // Cost of a step between neighbours; infinite if it is impossible.
   double cost(Cell a, Cell b) {
     const Ground from = ground(a), to = ground(b);
     if (!to.exists || (avoided_.contains(name_of(b)) && b != to_)) return kNoWay;
     double run = PathFinder::kCellM * std::hypot(a.x - b.x, a.z - b.z);
-    // Of deep water one has its surface to do with.
+    // In deep water, the walker moves at the surface.
     const auto level_m = [&](const Ground& g) {
       return g.height_m + std::max(g.depth_m - settings_.wade_m, 0.0);
     };
@@ -208,7 +208,7 @@ class PathFinder::Search {
   std::unordered_map<std::uint64_t, Node> nodes_;
   std::unordered_map<std::uint64_t, Ground> grounds_;
   std::unordered_set<std::uint64_t> blocks_,
-      narrow_;  // whose solids were looked at; cells with some
+      narrow_;  // blocks whose solids were visited; cells with solids
   std::priority_queue<Open> open_;
 };
 

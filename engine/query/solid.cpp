@@ -17,7 +17,7 @@ Hit begins_inside(const Line& line) {
   return SolidHit{0, glm::vec3(-line.direction), true};
 }
 
-// The nearer of two hits.
+// Returns the nearer of two hits.
 Hit first_of(const Hit& a, const Hit& b) {
   return !b || (a && a->t <= b->t) ? a : b;
 }
@@ -40,7 +40,7 @@ Hit cast_capsule(const Line& line, double longest, const Collider::Capsule& caps
   if (length2 == 0) return ends;
   ends = first_of(ends, cast_sphere(line, longest, glm::dvec3(capsule.to), radius));
   if (ends && ends->from_inside) return ends;
-  // The cylinder between the ends: the distance from its axis, without the part along it.
+  // The cylinder between the ends: the distance from its axis, without the component along it.
   const glm::dvec3 from = line.origin - foot;
   const double along = glm::dot(from, axis) / length2;
   const double speed = glm::dot(line.direction, axis) / length2;
@@ -60,7 +60,7 @@ struct Clip {
   double enters = 0, leaves;
   glm::vec3 normal{0.0F};
   bool moved = false;
-  // Cuts by the half-space with this normal, whose border is `gap` before the line's origin.
+  // Clips by the half-space with this normal, whose border is `gap` before the line's origin.
   bool cut(const glm::vec3& outwards, double gap, double speed) {
     if (speed == 0) return gap <= 0;
     const double t = -gap / speed;
@@ -158,7 +158,7 @@ std::size_t Solid::heap_bytes() const {
   for (const Collider::Shape& shape : collider_.shapes) {
     const auto* hull = std::get_if<Collider::Hull>(&shape);
     if (hull == nullptr) continue;
-    const std::size_t faces = 2 * hull->points.size();  // Euler's formula, rounded up
+    const std::size_t faces = 2 * hull->points.size();  // upper bound by Euler's formula
     bytes +=
         hull->points.capacity() * sizeof(glm::vec3) + sizeof faces_[0] + faces * sizeof(HalfSpace);
   }

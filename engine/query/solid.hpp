@@ -1,5 +1,5 @@
-// A collider prepared for rays: its shapes, their box, and the faces of hulls, which are found when
-// a ray first comes near. Positions are in metres from the model's foot. One thread.
+// A collider prepared for rays: its shapes, their box, and the faces of hulls, which are computed
+// when a ray first comes near. Positions are in metres from the model's base point. One thread.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@
 
 namespace psygen::query {
 
-// Where a ray enters a solid.
+// Intersection of a ray with a solid.
 struct SolidHit {
   double t = 0;
-  glm::vec3 normal{0, 1, 0};  // outwards; against the ray where it begins inside
+  glm::vec3 normal{0, 1, 0};  // outwards; against the ray if it begins inside
   bool from_inside = false;
 };
 
@@ -27,36 +27,36 @@ struct Line {
 // A line with the inverse of its direction, for many boxes.
 struct BoxLine {
   glm::dvec3 origin{0.0}, inverse{0.0};
-  // Directions along an axis have finite inverses too, so that products are numbers.
+  // Directions along an axis also get finite inverses, so that products are not NaN.
   explicit BoxLine(const Line& line);
 };
 
-// Where `line` enters a shape, for t in [0, longest]. A line that begins inside enters at 0.
-// `faces` are those of hull_faces(), for hulls.
+// Returns the first point where `line` enters a shape, for t in [0, longest]. A line that begins
+// inside enters at 0. `faces` are the result of hull_faces(), for hulls.
 std::optional<SolidHit> cast(const Line& line, double longest, const models::Collider::Shape& shape,
                              std::span<const HalfSpace> faces);
-// Whether the line comes within 1 mm of a box.
+// Returns true if the line comes within 1 mm of a box.
 bool meets(const BoxLine& line, double longest, const core::Bounds& box);
 
 // One collider.
 class Solid {
  public:
-  // Shapes with values that are not finite, radii or extents that are not positive, and hulls of
-  // fewer than four points are left out. Rays pass through hulls without volume.
+  // Skips shapes with values that are not finite, radii or extents that are not positive, and hulls
+  // of fewer than four points. Rays pass through hulls without volume.
   explicit Solid(models::Collider collider);
 
   const models::Collider& collider() const { return collider_; }
   // The box around all shapes.
   const core::Bounds& box() const { return box_; }
-  // Memory on the heap, with the faces that may still be found.
+  // Memory on the heap, with the hull faces that are not computed yet.
   std::size_t heap_bytes() const;
-  // The first point where `line` enters a shape. The first call takes some 10 µs for each hull of
-  // 34 points.
+  // Returns the first point where `line` enters a shape. The first call takes some 10 µs for each
+  // hull of 34 points.
   std::optional<SolidHit> cast(const Line& line, double longest);
 
  private:
   models::Collider collider_;
-  std::vector<std::vector<HalfSpace>> faces_;  // of the hulls, in order, as far as known
+  std::vector<std::vector<HalfSpace>> faces_;  // of the hulls, in order, as far as computed
   core::Bounds box_;
 };
 

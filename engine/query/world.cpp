@@ -55,9 +55,9 @@ core::Result<Ground> World::ground(const core::WorldPosition& position) {
   const auto at = checked(position, block_m_);
   if (!at) return tl::unexpected(at.error());
   if (!world_->contains(at->block))
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("there is no ground: block ({}, {}) is outside the world",
-                                  at->block.x, at->block.z));
+    return core::fail(
+        ErrorCode::kInvalidArgument,
+        fmt::format("no ground: block ({}, {}) is outside the world", at->block.x, at->block.z));
   const glm::dvec2 local(at->local.x, at->local.z);
   const models::GroundPoint point = cache_.ground(at->block).at(local);
   const world::GroundBlends blends =
@@ -123,7 +123,7 @@ void World::cast_ground(const Course& course, Hit& hit) {
           }
           if (course.lowest(from, to) > relief_m_) {
             side = Side::kAbove;
-            return course.direction.y < 0;  // else it never comes down
+            return course.direction.y < 0;  // else it never descends
           }
           if (course.highest(from, to) < 0) {
             side = Side::kBelow;
@@ -144,7 +144,7 @@ void World::cast_ground(const Course& course, Hit& hit) {
         });
 }
 
-// The nearest hit of the models that stand on a block.
+// Finds the nearest hit of a block's models.
 void World::cast_block(const Course& course, glm::dvec3 corner_m, BlockCoord block, Hit& hit) {
   const Line line{course.origin.local - corner_m, course.direction};
   const BoxLine at_boxes(line);
@@ -169,7 +169,7 @@ void World::cast_block(const Course& course, glm::dvec3 corner_m, BlockCoord blo
   hit.model = placement.model;
 }
 
-// Models reach beyond their block, so each step of the ray looks at all blocks within reach.
+// Models extend beyond their block, so each step of the ray visits all blocks within reach.
 void World::cast_models(const Course& course, Hit& hit) {
   std::vector<glm::dvec2> seen;
   std::int64_t left = kMaxBlocks;

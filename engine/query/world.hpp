@@ -1,8 +1,8 @@
-// Questions about a world that need no mesh: the ground under a point, rays against ground, models
-// and objects, models near a place, colliders. Answers are exact: the ground is the two triangles a
+// Queries of a world that need no mesh: ground under a point, rays against ground, models and
+// objects, models near a point, colliders. Answers are exact: the ground is the two triangles per
 // cell of the finest mesh, whatever is drawn. Positions are blocks and metres, so precision is the
-// same at any distance from the origin. Blocks are made when first asked about and cached under a
-// byte bound; answers do not depend on what is cached. One thread. docs/queries.md.
+// same at any distance from the origin. Blocks are made on first use and cached within a byte
+// bound; answers do not depend on the cache. One thread. docs/queries.md.
 #pragma once
 
 #include <optional>
@@ -20,8 +20,8 @@ namespace psygen::query {
 struct Ground {
   double height_m = 0;
   glm::vec3 normal{0, 1, 0};  // of the triangle; unit length
-  // The kind that covers most, by the rule of the shader with the triangle's normal. Water is no
-  // kind of ground: its bottom has one.
+  // The surface kind with the largest cover, by the rule of the shader with the triangle's normal.
+  // Water is no surface kind: its bottom has one.
   world::GroundKind kind = world::GroundKind::kGrass;
   double water_depth_m = 0;  // from the water's surface down to the ground; 0: dry
 };
@@ -31,22 +31,22 @@ struct Ray {
   core::WorldPosition origin;
   glm::dvec3 direction{0, -1, 0};  // any length above 0
   double longest_m = 1000;         // above 0; may be infinite
-  bool ground = true;              // what it can hit: the ground, models with a collider,
+  bool ground = true;              // targets of the ray: the ground, models with a collider,
   bool models = true;
   bool objects = true;  // and objects, of World::meet()
 };
 
-// What a ray met.
+// The kind of target that a ray hit.
 enum class HitKind : std::uint8_t { kNothing, kGround, kModel, kObject };
 
 // The end of a ray.
 struct Hit {
   HitKind kind = HitKind::kNothing;
-  double distance_m = 0;         // from the origin; for kNothing, how far the ray was followed
+  double distance_m = 0;         // from the origin; for kNothing, the distance that was searched
   core::WorldPosition position;  // normalised
   glm::vec3 normal{0, 1, 0};     // of the surface, unit length; the ground's points upwards
-  // The ray came out of the ground, or began inside a collider (then distance_m is 0 and the normal
-  // points against the ray).
+  // True if the ray came out of the ground, or began inside a collider (then distance_m is 0 and
+  // the normal points against the ray).
   bool from_inside = false;
   core::BlockCoord block;                      // of the ground or the model
   std::uint32_t index = world::kTerrainIndex;  // of the model within the block
@@ -54,74 +54,77 @@ struct Hit {
   ObjectName object = 0;                       // of kObject (scene::entity_of() in a scene)
 };
 
-// A model at its place.
+// A model with its position.
 struct NearModel {
   core::BlockCoord block;
   std::uint32_t index = 0;       // within the block
   models::ModelIndex model = 0;  // its type
-  core::WorldPosition position;  // of its foot
-  double distance_m = 0;         // from its foot to the place asked about
+  core::WorldPosition position;  // of its base point
+  double distance_m = 0;         // from its base point to the query's position
 };
 
-// The queries of one world. World and registry must outlive it and must not change, except for the
-// world's edits, which it follows: it reads them, unguarded, in every call. So it belongs to the
-// thread that edits the world; in a scene this is the main thread. Another thread copies the value
-// (world::World), which costs some kilobytes and shares no state that changes, and has queries of
-// its own on the copy. Movable; not copyable.
+// The queries of one world. World and registry must outlive this object. Only the world's edits may
+// change: every call reads them, without a lock. So it belongs to the thread that edits the world;
+// in a scene this is the main thread. Another thread copies the value (world::World), which costs
+// some kilobytes and shares no mutable state, and makes its own queries on the copy. Movable; not
+// copyable.
 class World {
  public:
-  // A position's metres may have at most this size.
+  // Limit of the absolute value of a position's metres.
   static constexpr double kMaxLocalM = 1e9;
-  // One query looks at no more blocks than this: a ray ends there, a larger radius is refused.
+  // One query visits at most this many blocks: a ray ends there, a larger radius is rejected.
   static constexpr std::int64_t kMaxBlocks = 4096;
   static constexpr std::size_t kUsualBytes = std::size_t{32} << 20;
 
-  // Keeps blocks that were asked about within `cache_bytes`, least recently used out first. Makes
-  // none yet.
+  // Caches visited blocks within `cache_bytes`, least recently used evicted first. Makes no block
+  // yet.
   World(const world::World& world, const models::Registry& registry,
         std::size_t cache_bytes = kUsualBytes);
 
-  // Rays, and bodies of physics on these queries, meet these objects too, as they are at each call.
-  // They must be of the same world, and outlive this or the next meet(); null: none any more.
+  // Makes rays, and bodies of physics on these queries, also collide with these objects, as they
+  // are at each call. They must belong to the same world, and outlive this object or the next
+  // meet(); null: no objects.
   void meet(const Objects* objects) { objects_ = objects; }
   const Objects* objects() const { return objects_; }
 
-  // The ground under (or above) a position; its height is ignored. Fails with kInvalidArgument for
-  // positions that are not finite or too far from their block, and outside a bounded world, where
-  // there is no ground. About 50 ns in a block that is cached.
+  // Returns the ground under (or above) a position, whose height is ignored. Fails with
+  // kInvalidArgument for positions that are not finite or too far from their block, and outside a
+  // bounded world, where there is no ground. About 50 ns in a cached block.
   core::Result<Ground> ground(const core::WorldPosition& at);
 
-  // The first thing that a ray meets. It meets the ground from either side, and a collider from
+  // Returns the first hit of a ray. It hits the ground from either side, and a collider from
   // outside. A ray that begins on the ground (within GroundGrid::kTouchM) and does not rise above
-  // it meets it at distance 0. The ground has no sides where a bounded world ends. Fails with
-  // kInvalidArgument for an origin as above, a direction that is zero or not finite, and a length
-  // that is not above 0. Time grows with the cells under the ray where it is near the ground.
+  // it hits it at distance 0. The ground has no vertical sides at the border of a bounded world.
+  // Fails with kInvalidArgument for an origin as above, a direction that is zero or not finite, and
+  // a length that is not above 0. Time grows with the number of cells under the ray where it is
+  // near the ground.
   core::Result<Hit> cast(const Ray& ray);
 
-  // Replaces `out` by the models whose feet lie within `radius_m` of `at` (in space), nearest
-  // first, then by block and index. With `only`, those of these types. A radius of 0 finds what
-  // stands exactly there. Fails with kInvalidArgument for a position as above and for a radius that
-  // is negative or not finite, with kOverBudget for one that reaches more than kMaxBlocks.
+  // Replaces `out` by the models whose base points are within `radius_m` of `at` (in space),
+  // nearest first, then by block and index; with `only`, models of these types. A radius of 0 finds
+  // models at exactly this point. Fails with kInvalidArgument for a position as above and for a
+  // radius that is negative or not finite, with kOverBudget for one that covers more than
+  // kMaxBlocks.
   core::Result<void> models_within(const core::WorldPosition& at, double radius_m,
                                    std::vector<NearModel>& out,
                                    std::span<const models::ModelIndex> only = {});
-  // The nearest of these types within a radius, or nothing. Errors as above.
+  // Returns the nearest model of these types within a radius, or nothing. Errors as above.
   core::Result<std::optional<NearModel>> nearest(const core::WorldPosition& at, double radius_m,
                                                  std::span<const models::ModelIndex> only = {});
-  // The placement of a model: its parameters, for example for ModelType::collider(). Nothing if the
-  // block has no model of this index. Logarithmic in the block's models.
+  // Returns the placement of a model: its parameters, for example for ModelType::collider().
+  // Nothing if the block has no model of this index. Logarithmic in the block's models.
   std::optional<world::Placement> placement(core::BlockCoord block, std::uint32_t index);
 
-  // Ground, and models with colliders, of a whole block, for physics. The block must be in the
-  // world. Valid until the next call of any function.
+  // Ground and models with colliders of a whole block, for physics. The block must be in the world.
+  // Valid until the next call of any function.
   const GroundGrid& ground_grid(core::BlockCoord block) { return cache_.ground(block); }
   const BlockSolids& solids(core::BlockCoord block) { return cache_.solids(block); }
 
-  // How far models reach sideways from their feet at most, in metres, with those that edits have
-  // placed. O(1).
+  // The largest horizontal reach of models from their base points, in metres, including models that
+  // edits have placed. O(1).
   double models_reach_m() const { return static_cast<double>(max_reach_m().x); }
 
-  // What the world looks like to queries.
+  // World and registry of these queries.
   const world::World& world() const { return *world_; }
   const models::Registry& registry() const { return *registry_; }
 
@@ -139,7 +142,7 @@ class World {
   void cast_block(const Course& course, glm::dvec3 corner_m, core::BlockCoord block, Hit& hit);
   core::Result<std::vector<BlockAround>> blocks_within(const core::WorldPosition& at,
                                                        double radius_m) const;
-  // Visits the models of these types that stand on a block.
+  // Visits the models of these types in a block.
   template <class Visit>
   void each_model(const BlockAround& b, const core::WorldPosition& at,
                   std::span<const models::ModelIndex> only, const Visit& visit);
@@ -153,8 +156,8 @@ class World {
   const Objects* objects_ = nullptr;
 };
 
-// The position with local x and z in [0, block size). Fails with kInvalidArgument for values that
-// are not finite or larger than World::kMaxLocalM.
+// Returns the position with local x and z in [0, block size). Fails with kInvalidArgument for
+// values that are not finite or larger than World::kMaxLocalM.
 core::Result<core::WorldPosition> checked(const core::WorldPosition& at, double block_size_m);
 
 }  // namespace psygen::query

@@ -607,7 +607,7 @@ def renamed_names(tree):
 
 
 def old_names(tree, names):
-    """Uses of names that have a successor, and of kMax…, kMin…, max_… and min_…."""
+    """Uses of names that have a successor, and of kMost…, kLeast…, most_… and least_…."""
     names = sorted(n for n in names if not re.search(r"[^\w:]", n))
     old = re.compile(r"(?<![\w:])(?:" + "|".join(map(re.escape, names)) + r")\b") if names else None
     for name, text in tree.select((*CODE, "tests", "examples", "shaders"), CXX + SHADERS):
@@ -724,7 +724,7 @@ MEASURES = [
     ("fragments", 7.2, 3.0, fragments, "% of subjects (a header with its source) under 40 lines"),
     ("lines", 111600, 109000, lines, "lines of C++ in ecs, engine, editor and game"),
     ("test-names", 325, 0, test_names, "names of tests that are no sentence in UpperCamel"),
-    ("old-names", 918, 0, names_left, "old names of the changelog's table in code, kMax…, kMin…, max_…, min_…"),
+    ("old-names", 918, 0, names_left, "old names of the changelog's table in code, kMost…, kLeast…, most_…, least_…"),
 ]
 
 
@@ -753,7 +753,7 @@ def report(tree, by_folder, worst=5):
         counts = collections.Counter()
         for file, at in figure.found.items():
             counts[folder_of(file) if by_folder else file] += len(at)
-        for file, number in counts.max_common(60 if by_folder else worst):
+        for file, number in counts.most_common(60 if by_folder else worst):
             print(f"{'':15} {number:8}   {file}")
 
 

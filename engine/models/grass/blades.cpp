@@ -15,8 +15,8 @@ namespace {
 constexpr glm::vec3 kFresh{1.03F, 1.25F, 0.61F}, kDry{1.16F, 1.06F, 0.71F};
 constexpr float kShake = 1.2F;  // random shift of tufts, over about half the distance between them
 constexpr std::uint32_t kFirstTuft = 1U << 30;
-constexpr float kMiddleWidth = 0.9F;  // width of a blade at its bend over that at its foot
-constexpr float kLowEdge = 0.45F;     // share of their height that blades at the border lack
+constexpr float kMiddleWidth = 0.9F;  // width of a blade at its bend over that at its base
+constexpr float kLowEdge = 0.45F;     // fraction of their height that blades at the border lack
 constexpr float kStemHeight = 1.2F, kStemWidth = 0.5F;
 constexpr float kHead = 1.3F;  // half of a flower's width over a blade's width
 
@@ -31,7 +31,7 @@ struct Fractions {
   }
 };
 
-// A unit vector from `turn` in [0, 1), without sines. Its distribution is not quite uniform.
+// Returns a unit vector for `turn` in [0, 1), without sines. Its distribution is not quite uniform.
 glm::vec2 direction(float turn) {
   const float quarter = std::floor(turn * 4), t = turn * 4 - quarter;
   const float scale = 1 / (1 + t * t);
@@ -42,8 +42,9 @@ glm::vec2 direction(float turn) {
   return {v.y, -v.x};
 }
 
-// Place of tuft `k` in the unit disc. The additive recurrence of the plastic number fills a square
-// evenly for any number of tufts. Points are mapped to the disc and shifted at random to hide rows.
+// Returns the position of tuft `k` in the unit disc. The additive recurrence of the plastic number
+// fills a square evenly for any number of tufts. Points are mapped to the disc and shifted at
+// random to hide rows.
 glm::vec2 tuft_place(std::uint64_t key, std::uint32_t k, std::uint32_t count) {
   const auto coordinate = [](std::uint32_t v) {
     return static_cast<float>(static_cast<std::int32_t>(v)) * 0x1.0p-31F;

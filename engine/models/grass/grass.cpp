@@ -17,7 +17,7 @@ constexpr ParameterType kReal = ParameterType::kReal;
 constexpr ParameterSource kPlaced = ParameterSource::kPlaced;
 
 constexpr ParameterSpec kSchema[kGrassParameterCount] = {
-    {"seed", kInteger, "", 1, -0x1.0p63, 0x1.0p63, 0, 1000, "which of all patches", kPlaced},
+    {"seed", kInteger, "", 1, -0x1.0p63, 0x1.0p63, 0, 1000, "selects one of all patches", kPlaced},
     {"slope_x", kReal, "1", 0, -1.5, 1.5, -0.6, 0.6, "of the ground, rise per metre along x",
      kPlaced},
     {"slope_z", kReal, "1", 0, -1.5, 1.5, -0.6, 0.6, "of the ground, rise per metre along z",
@@ -26,10 +26,9 @@ constexpr ParameterSpec kSchema[kGrassParameterCount] = {
     {"flowers", kInteger, "", 0, 0, 1024, 0, 40, "number of flowers"},
     {"radius_m", kReal, "m", 1, 0.01, 20, 0.2, 2.5, "of the patch"},
     {"height_m", kReal, "m", 0.35, 0.01, 5, 0.08, 0.9, "of the highest blades"},
-    {"width_m", kReal, "m", 0.025, 0.001, 1, 0.008, 0.06, "of a blade at its foot"},
-    {"lean", kReal, "1", 0.5, 0, 1.5, 0.1, 1,
-     "how far the blades bend over, relative to their height"},
-    {"albedo", kReal, "1", 0.11, 0.01, 0.9, 0.05, 0.3, "mean reflected share of light"},
+    {"width_m", kReal, "m", 0.025, 0.001, 1, 0.008, 0.06, "of a blade at its base"},
+    {"lean", kReal, "1", 0.5, 0, 1.5, 0.1, 1, "shift of a blade's tip, relative to its height"},
+    {"albedo", kReal, "1", 0.11, 0.01, 0.9, 0.05, 0.3, "mean reflected fraction of light"},
     {"dryness", kReal, "1", 0.1, 0, 1, 0, 1, "green (0) to straw (1)"},
     {"flower", kInteger, "", kWhiteFlower, 0, kFlowerCount - 1, 0, kFlowerCount - 1,
      "0 white, 1 yellow, 2 pink, 3 blue"},
@@ -43,7 +42,7 @@ std::uint32_t blades_of(const Parameters& p) {
 std::uint32_t flowers_of(const Parameters& p) {
   return static_cast<std::uint32_t>(p.integer(kGrassFlowers));
 }
-// How many of `all` blades or flowers a level keeps.
+// Number of blades or flowers of `all` that a level keeps.
 std::uint32_t left(std::uint32_t all, int level) {
   const std::uint32_t each = level < 2 ? 1 : level == 2 ? 3 : 9;
   return (all + each - 1) / each;
@@ -99,7 +98,7 @@ class GrassType final : public ModelType {
   }
 };
 
-// Level 1 leaves out the bends, level 2 most blades of a tuft, level 3 whole tufts.
+// Level 1 omits the bends, level 2 most blades of a tuft, level 3 whole tufts.
 double GrassType::level_error_m(const Parameters& p, int level) const {
   const int at = std::min(level, level_count_of(p) - 1);
   if (at == 0) return 0;

@@ -1,9 +1,10 @@
 // A sparse map from squares of the quadtree to values, as an immutable tree: copies are O(1), and
-// changing a copy leaves all others as they were. Every square knows the hash and the summary of
-// everything in it, so large areas are compared and counted without a visit to their values. The
-// shape of the tree and its hashes depend on values and places alone, not on the order of changes.
-// Squares without values are left out: the tree has less than two nodes a value, and a path at most
-// 33. Any thread may read a map that nobody changes; different copies may be used at the same time.
+// changing a copy does not change the others. Every square stores the hash and the summary of its
+// whole content, so large areas are compared and counted without a visit to their values. The shape
+// of the tree and its hashes depend on values and positions alone, not on the order of changes.
+// Squares without values are omitted: the tree has less than two nodes a value, and a path at most
+// 33. Any thread may read a map that no thread changes; different copies may be used at the same
+//     time.
 #pragma once
 
 #include <array>
@@ -23,8 +24,8 @@ struct QuadPlace {
   std::uint32_t level = 0;
   std::uint64_t x = 0, z = 0;
 
-  // The square of `level` < kMaxLevel, counted in squares of that level from block 0. Wraps like
-  // blocks do.
+  // Returns the square of `level` < kMaxLevel, counted in squares of that level from block 0. Wraps
+  // like blocks do.
   static constexpr QuadPlace of(core::BlockCoord at, std::uint32_t level = 0) {
     const auto from_origin = [level](std::int32_t index) {
       const std::uint32_t block = static_cast<std::uint32_t>(index) << level;
@@ -32,19 +33,19 @@ struct QuadPlace {
     };
     return {level, from_origin(at.x), from_origin(at.z)};
   }
-  // The block at its corner.
+  // The block at the square's corner.
   constexpr core::BlockCoord corner() const {
     const auto block = [this](std::uint64_t index) {
       return static_cast<std::int32_t>(static_cast<std::uint32_t>(index << level) ^ 0x80000000U);
     };
     return {block(x), block(z)};
   }
-  // Whether `other` is this square or lies in it.
+  // True if `other` is this square or inside it.
   constexpr bool covers(const QuadPlace& other) const {
     return other.level <= level && other.x >> (level - other.level) == x &&
            other.z >> (level - other.level) == z;
   }
-  // Which quarter of this square `other` lies in, which is smaller: x in bit 0, z in bit 1.
+  // The quarter of this square that contains the smaller square `other`: x in bit 0, z in bit 1.
   constexpr std::size_t quarter_of(const QuadPlace& other) const {
     const std::uint32_t down = level - 1 - other.level;
     return static_cast<std::size_t>(((other.x >> down) & 1) | (((other.z >> down) & 1) << 1));
@@ -56,8 +57,8 @@ struct QuadPlace {
   friend bool operator==(const QuadPlace&, const QuadPlace&) = default;
 };
 
-// V has bool empty() const, std::uint64_t hash() const (never 0 where not empty), and a type
-// Summary, which is of nothing by default, with add(const Summary&); V::summary() returns its own.
+// V has bool empty() const, std::uint64_t hash() const (not 0 unless empty), and a type Summary,
+// which by default has no content, with add(const Summary&); V::summary() returns the value's own.
 template <class V>
 class QuadMap {
  public:
@@ -68,21 +69,21 @@ class QuadMap {
     QuadPlace place;
     std::shared_ptr<const V> value;  // null: none
     std::array<std::shared_ptr<const Cell>, 4> quarters;
-    std::uint64_t hash = 0;  // of all values in the square, and where they are; never 0
-    Summary summary;         // of all of them
+    std::uint64_t hash = 0;  // of all values in the square, and of their positions; never 0
+    Summary summary;         // of all values in the square
   };
 
   bool empty() const { return root_ == nullptr; }
-  // The smallest square around everything, or null.
+  // The smallest square around all values, or null.
   const Cell* root() const { return root_.get(); }
 
-  // The value of a square; null if it has none. O(path).
+  // Returns the value of a square; null if it has none. O(path).
   const V* find(const QuadPlace& place) const {
     const Cell* cell = at_or_below(place);
     return cell != nullptr && cell->place == place ? cell->value.get() : nullptr;
   }
-  // The largest cell in the square, which knows hash and summary of all in it; null: nothing is
-  // there.
+  // Returns the largest cell in the square, with the hash and summary of its content; null if the
+  // square is empty.
   const Cell* at_or_below(const QuadPlace& place) const {
     const Cell* cell = root_.get();
     while (cell != nullptr && !place.covers(cell->place)) {
@@ -92,14 +93,14 @@ class QuadMap {
     return cell;
   }
 
-  // Sets the value of a square; an empty value takes it away. O(path).
+  // Sets the value of a square; an empty value removes it. O(path).
   void set(const QuadPlace& place, V value) {
     root_ =
         with(root_, place, value.empty() ? nullptr : std::make_shared<const V>(std::move(value)));
   }
 
-  // visit(place, before, after) for each square whose value is not the same object in both maps;
-  // null where there is none. O(differences · path).
+  // Calls visit(place, before, after) for each square whose value is not the same object in both
+  // maps; null for no value. O(differences · path).
   template <class Visit>
   static void each_difference(const QuadMap& before, const QuadMap& after, const Visit& visit) {
     difference(before.root_.get(), after.root_.get(), visit);
@@ -111,7 +112,7 @@ class QuadMap {
 
   static CellPtr make(const QuadPlace& place, ValuePtr value, std::array<CellPtr, 4> quarters) {
     auto cell = std::make_shared<Cell>();
-    // Its place is part of it: the same values elsewhere are something else.
+    // The hash includes the position, because equal values at other positions must differ.
     std::uint64_t hash = core::combine(core::combine(core::mix64(place.level), place.x), place.z);
     if (value) {
       hash = core::combine(hash, value->hash());
@@ -129,7 +130,7 @@ class QuadMap {
     return cell;
   }
 
-  // A cell, or what is left of it where it is not needed.
+  // Makes a cell, or returns the only quarter if the cell is not needed.
   static CellPtr tidy(const QuadPlace& place, ValuePtr value, std::array<CellPtr, 4> quarters) {
     if (value) return make(place, std::move(value), std::move(quarters));
     const CellPtr* only = nullptr;
@@ -193,7 +194,7 @@ class QuadMap {
         difference(before->quarters[q].get(), after->quarters[q].get(), visit);
       return;
     }
-    // The larger one has the other in one of its quarters.
+    // The larger one has the smaller one in one of its quarters.
     const bool grown = after->place.covers(before->place);
     const Cell* large = grown ? after : before;
     const Cell* small = grown ? before : after;

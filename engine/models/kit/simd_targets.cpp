@@ -31,7 +31,7 @@ std::string_view name_of(std::int64_t bit) {
   }
 }
 
-// The sets that the CPU supports, determined before anything is pinned. Highway lists the best
+// Returns the sets that the CPU supports, determined before any pinning. Highway lists the best
 // first. Its list of supported sets lacks the fallback, which runs on any CPU.
 const std::vector<Target>& available() {
   static const std::vector<Target> targets = [] {

@@ -33,12 +33,13 @@ struct RockShape {
   float turn[4];           // quaternion x, y, z, w of any length
   float amplitude, decay;  // displacement over the radius; ratio from one subdivision to the next
   glm::vec3 stretch;       // metres of a unit along each axis
-  float lift;              // metres from the foot up to the centre
+  float lift;              // metres from the base point up to the centre
   float rise;              // increase of light and colour per metre of height
   glm::vec3 colour;        // square root of the albedo, times 255
   float moss;              // largest cover, 0 … 1
   float facet;             // weight of the triangle's normal at its corners; 0: shared vertices
-  float ledge, tint;       // of layers: distance they stand out, difference of their colour
+  float ledge, tint;       // of layers: distance by which they stand out, difference of their
+                           // colour
   glm::vec3 layer_axis;    // across the layers, times their number per unit
   float layer_phase;       // −1 … 1
   glm::vec3 box_centre, box_scale;  // metres to snorm16; the box is larger than the rock
@@ -46,14 +47,14 @@ struct RockShape {
 inline constexpr float kRockJitter = 0.15F;  // of the tetrahedron's corners; below 1 / (3·√3)
 inline constexpr float kRiseAtFoot = 0.16F;  // light and colour at height 0
 
-// Vertices of the mesh: one per place, or three per triangle where the rock is faceted.
+// Vertices of the mesh: one per position, or three per triangle of a faceted rock.
 constexpr std::uint32_t rock_mesh_vertices(int subdivisions, bool faceted) {
   return faceted ? rock_triangles(subdivisions) * 3 : rock_vertices(subdivisions);
 }
 
 // Writes rock_mesh_vertices() of core::ModelVertex to `out`, which is not read, and returns their
-// box in metres. 0 <= subdivisions <= kMaxSubdivisions; time is linear in the vertices. Needs 700
-// KiB of stack for 6 subdivisions, 5 KiB for 2.
+// bounds in metres. 0 <= subdivisions <= kMaxSubdivisions; time is linear in the vertices. Needs
+// 700 KiB of stack for 6 subdivisions, 5 KiB for 2.
 core::Bounds mesh_rock(const RockShape& shape, const RockTopology& topology, int subdivisions,
                        std::byte* out);
 

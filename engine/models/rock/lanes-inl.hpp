@@ -33,7 +33,7 @@ struct Items {
   hn::Vec<D> rows[4];
 };
 
-// The same as one vector per component.
+// The items as one vector per component.
 template <class D>
 struct Vectors {
   hn::Vec<D> x, y, z, w;

@@ -19,17 +19,17 @@ constexpr ParameterType kInteger = ParameterType::kInteger;
 constexpr ParameterType kReal = ParameterType::kReal;
 
 constexpr ParameterSpec kSchema[kRockParameterCount] = {
-    {"seed", kInteger, "", 1, -0x1.0p63, 0x1.0p63, 0, 1000, "which of all rocks",
+    {"seed", kInteger, "", 1, -0x1.0p63, 0x1.0p63, 0, 1000, "selects one of all rocks",
      ParameterSource::kPlaced},
     {"subdivisions", kInteger, "", 2, 0, kMaxSubdivisions, 0, 4,
-     "how often every triangle is split into four"},
+     "number of times that every triangle is split into four"},
     {"radius_m", kReal, "m", 0.6, 0.01, 100, 0.1, 4, "mean radius"},
     {"amplitude", kReal, "1", 0.24, 0, 0.6, 0, 0.4,
      "roughness: displacement relative to the radius"},
     {"decay", kReal, "1", 0.55, 0, 1, 0.3, 0.9, "ratio of the displacements of two subdivisions"},
-    {"albedo", kReal, "1", 0.26, 0.02, 0.9, 0.1, 0.5, "mean reflected share of light"},
+    {"albedo", kReal, "1", 0.26, 0.02, 0.9, 0.1, 0.5, "mean reflected fraction of light"},
     {"warmth", kReal, "1", 0.25, -1, 1, -0.5, 0.7, "blue-grey (-1) to red-brown (1)"},
-    {"moss", kReal, "1", 0.3, 0, 1, 0, 1, "cover of moss on what faces up"},
+    {"moss", kReal, "1", 0.3, 0, 1, 0, 1, "cover of moss on surfaces that face up"},
     {"family", kInteger, "", kRockRounded, 0, kRockFamilyCount - 1, 0, kRockFamilyCount - 1,
      "0 rounded, 1 faceted, 2 layered"},
 };
@@ -44,7 +44,8 @@ struct Family {
   float amplitude;    // factor of the parameter
   float height;       // factor of the stretch along y
   float facet;        // weight of the triangle's normal at its corners; 0: shared vertices
-  float ledge, tint;  // of layers: shares of the distance from the centre and of the stored colour
+  float ledge, tint;  // of layers: fractions of the distance from the centre and of the stored
+                      // colour
 };
 constexpr Family kFamilies[kRockFamilyCount] = {
     {0.8F, 1.0F, 0, 0, 0}, {1.0F, 1.0F, 0.7F, 0, 0}, {0.8F, 0.75F, 0, 0.13F, 0.14F}};
@@ -93,12 +94,12 @@ int subdivisions_at(const Parameters& p, int level) {
   return std::max(static_cast<int>(p.integer(kRockSubdivisions)) - level, 0);
 }
 
-// The id of a shared index list.
+// Returns the id of a shared index list.
 constexpr std::uint32_t index_list(int subdivisions, bool faceted) {
   return (2U << 24) | (faceted ? 0x100U : 0U) | static_cast<std::uint32_t>(subdivisions + 1);
 }
 
-// The tables of all rocks: constant, and too much work to be made for each registry anew.
+// The tables of all rocks: constant, and too expensive to make for each registry.
 const RockTopology& all_topology() {
   static const RockTopology topology;
   return topology;
@@ -133,7 +134,7 @@ class RockType final : public ModelType {
 };
 
 // The distance of a unit sphere from its tetrahedron of n subdivisions, plus the displacements that
-// the level leaves out.
+// the level omits.
 double RockType::level_error_m(const Parameters& p, int level) const {
   constexpr std::array<double, kMaxSubdivisions + 1> kSagitta{0.667, 0.423, 0.130, 0.036,
                                                               0.009, 0.002, 0.0006};
@@ -202,8 +203,8 @@ core::Bounds RockType::synthesise(const Parameters& p, int level, const MeshView
   return mesh_rock(shape_of(p, bounds(p)), topology_, n, out.vertices.data());
 }
 
-// The points that are farthest in 56 directions, each once: those of the surface of a lattice of
-// 4 x 4 x 4 points.
+// Returns the points that are farthest in 56 directions, each once. The directions lead to the
+// surface of a lattice of 4 x 4 x 4 points.
 std::vector<glm::vec3> farthest(const std::vector<glm::vec3>& points) {
   std::vector<std::size_t> chosen;
   for (int i = 0; i < 64; ++i) {
@@ -223,7 +224,7 @@ std::vector<glm::vec3> farthest(const std::vector<glm::vec3>& points) {
 }
 
 // Up to two subdivisions the hull has all corners. Finer rocks use the mesh of at most four
-// subdivisions, and of its corners only the farthest in 56 directions.
+// subdivisions, and only its farthest corners in 56 directions.
 Collider RockType::collider(const Parameters& p) const {
   constexpr int kAll = 2, kFinest = 4;
   constexpr std::uint32_t kMax = rock_mesh_vertices(kFinest, true);

@@ -10,7 +10,7 @@
 
 namespace psygen::models {
 
-// Positions in the schema of the type "rock".
+// Indices into the schema of the type "rock".
 enum RockParameter : std::size_t {
   kRockSeed = 0,
   kRockSubdivisions,
@@ -28,10 +28,11 @@ enum RockParameter : std::size_t {
 enum RockFamily : int { kRockRounded = 0, kRockFaceted, kRockLayered, kRockFamilyCount };
 
 // The model type "rock". Level l has n = max(subdivisions − l, 0) subdivisions: exactly 4·4^n
-// triangles and 2·4^n + 2 core::ModelVertex, or three per triangle where faceted. Corners that two
-// levels share have the same places. Synthesis needs 700 KiB of stack and nothing on the heap. The
-// collider is the convex hull of the corners; with more than two subdivisions, of the 56 corners
-// that are farthest in fixed directions, and others stand out by at most 0.15 of the radius.
+// triangles and 2·4^n + 2 core::ModelVertex, or three per triangle if faceted. Corners that two
+// levels share have the same positions. Synthesis needs 700 KiB of stack and no heap. The collider
+// is the convex hull of the corners. With more than two subdivisions, it is the hull of the 56
+// corners that are farthest in fixed directions, and other corners are outside by at most 0.15 of
+// the radius.
 std::unique_ptr<ModelType> make_rock_type();
 
 }  // namespace psygen::models

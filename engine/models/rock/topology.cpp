@@ -66,8 +66,8 @@ std::array<RockTopology::Offsets, 3> corners_of(std::span<const std::uint16_t> i
   return corners;
 }
 
-// The neighbours of a vertex in order. `sides` has the two other corners of each triangle around
-// it.
+// Returns the neighbours of a vertex in order. `sides` has the two other corners of each triangle
+// around it.
 std::array<std::uint16_t, 6> ring_of(std::span<const std::array<std::uint16_t, 2>> sides) {
   std::array<std::uint16_t, 6> ring{};
   std::uint16_t at = sides[0][0];

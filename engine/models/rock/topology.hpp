@@ -1,8 +1,7 @@
 // The surface of a tetrahedron whose triangles are repeatedly split into four: the edge that each
-// vertex halves, the triangles of each step and the ring of neighbours around every vertex. The
-// same for all rocks, which share it; it knows no positions. Vertex numbers are nested: the
-// vertices of n subdivisions are the first ones of n + 1. Built once, then read-only and usable
-// from any thread.
+// vertex halves, the triangles of each step, and the ring of neighbours around every vertex. All
+// rocks share it; it knows no positions. Vertex numbers are nested: the vertices of n subdivisions
+// are the first ones of n + 1. Built once, then read-only and usable from any thread.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// How edits of the ground act on heights: the curves of single edits, and the walk down the
-// quadtree to those that reach the samples.
+// Applies edits of the ground to heights: the curves of single edits, and the walk down the
+// quadtree to the edits that reach the samples.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,7 +12,8 @@ namespace {
 using Cell = QuadMap<GroundCell>::Cell;
 using EditPtr = std::shared_ptr<const GroundEdit>;
 
-// The weight `left` metres before the end of what fades out over `fades` metres: smooth, 0 … 1.
+// Returns the weight of an effect `left` metres before its end, which fades out over `fades`
+// metres: smooth, 0 … 1.
 double faded(double left, double fades) {
   if (!(left >= 0)) return 0;
   if (left >= fades) return 1;
@@ -20,14 +21,14 @@ double faded(double left, double fades) {
   return t * t * (3 - 2 * t);
 }
 
-// The weight of an edit at a distance from its centre: smooth from 1 to 0.
+// Returns the weight of an edit at a distance from its centre: smooth from 1 to 0.
 double weight_of(const GroundEdit& edit, double dx, double dz) {
   const double away =
       edit.square ? std::max(std::abs(dx), std::abs(dz)) : std::sqrt(dx * dx + dz * dz);
   return faded(edit.radius_m - away, edit.falloff * edit.radius_m);
 }
 
-// The nearest place of a segment: its share of the way, and the square of its distance.
+// The nearest point of a segment: its fraction of the length, and the square of its distance.
 struct Foot {
   double share, away2;
 };
@@ -55,7 +56,7 @@ double height_in(const Heightmap& map, double u, double v) {
   return a + t * (b - a);
 }
 
-// A height of the ground, in metres, as an edit leaves it.
+// Returns a height of the ground, in metres, after an edit.
 double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
   if (edit.road) {
     const RoadEffect road = effect_of(*edit.road, {dx, dz});
@@ -128,7 +129,7 @@ class Application {
   }
 
  private:
-  // The samples of `range` that lie in a square.
+  // Returns the samples of `range` in a square.
   Range narrowed(std::span<const std::int64_t> at, Range range, std::uint64_t index,
                  std::uint32_t level) const {
     const auto cell = [&](std::uint64_t i) {
@@ -151,14 +152,14 @@ class Application {
       act(*edit, columns, rows);
   }
 
-  // Metres from the centre of an edit to a lattice point, along one axis. Exact in the same way for
-  // every node that has the point.
+  // Metres from the centre of an edit to a lattice point, along one axis. Exact, with the same bits
+  // for every node that has the point.
   double away_m(std::int64_t at, std::int32_t block, double local_m) const {
     return static_cast<double>(at - std::int64_t{block} * scale_.cells_per_block) * scale_.cell_m -
            local_m;
   }
 
-  // Those of `range` that lie within an edit's radius along one axis.
+  // Returns the samples of `range` within an edit's radius along one axis.
   Range within(const GroundEdit& edit, std::span<const std::int64_t> at, Range range,
                std::int32_t block, double local_m) const {
     const auto all = at.subspan(range.first, range.end - range.first);

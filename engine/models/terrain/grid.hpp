@@ -1,5 +1,5 @@
 // The topology of a terrain mesh: the vertices of each level, their order in the vertex array, and
-// the index list that all blocks of one size share. It has no heights; those are in terrain.cpp.
+// the index list that all blocks of one size share. It has no heights (terrain.cpp makes them).
 // Plain values, usable from any thread. docs/models.md, "Mesh".
 #pragma once
 
@@ -53,15 +53,15 @@ struct TerrainGrid {
   std::uint32_t index_list() const {
     return (1U << 24) | static_cast<std::uint32_t>(size << 8) | static_cast<std::uint32_t>(stride);
   }
-  // The grid of an id from index_list(). Other ids are refused by an assertion, also in release.
+  // Returns the grid of an id from index_list(). Other ids fail an assertion, also in release.
   static TerrainGrid of_index_list(std::uint32_t id);
 
   // Writes triangles() · 3 indices, counter-clockwise seen from outside. The surface comes first,
   // tile by tile, in strips of at most 15 cells, row by row. Each cell is cut from (x, z + 1) to
   // (x + 1, z). The skirts follow.
   void write_indices(std::span<std::uint16_t> out) const;
-  // The part of that list with one tile, and the part with the skirt of one side. The sides are 0
-  // at z = 0, 1 at the greatest x, 2 at the greatest z, 3 at x = 0.
+  // Return the part of that list with one tile, and the part with the skirt of one side. The sides
+  // are 0 at z = 0, 1 at the greatest x, 2 at the greatest z, 3 at x = 0.
   core::IndexPart tile(int column, int row) const;
   core::IndexPart skirt(int side) const;
 

@@ -27,7 +27,7 @@ glm::vec3 unit_normal(double slope_x, double slope_z) {
           static_cast<float>(-slope_z * scale)};
 }
 
-// noise_ stays uninitialised where it is not evaluated: clearing it would take as long as using it.
+// noise_ stays uninitialised if it is not evaluated: clearing it would take as long as using it.
 BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block, std::size_t questions)
     : shape_(terrain), block_(block) {
   const auto size = static_cast<std::size_t>(shape_.size);

@@ -1,7 +1,7 @@
-// The ground of one block for many queries, such as the feet of everything on it. If there are
-// enough queries, it evaluates the heights of all vertices of the block at once, in the time of ten
-// single points. The results have the same bits either way, and equal those of sample_ground()
-// (terrain.hpp). It makes no mesh.
+// The ground of one block for many queries, such as the base points of all models on it. If there
+// are enough queries, it evaluates the heights of all vertices of the block together, in the time
+// of ten single points. The results have the same bits either way, and equal those of
+// sample_ground() (terrain.hpp). It makes no mesh.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@
 
 namespace psygen::models {
 
-// The upward unit normal of a plane that rises by these shares along x and z.
+// Returns the upward unit normal of a plane with these slopes along x and z.
 glm::vec3 unit_normal(double slope_x, double slope_z);
 
-// The heights of one block. 66 KiB, nothing on the heap. Immutable after construction; any thread.
+// The heights of one block. 66 KiB, no heap. Immutable after construction; any thread.
 class BlockGround {
  public:
   // `questions` is the approximate number of calls of at(). The block coordinates in `terrain` are
@@ -31,10 +31,9 @@ class BlockGround {
   // it unchanged. A mesh with too few vertices fails an assertion, also in release.
   BlockGround(const Parameters& terrain, core::BlockCoord block, std::span<const std::byte> mesh);
 
-  // The ground under a point, in metres from the block's corner. The point may lie outside the
-  // block (within 10^6 cells). About 20 ns inside a block whose heights were evaluated or read,
-  // else 1 µs. With the stride of a coarser level (terrain_strides()): the ground as that level has
-  // it.
+  // Returns the ground under a point, in metres from the block's corner. The point may be outside
+  // the block (within 10^6 cells). About 20 ns inside a block whose heights were evaluated or read,
+  // else 1 µs. With the stride of a coarser level (terrain_strides()): the ground of that level.
   GroundPoint at(glm::dvec2 local_xz, int stride = 1) const;
 
   // Writes the quantised heights of all vertices, row by row (z outer, x inner), as the mesh of
@@ -54,7 +53,7 @@ class BlockGround {
 
   TerrainShape shape_;
   core::BlockCoord block_;
-  std::size_t vertices_ = 0;         // per side, of which the heights are known; 0: none
+  std::size_t vertices_ = 0;         // per side, with known heights; 0: none
   std::span<const std::byte> mesh_;  // empty: the heights are in noise_
   std::array<float, std::size_t{kMaxTerrainSize} * kMaxTerrainSize> noise_;  // of the vertices
 };

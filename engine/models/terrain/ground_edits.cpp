@@ -12,7 +12,7 @@ using EditPtr = std::shared_ptr<const GroundEdit>;
 
 // The steepest slope of the curve by which edits fade out.
 constexpr double kSteepest = 1.5;
-// Cells of this level and below are taken as a whole where they touch a node's margin.
+// Cells of this level and below count as a whole if they touch a node's margin.
 int whole_level(const QuadPlace& node) {
   constexpr int kMarginLevels = 4;
   return static_cast<int>(node.level) - kMarginLevels;
@@ -73,19 +73,19 @@ std::uint64_t content_hash(const GroundEdit& edit) {
   return core::combine(hash, core::hash_bytes(std::as_bytes(std::span(road.segments))));
 }
 
-// How far an edit moves a height at most.
+// Returns the largest height change of an edit.
 float max_of(const GroundEdit& edit) {
   if (edit.change == GroundChange::kRaise || edit.change == GroundChange::kRoad)
     return static_cast<float>(std::abs(edit.height_m));
-  if (edit.change != GroundChange::kStampAdd) return 1e30F;  // the relief limits it
+  if (edit.change != GroundChange::kStampAdd) return 1e30F;  // limited by the height range
   float most = 0;
   for (const float h : edit.map->heights_m)
     most = std::max(most, std::abs(h));
   return most;
 }
 
-// visit(place) for the at most four squares that list an edit: as large as its influence, with some
-// room for rounding.
+// Calls visit(place) for the at most four squares that list an edit: as large as its influence,
+// with some margin for rounding.
 template <class Visit>
 void each_place(const GroundEdit& edit, double block_m, const Visit& visit) {
   const double reach_m = GroundEdits::kInfluence * edit.reach_m() + 1e-3 * block_m;
@@ -133,7 +133,7 @@ void add_hashes(const Cell* cell, const Area& area, int whole, double block_m,
     add_hashes(quarter.get(), area, whole, block_m, hash);
 }
 
-// Cells that add_hashes() takes as a whole are compared as a whole.
+// Cells that add_hashes() counts as a whole are compared as a whole.
 bool same(const Cell* a, const Cell* b, const Area& area, int whole) {
   if (a == b) return true;
   const auto outside = [&](const Cell* c) {
@@ -163,7 +163,7 @@ bool any_reaches(const Cell* cell, const Area& area, double block_m) {
   });
 }
 
-// The most that edits change one after the other on a path from `cell` down, within an area.
+// Returns the largest sum of successive edits on a path from `cell` down, within an area.
 GroundCell::Summary max_in(const Cell* cell, const Area& area, double block_m) {
   GroundCell::Summary most;
   if (cell == nullptr) return most;
@@ -182,13 +182,13 @@ GroundCell::Summary max_in(const Cell* cell, const Area& area, double block_m) {
   return most;
 }
 
-// The time that an edit takes for a height, in units of a simple one. Measured.
+// Time that an edit takes for a height, in units of a simple edit. Measured.
 double weight_of(const GroundEdit& edit) {
   if (edit.road) return 1 + 0.5 * static_cast<double>(edit.road->segments.size());
   return is_stamp(edit.change) ? 3 : 1;
 }
 
-// The weighted areas of edits within an area, added up, in blocks².
+// Returns the sum of the weighted areas of edits within an area, in blocks².
 double work_in(const Cell* cell, const Area& area, double block_m) {
   if (cell == nullptr) return 0;
   const Area own = area_of(cell->place);
@@ -205,7 +205,7 @@ double work_in(const Cell* cell, const Area& area, double block_m) {
   return sum;
 }
 
-// A piece stands in several cells, and is added for each.
+// A piece is listed in several cells, and is added for each.
 void add_roads(const Cell* cell, const Area& area, double block_m,
                std::vector<const GroundEdit*>& roads) {
   if (cell == nullptr || !cell->summary.has_roads || !area_of(cell->place).touches(area)) return;

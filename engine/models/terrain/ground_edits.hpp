@@ -1,8 +1,8 @@
-// Edits of the ground: raised, flattened, or shaped by a heightmap, at places anywhere in the
-// world. They act on the heights of the base terrain, one after the other, as a pure function of
-// the place, so that neighbouring nodes and all levels agree bit for bit at shared vertices.
-// A value: copies are O(1) and independent. Any thread may read one that nobody changes. Checks
-// nothing (world/edits) and stores nothing.
+// Edits of the ground: raised, flattened, or shaped by a heightmap, at any position of the world.
+// They act on the heights of the base terrain in order, as a pure function of the position, so that
+// neighbouring nodes and all levels agree bit for bit at shared vertices. A value: copies are O(1)
+// and independent. Any thread may read a value that no thread changes. Checks nothing (world/edits)
+// and stores nothing.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +19,13 @@
 
 namespace psygen::models {
 
-// What an edit does with the height under it.
+// The change that an edit makes to the height under it.
 enum class GroundChange : std::uint8_t {
   kRaise,     // adds height_m; below 0 it digs
-  kFlatten,   // moves it to height_m
+  kFlatten,   // moves the height to height_m
   kStampAdd,  // adds the heightmap
-  kStampSet,  // replaces it by the heightmap
-  kRoad,      // moves it to the height of a road
+  kStampSet,  // replaces the height by the heightmap
+  kRoad,      // moves the height to the road's height
 };
 constexpr bool is_stamp(GroundChange change) {
   return change == GroundChange::kStampAdd || change == GroundChange::kStampSet;
@@ -38,35 +38,36 @@ struct Heightmap {
   std::vector<float> heights_m;         // columns · rows
 };
 
-// A straight part of a road's middle, in metres from the origin of the road, with its heights.
+// A straight segment of a road's centre line, in metres from the origin of the road, with its
+// heights.
 struct RoadSegment {
   glm::dvec2 from_m{0.0}, to_m{0.0};
   double from_height_m = 0, to_height_m = 0;
 };
 
-// A piece of a road. A place belongs to the nearest segment of the whole road, the first of equals,
-// so exactly one piece shapes it. All pieces of a road have the same origin, so they agree.
+// A piece of a road. The nearest segment of the whole road, the first of equals, shapes a point, so
+// exactly one piece does. All pieces of a road have the same origin, so they agree.
 struct RoadPiece {
   core::WorldPosition origin;
-  double half_width_m = 3;  // of what has the height of the road
-  double border_m = 4;      // beyond it, over which the road fades out
-  double clear_m = 1;       // beyond it, where no models stand
-  // Its own ones, `first` … `end` − 1, among all that may be nearer to its places. In the order of
-  // the road.
+  double half_width_m = 3;  // of the strip at the height of the road
+  double border_m = 4;      // width beyond the strip over which the road fades out
+  double clear_m = 1;       // width beyond the strip without models
+  // The piece's own segments are `first` … `end` − 1; the list has all segments that may be nearer
+  // to its points. In the order of the road.
   std::vector<RoadSegment> segments;
   std::size_t first = 0, end = 0;
 
-  // How far it reaches from its middle.
+  // Distance from the centre line to which the piece acts.
   double reach_m() const { return half_width_m + std::max(border_m, clear_m); }
 };
 
-// What a piece of a road does at a place, in metres from the road's origin: the height of the road
-// and its weight, 0 … 1.
+// The effect of a piece of a road at a point, in metres from the road's origin: the height of the
+// road and its weight, 0 … 1.
 struct RoadEffect {
   double height_m = 0, weight = 0;
 };
 RoadEffect effect_of(const RoadPiece& road, glm::dvec2 place_m);
-// How much of the ground there is the road, 0 … 1: its edge is 1 m wide.
+// Returns the fraction of road surface at a point, 0 … 1; its edge is 1 m wide.
 double road_share(const RoadPiece& road, glm::dvec2 place_m);
 
 // One edit. Immutable once it is part of a GroundEdits.
@@ -75,18 +76,18 @@ struct GroundEdit {
   bool square = false;         // else a disc; a stamp is always a square
   core::WorldPosition centre;  // normalised; y is not used
   double radius_m = 1;         // of the disc, or half the side of the square
-  double falloff = 0.5;        // share of the radius over which the edit fades out; 0: a cliff
-  // kRaise: difference; kFlatten: height above 0; kRoad: how far it moves heights at most.
+  double falloff = 0.5;        // fraction of the radius over which the edit fades out; 0: a cliff
+  // kRaise: difference; kFlatten: height above 0; kRoad: largest height change.
   double height_m = 0;
   std::shared_ptr<const Heightmap> map;   // of the two stamps
   glm::dvec2 turn{1, 0};                  // of stamps: cosine and sine of a turn about +Y
-  std::shared_ptr<const RoadPiece> road;  // of kRoad, which is a square around the piece
+  std::shared_ptr<const RoadPiece> road;  // of kRoad, whose square encloses the piece
   std::uint32_t id = 0;                   // unique in the block of the centre
   // Set by seal():
   std::uint64_t content = 0;  // identifies everything above
-  float max_m = 0;  // how far it moves a height at most; 1e30: as far as the relief allows
+  float max_m = 0;            // largest height change; 1e30: limited by the height range only
 
-  // Half the side of the square along the axes that holds all of it.
+  // Half the side of the axis-aligned square around the edit.
   double reach_m() const { return radius_m * (std::abs(turn.x) + std::abs(turn.y)); }
   // Edits act in this order.
   std::pair<std::uint32_t, core::BlockCoord> order() const { return {id, centre.block}; }
@@ -109,15 +110,16 @@ struct LatticeSpan {
   std::int64_t first = 0, last = 0;
 };
 
-// The edits whose influence begins in one square of the quadtree, in the order in which they act.
+// The edits whose influence begins in one square of the quadtree, in the order of their action.
 struct GroundCell {
   std::vector<std::shared_ptr<const GroundEdit>> edits;
 
-  // How much heights may change where most edits lie on top of each other, and how steeply.
+  // Largest change of heights by overlapping edits, and the largest slope of that change.
   struct Summary {
-    float change_m = 0, steepness = 0;              // of this square's own edits, added up
-    float below_change_m = 0, below_steepness = 0;  // the most in one of its quarters
-    double work_m2 = 0;  // of all edits in it: their areas, weighted by the time for a height
+    float change_m = 0, steepness = 0;              // sum over this square's own edits
+    float below_change_m = 0, below_steepness = 0;  // largest value of one of its quarters
+    double work_m2 = 0;  // of all edits in the square: their areas, weighted by the time for a
+                         // height
     bool has_roads = false;
     void add(const Summary& quarter);
   };
@@ -126,20 +128,20 @@ struct GroundCell {
   Summary summary() const;
 };
 
-// All edits of the ground of a world. Others may lie below them, which act first; they are part of
-// everything but add() and remove().
+// All edits of the ground of a world. They may include edits below them, which act first: all
+// functions except add() and remove() count those too.
 class GroundEdits {
  public:
-  // Light baked into vertices reaches this many radii from an edit's centre (light.hpp); beyond, no
-  // mesh depends on it.
+  // Light baked into vertices depends on an edit up to this many radii from its centre (light.hpp);
+  // beyond, no mesh depends on it.
   static constexpr double kInfluence = 5.5;
   // Largest number of edits that begin in one square of the quadtree.
   static constexpr std::size_t kMaxTogether = 1024;
 
-  // Whether there is no edit.
+  // True without edits.
   bool empty() const { return cells_.empty() && below_.empty(); }
 
-  // These edits over those of `below`, and these alone. O(1).
+  // Returns these edits over those of `below`, or these edits alone. O(1).
   GroundEdits over(const GroundEdits& below) const {
     GroundEdits both = *this;
     both.below_ = below.cells_;
@@ -148,34 +150,34 @@ class GroundEdits {
   GroundEdits own() const { return over({}); }
   bool lies_on(const GroundEdits& below) const { return below_.root() == below.cells_.root(); }
 
-  // Adds a sealed edit, or takes the one with this id and block away, in O(log n + kMaxTogether).
-  // add() returns false, and changes nothing, where kMaxTogether are there already.
+  // Adds a sealed edit, or removes the edit with this id and block, in O(log n + kMaxTogether).
+  // add() returns false, and changes nothing, if the square already has kMaxTogether edits.
   bool add(const std::shared_ptr<const GroundEdit>& edit, double block_m);
   void remove(const GroundEdit& edit, double block_m);
 
   // Hash of all edits that can change the ground mesh of a node that needs heights `margin` blocks
   // beyond its border; 0: none. O(log n), and O(margin) for large nodes.
   std::uint64_t hash_of(const QuadPlace& node, double margin, double block_m) const;
-  // Whether both have the same there. May say no although they have; O(log n) after small changes.
+  // True if both have the same edits there. May be false although they do; O(log n) after small
+  // changes.
   static bool same_in(const GroundEdits& a, const GroundEdits& b, const QuadPlace& node,
                       double margin);
-  // Whether any edit may change heights within a node. May say yes although none does.
+  // True if any edit may change heights within a node. May be true although none does.
   bool reaches(const QuadPlace& node, double block_m) const;
-  // The pieces of roads that may reach a node, each once. Of p pieces there O(log n + p log p),
-  // however many other edits there are.
+  // Returns the pieces of roads that may reach a node, each once. O(log n + p log p) for p pieces,
+  // independent of all other edits.
   std::vector<const GroundEdit*> roads_in(const QuadPlace& node, double block_m) const;
-  // How far the ground may lie off a mesh of the node whose vertices are `spacing_m` apart, because
-  // of edits between them. An upper bound in metres; 0: there are none.
+  // Largest distance between the ground and a mesh of the node with vertices `spacing_m` apart,
+  // because of edits between them. An upper bound in metres; 0: no edits.
   double error_m(const QuadPlace& node, double spacing_m, double block_m) const;
 
-  // About how many edits apply() makes on a height, on average over the rectangle, in units of the
-  // time for a simple one; a stamp counts as three. Up to four times too many where edits are much
-  // smaller than the rectangle. O(log n + edits at its border).
+  // Estimate of the edits that apply() makes on a height, as a mean over the rectangle, in units of
+  // the time for a simple edit; a stamp counts as three. Up to four times too high if edits are
+  // much smaller than the rectangle. O(log n + edits at its border).
   double edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
 
   // Applies the edits to heights at the lattice points (x[i], z[k]), values[k · stride + i]. x and
-  // z ascend. Edits of a radius below `narrowest_m` are left out. Linear in the heights that
-  // change.
+  // z ascend. Skips edits of a radius below `narrowest_m`. Linear in the heights that change.
   void apply(const GroundScale& scale, std::span<const std::int64_t> x,
              std::span<const std::int64_t> z, std::span<float> values, std::size_t stride,
              double narrowest_m = 0) const;
@@ -184,10 +186,10 @@ class GroundEdits {
   QuadMap<GroundCell> cells_, below_;
 };
 
-// Metres from the origin of a road to a place in a block.
+// Metres from the origin of a road to a point in a block.
 glm::dvec2 from_origin_m(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
                          double block_m);
-// Whether a piece of a road keeps models away from a place in a block.
+// True if a piece of a road keeps models away from a point in a block.
 bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m, double block_m);
 
 }  // namespace psygen::models

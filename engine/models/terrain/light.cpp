@@ -12,7 +12,8 @@ std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
   return a / b - (a % b < 0 ? 1 : 0);
 }
 
-// The wanted points of one grid along one axis, counted from the world's origin. `last` included.
+// The requested points of one grid along one axis, counted from the world's origin. `last`
+// included.
 struct LightAxis {
   std::int64_t first, last;
   LightAxis over(std::int64_t spacing) const {
@@ -49,7 +50,7 @@ SunRays rays_of(const SunDirection& sun) {
   return rays;
 }
 
-// The number of steps at which a hill as high as the whole relief could hide the sun.
+// Returns the number of steps at which a hill as high as the whole height range could hide the sun.
 std::size_t useful_steps(const SunRays& rays, float spacing_m, float relief_m) {
   std::size_t count = 0;
   while (count < kLightSteps && rays.steps[count].length * spacing_m * rays.low <= relief_m)
@@ -57,7 +58,7 @@ std::size_t useful_steps(const SunRays& rays, float spacing_m, float relief_m) {
   return count;
 }
 
-// A grid with these wanted points, still without heights.
+// Makes a grid for these requested points, without heights.
 LightGrid grid_over(const LightAxis& x, const LightAxis& z) {
   LightGrid grid{};
   grid.stride = (x.count() + 2 * kLightReach + 15) / 16 * 16 + 16;
@@ -66,19 +67,19 @@ LightGrid grid_over(const LightAxis& x, const LightAxis& z) {
   return grid;
 }
 
-// One grid of the light, without its heights yet.
+// One grid of the light, without its heights.
 struct PlannedGrid {
   LightGrid grid;
-  LightAxis x, z;        // of its wanted points
+  LightAxis x, z;        // of its requested points
   std::int64_t spacing;  // in cells of the node
 
   std::size_t columns() const { return grid.count_x + 2 * kLightReach; }
   std::size_t rows() const { return grid.count_z + 2 * kLightReach; }
-  // In cells of node level 0, the unit of the noise.
+  // Spacing in cells of node level 0, the unit of the noise.
   double spacing_of_noise(const TerrainShape& shape) const {
     return std::ldexp(static_cast<double>(spacing), shape.node_level);
   }
-  // From the first to the last of its points along an axis.
+  // The range from the first to the last point along an axis.
   LatticeSpan lattice(const TerrainShape& shape, const LightAxis& axis) const {
     return {shape.world_of(0, (axis.first - kLightReach) * spacing),
             shape.world_of(0, (axis.last + kLightReach) * spacing)};
@@ -88,7 +89,7 @@ struct PlannedGrid {
   }
 };
 
-// The grids and rays that give the light of a node.
+// The grids and rays for the light of a node.
 struct LightPlan {
   std::array<PlannedGrid, kMaxLightGrids> grids;
   std::size_t count = 0;

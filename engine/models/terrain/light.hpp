@@ -1,7 +1,7 @@
-// Light that is baked into the vertices of a terrain (docs/models.md, "Light"): the shares of the
-// sun and of the sky that are visible over the surrounding hills. A pure function of the place in
-// the world, so neighbouring nodes of one level agree bit for bit along their seams. Any thread.
-// Knows no vertices.
+// Light that is baked into the vertices of a terrain (docs/models.md, "Light"): the fractions of
+// the sun and of the sky that are visible over the surrounding hills. A pure function of the
+// position in the world, so neighbouring nodes of one level agree bit for bit along their seams.
+// Any thread. Knows no vertices.
 #pragma once
 
 #include <array>
@@ -24,18 +24,18 @@ inline constexpr std::size_t kMaxLightGrids = 5;
 inline constexpr double kOctavePoints = 2;
 // Half the width of the sun's disc, softened to hide the distances between points.
 inline constexpr double kSunSoftness = 2.5;  // degrees
-// Grids ignore the horizon if their points are further apart than this many times the relief.
+// Grids ignore the horizon if their points are further apart than this many times the height range.
 inline constexpr double kSkyReach = 2;
 
 // The sun of a terrain. Azimuth from −Z (north) over +X (east), elevation above the horizon.
 struct SunDirection {
   double azimuth_deg, elevation_deg;
-  // No sunlight at all, or no shadows.
+  // True for no sunlight at all, or for no shadows.
   bool is_down() const { return elevation_deg <= 0; }
   bool is_overhead() const { return elevation_deg >= 90; }
 };
 
-// The light of one node, computed by the constructor. About 23 KiB, nothing on the heap.
+// The light of one node, computed by the constructor. About 23 KiB, no heap.
 class TerrainLight {
  public:
   // Evaluates the light at the points of grid number `finest`, 0 or 1. About 5 µs for 0.
@@ -47,7 +47,7 @@ class TerrainLight {
   // The light for pack_terrain(). Points into this object.
   LightSamples samples() const;
 
-  // The part of the heights, of noise and edits, in the constructor's time, in units of
+  // Part of the constructor's time for heights, of noise and edits, in units of
   // RidgedNoise::work().
   static double work(const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x,
                      std::int64_t block_z, std::size_t finest);

@@ -36,7 +36,7 @@ struct Fields {
   HWY_ALIGN float rows[kFields][kLightCoarseRow][kStride];
 };
 
-// The same at the points of one vector.
+// The fields at the points of one vector.
 struct Seen {
   Float horizon[kDirections];
   // A point above `lit_above` sees the whole disc of the sun, one below `dark_below` none of it.

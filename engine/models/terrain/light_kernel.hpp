@@ -15,7 +15,7 @@ inline constexpr int kLightReach = 3;
 inline constexpr int kLightRatio = 4;
 inline constexpr std::size_t kLightSteps = 4;
 
-// A place on a ray to the sun, in points of a grid from the ray's origin: (x, z) plus the
+// A point on a ray to the sun, in points of a grid from the ray's origin: (x, z) plus the
 // fractions.
 struct LightStep {
   int x, z;
@@ -23,37 +23,38 @@ struct LightStep {
   float length;                  // distance from the origin
 };
 
-// The sun: places along a ray, and the slopes of rays to the lower and the upper edge of its
+// The sun: points along a ray, and the slopes of rays to the lower and the upper edge of its
 // softened disc.
 struct SunRays {
   std::array<LightStep, kLightSteps> steps;
   float low, high;
 };
 
-// Heights at points of one grid around a node, in any unit of length. The light is wanted at
-// count_x · count_z of them; kLightReach more rows and columns lie on each side.
+// Heights at points of one grid around a node, in any unit of length. Light is requested at count_x
+// · count_z points, with kLightReach more rows and columns on each side.
 struct LightGrid {
-  const float* heights;  // from the first row and column on, including those beyond the wanted ones
+  const float* heights;  // from the first row and column on, including those beyond the requested
+                         // points
   std::size_t stride;
   std::size_t count_x, count_z;
-  std::size_t phase_x, phase_z;  // first wanted point, counted from that of the next wider grid
+  std::size_t phase_x, phase_z;  // first requested point, counted from that of the next wider grid
   float spacing;                 // of its points, in the unit of the heights
   std::size_t sun_steps;         // number of SunRays::steps that are used
-  bool sky;                      // whether this grid contributes to the horizon
+  bool sky;                      // true if this grid contributes to the horizon
 };
 
-// Where light is written: in [0, 255], row by row.
+// Destination of the light: in [0, 255], row by row.
 struct LightOutput {
   float *sun, *ambient;
   std::size_t stride;  // at least count_x of the finest grid, rounded up to a multiple of 16
 };
 
-// Longest row of wanted points of the finest grid and of the others.
+// Longest row of requested points of the finest grid and of the others.
 inline constexpr std::size_t kLightRow = 48, kLightCoarseRow = 16;
 
-// Writes the light at the wanted points of grids[0], the finest; grids get wider from there.
-// 1 <= grid_count. Rows of heights may be read 16 points beyond the last. With `sun` null,
-// everything is lit.
+// Writes the light at the requested points of grids[0], the finest; further grids are wider. 1 <=
+// grid_count. Rows of heights may be read 16 points beyond the last. With `sun` null, everything is
+// lit.
 void light_terrain(const LightGrid* grids, std::size_t grid_count, const SunRays* sun,
                    const LightOutput& out);
 

@@ -33,7 +33,7 @@ HWY_INLINE std::size_t padded(std::size_t n) {
   return (n + lanes - 1) / lanes * lanes;
 }
 
-// The integers of an axis, and whether all neighbours have the same distance.
+// The integers of an axis; `even` is true if all neighbours have the same distance.
 struct Axis {
   std::span<const std::int64_t> at;
   bool even = true;            // all distances are `distance`
@@ -51,8 +51,8 @@ struct Axis {
   std::uint64_t difference(std::size_t i) const {
     return static_cast<std::uint64_t>(at[i]) - static_cast<std::uint64_t>(at[i - 1]);
   }
-  // Whether each integer lies in the lattice cell of the one before or in the next cell. `step` is
-  // Q32.32 cells per integer.
+  // True if each integer lies in the lattice cell of the previous one or in the next cell. `step`
+  // is Q32.32 cells per integer.
   bool contiguous(std::uint64_t step) const {
     constexpr std::uint64_t kCell = std::uint64_t{1} << 32;
     return even && distance * step <= kCell && distance <= kCell && step <= kCell;

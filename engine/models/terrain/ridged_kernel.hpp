@@ -24,8 +24,8 @@ struct RidgedOctave {
   float limit;                       // largest weight: lacunarity^(−H·o)
 };
 
-// The numbers of a noise. They are scaled by κ = √(gain · lacunarity^−H). Then one product is both
-// the octave's share of the sum and the weight of the next octave (docs/models.md, "Height").
+// The constants of a noise, scaled by κ = √(gain · lacunarity^−H). Then one product is both the
+// octave's term of the sum and the weight of the next octave (docs/models.md, "Height").
 struct RidgedKernel {
   std::array<RidgedOctave, kMaxOctaves> octaves{};  // those beyond octave_count are read too
   int octave_count;                                 // 1 … kMaxOctaves

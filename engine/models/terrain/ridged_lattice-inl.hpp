@@ -35,7 +35,7 @@ HWY_INLINE void clear_vectors(float* to, std::size_t count) {
 // before sample i has the key first[start of its block] + slot[i]; slot[i] is less than the lanes
 // of a vector. The line behind it is `to_next` keys further on. A block is a vector of samples.
 struct LatticeLines {
-  // How the keys of a block fit into vectors.
+  // The layout of a block's keys in vectors.
   enum class Fit {
     kOneVector,   // all keys lie in one vector, all blocks start at 0
     kEachVector,  // the keys before and behind the samples of a block lie in one vector

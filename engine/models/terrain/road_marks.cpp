@@ -10,11 +10,11 @@
 namespace psygen::models {
 namespace {
 
-// The vertices of a mesh along one axis, in metres from a place of the world.
+// The vertices of a mesh along one axis, in metres from a point of the world.
 struct Axis {
   double first_m, step_m;
   std::int64_t count;
-  // Those within a distance of a coordinate: the first, and the one behind the last.
+  // The vertices within a distance of a coordinate: the first, and the one after the last.
   std::int64_t begin(double at_m) const { return limited(std::ceil((at_m - first_m) / step_m)); }
   std::int64_t end(double at_m) const { return limited(std::floor((at_m - first_m) / step_m) + 1); }
   double at(std::int64_t i) const { return first_m + static_cast<double>(i) * step_m; }

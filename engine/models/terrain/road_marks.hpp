@@ -1,5 +1,5 @@
-// Marks the vertices of a terrain mesh that lie on roads (TerrainVertex::road), so that the ground
-// looks like one there. Pure, any thread. It moves no heights (ground_edits.hpp). Internal to the
+// Marks the vertices of a terrain mesh that are on roads (TerrainVertex::road), so that the shader
+// draws them as road. Pure, any thread. It moves no heights (ground_edits.hpp). Internal to the
 // terrain.
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace psygen::models {
 
-// Writes the marks of all surface vertices where roads pass the node, and nothing elsewhere.
-// `vertices` is a whole mesh; it is only written to. Linear in the vertices near roads.
+// Writes the marks of all surface vertices where roads pass the node, and no others. `vertices` is
+// a whole mesh; it is only written to. Linear in the vertices near roads.
 void mark_roads(const TerrainShape& shape, const TerrainGrid& grid, core::BlockCoord node,
                 std::byte* vertices);
 

@@ -23,7 +23,7 @@ struct TerrainShape {
   float relief_m;  // height of the quantised value 65535; the value 0 has height 0
   float quantum;   // quantised height of noise 1
   float metres;    // height of noise 1, in metres
-  const GroundEdits* edits = nullptr;  // of the parameters; null: none. Not kept alive
+  const GroundEdits* edits = nullptr;  // of the parameters; null: none. Not owned
 
   // Requires legal parameters.
   explicit TerrainShape(const Parameters& p);
@@ -34,14 +34,14 @@ struct TerrainShape {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(block * (size - 1) + i)
                                      << node_level);
   }
-  // RidgedNoise::evaluate(), and then the edits of at least this radius.
+  // Evaluates RidgedNoise::evaluate(), then the edits of at least this radius.
   void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                 std::span<float> values, std::size_t stride, int octaves = kMaxOctaves,
                 double narrowest_m = 0) const {
     noise.evaluate(columns, rows, values, stride, octaves);
     if (edits != nullptr) edit(columns, rows, values, stride, narrowest_m);
   }
-  // The time that edits take in evaluate() of so many heights, spread evenly over a rectangle in
+  // Time that edits take in evaluate() of this many heights, spread evenly over a rectangle in
   // cells of node level 0, in units of RidgedNoise::work(). 0 without edits.
   double edit_work(LatticeSpan x, LatticeSpan z, double heights) const;
   // The quantised height of a value of the noise, 0 … 65535. The same bits as in the kernel.

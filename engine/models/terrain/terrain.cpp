@@ -25,7 +25,7 @@ constexpr ParameterType kReal = ParameterType::kReal;
 constexpr ParameterSource kPlaced = ParameterSource::kPlaced;
 
 constexpr ParameterSpec kSchema[kTerrainParameterCount] = {
-    {"seed", kInteger, "", 1, -0x1.0p63, 0x1.0p63, 0, 1000, "which of all terrains", kPlaced},
+    {"seed", kInteger, "", 1, -0x1.0p63, 0x1.0p63, 0, 1000, "selects one of all terrains", kPlaced},
     {"block_x", kInteger, "blocks", 0, kInt32Min, kInt32Max, -1000, 1000, "block along x", kPlaced},
     {"block_z", kInteger, "blocks", 0, kInt32Min, kInt32Max, -1000, 1000, "block along z", kPlaced},
     {"node_level", kInteger, "", 0, 0, 20, 0, 10,
@@ -38,15 +38,15 @@ constexpr ParameterSpec kSchema[kTerrainParameterCount] = {
     {"lacunarity", kReal, "1", 2, 1, 4, 1.5, 3, "ratio of the frequencies of two octaves"},
     {"octaves", kInteger, "", 9, 1, kMaxOctaves, 1, 12, "number of layers of noise"},
     {"offset", kReal, "1", 0.88, 0, 4, 0.7, 1.2, "height of the ridges before squaring"},
-    {"gain", kReal, "1", 2, 0, 100, 1, 4, "how much an octave weighs on the next"},
+    {"gain", kReal, "1", 2, 0, 100, 1, 4, "influence of an octave on the next"},
     {"feature_m", kReal, "m", 600, 1, 1e5, 50, 2000, "width of the largest features"},
-    {"relief_m", kReal, "m", 120, 0.01, 1e5, 10, 500, "highest height that is possible"},
+    {"relief_m", kReal, "m", 120, 0.01, 1e5, 10, 500, "largest possible height"},
     {"warp", kReal, "1", 0, 0, 1, 0, 0.5,
      "bends the coarse ridges: largest displacement, in parts of feature_m; 0 is fastest"},
     {"sun_azimuth_deg", kReal, "degrees", 0, -360, 360, 0, 360,
-     "where shadows come from, from north over east", kPlaced},
+     "direction of the sun that casts shadows, from north over east", kPlaced},
     {"sun_elevation_deg", kReal, "degrees", 90, -90, 90, 0, 90,
-     "of the sun that casts shadows: 90 none, 0 and below all in the dark", kPlaced},
+     "of the sun that casts shadows: at 90 none, at 0 and below all is dark", kPlaced},
 };
 
 // Sample positions along one axis: every vertex of the level, and its neighbours one cell away.
@@ -98,7 +98,7 @@ TerrainGrid grid_of(const Parameters& p, int level) {
   return {static_cast<int>(p.integer(kTerrainSize)), level};
 }
 
-// The number of the finest grid of light for a level (TerrainLight).
+// Returns the number of the finest grid of light for a level (TerrainLight).
 std::size_t light_grid_of(int level) {
   return level < 2 ? 0 : 1;
 }
@@ -108,7 +108,7 @@ double cell_of(const Parameters& p) {
 }
 
 // The samples of the parent's mesh of level 1 under a node's mesh of level 1: every second of the
-// node's own vertices and, where the parent has none at the node's border, the next one beyond.
+// node's own vertices, and the next one beyond if the parent has none at the node's border.
 struct ParentSamples {
   static constexpr std::size_t kStride = (kMaxTerrainSize + 1) / 2 + 1;
   std::array<float, kStride * kStride> noise;
@@ -126,7 +126,7 @@ struct ParentSamples {
   struct Axis {
     std::array<std::int64_t, kStride> world;
     std::size_t count;
-    std::size_t phase;  // 1 where the first sample lies one vertex before the node
+    std::size_t phase;  // 1 if the first sample is one vertex before the node
 
     Axis(const TerrainShape& shape, const TerrainGrid& grid, std::int64_t block)
         : phase(static_cast<std::size_t>(block & (grid.n - 1) & 1)) {
@@ -174,7 +174,7 @@ double TerrainType::complexity(const Parameters& p, int level) const {
   return static_cast<double>(p.integer(kTerrainOctaves)) * samples_per_side * samples_per_side;
 }
 
-// The samples of a mesh with those of the parent's.
+// Counts the samples of a mesh, and those of the parent's.
 double sample_count(const TerrainGrid& grid, int level) {
   const double side = grid.stride <= 3 ? grid.size + 2 : 3 * grid.n;
   const double parent = level == 1 ? grid.n / 2 + 1 : 0;

@@ -15,7 +15,7 @@
 
 namespace psygen::models {
 
-// Positions in the schema of the type "terrain".
+// Indices into the schema of the type "terrain".
 enum TerrainParameter : std::size_t {
   kTerrainSeed = 0,
   kTerrainBlockX,
@@ -39,8 +39,7 @@ enum TerrainParameter : std::size_t {
 // The model type "terrain". Level 0 has every vertex, levels 1 … 3 every Nth one (terrain_strides()
 // in grid.hpp). Vertices are core::TerrainVertex: n² of the surface, then 4·(n − 1) of the skirt.
 // The first 3 · terrain_surface_triangles() indices are the surface, the others the skirt. bounds()
-// and the box that synthesise() returns are those of the surface. Synthesis needs 448 KiB of stack
-// and nothing on the heap.
+// and the result of synthesise() exclude the skirt. Synthesis needs 448 KiB of stack and no heap.
 std::unique_ptr<ModelType> make_terrain_type();
 
 // Triangles of a level without its skirts (7,938 for 64 vertices per side at level 0).
@@ -55,14 +54,14 @@ struct GroundPoint {
   glm::vec3 normal{0, 1, 0};
 };
 
-// The ground under points of `block`, on the triangles of level 0 as they are drawn. Points are in
-// metres from the block's corner and may lie outside the block (within 10^6 cells). `ground` has as
-// many elements as `local_xz`. About 1 µs a point; not much more than 20 µs in total for points
-// inside the block. The block coordinates in `terrain` are ignored.
+// Writes the ground under points of `block`, on the triangles of level 0. Points are in metres from
+// the block's corner and may be outside the block (within 10^6 cells). `ground` has as many
+// elements as `local_xz`. About 1 µs a point; not much more than 20 µs in total for points inside
+// the block. The block coordinates in `terrain` are ignored.
 void sample_ground(const Parameters& terrain, core::BlockCoord block,
                    std::span<const glm::dvec2> local_xz, std::span<GroundPoint> ground);
 
-// The same for one point: its height in metres, and the normal.
+// The ground under one point: its height in metres, and its normal.
 double ground_height_m(const Parameters& terrain, core::BlockCoord block, double local_x,
                        double local_z);
 glm::vec3 ground_normal(const Parameters& terrain, core::BlockCoord block, double local_x,

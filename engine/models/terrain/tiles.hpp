@@ -1,7 +1,7 @@
 // The finest mesh of a block as tiles (grid.hpp) of two kinds. Near the camera, a part of a block
-// is drawn finely and the rest with the cells of the next coarser level. It is one index list over
-// the vertices of level 0, of which parts are drawn. The caller chooses the parts; terrain.cpp
-// makes the vertices. Immutable, any thread.
+// is drawn finely and the rest with the cells of the next coarser level. One index list over the
+// vertices of level 0 has all tiles, and the renderer draws parts of it. The caller chooses the
+// parts; terrain.cpp makes the vertices. Immutable, any thread.
 #pragma once
 
 #include <array>
@@ -27,10 +27,9 @@ class TerrainTiles {
 
   // A tile with every cell. `column` and `row` are below grid().tiles_per_side().
   core::IndexPart fine(int column, int row) const { return part(0, column, row); }
-  // The same tile with cells of the coarser level. On the `divided` sides it has every vertex of
-  // level 0, to match fine neighbours; on the others only those of the coarser level. Two tiles
-  // that share a side must have the same vertices on it, or single pixels of sky would show
-  // through.
+  // The tile with cells of the coarser level. On the `divided` sides it has every vertex of level
+  // 0, to match fine neighbours; on the others only those of the coarser level. Two tiles that
+  // share a side must have the same vertices on it, or single pixels of sky would show through.
   core::IndexPart coarse(int column, int row, std::uint8_t divided) const {
     return part(1U + divided, column, row);
   }

@@ -27,13 +27,13 @@ struct BarkLanes {
   alignas(64) float rows[kTreeRows][kMaxTreeNodes + 2 * kTreeLanes];
   alignas(64) std::uint32_t key[kMaxTreeNodes + 2 * kTreeLanes];
   std::size_t count = 0;
-  // Places of rings on their branch and widening there; only for rings as lanes.
+  // Positions of rings on their branch and widening there; only for rings as lanes.
   alignas(64) float t[kMaxRingLanes + kTreeLanes], flare[kMaxRingLanes + kTreeLanes];
   alignas(64) std::uint32_t ring[kMaxRingLanes + kTreeLanes];
   BarkLanes() {}
 };
 
-// The places of the rings of one branch, padded to a whole vector.
+// The positions of the rings of one branch, padded to a whole vector.
 struct RingPlaces {
   alignas(32) float t[8] = {}, flare[8] = {};
   std::uint32_t count = 0;
@@ -93,8 +93,8 @@ HWY_INLINE VU chosen(const std::uint32_t* table, VU step) {
 #endif
 }
 
-// The place of a ring: anywhere, at the foot of a branch other than the trunk, or at the end of a
-// tip. The last two give the same bits as the first, with less arithmetic.
+// The position of a ring: anywhere, at the base of a branch other than the trunk, or at the end of
+// a tip. The last two give the same bits as the first, with less arithmetic.
 enum class RingAt { kAny, kFoot, kPoint };
 
 // Passes the vertices of one ring of every lane to `store`, with the number of their corner.
@@ -402,7 +402,8 @@ Colours bark_colours(const TreePlan& plan) {
   return words;
 }
 
-// The places of rings. On the trunk they are closer together at its foot, where it also widens.
+// Returns the positions of rings. On the trunk they are closer together near its base, where it
+// also widens.
 RingPlaces places_of_rings(const BarkJob& job) {
   static constexpr float kSix[] = {0.0F, 0.06F, 0.16F, 0.34F, 0.55F, 0.78F, 1.0F};
   static constexpr float kThree[] = {0.0F, 0.14F, 0.5F, 1.0F};

@@ -1,4 +1,4 @@
-// Place, extent and light of a tree's crown, from the ends of the branches on a few paths.
+// Position, extent and light of a tree's crown, from the ends of the branches on a few paths.
 #include <cmath>
 
 #include "engine/models/tree/mesh.hpp"
@@ -14,7 +14,7 @@ struct Ends {
   void add(const glm::vec3& end) { at[count++] = end; }
 };
 
-// The ends of the branches that bear leaves, or of the tips if none does.
+// Finds the ends of the branches that bear leaves, or of the tips if no branch does.
 void ends_of_paths(const TreePlan& plan, const TreeSkeleton& paths, Ends& out) {
   const bool by_leaves = has_bearers(plan, paths);
   for (std::size_t g = 0; g < paths.group_count; ++g) {
@@ -25,7 +25,7 @@ void ends_of_paths(const TreePlan& plan, const TreeSkeleton& paths, Ends& out) {
   }
 }
 
-// The same ends from a whole tree.
+// Finds the same ends in a whole tree.
 void ends_of_tree(const TreePlan& plan, const TreeSkeleton& tree, Ends& out) {
   TreePaths paths;
   find_paths(plan, tree, kCrownPaths, paths);

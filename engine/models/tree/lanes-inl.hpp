@@ -168,7 +168,7 @@ HWY_INLINE VU octahedral(Vec3 n) {
 }
 
 // Baked ambient visibility in (0, 1], in or below the crown. `r` is the position in units of the
-// half axes of the crown's ellipsoid, from its centre. The same as crown_ambient() (mesh.hpp).
+// half axes of the crown's ellipsoid, from its centre. Equals crown_ambient() (mesh.hpp).
 HWY_INLINE VF ambient_at(Vec3 r) {
   const VF out = f1(0.3F) + f1(0.7F / 1.44F) * hn::Min(dot(r, r), f1(1.44F));
   return out * clamped(f1(0.8F) + f1(0.2F) * r.y, 0.6F, 1.0F);

@@ -19,12 +19,12 @@ inline constexpr int kTreeLevels = 6;
 // Time of each level over that of level 0, and its error over the crown's radius.
 inline constexpr double kLevelShares[kTreeLevels] = {1.0, 0.25, 0.06, 0.02, 0.01, 0.01};
 inline constexpr double kLevelErrors[kTreeLevels] = {0.0, 0.05, 0.085, 0.17, 0.33, 0.6};
-// Paths whose ends define the crown's place and extent, and carry the foliage of level 3.
+// Paths whose ends define the crown's position and extent, and carry the foliage of level 3.
 inline constexpr std::uint32_t kCrownPaths = 16;
 
-// Appends to a destination, which may be mapped device memory and is never read. The caller takes
-// care that it is large enough. Positions are packed = (position − centre) · scale, clamped to
-// ±32767 and rounded to nearest.
+// Appends to a destination, which may be mapped device memory and is never read. The caller ensures
+// that it is large enough. Positions are packed = (position − centre) · scale, clamped to ±32767
+// and rounded to nearest.
 class MeshWriter {
  public:
   // Positions are relative to `box`. The memory of `out` must outlive the writer.
@@ -53,10 +53,10 @@ class MeshWriter {
     index_count_ += count;
     return first;
   }
-  // Appended so far.
+  // Numbers of vertices and indices appended so far.
   std::uint32_t vertex_count() const { return vertex_count_; }
   std::uint32_t index_count() const { return index_count_; }
-  // The box of all vertices written, in metres, as a reader will unpack them.
+  // Bounds of all vertices written, in metres, as a reader will unpack them.
   core::Bounds written() const;
 
   // The packing of positions, and the smallest and largest packed positions so far.
@@ -73,7 +73,7 @@ class MeshWriter {
 // The ellipsoid around the ends of kCrownPaths paths. Hulls, ambient light and the normals of
 // leaves follow it.
 struct TreeCrown {
-  glm::vec3 centre;  // metres from the tree's foot
+  glm::vec3 centre;  // metres from the tree's base point
   glm::vec3 half;    // half axes in metres; x and z are equal
   glm::vec3 inverse_half;
   float radius;  // mean of the half axes
@@ -81,10 +81,11 @@ struct TreeCrown {
 // The crown, with the same bits from the whole tree (`whole`) or from a skeleton grown with
 // kCrownPaths.
 TreeCrown crown_of(const TreePlan& plan, const TreeSkeleton& skeleton, bool whole);
-// Baked ambient visibility at `p`, in metres from the foot; in (0, 1].
+// Baked ambient visibility at `p`, in metres from the base point; in (0, 1].
 float crown_ambient(const TreeCrown& crown, const glm::vec3& p);
 
-// The outline of a crown about its vertical axis, from the same ends with room for leaves. Metres.
+// The outline of a crown about its vertical axis, from the same ends with a margin for leaves.
+// Metres.
 struct CrownOutline {
   float middle, half_height;  // height of the middle between top and bottom; half their distance
   float upper, lower;         // radius in the upper and in the lower half
@@ -103,26 +104,27 @@ struct TubePlan {
   constexpr std::uint32_t triangles() const { return sides * 2 * segments - (pointed ? sides : 0); }
 };
 inline constexpr std::uint32_t kMaxSides = 8, kMaxSegments = 6;
-// The tube of branches at a depth; `tip`: nothing grows from them. The reference is to static data.
+// Returns the tube of branches at a depth; `tip`: nothing grows from them. The reference is to
+// static data.
 const TubePlan& tube_plan(const TreePlan& plan, int level, int depth, bool tip);
 
-// The number of paths that a level follows (kWholeTree: all), and the depth of the last branches
-// that it draws.
+// Number of paths that a level follows (kWholeTree: all), and the depth of the last branches that
+// it draws.
 std::uint32_t paths_of(const TreePlan& plan, int level);
 int last_bark_depth(const TreePlan& plan, int level);
 
-// The form of the sprays of a level, for plans with foliage.
+// The shape of the sprays of a level, for plans with foliage.
 const SprayForm& spray_form(const TreePlan& plan, int level);
-// The number of sprays of a level: a multiple of kSprayBlock, 0 at levels 4 and 5 and without
-// foliage. It grows with the number of bearers, as far as `bark_vertices` leave room.
+// Number of sprays of a level: a multiple of kSprayBlock, 0 at levels 4 and 5 and without foliage.
+// It grows with the number of bearers, as far as `bark_vertices` leave room.
 std::uint32_t spray_count(const TreePlan& plan, int level, std::uint32_t bearers,
                           std::uint32_t bark_vertices);
 inline constexpr std::uint32_t kSprayBlock = 16;
 // The crown as one closed, bumpy hull: a ball at level 4, an octahedron at level 5.
 inline constexpr std::uint32_t kBallVertices = 12, kBallTriangles = 20;
 inline constexpr std::uint32_t kOctahedronVertices = 6, kOctahedronTriangles = 8;
-// A cone into the crown, in place of branches that a level leaves out: from the trunk's end at
-// levels 2 and 3, from the foot at levels 4 and 5.
+// A cone into the crown, in place of branches that a level omits: from the trunk's end at levels 2
+// and 3, from the base at levels 4 and 5.
 inline constexpr std::uint32_t kConeVertices = 4, kConeTriangles = 3;
 
 // The stored colour of leaves (square root of the albedo), from TreePlan::ramp. A hue outside [0,
@@ -136,7 +138,7 @@ struct LeafTint {
 LeafTint leaf_tint(const TreePlan& plan);
 
 // The parts of a mesh, each appended to `out`: the tubes of all drawn branches, the cone from the
-// trunk's end, the cone from the foot, `sprays` sprays of leaves, and the hull.
+// trunk's end, the cone from the base, `sprays` sprays of leaves, and the hull.
 void mesh_bark(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
                const TreeCrown& crown, MeshWriter& out);
 void mesh_core(const TreePlan& plan, const TreeSkeleton& skeleton, const TreeCrown& crown,
@@ -154,7 +156,7 @@ core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& ou
 MeshSize tree_mesh_size(const TreePlan& plan, int level);
 double tree_steps(const TreePlan& plan, int level);
 
-// Metres that the trunk reaches below the foot, to meet sloping ground.
+// Metres by which the trunk extends below the base point, to meet sloping ground.
 inline float sink_m(const TreePlan& plan) {
   return 2.0F * plan.radius_m;
 }

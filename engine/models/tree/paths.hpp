@@ -1,5 +1,5 @@
-// Follows only some paths through a tree, for coarse levels of detail. Every node shares out its
-// number of paths among its children, by the number of tips that are expected under each. Pure, any
+// Follows only some paths through a tree, for coarse levels of detail. Every node distributes its
+// paths among its children, in proportion to the expected number of tips under each. Pure, any
 // thread. Internal to trees. docs/models.md, "Tree".
 #pragma once
 
@@ -11,25 +11,25 @@ namespace psygen::models {
 // Numbers of children by kind.
 using ChildTotals = std::array<std::uint32_t, kMaxKinds>;
 
-// Whether the grammar puts leaves on the branches of a group.
+// True if the grammar puts leaves on the branches of a group.
 inline bool bears_leaves(const TreePlan& plan, const TreeGroup& group) {
   const LeavesOn on = plan.kinds[group.kind].leaves;
   return on == LeavesOn::kAll || (on == LeavesOn::kTips && group.tip);
 }
 
-// Whether the grammar puts leaves on any of the grown branches. If not, the tips bear the leaves.
+// True if the grammar puts leaves on any of the grown branches. If not, the tips bear the leaves.
 inline bool has_bearers(const TreePlan& plan, const TreeSkeleton& s) {
   for (std::size_t g = 0; plan.foliage.near != nullptr && g < s.group_count; ++g)
     if (bears_leaves(plan, s.groups[g])) return true;
   return false;
 }
 
-// Shares out the paths of a node among its children by systematic sampling. With weights w of sum
-// W, B paths and a phase φ from the node's draw, child j gets
-// ⌊B (w_0 + … + w_j) / W + φ⌋ − ⌊B (w_0 + … + w_{j−1}) / W + φ⌋.
+// Distributes the paths of a node among its children by systematic sampling. With weights w of sum
+// W, B paths and a phase φ from the node's draw, child j gets ⌊B (w_0 + … + w_j) / W + φ⌋ − ⌊B (w_0
+// + … + w_{j−1}) / W + φ⌋.
 class Shares {
  public:
-  // `remaining`: iterations left below the children. `plan` must outlive it.
+  // `remaining`: iterations left below the children. `plan` must outlive the object.
   Shares(const TreePlan& plan, const Children& children, std::uint32_t budget, int remaining,
          std::uint32_t draw)
       : plan_(plan), budget_(budget), remaining_(static_cast<std::size_t>(remaining)) {
@@ -37,8 +37,8 @@ class Shares {
       total_ += std::uint64_t{children.of_kind(kind)} * weight(kind);
     needed_ = total_ * (65536U - (draw & 0xFFFFU));
   }
-  // The paths of the next child, which is of this kind. Call it child after child, in order of kind
-  // and rank.
+  // Returns the paths of the next child, which is of this kind. Call it child after child, in order
+  // of kind and rank.
   std::uint32_t next(std::size_t kind) {
     sum_ += weight(kind);
     std::uint32_t share = 0;
@@ -57,8 +57,8 @@ class Shares {
   std::uint64_t total_ = 0, sum_ = 0, needed_ = 0;
 };
 
-// Visits the children of a node that are on its paths, in order of kind and rank:
-// visit(kind, rank, children of that kind, paths).
+// Visits the children of a node that are on its paths, in order of kind and rank: visit(kind, rank,
+// children of that kind, paths).
 template <class Visit>
 void for_children(const TreePlan& plan, std::size_t kind, std::uint32_t draw, std::uint32_t budget,
                   int remaining, const Visit& visit) {

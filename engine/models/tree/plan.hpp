@@ -23,11 +23,11 @@ inline constexpr std::uint32_t kMaxTreeNodes = 3072;
 inline constexpr std::uint32_t kMaxChildren = 64;  // of one node
 inline constexpr std::uint8_t kNoKind = 0xFF;
 
-// Which branches of a kind bear leaves.
+// The branches of a kind that bear leaves.
 enum class LeavesOn : std::uint8_t { kNone, kTips, kAll };
 
-// One way in which a node becomes branches. The first rule of its kind is used whose `until` is
-// above the lower 16 bits of the node's draw.
+// One replacement of a node by branches. The first rule of a kind applies whose `until` is above
+// the lower 16 bits of the node's draw.
 struct GrammarRule {
   std::uint32_t until = 65536;
   std::array<std::uint8_t, kMaxKinds> count{};  // children of each kind
@@ -41,7 +41,7 @@ struct Grammar {
   std::array<std::uint8_t, kMaxKinds + 1> first_rule{};  // of each kind; the last is the end
   std::array<GrammarRule, kMaxRules> rules;
   int spread = 2;  // the number drawn for `star` is within branches ± spread, at least 1
-  // Whether branches of a kind branch again.
+  // True if branches of a kind branch again.
   bool grows(std::size_t kind) const { return first_rule[kind] < first_rule[kind + 1]; }
 };
 
@@ -50,9 +50,9 @@ struct KindPlan {
   // Angle to the parent at `along_high` and `along_low`, its relative variation, and the turn
   // around the parent from one sibling to the next.
   float angle_high, angle_low, angle_variation, whorl;
-  float along_low, along_high;     // range of places on the parent, 0 foot … 1 end
-  float length_high, length_foot;  // at the parent's end and at its foot
-  float radius;                    // over the parent's radius at that place
+  float along_low, along_high;     // range of positions on the parent, 0 base … 1 end
+  float length_high, length_foot;  // at the parent's end and at its base
+  float radius;                    // over the parent's radius at that position
   // Added to the direction along Y; bend along Y; strength of the random bend.
   float lift, bend_up, curvature;
   bool leader;  // continues its parent from the end, in its direction
@@ -77,7 +77,7 @@ struct FoliagePlan {
   const SprayForm* far = nullptr;   // levels 2 and 3
   float random, out, branch, up;
   float side_random, side_out, side_up, normal_up;
-  float from;         // lowest place of leaves on a branch, 0 foot … 1 end
+  float from;         // lowest position of leaves on a branch, 0 base … 1 end
   float cluster;      // radius of clusters, relative
   float fill;         // size of leaves over the size that just fills the crown
   float density;      // sprays per bearer at level 0
@@ -94,8 +94,8 @@ struct TreePlan {
   // Expected tips of a kind after more iterations, [kind][iterations]; null: all equal.
   const std::array<std::array<std::uint32_t, kMaxTreeIterations + 1>, kMaxKinds>* weights;
   std::array<KindPlan, kMaxKinds> kinds;
-  // Length and radius of the trunk, radius of a branch at its end over that at its foot, widening
-  // of the trunk at its foot.
+  // Length and radius of the trunk, radius of a branch at its end over that at its base, widening
+  // of the trunk at its base.
   float size_m, radius_m, taper, flare;
   float trunk_curvature;
   // The ellipsoid around the crown in metres: centre (0, envelope_y, 0), half axes across and up.

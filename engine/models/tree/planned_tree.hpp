@@ -1,5 +1,5 @@
 // The base of all trees as model types: one plan per set of parameters, from which bounds, sizes,
-// errors and meshes follow. Derived types make the plan and know its cost (tree.cpp,
+// errors and meshes follow. Derived types make the plan and predict its cost (tree.cpp,
 // species_type.cpp). Immutable, any thread. Has no parameters of its own.
 #pragma once
 

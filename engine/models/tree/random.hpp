@@ -15,7 +15,8 @@ inline constexpr std::uint32_t kNumberStep = 0x85EBCA6BU;  // between the number
 enum : std::uint32_t { kDrawNumber = 4, kBarkNumber = 5, kTintNumber = 6, kHullNumber = 16 };
 inline constexpr std::uint32_t kSprayNumber = 0x40000000U;
 
-// The key of a branch before mixing; the key is mix32() of it. `parent` is the parent's mixed key.
+// Returns the unmixed key of a branch; its key is mix32() of the result. `parent` is the parent's
+// mixed key.
 constexpr std::uint32_t unmixed_child_key(std::uint32_t parent, std::size_t kind,
                                           std::uint32_t rank) {
   return parent + kChildStep * (static_cast<std::uint32_t>(kind) * kMaxChildren + rank + 1);
@@ -32,17 +33,17 @@ constexpr float high_fraction(std::uint32_t h) {
   return static_cast<float>(static_cast<std::int32_t>(h >> 16)) * (1.0F / 65536.0F);
 }
 
-// The children of a node: a rule, and the number of its starred kind. The rule is in the grammar.
+// The children of a node: a rule, and the number of its starred kind. The grammar owns the rule.
 struct Children {
   const GrammarRule* rule;
   std::uint32_t star;
-  // Number of children, of one kind and of all.
+  // Number of children of one kind, and of all children.
   std::uint32_t of_kind(std::size_t kind) const {
     return rule->count[kind] + (rule->star == kind ? star : 0U);
   }
   std::uint32_t total() const { return rule->fixed + star; }
 };
-// The number of children of the starred kind that a node with this draw gets by a rule.
+// Returns the number of children of the starred kind that a rule gives a node with this draw.
 inline std::uint32_t star_count(const TreePlan& plan, const GrammarRule& rule, std::uint32_t draw) {
   const int spread = plan.grammar->spread;
   const auto range = static_cast<std::uint32_t>(2 * spread + 1);
@@ -57,11 +58,11 @@ std::uint32_t count_stars(const TreePlan& plan, const GrammarRule& rule, const s
 // vector beyond the end.
 void draw_numbers(std::uint32_t salt, std::uint32_t count, std::uint32_t* keys,
                   std::uint32_t* draws);
-// The rule of a kind that has exactly one; else null.
+// Returns the rule of a kind that has exactly one; else null.
 inline const GrammarRule* only_rule(const Grammar& g, std::size_t kind) {
   return g.first_rule[kind] + 1 == g.first_rule[kind + 1] ? &g.rules[g.first_rule[kind]] : nullptr;
 }
-// The children of a node from its draw. Its kind must have rules (Grammar::grows).
+// Returns the children of a node from its draw. Its kind must have rules (Grammar::grows).
 inline Children children_of(const TreePlan& plan, std::size_t kind, std::uint32_t draw) {
   const Grammar& g = *plan.grammar;
   const GrammarRule* rule = &g.rules[g.first_rule[kind]];

@@ -42,7 +42,7 @@ Bend bend_of_trunk(const TreePlan& plan) {
   return {0.25 * d(plan.trunk_curvature), 0, 0};
 }
 
-// The lean at any place of a branch that starts with this lean.
+// Returns the largest lean of a branch that starts with this lean.
 Lean bent(const Lean& lean, const Bend& bend) {
   const double turn = 2 * bend.most();
   const Lean turned = turn < 1 ? sum(lean, {std::sqrt(1 - turn * turn), turn}) : kAnywhere;
@@ -52,7 +52,7 @@ Lean bent(const Lean& lean, const Bend& bend) {
   return shifted.cos > turned.cos ? shifted : turned;
 }
 
-// The lean of unit(direction + lift · Y).
+// Returns the lean of unit(direction + lift · Y).
 Lean lifted(Lean lean, double lift) {
   if (lift <= -1) return kAnywhere;
   if (lift >= 1 && lean.cos < -1 / lift) lean = {-1 / lift, std::sqrt(1 - 1 / (lift * lift))};
@@ -66,7 +66,7 @@ Lean tilt_of(const KindPlan& k) {
   return {exact_cos_degrees(360 * turns), exact_sin_degrees(360 * turns)};
 }
 
-// The worst of all branches of one kind at one depth.
+// The largest extents of all branches of one kind at one depth.
 struct Worst {
   bool any = false;
   double length = 0;
@@ -111,7 +111,7 @@ bool becomes(const Grammar& grammar, std::size_t from, std::size_t to) {
   return false;
 }
 
-// The largest distance from the crown's centre of a place on the trunk from which branches grow, in
+// Returns the largest distance between the crown's centre and a branching point of the trunk, in
 // radii of the crown.
 double trunk_in_crown(const TreePlan& plan, double middle, double radius) {
   double low = 1;

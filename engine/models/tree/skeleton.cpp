@@ -287,8 +287,8 @@ std::uint32_t path_children(const TreePlan& plan, const TreeSkeleton& s, std::si
   return count;
 }
 
-// The numbers of children of the groups [first, last), by kind. Stores in s.stars how many each
-// node has of its starred kind.
+// Counts the children of the groups [first, last), by kind. Stores each node's number of starred
+// children in s.stars.
 ChildTotals all_children(const TreePlan& plan, TreeSkeleton& s, std::size_t first,
                          std::size_t last) {
   ChildTotals totals{};

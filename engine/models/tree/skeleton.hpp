@@ -39,11 +39,11 @@ struct TreeCount {
 // grow_tree; branches deeper than `last` are not counted.
 TreeCount count_tree(const TreePlan& plan, int depth, std::uint32_t max_tips = kWholeTree,
                      int last = kMaxTreeIterations);
-// The iteration after which the whole tree stops growing.
+// Returns the iteration after which the whole tree stops growing.
 int tree_depth(const TreePlan& plan);
 
-// Rows of numbers of a skeleton, in metres. Places and directions take three rows each. The radius
-// is that at the foot; at the end it is the radius times the taper, or 0 at tips.
+// Rows of numbers of a skeleton, in metres. Positions and directions take three rows each. The
+// radius is the radius at the base; at the end it is multiplied by the taper, or 0 at tips.
 enum TreeRow : std::size_t {
   kBase = 0,
   kDirection = 3,
@@ -54,28 +54,28 @@ enum TreeRow : std::size_t {
 };
 
 // The branches of a tree. Branch i is the curve base + length · (t · direction + t² · bend), t in
-// [0, 1], in metres from the tree's foot. Groups are in order of depth, then kind. Branches are in
-// order of their parents, then their rank among siblings of their kind. Slots between groups have
-// no meaning. About 470 KiB, for the stack.
+// [0, 1], in metres from the tree's base point. Groups are in order of depth, then kind. Branches
+// are in order of their parents, then their rank among siblings of their kind. Slots between groups
+// have no meaning. About 470 KiB, for the stack.
 struct TreeSkeleton {
   // One number for each slot.
   using Row = std::array<float, kMaxTreeSlots>;
   using Words = std::array<std::uint32_t, kMaxTreeSlots>;
   alignas(64) Row rows[kTreeRows];
   alignas(64) Words key;     // random.hpp
-  alignas(64) Words draw;    // random number that decides the children
+  alignas(64) Words draw;    // random number that determines the children
   alignas(64) Words parent;  // slot of the parent
   alignas(64) Words rank;    // among siblings of the kind
   alignas(64) Row share;     // 1 / number of siblings of the kind
   alignas(64) Words budget;  // paths through the branch
-  // Only for the whole tree: the slot of the first child of each kind, and, where the grammar has
-  // one rule for the branch, the number of children of its starred kind.
+  // Only for the whole tree: the slot of the first child of each kind, and, if the grammar has one
+  // rule for the branch, the number of children of its starred kind.
   Words child[kMaxKinds], stars;
   std::array<TreeGroup, kMaxTreeGroups> groups;
   std::size_t group_count;
   int depth;  // of the deepest group
 
-  // The point of branch i at t, 0 foot … 1 end.
+  // The point of branch i at t, 0 base … 1 end.
   glm::vec3 point(std::uint32_t i, float t) const {
     const float q = t * t;
     const auto along = [&](std::size_t c) {
@@ -88,7 +88,7 @@ struct TreeSkeleton {
 };
 
 // Grows the skeleton to `depth`, which is tree_depth(), or also plan.iterations for the whole tree.
-// It follows kWholeTree or at most `max_tips` <= kMaxPaths paths from the root to tips, shared out
+// It follows kWholeTree or at most `max_tips` <= kMaxPaths paths from the root to tips, distributed
 // by the expected number of tips. The trunk and every branch on a path are exactly those of the
 // whole tree. A tree stops before the depth that would exceed kMaxTreeNodes.
 void grow_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, TreeSkeleton& out);

@@ -22,7 +22,7 @@ Fault fault(std::string part, std::size_t number, std::string_view field, std::s
   return SpeciesFault{std::move(part), number, std::string(field), std::move(sentence), code};
 }
 
-// Remembers the first number outside its range.
+// Records the first number outside its range.
 struct NumberCheck {
   std::string part;
   std::size_t number;
@@ -63,7 +63,7 @@ Fault check_letters(const Species& s) {
                                                  (k.symbol[0] >= 'a' && k.symbol[0] <= 'z'));
     if (!letter) return fault("kind", i, "symbol", "it must be one letter");
     if (kind_of(s, k.symbol) != i)
-      return fault("kind", i, "symbol", fmt::format("another kind is called {}", k.symbol));
+      return fault("kind", i, "symbol", fmt::format("another kind has the symbol {}", k.symbol));
     if (std::ranges::find(kLeavesChoices, k.leaves) == kLeavesChoices.end())
       return fault("kind", i, "leaves", "it must be none, tips or all");
     if (k.along_low > k.along_high)
@@ -77,7 +77,7 @@ Fault check_letters(const Species& s) {
 Fault check_rules(const Species& s) {
   if (s.rules.size() > kMaxRules)
     return fault("rule", kMaxRules, "from",
-                 fmt::format("this is one rule more than the {} that are allowed", kMaxRules));
+                 fmt::format("this is one rule more than the {} allowed ones", kMaxRules));
   std::array<double, kMaxKinds> sums{};
   for (std::size_t i = 0; i < s.rules.size(); ++i) {
     const SpeciesRule& rule = s.rules[i];
@@ -103,7 +103,7 @@ Fault check_rules(const Species& s) {
   return {};
 }
 
-// The allowed range of an integer of a species.
+// Returns the allowed range of an integer of a species.
 NumberSpec range_of(const Species& s, std::string_view count) {
   NumberSpec found;
   visit_counts(s, [&](std::string_view name, std::int64_t, const NumberSpec& spec) {
@@ -118,7 +118,7 @@ bool is_within(const NumberSpec& range, std::int64_t value) {
 
 Fault check_growth(const Species& s) {
   if (!grammar_of(s).grows(kind_of(s, s.axiom)))
-    return fault("", 0, "axiom", fmt::format("no rule says what {} becomes", s.axiom));
+    return fault("", 0, "axiom", fmt::format("no rule replaces {}", s.axiom));
   const double log2 =
       log2_expected_branches(s, static_cast<double>(s.iterations), static_cast<double>(s.branches));
   const std::string cost =

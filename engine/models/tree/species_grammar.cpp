@@ -11,7 +11,7 @@ namespace {
 
 using Shares = std::array<double, kMaxKinds>;
 
-// The starred children that a rule gives: the largest number (`most`) or the mean over all draws.
+// The starred children of a rule: the largest number (`most`) or the mean over all draws.
 double star_children(const GrammarRule& rule, int spread, double branches, bool most) {
   const double fixed = rule.fixed;
   if (most) return std::max(std::max(branches + spread, 1.0) - fixed, 0.0);

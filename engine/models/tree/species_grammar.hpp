@@ -10,13 +10,13 @@ namespace psygen::models {
 // The right side of a rule as counts.
 struct ParsedRule {
   GrammarRule rule;
-  std::string fault;  // a sentence; empty: none
+  std::string fault;  // an error message; empty: none
 };
 // Parses SpeciesRule::to.
 ParsedRule parse_rule(const Species& species, std::string_view to);
-// The position of a letter among the kinds, or kNoKind.
+// Returns the index of a letter among the kinds, or kNoKind.
 std::uint8_t kind_of(const Species& species, std::string_view symbol);
-// The whole grammar. Requires a species without faults in letters and rules.
+// Returns the whole grammar. Requires a species without faults in letters and rules.
 Grammar grammar_of(const Species& species);
 
 // log2 of the number of branches after some iterations: the largest over all seeds (`most`) or the
@@ -26,7 +26,7 @@ double log2_branches(const Grammar& grammar, std::size_t axiom, double iteration
 
 // Expected tips by kind and remaining iterations, as integers for paths.hpp.
 using PathWeights = std::array<std::array<std::uint32_t, kMaxTreeIterations + 1>, kMaxKinds>;
-// The weights for a mean number of branches.
+// Returns the weights for a mean number of branches.
 PathWeights path_weights(const Grammar& grammar, int branches);
 
 }  // namespace psygen::models

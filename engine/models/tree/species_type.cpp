@@ -168,18 +168,18 @@ void SpeciesType::set_schema() {
   const auto n = static_cast<double>(species_.iterations);
   const auto m = static_cast<double>(species_.branches);
   schema_ = {{
-      {"seed", kInteger, "", 1, -9.3e18, 9.3e18, 0, 1e6, "which tree of its kind this is",
+      {"seed", kInteger, "", 1, -9.3e18, 9.3e18, 0, 1e6, "selects one tree of the species",
        ParameterSource::kPlaced},
       {"iterations", kInteger, "1", n, 1, kMaxTreeIterations, std::max(n - 1, 1.0), n,
-       "times that the rules are applied"},
+       "number of times that the rules apply"},
       {"branches", kInteger, "1", m, 1, kMaxBranches, std::max(m - 1, 1.0), m,
-       "branches that a starred symbol fills up to, on average"},
+       "mean number of branches that a star fills up to"},
       {"size_m", kReal, "m", species_.size_m, 0.05, 30, 0.7 * species_.size_m,
        std::min(1.4 * species_.size_m, 30.0), "length of the trunk up to its end"},
       {"radius_m", kReal, "m", species_.radius_m, 0.002, 3, 0.7 * species_.radius_m,
        std::min(1.4 * species_.radius_m, 3.0), "radius of the trunk above its flare"},
       {"season", kReal, "1", 1, 0, 4, 0, 4, "0 spring, 1 summer, 2 autumn, 3 winter, 4 spring"},
-      {"leaf_scale", kReal, "1", 1, 0.1, 3, 0.7, 1.4, "size of leaves over the species' own"},
+      {"leaf_scale", kReal, "1", 1, 0.1, 3, 0.7, 1.4, "size of leaves, relative to the species"},
       {"colour_variation", kReal, "1", species_.colour_variation, 0, 1, 0, 1,
        "spread of colour between leaves and trees"},
   }};
@@ -243,7 +243,7 @@ core::Bounds SpeciesType::bounds_of(const TreePlan& tree) const {
           {side, top, side}};
 }
 
-// Removes leaves by season; those that stay keep their size. Below 5 % all leaves are removed.
+// Removes leaves by season; remaining leaves keep their size. Below 5 % all leaves are removed.
 void SpeciesType::shed_leaves(float season, FoliagePlan& foliage) const {
   const SpeciesFoliage& s = species_.foliage;
   const float shares[5] = {f(s.density_spring), f(s.density_summer), f(s.density_autumn),

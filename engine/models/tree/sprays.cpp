@@ -2,7 +2,7 @@
 // a twig of eight triangles at levels 0 and 1, a patch of four at levels 2 and 3. Coarser levels
 // have fewer and larger sprays on the same skeleton. These are moved towards the crown's centre by
 // the difference in size, which keeps the outline. Normals follow the crown rather than the leaf,
-// which shades it as one soft volume. Spray k hangs on bearer k mod M, so neighbouring lanes read
+// which shades it as one soft volume. Spray k belongs to bearer k mod M, so neighbouring lanes read
 // neighbouring bearers.
 #include <utility>
 
@@ -34,13 +34,13 @@ struct Bearers {
 struct SprayJob {
   const SprayForm& form;
   std::uint32_t key;                  // of the random numbers
-  float from, from_raw;               // place on the bearer
+  float from, from_raw;               // position on the bearer
   float cluster, cluster_fall;        // cluster · o = (cluster − cluster_fall · raw²) · raw
   float inverse_half[3], outward[3];  // of the crown
   float random_raw, out, branch, up;  // of the axis
   float side_random_raw, side_out, side_up, normal_up;
   float length, length_raw;        // of a spray
-  float scale[3], centre[3];       // packed = (place from the crown's centre) · scale + centre
+  float scale[3], centre[3];       // packed = (position from the crown's centre) · scale + centre
   float room;                      // distance to keep from the box, in lengths of the spray
   float colour[3], colour_raw[3];  // outer corners, stored bytes
   float bright, bright_raw;
@@ -59,7 +59,7 @@ constexpr std::size_t kChunk = 64;
 struct Chunk {
   using Row = float[kChunk];
   using Words = std::uint32_t[kChunk];
-  alignas(64) Row place[3], axis[3], side[3], size, hue;  // place is from the crown's centre
+  alignas(64) Row place[3], axis[3], side[3], size, hue;  // place is relative to the crown's centre
   alignas(64) Row foot[3], along[3], across[3], face[3];  // in packed units relative to the box
   alignas(64) Words light_inner, light_outer, normal, inner, outer;
   Chunk() {}

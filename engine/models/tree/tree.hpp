@@ -1,7 +1,7 @@
 // The broadleaf tree: a stochastic L-system whose nodes draw their own number of branches, meshed
 // at six levels of detail from one skeleton (paper, section 5.2, eq. 4; docs/models.md, "Tree").
-// Leaf triangles are visible from both sides, so trees are drawn without back-face culling. Its
-// looks are parameters; trees with a grammar as data are species (species.hpp).
+// Leaf triangles are visible from both sides, so trees are drawn without back-face culling.
+// Parameters determine its appearance; trees with a grammar as data are species (species.hpp).
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace psygen::models {
 
-// Positions in the schema of the type "tree".
+// Indices into the schema of the type "tree".
 enum TreeParameter : std::size_t {
   kTreeSeed = 0,
   kTreeIterations,
@@ -33,11 +33,11 @@ enum TreeParameter : std::size_t {
   kTreeParameterCount
 };
 
-// The plan of one tree. Requires legal parameters. Points to static data only.
+// Returns the plan of one tree. Requires legal parameters. Points to static data only.
 TreePlan plan_of_tree(const Parameters& p);
 
 // The model type "tree". Levels 0 … 5 have on average, over the paper's ranges, about 5,000, 1,200,
-// 300, 80, 23 and 11 triangles. Synthesis needs about 900 KiB of stack and nothing on the heap.
+// 300, 80, 23 and 11 triangles. Synthesis needs about 900 KiB of stack and no heap.
 std::unique_ptr<ModelType> make_tree_type();
 
 }  // namespace psygen::models

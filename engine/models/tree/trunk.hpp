@@ -7,10 +7,10 @@
 
 namespace psygen::models {
 
-// Capsules from the trunk's sunk foot to its end, in its bends, as wide as the trunk is in the
-// middle of each. The drawn trunk differs from them by at most 0.1 of its length, its radius and
-// the widening at its foot together (trunk_test.cpp measures it). Branches have no collider. Needs
-// 500 KiB of stack.
+// Capsules from the trunk's sunk base to its end, along its bends; each has the trunk's width at
+// its middle. The drawn trunk differs from them by at most 0.1 of its length, its radius and the
+// widening at its base together (trunk_test.cpp measures it). Branches have no collider. Needs 500
+// KiB of stack.
 Collider trunk_collider(const TreePlan& plan);
 
 }  // namespace psygen::models

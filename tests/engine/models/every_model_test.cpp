@@ -1,4 +1,4 @@
-// What holds for every registered model type.
+// Properties of every registered model type.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -61,7 +61,7 @@ TEST(EveryModel, StaysWithinItsBoundsAndItsPromisedSize) {
   });
 }
 
-// Vertices and triangles of a rock and of a terrain, counted once more.
+// Counts the vertices and triangles of a rock and of a terrain independently.
 std::pair<std::uint32_t, std::uint32_t> count_again(const ModelType& type, const Parameters& p,
                                                     int level) {
   if (type.name() == "rock") {

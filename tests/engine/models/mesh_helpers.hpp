@@ -1,4 +1,4 @@
-// Meshes for tests: synthesised between canary bytes that show any write beyond the destination,
+// Meshes for tests: synthesised between canary bytes that reveal any write beyond the destination,
 // with their shared indices, legal random parameters, and the last block. Knows no particular
 // model.
 #pragma once
@@ -85,8 +85,8 @@ inline Parameters random_parameters(const ModelType& type, core::RandomStream& r
   return p;
 }
 
-// True where every edge of the triangles belongs to exactly two of them, once in each direction.
-// `place` maps a vertex to a number that is equal for vertices at the same place.
+// True if every edge of the triangles belongs to exactly two of them, once in each direction.
+// `place` maps a vertex to a number that is equal for vertices at the same position.
 template <class Place>
 bool is_watertight(const std::vector<std::uint16_t>& indices, const Place& place) {
   std::map<std::pair<std::uint64_t, std::uint64_t>, int> directed;

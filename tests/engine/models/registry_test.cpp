@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// A model type of which only the schema matters.
+// A model type with a schema and nothing else of interest.
 class SchemaOnly final : public ModelType {
  public:
   SchemaOnly(std::string_view name, std::vector<ParameterSpec> specs)
@@ -70,7 +70,7 @@ TEST(Registry, StandardOneHoldsTerrainRockTreeAndGrassInThisOrder) {
   EXPECT_EQ(registry.find("house"), -1);
 }
 
-// Otherwise a hole of it stays one for as long as modelers get no processor.
+// Otherwise a hole would persist while modelers get no processor.
 TEST(Registry, EveryStandardTypeMayFillAHoleOnTheMainThread) {
   const Registry registry = make_standard_registry();
   for (ModelIndex i = 0; i < registry.size(); ++i)

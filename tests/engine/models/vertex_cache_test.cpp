@@ -1,5 +1,5 @@
-// In which order meshes name their vertices: GPUs and lavapipe keep the last few that were shaded,
-// and shade one anew that is named again too late.
+// Order of indices in meshes: GPUs and lavapipe keep the last few shaded vertices, and shade a
+// vertex again that recurs too late.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace psygen::models {
 namespace {
 
-// How often a vertex is shaded, on average of those that are named, where the last 32 are kept,
-// first in, first out. 1 is the best there is.
+// Mean number of times that a used vertex is shaded, with a cache of the last 32 vertices, first
+// in, first out. 1 is optimal.
 double shaded_per_vertex(std::span<const std::uint16_t> indices) {
   constexpr std::size_t kKept = 32;
   std::array<int, kKept> kept;

@@ -17,7 +17,7 @@ using testing::kBounded;
 using testing::Loaded;
 using testing::Scene;
 
-// A wide floor in the air, so that neither slopes nor models matter.
+// A wide floor in the air, so that slopes and models do not matter.
 struct Floor {
   Scene scene{Loaded::shipped("five_species")};
   core::WorldPosition middle = scene.above({5, 5}, 30, 30, 60);
@@ -242,7 +242,7 @@ TEST(Character, FollowsTheGroundDownhillWithoutHopping) {
         scene.steps(1);
         const CharacterState s = *scene.physics.state(*id);
         const auto under = scene.query.ground(s.feet);
-        // Steep places and models are allowed.
+        // Skips steep ground and models.
         if (under->normal.y < 0.65F || s.feet.local.y > under->height_m + 1e-3) continue;
         ASSERT_TRUE(s.on_ground) << name << " " << i << " " << k;
         ++checked;

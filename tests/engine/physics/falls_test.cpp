@@ -1,5 +1,5 @@
-// Nobody ever falls through the ground: fast falls, random teleports, borders of blocks and worlds,
-// steep slopes, many at once.
+// Nothing ever falls through the ground: fast falls, random teleports, borders of blocks and
+// worlds, steep slopes, many bodies.
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -22,7 +22,7 @@ class Falls : public ::testing::TestWithParam<const char*> {
     const std::string name = GetParam();
     return name == "bounded" ? Loaded::parsed(kBounded) : Loaded::shipped(name);
   }
-  // A place in the world; every other one on a border of blocks or at the world's edge.
+  // A position in the world; every other one on a border of blocks or at the world's edge.
   static core::WorldPosition random_place(Scene& scene, core::RandomStream& random, int i) {
     const world::World& w = scene.loaded.world;
     const auto index = [&](std::int64_t blocks) {
@@ -79,7 +79,7 @@ TEST_P(Falls, BodiesThatAreThrownAtTheGroundStayAboveIt) {
     bodies.push_back(*id);
   }
   for (int round = 0; round < 25; ++round) {
-    // All near one place, so that they meet, and so that coordinates are exact.
+    // All near one position, so that they collide, and so that coordinates are exact.
     const core::WorldPosition centre = random_place(scene, random, round);
     for (const BodyId id : bodies) {
       core::WorldPosition at = centre;

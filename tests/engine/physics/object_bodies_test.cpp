@@ -1,4 +1,4 @@
-// Objects of a game in physics: what stands on them, rides on them and is pushed by them.
+// Objects of a game in physics: they carry and push bodies and characters.
 #include <cmath>
 #include <numbers>
 
@@ -11,7 +11,7 @@ using testing::kStep;
 using testing::Loaded;
 using testing::Scene;
 
-// A world with objects, and platforms in it whose top is at a height above the ground.
+// A world with objects, and platforms whose top is at a given height above the ground.
 struct Platforms : Scene {
   query::Objects objects;
   query::ObjectName last_name = 0;
@@ -26,7 +26,7 @@ struct Platforms : Scene {
     EXPECT_TRUE(id) << id.error().message;
     return id.value_or(query::ObjectId());
   }
-  // Its top is at `top`.
+  // Adds a slab with its top at `top`.
   query::ObjectId slab(core::WorldPosition top, double half_m = 4) {
     top.local.y -= 0.25;
     const auto half = static_cast<float>(half_m);
@@ -48,7 +48,7 @@ struct Platforms : Scene {
   }
 };
 
-// Some metres east of a place on a platform, and a little above it.
+// A position some metres east of a point on a platform, and a little above it.
 core::WorldPosition beside(core::WorldPosition top, double metres) {
   top.local += glm::dvec3(metres, 0.3, 0);
   return top;

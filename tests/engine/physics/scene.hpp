@@ -33,7 +33,7 @@ struct Scene {
     EXPECT_TRUE(ground) << ground.error().message;
     return ground ? ground->height_m : 0;
   }
-  // A place some metres above the ground.
+  // A position some metres above the ground.
   core::WorldPosition above(core::BlockCoord block, double x, double z, double height_m) {
     core::WorldPosition at{block, {x, 0, z}};
     at.local.y = ground_m(at) + height_m;

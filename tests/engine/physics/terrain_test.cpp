@@ -14,7 +14,7 @@ namespace {
 using testing::kBounded;
 using testing::Loaded;
 
-// Bullet without bodies.
+// A Bullet world without bodies.
 struct Bare {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
@@ -22,7 +22,7 @@ struct Bare {
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld bullet{&dispatcher, &broadphase, &solver, &configuration};
 
-  // Where a ray of Bullet's first meets one of these groups, as a share of its length; 1: nothing.
+  // Returns the first hit of a ray in these groups, as a fraction of its length; 1: none.
   double cast(const btVector3& from, const btVector3& to, int groups) {
     btCollisionWorld::ClosestRayResultCallback hit(from, to);
     hit.m_collisionFilterGroup = kBodies;
@@ -132,7 +132,7 @@ TEST(PhysicsTerrain, MovesWithTheOriginWithoutBeingRebuilt) {
   };
   const std::set<const btCollisionObject*> before = objects();
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kPosition);
-  std::vector<std::pair<core::WorldPosition, double>> models;  // places over ground and models
+  std::vector<std::pair<core::WorldPosition, double>> models;  // positions above ground and models
   for (int i = 0; i < 500; ++i) {
     const btVector3 at(random.next_real(0, 100), 2000, random.next_real(0, 100));
     models.emplace_back(terrain.position(at),

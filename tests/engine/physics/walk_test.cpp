@@ -33,7 +33,7 @@ TEST_P(Walk, OfKilometresNeitherFallsThroughTheGroundNorGetsStuck) {
       ASSERT_TRUE(scene.physics.step(kStep));
       const CharacterState s = *scene.physics.state(*id);
       ASSERT_GE(s.feet.local.y, scene.ground_m(s.feet) - 1e-5);
-      // On the ground, or on a model, or falling: never far above.
+      // On the ground or a model, or falling, but never far above.
       ASSERT_LE(s.feet.local.y, scene.ground_m(s.feet) + 25);
     }
     const core::WorldPosition now = scene.physics.state(*id)->feet;

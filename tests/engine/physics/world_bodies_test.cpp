@@ -83,7 +83,7 @@ TEST(PhysicsBodies, WakeOnlyWhenTheirSupportIsRemoved) {
   }
   EXPECT_LT(height_m(lids[0]), before_m[0] - 3);
   EXPECT_LT(height_m(lids[1]), before_m[1] - 3);
-  // One that sleeps goes from below another one.
+  // Removes a sleeping body from below another one.
   ASSERT_TRUE(scene.physics.remove(crates[2]));
   scene.steps(20);
   EXPECT_LT(height_m(lids[2]), before_m[2] - 0.3);

@@ -19,8 +19,8 @@ using testing::kStep;
 using testing::Loaded;
 using testing::Scene;
 
-// All bits of a simulation of some seconds: bodies that meet each other and models, and characters
-// among them.
+// Returns all bits of a simulation of some seconds: bodies that hit each other and models, and
+// characters among them.
 std::vector<double> simulated(Scene& scene, const core::BlockCoord& block) {
   std::vector<BodyId> bodies;
   std::vector<CharacterId> characters;
@@ -59,7 +59,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 TEST(PhysicsWorld, TheSameInputsGiveTheSameBits) {
   for (const char* name : {"paper", "silver_combe"}) {
     Scene first(Loaded::shipped(name)), second(Loaded::shipped(name));
-    // Other blocks were asked about before, in another order.
+    // Queries other blocks first, in another order.
     for (int i = 30; i-- > 0;)
       (void)second.query.cast(
           {.origin = {{35 - i % 9, 30 + i}, {5, 400, 5}}, .direction = {1, -1, 1}});
@@ -70,8 +70,8 @@ TEST(PhysicsWorld, TheSameInputsGiveTheSameBits) {
   }
 }
 
-// Where a ball that was thrown and a character that walks are after a second, in a block of a flat
-// world. Both start at the same places of any block.
+// Returns the positions of a thrown ball and a walking character after a second, in a block of a
+// flat world. Both start at the same positions of any block.
 std::vector<double> second_in(core::BlockCoord block) {
   Scene scene(Loaded::parsed(R"(format = 1
 [world]
@@ -165,7 +165,7 @@ TEST(PhysicsWorld, LoadsTerrainInTheFirstStepAndUnloadsItWithoutActors) {
   const auto id = scene.physics.add(CharacterSettings{.feet = scene.above({50, 50}, 30, 30, 0)});
   ASSERT_TRUE(id);
   scene.steps(1);
-  // 2.2 m of its own, 2 m in advance, and what reaches in from other blocks.
+  // 2.2 m by its size, 2 m of margin, and the reach of models of other blocks.
   const double size = scene.loaded.world.block_size_m();
   const double reach = 2.2 + 2 + scene.query.models_reach_m();
   const auto aside = static_cast<std::size_t>(std::floor((30 + reach) / size) -
@@ -214,7 +214,7 @@ TEST(PhysicsWorld, SleepingBodiesKeepTheirGroundWhenTheOriginMoves) {
   let_sleep(scene, {*body});
   const core::WorldPosition before = scene.physics.state(*body)->position;
   ASSERT_TRUE(scene.physics.set_feet(*walker, scene.above({90, -80}, 5, 5, 0)));
-  scene.steps(300);  // longer than idle blocks are kept
+  scene.steps(300);  // longer than idle blocks stay loaded
   EXPECT_TRUE(scene.physics.state(*body)->asleep);
   EXPECT_EQ(scene.physics.state(*body)->position.block, before.block);
   EXPECT_NEAR(glm::length(scene.physics.state(*body)->position.local - before.local), 0, 1e-9);
@@ -239,7 +239,7 @@ TEST(PhysicsWorld, BodiesAndCharactersFollowEditsOfTheGround) {
   const double after_m = scene.ground_m(place);
   EXPECT_NEAR(before_m - after_m, 4, 0.2);
   const core::WorldPosition lies = scene.physics.state(*body)->position;
-  EXPECT_LT(lies.local.y - scene.ground_m(lies), 1) << "it does not hang in the air";
+  EXPECT_LT(lies.local.y - scene.ground_m(lies), 1) << "it does not float";
   const core::WorldPosition feet = scene.physics.state(*walker)->feet;
   EXPECT_NEAR(feet.local.y, scene.ground_m(feet), 0.05);
 }

@@ -41,7 +41,7 @@ TEST(BlockCache, StaysUnderItsBoundAndDropsTheLeastRecentlyUsedBlock) {
   const std::size_t size = cache.size(), bytes = cache.bytes();
   cache.ground({0, 0});
   cache.solids({49, 0});
-  EXPECT_EQ(cache.size(), size);  // both were still there
+  EXPECT_EQ(cache.size(), size);  // both were still cached
   EXPECT_EQ(cache.bytes(), bytes);
 }
 
@@ -67,7 +67,7 @@ TEST(BlockCache, FollowsEditsAndKeepsTheBlocksThatTheyDoNotReach) {
   ASSERT_TRUE(edits.remove(loaded.world, {{2, 1}, index}));
   world::set_edits(loaded.world, edits.layer());
   EXPECT_EQ(cache.models({2, 1}).size(), models - 1);
-  EXPECT_EQ(cache.size(), blocks) << "one is made anew";
+  EXPECT_EQ(cache.size(), blocks) << "one is rebuilt";
 
   const double size = loaded.world.block_size_m();
   ASSERT_TRUE(edits.raise(loaded.world, {{6, 1}, {0.3 * size, 0, 0.3 * size}}, 0.3 * size, 3));

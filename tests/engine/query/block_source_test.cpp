@@ -55,7 +55,7 @@ TEST(BlockSource, StampsAndRoadsShapeTheGroundAndAreNoEdits) {
   EXPECT_EQ(edits_of_block(world, block), 0U);
   EXPECT_NE(edits_of_block(world, {7, 3}), 0U);
   EXPECT_EQ(ground_of_block(world, block), heights);
-  // A road is ground of its own kind.
+  // A road has its own surface kind.
   World query(world, registry);
   const auto on_it = query.ground({{0, 0}, {140, 0, 140}});
   ASSERT_TRUE(on_it);

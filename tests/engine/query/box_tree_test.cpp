@@ -1,4 +1,4 @@
-// The tree of boxes against a list of them.
+// Compares the tree of boxes with a list.
 #include "engine/query/box_tree.hpp"
 
 #include <gtest/gtest.h>
@@ -117,7 +117,7 @@ TEST(BoxTree, SmallMovesChangeNothing) {
   EXPECT_FALSE(tree.move(leaf, {glm::dvec3(0.05), glm::dvec3(1.05)}, glm::dvec3(0.05)));
   EXPECT_TRUE(tree.move(leaf, {glm::dvec3(0.2), glm::dvec3(1.2)}, glm::dvec3(0.1)));
   EXPECT_FALSE(tree.move(leaf, {glm::dvec3(0.6), glm::dvec3(1.6)}, glm::dvec3(0.1)))
-      << "it was made for moves of that size";
+      << "its margin is for moves of that size";
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ TEST(GroundGrid, VerticalRaysHitTheHeightOfThePoint) {
 
 TEST(GroundGrid, NoRayPassesBetweenTwoTriangles) {
   const GroundGrid grid = rough(5);
-  // Aimed exactly at vertices and middles of edges, from exact places and from others.
+  // Aimed exactly at vertices and middles of edges, from exact and from inexact positions.
   core::RandomStream random(6, 0, 0, 0, core::Purpose::kPosition);
   for (int i = 0; i < 5000; ++i) {
     const glm::dvec2 at = 0.75 * glm::dvec2(random.next_integer(2, 40), random.next_integer(2, 40));
@@ -128,7 +128,7 @@ TEST(GroundGrid, ARayThatBeginsOnTheGroundHitsItUnlessItRises) {
     EXPECT_FALSE(grid.cast(ray_of(from, {0, 1, 0}), 0, 100, side));
     side = Side::kUnknown;
     const auto away = grid.cast(ray_of(from, glm::dvec3(ground.normal)), 0, 0.05, side);
-    EXPECT_TRUE(!away || away->t > 0);  // it may meet another triangle that faces this one
+    EXPECT_TRUE(!away || away->t > 0);  // it may hit another triangle that faces this one
   }
 }
 

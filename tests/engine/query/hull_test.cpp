@@ -35,7 +35,7 @@ TEST(Hull, HoldsEveryPointAndEachFaceTouchesPoints) {
   }
 }
 
-// A point is in the hull exactly if no direction separates it: sampled from both sides.
+// A point is in the hull exactly if no direction separates it: sampled from inside and outside.
 TEST(Hull, IsNotLargerThanThePointsNeed) {
   core::RandomStream random(2, 0, 0, 0, core::Purpose::kPosition);
   std::vector<glm::vec3> sphere;
@@ -44,7 +44,7 @@ TEST(Hull, IsNotLargerThanThePointsNeed) {
   const auto faces = hull_faces(sphere);
   for (int i = 0; i < 500; ++i) {
     const glm::vec3 direction = glm::normalize(random_point(random));
-    float leaves = 1e9F;  // where the ray from the middle leaves the hull
+    float leaves = 1e9F;  // parameter at which the ray from the centre leaves the hull
     for (const HalfSpace& face : faces)
       if (const float speed = glm::dot(face.normal, direction); speed > 0)
         leaves = std::min(leaves, face.distance / speed);

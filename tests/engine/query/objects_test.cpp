@@ -50,7 +50,7 @@ struct Scene {
       : loaded(std::move(from)), query(loaded.world, loaded.registry), objects(loaded.world) {
     query.meet(&objects);
   }
-  // A place high above all ground and models.
+  // A position high above all ground and models.
   core::WorldPosition sky(double x = 0, double y = 0, double z = 0) const {
     return {some_block(), {x, 5000 + y, z}};
   }

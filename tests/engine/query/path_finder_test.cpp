@@ -1,4 +1,4 @@
-// Ways over the land: walkable, around what is solid, the same each time.
+// Paths over the ground: walkable, around obstacles, the same each time.
 #include "engine/query/path_finder.hpp"
 
 #include <cmath>
@@ -76,7 +76,7 @@ TEST_F(Ways, AreTheSameInOneSearchAndInSteps) {
   EXPECT_FALSE(finder.advance(100));
   finder.begin(to, from);
   EXPECT_FALSE(finder.advance(10));
-  finder.begin(from, to);  // in place of the other
+  finder.begin(from, to);  // replaces the other search
   std::optional<std::vector<core::WorldPosition>> found;
   int pieces = 0;
   for (; !found && pieces < 100'000; ++pieces) {

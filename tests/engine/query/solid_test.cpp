@@ -31,7 +31,7 @@ double distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::
   return glm::length(p - a - t * (b - a));
 }
 
-// Holds a shape's rays against its definition: inside(p) is negative inside, and changes sign at
+// Checks rays against the definition of a shape: inside(p) is negative inside, and changes sign at
 // the hit and not before.
 void expect_as_defined(Solid solid, const std::function<double(const glm::dvec3&)>& inside) {
   core::RandomStream random(7, 0, 0, 0, core::Purpose::kPosition);

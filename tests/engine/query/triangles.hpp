@@ -1,4 +1,4 @@
-// Lines, triangles and what is no number, for tests of rays.
+// Lines, triangles and infinite values, for tests of rays.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace psygen::query::testing {
 
 inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// Where a line crosses a triangle's plane inside it (Möller and Trumbore), or a negative value.
+// Returns the parameter where a line crosses a triangle (Möller and Trumbore), or a negative value.
 // `slack` widens the triangle, relative to its size.
 inline double crosses(const glm::dvec3& from, const glm::dvec3& d, const glm::dvec3& a,
                       const glm::dvec3& b, const glm::dvec3& c, double slack = 0) {

@@ -279,14 +279,14 @@ TEST(QueryWorld, EndlessRaysTakeBoundedWorkAndReportTheirLength) {
   ASSERT_TRUE(rising);
   EXPECT_EQ(rising->kind, HitKind::kNothing);
   EXPECT_GE(rising->distance_m, 1e9);
-  // Below all ground, level: nothing is there.
+  // Level and below all ground: there is nothing to hit.
   const auto level = query.cast({.origin = {{5, 5}, {1, -500, 1}},
                                  .direction = {1, 0, 0.2},
                                  .longest_m = kInfinity,
                                  .models = false});
   ASSERT_TRUE(level);
   EXPECT_EQ(level->kind, HitKind::kNothing);
-  // A world of a few blocks, missed.
+  // A world of a few blocks, which the ray misses.
   const Loaded bounded = Loaded::parsed(kBounded);
   World small(bounded.world, bounded.registry);
   const auto past = small.cast(
@@ -303,7 +303,7 @@ TEST(QueryWorld, RaysEnterABoundedWorldFromOutside) {
   ASSERT_TRUE(above);
   EXPECT_EQ(above->kind, HitKind::kGround);
   EXPECT_FALSE(above->from_inside);
-  // Below the surface at the border, which has no side: comes out further in.
+  // Below the surface at the border, which has no vertical side: the ray comes out further in.
   const auto edge = query.ground({{0, 1}, {0, 0, 10}});
   ASSERT_TRUE(edge);
   const auto below = query.cast({.origin = {{-1, 1}, {0, edge->height_m - 70, 10}},
@@ -338,7 +338,7 @@ struct AllSolids {
       }
     }
   }
-  // The first one that a ray meets, one after the other.
+  // Finds the first hit solid, one after the other.
   const One* first(const glm::dvec3& from, const glm::dvec3& d, double& distance_m) {
     const One* best = nullptr;
     for (One& one : all) {
@@ -362,7 +362,7 @@ TEST(QueryWorld, RaysHitTheFirstOfAllModels) {
     for (int i = 0; i < 200; ++i) {
       core::WorldPosition origin{block, {random.next_real(0, 63), 0, random.next_real(0, 63)}};
       origin.local.y = query.ground(origin)->height_m + random.next_real(0.2, 1);
-      // Towards some model, so that most rays meet one.
+      // Towards some model, so that most rays hit one.
       const auto aim = static_cast<std::size_t>(
           random.next_integer(0, static_cast<std::int64_t>(solids.all.size()) - 1));
       const glm::dvec3 to = solids.all[aim].foot + glm::dvec3(random.next_real(-0.3, 0.3), 0.2, 0);
@@ -506,7 +506,7 @@ TEST(QueryWorld, RaysHitModelsOfEditsAtAnyDistanceFromTheirBlock) {
   ASSERT_TRUE(placed) << placed.error().message;
   world::set_edits(loaded.world, edits.layer());
   EXPECT_GT(query.models_reach_m(), 1.2 * size);
-  // Straight down onto the next block, from above all heights of before.
+  // Straight down onto the next block, from above all earlier heights.
   core::WorldPosition eye{{3, 1}, {0.3 * size, 0, 0.5 * size}};
   eye.local.y = query.ground(eye)->height_m + 200;
   const auto hit = query.cast({.origin = eye, .longest_m = 1000});
@@ -527,7 +527,7 @@ TEST(QueryWorld, QueriesOfACopyOfTheWorldRunInAnotherThreadWhileTheWorldIsEdited
   ASSERT_TRUE(edits.raise(loaded.world, place, 10, 3));
   world::set_edits(loaded.world, edits.layer());
   const world::World copy = loaded.world;
-  World query(copy, loaded.registry, 1);  // makes every block anew
+  World query(copy, loaded.registry, 1);  // rebuilds every block
   const double before_m = query.ground(place)->height_m;
   auto answers = std::async(std::launch::async, [&] {
     int others = 0;

@@ -16,7 +16,7 @@ struct Loaded {
   models::Registry registry = models::make_standard_registry();
   world::World world;
 
-  // `name` is that of a file in game/worlds, without its ending.
+  // `name` is a file name in game/worlds without its extension.
   static Loaded shipped(const std::string& name) {
     Loaded loaded;
     auto world =
@@ -40,7 +40,7 @@ inline constexpr const char* kWorldNames[] = {"paper",         "endless",      "
 
 inline constexpr const char* kBounded = world::testing::kSmallWorld;
 
-// A block that the world contains, near its middle or far out if it is endless.
+// Returns a block in the world, near its middle, or far out if it is endless.
 inline core::BlockCoord some_block(const world::World& world) {
   if (!world.is_endless()) return {3, 2};
   return {1 << 30, -(1 << 30) + 5};

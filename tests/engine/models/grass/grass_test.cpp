@@ -22,7 +22,7 @@ class Grass : public ::testing::Test {
  protected:
   std::unique_ptr<ModelType> type = make_grass_type();
 
-  // Places in metres of the vertices of a level.
+  // Positions of a level's vertices in metres.
   std::vector<glm::vec3> places(const Parameters& p, const Mesh& mesh) const {
     std::vector<glm::vec3> result;
     for (const ModelVertex& v : mesh.vertices<ModelVertex>())
@@ -90,18 +90,18 @@ TEST_F(Grass, GrowsUpOutOfSlopingGround) {
     EXPECT_LT(above_ground(at[i + 1]), -0.02F);
     EXPECT_GT(at[i + 2].y, at[i].y);
     EXPECT_GT(at[i + 4].y, at[i + 2].y);
-    // Only what is above the ground sways, most of all the tip; the foot is in the shade.
+    // Only vertices above the ground sway, most of all the tip; the base is in the shade.
     EXPECT_EQ(vertices[i].sway, 0);
     EXPECT_LT(vertices[i + 2].sway, vertices[i + 4].sway);
     EXPECT_LT(vertices[i].ambient, vertices[i + 4].ambient);
-    // It takes the light of the ground.
+    // It has the light of the ground.
     const glm::vec3 normal =
         decode_octahedral(glm::vec2(vertices[i].normal[0], vertices[i].normal[1]) / 32767.0F);
     EXPECT_GT(glm::dot(normal, glm::normalize(glm::vec3(-0.5F, 1, 0.3F))), 0.999F);
   }
 }
 
-// Area of a mesh's triangles, seen from everywhere alike.
+// Area of a mesh's triangles, as a mean over all directions of view.
 float area(const std::vector<glm::vec3>& at, const Mesh& mesh) {
   float sum = 0;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
@@ -123,7 +123,7 @@ TEST_F(Grass, CoversAboutAsMuchAtEveryLevel) {
   }
 }
 
-// From where blades are to the nearest of a dense set of points of the coarser level.
+// From points of the blades to the nearest of a dense set of points of the coarser level.
 TEST_F(Grass, DeviatesByTheErrorOfItsLevel) {
   core::RandomStream random(4, 0, 0, 0, core::Purpose::kParameters);
   for (int trial = 0; trial < 12; ++trial) {

@@ -1,5 +1,5 @@
-// Grass against the double-precision oracle: places, normals, colours, light, sway and material of
-// every vertex of every level.
+// Grass against the double-precision oracle: positions, normals, colours, light, sway and material
+// of every vertex of every level.
 #include <gtest/gtest.h>
 
 #include "engine/models/kit/packing.hpp"
@@ -32,7 +32,7 @@ TEST(GrassOracle, EqualsEveryVertexOfEveryLevel) {
     SCOPED_TRACE(trial);
     Parameters p = test::random_parameters(*type, random);
     p.set_integer(kGrassFlower, trial % kFlowerCount);
-    if (trial % 4 == 0) {  // all colours in full sun, blades that sway as far as any
+    if (trial % 4 == 0) {  // all colours in full sun, blades with the largest sway
       p.set_real(kGrassAlbedo, 0.9);
       p.set_real(kGrassDryness, trial % 8 == 0 ? 0 : 1);
       p.set_real(kGrassHeightM, 2);

@@ -23,7 +23,7 @@ struct Number {
 using Map = QuadMap<Number>;
 
 QuadPlace any_place(std::mt19937& random) {
-  // Dense around the origin, where signs change, and a few places at the ends of the world.
+  // Dense around the origin, where signs change, and a few positions at the ends of the world.
   std::uniform_int_distribution<std::int32_t> near(-6, 6), all(INT32_MIN, INT32_MAX);
   const bool far = random() % 8 == 0;
   const core::BlockCoord block{far ? all(random) : near(random), far ? all(random) : near(random)};
@@ -126,7 +126,7 @@ TEST(QuadMap, AValueAtAnotherPositionChangesTheHashOfEverySquareAroundIt) {
     ASSERT_NE(beside.at_or_below(around), nullptr);
     EXPECT_NE(here.at_or_below(around)->hash, beside.at_or_below(around)->hash) << level;
   }
-  // The same pair of values, moved as a whole.
+  // The same pair of values, moved together.
   here.set(QuadPlace::of({14, 7}), {6});
   beside.set(QuadPlace::of({15, 7}), {6});
   EXPECT_NE(here.root()->hash, beside.root()->hash);

@@ -1,4 +1,4 @@
-// All instruction sets of this CPU give the same bits, and those close to the double-precision
+// All instruction sets of this CPU give the same bits, which are close to the double-precision
 // oracles.
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ class SimdKernels : public ::testing::Test {
             .octaves = static_cast<int>(random.next_integer(1, 16)),
             .warp = random.next_integer(0, 2) == 0 ? random.next_unit() : 0};
   }
-  // Near or far, evenly spaced, or at random places in no order.
+  // Near or far, evenly spaced, or at random positions in no order.
   std::vector<std::int64_t> random_axis(std::int64_t longest) {
     const std::int64_t count = random.next_integer(1, longest);
     const std::int64_t first = random.next_integer(-(1LL << 40), 1LL << 40);
@@ -45,7 +45,7 @@ class SimdKernels : public ::testing::Test {
       axis.push_back(first + (uneven ? random.next_integer(-900, 900) : i * step));
     return axis;
   }
-  // Bytes of all levels on every instruction set: the same as on the first.
+  // Expects the same bytes of all levels on every instruction set.
   void expect_same_bytes(const ModelType& type, const Parameters& p) {
     for (int level = 0; level < type.level_count(); ++level) {
       pin_simd_target(simd_targets().front());
@@ -103,7 +103,7 @@ TEST_F(SimdKernels, OfTerrainNoiseHaveTheSameBitsOnEveryTarget) {
   }
 }
 
-// Few columns beyond whole vectors have rows as lanes where rows follow each other closely.
+// The few columns beyond whole vectors use rows as lanes if there are many rows.
 TEST_F(SimdKernels, OfTerrainNoiseHaveTheSameBitsInTheLastColumns) {
   constexpr std::array<std::int64_t, 5> kRows{1, 16, 17, 65, 144};
   for (int trial = 0; trial < 120; ++trial) {

@@ -1,4 +1,4 @@
-// The skeleton of a tree once more, as docs/models.md defines it: in double precision, branch by
+// An independent skeleton of a tree, as docs/models.md defines it: in double precision, branch by
 // branch, with the library's sines and cosines. Not its mesh (tree.hpp).
 #pragma once
 
@@ -32,7 +32,7 @@ class BranchOracle {
   int depth() const { return depth_; }
   bool is_tip(const Branch& b) const { return b.depth == depth_ || !p_.grammar->grows(b.kind); }
 
-  // Branches of at most `paths` paths (0: all), ordered by depth, kind, parent, rank.
+  // Grows the branches of at most `paths` paths (0: all), ordered by depth, kind, parent, rank.
   Branches grow(std::uint64_t paths) const {
     Branches all{trunk()};
     std::vector<std::uint64_t> shares{paths};
@@ -181,7 +181,7 @@ class BranchOracle {
     const LeavesOn on = p_.kinds[b.kind].leaves;
     return on == LeavesOn::kAll || (on == LeavesOn::kTips && is_tip(b));
   }
-  // Those with leaves, or the tips where none has any.
+  // Returns the branches with leaves, or the tips if none has any.
   Branches bearers(const Branches& all) const {
     Branches found;
     for (const Branch& b : all)

@@ -1,5 +1,5 @@
-// Holds the mesh of a tree, `tree` or species, to the oracle, vertex by vertex: places to half a
-// step of the packing and 1e-5 of the tree's size, everything else to half a step and 1e-5.
+// Compares the mesh of a tree, `tree` or species, with the oracle, vertex by vertex: positions to
+// half a step of the packing and 1e-5 of the tree's size, everything else to half a step and 1e-5.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace psygen::models::test {
 
-// `expected` is the level's mesh, made last by an oracle with looks.
+// `expected` is the level's mesh, the last one that an oracle with looks made.
 inline void expect_as_oracle(const TreeOracle& oracle,
                              const std::vector<TreeOracle::Vertex>& expected,
                              const core::Bounds& bounds, const Mesh& mesh, int level) {

@@ -1,6 +1,6 @@
-// The foliage of a tree once more, as docs/models.md defines it: in double precision, the crown and
-// its light, colours of leaves, single sprays and hulls, on the skeleton of branches.hpp.
-// Bark and the order of vertices are in tree.hpp.
+// An independent foliage of a tree, as docs/models.md defines it: in double precision, the crown
+// and its light, colours of leaves, single sprays and hulls, on the skeleton of branches.hpp. Bark
+// and the order of vertices are in tree.hpp.
 #pragma once
 
 #include <algorithm>
@@ -20,16 +20,16 @@ namespace psygen::models::test {
 
 class FoliageOracle : public BranchOracle {
  public:
-  // With looks, or with places and normals only, which takes half the time.
+  // Makes looks, or only positions and normals, which takes half the time.
   explicit FoliageOracle(const TreePlan& plan, bool with_looks = false)
       : BranchOracle(plan), with_looks_(with_looks) {}
 
   struct Vertex {
     glm::dvec3 place, normal;
-    bool bark = false;       // of a tube: never pulled in by the tree's box
-    std::uint32_t look = 0;  // number in looks()
+    bool bark = false;       // of a tube: the tree's bounds never clamp it
+    std::uint32_t look = 0;  // index into looks()
   };
-  // Of the vertices of the last mesh that was made; their normals are left out.
+  // Looks of the vertices of the last mesh, without their normals.
   const std::vector<Look>& looks() const { return looks_; }
 
  protected:
@@ -59,7 +59,7 @@ class FoliageOracle : public BranchOracle {
     crown_radius_ = (2 * half_.x + half_.y) / 3;
   }
 
-  // Of the sky, at a place in or about the crown.
+  // Visible fraction of the sky at a point in or about the crown.
   double ambient(const glm::dvec3& place) const {
     const glm::dvec3 q = (place - centre_) / half_;
     return (0.3 + 0.7 * std::min(glm::dot(q, q), 1.44) / 1.44) *
@@ -69,7 +69,7 @@ class FoliageOracle : public BranchOracle {
   // ---- Colours ----
 
   static glm::dvec3 stored(const std::array<float, 3>& c) { return {d(c[0]), d(c[1]), d(c[2])}; }
-  // Of leaves of a hue.
+  // Colour of leaves of a hue.
   glm::dvec3 leaf(double hue) const {
     const double x = std::clamp(4 * (p_.cyclic ? hue - std::floor(hue) : hue), 0.0, 4.0);
     const auto before = static_cast<std::size_t>(std::min(x, 3.0));
@@ -116,7 +116,7 @@ class FoliageOracle : public BranchOracle {
         d(f.side_out) * out + d(f.side_random) * random + glm::dvec3{0, d(f.side_up), 0}, axis));
     const glm::dvec3 face = glm::cross(axis, side);
     const glm::dvec3 normal = glm::normalize(out + 0.3 * axis + glm::dvec3{0, d(f.normal_up), 0});
-    std::array<std::uint32_t, 2> numbers{};  // of the looks of corner 0 and of the others
+    std::array<std::uint32_t, 2> numbers{};  // indices of the looks of corner 0 and of the others
     if (with_looks_) numbers = spray_looks(centre_ + place, h[3], h[4]);
     const glm::dvec3 limit = room - 1.3 * length;
     place = glm::clamp(place + centre_ - glm::dvec3(p_.bounds.centre()), -limit, limit) +

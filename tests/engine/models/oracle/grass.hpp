@@ -1,5 +1,5 @@
-// A patch of grass once more, as docs/models.md defines it: in double precision, blade by blade.
-// Gives the places and looks of a level's vertices in the order of the mesh.
+// An independent patch of grass, as docs/models.md defines it: in double precision, blade by blade.
+// Returns the positions and looks of a level's vertices in the order of the mesh.
 #pragma once
 
 #include <algorithm>
@@ -80,7 +80,7 @@ class GrassOracle {
     return (1 - sigma) * e + sigma * fraction(item, 1) * direction(fraction(item, 0));
   }
 
-  // Left and right of foot and bend, then the tip.
+  // Left and right of base and bend, then the tip.
   std::array<Vertex, 5> blade(std::uint64_t j, double broader) const {
     const bool stem = j >= 1U << 20;
     const auto a = [&](unsigned i) { return fraction(2 * j + 1, i); };

@@ -1,5 +1,5 @@
-// The light of a terrain once more, as docs/models.md defines it: one point at a time, recursively,
-// in double precision, with the library's sine and tangent.
+// An independent light of a terrain, as docs/models.md defines it: one point at a time,
+// recursively, in double precision, with the library's sine and tangent.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct LightOracle {
   double spacing_m(int grid) const {
     return static_cast<double>(cells(grid)) * std::ldexp(cell_m, node_level);
   }
-  // Point (x, z) of a grid, counted from the world's origin.
+  // Height of point (x, z) of a grid, counted from the world's origin.
   double height_m(int grid, std::int64_t x, std::int64_t z) const {
     TerrainOracle coarse = terrain;
     const double feature_m = cell_m / terrain.cells_per_step;
@@ -99,7 +99,7 @@ struct LightOracle {
     return known[{grid, x, z}] = s;
   }
 
-  // Shares in [0, 1] at a point of a grid.
+  // Visible fractions in [0, 1] at a point of a grid.
   double sun_at_point(int grid, std::int64_t x, std::int64_t z) const {
     if (elevation <= 0) return 0;
     const Seen s = seen(grid, x, z);
@@ -114,7 +114,7 @@ struct LightOracle {
     return sum / 8;
   }
 
-  // At a cell, counted from the world's origin; the mesh takes the points of `grid`.
+  // Light at a cell, counted from the world's origin; the mesh uses the points of `grid`.
   double sun(int grid, std::int64_t x, std::int64_t z) const {
     const auto at = [&](std::int64_t i, std::int64_t k) { return sun_at_point(grid, i, k); };
     return bilinear(static_cast<double>(x) / static_cast<double>(cells(grid)),

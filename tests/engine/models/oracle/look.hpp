@@ -1,7 +1,7 @@
-// How a vertex of a model looks, as docs/models.md defines it: in double precision, before it is
-// packed; and whether the bytes of a packed vertex are those numbers, rounded to nearest. The
-// oracles of rocks, trees and grass give such looks. Reads bytes by the definition of the vertex
-// layout (engine/core/vertex_layout.hpp), not with the engine's own unpacking.
+// The look of a model's vertex, as docs/models.md defines it: in double precision, before packing;
+// and a comparison with the bytes of a packed vertex, rounded to nearest. The oracles of rocks,
+// trees and grass return such looks. Reads bytes by the definition of the vertex layout
+// (engine/core/vertex_layout.hpp), not with the engine's own unpacking.
 #pragma once
 
 #include <algorithm>
@@ -18,19 +18,19 @@ namespace psygen::models::test {
 
 struct Look {
   glm::dvec3 normal{0, 1, 0};    // of any length
-  glm::dvec3 colour{0};          // as it is stored, the root of albedo, in [0, 1]
+  glm::dvec3 colour{0};          // stored colour, the root of albedo, in [0, 1]
   double ambient = 1, sway = 0;  // in [0, 1]
   int material = 0;
-  bool inner = false;  // the foot of a spray: less an eighth in colour, a quarter in ambient light
+  bool inner = false;  // the base of a spray: less an eighth in colour, a quarter in ambient light
 };
 
-// What single precision may add to half a step of the packing: relative to the largest value that a
-// byte stands for, and to the length of a normal.
+// Error of single precision beyond half a step of the packing: relative to the largest value of a
+// byte, and to the length of a normal.
 struct LookTolerance {
   double byte = 1e-5, normal = 1e-5;
 };
 
-// Whether a byte is a number in [0, 1] rounded to nearest, less ⌊1/part⌋ of it (0: less nothing).
+// True if a byte is a number in [0, 1] rounded to nearest, minus ⌊1/part⌋ of it (0: minus nothing).
 inline bool is_rounded(int byte, double value, int part, double tolerance) {
   const double steps = 255 * std::clamp(value, 0.0, 1.0);
   for (const double whole : {std::floor(steps), std::ceil(steps)}) {
@@ -41,7 +41,7 @@ inline bool is_rounded(int byte, double value, int part, double tolerance) {
   return false;
 }
 
-// The direction that a packed vertex stores, its |x| + |y| + |z| = 1.
+// Returns the direction that a packed vertex stores, with |x| + |y| + |z| = 1.
 inline glm::dvec3 unpacked_normal(const core::ModelVertex& v) {
   const double a = v.normal[0] / 32767.0, b = v.normal[1] / 32767.0;
   const double y = 1 - std::abs(a) - std::abs(b);
@@ -58,7 +58,7 @@ inline bool is_rounded_normal(const core::ModelVertex& v, const glm::dvec3& norm
   return glm::distance(glm::normalize(found), glm::normalize(normal)) <= most;
 }
 
-// What is wrong with a packed vertex; empty where it looks as expected.
+// Returns the faults of a packed vertex; empty if it looks as expected.
 inline std::string fault_of(const core::ModelVertex& v, const Look& look,
                             const LookTolerance& tolerance = {}) {
   std::string faults;

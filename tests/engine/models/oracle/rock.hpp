@@ -1,6 +1,6 @@
-// The rock once more, as docs/models.md defines it: in double precision, with a list of edges and a
-// plain recursion over subdivisions; then how every vertex looks. The tests hold the engine's
-// meshes to it.
+// An independent rock, as docs/models.md defines it: in double precision, with a list of edges and
+// a plain recursion over subdivisions; then the look of every vertex. The tests compare the
+// engine's meshes with it.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct RockOracle {
   int family = 1;  // 0 rounded, 1 faceted, 2 layered
   double albedo = 0.26, warmth = 0.25, moss = 0.3;
 
-  std::vector<glm::dvec3> places = {};  // of the vertices, metres over the foot
+  std::vector<glm::dvec3> places = {};  // of the vertices, in metres above the base point
   std::vector<std::array<int, 3>> triangles = {};
 
   // Number `field` (0 … 3) of item `index`, in [−1, 1).
@@ -93,7 +93,7 @@ struct RockOracle {
   }
 
  public:
-  // The area-weighted sum of the normals of the triangles around each place.
+  // Returns the area-weighted sum of the normals of the triangles around each position.
   std::vector<glm::dvec3> normals() const {
     std::vector<glm::dvec3> sums(places.size(), glm::dvec3(0));
     for (const auto& t : triangles) {
@@ -106,7 +106,7 @@ struct RockOracle {
     return sums;
   }
 
-  // The corners of all triangles, one after the other.
+  // Returns the corners of all triangles, one after the other.
   std::vector<Look> looks() const {
     const std::vector<glm::dvec3> shared = normals();
     std::vector<Look> result;
@@ -139,7 +139,7 @@ struct RockOracle {
             (0.3 + 0.7 * rise) * (0.8 + 0.2 * u)};
   }
 
-  // How far a layer stands out in a direction, in [−1, 1].
+  // Offset of a layer in a direction, in [−1, 1].
   double band(const glm::dvec3& direction) const {
     const std::uint64_t item = std::uint64_t{1} << 31;
     const glm::dvec3 across{0.35 * random(item, 1), 1, 0.35 * random(item, 2)};

@@ -1,5 +1,5 @@
-// The ridged multifractal once more, as docs/models.md defines it: one point at a time, in double
-// precision, with the library's power. Slow and plain; the tests hold the engine to it.
+// An independent ridged multifractal, as docs/models.md defines it: one point at a time, in double
+// precision, with the library's power. Slow and plain; the tests compare the engine with it.
 #pragma once
 
 #include <algorithm>
@@ -43,12 +43,12 @@ struct TerrainOracle {
     return static_cast<std::uint64_t>(z) * step(octave) + core::mix64(key(octave) + 1);
   }
 
-  // Of t quarter turns: nearly the library's.
+  // Sine of t quarter turns: close to the library's.
   static double sine(double t) { return t * (1.57032 + t * t * (-0.64211 + t * t * 0.07186)); }
   static double cosine(double t) { return 0.9994 + t * t * (-1.2228 + t * t * 0.224); }
 
-  // What a lattice point brings to a sample dx and dz cells away: its value and the scalar product
-  // of its gradient with the way there.
+  // Contribution of a lattice point to a sample dx and dz cells away: its value and the scalar
+  // product of its gradient with the offset.
   double corner(std::uint64_t octave, std::uint32_t ix, std::uint32_t iz, double dx,
                 double dz) const {
     const std::uint64_t keys = core::mix64(key(octave) + 2);

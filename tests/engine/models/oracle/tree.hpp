@@ -1,6 +1,6 @@
-// The mesh of a tree once more, as docs/models.md defines it: in double precision, vertex by
-// vertex, with the foliage of foliage.hpp. Gives the places and looks of a level's vertices
-// in the order of the mesh. The tests hold the engine's meshes to it.
+// An independent mesh of a tree, as docs/models.md defines it: in double precision, vertex by
+// vertex, with the foliage of foliage.hpp. Returns the positions and looks of a level's vertices in
+// the order of the mesh. The tests compare the engine's meshes with it.
 #pragma once
 
 #include <algorithm>
@@ -65,7 +65,8 @@ class TreeOracle : public FoliageOracle {
   // Place of lane i of 16 in a block.
   static std::size_t place_in_block(std::size_t i) { return i % 4 * 4 + i / 4; }
 
-  // Tubes one after the other; those in whole blocks of 16 (unless `rings`) vertex by vertex.
+  // Appends tubes one after the other; those in whole blocks of 16 (unless `rings`) vertex by
+  // vertex.
   void put(const std::vector<std::vector<Vertex>>& tubes, bool whole_only) {
     const std::size_t blocked = whole_only ? tubes.size() / 16 * 16 : 0;
     for (std::size_t first = 0; first < blocked; first += 16)
@@ -96,7 +97,7 @@ class TreeOracle : public FoliageOracle {
     }
   }
 
-  // Of the end of branches of a depth; the trunk begins at rest.
+  // Sway at the end of branches of a depth; the trunk's base does not sway.
   double sway_at(int at) const {
     return at < 0 ? 0 : (30 + std::floor(170.0 * at / std::max(reached_, 1))) / 255;
   }
@@ -136,7 +137,7 @@ class TreeOracle : public FoliageOracle {
     return result;
   }
 
-  // Where a branch's ring has this middle; `noise` is 0 … 7.
+  // Look of the vertices of a branch's ring with this middle; `noise` is 0 … 7.
   std::uint32_t bark_look(const Branch& b, double t, const glm::dvec3& middle,
                           std::uint32_t noise) {
     const double tone = 1 + d(p_.bark_contrast) * (2 * noise / 7.0 - 1);

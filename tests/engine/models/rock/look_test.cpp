@@ -1,5 +1,5 @@
-// How rocks look: normals, colours, light, sway and material of packed vertices, as the
-// double-precision oracle has them.
+// Looks of rocks: normals, colours, light, sway and material of packed vertices, compared with the
+// double-precision oracle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class RockLook : public ::testing::Test {
   void expect_as_oracle(const Parameters& p, int level) const {
     const test::RockOracle oracle = test::rock_oracle(p, level);
     const std::vector<test::Look> expected = oracle.looks();
-    // Normals come from differences of places, which halve with every subdivision.
+    // Normals come from differences of positions, which halve with every subdivision.
     const test::LookTolerance tolerance{.normal =
                                             std::ldexp(1e-5, std::max(oracle.subdivisions - 4, 0))};
     for (const std::string_view target : simd_targets()) {
@@ -51,8 +51,7 @@ TEST_F(RockLook, EqualsTheOracleOnEveryInstructionSetForEveryFamily) {
   }
 }
 
-// Colours that reach their largest byte, no moss or nothing else, and all subdivisions that there
-// may be.
+// Colours that reach their largest byte, no moss or full moss, and all subdivisions.
 TEST_F(RockLook, EqualsTheOracleAtTheEndsOfItsRanges) {
   for (int trial = 0; trial < 24; ++trial) {
     SCOPED_TRACE(trial);

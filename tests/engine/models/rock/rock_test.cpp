@@ -32,7 +32,7 @@ class Rock : public ::testing::Test {
   }
 };
 
-// One number per place of a packed vertex.
+// A number for each position of a packed vertex.
 std::uint64_t place(const ModelVertex& v) {
   return (static_cast<std::uint64_t>(static_cast<std::uint16_t>(v.position[0])) << 32) |
          (static_cast<std::uint64_t>(static_cast<std::uint16_t>(v.position[1])) << 16) |
@@ -130,7 +130,7 @@ TEST_F(Rock, IsWatertightAndFacesAwayFromItsCentreForLegalParameters) {
       const ModelVertex& corner = v[mesh.indices[i]];
       const glm::vec3 normal =
           decode_octahedral({corner.normal[0] / 32767.0F, corner.normal[1] / 32767.0F});
-      // Shared normals of ledges and of the roughest rocks may look past their triangle.
+      // Shared normals of ledges and of the roughest rocks may face away from their triangle.
       const bool may_look_past = p.integer(kRockFamily) == kRockLayered ||
                                  (extreme && p.integer(kRockFamily) == kRockRounded);
       ASSERT_TRUE(glm::dot(normal, face) > 0 || may_look_past);
@@ -242,8 +242,8 @@ TEST_F(Rock, ColliderHoldsItsMeshUpToASmallError) {
         EXPECT_LE(hull.points.size(), 56U);
       }
       const double error_m = subdivisions <= 2 ? 1e-3 : 0.15 * p.real(kRockRadiusM);
-      // No corner of the whole mesh stands out of the hull further than that, as seen along the
-      // line from its foot.
+      // No corner of the whole mesh is outside the hull by more than that, along the line from its
+      // base point.
       const Mesh mesh = synthesise(*type, p, 0);
       for (const ModelVertex& v : mesh.vertices<ModelVertex>()) {
         const glm::vec3 at = unpack_position(v, type->bounds(p));

@@ -198,8 +198,7 @@ TEST_F(EditedTerrain, EditsOutsideTheHashChangeNoBitOfAMesh) {
 
 TEST_F(EditedTerrain, ALargeHillDarkensTheGroundBehindIt) {
   add(raised({{0, 0}, {31, 0, 31}}, 60, 60));
-  // The sun stands in the south-east, so the shadow falls to the north-west, beyond the hill's
-  // foot.
+  // The sun is in the south-east, so the shadow falls to the north-west, beyond the hill's base.
   const auto base = vertices(node(-1, -1, 0, false), 0), edited = vertices(node(-1, -1, 0), 0);
   double before = 0, after = 0;
   std::size_t count = 0;
@@ -278,7 +277,7 @@ TEST_F(EditedTerrain, TheHashDependsOnTheOrderOfTheEdits) {
   EXPECT_NE(hash_of(0, 0, 0), hash);
 }
 
-// Ids are unique in a block; blocks that were loaded one by one may have the same ones.
+// Ids are unique in a block; blocks that were loaded separately may have equal ids.
 TEST_F(EditedTerrain, EditsOfTwoBlocksWithTheSameIdAreTwoEdits) {
   GroundEdit hill = add(raised({{0, 0}, {62, 0, 31}}, 20, 30));
   GroundEdit flat = raised({{1, 0}, {1, 0, 31}}, 20, 50);
@@ -329,7 +328,7 @@ TEST_F(EditedTerrain, ThePredictedStepsCountTheHeightsThatEditsChange) {
   for (int i = 1; i < 100; ++i)
     add(cover);
   EXPECT_NEAR(more(0, 0) / one, 100, 1);
-  // Far from the heights that its light can see.
+  // Outside the heights on which its light depends.
   EXPECT_LT(more(1000, 0), 0.01 * one);
   layer = {};
   GroundEdit small = cover;

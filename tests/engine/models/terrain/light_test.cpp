@@ -53,7 +53,7 @@ class Light : public ::testing::Test {
             .azimuth = p.real(kTerrainSunAzimuth),
             .elevation = p.real(kTerrainSunElevation)};
   }
-  // Every `step`-th vertex of the mesh, but for the first.
+  // Compares every `step`-th vertex of the mesh, except the first.
   void expect_oracle(const Parameters& p, int level, std::size_t step) const {
     const test::LightOracle expected = oracle(p);
     const std::vector<TerrainVertex> mesh = surface(p, level);
@@ -171,7 +171,7 @@ TEST_F(Light, HillsShadowTheGroundBehindThem) {
       const float to_east = static_cast<float>(east[i].normal_x) / 127.0F;
       if (to_east > 0.3F) ++(east[i].sun > 200 ? lit : not_lit);
       if (to_east < -0.3F) ++(east[i].sun < 50 ? dark : not_dark);
-      // Not because it faces away: a hill is in between.
+      // Not because the ground faces away: a hill is in between.
       if (to_east > 0 && east[i].sun < 50 && west[i].sun > 50) ++behind;
     }
   }

@@ -1,5 +1,5 @@
-// Whether ridged noise shows where its lattices lie: what every octave adds to the heights on its
-// lattice lines and at its lattice points against what it adds elsewhere, along both axes, with and
+// Tests that ridged noise does not reveal its lattices: compares the contribution of every octave
+// on its lattice lines and at its lattice points with that elsewhere, along both axes, with and
 // without warp.
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using test::TerrainOracle;
 
 constexpr int kOctaves = 9;
 constexpr std::int64_t kFirstCell = 4096;  // integers in a lattice cell of octave 0
-constexpr int kPhases = 16;                // places in a lattice cell, from one line to the next
+constexpr int kPhases = 16;                // positions in a lattice cell, from one line to the next
 constexpr int kCells = 9;                  // of an axis; kCells · kPhases coordinates
 
 // Settings with rough ground, so that fine octaves count.
@@ -34,8 +34,8 @@ std::int64_t cell_size(std::uint64_t octave) {
   return octave >= TerrainOracle::kWarp ? 2 * kFirstCell : kFirstCell >> octave;
 }
 
-// Coordinates that go through lattice cells far apart, from one line to the next; `lattice_of_zero`
-// is where the lattice has the coordinate 0.
+// Coordinates that pass through lattice cells far apart, from one line to the next;
+// `lattice_of_zero` is the lattice position of coordinate 0.
 std::vector<std::int64_t> through_cells(std::uint64_t octave, std::uint64_t lattice_of_zero,
                                         core::RandomStream& random) {
   const std::int64_t size = cell_size(octave);
@@ -50,7 +50,7 @@ std::vector<std::int64_t> through_cells(std::uint64_t octave, std::uint64_t latt
   return result;
 }
 
-// What an octave adds in its lattice cells, or heights in the cells of the warp's field.
+// Contributions of an octave in its lattice cells, or heights in the cells of the warp's field.
 struct Samples {
   // [phase along x][phase along z], of one lattice cell after another
   std::vector<float> at[kPhases][kPhases];
@@ -77,7 +77,7 @@ struct Samples {
         at[i % columns.size() % kPhases][i / columns.size() % kPhases].push_back(values[i]);
     }
   }
-  // Those of phases for which chosen(along x, along z).
+  // Returns the samples of phases that satisfy chosen(along x, along z).
   template <class Chosen>
   std::vector<float> of(Chosen chosen) const {
     std::vector<float> result;

@@ -155,7 +155,7 @@ TEST(RidgedNoise, WithoutGainEqualsItsFirstOctave) {
 }
 
 TEST(RidgedNoise, NeighbouringSeedsAndOctavesAreUnrelated) {
-  // One sample per lattice cell, at the same place in each: only hashes differ between samples.
+  // One sample per lattice cell, at the same position in each: only hashes differ between samples.
   const auto axis = range(1, 4, 128);
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const RidgedNoise a({.seed = seed, .octaves = 2, .cells_per_step = 0.25});

@@ -72,8 +72,8 @@ test::TerrainOracle oracle_of(const Parameters& p) {
           .octaves = static_cast<int>(p.integer(kTerrainOctaves))};
 }
 
-// At every level and on every instruction set, to half a step of snorm8 and what a height that is
-// 1e-5 of the relief off can turn them.
+// At every level and on every instruction set, to half a step of snorm8 and the change of normals
+// by a height error of 1e-5 of the height range.
 TEST_F(Terrain, NormalsEqualTheOracleHereAndAtTheEndOfTheWorld) {
   constexpr double kRelief = 120, kCell = 1;
   for (const std::int64_t block : {std::int64_t{0}, std::int64_t{-1}, kFar, -kFar - 1}) {
@@ -194,7 +194,7 @@ TEST_F(Terrain, CoarseHeightsLieOnTheNextLevelsTriangles) {
   }
 }
 
-// The surface of a node's mesh of level 1 at a place in its cells, as quantised heights.
+// The surface of a node's mesh of level 1 at a position in its cells, as quantised heights.
 double surface_height(const std::vector<TerrainVertex>& mesh, const TerrainGrid& grid, double x,
                       double z) {
   const auto cell = [&](double at) { return std::min(static_cast<int>(at), grid.n - 2); };

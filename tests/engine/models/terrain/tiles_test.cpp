@@ -17,7 +17,7 @@ using Triangle = std::array<std::uint16_t, 3>;
 constexpr int kSizes[] = {4, 5, 8, 17, 33, 64, 65, 128};
 constexpr int kFine = -1;  // else the sides of a coarse tile that are divided
 
-// With the smallest index first, in the same direction.
+// Rotates the smallest index to the front, in the same direction.
 Triangle canonical(Triangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
@@ -132,7 +132,7 @@ TEST(TerrainTiles, CoverEveryTileOnceInEveryForm) {
   }
 }
 
-// Sides that only one triangle of a tile has, so those of its border.
+// Sides that only one triangle of a tile has, which form its border.
 std::set<std::pair<std::uint16_t, std::uint16_t>> border_of(const std::vector<Triangle>& tile) {
   std::set<std::pair<std::uint16_t, std::uint16_t>> sides;
   for (const Triangle& t : tile) {
@@ -145,7 +145,7 @@ std::set<std::pair<std::uint16_t, std::uint16_t>> border_of(const std::vector<Tr
 }
 
 // Any tiles fine: every side of a triangle is one of its neighbour's as well, with no vertex on it,
-// or lies on the border of the block.
+// or is on the border of the block.
 TEST(TerrainTiles, MeetWithoutAVertexOnASideInEveryCombination) {
   for (const int size : kSizes) {
     const TerrainTiles tiles(size);

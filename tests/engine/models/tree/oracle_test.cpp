@@ -19,7 +19,7 @@ Parameters tree(const ModelType& type, int i) {
   return p;
 }
 
-// Every instruction set in turn.
+// Pins every instruction set in turn.
 template <class Visit>
 void for_targets(const Visit& visit) {
   for (const std::string_view target : simd_targets()) {

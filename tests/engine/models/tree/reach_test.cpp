@@ -12,7 +12,7 @@ namespace {
 
 using Random = core::RandomStream;
 
-// The box of all rings, as the oracle grows them: nothing in it is clamped.
+// Bounds of all rings, as the oracle grows them, without clamping.
 core::Bounds box_of_bark(const TreePlan& plan) {
   const test::TreeOracle oracle(plan);
   core::Bounds box{glm::vec3(1e9F), glm::vec3(-1e9F)};
@@ -41,7 +41,7 @@ core::Bounds box_of_bark(const TreePlan& plan) {
   return failure;
 }
 
-// A limit as often as anything between.
+// Returns a limit of the range in a third of the calls, else a random value.
 double extreme(Random& random, double low, double high) {
   const auto which = random.next_integer(0, 5);
   return which == 0 ? low : which == 1 ? high : random.next_real(low, high);
@@ -114,7 +114,7 @@ TEST(TreeReach, HoldsTheBarkOfSpeciesWithAnyNumbers) {
 TEST(TreeReach, HoldsTrunksThatAreAsCrookedAsAllowed) {
   Species s;
   s.name = std::string("bent");
-  s.doc = std::string("a trunk and what goes on from its end");
+  s.doc = std::string("a trunk and its continuation");
   s.iterations = 1;
   s.trunk_curvature = 2;
   s.crown_limit = 0;

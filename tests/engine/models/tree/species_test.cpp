@@ -231,7 +231,8 @@ TEST(Tree, PredictsTheSizeOfAMillionTrees) {
     const int level = i % 6;
     const MeshSize size = type->mesh_size(p, level);
     const std::size_t bytes = size.vertex_count * sizeof(core::ModelVertex);
-    // Beyond the end, and what no mesh has at its end: neither an index nor a material.
+    // Bytes beyond the end, with values that no mesh has at its end: neither an index nor a
+    // material.
     vertices[bytes] = std::byte{0xC5};
     indices[size.index_count] = 0xC5C5;
     ASSERT_GT(size.index_count, 0U);

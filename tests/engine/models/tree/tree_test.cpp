@@ -25,7 +25,7 @@ Parameters with(const ModelType& type, std::int64_t seed, int iterations, int br
   return p;
 }
 
-// Uniform within the hard ranges, ends included now and then.
+// Uniform within the hard ranges, sometimes exactly at their ends.
 Parameters anything_legal(const ModelType& type, core::RandomStream& random) {
   Parameters p;
   for (std::size_t i = 0; i < type.parameters().size(); ++i) {

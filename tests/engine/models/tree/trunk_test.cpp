@@ -13,7 +13,7 @@
 namespace psygen::models {
 namespace {
 
-// Metres outside the capsules, negative inside.
+// Distance outside the capsules in metres, negative inside.
 float outside(const Collider& collider, const glm::vec3& p) {
   float least = 1e9F;
   for (const Collider::Shape& shape : collider.shapes) {
