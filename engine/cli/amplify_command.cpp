@@ -23,11 +23,11 @@ namespace psygen::cli {
 AmplifyCommand::AmplifyCommand(CLI::App& cli)
     : command_(cli.add_subcommand("amplify", "Synthesise a region or the whole world")) {
   CLI::App& c = *command_;
-  c.add_option("--world", world_, "World: a TOML file, or the name of one that comes with psygen")
+  c.add_option("--world", world_, "World definition: a TOML file or the name of a shipped one")
       ->capture_default_str();
   auto* region = c.add_option_function<std::string>(
       "--region", [this](const std::string& text) { region_ = *amplify::parse_region(text); },
-      "Blocks X0,Z0,X1,Z1 without X1 and Z1; default: the whole world");
+      "Blocks X0,Z0,X1,Z1, excluding X1 and Z1; default: the whole world");
   region->check(valid_if(amplify::parse_region, "REGION"));
   c.add_option("--threads", threads_, "Threads; default: one per processor")
       ->transform(integer_between(1, amplify::kMaxThreads));
@@ -37,28 +37,29 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
          for (const std::string& text : texts)
            samples_.push_back(*parse_place(text));
        },
-       "Print the height of the ground at X,Z (metres of the world) and make nothing; may be given "
+       "Only print the height of the ground at X,Z (metres of the world); may be given "
        "several times")
       ->check(valid_if(parse_place, "X,Z"))
       ->excludes(region);
   auto* out =
-      c.add_option("--out", out_, "Folder for one file per block; an interrupted run goes on");
+      c.add_option("--out", out_, "Folder for one file per block; resumes an interrupted run");
   out->excludes("--sample");
   auto* shard = c.add_option_function<std::string>(
       "--shard", [this](const std::string& text) { shard_ = *amplify::parse_shard(text); },
-      "Make only the I-th of N shards of equal predicted cost, and note its figures in --out");
+      "Synthesise only shard I of N, of equal predicted cost, and write its ledger to --out");
   shard->check(valid_if(amplify::parse_shard, "I/N"))->needs(out);
   c.add_option("--format", format_,
-               "Format of the files of --out: glb or obj; none, with --shard: only the figures")
+               "File format in --out: glb or obj; none (with --shard): only the ledger")
       ->check(one_of({"glb", "obj", amplify::kNoFiles}))
       ->capture_default_str()
       ->needs(out);
-  c.add_option("--simd", simd_, "Instruction set of the kernels, to compare; default: the best")
+  c.add_option("--simd", simd_,
+               "Instruction set of the kernels, for comparisons; default: the best")
       ->check(one_of(models::simd_targets()));
-  c.add_flag("--mpi", mpi_, "This is one rank of several; known by itself under mpirun")
+  c.add_flag("--mpi", mpi_, "Run as one MPI rank (detected under mpirun)")
       ->excludes(shard)
       ->excludes("--sample");
-  c.add_flag("--json", json_, "Print the figures as JSON");
+  c.add_flag("--json", json_, "Print the results as JSON");
   c.callback([this] {
     if (format_ == amplify::kNoFiles && !shard_ && !mpi_ && !cluster::is_rank())
       throw CLI::ValidationError("psygen amplify: --format none needs --shard or --mpi");
@@ -94,7 +95,7 @@ int AmplifyCommand::print_heights(const world::World& world) const {
     }
     const double height_m =
         models::ground_height_m(world.terrain, at->block, at->local.x, at->local.z);
-    text += fmt::format("{}\n", height_m);  // as many digits as name this very number
+    text += fmt::format("{}\n", height_m);  // the shortest text that reads back as the same number
     list.push_back({{"x_m", place.x}, {"z_m", place.y}, {"height_m", height_m}});
   }
   return print(json_ ? list.dump(2) + "\n" : text);
@@ -159,8 +160,8 @@ int AmplifyCommand::print_figures(const AmplifyFigures& figures, bool stopped) c
   const int printed = print(json_ ? json_of(figures) : text_of(figures));
   const amplify::Totals& totals = figures.totals;
   if (totals.failed > 0) {
-    core::log_error(fmt::format("{} meshes failed{}; the first: {}", totals.failed,
-                                figures.files ? " (their blocks have no files)" : "",
+    core::log_error(fmt::format("{} meshes failed{}; first error: {}", totals.failed,
+                                figures.files ? " (no files for their blocks)" : "",
                                 totals.first_failure));
   }
   if (stopped) core::log_error(fmt::format("interrupted after {} blocks", totals.blocks));

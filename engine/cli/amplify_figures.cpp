@@ -41,10 +41,10 @@ std::string text_of(const AmplifyFigures& figures) {
   if (figures.ranks > 0)
     row("ranks", fmt::format("{}  (messages: {})", figures.ranks, figures.messages));
   row("hash", figures.complete ? fmt::format("{:016x}", t.hash.value())
-                               : std::string("– (not all of the region was made)"));
+                               : std::string("– (the region is incomplete)"));
   if (figures.files)
-    row("files", fmt::format("{} written, {} there already", figures.files->written,
-                             figures.files->skipped));
+    row("files",
+        fmt::format("{} written, {} existed", figures.files->written, figures.files->skipped));
   return text;
 }
 

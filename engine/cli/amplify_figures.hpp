@@ -1,4 +1,4 @@
-// The figures of psygen amplify and psygen merge as text and as JSON, with the same names. Pure.
+// Results of psygen amplify and psygen merge as text and as JSON, with the same names. Pure.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace psygen::cli {
 
-// What is shown. What is not there is left out.
+// The results to print. Empty members are omitted.
 struct AmplifyFigures {
   amplify::Totals totals;
-  bool complete = false;  // else there is no hash
+  bool complete = false;  // otherwise there is no hash
   struct Times {
     double seconds = 0, cpu_seconds = 0;
     unsigned threads = 0;
@@ -22,9 +22,9 @@ struct AmplifyFigures {
     std::uint64_t written = 0, skipped = 0;
   };
   std::optional<Files> files;
-  std::string part;            // "shard 3 of 8"; empty: all of it
-  std::uint64_t parts = 0;     // ledgers that were joined; 0: not joined
-  unsigned ranks = 0;          // processes of a cluster; 0: this one alone
+  std::string part;            // "shard 3 of 8"; empty: the whole region
+  std::uint64_t parts = 0;     // number of merged ledgers; 0: not merged
+  unsigned ranks = 0;          // processes of a cluster; 0: a single process
   std::uint64_t messages = 0;  // between ranks
 };
 

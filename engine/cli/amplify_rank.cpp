@@ -1,4 +1,4 @@
-// psygen amplify as one of several ranks of a cluster.
+// psygen amplify as one rank of a cluster.
 #include <fmt/format.h>
 
 #include "engine/cli/commands.hpp"
@@ -12,7 +12,7 @@
 namespace psygen::cli {
 namespace {
 
-// What every rank says is said once.
+// Only rank 0 prints errors common to all ranks.
 int end_with(const core::Error& error, cluster::Peers& peers) {
   if (peers.rank() == 0) core::log_error(error.message);
   peers.finish();
@@ -58,11 +58,11 @@ int AmplifyCommand::run_rank(cluster::Peers& peers) {
     peers.abort();
     return kFailed;
   }
-  if (job->report.stopped) {  // of the others, two say so: one of them may be the one that died
+  if (job->report.stopped) {  // ranks 0 and 1 report it: one of them may have died
     if (peers.rank() < 2)
       core::log_error(
-          fmt::format("rank {}: told to stop after {} blocks: a rank died, or the job "
-                      "was ended; the same command goes on",
+          fmt::format("rank {}: stopped after {} blocks, because a rank died or the job "
+                      "was ended; run the same command to resume",
                       peers.rank(), job->report.totals.blocks));
     return kFailed;
   }

@@ -1,4 +1,4 @@
-// psygen calibrate: the paper's Figure 9 on this machine, and how good predictions are.
+// psygen calibrate: the paper's Figure 9 on this machine, and the accuracy of predictions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 namespace psygen::cli {
 namespace {
 
-// Seeds of two sets of parameters that have nothing in common.
+// Seeds of two disjoint groups of parameter sets.
 constexpr std::uint64_t kFittedSets = 1, kHeldOutSets = 2;
 constexpr int kSeedsPerPoint = 12;
 
-// Each sentence once.
+// Logs each message once.
 void warn_of(std::vector<std::string> failures) {
   std::sort(failures.begin(), failures.end());
   failures.erase(std::unique(failures.begin(), failures.end()), failures.end());
@@ -32,18 +32,19 @@ void warn_of(std::vector<std::string> failures) {
 }  // namespace
 
 CalibrateCommand::CalibrateCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("calibrate", "Measure what synthesis costs on this machine")) {
+    : command_(cli.add_subcommand("calibrate", "Measure the cost of synthesis on this machine")) {
   CLI::App& c = *command_;
   c.add_option("--out", out_, "Folder for calibration.html and calibration.json");
   auto* world = c.add_option("--world", world_, "World whose models are fitted and predicted")
                     ->capture_default_str();
   c.add_flag("--ranges", ranges_,
-             "Instead of a world's models those of parameters drawn from all usual ranges")
+             "Use parameters drawn from all soft ranges instead of a world's models")
       ->excludes(world);
-  c.add_option("--samples", samples_, "Parameter sets of each type to fit, and others to predict")
+  c.add_option("--samples", samples_,
+               "Parameter sets of each type to fit, and as many others to predict")
       ->capture_default_str()
       ->transform(integer_between(4, 10000));
-  c.add_flag("--json", json_, "Print the figures as JSON");
+  c.add_flag("--json", json_, "Print the results as JSON");
 }
 
 int CalibrateCommand::run() const {

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Beside the style of reports. The table is wide: it scrolls where a window is not.
+// Added to the style of reports. The table is wide: it scrolls in a narrow window.
 constexpr std::string_view kStyle =
     ".plots { display:grid; gap:0 14px;"
     " grid-template-columns:repeat(auto-fit,minmax(min(420px,100%),1fr)) }\n"
@@ -29,8 +29,8 @@ constexpr std::string_view kStyle =
     " margin-top:14px; padding:14px 16px; overflow-x:auto }\n"
     ".costs td { padding-left:14px; white-space:nowrap }\n";
 
-// The paper's formulas (equations 1, 3 and 4), as what complexity() computes. That of a species is
-// the mean number of branches that its grammar grows.
+// The paper's formulas (equations 1, 3 and 4), as complexity() computes them. The formula of a
+// species is the mean number of branches that its grammar grows.
 std::string formula_of(const models::ModelType& type) {
   if (type.name() == "rock") return "c·n·4^(n−1)";
   if (type.name() == "terrain") return "c·m·n²";
@@ -39,7 +39,7 @@ std::string formula_of(const models::ModelType& type) {
   return models::is_species_type(type) ? "c·branches" : "c·complexity";
 }
 
-// Of the column that names models.
+// Width of the column with model names.
 std::size_t name_width(const models::Registry& registry) {
   std::size_t width = 8;
   for (std::size_t i = 0; i < registry.size(); ++i)
@@ -54,7 +54,7 @@ std::string seconds_text(double seconds) {
   return fmt::format("{:.3g} ms", seconds * 1e3);
 }
 
-// The terms that are there.
+// Formats the terms that are not zero.
 std::string fit_text(const synthesis::CostFit& fit) {
   std::string text = fit.fixed_s > 0 ? seconds_text(fit.fixed_s) : "";
   const auto add = [&text](double seconds, std::string_view unit) {
@@ -83,14 +83,15 @@ std::string error_sentence(const synthesis::CostError& error) {
                      error.p50_percent, error.p95_percent, error.count);
 }
 
-// What the page says first.
+// First paragraph of the page.
 std::string lead_of(const Calibration& found, const models::Registry& registry) {
   std::string text =
-      "Time of one core at full detail over each parameter of the paper's formulas; all other "
-      "parameters at their defaults, types with a seed as the mean of several.";
+      "Time of one core at full detail, plotted over each parameter of the paper's formulas. All "
+      "other "
+      "parameters have their defaults; types with a seed are averaged over several.";
   if (found.held_out.all.count == 0) return text + " No prediction was measured.";
   text += fmt::format(
-      " Predictions for {} other parameter sets of each type at all levels are off by {}",
+      " The error of predictions for {} other parameter sets of each type, at all levels, is {}",
       found.held_out_sets, error_sentence(found.held_out.all));
   if (found.held_out.worst) {
     text +=
@@ -154,32 +155,32 @@ Json fit_json(const synthesis::LevelCalibration& level, const models::Registry& 
           {"error_percent_p50", known(level.fit_error_percent)}};
 }
 
-// What stands below a plot: the constants of its formulas, and where the cost model is drawn.
+// Caption of a plot: the constants of its formulas, and the range in which the cost model is drawn.
 std::string note_of(const synthesis::CostCurve& curve, const Calibration& found,
                     const models::ModelType& type) {
-  if (curve.points.empty()) return "Not measured: it failed, or the time was over.";
+  if (curve.points.empty()) return "Not measured: synthesis failed or the time limit was reached.";
   const synthesis::FormulaFit& f = curve.formula;
   const std::string formulas = fmt::format(
-      "{}: c = {}, R² = {:.4f}. Above a fixed time: a = {}, c = {}, R² = {:.4f}. ",
-      formula_of(type), seconds_text(f.seconds_per_operation), f.r_squared, seconds_text(f.fixed_s),
+      "{}: c = {}, R² = {:.4f}. With a fixed time: a = {}, c = {}, R² = {:.4f}. ", formula_of(type),
+      seconds_text(f.seconds_per_operation), f.r_squared, seconds_text(f.fixed_s),
       seconds_text(f.seconds_per_operation_above), f.r_squared_above);
   const auto predicted = std::count_if(
       curve.points.begin(), curve.points.end(),
       [](const synthesis::CurvePoint& point) { return point.predicted_s.has_value(); });
-  const std::string from = found.world.empty() ? "the parameter sets that were drawn"
+  const std::string from = found.world.empty() ? "the drawn parameter sets"
                                                : fmt::format("models of the world {}", found.world);
   if (predicted == static_cast<std::ptrdiff_t>(curve.points.size())) {
     return formulas + "The cost model is calibrated with " + from + ".";
   }
   if (predicted > 0) {
     return formulas + "The cost model is calibrated with " + from +
-           " and drawn where they are about as large.";
+           " and drawn where their size is similar.";
   }
   const synthesis::LevelCalibration* fit = calibration_of(found, curve.model, 0);
   return formulas +
          (fit != nullptr && fit->samples > 0
-              ? "No cost model here: " + from + " are larger or smaller than all of these."
-              : std::string("No cost model: there was nothing to calibrate it with."));
+              ? "No cost model in this range: " + from + " are larger or smaller than all of these."
+              : std::string("No cost model: no sample of this type for calibration."));
 }
 
 std::string plot_of(const synthesis::CostCurve& curve, const Calibration& found,
@@ -209,7 +210,7 @@ std::string plot_of(const synthesis::CostCurve& curve, const Calibration& found,
   return telemetry::curve_plot_html(plot);
 }
 
-// Of one type at one level: what it is predicted by, and how good that is.
+// Table row of one type at one level: its cost curve and the accuracy of predictions.
 std::string accuracy_row(const synthesis::LevelAccuracy& level, const Calibration& found,
                          const models::Registry& registry) {
   const synthesis::LevelCalibration* line = calibration_of(found, level.model, level.level);
@@ -229,7 +230,7 @@ std::string accuracy_row(const synthesis::LevelAccuracy& level, const Calibratio
 
 std::string calibration_text(const Calibration& found, const models::Registry& registry) {
   std::string text =
-      "time over a parameter, level 0: c times the formula, and the same above a fixed time a\n";
+      "time over a parameter, level 0: c times the formula, and a plus c times the formula\n";
   const auto out = std::back_inserter(text);
   const std::size_t width = name_width(registry);
   for (const synthesis::CostCurve& curve : found.curves) {
@@ -289,7 +290,7 @@ std::string calibration_json(const Calibration& found, const models::Registry& r
 
 std::string calibration_page(const Calibration& found, const models::Registry& registry) {
   const std::string title =
-      found.world.empty() ? "What synthesis costs" : "What synthesis costs: " + found.world;
+      found.world.empty() ? "Cost of synthesis" : "Cost of synthesis: " + found.world;
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
   html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
   html += fmt::format("<title>psygen: {}</title><style>{}{}</style></head><body><main>\n",
@@ -299,7 +300,7 @@ std::string calibration_page(const Calibration& found, const models::Registry& r
   for (const synthesis::CostCurve& curve : found.curves)
     html += plot_of(curve, found, registry);
   html +=
-      "</div>\n<div class=\"costs\"><section><h2>Cost model, and its error in %</h2><table>"
+      "</div>\n<div class=\"costs\"><section><h2>Cost model and its error in %</h2><table>"
       "<tr><th>type</th><td>predicted time</td><td>p50</td><td>p95</td><td>measured</td></tr>\n";
   for (const synthesis::LevelAccuracy& level : found.held_out.levels)
     html += accuracy_row(level, found, registry);

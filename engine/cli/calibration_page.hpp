@@ -1,4 +1,4 @@
-// What `psygen calibrate` found, as text, JSON and a page with plots. Pure.
+// Results of `psygen calibrate` as text, as JSON and as a page with plots. Pure.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace psygen::cli {
 
-// What `psygen calibrate` found.
+// Results of `psygen calibrate`.
 struct Calibration {
-  std::string world;  // whose models were fitted; empty: parameters drawn from all usual ranges
+  std::string world;  // name of the fitted world; empty: parameters drawn from all soft ranges
   synthesis::CalibrationReport fits;
   std::vector<synthesis::CostCurve> curves;
   synthesis::Accuracy held_out;
@@ -17,7 +17,7 @@ struct Calibration {
   double seconds = 0;
 };
 
-// As a table for the terminal, as JSON, and as a page of HTML with plots.
+// Formats the results as a table for the terminal, as JSON, and as an HTML page with plots.
 std::string calibration_text(const Calibration& found, const models::Registry& registry);
 std::string calibration_json(const Calibration& found, const models::Registry& registry);
 std::string calibration_page(const Calibration& found, const models::Registry& registry);

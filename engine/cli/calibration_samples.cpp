@@ -8,10 +8,11 @@
 namespace psygen::cli {
 namespace {
 constexpr std::int64_t kEndlessSide = std::int64_t{1} << 16;
-constexpr std::size_t kBlocksForRareTypes = 8;  // times as many as for others
-constexpr std::size_t kNodeLevels = 10;         // of 64 vertices, 1 m apart, to 32 km a side
+// For rare types, times the number of blocks of other types.
+constexpr std::size_t kBlocksForRareTypes = 8;
+constexpr std::size_t kNodeLevels = 10;  // of 64 vertices, 1 m apart, up to 32 km a side
 
-// All levels in turn, of even and odd nodes alike.
+// Cycles through all levels, for even and odd nodes alike.
 int node_level_of(std::size_t i) {
   return static_cast<int>((i + i / kNodeLevels) % kNodeLevels);
 }

@@ -1,5 +1,5 @@
-// The models of a world that `psygen calibrate` measures: one half to fit, the other to predict.
-// Pure.
+// The models of a world that `psygen calibrate` measures: one half for fitting, the other for
+// prediction. Pure.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace psygen::cli {
 
-// Blocks that exist in `world`, at most `most`, from its first half (0) or its second (1); the only
-// block of a world is in both.
+// Returns at most `most` existing blocks of `world`, from its first half (0) or its second (1). The
+// only block of a world is in both.
 std::vector<core::BlockCoord> sample_blocks(const world::World& world, int half, std::size_t most);
 
-// Up to `count` parameter sets of each type that stands in that half, from `count` blocks, and from
-// eight times as many for types that are rare; of the terrain nodes of all levels in turn.
+// Returns up to `count` parameter sets of each type that occurs in that half, from `count` blocks.
+// Rare types are searched in eight times as many; terrain nodes cycle through all levels.
 std::vector<synthesis::CostSample> world_samples(const world::World& world,
                                                  const models::Registry& registry, int half,
                                                  std::size_t count);

@@ -15,7 +15,7 @@
 namespace psygen::cli {
 namespace {
 
-// Null-terminated, as the system takes them.
+// Null-terminated, as the system requires.
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
   for (std::string& text : texts)
@@ -24,7 +24,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-// Ours, with what is added in the place of what has the same name.
+// Returns the environment of this process; `environment` replaces variables of the same name.
 std::vector<std::string> with_ours(std::vector<std::string> environment) {
   const auto is_added = [&](std::string_view variable) {
     const std::string_view name = variable.substr(0, variable.find('=') + 1);
@@ -62,7 +62,7 @@ core::Result<int> run_program(std::vector<std::string> words, const std::filesys
       posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(), values.data());
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) {
-    return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot be run: {}", words.front(),
+    return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot run: {}", words.front(),
                                                         std::generic_category().message(failed)));
   }
   int status = 0;

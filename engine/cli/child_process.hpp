@@ -1,4 +1,4 @@
-// Programs that a command runs. Main thread.
+// Runs other programs for a command. Main thread.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,12 @@
 
 namespace psygen::cli {
 
-// The words of a command line, separated by blanks; there are no quotes.
+// The words of a command line, separated by blanks; quotes are not supported.
 std::vector<std::string> words_of(const std::string& command);
 
-// Runs a program to its end, with its output in a file; `environment` ("NAME=VALUE") is added to
-// ours. Returns its exit code, or 128 and the number of the signal that ended it. Fails with kIo
-// where it cannot be started.
+// Runs a program to its end and writes its output to a file; `environment` ("NAME=VALUE") is added
+// to that of this process. Returns its exit code, or 128 plus the number of the signal that ended
+// it. Fails with kIo if it cannot be started.
 core::Result<int> run_program(std::vector<std::string> words, const std::filesystem::path& log,
                               std::vector<std::string> environment = {});
 

@@ -1,5 +1,5 @@
-// The subcommands of psygen. The constructor declares a command and its options, chosen() says
-// whether the command line named it, and run() runs it and returns the exit code. Main thread.
+// The subcommands of psygen. The constructor declares a command and its options, chosen() returns
+// true if the command line named it, and run() runs it and returns the exit code. Main thread.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -23,7 +23,7 @@
 
 namespace psygen::cli {
 
-// What `psygen` returns to the shell.
+// Exit code of `psygen`.
 enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDevice = 4 };
 
 // kNoDevice for an error of that code, else kFailed.
@@ -63,13 +63,13 @@ class FlyCommand {
   CLI::App* command_;
   app::FlightOptions options_;
   std::unique_ptr<app::Flight> flight_;
-  int told_ = 0;          // exit code of what the end of the flight wrote
-  std::string requests_;  // file; empty: they are not recorded
+  int told_ = 0;          // exit code of writing the flight's outputs
+  std::string requests_;  // file; empty: requests are not recorded
   RequestRecorder recorder_;
   bool inspect_ = false, json_ = false;
   bool in_cluster_ = false;
   cluster::RemoteOptions remote_options_;
-  std::unique_ptr<cluster::RemoteModels> remote_;  // of the first rank
+  std::unique_ptr<cluster::RemoteModels> remote_;  // only on rank 0
 };
 
 // `psygen picture`.
@@ -85,7 +85,7 @@ class PictureCommand {
   CLI::App* command_;
   app::SessionOptions options_;
   std::string out_;
-  std::optional<glm::dvec2> at_;  // metres; none: the middle of the world
+  std::optional<glm::dvec2> at_;  // metres; none: the centre of the world
   double height_m_ = 1.7, yaw_deg_ = 0, pitch_deg_ = 0;
 };
 
@@ -127,7 +127,7 @@ class AmplifyCommand {
   std::optional<amplify::Region> region_;
   unsigned threads_ = 0;
   std::vector<glm::dvec2> samples_;  // x and z in metres
-  std::string out_;                  // empty: nothing is written
+  std::string out_;                  // empty: write no files
   std::string format_ = "glb";
   std::optional<amplify::Shard> shard_;
   std::string simd_;                         // empty: the best
@@ -176,14 +176,14 @@ class CalibrateCommand {
   bool json_ = false;
 };
 
-// What `psygen schedule --ranks` simulates.
+// Options of the job that `psygen schedule --ranks` simulates.
 struct ClusterOptions {
   unsigned ranks = 0;  // 0: no cluster
   unsigned cores = 1, threads = 0;
   std::string world = kDefaultWorld;
   std::string share = "claims";
   double terabytes = 8;       // 10^12 bytes of files
-  double error_percent = 20;  // how far predictions are off, at most
+  double error_percent = 20;  // largest error of predictions
   double latency_us = 2, claims_per_s = 1e6;
   double rank_gb_per_s = 25, storage_gb_per_s = 4600, files_per_s = 64000, file_latency_ms = 3;
 };

@@ -25,25 +25,26 @@ bool is_folder(const std::string& name) {
 }  // namespace
 
 CompareCommand::CompareCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("compare", "Tell whether frames became slower, or show less")) {
+    : command_(cli.add_subcommand("compare", "Compare frame times and content of two builds")) {
   CLI::App& c = *command_;
-  c.add_option("A", a_, "Before: a folder of runs, or a command like \"old/psygen test\"")
+  c.add_option("A", a_, "Baseline: a folder of runs, or a command like \"old/psygen test\"")
       ->required();
-  c.add_option("B", b_, "After: likewise")->required();
+  c.add_option("B", b_, "Candidate: a folder or a command")->required();
   c.add_option("--test", test_, "Frame test that both commands run");
-  c.add_option("--out", out_, "Folder that keeps the runs, compare.json and compare.html");
+  c.add_option("--out", out_, "Folder for the runs, compare.json and compare.html");
   c.add_option("--pairs", pairs_, "Pairs of runs in a batch")
       ->capture_default_str()
       ->transform(integer_between(compare::kFewestPairs, compare::kMaxPairs));
-  c.add_option("--aa", aa_, "Compare A with itself so many times, for the rate of false alarms")
+  c.add_option("--aa", aa_,
+               "Compare A with itself this many times, to measure the false alarm rate")
       ->transform(integer_between(0, 100'000));
   c.add_flag("--instructions", instructions_,
-             "Compare two commands by the instructions that they execute, as callgrind counts them")
+             "Compare two commands by their executed instructions, counted by callgrind")
       ->excludes("--test", "--pairs", "--aa");
   c.add_flag("--json", json_, "Print the result as JSON");
 }
 
-// One run of a command: COMMAND TEST --out FOLDER. A missed budget (3) is no failure here.
+// Runs a command once: COMMAND TEST --out FOLDER. A missed budget (3) does not count as a failure.
 core::Result<compare::RecordedRun> CompareCommand::record(
     const std::string& command, const std::filesystem::path& folder) const {
   if (auto ok = telemetry::create_output_folder(folder); !ok) return tl::unexpected(ok.error());
@@ -55,14 +56,14 @@ core::Result<compare::RecordedRun> CompareCommand::record(
   if (*code != frametest::kHeld && *code != frametest::kMissed) {
     return core::fail(
         *code == frametest::kSkipped ? core::ErrorCode::kNoDevice : core::ErrorCode::kInternal,
-        fmt::format("{}: exit code {}; what it said is in {}", command, *code, log.string()));
+        fmt::format("{}: exit code {}; its output is in {}", command, *code, log.string()));
   }
   auto runs = compare::read_runs(folder);
   if (!runs) return tl::unexpected(runs.error());
   return std::move(runs->front());
 }
 
-// Which of a pair comes first is chance: what changes with time must not always meet the same one.
+// The order within a pair is random, so that a drift of the machine does not favour one side.
 core::Result<void> CompareCommand::record_batch(int batch) {
   std::random_device random;
   for (std::size_t pair = 0; pair < pairs_; ++pair) {
@@ -79,7 +80,7 @@ core::Result<void> CompareCommand::record_batch(int batch) {
   return {};
 }
 
-// The runs of both; a second batch where the first finds something.
+// Records the runs of both sides; a second batch if the first finds a difference.
 core::Result<void> CompareCommand::collect() {
   if (is_folder(a_) && is_folder(b_)) {
     auto a = compare::read_runs(a_), b = compare::read_runs(b_);
@@ -95,8 +96,8 @@ core::Result<void> CompareCommand::collect() {
   return sure ? core::Result<void>{} : record_batch(2);
 }
 
-// Two folders with runs, or two commands with a test and a folder for what they write. Otherwise a
-// sentence.
+// Returns a usage error, or nothing: requires two folders with runs, or two commands with a test
+// and an output folder.
 std::string CompareCommand::misuse() const {
   if (is_folder(a_) && is_folder(b_)) return {};
   if (!test_.empty() && !out_.empty()) return {};
@@ -104,9 +105,9 @@ std::string CompareCommand::misuse() const {
   for (const std::string& side : {a_, b_}) {
     const bool is_path = side.find('/') != std::string::npos && side.find(' ') == std::string::npos;
     if (is_path && !std::filesystem::exists(side, ignored))
-      return side + ": there is no such folder or program";
+      return side + ": no such folder or program";
   }
-  return "two commands need --test and --out; two recorded sets are two folders";
+  return "two commands need --test and --out; recorded runs need two folders";
 }
 
 int CompareCommand::run() {

@@ -1,4 +1,5 @@
-// `psygen compare`: two builds, or two recorded sets of runs (docs/frame-tests.md). Main thread.
+// `psygen compare`: compares two builds, or two recorded sets of runs (docs/frame-tests.md). Main
+// thread.
 #pragma once
 
 #include <CLI/CLI.hpp>

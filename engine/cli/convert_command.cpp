@@ -11,7 +11,7 @@
 namespace psygen::cli {
 
 ConvertCommand::ConvertCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("convert", "Write a run's frames for other programs' viewers")) {
+    : command_(cli.add_subcommand("convert", "Convert the frames of a run for other viewers")) {
   CLI::App& c = *command_;
   c.add_option("RUN", run_, "Folder of a run, with frames.csv and summary.json")->required();
   c.add_option("--to", viewer_, "Format: mangohud, or capframex (PresentMon 1.x)")

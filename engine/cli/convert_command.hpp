@@ -1,4 +1,4 @@
-// `psygen convert`: the frames of a recorded run for other programs' viewers. Main thread.
+// `psygen convert`: converts the frames of a recorded run for other viewers. Main thread.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,7 @@
-// Preloaded into programs that run under valgrind (instruction_count.cpp). While it is loaded, the
-// library of SIMD kernels measures how finely the processor's clock counts, by an instruction that
-// valgrind does not know on some processors, and the program ends with SIGILL. Nothing of ours uses
-// that figure. The loader takes this function instead.
+// Preloaded into programs that run under valgrind (instruction_count.cpp). The library of SIMD
+// kernels measures the resolution of the processor's clock when it is loaded. It uses an
+// instruction that valgrind does not support on some processors, which would end the program with
+// SIGILL. psygen does not use the result, so the loader takes this function instead.
 namespace hwy::platform {
 
 double TimerResolution();

@@ -1,4 +1,4 @@
-// psygen export: one model or one block as glTF or OBJ.
+// psygen export: writes a model, a block or a region.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -30,7 +30,7 @@ tl::unexpected<core::Error> refuse(std::string sentence) {
 core::Result<exchange::Format> format_of(const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension().string();
   const auto format = exchange::format_from(extension.empty() ? "" : extension.substr(1));
-  if (!format) return refuse(fmt::format("{}: its name must end in .glb or .obj", file));
+  if (!format) return refuse(fmt::format("{}: the name must end in .glb or .obj", file));
   return *format;
 }
 
@@ -55,8 +55,8 @@ bool parse(std::string_view text, Number& value) {
   return parsed.ec == std::errc() && parsed.ptr == end;
 }
 
-// One that may have any 64 bits may have them without a sign, so that seeds read as they are
-// printed.
+// Returns true if all 64 bits are valid. Such values may be given without a sign, so that seeds are
+// accepted as they are printed.
 bool has_any_bits(const models::ParameterSpec& spec) {
   return spec.hard_min <= -0x1.0p63 && spec.hard_max >= 0x1.0p63;
 }
@@ -96,8 +96,8 @@ core::Result<void> set(const models::ModelType& type, models::Parameters& p,
   const int index = models::parameter_index(type, name);
   if (index < 0) {
     const std::vector<std::string_view> names = parameter_names(type);
-    return refuse(fmt::format("{} has no parameter '{}'; it has {}{}", type.name(), shown(name),
-                              fmt::join(names, ", "), core::suggestion(name, names)));
+    return refuse(fmt::format("{} has no parameter '{}'; its parameters are {}{}", type.name(),
+                              shown(name), fmt::join(names, ", "), core::suggestion(name, names)));
   }
   const auto i = static_cast<std::size_t>(index);
   const models::ParameterSpec& spec = type.parameters()[i];
@@ -120,42 +120,44 @@ core::Result<void> set_all(const models::ModelType& type, models::Parameters& p,
 
 core::Result<void> check_level(const models::ModelType& type, int level) {
   if (level < type.level_count()) return {};
-  return refuse(fmt::format("{} has the levels 0 to {}", type.name(), type.level_count() - 1));
+  return refuse(fmt::format("the levels of {} are 0 to {}", type.name(), type.level_count() - 1));
 }
 
 }  // namespace
 
 ExportCommand::ExportCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("export", "Write a model or a block as glTF or OBJ")) {
+    : command_(cli.add_subcommand("export", "Write a model, a block or a region")) {
   CLI::App& c = *command_;
-  auto* model = c.add_option("--model", model_, "Model type, by name");
-  c.add_option("--set", settings_, "name=value: a parameter of the model; several times")
+  auto* model = c.add_option("--model", model_, "Name of a model type");
+  c.add_option("--set", settings_,
+               "name=value: a parameter of the model; may be given several times")
       ->needs(model);
   auto* block = c.add_option_function<std::string>(
       "--block", [this](const std::string& text) { block_ = *parse_block(text); },
-      "Block X,Z of the world, with everything on it");
+      "Block X,Z of the world, with all its models");
   block->check(valid_if(parse_block, "X,Z"))->excludes(model);
-  c.add_option("--world", world_, "World of the block, or with the model's species")
+  c.add_option("--world", world_, "World of the block, or of the model's species")
       ->capture_default_str();
   c.add_option("--level", level_, "Level of detail; 0 is full")->transform(integer_between(0, 31));
   auto* region = c.add_option_function<std::string>(
       "--region", [this](const std::string& text) { region_ = *amplify::parse_region(text); },
-      "Blocks X0,Z0,X1,Z1 of the world, without X1 and Z1, as one tileset for streaming");
+      "Blocks X0,Z0,X1,Z1 of the world, excluding X1 and Z1, as one tileset for streaming");
   region->check(valid_if(amplify::parse_region, "REGION"))->excludes(model)->excludes(block);
-  c.add_option("--format", format_, "What is written of a region")
+  c.add_option("--format", format_, "Output format of a region")
       ->check(one_of({"3dtiles", "heightmap"}))
       ->capture_default_str()
       ->needs(region);
   c.add_option_function<std::string>(
        "--levels", [this](const std::string& text) { levels_ = *tiles::parse_levels(text); },
-       "FINEST-COARSEST level of a region's tiles: one of level k has 2^k x 2^k blocks; default: "
-       "from 0 to one tile for all")
+       "FINEST-COARSEST level of a region's tiles; a tile of level k has 2^k x 2^k blocks; "
+       "default: "
+       "from 0 to a single tile")
       ->check(valid_if(tiles::parse_levels, "LEVELS"))
       ->needs(region);
   c.add_option("--threads", threads_, "Threads for a region; default: one per processor")
       ->transform(integer_between(1, amplify::kMaxThreads))
       ->needs(region);
-  c.add_option("--out", out_, "File to write: .glb or .obj; folder of a region")->required();
+  c.add_option("--out", out_, "Output file: .glb or .obj; output folder for a region")->required();
   c.callback([this] {
     if (model_.empty() && !block_ && !region_)
       throw CLI::RequiredError("psygen export: one of --model, --block and --region");
@@ -201,7 +203,7 @@ core::Result<exchange::Document> ExportCommand::model_document(
   const int found = registry.find(model_);
   if (found < 0) {
     const std::vector<std::string_view> names = model_names(registry);
-    return refuse(fmt::format("there is no model '{}'; there are {}{}",
+    return refuse(fmt::format("unknown model '{}'; the models are {}{}",
                               core::shown(model_, kMaxShownBytes), fmt::join(names, ", "),
                               core::suggestion(model_, names)));
   }
@@ -225,7 +227,7 @@ core::Result<exchange::Document> ExportCommand::block_document(
   const std::int64_t x = block_->x, z = block_->z;
   if (auto ok = amplify::check_region(world, {x, z, x + 1, z + 1}); !ok)
     return core::fail(ok.error().code,
-                      fmt::format("there is no block {},{}: {}", x, z, ok.error().message));
+                      fmt::format("the world has no block {},{}: {}", x, z, ok.error().message));
   return amplify::block_document(world, registry, *block_, level_);
 }
 

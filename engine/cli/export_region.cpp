@@ -1,4 +1,4 @@
-// psygen export --region: a part of a world for other programs to stream.
+// psygen export --region: writes a part of a world for other programs to stream.
 #include <fmt/format.h>
 
 #include <thread>
@@ -14,7 +14,7 @@
 namespace psygen::cli {
 namespace {
 
-// From single blocks to one tile for all.
+// Levels from single blocks to one tile for the region.
 tiles::NodeLevels all_levels(const amplify::Region& region) {
   tiles::NodeLevels levels;
   const auto is_one_tile = [&] {

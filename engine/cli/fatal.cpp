@@ -27,7 +27,7 @@ void say(std::string_view sentence) {
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), bytes);
 }
 
-// False for exceptions other than a lack of memory or threads.
+// Returns false unless the exception reports a lack of memory or threads.
 bool say_want() {
   std::array<char, 512> buffer;
   try {
@@ -58,14 +58,14 @@ int say_what_was_thrown() {
   } catch (const std::exception& error) {
     say(error.what());
   } catch (...) {
-    say("something threw that is no std::exception");
+    say("an exception that is not a std::exception");
   }
   return kFailed;
 }
 
 }  // namespace psygen::cli
 
-// Sanitizers have an operator new of their own, which finds more.
+// Sanitizers provide their own operator new, which detects more errors.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
 namespace {

@@ -1,4 +1,4 @@
-// psygen fly: a flight through a world, in a window or headless, and what it measured.
+// psygen fly: a flight through a world, in a window or headless, and its measurements.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -28,11 +28,10 @@ FlyCommand::FlyCommand(CLI::App& cli)
   add_picture_options();
   add_cluster_options();
   command_->add_option("--record-requests", requests_,
-                       "File that gets every request of the flight; starts with an empty cache");
-  command_->add_flag(
-      "--inspect", inspect_,
-      "Let programs of this user look into the flight and change it, over a socket in "
-      "$XDG_RUNTIME_DIR");
+                       "Record all mesh requests in this file; starts with an empty cache");
+  command_->add_flag("--inspect", inspect_,
+                     "Let programs of this user inspect and change the flight over a socket in "
+                     "$XDG_RUNTIME_DIR");
   command_->add_flag("--json", json_, "Print the summary as JSON instead of a table");
 }
 
@@ -40,28 +39,28 @@ void FlyCommand::add_flight_options() {
   CLI::App& c = *command_;
   c.add_option(
       "--path", options_.path_file,
-      "Camera path: a TOML file, or the name of one that comes with psygen; without one the "
-      "camera turns, or you fly");
+      "Camera path: a TOML file or the name of a shipped one; default: the camera turns in "
+      "place, or you fly in the window");
   c.add_option("--out", options_.out_folder,
-               "Folder for frames.csv, summary.json, trace.json, report.html and pictures");
-  c.add_flag("--headless", options_.session.headless, "No window; needs no display");
-  c.add_option("--seconds", options_.seconds, "Length of the flight; 0: that of the path")
+               "Folder for frames.csv, summary.json, trace.json, report.html and images");
+  c.add_flag("--headless", options_.session.headless, "Open no window; needs no display");
+  c.add_option("--seconds", options_.seconds, "Length of the flight; 0: length of the path")
       ->check(number_between(0, 86400));
   c.add_flag("--loop", options_.loop,
-             "Fly the path again and again, until --seconds (27 if headless) are over")
+             "Repeat the path until --seconds (27 if headless) have passed")
       ->needs("--path");
   c.add_option("--frames", options_.frames, "End after this many frames; 0: no limit")
       ->transform(integer_between(0, 1'000'000'000));
   c.add_option("--fixed-step", options_.fixed_step_hz,
-               "Every frame advances the flight by 1/HZ seconds, however long it took")
+               "Advance the flight by 1/HZ seconds per frame, whatever its real time")
       ->check(number_between(1, 1000));
   c.add_option_function<std::string>(
        "--clock",
        [this](const std::string& text) { options_.session.scene.virtual_time = text == "virtual"; },
-       "What times are: wall, or virtual: fixed prices, the same on any machine; headless only")
+       "Clock: wall, or virtual (fixed costs, identical on every machine; headless only)")
       ->check(CLI::IsMember({"wall", "virtual"}))
       ->default_str("wall");
-  c.add_option("--warmup", options_.warmup_seconds, "Seconds that are left out of the figures")
+  c.add_option("--warmup", options_.warmup_seconds, "Seconds at the start that statistics exclude")
       ->capture_default_str()
       ->check(number_between(0, 3600));
   c.add_option("--images", options_.images_every, "Write every Nth frame as a PNG")
@@ -74,7 +73,7 @@ void FlyCommand::add_synthesis_options() {
   c.add_option_function<std::string>(
        "--paradigm",
        [&scene](const std::string& text) { scene.paradigm = *scene::paradigm_from(text); },
-       "pla: on demand, in parallel; amplify: everything before; lazy: anew in each frame")
+       "pla: on demand, in parallel; amplify: all meshes first; lazy: all meshes in each frame")
       ->check(valid_if(scene::paradigm_from, "pla|amplify|lazy"))
       ->default_str("pla");
   c.add_option_function<std::string>(
@@ -86,12 +85,12 @@ void FlyCommand::add_synthesis_options() {
   c.add_option_function<std::string>(
        "--modeler-priority",
        [&scene](const std::string& text) { scene.modelers_yield = text == "lowest"; },
-       "Priority of modelers: lowest, or normal, to see what they then take from frames")
+       "Priority of modelers: lowest, or normal, to measure their effect on frames")
       ->check(one_of({"lowest", "normal"}))
       ->default_str("lowest");
   c.add_option_function<std::string>(
        "--plp", [&scene](const std::string& text) { scene.plp_mode = *scene::plp_mode_from(text); },
-       "Order of nodes: layers around the camera, or solidity: least hidden first")
+       "Order of nodes: layers around the camera, or solidity (least hidden first)")
       ->check(valid_if(scene::plp_mode_from, "layers|solidity"))
       ->default_str("layers");
 }
@@ -101,53 +100,55 @@ void FlyCommand::add_picture_options() {
   scene::Settings& scene = options_.session.scene;
   c.add_option_function<double>(
        "--target-fps", [this](double hz) { options_.session.target_hz = hz; },
-       "Hold this frame rate with fewer pixels, then a larger error (up to 4 times); 0: fixed "
+       "Hold this frame rate by a lower resolution, then by a larger error (up to 4 times); 0: "
+       "fixed "
        "error")
       ->default_str("60 in a window, 0 headless")
       ->check(zero_or_between(0.1, 1000));
   c.add_option("--min-resolution", scene.min_resolution,
-               "To hold the rate, the landscape may have this share of width and height; 1: all")
+               "Lowest render scale of the landscape used to hold the frame rate")
       ->capture_default_str()
       ->check(number_between(0.25, 1));
-  c.add_option("--fade", scene.fade_seconds, "Seconds in which models come and go; 0: at once")
+  c.add_option("--fade", scene.fade_seconds, "Seconds for models to fade in and out; 0: no fade")
       ->capture_default_str()
       ->check(number_between(0, 60));
-  c.add_flag("!--no-vsync", options_.session.vsync, "Do not wait for the display");
-  c.add_flag("--fullscreen", options_.session.fullscreen, "Cover the monitor from the start on");
+  c.add_flag("!--no-vsync", options_.session.vsync, "Do not wait for the display's vertical sync");
+  c.add_flag("--fullscreen", options_.session.fullscreen, "Start in full screen");
   c.add_flag("!--no-prefill", options_.session.prefill, "Start with an empty cache");
 }
 
 void FlyCommand::add_cluster_options() {
-  auto* cluster = command_->add_flag(
-      "--cluster", in_cluster_,
-      "Under mpirun: the first rank flies, the others make meshes that take longer than their way");
+  auto* cluster =
+      command_->add_flag("--cluster", in_cluster_,
+                         "Under mpirun: rank 0 flies, and the others make its costly meshes");
   command_
       ->add_option_function<double>(
           "--send-above", [this](double ms) { remote_options_.send_above_s = ms * 1e-3; },
-          "What is predicted to take more milliseconds may go to other ranks; default: more than "
-          "its way there and back, which is measured")
+          "Offload meshes predicted to take longer than this (ms); default: the measured round "
+          "trip")
       ->check(number_between(0, 1e6))
       ->needs(cluster);
 }
 
-// What the options do not allow together, or not here; empty if nothing.
+// Returns the reason why the options are invalid together, or on this machine; empty if they are
+// valid.
 std::string FlyCommand::objection() const {
   const bool is_virtual = options_.session.scene.virtual_time;
   if (is_virtual && !options_.session.headless)
-    return "--clock virtual needs --headless: a window draws when it can";
+    return "--clock virtual needs --headless: a window follows the wall clock";
   if (is_virtual && in_cluster_)
-    return "--cluster needs --clock wall: what other ranks take is no price";
+    return "--cluster needs --clock wall: the times of other ranks are not fixed";
   return cluster_objection();
 }
 
 int FlyCommand::run() {
   if (const std::string reason = objection(); !reason.empty()) {
-    if (!is_heard()) return kOk;  // mpirun ends all at the first that fails
+    if (!is_heard()) return kOk;  // mpirun ends all ranks when the first one fails
     core::log_error(reason);
     return kUsage;
   }
   const int code = in_cluster_ ? run_rank() : run_alone();
-  // Its memory must not be torn down.
+  // The hung modeler still uses the session's memory, so the destructors must not run.
   if (flight_ && flight_->session().has_hung_modelers()) std::_Exit(code);
   flight_.reset();
   return code;
@@ -171,7 +172,7 @@ int FlyCommand::run_here() {
   app::Plugin reporter;
   reporter.name = "report";
   if (!requests_.empty()) {
-    options_.session.prefill = false;  // the initial fill is part of the flight
+    options_.session.prefill = false;  // the initial fill is a part of the recording
     const auto folder = std::filesystem::path(requests_).parent_path();
     if (auto ok = telemetry::create_output_folder(folder.empty() ? "." : folder); !ok)
       return code_of(ok.error());
@@ -179,7 +180,7 @@ int FlyCommand::run_here() {
       if (flight_->is_recorded()) recorder_.observe(session.scene().state());
     };
   }
-  // At the end of the flight, not only when its window is closed.
+  // Runs at the end of the flight, not only when its window closes.
   reporter.on_end = [this](app::Session&, const app::FlightReport& report) {
     told_ = tell(report);
   };
@@ -192,7 +193,7 @@ int FlyCommand::run_here() {
   return fly();
 }
 
-// Before the driver and the modelers take the threads that are left.
+// Before the driver and the modelers use up the available threads.
 core::Result<void> FlyCommand::load_what_pictures_take() const {
   return options_.images_every > 0 ? image::load_picture_libraries() : core::Result<void>{};
 }
@@ -233,7 +234,7 @@ int FlyCommand::tell(const app::FlightReport& report) const {
   return code;
 }
 
-// Where they were asked for.
+// Writes the recorded requests, if requested.
 core::Result<void> FlyCommand::write_requests() const {
   if (requests_.empty()) return {};
   auto written = core::replace_file(requests_, synthesis::stream_text(recorder_.jobs()));

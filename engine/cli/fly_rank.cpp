@@ -1,4 +1,4 @@
-// psygen fly as one of several ranks of a cluster: the first flies, the others make meshes for it.
+// psygen fly as one rank of a cluster: rank 0 flies, the others make meshes for it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace psygen::cli {
 namespace {
 
-// Started as a rank by mpirun, or by srun --mpi=pmix and the like.
+// Returns true if mpirun, or srun --mpi=pmix and similar launchers, started this process as a rank.
 bool was_started_as_rank() {
   return cluster::is_rank() || std::getenv("PMIX_RANK") != nullptr;
 }
@@ -24,15 +24,15 @@ std::string FlyCommand::cluster_objection() const {
   const char* const ranks = std::getenv("OMPI_COMM_WORLD_SIZE");
   if (!in_cluster_ && ranks != nullptr && std::atoi(ranks) > 1)
     return fmt::format(
-        "each of the {} ranks of mpirun would fly by itself; with --cluster the first flies, and "
-        "the others make meshes for it",
+        "each of the {} MPI ranks would start its own flight; with --cluster, rank 0 flies and "
+        "the others make its meshes",
         ranks);
   if (in_cluster_ && !was_started_as_rank())
     return "--cluster needs other ranks: mpirun -n 4 psygen fly --cluster";
   return {};
 }
 
-// What all ranks would say is said by the first.
+// Only rank 0 prints messages common to all ranks.
 bool FlyCommand::is_heard() {
   const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
   if (rank == nullptr) rank = std::getenv("PMIX_RANK");
@@ -48,7 +48,8 @@ int FlyCommand::run_rank() {
   return run_rank(**peers);
 }
 
-// What a rank lacks is said once all have met. Only the first needs a path.
+// Errors of a rank are reported after the handshake, so that no rank waits. Only rank 0 needs a
+// path.
 int FlyCommand::run_rank(cluster::Peers& peers) {
   models::Registry registry = models::make_standard_registry();
   const auto key =
@@ -77,7 +78,7 @@ int FlyCommand::run_rank(cluster::Peers& peers) {
   return kOk;
 }
 
-// The flight leaves a processor to its frames. It ends before the others are told so.
+// The flight reserves a processor for its frames. It ends before the other ranks are told to.
 int FlyCommand::run_first_rank(cluster::FlightKey key, const std::vector<unsigned>& threads,
                                cluster::Peers& peers) {
   std::uint32_t& modelers = options_.session.scene.modelers;
@@ -100,7 +101,7 @@ int FlyCommand::run_first_rank(cluster::FlightKey key, const std::vector<unsigne
   return code;
 }
 
-// Below the table of the flight's own figures; beside JSON as messages.
+// Printed below the table of the flight; with --json, logged as messages.
 void FlyCommand::print_cluster() const {
   const cluster::RemoteFigures figures = remote_->figures();
   std::string_view title = "cluster";
@@ -109,14 +110,13 @@ void FlyCommand::print_cluster() const {
     title = "";
     json_ ? core::log_info(line) : static_cast<void>(print(line + "\n"));
   };
-  row("other ranks", figures.lost == 0 ? fmt::format("{}", figures.ranks)
-                                       : fmt::format("{}, of which {} were given up", figures.ranks,
-                                                     figures.lost));
-  row("made there", fmt::format("{} meshes, {:.1f} MB", figures.meshes,
-                                static_cast<double>(figures.bytes) * 1e-6));
-  if (figures.given_back > 0) row("and in vain", fmt::format("{} requests", figures.given_back));
-  row("a mesh's way",
-      fmt::format("{:.0f} µs there and back with 100 KB", figures.way.seconds(1e5) * 1e6));
+  row("other ranks", figures.lost == 0
+                         ? fmt::format("{}", figures.ranks)
+                         : fmt::format("{}, {} of them lost", figures.ranks, figures.lost));
+  row("remote meshes", fmt::format("{} meshes, {:.1f} MB", figures.meshes,
+                                   static_cast<double>(figures.bytes) * 1e-6));
+  if (figures.given_back > 0) row("returned", fmt::format("{} requests", figures.given_back));
+  row("round trip", fmt::format("{:.0f} µs for a mesh of 100 KB", figures.way.seconds(1e5) * 1e6));
 }
 
 }  // namespace psygen::cli

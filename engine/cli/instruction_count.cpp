@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kNoValgrind =
     "it counts instructions (package valgrind); nothing was compared";
 
-// The generators of the paper's world in one thread, without a device.
+// Default work: generators of the paper's world in one thread, without a GPU.
 std::vector<std::string> work_of(const std::string& command) {
   std::vector<std::string> words = words_of(command);
   if (words.size() == 1)
@@ -31,8 +31,8 @@ std::vector<std::string> work_of(const std::string& command) {
   return words;
 }
 
-// The library that stands in for what valgrind cannot run (countable.cpp); empty where it is not
-// installed, which does no harm on processors that do not need it.
+// Path of the library that replaces an instruction valgrind cannot run (countable.cpp). Empty if it
+// is not installed, which is harmless on processors that do not need it.
 std::string stand_in() {
   void* library = dlopen("libpsygen_countable.so", RTLD_LAZY | RTLD_LOCAL);
   link_map* map = nullptr;
@@ -58,7 +58,7 @@ struct Counted {
   std::string hash;
 };
 
-// kNoDevice: not possible here.
+// Fails with kNoDevice if valgrind cannot count here.
 core::Result<Counted> count(const std::string& command, const std::filesystem::path& out,
                             const char* name) {
   const auto profile = out / fmt::format("{}.callgrind", name),
@@ -72,13 +72,14 @@ core::Result<Counted> count(const std::string& command, const std::filesystem::p
     return core::fail(core::ErrorCode::kNoDevice,
                       fmt::format("{}; {}", code.error().message, kNoValgrind));
   if (*code == 128 + SIGILL)
-    return core::fail(core::ErrorCode::kNoDevice,
-                      fmt::format("{}: valgrind does not know an instruction that it executes on "
-                                  "this processor; {} says where",
-                                  command, log.string()));
+    return core::fail(
+        core::ErrorCode::kNoDevice,
+        fmt::format("{}: valgrind does not support an instruction that it executes on "
+                    "this processor; see {}",
+                    command, log.string()));
   if (*code != 0)
     return core::fail(core::ErrorCode::kInternal,
-                      fmt::format("{}: exit code {} under valgrind; what it said is in {}", command,
+                      fmt::format("{}: exit code {} under valgrind; its output is in {}", command,
                                   *code, log.string()));
   const auto instructions = compare::instructions_in(whole_text(profile), profile.string());
   if (!instructions) return tl::unexpected(instructions.error());
@@ -96,8 +97,8 @@ core::Result<compare::Instructions> count_both(const InstructionOptions& options
   if (!b) return tl::unexpected(b.error());
   if (a->hash != b->hash)
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the two made different things (hashes '{}' and '{}'), so their "
-                                  "instructions say nothing about each other",
+                      fmt::format("the outputs differ (hashes '{}' and '{}'), so the "
+                                  "instruction counts are not comparable",
                                   a->hash, b->hash));
   return compare::Instructions{a->instructions, b->instructions};
 }

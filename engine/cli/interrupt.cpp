@@ -28,8 +28,8 @@ void handle(int signal_number, int flags) {
 
 const std::atomic<bool>& stop_at_interrupt() {
   constexpr auto kOnce = static_cast<int>(SA_RESETHAND);
-  // A person who presses Ctrl+C again does not want to wait. The end of a terminal comes twice by
-  // itself, from the kernel and from the shell; under nohup it is ignored.
+  // Users who press Ctrl+C twice do not want to wait. A closed terminal sends SIGHUP twice, from
+  // the kernel and from the shell; under nohup it is ignored.
   handle(SIGINT, kOnce);
   handle(SIGTERM, kOnce);
   if (!is_ignored(SIGHUP)) handle(SIGHUP, 0);

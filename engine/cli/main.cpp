@@ -1,7 +1,6 @@
-// psygen: the command line. One subcommand a file; this one only chooses. Data goes to stdout,
-// messages and progress to stderr.
-// Exit codes: 0 ok, 1 failed, 2 usage, 3 a budget is missed or B is worse, 4 no usable device or
-// display (77 of psygen test).
+// psygen: the command line. Each subcommand has a file; this one only selects. Data goes to stdout,
+// messages and progress to stderr. Exit codes: 0 success, 1 failure, 2 usage error, 3 missed budget
+// or regression in B, 4 no usable GPU or display (77 from psygen test).
 
 #include <CLI/CLI.hpp>
 
@@ -18,11 +17,11 @@
 
 int main(int argc, char** argv) {
   psygen::cli::hold_standard_streams();
-  psygen::render::tune_allocator_for_software_rendering();  // before the first allocation of size
+  psygen::render::tune_allocator_for_software_rendering();  // before the first large allocation
   psygen::cli::say_why_at_terminate();
   psygen::cli::ignore_what_write_errors_say();
 
-  CLI::App cli("psygen: fly through worlds that are far larger than memory", "psygen");
+  CLI::App cli("psygen: fly through procedural worlds larger than memory", "psygen");
   cli.set_version_flag("--version", "psygen " PSYGEN_VERSION);
   cli.require_subcommand(1);
   psygen::cli::FlyCommand fly(cli);
@@ -36,13 +35,13 @@ int main(int argc, char** argv) {
   psygen::cli::TestCommand test(cli);
   psygen::cli::CompareCommand compare(cli);
   psygen::cli::ConvertCommand convert(cli);
-  // After the commands, which would take it over.
+  // After the commands, which would otherwise inherit the footer.
   cli.footer(
-      "For example:\n"
+      "Example:\n"
       "  psygen fly --headless --world silver_combe --path combe --out out\n"
       "psygen COMMAND --help lists the options of a command.");
   if (const auto code = psygen::cli::read_command_line(cli, argc, argv)) return *code;
-  // Nothing of ours throws, but libraries do when memory ends.
+  // psygen throws nothing, but libraries do when memory runs out.
   try {
     if (fly.chosen()) return fly.run();
     if (picture.chosen()) return picture.run();

@@ -8,9 +8,9 @@
 namespace psygen::cli {
 
 MergeCommand::MergeCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("merge", "Check and join the shards of psygen amplify")) {
-  command_->add_option("PATH", paths_, "Folders of shards, or ledgers of theirs")->required();
-  command_->add_flag("--json", json_, "Print the figures as JSON");
+    : command_(cli.add_subcommand("merge", "Check and merge the shards of psygen amplify")) {
+  command_->add_option("PATH", paths_, "Shard folders or ledger files")->required();
+  command_->add_flag("--json", json_, "Print the results as JSON");
 }
 
 int MergeCommand::run() const {

@@ -1,4 +1,4 @@
-// `psygen merge`: joins the ledgers of shards. Main thread.
+// `psygen merge`: merges the ledgers of shards. Main thread.
 #pragma once
 
 #include <CLI/CLI.hpp>

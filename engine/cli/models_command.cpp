@@ -1,4 +1,4 @@
-// psygen models: every model type, every parameter, straight from the schemas.
+// psygen models: lists every model type and every parameter, from the schemas.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -70,8 +70,8 @@ std::string table_of(const models::Registry& registry) {
 
 ModelsCommand::ModelsCommand(CLI::App& cli)
     : command_(cli.add_subcommand("models", "List every model type and its parameters")) {
-  command_->add_flag("--json", json_, "As JSON");
-  command_->add_option("--world", world_, "With the species of this world");
+  command_->add_flag("--json", json_, "Print the list as JSON");
+  command_->add_option("--world", world_, "Include the species of this world");
 }
 
 int ModelsCommand::run() const {

@@ -1,4 +1,4 @@
-// Checks that CLI11 runs on an option's text; the sentence becomes the usage error.
+// Checks that CLI11 applies to the text of an option; the error message becomes the usage error.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 
 namespace psygen::cli {
 
-// `parse` gives a core::Result.
+// Accepts a text for which `parse` succeeds; `parse` returns a core::Result.
 template <class Parse>
 CLI::Validator valid_if(Parse parse, const std::string& description) {
   return CLI::Validator(
@@ -29,7 +29,7 @@ CLI::Validator valid_if(Parse parse, const std::string& description) {
       description);
 }
 
-// A number in decimal, the whole text, with a sign or without.
+// Accepts a decimal number that spans the whole text, with or without a sign.
 template <class Number>
 CLI::Validator decimal_between(Number low, Number high, std::string_view kind) {
   return CLI::Validator(
@@ -54,13 +54,12 @@ inline CLI::Validator number_between(double low, double high) {
   return decimal_between(low, high, "a number");
 }
 
-// For transform(): what CLI11 gets is without leading zeros, of which it would make an octal
-// number.
+// For transform(): CLI11 receives the number without leading zeros, which it would read as octal.
 inline CLI::Validator integer_between(std::int64_t low, std::int64_t high) {
   return decimal_between(low, high, "a whole number");
 }
 
-// 0, which switches something off, or a number.
+// Accepts 0, which disables a feature, or a number from `low` to `high`.
 inline CLI::Validator zero_or_between(double low, double high) {
   const CLI::Validator zero = number_between(0, 0), other = number_between(low, high);
   return CLI::Validator(
@@ -68,7 +67,7 @@ inline CLI::Validator zero_or_between(double low, double high) {
       fmt::format("0, or {} to {}", low, high));
 }
 
-// One of these words, which outlive the command line. Help shows them as low|high.
+// Accepts one of these words, which must outlive the command line. Help shows them as low|high.
 inline CLI::Validator one_of(std::vector<std::string_view> words) {
   const std::string shown = fmt::format("{}", fmt::join(words, "|"));
   return CLI::Validator(
@@ -81,7 +80,7 @@ inline CLI::Validator one_of(std::vector<std::string_view> words) {
       shown);
 }
 
-// For an option with parse_bytes(); whole MiB.
+// For an option parsed by parse_bytes(); bounds in whole MiB.
 inline CLI::Validator bytes_between(std::uint64_t low, std::uint64_t high) {
   return CLI::Validator(
       [low, high](std::string& text) {

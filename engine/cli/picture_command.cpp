@@ -1,4 +1,4 @@
-// psygen picture: one still picture of a world, with everything there that it shows.
+// psygen picture: renders one still image of a world, with all its meshes complete.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,52 +26,54 @@
 namespace psygen::cli {
 namespace {
 
-// A still picture has time.
+// A still image has time for full detail.
 constexpr double kStillErrorPixels = 1;
 constexpr render::Preset kStillPreset = render::Preset::kHigh;
 
 core::Result<std::string> png_name(const std::string& file) {
   if (std::filesystem::path(file).extension() == ".png") return file;
   return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("{}: its name must end in .png", file));
+                    fmt::format("{}: the name must end in .png", file));
 }
 
-// Which coarser levels stand for what found no room depends on what came first.
+// An incomplete image would depend on the order of requests: coarser levels replace meshes without
+// memory.
 core::Result<void> check_complete(const scene::State& state) {
   if (state.quality.coarsening > 1 || state.counters.refused > 0) {
     constexpr double kMiB = 1 << 20;
     return core::fail(
         core::ErrorCode::kOverBudget,
-        fmt::format("the budget of {:.0f} MiB does not hold this picture with an error of {:g} "
+        fmt::format("the budget of {:.0f} MiB is too small for this image with an error of {:g} "
                     "pixels; raise --budget or --error",
                     static_cast<double>(state.meshes.stats().budget_bytes) / kMiB,
                     state.settings.max_error_pixels));
   }
   if (state.totals.failed > 0 || state.counters.holes > 0)
-    return core::fail(core::ErrorCode::kSynthesisFailed, "not all that is seen could be made");
+    return core::fail(core::ErrorCode::kSynthesisFailed,
+                      "some visible meshes could not be synthesised");
   return {};
 }
 
 }  // namespace
 
 PictureCommand::PictureCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("picture", "Write one still picture of a world as a PNG")) {
+    : command_(cli.add_subcommand("picture", "Render one still image of a world as PNG")) {
   using world::CameraPath;
   CLI::App& c = *command_;
   options_.scene.max_error_pixels = kStillErrorPixels;
   options_.preset = kStillPreset;
-  c.add_option("--out", out_, "File to write: .png")->required()->check(valid_if(png_name, "FILE"));
+  c.add_option("--out", out_, "Output file: .png")->required()->check(valid_if(png_name, "FILE"));
   c.add_option_function<std::string>(
        "--at", [this](const std::string& text) { at_ = *parse_place(text); },
-       "Where the camera stands, X,Z in metres of the world; without it in the middle")
+       "Camera position X,Z in metres of the world; default: the centre")
       ->check(valid_if(parse_place, "X,Z"));
-  c.add_option("--height", height_m_, "Metres above the ground there, or the water on it")
+  c.add_option("--height", height_m_, "Height above ground or water, in metres")
       ->capture_default_str()
       ->check(number_between(CameraPath::kMinHeightM, CameraPath::kMaxHeightM));
-  c.add_option("--yaw", yaw_deg_, "Where it looks, in degrees: 0 north, 90 east")
+  c.add_option("--yaw", yaw_deg_, "Direction of view in degrees: 0 north, 90 east")
       ->capture_default_str()
       ->check(number_between(-36'000, 36'000));
-  c.add_option("--pitch", pitch_deg_, "Degrees upwards; -90 straight down")
+  c.add_option("--pitch", pitch_deg_, "Pitch in degrees; -90 is straight down")
       ->capture_default_str()
       ->check(number_between(-90, 90));
   add_scene_options(c, options_);
@@ -85,7 +87,7 @@ int PictureCommand::run() {
   options_.headless = true;
   options_.stop = &stop_at_interrupt();
   const auto folder = std::filesystem::path(out_).parent_path();
-  // Reports a folder that cannot be written before all the work.
+  // Checks the folder before the work begins.
   const auto writable = telemetry::create_output_folder(folder.empty() ? "." : folder);
   auto session = writable.and_then(image::load_picture_libraries)
                      .and_then(render::fit_software_rendering_to_threads)
@@ -98,7 +100,7 @@ int PictureCommand::run() {
     core::log_error(taken.error().message);
   }
   const int code = taken ? kOk : exit_code_of(taken.error());
-  // Its memory must not be torn down.
+  // The hung modeler still uses the session's memory, so the destructors must not run.
   if (session && (*session)->has_hung_modelers()) std::_Exit(code);
   return code;
 }

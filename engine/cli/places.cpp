@@ -7,7 +7,7 @@
 namespace psygen::cli {
 namespace {
 
-// "0 to 32256" metres; endless worlds end where the numbers of their blocks do.
+// "0 to 32256" metres; endless worlds end at the largest block index.
 std::string range_of(std::int64_t blocks, double block_size_m) {
   if (blocks > 0) return fmt::format("0 to {:g}", static_cast<double>(blocks) * block_size_m);
   return fmt::format("{:g} to {:g}", -0x1p31 * block_size_m, 0x1p31 * block_size_m);
@@ -24,8 +24,8 @@ core::Result<core::WorldPosition> position_at(const world::World& world, glm::dv
   if (some) at.block = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
   if (!some || !world.contains(at.block)) {
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the place {},{} is outside the world {}: X is {} m, Z is {} m",
-                                  place.x, place.y, world.name, range_of(world.blocks_x, size_m),
+                      fmt::format("{},{} is outside the world {}: X is {} m, Z is {} m", place.x,
+                                  place.y, world.name, range_of(world.blocks_x, size_m),
                                   range_of(world.blocks_z, size_m)));
   }
   at.local = {place.x - x * size_m, 0.0, place.y - z * size_m};

@@ -1,4 +1,4 @@
-// Places of a world as people write them: metres from the corner of block (0, 0).
+// World positions as users write them: metres from the corner of block (0, 0).
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -7,7 +7,7 @@
 
 namespace psygen::cli {
 
-// The place in its block, at world height 0. Fails with kInvalidArgument outside the world.
+// Converts to a world position at height 0. Fails with kInvalidArgument outside the world.
 core::Result<core::WorldPosition> position_at(const world::World& world, glm::dvec2 place);
 
 }  // namespace psygen::cli

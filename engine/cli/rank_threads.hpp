@@ -1,12 +1,12 @@
-// How many threads a rank of a cluster has on this machine. Main thread.
+// Number of threads of a cluster's rank on this machine. Main thread.
 #pragma once
 
 #include "engine/cluster/peers.hpp"
 
 namespace psygen::cli {
 
-// For a rank that is not told: the processors that it may run on, or its part of the machine's,
-// whichever is less; at least one.
+// Default number of threads of a rank: the processors that the process may use or the rank's part
+// of the machine, whichever is smaller; at least 1.
 unsigned threads_for_rank(const cluster::Peers& peers);
 
 }  // namespace psygen::cli

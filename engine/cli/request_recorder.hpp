@@ -1,4 +1,4 @@
-// Notes each mesh of a flight when it is first wanted, for `psygen schedule`. Main thread.
+// Records each mesh of a flight when it is first wanted, for `psygen schedule`. Main thread.
 #pragma once
 
 #include <unordered_set>
@@ -12,7 +12,7 @@ namespace psygen::cli {
 // Records the requests of one flight.
 class RequestRecorder {
  public:
-  // After a tick: what it wanted. Times are those of the flight.
+  // Call after each tick: records its wanted meshes. Times are those of the flight.
   void observe(const scene::State& state);
   const std::vector<synthesis::SimulatedJob>& jobs() const { return jobs_; }
 

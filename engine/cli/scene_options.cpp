@@ -13,19 +13,18 @@ namespace {
 void add_picture(CLI::App& c, app::SessionOptions& options) {
   c.add_option_function<std::string>(
        "--size", [&options](const std::string& text) { options.size = *parse_size(text); },
-       "Picture in pixels, WIDTHxHEIGHT")
+       "Image size in pixels, WIDTHxHEIGHT")
       ->check(valid_if(parse_size, "WxH"))
       ->default_str("1280x720");
   c.add_option_function<std::string>(
        "--preset",
        [&options](const std::string& text) { options.preset = *render::preset_from(text); },
-       "Light and detail: low, medium, high, ultra")
+       "Quality preset: low, medium, high, ultra")
       ->check(valid_if(render::preset_from, "low|medium|high|ultra"))
-      ->default_str(options.preset ? std::string(to_string(*options.preset))
-                                   : "what suits the device");
+      ->default_str(options.preset ? std::string(to_string(*options.preset)) : "chosen by GPU");
   c.add_option_function<std::string>(
        "--view", [&options](const std::string& text) { options.view = *render::view_from(text); },
-       "What is shown: normal, levels, layers, bounds, wireframe, missing, cache")
+       "Debug view: normal, levels, layers, bounds, wireframe, missing, cache")
       ->check(valid_if(render::view_from, "normal|levels|layers|bounds|wireframe|missing|cache"))
       ->default_str("normal");
 }
@@ -36,39 +35,39 @@ void add_detail(CLI::App& c, scene::Settings& scene) {
        "Levels of detail: on, or off for full detail everywhere")
       ->check(one_of({"on", "off"}))
       ->default_str("on");
-  c.add_option("--view-distance", scene.view_distance_m, "Metres; nothing beyond exists")
+  c.add_option("--view-distance", scene.view_distance_m, "View distance in metres")
       ->capture_default_str()
       ->check(number_between(32, 65536));
-  c.add_option("--error", scene.max_error_pixels, "Allowed error of a level of detail in pixels")
+  c.add_option("--error", scene.max_error_pixels, "Allowed screen-space error in pixels")
       ->capture_default_str()
       ->check(number_between(0.1, 1000));
   c.add_option_function<std::string>(
        "--occlusion", [&scene](const std::string& text) { scene.occlusion = text == "on"; },
-       "Leave out what lies behind ridges: on, off")
+       "Horizon culling (skip geometry hidden by ridges): on, off")
       ->check(one_of({"on", "off"}))
       ->default_str("on");
 }
 
 void add_machine(CLI::App& c, app::SessionOptions& options) {
-  c.add_option("--modelers", options.scene.modelers, "Synthesis threads; 0: one less than cores")
+  c.add_option("--modelers", options.scene.modelers, "Synthesis threads; 0: number of cores - 1")
       ->transform(integer_between(0, 256));
   c.add_option_function<std::string>(
        "--budget",
        [&options](const std::string& text) { options.scene.budget_bytes = *parse_bytes(text); },
-       "Bytes for all geometry, e.g. 512M")
+       "Memory budget for all geometry, e.g. 512M")
       ->check(bytes_between(scene::Scene::kMinBudgetBytes, scene::Scene::kMaxBudgetBytes))
       ->default_str("512M");
-  c.add_option("--device", options.device_name, "Part of the name of the Vulkan device");
+  c.add_option("--device", options.device_name, "Part of the Vulkan device's name");
   c.add_option_function<std::string>(
        "--render-path",
        [&options](const std::string& text) {
          options.render_path = *render::render_path_from(text);
        },
-       "Who decides what is drawn: cpu, gpu, or auto for what suits the device")
+       "Culling on the cpu or the gpu; auto: chosen by GPU")
       ->check(valid_if(render::render_path_from, "auto|cpu|gpu"))
       ->default_str("auto");
   c.add_flag("--validation", options.validation,
-             "Vulkan validation; any message makes the run fail");
+             "Enable Vulkan validation; any message fails the run");
 }
 
 }  // namespace
@@ -77,12 +76,12 @@ void add_scene_options(CLI::App& command, app::SessionOptions& options) {
   options.world_file = kDefaultWorld;
   command
       .add_option("--world", options.world_file,
-                  "World: a TOML file, or the name of one that comes with psygen")
+                  "World definition: a TOML file or the name of a shipped one")
       ->default_str(options.world_file.string());
   command
       .add_option_function<double>(
           "--hour", [&options](double hour) { options.start_hour = hour; },
-          "Hour of the day, 0 to 24, in worlds that have one (sky.day_length_s)")
+          "Hour of the day, 0 to 24, for worlds with a day (sky.day_length_s)")
       ->check(number_between(0, 24));
   add_picture(command, options);
   add_detail(command, options.scene);

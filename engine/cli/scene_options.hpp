@@ -1,5 +1,5 @@
-// The options that all commands share which draw a world: which world, how large, how finely, with
-// what. Each is told in one place, so that it means the same everywhere.
+// Options shared by all commands that draw a world: world, size, detail, device. Each is declared
+// once, so that it has the same meaning everywhere.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,7 +8,7 @@
 
 namespace psygen::cli {
 
-// `options` outlives the command; what it holds now are the defaults.
+// `options` outlives the command; its current values are the defaults.
 void add_scene_options(CLI::App& command, app::SessionOptions& options);
 
 }  // namespace psygen::cli

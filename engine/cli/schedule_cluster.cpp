@@ -1,5 +1,5 @@
-// psygen schedule --ranks: what a cluster would make of a world of this size, under the virtual
-// clock.
+// psygen schedule --ranks: simulates a cluster that synthesises a world of this size, under the
+// virtual clock.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,12 +17,13 @@ namespace psygen::cli {
 namespace {
 
 constexpr double kHour = 3600;
-// Blocks that are priced; endless worlds are priced over a square of this many blocks a side.
+// Blocks whose cost is predicted; for endless worlds, a square with this many blocks a side.
 constexpr std::int64_t kEndlessBlocks = 512;
-// A thread takes so many runs in the mean, at least: enough that their size does not show.
+// Lower limit of the mean number of runs per thread, high enough that the size of a run has no
+// effect.
 constexpr double kRunsPerThread = 500;
 
-// The work of a job, and what it asks of a machine room each second that a core works.
+// The work of a job, and its demands on the machines per second of a working core.
 struct Demand {
   std::uint64_t blocks = 0;
   double block_bytes = 0;
@@ -31,14 +32,14 @@ struct Demand {
 
 struct Limit {
   const char* name;
-  double busy;   // share of the makespan
-  double ranks;  // with so many it would be busy all the time
+  double busy;   // fraction of the makespan
+  double ranks;  // number of ranks at which it would be busy all the time
 };
 
 std::vector<Limit> limits_of(const ClusterOptions& o, const Demand& demand,
                              const cluster::VirtualReport& report) {
   const double bytes = demand.block_bytes * static_cast<double>(demand.blocks);
-  const double per_rank_s = demand.core_seconds / o.cores;  // if one rank made it all
+  const double per_rank_s = demand.core_seconds / o.cores;  // if one rank did all the work
   const double claims_each = static_cast<double>(report.claims) / o.ranks;
   return {{"storage bandwidth", report.storage_busy, o.storage_gb_per_s * 1e9 * per_rank_s / bytes},
           {"metadata (files created)", report.metadata_busy,
@@ -66,7 +67,7 @@ std::string text_of(const ClusterOptions& o, const Demand& demand,
                                                     static_cast<double>(demand.blocks)));
   for (const Limit& limit : limits_of(o, demand, report))
     row(limit.name, std::isfinite(limit.ranks)
-                        ? fmt::format("{:.2f} % busy, all of it from {:.3g} ranks on",
+                        ? fmt::format("{:.2f} % busy, saturated from {:.3g} ranks on",
                                       100 * limit.busy, limit.ranks)
                         : fmt::format("{:.2f} % busy", 100 * limit.busy));
   return text;
@@ -93,7 +94,7 @@ std::string json_of(const ClusterOptions& o, const Demand& demand,
   return json.dump(2) + "\n";
 }
 
-// The prices of a world's blocks, as many as they may be, repeated over a region of any size.
+// Predicted costs of a world's blocks, repeated over a region of any size.
 core::Result<amplify::CostMap> costs_of(const std::string& name, double bytes, Demand& demand) {
   models::Registry registry = models::make_standard_registry();
   const auto world = load_world(name, registry);

@@ -1,5 +1,4 @@
-// psygen schedule: what each policy makes of a recorded stream of requests, under the virtual
-// clock.
+// psygen schedule: simulates each policy on a recorded stream of requests, under the virtual clock.
 #include <fmt/format.h>
 
 #include <iterator>
@@ -23,23 +22,21 @@ core::Result<std::vector<synthesis::SimulatedJob>> read_stream(const std::string
 }
 
 constexpr const char* kColumns =
-    "fill      what the first frame wanted, alone: until all of it is finished, and the share of\n"
-    "          the modelers' time in which they had nothing to do\n"
-    "visible   from wanted in view to finished: how long a hole or a coarse model is seen\n"
-    "late      of what was predicted to come into view later: the share not finished by then\n"
-    "lateness  how late that was, 0 for what was in time: mean and largest\n"
-    "deadline, the default, aims at the least of the largest latenesses. Where not everything can "
-    "be\n"
-    "in time, shortest may be late less often and less in the mean, but lets some wait much "
-    "longer.";
+    "fill      time to finish the requests of the first frame alone, and the fraction of it in\n"
+    "          which modelers were idle\n"
+    "visible   time from wanted in view to finished: how long a hole or a coarse model is visible\n"
+    "late      fraction of the predicted requests that missed their deadline\n"
+    "lateness  lateness of those requests, 0 if in time: mean and maximum\n"
+    "deadline, the default, minimises the maximum lateness. If not all requests can be in time,\n"
+    "shortest may be late less often and less on average, but delays some requests much longer.";
 
 std::string table_of(std::span<const synthesis::PolicyFigures> rows,
                      const synthesis::StreamLoad& load, unsigned modelers) {
   std::string text = fmt::format(
-      "{} requests in {:.2f} s, {:.3g} s of work: {:.3g} % of what {} modeler{} can do\n",
+      "{} requests in {:.2f} s, {:.3g} s of work: {:.3g} % of the capacity of {} modeler{}\n",
       load.requests, load.span_s, load.work_s, load.percent, modelers, modelers == 1 ? "" : "s");
   if (load.percent > kOverloadPercent)
-    text += "That is more than they can do meanwhile: some of it has to wait, in any order.\n";
+    text += "The modelers are overloaded: some requests have to wait under any policy.\n";
   text +=
       "           fill    idle   visible p50       p99       max    late  lateness       max\n"
       "             ms       %            ms        ms        ms       %        ms        ms\n";
@@ -70,7 +67,7 @@ std::string json_of(std::span<const synthesis::PolicyFigures> rows) {
 }
 
 CLI::Option* add_cluster_options(CLI::App& c, ClusterOptions& o) {
-  auto* ranks = c.add_option("--ranks", o.ranks, "Simulate psygen amplify on so many ranks");
+  auto* ranks = c.add_option("--ranks", o.ranks, "Simulate psygen amplify on this many ranks");
   ranks->transform(integer_between(1, 65536));
   const auto number = [&](const char* name, double& value, double low, double high,
                           const char* meaning) {
@@ -79,7 +76,7 @@ CLI::Option* add_cluster_options(CLI::App& c, ClusterOptions& o) {
         ->check(number_between(low, high))
         ->needs(ranks);
   };
-  c.add_option("--world", o.world, "World whose blocks are priced")
+  c.add_option("--world", o.world, "World whose block costs are used")
       ->capture_default_str()
       ->needs(ranks);
   c.add_option("--cores", o.cores, "Cores of each rank")
@@ -90,41 +87,45 @@ CLI::Option* add_cluster_options(CLI::App& c, ClusterOptions& o) {
       ->transform(integer_between(1, 4096))
       ->needs(ranks);
   c.add_option("--share", o.share,
-               "How blocks are shared out: by count, by predicted cost, or that and claims")
+               "Distribution of blocks: by count, by predicted cost, or by cost with claims")
       ->check(one_of({"count", "cost", "claims"}))
       ->capture_default_str()
       ->needs(ranks);
-  number("--terabytes", o.terabytes, 1e-3, 1e9, "Size of all files, in 10^12 bytes; 0.001: 1 GB");
+  number("--terabytes", o.terabytes, 1e-3, 1e9,
+         "Total size of all files, in 10^12 bytes; 0.001: 1 GB");
   number("--error-percent", o.error_percent, 0, 100,
-         "Runs of blocks take up to this much more or less than predicted");
-  number("--latency-us", o.latency_us, 0, 1e6, "From claiming work at rank 0 to having it");
-  number("--claims-per-s", o.claims_per_s, 1, 1e12, "Claims that rank 0 answers");
-  number("--rank-gb-per-s", o.rank_gb_per_s, 1e-6, 1e9, "From a rank to the file system");
-  number("--storage-gb-per-s", o.storage_gb_per_s, 1e-6, 1e9, "Of the file system, for all ranks");
-  number("--files-per-s", o.files_per_s, 1e-3, 1e12, "Files that it creates");
-  number("--file-latency-ms", o.file_latency_ms, 0, 1e5, "Of each file until it is on the disk");
+         "Largest error of the predicted time of a run of blocks");
+  number("--latency-us", o.latency_us, 0, 1e6, "Latency of a claim at rank 0");
+  number("--claims-per-s", o.claims_per_s, 1, 1e12, "Claims per second that rank 0 can answer");
+  number("--rank-gb-per-s", o.rank_gb_per_s, 1e-6, 1e9, "Bandwidth from a rank to the file system");
+  number("--storage-gb-per-s", o.storage_gb_per_s, 1e-6, 1e9,
+         "Bandwidth of the file system, for all ranks");
+  number("--files-per-s", o.files_per_s, 1e-3, 1e12,
+         "Files per second that the file system creates");
+  number("--file-latency-ms", o.file_latency_ms, 0, 1e5, "Latency of writing a file to disk");
   return ranks;
 }
 
 }  // namespace
 
 ScheduleCommand::ScheduleCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("schedule", "Compare the policies on recorded requests")) {
+    : command_(cli.add_subcommand("schedule", "Compare scheduling policies on recorded requests")) {
   CLI::App& c = *command_;
-  auto* requests = c.add_option("--requests", file_, "What `psygen fly --record-requests` wrote");
+  auto* requests =
+      c.add_option("--requests", file_, "File written by `psygen fly --record-requests`");
   c.add_option("--modelers", modelers_, "Simulated modelers")
       ->capture_default_str()
       ->transform(integer_between(1, 256));
-  c.add_option("--slower", slower_, "Every synthesis takes this many times as long")
+  c.add_option("--slower", slower_, "Multiply the time of every synthesis")
       ->capture_default_str()
       ->check(number_between(0.001, 1e6));
   add_cluster_options(c, cluster_)->excludes(requests);
-  c.add_flag("--json", json_, "Print the figures as JSON");
+  c.add_flag("--json", json_, "Print the results as JSON");
   c.callback([this] {
     if (file_.empty() && cluster_.ranks == 0)
       throw CLI::RequiredError("psygen schedule: one of --requests and --ranks");
   });
-  c.footer(std::string("The columns:\n") + kColumns);
+  c.footer(std::string("Columns:\n") + kColumns);
 }
 
 int ScheduleCommand::run() const {

@@ -22,7 +22,7 @@ std::string_view word_of(Shipped kind) {
   return kind == Shipped::kWorld ? "world" : "path";
 }
 
-// The folders in which the shipped files of a kind may be.
+// Folders that may hold the shipped files of a kind.
 std::vector<fs::path> folders_of(Shipped kind) {
   std::vector<fs::path> folders = core::data_folders();
   for (fs::path& folder : folders)
@@ -51,21 +51,20 @@ bool has_folder(const std::string& name) {
   return name.find('/') != std::string::npos;
 }
 
-// The error for a name without a file.
+// Error message for a name without a file.
 std::string missing(Shipped kind, const std::string& name, std::vector<fs::path> folders) {
   const std::vector<std::string> names = names_in(folders);
   const std::string suggested = core::suggestion(fs::path(name).stem().string(), names);
   if (has_folder(name)) folders.clear();
   std::error_code error;
   if (fs::path(name).is_relative()) folders.insert(folders.begin(), fs::current_path(error));
-  std::string text = fmt::format("{}: there is no such file; ", name);
+  std::string text = fmt::format("{}: no such file; ", name);
   for (const fs::path& folder : folders)
     text += fmt::format("{}{}{}", &folder == &folders.front() ? "looked in " : ", ",
                         folder.string(), &folder == &folders.back() ? "; " : "");
-  if (names.empty())
-    return text + fmt::format("no {} that comes with psygen is there", word_of(kind));
-  return text + fmt::format("the {}s that come with psygen are {}{}", word_of(kind),
-                            fmt::join(names, ", "), suggested);
+  if (names.empty()) return text + fmt::format("no shipped {} was found", word_of(kind));
+  return text +
+         fmt::format("the shipped {}s are {}{}", word_of(kind), fmt::join(names, ", "), suggested);
 }
 
 }  // namespace
@@ -81,7 +80,7 @@ core::Result<fs::path> find_file(Shipped kind, const std::string& name) {
         if (is_file(folder / file)) return folder / file;
     }
   }
-  // Anything there that is not a file is reported when it is read.
+  // A folder or another non-file is reported when it is read.
   if (status.type() != fs::file_type::not_found) return fs::path(name);
   return core::fail(core::ErrorCode::kIo, missing(kind, name, folders));
 }

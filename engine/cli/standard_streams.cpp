@@ -16,7 +16,7 @@ namespace psygen::cli {
 void hold_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest number that is free, which is this one.
+    // open() returns the lowest free descriptor, which is this stream's.
     (void)open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   }
 }
@@ -25,7 +25,7 @@ int print(const std::string& text) {
   errno = 0;
   if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return kOk;
   if (errno != EPIPE)
-    core::log_error(fmt::format("standard output cannot be written: {}", std::strerror(errno)));
+    core::log_error(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
   return kFailed;
 }
 

@@ -8,16 +8,16 @@
 namespace psygen::cli {
 
 TestCommand::TestCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("test", "Run frame tests and judge them by their budgets")) {
+    : command_(cli.add_subcommand("test", "Run frame tests and check their budgets")) {
   CLI::App& c = *command_;
   c.add_option("FILE", options_.files, "Frame tests: TOML files")->required();
-  c.add_option("--junit", options_.junit, "File that gets the results as JUnit XML");
-  c.add_option("--out", options_.out, "Folder that keeps the outputs, one folder for each test");
+  c.add_option("--junit", options_.junit, "Write the results to this file as JUnit XML");
+  c.add_option("--out", options_.out, "Folder for the outputs, with one subfolder per test");
   c.add_option("--worst", options_.worst_frames,
-               "Pictures of the worst frames of a failed test, in --out; 0: none")
+               "Number of worst frames of a failed test written as images to --out")
       ->capture_default_str()
       ->transform(integer_between(0, frametest::kMaxWorstFrames));
-  c.add_option("--device", options_.device, "Part of the name of the Vulkan device");
+  c.add_option("--device", options_.device, "Part of the Vulkan device's name");
 }
 
 int TestCommand::run() {

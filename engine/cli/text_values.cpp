@@ -10,7 +10,7 @@
 namespace psygen::cli {
 namespace {
 
-// Digits at the start of `text`, and what follows them.
+// Removes and returns the number at the start of `text`.
 std::optional<std::uint64_t> leading_number(std::string_view& text) {
   std::uint64_t value = 0;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -64,7 +64,7 @@ core::Result<glm::dvec2> parse_place(const std::string& text) {
   if (!separated || z.ec != std::errc() || z.ptr != end || !std::isfinite(place.x) ||
       !std::isfinite(place.y)) {
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("'{}' is not a place X,Z in metres", text));
+                      fmt::format("'{}' is not a position X,Z in metres", text));
   }
   return place;
 }

@@ -1,4 +1,4 @@
-// Values as people write them on a command line. Pure.
+// Parses values of the command line. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace psygen::cli {
 
-// A number of bytes: digits with an optional suffix K, M, G or T (powers of 1024), "MiB" and the
-// like.
+// A number of bytes: digits with an optional suffix K, M, G or T (powers of 1024), also written
+// "MiB" and so on.
 core::Result<std::uint64_t> parse_bytes(const std::string& text);
 
 // Pixels as WIDTHxHEIGHT, each 1 … 16384.
 core::Result<core::Extent> parse_size(const std::string& text);
 
-// A place as X,Z: two finite numbers.
+// A position as X,Z: two finite numbers.
 core::Result<glm::dvec2> parse_place(const std::string& text);
 
 // A block as X,Z: two integers of 32 bits.

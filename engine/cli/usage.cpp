@@ -14,13 +14,13 @@ namespace psygen::cli {
 namespace {
 
 constexpr std::size_t kMaxShownBytes = 80;  // of an argument
-constexpr std::size_t kMaxSaidBytes = 400;  // of what CLI11 says, with an argument in it
+constexpr std::size_t kMaxSaidBytes = 400;  // of a message of CLI11 that includes an argument
 
 std::string in_quotes(std::string_view argument) {
   return fmt::format("'{}'", core::shown(argument, kMaxShownBytes));
 }
 
-// Of an app and its option groups, which are apps without a name.
+// Options of an app and of its option groups, which are apps without a name.
 std::vector<CLI::Option*> options_of(CLI::App& app) {
   std::vector<CLI::Option*> options = app.get_options();
   for (CLI::App* group : app.get_subcommands([](CLI::App* a) { return a->get_name().empty(); })) {
@@ -37,12 +37,12 @@ std::vector<CLI::App*> commands_of(CLI::App& cli) {
 std::string check_value(const std::string& text) {
   if (text.empty()) return "the value is empty";
   if (text.starts_with("--"))
-    return fmt::format("a value is missing before {0} (a file of that name is ./{0})",
+    return fmt::format("a value is missing before {0} (for a file of that name, write ./{0})",
                        core::shown(text, kMaxShownBytes));
   return {};
 }
 
-// CLI11 takes the next argument for the value of "--name=" and of "--name --other".
+// CLI11 would take the next argument as the value of "--name=" and of "--name --other".
 void refuse_missing_values(CLI::App& cli) {
   for (CLI::App* command : commands_of(cli)) {
     for (CLI::Option* option : options_of(*command)) {
@@ -54,7 +54,7 @@ void refuse_missing_values(CLI::App& cli) {
   }
 }
 
-// "help" and "help fly" for "--help" and "fly --help".
+// Accepts "help" and "help fly" for "--help" and "fly --help".
 void read_help(CLI::App& cli, std::vector<std::string>& arguments) {
   if (arguments.empty() || arguments.front() != "help") return;
   arguments.erase(arguments.begin());
@@ -65,7 +65,7 @@ void read_help(CLI::App& cli, std::vector<std::string>& arguments) {
     arguments = {arguments.front(), "--help"};
 }
 
-// Last first, as CLI11 wants them.
+// In reverse order, as CLI11 expects.
 std::vector<std::string> reversed_arguments(CLI::App& cli, int argc, char** argv) {
   std::vector<std::string> arguments;
   for (int i = 1; i < argc; ++i) {
@@ -85,7 +85,7 @@ std::string about_command(CLI::App& cli, const std::string& word) {
   std::vector<std::string> names;
   for (const CLI::App* command : commands_of(cli))
     names.push_back(command->get_name());
-  return fmt::format("there is no command {}{}", in_quotes(word), core::suggestion(word, names));
+  return fmt::format("unknown command {}{}", in_quotes(word), core::suggestion(word, names));
 }
 
 std::string about_option(CLI::App& command, const std::string& argument) {
@@ -97,31 +97,31 @@ std::string about_option(CLI::App& command, const std::string& argument) {
                      core::suggestion(word, names));
 }
 
-// What CLI11 could not place behind the program's name.
+// Error message for an unexpected argument of the program.
 std::string about_extra(CLI::App& cli) {
   const std::string first = cli.remaining().front();
   if (first.starts_with('-')) {
     const std::string near =
         core::suggestion(first, std::vector<std::string>{"--version", "--help"});
-    return near.empty() ? in_quotes(first) + " stands before the command; options come after it"
+    return near.empty() ? in_quotes(first) + " precedes the command; options follow it"
                         : fmt::format("psygen has no option {}{}", in_quotes(first), near);
   }
   if (cli.get_subcommands().empty()) return about_command(cli, first);
-  return fmt::format("{} is not expected", in_quotes(first));
+  return fmt::format("unexpected argument {}", in_quotes(first));
 }
 
-// And behind the command's.
+// Error message for an unexpected argument of a command.
 std::string about_extra_of(CLI::App& command) {
   const std::vector<std::string> extras = command.remaining();
-  // What follows an unknown option may be its value.
+  // The argument after an unknown option may be its value.
   const auto option =
       std::ranges::find_if(extras, [](const std::string& text) { return text.starts_with('-'); });
   if (option != extras.end()) return about_option(command, *option);
-  return fmt::format("{} is not expected: after the command there are only options",
+  return fmt::format("unexpected argument {}: only options may follow the command",
                      in_quotes(extras.front()));
 }
 
-// An option that is given twice, one without a value, or a flag with one.
+// Error message for a repeated option, an option without a value, or a flag with one.
 std::string about_count(CLI::App& command, const CLI::ParseError& error) {
   for (const CLI::Option* option : options_of(command)) {
     if (option->get_items_expected_max() == 1 && option->count() > 1)
@@ -139,7 +139,7 @@ std::string sentence_of(CLI::App& cli, CLI::App& command, const CLI::ParseError&
   if (!cli.remaining().empty()) return about_extra(cli);
   if (&command == &cli) return "a command is missing";
   if (kind == CLI::ExitCodes::ArgumentMismatch) return about_count(command, error);
-  // What is missing may be there under a misspelt name.
+  // A missing option may be present under a misspelt name.
   const bool wrong_value = kind == CLI::ExitCodes::ValidationError;
   if (!wrong_value && !command.remaining().empty()) return about_extra_of(command);
   return core::shown(error.what(), kMaxSaidBytes);

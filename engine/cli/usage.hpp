@@ -1,5 +1,5 @@
-// The command line as a whole: what holds for every option of every command, and what somebody is
-// told who got it wrong. Knows no command by name; CLI11 parses.
+// Rules that hold for every option of every command, and the messages for usage errors. Independent
+// of the commands; CLI11 parses.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,9 +7,9 @@
 
 namespace psygen::cli {
 
-// Reads the command line into the commands of `cli`. None where one was chosen, else the exit code
-// to leave with: after --help and --version, which go to stdout, and after mistakes, which are told
-// on stderr, with the nearest word for a misspelt one.
+// Parses the command line into the commands of `cli`. Returns nullopt if a command was chosen, else
+// the exit code: after --help and --version, which print to stdout, and after usage errors, which
+// print to stderr with a suggestion for a misspelt word.
 std::optional<int> read_command_line(CLI::App& cli, int argc, char** argv);
 
 }  // namespace psygen::cli

@@ -1,6 +1,6 @@
-// The blocks of one rank: its own share, then chunks that it claims one after the other. Threads
-// take runs of them; the one that finds nothing claims, and the others wait for it, some
-// microseconds. Notes in the rank's ledger what is finished. Any thread.
+// Source of the blocks of one rank: first its fixed share, then chunks that it claims one at a
+// time. Threads take runs of blocks. The thread that finds none left claims the next chunk while
+// the others wait some microseconds. Records finished runs in the rank's ledger. Any thread.
 #pragma once
 
 #include <mutex>
@@ -13,7 +13,7 @@ namespace psygen::cluster {
 
 class ClaimSource final : public amplify::RunSource {
  public:
-  // All arguments must outlive it. `ledger` may be null: nothing is noted.
+  // All arguments must outlive the source. A null `ledger` records nothing.
   ClaimSource(const Plan& plan, Peers& peers, unsigned threads, amplify::Ledger* ledger);
 
   core::Result<std::optional<amplify::BlockRun>> next() override;

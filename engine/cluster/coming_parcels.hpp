@@ -1,6 +1,7 @@
-// Parcels that have begun to come, in the order in which they began. A large one may be whole after
-// a small one of the same rank that was sent later: that one waits. A rank that stops in the middle
-// of one holds up no other rank. `Request`: what tells whether a parcel is whole. One thread.
+// Incoming messages still being received, in the order in which their transfers began. A small
+// message never overtakes a larger one that the same rank sent earlier. A rank that stops in the
+// middle of a message delays no other rank. `Request` is the handle that tells if a transfer is
+// complete. One thread.
 #pragma once
 
 #include <algorithm>
@@ -24,12 +25,14 @@ class ComingParcels {
     Clock::time_point begun{};
   };
 
-  // Room for `bytes` of rank `from`, which begin to come now. Stays where it is until it is taken.
+  // Adds a message of `bytes` from rank `from` whose transfer begins now. The reference stays valid
+  // until the message is taken.
   Coming& begin(unsigned from, std::size_t bytes, Clock::time_point now = Clock::now()) {
     return coming_.emplace_back(Coming{{from, Bytes(bytes)}, {}, now});
   }
 
-  // The first that `is_whole` is true of; with an unfinished one goes all that its rank sent later.
+  // Removes and returns the first message for which `is_whole` is true. Later messages of a rank
+  // wait for its unfinished one.
   template <class IsWhole>
   std::optional<Parcel> take_whole(const IsWhole& is_whole) {
     for (auto at = coming_.begin(); at != coming_.end(); ++at) {
@@ -44,7 +47,7 @@ class ComingParcels {
     return std::nullopt;
   }
 
-  // Whether one has begun after `time`.
+  // Returns true if a transfer began after `time`.
   bool any_since(Clock::time_point time) const {
     return !coming_.empty() && coming_.back().begun > time;
   }

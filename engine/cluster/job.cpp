@@ -40,7 +40,7 @@ BlockRanges ranges_from(const std::string& text) {
   return blocks;
 }
 
-// Each rank prices its part of the samples; together they are the same for all.
+// Each rank predicts the cost of its part of the samples; all ranks get the combined costs.
 amplify::CostMap shared_costs(const world::World& world, const models::Registry& registry,
                               const amplify::JobKey& key, Peers& peers) {
   const std::uint64_t blocks = key.region.block_count();
@@ -91,18 +91,18 @@ void add_from(const std::string& text, JobReport& sum) {
   sum.messages += messages;
 }
 
-// A job while it is set up: the steps of amplify_together(), in their order.
+// State of a job during set-up: the steps of amplify_together(), in order.
 struct Start {
   const world::World& world;
   const models::Registry& registry;
   const std::filesystem::path& folder;
   Peers& peers;
   amplify::JobKey key{};
-  std::unique_ptr<amplify::Ledger> job{}, mine{};  // job: at rank 0
+  std::unique_ptr<amplify::Ledger> job{}, mine{};  // job: on rank 0 only
   std::unique_ptr<amplify::BlockFolder> files{};
   BlockRanges done{};
 
-  // Rank 0 opens the ledger of the job and tells the others what is finished.
+  // Rank 0 opens the ledger of the job and sends the finished blocks to the other ranks.
   core::Result<void> take_over_folder() {
     core::Result<void> taken{};
     if (peers.rank() == 0) {
@@ -116,7 +116,7 @@ struct Start {
     return {};
   }
 
-  // Rank 0 first, so that it alone claims the folder.
+  // Rank 0 opens first, so that it alone claims the folder.
   core::Result<void> open_files(bool now) {
     core::Result<void> opened{};
     if (now && key.format) {
@@ -146,7 +146,7 @@ struct Start {
   }
 };
 
-// Runs the blocks of this rank.
+// Synthesises the blocks of this rank.
 core::Result<amplify::Report> run_rank(Start& start, const amplify::Options& given) {
   const amplify::Region& region = start.key.region;
   Peers& peers = start.peers;
@@ -200,7 +200,8 @@ tl::expected<JobReport, JobError> amplify_together(
     for (const amplify::Finished& finished : start.job->finished())
       all.report.totals.add(finished.totals);
   }
-  if (auto ok = agree({}, peers); !ok) return common(ok.error());  // all ledgers are closed
+  // agree() returns once every rank has closed its ledger.
+  if (auto ok = agree({}, peers); !ok) return common(ok.error());
   if (start.job) gathered = gather_ledgers(folder, *start.job, Check::kNothing);
   if (auto ok = agree(gathered, peers); !ok) return common(ok.error());
   all.report.complete = all.report.totals.failed == 0;

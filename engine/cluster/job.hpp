@@ -1,6 +1,6 @@
-// One region made by all ranks together: checks that they are of one mind, takes over what an
-// earlier job has finished, shares out the rest, and adds up the figures. Main thread; all ranks
-// call it with the same arguments but threads.
+// One region synthesised by all ranks together. Checks that all ranks run the same job, resumes an
+// earlier job in the folder, distributes the remaining blocks and adds up the statistics.
+// Collective, with the same arguments except for the number of threads. Main thread.
 #pragma once
 
 #include <filesystem>
@@ -13,34 +13,34 @@
 
 namespace psygen::cluster {
 
-// What came out, at every rank.
+// Result of a job, equal on all ranks.
 struct JobReport {
-  amplify::Report report;                  // of all ranks together; seconds: of the last one
-  std::uint64_t written = 0, skipped = 0;  // files, of all ranks
-  std::uint64_t messages = 0;              // of all ranks
+  amplify::Report report;  // of all ranks; its seconds are those of the slowest rank
+  std::uint64_t written = 0, skipped = 0;  // files, all ranks
+  std::uint64_t messages = 0;              // all ranks
 };
 
-// Why a job did not begin or did not end.
+// Reason why a job failed.
 struct JobError {
   core::Error error;
-  bool common = false;  // every rank has it: one of them should say it
+  bool common = false;  // all ranks have this error: one of them should print it
 };
 
-// `folder`: for files and ledgers; empty: nothing is written, and nothing is taken over. `options`
-// says how this rank runs; its source and sinks are ignored.
+// `folder` receives files and ledgers. If it is empty, the job writes nothing and resumes nothing.
+// `options` holds the settings of this rank; its source and sinks are ignored.
 //
-// Fails before the first block, at every rank, where ranks have different versions, worlds, regions
-// or formats, make different bits of the same blocks, or do not see the same folder. Fails like
-// BlockFolder::open(), Ledger::open() and amplify(); the caller then calls Peers::abort() unless
-// the error is common. A rank that was told to stop returns at once without the others: its report
-// is `stopped` and covers its own blocks.
+// All ranks fail before the first block if they have different versions, worlds, regions or
+// formats, compute different bits for the same blocks, or see different folders. Otherwise fails
+// like BlockFolder::open(), Ledger::open() and amplify(). The caller then calls Peers::abort(),
+// unless the error is common. A rank that receives a stop signal returns at once, without waiting
+// for the others: its report is `stopped` and covers only its own blocks.
 tl::expected<JobReport, JobError> amplify_together(
     const world::World& world, const models::Registry& registry, const amplify::Region& region,
     amplify::JobFormat format, std::string_view version, const std::filesystem::path& folder,
     const amplify::Options& options, Peers& peers);
 
-// Threads for a rank that is not told how many: the processors that it may run on, or its part of
-// the machine's, whichever is less; at least one.
+// Default number of threads of a rank: the processors that the process may use or the rank's part
+// of the machine, whichever is smaller; at least 1.
 unsigned threads_for_rank(unsigned allowed, unsigned of_machine, unsigned ranks_here);
 
 }  // namespace psygen::cluster

@@ -12,13 +12,13 @@ bool is_rank() {
 }
 
 core::Result<std::unique_ptr<Peers>> join_peers() {
-  // Of MPI's own libraries the names must be visible to those that it loads in turn.
+  // RTLD_GLOBAL: plugins that MPI's libraries load need the symbols of those libraries.
   void* library = dlopen("libpsygen_mpi.so", RTLD_NOW | RTLD_GLOBAL);
   void* join = library != nullptr ? dlsym(library, "psygen_join_mpi") : nullptr;
   if (join == nullptr) {
     const char* reason = dlerror();
     return core::fail(core::ErrorCode::kInternal,
-                      fmt::format("this process is one of several of mpirun, but MPI cannot be "
+                      fmt::format("this process runs under mpirun, but MPI cannot be "
                                   "loaded: {}",
                                   reason != nullptr ? reason : "unknown"));
   }

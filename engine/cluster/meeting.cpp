@@ -36,7 +36,7 @@ std::string text_from(core::ByteReader& in) {
   return std::string(in.get_text(in.get_count(1)));
 }
 
-// The version and the host come first: they are read of any version.
+// The version and the host come first, so that a rank of any version can read them.
 struct Introduction {
   FlightKey key;
   std::string host;
@@ -79,13 +79,13 @@ Introduction introduction_from(const std::string& bytes) {
   return other;
 }
 
-// Where `theirs` differs; empty if it does not.
+// Describes the first difference; empty if the keys are equal.
 std::string difference(const FlightKey& mine, const FlightKey& theirs) {
   if (theirs.version != mine.version)
     return fmt::format("psygen {} instead of {}", theirs.version, mine.version);
   if (theirs.world_hash != mine.world_hash)
     return theirs.world == mine.world
-               ? fmt::format("another version of the world {}", mine.world)
+               ? fmt::format("a different version of the world {}", mine.world)
                : fmt::format("the world {} instead of {}", theirs.world, mine.world);
   if (theirs.types.size() != mine.types.size())
     return fmt::format("{} model types instead of {}", theirs.types.size(), mine.types.size());
@@ -94,7 +94,7 @@ std::string difference(const FlightKey& mine, const FlightKey& theirs) {
       return fmt::format("the model type {} instead of {}", theirs.types[i].name,
                          mine.types[i].name);
     if (theirs.types[i] != mine.types[i])
-      return fmt::format("another edition of the model type {}, which makes other meshes",
+      return fmt::format("a different version of the model type {}, which makes other meshes",
                          mine.types[i].name);
   }
   return {};
@@ -123,7 +123,7 @@ core::Result<std::vector<unsigned>> meet(const core::Result<FlightKey>& mine, un
     const std::string different = difference(first.key, other.key);
     if (!different.empty())
       return core::fail(core::ErrorCode::kInvalidArgument,
-                        fmt::format("rank {} ({}) does not fit rank 0 ({}): it has {}", rank,
+                        fmt::format("rank {} ({}) does not match rank 0 ({}): it has {}", rank,
                                     other.host, first.host, different));
     threads_of.push_back(other.threads);
   }

@@ -1,5 +1,5 @@
-// What the ranks of a flight find out about each other before it: whether they make the same
-// meshes. All ranks call these, and all get the same answer. Main thread.
+// Handshake before a flight: all ranks check that they make the same meshes. Collective; all ranks
+// get the same result. Main thread.
 #pragma once
 
 #include <cstdint>
@@ -12,30 +12,31 @@
 
 namespace psygen::cluster {
 
-// A model type, and the mesh that it makes of its defaults.
+// A model type and the hash of the mesh that it makes from its default parameters.
 struct KnownType {
   std::string name;
   std::uint64_t identity = 0;
   int levels = 0;
-  std::uint64_t sample_hash = 0;  // of its coarsest level; 0: it fails
+  std::uint64_t sample_hash = 0;  // mesh hash of the coarsest LOD; 0: synthesis fails
   friend bool operator==(const KnownType&, const KnownType&) = default;
 };
 
-// What ranks must have in common.
+// Values that all ranks must have in common.
 struct FlightKey {
   std::string version;           // of psygen
-  std::string world;             // its name, for messages
+  std::string world;             // name of the world definition, for messages
   std::uint64_t world_hash = 0;  // world::world_hash()
-  std::vector<KnownType> types;  // of its registry, in order
+  std::vector<KnownType> types;  // of the registry, in order
 };
 
-// The key of a flight. Makes one mesh of each type.
+// Builds the key of a flight. Synthesises one mesh of each type.
 FlightKey flight_key(const world::World& world, const models::Registry& registry,
                      std::string_view version);
 
-// Compares keys; `mine` may be why this rank has none. `threads`: that will make meshes on this
-// rank. Returns those of all ranks. Fails with the first error of any rank, or with
-// kInvalidArgument; the sentence names the first rank that differs from rank 0, and its machine.
+// Compares the keys of all ranks and returns the number of threads of each rank. `mine` is this
+// rank's key, or the reason why it has none. `threads` counts the threads of this rank that will
+// make meshes. Fails with the first error of any rank, or with kInvalidArgument and a message that
+// names the first rank that differs from rank 0, and its machine.
 core::Result<std::vector<unsigned>> meet(const core::Result<FlightKey>& mine, unsigned threads,
                                          Peers& peers);
 

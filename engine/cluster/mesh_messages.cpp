@@ -15,8 +15,8 @@ namespace {
 using synthesis::RemoteMesh;
 
 constexpr std::size_t kHashBytes = sizeof(std::uint64_t);
-// Of an answer, before the mesh: a multiple of what vertices are aligned to. Kind, answer, 6
-// unused, ticket, seconds, box, size of the mesh, 8 unused.
+// Size of an answer's header, a multiple of the alignment of vertices: kind, answer, 6 unused
+// bytes, ticket, seconds, bounds, size of the mesh, 8 unused bytes.
 constexpr std::size_t kAnswerHeader = 64;
 
 Bytes begin(MessageKind kind) {

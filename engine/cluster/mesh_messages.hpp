@@ -1,6 +1,6 @@
-// What rank 0 of a flight and the ranks that make meshes for it tell each other, as bytes. Every
-// message ends with a hash of all before it; what does not fit is refused. A request carries all
-// that a mesh depends on, so the receiver needs the type and no world. Pure; any thread.
+// Messages between rank 0 of a flight and the ranks that make meshes for it, as bytes. Each message
+// ends with a hash of its content; a damaged one is rejected. A request holds everything that a
+// mesh depends on: the receiver needs the model type, but no world. Pure; any thread.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,25 @@
 namespace psygen::cluster {
 
 enum class MessageKind : std::uint8_t {
-  kPing,    // → answer with so many bytes
+  kPing,    // asks for a kPong of the given size
   kPong,    //
-  kMake,    // → a mesh
-  kAnswer,  // the mesh, or why there is none
-  kEnd,     // → no more requests
-  kBye,     // what kEnd is answered with
+  kMake,    // asks for a mesh
+  kAnswer,  // the mesh, or the reason why there is none
+  kEnd,     // no more requests follow
+  kBye,     // reply to kEnd
 };
 
-// One mesh to make.
+// Request for one mesh.
 struct MakeMessage {
-  std::uint64_t ticket = 0;           // of the request; comes back with the answer
-  std::string type;                   // its name
-  std::uint64_t parameters_hash = 0;  // with the identity of the type
+  std::uint64_t ticket = 0;           // identifies the request; the answer repeats it
+  std::string type;                   // name of the model type
+  std::uint64_t parameters_hash = 0;  // includes the identity of the type
   models::Parameters parameters;      // without edits
   std::uint16_t level = 0;
   models::MeshSize size;
 };
 
-// Any message, of which only what its kind has is set.
+// Any message. Only the members of its kind are set.
 struct Message {
   MessageKind kind = MessageKind::kBye;
   std::uint64_t ticket = 0;        // kPing, kPong, kAnswer
@@ -45,11 +45,11 @@ struct Message {
 Bytes ping_message(std::uint64_t ticket, std::uint64_t wanted_bytes);
 Bytes pong_message(std::uint64_t ticket, std::uint64_t bytes);
 Bytes make_message(const MakeMessage& request);
-// kEnd or kBye.
+// A message of the kind kEnd or kBye.
 Bytes plain_message(MessageKind kind);
 
-// The answer to a request, whose mesh is written in place: begin with the size, write into mesh(),
-// then finish. Needs memory for one mesh.
+// Writes the answer to a request in place: make() with the size, write into mesh(), then finish().
+// Allocates memory for one mesh.
 class AnswerWriter {
  public:
   // Fails with kOutOfMemory.
@@ -61,11 +61,11 @@ class AnswerWriter {
   Bytes bytes_;
   models::MeshSize size_;
 };
-// An answer without a mesh: `error` of the type, or kNone.
+// An answer without a mesh: `error` is that of the type, or the reason for kNone.
 Bytes failed_message(std::uint64_t ticket, synthesis::RemoteMesh::Answer answer,
                      const std::string& error);
 
-// What the bytes say; nothing where they are damaged.
+// Decodes a message; nullopt if the bytes are damaged.
 std::optional<Message> read_message(Bytes&& bytes);
 
 }  // namespace psygen::cluster

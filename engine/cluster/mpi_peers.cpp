@@ -1,5 +1,5 @@
-// Ranks over MPI: the only file that includes it, in a library of its own (libpsygen_mpi), so that
-// psygen runs where there is no MPI. Errors of MPI end the job, as they do by default.
+// Communicator over MPI. Only this file includes MPI; it forms a library (libpsygen_mpi), so that
+// psygen runs without MPI. MPI errors end the job, as MPI does by default.
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -83,12 +83,13 @@ class MpiPeers final : public Peers {
 
   void progress() override {
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock) return;  // who holds it makes progress too
+    if (!lock) return;  // the owner of the lock makes progress too
     int arrived = 0;
     MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &arrived, MPI_STATUS_IGNORE);
   }
 
-  // Small ones leave at once. For a large one the other rank must look; others may call meanwhile.
+  // Small messages leave at once. A large one waits until the receiver polls; other threads may
+  // call in the meantime.
   void send(unsigned rank, Bytes bytes) override {
     messages_.fetch_add(1, std::memory_order_relaxed);
     MPI_Request request = MPI_REQUEST_NULL;
@@ -127,9 +128,10 @@ class MpiPeers final : public Peers {
   void abort() override { MPI_Abort(MPI_COMM_WORLD, 1); }
 
  private:
-  static constexpr int kParcel = 1;   // tag
-  static constexpr int kLooks = 100;  // some 100 µs: what comes through memory is here by then
-  // What takes longer is not looked at without a pause: its rank may have stopped.
+  static constexpr int kParcel = 1;  // tag
+  // About 100 µs: messages through shared memory arrive within this time.
+  static constexpr int kLooks = 100;
+  // A transfer that takes longer is polled with pauses: its rank may have stopped.
   static constexpr std::chrono::milliseconds kComesSoon{5};
 
   void begin_to_receive() {

@@ -1,6 +1,6 @@
-// How long a thread sleeps between two looks at whether a message has come: a part of how long none
-// has come, so that a message is late by a small part of its time, and who waits for long hardly
-// uses a processor. MPI knows no sleep that a message ends. One thread.
+// Polling backoff: sleeps one eighth of the idle time, because MPI has no blocking wait with
+// wake-up. A message is therefore late by a small fraction of its waiting time, and a long wait
+// uses little processor time. One thread.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +13,9 @@ class Nap {
  public:
   explicit Nap(std::chrono::nanoseconds longest = std::chrono::microseconds(200))
       : longest_(longest) {}
-  // Something has come, or will soon.
+  // Resets the backoff: a message has arrived or will arrive soon.
   void wake() { since_ = Clock::now(); }
-  // An eighth of the time since then.
+  // Returns the next pause: an eighth of the time since wake(), up to the maximum.
   std::chrono::nanoseconds length() const {
     return std::min(longest_, std::chrono::nanoseconds(Clock::now() - since_) / 8);
   }

@@ -27,14 +27,14 @@ tl::unexpected<core::Error> refuse(std::string sentence) {
   return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
 }
 
-// A network file system may keep for some seconds that a file is not there.
+// A network file system may cache for some seconds that a file does not exist.
 constexpr int kLooks = 50;
 constexpr std::chrono::milliseconds kBetweenLooks{100};
 
 bool sees(const std::filesystem::path& file, const std::string& token) {
   for (int look = 0; look < kLooks; ++look) {
     if (look > 0) std::this_thread::sleep_for(kBetweenLooks);
-    // Listing the folder makes such a file system ask again.
+    // Listing the folder makes such a file system refresh its cache.
     std::error_code error;
     for (std::filesystem::directory_iterator it(file.parent_path(), error), end;
          !error && it != end; it.increment(error)) {
@@ -77,15 +77,15 @@ core::Result<void> check_keys(const core::Result<amplify::JobKey>& mine, bool wi
   const std::vector<std::string> keys =
       peers.exchange(amplify::ledger_text({*mine, place, {}, {}, 0}));
   const auto first = amplify::parse_ledger(keys.front(), "rank 0");
-  if (!first) return refuse("rank 0 is of another version of psygen");
+  if (!first) return refuse("rank 0 runs a different version of psygen");
   for (std::size_t rank = 1; rank < keys.size(); ++rank) {
     const auto other = amplify::parse_ledger(keys[rank], "rank");
     if (!other)
-      return refuse(fmt::format("rank {} is of another version of psygen than rank 0", rank));
+      return refuse(fmt::format("rank {} runs a different version of psygen than rank 0", rank));
     const std::string different = amplify::difference(first->key, other->key);
     if (!different.empty())
       return refuse(
-          fmt::format("{} does not fit {}: it has {}", other->part, first->part, different));
+          fmt::format("{} does not match {}: it has {}", other->part, first->part, different));
   }
   const std::vector<std::string> folders = peers.exchange(with_folder ? "1" : "0");
   for (std::size_t rank = 1; rank < folders.size(); ++rank) {
@@ -109,10 +109,10 @@ core::Result<void> check_folder(const std::filesystem::path& folder, Peers& peer
   if (auto ok = agree(made, peers); !ok) return ok;
   token = peers.exchange(token).front();
   if (peers.rank() != 0 && !sees(file, token))
-    made =
-        refuse(fmt::format("{}: what rank 0 writes there is not seen on {}; --out must be a folder "
-                           "that all ranks share",
-                           folder.string(), peers.host()));
+    made = refuse(fmt::format(
+        "{}: files that rank 0 writes there are not visible on {}; --out must be a folder "
+        "that all ranks share",
+        folder.string(), peers.host()));
   auto seen = agree(made, peers);
   if (peers.rank() == 0) {
     std::error_code ignored;

@@ -1,5 +1,5 @@
-// What ranks find out about each other before the first block. All ranks call these, and all get
-// the same answer. Main thread.
+// Checks before the first block that all ranks run the same job. Collective; all ranks get the same
+// result. Main thread.
 #pragma once
 
 #include <filesystem>
@@ -11,18 +11,17 @@
 
 namespace psygen::cluster {
 
-// Whether all ranks have the same key, and all a folder or none does; `mine` may be why this rank
-// has no key. Fails with
-// kInvalidArgument; the sentence names the first rank that differs from rank 0, its machine and its
-// instruction set.
+// Succeeds if all ranks have the same key, and either all or none have a folder. `mine` is this
+// rank's key, or the reason why it has none. Fails with kInvalidArgument; the message names the
+// first rank that differs from rank 0, its machine and its instruction set.
 core::Result<void> check_keys(const core::Result<amplify::JobKey>& mine, bool with_folder,
                               Peers& peers);
 
-// Whether all ranks see the same folder: rank 0 creates it and writes a file, which the others look
-// for. Fails with kIo or kInvalidArgument.
+// Succeeds if all ranks see the same folder: rank 0 creates it and writes a file that the others
+// look for. Fails with kIo or kInvalidArgument.
 core::Result<void> check_folder(const std::filesystem::path& folder, Peers& peers);
 
-// Gives every rank the first error of any; `mine` is that of this rank.
+// Returns the first error of any rank to all ranks; `mine` is the result of this rank.
 core::Result<void> agree(const core::Result<void>& mine, Peers& peers);
 
 }  // namespace psygen::cluster

@@ -1,7 +1,7 @@
-// The processes of a job, its ranks, and all that they tell each other. Behind it is MPI
-// (mpi_peers.cpp, loaded at run time), or a test. Where a message cannot be sent, the whole job
-// ends: no call returns an error. Calls that say "all ranks" wait for all of them, in the same
-// order everywhere.
+// Communicator of a job: its ranks and the messages between them. Implemented over MPI
+// (mpi_peers.cpp, loaded at run time) and by tests. A message that cannot be sent ends the whole
+// job, so no call returns an error. Collective calls block until all ranks have called them; all
+// ranks make them in the same order.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace psygen::cluster {
 
 using Bytes = std::vector<std::byte>;
 
-// What another rank has sent to this one.
+// A message from another rank.
 struct Parcel {
   unsigned from = 0;
   Bytes bytes;
@@ -26,43 +26,44 @@ struct Parcel {
 class Peers {
  public:
   virtual ~Peers() = default;
-  // 0 … count() − 1, and how many there are; how many run on this machine.
+  // This rank, 0 … count() − 1; the number of ranks; the number of ranks on this machine.
   virtual unsigned rank() const = 0;
   virtual unsigned count() const = 0;
   virtual unsigned count_here() const = 0;
   virtual std::string host() const = 0;  // of this machine
-  // All ranks: what each of them gives, by rank. Main thread.
+  // Collective. Returns the strings of all ranks, by rank. Main thread.
   virtual std::vector<std::string> exchange(const std::string& mine) = 0;
-  // The next number of a counter that all ranks share, from 0 on. One-sided: no rank has to answer.
-  // Any thread.
+  // Returns the next number of a counter shared by all ranks, from 0 on. One-sided: no rank has to
+  // respond. Any thread.
   virtual std::uint64_t claim() = 0;
-  // Lets claims of others get through where the network needs this process for it. Rank 0 calls it
-  // every millisecond, from its main thread.
+  // Lets claims of other ranks complete where the network needs this process for them. Rank 0 calls
+  // it every millisecond from its main thread.
   virtual void progress() = 0;
-  // Sends bytes to another rank; returns once they are on their way. That may take until it calls
-  // receive(). Any thread.
+  // Sends bytes to another rank and returns once they are under way, which may take until that rank
+  // calls receive(). Any thread.
   virtual void send(unsigned rank, Bytes bytes) = 0;
-  // What has come from any rank, in the order in which each of them sent it; nothing where nothing
-  // has. Waits only for the rest of what has begun to come, and not for long. One thread.
+  // Receives the next message from any rank, or nullopt. Messages of one rank keep their order.
+  // Waits briefly for the rest of a message whose transfer has begun, and otherwise not at all. One
+  // thread.
   virtual std::optional<Parcel> receive() = 0;
-  // Calls of this rank that sent something. Any thread.
+  // Number of calls of this rank that sent something. Any thread.
   virtual std::uint64_t messages() const = 0;
-  // All ranks: the end of the job. Nothing may be called after it. Without it the others are told
-  // that this rank has failed.
+  // Collective: ends the job. No call may follow. If a rank exits without it, the others learn that
+  // this rank failed.
   virtual void finish() = 0;
-  // Ends all ranks.
+  // Terminates all ranks.
   virtual void abort() = 0;
 };
 
-// Whether this process was started as a rank, by mpirun.
+// Returns true if mpirun started this process as a rank.
 bool is_rank();
 
-// Loads MPI and joins the others. Fails with kInternal where psygen was built without MPI or its
+// Loads MPI and joins the other ranks. Fails with kInternal if psygen was built without MPI or its
 // libraries are missing.
 core::Result<std::unique_ptr<Peers>> join_peers();
 
-// The function that the library of MPI exports, psygen_join_mpi: a new object, or nothing and a
-// sentence.
+// Signature of psygen_join_mpi, which the MPI library exports: returns a new object, or null and an
+// error message.
 using JoinMpi = Peers* (*)(std::string& error);
 
 }  // namespace psygen::cluster

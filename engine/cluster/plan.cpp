@@ -12,7 +12,7 @@ using amplify::BlockRanges;
 using amplify::BlockRun;
 using amplify::CostMap;
 
-// The costs of a set of blocks by their positions in it.
+// Cumulative costs of a set of blocks, by position in the set.
 class Costs {
  public:
   Costs(const BlockRanges& blocks, const CostMap& map) : blocks_(blocks), map_(map) {
@@ -22,7 +22,7 @@ class Costs {
     }
   }
   double total() const { return until_.back(); }
-  // The position at which this much of the cost is reached.
+  // Returns the position at which the cumulative cost reaches `seconds`.
   std::uint64_t position_at(double seconds) const {
     if (!(seconds < total())) return blocks_.count();
     const auto after = std::upper_bound(until_.begin(), until_.end(), seconds);
@@ -36,15 +36,15 @@ class Costs {
  private:
   const BlockRanges& blocks_;
   const CostMap& map_;
-  std::vector<double> until_{0.0};        // seconds before each run, and of all of them
-  std::vector<std::uint64_t> counts_{0};  // the same of blocks
+  std::vector<double> until_{0.0};        // seconds before each run, and the total
+  std::vector<std::uint64_t> counts_{0};  // blocks before each run, and the total
 };
 
 }  // namespace
 
 Plan::Plan(BlockRanges todo, const CostMap& costs, unsigned ranks, const PlanOptions& options)
     : todo_(std::move(todo)) {
-  PSYGEN_ASSERT(ranks >= 1, "a plan is for a rank at least");
+  PSYGEN_ASSERT(ranks >= 1, "a plan needs at least one rank");
   const Costs all(todo_, costs);
   const double each = all.total() / ranks;
   const double kept = ranks == 1 ? 1.0 : options.fixed_share;

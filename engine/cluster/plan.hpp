@@ -1,6 +1,6 @@
-// Who makes which blocks: most are shared out at the start by predicted cost, the rest is cut into
-// chunks that ranks claim when they have nothing left. Every rank makes the same plan from the same
-// arguments, so that a chunk is its number. Pure; any thread. It sends nothing (claim_source.hpp).
+// Distribution of blocks over ranks. Most blocks are assigned at the start by predicted cost. The
+// rest forms chunks that idle ranks claim. All ranks compute the same plan from the same arguments,
+// so a number identifies a chunk. Pure; any thread. Sends nothing (claim_source.hpp does).
 #pragma once
 
 #include <cstdint>
@@ -11,30 +11,30 @@
 
 namespace psygen::cluster {
 
-// How to cut.
+// Parameters of the distribution.
 struct PlanOptions {
-  // The part of the cost that is shared out at the start. What predictions are off by, and what
-  // other programs take from a rank, should fit into the rest: half a rank's speed does.
+  // Fraction of the cost that is assigned at the start. The rest must absorb prediction errors and
+  // the load of other programs; it suffices if a rank runs at half its speed.
   double fixed_share = 0.5;
-  // The least chunk, as a part of what a rank makes in the mean: how unevenly ranks end. Chunks
-  // before are larger: a half of what each rank has left to claim in the mean.
+  // Smallest chunk, as a fraction of the mean work of a rank. It bounds how unevenly ranks finish.
+  // Earlier chunks are larger: half of the mean work that each rank has left to claim.
   double min_chunk = 0.0025;
 };
 
 class Plan {
  public:
-  // `todo`: what is to be made, of the blocks that `costs` knows. Requires ranks >= 1.
+  // `todo`: the blocks to synthesise, all of which `costs` covers. Requires ranks >= 1.
   Plan(amplify::BlockRanges todo, const amplify::CostMap& costs, unsigned ranks,
        const PlanOptions& options = {});
 
-  // What is shared out to a rank, a part of a stretch of equal cost.
+  // Returns the fixed share of a rank: a part of its stretch of equal cost.
   amplify::BlockRanges own(unsigned rank) const;
-  // The chunks to claim, in this order: what is left of the stretches, largest cost first.
+  // The chunks to claim, in this order: the rest of each stretch, highest cost first.
   std::uint64_t chunk_count() const { return chunks_.empty() ? 0 : chunks_.size() - 1; }
   amplify::BlockRanges chunk(std::uint64_t i) const;
 
  private:
-  // Of positions in `todo_`: where the stretch of each rank begins, and what it keeps of it ends.
+  // Positions in `todo_`: begin of each rank's stretch, and end of its fixed share.
   std::vector<std::uint64_t> begins_, keeps_;
   amplify::BlockRanges todo_, rest_;
   std::vector<std::uint64_t> chunks_;  // positions in rest_

@@ -39,15 +39,15 @@ void RemoteModels::cancel(unsigned place, bool stalled) {
     places_[place].is_cancelled = true;
     places_[place].changed.notify_one();
   }
-  if (stalled) lose(places_[place].rank, "it does not answer");
+  if (stalled) lose(places_[place].rank, "it does not respond");
 }
 
-// What its other places wait for may come still.
+// Answers for the other slots of this rank may still arrive.
 void RemoteModels::lose(unsigned rank, const std::string& why) {
   const std::lock_guard lock(mutex_);
   if (is_lost_[rank]) return;
   is_lost_[rank] = true;
-  core::log_warning(fmt::format("rank {} makes no more meshes: {}", rank, why));
+  core::log_warning(fmt::format("rank {} is not used any more: {}", rank, why));
 }
 
 RemoteMesh RemoteModels::make(unsigned number, const models::ModelType& type,
@@ -78,7 +78,7 @@ RemoteMesh RemoteModels::make(unsigned number, const models::ModelType& type,
   using Answer = RemoteMesh::Answer;
   const bool made = mesh.answer == Answer::kMade;
   if (made && (mesh.bytes.size() != request.size.bytes() || !core::is_box(mesh.tight))) {
-    lose(place.rank, "its mesh is none");
+    lose(place.rank, "it sent an invalid mesh");
     mesh = {};
   }
   if (mesh.answer == Answer::kNone) given_back_.fetch_add(1, std::memory_order_relaxed);
@@ -109,17 +109,17 @@ void RemoteModels::receive_answers() {
   }
 }
 
-// Late answers have no place that waits for them.
+// A late answer matches no waiting slot and is dropped.
 void RemoteModels::deliver(Parcel&& parcel) {
   const unsigned rank = parcel.from;
   auto message = read_message(std::move(parcel.bytes));
   const bool damaged = !message || message->kind != MessageKind::kAnswer;
   if (damaged || message->mesh.answer == RemoteMesh::Answer::kNone)
-    lose(rank, damaged ? "what it sent is damaged" : message->mesh.error);
+    lose(rank, damaged ? "its message is damaged" : message->mesh.error);
   const std::lock_guard lock(mutex_);
   for (Place& place : places_) {
     if (place.rank != rank || place.ticket == 0) continue;
-    if (damaged || message->ticket == 0) {  // it may have been any of them
+    if (damaged || message->ticket == 0) {  // it may answer any of the requests
       place.answer.emplace();
     } else if (place.ticket == message->ticket) {
       place.answer = std::move(message->mesh);

@@ -1,8 +1,8 @@
-// The ranks that make meshes for a flight, as its modelers see them: places of a SynthesisManager
-// (synthesis/remote_modelers.hpp), one for each thread of another rank. Measures what a mesh takes
-// on its way, and takes only requests that take longer. A thread of its own receives answers while
-// some are awaited, and sleeps otherwise. A rank that does not answer, answers what is damaged or
-// refuses a request is not used any more. For one session. Rank 0; the others: serve_models().
+// Remote modelers of a flight: slots of a SynthesisManager (synthesis/remote_modelers.hpp), one for
+// each thread of another rank. Measures the round trip of a mesh and accepts only requests that
+// take longer. A receiver thread runs while answers are awaited and sleeps otherwise. A rank that
+// does not respond, sends damaged data or rejects a request is not used any more. For one session.
+// Runs on rank 0; the other ranks run serve_models().
 #pragma once
 
 #include <atomic>
@@ -23,44 +23,45 @@
 namespace psygen::cluster {
 
 struct RemoteOptions {
-  // Requests that are predicted to take longer, in seconds of a core, may go; not set: longer than
-  // their way there and back, which is measured.
+  // Only requests predicted to take longer than this go to other ranks, in seconds of a core.
+  // Default: the measured round trip of the mesh.
   std::optional<double> send_above_s;
-  unsigned max_places = 256;  // each has a thread here, which mostly sleeps
+  unsigned max_places = 256;  // each has a thread here that mostly sleeps
 };
 
-// What a mesh takes there and back, beside being made.
+// Round trip of a mesh, without its synthesis.
 struct Way {
-  double latency_s = 0;         // of a message and its answer, without a mesh
-  double bytes_per_second = 0;  // of the mesh
+  double latency_s = 0;         // of a request and an answer without a mesh
+  double bytes_per_second = 0;  // bandwidth for the mesh
   double seconds(double bytes) const {
     return latency_s + (bytes_per_second > 0 ? bytes / bytes_per_second : 0);
   }
 };
 
-// What came of it.
+// Statistics of the remote modelers.
 struct RemoteFigures {
-  unsigned ranks = 0;            // others than this one
-  unsigned lost = 0;             // of these, not used any more
-  std::uint64_t meshes = 0;      // that they made
-  std::uint64_t bytes = 0;       // of these meshes
-  std::uint64_t given_back = 0;  // requests that came back without a mesh
-  Way way;                       // the longest of those that were measured
+  unsigned ranks = 0;            // other than this one
+  unsigned lost = 0;             // ranks not used any more
+  std::uint64_t meshes = 0;      // made by other ranks
+  std::uint64_t bytes = 0;       // size of these meshes
+  std::uint64_t given_back = 0;  // requests that returned without a mesh
+  Way way;                       // the slowest round trip measured
 };
 
 class RemoteModels final : public synthesis::RemoteModelers {
  public:
-  // `key` and `threads` are those of meet(). Sends some messages to some ranks, which takes
-  // milliseconds. Fails with kInternal where the system gives no thread.
+  // `key` and `threads` come from meet(). Measures the round trip to some ranks, which takes
+  // milliseconds. Fails with kInternal if the system cannot start a thread.
   static core::Result<std::unique_ptr<RemoteModels>> start(FlightKey key,
                                                            const std::vector<unsigned>& threads,
                                                            Peers& peers,
                                                            const RemoteOptions& options = {});
-  // end(), where it was not called.
+  // Calls end() unless it was called.
   ~RemoteModels() override;
 
-  // The modelers have ended: tells the others that no more comes and waits until they have said
-  // so. False where one does not within some seconds: then the job has to be aborted.
+  // Call after the modelers have ended. Tells the other ranks that no more requests follow and
+  // waits for their replies. Returns false if a rank does not reply within some seconds; the caller
+  // then aborts the job.
   bool end();
   RemoteFigures figures() const;
 
@@ -75,7 +76,7 @@ class RemoteModels final : public synthesis::RemoteModelers {
  private:
   struct Place {
     unsigned rank = 0;
-    std::uint64_t ticket = 0;  // of what it waits for; 0: nothing
+    std::uint64_t ticket = 0;  // of the pending request; 0: none
     bool is_cancelled = false;
     std::optional<synthesis::RemoteMesh> answer;
     std::condition_variable changed;
@@ -96,7 +97,7 @@ class RemoteModels final : public synthesis::RemoteModelers {
   Way way_;
   std::deque<Place> places_;
   std::uint64_t ticket_ = 0;
-  mutable std::mutex mutex_;  // of the places and what follows
+  mutable std::mutex mutex_;  // guards the slots and the members below
   std::condition_variable wanted_;
   std::vector<bool> is_lost_;  // by rank
   unsigned awaited_ = 0;       // answers

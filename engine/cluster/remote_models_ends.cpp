@@ -1,5 +1,5 @@
-// The beginning and the end of remote modelers, while no other thread receives: what their way
-// takes is measured, and they are told that no more comes.
+// Start and end of remote modelers, while no other thread receives: measures the round trip, and
+// tells the ranks that no more requests follow.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,11 +15,11 @@
 namespace psygen::cluster {
 namespace {
 
-constexpr unsigned kMaxPinged = 16;            // ranks, spread over all of them
-constexpr int kPings = 5;                      // of each size: their median counts
-constexpr std::uint64_t kPingBytes = 1 << 20;  // of the larger ones
-constexpr double kSilence_s = 10;              // after which a rank is taken for stalled
-constexpr double kFarewell_s = 20;             // at the end, when it may finish what it makes
+constexpr unsigned kMaxPinged = 16;            // ranks, spread evenly
+constexpr int kPings = 5;                      // of each size; the median counts
+constexpr std::uint64_t kPingBytes = 1 << 20;  // size of the larger ones
+constexpr double kSilence_s = 10;              // a rank silent for longer counts as stalled
+constexpr double kFarewell_s = 20;             // at the end; a rank may finish its current mesh
 
 }  // namespace
 
@@ -39,7 +39,8 @@ RemoteModels::~RemoteModels() {
   end();
 }
 
-// The first of every rank, then the second: where there are more than may be, all ranks have some.
+// Adds the first thread of every rank, then the second, and so on, so that a limit leaves slots to
+// all ranks.
 void RemoteModels::add_places(const std::vector<unsigned>& threads, unsigned most) {
   const unsigned rounds = threads.empty() ? 0 : *std::ranges::max_element(threads);
   for (unsigned round = 0; round < rounds; ++round) {
@@ -49,7 +50,7 @@ void RemoteModels::add_places(const std::vector<unsigned>& threads, unsigned mos
   }
 }
 
-// Seconds until the answer is here; nothing where none comes.
+// Returns the seconds until the answer arrives; nullopt if none does.
 std::optional<double> RemoteModels::ping_s(unsigned rank, std::uint64_t bytes) {
   const double begin_s = core::monotonic_seconds();
   peers_.send(rank, ping_message(++ticket_, bytes));
@@ -78,7 +79,7 @@ void RemoteModels::measure_way() {
         times_s.push_back(*time_s);
       }
       if (times_s.size() < kPings) {
-        lose(rank, "it does not answer");
+        lose(rank, "it does not respond");
         break;
       }
       std::ranges::nth_element(times_s, times_s.begin() + kPings / 2);
@@ -96,7 +97,7 @@ bool RemoteModels::end() {
   {
     std::unique_lock lock(mutex_);
     is_over_ = true;
-    for (Place& place : places_) {  // where a modeler hangs, others may be at work still
+    for (Place& place : places_) {  // where a modeler hangs, other modelers may still work
       place.is_cancelled = true;
       place.changed.notify_one();
     }
@@ -123,8 +124,7 @@ bool RemoteModels::await_byes() {
     if (message && message->kind == MessageKind::kBye) --silent;
   }
   if (silent > 0)
-    core::log_warning(
-        fmt::format("ranks that do not answer: {}; the job is ended without them", silent));
+    core::log_warning(fmt::format("{} ranks do not respond; the job ends without them", silent));
   return silent == 0;
 }
 

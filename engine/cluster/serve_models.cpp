@@ -25,11 +25,12 @@ namespace {
 
 using synthesis::RemoteMesh;
 
-constexpr unsigned kFlyer = 0;  // the rank that asks
+constexpr unsigned kFlyer = 0;  // the rank that sends requests
 constexpr std::chrono::milliseconds kLongestNap{1};
 constexpr std::uint64_t kMaxPong = 1 << 24;  // bytes
 
-// What the threads of a rank share. Each holds it, so that one that hangs harms nobody.
+// State shared by the threads of a rank. Each thread holds it, so that a hung thread never uses
+// freed memory.
 struct Shop {
   const models::Registry* registry = nullptr;
   Peers* peers = nullptr;
@@ -50,14 +51,14 @@ struct Shop {
   }
 };
 
-// Why a request cannot be served here; empty if it can.
+// Returns the reason why this rank cannot serve a request; empty if it can.
 std::string objection(const models::Registry& registry, const MakeMessage& make) {
   const int at = registry.find(make.type);
-  if (at < 0) return "it does not know the model type " + make.type;
+  if (at < 0) return "it lacks the model type " + make.type;
   const models::ModelType& type = registry[static_cast<models::ModelIndex>(at)];
   if (models::parameters_hash(type, make.parameters) != make.parameters_hash ||
       make.level >= type.level_count())
-    return "it has another edition of the model type " + make.type;
+    return "it has a different version of the model type " + make.type;
   const auto size = synthesis::mesh_size_guarded(type, make.parameters, make.level);
   if (!size || !(*size == make.size)) return "its meshes of " + make.type + " have another size";
   return {};
@@ -89,7 +90,7 @@ Bytes answer_to(const MakeMessage& make, Shop& shop) {
   return std::move(*writer).finish(outcome.tight, core::thread_cpu_seconds() - begin_s);
 }
 
-// Where ranks share a machine, the frames of the first go before.
+// Runs at the lowest priority: on a shared machine, the frames of rank 0 come first.
 void work(Shop& shop) {
   synthesis::lower_priority_of_this_thread();
   for (;;) {
@@ -111,7 +112,7 @@ void work(Shop& shop) {
   shop.changed.notify_all();
 }
 
-// Threads that outlive it were left to themselves.
+// The threads of a rank. Threads that hang are detached and outlive it.
 class Threads {
  public:
   Threads(std::shared_ptr<Shop> shop, double patience_s)
@@ -129,15 +130,15 @@ class Threads {
         const std::lock_guard lock(shop_->mutex);
         --shop_->threads;
         return core::fail(thread.error().code,
-                          fmt::format("only {} of {} threads that make meshes were started: {}",
-                                      threads_.size(), count, thread.error().message));
+                          fmt::format("started only {} of {} modeler threads: {}", threads_.size(),
+                                      count, thread.error().message));
       }
       threads_.push_back(std::move(*thread));
     }
     return {};
   }
 
-  // Lets them finish what they make, for a while. False if one hangs.
+  // Waits for the threads to finish their current meshes. Returns false if one hangs.
   bool close() {
     if (threads_.empty()) return true;
     bool all = true;
@@ -162,7 +163,7 @@ class Threads {
   std::vector<std::thread> threads_;
 };
 
-// After an answer the next request comes soon.
+// Wakes early after an answer: the next request usually follows soon.
 void sleep(Shop& shop, Nap& nap) {
   std::unique_lock lock(shop.mutex);
   const auto until = std::chrono::system_clock::now() + nap.length();
@@ -170,7 +171,7 @@ void sleep(Shop& shop, Nap& nap) {
   shop.has_answered = false;
 }
 
-// False once no more comes.
+// Handles one message. Returns false once no more requests follow.
 bool take(Parcel&& parcel, Shop& shop) {
   auto message = read_message(std::move(parcel.bytes));
   if (message && message->kind == MessageKind::kEnd) return false;
@@ -182,7 +183,7 @@ bool take(Parcel&& parcel, Shop& shop) {
     shop.send(pong_message(message->ticket, std::min(message->wanted_bytes, kMaxPong)));
   } else {
     ++shop.refused;
-    shop.send(failed_message(0, RemoteMesh::Answer::kNone, "a request came damaged"));
+    shop.send(failed_message(0, RemoteMesh::Answer::kNone, "it received a damaged request"));
   }
   return true;
 }

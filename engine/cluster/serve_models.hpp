@@ -1,5 +1,5 @@
-// A rank that makes meshes for the flight of rank 0 (remote_models.hpp). It knows model types and
-// neither worlds nor what is seen. Threads of its own make meshes; the calling one receives.
+// Serves meshes to the flight of rank 0 (remote_models.hpp). Knows model types, but no worlds and
+// no visibility. Worker threads make the meshes; the calling thread receives requests.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace psygen::cluster {
 
-// What a rank did.
+// Statistics of a serving rank.
 struct ServeReport {
   std::uint64_t made = 0, failed = 0;  // meshes
-  std::uint64_t refused = 0;           // damaged requests, and types that are not known here
-  // A model hangs: its thread still uses the registry and the peers, so the program should leave
-  // through std::_Exit.
+  std::uint64_t refused = 0;           // damaged requests and unknown types
+  // True if a model hangs. Its thread still uses the registry and the communicator, so the program
+  // should leave through std::_Exit.
   bool hangs = false;
 };
 
-// Makes what rank 0 asks for, with so many threads, until it says that no more comes. Then what is
-// being made is finished, or hangs if that takes longer than `patience_s`, as for the watchdog of a
-// flight. Requires meet() at all ranks, and threads >= 1, as many as meet() was told. Fails with
-// kInternal where the system gives fewer.
+// Serves the requests of rank 0 with this number of threads until it sends kEnd. Then finishes the
+// current meshes; a mesh hangs if it takes longer than `patience_s`, as for the watchdog of a
+// flight. Requires meet() on all ranks and threads >= 1, the number given to meet(). Fails with
+// kInternal if the system starts fewer threads.
 core::Result<ServeReport> serve_models(const models::Registry& registry, unsigned threads,
                                        Peers& peers, double patience_s = 10);
 

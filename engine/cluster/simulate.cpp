@@ -13,7 +13,7 @@ namespace {
 using amplify::BlockRanges;
 using amplify::BlockRun;
 
-// Serves one request after the other, in the order in which they come.
+// Serves requests one after the other, in the order of their arrival.
 struct Server {
   double free_s = 0, busy_s = 0;
   double serve(double at_s, double seconds) {
@@ -26,13 +26,13 @@ struct Server {
 struct Rank {
   BlockRanges blocks;
   std::uint64_t position = 0;
-  double ready_s = 0;  // when what it claimed last has arrived
+  double ready_s = 0;  // when the chunk claimed last arrives
   bool is_over = false;
   std::vector<double> cores_free_s;
   Server link;
 };
 
-// A thread, and what it writes as soon as it has made it.
+// A thread, which writes each run as soon as it is synthesised.
 struct Thread {
   double free_s = 0;
   unsigned rank = 0;
@@ -56,7 +56,7 @@ class Simulation {
     report_.rank_end_s.resize(job.ranks);
   }
 
-  // The next thing that happens, until nothing does: servers meet requests in the order of time.
+  // Processes the next event until none is left. Servers receive requests in the order of time.
   VirtualReport run() {
     while (!threads_.empty()) {
       Thread thread = threads_.top();
@@ -75,7 +75,7 @@ class Simulation {
   }
 
  private:
-  // Sees to it that the thread's rank has blocks. False: there are no more.
+  // Ensures that the thread's rank has blocks. Returns false if none are left.
   bool fetch(Thread& thread) {
     Rank& rank = ranks_[thread.rank];
     while (rank.position == rank.blocks.count()) {
@@ -147,7 +147,7 @@ class Simulation {
 }  // namespace
 
 VirtualReport simulate(const Plan& plan, const VirtualJob& job) {
-  PSYGEN_CHECK(job.ranks >= 1 && job.threads >= 1, "a job has a rank and a thread at least");
+  PSYGEN_CHECK(job.ranks >= 1 && job.threads >= 1, "a job needs at least one rank and one thread");
   return Simulation(plan, job).run();
 }
 

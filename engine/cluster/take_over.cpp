@@ -35,8 +35,8 @@ bool holds(const std::vector<Finished>& all, const amplify::BlockRun& run) {
       all, [&](const Finished& f) { return f.run.first <= run.first && run.end <= f.run.end; });
 }
 
-// Adds what the ledgers of ranks have. An entry that was taken over before a job was killed is in
-// both: it counts once.
+// Adds the finished blocks of the ranks' ledgers. An entry that a killed job had already merged is
+// in both ledgers; it counts once.
 core::Result<void> add_from(const std::vector<std::filesystem::path>& files,
                             const amplify::JobKey& key, std::vector<Finished>& all) {
   const std::vector<Finished> before = all;
@@ -45,8 +45,9 @@ core::Result<void> add_from(const std::vector<std::filesystem::path>& files,
     if (!ledger) return tl::unexpected(ledger.error());
     const std::string other = amplify::difference(key, ledger->key);
     if (!other.empty())
-      return core::fail(core::ErrorCode::kInvalidArgument,
-                        fmt::format("{}: is of {}; choose another folder", file.string(), other));
+      return core::fail(
+          core::ErrorCode::kInvalidArgument,
+          fmt::format("{}: belongs to {}; choose another folder", file.string(), other));
     for (Finished& finished : ledger->finished)
       if (!holds(before, finished.run)) all.push_back(std::move(finished));
   }
@@ -65,18 +66,19 @@ core::Result<void> gather_ledgers(const std::filesystem::path& folder, amplify::
   std::vector<Finished> all = job.finished();
   if (auto ok = add_from(files, job.key(), all); !ok) return ok;
   if (auto once = amplify::blocks_of(all); !once)
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: its ledgers do not fit together: {}; remove them (blocks "
-                                  "that are there are not written again)",
-                                  folder.string(), once.error().message));
+    return core::fail(
+        core::ErrorCode::kInvalidArgument,
+        fmt::format("{}: its ledgers contradict each other: {}; remove them (existing "
+                    "blocks are not written again)",
+                    folder.string(), once.error().message));
   if (check == Check::kFiles) all = amplify::with_files(std::move(all), job.key(), folder);
   if (auto ok = job.rewrite(amplify::compacted(std::move(all))); !ok) return ok;
   for (const std::filesystem::path& file : files) {
     std::error_code error;
     std::filesystem::remove(file, error);
     if (error)
-      return core::fail(core::ErrorCode::kIo,
-                        fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+      return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot remove the file: {}",
+                                                          file.string(), error.message()));
   }
   return {};
 }

@@ -1,4 +1,4 @@
-// What an earlier job left in a folder, and who writes there now. Main thread.
+// Resumes an earlier job in a folder and locks the folder for this one. Main thread.
 #pragma once
 
 #include <filesystem>
@@ -9,20 +9,20 @@
 
 namespace psygen::cluster {
 
-// The ledger of a rank in a folder; that of the whole job is "job.ledger".
+// Path of a rank's ledger in a folder; the ledger of the whole job is "job.ledger".
 std::filesystem::path rank_ledger(const std::filesystem::path& folder, unsigned rank);
 
-// Whether the files of finished blocks are looked at: those of an earlier job, one by one.
+// kFiles checks that every finished block of an earlier job still has its files.
 enum class Check : std::uint8_t { kNothing, kFiles };
 
-// Joins what the ledgers of ranks have into that of the job, with Check::kFiles without entries
-// that lost a file, and removes them. For one rank, while no other writes into the folder. Fails
-// with kIo, kParse, and kInvalidArgument where they are of another job.
+// Merges the ledgers of all ranks into the ledger of the job, and removes them. With Check::kFiles,
+// drops entries that lost a file. For one rank, while no other writes into the folder. Fails with
+// kIo, with kParse, and with kInvalidArgument if the ledgers belong to another job.
 core::Result<void> gather_ledgers(const std::filesystem::path& folder, amplify::Ledger& job,
                                   Check check);
 
 // Opens the ledger of the whole job, locked for this process; removes half-written blocks and
-// gathers what an earlier job has left. Fails like Ledger::open() and gather_ledgers().
+// merges the ledgers of an earlier job. Fails like Ledger::open() and gather_ledgers().
 core::Result<std::unique_ptr<amplify::Ledger>> take_over(const std::filesystem::path& folder,
                                                          const amplify::JobKey& key);
 

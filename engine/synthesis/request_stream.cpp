@@ -12,10 +12,10 @@
 namespace psygen::synthesis {
 namespace {
 
-constexpr double kMinNoticeSeconds = 0.002;  // deadlines are written in milliseconds
+constexpr double kMinNoticeSeconds = 0.002;  // deadlines are stored in milliseconds
 constexpr std::string_view kHeader = "psygen requests 2";
 
-// The next word of a line, which it leaves.
+// Removes and returns the next word of a line.
 std::string_view take_word(std::string_view& line) {
   line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
   const std::size_t end = std::min(line.find(' '), line.size());
@@ -56,8 +56,8 @@ std::vector<SimulatedJob> initial_fill(std::span<const SimulatedJob> jobs) {
   return fill;
 }
 
-// Whether a request could be in time. Models that are due at once stand beside the picture on
-// ground in view: no policy could have them by then.
+// Returns true if a request could be in time. A model due at once stands at the edge of the view,
+// on ground already in view: no policy could have it in time.
 bool is_due_later(const SimulatedJob& job) {
   return job.deadline_s < kNoDeadline && job.deadline_s > job.arrival_s + kMinNoticeSeconds;
 }
@@ -120,13 +120,13 @@ core::Result<std::vector<SimulatedJob>> parse_stream(std::string_view text, std:
       continue;
     }
     const auto job = job_of(line);
-    if (!job) return refuse(number, "a request is: arrival, seconds, deadline or -, rank");
+    if (!job) return refuse(number, "a request needs: arrival, seconds, deadline or -, rank");
     if (jobs.size() == kMaxStreamRequests) {
       return refuse(number, fmt::format("more than {} requests", kMaxStreamRequests));
     }
     jobs.push_back(*job);
   }
-  if (jobs.empty()) return refuse(1, "there is no request");
+  if (jobs.empty()) return refuse(1, "the file has no requests");
   return jobs;
 }
 

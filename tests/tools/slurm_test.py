@@ -173,7 +173,7 @@ def main():
             assert json.loads(merged)["hash"] == alone["hash"], merged
             assert blocks_in(folder / "shards") == blocks_in(folder / "alone")
             assert len(list(folder.glob("shards-*.txt"))) == 3
-            assert "0 written, 0 there already" in (folder / "again-2.txt").read_text(), "a finished shard was made again"
+            assert "0 written, 0 existed" in (folder / "again-2.txt").read_text(), "a finished shard was made again"
             if with_mpi:
                 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                                   OMPI_MCA_btl="self,vader", OMPI_MCA_btl_vader_single_copy_mechanism="none")

@@ -1,4 +1,4 @@
-// A folder with a small world, and regions of it that psygen amplify makes there.
+// A folder with a small world in which psygen amplify synthesises regions.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,16 +16,16 @@ class AmplifyFixture : public testing::Test {
  protected:
   AmplifyFixture() { std::ofstream(folder_ / "small.toml") << world::testing::kSmallWorld; }
 
-  // `psygen amplify` in the folder, as one process.
+  // Runs `psygen amplify` in the folder, as one process.
   Outcome amplify(const std::string& arguments, const std::string& environment = "") const {
     return run_psygen("amplify --world small.toml " + arguments, environment, folder_.path());
   }
-  // Of the output with --json.
+  // The hash in the output of --json.
   static std::string hash_in(const Outcome& outcome) {
     if (outcome.code != 0) return outcome.err;
     return nlohmann::json::parse(outcome.out)["hash"];
   }
-  // The files of a folder in it, but for ledgers.
+  // The files of a subfolder, without ledgers.
   FileContents blocks_in(const std::string& folder) const {
     FileContents contents = contents_of(folder_ / folder);
     std::erase_if(contents, [](const auto& file) { return file.first.ends_with(".ledger"); });

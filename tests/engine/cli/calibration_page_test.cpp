@@ -7,7 +7,7 @@
 namespace psygen::cli {
 namespace {
 
-// Terrain and rocks were measured, trees were not.
+// Terrain and rocks were measured; trees were not.
 Calibration partly_measured() {
   Calibration found;
   found.fits.levels = {{0, 0, {}, 1.5, 4}, {2, 0, {}, 0, 0}};
@@ -18,7 +18,7 @@ Calibration partly_measured() {
   return found;
 }
 
-TEST(CalibrationPage, WhatWasNotMeasuredHasNoError) {
+TEST(CalibrationPage, UnmeasuredTypesHaveNoError) {
   const models::Registry registry = models::make_standard_registry();
   const Calibration found = partly_measured();
   const std::string text = calibration_text(found, registry);
@@ -54,23 +54,23 @@ TEST(CalibrationPage, TheCostModelIsDrawnOnlyWhereItWasCalibrated) {
                   {2, "iterations", {point(1, {}), point(2, {})}, {}},
                   {2, "branches", {}, {}}};
   const std::string page = calibration_page(found, registry);
-  EXPECT_EQ(count(page, "cost model</span>"), 2u);  // the legends of the first two
+  EXPECT_EQ(count(page, "cost model</span>"), 2u);  // the legends of the first two plots
   EXPECT_EQ(count(page, "class=\"ring stroke3"), 1u);
   EXPECT_EQ(count(page, "The cost model is calibrated with models of the world paper.<"), 1u);
-  EXPECT_EQ(count(page, "drawn where they are about as large"), 1u);
-  EXPECT_EQ(count(page, "No cost model: there was nothing to calibrate it with."), 1u);
-  EXPECT_EQ(count(page, "Not measured: it failed, or the time was over."), 1u);
+  EXPECT_EQ(count(page, "drawn where their size is similar"), 1u);
+  EXPECT_EQ(count(page, "No cost model: no sample of this type for calibration."), 1u);
+  EXPECT_EQ(count(page, "Not measured: synthesis failed or the time limit was reached."), 1u);
   const auto json = nlohmann::json::parse(calibration_json(found, registry));
   EXPECT_TRUE(json["curves"][1]["points"][0]["predicted_seconds"].is_null());
   EXPECT_EQ(json["curves"][1]["points"][1]["predicted_seconds"], 1e-6);
   EXPECT_TRUE(json["curves"][3]["r_squared"].is_null());
 }
 
-TEST(CalibrationPage, WhatWasNotCalibratedHasNoFormulaOfItsTime) {
+TEST(CalibrationPage, UncalibratedLevelsHaveNoFormulaOfTheirTime) {
   const models::Registry registry = models::make_standard_registry();
   Calibration found = partly_measured();
   found.fits.levels[0].fit = {.fixed_s = 1e-6, .per_step_s = 2e-9};
-  found.fits.levels[1].fit = {.per_operation_s = 5e-9};  // what is said of the unknown
+  found.fits.levels[1].fit = {.per_operation_s = 5e-9};  // the guess for an unknown level
   const std::string page = calibration_page(found, registry);
   EXPECT_NE(page.find("<td>1 µs + 2 ns · steps</td>"), std::string::npos) << page;
   EXPECT_NE(page.find("tree level 0</th><td>not calibrated</td>"), std::string::npos) << page;
@@ -89,7 +89,7 @@ TEST(CalibrationPage, EscapesTheNameOfTheWorld) {
   EXPECT_EQ(count(page, "&lt;b&gt;&amp;"), 3u);  // title, heading, note
 }
 
-TEST(CalibrationPage, TheWorstTypeStandsNextToAll) {
+TEST(CalibrationPage, TheWorstTypeIsListedNextToAll) {
   const models::Registry registry = models::make_standard_registry();
   const Calibration found = partly_measured();
   const std::string text = calibration_text(found, registry);

@@ -21,7 +21,7 @@ world::World world_of(std::int64_t blocks_x, std::int64_t blocks_z) {
   return world;
 }
 
-TEST(CalibrationSamples, BlocksExistAndTheHalvesHaveNoneInCommon) {
+TEST(CalibrationSamples, BlocksExistAndTheHalvesAreDisjoint) {
   for (const auto& [x, z] :
        {std::pair<int, int>{512, 512}, {8, 4}, {1, 9}, {9, 1}, {2, 1}, {0, 3}, {0, 0}}) {
     const world::World world = world_of(x, z);
@@ -38,7 +38,7 @@ TEST(CalibrationSamples, BlocksExistAndTheHalvesHaveNoneInCommon) {
   EXPECT_EQ(sample_blocks(world_of(1, 1), 0, 64), sample_blocks(world_of(1, 1), 1, 64));
 }
 
-TEST(CalibrationSamples, RareTypesAreLookedForInMoreBlocks) {
+TEST(CalibrationSamples, RareTypesAreSearchedInMoreBlocks) {
   const world::World world = world_of(512, 512);  // three trees and five rocks on each block
   std::vector<std::size_t> found(registry().size(), 0);
   for (const synthesis::CostSample& sample : world_samples(world, registry(), 1, 10))
@@ -55,7 +55,7 @@ TEST(CalibrationSamples, RareTypesAreLookedForInMoreBlocks) {
   world::World sparse = world;
   sparse.scatter.resize(1);
   sparse.scatter[0].count = 1;
-  sparse.scatter[0].max_slope_deg = 8;  // some blocks have none
+  sparse.scatter[0].max_slope_deg = 8;  // some blocks have no trees
   std::size_t trees = 0;
   for (const synthesis::CostSample& sample : world_samples(sparse, registry(), 0, 10))
     trees += sample.model == sparse.scatter[0].model ? 1 : 0;

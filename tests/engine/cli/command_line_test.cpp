@@ -1,5 +1,5 @@
-// What the commands do, as a process: exit codes, and what stands on which stream. What is told of
-// a wrong command line is in usage_test.cpp.
+// Tests the commands as processes: exit codes and the contents of both streams. usage_test.cpp
+// tests the messages for wrong command lines.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace psygen::cli {
 namespace {
 
-// The world's hash in what amplify --json printed; empty where there is none.
+// The world's hash in the output of amplify --json; empty if there is none.
 std::string hash_in(const std::string& json) {
   const std::string name = "\"hash\": \"";
   const std::size_t at = json.find(name);
@@ -36,10 +36,10 @@ TEST(CommandLine, HelpAndVersionGoToStdoutAndAreNoFailure) {
   EXPECT_EQ(run_psygen("help flie").code, 2);
   const Outcome picture = run_psygen("picture --help");
   EXPECT_EQ(picture.code, 0);
-  EXPECT_TRUE(mentions(picture.out, "=1.7")) << "defaults are named";
+  EXPECT_TRUE(mentions(picture.out, "=1.7")) << "help shows defaults";
 }
 
-TEST(CommandLine, WrongUsageIsTwoWithAWordOnStderrAndNothingOnStdout) {
+TEST(CommandLine, AUsageErrorReturnsTwoWithAMessageOnStderrOnly) {
   for (const char* arguments : {"",
                                 "walk",
                                 "fly --no-such-option",
@@ -102,7 +102,7 @@ TEST(CommandLine, ModelsListsEveryModelWithUnitsAndRanges) {
   EXPECT_TRUE(mentions(run_psygen("models --json").out, "\"unit\""));
 }
 
-TEST(CommandLine, FailuresOfFilesAreOneAndNameTheFile) {
+TEST(CommandLine, AFileErrorReturnsOneAndNamesTheFile) {
   const Outcome world = run_psygen("fly --headless --frames 1 --world missing.toml");
   EXPECT_EQ(world.code, 1) << world.err;
   EXPECT_TRUE(mentions(world.err, "missing.toml")) << world.err;
@@ -111,7 +111,7 @@ TEST(CommandLine, FailuresOfFilesAreOneAndNameTheFile) {
   EXPECT_TRUE(mentions(folder.err, "/proc/nowhere")) << folder.err;
 }
 
-TEST(CommandLine, WithoutADeviceOrADisplayTheExitCodeIsFour) {
+TEST(CommandLine, WithoutAGpuOrADisplayTheExitCodeIsFour) {
   const Outcome device =
       run_psygen("fly --headless --frames 1", "VK_ICD_FILENAMES=/nonexistent.json");
   EXPECT_EQ(device.code, 4) << device.err;
@@ -134,7 +134,8 @@ TEST(CommandLine, AFlightPrintsItsSummaryAndNoProgressBarIntoAPipe) {
 
 const std::string kSmallPicture = "picture --size 96x54 ";
 
-// The bytes of the picture that the options give; empty, with a failure, where there is none.
+// Returns the bytes of the image for these options; on failure, reports it and returns an empty
+// string.
 std::string picture(const TemporaryFolder& folder, const std::string& options,
                     const std::string& quick = " --view-distance 200 --preset low") {
   const auto file = folder / "picture.png";
@@ -146,7 +147,7 @@ std::string picture(const TemporaryFolder& folder, const std::string& options,
   return read(file);
 }
 
-TEST(CommandLine, APictureIsTheSameEveryTime) {
+TEST(CommandLine, APictureIsReproducible) {
   const TemporaryFolder folder;
   const std::string others =
       " --world game/worlds/five_species.toml --view-distance 200 --validation";
@@ -154,14 +155,14 @@ TEST(CommandLine, APictureIsTheSameEveryTime) {
   EXPECT_FALSE(first.empty());
   EXPECT_EQ(picture(folder, "--modelers 3", others), first);
   EXPECT_EQ(picture(folder, "--modelers 2 --render-path gpu", others), first);
-  EXPECT_EQ(picture(folder, "--preset high", others), first) << "it is what stills have";
+  EXPECT_EQ(picture(folder, "--preset high", others), first) << "still images use it by default";
   EXPECT_NE(picture(folder, "--yaw 40", others), first);
 }
 
-TEST(CommandLine, APictureIsTakenAtEyeHeightInTheMiddleOfTheWorldUnlessItIsToldOtherwise) {
+TEST(CommandLine, APictureIsTakenAtEyeHeightInTheCentreOfTheWorldByDefault) {
   const TemporaryFolder folder;
   const std::string usual = picture(folder, "");
-  // The middle of block 256, 256.
+  // The centre of block 256, 256.
   EXPECT_EQ(picture(folder, "--at 16159.5,16159.5 --height 1.7 --yaw 0 --pitch 0"), usual);
   for (const char* other : {"--at 16160.5,16159.5", "--height 2", "--yaw 1", "--pitch 1",
                             "--error 20", "--view levels"}) {
@@ -171,18 +172,18 @@ TEST(CommandLine, APictureIsTakenAtEyeHeightInTheMiddleOfTheWorldUnlessItIsToldO
   EXPECT_NE(picture(folder, "", " --view-distance 200 --preset medium"), usual);
 }
 
-TEST(CommandLine, APictureOverWaterIsTakenAboveIt) {
+TEST(CommandLine, APictureAtALakeIsTakenAboveTheWater) {
   const TemporaryFolder folder;
   const std::string flooded = (folder / "flooded.toml").string();
   std::ofstream(flooded) << read(source_file("game/worlds/paper.toml"))
                          << "\n[water]\nlevel_m = 5000\n[sky]\ncloud_cover = 0\n";
   const std::string sky = " --pitch 60 --world " + flooded;
-  // Wherever the ground is, the same sky is above.
+  // The same sky is above any ground.
   EXPECT_EQ(picture(folder, "--at 16159.5,16159.5" + sky),
             picture(folder, "--at 16222.5,16159.5" + sky));
 }
 
-TEST(CommandLine, APictureOfAnHourNeedsAWorldThatHasOne) {
+TEST(CommandLine, TheHourOfAPictureNeedsAWorldWithADay) {
   const TemporaryFolder folder;
   const std::string day = " --world " + (folder / "day.toml").string();
   std::ofstream(folder / "day.toml") << read(source_file("game/worlds/paper.toml"))
@@ -199,7 +200,7 @@ TEST(CommandLine, APictureOfAnHourNeedsAWorldThatHasOne) {
   }
 }
 
-TEST(CommandLine, APictureThatCannotBeTakenSaysWhy) {
+TEST(CommandLine, AFailedPictureReportsTheReason) {
   const TemporaryFolder folder;
   const auto failure = [&](const std::string& options, const std::string& environment = "") {
     return run_psygen(kSmallPicture + options, environment);
@@ -221,9 +222,9 @@ TEST(CommandLine, APictureThatCannotBeTakenSaysWhy) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
 }
 
-TEST(CommandLine, APictureThatIsInterruptedIsNotWritten) {
+TEST(CommandLine, AnInterruptedPictureIsNotWritten) {
   const TemporaryFolder folder;
-  // Interrupts it as soon as one of its modelers works.
+  // Interrupts the command as soon as one of its modelers works.
   const std::string interrupted =
       "run() { \"$@\" & p=$!; until grep -qs ^modeler /proc/$p/task/*/comm; do kill -0 $p || "
       "break; done; kill -INT $p; wait $p; }; run";
@@ -235,14 +236,14 @@ TEST(CommandLine, APictureThatIsInterruptedIsNotWritten) {
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-TEST(CommandLine, AmplifyingWhatDoesNotFitSaysSo) {
+TEST(CommandLine, AmplifyingMoreThanTheBudgetFails) {
   const Outcome outcome =
       run_psygen("fly --headless --frames 3 --size 64x36 --paradigm amplify --budget 16M");
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_TRUE(mentions(outcome.err, "more than the budget")) << outcome.err;
 }
 
-TEST(CommandLine, AmplifyPrintsItsFiguresAndTheSameHashForAnyNumberOfThreads) {
+TEST(CommandLine, AmplifyPrintsTheSameHashForAnyNumberOfThreads) {
   const Outcome text = run_psygen("amplify --region 3,4,5,6 --threads 1");
   EXPECT_EQ(text.code, 0) << text.err;
   for (const char* name : {"blocks", "models", "triangles", "bytes", "seconds",
@@ -269,7 +270,7 @@ TEST(CommandLine, AmplifyOfAWorldWithSpeciesHasTheSameHashForAnyNumberOfThreads)
   EXPECT_EQ(hash_in(one.out), hash_in(two.out));
 }
 
-TEST(CommandLine, AmplifyRefusesWhatIsOutsideOfTheWorld) {
+TEST(CommandLine, AmplifyRejectsRegionsOutsideTheWorld) {
   const Outcome region = run_psygen("amplify --region 511,0,513,1");
   EXPECT_EQ(region.code, 1);
   EXPECT_TRUE(mentions(region.err, "0 to 511")) << region.err;
@@ -292,8 +293,8 @@ TEST(CommandLine, AmplifySamplesHeightsWithEveryDigit) {
       << text.out << json.out;
 }
 
-TEST(CommandLine, AmplifyThatIsInterruptedPrintsWhatWasDoneAndNoHash) {
-  // Interrupts it as soon as one of its threads works.
+TEST(CommandLine, AnInterruptedAmplifyPrintsItsResultsWithoutAHash) {
+  // Interrupts the command as soon as one of its threads works.
   const std::string interrupted =
       "run() { \"$@\" & p=$!; until grep -qs ^amplify /proc/$p/task/*/comm; do kill -0 $p || "
       "break; "
@@ -333,7 +334,7 @@ TEST(CommandLine, ExportWritesModelsAndBlocks) {
   }
 }
 
-TEST(CommandLine, ExportNamesWhatThereIsWhenItDoesNotKnowAName) {
+TEST(CommandLine, ExportListsTheValidNamesForAnUnknownName) {
   const Outcome model = run_psygen("export --model pyramid --out a.glb");
   EXPECT_TRUE(mentions(model.err, "terrain, rock, tree")) << model.err;
   const Outcome parameter = run_psygen("export --model rock --set size=3 --out a.glb");
@@ -344,7 +345,7 @@ TEST(CommandLine, ExportNamesWhatThereIsWhenItDoesNotKnowAName) {
   EXPECT_TRUE(mentions(large.err, "an integer from 4 to 128, not '1e3'")) << large.err;
   const Outcome block = run_psygen("export --block 600,1 --out a.glb");
   EXPECT_EQ(block.code, 1);
-  EXPECT_TRUE(mentions(block.err, "there is no block 600,1: ")) << block.err;
+  EXPECT_TRUE(mentions(block.err, "the world has no block 600,1: ")) << block.err;
   EXPECT_TRUE(mentions(block.err, "0 to 511")) << block.err;
   EXPECT_EQ(run_psygen("export --model rock --out /nonexistent/a.glb").code, 1);
   const Outcome world = run_psygen("export --model rock --world missing.toml --out a.glb");
@@ -352,7 +353,7 @@ TEST(CommandLine, ExportNamesWhatThereIsWhenItDoesNotKnowAName) {
   EXPECT_TRUE(mentions(world.err, "missing.toml")) << world.err;
 }
 
-TEST(CommandLine, SeedsOfAll64BitsAreTakenAndPrintedAsTheyWereGiven) {
+TEST(CommandLine, SeedsOfAll64BitsAreAcceptedAndPrintedAsGiven) {
   const TemporaryFolder folder;
   const auto exported = [&](const std::string& seed) {
     const std::string file = (folder / "seed.obj").string();
@@ -394,7 +395,7 @@ TEST(CommandLine, ExportWritesASpeciesOfAWorld) {
   EXPECT_TRUE(mentions(elm.err, "oak, birch, spruce, palm, bush, dead_tree")) << elm.err;
 }
 
-TEST(CommandLine, ExportColoursTerrainAsTheWorldDoes) {
+TEST(CommandLine, ExportColoursTerrainLikeTheWorld) {
   const TemporaryFolder folder;
   const auto exported = [&](const std::string& options) {
     const std::string file = (folder / "ground.obj").string();
@@ -441,7 +442,7 @@ TEST(CommandLine, CalibrateNamesTheSpeciesOfAWorld) {
   };
   for (const std::string name : {"terrain", "oak", "birch", "spruce", "palm", "bush", "dead_tree"})
     EXPECT_GT(samples_of(name), 0) << name;
-  EXPECT_EQ(samples_of("tree"), 0) << "no tree stands in this world";
+  EXPECT_EQ(samples_of("tree"), 0) << "this world has no trees";
   EXPECT_TRUE(mentions(outcome.out, "tree      level 0  not measured")) << outcome.out;
 }
 
@@ -455,9 +456,9 @@ TEST(CommandLine, TheRequestsOfAFlightAreRecordedAndScheduled) {
   EXPECT_EQ(table.code, 0) << table.err;
   for (const char* row : {"\nfifo ", "\nplp ", "\nshortest ", "\nlongest ", "\ndeadline "})
     EXPECT_TRUE(mentions(table.out, row)) << table.out;
-  EXPECT_TRUE(mentions(table.out, "of what 3 modelers can do\n")) << table.out;
+  EXPECT_TRUE(mentions(table.out, "of the capacity of 3 modelers\n")) << table.out;
   for (const std::string& text : {table.out, run_psygen("schedule --help").out})
-    EXPECT_TRUE(mentions(text, "\nlateness  how late that was")) << text;
+    EXPECT_TRUE(mentions(text, "\nlateness  lateness of those requests")) << text;
   EXPECT_TRUE(mentions(run_psygen("schedule --json --requests " + file).out, "\"late_percent\""));
   const Outcome missing = run_psygen("schedule --requests nowhere.requests");
   EXPECT_EQ(missing.code, 1);
@@ -465,7 +466,7 @@ TEST(CommandLine, TheRequestsOfAFlightAreRecordedAndScheduled) {
   std::ofstream(folder / "empty");
   const Outcome empty = run_psygen("schedule --requests " + (folder / "empty").string());
   EXPECT_EQ(empty.code, 1);
-  EXPECT_TRUE(mentions(empty.err, "there is no request")) << empty.err;
+  EXPECT_TRUE(mentions(empty.err, "the file has no requests")) << empty.err;
   EXPECT_EQ(run_psygen("schedule --requests /dev/zero").code, 1);
 }
 

@@ -1,4 +1,5 @@
-// psygen on machines that are short of something: what it says, how it ends, what it leaves behind.
+// Tests psygen on machines that lack a resource: its messages, its exit code, and the files it
+// leaves.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -19,8 +20,8 @@ std::string full_disk(const std::filesystem::path& folder, int calls_left = 0) {
          " PSYGEN_CALLS_LEFT=" + std::to_string(calls_left);
 }
 
-// Starts psygen, waits until the flight has written its second picture, and runs `then` with its
-// process in $p.
+// Starts psygen, waits until the flight has written its second image, and runs `then` with its
+// process id in $p.
 std::string once_it_flies(const std::filesystem::path& folder, const std::string& then) {
   return "run() { \"$@\" & p=$!; until [ -e " + (folder / "frame_00001.png").string() +
          " ]; do kill -0 $p || break; done; " + then + "; wait $p; }; run";
@@ -31,7 +32,7 @@ bool is_json(const std::filesystem::path& file) {
   return nlohmann::json::accept(stream);
 }
 
-TEST(Faults, AFlightOntoAFullDiskNamesEveryFileAndStillPrintsItsFigures) {
+TEST(Faults, AFlightOntoAFullDiskNamesEveryFileAndStillPrintsItsSummary) {
   const TemporaryFolder folder;
   const Outcome flight =
       run_psygen(kFlight + "--frames 3 --images 1 --json --record-requests " +
@@ -47,7 +48,7 @@ TEST(Faults, AFlightOntoAFullDiskNamesEveryFileAndStillPrintsItsFigures) {
   EXPECT_EQ(folder.file_count(), 0u);
 }
 
-TEST(Faults, EveryCommandThatWritesNamesTheFileForWhichThereIsNoRoom) {
+TEST(Faults, EveryCommandNamesTheFileThatTheDiskIsTooFullFor) {
   const TemporaryFolder folder;
   const std::string out = folder.path().string();
   for (const std::string& arguments :
@@ -61,7 +62,7 @@ TEST(Faults, EveryCommandThatWritesNamesTheFileForWhichThereIsNoRoom) {
   }
 }
 
-TEST(Faults, AFileThatMayNotBecomeSoLargeIsAnErrorAndNoSignal) {
+TEST(Faults, AFileSizeLimitIsAnErrorAndNoSignal) {
   const TemporaryFolder folder;
   const std::string file = (folder / "block.glb").string();
   const Outcome outcome = run_psygen("export --block 5,6 --out " + file, "ulimit -f 20;");
@@ -70,9 +71,9 @@ TEST(Faults, AFileThatMayNotBecomeSoLargeIsAnErrorAndNoSignal) {
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-TEST(Faults, TheEndOfTheTerminalEndsAFlightWithAllItsOutputs) {
+TEST(Faults, AClosedTerminalEndsAFlightWithAllItsOutputs) {
   const TemporaryFolder folder;
-  // The kernel and the shell both say so.
+  // Both the kernel and the shell send the signal.
   const Outcome flight =
       run_psygen(kFlight + "--seconds 3600 --images 1 --out " + folder.path().string(),
                  once_it_flies(folder.path(), "kill -HUP $p; kill -HUP $p"));
@@ -81,7 +82,7 @@ TEST(Faults, TheEndOfTheTerminalEndsAFlightWithAllItsOutputs) {
   EXPECT_TRUE(is_json(folder / "trace.json"));
 }
 
-TEST(Faults, AFlightWithNohupGoesOnAfterTheEndOfTheTerminal) {
+TEST(Faults, AFlightWithNohupContinuesAfterTheTerminalCloses) {
   const TemporaryFolder folder;
   const Outcome flight =
       run_psygen(kFlight + "--frames 20 --images 1 --json --out " + folder.path().string(),
@@ -90,7 +91,7 @@ TEST(Faults, AFlightWithNohupGoesOnAfterTheEndOfTheTerminal) {
   EXPECT_EQ(nlohmann::json::parse(flight.out)["run"]["frames"], 20) << flight.out;
 }
 
-// Descriptor 9 is a pipe that nobody reads.
+// Descriptor 9 is a pipe without a reader.
 class ClosedPipe {
  public:
   ClosedPipe() {
@@ -103,7 +104,7 @@ class ClosedPipe {
   ~ClosedPipe() { close(9); }
 };
 
-TEST(Faults, AFlightWhoseMessagesNobodyReadsStillWritesItsOutputs) {
+TEST(Faults, AFlightWithoutAReaderOfItsMessagesStillWritesItsOutputs) {
   const TemporaryFolder folder;
   const ClosedPipe pipe;
   const Outcome flight = run_psygen(kFlight + "--frames 3 --out " + folder.path().string() +
@@ -113,7 +114,7 @@ TEST(Faults, AFlightWhoseMessagesNobodyReadsStillWritesItsOutputs) {
   EXPECT_TRUE(is_json(folder / "trace.json"));
 }
 
-TEST(Faults, TheProgramStartsWithoutTheLibrariesOfPictures) {
+TEST(Faults, TheProgramStartsWithoutTheImageLibraries) {
   const Outcome libraries = run_psygen("models", "LD_TRACE_LOADED_OBJECTS=1");
   EXPECT_TRUE(mentions(libraries.out, "libstdc++")) << libraries.out;
   EXPECT_FALSE(mentions(libraries.out, "OpenImageIO")) << libraries.out;
@@ -123,7 +124,7 @@ std::string few_threads(int left) {
   return "LD_PRELOAD=" PSYGEN_FAULTS " PSYGEN_THREADS_LEFT=" + std::to_string(left);
 }
 
-TEST(Faults, AmplifyGoesOnWithTheThreadsThatThereAreAndSaysSo) {
+TEST(Faults, AmplifyContinuesWithFewerThreadsAndWarns) {
   const std::string command = "amplify --region 3,4,5,6 --threads 8 --json";
   const Outcome all = run_psygen(command);
   const Outcome some = run_psygen(command, few_threads(2));
@@ -138,9 +139,9 @@ TEST(Faults, AmplifyGoesOnWithTheThreadsThatThereAreAndSaysSo) {
   EXPECT_EQ(none.err.find("psygen: error: the system gives no more threads"), 0u) << none.err;
 }
 
-TEST(Faults, AFlightGoesOnWithTheModelersThatThereAreThreadsFor) {
+TEST(Faults, AFlightContinuesWithFewerModelersIfThreadsAreLimited) {
   const std::string command = kFlight + "--frames 3 --modelers 64 --json";
-  // Counting what there is for the driver takes 5 to 36 of them.
+  // The driver takes 5 to 36 of them.
   const Outcome some = run_psygen(command, few_threads(40));
   EXPECT_EQ(some.code, 0) << some.err;
   EXPECT_TRUE(mentions(some.err, " of 64 modelers can be started: ")) << some.err;
@@ -152,8 +153,8 @@ TEST(Faults, AFlightGoesOnWithTheModelersThatThereAreThreadsFor) {
 
 #ifdef PSYGEN_LIMITS_OF_MEMORY
 
-// How a run ends is another matter than which limit is enough for it, which differs from machine to
-// machine: orderly, or with exit code 1 and a sentence, and with whole files.
+// The limit that suffices differs from machine to machine. The end of a run must be orderly under
+// any limit: success, or exit code 1 with a message, and complete files.
 void expect_orderly(const Outcome& outcome, const std::string& what) {
   EXPECT_TRUE(outcome.code == 0 || outcome.code == 1) << what << " " << outcome.code << outcome.err;
   if (outcome.code == 1) {
@@ -161,13 +162,13 @@ void expect_orderly(const Outcome& outcome, const std::string& what) {
   }
 }
 
-// With as many threads on every machine, whose stacks and heaps count.
+// Uses the same number of threads on every machine, because their stacks and heaps count.
 std::string limit(char which, int mib) {
   return std::string("ulimit -") + which + " " + std::to_string(mib * 1024) + "; LP_NUM_THREADS=2";
 }
 const std::string kTwoModelers = kFlight + "--modelers 2 --frames 5 ";
 
-TEST(Faults, WhateverTheLimitOfMemoryEveryCommandEndsOrderly) {
+TEST(Faults, UnderAnyMemoryLimitEveryCommandEndsOrderly) {
   const TemporaryFolder folder;
   const std::string out = (folder / "out").string(), requests = (folder / "requests").string();
   ASSERT_EQ(run_psygen(kFlight + "--frames 3 --record-requests " + requests).code, 0);
@@ -184,7 +185,7 @@ TEST(Faults, WhateverTheLimitOfMemoryEveryCommandEndsOrderly) {
   }
 }
 
-TEST(Faults, WhateverTheLimitOfMemoryAnExportIsWholeOrThereIsNone) {
+TEST(Faults, UnderAnyMemoryLimitAnExportIsCompleteOrAbsent) {
   const TemporaryFolder folder;
   const std::filesystem::path glb = folder / "a.glb";
   int whole = 0, refused = 0;
@@ -204,7 +205,7 @@ TEST(Faults, WhateverTheLimitOfMemoryAnExportIsWholeOrThereIsNone) {
   EXPECT_GT(refused, 0);
 }
 
-TEST(Faults, WhateverTheLimitOfMemoryAFlightEndsOrderlyAndItsFilesAreWhole) {
+TEST(Faults, UnderAnyMemoryLimitAFlightEndsOrderlyWithCompleteFiles) {
   for (const int mib : {8, 60, 80, 90, 100, 130, 150, 180, 220, 260, 300}) {
     const TemporaryFolder folder;
     const Outcome flight =
@@ -218,7 +219,7 @@ TEST(Faults, WhateverTheLimitOfMemoryAFlightEndsOrderlyAndItsFilesAreWhole) {
   }
 }
 
-TEST(Faults, TheEndOfMemorySaysHowMuchWasWantedAndWhatAllowsHowMuch) {
+TEST(Faults, OutOfMemoryReportsTheAllocationAndTheLimit) {
   const Outcome models = run_psygen("models", limit('d', 1));
   EXPECT_EQ(models.code, 1);
   EXPECT_TRUE(mentions(models.err, "psygen: error: memory ran out (")) << models.err;
@@ -226,7 +227,7 @@ TEST(Faults, TheEndOfMemorySaysHowMuchWasWantedAndWhatAllowsHowMuch) {
   EXPECT_TRUE(mentions(models.err, "ulimit -d allows 1 MiB)")) << models.err;
 }
 
-TEST(Faults, AFlightNeedsNoMoreAddressesThanThereAre) {
+TEST(Faults, AFlightFitsIntoTheAvailableAddressSpace) {
   const Outcome flight = run_psygen(kTwoModelers + "--json", limit('v', 3 * 1024));
   EXPECT_EQ(flight.code, 0) << flight.err;
 }

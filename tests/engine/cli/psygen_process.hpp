@@ -1,4 +1,4 @@
-// Runs psygen as people do: as a process, of which exit code and both streams are seen.
+// Runs psygen as users do: as a process. Returns its exit code and both streams.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,16 +27,17 @@ inline std::string read(const std::filesystem::path& file) {
   return text.str();
 }
 
-// `environment` is put before the command; `folder` is where it runs; `redirection` comes last.
-// Leaks are looked for in the tests of the libraries, which keep drivers loaded so that reports
-// have names.
+// `environment` precedes the command; `folder` is its working directory; `redirection` follows it.
+// Leak detection is off here: the tests of the libraries check for leaks and keep drivers loaded,
+// so that reports have symbol names.
 inline Outcome run_psygen(const std::string& arguments, const std::string& environment = "",
                           const std::filesystem::path& folder = source_file(""),
                           const std::string& redirection = "") {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   const auto outputs = std::filesystem::path(testing::TempDir());
   const std::string name = std::string(test->test_suite_name()) + "_" + test->name() + "_" +
-                           std::to_string(getpid());  // of another build, maybe, at the same time
+                           // Another build's test may run at the same time.
+                           std::to_string(getpid());
   const auto out = outputs / (name + ".out"), err = outputs / (name + ".err");
   const std::string command =
       "cd " + folder.string() +

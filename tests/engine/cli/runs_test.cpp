@@ -1,4 +1,4 @@
-// `psygen convert` and `psygen compare` on files and programs that take no device.
+// `psygen convert` and `psygen compare` on files and programs that need no GPU.
 #include <fstream>
 
 #include "tests/engine/cli/psygen_process.hpp"
@@ -26,7 +26,7 @@ TEST(Convert, WritesTheFramesOfARunForAViewer) {
   EXPECT_TRUE(read(out).starts_with("Application,"));
 }
 
-TEST(Convert, SaysWhatItCannotReadWriteOrKnow) {
+TEST(Convert, ReportsUnreadableUnwritableAndUnknownArguments) {
   const TemporaryFolder folder;
   write_run(folder / "run");
   const std::string run = (folder / "run").string();
@@ -39,7 +39,7 @@ TEST(Convert, SaysWhatItCannotReadWriteOrKnow) {
   EXPECT_EQ(run_psygen("convert " + run + " --to excel --out log.csv").code, 2);
 }
 
-// Stands in for valgrind: writes the last word as the number of instructions.
+// Replaces valgrind: writes the last word as the number of instructions.
 std::string path_with(const TemporaryFolder& folder, const std::string& script) {
   std::filesystem::create_directories(folder / "bin");
   std::ofstream(folder / "bin/valgrind") << "#!/bin/sh\n" << script;
@@ -57,7 +57,7 @@ Outcome compare(const TemporaryFolder& folder, const std::string& script, const 
       path_with(folder, script));
 }
 
-TEST(Instructions, OfTwoCommandsAreAVerdictAndAnExitCode) {
+TEST(Instructions, OfTwoCommandsGiveAVerdictAndAnExitCode) {
   const TemporaryFolder folder;
   const Outcome same = compare(folder, kCounts, "a 1000", "b 1009");
   EXPECT_EQ(same.code, 0) << same.err;
@@ -68,7 +68,7 @@ TEST(Instructions, OfTwoCommandsAreAVerdictAndAnExitCode) {
   EXPECT_TRUE(mentions(worse.out, "+1.10 %")) << worse.out;
 }
 
-TEST(Instructions, OfDifferentThingsAreNotCompared) {
+TEST(Instructions, OfDifferentOutputsAreNotCompared) {
   const TemporaryFolder folder;
   const Outcome other = compare(folder, kCounts, "a 7", "b 8");
   EXPECT_EQ(other.code, 1);
@@ -76,24 +76,24 @@ TEST(Instructions, OfDifferentThingsAreNotCompared) {
   EXPECT_EQ(compare(folder, "exit 5", "a 7", "b 7").code, 1) << "a command that fails";
 }
 
-TEST(Instructions, AreSkippedWithASentenceWhereValgrindCannotCount) {
+TEST(Instructions, AreSkippedWithAMessageIfValgrindCannotCount) {
   const TemporaryFolder folder;
   const Outcome unknown = compare(folder, "kill -ILL $$", "a 1000", "b 1000");
   EXPECT_EQ(unknown.code, 77);
-  EXPECT_TRUE(mentions(unknown.err, "does not know an instruction")) << unknown.err;
+  EXPECT_TRUE(mentions(unknown.err, "does not support an instruction")) << unknown.err;
   const Outcome none = run_psygen(
       "compare --instructions 'a 1' 'b 1' --out " + (folder / "out").string(), "PATH=/nowhere");
   EXPECT_EQ(none.code, 77);
-  EXPECT_TRUE(mentions(none.err, "valgrind: cannot be run")) << none.err;
+  EXPECT_TRUE(mentions(none.err, "valgrind: cannot run")) << none.err;
 }
 
-TEST(Compare, WithoutATestOrWithAFolderThatIsMissingIsMisused) {
+TEST(Compare, WithoutATestOrWithAMissingFolderIsAUsageError) {
   const Outcome options = run_psygen("compare 'a 1' 'b 1'");
   EXPECT_EQ(options.code, 2);
   EXPECT_TRUE(mentions(options.err, "two commands need --test and --out")) << options.err;
   const Outcome folder = run_psygen("compare /nowhere/a /nowhere/b");
   EXPECT_EQ(folder.code, 2);
-  EXPECT_TRUE(mentions(folder.err, "/nowhere/a: there is no such folder or program")) << folder.err;
+  EXPECT_TRUE(mentions(folder.err, "/nowhere/a: no such folder or program")) << folder.err;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// psygen schedule --ranks: what a cluster would make of a world.
+// psygen schedule --ranks: simulates a cluster.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -14,18 +14,18 @@ nlohmann::json simulated(const std::string& options) {
   return nlohmann::json::parse(outcome.out);
 }
 
-TEST(ScheduleCluster, OfAThousandRanksIsEfficientWhileNothingSaturates) {
+TEST(ScheduleCluster, OfAThousandRanksIsEfficientIfNothingSaturates) {
   const auto job = simulated("--ranks 1024 --threads 2");
   EXPECT_GE(job["efficiency"], 0.95);
   EXPECT_LE(job["worst_rank_idle"], 0.05);
   EXPECT_LE(job["claims"].get<double>() / job["blocks"].get<double>(), 0.01);
   EXPECT_NEAR(job["bytes"].get<double>(), 8e12, 1e10);
   EXPECT_EQ(job, simulated("--ranks 1024 --threads 2"));
-  // One thread a core waits for each of its files.
+  // With one thread a core, the core waits for each of its files.
   EXPECT_LT(simulated("--ranks 1024")["efficiency"], 0.92);
 }
 
-TEST(ScheduleCluster, SaysWhatSaturatesAndFromWhichNumberOfRanksOn) {
+TEST(ScheduleCluster, ReportsTheSaturatedResourceAndItsNumberOfRanks) {
   const auto job = simulated("--ranks 64 --threads 2 --storage-gb-per-s 4");
   EXPECT_GT(job["limits"]["storage bandwidth"]["busy"], 0.95);
   const double ranks = job["limits"]["storage bandwidth"]["ranks"];
@@ -36,7 +36,7 @@ TEST(ScheduleCluster, SaysWhatSaturatesAndFromWhichNumberOfRanksOn) {
               0.01);
 }
 
-TEST(ScheduleCluster, ClaimsEndRanksTogetherWherePredictionsAreOff) {
+TEST(ScheduleCluster, ClaimsEndRanksTogetherDespitePredictionErrors) {
   const std::string options = "--ranks 16 --terabytes 0.1 --error-percent 100 --share ";
   const double cost = simulated(options + "cost")["worst_rank_idle"],
                claims = simulated(options + "claims")["worst_rank_idle"];

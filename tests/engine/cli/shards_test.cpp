@@ -1,4 +1,5 @@
-// Shards as people run them: processes, killed at any moment, joined by psygen merge.
+// Tests shards as users run them: processes that are killed at any moment and merged by psygen
+// merge.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ class Shards : public AmplifyFixture {
   }
 };
 
-TEST_F(Shards, MergedHaveTheHashOfOneProcessWithOneThread) {
+TEST_F(Shards, MergedShardsHaveTheHashOfOneProcessWithOneThread) {
   const std::string whole = hash_in(amplify("--threads 1 --json"));
   for (int i = 1; i <= 3; ++i) {
     const Outcome shard = amplify(fmt::format("--shard {}/3 --out s --format none", i));
@@ -36,9 +37,9 @@ TEST_F(Shards, MergedHaveTheHashOfOneProcessWithOneThread) {
   EXPECT_EQ(hash_in(run("merge s s/kept --json")), whole);
 }
 
-// The process dies at a call that writes something, in the middle of a write too: twenty times, at
-// moments that a seed chooses. What it left is whole, and the same command finishes it.
-TEST_F(Shards, KilledAtAnyMomentGoOn) {
+// The process dies at a call that writes, also inside a write, twenty times, at moments chosen by a
+// seed. The files that it leaves are complete, and the same command finishes the shard.
+TEST_F(Shards, ShardsKilledAtAnyMomentCanBeResumed) {
   const std::string region = " --region 1,1,4,4";
   ASSERT_EQ(amplify("--out whole" + region).code, 0);
   const FileContents whole = blocks_in("whole");
@@ -61,11 +62,11 @@ TEST_F(Shards, KilledAtAnyMomentGoOn) {
     EXPECT_EQ(hash_in(amplify("--json --shard 1/1 --out " + out + region)), hash);
     EXPECT_TRUE(blocks_in(out) == whole) << round;
     EXPECT_EQ(hash_in(run("merge --json " + out)), hash);
-    ASSERT_LT(round, 60) << "hardly any moment kills";
+    ASSERT_LT(round, 60) << "too few rounds kill the process";
   }
 }
 
-TEST_F(Shards, OfOtherWorldsAndRegionsAreNotMixed) {
+TEST_F(Shards, ShardsOfOtherWorldsAndRegionsAreNotMixed) {
   ASSERT_EQ(amplify("--shard 1/2 --out s --format none").code, 0);
   const Outcome other = amplify("--shard 1/2 --out s --format none --region 0,0,2,2");
   EXPECT_EQ(other.code, 1);
@@ -77,8 +78,8 @@ TEST_F(Shards, OfOtherWorldsAndRegionsAreNotMixed) {
   EXPECT_TRUE(mentions(mixed.err, "belongs to another job than")) << mixed.err;
 }
 
-// The text of the world is the same, but what a mask holds is not.
-TEST_F(Shards, OfWorldsWhoseFilesHaveChangedAreNotMixed) {
+// The text of the world is unchanged, but the contents of its mask change.
+TEST_F(Shards, ShardsOfWorldsWithChangedFilesAreNotMixed) {
   std::ofstream(folder_ / "masked.toml")
       << world::testing::kSmallWorld << "mask_image = \"mask.png\"\n";
   const auto paint = [&](std::uint8_t grey) {

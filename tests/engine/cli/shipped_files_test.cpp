@@ -23,7 +23,7 @@ TEST(ShippedFiles, EveryCommandFindsItsWorldFromAnyFolder) {
   EXPECT_TRUE(mentions(run_in(folder, kShortFlight).out, "paper"));
 }
 
-TEST(ShippedFiles, AreMeantByTheirNames) {
+TEST(ShippedFiles, AreFoundByTheirNames) {
   const TemporaryFolder folder;
   EXPECT_TRUE(mentions(run_in(folder, "models --world five_species").out, "birch"));
   EXPECT_TRUE(mentions(run_in(folder, "models --world five_species.toml").out, "birch"));
@@ -32,7 +32,7 @@ TEST(ShippedFiles, AreMeantByTheirNames) {
   EXPECT_TRUE(mentions(flight.out, "silver combe")) << flight.out;
 }
 
-TEST(ShippedFiles, AFileOfOnesOwnComesFirstAndAFolderIsNone) {
+TEST(ShippedFiles, AUsersFileComesFirstAndAFolderIsIgnored) {
   const TemporaryFolder folder;
   std::ofstream(folder / "lakes") << "format = 1\n";
   const Outcome own = run_in(folder, "models --world lakes");
@@ -42,14 +42,14 @@ TEST(ShippedFiles, AFileOfOnesOwnComesFirstAndAFolderIsNone) {
   EXPECT_EQ(run_in(folder, "models --world paper").code, 0);
 }
 
-TEST(ShippedFiles, WhereThereIsNoSuchFileItIsToldWhereWasLookedAndWhatThereIs) {
+TEST(ShippedFiles, AMissingFileIsReportedWithSearchedFoldersAndShippedNames) {
   const TemporaryFolder folder;
   for (const std::string command :
        {"fly --headless", "amplify", "calibrate", "models", "export --block 1,1 --out a.glb"}) {
     const Outcome world = run_in(folder, command + " --world papre");
     EXPECT_EQ(world.code, 1) << command;
     for (const std::string& words :
-         {std::string("papre: there is no such file; looked in ") + folder.path().string(),
+         {std::string("papre: no such file; looked in ") + folder.path().string(),
           std::string("/share/psygen/worlds"),
           std::string("ember_pass, endless, five_species, frost_isle, lakes, paper, silver_combe, "
                       "thorn_country"),
@@ -58,7 +58,7 @@ TEST(ShippedFiles, WhereThereIsNoSuchFileItIsToldWhereWasLookedAndWhatThereIs) {
   }
   const Outcome path = run_in(folder, kShortFlight + "--path walk");
   EXPECT_EQ(path.code, 1);
-  EXPECT_TRUE(mentions(path.err, "the paths that come with psygen are combe, dash")) << path.err;
+  EXPECT_TRUE(mentions(path.err, "the shipped paths are combe, dash")) << path.err;
   EXPECT_TRUE(mentions(path.err, "did you mean walk27?")) << path.err;
   const Outcome elsewhere = run_in(folder, "models --world /no/where/paper.toml");
   EXPECT_EQ(elsewhere.code, 1);

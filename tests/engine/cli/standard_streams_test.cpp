@@ -14,7 +14,7 @@ Outcome run_with(const std::string& redirection, const std::string& arguments) {
   return run_psygen(arguments, "", source_file(""), redirection);
 }
 
-TEST(StandardStreams, AStdoutThatIsFullOrClosedIsAFailureWithASentenceForEveryCommand) {
+TEST(StandardStreams, AFullOrClosedStdoutFailsEveryCommandWithAMessage) {
   const TemporaryFolder folder;
   const std::string requests = (folder / "requests").string();
   std::ofstream(requests) << "psygen requests 2\n0 0.001 - 0\n";
@@ -28,14 +28,14 @@ TEST(StandardStreams, AStdoutThatIsFullOrClosedIsAFailureWithASentenceForEveryCo
     for (const char* redirection : {kFull, kClosed}) {
       const Outcome outcome = run_with(redirection, command);
       EXPECT_EQ(outcome.code, 1) << command << redirection << "\n" << outcome.err;
-      EXPECT_TRUE(mentions(outcome.err, "psygen: error: standard output cannot be written: "))
+      EXPECT_TRUE(mentions(outcome.err, "psygen: error: cannot write to standard output: "))
           << command << redirection << "\n"
           << outcome.err;
     }
   }
 }
 
-TEST(StandardStreams, WhatIsMeantForAClosedStdoutDoesNotGetIntoAFile) {
+TEST(StandardStreams, OutputForAClosedStdoutIsNotWrittenToAnotherFile) {
   const TemporaryFolder folder;
   const Outcome outcome =
       run_with(">&- 2>&-", "fly --headless --frames 2 --size 64x36 --view-distance 64 --out " +
@@ -47,7 +47,7 @@ TEST(StandardStreams, WhatIsMeantForAClosedStdoutDoesNotGetIntoAFile) {
     EXPECT_FALSE(mentions(read(file.path()), "psygen: info")) << file.path();
 }
 
-TEST(StandardStreams, ACommandWithoutDataOnStdoutNeedsNone) {
+TEST(StandardStreams, ACommandWithoutOutputNeedsNoStdout) {
   const TemporaryFolder folder;
   const Outcome outcome =
       run_with(kClosed, "export --model rock --out " + (folder / "a.glb").string());

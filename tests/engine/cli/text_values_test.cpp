@@ -12,7 +12,7 @@ TEST(TextValues, BytesHaveSuffixes) {
   EXPECT_EQ(parse_bytes("2g").value(), 2ull << 30);
 }
 
-TEST(TextValues, WhatIsNotANumberOfBytesIsRefused) {
+TEST(TextValues, AnInvalidNumberOfBytesIsRejected) {
   for (const char* text : {"", "M", "-1", "1.5M", "12X", "512MM", "1e9", " 1",
                            "99999999999999999999", "99999999999T"}) {
     EXPECT_FALSE(parse_bytes(text)) << text;
@@ -27,7 +27,7 @@ TEST(TextValues, SizesAreWidthTimesHeight) {
   }
 }
 
-TEST(TextValues, PlacesAreTwoFiniteNumbers) {
+TEST(TextValues, PositionsAreTwoFiniteNumbers) {
   EXPECT_EQ(*parse_place("1.5,-2"), glm::dvec2(1.5, -2));
   EXPECT_EQ(*parse_place("1e3,0"), glm::dvec2(1000, 0));
   for (const char* text : {"", "1", "1,", ",1", "1,2,3", "1, 2", "a,b", "nan,1", "1,inf", "1;2"})

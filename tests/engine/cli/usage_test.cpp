@@ -1,4 +1,4 @@
-// What somebody is told who got the command line wrong: by the commands as psygen has them.
+// Tests the messages for wrong command lines, with the real commands of psygen.
 #include "engine/cli/usage.hpp"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ std::string text_of(const Arguments& arguments) {
   return text;
 }
 
-// A usage error that says `words`, in lines that can be printed.
+// Expects a usage error that contains `words`, in printable lines.
 void expect_refused(const Arguments& arguments, const std::string& words) {
   const Told result = told(arguments);
   EXPECT_EQ(result.code, kUsage) << text_of(arguments) << "\n" << result.err;
@@ -72,14 +72,14 @@ std::vector<CLI::App*> commands_of(Program& program) {
   return program.cli.get_subcommands([](CLI::App* app) { return !app->get_name().empty(); });
 }
 
-TEST(Usage, WithoutACommandOrWithAMisspeltOneTheCommandsAreListed) {
+TEST(Usage, AMissingOrMisspeltCommandListsTheCommands) {
   const std::vector<std::pair<Arguments, std::string>> cases{
       {{}, "error: a command is missing\n"},
-      {{"fyl"}, "there is no command 'fyl'; did you mean fly?\n"},
+      {{"fyl"}, "unknown command 'fyl'; did you mean fly?\n"},
       {{"calibarte", "--samples", "4"}, "did you mean calibrate?\n"},
-      {{"walk", "there"}, "there is no command 'walk'\n"},
-      {{"--frobnicate"}, "'--frobnicate' stands before the command"},
-      {{""}, "there is no command ''\n"}};
+      {{"walk", "there"}, "unknown command 'walk'\n"},
+      {{"--frobnicate"}, "'--frobnicate' precedes the command"},
+      {{""}, "unknown command ''\n"}};
   Program program;
   for (const auto& [arguments, words] : cases) {
     expect_refused(arguments, words);
@@ -110,7 +110,7 @@ TEST(Usage, AMisspeltOptionSuggestsTheNearestOfItsCommand) {
     expect_refused(arguments, words);
 }
 
-TEST(Usage, EveryOptionOfEveryCommandRefusesAnEmptyValueAndAMissingOne) {
+TEST(Usage, EveryOptionOfEveryCommandRejectsAnEmptyOrMissingValue) {
   Program program;
   std::size_t values = 0, flags = 0;
   for (CLI::App* command : commands_of(program)) {
@@ -134,7 +134,7 @@ TEST(Usage, EveryOptionOfEveryCommandRefusesAnEmptyValueAndAMissingOne) {
   EXPECT_GT(flags, 8u);
 }
 
-TEST(Usage, OptionsOfAGroupAreLikeOthers) {
+TEST(Usage, OptionsOfAGroupBehaveLikeOthers) {
   const auto told_of = [](Arguments arguments) {
     CLI::App cli("psygen", "psygen");
     cli.require_subcommand(1);
@@ -155,13 +155,13 @@ TEST(Usage, OptionsOfAGroupAreLikeOthers) {
             std::string::npos);
 }
 
-TEST(Usage, WhatIsOutOfPlaceIsNamed) {
+TEST(Usage, MisplacedArgumentsAreNamed) {
   const std::vector<std::pair<Arguments, std::string>> cases{
-      {{"--headless", "fly"}, "'--headless' stands before the command; options come after it"},
-      {{"fly", "models"}, "'models' is not expected: after the command there are only options"},
-      {{"fly", ""}, "'' is not expected"},
+      {{"--headless", "fly"}, "'--headless' precedes the command; options follow it"},
+      {{"fly", "models"}, "unexpected argument 'models': only options may follow the command"},
+      {{"fly", ""}, "unexpected argument ''"},
       {{"fly", "-"}, "psygen fly has no option '-'"},
-      {{"models", "--", "x"}, "'x' is not expected"},
+      {{"models", "--", "x"}, "unexpected argument 'x'"},
       {{"fly", "--seconds", "3", "--size", "64x36", "--seconds", "4"},
        "--seconds is given 2 times"},
       {{"schedule"}, "one of --requests and --ranks is required"},
@@ -171,7 +171,7 @@ TEST(Usage, WhatIsOutOfPlaceIsNamed) {
     expect_refused(arguments, words);
 }
 
-TEST(Usage, NumbersAreDecimalAndOthersAreToldWhatIsAllowed) {
+TEST(Usage, NumbersAreDecimalAndErrorsListTheAllowedValues) {
   const std::vector<std::pair<Arguments, std::string>> cases{
       {{"fly", "--frames", "1.5"}, "'1.5' is not a whole number from 0 to 1000000000"},
       {{"fly", "--frames", "0x10"}, "'0x10' is not a whole number"},
@@ -227,7 +227,7 @@ TEST(Usage, ALeadingZeroIsNotOctal) {
   EXPECT_EQ(number, 10);
 }
 
-TEST(Usage, WhatIsSaidOfHostileArgumentsCanBePrintedAndIsShort) {
+TEST(Usage, MessagesForHostileArgumentsArePrintableAndShort) {
   for (const char* text : {"\x1B[31m", "a\nb", "\xFF\xFE", "\xC3", "\xE2\x80\xAE", "\x7F"}) {
     const std::string hostile = text;
     expect_refused({hostile}, core::shown(hostile));
@@ -250,7 +250,7 @@ TEST(Usage, WhatIsSaidOfHostileArgumentsCanBePrintedAndIsShort) {
     EXPECT_LT(told(arguments).err.size(), 2000u) << arguments.size();
 }
 
-TEST(Usage, HelpGoesToStdoutAndIsNoFailure) {
+TEST(Usage, HelpGoesToStdoutAndSucceeds) {
   Program program;
   for (const CLI::App* command : commands_of(program)) {
     const Told help = told({command->get_name(), "--help"});

@@ -1,4 +1,5 @@
-// How evenly ranks end, under a virtual clock whose time is the predicted cost of each block.
+// Tests how evenly ranks finish, under a virtual clock that takes the predicted cost of each block
+// as its time.
 #include <gtest/gtest.h>
 
 #include "engine/cluster/simulate.hpp"
@@ -15,7 +16,7 @@ using amplify::Region;
 using world::testing::forest_in_a_desert;
 using world::testing::registry;
 
-// The cost of each block of a region, and its plan from a sample of them.
+// The predicted cost of each block of a region, and a plan made from a sample of the blocks.
 struct Forest {
   world::World world = forest_in_a_desert(64);
   Region region = *amplify::whole(world);
@@ -26,7 +27,8 @@ struct Forest {
     for (std::uint64_t i = 0; i < region.block_count(); ++i)
       exact.push_back(amplify::predicted_block_seconds(world, registry(), region.block(i), {}));
   }
-  // Each block takes up to `error` more or less than predicted.
+  // Simulates a job in which each block takes up to the fraction `error` more or less than
+  // predicted.
   VirtualReport run(const Plan& plan, unsigned ranks, double error) const {
     VirtualJob job;
     job.ranks = ranks;
@@ -44,7 +46,7 @@ struct Forest {
   }
 };
 
-TEST(Balance, OfAForestInTheCornerOfADesertLeavesRanksIdleForLessThanATwentieth) {
+TEST(Balance, AForestInTheCornerOfADesertLeavesRanksIdleForLessThanATwentieth) {
   const Forest forest;
   const auto [least, most] = std::ranges::minmax_element(forest.exact);
   EXPECT_GT(*most, 100 * *least);
@@ -58,8 +60,8 @@ TEST(Balance, OfAForestInTheCornerOfADesertLeavesRanksIdleForLessThanATwentieth)
   }
 }
 
-// The test can tell a bad balance from a good one: equal counts leave most ranks without work.
-TEST(Balance, ByTheNumberOfBlocksIsBad) {
+// Shows that the measure distinguishes: with equal counts of blocks most ranks have no work.
+TEST(Balance, EqualCountsOfBlocksBalanceBadly) {
   const Forest forest;
   const BlockRanges all({0, forest.region.block_count()});
   const CostMap flat = CostMap::flat(forest.region.block_count());
@@ -68,7 +70,7 @@ TEST(Balance, ByTheNumberOfBlocksIsBad) {
   EXPECT_LT(fixed.efficiency, 0.6);
 }
 
-TEST(Balance, MakesUpForARankThatIsSlow) {
+TEST(Balance, CompensatesForASlowRank) {
   const std::uint64_t blocks = 50'000;
   const Plan plan(BlockRanges({0, blocks}), CostMap::flat(blocks), 8);
   VirtualJob job;
@@ -81,7 +83,7 @@ TEST(Balance, MakesUpForARankThatIsSlow) {
   EXPECT_LE(simulate(plan, job).worst_rank_idle, 0.02);
 }
 
-TEST(Balance, IsTheSameEveryTime) {
+TEST(Balance, IsDeterministic) {
   const Forest forest;
   const Plan plan(BlockRanges({0, forest.region.block_count()}), forest.sampled, 4);
   const VirtualReport one = forest.run(plan, 4, 0.3), two = forest.run(plan, 4, 0.3);
@@ -89,7 +91,7 @@ TEST(Balance, IsTheSameEveryTime) {
   EXPECT_EQ(one.rank_end_s, two.rank_end_s);
 }
 
-// Limits that are known to bind, bind: the makespan is what the slowest part needs.
+// Known limits determine the makespan: it equals the time of the slowest resource.
 TEST(Simulation, MeetsTheLimitsOfStorageMetadataLinksAndClaims) {
   const std::uint64_t blocks = 10'000;
   const Plan plan(BlockRanges({0, blocks}), CostMap::flat(blocks), 4);

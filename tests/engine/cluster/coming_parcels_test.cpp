@@ -1,4 +1,4 @@
-// The order of parcels of which some are whole before others.
+// Tests the order of messages whose transfers complete out of order.
 #include "engine/cluster/coming_parcels.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ std::optional<Parcel> take(Coming& coming) {
   return coming.take_whole([](bool is_whole) { return is_whole; });
 }
 
-TEST(ComingParcels, ASmallOneWaitsForALargeOneOfItsRank) {
+TEST(ComingParcels, ASmallMessageWaitsForALargeOneOfItsRank) {
   Coming coming;
   Coming::Coming& large = coming.begin(1, 1000);
   coming.begin(1, 1).request = true;
@@ -23,7 +23,7 @@ TEST(ComingParcels, ASmallOneWaitsForALargeOneOfItsRank) {
   EXPECT_FALSE(take(coming).has_value());
 }
 
-TEST(ComingParcels, ARankThatStopsInTheMiddleOfOneHoldsUpNoOther) {
+TEST(ComingParcels, ARankThatStopsInsideAMessageDelaysNoOther) {
   Coming coming;
   coming.begin(1, 1000);
   coming.begin(2, 10).request = true;
@@ -32,7 +32,7 @@ TEST(ComingParcels, ARankThatStopsInTheMiddleOfOneHoldsUpNoOther) {
   EXPECT_FALSE(take(coming).has_value());
 }
 
-TEST(ComingParcels, OneThatBeganLongAgoIsNotExpectedSoon) {
+TEST(ComingParcels, AnOldTransferIsNotExpectedSoon) {
   Coming coming;
   const Coming::Clock::time_point begun{std::chrono::seconds(10)};
   EXPECT_FALSE(coming.any_since({}));

@@ -1,5 +1,5 @@
-// A flight with remote modelers for tests, without MPI: ranks are threads. Costly meshes go to
-// other ranks, and cheap ones stay.
+// A flight with remote modelers for tests, without MPI: each rank is a thread. Costly meshes go to
+// other ranks; cheap ones are made on rank 0.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ inline models::Registry registry_of(
   return registry;
 }
 
-// Requests with destinations of their own, without a cache.
+// Makes requests, each with a destination in its memory, without a cache.
 class Jobs {
  public:
   Request make(const models::Registry& registry, std::uint32_t index, models::ModelIndex model) {
@@ -72,14 +72,15 @@ class Jobs {
   std::vector<HeapDestination> places_;
 };
 
-// What differs between ranks: what a costly model does on other ranks than the first.
+// Differences between ranks: the behaviour of a costly model on ranks other than the first.
 struct Ranks {
   unsigned count = 2, threads = 1;
   Script costly_there = [](const models::Parameters&, int) {};
   std::function<void(unsigned, Bytes&)> on_send = {};
 };
 
-// Rank 0 calls `fly` with its peers; the others serve. Returns what they did.
+// Runs `fly` on rank 0 with its communicator; the others serve. Returns the statistics of the
+// others.
 inline std::vector<ServeReport> run(const Ranks& ranks,
                                     const std::function<void(RemoteModels&)>& fly) {
   std::vector<ServeReport> reports(ranks.count);
@@ -115,7 +116,7 @@ inline SynthesisOptions options_with(RemoteModels& remote) {
   return options;
 }
 
-// Until so many have been collected in all.
+// Waits until `count` completions have been collected in total.
 inline void collect(SynthesisManager& manager, std::size_t count, std::vector<Completion>& done) {
   while (done.size() < count) {
     manager.collect(done);

@@ -20,7 +20,7 @@ using world::testing::parsed;
 using world::testing::registry;
 using Outcome = tl::expected<JobReport, JobError>;
 
-// What differs between ranks.
+// Differences between ranks.
 struct RankSetup {
   world::World world = parsed(kSmallWorld);
   std::string version = "0.1.0";
@@ -86,14 +86,14 @@ TEST(Job, HasTheFilesAndTheHashOfOneProcessForAnyNumberOfRanks) {
   }
 }
 
-TEST(Job, WithoutAFolderHasTheFigures) {
+TEST(Job, ReportsStatisticsWithoutAFolder) {
   const auto outcomes = run_ranks(3, "", std::nullopt);
   ASSERT_TRUE(outcomes[0]) << outcomes[0].error().error.message;
   EXPECT_EQ(outcomes[0]->report.totals.blocks, 24u);
   EXPECT_EQ(outcomes[0]->written, 0u);
 }
 
-TEST(Job, ThatIsFinishedMakesNothingAgainWhateverTheNumberOfRanks) {
+TEST(Job, MakesNothingAgainOnceFinishedForAnyNumberOfRanks) {
   const TemporaryFolder top;
   const auto first = run_ranks(3, top / "job");
   const FileContents files = contents_of(top / "job");
@@ -112,7 +112,7 @@ TEST(Job, ThatIsFinishedMakesNothingAgainWhateverTheNumberOfRanks) {
   EXPECT_TRUE(contents_of(top / "job") == files);
 }
 
-// Every rank fails before the first block, with the same sentence.
+// Expects every rank to fail before the first block with the same message.
 void expect_refused(const std::vector<Outcome>& outcomes, const std::string& words) {
   for (const Outcome& outcome : outcomes) {
     ASSERT_FALSE(outcome);
@@ -122,7 +122,7 @@ void expect_refused(const std::vector<Outcome>& outcomes, const std::string& wor
   }
 }
 
-TEST(Job, OfRanksThatAreNotOfOneMindDoesNotBegin) {
+TEST(Job, DoesNotBeginIfRanksDisagree) {
   const TemporaryFolder top;
   const auto with = [&](const std::function<void(RankSetup&)>& change) {
     return run_ranks(3, [&](unsigned rank) {
@@ -140,13 +140,14 @@ TEST(Job, OfRanksThatAreNotOfOneMindDoesNotBegin) {
   expect_refused(with([](RankSetup& s) { s.folder.clear(); }),
                  "rank 0 has --out and rank 2 has none");
   EXPECT_FALSE(std::filesystem::exists(top / "job"));
-  expect_refused(with([&](RankSetup& s) { s.folder = top / "elsewhere"; }),
-                 "what rank 0 writes there is not seen on host2; --out must be a folder that all "
-                 "ranks share");
+  expect_refused(
+      with([&](RankSetup& s) { s.folder = top / "elsewhere"; }),
+      "files that rank 0 writes there are not visible on host2; --out must be a folder that all "
+      "ranks share");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(top / "job"), {}), 0);
 }
 
-TEST(Job, ThatIsToldToStopSaysSoAndGoesOnLater) {
+TEST(Job, CanBeStoppedAndResumed) {
   const TemporaryFolder top;
   const amplify::Report whole = alone(top / "alone");
   const std::atomic<bool> stop{true};
@@ -165,10 +166,10 @@ TEST(Job, ThatIsToldToStopSaysSoAndGoesOnLater) {
   EXPECT_TRUE(blocks_in(top / "job") == contents_of(top / "alone"));
 }
 
-TEST(Job, TakesOverLedgersOfRanksThatDiedAndRefusesThoseOfOtherJobs) {
+TEST(Job, ResumesFromLedgersOfDeadRanksAndRejectsThoseOfOtherJobs) {
   const TemporaryFolder top;
   const auto first = run_ranks(1, top / "job");
-  // As if rank 7 had died after half of them, in the middle of a line.
+  // Simulates that rank 7 died after half of them, in the middle of a line.
   const auto ledger = amplify::read_ledger(top / "job/job.ledger");
   amplify::LedgerText theirs = *ledger;
   theirs.part = "rank 7";
@@ -184,10 +185,11 @@ TEST(Job, TakesOverLedgersOfRanksThatDiedAndRefusesThoseOfOtherJobs) {
   EXPECT_FALSE(std::filesystem::exists(partial));
   theirs.key.version = "0.0.1";
   std::ofstream(top / "job/rank_7.ledger") << amplify::ledger_text(theirs);
-  expect_refused(run_ranks(2, top / "job"), "rank_7.ledger: is of psygen 0.0.1 instead of 0.1.0");
+  expect_refused(run_ranks(2, top / "job"),
+                 "rank_7.ledger: belongs to psygen 0.0.1 instead of 0.1.0");
 }
 
-TEST(Job, WhoseDiskFillsSaysSo) {
+TEST(Job, ReportsAFullDisk) {
   const TemporaryFolder top;
   for (const std::size_t calls : {3u, 40u}) {
     const FullDisk full(top / "job", calls);
@@ -199,7 +201,7 @@ TEST(Job, WhoseDiskFillsSaysSo) {
   EXPECT_TRUE(run_ranks(2, top / "job")[0]->report.complete);
 }
 
-TEST(Job, ThreadsOfARankAreItsPartOfTheMachine) {
+TEST(Job, ThreadsOfARankMatchItsPartOfTheMachine) {
   EXPECT_EQ(threads_for_rank(2, 2, 8), 1u);
   EXPECT_EQ(threads_for_rank(16, 32, 2), 16u);  // bound to a socket
   EXPECT_EQ(threads_for_rank(1, 16, 4), 1u);    // bound to a core

@@ -1,4 +1,4 @@
-// Ranks that are not of one mind.
+// Tests the handshake of ranks that disagree.
 #include "engine/cluster/meeting.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace psygen::cluster {
 namespace {
 
-TEST(Meeting, RanksThatMakeOtherMeshesAreRefusedWithTheirNumberAndMachine) {
+TEST(Meeting, RanksThatMakeOtherMeshesAreRejectedWithTheirNumberAndMachine) {
   const models::Registry standard = models::make_standard_registry();
   const world::World world = world::testing::parsed(world::testing::kSmallWorld);
   const auto sentence = [&](const std::function<void(FlightKey&)>& change) {
@@ -31,15 +31,16 @@ TEST(Meeting, RanksThatMakeOtherMeshesAreRefusedWithTheirNumberAndMachine) {
   };
   EXPECT_EQ(sentence([](FlightKey&) {}), "");
   EXPECT_EQ(sentence([](FlightKey& key) { key.version = "0.2.0"; }),
-            "rank 2 (host2) does not fit rank 0 (host0): it has psygen 0.2.0 instead of 0.1.0");
+            "rank 2 (host2) does not match rank 0 (host0): it has psygen 0.2.0 instead of 0.1.0");
   EXPECT_EQ(sentence([](FlightKey& key) { key.types.pop_back(); }),
-            "rank 2 (host2) does not fit rank 0 (host0): it has 3 model types instead of 4");
-  EXPECT_EQ(sentence([](FlightKey& key) { key.types[2].sample_hash ^= 1; }),
-            "rank 2 (host2) does not fit rank 0 (host0): it has another edition of the model type "
-            "tree, which makes other meshes");
+            "rank 2 (host2) does not match rank 0 (host0): it has 3 model types instead of 4");
   EXPECT_EQ(
-      sentence([](FlightKey& key) { key.world_hash ^= 1; }),
-      "rank 2 (host2) does not fit rank 0 (host0): it has another version of the world small");
+      sentence([](FlightKey& key) { key.types[2].sample_hash ^= 1; }),
+      "rank 2 (host2) does not match rank 0 (host0): it has a different version of the model type "
+      "tree, which makes other meshes");
+  EXPECT_EQ(sentence([](FlightKey& key) { key.world_hash ^= 1; }),
+            "rank 2 (host2) does not match rank 0 (host0): it has a different version of the world "
+            "small");
 }
 
 }  // namespace

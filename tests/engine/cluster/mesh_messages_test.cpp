@@ -24,7 +24,7 @@ Bytes answer() {
   return std::move(writer).finish({{-1, -2, -3}, {4, 5, 6}}, 0.25);
 }
 
-TEST(MeshMessages, ComeAsTheyWent) {
+TEST(MeshMessages, SurviveARoundTrip) {
   auto read = read_message(make_message(request()));
   ASSERT_TRUE(read && read->kind == MessageKind::kMake);
   EXPECT_EQ(read->make.ticket, 7u);
@@ -54,7 +54,7 @@ TEST(MeshMessages, ComeAsTheyWent) {
   EXPECT_EQ(read_message(plain_message(MessageKind::kEnd))->kind, MessageKind::kEnd);
 }
 
-TEST(MeshMessages, AnyChangedOrMissingByteIsNoticed) {
+TEST(MeshMessages, AnyChangedOrMissingByteIsDetected) {
   for (const Bytes& whole :
        {make_message(request()), answer(), pong_message(1, 5), plain_message(MessageKind::kBye)}) {
     for (std::size_t i = 0; i < whole.size(); ++i) {

@@ -1,5 +1,5 @@
-// Real ranks: psygen under mpirun, as people start it. Processes die at calls that write something,
-// at moments that a seed chooses (tests/faults.hpp).
+// Tests real ranks: psygen under mpirun, started as users start it. Processes die at calls that
+// write, at moments chosen by a seed (tests/faults.hpp).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -12,7 +12,7 @@
 namespace psygen::cli {
 namespace {
 
-// Containers, root and fewer processors than ranks are allowed; messages go through memory.
+// Allows containers, root and fewer processors than ranks; messages go through shared memory.
 constexpr const char* kMpi =
     "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
     "OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_btl=self,vader "
@@ -22,7 +22,7 @@ constexpr const char* kFly =
     "fly --headless --size 64x36 --world rocks.toml --view-distance 150 --frames 1 --images 1 "
     "--modelers 1 --lod off --json ";
 
-// Of a millisecond each.
+// Each rock takes about a millisecond.
 constexpr const char* kRocks = R"(format = 1
 
 [world]
@@ -38,8 +38,8 @@ subdivisions = 6
 
 class Mpirun : public AmplifyFixture {
  protected:
-  // Two jobs that start at once would make the same folder of sessions, and Open MPI gives up then.
-  // It lies outside of folder_, where tests count what is written.
+  // Open MPI fails if two jobs that start at once share a session folder, so each test has one. It
+  // lies outside folder_, where tests count files.
   Mpirun()
       : sessions_(std::filesystem::temp_directory_path() / fmt::format("psygen_mpi_{}", getpid())) {
     std::filesystem::create_directory(sessions_);
@@ -48,8 +48,8 @@ class Mpirun : public AmplifyFixture {
     std::error_code ignored;
     std::filesystem::remove_all(sessions_, ignored);
   }
-  // `ranks`: the arguments of mpirun, with PSYGEN for the command `psygen amplify`, and FLY for
-  // `psygen fly` of a short flight.
+  // Runs mpirun with the arguments `ranks`. PSYGEN stands for the command `psygen amplify`, and FLY
+  // for a short `psygen fly`.
   Outcome run(std::string ranks) const {
     for (std::size_t at; (at = ranks.find("PSYGEN ")) != std::string::npos;)
       ranks.replace(at, 7, PSYGEN_EXECUTABLE " amplify ");
@@ -79,7 +79,7 @@ TEST_F(Mpirun, OneTwoAndFourRanksHaveTheHashAndTheFilesOfOneThread) {
   EXPECT_EQ(hash_in(run("-n 2 PSYGEN --world small.toml --json")), hash);
 }
 
-TEST_F(Mpirun, AJobWhoseRanksAreKilledAtAnyMomentGoesOn) {
+TEST_F(Mpirun, AJobWhoseRanksAreKilledAtAnyMomentCanBeResumed) {
   const std::string region = " --region 1,1,4,4";
   const std::string hash = hash_in(amplify("--threads 1 --json --out alone" + region));
   const FileContents whole = blocks_in("alone");
@@ -90,11 +90,11 @@ TEST_F(Mpirun, AJobWhoseRanksAreKilledAtAnyMomentGoesOn) {
       PSYGEN_FAULTS, folder_.path().string(), region);
   int killed = 0;
   for (int round = 0; killed < 20; ++round) {
-    // In its first life each dies early, however little of the work it gets to claim.
-    ASSERT_LT(round, 21) << "hardly any moment kills";
+    // In the first round every rank dies early, even one that claims little work.
+    ASSERT_LT(round, 21) << "too few rounds kill a rank";
     const std::string out = fmt::format("job{}", round);
     for (int lives = 0; lives < 6 && killed < 20; ++lives) {
-      // One rank of three, or all of them: the whole job.
+      // Kills one rank of three, or all ranks.
       const bool all = random() % 4 == 0;
       const unsigned calls = static_cast<unsigned>(random() % (lives == 0 ? 6 : 40));
       const std::string one = fmt::format(fmt::runtime(mortal), calls, out);
@@ -103,7 +103,7 @@ TEST_F(Mpirun, AJobWhoseRanksAreKilledAtAnyMomentGoesOn) {
       const Outcome dead = run(all                 ? "-n 2 " + one
                                : random() % 2 == 0 ? "-n 1 " + one + rest
                                                    : rest.substr(3) + " : -n 1 " + one);
-      if (dead.code == 0) break;  // it lived to the end
+      if (dead.code == 0) break;  // it survived
       ++killed;
       EXPECT_TRUE(mentions(dead.err, "signal 9 (Killed)")) << dead.err;
       for (const auto& [name, content] : blocks_in(out))
@@ -116,7 +116,7 @@ TEST_F(Mpirun, AJobWhoseRanksAreKilledAtAnyMomentGoesOn) {
   }
 }
 
-TEST_F(Mpirun, RanksThatAreNotOfOneMindSayWhy) {
+TEST_F(Mpirun, RanksThatDisagreeSayWhy) {
   const Outcome worlds =
       run("-n 1 PSYGEN --world small.toml : -n 1 PSYGEN --world paper --region 0,0,8,4");
   EXPECT_NE(worlds.code, 0);
@@ -135,7 +135,7 @@ TEST_F(Mpirun, RanksThatAreNotOfOneMindSayWhy) {
   EXPECT_EQ(hash_in(sets), hash_in(amplify("--json"))) << "instruction sets agree on every bit";
 }
 
-// The blocks that rank 1 makes in any case need more calls than that.
+// The fixed share of rank 1 needs more calls than this limit.
 TEST_F(Mpirun, AFullDiskEndsTheJobWithTheFileAndTheReason) {
   const Outcome full = run(fmt::format(
       "-n 1 PSYGEN --world small.toml --out job : -n 1 -x LD_PRELOAD={} -x PSYGEN_FULL_DISK={} "
@@ -146,7 +146,7 @@ TEST_F(Mpirun, AFullDiskEndsTheJobWithTheFileAndTheReason) {
   EXPECT_TRUE(mentions(full.err, "No space left on device")) << full.err;
 }
 
-TEST_F(Mpirun, AFlightHasTheSamePicturesWhicheverRankMakesItsMeshes) {
+TEST_F(Mpirun, AFlightHasTheSameImagesWhicheverRankMakesItsMeshes) {
   std::ofstream(folder_ / "rocks.toml") << kRocks;
   const auto images_in = [](const Outcome& flight) -> std::string {
     if (flight.code != 0) return flight.err;
@@ -155,33 +155,33 @@ TEST_F(Mpirun, AFlightHasTheSamePicturesWhicheverRankMakesItsMeshes) {
   const Outcome alone = run_psygen(kFly + std::string("--out alone"), "", folder_.path());
   const Outcome one = run("-n 1 FLY --cluster --send-above 0 --out one");
   EXPECT_EQ(images_in(one), images_in(alone));
-  EXPECT_TRUE(mentions(one.err, "made there         0 meshes")) << one.err;
-  // Others need no device.
+  EXPECT_TRUE(mentions(one.err, "remote meshes      0 meshes")) << one.err;
+  // Only rank 0 needs a GPU.
   const Outcome three = run(
       "-n 1 FLY --cluster --send-above 0 --out three : -n 2 -x VK_ICD_FILENAMES=/nonexistent.json "
       "FLY --cluster --send-above 0 --out three");
   EXPECT_EQ(images_in(three), images_in(alone));
   EXPECT_TRUE(mentions(three.err, "other ranks        2\n")) << three.err;
-  EXPECT_TRUE(mentions(three.err, "made there")) << three.err;
-  EXPECT_FALSE(mentions(three.err, "made there         0 meshes")) << three.err;
+  EXPECT_TRUE(mentions(three.err, "remote meshes")) << three.err;
+  EXPECT_FALSE(mentions(three.err, "remote meshes      0 meshes")) << three.err;
 }
 
-TEST_F(Mpirun, AFlightThatCannotBeSharedSaysWhyOnce) {
+TEST_F(Mpirun, AFlightThatCannotBeDistributedSaysWhyOnce) {
   std::ofstream(folder_ / "rocks.toml") << kRocks;
   const Outcome each = run("-n 3 FLY ");
   EXPECT_NE(each.code, 0);
-  const std::string sentence = "each of the 3 ranks of mpirun would fly by itself";
+  const std::string sentence = "each of the 3 MPI ranks would start its own flight";
   EXPECT_TRUE(mentions(each.err, sentence)) << each.err;
   EXPECT_EQ(each.err.find(sentence), each.err.rfind(sentence));
   std::ofstream(folder_ / "other.toml") << kRocks << "radius_m = [1, 2]\n";
   const Outcome differ = run("-n 1 FLY --cluster : -n 1 " PSYGEN_EXECUTABLE
                              " fly --cluster --headless --world other.toml");
   EXPECT_NE(differ.code, 0);
-  EXPECT_TRUE(mentions(differ.err, "it has another version of the world rocks")) << differ.err;
+  EXPECT_TRUE(mentions(differ.err, "it has a different version of the world rocks")) << differ.err;
 }
 
-// Nobody waits for it.
-TEST_F(Mpirun, ARankThatLacksTheWorldSaysSoOnceAllHaveMetAndOnlyTheFirstNeedsAPath) {
+// The other ranks do not wait for the one that failed.
+TEST_F(Mpirun, ARankWithoutTheWorldFailsInTheHandshakeAndOnlyTheFirstNeedsAPath) {
   std::ofstream(folder_ / "rocks.toml") << kRocks;
   const std::string other = " : -n 1 " PSYGEN_EXECUTABLE " fly --cluster --headless ";
   const Outcome lacks = run("-n 1 FLY --cluster" + other + "--world nowhere.toml");
@@ -193,14 +193,14 @@ TEST_F(Mpirun, ARankThatLacksTheWorldSaysSoOnceAllHaveMetAndOnlyTheFirstNeedsAPa
   EXPECT_EQ(path.code, 0) << path.err;
 }
 
-// The library of MPI that the loader finds first is none.
-TEST_F(Mpirun, WithoutMpiThereIsASentenceAndThePlainCommandWorks) {
+// The first MPI library that the loader finds is not a library.
+TEST_F(Mpirun, WithoutMpiAMessageSaysSoAndThePlainCommandWorks) {
   std::ofstream(folder_ / "libmpi.so.40") << "no library";
   const std::string hidden = "LD_LIBRARY_PATH=" + folder_.path().string();
   const Outcome rank =
       run_psygen("amplify --world small.toml", hidden + " OMPI_COMM_WORLD_SIZE=2", folder_.path());
   EXPECT_EQ(rank.code, 1);
-  EXPECT_TRUE(mentions(rank.err, "one of several of mpirun, but MPI cannot be loaded")) << rank.err;
+  EXPECT_TRUE(mentions(rank.err, "runs under mpirun, but MPI cannot be loaded")) << rank.err;
   EXPECT_TRUE(mentions(rank.err, "libmpi.so.40")) << rank.err;
   EXPECT_EQ(run_psygen("amplify --world small.toml", hidden, folder_.path()).code, 0);
 }

@@ -20,7 +20,7 @@ BlockRanges all_of(const Plan& plan, unsigned ranks) {
   return all;
 }
 
-TEST(Plan, SharesOutEveryBlockOnce) {
+TEST(Plan, AssignsEveryBlockOnce) {
   std::mt19937 random(5);
   for (int round = 0; round < 200; ++round) {
     const std::uint64_t blocks = 1 + random() % 500;
@@ -37,7 +37,7 @@ TEST(Plan, SharesOutEveryBlockOnce) {
   }
 }
 
-TEST(Plan, OfOneRankHasNothingToClaim) {
+TEST(Plan, OneRankHasNothingToClaim) {
   const Plan plan(BlockRanges({0, 1000}), CostMap::flat(1000), 1);
   EXPECT_EQ(plan.own(0).count(), 1000u);
   EXPECT_EQ(plan.chunk_count(), 0u);
@@ -51,11 +51,11 @@ TEST(Plan, ChunksBecomeSmallerAndAreFew) {
   for (std::uint64_t i = 1; i < plan.chunk_count(); ++i)
     EXPECT_LE(plan.chunk(i).count(), plan.chunk(i - 1).count() + 1);
   EXPECT_LE(plan.chunk(plan.chunk_count() - 1).count(), kBlocks / kRanks / 300);
-  // With one claim of each rank that finds nothing left, and what is said at the start and the end.
+  // Counts one failed claim of each rank, and the messages at the start and the end.
   EXPECT_LT(static_cast<double>(plan.chunk_count() + kRanks), 0.0025 * kBlocks);
 }
 
-TEST(Plan, GivesExpensiveGroundToMoreRanks) {
+TEST(Plan, AssignsExpensiveGroundToMoreRanks) {
   const Plan plan(BlockRanges({0, 1000}), CostMap::from(1000, {100, 1, 1, 1}), 4);
   EXPECT_LT(plan.own(0).count(), 60u);
   EXPECT_LT(plan.own(2).count(), 60u);
@@ -65,7 +65,7 @@ TEST(Plan, GivesExpensiveGroundToMoreRanks) {
   EXPECT_GT(cheap, 80u);
 }
 
-TEST(Plan, OfNothingIsEmpty) {
+TEST(Plan, OfNoBlocksIsEmpty) {
   const Plan plan(BlockRanges(), CostMap::flat(10), 3);
   EXPECT_EQ(all_of(plan, 3).count(), 0u);
 }

@@ -1,4 +1,4 @@
-// What a flight does with modelers on other ranks.
+// Tests a flight with modelers on other ranks.
 #include "engine/cluster/remote_models.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace flight;
 
-TEST(RemoteModels, CostlyRequestsGoAndCheapOnesStay) {
+TEST(RemoteModels, CostlyRequestsGoToOtherRanksAndCheapOnesStay) {
   Gate gate;
   const models::Registry registry =
       registry_of([&](const models::Parameters&, int) { gate.wait(); });
@@ -24,7 +24,7 @@ TEST(RemoteModels, CostlyRequestsGoAndCheapOnesStay) {
     Jobs jobs;
     SynthesisManager manager(registry, options_with(remote));
     manager.publish({jobs.make(registry, 1, kBlocker)});
-    gate.await(1);  // the only modeler that may make cheap ones is busy now
+    gate.await(1);  // the only modeler that may make cheap meshes is busy now
     manager.publish({jobs.make(registry, 2, kCheap), jobs.make(registry, 3, kCostly),
                      jobs.make(registry, 4, kCostly), jobs.make(registry, 5, kCheap)});
     std::vector<Completion> done;
@@ -68,9 +68,9 @@ TEST(RemoteModels, TheWorldIsTheSameForAnyNumberOfRanks) {
   EXPECT_EQ(hashes[4], hashes[1]);
 }
 
-// A rank that claimed a costly mesh, while a blocker kept the modeler here busy, and stalled. After
-// eleven seconds of the watchdog's clock, with `count` ranks: after_it(manager, remote, done),
-// where `done` has the blocker.
+// A rank claims a costly mesh, while a blocker keeps the local modeler busy, and stalls. Then
+// eleven seconds pass on the watchdog's clock, with `count` ranks. Calls after_it(manager, remote,
+// done); `done` has the blocker.
 template <class AfterIt>
 void stall(unsigned count, const AfterIt& after_it) {
   Gate busy, stalled;
@@ -99,10 +99,10 @@ void stall(unsigned count, const AfterIt& after_it) {
       });
 }
 
-TEST(RemoteModels, AStalledRankIsGivenUpAndItsMeshIsMadeHere) {
+TEST(RemoteModels, AStalledRankIsAbandonedAndItsMeshIsMadeHere) {
   stall(2, [](SynthesisManager& manager, RemoteModels& remote, std::vector<Completion>& done) {
     manager.collect(done);
-    EXPECT_EQ(done.size(), 1u) << "it is not failed";
+    EXPECT_EQ(done.size(), 1u) << "it has not failed";
     EXPECT_TRUE(manager.hung().empty());
     EXPECT_EQ(manager.remote_count(), 0u);
     std::vector<Request> again = manager.reclaim();
@@ -116,8 +116,8 @@ TEST(RemoteModels, AStalledRankIsGivenUpAndItsMeshIsMadeHere) {
   });
 }
 
-// It would hang at every one of them.
-TEST(RemoteModels, WhatARankWasGivenUpWithGoesToNoOther) {
+// The same model could hang on every rank.
+TEST(RemoteModels, AnAbandonedRequestGoesToNoOtherRank) {
   stall(3, [](SynthesisManager& manager, RemoteModels& remote, std::vector<Completion>& done) {
     std::vector<Request> again = manager.reclaim();
     ASSERT_EQ(again.size(), 1u);
@@ -142,7 +142,7 @@ TEST(RemoteModels, TheyServeOneManager) {
   });
 }
 
-TEST(RemoteModels, WaitingForAllMakesHereWhatCameBackWithoutAMesh) {
+TEST(RemoteModels, WaitingForAllMakesReturnedRequestsHere) {
   std::atomic<int> damaged{0};
   const models::Registry registry = registry_of();
   const auto reports =
@@ -158,7 +158,7 @@ TEST(RemoteModels, WaitingForAllMakesHereWhatCameBackWithoutAMesh) {
             Jobs jobs;
             SynthesisManager manager(registry, options_with(remote));
             std::vector<Completion> done;
-            // Until the damaged rank got one.
+            // Until the damaged rank receives a request.
             for (std::uint32_t i = 0; damaged == 0; i += 100) {
               std::vector<Request> plan;
               for (std::uint32_t n = 1; n <= 100; ++n)
@@ -185,7 +185,7 @@ TEST(RemoteModels, WaitingForAllMakesHereWhatCameBackWithoutAMesh) {
   EXPECT_EQ(reports[kAnswerer].made, 1u);
 }
 
-TEST(RemoteModels, AFlightEndsWithRequestsInTheAir) {
+TEST(RemoteModels, AFlightEndsWithPendingRequests) {
   Gate busy, gate;
   const models::Registry registry =
       registry_of([&](const models::Parameters&, int) { busy.wait(); });
@@ -200,7 +200,7 @@ TEST(RemoteModels, AFlightEndsWithRequestsInTheAir) {
           for (std::uint32_t i = 2; i <= 9; ++i)
             plan.push_back(jobs.make(registry, i, kCostly));
           manager.publish(std::move(plan));
-          gate.await(2);  // both ranks work, and the answers come when nobody waits any more
+          gate.await(2);  // both ranks work; their answers arrive when nothing waits for them
           busy.open();
         }
         EXPECT_EQ(remote.figures().meshes, 0u);
@@ -208,7 +208,7 @@ TEST(RemoteModels, AFlightEndsWithRequestsInTheAir) {
       });
 }
 
-TEST(RemoteModels, TypesAndEditsThatOtherRanksDoNotHaveStayHere) {
+TEST(RemoteModels, RequestsWithTypesOrEditsThatOtherRanksLackStayHere) {
   models::Registry registry = registry_of();
   (void)registry.add(std::make_unique<FakeModel>("of_another_world"));
   const models::ModelIndex unknown = 3;
@@ -218,11 +218,11 @@ TEST(RemoteModels, TypesAndEditsThatOtherRanksDoNotHaveStayHere) {
     EXPECT_TRUE(remote.takes(registry[kCostly], request));
     EXPECT_FALSE(remote.takes(registry[unknown], request));
     request.cost.seconds.fill(kSendAbove_s);
-    EXPECT_FALSE(remote.takes(registry[kCostly], request)) << "not above";
+    EXPECT_FALSE(remote.takes(registry[kCostly], request)) << "not above the threshold";
     request.cost.seconds.fill(1);
     request.edits = std::make_shared<const models::EditLayer>();
     EXPECT_FALSE(remote.takes(registry[kCostly], request));
-    // Should it be asked all the same, a rank refuses.
+    // A rank rejects the request if it receives it nevertheless.
     request.edits = nullptr;
     const auto mesh = remote.make(0, registry[unknown], request);
     EXPECT_EQ(mesh.answer, synthesis::RemoteMesh::Answer::kNone);

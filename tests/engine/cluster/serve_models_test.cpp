@@ -1,4 +1,4 @@
-// What a rank that makes meshes answers where it cannot.
+// Tests the failures of a rank that serves meshes.
 #include "engine/cluster/serve_models.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace flight;
 
-TEST(ServeModels, ARequestThatComesDamagedGoesBack) {
+TEST(ServeModels, ADamagedRequestGoesBack) {
   const models::Registry registry = registry_of();
   std::atomic<int> damaged{0};
   const auto reports = run({.on_send =
@@ -36,7 +36,7 @@ TEST(ServeModels, ARequestThatComesDamagedGoesBack) {
   EXPECT_EQ(reports[kAnswerer].refused, 1u);
 }
 
-TEST(ServeModels, AFailureThereIsTheSameSentenceAsHere) {
+TEST(ServeModels, ARemoteFailureHasTheSameMessageAsALocalOne) {
   const auto fails = [](const models::Parameters&, int) { throw std::runtime_error("too steep"); };
   const models::Registry registry = registry_of([](const models::Parameters&, int) {}, fails);
   const auto reports = run({.costly_there = fails}, [&](RemoteModels& remote) {
@@ -52,7 +52,7 @@ TEST(ServeModels, AFailureThereIsTheSameSentenceAsHere) {
   EXPECT_EQ(reports[kAnswerer].failed, 1u);
 }
 
-TEST(ServeModels, WhereMemoryRunsOutThereTheRequestComesBack) {
+TEST(ServeModels, ARankWithoutMemoryReturnsTheRequest) {
   const auto reports =
       run({.costly_there = [](const models::Parameters&, int) { throw std::bad_alloc(); }},
           [](RemoteModels& remote) {
@@ -65,7 +65,7 @@ TEST(ServeModels, WhereMemoryRunsOutThereTheRequestComesBack) {
   EXPECT_EQ(reports[kAnswerer].failed, 1u);
 }
 
-TEST(ServeModels, ARankThatGetsFewerThreadsThanItToldSaysSo) {
+TEST(ServeModels, ARankThatGetsFewerThreadsThanItAnnouncedFails) {
   const models::Registry registry = registry_of();
   ThreadsAsRanks(1).run([&](Peers& peers) {
     peers.send(0, plain_message(MessageKind::kEnd));
@@ -73,14 +73,14 @@ TEST(ServeModels, ARankThatGetsFewerThreadsThanItToldSaysSo) {
     const auto served = serve_models(registry, 2, peers);
     ASSERT_FALSE(served.has_value());
     EXPECT_TRUE(served.error().message.starts_with(
-        "only 1 of 2 threads that make meshes were started: the system gives no more threads"))
+        "started only 1 of 2 modeler threads: the system gives no more threads"))
         << served.error().message;
   });
 }
 
-// Its thread hangs until this process ends, as one of a rank does: were it let go, it would go on
-// in models that are gone.
-TEST(ServeModels, AModelThatHangsAtAnotherRankHoldsUpNoEnd) {
+// The hanging thread stays until this process ends, as in a real rank: if it continued, it would
+// use models that no longer exist.
+TEST(ServeModels, AModelThatHangsOnAnotherRankDoesNotDelayTheEnd) {
   static Gate hangs;
   static const models::Registry there = registry_of(
       [](const models::Parameters&, int) {}, [](const models::Parameters&, int) { hangs.wait(); });

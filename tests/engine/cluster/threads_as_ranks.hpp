@@ -1,4 +1,4 @@
-// Ranks that are threads of one process: what Peers promises, without MPI.
+// A communicator whose ranks are threads of one process, without MPI.
 #pragma once
 
 #include <atomic>
@@ -21,10 +21,10 @@ class ThreadsAsRanks {
   explicit ThreadsAsRanks(unsigned count)
       : texts_(count), boxes_(count), barrier_(static_cast<std::ptrdiff_t>(count)) {}
 
-  // Called with what a rank sends before it leaves; may change it. Of several threads.
+  // Called with a message before it leaves its rank, from several threads; may change the message.
   std::function<void(unsigned from, Bytes&)> on_send;
 
-  // Calls `rank` once for each rank, at the same time.
+  // Calls `rank` once for each rank, all at the same time.
   void run(const std::function<void(Peers&)>& rank) {
     std::vector<std::jthread> threads;
     for (unsigned i = 0; i < texts_.size(); ++i)
