@@ -20,15 +20,15 @@ tl::unexpected<core::Error> refuse(std::string sentence) {
   return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
 }
 
-// Why two runs cannot be compared; empty if they can.
+// Returns the reason why two runs cannot be compared; empty if they can.
 std::string difference(const RecordedRun& first, const RecordedRun& other) {
   const auto differ = [&](const char* what, const auto& one, const auto& two) {
     return fmt::format("{} and {} have different {}: {} and {}", first.folder, other.folder, what,
                        one, two);
   };
   if (first.world_hash != other.world_hash)
-    return differ("world hashes, so their pictures and times say nothing about each other",
-                  first.world_hash, other.world_hash);
+    return differ("world hashes, so their images and times are not comparable", first.world_hash,
+                  other.world_hash);
   if (first.path_hash != other.path_hash && !first.path_hash.empty() && !other.path_hash.empty())
     return differ("paths", first.path_hash, other.path_hash);
   if (first.width != other.width || first.height != other.height)
@@ -38,7 +38,7 @@ std::string difference(const RecordedRun& first, const RecordedRun& other) {
     return fmt::format("{} and {} have different clocks", first.folder, other.folder);
   if (first.fixed_step != other.fixed_step)
     return differ("steps", first.fixed_step.value_or(0), other.fixed_step.value_or(0));
-  // On the virtual clock without a step, times follow from what is compared.
+  // On the virtual clock without a fixed step, times depend on the compared measurements.
   if (first.virtual_clock && !first.fixed_step) return {};
   if (first.frame_ms.size() != other.frame_ms.size())
     return differ("numbers of frames", first.frame_ms.size(), other.frame_ms.size());
@@ -50,8 +50,8 @@ std::string difference(const RecordedRun& first, const RecordedRun& other) {
 
 core::Result<void> check(Runs a, Runs b) {
   if (a.empty() || a.size() != b.size())
-    return refuse(fmt::format("a comparison needs pairs of runs; there are {} of A and {} of B",
-                              a.size(), b.size()));
+    return refuse(
+        fmt::format("a comparison needs pairs of runs; A has {} and B has {}", a.size(), b.size()));
   const RecordedRun& first = a.front();
   for (const Runs runs : {a, b}) {
     for (const RecordedRun& run : runs)
@@ -63,18 +63,18 @@ core::Result<void> check(Runs a, Runs b) {
   if (first.virtual_clock) return {};
   if (!first.fixed_step)
     return refuse(
-        fmt::format("{} followed the wall clock, so that its frame k is not frame k of "
+        fmt::format("{} followed the wall clock, so its frame k does not match frame k of "
                     "another run; it needs fixed_step",
                     first.folder));
   if (a.size() < kFewestPairs)
     return refuse(
-        fmt::format("there are {} pairs of runs; with fewer than {} chance cannot be "
+        fmt::format("{} pairs of runs are too few; with fewer than {}, chance cannot be "
                     "ruled out",
                     a.size(), kFewestPairs));
   return {};
 }
 
-// The frames that no run leaves out. Times below a microsecond count as one.
+// Times of frames that no run excludes. Times below a microsecond count as one microsecond.
 Times times_of(Runs runs, const std::vector<bool>& left_out,
                std::vector<double> RecordedRun::*column) {
   constexpr double kMinMs = 1e-3;
@@ -87,7 +87,7 @@ Times times_of(Runs runs, const std::vector<bool>& left_out,
   return times;
 }
 
-// Processor time of the main thread, where all runs have it.
+// Compares the processor time of the main thread, if all runs have it.
 std::optional<MinimaTest> cpu_test(Runs a, Runs b, const std::vector<bool>& left_out) {
   for (const Runs runs : {a, b})
     for (const RecordedRun& run : runs)
@@ -149,7 +149,7 @@ core::Result<Batch> judge_batch(Runs a, Runs b) {
   batch.pairs = a.size();
   batch.frames = times_a.front().size();
   if (batch.frames < kFewestFrames)
-    return refuse(fmt::format("only {} frames are left out of no run; a comparison needs {}",
+    return refuse(fmt::format("only {} frames are valid in all runs; a comparison needs {}",
                               batch.frames, kFewestFrames));
   batch.minima = minima_test(times_a, times_b);
   batch.cpu = cpu_test(a, b, left_out);
@@ -160,21 +160,21 @@ core::Result<Batch> judge_batch(Runs a, Runs b) {
   return batch;
 }
 
-// What a batch finds. The same finding in both batches is a verdict.
+// Findings of a batch. A finding of both batches becomes a verdict.
 enum Finding {
   kMissing,
   kError,
   kSlower,
   kMoreCpu,
   kHitches,
-  kFaster,  // the last two are good
+  kFaster,  // the last two are improvements
   kLessCpu,
   kFindings
 };
 
 std::array<bool, kFindings> findings_of(const Batch& batch) {
   std::array<bool, kFindings> found{};
-  constexpr double kPercent = 0.01;  // of the picture: less is not seen
+  constexpr double kPercent = 0.01;  // of the image: a smaller difference is invisible
   found[kMissing] = batch.p_missing <= kSignificant && batch.missing_b > batch.missing_a + kPercent;
   found[kError] = batch.p_error <= kSignificant && batch.error_b > 1.01 * batch.error_a;
   found[kSlower] = batch.minima.p_slower <= kSignificant && batch.minima.ratio > kSlowerRatio;
@@ -192,7 +192,7 @@ std::string sentence_of(Finding finding, const Batch& b) {
   switch (finding) {
     case kMissing:
       return fmt::format(
-          "more geometry is missing or too coarse: {:.3g} % of the picture, before "
+          "more geometry is missing or too coarse: {:.3g} % of the image, before "
           "{:.3g} %",
           b.missing_b, b.missing_a);
     case kError:
@@ -214,15 +214,14 @@ std::string sentence_of(Finding finding, const Batch& b) {
   }
 }
 
-// The figures of B, if it were better by `share` of them and `amount`.
+// The values of B, if it were better by `share` of them and `amount`.
 std::vector<double> less(std::vector<double> figures, double share, double amount) {
   for (double& figure : figures)
     figure -= share * figure + amount;
   return figures;
 }
 
-// What all pairs say together: how slow few frames are, and whether B is known to show as much as
-// A.
+// Judges all pairs together: rare slow frames, and whether B certainly shows as much as A.
 void judge_all(Runs a, Runs b, Comparison& comparison) {
   const std::vector<bool> left_out = left_out_of(a, b);
   Times times = times_of(a, left_out, &RecordedRun::frame_ms);
@@ -241,7 +240,7 @@ void judge_all(Runs a, Runs b, Comparison& comparison) {
   comparison.shows_as_much = std::max(p_missing, p_error) <= kLikely;
 }
 
-// Adds the reasons of a verdict, if there are any.
+// Adds the reasons of a verdict and returns true if there are any.
 bool judge_rare_frames(Comparison& comparison) {
   const bool tail = comparison.tail.p <= kSignificantRare && comparison.tail.ratio > kTailRatio;
   if (tail)
@@ -251,10 +250,10 @@ bool judge_rare_frames(Comparison& comparison) {
   const bool rare =
       comparison.p_rare <= kSignificantRare && comparison.rare_b > kRareRatio * comparison.rare_a;
   if (rare)
-    comparison.reasons.push_back(
-        fmt::format("the slowest frames of a run take {:.2f} times their usual time, before {:.2f} "
-                    "(p {:.4f})",
-                    comparison.rare_b, comparison.rare_a, comparison.p_rare));
+    comparison.reasons.push_back(fmt::format(
+        "the slowest frames of a run take {:.2f} times their typical time, before {:.2f} "
+        "(p {:.4f})",
+        comparison.rare_b, comparison.rare_a, comparison.p_rare));
   return tail || rare;
 }
 
@@ -278,10 +277,10 @@ void conclude(Comparison& comparison) {
   worse = judge_rare_frames(comparison) || worse;
   const bool faster = found[kFaster] || found[kLessCpu];
   if (worse && faster)
-    comparison.reasons.push_back("faster with anything else worse is not better");
+    comparison.reasons.push_back("B is faster, but worse in another respect, which is not better");
   if (!confirmed && (worse || faster)) {
-    comparison.reasons.push_back(
-        fmt::format("no second batch confirms it: record {} pairs or more", 2 * kFewestPairs));
+    comparison.reasons.push_back(fmt::format(
+        "no second batch confirms the difference: record {} pairs or more", 2 * kFewestPairs));
     return;
   }
   const bool narrow = is_narrow(last.minima) && (!last.cpu || is_narrow(*last.cpu));
@@ -291,7 +290,7 @@ void conclude(Comparison& comparison) {
   } else if ((faster || same) && !comparison.shows_as_much) {
     comparison.reasons.push_back(fmt::format(
         "missing geometry and its error vary too much from run to run to tell whether B "
-        "shows as much: {:.3g} and {:.3g} % of the picture, error {:.3g} and {:.3g} pixels",
+        "shows as much: {:.3g} and {:.3g} % of the image, error {:.3g} and {:.3g} pixels",
         last.missing_a, last.missing_b, last.error_a, last.error_b));
   } else if (faster || same) {
     comparison.verdict = faster ? Verdict::kBetter : Verdict::kSame;
@@ -302,12 +301,12 @@ void conclude(Comparison& comparison) {
   }
 }
 
-// No noise: anything that differs was changed.
+// Exact comparison without noise: every difference is a change.
 core::Result<Comparison> compare_exactly(Runs a, Runs b) {
   for (const Runs runs : {a, b}) {
     for (const RecordedRun& run : runs)
       if (run.frame_ms != runs.front().frame_ms || run.time_s != runs.front().time_s)
-        return refuse(fmt::format("{} and {} are of one set and on the virtual clock, but differ",
+        return refuse(fmt::format("{} and {} belong to one set on the virtual clock, but differ",
                                   runs.front().folder, run.folder));
   }
   Comparison comparison;
@@ -332,7 +331,7 @@ core::Result<Comparison> compare_exactly(Runs a, Runs b) {
     comparison.reasons.push_back(
         fmt::format("frames take {:.2f} % less", 100 * (1 - batch.minima.ratio)));
   if (faster && (less || coarser))
-    comparison.reasons.push_back("faster with a worse picture is not better");
+    comparison.reasons.push_back("B is faster, but its image is worse, which is not better");
   const bool differ =
       x.frame_ms != y.frame_ms || x.time_s != y.time_s || batch.missing_a != batch.missing_b;
   comparison.verdict = less || coarser || slower ? Verdict::kWorse
@@ -340,7 +339,8 @@ core::Result<Comparison> compare_exactly(Runs a, Runs b) {
                        : differ                  ? Verdict::kInconclusive
                                                  : Verdict::kSame;
   if (comparison.verdict == Verdict::kInconclusive)
-    comparison.reasons.push_back("the runs differ, but neither mean time nor picture is worse");
+    comparison.reasons.push_back(
+        "the runs differ, but neither the mean time nor the image is worse");
   return comparison;
 }
 
@@ -382,7 +382,7 @@ core::Result<Comparison> compare(Runs a, Runs b) {
     conclude(*result);
   }
   if (!result || !pictures_differ(a, b)) return result;
-  result->reasons.push_back("the pictures are not the same: look at them");
+  result->reasons.push_back("the images differ: inspect them");
   if (result->verdict != Verdict::kWorse) result->verdict = Verdict::kInconclusive;
   return result;
 }
@@ -391,7 +391,7 @@ core::Result<FalseAlarms> measure_false_alarms(Runs runs, std::size_t count, std
   constexpr std::size_t kPairs = kFewestPairs + 1;
   if (runs.size() < 2 * kPairs)
     return refuse(
-        fmt::format("there are {} runs; measuring false alarms needs {}", runs.size(), 2 * kPairs));
+        fmt::format("measuring false alarms needs {1} runs, not {0}", runs.size(), 2 * kPairs));
   std::mt19937_64 random(seed);
   std::vector<std::size_t> order(runs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -399,7 +399,7 @@ core::Result<FalseAlarms> measure_false_alarms(Runs runs, std::size_t count, std
   for (; alarms.comparisons < count; ++alarms.comparisons) {
     std::vector<RecordedRun> a, b;
     for (int batch = 0; batch < 2; ++batch) {
-      for (std::size_t i = order.size() - 1; i > 0; --i)  // the same on every machine
+      for (std::size_t i = order.size() - 1; i > 0; --i)  // the same order on every machine
         std::swap(order[i], order[random() % (i + 1)]);
       for (std::size_t i = 0; i < kPairs; ++i) {
         a.push_back(runs[order[2 * i]]);

@@ -24,8 +24,8 @@ using telemetry::three_digits;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kColourA = 1, kColourB = 2;
 
-// A value at each of `times`: that of the frame of `run` which is nearest. Only on the virtual
-// clock without a step have runs frames at other times than their rows.
+// For each of `times`, the value of the nearest frame of `run`. Only on the virtual clock without a
+// fixed step do frames of other runs have other times.
 std::vector<double> at_times(const RecordedRun& run, const std::vector<double>& values,
                              const std::vector<double>& times) {
   if (run.time_s == times) return values;
@@ -40,7 +40,7 @@ std::vector<double> at_times(const RecordedRun& run, const std::vector<double>& 
   return taken;
 }
 
-// Over the runs of a set: the least time of each frame, without those that any run leaves out.
+// Over the runs of a set: the shortest time of each frame, except frames that a run excludes.
 std::vector<double> min_times(Runs runs, const std::vector<double>& times,
                               const std::vector<bool>& left_out) {
   std::vector<double> least(times.size(), std::numeric_limits<double>::infinity());
@@ -91,10 +91,10 @@ std::string plots(Runs a, Runs b) {
   rows.timed_series = 2;
   for (std::size_t k = 0; k < times.size(); ++k) {
     rows.numbers.push_back(static_cast<double>(k));
-    if (left_out[k]) rows.apart[k] = "left out of all runs";
+    if (left_out[k]) rows.apart[k] = "excluded from all runs";
   }
   Plot ratio;
-  ratio.title = "Frame time of B over that of A";
+  ratio.title = "Frame time of B divided by frame time of A";
   ratio.unit = "B / A";
   ratio.series = {{"B / A", 5, {}}};
   for (std::size_t k = 0; k < times.size(); ++k)
@@ -102,22 +102,23 @@ std::string plots(Runs a, Runs b) {
   ratio.levels = {{"the same", 1, true}};
   ratio.small = true;
   Plot lacking =
-      overlay("Picture: what of it is missing or too coarse", "% of the picture",
+      overlay("Missing or too coarse part of the image", "% of the image",
               means(a, times, &RecordedRun::lacking), means(b, times, &RecordedRun::lacking),
-              "Means of all runs. Frames are faster where less is drawn.");
+              "Means of all runs. Drawing less makes frames faster.");
   lacking.kind = PlotKind::kPeaks;
-  Plot error = overlay("Error of levels of detail", "pixels", means(a, times, &RecordedRun::error),
+  Plot error = overlay("Screen-space error of LODs", "pixels", means(a, times, &RecordedRun::error),
                        means(b, times, &RecordedRun::error), "Means of all runs.");
   error.small = true;
   return telemetry::page_tools_html(rows) +
-         telemetry::plot_html(overlay("Frame time, A and B", "ms", a_ms, b_ms,
-                                      "The least time of each frame over the runs of a side: its "
-                                      "work without what other programs took.")) +
+         telemetry::plot_html(
+             overlay("Frame time, A and B", "ms", a_ms, b_ms,
+                     "The shortest time of each frame over the runs of a side: its "
+                     "work without the interference of other programs.")) +
          telemetry::plot_html(ratio) + telemetry::plot_html(lacking) + telemetry::plot_html(error) +
          telemetry::distribution_html();
 }
 
-// One line of the table of effects.
+// One row of the table of effects.
 struct Effect {
   const char* name;
   std::string a, b, effect, chance;
@@ -139,14 +140,14 @@ std::vector<Effect> effects_of(const Batch& b, bool exact) {
                        change(static_cast<double>(b.hitchy_a), static_cast<double>(b.hitchy_b)),
                        p(b.p_hitchy)});
   }
-  effects.push_back({"missing or too coarse, % of the picture", three_digits(b.missing_a),
+  effects.push_back({"missing or too coarse, % of the image", three_digits(b.missing_a),
                      three_digits(b.missing_b), change(b.missing_a, b.missing_b), p(b.p_missing)});
-  effects.push_back({"error of levels of detail, pixels", three_digits(b.error_a),
-                     three_digits(b.error_b), change(b.error_a, b.error_b), p(b.p_error)});
+  effects.push_back({"error of LODs, pixels", three_digits(b.error_a), three_digits(b.error_b),
+                     change(b.error_a, b.error_b), p(b.p_error)});
   return effects;
 }
 
-// The ratio of frame times with its interval, over the range in which frames count as the same.
+// Draws the ratio of frame times with its interval, over the range that counts as the same.
 std::string interval_drawing(const Batch& batch) {
   static constexpr double kLow = 0.8, kHigh = 1.25, kWidth = 320;
   const auto x = [](double ratio) {
@@ -169,7 +170,7 @@ std::string batch_section(const Comparison& comparison, std::size_t index) {
   const Batch& batch = comparison.batches[index];
   const std::string name = comparison.exact ? "Effects, on the virtual clock"
                            : index == 0     ? "Effects, first batch"
-                                            : "Effects, second batch, which must confirm the first";
+                                            : "Effects, second batch (confirms the first)";
   std::string html = fmt::format(
       "<section><h2>{}: {} pair{}, {} frames each</h2>{}<table><tr><th></th><td>A</td><td>B</td>"
       "<td>effect</td><td>by chance</td></tr>",
@@ -179,8 +180,10 @@ std::string batch_section(const Comparison& comparison, std::size_t index) {
                         e.a, e.b, e.effect, e.chance);
   if (index == 1)
     html += fmt::format(
-        "<tr><th>1 % of frames that grew most, both batches</th><td></td><td></td><td>× {:.3f}</td>"
-        "<td>p {:.4f}</td></tr><tr><th>slowest frames, times their usual time, both batches</th>"
+        "<tr><th>1 % of frames that slowed most, both batches</th><td></td><td></td><td>× "
+        "{:.3f}</td>"
+        "<td>p {:.4f}</td></tr><tr><th>slowest frames, relative to their typical time, both "
+        "batches</th>"
         "<td>{:.2f}</td><td>{:.2f}</td><td>× {:.3f}</td><td>p {:.4f}</td></tr>",
         comparison.tail.ratio, comparison.tail.p, comparison.rare_a, comparison.rare_b,
         comparison.rare_b / comparison.rare_a, comparison.p_rare);
@@ -198,8 +201,8 @@ std::string verdict_section(const Comparison& comparison, const FalseAlarms* ala
     html += fmt::format("<p>{}</p>\n", escaped(reason));
   if (alarms != nullptr)
     html += fmt::format(
-        "<p class=\"advice\">A compared with itself {} times: {} times worse, {} better, {} "
-        "inconclusive. This is how often the verdict is wrong on this machine.</p>\n",
+        "<p class=\"advice\">A compared with itself {} times: {} worse, {} better, {} "
+        "inconclusive. This is the false alarm rate on this machine.</p>\n",
         alarms->comparisons, alarms->worse, alarms->better, alarms->inconclusive);
   return html + "</section>\n";
 }
@@ -225,8 +228,8 @@ std::string headline(const Comparison& comparison) {
       return "B is better: faster, and it shows as much";
     case Verdict::kWorse:
       if (less && last.minima.ratio < 1)
-        return "B is worse: its frames are faster because it draws less. Faster because it draws "
-               "less is not better";
+        return "B is worse: its frames are faster only because it draws "
+               "less";
       return less     ? "B is worse: it shows less"
              : slower ? "B is worse: it is slower"
                       : "B is worse: some of its frames are slower";

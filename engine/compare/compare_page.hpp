@@ -1,6 +1,6 @@
-// compare.html: a comparison for people. The verdict in words, effects with their intervals, and
-// the frames of both sides over each other, with zoom and values as in the report of a flight.
-// Without external resources. Not for programs: compare.json is. Pure.
+// compare.html: a comparison for people. Shows the verdict as a sentence, effects with their
+// intervals, and the frames of both sides overlaid, with zoom and values as in the report of a
+// flight. Uses no external resources. Programs read compare.json. Pure.
 #pragma once
 
 #include <span>
@@ -10,13 +10,13 @@
 
 namespace psygen::compare {
 
-// What was compared, in words: a folder, or a command.
+// Names of the compared sides: a folder, or a command.
 struct Sides {
   std::string a, b;
-  std::string test;  // the frame test that both ran; may be empty
+  std::string test;  // the frame test of both sides; may be empty
 };
 
-// The page of a comparison of `a` and `b`, which compare() took. `alarms` may be null.
+// Page of a comparison of `a` and `b` by compare(). `alarms` may be null.
 std::string to_html(const Comparison& comparison, std::span<const RecordedRun> a,
                     std::span<const RecordedRun> b, const Sides& sides, const FalseAlarms* alarms);
 

@@ -1,4 +1,4 @@
-// A comparison in words and as JSON.
+// Formats a comparison as text and as JSON.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ std::string to_text(const Comparison& comparison, const FalseAlarms* alarms) {
   if (comparison.batches.size() > 1)
     text += fmt::format(
         "all pairs: the 1 % of frames that changed most {:.3f}, the slowest frames take {:.2f} and "
-        "{:.2f} times their usual time\n",
+        "{:.2f} times their typical time\n",
         comparison.tail.ratio, comparison.rare_a, comparison.rare_b);
   if (alarms != nullptr)
     text += fmt::format("A against itself, {} comparisons: {} worse, {} better, {} inconclusive\n",

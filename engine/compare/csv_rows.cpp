@@ -30,7 +30,8 @@ tl::unexpected<core::Error> refuse_file(const std::string& where, std::string_vi
 
 core::Result<void> read_csv(std::string_view text, const std::string& file, const OnCsvLine& header,
                             const OnCsvLine& row) {
-  if (!text.ends_with('\n')) return refuse_file(file, "the file is cut: its last line has no end");
+  if (!text.ends_with('\n'))
+    return refuse_file(file, "the file is truncated: its last line has no end");
   std::vector<std::string_view> cells;
   std::size_t cells_in_header = 0;
   for (std::size_t number = 1; !text.empty(); ++number) {
@@ -40,7 +41,7 @@ core::Result<void> read_csv(std::string_view text, const std::string& file, cons
     split(line, cells);
     if (number == 1) cells_in_header = cells.size();
     if (cells.size() != cells_in_header)
-      return refuse_file(where, fmt::format("the line has {} cells, and the header {}",
+      return refuse_file(where, fmt::format("the line has {} cells, but the header has {}",
                                             cells.size(), cells_in_header));
     if (auto ok = (number == 1 ? header : row)(cells, where); !ok) return ok;
   }

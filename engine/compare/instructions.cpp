@@ -10,8 +10,7 @@
 namespace psygen::compare {
 namespace {
 
-// What follows a word at the beginning of a line, without blanks; empty where there is no such
-// line.
+// Text after a word at the beginning of a line, without blanks; empty if no line begins with it.
 std::string_view after(std::string_view text, std::string_view word) {
   while (!text.empty()) {
     std::string_view line = text.substr(0, text.find('\n'));
@@ -37,7 +36,7 @@ core::Result<std::uint64_t> instructions_in(std::string_view callgrind, const st
   std::uint64_t count = 0;
   const auto read = std::from_chars(number.data(), number.data() + number.size(), count);
   if (read.ec != std::errc() || count == 0)
-    return refuse_file(file, "callgrind wrote no number of instructions (totals)");
+    return refuse_file(file, "callgrind wrote no instruction count (totals)");
   return count;
 }
 

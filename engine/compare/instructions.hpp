@@ -1,5 +1,5 @@
-// Two programs compared by the instructions that they execute, as callgrind counts them: hardly any
-// noise, and no machine needed that is quiet. Says nothing about caches, waiting and devices. Pure.
+// Compares two programs by their executed instructions, counted by callgrind: almost free of noise,
+// even on a busy machine. Ignores caches, waiting and GPUs. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace psygen::compare {
 
-// What counts as a change: repeated runs of one program differ by far less.
+// Smallest relative change: repeated runs of one program differ by far less.
 inline constexpr double kInstructionsShare = 0.01;
 
 struct Instructions {
@@ -20,13 +20,14 @@ struct Instructions {
   Verdict verdict() const;
 };
 
-// The number in callgrind's output file. Fails with kParse, naming the file, where there is none.
+// Reads the instruction count from callgrind's output file. Fails with kParse, naming the file, if
+// it has none.
 core::Result<std::uint64_t> instructions_in(std::string_view callgrind, const std::string& file);
 
-// What `psygen amplify` printed as the hash of what it made; empty where there is none.
+// The hash in the output of `psygen amplify`; empty if there is none.
 std::string_view hash_in(std::string_view output);
 
-// For people, and compare.json ("psygen.instructions/1").
+// Text for the terminal, and compare.json ("psygen.instructions/1").
 std::string to_text(const Instructions& instructions);
 std::string to_json(const Instructions& instructions);
 

@@ -17,7 +17,7 @@ namespace {
 
 using Parsed = nlohmann::json;
 
-// The columns that a comparison needs.
+// Columns that a comparison needs.
 enum Column {
   kColumnTime,
   kColumnFrame,
@@ -44,14 +44,13 @@ struct Sums {
   double missing = 0, coarse = 0, error = 0, holes = 0;
 };
 
-// Its column comes after the others in `columns`. Runs of before it existed have none, and all
-// pixels.
+// Its column follows the others in `columns`. Older runs have no such column, and full resolution.
 core::Result<double> resolution_in(CsvCells cells, std::span<const std::size_t> columns,
                                    const std::string& where) {
   if (columns.size() == kColumns) return 1.0;
   const auto value = number_in(cells[columns[kColumns]], where, kResolution);
   if (value && !(*value > 0 && *value <= 1))
-    return refuse_file(where, "resolution: a share above 0, at most 1");
+    return refuse_file(where, "resolution: it must be above 0 and at most 1");
   return value;
 }
 
@@ -65,14 +64,14 @@ core::Result<void> add_row(CsvCells cells, std::span<const std::size_t> columns,
     if (!value) return tl::unexpected(value.error());
     values[column] = *value;
   }
-  if (!(values[kColumnFrame] > 0)) return refuse_file(where, "frame_ms: a frame takes time");
+  if (!(values[kColumnFrame] > 0)) return refuse_file(where, "frame_ms: it must be above 0");
   const auto resolution = resolution_in(cells, columns, where);
   if (!resolution) return tl::unexpected(resolution.error());
   if (!run.time_s.empty() && values[kColumnTime] < run.time_s.back())
     return refuse_file(where, fmt::format("time_s: the clock goes backwards, from {} to {}",
                                           run.time_s.back(), values[kColumnTime]));
   if (values[kColumnTime] < warmup_s) return {};
-  // On the virtual clock there is no processor's time.
+  // On the virtual clock the processor time is empty.
   run.virtual_clock = cells[columns[kColumnCpu]].empty();
   if (!run.virtual_clock) {
     const auto cpu = number_in(cells[columns[kColumnCpu]], where, kNames[kColumnCpu]);
@@ -83,7 +82,7 @@ core::Result<void> add_row(CsvCells cells, std::span<const std::size_t> columns,
   run.frame_ms.push_back(values[kColumnFrame]);
   run.left_out.push_back(!cells[columns[kColumnApart]].empty());
   run.lacking.push_back(values[kColumnMissing] + values[kColumnCoarse]);
-  // Errors are in pixels of the picture; a landscape of fewer pixels has larger ones.
+  // Errors are in pixels of the image; at a lower render scale they count for more.
   const double error = values[kColumnError] / *resolution;
   run.error.push_back(error);
   sums.missing += values[kColumnMissing];
@@ -123,8 +122,8 @@ core::Result<void> parse_frames(std::string_view text, double warmup_s, Recorded
       });
   if (!read) return read;
   if (!run.cpu_ms.empty() && run.cpu_ms.size() != run.frame_ms.size())
-    return refuse_file(file, "main_cpu_ms: some frames have it and some have not");
-  if (run.frame_ms.empty()) return refuse_file(file, "no frame is left after the warm-up");
+    return refuse_file(file, "main_cpu_ms: only some frames have it");
+  if (run.frame_ms.empty()) return refuse_file(file, "no frames after the warm-up");
   const auto count = static_cast<double>(run.frame_ms.size());
   run.missing_percent = sums.missing / count;
   run.coarse_percent = sums.coarse / count;
@@ -134,7 +133,7 @@ core::Result<void> parse_frames(std::string_view text, double warmup_s, Recorded
   return {};
 }
 
-// The member at a path ("hash.world") if it has the kind that T needs.
+// The member at a path ("hash.world") if it has a type that T accepts.
 template <class T>
 std::optional<T> member(const Parsed& json, const char* path) {
   const Parsed::json_pointer pointer(path);
@@ -151,7 +150,7 @@ std::optional<T> member(const Parsed& json, const char* path) {
 core::Result<std::string> read_text(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream) return core::fail(core::ErrorCode::kIo, file.string() + ": cannot be read");
+  if (!stream) return core::fail(core::ErrorCode::kIo, file.string() + ": cannot read the file");
   return text;
 }
 
@@ -161,7 +160,7 @@ core::Result<RecordedRun> parse_run(std::string_view frames_csv, std::string_vie
                                     const std::string& folder) {
   const std::string file = folder + "/summary.json";
   const Parsed json = Parsed::parse(summary_json, nullptr, false);
-  if (json.is_discarded()) return refuse_file(file, "it is not JSON, or is cut");
+  if (json.is_discarded()) return refuse_file(file, "it is not JSON, or is truncated");
   if (member<std::string>(json, "/schema") != "psygen.summary/1")
     return refuse_file(file, "schema: it must be \"psygen.summary/1\"");
   RecordedRun run;
@@ -206,7 +205,7 @@ core::Result<std::vector<RecordedRun>> read_runs(const std::filesystem::path& fo
   std::ranges::sort(folders);
   if (folders.empty())
     return core::fail(core::ErrorCode::kIo,
-                      folder.string() + ": there is no run in it (frames.csv)");
+                      folder.string() + ": the folder has no run (frames.csv)");
   std::vector<RecordedRun> runs;
   for (const fs::path& each : folders) {
     auto run = read_run(each);

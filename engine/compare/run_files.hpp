@@ -1,4 +1,4 @@
-// The texts of a run's files. Any thread.
+// Texts of the files of a run. Any thread.
 #pragma once
 
 #include <filesystem>

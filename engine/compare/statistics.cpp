@@ -12,17 +12,17 @@
 namespace psygen::compare {
 namespace {
 
-constexpr double kSame = 1 - 1e-12;  // sums of the same values in another order
+constexpr double kSame = 1 - 1e-12;  // tolerates sums of the same values in another order
 constexpr double kTailShare = 0.01;
 constexpr double kRareShare = 0.015;
 constexpr std::size_t kSumWindow = 10, kTailWindow = 3;  // frames
 constexpr std::uint32_t kTailLabellings = 4096;
-constexpr double kStep = 0.0025, kFarthest = 1.0;  // of the search for the interval
-constexpr double kRefused = 0.025;                 // on either side
+constexpr double kStep = 0.0025, kFarthest = 1.0;  // for the search for the interval
+constexpr double kRefused = 0.025;                 // on each side
 
 using Frames = std::vector<double>;
 
-// The two least times of each window over the runs of a set.
+// The two shortest times of each window over the runs of a set.
 struct Least {
   Frames first, second;
 
@@ -51,7 +51,7 @@ LeastOfBoth min_of(const Times& a, const Times& b, std::uint32_t labelling) {
   return least;
 }
 
-// Sums over each `window` successive frames of each run; over all of them if there are fewer.
+// Sums over each `window` consecutive frames of each run; over all frames if there are fewer.
 Times windows_of(const Times& runs, std::size_t window) {
   Times sums;
   for (const Frames& run : runs) {
@@ -74,7 +74,7 @@ double ratio_of(const LeastOfBoth& least) {
   return sum(least.b.first) / sum(least.a.first);
 }
 
-// Moves the greatest `share` of the values to the front, at least one, and returns how many.
+// Moves the largest `share` of the values, at least one, to the front, and returns their number.
 std::size_t greatest_first(Frames& values, double share) {
   const auto count =
       static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
@@ -95,7 +95,7 @@ struct Tails {
   double p_larger = 0, p_smaller = 0;
 };
 
-// How often labellings give at least, and at most, what labelling 0 gives.
+// Counts the labellings with at least, and with at most, the statistic of labelling 0.
 template <class Statistic>
 Tails over_labellings(std::size_t pairs, const Statistic& statistic) {
   const std::uint32_t count = 1U << pairs;
@@ -119,7 +119,7 @@ Tails ratio_tails(const Times& a, const Times& b, double scale) {
       a.size(), [&](std::uint32_t labelling) { return ratio_of(min_of(a, scaled, labelling)); });
 }
 
-// The ends of the interval: scales at which what is left is refused.
+// Ends of the interval: the scales at which the test rejects the rest.
 void find_interval(const Times& a, const Times& b, MinimaTest& test) {
   test.low = test.high = test.ratio;
   double step = 0;
@@ -170,7 +170,7 @@ TailTest tail_test(const Times& a, const Times& b) {
   const Times sums_a = windows_of(a, kTailWindow), sums_b = windows_of(b, kTailWindow);
   const double seen = tail_of(min_of(sums_a, sums_b, 0));
   std::mt19937_64 random(1);
-  std::uint32_t larger = 1;  // the labelling that was seen
+  std::uint32_t larger = 1;  // the observed labelling
   for (std::uint32_t i = 1; i < kTailLabellings; ++i) {
     const auto labelling = static_cast<std::uint32_t>(random());
     larger += tail_of(min_of(sums_a, sums_b, labelling)) >= seen * kSame ? 1U : 0U;
@@ -201,7 +201,7 @@ std::vector<double> rare_frames(const Times& runs) {
 
 double fisher_more(std::uint64_t a_hits, std::uint64_t a_all, std::uint64_t b_hits,
                    std::uint64_t b_all) {
-  PSYGEN_ASSERT(a_hits <= a_all && b_hits <= b_all, "more hits than runs");
+  PSYGEN_ASSERT(a_hits <= a_all && b_hits <= b_all, "hits must not exceed runs");
   const std::uint64_t hits = a_hits + b_hits;
   const double all = log_choose(a_all + b_all, hits);
   double p = 0;

@@ -13,7 +13,7 @@
 namespace psygen::compare {
 namespace {
 
-// The columns of frames.csv that viewers show.
+// Columns of frames.csv that viewers show.
 enum ViewerColumn { kFrameMs, kPresentMs, kGpuMs, kCacheBytes, kApart, kUsed };
 constexpr std::array<std::string_view, kUsed> kUsedNames = {"frame_ms", "present_ms", "gpu_ms",
                                                             "cache_bytes", "apart"};
@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, kUsed> kUsedNames = {"frame_ms", "present
 struct ViewerRow {
   double frame_ms = 0, present_ms = 0, gpu_ms = 0, cache_bytes = 0;
   bool drawn = true;
-  double end_s = 0;  // sum of the frames up to this one
+  double end_s = 0;  // sum up to and including this frame
 };
 
 struct ViewerRun {
@@ -33,12 +33,12 @@ core::Result<ViewerRow> row_of(CsvCells cells, std::span<const std::size_t> colu
                                const std::string& where) {
   std::array<double, kApart> values{};
   for (std::size_t i = 0; i < kApart; ++i) {
-    if (cells[columns[i]].empty() && i != kFrameMs) continue;  // not known
+    if (cells[columns[i]].empty() && i != kFrameMs) continue;  // unknown
     const auto value = number_in(cells[columns[i]], where, kUsedNames[i]);
     if (!value) return tl::unexpected(value.error());
     values[i] = *value;
   }
-  if (!(values[kFrameMs] > 0)) return refuse_file(where, "frame_ms: a frame takes time");
+  if (!(values[kFrameMs] > 0)) return refuse_file(where, "frame_ms: it must be above 0");
   return ViewerRow{values[kFrameMs], values[kPresentMs], values[kGpuMs], values[kCacheBytes],
                    cells[columns[kApart]] != "not_drawn"};
 }
@@ -65,7 +65,7 @@ core::Result<std::vector<ViewerRow>> rows_of(std::string_view text, const std::s
   return rows;
 }
 
-// A name as one cell: these formats are read without regard to quotes.
+// A name as one cell: viewers parse these formats without quotes.
 std::string cell_of(const nlohmann::json& json, const char* path) {
   const nlohmann::json::json_pointer pointer(path);
   if (!json.contains(pointer) || !json[pointer].is_string()) return {};
@@ -79,7 +79,7 @@ core::Result<ViewerRun> run_of(std::string_view frames_csv, std::string_view sum
                                const std::string& folder) {
   const auto json = nlohmann::json::parse(summary_json, nullptr, false);
   if (json.is_discarded())
-    return refuse_file(folder + "/summary.json", "it is not JSON, or is cut");
+    return refuse_file(folder + "/summary.json", "it is not JSON, or is truncated");
   auto rows = rows_of(frames_csv, folder);
   if (!rows) return tl::unexpected(rows.error());
   return ViewerRun{cell_of(json, "/device/name"), cell_of(json, "/device/driver"),

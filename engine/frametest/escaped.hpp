@@ -1,4 +1,4 @@
-// Texts of tests, in HTML and XML. Any thread.
+// Escapes texts of tests for HTML and XML. Any thread.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace psygen::frametest {
 
-// shown() leaves no control characters, which XML has no way to write.
+// shown() leaves no control characters, which XML cannot represent.
 inline std::string escaped(std::string_view text) {
   return telemetry::escaped(core::shown(text));
 }

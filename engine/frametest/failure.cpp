@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kPage = "failed.html";
 constexpr std::string_view kPicturePrefix = "worst_";
 
-// Frame k is the same place in every flight.
+// True if frame k is at the same position in every flight.
 bool is_numbered(const app::FlightOptions& flight) {
   return flight.session.scene.virtual_time || flight.fixed_step_hz > 0;
 }
@@ -29,13 +29,14 @@ struct Seen {
   std::optional<core::Result<image::Image>> picture;
 };
 
-// Takes the picture of the frame. After the game's plugins, so that theirs has been drawn.
+// Captures the image of the frame. Runs after the game's plugins, so that the image contains their
+// drawing.
 app::Plugin photographer(const WorstFrame& frame, bool numbered, Seen& seen) {
   app::Plugin plugin;
   plugin.name = "pictures of the worst frames";
   plugin.on_frame = [&frame, &seen, numbered, count = std::uint64_t{0}](app::Session& session,
                                                                         double dt_s) mutable {
-    const double end_s = session.now_s();  // of the frame
+    const double end_s = session.now_s();  // end of the frame
     const bool is_it = numbered ? count++ == frame.index : end_s > frame.time_s;
     if (!is_it || seen.picture) return;
     seen.pose = session.scene().state().input.pose;
@@ -45,14 +46,14 @@ app::Plugin photographer(const WorstFrame& frame, bool numbered, Seen& seen) {
   return plugin;
 }
 
-// The same place and time with everything ready that the budget has room for.
+// Renders the same position and time with all meshes ready that fit into the budget.
 core::Result<image::Image> expected_picture(app::Session& session, const Seen& seen) {
-  constexpr int kTicks = 2;  // in the first what was drawn before may still hand over
+  constexpr int kTicks = 2;  // in the first tick, meshes of the last frame may still cross-fade
   scene::State& state = session.scene().state();
   session.set_now(seen.time_s);
   session.set_paused(true);
   state.settings.fade_seconds = 0;
-  state.quality.governor = scene::Governor();  // the error that the test asks for
+  state.quality.governor = scene::Governor();  // uses the error that the test requests
   session.scene().settle(seen.pose);
   for (int i = 0; i < kTicks; ++i)
     if (auto ok = session.tick(seen.pose, 0); !ok) return tl::unexpected(ok.error());
@@ -78,7 +79,7 @@ core::Result<image::ImageDifference> write_pictures(const WorstFrame& frame,
   return image::compare(seen, expected);
 }
 
-// Flies again up to the frame, and writes its three pictures.
+// Repeats the flight up to the frame, and writes its three images.
 core::Result<image::ImageDifference> fly_to(const WorstFrame& frame, const FrameTest& test,
                                             const RunOptions& options, const Hooks& hooks) {
   app::FlightOptions flight = test.flight;
@@ -106,8 +107,7 @@ std::string frame_html(const WorstFrame& frame,
   std::string html = fmt::format("<h2>Frame {} at {:.2f} s</h2>\n<p>{}. ", frame.index,
                                  frame.time_s, escaped(frame.why));
   if (!difference)
-    return html +
-           fmt::format("There are no pictures: {}</p>\n", escaped(difference.error().message));
+    return html + fmt::format("No images: {}</p>\n", escaped(difference.error().message));
   html += fmt::format("{:.2f} % of the pixels differ by more than {} of 255.</p>\n<div class=row>",
                       100 * difference->share_over, image::kGoldenThreshold);
   for (const char* kind : {"seen", "expected", "difference"}) {
@@ -139,12 +139,13 @@ std::string head_html(const FrameTest& test) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: budgets "
       "missed</title><style>{1}{2}</style></head><body><main>\n<h1>{0}: budgets missed</h1>\n"
-      "<p class=\"lead\">The worst frames as they were, the same with everything ready, and where "
-      "they differ (yellow to red). {3} <a href=\"report.html\">The whole flight</a></p>\n",
+      "<p class=\"lead\">The worst frames as drawn, the same frames with all meshes ready, and "
+      "their "
+      "difference (yellow to red). {3} <a href=\"report.html\">The whole flight</a></p>\n",
       escaped(test.name), telemetry::page_style(), kStyle,
-      exact ? "The pictures are those of the judged flight, to the bit."
-            : "The pictures are of another flight to the same places: on the wall clock what is "
-              "missing differs from flight to flight.");
+      exact ? "The images are bit-identical to those of the judged flight."
+            : "The images are from a second flight through the same positions: on the wall clock, "
+              "missing meshes differ from flight to flight.");
 }
 
 }  // namespace
@@ -168,7 +169,7 @@ core::Result<std::filesystem::path> write_failure(const FrameTest& test, const T
   std::string html = head_html(test) + budgets_html(result);
   for (const WorstFrame& frame : frames)
     html += frame_html(frame, fly_to(frame, test, options, hooks));
-  if (frames.empty()) html += "<p>No single frame has the figures that were missed.</p>\n";
+  if (frames.empty()) html += "<p>The missed budgets are not measured per frame.</p>\n";
   if (auto ok = core::replace_file(page, html + "</main></body></html>\n"); !ok)
     return tl::unexpected(ok.error());
   return page;

@@ -1,5 +1,5 @@
-// A frame test: a flight and the budgets that its figures must keep, as a TOML file
-// (docs/frame-tests.md). Knows how to read one; running is run.hpp's. Plain values; any thread.
+// A frame test: a flight and the budgets for its measurements, as a TOML file
+// (docs/frame-tests.md). Reads a test; run.hpp runs it. Plain values; any thread.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace psygen::frametest {
 
 inline constexpr int kFrameTestFormat = 1;
 
-// How a figure must stand to its limit. Also the name of the file's table.
+// Relation of a value to its limit. Also the name of the file's table.
 enum class Relation : std::uint8_t { kAtMost, kAtLeast, kEqual };
 std::string_view name_of(Relation relation);  // "at_most", "at_least", "equal"
 
@@ -29,18 +29,19 @@ struct Budget {
 
 struct FrameTest {
   std::string name;
-  app::FlightOptions flight;    // headless; world and path as they are written until resolved
+  // Headless; world and path are unresolved names until load_frame_test().
+  app::FlightOptions flight;    //
   std::vector<Budget> budgets;  // in the order of the file, at least one
 };
 
-// Reads a text. Fails with kParse, naming file, line and field: for text that is not TOML, another
-// format, unknown keys and fields, and values out of range. `file_name` is for messages, and its
-// stem is the test's name unless the text has one.
+// Parses a text. Fails with kParse, naming file, line and field, for text that is not TOML, another
+// format, unknown keys and fields, and values out of range. `file_name` is for messages; its stem
+// is the test's name unless the text has one.
 core::Result<FrameTest> parse_frame_test(std::string_view text,
                                          const std::filesystem::path& file_name);
 
-// Reads a file and finds its world and path: in the folder of the test, else among what comes with
-// psygen. Fails also with kIo, and with kOverBudget for files over 1 MiB.
+// Reads a file and resolves its world and path: first in the folder of the test, then among the
+// shipped files. Also fails with kIo, and with kOverBudget for files over 1 MiB.
 core::Result<FrameTest> load_frame_test(const std::filesystem::path& file);
 
 }  // namespace psygen::frametest

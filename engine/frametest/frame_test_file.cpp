@@ -1,4 +1,4 @@
-// Reads [flight] and the budgets. The names of [flight] are those of the options of `psygen fly`.
+// Reads [flight] and the budgets. The keys of [flight] are the options of `psygen fly`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ using world::TableReader;
 constexpr std::size_t kMaxNameBytes = 64, kMaxFileNameBytes = 4096;
 constexpr const char* kSystemTimes = "system_ms.";
 
-// A text with a parser that gives a core::Result.
+// Reads a text with a parser that returns a core::Result.
 template <class Parse, class Value>
 void read_word(TableReader& reader, std::string_view key, const Parse& parse, Value& value) {
   std::string text;
@@ -100,10 +100,10 @@ void read_flight(const world::Member& table, app::FlightOptions& flight, Problem
   read_session(reader, flight.session);
   reader.finish();
   if (flight.loop && flight.seconds == 0 && flight.frames == 0)
-    reader.problem(reader.line(), "loop", "a path that is repeated needs seconds or frames");
+    reader.problem(reader.line(), "loop", "a repeated path needs seconds or frames");
 }
 
-// The names that every summary has, and which of them are texts.
+// The names of the fields of every summary, and of those that are texts.
 class KnownFields {
  public:
   KnownFields() {
@@ -113,20 +113,21 @@ class KnownFields {
       if (std::holds_alternative<std::string>(field.value)) texts_.push_back(field.name);
     }
   }
-  // What is wrong with a budget; empty if nothing. Systems are known only when the flight is.
+  // Returns the error of a budget; empty if it is valid. The names of systems are unknown until the
+  // flight exists.
   std::string problem(const Budget& budget) const {
     const auto has = [&](const std::vector<std::string>& names) {
       return std::ranges::find(names, budget.field) != names.end();
     };
     if (budget.field.starts_with(kSystemTimes)) {
       const bool ends = budget.field.ends_with(".p50") || budget.field.ends_with(".p99");
-      return ends ? "" : "times of systems have the figures p50 and p99";
+      return ends ? "" : "times of systems have only p50 and p99";
     }
     if (!has(names_)) {
       return "summary.json has no such field" + core::suggestion(budget.field, names_);
     }
     if (budget.relation != Relation::kEqual && (has(texts_) || budget.field.starts_with("hash.")))
-      return "it is a text, which can only be equal";
+      return "it is a text, which only [equal] can compare";
     return {};
   }
 
@@ -134,7 +135,7 @@ class KnownFields {
   std::vector<std::string> names_, texts_;
 };
 
-// Dotted keys are tables in tables: "frame_ms.p99 = 25".
+// Dotted keys are nested tables: "frame_ms.p99 = 25".
 void read_budgets(const Node& table, const std::string& prefix, Relation relation,
                   const KnownFields& known, Problems& problems, std::vector<Budget>& budgets) {
   for (const world::Member& member : table.members) {
@@ -202,7 +203,8 @@ core::Result<FrameTest> parse_frame_test(std::string_view text,
   test.name = core::shown(file_name.stem().string(), kMaxNameBytes);
   root.read("name", test.name, kMaxNameBytes);
   if (test.name.find('/') != std::string::npos)
-    root.problem(root.find("name")->line, "name", "a name is also that of a folder: without /");
+    root.problem(root.find("name")->line, "name",
+                 "the name is also used for a folder and must not contain /");
   test.flight.session.headless = true;
   test.flight.session.world_file = "paper";
   test.flight.session.preset = render::Preset::kLow;
@@ -215,7 +217,7 @@ core::Result<FrameTest> parse_frame_test(std::string_view text,
   }
   root.finish();
   if (!problems.any() && test.budgets.empty())
-    problems.add(1, "at_most", "a frame test needs a budget, in [at_most], [at_least] or [equal]");
+    problems.add(1, "at_most", "a frame test needs a budget in [at_most], [at_least] or [equal]");
   if (problems.any()) return tl::unexpected(problems.first());
   std::ranges::stable_sort(test.budgets, {}, &Budget::line);
   return test;

@@ -1,4 +1,4 @@
-// JUnit XML, as CI servers read it.
+// Writes JUnit XML for CI servers.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::string suite_of(const TestResult& result) {
     text += r.holds ? fmt::format("><system-out>{}</system-out></testcase>\n", escaped(r.value))
                     : fmt::format("><failure message=\"{}\"/></testcase>\n", escaped(r.value));
   }
-  // What several CI servers show as a file of the suite.
+  // Several CI servers show this line as an attachment of the suite.
   if (!result.page.empty())
     text += fmt::format("<system-out>[[ATTACHMENT|{}]]</system-out>\n",
                         escaped(std::filesystem::absolute(result.page).string()));

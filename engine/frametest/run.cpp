@@ -60,7 +60,7 @@ core::Result<Flown> fly(FrameTest test, const RunOptions& options, const Hooks& 
   return flown;
 }
 
-// What is known of the failure, where outputs are kept. The verdict stands without it.
+// Reports the worst frames if outputs are kept. The verdict does not depend on it.
 void show_failure(const FrameTest& test, std::span<const WorstFrame> worst,
                   const RunOptions& options, const Hooks& hooks, TestResult& result) {
   if (options.out.empty() || options.worst_frames <= 0) return;
@@ -138,7 +138,7 @@ std::string to_text(const TestResult& result) {
                         sign_of(r.budget.relation), limit_of(r.budget), r.holds ? "" : "  MISSED");
   }
   if (!result.page.empty())
-    text += fmt::format("{}: pictures in {}\n", result.name, result.page.string());
+    text += fmt::format("{}: images in {}\n", result.name, result.page.string());
   return text;
 }
 

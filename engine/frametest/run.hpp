@@ -1,5 +1,5 @@
-// Runs frame tests and judges them by their budgets. A game runs its own code in them through
-// hooks. One test after the other; main thread only.
+// Runs frame tests and compares their measurements with the budgets. Games run their code in the
+// tests through hooks. Runs one test after the other; main thread only.
 #pragma once
 
 #include <atomic>
@@ -15,15 +15,16 @@
 
 namespace psygen::frametest {
 
-// What a game adds to each test; each may be empty. Called for every flight: after a missed budget
-// a test flies again for its pictures (failure.hpp).
+// Hooks of a game, each optional. Called for every flight: after a missed budget the test flies
+// again to capture images (failure.hpp).
 struct Hooks {
-  // Before the session is made: plugins, for example. World, size and the like are the file's.
+  // Before the session is created, for example to add plugins. The file defines world, size and the
+  // like.
   std::function<core::Result<void>(app::SessionOptions&)> prepare = {};
-  // Once the session is there, before the cache is filled.
+  // After the session is created, before the cache is filled.
   std::function<core::Result<void>(app::Session&)> start = {};
-  // The camera of each frame, with the seconds since the last one, in place of the file's path: for
-  // games that play themselves.
+  // Returns the camera of each frame instead of the file's path, given the seconds since the last
+  // frame. For games that play themselves.
   std::function<core::CameraPose(app::Session&, double)> camera = {};
 };
 
@@ -31,56 +32,57 @@ inline constexpr int kMaxWorstFrames = 100;
 
 struct RunOptions {
   std::vector<std::filesystem::path> files;
-  std::filesystem::path out;                // a folder in it for each test; empty: nothing is kept
-  std::filesystem::path junit;              // file; empty: none
-  std::string device;                       // part of a name; empty: the best
-  int worst_frames = 3;                     // pictures of a failed test; they need `out`
-  const std::atomic<bool>* stop = nullptr;  // set from anywhere to end early
+  std::filesystem::path out;    // has one subfolder per test; empty: outputs are not kept
+  std::filesystem::path junit;  // file; empty: none
+  std::string device;           // part of a device's name; empty: the best device
+  int worst_frames = 3;         // number of frames captured of a failed test; requires `out`
+  const std::atomic<bool>* stop = nullptr;  // set by any thread to end early
 };
 
-// A budget after the run.
+// Result of one budget.
 struct BudgetResult {
   Budget budget;
-  std::string value;  // the figure, or why there is none
+  std::string value;  // the measured value, or the reason why there is none
   bool holds = false;
 };
 
-// What became of a file.
+// Result of one test file.
 struct TestResult {
   std::filesystem::path file;
   std::string name;
   std::vector<BudgetResult> budgets;
-  std::optional<core::Error> error;  // it could not be run; kNoDevice: nothing can be
-  double seconds = 0;                // that it took
-  std::filesystem::path page;        // failed.html, of a failed test; empty: there is none
+  std::optional<core::Error> error;  // the test did not run; kNoDevice: no test can run
+  double seconds = 0;                // duration of the test
+  std::filesystem::path page;        // failed.html of a failed test; empty: none
 
-  bool holds() const;  // it could be run, and each budget holds
+  bool holds() const;  // the test ran, and every budget holds
 };
 
-// Exit codes of a run of tests. 77 is what CTest and Automake take for skipped.
+// Exit codes of a run of tests. CTest and Automake interpret 77 as skipped.
 enum ExitCode : int { kHeld = 0, kFailed = 1, kUsage = 2, kMissed = 3, kSkipped = 77 };
 int exit_code_of(std::span<const TestResult> results);
 
-// Judges a summary: one result for each budget. A figure that was not measured is a miss.
+// Compares a summary with the budgets: one result for each budget. A value that was not measured
+// misses its budget.
 std::vector<BudgetResult> judge(std::span<const Budget> budgets, const telemetry::Summary& summary);
 
-// How a limit is written: "<=" and "25".
+// Text of a limit: "<=" and "25".
 std::string_view sign_of(Relation relation);
 std::string limit_of(const Budget& budget);
 
 // Runs one file.
 TestResult run_frame_test(const std::filesystem::path& file, const RunOptions& options,
                           const Hooks& hooks = {});
-// Lines for people: one for each budget.
+// Text with one line for each budget.
 std::string to_text(const TestResult& result);
-// The results as JUnit XML: a suite for each file, a case for each budget.
+// Formats the results as JUnit XML: a suite for each file, a case for each budget.
 std::string to_junit(std::span<const TestResult> results);
 
-// Runs all files, prints their lines to stdout and what could not be run to stderr, and writes the
-// JUnit file. Returns the exit code.
+// Runs all files, prints results to stdout and errors to stderr, and writes the JUnit file. Returns
+// the exit code.
 int run_frame_tests(const RunOptions& options, const Hooks& hooks = {});
-// The whole main() of a game's frame tests:
-// FILE... [--junit FILE] [--out DIR] [--device NAME] [--worst N].
+// Complete main() of a game's frame tests: FILE... [--junit FILE] [--out DIR] [--device NAME]
+// [--worst N].
 int frame_test_main(int argc, char** argv, const Hooks& hooks);
 
 }  // namespace psygen::frametest

@@ -1,4 +1,4 @@
-// Makes the flight of a frame test with what the game adds. Main thread only.
+// Creates the flight of a frame test with the game's hooks. Main thread only.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace psygen::frametest {
 
-// Device, stop and the hooks are added to `flight`; `last` (may be empty) comes after the game's
-// plugins. Fails as Flight::create() and the hooks.
+// Adds device, stop flag and hooks to `flight`; `last` (may be empty) follows the game's plugins.
+// Fails like Flight::create() and the hooks.
 core::Result<std::unique_ptr<app::Flight>> start_flight(app::FlightOptions flight,
                                                         const RunOptions& options,
                                                         const Hooks& hooks, app::Plugin last = {});

@@ -18,12 +18,12 @@ using telemetry::FrameRecord;
 constexpr double kApartSeconds = 0.5;
 constexpr std::string_view kSystemPrefix = "system_ms.";
 
-// What a frame has of the figures whose names begin with `prefix`. The first that fits counts.
+// Value of a frame for measurements whose names begin with `prefix`. The first match counts.
 using Of = double (*)(const FrameRecord&);
 struct Measure {
   std::string_view prefix, unit;
   Of of;
-  bool time = false;  // frames that are set apart do not count
+  bool time = false;  // excluded frames do not count
 };
 
 template <auto Field>
@@ -62,10 +62,10 @@ constexpr std::array kMeasures = std::to_array<Measure>({
     {"gpu_ms.", "ms", if_known<&R::gpu_ms>, true},
     {"missing.frames", "holes", its<&R::holes>},
     {"missing.nodes", "holes and coarse nodes", holes_and_coarse},
-    {"missing.pixels", "% of the picture missing", its<&R::missing_pixels_percent>},
-    {"missing.", "% of the picture missing or too coarse", missing_or_coarse},
+    {"missing.pixels", "% of the image missing", its<&R::missing_pixels_percent>},
+    {"missing.", "% of the image missing or too coarse", missing_or_coarse},
     {"picture.", "% of the picture missing or too coarse", missing_or_coarse},
-    {"detail.refused", "requests refused", its<&R::requests_refused>},
+    {"detail.refused", "requests rejected", its<&R::requests_refused>},
     {"detail.raised_by_memory", "times the error", its<&R::memory_factor>},
     {"detail.resolution", "of the resolution", its<&R::resolution>},
     {"detail.", "pixels of error", its<&R::error_pixels>},
@@ -83,7 +83,7 @@ constexpr std::array kMeasures = std::to_array<Measure>({
     {"draw.draws", "draws", its<&R::draws>},
 });
 
-// The rows that count for a budget, the worst one first, with what they have.
+// Rows that count for a budget, worst first, with their values.
 struct Row {
   std::size_t at = 0;  // in FrameLog::frames()
   double value = 0;
@@ -95,7 +95,7 @@ struct Ranked {
   std::size_t next = 0;
 };
 
-// `of` tells what row i has.
+// `of` returns the value of row i.
 Ranked ranked(const Budget& budget, std::string_view unit, bool time, const FrameLog& log,
               double warmup_s, const std::function<double(std::size_t)>& of) {
   Ranked result{budget.field, unit, {}};
@@ -105,7 +105,7 @@ Ranked ranked(const Budget& budget, std::string_view unit, bool time, const Fram
     const double value = of(i);
     if (frame.time_s < warmup_s || std::isnan(value)) continue;
     if (time && frame.apart != telemetry::Apart::kNo) continue;
-    if (value == 0 && !small_is_bad) continue;  // nothing bad is in it
+    if (value == 0 && !small_is_bad) continue;  // the frame has no defect
     result.rows.push_back({i, value});
   }
   std::ranges::stable_sort(result.rows, [&](const Row& a, const Row& b) {
@@ -128,7 +128,7 @@ Ranked ranked(const Budget& budget, const FrameLog& log, double warmup_s) {
   return {budget.field, {}, {}};
 }
 
-// The next row that is far enough from the frames that were chosen.
+// Returns the next row that is far enough from the chosen frames.
 const Row* next_of(Ranked& ranked, const FrameLog& log, std::span<const WorstFrame> chosen) {
   while (ranked.next < ranked.rows.size()) {
     const Row& row = ranked.rows[ranked.next++];

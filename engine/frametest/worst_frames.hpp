@@ -1,5 +1,5 @@
-// Which frames of a flight missed a budget most: the budget's figure says which column of the log
-// is looked at. Knows nothing of pictures (failure.hpp). Pure.
+// Finds the frames of a flight that missed a budget most: the budget's field selects a column of
+// the log. Writes no images (failure.hpp does). Pure.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ struct WorstFrame {
   std::string why;          // "frame_ms.p99: 5.63 ms"
 };
 
-// At most `count` frames after the warm-up, in the order of time: the worst of each missed budget,
-// then each one's next. Frames less than half a second from one that was chosen are left out, since
-// they show the same. Budgets whose figure no single frame has (hash.world, memory) have none.
+// Returns at most `count` frames after the warm-up, in the order of time: the worst of each missed
+// budget, then each budget's next. Skips frames less than half a second from a chosen one, because
+// they show the same view. Budgets without a value per frame (hash.world, memory) contribute none.
 std::vector<WorstFrame> worst_frames(std::span<const BudgetResult> budgets,
                                      const telemetry::FrameLog& log, double warmup_s,
                                      std::size_t count);

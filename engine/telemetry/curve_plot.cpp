@@ -12,7 +12,7 @@
 namespace psygen::telemetry {
 namespace {
 
-// The drawing, in units of its view box.
+// Size of the drawing, in units of its view box.
 constexpr double kWidth = 500, kHeight = 300;
 constexpr double kLeft = 62, kRight = 488, kTop = 14, kBottom = 252;
 
@@ -72,7 +72,7 @@ class Drawing {
     return std::min(curve.values.size(), plot_.x.size());
   }
 
-  // Draws each stretch without gaps.
+  // Draws each run of values without gaps.
   void draw_line(const Curve& curve) {
     std::vector<std::pair<double, double>> stretch;
     const auto end_stretch = [&] {

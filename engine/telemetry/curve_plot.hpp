@@ -1,6 +1,6 @@
-// A plot of values over a parameter as an SVG picture: measured values as points, curves through
-// them as lines, with axes and a legend. In the style of page_style.cpp. Not for values over
-// time: report_plot.hpp draws those. Pure; linear in the values.
+// A plot of values over a parameter as an SVG image: measured values as points, curves through them
+// as lines, with axes and a legend. In the style of page_style.cpp. Plots over time are in
+// report_plot.hpp. Pure; linear in the values.
 #pragma once
 
 #include <string>
@@ -8,27 +8,27 @@
 
 namespace psygen::telemetry {
 
-// How a curve is drawn.
+// Drawing style of a curve.
 enum class CurveKind {
   kPoints,
-  kLine,    // breaks where there is no value; a value without neighbours is a ring
-  kDashed,  // likewise, dashed
+  kLine,    // interrupted where a value is missing; a single value is a ring
+  kDashed,  // as kLine, dashed
 };
 
-// One set of values of a plot.
+// One curve of a plot.
 struct Curve {
   std::string name;
-  int colour = 1;  // of the palette, 1 … 8; 0 is grey
+  int colour = 1;  // index into the palette, 1 … 8; 0 is grey
   CurveKind kind = CurveKind::kLine;
-  std::vector<double> values;  // one per entry of CurvePlot::x; not finite: no value
+  std::vector<double> values;  // one per entry of CurvePlot::x; non-finite: missing
 };
 
-// What is drawn. The y axis starts at 0.
+// A plot. The y axis starts at 0.
 struct CurvePlot {
   std::string title;
   std::string x_name;     // label of the x axis
-  std::string unit;       // of the values
-  std::string note;       // a sentence below the plot; may be empty
+  std::string unit;       // of the y axis
+  std::string note;       // text below the plot; may be empty
   std::vector<double> x;  // ascending
   std::vector<Curve> curves;
 };

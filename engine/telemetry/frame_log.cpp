@@ -23,7 +23,7 @@ constexpr std::string_view kColumnsAfterSystems =
     "missing_pixels_percent,too_coarse_percent,cache_bytes,cache_hits,cache_misses,"
     "cache_evictions,cache_regenerations,requests_queued,requests_refused,requests_completed,"
     "models_failed,models_synthesised,triangles_synthesised,bytes_synthesised,synthesis_seconds";
-// The device's time of a frame is known at most this many frames later.
+// The GPU time of a frame arrives at most this many frames later.
 constexpr std::size_t kLatestFrames = 16;
 
 std::string cell(const std::optional<double>& ms) {
@@ -65,13 +65,13 @@ std::string picture_name(std::uint64_t index) {
 
 FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames)
     : systems_(std::move(systems)), max_frames_(max_frames) {
-  constexpr std::size_t kSmallPart = 4;  // of the memory that is left
+  constexpr std::size_t kSmallPart = 4;  // fraction of the available memory
   const std::size_t row_bytes = sizeof(FrameRecord) + systems_.size() * sizeof(float);
   if (core::memory_left(kSmallPart * max_frames_ * row_bytes)) {
     frames_.reserve(max_frames_);
     system_ms_.reserve(max_frames_ * systems_.size());
   } else {
-    core::note_refused_bytes(0);  // the log does without it
+    core::note_refused_bytes(0);  // the log continues with fewer rows
   }
 }
 

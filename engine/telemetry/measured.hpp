@@ -1,4 +1,4 @@
-// A figure that may be missing, with the reason: too few frames, an endless world, a device without
+// A number that may be missing, with the reason: too few frames, an endless world, a GPU without
 // timestamps. In summary.json it becomes a number, or null with a reason. Not an Error: nothing
 // failed. A plain value.
 #pragma once
@@ -13,7 +13,7 @@ namespace psygen::telemetry {
 template <class T>
 struct Measured {
   std::optional<T> value;
-  std::string reason = "not measured in this run";  // a sentence; empty when there is a value
+  std::string reason = "not measured in this run";  // a phrase; empty if there is a value
 
   // Missing with the default reason, or known. The conversion is implicit on purpose.
   Measured() = default;
@@ -25,7 +25,7 @@ struct Measured {
     return result;
   }
 
-  // Whether it is known; * requires that it is.
+  // True if the value is known, which operator* requires.
   bool has_value() const { return value.has_value(); }
   const T& operator*() const { return *value; }
   friend bool operator==(const Measured&, const Measured&) = default;

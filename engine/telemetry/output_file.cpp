@@ -16,9 +16,8 @@ core::Result<void> create_output_folder(const std::filesystem::path& folder) {
     error = std::error_code(errno, std::generic_category());
   }
   if (error) {
-    return core::fail(core::ErrorCode::kIo,
-                      fmt::format("{}: cannot be used as the output folder: {}", folder.string(),
-                                  error.message()));
+    return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot use this output folder: {}",
+                                                        folder.string(), error.message()));
   }
   core::remove_stale_partials(folder);
   return {};

@@ -1,5 +1,5 @@
-// The folder for a run's output. Files in it are written whole or not at all
-// (core/replace_file.hpp). Not a file writer itself. One thread per folder.
+// The output folder of a run. Files in it are written completely or not at all
+// (core/replace_file.hpp). Writes no files. One thread per folder.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace psygen::telemetry {
 
-// Creates the folder and its parents. An existing folder is fine; half-written files of processes
-// that were killed are removed from it. Fails with kIo and the path when the folder cannot be
-// created, is not a folder, or cannot be written to.
+// Creates the folder and its parents. Accepts an existing folder, and removes the partial files of
+// killed processes from it. Fails with kIo and the path if the folder cannot be created, is not a
+// folder, or is not writable.
 core::Result<void> create_output_folder(const std::filesystem::path& folder);
 
 }  // namespace psygen::telemetry

@@ -42,7 +42,7 @@ std::string page_tools_html(const PageRows& rows) {
 }
 
 std::string distribution_html() {
-  return "<figure id=\"distribution\"><figcaption>How frame times are distributed</figcaption>"
+  return "<figure id=\"distribution\"><figcaption>Distribution of frame times</figcaption>"
          "<div class=\"legend\"></div><div class=\"drawing\"></div>"
          "<div class=\"percentiles\"></div><p class=\"note\"></p></figure>\n";
 }

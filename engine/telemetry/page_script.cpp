@@ -3,14 +3,14 @@
 namespace psygen::telemetry {
 namespace {
 
-// Positions are pixels of the page, so that text has one size at any width.
+// Positions are pixels of the page, so that text has the same size at any width.
 constexpr std::string_view kScript = R"js("use strict";
 (() => {
 const rows = JSON.parse(document.getElementById("rows").textContent);
 const times = rows.t, count = times.length;
 const whole = [times[0] ?? 0, Math.max(times[count - 1] ?? 0, (times[0] ?? 0) + 1e-3)];
 let range = whole, picked = -1;
-const zooms = [];  // ranges to go back to
+const zooms = [];  // ranges to return to
 
 // Elements, with attributes and content; text is never HTML.
 function make(name, attributes = {}, ...content) {
@@ -50,7 +50,7 @@ function nearestRow(time) {
   const row = Math.min(rowAt(time), count - 1);
   return row > 0 && time - times[row - 1] < times[row] - time ? row - 1 : row;
 }
-// Rows without numbers are no frames.
+// Rows without numbers are not frames.
 const nameOf = row => (rows.n.length ? "Frame " + rows.n[row] + " at " : "At ") + times[row].toFixed(2) + " s";
 
 // One figure.
@@ -112,7 +112,7 @@ class Plot {
     if (rows.warmup > range[0] && count) {
       const right = this.x(Math.min(rows.warmup, range[1]));
       svg.append(make("rect", {class: "warmup", x: this.left, y: this.high, width: Math.max(0, right - this.left),
-        height: this.bottom - this.high}, make("title", {}, "warm-up, left out of the figures")));
+        height: this.bottom - this.high}, make("title", {}, "warm-up, excluded from statistics")));
     }
     this.axes(svg, wide);
     if (stacked) this.stack(svg, all);
@@ -163,7 +163,7 @@ class Plot {
         d: this.path(columns, c => c.to, c => c.from)}));
     });
   }
-  // Frames whose time is in no figure.
+  // Frames that timing statistics exclude.
   marks(svg, first, end) {
     let path = "", last = -1;
     for (const row of Object.keys(rows.apart)) {
@@ -172,7 +172,7 @@ class Plot {
       if (x !== last) path += `M${x} ${this.bottom}v-8`;
       last = x;
     }
-    if (path) svg.append(make("path", {class: "mark", d: path}, make("title", {}, "not in the figures of times")));
+    if (path) svg.append(make("path", {class: "mark", d: path}, make("title", {}, "excluded from timing statistics")));
   }
   level(svg, level, wide) {
     const y = this.y(level.value);
@@ -209,7 +209,7 @@ class Plot {
   }
   say(row, event) {
     const lines = [make("b", {}, nameOf(row))];
-    if (rows.apart[row] !== undefined) lines.push(make("div", {}, "set apart: " + rows.apart[row]));
+    if (rows.apart[row] !== undefined) lines.push(make("div", {}, "excluded: " + rows.apart[row]));
     for (const series of this.data.series) if (series.v[row] !== null)
       lines.push(make("div", {}, series.name + ": " + withUnit(series.v[row], this.data.unit)));
     this.readout.replaceChildren(...lines);
@@ -234,7 +234,7 @@ function hover(row, plot, event) {
   }
   if (row !== null) plot.say(row, event);
 }
-// Never less than ten rows.
+// At least ten rows stay visible.
 function zoom(wanted) {
   let first = rowAt(wanted[0]), end = rowAt(wanted[1]);
   while (end - first < Math.min(10, count)) { first = Math.max(first - 1, 0); end = Math.min(end + 1, count); }
@@ -268,7 +268,7 @@ function drawDistribution() {
   const place = figure.querySelector(".drawing"), series = plots[0].data.series.slice(0, rows.times);
   const sorted = series.map((_, i) => timesInView(i)), most = Math.max(...sorted.map(s => s.length));
   const note = figure.querySelector(".note");
-  if (most < 2) { place.replaceChildren(); note.textContent = "Fewer than two timed frames are in view.";
+  if (most < 2) { place.replaceChildren(); note.textContent = "Fewer than two timed frames are visible.";
     figure.querySelector(".percentiles").replaceChildren(); return; }
   const low = Math.min(...sorted.map(s => s[0] ?? Infinity));
   const high = Math.max(...sorted.map(s => s.length ? Math.min(s.at(-1), 1.5 * percentile(s, .99)) : 0), low + 1e-3);
@@ -307,7 +307,7 @@ function drawDistribution() {
     cell("td", digits(sorted[i].at(-1))), cell("td", digits(sorted[i].reduce((a, b) => a + b, 0) / sorted[i].length)))));
   figure.querySelector(".percentiles").replaceChildren(table);
   const beyond = Math.max(...sorted.map(s => s.filter(ms => ms > high).length));
-  note.textContent = `${most} frames in view, after the warm-up, without those set apart.` +
+  note.textContent = `${most} frames in view, without warm-up and excluded frames.` +
     (beyond ? ` ${beyond} slower than ${digits(high)} ms ${beyond === 1 ? "is" : "are"} off the scale.` : "") +
     (rows.every > 1 ? ` Each is the slowest of ${rows.every}: percentiles are higher than those of all frames.` : "");
 }
@@ -340,12 +340,12 @@ function pick(row) {
   if (row >= 0) fill(row);
   for (const plot of plots) plot.draw();
 }
-// Whether several plots have a series of this name.
+// True if several plots have a series of this name.
 const shared = name => plots.filter(p => p.data.kind !== "stacked" && p.data.series.some(s => s.name === name)).length > 1;
 function fill(row) {
   const line = (name, text) => make("tr", {}, make("th", {}, name), make("td", {}, text));
   const figures = [];
-  if (rows.apart[row] !== undefined) figures.push(line("set apart", rows.apart[row] + ": in no figure of times"));
+  if (rows.apart[row] !== undefined) figures.push(line("excluded", rows.apart[row] + ": not in timing statistics"));
   for (const plot of plots) if (plot.data.kind !== "stacked")
     for (const s of plot.data.series) if (s.v[row] !== null)
       figures.push(line(shared(s.name) ? s.name + ": " + plot.data.title : s.name, withUnit(s.v[row], plot.data.unit)));
@@ -353,21 +353,21 @@ function fill(row) {
   const columns = make("div", {class: "columns"}, make("div", {}, make("h3", {}, "Figures"), table("", figures)));
   const parts = rows.parts.filter(p => p.v[row] > 0).sort((a, b) => b.v[row] - a.v[row]);
   const longest = parts[0]?.v[row] ?? 1;
-  if (parts.length) columns.append(make("div", {}, make("h3", {}, "Where its time went, slowest first"), table("bars",
+  if (parts.length) columns.append(make("div", {}, make("h3", {}, "Time by part, slowest first"), table("bars",
     parts.slice(0, 8).map(p => make("tr", p.name.includes("waiting") ? {class: "wait"} : {}, make("td", {}, p.name),
       make("td", {}, make("div", {class: "bar", style: `width:${100 * p.v[row] / longest}%`})), make("td", {}, withUnit(p.v[row], p.unit)))))));
   if (rows.pictures[row] !== undefined) {
-    const name = rows.pictures[row], picture = make("img", {alt: "the picture of this frame"});
+    const name = rows.pictures[row], picture = make("img", {alt: "the image of this frame"});
     const box = make("div", {}, make("h3", {}, "Picture: " + name), picture);
-    picture.addEventListener("error", () => picture.replaceWith(make("p", {class: "note"}, "It is not beside this page.")));
+    picture.addEventListener("error", () => picture.replaceWith(make("p", {class: "note"}, "The image file is missing.")));
     picture.setAttribute("src", encodeURIComponent(name));
     columns.append(box);
   } else if (Object.keys(rows.pictures).length) {
     const nearest = Object.keys(rows.pictures).map(Number).reduce((a, b) => Math.abs(b - row) < Math.abs(a - row) ? b : a);
-    columns.append(make("div", {}, make("h3", {}, "Picture"), button("The nearest is that of frame " + rows.n[nearest], () => pick(nearest))));
+    columns.append(make("div", {}, make("h3", {}, "Image"), button("Nearest image: frame " + rows.n[nearest], () => pick(nearest))));
   }
   panel.replaceChildren(make("div", {class: "inner"}, make("header", {}, make("b", {}, nameOf(row)),
-    button("‹ before", () => pick(Math.max(row - 1, 0))), button("next ›", () => pick(Math.min(row + 1, count - 1))),
+    button("‹ previous", () => pick(Math.max(row - 1, 0))), button("next ›", () => pick(Math.min(row + 1, count - 1))),
     button("Close", () => pick(-1))), columns));
 }
 document.addEventListener("keydown", event => {

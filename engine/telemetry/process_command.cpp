@@ -16,7 +16,7 @@ bool is_plain(char c) {
   return letter || std::string_view("-_./=,:+%@").find(c) != std::string_view::npos;
 }
 
-// In single quotes where a shell would read it otherwise.
+// Puts a word in single quotes if a shell would interpret it otherwise.
 std::string quoted(std::string_view word) {
   if (!word.empty() && std::ranges::all_of(word, is_plain)) return std::string(word);
   std::string text = "'";

@@ -1,5 +1,5 @@
-// The command line of this process, for people who read a report. Not for programs to parse. Linux.
-// Any thread; each call reads a file.
+// Command line of this process, for readers of a report. Not for programs to parse. Linux. Any
+// thread; each call reads a file.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace psygen::telemetry {
 
-// The program and its arguments as they would be typed into a shell, at most 2,000 bytes of them.
-// Empty when /proc cannot be read.
+// The program and its arguments as typed into a shell, at most 2,000 bytes. Empty if /proc cannot
+// be read.
 std::string process_command();
 
-// The same of words that each end in a zero byte, as /proc has them.
+// Formats zero-terminated words, as /proc stores them.
 std::string shell_text(std::string_view words);
 
 }  // namespace psygen::telemetry

@@ -6,7 +6,7 @@
 namespace psygen::telemetry {
 namespace {
 
-// Lines look like "VmHWM:     1234 kB".
+// Lines have the form "VmHWM:     1234 kB".
 Measured<std::uint64_t> status_field(const std::string& name) {
   std::ifstream status("/proc/self/status");
   std::string key;
@@ -15,7 +15,7 @@ Measured<std::uint64_t> status_field(const std::string& name) {
     if (key == name && status >> kibibytes) return kibibytes * 1024;
     std::getline(status, key);
   }
-  return Measured<std::uint64_t>::missing("/proc/self/status has no line " + name);
+  return Measured<std::uint64_t>::missing("/proc/self/status has no field " + name);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Memory of this process as the operating system counts it. Not the engine's own count (cache,
+// Memory of this process as the operating system counts it, unlike the engine's own counts (cache,
 // pools). Linux. Any thread; each call reads a file.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace psygen::telemetry {
 
-// The largest resident set so far, in bytes. Missing when /proc cannot be read.
+// Largest resident set so far, in bytes. Missing if /proc cannot be read.
 Measured<std::uint64_t> peak_rss_bytes();
 
 }  // namespace psygen::telemetry

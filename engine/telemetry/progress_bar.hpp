@@ -1,5 +1,5 @@
 // A progress bar on a terminal: one line that is rewritten at most ten times a second and shows the
-// time left. Writes nothing when the output is not a terminal, which keeps logs and pipes clean.
+// remaining time. Writes nothing if the output is not a terminal, which keeps logs and pipes clean.
 // Not a log. One thread.
 #pragma once
 
@@ -9,23 +9,23 @@
 
 namespace psygen::telemetry {
 
-// Where the bar is drawn. `write` is called only when `interactive`.
+// The terminal of a bar. `write` is called only if `interactive`.
 struct Terminal {
   bool interactive = false;
   int columns = 80;  // width in characters
   std::function<void(std::string_view)> write;
 };
 
-// Standard error; interactive when it is a terminal that understands carriage returns.
+// Standard error; interactive if it is a terminal that supports carriage returns.
 Terminal stderr_terminal();
 
-// The bar of one task. The clock starts at the first update.
+// Progress bar of one task. The clock starts at the first update.
 class ProgressBar {
  public:
-  // `total` is in any unit, e.g. frames or blocks; at 0 or less only the label and the time are
-  // shown.
+  // `total` has any unit, such as frames or blocks; at 0 or less, the bar shows only the label and
+  // the time.
   ProgressBar(Terminal terminal, std::string label, double total);
-  // Finishes.
+  // Calls finish().
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -33,7 +33,7 @@ class ProgressBar {
   // Draws `done` of `total`. `now_s` is core::monotonic_seconds() (the default) or a test's clock.
   void update(double done, double now_s);
   void update(double done);
-  // Removes the line; updates have no effect from then on. A second call does nothing.
+  // Removes the line; later updates have no effect. A second call does nothing.
   void finish();
 
  private:

@@ -1,8 +1,8 @@
-// report.html: one self-contained page about a run, for people. Headline figures, facts, and plots
-// of frame time, the picture's error, systems, missing geometry, cache and modelers over the
-// flight, with zoom, values, and each frame whole. Without external resources but the run's
-// pictures beside it; follows the reader's light or dark theme; without scripts the figures can be
-// read, not the plots. Not for programs: summary.json is. Pure, apart from writing.
+// report.html: a self-contained page about a run, for people. Shows headline numbers, facts, and
+// plots of frame time, screen-space error, systems, missing geometry, cache and modelers over the
+// flight, with zoom, values, and details of each frame. Needs no external resources except the
+// run's images next to it; follows the reader's light or dark theme. Without scripts the numbers
+// are readable, but not the plots. Programs read summary.json. Pure, apart from writing.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace psygen::telemetry {
 
-// The page. At most 20,000 frames are in it: of longer flights every nth, the slowest of so many.
+// The page. It contains at most 20,000 frames: of longer flights, the slowest of every n frames.
 std::string report_html(const FrameLog& log, const Summary& summary);
 
 // Writes the page to a file. Fails with kIo and the path.

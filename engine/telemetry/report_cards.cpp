@@ -1,5 +1,5 @@
-// The boxes at the top of report.html. The picture is green only when nothing is wrong with it
-// (verdict.hpp); anything else that can be wrong is amber, red or without colour.
+// Boxes at the top of report.html. The image box is green only if the verdict finds no fault
+// (verdict.hpp); other boxes are amber, red or neutral.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::string card(std::string_view state, std::string_view label, std::string_vie
       state, escaped(label), value, escaped(unit), detail);
 }
 
-// Escaped; command-line options do not break over two lines.
+// Escapes text; command-line options do not break over two lines.
 std::string sentence_html(const std::string& sentence) {
   std::string html;
   std::size_t done = 0;
@@ -44,9 +44,9 @@ std::string sentence_html(const std::string& sentence) {
   return html + escaped(sentence.substr(done));
 }
 
-// The verdict in sentences.
+// Formats the verdict as sentences.
 std::string verdict_html(const Verdict& verdict) {
-  std::string html = fmt::format("<section class=\"verdict {}\"><b>Picture: {}</b>\n",
+  std::string html = fmt::format("<section class=\"verdict {}\"><b>Image: {}</b>\n",
                                  class_of(verdict.grade), escaped(verdict.headline));
   for (const std::string& reason : verdict.reasons)
     html += fmt::format("<p>{}</p>\n", sentence_html(reason));
@@ -57,7 +57,7 @@ std::string verdict_html(const Verdict& verdict) {
 
 std::string speed_cards(const Summary& s) {
   const bool a_hitch = s.hitches.value.value_or(0) > 0;
-  constexpr double kMissed = 1.05;  // times the requested frame time
+  constexpr double kMissed = 1.05;  // ratio to the requested frame time
   const bool missed = s.run.target_fps.has_value() && s.frame_ms.p50.has_value() &&
                       *s.frame_ms.p50 > kMissed * 1000.0 / *s.run.target_fps;
   const std::string wanted =
@@ -70,14 +70,14 @@ std::string speed_cards(const Summary& s) {
   html += card(a_hitch ? "bad" : "", "Hitches", shown(s.hitches, whole), "",
                shown(s.stutter_percent, percent_text) + " of the time in stutter");
   html += card("", "Waiting, median frame", shown(s.wait_ms.all.p50, three_digits), "ms",
-               shown(s.gpu_ms.p50, ms_text) + " of work on the device");
+               shown(s.gpu_ms.p50, ms_text) + " of GPU time");
   return html;
 }
 
 std::string resolution_text(const Summary& s) {
   const Figure& least = s.detail.resolution_min;
   if (!least.has_value() || *least >= 1) return "";
-  return fmt::format("; resolution {} %, {} % at worst",
+  return fmt::format("; render scale {} %, {} % at worst",
                      shown(s.detail.resolution_p50, [](double v) { return three_digits(100 * v); }),
                      three_digits(100 * *least));
 }
@@ -89,27 +89,27 @@ std::string picture_cards(const Summary& s, Grade grade) {
   const std::string of = fmt::format("of {}", s.run.measured_frames);
   std::string html;
   html += card(a_hole ? "bad" : good, "Frames with a hole", shown(s.missing.frames, whole), of,
-               "visible to drawn, p99: " + shown(s.missing.time_to_visible_ms.p99, ms_text));
+               "time to visible, p99: " + shown(s.missing.time_to_visible_ms.p99, ms_text));
   html += card(coarse && grade != Grade::kGood ? class_of(grade) : good, "Frames too coarse",
                shown(s.missing.coarse_frames, whole), of,
-               "worst: " + shown(s.missing.coarse_max_percent, percent_text) + " of the picture");
+               "worst: " + shown(s.missing.coarse_max_percent, percent_text) + " of the image");
   html += card(s.detail.max_pixels.has_value() && *s.detail.max_pixels > 1.005 * s.run.error_pixels
                    ? "fair"
                    : good,
-               "Error of levels of detail", shown(s.detail.p50_pixels, three_digits), "pixels",
-               "at most " + shown(s.detail.max_pixels, three_digits) + "; asked for " +
+               "Error of LODs", shown(s.detail.p50_pixels, three_digits), "pixels",
+               " maximum " + shown(s.detail.max_pixels, three_digits) + "; requested " +
                    fmt::format("{:g}", s.run.error_pixels) + resolution_text(s));
   return html;
 }
 
 std::string world_card(const Summary& s) {
   if (!s.world.endless() || s.world.block_m <= 0) {
-    return card("", "The whole world, triangles", shown(s.world.triangles, count_text), "",
+    return card("", "Whole world, triangles", shown(s.world.triangles, count_text), "",
                 shown(s.world.bytes_paper, size_text) + " in the paper's format");
   }
-  return card("", "A square kilometre, triangles",
+  return card("", "One square kilometre, triangles",
               count_text(s.world.per_km2(s.world.block_triangles)), "",
-              size_text(s.world.per_km2(s.world.block_bytes)) + "; the world has no end");
+              size_text(s.world.per_km2(s.world.block_bytes)) + "; the world is endless");
 }
 
 }  // namespace
@@ -119,10 +119,11 @@ std::string report_cards(const Summary& s) {
   const bool over = s.cache.peak_bytes.has_value() && *s.cache.peak_bytes > s.cache.budget_bytes;
   std::string html = verdict_html(verdict) + "<div class=\"cards\">\n";
   html += speed_cards(s) + picture_cards(s, verdict.grade);
-  html += card(over ? "bad" : "", "Largest cache", shown(s.cache.peak_bytes, bytes_text), "",
+  html += card(over ? "bad" : "", "Cache, peak", shown(s.cache.peak_bytes, bytes_text), "",
                "of a budget of " + bytes_text(static_cast<double>(s.cache.budget_bytes)));
-  html += card("", "Triangles made per second", shown(s.synthesis.triangles_per_second, count_text),
-               "", "by a busy modeler; " + shown(s.synthesis.models, count_text) + " models");
+  html += card("", "Triangles synthesised per second",
+               shown(s.synthesis.triangles_per_second, count_text), "",
+               "per busy modeler; " + shown(s.synthesis.models, count_text) + " models");
   html += world_card(s);
   html += card("", "Resident memory, peak", shown(s.memory.peak_rss_bytes, bytes_text), "",
                shown(s.draw.triangles_p50, count_text) + " triangles in the median frame");

@@ -1,4 +1,4 @@
-// The tables of report.html.
+// Tables of report.html.
 #include <fmt/format.h>
 
 #include <iterator>
@@ -8,7 +8,7 @@
 namespace psygen::telemetry {
 namespace {
 
-// A titled table of labels (plain) and values (HTML).
+// A titled table of labels (plain text) and values (HTML).
 class Facts {
  public:
   explicit Facts(std::string_view title)
@@ -38,8 +38,8 @@ std::string world_facts(const Summary& s) {
   if (s.world.block_m > 0) {
     facts.add("a block", fmt::format("{:g} m, {} models", s.world.block_m,
                                      three_digits(s.world.block_models)));
-    facts.add("triangles a km²", count_text(s.world.per_km2(s.world.block_triangles)));
-    facts.add("size a km²", size_text(s.world.per_km2(s.world.block_bytes)));
+    facts.add("triangles per km²", count_text(s.world.per_km2(s.world.block_triangles)));
+    facts.add("size per km²", size_text(s.world.per_km2(s.world.block_bytes)));
   }
   facts.add("hash",
             shown(s.hash.world, [&](double) { return fmt::format("{:016x}", *s.hash.world); }));
@@ -60,8 +60,8 @@ std::string run_facts(const Summary& s) {
   facts.add("levels of detail", s.run.lod ? "on" : "off");
   facts.add("fixed step",
             shown(s.run.fixed_step, [](double v) { return fmt::format("{:g} Hz", v); }));
-  facts.add("error asked for", fmt::format("{:g} pixels", s.run.error_pixels));
-  facts.add("frame rate wanted",
+  facts.add("requested error", fmt::format("{:g} pixels", s.run.error_pixels));
+  facts.add("target frame rate",
             shown(s.run.target_fps, [](double v) { return fmt::format("{:g} frames/s", v); }));
   facts.add("length", fmt::format("{} frames, {} s", s.run.frames, three_digits(s.run.seconds)));
   facts.add("warm-up", fmt::format("{:g} s", s.run.warmup_seconds));
@@ -88,18 +88,18 @@ std::string frame_facts(const Summary& s) {
 }
 
 std::string system_facts(const Summary& s) {
-  Facts facts("Where the frame goes, p50 and p99");
+  Facts facts("Parts of a frame, p50 and p99");
   const auto both = [](const Figure& p50, const Figure& p99) {
     return shown(p50, three_digits) + " / " + shown(p99, ms_text);
   };
   for (const SystemTimes& system : s.system_ms)
     facts.add(system.name, both(system.p50, system.p99));
-  facts.add("of render: recording", both(s.record_ms.p50, s.record_ms.p99));
-  facts.add("waiting for the device", both(s.wait_ms.device.p50, s.wait_ms.device.p99));
+  facts.add("render: recording", both(s.record_ms.p50, s.record_ms.p99));
+  facts.add("waiting for the GPU", both(s.wait_ms.device.p50, s.wait_ms.device.p99));
   facts.add("waiting for the window", both(s.wait_ms.acquire.p50, s.wait_ms.acquire.p99));
   facts.add("… presenting", both(s.wait_ms.present.p50, s.wait_ms.present.p99));
-  facts.add("on the device", both(s.gpu_ms.p50, s.gpu_ms.p99));
-  facts.add("… of it shadows, p50", shown(s.gpu_ms.shadows_p50, ms_text));
+  facts.add("GPU", both(s.gpu_ms.p50, s.gpu_ms.p99));
+  facts.add("… shadows, p50", shown(s.gpu_ms.shadows_p50, ms_text));
   return facts.end();
 }
 
@@ -111,7 +111,7 @@ std::string streaming_facts(const Summary& s) {
   cache.add("misses", shown(s.cache.misses, count_text));
   cache.add("evictions", shown(s.cache.evictions, count_text));
   cache.add("regenerations", shown(s.cache.regenerations, count_text));
-  cache.add("prefetched and seen", shown(s.cache.prefetch_hit_percent, percent_text));
+  cache.add("prefetched, then visible", shown(s.cache.prefetch_hit_percent, percent_text));
   Facts synthesis("Synthesis and missing geometry");
   synthesis.add("models", shown(s.synthesis.models, count_text));
   synthesis.add("triangles", shown(s.synthesis.triangles, count_text));
@@ -124,7 +124,7 @@ std::string streaming_facts(const Summary& s) {
   synthesis.add("missing nodes, p99", shown(s.missing.nodes_p99, whole));
   synthesis.add("too coarse, p99", shown(s.missing.coarse_p99_percent, percent_text));
   synthesis.add("missing pixels, worst", shown(s.missing.pixels_max_percent, percent_text));
-  synthesis.add("visible to drawn, p50", shown(s.missing.time_to_visible_ms.p50, ms_text));
+  synthesis.add("time to visible, p50", shown(s.missing.time_to_visible_ms.p50, ms_text));
   return cache.end() + synthesis.end();
 }
 

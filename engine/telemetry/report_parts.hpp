@@ -1,5 +1,5 @@
-// The parts of report.html, and how figures appear in it. Each part is a piece of HTML with its
-// text escaped. Private to engine/telemetry. Pure.
+// Parts of report.html, and formatting of its numbers. Each part is a piece of HTML with escaped
+// text. Private to engine/telemetry. Pure.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,29 +15,29 @@
 
 namespace psygen::telemetry {
 
-// The escaped text of a figure; for a missing one a dash with the reason as its tooltip.
+// Escaped text of a number; for a missing one, a dash with the reason as its tooltip.
 template <class T, class Text>
 std::string shown(const Measured<T>& measured, const Text& text) {
   if (measured.has_value()) return escaped(text(static_cast<double>(*measured)));
   return fmt::format("<span class=\"none\" title=\"{}\">–</span>", escaped(measured.reason));
 }
 
-// The headline figures, each in a box, and whether the picture is as requested.
+// Headline numbers, each in a box, and the verdict on the image.
 std::string report_cards(const Summary& summary);
-// The frames that the rows of the plots stand for. Where there are too many, each is the slowest of
+// Frames that the rows of the plots represent. If there are too many, each is the slowest of
 // `every`.
 struct ShownFrames {
   std::size_t every = 1;
-  std::vector<std::size_t> frames;  // by their place in the log, ascending
+  std::vector<std::size_t> frames;  // positions in the log, ascending
 };
 ShownFrames shown_frames(const FrameLog& log);
-// Takes a plot's values of all frames to those of the rows: of peaks the largest of each row's.
+// Reduces a plot's values of all frames to those of the rows; a row of peaks has the largest value.
 void thin(Plot& plot, const ShownFrames& shown);
-// What is known of the rows beside the plots.
+// Data of the rows besides the plots.
 PageRows page_rows(const FrameLog& log, const Summary& summary, const ShownFrames& shown);
 // All plots over the flight's time.
 std::string report_plots(const FrameLog& log, const Summary& summary);
-// Tables of all other figures.
+// Tables of all other numbers.
 std::string report_facts(const Summary& summary);
 
 }  // namespace psygen::telemetry

@@ -21,7 +21,7 @@ std::string legend(const Plot& plot) {
   return text + "</div>";
 }
 
-// What the script draws.
+// Data for the script.
 std::string data(const Plot& plot) {
   constexpr std::array<std::string_view, 3> kKinds = {"line", "peaks", "stacked"};
   std::string text = fmt::format(

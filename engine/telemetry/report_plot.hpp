@@ -1,5 +1,5 @@
-// One plot of a page: values over time, as a figure whose data the page's script (page_script.hpp)
-// draws. Knows nothing of frames or figures. Pure; linear in the values.
+// One plot of a page: values over time, as a figure element whose data the page's script
+// (page_script.hpp) draws. Independent of frames. Pure; linear in the values.
 #pragma once
 
 #include <cstdint>
@@ -10,52 +10,52 @@
 
 namespace psygen::telemetry {
 
-// How the series of a plot are drawn. Where several rows share a pixel:
+// Drawing style of a plot's series. If several rows share a pixel:
 enum class PlotKind : std::uint8_t {
-  kLine,     // their mean, with a band from the lowest to the highest value
-  kPeaks,    // the highest value, filled
-  kStacked,  // means of the series stacked on each other
+  kLine,     // their mean, with a band from minimum to maximum
+  kPeaks,    // the maximum, filled
+  kStacked,  // means of the series, stacked
 };
 
 // One quantity over time.
 struct PlotSeries {
   std::string name;
-  int colour = 0;              // of the palette in page_style.cpp, 1 … 8; 0 and 9 are greys
-  std::vector<double> values;  // one per row of the page; not finite: no value
+  int colour = 0;              // palette index of page_style.cpp, 1 … 8; 0 and 9 are greys
+  std::vector<double> values;  // one per row of the page; non-finite: missing
 };
 
-// A dashed horizontal line with a label at its right end, just above or below its height.
+// A dashed horizontal line with a label at its right end, just above or below it.
 struct PlotLevel {
   std::string label;
   double value = 0;
   bool label_below = false;
 };
 
-// What is drawn.
+// A plot.
 struct Plot {
   std::string title;
-  std::string unit;  // "ms"; at the axis and after values
-  std::string note;  // a sentence below the plot; may be empty
+  std::string unit;  // at the axis and after values
+  std::string note;  // text below the plot; may be empty
   PlotKind kind = PlotKind::kLine;
   std::vector<PlotSeries> series;
   std::vector<PlotLevel> levels;
-  double top = 0;      // of the axis, higher values are cut off; 0: from the data
-  bool zooms = true;   // the axis follows what a zoomed plot shows; else `top` stays
-  bool small = false;  // half as high as others
+  double top = 0;      // upper end of the axis, higher values are cut off; 0: from the data
+  bool zooms = true;   // the axis follows the zoomed range; otherwise `top` stays
+  bool small = false;  // half the height of other plots
 };
 
 // A <figure> element. All text is escaped.
 std::string plot_html(const Plot& plot);
 
-// The step between the ticks of an axis: 1, 2 or 5 times a power of ten, such that `range` has at
-// most `steps` steps. Ranges below 1e-12 count as 1e-12.
+// Step between the ticks of an axis: 1, 2 or 5 times a power of ten, so that `range` has at most
+// `steps` steps. Ranges below 1e-12 count as 1e-12.
 double nice_step(double range, double steps);
 
-// The text with &, <, >, " and ' written as entities.
+// Escapes &, <, >, " and ' as entities.
 std::string escaped(std::string_view text);
 
-// Of JSON inside of a <script>: a text with its quotes, in which no tag can begin, and a list of
-// numbers with six digits. Numbers that are not finite are null.
+// JSON for a <script> element: a quoted text that cannot start a tag, and a list of numbers with
+// six digits. Non-finite numbers are null.
 std::string json_text(std::string_view text);
 std::string json_numbers(std::span<const double> values);
 

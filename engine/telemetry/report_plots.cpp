@@ -1,4 +1,4 @@
-// The plots of report.html.
+// Plots of report.html.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::vector<double> column(const FrameLog& log, const Field& field) {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-// A value for each timed frame, no value for frames that are set apart.
+// One value per timed frame; missing for excluded frames.
 template <class Field>
 std::vector<double> timed_column(const FrameLog& log, const Field& field) {
   return column(log, [&](const FrameRecord& r) {
@@ -35,12 +35,12 @@ std::vector<double> timed_column(const FrameLog& log, const Field& field) {
   });
 }
 
-// About the frames whose time is not shown.
+// Adds a note about the excluded frames.
 void tell_apart(const FrameLog& log, const Summary& s, Plot& plot) {
   if (std::ranges::all_of(log.frames(), [](const auto& r) { return r.apart == Apart::kNo; }))
     return;
   const std::string text = left_out_text(s);
-  plot.note = text.empty() ? "Marked frames are within the warm-up." : text + " They are marked.";
+  plot.note = text.empty() ? "Marked frames belong to the warm-up." : text + " They are marked.";
 }
 
 Plot frame_time_plot(const FrameLog& log, const Summary& s) {
@@ -49,9 +49,8 @@ Plot frame_time_plot(const FrameLog& log, const Summary& s) {
   plot.unit = "ms";
   plot.series = {{"frame", 1, timed_column(log, [](const auto& r) { return r.frame_ms; })}};
   if (s.gpu_ms.p50.has_value()) {
-    plot.series.push_back({"on the device", 2, timed_column(log, [](const auto& r) {
-                             return r.gpu_ms.value_or(kNothing);
-                           })});
+    plot.series.push_back(
+        {"GPU", 2, timed_column(log, [](const auto& r) { return r.gpu_ms.value_or(kNothing); })});
   }
   tell_apart(log, s, plot);
   if (s.frame_ms.p50.has_value()) {
@@ -60,7 +59,7 @@ Plot frame_time_plot(const FrameLog& log, const Summary& s) {
   }
   if (!s.frame_ms.p99.has_value()) return plot;
   plot.levels.push_back({fmt::format("p99 {}", ms_text(*s.frame_ms.p99)), *s.frame_ms.p99, false});
-  // A few slow frames must not flatten the rest.
+  // A few slow frames must not flatten the others.
   const double limit = std::max(1.6 * *s.frame_ms.p99, 2.5 * *s.frame_ms.p50);
   double slowest = 0;
   std::size_t above = 0;
@@ -82,7 +81,7 @@ double sum_of(const std::vector<double>& values) {
                          [](double sum, double v) { return std::isfinite(v) ? sum + v : sum; });
 }
 
-// The systems that take most time, and all others as one.
+// The slowest systems, and the sum of all others.
 std::vector<PlotSeries> system_series(const FrameLog& log) {
   constexpr std::size_t kShown = 5;
   constexpr int kOthersColour = 8;
@@ -114,7 +113,7 @@ std::vector<PlotSeries> system_series(const FrameLog& log) {
 
 Plot systems_plot(const FrameLog& log, const Summary& s) {
   Plot plot;
-  plot.title = "Where the frame goes: systems of the tick, and waiting";
+  plot.title = "Parts of a frame: systems of the tick, and waiting";
   plot.unit = "ms";
   plot.kind = PlotKind::kStacked;
   plot.series = system_series(log);
@@ -126,14 +125,14 @@ Plot systems_plot(const FrameLog& log, const Summary& s) {
   }
   for (double& value : rest)
     value = std::isfinite(value) ? std::max(value, 0.0) : value;
-  plot.series.push_back({"the rest (poses, plugins)", 7, std::move(rest)});
-  plot.series.push_back({"waiting for the device", 0,
+  plot.series.push_back({"other (poses, plugins)", 7, std::move(rest)});
+  plot.series.push_back({"waiting for the GPU", 0,
                          timed_column(log, [](const auto& r) { return r.device_wait_ms; })});
   const auto window_ms = [](const FrameRecord& r) { return r.acquire_ms + r.present_ms; };
   if (std::ranges::any_of(log.frames(), [&](const auto& r) { return window_ms(r) > 0; }))
     plot.series.push_back({"presenting, waiting for the window", 9, timed_column(log, window_ms)});
   if (log.frames().size() > 0 && std::isnan(log.frames().front().device_wait_ms))
-    plot.note = "The virtual clock knows no times of systems.";
+    plot.note = "The virtual clock does not measure systems.";
   // The axis fits nearly all frames, as in the plot of frame time.
   if (s.frame_ms.p99.has_value()) plot.top = 1.25 * *s.frame_ms.p99;
   tell_apart(log, s, plot);
@@ -142,12 +141,12 @@ Plot systems_plot(const FrameLog& log, const Summary& s) {
 
 Plot coarse_plot(const FrameLog& log, const Summary& s) {
   Plot plot;
-  plot.title = "Picture: what of it is missing or too coarse";
-  plot.unit = "% of the picture";
+  plot.title = "Missing or too coarse part of the image";
+  plot.unit = "% of the image";
   plot.kind = PlotKind::kPeaks;
   plot.series = {
       {"drawn too coarse", 4, column(log, [](const auto& r) { return r.too_coarse_percent; })},
-      {"missing, or over a level too coarse (estimate)", 6,
+      {"missing, or more than one level too coarse (estimate)", 6,
        column(log, [](const auto& r) { return r.missing_pixels_percent; })}};
   plot.levels = {{fmt::format("{:g} %", kCoarsePercent), kCoarsePercent, false}};
   double largest = 0;
@@ -165,7 +164,7 @@ Plot coarse_plot(const FrameLog& log, const Summary& s) {
 
 Plot missing_plot(const FrameLog& log) {
   Plot plot;
-  plot.title = "Missing geometry: nodes in view that are not drawn as wanted";
+  plot.title = "Missing geometry: nodes in view without the wanted mesh";
   plot.unit = "nodes";
   plot.kind = PlotKind::kPeaks;
   plot.series = {{"too coarse", 4, column(log, [](const auto& r) { return r.coarse_nodes; })},
@@ -176,31 +175,32 @@ Plot missing_plot(const FrameLog& log) {
       largest = std::max(largest, value);
   }
   if (largest < 5) plot.top = 5;
-  if (largest == 0) plot.note = "Nothing was missing in any frame.";
+  if (largest == 0) plot.note = "No frame had missing geometry.";
   return plot;
 }
 
-// The error that levels of detail may have: what the frame times above are bought with.
+// Allowed error of LODs, which trades quality for frame time.
 Plot error_plot(const FrameLog& log, const Summary& s) {
   Plot plot;
-  plot.title = "Error of the picture that these times bought";
+  plot.title = "Allowed screen-space error";
   plot.unit = "pixels";
   plot.small = true;
   plot.series = {{"error", 5, column(log, [](const auto& r) { return r.error_pixels; })}};
   if (s.run.error_pixels > 0)
-    plot.levels = {{fmt::format("asked for {:g}", s.run.error_pixels), s.run.error_pixels, true}};
-  plot.note = "What levels of detail may be wrong by. A larger error makes frames faster.";
+    plot.levels = {{fmt::format("requested {:g}", s.run.error_pixels), s.run.error_pixels, true}};
+  plot.note = "Allowed error of LODs. A larger error makes frames faster.";
   return plot;
 }
 
-// The share of the picture's resolution that the landscape had.
+// Render scale of the landscape.
 Plot resolution_plot(const FrameLog& log) {
   Plot plot;
-  plot.title = "Resolution of the landscape";
+  plot.title = "Render scale of the landscape";
   plot.unit = "%";
   plot.small = true;
   plot.series = {{"resolution", 5, column(log, [](const auto& r) { return 100 * r.resolution; })}};
-  plot.note = "Given up before shapes where frames take too long, and scaled up.";
+  plot.note =
+      "Lowered before geometric detail if frames take too long; the image is then upscaled.";
   return plot;
 }
 
@@ -223,8 +223,8 @@ Plot cache_plot(const FrameLog& log, const Summary& s) {
   return plot;
 }
 
-// A value for each window of a quarter of a second or a hundredth of the run.
-// `value(frames)` is that of the window's frames, at least one.
+// One value for each window of a quarter of a second or a hundredth of the run. `value(frames)` is
+// that of the window's frames, at least one.
 template <class Value>
 std::vector<double> by_window(const FrameLog& log, const Value& value) {
   const auto frames = log.frames();
@@ -244,10 +244,10 @@ std::vector<double> by_window(const FrameLog& log, const Value& value) {
   return values;
 }
 
-// In virtual time there is one modeler, and it works by the flight's clock.
+// In virtual time there is one modeler, which works by the flight's clock.
 Plot modelers_plot(const FrameLog& log, const Summary& s) {
   Plot plot;
-  plot.title = "Modelers: how busy they were";
+  plot.title = "Modelers: load";
   plot.unit = "% of their time";
   plot.kind = PlotKind::kPeaks;
   plot.small = true;
@@ -265,14 +265,15 @@ Plot modelers_plot(const FrameLog& log, const Summary& s) {
   plot.top = 105;
   plot.zooms = false;
   plot.note =
-      "Processor time of synthesis, of what all modelers could have used. Far below 100 % while "
-      "geometry is missing, they got no processor.";
+      "Processor time of synthesis, relative to the capacity of all modelers. Far below 100 % "
+      "while "
+      "geometry is missing: modelers got no processor.";
   return plot;
 }
 
 Plot synthesis_plot(const FrameLog& log) {
   Plot plot;
-  plot.title = "Synthesis: triangles made per second of the flight, all modelers";
+  plot.title = "Synthesis: triangles per second of the flight, all modelers";
   plot.unit = "million/s";
   plot.kind = PlotKind::kPeaks;
   plot.small = true;

@@ -1,4 +1,4 @@
-// The rows of report.html: which frames they stand for, and what is shown of one frame alone.
+// Rows of report.html: the frames that they represent, and the details of one frame.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMaxRows = 20'000;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// Frames that are set apart come last.
+// Excluded frames come last.
 double slowness(const FrameRecord& record) {
   return record.apart == Apart::kNo ? record.frame_ms : -1;
 }
@@ -33,14 +33,14 @@ std::vector<RowFigure> figures(const FrameLog& log, const ShownFrames& shown) {
     list.push_back({name, unit, column(log, shown, field)});
   };
   add("processor time of the main thread", "ms", [](const auto& r) { return r.main_cpu_ms; });
-  add("shadows on the device", "ms",
+  add("shadows on the GPU", "ms",
       [](const auto& r) { return r.gpu_shadows_ms.value_or(kUnknown); });
   add("triangles", "", [](const auto& r) { return r.triangles; });
   add("draws", "", [](const auto& r) { return r.draws; });
   add("nodes in view", "", [](const auto& r) { return r.nodes_in_view; });
-  add("models made", "", [](const auto& r) { return r.models_synthesised; });
-  add("requests that wait", "", [](const auto& r) { return r.requests_queued; });
-  add("requests refused for lack of memory", "", [](const auto& r) { return r.requests_refused; });
+  add("models synthesised", "", [](const auto& r) { return r.models_synthesised; });
+  add("requests queued", "", [](const auto& r) { return r.requests_queued; });
+  add("requests rejected for lack of memory", "", [](const auto& r) { return r.requests_refused; });
   add("evicted from the cache", "", [](const auto& r) { return r.cache_evictions; });
   return list;
 }
@@ -53,7 +53,7 @@ std::vector<RowFigure> parts(const FrameLog& log, const ShownFrames& shown) {
       ms.push_back(double{log.system_ms(frame)[i]});
     list.push_back({log.systems()[i], "ms", std::move(ms)});
   }
-  list.push_back({"waiting for the device", "ms",
+  list.push_back({"waiting for the GPU", "ms",
                   column(log, shown, [](const auto& r) { return r.device_wait_ms; })});
   list.push_back({"presenting, waiting for the window", "ms",
                   column(log, shown, [](const auto& r) { return r.acquire_ms + r.present_ms; })});

@@ -9,7 +9,7 @@
 namespace psygen::telemetry {
 
 SampleSet::SampleSet(std::size_t capacity) : capacity_(capacity) {
-  PSYGEN_CHECK(capacity > 0, "a sample set needs room for a sample");
+  PSYGEN_CHECK(capacity > 0, "the capacity must be at least one sample");
 }
 
 void SampleSet::add(double time_s, double value) {

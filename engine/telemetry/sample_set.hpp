@@ -1,7 +1,7 @@
-// Samples of one quantity that arrive too often to keep them all: thousands per second, each with
-// the time at which it was taken. Keeps all of them up to its capacity and a uniform choice of them
-// beyond (reservoir sampling, Vitter 1985, algorithm R), deterministically. Memory is bounded;
-// adding is O(1) and allocates only when the set doubles. One thread.
+// Samples of one quantity that arrive too often to store them all: thousands per second, each with
+// its time. Stores all of them up to its capacity and a uniform choice beyond (reservoir sampling,
+// Vitter 1985, algorithm R), deterministically. Memory is bounded; adding is O(1) and allocates
+// only when the set doubles. One thread.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace psygen::telemetry {
 
-// The samples of one run.
+// Samples of one run.
 class SampleSet {
  public:
-  // Keeps at most `capacity` (at least 1) samples.
+  // Stores at most `capacity` (at least 1) samples.
   explicit SampleSet(std::size_t capacity = std::size_t{1} << 17);
 
-  // Adds a sample; one whose time or value is not finite is ignored.
+  // Adds a sample. Ignores one whose time or value is not finite.
   void add(double time_s, double value);
-  // How many samples were added, kept or not.
+  // Number of added samples, stored or not.
   std::uint64_t added_count() const { return added_; }
-  // The kept values taken at `from_s` or later, in no particular order. When samples were dropped,
-  // the largest value of all is still included. O(capacity).
+  // Stored values with a time of at least `from_s`, in no particular order. If samples were
+  // dropped, the largest value of all is still included. O(capacity).
   std::vector<double> values_since(double from_s) const;
 
  private:

@@ -43,7 +43,7 @@ std::vector<Figure> percentiles(std::span<const double> values, std::span<const 
   std::vector<Figure> result;
   result.reserve(ps.size());
   for (const double p : ps) {
-    PSYGEN_ASSERT(p >= 0.0 && p <= 1.0, "a percentile outside 0 to 1");
+    PSYGEN_ASSERT(p >= 0.0 && p <= 1.0, "a percentile must be between 0 and 1");
     const std::size_t needed = count_needed(p);
     result.push_back(sorted.size() < needed ? Figure::missing(too_few(needed, sorted.size()))
                                             : Figure(interpolated(sorted, p)));

@@ -1,6 +1,5 @@
-// The statistics of frame times. The comments here are their definitions: two figures are
-// comparable only when both come from here. Pure functions over milliseconds in the order of the
-// frames.
+// Statistics of frame times. The comments here are their definitions: only numbers computed here
+// are comparable. Pure functions over milliseconds in the order of the frames.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +10,27 @@
 
 namespace psygen::telemetry {
 
-// The percentile p in [0, 1] of values in any order: h = p(N − 1), linear between the neighbours of
-// h. Missing below 1 / (1 − p) values (20 for p95, 100 for p99, 1000 for p999), because no value
-// would lie above it. O(N log N), copies the values.
+// Percentile p in [0, 1] of values in any order: h = p(N − 1), linear between the neighbours of h.
+// Missing below 1 / (1 − p) values (20 for p95, 100 for p99, 1000 for p999), because no value would
+// lie above it. O(N log N), copies the values.
 Figure percentile(std::span<const double> values, double p);
 
 // Several percentiles of the same values, sorted once: O(N log N).
 std::vector<Figure> percentiles(std::span<const double> values, std::span<const double> ps);
 
-// The mean and the largest value. Missing without values. O(N).
+// Mean and largest value. Missing without values. O(N).
 Figure mean(std::span<const double> values);
 Figure largest(std::span<const double> values);
 
 // 1000 / mean of the frames at or above p99, in frames per second.
 Figure low1_fps(std::span<const double> frame_ms);
 
-// Counts frames over 60 ms and over 1.5 times the frame before. A hitch counts only when it ends at
-// least 200 ms after the end of the last one counted. Missing below 2 frames. O(N).
+// Counts frames over 60 ms and over 1.5 times the previous frame. A hitch counts only if it ends at
+// least 200 ms after the end of the last counted one. Missing below 2 frames. O(N).
 Measured<std::uint64_t> hitches(std::span<const double> frame_ms);
 
-// Time in frames longer than 2.5 times the moving average (the mean of up to 60 frames before), in
-// percent of all time. Missing below 2 frames. O(60 N).
+// Time in frames longer than 2.5 times the moving average (the mean of up to 60 previous frames),
+// in percent of the total time. Missing below 2 frames. O(60 N).
 Figure stutter_percent(std::span<const double> frame_ms);
 
 }  // namespace psygen::telemetry

@@ -10,9 +10,9 @@ namespace {
 
 using Frames = std::span<const FrameRecord>;
 
-constexpr double kMinBusySeconds = 0.25;  // below it a share means nothing
+constexpr double kMinBusySeconds = 0.25;  // below it, a fraction is meaningless
 constexpr const char* kVirtual = "the clock is virtual";
-constexpr const char* kNoFrames = "no frame is left after the warm-up";
+constexpr const char* kNoFrames = "no frames after the warm-up";
 
 // One value per frame.
 template <class Field>
@@ -36,7 +36,7 @@ Figure percentile_of_samples(const SampleSet& samples, double warmup_s, double p
   return percentile(samples.values_since(warmup_s), p);
 }
 
-// The value of each frame that has it.
+// Values of the frames that have one.
 std::vector<double> known(Frames frames, std::optional<double> FrameRecord::*field) {
   std::vector<double> values;
   for (const FrameRecord& r : frames)
@@ -54,12 +54,12 @@ Spread spread(Frames frames, const Field& field) {
   return {p[0], p[1]};
 }
 
-// Of these frames nothing is known that a real clock would have told.
+// True if these frames have no measurements of a real clock.
 bool are_virtual(Frames frames) {
   return !frames.empty() && std::isnan(frames.front().main_cpu_ms);
 }
 
-// The frames whose times can be compared.
+// Frames that timing statistics include.
 std::vector<FrameRecord> timed(Frames frames) {
   std::vector<FrameRecord> kept;
   std::copy_if(frames.begin(), frames.end(), std::back_inserter(kept),
@@ -67,7 +67,7 @@ std::vector<FrameRecord> timed(Frames frames) {
   return kept;
 }
 
-// Percentage of the picture that is missing or too coarse.
+// Percentage of the image that is missing or too coarse.
 double coarse_percent(const FrameRecord& r) {
   return std::max(r.missing_pixels_percent, r.too_coarse_percent);
 }
@@ -104,7 +104,7 @@ void summarise_device(Summary& s, Frames frames) {
     return;
   }
   if (ms.empty() && !s.device.timestamps) {
-    const Figure none = Figure::missing("the device has no timestamps");
+    const Figure none = Figure::missing("the GPU has no timestamps");
     s.gpu_ms = {none, none, none, none};
     return;
   }
@@ -112,7 +112,7 @@ void summarise_device(Summary& s, Frames frames) {
               percentile(known(frames, &FrameRecord::gpu_shadows_ms), 0.5)};
 }
 
-// Of the last `measured` frames of the log, those that are timed.
+// Uses the timed frames among the last `measured` frames of the log.
 void summarise_systems(Summary& s, const FrameLog& log, std::size_t measured) {
   const Frames frames = log.frames();
   if (are_virtual(frames)) {
@@ -149,11 +149,11 @@ void summarise_times(Summary& s, Frames frames) {
   summarise_device(s, frames);
 }
 
-// What was drawn, whatever time it took.
+// Statistics of drawing, over all measured frames.
 void summarise_drawing(Summary& s, Frames frames) {
   s.draw.triangles_p50 = percentile(column(frames, [](const auto& r) { return r.triangles; }), 0.5);
   s.draw.draws_p50 = percentile(column(frames, [](const auto& r) { return r.draws; }), 0.5);
-  constexpr double kRaised = 1.005;  // times the requested error
+  constexpr double kRaised = 1.005;  // ratio to the requested error
   const double asked = s.run.error_pixels * kRaised;
   const auto error = column(frames, [](const auto& r) { return r.error_pixels; });
   s.detail.p50_pixels = percentile(error, 0.5);
@@ -212,21 +212,20 @@ void summarise_cache(Summary& s, Frames frames, const FrameLog& log, const RunFa
   s.cache.prefetch_hit_percent = facts.prefetch_hit_percent;
 }
 
-// The share of the modelers' processors that synthesis used, in the frames for which `counts` is
-// true.
+// Fraction of the modelers' processors that synthesis used, in frames for which `counts` is true.
 template <class Counts>
 Figure busy_percent(Frames frames, std::uint32_t modelers, const Counts& counts) {
   double busy_s = 0, real_s = 0;
   for (const FrameRecord& r : frames) {
     if (r.apart == Apart::kPicture)
       return Figure::missing(
-          "modelers go on while a picture is written, which is in no frame's time");
+          "modelers continue while an image is written, which no frame's time includes");
     if (!counts(r)) continue;
     busy_s += r.synthesis_seconds;
     real_s += r.frame_ms * 1e-3;
   }
   if (!(real_s >= kMinBusySeconds) || modelers == 0)
-    return Figure::missing("such frames took too little time together");
+    return Figure::missing("the total time of such frames is too short");
   return 100 * busy_s / (real_s * modelers);
 }
 

@@ -1,6 +1,6 @@
-// The figures of a run, field by field as in summary.json, and how they are made from a frame log
-// and facts that only the caller knows. Plain values; the statistics are in statistics.hpp, the
-// judgement in verdict.hpp. Any thread.
+// Measurements of a run, field by field as in summary.json, computed from a frame log and from
+// facts that only the caller has. Plain values; statistics are defined in statistics.hpp, the
+// verdict in verdict.hpp. Any thread.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 
 namespace psygen::telemetry {
 
-// The name and version of summary.json's format.
+// Name and version of summary.json's format.
 inline constexpr std::string_view kSummarySchema = "psygen.summary/1";
 
-// A measured number of things or bytes.
+// A measured count of items or bytes.
 using Count = Measured<std::uint64_t>;
 
-// The world as it would be if all of it were generated.
+// The complete world, if all of it were synthesised.
 struct WorldFacts {
   std::string name;
   std::uint64_t seed = 0;
@@ -31,15 +31,15 @@ struct WorldFacts {
   // Means over the world's blocks, and a block's side in metres; 0: unknown.
   double block_m = 0, block_models = 0, block_triangles = 0, block_bytes = 0;
 
-  // Whether the world has no end along x or z.
+  // True if the world is endless along x or z.
   bool endless() const { return blocks[0] == 0 || blocks[1] == 0; }
-  // A mean per square kilometre, e.g. per_km2(block_triangles); 0 when a block's side is unknown.
+  // Mean per square kilometre, e.g. per_km2(block_triangles); 0 if a block's side is unknown.
   double per_km2(double of_a_block) const {
     return block_m > 0 ? of_a_block * 1e6 / (block_m * block_m) : 0.0;
   }
 };
 
-// The device that drew.
+// The GPU that drew the run.
 struct DeviceFacts {
   std::string name;
   std::string driver;
@@ -47,34 +47,34 @@ struct DeviceFacts {
   bool timestamps = false;  // it can measure its own time
 };
 
-// What the run was started with.
+// Options of the run.
 struct RunSettings {
-  std::string path;      // name of the camera path; empty: there was none
+  std::string path;      // name of the camera path; empty: none
   std::string paradigm;  // "pla", "amplify", "lazy"
-  std::string policy;    // of the schedule: "deadline", "plp", …
+  std::string policy;    // of scheduling: "deadline", "plp", …
   std::uint32_t modelers = 0;
   std::uint32_t width = 0;   // pixels
   std::uint32_t height = 0;  // pixels
   bool lod = true;
   Figure fixed_step;        // Hz; missing when the flight follows the wall clock
-  double error_pixels = 0;  // requested error of levels of detail
-  Figure target_fps;        // held by raising the error; missing when none is held
-  // For the report alone: the program with its arguments, the quality of the picture by name, and
-  // how far it reaches (0: unknown).
+  double error_pixels = 0;  // requested error of LODs
+  Figure target_fps;        // held by raising the error; missing if none is held
+  // Only for the report: the program with its arguments, the quality preset by name, and the view
+  // distance (0: unknown).
   std::string command = {}, preset = {};
   double view_distance_m = 0;
 };
 
-// What summarise cannot find in the log.
+// Facts that the log does not contain.
 struct RunFacts {
   WorldFacts world;
   DeviceFacts device;
   RunSettings run;
   std::uint64_t cache_budget_bytes = 0;
-  Count cache_peak_bytes;       // when missing: the largest cache_bytes of the log
-  Figure prefetch_hit_percent;  // of models synthesised ahead of time: came into view
-  Figure share_drawn;           // of all triangles synthesised, those of meshes ever drawn
-  Figure floor_ratio;           // median frame ÷ the same draw lists replayed with nothing else
+  Count cache_peak_bytes;       // if missing: the largest cache_bytes of the log
+  Figure prefetch_hit_percent;  // percentage of prefetched models that came into view
+  Figure share_drawn;  // fraction of all synthesised triangles whose meshes were ever drawn
+  Figure floor_ratio;  // median frame ÷ the same draw lists replayed alone
   Count peak_rss_bytes;
   Count world_hash;
   Count path_hash;
@@ -86,7 +86,7 @@ struct FrameTimes {
   Figure mean, p50, p95, p99, p999, max;
 };
 
-// The median and the 99th percentile.
+// Median and 99th percentile.
 struct Spread {
   Figure p50, p99;
 };
@@ -94,36 +94,35 @@ struct Spread {
 // The times of one system of the tick.
 struct SystemTimes {
   std::string name;
-  Figure p50, p99;  // without waiting for the device or the display
+  Figure p50, p99;  // without waiting for the GPU or the display
 };
 
-// A frame counts as too coarse when more than this percentage of its picture is missing or too
-// coarse.
+// A frame counts as too coarse if more than this percentage of its image is missing or too coarse.
 inline constexpr double kCoarsePercent = 1.0;
 
-// All figures of a run. "Measured" frames start after the warm-up; "timed" frames are those of them
-// that nothing sets apart.
+// All statistics of a run. "Measured" frames start after the warm-up; "timed" frames are measured
+// frames without a reason for exclusion.
 struct Summary {
   WorldFacts world;
   DeviceFacts device;
   struct : RunSettings {
     std::uint64_t frames = 0;           // of the whole run
     double seconds = 0;                 // of the whole run, on the flight's clock
-    double warmup_seconds = 0;          // excluded from all figures below
+    double warmup_seconds = 0;          // excluded from all statistics below
     std::uint64_t measured_frames = 0;  // frames after the warm-up
-    // The measured frames that the figures of times are about, and all of them by what sets them
-    // apart.
+    // Number of measured frames in timing statistics, and numbers of measured frames by reason for
+    // exclusion.
     std::uint64_t timed_frames = 0;
     std::array<std::uint64_t, kApartKinds> apart_frames{};  // by Apart; [0] are the timed ones
-    Figure real_seconds;          // wall time of the measured frames together
-    double measured_seconds = 0;  // the same on the flight's clock
+    Figure real_seconds;                                    // wall time of all measured frames
+    double measured_seconds = 0;                            // the same frames on the flight's clock
   } run;
-  // Times, of the timed frames alone.
+  // Times of the timed frames alone.
   FrameTimes frame_ms;
   struct {
     Spread all, device, acquire, present;
   } wait_ms;
-  Spread record_ms;  // of the render system: recording and submitting commands
+  Spread record_ms;  // render system: recording and submitting commands
   struct {
     Figure p50, p99, max, shadows_p50;
   } gpu_ms;  // on the device
@@ -145,10 +144,10 @@ struct Summary {
     } time_to_visible_ms;
   } missing;
   struct {
-    Figure p50_pixels, max_pixels;              // error that levels of detail may have
+    Figure p50_pixels, max_pixels;              // allowed error of LODs
     Figure resolution_p50, resolution_min;      // FrameRecord::resolution
-    Count raised_by_memory, raised_for_target;  // frames in which it was above the requested one
-    Count refused_frames;                       // frames in which something in view got no memory
+    Count raised_by_memory, raised_for_target;  // frames in which the error was raised
+    Count refused_frames;                       // frames in which a visible mesh got no memory
   } detail;
   struct {
     std::uint64_t budget_bytes = 0;
@@ -158,11 +157,11 @@ struct Summary {
   } cache;
   struct {
     Count models, triangles, bytes;
-    Count failed;                 // models of the whole run that could not be synthesised
-    Figure seconds;               // busy time of all modelers together
-    Figure busy_percent;          // the same, as a share of all modelers' real time
-    Figure coarse_busy_percent;   // likewise, in frames more than kCoarsePercent too coarse
-    Figure share_drawn;           // of all triangles of the run, those ever drawn, in [0, 1]
+    Count failed;                 // models of the whole run whose synthesis failed
+    Figure seconds;               // busy time of all modelers
+    Figure busy_percent;          // as a fraction of all modelers' real time
+    Figure coarse_busy_percent;   // in frames more than kCoarsePercent too coarse
+    Figure share_drawn;           // fraction of the run's triangles that were ever drawn, in [0, 1]
     Figure triangles_per_second;  // per busy second of one modeler
     struct {
       Figure p50, p95;
@@ -179,16 +178,16 @@ struct Summary {
   } hash;
 };
 
-// All figures over the frames that start at `warmup_s` or later, on the flight's clock. Pure.
+// Statistics over the frames that start at `warmup_s` or later on the flight's clock. Pure.
 // O(frames log frames).
 Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s);
 
-// summary.json as text, indented by two spaces, with a final newline. A missing figure is null, and
+// summary.json as text, indented by two spaces, with a final newline. A missing number is null, and
 // "reasons" has its reason under the field's path ("frame_ms.p999"). Hashes are strings of 16
-// hexadecimal digits. Bytes of names that are not UTF-8 are replaced.
+// hexadecimal digits. Bytes that are not UTF-8 are replaced.
 std::string to_json(const Summary& summary);
 
-// A table for people on a terminal, at most 78 columns wide, without colours.
+// Table for the terminal, at most 78 columns wide, without colours.
 std::string to_text(const Summary& summary);
 
 // Writes to_json() to a file. Fails with kIo and the path.

@@ -12,12 +12,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Turns figures into values or nulls, and collects the reasons of the nulls.
+// Writes numbers as values or nulls, and collects the reasons of the nulls.
 class Writer {
  public:
   Json figure(const std::string& path, const Figure& figure) {
     if (!figure.has_value()) return missing(path, figure.reason);
-    if (!std::isfinite(*figure)) return missing(path, "the figure is not a finite number");
+    if (!std::isfinite(*figure)) return missing(path, "the value is not a finite number");
     return *figure;
   }
   Json count(const std::string& path, const Count& count) {
@@ -75,7 +75,7 @@ Json picture_json(const Summary& s) {
 }
 
 Json run_json(const Summary& s, Writer& w) {
-  return {{"path", w.text("run.path", s.run.path, "there was no path")},
+  return {{"path", w.text("run.path", s.run.path, "the run had no path")},
           {"paradigm", s.run.paradigm},
           {"policy", s.run.policy},
           {"modelers", s.run.modelers},

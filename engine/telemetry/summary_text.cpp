@@ -13,7 +13,7 @@ std::string share(double value) {
   return percent_text(100 * value);
 }
 
-// Lines of a title, a label and a text; a long text continues on lines of its own.
+// Lines of a title, a label and a text; long texts continue on the next line.
 class Table {
  public:
   void section(std::string_view title) { title_ = title; }
@@ -31,7 +31,7 @@ class Table {
   std::string take() { return std::move(text_); }
 
  private:
-  static constexpr std::size_t kColumns = 48;  // for the text; 78 in all
+  static constexpr std::size_t kColumns = 48;  // for the text; 78 in total
 
   void line(std::string_view label, std::string_view text) {
     fmt::format_to(std::back_inserter(text_), "{:<10} {:<18} {}\n", title_, label, text);
@@ -58,7 +58,7 @@ void add_world(Table& table, const WorldFacts& world) {
   } else {
     const double triangles = world.per_km2(world.block_triangles);
     table.row("if generated",
-              fmt::format("{} triangles, {} a square kilometre, without end", count_text(triangles),
+              fmt::format("{} triangles, {} per square kilometre, endless", count_text(triangles),
                           size_text(world.per_km2(world.block_bytes))));
   }
 }
@@ -67,14 +67,14 @@ void add_run(Table& table, const Summary& s) {
   add_world(table, s.world);
   table.section("run");
   table.row("device", s.device.name);
-  table.row("how", fmt::format("{}, {}, {} modeler{}, {} x {}, levels of detail {}", s.run.paradigm,
-                               s.run.policy, s.run.modelers, s.run.modelers == 1 ? "" : "s",
-                               s.run.width, s.run.height, s.run.lod ? "on" : "off"));
+  table.row("options", fmt::format("{}, {}, {} modeler{}, {} x {}, LOD {}", s.run.paradigm,
+                                   s.run.policy, s.run.modelers, s.run.modelers == 1 ? "" : "s",
+                                   s.run.width, s.run.height, s.run.lod ? "on" : "off"));
   table.row("length",
             fmt::format("{} frame{} in {} s, {} measured after {:g} s of warm-up", s.run.frames,
                         s.run.frames == 1 ? "" : "s", three_digits(s.run.seconds),
                         s.run.measured_frames, s.run.warmup_seconds));
-  if (s.run.timed_frames < s.run.measured_frames) table.row("not timed", left_out_text(s));
+  if (s.run.timed_frames < s.run.measured_frames) table.row("excluded", left_out_text(s));
 }
 
 void add_picture(Table& table, const Summary& s) {
@@ -84,7 +84,7 @@ void add_picture(Table& table, const Summary& s) {
   for (const std::string& reason : verdict.reasons)
     table.row("why", reason);
   for (const std::string& advice : verdict.advice)
-    table.row("what to do", advice);
+    table.row("advice", advice);
 }
 
 void add_frames(Table& table, const Summary& s) {
@@ -105,8 +105,8 @@ void add_frames(Table& table, const Summary& s) {
     return fmt::format("p50 {}, p99 {}", or_dash(of.p50, ms_text), or_dash(of.p99, ms_text));
   };
   table.row("waiting", spread(s.wait_ms.all));
-  table.row("device's time", fmt::format("p50 {}, p99 {}", or_dash(s.gpu_ms.p50, ms_text),
-                                         or_dash(s.gpu_ms.p99, ms_text)));
+  table.row("GPU time", fmt::format("p50 {}, p99 {}", or_dash(s.gpu_ms.p50, ms_text),
+                                    or_dash(s.gpu_ms.p99, ms_text)));
   table.section("systems");
   for (const SystemTimes& system : s.system_ms) {
     table.row(system.name, fmt::format("p50 {}, p99 {}", or_dash(system.p50, ms_text),
@@ -122,7 +122,7 @@ void add_streaming(Table& table, const Summary& s) {
   table.row("pixels",
             fmt::format("p99 {}, worst {}", or_dash(s.missing.pixels_p99_percent, percent_text),
                         or_dash(s.missing.pixels_max_percent, percent_text)));
-  table.row("too coarse", fmt::format("p99 {}, worst {} of the picture",
+  table.row("too coarse", fmt::format("p99 {}, worst {} of the image",
                                       or_dash(s.missing.coarse_p99_percent, percent_text),
                                       or_dash(s.missing.coarse_max_percent, percent_text)));
   table.row("time to visible",

@@ -20,7 +20,7 @@ std::string quoted(const std::string& text) {
 }  // namespace
 
 TraceLog::TraceLog(std::size_t max_spans_per_track) : max_spans_(max_spans_per_track) {
-  PSYGEN_CHECK(max_spans_ > 0, "a trace needs room for a span");
+  PSYGEN_CHECK(max_spans_ > 0, "the capacity must be at least one span");
 }
 
 TraceLog::Track TraceLog::add_ring(std::string_view name, bool is_counter) {
@@ -58,14 +58,15 @@ void TraceLog::add(Ring& ring, const Span& span) {
 
 void TraceLog::add_span(Track track, Name name, double start_s, double end_s,
                         std::uint64_t argument) {
-  PSYGEN_ASSERT(track < rings_.size() && !rings_[track].is_counter, "a span on no track");
-  PSYGEN_ASSERT(name < names_.size(), "a span with a name that was not interned");
+  PSYGEN_ASSERT(track < rings_.size() && !rings_[track].is_counter, "unknown track of a span");
+  PSYGEN_ASSERT(name < names_.size(), "the name of the span was not interned");
   if (!(end_s >= start_s)) return;
   add(rings_[track], {start_s, end_s - start_s, argument, name});
 }
 
 void TraceLog::add_value(Track counter, double time_s, double value) {
-  PSYGEN_ASSERT(counter < rings_.size() && rings_[counter].is_counter, "a value on no counter");
+  PSYGEN_ASSERT(counter < rings_.size() && rings_[counter].is_counter,
+                "unknown counter of a value");
   if (!std::isfinite(time_s) || !std::isfinite(value)) return;
   add(rings_[counter], {time_s, value, kNoArgument, 0});
 }
@@ -105,7 +106,7 @@ void TraceLog::write_ring(core::FileReplacement& file, std::size_t track, double
                     "\"name\":\"thread_sort_index\",\"args\":{{\"sort_index\":{0}}}}}",
                     track, title));
   }
-  // Oldest first: a full ring starts where the next span would be written.
+  // Oldest first: in a full ring, the oldest span is at the next write position.
   const std::size_t first = ring.added > ring.spans.size() ? ring.added % max_spans_ : 0;
   for (std::size_t k = 0; k < ring.spans.size(); ++k) {
     const Span& span = ring.spans[(first + k) % ring.spans.size()];

@@ -1,7 +1,7 @@
-// What happened when: spans on named tracks (the main thread's systems, each modeler's jobs) and
-// counters over time, written as Chrome trace events that Perfetto and chrome://tracing open.
-// Adding is O(1) and allocates only when a track doubles. Memory is bounded: each track keeps its
-// newest spans. Main thread only: modelers return their times with their results.
+// Trace of a run: spans on named tracks (the main thread's systems, each modeler's jobs) and
+// counters over time, written as Chrome trace events for Perfetto and chrome://tracing. Adding is
+// O(1) and allocates only when a track doubles. Memory is bounded: each track keeps its newest
+// spans. Main thread only: modelers return their times with their results.
 #pragma once
 
 #include <cstdint>
@@ -20,37 +20,37 @@ class FileReplacement;
 
 namespace psygen::telemetry {
 
-// The trace of one run.
+// Trace of one run.
 class TraceLog {
  public:
   // Ids of a track or counter, and of a span's name. Valid for this log.
   using Track = std::uint16_t;
   using Name = std::uint16_t;
-  // The argument of a span that has none.
+  // Value for spans without an argument.
   static constexpr std::uint64_t kNoArgument = UINT64_MAX;
 
-  // Keeps at most `max_spans_per_track` (at least 1) spans or values per track.
+  // Stores at most `max_spans_per_track` (at least 1) spans or values per track.
   explicit TraceLog(std::size_t max_spans_per_track = std::size_t{1} << 16);
 
-  // Adds a row of the viewer, for spans or for a counter; rows are shown in the order of creation.
-  // At most 65,535 in all; more end the program.
+  // Adds a row of the viewer, for spans or for a counter, in the order of creation. At most 65,535
+  // in total; more end the program.
   Track add_track(std::string_view name);
   Track add_counter(std::string_view name);
-  // The id of a span's name; the same text gives the same id. At most 65,535 names. Call it outside
-  // the hot path.
+  // Id of a span's name; equal texts have equal ids. At most 65,535 names. Call it outside the hot
+  // path.
   Name intern(std::string_view name);
 
   // Adds a span or a counter's value. Times are core::monotonic_seconds(). Spans of a track may
-  // nest but not overlap. `argument` is shown with the span: a frame's number, a model's key. A
-  // span that ends before it starts and a value that is not finite are ignored.
+  // nest but not overlap. Viewers show `argument` with the span: a frame's number, a model's key.
+  // Ignores spans that end before they start and values that are not finite.
   void add_span(Track track, Name name, double start_s, double end_s,
                 std::uint64_t argument = kNoArgument);
   void add_value(Track counter, double time_s, double value);
 
-  // How many spans and values are kept, and how many newer ones replaced. O(tracks).
+  // Number of spans and values stored, and number replaced by newer ones. O(tracks).
   std::uint64_t kept_count() const;
   std::uint64_t dropped_count() const;
-  // Writes trace.json. The earliest time kept becomes 0. Fails with kIo and the path.
+  // Writes trace.json. The earliest stored time becomes 0. Fails with kIo and the path.
   core::Result<void> write(const std::filesystem::path& path) const;
 
  private:

@@ -1,4 +1,4 @@
-// Figures as people read them: three significant digits, decimal prefixes for counts and sizes of
+// Formats numbers for people: three significant digits, decimal prefixes for counts and sizes of
 // worlds, binary prefixes for memory. For reports and terminals, not for files that programs read.
 // Pure.
 #pragma once
@@ -31,8 +31,8 @@ inline std::string percent_text(double value) {
   return three_digits(value) + " %";
 }
 
-// The value in the largest of `units` of which it has at least one; each unit is `step` times the
-// one before. Without decimals in the first unit, with three digits in the others.
+// The value in the largest of `units` in which it is at least 1; each unit is `step` times the
+// previous one. No decimals in the first unit, three digits in the others.
 inline std::string with_prefix(double value, double step, const std::array<const char*, 6>& units) {
   std::size_t i = 0;
   while (i + 1 < units.size() && std::abs(value) >= step * 0.9995) {
@@ -48,7 +48,7 @@ inline std::string bytes_text(double bytes) {
   return with_prefix(bytes, 1024.0, {"B", "KiB", "MiB", "GiB", "TiB", "PiB"});
 }
 
-// Sizes of data on no particular device, in the decimal units of disks: 8.40 TB.
+// Sizes of data in general, in the decimal units of disks: 8.40 TB.
 inline std::string size_text(double bytes) {
   return with_prefix(bytes, 1000.0, {"B", "kB", "MB", "GB", "TB", "PB"});
 }
@@ -59,7 +59,7 @@ inline std::string count_text(double count) {
                      {"", "thousand", "million", "billion", "trillion", "quadrillion"});
 }
 
-// The value as `text` formats it, or a dash.
+// The value formatted by `text`, or a dash.
 template <class T, class Text>
 std::string or_dash(const Measured<T>& measured, const Text& text) {
   return measured.has_value() ? text(static_cast<double>(*measured)) : std::string("–");

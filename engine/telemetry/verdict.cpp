@@ -10,17 +10,18 @@
 namespace psygen::telemetry {
 namespace {
 
-constexpr double kBusyPercent = 60;      // of the modelers' processors: they have what they need
+// Of the modelers' processors: above it, they had enough processor time.
+constexpr double kBusyPercent = 60;      // o
 constexpr double kFasterThanReal = 1.1;  // flight time over real time
 
-// The missing or too coarse part of the picture, as the grade counts it.
+// Missing or too coarse part of the image, as the grade counts it.
 double coarse_percent(const Summary& s) {
   const auto& m = s.missing;
   return (m.coarse_p99_percent.has_value() ? m.coarse_p99_percent : m.coarse_max_percent)
       .value.value_or(0.0);
 }
 
-// Whether these are more than kRaisedPercent of the frames.
+// True if these are more than kRaisedPercent of the frames.
 bool is_often(const Summary& s, const Count& frames) {
   return static_cast<double>(frames.value.value_or(0)) * 100 >
          kRaisedPercent * static_cast<double>(s.run.measured_frames);
@@ -37,11 +38,11 @@ class Judge {
 
   Verdict verdict() {
     if (s_.run.measured_frames == 0) {
-      verdict_ = {Grade::kUnknown, "not measured", {"No frame is left after the warm-up."}, {}};
+      verdict_ = {Grade::kUnknown, "not measured", {"There are no frames after the warm-up."}, {}};
       if (s_.run.frames > 0) verdict_.advice = {"Fly longer, or with a shorter --warmup."};
       return verdict_;
     }
-    verdict_ = {Grade::kGood, "as asked for", {}, {}};
+    verdict_ = {Grade::kGood, "as requested", {}, {}};
     judge_holes();
     judge_coarseness();
     judge_memory();
@@ -50,7 +51,7 @@ class Judge {
     if (verdict_.grade == Grade::kGood) {
       verdict_.reasons = {
           fmt::format("No frame had a hole, and in 99 % of the frames at most {:g} % of the "
-                      "picture was too coarse.",
+                      "image was too coarse.",
                       kGoodPercent)};
     }
     return std::move(verdict_);
@@ -68,7 +69,7 @@ class Judge {
   void judge_holes() {
     if (s_.missing.frames.value.value_or(0) == 0) return;
     lower(Grade::kPoor, "incomplete",
-          fmt::format("{} had a hole: ground or a model in view was not drawn at all.",
+          fmt::format("{} had a hole: ground or a model in view had no mesh.",
                       frames_text(s_, s_.missing.frames)));
     advise_on_time();
   }
@@ -81,7 +82,7 @@ class Judge {
     const std::string headline =
         fmt::format("{}too coarse{}", poor ? "much " : "", often ? "" : " at times");
     lower(poor ? Grade::kPoor : Grade::kFair, headline,
-          fmt::format("In {} ({} s of {} s of flight) more than {:g} % of the picture was missing "
+          fmt::format("In {} ({} s of {} s of flight) more than {:g} % of the image was missing "
                       "or too coarse, at worst {} %.",
                       frames_text(s_, s_.missing.coarse_frames),
                       or_dash(s_.missing.coarse_seconds, three_digits),
@@ -94,40 +95,39 @@ class Judge {
     return is_often(s_, s_.detail.raised_by_memory) || is_often(s_, s_.detail.refused_frames);
   }
 
-  // Advises on why meshes were not ready in time. When memory is the cause, judge_memory() says so.
+  // Advises on the reason why meshes were late. If memory is the cause, judge_memory() reports it.
   void advise_on_time() {
     if (!verdict_.advice.empty() || lacks_memory()) return;
     const double real_s = s_.run.real_seconds.value.value_or(0);
     if (s_.run.fixed_step.has_value() && s_.run.measured_seconds > kFasterThanReal * real_s) {
       verdict_.advice.push_back(fmt::format(
-          "With a fixed step the flight ran {} times as fast as real time: for {} s of flight the "
-          "modelers had {} s. Use a --fixed-step above {:g} Hz, or none.",
+          "With a fixed step the flight ran {} times as fast as real time: {} s of flight left the "
+          "modelers only {} s. Use a --fixed-step above {:g} Hz, or none.",
           three_digits(s_.run.measured_seconds / std::max(real_s, 1e-9)),
           three_digits(s_.run.measured_seconds), three_digits(real_s), *s_.run.fixed_step));
     }
     const Figure& busy = s_.synthesis.coarse_busy_percent;
     if (busy.has_value() && *busy < kBusyPercent) {
       verdict_.advice.push_back(fmt::format(
-          "In these frames the modelers worked for {} % of the time of {} processor{}; drawing or "
-          "other programs may have had the rest. A smaller --size or a lower --preset leaves them "
+          "In these frames the modelers used {} % of the time of {} processor{}; drawing or "
+          "other programs may have used the rest. A smaller --size or a lower --preset leaves them "
           "more.",
           three_digits(*busy), s_.run.modelers, s_.run.modelers == 1 ? "" : "s"));
     }
     if (verdict_.advice.empty())
-      verdict_.advice.push_back("A slower flight or more --modelers leaves less to make in time.");
+      verdict_.advice.push_back("A slower flight or more --modelers gives synthesis more time.");
   }
 
   std::string error_text() const {
     std::string text =
-        fmt::format("the allowed error was {} pixels in the median and {} at most, not {:g}",
+        fmt::format("the allowed error was {} pixels in the median and {} at most, instead of {:g}",
                     or_dash(s_.detail.p50_pixels, three_digits),
                     or_dash(s_.detail.max_pixels, three_digits), s_.run.error_pixels);
     const Figure& least = s_.detail.resolution_min;
     if (least.has_value() && *least < 1)
-      text +=
-          fmt::format("; the landscape had {} % of the resolution in the median and {} % at worst",
-                      three_digits(100 * s_.detail.resolution_p50.value.value_or(1)),
-                      three_digits(100 * *least));
+      text += fmt::format("; the render scale was {} % in the median and {} % at worst",
+                          three_digits(100 * s_.detail.resolution_p50.value.value_or(1)),
+                          three_digits(100 * *least));
     return text;
   }
 
@@ -136,7 +136,7 @@ class Judge {
     const auto& d = s_.detail;
     const bool raised = d.raised_by_memory.value.value_or(0) >= d.refused_frames.value.value_or(0);
     lower(
-        Grade::kFair, "coarser than asked for",
+        Grade::kFair, "coarser than requested",
         fmt::format("The geometry budget was too small in {}: {}.",
                     frames_text(s_, raised ? d.raised_by_memory : d.refused_frames), error_text()));
     verdict_.advice.push_back(fmt::format("Raise --budget above {}.",
@@ -145,22 +145,21 @@ class Judge {
 
   void judge_target() {
     if (!is_often(s_, s_.detail.raised_for_target)) return;
-    lower(Grade::kFair, "coarser than asked for",
-          fmt::format("To hold {:g} frames/s the picture was made coarser in {}: {}.",
+    lower(Grade::kFair, "coarser than requested",
+          fmt::format("To hold {:g} frames/s, detail was reduced in {}: {}.",
                       s_.run.target_fps.value.value_or(0),
                       frames_text(s_, s_.detail.raised_for_target), error_text()));
     verdict_.advice.push_back(
-        "A lower --target-fps, a smaller --size or a lower --preset allows finer pictures.");
+        "A lower --target-fps, a smaller --size or a lower --preset allows more detail.");
   }
 
   void judge_failures() {
     const std::uint64_t failed = s_.synthesis.failed.value.value_or(0);
     if (failed == 0) return;
     lower(Grade::kPoor, "incomplete",
-          fmt::format(
-              "{} model{} could not be synthesised; what stands for {} is coarser or nothing.",
-              failed, failed == 1 ? "" : "s", failed == 1 ? "it" : "them"));
-    verdict_.advice.push_back("The log names the first one and why.");
+          fmt::format("{} model{} could not be synthesised; a coarser mesh or nothing replaces {}.",
+                      failed, failed == 1 ? "" : "s", failed == 1 ? "it" : "them"));
+    verdict_.advice.push_back("The log names the first one and the reason.");
   }
 
   const Summary& s_;
@@ -175,13 +174,12 @@ std::string_view name_of(Grade grade) {
 }
 
 std::string left_out_text(const Summary& summary) {
-  constexpr std::array<std::string_view, kApartKinds> kWhat = {
-      "",
-      "written as pictures",
-      "after the device had been waited for",
-      "while the window changed its size",
-      "while the window took no picture",
-      "while the machine stood still"};
+  constexpr std::array<std::string_view, kApartKinds> kWhat = {"",
+                                                               "written as images",
+                                                               "after the GPU was idle",
+                                                               "while the window was resized",
+                                                               "while the window accepted no image",
+                                                               "while the machine stalled"};
   std::string text;
   for (std::size_t kind = 1; kind < kApartKinds; ++kind) {
     const std::uint64_t count = summary.run.apart_frames[kind];
@@ -190,7 +188,7 @@ std::string left_out_text(const Summary& summary) {
   }
   if (text.empty()) return text;
   const std::uint64_t left_out = summary.run.measured_frames - summary.run.timed_frames;
-  return fmt::format("{} of {} measured frame{} {} in no figure of times: {}.", left_out,
+  return fmt::format("{} of {} measured frame{} {} excluded from timing statistics: {}.", left_out,
                      summary.run.measured_frames, summary.run.measured_frames == 1 ? "" : "s",
                      left_out == 1 ? "is" : "are", text);
 }

@@ -1,6 +1,6 @@
-// Whether a flight drew what was requested, in words: holes, pictures that are too coarse, errors
-// that were raised for lack of memory or time, models that failed. One judgement for the summary,
-// the report and the terminal. Not about the speed of frames. Pure.
+// Verdict on the image quality of a flight: holes, coarse frames, errors raised for lack of memory
+// or time, failed models. Shared by the summary, the report and the terminal. Does not judge frame
+// times. Pure.
 #pragma once
 
 #include <string>
@@ -11,34 +11,34 @@
 
 namespace psygen::telemetry {
 
-// How good the picture was, from best to worst after kUnknown.
+// Image quality, from best to worst after kUnknown.
 enum class Grade {
   kUnknown,  // no frame was measured
-  kGood,     // no hole, no failed model, at most kGoodPercent too coarse, no error raised for long
+  kGood,     // no hole, no failed model, at most kGoodPercent too coarse, error raised only briefly
   kFair,     // coarser than requested
   kPoor,     // holes, failed models, or more than kPoorPercent too coarse
 };
 // "unknown", "good", "fair", "poor".
 std::string_view name_of(Grade grade);
 
-// Limits of the grades: the percentage of the picture that is missing or too coarse, at the 99th
-// percentile of the frames (with fewer than 100 frames, the largest).
+// Limits of the grades: the percentage of the image that is missing or too coarse, at the 99th
+// percentile of the frames (the largest, with fewer than 100 frames).
 inline constexpr double kGoodPercent = 1.0, kPoorPercent = 10.0;
-// The percentage of frames in which an error may be raised.
+// Percentage of frames in which an error may be raised.
 inline constexpr double kRaisedPercent = 1.0;
 
-// The judgement of a run.
+// Verdict on a run.
 struct Verdict {
   Grade grade = Grade::kUnknown;
   std::string headline;              // two or three words
-  std::vector<std::string> reasons;  // sentences: what was seen
-  std::vector<std::string> advice;   // sentences: what to do; empty when nothing is wrong
+  std::vector<std::string> reasons;  // sentences: observations
+  std::vector<std::string> advice;   // sentences: advice; empty if there is no fault
 };
 
-// Judges the picture of a run. The worst finding decides the grade.
+// Judges the image of a run. The worst finding decides the grade.
 Verdict picture_verdict(const Summary& summary);
 
-// What the figures of times leave out, as a sentence; empty if nothing.
+// Sentence about frames that timing statistics exclude; empty if there are none.
 std::string left_out_text(const Summary& summary);
 
 }  // namespace psygen::telemetry

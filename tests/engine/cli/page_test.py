@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Pages in headless Chromium, without network: what the report of a flight draws, and that zoom, values
-under the pointer and the panel of one frame work, in wide and narrow windows; and a comparison.
+"""Pages in headless Chromium, without network, in wide and narrow windows: the plots of a flight's report,
+zoom, values under the pointer and the panel of one frame; and the page of a comparison.
 
 usage: page_test.py PSYGEN
 
-Fails on any error of a script, and on anything that the page wants from outside.
+Fails on any error of a script, and on any request for an external resource.
 """
 import pathlib
 import re
@@ -32,10 +32,10 @@ result.range = shown();
 result.facts = all(".facts th").map(t => t.textContent + "=" + t.nextElementSibling.textContent);
 """, width)
         titles = [title for title, _, _ in seen["plots"]]
-        assert titles[0] == "Frame time" and titles[1].startswith("Error of the picture"), titles
+        assert titles[0] == "Frame time" and titles[1].startswith("Allowed screen-space error"), titles
         for title, drawings, paths in seen["plots"]:
             assert drawings == 1, f"{title} is not drawn"
-            if not title.startswith("Where the frame goes"):  # the virtual clock has no such times
+            if not title.startswith("Parts of a frame"):  # the virtual clock has no such times
                 assert paths > 0, f"{title} is empty"
         assert not seen["nan"], seen["nan"]
         assert seen["bins"] > 3 and "p50" in seen["percentiles"], seen["percentiles"]
@@ -85,9 +85,9 @@ result.pins = all(".pin").length;
 const key = name => document.dispatchEvent(new KeyboardEvent("keydown", {key: name}));
 key("ArrowRight");
 result.next = all("header b", panel())[0].textContent;
-press("The nearest is that of frame");
+press("Nearest image: frame");
 result.picture = all("header b", panel())[0].textContent;
-result.apart = panel().textContent.includes("in no figure of times");
+result.apart = panel().textContent.includes("not in timing statistics");
 const image = all("img", panel())[0];
 await image.decode();
 result.size = [image.naturalWidth, image.naturalHeight];
@@ -105,16 +105,16 @@ result.closed = panel().hidden;
 
 
 def check_system_times(page):
-    """Of the wall clock: the slowest systems of a frame, waiting, which is not theirs, and frames apart."""
+    """On the wall clock: the slowest systems of a frame, separate waiting times, and excluded frames."""
     seen = look(page, """
 click(all("figure.plot")[0], 0.5);
 result.bars = all(".bars tr", panel()).map(r => [r.cells[0].textContent, parseFloat(r.cells[2].textContent)]);
 result.stack = all("figure.plot")[2].querySelectorAll(".stack").length;
 result.marks = all("figure.plot")[0].querySelectorAll(".mark").length;
-press("The nearest is that of frame");
-result.apart = panel().textContent.includes("in no figure of times");
+press("Nearest image: frame");
+result.apart = panel().textContent.includes("not in timing statistics");
 """)
-    assert seen["marks"] == 1 and seen["apart"], "frames of pictures are marked and left out"
+    assert seen["marks"] == 1 and seen["apart"], "frames with images are marked and excluded"
     times = [ms for _, ms in seen["bars"]]
     assert times == sorted(times, reverse=True) and len(times) >= 4, seen["bars"]
     assert any(name == "visibility" for name, _ in seen["bars"]), seen["bars"]
@@ -131,7 +131,7 @@ def fly(psygen, out, *options):
 
 
 def check_comparison(psygen, folder):
-    """Of a flight with one that draws less, and is faster for it."""
+    """Compares a flight with one that draws less and is therefore faster."""
     sides = [folder / name for name in ("a", "b")]
     for side, error in zip(sides, ("4", "16")):
         fly(psygen, side, "--clock", "virtual", "--error", error)
@@ -149,7 +149,7 @@ result.overflow = document.documentElement.scrollWidth - document.documentElemen
 click(plots[0], 0.5);
 result.panel = panel().textContent;
 """, width)
-        assert "Faster because it draws less is not better" in seen["verdict"], seen["verdict"]
+        assert "faster only because it draws less" in seen["verdict"], seen["verdict"]
         assert seen["lines"] == [2, 1, 2, 2], seen["lines"]
         assert seen["rows"] == 3, "percentiles of both"
         assert seen["overflow"] <= 0, f"{seen['overflow']} pixels wider than {width}"

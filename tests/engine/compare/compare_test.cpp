@@ -15,7 +15,7 @@ std::string refusal(const Sets& sets) {
   return result ? "taken" : result.error().message;
 }
 
-TEST(Compare, FindsTheSameTheSameAndTenPercentWorseOrBetter) {
+TEST(Compare, FindsEqualSetsTheSameAndTenPercentWorseOrBetter) {
   EXPECT_EQ(judged(make_sets(16, kNothing)).verdict, Verdict::kSame);
   const Comparison worse = judged(make_sets(16, kNothing, 1.1));
   EXPECT_EQ(worse.verdict, Verdict::kWorse);
@@ -23,7 +23,7 @@ TEST(Compare, FindsTheSameTheSameAndTenPercentWorseOrBetter) {
   EXPECT_EQ(judged(make_sets(16, kNothing, 1 / 1.1)).verdict, Verdict::kBetter);
 }
 
-TEST(Compare, FindsAFewDoubledFramesAlwaysTheSameOnesOrAnyOnes) {
+TEST(Compare, FindsAFewDoubledFramesFixedOrRandom) {
   const auto same = [](RecordedRun& run, std::mt19937&) {
     for (const std::size_t k : {20u, 50u})
       run.frame_ms[k] *= 2;
@@ -35,7 +35,7 @@ TEST(Compare, FindsAFewDoubledFramesAlwaysTheSameOnesOrAnyOnes) {
   };
   const Comparison rare = judged(make_sets(16, any));
   EXPECT_EQ(rare.verdict, Verdict::kWorse);
-  EXPECT_THAT(rare.reasons, testing::Contains(HasSubstr("times their usual time")));
+  EXPECT_THAT(rare.reasons, testing::Contains(HasSubstr("times their typical time")));
 }
 
 TEST(Compare, FasterWithMoreMissingOrALargerErrorIsNotBetter) {
@@ -43,12 +43,12 @@ TEST(Compare, FasterWithMoreMissingOrALargerErrorIsNotBetter) {
   const Comparison missing = judged(make_sets(16, skips, 0.8));
   EXPECT_EQ(missing.verdict, Verdict::kWorse);
   EXPECT_THAT(missing.reasons, testing::Contains(HasSubstr("more geometry is missing")));
-  EXPECT_THAT(missing.reasons, testing::Contains(HasSubstr("is not better")));
+  EXPECT_THAT(missing.reasons, testing::Contains(HasSubstr("not better")));
   const auto coarser = [](RecordedRun& run, std::mt19937&) { run.error_pixels = 5; };
   EXPECT_EQ(judged(make_sets(16, coarser, 0.8)).verdict, Verdict::kWorse);
 }
 
-TEST(Compare, FasterIsNotBetterNorTheSameTheSameWhereNoiseHidesWhetherAsMuchIsShown) {
+TEST(Compare, IsInconclusiveIfNoiseHidesWhetherAsMuchIsShown) {
   const auto varies = [](double percent, double error, double factor = 0.8) {
     Sets sets = make_sets(16, kNothing, factor);
     std::mt19937 random(3);
@@ -60,7 +60,7 @@ TEST(Compare, FasterIsNotBetterNorTheSameTheSameWhereNoiseHidesWhetherAsMuchIsSh
     }
     return judged(sets);
   };
-  EXPECT_EQ(varies(0.2, 0).verdict, Verdict::kBetter) << "so little is not seen";
+  EXPECT_EQ(varies(0.2, 0).verdict, Verdict::kBetter) << "so little is invisible";
   const Comparison hidden = varies(10, 0);
   EXPECT_EQ(hidden.verdict, Verdict::kInconclusive);
   EXPECT_THAT(hidden.reasons, testing::Contains(HasSubstr("whether B shows as much")));
@@ -69,7 +69,7 @@ TEST(Compare, FasterIsNotBetterNorTheSameTheSameWhereNoiseHidesWhetherAsMuchIsSh
   EXPECT_EQ(varies(10, 0, 1).verdict, Verdict::kInconclusive);
 }
 
-TEST(Compare, FindsMoreProcessorTimeOfTheMainThreadWhereFramesAreTooNoisy) {
+TEST(Compare, FindsMoreProcessorTimeOfTheMainThreadIfFramesAreTooNoisy) {
   const auto costs = [](double factor) {
     return [factor](RecordedRun& run, std::mt19937&) {
       for (double& ms : run.cpu_ms)
@@ -92,7 +92,7 @@ TEST(Compare, ADifferenceWithoutASecondBatchIsNotAVerdict) {
   EXPECT_THAT(once.reasons, testing::Contains(HasSubstr("record 14 pairs")));
 }
 
-TEST(Compare, SaysHowMuchNoiseHides) {
+TEST(Compare, ReportsTheSizeOfHiddenChanges) {
   const Comparison loud = judged(make_sets(16, kNothing, 1, 40));
   EXPECT_EQ(loud.verdict, Verdict::kInconclusive);
   EXPECT_GT(loud.noise_percent, 1);
@@ -113,7 +113,7 @@ TEST(Compare, OnTheVirtualClockEveryDifferenceCounts) {
   EXPECT_EQ(exact(0.5, 0.001), Verdict::kWorse);
 }
 
-TEST(Compare, RefusesWhatCannotBeCompared) {
+TEST(Compare, RejectsRunsThatCannotBeCompared) {
   const auto changed = [](auto change) {
     return make_sets(8, [change](RecordedRun& run, std::mt19937&) { change(run); });
   };
@@ -128,8 +128,9 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
               HasSubstr("other paths"));
   EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.frame_ms.pop_back(); })),
               HasSubstr("numbers of frames"));
-  EXPECT_THAT(refusal(make_sets(6, kNothing)), HasSubstr("6 pairs of runs; with fewer than 7"));
-  EXPECT_THAT(refusal({}), HasSubstr("0 of A and 0 of B"));
+  EXPECT_THAT(refusal(make_sets(6, kNothing)),
+              HasSubstr("6 pairs of runs are too few; with fewer than 7"));
+  EXPECT_THAT(refusal({}), HasSubstr("A has 0 and B has 0"));
   Sets sets = make_sets(8, kNothing);
   for (Runs* runs : {&sets.a, &sets.b})
     for (RecordedRun& run : *runs) {
@@ -161,7 +162,7 @@ TEST(FalseAlarms, AreCountedOverComparisonsOfASetWithItself) {
   EXPECT_FALSE(measure_false_alarms(sets.a, 5, 1));
 }
 
-TEST(Compare, IsToldInWordsAndAsJson) {
+TEST(Compare, IsFormattedAsTextAndAsJson) {
   const Comparison worse = judged(make_sets(16, kNothing, 1.1));
   const FalseAlarms alarms{100, 1, 0, 3};
   EXPECT_THAT(to_text(worse, &alarms), testing::StartsWith("verdict: worse\n"));

@@ -1,4 +1,4 @@
-// Runs of two sides, invented and the same each time, for the tests of comparisons.
+// Synthetic runs of two sides, the same each time, for the tests of comparisons.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace psygen::compare {
 
 using Runs = std::vector<RecordedRun>;
 
-// A run of 120 frames; times have noise of up to `noise`, as others take processors away.
+// A run of 120 frames whose times have noise of up to `noise`, as from other programs.
 inline RecordedRun make_run(std::mt19937& random, double factor = 1, double noise = 0.3) {
   RecordedRun run;
   run.folder = "run";

@@ -34,28 +34,28 @@ TEST(RecordedRun, HoldsTheFramesAfterTheWarmUp) {
   EXPECT_FALSE(run->virtual_clock);
 }
 
-TEST(RecordedRun, ALandscapeOfFewerPixelsHasALargerError) {
+TEST(RecordedRun, ALowerRenderScaleHasALargerError) {
   const std::string header = kHeader.substr(0, kHeader.size() - 1) + ",resolution\n";
   const auto run =
       parse_run(header + "0,0.1,10,1,,4,0,0,0,0.8\n1,0.2,10,1,,4,0,0,0,1\n", kRunSummary, "dir");
   ASSERT_TRUE(run) << run.error().message;
   EXPECT_DOUBLE_EQ(run->error_pixels, 4.5);
   EXPECT_EQ(refusal(header + "0,0.1,10,1,,4,0,0,0,0\n"),
-            "dir/frames.csv:2: resolution: a share above 0, at most 1");
+            "dir/frames.csv:2: resolution: it must be above 0 and at most 1");
 }
 
-TEST(RecordedRun, LeavesOutFramesInWhichTheMachineWasSuspended) {
+TEST(RecordedRun, ExcludesFramesInWhichTheMachineWasSuspended) {
   const auto run = parse_run(kHeader + kRows, kRunSummary, "dir");
   ASSERT_TRUE(run);
   EXPECT_EQ(run->suspended, 1u);
   EXPECT_THAT(run->left_out, testing::ElementsAre(false, false, true));
 }
 
-TEST(RecordedRun, SaysWhatIsWrongWithAFileAndWhere) {
+TEST(RecordedRun, ReportsTheErrorOfAFileAndItsLocation) {
   EXPECT_EQ(refusal(kHeader + "0,0.1,10"),
-            "dir/frames.csv: the file is cut: its last line has no end");
+            "dir/frames.csv: the file is truncated: its last line has no end");
   EXPECT_EQ(refusal(kHeader + "0,0.1,10\n"),
-            "dir/frames.csv:2: the line has 3 cells, and the header 9");
+            "dir/frames.csv:2: the line has 3 cells, but the header has 9");
   EXPECT_EQ(refusal("frame,time_s\n1,1\n"), "dir/frames.csv:1: the column frame_ms is missing");
   EXPECT_EQ(refusal(kHeader + "0,0.1,1x,1,,4,0,0,0\n"),
             "dir/frames.csv:2: frame_ms: '1x' is not a number from 0 on");
@@ -66,17 +66,17 @@ TEST(RecordedRun, SaysWhatIsWrongWithAFileAndWhere) {
   EXPECT_EQ(refusal(kHeader + "0,0.1,10,x,,4,0,0,0\n"),
             "dir/frames.csv:2: main_cpu_ms: 'x' is not a number from 0 on");
   EXPECT_EQ(refusal(kHeader + "0,0.1,10,1,,4,0,0,0\n1,0.2,10,,,4,0,0,0\n"),
-            "dir/frames.csv: main_cpu_ms: some frames have it and some have not");
-  EXPECT_EQ(refusal(kHeader), "dir/frames.csv: no frame is left after the warm-up");
+            "dir/frames.csv: main_cpu_ms: only some frames have it");
+  EXPECT_EQ(refusal(kHeader), "dir/frames.csv: no frames after the warm-up");
   EXPECT_EQ(refusal(kHeader + kRows, "{\"schema\": "),
-            "dir/summary.json: it is not JSON, or is cut");
+            "dir/summary.json: it is not JSON, or is truncated");
   EXPECT_EQ(refusal(kHeader + kRows, "{\"schema\": 3}"),
             "dir/summary.json: schema: it must be \"psygen.summary/1\"");
   EXPECT_EQ(read_run("no such folder").error().code, core::ErrorCode::kIo);
   EXPECT_EQ(read_runs("no such folder").error().code, core::ErrorCode::kIo);
 }
 
-// Any byte of either may be wrong, and any end be missing.
+// Any byte of either file may be wrong, and any part of its end missing.
 TEST(RecordedRun, SurvivesChangedBytesAndCuts) {
   unsigned random = 1;
   const auto next = [&random] { return random = random * 1664525U + 1013904223U, random >> 8; };

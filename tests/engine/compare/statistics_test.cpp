@@ -1,8 +1,8 @@
-// The expected figures were computed by counting with whole numbers and fractions, in Python:
-//   fisher: sum(comb(nb, k) * comb(na, h - k) for k in range(b, min(h, nb) + 1)) / comb(na + nb, h)
-//   swap_test: the signs in {1, -1}^8 with sum(sign * (b - a)) >= sum(b - a), as Fractions
-//   minima_test: the labellings in {0, 1}^7 whose ratio or tail is at least that of no exchange;
-//   the ratio of windows of min(10, frames) frames, the tail of windows of 3
+// The expected values were computed by exact counting in Python:
+// fisher: sum(comb(nb, k) * comb(na, h - k) for k in range(b, min(h, nb) + 1)) / comb(na + nb, h)
+// swap_test: the signs in {1, -1}^8 with sum(sign * (b - a)) >= sum(b - a), as Fractions
+// minima_test: the labellings in {0, 1}^7 whose ratio or tail is at least that of no exchange;
+// the ratio of windows of min(10, frames) frames, the tail of windows of 3
 #include "engine/compare/statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -26,11 +26,11 @@ TEST(FisherMore, IsTheHypergeometricTail) {
   EXPECT_NEAR(fisher_more(8, 8, 0, 8), 1.0, 1e-12);
 }
 
-TEST(SwapTest, CountsTheLabellingsThatAreAtLeastAsExtreme) {
+TEST(SwapTest, CountsLabellingsAtLeastAsExtreme) {
   const std::vector<double> a{10.1, 9.8, 10.4, 10.0, 9.9, 10.2, 10.3, 9.7};
   const std::vector<double> b{10.6, 10.0, 10.3, 10.9, 10.1, 10.0, 11.0, 10.2};
   EXPECT_EQ(swap_test(a, b), 8.0 / 256);
-  EXPECT_EQ(swap_test(a, a), 1.0) << "all labellings are alike";
+  EXPECT_EQ(swap_test(a, a), 1.0) << "all labellings are equal";
   EXPECT_EQ(swap_test(std::vector<double>(8, 1.0), std::vector<double>(8, 2.0)), 1.0 / 256);
 }
 
@@ -43,13 +43,13 @@ TEST(MinimaTest, ComparesTheSumsOfTheMinimaOfWindows) {
   EXPECT_GT(test.high, 19.0 / 18);
 }
 
-TEST(TailTest, ComparesTheSecondLeastOfWindowsOfThreeFrames) {
+TEST(TailTest, ComparesTheSecondShortestOfWindowsOfThreeFrames) {
   const TailTest test = tail_test(kRunsA, kRunsB);
   EXPECT_NEAR(test.ratio, 65.0 / 61, 1e-12) << "of the first of two windows";
   EXPECT_NEAR(test.p, 2.0 / 128, 0.006) << "of all labellings; three standard deviations of 4096";
 }
 
-TEST(RareFrames, AreThoseThatTakeLongestBesideTheirLowerQuartileOverAllRuns) {
+TEST(RareFrames, TakeLongestRelativeToTheirLowerQuartileOverAllRuns) {
   const Times runs{{10, 20, 30, 12}, {20, 22, 31, 12}, {12, 19, 90, 14}, {12, 20, 30, 11}};
   const std::vector<double> rare = rare_frames(runs);
   ASSERT_EQ(rare.size(), 4u);

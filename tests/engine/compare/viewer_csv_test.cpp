@@ -23,7 +23,7 @@ std::string converted(Viewer viewer, const std::string& frames = kFrames) {
   return text ? *text : text.error().message;
 }
 
-// Columns by name, as viewers look them up. `lines` are left out before the header.
+// Columns by name, as viewers find them. The first `lines` lines precede the header.
 std::map<std::string, std::vector<std::string>> columns_of(std::string text, int lines) {
   for (; lines > 0; --lines)
     text.erase(0, text.find('\n') + 1);
@@ -43,7 +43,7 @@ std::map<std::string, std::vector<std::string>> columns_of(std::string text, int
   return columns;
 }
 
-TEST(ViewerCsv, OfMangoHudHasItsColumnsInItsUnits) {
+TEST(ViewerCsv, ForMangoHudHasItsColumnsInItsUnits) {
   const std::string text = converted(Viewer::kMangoHud);
   auto system = columns_of(text.substr(0, text.find("\nfps,") + 1), 0);
   EXPECT_THAT(system["gpu"], testing::ElementsAre("llvmpipe (LLVM 15.0.6  256 bits)"));
@@ -57,9 +57,9 @@ TEST(ViewerCsv, OfMangoHudHasItsColumnsInItsUnits) {
   EXPECT_THAT(columns["elapsed"], testing::ElementsAre("10000000", "30000000")) << "ns";
 }
 
-TEST(ViewerCsv, OfCapFrameXIsACaptureOfPresentMon) {
+TEST(ViewerCsv, ForCapFrameXIsACaptureOfPresentMon) {
   const std::string text = converted(Viewer::kCapFrameX);
-  EXPECT_THAT(text, testing::StartsWith("Application,")) << "by which it is known";
+  EXPECT_THAT(text, testing::StartsWith("Application,")) << "by which viewers detect the format";
   auto columns = columns_of(text, 0);
   EXPECT_THAT(columns["TimeInSeconds"], testing::ElementsAre("0.010000", "0.030000"));
   EXPECT_THAT(columns["MsBetweenPresents"], testing::ElementsAre("10.0000", "20.0000"));
@@ -69,15 +69,15 @@ TEST(ViewerCsv, OfCapFrameXIsACaptureOfPresentMon) {
   EXPECT_THAT(columns["Comment"], testing::ElementsAre("a  wood ", "a  wood "));
 }
 
-TEST(ViewerCsv, RefusesFilesThatARunNeverWrites) {
+TEST(ViewerCsv, RejectsFilesThatNoRunWrites) {
   EXPECT_EQ(converted(Viewer::kMangoHud, "frame_ms,apart\n"),
             "dir/frames.csv:1: the column present_ms is missing");
   EXPECT_EQ(converted(Viewer::kMangoHud, kFrames + "2,0.2,x,,,,0\n"),
             "dir/frames.csv:4: frame_ms: 'x' is not a number from 0 on");
   EXPECT_EQ(converted(Viewer::kCapFrameX, kFrames.substr(0, kFrames.size() - 1)),
-            "dir/frames.csv: the file is cut: its last line has no end");
+            "dir/frames.csv: the file is truncated: its last line has no end");
   EXPECT_EQ(viewer_csv(Viewer::kMangoHud, kFrames, "{", "dir").error().message,
-            "dir/summary.json: it is not JSON, or is cut");
+            "dir/summary.json: it is not JSON, or is truncated");
   EXPECT_EQ(viewer_csv(Viewer::kMangoHud, "no such folder").error().code, core::ErrorCode::kIo);
   EXPECT_FALSE(viewer_from("excel"));
 }

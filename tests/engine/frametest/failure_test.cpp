@@ -1,4 +1,4 @@
-// What a failed test shows of its worst frames.
+// Tests the report of a failed test about its worst frames.
 #include "engine/frametest/failure.hpp"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-// A flight that begins with an empty cache, on the virtual clock: much is missing at first.
+// A flight that begins with an empty cache, on the virtual clock: many meshes are missing at first.
 std::filesystem::path write_test(const TemporaryFolder& folder, const std::string& budget) {
   std::ofstream(folder / "bare.toml")
       << "format = 1\n[flight]\nsize = [160, 90]\nview_distance = 1000\nframes = 12\n"
@@ -46,7 +46,7 @@ image::Image read(const std::filesystem::path& file) {
   return image ? *image : image::Image{};
 }
 
-TEST(Failure, ShowsTheWorstFrameAsItWasAsItShouldBeAndTheDifference) {
+TEST(Failure, ShowsTheWorstFrameAsDrawnAsExpectedAndTheDifference) {
   const TemporaryFolder folder;
   RunOptions options;
   options.files = {write_test(folder, "[equal]\nmissing.pixels_max_percent = 0\n")};
@@ -68,7 +68,7 @@ TEST(Failure, ShowsTheWorstFrameAsItWasAsItShouldBeAndTheDifference) {
   EXPECT_THAT(page, HasSubstr("missing.pixels_max_percent"));
   EXPECT_THAT(text_of(options.junit), HasSubstr("[[ATTACHMENT|" + (out / "failed.html").string()));
 
-  // The same flight, with a picture of every frame.
+  // The same flight, with an image of every frame.
   auto test = load_frame_test(options.files.front());
   ASSERT_TRUE(test);
   app::FlightOptions flight = test->flight;
@@ -79,10 +79,10 @@ TEST(Failure, ShowsTheWorstFrameAsItWasAsItShouldBeAndTheDifference) {
   const std::string number = names[2].substr(std::string("worst_").size(), 5);
   EXPECT_EQ(seen, read(folder / "images" / ("frame_" + number + ".png"))) << "not that frame";
   EXPECT_EQ(text_of(out / "frames.csv"), text_of(folder / "images" / "frames.csv"))
-      << "pictures disturbed the virtual clock";
+      << "images disturbed the virtual clock";
 }
 
-TEST(Failure, IsForgottenOnceTheTestHolds) {
+TEST(Failure, IsRemovedOnceTheTestHolds) {
   const TemporaryFolder folder;
   RunOptions options;
   options.files = {write_test(folder, "[equal]\nrun.frames = 12\n")};
@@ -96,17 +96,17 @@ TEST(Failure, IsForgottenOnceTheTestHolds) {
   EXPECT_FALSE(std::filesystem::exists(out / "failed.html"));
 }
 
-TEST(Failure, WithoutAFrameThatHasTheFigureSaysSo) {
+TEST(Failure, SaysIfNoSingleFrameHasTheValue) {
   const TemporaryFolder folder;
   RunOptions options;
   options.files = {write_test(folder, "[equal]\nhash.world = \"0\"\n")};
   options.out = folder / "out";
   EXPECT_EQ(run_frame_tests(options), kMissed);
-  EXPECT_THAT(text_of(options.out / "bare" / "failed.html"), HasSubstr("No single frame"));
+  EXPECT_THAT(text_of(options.out / "bare" / "failed.html"), HasSubstr("not measured per frame"));
   EXPECT_TRUE(pictures_in(options.out / "bare").empty());
 }
 
-TEST(Failure, OfADiskThatIsFullIsAFailureAndNotAMissedBudget) {
+TEST(Failure, AFullDiskIsAnErrorAndNotAMissedBudget) {
   const TemporaryFolder folder;
   RunOptions options;
   options.out = folder / "out";
@@ -120,7 +120,7 @@ TEST(Failure, OfADiskThatIsFullIsAFailureAndNotAMissedBudget) {
   EXPECT_EQ(exit_code_of({&result, 1}), kFailed);
 }
 
-TEST(Failure, WhosePageCannotBeWrittenStillSaysWhatWasMissed) {
+TEST(Failure, StillReportsMissedBudgetsIfThePageCannotBeWritten) {
   const TemporaryFolder folder;
   RunOptions options;
   options.out = folder / "out";

@@ -51,7 +51,7 @@ std::string with(const std::string& flight,
   return "format = 1\n[flight]\n" + flight + "\n" + budgets;
 }
 
-TEST(FrameTestFile, GivesTheFlightAndTheBudgetsInTheirOrder) {
+TEST(FrameTestFile, ReadsTheFlightAndTheBudgetsInOrder) {
   const auto test = parse_frame_test(kWhole, "folder/other.toml");
   ASSERT_TRUE(test) << test.error().message;
   EXPECT_EQ(test->name, "walk");
@@ -71,16 +71,16 @@ TEST(FrameTestFile, GivesTheFlightAndTheBudgetsInTheirOrder) {
   EXPECT_EQ(std::get<std::string>(test->budgets[6].limit), "good");
 }
 
-TEST(FrameTestFile, HasTheNameOfTheFileAndUsualOptionsWhereItSaysNothing) {
+TEST(FrameTestFile, HasTheNameOfTheFileAndDefaultOptions) {
   const auto test = parse_frame_test("format = 1\n[at_most]\nhitches = 0\n", "folder/dash.toml");
   ASSERT_TRUE(test) << test.error().message;
   EXPECT_EQ(test->name, "dash");
   EXPECT_EQ(test->flight.session.world_file, "paper");
   EXPECT_FALSE(test->flight.session.scene.virtual_time);
-  EXPECT_EQ(test->flight.session.preset, render::Preset::kLow) << "not what suits the device";
+  EXPECT_EQ(test->flight.session.preset, render::Preset::kLow) << "not chosen by GPU";
 }
 
-TEST(FrameTestFile, IsRefusedWithFileLineFieldAndTheNearestWord) {
+TEST(FrameTestFile, ReportsErrorsWithFileLineFieldAndSuggestion) {
   EXPECT_EQ(refusal(with("sise = [1, 1]")),
             "folder/a.toml:3: flight.sise: this key is unknown; did you mean size?");
   EXPECT_THAT(refusal(with("clock = \"sand\"")),
@@ -94,7 +94,8 @@ TEST(FrameTestFile, IsRefusedWithFileLineFieldAndTheNearestWord) {
   EXPECT_THAT(refusal(with("", "[at_most]\nframe_ms.p99 = \"fast\"\n")),
               HasSubstr("at_most.frame_ms.p99: the limit must be a finite number"));
   EXPECT_THAT(refusal(with("", "[at_most]\nframe_ms.p99 = nan\n")), HasSubstr("finite number"));
-  EXPECT_THAT(refusal(with("", "[at_least]\npicture.grade = 1\n")), HasSubstr("can only be equal"));
+  EXPECT_THAT(refusal(with("", "[at_least]\npicture.grade = 1\n")),
+              HasSubstr("only [equal] can compare"));
   EXPECT_THAT(refusal(with("", "[at_most]\nsystem_ms.cache.p50x = 1\n")), HasSubstr("p50 and p99"));
   EXPECT_THAT(refusal("format = 1\n"), HasSubstr("needs a budget"));
   EXPECT_THAT(refusal("format = 2\n"), HasSubstr("newer than this program"));
@@ -102,12 +103,12 @@ TEST(FrameTestFile, IsRefusedWithFileLineFieldAndTheNearestWord) {
               HasSubstr("without /"));
 }
 
-TEST(FrameTestFile, FindsWhatLiesBesideItThenWhatComesWithPsygen) {
+TEST(FrameTestFile, FindsFilesInItsFolderThenShippedOnes) {
   const TemporaryFolder folder;
   const auto write = [&](const char* name, const std::string& text) {
     std::ofstream(folder / name) << text;
   };
-  write("walk27.toml", "");  // one's own
+  write("walk27.toml", "");  // the user's file
   write("test.toml", with("world = \"five_species\"\npath = \"walk27.toml\""));
   const auto test = load_frame_test(folder / "test.toml");
   ASSERT_TRUE(test) << test.error().message;

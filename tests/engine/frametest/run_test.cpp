@@ -20,7 +20,7 @@ TestResult result_of(core::ErrorCode code) {
   return {"dir/walk.toml", "walk", {}, core::Error{code, "it <failed> & \"more\""}, 1.5, {}};
 }
 
-TEST(Judge, HoldsBudgetsAgainstTheFiguresAndMissesWhatWasNotMeasured) {
+TEST(Judge, ComparesBudgetsWithValuesAndMissesUnmeasuredOnes) {
   telemetry::Summary summary;
   summary.frame_ms.p99 = 24.5;
   summary.low1_fps = 30.0;
@@ -49,7 +49,7 @@ TEST(FrameTests, HaveALineForEachBudgetWithValueAndLimit) {
   EXPECT_EQ(to_text(result), "walk: frame_ms.p99 23.1  <= 25\nwalk: low1_fps 12  >= 30  MISSED\n");
 }
 
-TEST(FrameTests, EndWithWhatIsWorst) {
+TEST(FrameTests, ReturnTheWorstResult) {
   const Budget budget{"hitches", Relation::kAtMost, 0.0, 1};
   const TestResult held = result_of({{budget, "0", true}}),
                    missed = result_of({{budget, "1", false}});
@@ -98,7 +98,7 @@ TEST(FrameTests, RunTheGamesHooksAndKeepTheOutputs) {
   options.files = {folder / "short.toml"};
   options.out = folder / "out";
   options.junit = folder / "junit.xml";
-  options.worst_frames = 0;  // no second flight
+  options.worst_frames = 0;  // so the test flies only once
   EXPECT_EQ(run_frame_tests(options, hooks), kMissed) << "the last budget cannot hold";
   EXPECT_EQ(prepared, 1);
   EXPECT_EQ(started, 1);

@@ -1,4 +1,4 @@
-// Flights on the virtual clock: what a run writes is the same to the byte.
+// Flights on the virtual clock write the same bytes in every run.
 #include <atomic>
 #include <fstream>
 #include <iterator>
@@ -13,9 +13,9 @@ namespace {
 FlightOptions virtual_flight(const TemporaryFolder& folder) {
   FlightOptions options = short_flight();
   options.session.size = {160, 90};
-  options.session.target_hz = 120;  // the governor has something to do
+  options.session.target_hz = 120;  // gives the governor work
   options.session.scene.budget_bytes = 16ull << 20;
-  options.session.prefill = false;  // at first something is missing
+  options.session.prefill = false;  // so that meshes are missing at first
   options.fixed_step_hz = 0;
   options.frames = 60;
   options.warmup_seconds = 0;
@@ -33,14 +33,14 @@ std::string frames_of(const FlightOptions& options, telemetry::Summary* summary 
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-TEST(VirtualClock, FramesAreTheSameToTheByteForAnyNumberOfModelersAndBesideLoad) {
+TEST(VirtualClock, FramesAreIdenticalForAnyNumberOfModelersAndUnderLoad) {
   const TemporaryFolder folder;
   FlightOptions options = virtual_flight(folder);
   telemetry::Summary summary;
   options.session.scene.modelers = 1;
   const std::string first = frames_of(options, &summary);
   EXPECT_EQ(std::ranges::count(first, '\n'), 61);
-  EXPECT_GT(*summary.missing.coarse_max_percent, 0) << "the flight lacks nothing: too easy";
+  EXPECT_GT(*summary.missing.coarse_max_percent, 0) << "no mesh is missing: the flight is too easy";
   EXPECT_GT(*summary.synthesis.models, 100u);
   EXPECT_GT(*summary.frame_ms.max, *summary.frame_ms.p50);
   for (const std::uint32_t modelers : {2u, 4u}) {
@@ -54,11 +54,11 @@ TEST(VirtualClock, FramesAreTheSameToTheByteForAnyNumberOfModelersAndBesideLoad)
       while (!stop)
         ;
     });
-  EXPECT_EQ(frames_of(options), first) << "beside load";
+  EXPECT_EQ(frames_of(options), first) << "under load";
   stop = true;
 }
 
-TEST(VirtualClock, TimesThatOnlyARealClockKnowsAreLeftOut) {
+TEST(VirtualClock, TimesOfARealClockAreOmitted) {
   const TemporaryFolder folder;
   telemetry::Summary summary;
   FlightOptions options = virtual_flight(folder);
@@ -71,12 +71,12 @@ TEST(VirtualClock, TimesThatOnlyARealClockKnowsAreLeftOut) {
     EXPECT_EQ(figure.reason, "the clock is virtual");
 }
 
-TEST(VirtualClock, PricesAreThePublishedOnes) {
+TEST(VirtualClock, CostsMatchTheDocumentation) {
   EXPECT_NEAR(virtual_frame_ms(40'000, 500, {640, 360}), 0.5 + 4 + 1 + 1.8432, 1e-12);
   EXPECT_NEAR(virtual_frame_ms(40'000, 500, {640, 360}, 0.5), 0.5 + 4 + 1 + 0.4608, 1e-12);
 }
 
-TEST(VirtualClock, TheGpuPathIsRefused) {
+TEST(VirtualClock, TheGpuPathIsRejected) {
   const TemporaryFolder folder;
   FlightOptions options = virtual_flight(folder);
   options.session.render_path = render::RenderPath::kGpu;

@@ -8,7 +8,7 @@ namespace {
 
 using testing::ElementsAre;
 
-// Frames of a second each, so that none is too near to another.
+// Frames of a second each, far enough from each other.
 telemetry::FrameLog log_of(std::vector<double> frame_ms) {
   telemetry::FrameLog log({"cache"});
   for (std::size_t i = 0; i < frame_ms.size(); ++i) {
@@ -36,7 +36,7 @@ std::vector<std::uint64_t> indices(std::vector<BudgetResult> budgets,
   return result;
 }
 
-TEST(WorstFrames, AreTheLongestOnesWhereTheFrameTimeIsMissed) {
+TEST(WorstFrames, AreTheLongestIfTheFrameTimeIsMissed) {
   const auto log = log_of({90, 5, 7, 6, 8, 4});
   EXPECT_THAT(indices({missed("frame_ms.p99")}, log, 0, 2), ElementsAre(0, 4));
   EXPECT_THAT(indices({missed("frame_ms.p99")}, log, 1, 2), ElementsAre(2, 4)) << "warm-up";
@@ -54,16 +54,16 @@ TEST(WorstFrames, ComeFromEachMissedBudgetInTurn) {
   BudgetResult held = missed("frame_ms.max");
   held.holds = true;
   EXPECT_THAT(indices({held, missed("missing.frames")}, log, 0, 3), ElementsAre(1))
-      << "frames without a hole show nothing";
+      << "frames without a hole are not reported";
 }
 
-TEST(WorstFrames, AreNoneWhereNoFrameHasTheFigure) {
+TEST(WorstFrames, AreNoneIfNoFrameHasTheValue) {
   EXPECT_THAT(
       indices({missed("hash.world"), missed("memory.peak_rss_bytes")}, log_of({5, 6}), 0, 3),
       ElementsAre());
 }
 
-TEST(WorstFrames, LeaveOutNeighboursAndFramesSetApart) {
+TEST(WorstFrames, SkipNeighboursAndExcludedFrames) {
   telemetry::FrameLog log({});
   for (std::uint64_t i = 0; i < 100; ++i) {
     telemetry::FrameRecord record;

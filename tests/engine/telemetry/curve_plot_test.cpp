@@ -31,14 +31,14 @@ TEST(CurvePlot, DrawsAPointForEachValueAndALineThroughThem) {
   EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 
-TEST(CurvePlot, LeavesOutWhatIsNotFinite) {
+TEST(CurvePlot, OmitsNonFiniteValues) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   const std::string html = curve_plot_html(plot_of({1, 2, 3}, {5, nothing, 20}));
   EXPECT_EQ(count(html, "class=\"fill1"), 2u);
   EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 
-TEST(CurvePlot, ALineEndsWhereThereIsNoValueAndALoneValueIsARing) {
+TEST(CurvePlot, ALineEndsAtAMissingValueAndASingleValueIsARing) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   CurvePlot plot = plot_of({1, 2, 3, 4, 5, 6}, {5, 6, nothing, 7, nothing, nothing});
   plot.curves.erase(plot.curves.begin());
@@ -58,7 +58,7 @@ TEST(CurvePlot, ACurveWithoutValuesIsNotInTheLegend) {
   EXPECT_EQ(html.find("cost model"), std::string::npos);
 }
 
-TEST(CurvePlot, OfNothingOrOfOnePointIsStillAPicture) {
+TEST(CurvePlot, IsAlsoDrawnForOnePointOrNone) {
   for (const CurvePlot& plot : {plot_of({}, {}), plot_of({4}, {0})}) {
     const std::string html = curve_plot_html(plot);
     EXPECT_EQ(count(html, "<svg"), 1u);
@@ -67,7 +67,7 @@ TEST(CurvePlot, OfNothingOrOfOnePointIsStillAPicture) {
   }
 }
 
-TEST(CurvePlot, EscapesItsTexts) {
+TEST(CurvePlot, EscapesAllOfItsTexts) {
   CurvePlot plot = plot_of({1}, {1});
   plot.title = "<script>";
   plot.note = "a & b";

@@ -21,7 +21,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-TEST(FrameLog, LeavesOutTheFramesThatStartDuringTheWarmUp) {
+TEST(FrameLog, ExcludesFramesThatStartDuringTheWarmUp) {
   FrameLog log({"render"});
   for (std::uint64_t i = 0; i < 10; ++i) {
     FrameRecord record;
@@ -34,7 +34,7 @@ TEST(FrameLog, LeavesOutTheFramesThatStartDuringTheWarmUp) {
   EXPECT_TRUE(log.frames_since(100.0).empty());
 }
 
-TEST(FrameLog, CountsTheFramesForWhichItHasNoRoom) {
+TEST(FrameLog, CountsFramesBeyondItsCapacity) {
   FrameLog log({"render"}, 3);
   for (int i = 0; i < 5; ++i)
     log.add({});
@@ -51,7 +51,7 @@ TEST(FrameLog, AddingAFrameNeverMovesTheOthers) {
   EXPECT_EQ(log.frames().data(), first);
 }
 
-TEST(FrameLog, CostErrorIsRelativeToWhatTheModelTook) {
+TEST(FrameLog, CostErrorIsRelativeToTheActualTime) {
   FrameLog log({});
   log.add_cost_error(0, 1.5e-3, 1e-3);
   log.add_cost_error(0, 1.0e-3, 2e-3);
@@ -103,7 +103,7 @@ TEST(FramesCsv, HoldsTheValuesUnderTheirNames) {
       ",12.5000,5.250,1.000,0.750,123456,0,0,0,0,0.0000,0.0000,8589934592,0,0,0,0,0,0,0,0,0,0,0,0."
       "000000";
   EXPECT_EQ(lines[1], "7,1.500000,16.2500,0.0000,0.0000,0.0000,0.0000,0.0000,0.0000,,," + after)
-      << "the device's time is not known";
+      << "the GPU time is unknown";
   EXPECT_EQ(lines[2],
             "7,1.500000,16.2500,0.0000,2.7500,2.0000,0.5000,0.2500,0.7500,14.0000,"
             "3.0000,picture" +
@@ -125,7 +125,7 @@ TEST(FrameLog, TimesOfOtherSystemsThanItsOwnAreUnknown) {
   EXPECT_EQ(lines[2].find("nan"), std::string::npos) << lines[2];
 }
 
-TEST(FrameLog, ADevicesTimeIsThatOfItsOwnFrameThoughItComesLater) {
+TEST(FrameLog, AGpuTimeBelongsToItsFrameAlthoughItArrivesLater) {
   FrameLog log({});
   for (std::uint64_t i = 0; i < 40; ++i) {
     FrameRecord record;
@@ -134,7 +134,7 @@ TEST(FrameLog, ADevicesTimeIsThatOfItsOwnFrameThoughItComesLater) {
     log.add(record);
     if (i >= 4) log.set_gpu_ms(100 + i - 4, 5.0 + static_cast<double>(i - 4), 1.0);
   }
-  log.set_gpu_ms(101, 99.0, 99.0);  // too long ago to be looked for
+  log.set_gpu_ms(101, 99.0, 99.0);  // more than 16 frames ago
   log.set_gpu_ms(7, 99.0, 99.0);    // never drawn
   for (std::uint64_t i = 0; i < 36; ++i) {
     ASSERT_TRUE(log.frames()[i].gpu_ms) << i;
@@ -145,7 +145,7 @@ TEST(FrameLog, ADevicesTimeIsThatOfItsOwnFrameThoughItComesLater) {
     EXPECT_FALSE(log.frames()[i].gpu_ms) << i;
 }
 
-TEST(FramesCsv, IsWholeOrNotThereWhereverTheDiskFills) {
+TEST(FramesCsv, IsCompleteOrAbsentWhenTheDiskFills) {
   const FrameLog log = synthetic_flight(1000);
   expect_whole_files(
       [&log](const auto& folder) { return write_frames_csv(folder / "frames.csv", log); });

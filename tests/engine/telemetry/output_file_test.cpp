@@ -8,9 +8,9 @@
 namespace psygen::telemetry {
 namespace {
 
-TEST(OutputFolder, LosesWhatAKilledProcessHalfWrote) {
+TEST(OutputFolder, LosesPartialFilesOfAKilledProcess) {
   const TemporaryFolder folder;
-  // No process has a number beyond the kernel's limit of 2^22.
+  // No process id exceeds the kernel's limit of 2^22.
   ASSERT_TRUE(core::replace_file(folder / ".trace.json.99999999-0.partial", "half"));
   ASSERT_TRUE(create_output_folder(folder.path()));
   EXPECT_EQ(folder.file_count(), 0U);
@@ -23,7 +23,7 @@ TEST(OutputFolder, IsCreatedWithTheFoldersAboveItAndMayExist) {
   EXPECT_TRUE(create_output_folder(folder / "a/b/c"));
 }
 
-TEST(OutputFolder, CannotBeWhereAFileIsOrWhereNothingMayBeCreated) {
+TEST(OutputFolder, CannotReplaceAFileOrBeInAnUnwritablePlace) {
   const TemporaryFolder folder;
   ASSERT_TRUE(core::replace_file(folder / "file", "x"));
   for (const auto& path :

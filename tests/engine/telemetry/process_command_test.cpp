@@ -18,7 +18,7 @@ TEST(ProcessCommand, CanBeTypedIntoAShell) {
   EXPECT_EQ(shell_text(""), "");
 }
 
-TEST(ProcessCommand, HasALastWordWithoutAnEnd) {
+TEST(ProcessCommand, AcceptsALastWordWithoutAnEnd) {
   EXPECT_EQ(shell_text("a"), "a");
 }
 

@@ -15,7 +15,7 @@ struct Recorder {
   }
 };
 
-TEST(ProgressBar, WritesNothingWhereThereIsNoTerminal) {
+TEST(ProgressBar, WritesNothingWithoutATerminal) {
   Recorder recorder;
   {
     ProgressBar bar(recorder.terminal(false), "calibrating", 10);
@@ -25,7 +25,7 @@ TEST(ProgressBar, WritesNothingWhereThereIsNoTerminal) {
   EXPECT_TRUE(recorder.writes.empty());
 }
 
-TEST(ProgressBar, ShowsShareAndTimeLeftAndRemovesItselfInTheEnd) {
+TEST(ProgressBar, ShowsFractionAndTimeLeftAndRemovesItselfAtTheEnd) {
   Recorder recorder;
   {
     ProgressBar bar(recorder.terminal(true), "prefill", 200);

@@ -34,7 +34,7 @@ TEST(ReportPlot, HasATitleTheUnitAndTheData) {
   EXPECT_EQ(data["series"][0]["v"][99], 99.0);
 }
 
-TEST(ReportPlot, EscapesEverythingThatComesFromOutside) {
+TEST(ReportPlot, EscapesEveryText) {
   Plot plot = ramp(10);
   const std::string evil = "</script><script>alert(1)</script>\xff";
   plot.title = plot.unit = plot.note = plot.series[0].name = evil;
@@ -45,7 +45,7 @@ TEST(ReportPlot, EscapesEverythingThatComesFromOutside) {
   EXPECT_EQ(data_of(html)["series"][0]["name"], "</script><script>alert(1)</script>\xEF\xBF\xBD");
 }
 
-TEST(ReportPlot, WhatIsNoNumberIsNull) {
+TEST(ReportPlot, NonFiniteValuesAreNull) {
   Plot plot = ramp(10);
   plot.series[0].values[4] = std::numeric_limits<double>::quiet_NaN();
   plot.series[0].values[5] = std::numeric_limits<double>::infinity();
@@ -55,7 +55,7 @@ TEST(ReportPlot, WhatIsNoNumberIsNull) {
   EXPECT_EQ(data["series"][0]["v"][6], 6.0);
 }
 
-TEST(ReportPlot, SaysHowItIsDrawn) {
+TEST(ReportPlot, StoresItsDrawingStyle) {
   Plot plot = ramp(3);
   plot.kind = PlotKind::kStacked;
   plot.top = 10;
@@ -68,7 +68,7 @@ TEST(ReportPlot, SaysHowItIsDrawn) {
   EXPECT_EQ(data["levels"], nlohmann::json({{{"label", "budget"}, {"value", 8}, {"below", true}}}));
 }
 
-TEST(ReportPlot, OfOneFrameOrNoneIsStillAPlot) {
+TEST(ReportPlot, IsAlsoDrawnForOneFrameOrNone) {
   for (const std::size_t count : {0U, 1U})
     EXPECT_EQ(data_of(plot_html(ramp(count)))["series"][0]["v"].size(), count);
 }

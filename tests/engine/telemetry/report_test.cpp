@@ -18,27 +18,27 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-TEST(Report, HasAllPlotsAndTheHeadlineFigures) {
+TEST(Report, HasAllPlotsAndHeadlineNumbers) {
   const FrameLog log = synthetic_flight();
   const std::string html = report_html(log, summarise(log, synthetic_facts(), 1.0));
   EXPECT_EQ(count_of(html, "<figure"), kFigures);
   for (const char* part :
-       {"Frame time", "Missing geometry", "what of it is missing or too coarse", "Geometry cache",
-        "budget 512 MiB", "Synthesis", "Error of the picture", "Modelers: how busy",
-        "How frame times are distributed", "median 1", "p99 ", "32.8 billion", "llvmpipe",
-        "Where the frame goes", "prefers-color-scheme: dark"}) {
+       {"Frame time", "Missing geometry", "Missing or too coarse part of the image",
+        "Geometry cache", "budget 512 MiB", "Synthesis", "Allowed screen-space error",
+        "Modelers: load", "Distribution of frame times", "median 1", "p99 ", "32.8 billion",
+        "llvmpipe", "Parts of a frame", "prefers-color-scheme: dark"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
 }
 
-// What the page's script knows of each frame.
+// Data of each frame for the page's script.
 nlohmann::json rows_of(const std::string& html) {
   const std::string opening = "id=\"rows\">";
   const std::size_t start = html.find(opening) + opening.size();
   return nlohmann::json::parse(html.substr(start, html.find("</script>", start) - start));
 }
 
-// The classes of the boxes whose label is `label`.
+// Classes of the boxes with the label `label`.
 std::string state_of(const std::string& html, const std::string& label) {
   const std::size_t at = html.find("\"label\">" + label + "<");
   if (at == std::string::npos) return "missing";
@@ -46,7 +46,7 @@ std::string state_of(const std::string& html, const std::string& label) {
   return html.substr(begin, html.find('"', begin) - begin);
 }
 
-TEST(Report, IsGreenOnlyWhereThePictureIsWhatWasAskedFor) {
+TEST(Report, IsGreenOnlyIfTheImageIsAsRequested) {
   const FrameLog log = synthetic_flight();
   const std::string good = report_html(log, summarise(log, synthetic_facts(), 3.0));
   EXPECT_NE(good.find("class=\"verdict good\""), std::string::npos);
@@ -60,8 +60,8 @@ TEST(Report, IsGreenOnlyWhereThePictureIsWhatWasAskedFor) {
     coarse.add(r);
   }
   const std::string poor = report_html(coarse, summarise(coarse, synthetic_facts(), 3.0));
-  EXPECT_NE(poor.find("class=\"verdict bad\"><b>Picture: much too coarse"), std::string::npos);
-  EXPECT_EQ(count_of(poor, "card good"), 0U) << "a page that is green looks as if all were well";
+  EXPECT_NE(poor.find("class=\"verdict bad\"><b>Image: much too coarse"), std::string::npos);
+  EXPECT_EQ(count_of(poor, "card good"), 0U) << "a green box would suggest that all is well";
   EXPECT_EQ(state_of(poor, "Frames with a hole"), "");
   EXPECT_EQ(state_of(poor, "Frames too coarse"), "bad");
 }
@@ -79,17 +79,16 @@ TEST(Report, OptionsInAdviceAreNotBrokenOverTwoLines) {
             std::string::npos);
 }
 
-TEST(Report, WaitingIsShownAsWaitingAndNotAsAShareOfASystem) {
+TEST(Report, WaitingIsShownSeparatelyAndNotAsPartOfASystem) {
   const FrameLog log = synthetic_flight();
   const std::string html = report_html(log, summarise(log, synthetic_facts(), 1.0));
-  EXPECT_NE(html.find("<th>waiting for the device</th>"), std::string::npos);
-  EXPECT_NE(html.find("waiting for the device</span>"), std::string::npos)
-      << "in the plot's legend";
+  EXPECT_NE(html.find("<th>waiting for the GPU</th>"), std::string::npos);
+  EXPECT_NE(html.find("waiting for the GPU</span>"), std::string::npos) << "in the plot's legend";
   EXPECT_EQ(html.find("waiting for the window</span>"), std::string::npos) << "there is no window";
-  EXPECT_NE(html.find("on the device</span>"), std::string::npos);
+  EXPECT_NE(html.find("GPU</span>"), std::string::npos);
 }
 
-TEST(Report, FramesThatWerePicturesAreMarkedAndNotInTheCurve) {
+TEST(Report, FramesWithImagesAreMarkedAndNotInTheCurve) {
   FrameLog log = synthetic_flight();
   FrameRecord picture = log.frames().back();
   picture.time_s += 0.02;
@@ -102,33 +101,33 @@ TEST(Report, FramesThatWerePicturesAreMarkedAndNotInTheCurve) {
   const nlohmann::json rows = rows_of(html);
   EXPECT_EQ(rows["apart"], nlohmann::json({{"1500", "picture"}}));
   EXPECT_EQ(rows["pictures"], nlohmann::json({{"1500", "frame_01499.png"}}));
-  EXPECT_NE(html.find("1 written as pictures. They are marked."), std::string::npos);
+  EXPECT_NE(html.find("1 written as images. They are marked."), std::string::npos);
 }
 
-TEST(Report, PicturesBesideThePageAreNamedWhateverTheClock) {
+TEST(Report, ImagesNextToThePageAreNamedOnAnyClock) {
   FrameLog log = synthetic_flight();
   FrameRecord record = log.frames().back();
-  record.has_picture = true;  // the virtual clock sets no frame apart
+  record.has_picture = true;  // the virtual clock excludes no frame
   log.add(record);
   record.has_picture = false;
-  record.apart = Apart::kPicture;  // a plugin wrote it somewhere
+  record.apart = Apart::kPicture;  // a plugin wrote the image elsewhere
   log.add(record);
   const nlohmann::json rows = rows_of(report_html(log, summarise(log, synthetic_facts(), 1.0)));
   EXPECT_EQ(rows["apart"], nlohmann::json({{"1501", "picture"}}));
   EXPECT_EQ(rows["pictures"], nlohmann::json({{"1500", "frame_01499.png"}}));
 }
 
-TEST(Report, AnEndlessWorldHasTheFiguresOfAnAreaInsteadOfDashes) {
+TEST(Report, AnEndlessWorldHasValuesPerAreaInsteadOfDashes) {
   RunFacts facts = synthetic_facts();
   facts.world.blocks = {0, 0};
   facts.world.triangles = facts.world.bytes = facts.world.bytes_paper = Count::missing("no end");
   const FrameLog log = synthetic_flight();
   const std::string html = report_html(log, summarise(log, facts, 1.0));
-  EXPECT_NE(html.find("A square kilometre, triangles"), std::string::npos);
+  EXPECT_NE(html.find("One square kilometre, triangles"), std::string::npos);
   EXPECT_EQ(html.find("paper's format"), std::string::npos);
 }
 
-TEST(Report, RaisedErrorsAreDrawnAgainstTheOneAskedFor) {
+TEST(Report, RaisedErrorsAreDrawnAgainstTheRequestedError) {
   FrameLog log(tick_systems());
   const FrameLog flight = synthetic_flight();
   for (FrameRecord r : flight.frames()) {
@@ -136,18 +135,18 @@ TEST(Report, RaisedErrorsAreDrawnAgainstTheOneAskedFor) {
     log.add(r);
   }
   const std::string html = report_html(log, summarise(log, synthetic_facts(), 1.0));
-  EXPECT_NE(html.find("\"label\":\"asked for 4\""), std::string::npos);
-  EXPECT_EQ(state_of(html, "Error of levels of detail"), "fair");
+  EXPECT_NE(html.find("\"label\":\"requested 4\""), std::string::npos);
+  EXPECT_EQ(state_of(html, "Error of LODs"), "fair");
 }
 
-TEST(Report, NeedsNothingFromOutside) {
+TEST(Report, NeedsNoExternalResources) {
   const FrameLog log = synthetic_flight(100);
   const std::string html = report_html(log, summarise(log, synthetic_facts(), 1.0));
   for (const char* part : {"http:", "https:", "src=", "href=", "@import", "url("})
     EXPECT_EQ(html.find(part), std::string::npos) << part;
 }
 
-TEST(Report, SaysSoWhenASlowFrameIsOffTheScale) {
+TEST(Report, SaysIfASlowFrameIsOffTheScale) {
   const FrameLog log = synthetic_flight();
   const std::string html = report_html(log, summarise(log, synthetic_facts(), 1.0));
   EXPECT_NE(html.find("off the scale; the slowest took 112 ms."), std::string::npos);
@@ -162,16 +161,16 @@ TEST(Report, EscapesNamesFromWorldFiles) {
   EXPECT_NE(html.find("&lt;script&gt;alert(&#39;x&#39;)"), std::string::npos);
 }
 
-TEST(Report, OfARunWithoutFramesSaysSoAndGivesReasons) {
+TEST(Report, GivesReasonsForARunWithoutFrames) {
   const FrameLog log(tick_systems());
   const std::string html = report_html(log, summarise(log, {}, 1.0));
   EXPECT_NE(html.find("No frame was drawn."), std::string::npos);
   EXPECT_NE(html.find("title=\"needs at least 2 values, there are 0\""), std::string::npos);
-  EXPECT_NE(html.find("Picture: not measured"), std::string::npos);
+  EXPECT_NE(html.find("Image: not measured"), std::string::npos);
   EXPECT_EQ(count_of(html, "card good"), 0U);
 }
 
-TEST(Report, OfAFewFramesOrOfAWarmUpAloneIsAPageWithoutNonsense) {
+TEST(Report, IsMeaningfulForAFewFramesOrAWarmUpAlone) {
   for (const std::uint64_t frames : {1U, 2U, 5U}) {
     for (const double warmup_s : {0.0, 1e6}) {
       const FrameLog log = synthetic_flight(frames);
@@ -183,7 +182,7 @@ TEST(Report, OfAFewFramesOrOfAWarmUpAloneIsAPageWithoutNonsense) {
   }
 }
 
-TEST(Report, OfALongFlightHasTheSlowestOfEveryNFramesAndTheWorstOfThePicture) {
+TEST(Report, ShowsTheSlowestOfEveryNFramesOfALongFlight) {
   FrameLog log(tick_systems());
   FrameRecord r = synthetic_flight(1).frames()[0];
   r.holes = 0;
@@ -201,10 +200,10 @@ TEST(Report, OfALongFlightHasTheSlowestOfEveryNFramesAndTheWorstOfThePicture) {
   ASSERT_EQ(rows["t"].size(), 20'000U);
   EXPECT_EQ(rows["n"][10'000], 30'001);
   EXPECT_NE(html.find("77.25"), std::string::npos);
-  EXPECT_EQ(count_of(html, ",7,0,"), 1U) << "the hole of another frame than the slowest";
+  EXPECT_EQ(count_of(html, ",7,0,"), 1U) << "a hole that is not in the slowest frame";
 }
 
-TEST(Report, SaysHowTheRunWasStarted) {
+TEST(Report, ShowsTheCommandOfTheRun) {
   RunFacts facts = synthetic_facts();
   facts.run.command = "psygen fly --world '<b>'";
   facts.run.preset = "high";
@@ -216,17 +215,17 @@ TEST(Report, SaysHowTheRunWasStarted) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
 }
 
-TEST(Report, HasTheTimeOfEachSystemInEachFrameAndWaitingApart) {
+TEST(Report, HasTheTimeOfEachSystemAndSeparateWaitingTimes) {
   const FrameLog log = synthetic_flight(10);
   const nlohmann::json rows = rows_of(report_html(log, summarise(log, synthetic_facts(), 0)));
   ASSERT_EQ(rows["parts"].size(), tick_systems().size() + 2);
   EXPECT_EQ(rows["parts"][2]["name"], "visibility");
   EXPECT_NEAR(rows["parts"][2]["v"][9], 0.9, 1e-5);
-  EXPECT_EQ(rows["parts"][8]["name"], "waiting for the device");
+  EXPECT_EQ(rows["parts"][8]["name"], "waiting for the GPU");
   EXPECT_NEAR(rows["parts"][8]["v"][9], log.frames()[9].device_wait_ms, 1e-3);
 }
 
-TEST(Report, GoesIntoAFileOrSaysWhyNot) {
+TEST(Report, IsWrittenToAFileOrReportsTheError) {
   const TemporaryFolder folder;
   const FrameLog log = synthetic_flight();
   const Summary summary = summarise(log, synthetic_facts(), 1.0);

@@ -42,7 +42,7 @@ TEST(SampleSet, NeverLosesTheLargestSample) {
   EXPECT_TRUE(std::find(later.begin(), later.end(), 1e9) == later.end());
 }
 
-TEST(SampleSet, LeavesOutWhatIsNotANumber) {
+TEST(SampleSet, IgnoresNonFiniteValues) {
   SampleSet samples(10);
   samples.add(0, std::numeric_limits<double>::quiet_NaN());
   samples.add(std::numeric_limits<double>::infinity(), 1);

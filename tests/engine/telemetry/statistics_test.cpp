@@ -37,7 +37,7 @@ TEST(Percentile, DoesNotDependOnTheOrderOfTheValues) {
     EXPECT_EQ(percentile(values, p), percentile(mixed, p));
 }
 
-TEST(Percentile, IsMissingWithAReasonWhenNoValueCouldLieAboveIt) {
+TEST(Percentile, IsMissingWithAReasonIfNoValueCouldLieAboveIt) {
   EXPECT_FALSE(percentile(counted(99), 0.99).has_value());
   EXPECT_TRUE(percentile(counted(100), 0.99).has_value());
   EXPECT_FALSE(percentile(counted(19), 0.95).has_value());
@@ -54,7 +54,7 @@ TEST(Mean, AndLargestAreMissingWithoutValues) {
   EXPECT_FALSE(largest({}).has_value());
 }
 
-TEST(Low1Fps, IsThousandOverTheMeanOfTheFramesAtOrAboveP99) {
+TEST(Low1Fps, IsAThousandDividedByTheMeanOfFramesFromP99On) {
   std::vector<double> frames(200, 10.0);
   frames[17] = 40.0;
   frames[90] = 60.0;
@@ -71,7 +71,7 @@ TEST(Low1Fps, IsMissingBelowAHundredFrames) {
   EXPECT_FALSE(low1_fps(std::vector<double>(99, 20.0)).has_value());
 }
 
-TEST(Hitches, CountFramesOver60MsAndOver1Point5TimesTheOneBefore) {
+TEST(Hitches, CountFramesOver60MsAndOver1Point5TimesThePrevious) {
   EXPECT_EQ(*hitches(std::vector{20.0, 61.0}), 1U);
   EXPECT_EQ(*hitches(std::vector{20.0, 60.0}), 0U);
   EXPECT_EQ(*hitches(std::vector{50.0, 75.0}), 0U);
@@ -93,7 +93,7 @@ TEST(Hitches, CannotBeTheFirstFrameAndNeedTwo) {
   EXPECT_FALSE(hitches(std::vector{500.0}).has_value());
 }
 
-TEST(StutterPercent, IsTheShareOfTimeInFramesOver2Point5TimesTheMovingAverage) {
+TEST(StutterPercent, IsTheFractionOfTimeInFramesOver2Point5TimesTheMovingAverage) {
   EXPECT_DOUBLE_EQ(*stutter_percent(std::vector<double>(100, 10.0)), 0.0);
   std::vector<double> frames(100, 10.0);
   frames[50] = 25.0;
@@ -102,7 +102,7 @@ TEST(StutterPercent, IsTheShareOfTimeInFramesOver2Point5TimesTheMovingAverage) {
   EXPECT_DOUBLE_EQ(*stutter_percent(frames), 100.0 * 26.0 / (99.0 * 10.0 + 26.0));
 }
 
-TEST(StutterPercent, AveragesOverThe60FramesBefore) {
+TEST(StutterPercent, AveragesOverThe60PreviousFrames) {
   std::vector<double> frames(61, 10.0);
   frames[0] = 1000.0;
   frames.push_back(26.0);

@@ -7,7 +7,7 @@
 namespace psygen::telemetry {
 namespace {
 
-TEST(Summarise, LeavesTheWarmUpOutOfAllFiguresButNotOutOfTheLengthOfTheRun) {
+TEST(Summarise, ExcludesTheWarmUpExceptFromTheLengthOfTheRun) {
   const FrameLog log = synthetic_flight();
   const Summary s = summarise(log, synthetic_facts(), 3.0);
   EXPECT_EQ(s.run.frames, 1500U);
@@ -17,7 +17,7 @@ TEST(Summarise, LeavesTheWarmUpOutOfAllFiguresButNotOutOfTheLengthOfTheRun) {
   EXPECT_GT(*summarise(log, synthetic_facts(), 0.0).missing.frames, 0U);
 }
 
-TEST(Summarise, FrameFiguresAreTheStatisticsOfTheMeasuredFrames) {
+TEST(Summarise, FrameTimesAreStatisticsOfTheMeasuredFrames) {
   const FrameLog log = synthetic_flight();
   const Summary s = summarise(log, synthetic_facts(), 1.0);
   std::vector<double> ms;
@@ -33,8 +33,8 @@ TEST(Summarise, FrameFiguresAreTheStatisticsOfTheMeasuredFrames) {
   EXPECT_NEAR(*s.system_ms[2].p50, 0.9, 1e-6);
 }
 
-// Frames of 10 ms of which the fifth of each ten is written, which takes 200 ms, and the next two
-// find an idle device, for 1 ms each.
+// Frames of 10 ms. Of each ten, the fifth is written, which takes 200 ms, and the next two find an
+// idle GPU and take 1 ms each.
 FrameLog flight_with_pictures(std::uint64_t frames) {
   FrameLog log({"render"});
   constexpr std::array kOneMs{1.0F};
@@ -55,7 +55,7 @@ FrameLog flight_with_pictures(std::uint64_t frames) {
   return log;
 }
 
-TEST(Summarise, FramesThatAreNotLikeTheOthersAreInNoFigureOfTimes) {
+TEST(Summarise, ExcludedFramesAreNotInTimingStatistics) {
   const Summary s = summarise(flight_with_pictures(1000), {}, 0.0);
   EXPECT_EQ(s.run.measured_frames, 1000U);
   EXPECT_EQ(s.run.timed_frames, 700U);
@@ -70,12 +70,12 @@ TEST(Summarise, FramesThatAreNotLikeTheOthersAreInNoFigureOfTimes) {
   EXPECT_EQ(*s.wait_ms.all.p50, 8);
   EXPECT_EQ(*s.wait_ms.device.p99, 8);
   EXPECT_EQ(*s.gpu_ms.max, 9);
-  // What was drawn is theirs, too.
+  // Drawing statistics include these frames.
   EXPECT_EQ(*s.draw.triangles_p50, 104.5);
   EXPECT_FALSE(s.synthesis.busy_percent.has_value());
 }
 
-TEST(Summarise, WhereEveryFrameIsWrittenThereAreNoTimes) {
+TEST(Summarise, HasNoTimesIfEveryFrameIsWritten) {
   FrameLog log({"render"});
   for (int i = 0; i < 200; ++i) {
     FrameRecord r;
@@ -92,17 +92,17 @@ TEST(Summarise, WhereEveryFrameIsWrittenThereAreNoTimes) {
   EXPECT_TRUE(s.missing.frames.has_value());
 }
 
-TEST(Summarise, TheDevicesTimeIsMissingWithTheReason) {
+TEST(Summarise, TheGpuTimeIsMissingWithTheReason) {
   FrameLog log({});
   for (int i = 0; i < 200; ++i)
     log.add({});
   RunFacts facts;
-  EXPECT_EQ(summarise(log, facts, 0.0).gpu_ms.p50.reason, "the device has no timestamps");
+  EXPECT_EQ(summarise(log, facts, 0.0).gpu_ms.p50.reason, "the GPU has no timestamps");
   facts.device.timestamps = true;
   EXPECT_EQ(summarise(log, facts, 0.0).gpu_ms.p50.reason, "needs at least 2 values, there are 0");
 }
 
-TEST(Summarise, AFrameIsTooCoarseByWhicheverMeasureIsLarger) {
+TEST(Summarise, AFrameIsTooCoarseByTheLargerMeasure) {
   FrameLog log({});
   for (int i = 0; i < 200; ++i) {
     FrameRecord r;
@@ -122,11 +122,11 @@ TEST(Summarise, AFrameIsTooCoarseByWhicheverMeasureIsLarger) {
   EXPECT_NEAR(*s.run.real_seconds, 2.0, 1e-9);
 }
 
-TEST(Summarise, TellsWhyTheErrorOfLevelsOfDetailWasRaised) {
+TEST(Summarise, ReportsWhyTheErrorOfLodsWasRaised) {
   FrameLog log({});
   for (int i = 0; i < 100; ++i) {
     FrameRecord r;
-    r.error_pixels = i < 10 ? 8 : i < 40 ? 6 : 4;  // for time; for memory; as asked for
+    r.error_pixels = i < 10 ? 8 : i < 40 ? 6 : 4;  // for time; for memory; as requested
     r.memory_factor = i >= 10 && i < 40 ? 1.5 : 1;
     r.resolution = i >= 98 ? 0.75 : 1;
     r.requests_refused = i == 12 ? 3 : 0;
@@ -144,7 +144,7 @@ TEST(Summarise, TellsWhyTheErrorOfLevelsOfDetailWasRaised) {
   EXPECT_EQ(*s.detail.refused_frames, 1U);
 }
 
-TEST(Summarise, ModelersBusyIsTheirShareOfTheRealTimeOfAsManyProcessors) {
+TEST(Summarise, ModelersBusyIsTheirFractionOfTheProcessorsRealTime) {
   FrameLog log({});
   for (int i = 0; i < 100; ++i) {
     FrameRecord r;
@@ -160,7 +160,7 @@ TEST(Summarise, ModelersBusyIsTheirShareOfTheRealTimeOfAsManyProcessors) {
   EXPECT_NEAR(*s.synthesis.busy_percent, 30, 1e-9);
   EXPECT_NEAR(*s.synthesis.coarse_busy_percent, 10, 1e-9);
   EXPECT_FALSE(summarise(log, facts, 90.5).synthesis.coarse_busy_percent.has_value())
-      << "a fifth of a second says nothing";
+      << "a fifth of a second is too short";
 }
 
 TEST(Summarise, SumsCountsAndDividesTrianglesByBusySeconds) {
@@ -185,7 +185,7 @@ TEST(Summarise, SumsCountsAndDividesTrianglesByBusySeconds) {
   EXPECT_EQ(*s.missing.frames, 1U);
 }
 
-TEST(Summarise, CachePeakIncludesTheWarmUpAndPrefersTheCachesOwnFigure) {
+TEST(Summarise, CachePeakIncludesTheWarmUpAndPrefersTheCachesCount) {
   FrameLog log({});
   FrameRecord r;
   r.cache_bytes = 500;
@@ -199,12 +199,12 @@ TEST(Summarise, CachePeakIncludesTheWarmUpAndPrefersTheCachesOwnFigure) {
   EXPECT_EQ(*summarise(log, facts, 1.0).cache.peak_bytes, 700U);
 }
 
-TEST(Summarise, OfARunWithoutFramesHasReasonsInsteadOfFigures) {
+TEST(Summarise, HasReasonsInsteadOfValuesWithoutFrames) {
   const Summary s = summarise(FrameLog(tick_systems()), {}, 1.0);
   EXPECT_FALSE(s.frame_ms.p50.has_value());
   EXPECT_FALSE(s.frame_ms.p50.reason.empty());
   EXPECT_FALSE(s.hitches.has_value());
-  EXPECT_EQ(s.cache.hits.reason, "no frame is left after the warm-up");
+  EXPECT_EQ(s.cache.hits.reason, "no frames after the warm-up");
   EXPECT_FALSE(s.synthesis.triangles_per_second.has_value());
   EXPECT_FALSE(s.cache.peak_bytes.has_value());
 }

@@ -49,7 +49,7 @@ TEST(SummaryJson, EveryNullHasAReasonAndEveryReasonANull) {
   }
 }
 
-TEST(SummaryJson, TooFewFramesAreNullWithTheNumberThatIsNeeded) {
+TEST(SummaryJson, TooFewFramesAreNullWithTheRequiredNumber) {
   const json j = json::parse(to_json(summarise(synthetic_flight(50), synthetic_facts(), 0.0)));
   EXPECT_TRUE(j["frame_ms"]["p95"].is_number());
   EXPECT_TRUE(j["frame_ms"]["p99"].is_null());
@@ -57,7 +57,7 @@ TEST(SummaryJson, TooFewFramesAreNullWithTheNumberThatIsNeeded) {
   EXPECT_EQ(j["reasons"]["run.fixed_step"], "the flight follows the clock");
 }
 
-TEST(SummaryJson, SurvivesNamesThatAreNotTextAndFiguresThatAreNotNumbers) {
+TEST(SummaryJson, SurvivesInvalidTextsAndNonFiniteNumbers) {
   RunFacts facts = synthetic_facts();
   facts.world.name = "broken \xFF\xFE \"name\"\n";
   facts.floor_ratio = std::numeric_limits<double>::quiet_NaN();
@@ -65,7 +65,7 @@ TEST(SummaryJson, SurvivesNamesThatAreNotTextAndFiguresThatAreNotNumbers) {
   const json j = json::parse(to_json(summarise(synthetic_flight(10), facts, 0.0)));
   EXPECT_TRUE(j["draw"]["floor_ratio"].is_null());
   EXPECT_TRUE(j["cache"]["prefetch_hit_percent"].is_null());
-  EXPECT_EQ(j["reasons"]["draw.floor_ratio"], "the figure is not a finite number");
+  EXPECT_EQ(j["reasons"]["draw.floor_ratio"], "the value is not a finite number");
 }
 
 TEST(SummaryJson, KeepsAll64BitsOfSeedsAndSizes) {
@@ -77,7 +77,7 @@ TEST(SummaryJson, KeepsAll64BitsOfSeedsAndSizes) {
   EXPECT_EQ(j["world"]["bytes"].get<std::uint64_t>(), (1ULL << 63) + 1);
 }
 
-TEST(SummaryJson, GoesIntoAFileOrSaysWhyNot) {
+TEST(SummaryJson, IsWrittenToAFileOrReportsTheError) {
   const TemporaryFolder folder;
   const Summary s = summarise(synthetic_flight(10), synthetic_facts(), 0.0);
   ASSERT_TRUE(write_summary_json(folder / "summary.json", s));

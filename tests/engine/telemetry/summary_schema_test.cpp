@@ -1,4 +1,4 @@
-// summary.json as it is written against docs/summary.schema.json as it is published.
+// Compares a written summary.json with the published docs/summary.schema.json.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -24,8 +24,8 @@ bool has_type(const json& value, const std::string& type) {
                                        : "null");
 }
 
-// What a value has that its schema has not, and the other way round; the parts of JSON schemas that
-// tools/summary_schema.py writes.
+// Expects that a value and its schema have the same members. Supports the parts of JSON schemas
+// that tools/summary_schema.py writes.
 void expect_fits(const json& value, const json& schema, const std::string& name) {
   SCOPED_TRACE(name);
   const json types = schema["type"].is_array() ? schema["type"] : json::array({schema["type"]});
@@ -63,14 +63,14 @@ json published_schema() {
   return json::parse(file);
 }
 
-TEST(SummarySchema, IsThatOfAWholeFlight) {
+TEST(SummarySchema, FitsACompleteFlight) {
   const Summary summary = summarise(synthetic_flight(), synthetic_facts(), 1.0);
   expect_fits(json::parse(to_json(summary)), published_schema(), "");
 }
 
-TEST(SummarySchema, IsThatOfAFlightWithoutAnyFigure) {
+TEST(SummarySchema, FitsAFlightWithoutAnyValue) {
   json schema = published_schema();
-  schema["properties"]["run"]["properties"]["width"]["minimum"] = 0;  // there was no picture
+  schema["properties"]["run"]["properties"]["width"]["minimum"] = 0;  // no image
   schema["properties"]["run"]["properties"]["height"]["minimum"] = 0;
   schema["properties"]["run"]["properties"]["error_pixels"]["minimum"] = 0;
   expect_fits(json::parse(to_json(Summary{})), schema, "");

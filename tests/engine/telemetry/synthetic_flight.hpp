@@ -1,5 +1,5 @@
-// A flight that looks like a real one, invented frame by frame and the same in every run, and files
-// for the tests of telemetry.
+// A realistic flight, generated frame by frame and identical in every run, and files for the tests
+// of telemetry.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 
 namespace psygen::telemetry {
 
-// The content of a file; empty when it cannot be read.
+// Content of a file; empty if it cannot be read.
 inline std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

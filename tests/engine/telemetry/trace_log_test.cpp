@@ -62,7 +62,7 @@ TEST(TraceLog, WritesCountersOverTime) {
   EXPECT_EQ(events[1]["args"]["value"], 20.5);
 }
 
-TEST(TraceLog, ATrackKeepsItsNewestSpansInOrderAndLeavesOtherTracksAlone) {
+TEST(TraceLog, ATrackKeepsItsNewestSpansInOrderIndependentlyOfOthers) {
   TraceLog trace(4);
   const auto main = trace.add_track("main");
   const auto modeler = trace.add_track("modeler");
@@ -93,7 +93,7 @@ TEST(TraceLog, NamesWithQuotesAndBrokenTextStayValidJson) {
   EXPECT_EQ(events_of_kind(written(trace), "X").size(), 1U);
 }
 
-TEST(TraceLog, LeavesOutSpansThatEndBeforeTheyStart) {
+TEST(TraceLog, IgnoresSpansThatEndBeforeTheyStart) {
   TraceLog trace;
   const auto track = trace.add_track("main");
   trace.add_span(track, trace.intern("x"), 2.0, 1.0);
@@ -102,7 +102,7 @@ TEST(TraceLog, LeavesOutSpansThatEndBeforeTheyStart) {
   EXPECT_TRUE(events_of_kind(written(trace), "X").empty());
 }
 
-TEST(TraceLog, IsWholeOrNotThereWhereverTheDiskFills) {
+TEST(TraceLog, IsCompleteOrAbsentWhenTheDiskFills) {
   TraceLog trace;
   const auto track = trace.add_track("main");
   const auto name = trace.intern("job");

@@ -5,7 +5,7 @@
 namespace psygen::telemetry {
 namespace {
 
-TEST(Units, NumbersHaveThreeDigitsThatCount) {
+TEST(Units, NumbersHaveThreeSignificantDigits) {
   EXPECT_EQ(three_digits(0), "0");
   EXPECT_EQ(three_digits(0.12345), "0.123");
   EXPECT_EQ(three_digits(9.999), "10.0");

@@ -7,7 +7,7 @@
 namespace psygen::telemetry {
 namespace {
 
-// 200 frames, 20 s of flight in 10 s, of which `change` has changed what it wants.
+// 200 frames, 20 s of flight in 10 s; `change` modifies each frame.
 template <class Change>
 Summary flight(const Change& change, RunFacts facts = synthetic_facts()) {
   FrameLog log({});
@@ -31,12 +31,12 @@ std::string text_of(const std::vector<std::string>& sentences) {
   return text;
 }
 
-TEST(Verdict, IsGoodOnlyWhereNothingIsWrong) {
+TEST(Verdict, IsGoodOnlyWithoutAnyFault) {
   const Verdict verdict = picture_verdict(flight([](FrameRecord&) {}));
   EXPECT_EQ(verdict.grade, Grade::kGood);
-  EXPECT_EQ(verdict.headline, "as asked for");
+  EXPECT_EQ(verdict.headline, "as requested");
   EXPECT_TRUE(verdict.advice.empty());
-  // A little may be too coarse in all frames, and a lot in one of a hundred.
+  // All frames may be slightly too coarse, and one of a hundred much too coarse.
   EXPECT_EQ(picture_verdict(flight([](FrameRecord& r) { r.missing_pixels_percent = 0.9; })).grade,
             Grade::kGood);
   EXPECT_EQ(picture_verdict(flight([](FrameRecord& r) {
@@ -54,7 +54,7 @@ TEST(Verdict, OneHoleIsPoor) {
   EXPECT_FALSE(verdict.advice.empty());
 }
 
-TEST(Verdict, APictureWithoutHolesThatIsTooCoarseIsNotGood) {
+TEST(Verdict, ACoarseImageWithoutHolesIsNotGood) {
   const auto coarse = [](double percent) {
     return picture_verdict(flight([percent](FrameRecord& r) {
       if (r.index < 100) r.missing_pixels_percent = percent;
@@ -71,7 +71,7 @@ TEST(Verdict, APictureWithoutHolesThatIsTooCoarseIsNotGood) {
   EXPECT_NE(text_of(poor.reasons).find("at worst 100 %"), std::string::npos);
 }
 
-TEST(Verdict, OfFewFramesTheWorstDecides) {
+TEST(Verdict, TheWorstOfFewFramesDecides) {
   FrameLog log({});
   FrameRecord r;
   r.frame_ms = 50;
@@ -82,7 +82,7 @@ TEST(Verdict, OfFewFramesTheWorstDecides) {
   EXPECT_EQ(verdict.headline, "much too coarse");
 }
 
-TEST(Verdict, SaysThatAFixedStepOutranTheModelers) {
+TEST(Verdict, ReportsThatAFixedStepOutranTheModelers) {
   RunFacts facts = synthetic_facts();
   facts.run.fixed_step = 10;
   const auto all_coarse = [](FrameRecord& r) {
@@ -100,16 +100,16 @@ TEST(Verdict, SaysThatAFixedStepOutranTheModelers) {
             std::string::npos);
 }
 
-TEST(Verdict, SaysThatModelersGotNoProcessor) {
+TEST(Verdict, ReportsThatModelersGotNoProcessor) {
   const std::string advice = text_of(picture_verdict(flight([](FrameRecord& r) {
                                        r.too_coarse_percent = 50;
                                        r.synthesis_seconds = 0.001;
                                      })).advice);
-  EXPECT_NE(advice.find("modelers worked for 2.00 % of the time of 1 processor"), std::string::npos)
+  EXPECT_NE(advice.find("modelers used 2.00 % of the time of 1 processor"), std::string::npos)
       << advice;
 }
 
-TEST(Verdict, WhereMemoryIsShortItBlamesNoProcessor) {
+TEST(Verdict, DoesNotBlameTheProcessorIfMemoryIsShort) {
   const Verdict verdict = picture_verdict(flight([](FrameRecord& r) {
     r.too_coarse_percent = 50;
     r.synthesis_seconds = 0.001;
@@ -119,7 +119,7 @@ TEST(Verdict, WhereMemoryIsShortItBlamesNoProcessor) {
   EXPECT_EQ(verdict.advice[0], "Raise --budget above 512 MiB.");
 }
 
-TEST(Verdict, ErrorsRaisedForMemoryOrTimeAreNotWhatWasAskedFor) {
+TEST(Verdict, ErrorsRaisedForMemoryOrTimeAreNotAsRequested) {
   const Verdict memory = picture_verdict(flight([](FrameRecord& r) {
     r.error_pixels = 12;
     r.memory_factor = 3;
@@ -129,26 +129,25 @@ TEST(Verdict, ErrorsRaisedForMemoryOrTimeAreNotWhatWasAskedFor) {
   EXPECT_NE(text_of(memory.reasons).find("The geometry budget was too small in 200 of 200 frames"),
             std::string::npos)
       << text_of(memory.reasons);
-  EXPECT_NE(text_of(memory.reasons).find("12.0 at most, not 4"), std::string::npos);
+  EXPECT_NE(text_of(memory.reasons).find("12.0 at most, instead of 4"), std::string::npos);
   EXPECT_NE(text_of(memory.advice).find("--budget above 512 MiB"), std::string::npos);
   RunFacts facts = synthetic_facts();
   facts.run.target_fps = 60;
   const Verdict target =
       picture_verdict(flight([](FrameRecord& r) { r.error_pixels = 16; }, facts));
   EXPECT_EQ(target.grade, Grade::kFair);
-  EXPECT_NE(text_of(target.reasons)
-                .find("To hold 60 frames/s the picture was made coarser in 200 of 200 frames"),
-            std::string::npos)
+  EXPECT_NE(
+      text_of(target.reasons).find("To hold 60 frames/s, detail was reduced in 200 of 200 frames"),
+      std::string::npos)
       << text_of(target.reasons);
   const Verdict pixels = picture_verdict(
       flight([](FrameRecord& r) { r.resolution = r.index < 50 ? 0.6 : 0.8; }, facts));
   EXPECT_EQ(pixels.grade, Grade::kFair);
   EXPECT_NE(
-      text_of(pixels.reasons)
-          .find("the landscape had 80.0 % of the resolution in the median and 60.0 % at worst"),
+      text_of(pixels.reasons).find("the render scale was 80.0 % in the median and 60.0 % at worst"),
       std::string::npos)
       << text_of(pixels.reasons);
-  // While it still refines, in the first frames, it is what was asked for.
+  // While it still refines, in the first frames, the image counts as requested.
   EXPECT_EQ(
       picture_verdict(flight([](FrameRecord& r) { r.error_pixels = r.index < 2 ? 16 : 4; }, facts))
           .grade,
@@ -162,7 +161,7 @@ TEST(Verdict, FailedModelsArePoor) {
   EXPECT_NE(text_of(verdict.reasons).find("2 models could not be synthesised"), std::string::npos);
 }
 
-TEST(Verdict, TheWorstOfSeveralGradesCountsAndAllReasonsAreGiven) {
+TEST(Verdict, TheWorstGradeCountsAndAllReasonsAreGiven) {
   const Verdict verdict = picture_verdict(flight([](FrameRecord& r) {
     r.holes = 1;
     r.too_coarse_percent = 5;
@@ -174,7 +173,7 @@ TEST(Verdict, TheWorstOfSeveralGradesCountsAndAllReasonsAreGiven) {
   EXPECT_EQ(verdict.reasons.size(), 3u);
 }
 
-TEST(Verdict, WithoutAMeasuredFrameThereIsNone) {
+TEST(Verdict, IsUnknownWithoutMeasuredFrames) {
   const Verdict none = picture_verdict(summarise(FrameLog({}), {}, 1.0));
   EXPECT_EQ(none.grade, Grade::kUnknown);
   EXPECT_TRUE(none.advice.empty());
@@ -185,15 +184,16 @@ TEST(Verdict, WithoutAMeasuredFrameThereIsNone) {
   EXPECT_NE(text_of(warm_up.advice).find("--warmup"), std::string::npos);
 }
 
-TEST(LeftOut, NamesWhatSetsFramesApart) {
+TEST(LeftOut, ListsTheReasonsOfExclusion) {
   Summary s;
   EXPECT_EQ(left_out_text(s), "");
   s.run.measured_frames = 100;
   s.run.timed_frames = 93;
   s.run.apart_frames = {93, 2, 4, 1, 0};
-  EXPECT_EQ(left_out_text(s),
-            "7 of 100 measured frames are in no figure of times: 2 written as pictures, 4 after "
-            "the device had been waited for, 1 while the window changed its size.");
+  EXPECT_EQ(
+      left_out_text(s),
+      "7 of 100 measured frames are excluded from timing statistics: 2 written as images, 4 after "
+      "the GPU was idle, 1 while the window was resized.");
 }
 
 }  // namespace
