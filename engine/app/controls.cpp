@@ -1,4 +1,4 @@
-// Handles the keys of a flight's window (keys.hpp) and lays out the text over the picture.
+// Handles the keys of a flight's window (keys.hpp) and lays out the text over the image.
 #include <fmt/format.h>
 
 #include <utility>
@@ -15,7 +15,7 @@
 namespace psygen::app {
 namespace {
 
-// Whether the user presses a key or moves the mouse to fly.
+// True if the user presses a key or moves the mouse to fly.
 bool moves_camera(const platform::InputState& input) {
   using enum platform::Key;
   for (const platform::Key key : {kW, kA, kS, kD, kQ, kE, kUp, kDown, kLeft, kRight}) {
@@ -51,11 +51,13 @@ void Flight::handle_keys() {
   if (input.was_pressed(kF12)) photograph_ = true;
   if (input.was_pressed(kP) || input.was_pressed(kPause)) session_->set_paused(!session_->paused());
   if (user_flies_ || !moves_camera(input)) return;
-  user_flies_ = true;  // from here on the path is left
-  if (path_) hud_.notify(Hud::Subject::kFlight, "You fly now; the path is left.", now_s);
+  user_flies_ = true;  // the flight leaves the path here
+  if (path_)
+    hud_.notify(Hud::Subject::kFlight, "You are flying now; the path is no longer followed.",
+                now_s);
 }
 
-// Screenshots show no notices: those are about other pictures.
+// Screenshots show no notices, which are about other images.
 void Flight::write_over_picture() {
   scene::State& state = session_->scene().state();
   const HudFacts facts{session_->renderer().device(), session_->renderer().preset(),
@@ -63,7 +65,7 @@ void Flight::write_over_picture() {
   state.input.panels = photograph_ ? hud_.lasting_panels(state, facts)
                                    : hud_.panels(state, facts, core::monotonic_seconds());
   if (session_->paused() && !photograph_)
-    state.input.panels.push_back({render::Anchor::kMiddle, {{"paused; P goes on"}}});
+    state.input.panels.push_back({render::Anchor::kMiddle, {{"paused; press P to continue"}}});
   state.input.text_scale =
       text_scale(session_->window()->content_scale(), session_->picture_size());
 }
@@ -80,7 +82,7 @@ void Flight::save_screenshot() {
   const auto written = image ? session_->write_picture(file, *image)
                              : core::Result<void>(tl::unexpected(image.error()));
   const std::string text = written ? fmt::format("wrote {}", file.string())
-                                   : "no picture was written: " + written.error().message;
+                                   : "cannot save the screenshot: " + written.error().message;
   if (written) {
     core::log_info(text);
   } else {
@@ -96,7 +98,7 @@ void Flight::change_preset() {
   if (!changed) core::log_error(changed.error().message);
   hud_.notify(Hud::Subject::kPreset,
               changed ? fmt::format("preset {}", render::to_string(preset))
-                      : fmt::format("preset {} cannot be had: {}", render::to_string(preset),
+                      : fmt::format("preset {} is not available: {}", render::to_string(preset),
                                     changed.error().message),
               core::monotonic_seconds());
 }
@@ -107,11 +109,11 @@ void Flight::tell_end(const FlightReport& report) {
   if (!report.failures.empty()) {
     text += report.failures.front().message;
   } else if (options_.out_folder.empty()) {
-    text += "Its figures are on the terminal.";
+    text += "The terminal shows its summary.";
   } else {
-    text += fmt::format("Its figures are in {}.", (options_.out_folder / "report.html").string());
+    text += fmt::format("The report is in {}.", (options_.out_folder / "report.html").string());
   }
-  hud_.notify_until_key(Hud::Subject::kFlight, text + " Fly on, or press Esc to leave.");
+  hud_.notify_until_key(Hud::Subject::kFlight, text + " Continue flying, or press Esc to quit.");
 }
 
 }  // namespace psygen::app

@@ -1,4 +1,4 @@
-// The main loop, from the first pose to the end of the flight. In a window it goes on after the
+// The main loop, from the first pose to the end of the flight. In a window it continues after the
 // path has ended.
 #include "engine/app/flight.hpp"
 
@@ -29,24 +29,25 @@ namespace psygen::app {
 namespace {
 
 constexpr double kDefaultSeconds = 27.0;  // the paper's walk
-constexpr double kMinFrameMs = 1e-3;      // of a frame in which the clock went back
-constexpr double kEyeHeightM = 1.7;       // a flying user stays above the ground
+constexpr double kMinFrameMs = 1e-3;      // for a frame in which the clock went back
+constexpr double kEyeHeightM = 1.7;       // the user flies at least this high above the ground
 
-// On the virtual clock a flight must not depend on the device. What the GPU path draws is known
-// some frames later only, and a window draws when it can.
+// On the virtual clock a flight must not depend on the GPU. Results of the GPU path arrive some
+// frames late, and a window follows the wall clock.
 core::Result<void> fit_virtual_clock(SessionOptions& options) {
   if (!has_virtual_frames(options)) return {};
   if (options.render_path == render::RenderPath::kGpu) {
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      "the virtual clock needs the render path cpu: what the path gpu draws is "
-                      "known only some frames later");
+                      "the virtual clock needs the render path cpu: results of the path gpu "
+                      "arrive some frames late");
   }
   options.render_path = render::RenderPath::kCpu;
   if (!options.preset) options.preset = render::Preset::kLow;
   return {};
 }
 
-// What the virtual clock does not know. Pictures take no time on it, and set no frame apart.
+// Removes times that the virtual clock does not measure. Images take no time on it and exclude no
+// frame.
 void forget_real_times(telemetry::FrameRecord& record) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   record.main_cpu_ms = record.device_wait_ms = record.acquire_ms = record.present_ms = kUnknown;
@@ -82,7 +83,7 @@ core::Result<void> Flight::open() {
   const world::World& world = session_->scene().state().facts.world;
   if (path_ && !path_->comes_within(view_m, world))
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: nothing of the world {} is ever in view: every point is "
+                      fmt::format("{}: the world {} is never in view: every point is "
                                   "more than the view distance, {:g} m, outside the world",
                                   options_.path_file.string(), world.name, view_m));
   log_ = std::make_unique<telemetry::FrameLog>(scene::system_names(session_->scene().state()));
@@ -100,7 +101,7 @@ bool Flight::wants_more() const {
   return session_->window() != nullptr || now_s < kDefaultSeconds;
 }
 
-// A window stays open when only the path has ended.
+// A window stays open if only the path has ended.
 bool Flight::stays_open() const {
   const bool limited = options_.frames > 0 || options_.seconds > 0;
   return session_->window() != nullptr && !limited && !session_->over();
@@ -141,7 +142,8 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   const double start_s = core::monotonic_seconds();
   const double cpu_start_s = core::thread_cpu_seconds(), asleep_s = core::suspended_seconds();
   if (auto ok = session_->tick(next_pose(session_->paused() ? 0 : dt_s), dt_s); !ok) return ok;
-  // The flight's clock goes on while a picture waits for the device, as if the next frames had.
+  // The flight's clock continues while an image waits for the GPU, as if the next frames had
+  // waited.
   if (saves_picture()) session_->renderer().wait_idle();
   const double frame_ms = (core::monotonic_seconds() - start_s) * 1000.0;
   telemetry::FrameRecord& record = state.record;
@@ -163,7 +165,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   const bool like_others = record.apart == telemetry::Apart::kNo;
   if (like_others) usual_ms_ = record.frame_ms;
   if (like_others) hud_.add_frame(record.frame_ms);
-  if (!like_others) state.input.frame_ms = 0;  // nor like what the governor may answer
+  if (!like_others) state.input.frame_ms = 0;  // an excluded frame must not affect the governor
   return {};
 }
 
@@ -176,7 +178,7 @@ core::Result<void> Flight::loop() {
                              "flying", expected_s);
   const double hz = recorded_ ? options_.fixed_step_hz : 0;
   double dt_s = hz > 0 ? 1.0 / hz : 1.0 / 60.0;
-  // The flight's clock stands still while the window is minimised and while pictures are written.
+  // The flight's clock stands still while the window is minimised and while images are written.
   while (wants_more() && session_->poll()) {
     if (in_window) handle_keys();
     if (session_->over()) break;
@@ -187,7 +189,7 @@ core::Result<void> Flight::loop() {
       if (has_virtual_frames(options_.session)) {
         dt_s = session_->scene().state().record.frame_ms * 1e-3;
       } else if (!is_gap(passed_s * 1000, usual_ms_, 0)) {
-        dt_s = passed_s;  // the flight does not leap over a gap
+        dt_s = passed_s;  // the flight does not jump over a gap
       }
     }
     bar.update(now_s);
@@ -206,14 +208,14 @@ core::Result<void> Flight::loop() {
   return {};
 }
 
-// A window that is being resized may have no picture in this frame, which is not a failure. A file
+// A window that is being resized may have no image in this frame, which is not a failure. A file
 // that cannot be written is a failure, but it does not end the flight.
 core::Result<void> Flight::save_numbered_picture() {
   const auto file = options_.out_folder / telemetry::picture_name(frames_);
   const auto image = session_->picture();
   if (!image) {
     if (session_->window() == nullptr) return tl::unexpected(image.error());
-    core::log_warning(fmt::format("no picture of frame {}: {}", frames_, image.error().message));
+    core::log_warning(fmt::format("no image of frame {}: {}", frames_, image.error().message));
     return {};
   }
   const auto written = session_->write_picture(file, *image);
@@ -223,12 +225,12 @@ core::Result<void> Flight::save_numbered_picture() {
     ++images_;
   } else {
     pictures_failed_ = true;
-    core::log_warning(fmt::format("no more pictures are written: {}", written.error().message));
+    core::log_warning(fmt::format("no further images are written: {}", written.error().message));
   }
   return {};
 }
 
-// The last frame, and what is known now of earlier ones.
+// Logs the last frame, and late results of earlier frames.
 void Flight::log_frame() {
   const scene::State& state = session_->scene().state();
   if (has_virtual_frames(options_.session)) {
@@ -245,7 +247,7 @@ void Flight::log_frame() {
   }
 }
 
-// Ends the flight and writes what was measured, also when it ended early.
+// Ends the flight and writes its measurements, also if it ended early.
 FlightReport Flight::land(bool whole) {
   recorded_ = false;
   FlightReport report;
@@ -267,7 +269,7 @@ core::Result<FlightReport> Flight::run() {
   const world::World& world = session_->scene().state().facts.world;
   pose_ = path_ ? path_->pose_at(0, world) : session_->home();
   const auto prepared =
-      core::within_memory("what is seen first", [this] { return session_->prepare(pose_); });
+      core::within_memory("preparing the first view", [this] { return session_->prepare(pose_); });
   if (!prepared) return tl::unexpected(prepared.error());
   session_->set_now(0);
   recorded_ = true;

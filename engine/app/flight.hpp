@@ -1,6 +1,6 @@
-// A flight through a world along a path, or where the user flies, with its log and its outputs. In
-// a window it obeys the keys of keys.hpp. `psygen fly` runs one. Games drive a Session themselves.
-// Main thread only.
+// A flight through a world along a path or under user control, with its log and its outputs. In a
+// window it responds to the keys of keys.hpp. `psygen fly` runs one. Games drive a Session
+// themselves. Main thread only.
 #pragma once
 
 #include <memory>
@@ -19,9 +19,9 @@ namespace psygen::app {
 // The result of a flight.
 struct FlightReport {
   telemetry::Summary summary;
-  std::vector<std::filesystem::path> files;  // what was written
-  // What could not be written: each file with the reason. The flight went on, without any more
-  // pictures after the first one that failed.
+  std::vector<std::filesystem::path> files;  // files written
+  // Files that could not be written, with the reason. The flight continues, but writes no images
+  // after the first failure.
   std::vector<core::Error> failures;
   std::vector<std::string> validation_messages;
 };
@@ -29,21 +29,21 @@ struct FlightReport {
 // One flight. Owns its session.
 class Flight {
  public:
-  // Creates the output folder, reads the path and creates the session; fails as Session::create(),
-  // and with kParse or kIo for the path and the folder.
+  // Creates the output folder, reads the path and creates the session. Fails like
+  // Session::create(), and with kParse or kIo for the path and the folder.
   static core::Result<std::unique_ptr<Flight>> create(FlightOptions options);
 
-  // Flies until the path, the time or the user ends it, then writes the outputs: each that can be.
-  // Where the path has ended in a window, the user flies on until the window is closed; the report
-  // is that of the flight alone. Fails with kInterrupted where the window was closed before the
-  // first frame. Once.
+  // Flies until the path, the time or the user ends it, then writes all possible outputs. If the
+  // path ends in a window, the user continues to fly until the window is closed; the report covers
+  // only the flight. Fails with kInterrupted if the window is closed before the first frame. Call
+  // once.
   core::Result<FlightReport> run();
-  // Whether what happens now belongs to the report. False before the flight, and after its end.
+  // True while frames belong to the report: false before the flight and after its end.
   bool is_recorded() const { return recorded_; }
 
-  // The session that it stands on; lives as long as the flight.
+  // The session of the flight; lives as long as the flight.
   Session& session() { return *session_; }
-  // The rows of the frames so far.
+  // Rows of the frames so far.
   const telemetry::FrameLog& log() const { return *log_; }
 
  private:
@@ -77,13 +77,13 @@ class Flight {
   platform::FlyCamera fly_camera_;
   core::CameraPose pose_;
   std::uint64_t frames_ = 0;
-  double usual_ms_ = 0;  // of the last frame that nothing sets apart
+  double usual_ms_ = 0;  // of the last frame that is not excluded
   bool recorded_ = false;
   bool user_flies_ = false;
   Hud hud_;
-  bool photograph_ = false;                      // the next frame, for the user
-  std::optional<render::Preset> wanted_preset_;  // after the next frame
-  std::uint64_t images_hash_ = 0;                // of the numbered pictures, in order
+  bool photograph_ = false;                      // the next frame, for a screenshot
+  std::optional<render::Preset> wanted_preset_;  // set after the next frame
+  std::uint64_t images_hash_ = 0;                // of the numbered images, in order
   std::uint64_t images_ = 0;
   std::vector<std::filesystem::path> files_;
   std::vector<core::Error> failures_;

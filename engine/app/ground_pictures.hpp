@@ -1,5 +1,5 @@
-// The pictures that a world has in place of textures of the ground, read from the folder of its
-// file. It makes no textures (render/ground_picture.hpp). Any thread; too slow for the tick.
+// Reads the images that replace the ground textures of a world, from the folder of its file.
+// Creates no textures (render/ground_picture.hpp). Any thread; too slow for the tick.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@ namespace psygen::app {
 
 using GroundPictures = std::array<render::GroundPicture, render::kGroundPictures>;
 
-// The pictures of world::Palette::images. Errors begin with the world's file and the field, and
-// have the code of image::read_image() or render::ground_picture(); kInvalidArgument also where a
-// link leads out of the folder.
+// Reads the images of world::Palette::images. Error messages begin with the world's file and the
+// field, and have the code of image::read_image() or render::ground_picture(). Also fails with
+// kInvalidArgument if a link leads out of the folder.
 core::Result<GroundPictures> read_ground_pictures(const world::World& world,
                                                   const std::filesystem::path& world_file);
 

@@ -17,7 +17,7 @@ using platform::Key;
 
 constexpr double kLongestFrameS = 0.25;
 
-// Keys that ImGui asks for by their meaning. Letters are for Ctrl+A and the like.
+// Keys that ImGui uses by function. Letters serve shortcuts such as Ctrl+A.
 constexpr std::pair<ImGuiKey, Key> kKeys[] = {{ImGuiKey_Tab, Key::kTab},
                                               {ImGuiKey_LeftArrow, Key::kLeft},
                                               {ImGuiKey_RightArrow, Key::kRight},
@@ -41,14 +41,15 @@ constexpr std::pair<ImGuiKey, Key> kKeys[] = {{ImGuiKey_Tab, Key::kTab},
                                               {ImGuiKey_Y, Key::kY},
                                               {ImGuiKey_Z, Key::kZ}};
 
-// A press that was over within the frame counts, too.
+// Also counts a key pressed and released within the frame.
 template <class Set>
 bool down(const Set& held, const Set& went_down, std::size_t bit) {
   return held[bit] || went_down[bit];
 }
 
 void feed_mouse(const platform::InputState& input, ImGuiIO& io) {
-  // ImGui's buttons are left, right, middle as ours. While looking the pointer is nowhere.
+  // The order of ImGui's buttons equals ours: left, right, middle. A captured pointer has no
+  // position.
   const auto at = [](double px) {
     return static_cast<float>(std::isfinite(px) ? std::clamp(px, -1e6, 1e6) : -1.0);
   };
@@ -70,7 +71,7 @@ void feed_keys(const platform::InputState& input, ImGuiIO& io) {
   io.AddInputCharactersUTF8(input.text.c_str());
 }
 
-// For menus without a mouse, where the game sets ImGuiConfigFlags_NavEnableGamepad.
+// For menus without a mouse, if the game sets ImGuiConfigFlags_NavEnableGamepad.
 void feed_gamepads(const platform::InputState& input, ImGuiIO& io) {
   using enum platform::PadButton;
   constexpr std::pair<ImGuiNavInput_, platform::PadButton> kButtons[] = {
@@ -137,7 +138,7 @@ Gui::Gui(ImFontAtlas& atlas, platform::Window* window) : window_(window) {
   context_ = ImGui::CreateContext(&atlas);
   ImGui::SetCurrentContext(context_);
   ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;  // nothing is written into the current folder
+  io.IniFilename = nullptr;  // ImGui must not write files into the current folder
   io.LogFilename = nullptr;
   io.BackendPlatformName = io.BackendRendererName = "psygen";
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;

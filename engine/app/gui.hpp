@@ -1,7 +1,7 @@
-// Dear ImGui in a session: menus and tools that a game draws over the picture, in a window or
-// headless. Owns one ImGui context; drawing is the renderer's overlay. Code that draws includes
-// imgui.h itself, between begin() and end() (Session does both). Main thread only; costs nothing
-// while nobody draws.
+// Dear ImGui in a session: menus and tools that a game draws over the image, in a window or
+// headless. Owns one ImGui context; the renderer's overlay draws it. Drawing code includes imgui.h
+// itself and runs between begin() and end() (Session calls both). Main thread only; costs nothing
+// if unused.
 #pragma once
 
 #include <string>
@@ -23,23 +23,24 @@ class Gui {
  public:
   static constexpr float kTextPx = 16;  // at scale 1
 
-  // `atlas` is the renderer's, `window`, for the clipboard, may be null; both outlive this.
+  // `atlas` belongs to the renderer. `window` provides the clipboard and may be null. Both outlive
+  // this.
   Gui(ImFontAtlas& atlas, platform::Window* window);
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  // Begins a frame: makes the context the current one and gives it what the user did. `scale` is
-  // that of text and controls, dt_s the real seconds since the last frame.
+  // Begins a frame: makes the context current and passes the user's input. `scale` applies to text
+  // and controls; dt_s is the real time in seconds since the last frame.
   void begin(const platform::InputState& input, core::Extent picture, float scale, double dt_s);
-  // Ends it. The draw data is valid until the next begin().
+  // Ends the frame. The draw data is valid until the next begin().
   const ImDrawData* end();
 
-  // Whether ImGui takes keyboard and text, or the mouse, of the next input: a text field has the
-  // keyboard, or the pointer is over a window.
+  // True if ImGui uses the keyboard and text, or the mouse, of the next input: a text field has the
+  // keyboard focus, or the pointer is over a window.
   bool takes_keyboard() const;
   bool takes_mouse() const;
-  // For programs with an ImGui of their own, in another library: ImGui::SetCurrentContext().
+  // For programs with another ImGui library instance: ImGui::SetCurrentContext().
   ImGuiContext* context() { return context_; }
 
  private:
@@ -48,8 +49,8 @@ class Gui {
 
   ImGuiContext* context_;
   platform::Window* window_;
-  std::string clipboard_;   // what ImGui read last
-  float styled_scale_ = 0;  // the style was made for it
+  std::string clipboard_;   // last text read by ImGui
+  float styled_scale_ = 0;  // scale of the current style
 };
 
 }  // namespace psygen::app

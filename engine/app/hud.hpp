@@ -1,4 +1,4 @@
-// The text over the picture in a window: figures or help in one corner, the legend of the view in
+// Text over the image of a window: statistics or help in one corner, the legend of the view in
 // another, notices at the bottom. Makes text from values; the renderer draws it. Has no clock. Main
 // thread.
 #pragma once
@@ -13,34 +13,34 @@
 
 namespace psygen::app {
 
-// What the figures show beyond the state of the scene.
+// Values for the statistics besides the state of the scene.
 struct HudFacts {
   render::DeviceInfo device;
   render::Preset preset = render::Preset::kLow;
-  double key_speed_m_s = 0;  // at which the keys move the camera
+  double key_speed_m_s = 0;  // speed at which the keys move the camera
 };
 
-// Shows figures at first.
+// Shows statistics at first.
 class Hud {
  public:
   static constexpr double kNoticeSeconds = 5;
-  // What a notice is about; a new one takes the place of the last about the same.
+  // Subject of a notice; a new notice replaces the last one of the same subject.
   enum class Subject : std::uint8_t { kFlight, kPreset, kScreen, kPicture, kCount };
 
-  // The time of a frame in milliseconds, for the figures.
+  // Adds the time of a frame in milliseconds to the statistics.
   void add_frame(double frame_ms);
-  // Switches from figures to help, from help to nothing, and from nothing to figures.
+  // Switches from statistics to help, from help to nothing, and back to statistics.
   void next_page();
-  // Shows a sentence for kNoticeSeconds, starting at `now_s` of the clock that panels() gets.
+  // Shows a message for kNoticeSeconds, starting at `now_s` of the clock given to panels().
   void notify(Subject subject, std::string text, double now_s);
-  // Shows a sentence until key_pressed().
+  // Shows a message until key_pressed().
   void notify_until_key(Subject subject, std::string text);
   void key_pressed();
 
-  // The text at `now_s` seconds. The figures are those of the last tick.
+  // Text at `now_s` seconds. The statistics are those of the last tick.
   std::vector<render::TextPanel> panels(const scene::State& state, const HudFacts& facts,
                                         double now_s) const;
-  // The same without notices, for pictures that are kept.
+  // Text without notices, for saved images.
   std::vector<render::TextPanel> lasting_panels(const scene::State& state,
                                                 const HudFacts& facts) const;
 

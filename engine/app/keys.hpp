@@ -1,5 +1,5 @@
-// The keys of a window and what they do: one list for the help on the screen and for the
-// documentation (docs/cli.md). What they do is in controls.cpp and platform/fly_camera.cpp.
+// Keys of a window and their functions: one list for the help on the screen and for the
+// documentation (docs/cli.md). Implemented in controls.cpp and platform/fly_camera.cpp.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace psygen::app {
 
-// A key and what it does.
+// A key and its function.
 struct KeyHelp {
   std::string_view keys, meaning;
 };
@@ -20,13 +20,13 @@ inline constexpr std::array kKeyHelp{
     KeyHelp{"wheel", "faster, slower"},
     KeyHelp{"Shift", "5 times as fast, while held"},
     KeyHelp{"Ctrl", "a fifth as fast, while held"},
-    KeyHelp{"F1", "figures, this help, nothing"},
+    KeyHelp{"F1", "statistics, help, nothing"},
     KeyHelp{"F2", "next view, with its legend"},
     KeyHelp{"F3", "next preset"},
-    KeyHelp{"P", "pause and go on"},
-    KeyHelp{"F11", "full screen and back"},
-    KeyHelp{"F12", "write a picture"},
-    KeyHelp{"Esc", "end"},
+    KeyHelp{"P", "pause or continue"},
+    KeyHelp{"F11", "toggle full screen"},
+    KeyHelp{"F12", "save a screenshot"},
+    KeyHelp{"Esc", "quit"},
 };
 
 }  // namespace psygen::app

@@ -8,7 +8,7 @@
 namespace psygen::app {
 namespace {
 
-constexpr float kHeightOfScaleOne = 1080;  // pixels of a picture
+constexpr float kHeightOfScaleOne = 1080;  // image height for text scale 1
 
 }  // namespace
 
@@ -37,7 +37,7 @@ void Loading::watch_window(render::Renderer* renderer) {
   if (input.was_pressed(platform::Key::kF11)) (void)window_->set_fullscreen(!window_->fullscreen());
   const double now_s = core::monotonic_seconds();
   if (closed_ || renderer == nullptr || !pace_.is_due(now_s)) return;
-  // A picture that cannot be drawn is told by the first frame.
+  // Errors of this image are reported by the first frame.
   (void)renderer->show({}, 1,
                        loading_picture(title_, label_, fraction_, window_->framebuffer_size()));
   pace_.drawn(now_s, core::monotonic_seconds());

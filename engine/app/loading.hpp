@@ -1,6 +1,6 @@
-// What a person sees while something long goes on before the first frame: a bar on the terminal,
-// nothing where stderr is none, and in a window a picture of its own (loading_picture.hpp). Keeps
-// the window alive and notices when it is closed. Main thread.
+// Progress of long tasks before the first frame: a bar on the terminal, none if stderr is not a
+// terminal, and an image in a window (loading_picture.hpp). Keeps the window responsive and detects
+// when it is closed. Main thread.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace psygen::app {
 
-// When the next picture may be drawn: at most twenty a second, and however long they take, at most
-// a fifth of the time.
+// Limits how often the image is drawn: at most twenty times a second, and at most a fifth of the
+// time.
 class PicturePace {
  public:
   bool is_due(double now_s) const { return now_s >= next_s_; }
@@ -35,12 +35,12 @@ class Loading {
   // `title` is the name of the world. `window` and `stop` may be null, and outlive this.
   Loading(std::string title, platform::Window* window, const std::atomic<bool>* stop);
 
-  // How far something has come, a fraction in [0, 1]; what goes back is shown as it was. `renderer`
-  // draws the picture, null until there is one. False, to end what is going on, once the window was
-  // closed or `stop` set.
+  // Shows progress as a fraction in [0, 1]; it never decreases. `renderer` draws the image and is
+  // null until it exists. Returns false, to cancel the task, once the window was closed or `stop`
+  // was set.
   bool update(std::string_view label, double fraction, render::Renderer* renderer);
-  double fraction() const { return fraction_; }  // as it is shown
-  // The person closed the window.
+  double fraction() const { return fraction_; }  // as shown
+  // True once the user has closed the window.
   bool closed() const { return closed_; }
   // Removes the bar from the terminal.
   void finish() { bar_.reset(); }
@@ -58,8 +58,7 @@ class Loading {
   bool closed_ = false;
 };
 
-// So large that it can be read: by the display's scale, and by the picture's size where that is
-// more.
+// Scale of text for readability: that of the display, or by the image's size, whichever is larger.
 float text_scale(float content_scale, core::Extent picture);
 
 }  // namespace psygen::app

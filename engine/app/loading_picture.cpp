@@ -24,9 +24,9 @@ constexpr glm::vec4 kText{0.97F, 0.96F, 0.93F, 1.0F};
 constexpr glm::vec4 kSoftText{0.97F, 0.96F, 0.93F, 0.72F};
 constexpr glm::vec4 kBar{0.45F, 0.66F, 0.85F, 1.0F};
 constexpr glm::vec4 kBarGround{1.0F, 1.0F, 1.0F, 0.16F};
-constexpr float kLeft = 0.08F, kRight = 0.92F;  // of what is written
+constexpr float kLeft = 0.08F, kRight = 0.92F;  // margins of the text
 
-// Smooth noise of one dimension in [0, 1].
+// Smooth one-dimensional noise in [0, 1].
 float noise(std::uint64_t seed, float x) {
   const auto at = [seed](float cell) {
     const auto key = static_cast<std::uint64_t>(static_cast<std::int64_t>(cell));
@@ -36,7 +36,7 @@ float noise(std::uint64_t seed, float x) {
   return glm::mix(at(cell), at(cell + 1), in * in * (3 - 2 * in));
 }
 
-// A row of hills: how high it rises above the horizon, and its colour.
+// A row of hills: its height above the horizon, and its colour.
 struct Ridge {
   float base, height, waves;
   glm::vec3 colour;
@@ -67,14 +67,14 @@ void add_ridge(const Ridge& ridge, std::uint64_t seed, render::HudDrawing& drawi
   }
 }
 
-// Makes a text that is wider than `room_px` smaller, and shortens it where it would be too small.
+// Shrinks a text that is wider than `room_px`, and shortens it if it would become too small.
 void fit(render::HudText& text, float min_px, float room_px) {
   const float share = room_px / std::max(render::measure(text).x, 1.0F);
   text.size_px = std::max(std::min(text.size_px, text.size_px * share), min_px);
   std::string rest = text.text;
   while (render::measure(text).x > room_px && !rest.empty()) {
     while (rest.size() > 1 && (static_cast<unsigned char>(rest.back()) & 0xC0U) == 0x80)
-      rest.pop_back();  // the last byte of a letter first
+      rest.pop_back();  // removes continuation bytes of a character first
     rest.pop_back();
     text.text = rest + "\u2026";
   }

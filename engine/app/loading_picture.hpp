@@ -1,6 +1,5 @@
-// The picture of a window while its world is made: hills in the evening, the name of the world, a
-// bar and what goes on. A pure function of its arguments; the hills follow from the name. Any
-// thread.
+// Image of a window while its world loads: hills in the evening, the name of the world, a bar and
+// the current task. A pure function of its arguments; the name determines the hills. Any thread.
 #pragma once
 
 #include <string_view>
@@ -10,7 +9,7 @@
 
 namespace psygen::app {
 
-// `fraction` in [0, 1]. Sizes follow the picture's height.
+// `fraction` in [0, 1]. Sizes scale with the image's height.
 render::HudDrawing loading_picture(std::string_view world, std::string_view label, double fraction,
                                    core::Extent picture);
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kFloorRepeats = 15;
 constexpr std::size_t kFloorFrames =
-    31;  // of the end of the flight, that the floor is compared with
+    31;  // last frames of the flight that the floor is compared with
 
 telemetry::Count count_of(double value) {
   if (value < 0x1.0p64) return static_cast<std::uint64_t>(value);
@@ -46,7 +46,7 @@ telemetry::WorldFacts world_facts(const world::World& world, const models::Regis
   return facts;
 }
 
-// Median time of the last frames that are timed over the time of the last frame's draw lists alone.
+// Median time of the last timed frames divided by the time of the last frame's draw lists alone.
 telemetry::Figure floor_ratio(const telemetry::FrameLog& log, render::Renderer& renderer) {
   const auto frames = log.frames();
   std::vector<double> last;
@@ -68,8 +68,8 @@ telemetry::Count sample_hash(const scene::State& state, core::BlockCoord block) 
 
 }  // namespace
 
-// `whole`: the flight was not cut short. Otherwise no frame is drawn and no model is made for
-// figures.
+// `whole`: the flight was completed. Otherwise draws no frames and synthesises no models for
+// measurements.
 telemetry::RunFacts Flight::run_facts(bool whole) {
   scene::State& state = session_->scene().state();
   const SessionOptions& session = session_->options();
@@ -91,7 +91,7 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   facts.run.error_pixels = session.scene.max_error_pixels;
   const double target_ms = session.scene.target_frame_ms;
   facts.run.target_fps = target_ms > 0 ? telemetry::Figure(1000 / target_ms)
-                                       : telemetry::Figure::missing("no frame rate is held");
+                                       : telemetry::Figure::missing("no target frame rate");
   facts.run.command = telemetry::process_command();
   facts.run.preset = render::to_string(session_->renderer().preset());
   facts.run.view_distance_m = session.scene.view_distance_m;
@@ -101,7 +101,7 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   facts.prefetch_hit_percent =
       cache.prefetched > 0 ? telemetry::Figure(100.0 * static_cast<double>(cache.prefetch_hits) /
                                                static_cast<double>(cache.prefetched))
-                           : telemetry::Figure::missing("nothing was synthesised ahead of time");
+                           : telemetry::Figure::missing("nothing was prefetched");
   facts.share_drawn = cache.triangles > 0
                           ? telemetry::Figure(static_cast<double>(cache.triangles_drawn) /
                                               static_cast<double>(cache.triangles))
@@ -110,7 +110,7 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   if (has_virtual_frames(options_.session)) {
     facts.floor_ratio = telemetry::Figure::missing("the clock is virtual");
   } else if (whole) {
-    // Nothing else runs while the floor is measured.
+    // Nothing else runs during the measurement.
     const bool alone = state.meshes.wait([this] { return !session_->stopped(); });
     facts.floor_ratio = alone ? floor_ratio(*log_, session_->renderer())
                               : telemetry::Figure::missing("the flight was stopped");
@@ -120,10 +120,10 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
                      : whole              ? sample_hash(state, session_->home().position.block)
                                           : telemetry::Count::missing("the flight failed");
   facts.path_hash =
-      path_ ? telemetry::Count(path_->hash()) : telemetry::Count::missing("there was no path");
-  facts.images_hash = pictures_failed_ ? telemetry::Count::missing("a picture was not written")
+      path_ ? telemetry::Count(path_->hash()) : telemetry::Count::missing("the run had no path");
+  facts.images_hash = pictures_failed_ ? telemetry::Count::missing("an image was not written")
                       : images_ > 0    ? telemetry::Count(images_hash_)
-                                       : telemetry::Count::missing("no pictures were written");
+                                       : telemetry::Count::missing("no images were written");
   return facts;
 }
 
@@ -135,7 +135,7 @@ void Flight::note_written(const std::filesystem::path& file, const core::Result<
   }
 }
 
-// The most useful files come first and the largest last, in case the disk becomes full.
+// The most useful files come first and the largest last, in case the disk fills up.
 void Flight::write_outputs(const telemetry::Summary& summary) {
   if (options_.out_folder.empty()) return;
   const auto file = [this](const char* name) { return options_.out_folder / name; };

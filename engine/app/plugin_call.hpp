@@ -1,5 +1,5 @@
-// How the engine calls code of a plugin: what goes wrong in it names the plugin and the hook. Not
-// part of the interface of games. Main thread only.
+// Calls code of a plugin; errors name the plugin and the hook. Not part of the public interface.
+// Main thread only.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 namespace psygen::app {
 
-// Calls code of a plugin. Its errors and exceptions name it; only std::bad_alloc passes.
+// Calls code of a plugin. Its errors and exceptions name it; only std::bad_alloc passes through.
 template <class F>
 core::Result<void> call_plugin(const Plugin& plugin, std::string_view hook, const F& f) {
   const auto threw = [&](const char* what) {
@@ -33,7 +33,7 @@ core::Result<void> call_plugin(const Plugin& plugin, std::string_view hook, cons
   } catch (const std::exception& error) {
     return threw(error.what());
   } catch (...) {
-    return threw("an exception of an unknown type");
+    return threw("an exception of unknown type");
   }
 }
 

@@ -25,10 +25,10 @@
 namespace psygen::app {
 namespace {
 
-constexpr double kHomeHeightM = 25.0;  // of the camera before it is moved
-constexpr double kWindowHz = 60;       // held in windows unless the options say otherwise
+constexpr double kHomeHeightM = 25.0;  // height of the camera before it moves
+constexpr double kWindowHz = 60;       // default target in windows
 constexpr double kMaxTargetHz = 1e6;
-constexpr double kMinimisedWaitSeconds = 0.1;  // between looks at a minimised window
+constexpr double kMinimisedWaitSeconds = 0.1;  // polling interval of a minimised window
 
 tl::unexpected<core::Error> closed_early() {
   return core::fail(core::ErrorCode::kInterrupted, "the window was closed before the first frame");
@@ -37,11 +37,12 @@ tl::unexpected<core::Error> closed_early() {
 core::Result<void> set_hour(const SessionOptions& options, world::World& world) {
   if (!options.start_hour) return {};
   if (!(*options.start_hour >= 0 && *options.start_hour <= 24))
-    return core::fail(core::ErrorCode::kInvalidArgument, "an hour of the day is between 0 and 24");
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      "the hour of the day must be between 0 and 24");
   if (!(world.sky.day_length_s > 0)) {
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: this world has no hours: sky.day_length_s is 0, and the sun "
-                                  "stands still",
+                      fmt::format("{}: this world has no day: sky.day_length_s is 0, so the sun "
+                                  "does not move",
                                   options.world_file.string()));
   }
   world.sky.start_hour = *options.start_hour;
@@ -124,7 +125,7 @@ std::function<core::Result<scene::PreparedWorld>()> Session::prepare_world(std::
 core::Result<void> Session::show_world(scene::PreparedWorld prepared) {
   if (prepared.facts.world.palette.images != scene_->state().facts.world.palette.images) {
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      "other pictures of the ground are shown when the world is opened again");
+                      "changed ground textures take effect when the world is reopened");
   }
   return scene_->set_world(std::move(prepared));
 }
@@ -173,7 +174,7 @@ core::Result<void> Session::open_scene(world::World world, models::Registry regi
   const double target_hz = options_.target_hz.value_or(options_.headless ? 0 : kWindowHz);
   if (!(target_hz >= 0 && target_hz <= kMaxTargetHz))
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the target must be 0 to {:.0f} frames a second, not {:g}",
+                      fmt::format("the target must be 0 to {:.0f} frames per second, not {:g}",
                                   kMaxTargetHz, target_hz));
   options_.scene.target_frame_ms = target_hz > 0 ? 1000 / target_hz : 0;
   if (options_.trace) trace_ = std::make_unique<telemetry::TraceLog>();
@@ -188,7 +189,7 @@ core::Result<void> Session::open_scene(world::World world, models::Registry regi
   if (loading.closed()) return closed_early();
   scene_ = std::move(*scene);
   if (auto ok = add_systems(); !ok) return ok;
-  scene_->state().input.size = picture_size();  // levels of detail depend on it
+  scene_->state().input.size = picture_size();  // affects LODs
   if (const synthesis::CalibrationReport& costs = scene_->calibration(); costs.measurements > 0) {
     core::log_info(fmt::format("cost model calibrated in {:.2f} s, median error {:.0f} %",
                                costs.seconds, costs.fit_error_percent_p50));
@@ -213,15 +214,14 @@ core::CameraPose Session::home() const {
 
 core::Result<void> Session::prepare(const core::CameraPose& first) {
   if (!core::is_valid(first))
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      "the first pose has a number that is not finite");
+    return core::fail(core::ErrorCode::kInvalidArgument, "the first pose is not finite");
   Loading loading(scene_->state().facts.world.name, window_.get(), options_.stop);
   const auto progress = [&](std::string_view label, double fraction) {
     return loading.update(label, fraction, renderer_.get());
   };
   const double start_s = core::monotonic_seconds();
   std::uint64_t meshes = 0;
-  scene_->state().input.size = picture_size();  // a window may have changed
+  scene_->state().input.size = picture_size();  // a window may have changed its size
   if (options_.scene.paradigm == scene::Paradigm::kDataAmplification) {
     auto amplified = scene_->amplify(first, progress);
     if (!amplified) return tl::unexpected(amplified.error());
@@ -239,7 +239,7 @@ core::Result<void> Session::prepare(const core::CameraPose& first) {
   return {};
 }
 
-// The renderer knows a window's size only from the first frame on.
+// The renderer receives a window's size with the first frame.
 core::Extent Session::picture_size() const {
   if (window_) return window_->framebuffer_size();
   return options_.surface != nullptr ? options_.surface->framebuffer_size() : renderer_->size();
@@ -291,7 +291,7 @@ void Session::take_events() {
   if (window_->should_close()) closed_ = true;
 }
 
-// Hooks of a step are systems: they run however the session is driven, and what they cost is told.
+// Hooks of a step are systems: they run however the session is driven, and their cost is measured.
 core::Result<void> Session::add_systems() {
   scene::Systems systems = scene_->systems();
   const auto simulates = [](const Plugin& plugin) {
@@ -356,9 +356,9 @@ core::Result<void> Session::draw_gui(double dt_s) {
   return drawn;
 }
 
-// What the quality of pictures is governed by. The device's time counts where it is the longer one;
-// waiting, for it or a display, does not. A software device's time is this machine's own. Pictures
-// that a plugin takes are no part of what frames take.
+// Passes frame times to the governor. The GPU time counts if it is longer; waiting for the GPU or a
+// display does not count. A software device's time is that of this machine. Images captured by
+// plugins do not count.
 void Session::tell_governor(double tick_ms, bool took_pictures) {
   scene::State& state = scene_->state();
   const render::FrameResult& drawn = state.counters.frame;
@@ -373,7 +373,7 @@ void Session::tell_governor(double tick_ms, bool took_pictures) {
     tick_ms = std::max(tick_ms - drawn.wait_ms(), drawn.gpu ? drawn.gpu->ms : 0.0);
   }
   state.input.frame_ms = tick_ms;
-  // On a device of its own the time is that of some frames before.
+  // A hardware GPU reports the time of an earlier frame.
   state.input.frame_triangles = static_cast<double>(drawn.triangles);
 }
 
@@ -382,7 +382,7 @@ core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
   const std::size_t pictures = saved_.size();
   if (!(std::isfinite(dt_s) && dt_s >= 0)) {
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("a frame cannot take {} seconds", dt_s));
+                      fmt::format("{} is not a valid frame time in seconds", dt_s));
   }
   if (auto ok = start(); !ok) return ok;
   scene::State& state = scene_->state();
@@ -414,7 +414,7 @@ core::Result<void> Session::write_picture(const std::filesystem::path& file,
   const double start_s = core::monotonic_seconds();
   auto written = image::write_png(file, image);
   if (trace_) {
-    trace_->add_span(scene_->state().trace.main, trace_->intern("write a picture"), start_s,
+    trace_->add_span(scene_->state().trace.main, trace_->intern("write an image"), start_s,
                      core::monotonic_seconds());
   }
   return written;
@@ -423,7 +423,7 @@ core::Result<void> Session::write_picture(const std::filesystem::path& file,
 core::Result<void> Session::save_picture(const std::filesystem::path& file) {
   if (file.extension() != ".png")
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: the name of a picture must end in .png", file.string()));
+                      fmt::format("{}: the name of an image must end in .png", file.string()));
   const auto image = picture();
   if (!image) return tl::unexpected(image.error());
   if (auto ok = write_picture(file, *image); !ok) return ok;

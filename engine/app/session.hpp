@@ -1,8 +1,8 @@
-// A running engine: window or headless, input, renderer and scene. A program with a loop of its own
+// A running engine: window or headless, input, renderer and scene. A program with its own loop
 // drives one:
-//   while (session.poll()) session.tick(pose, dt_s);
-// A session handles closing, resizing and minimising of its window, and knows no keys. It flies no
-// path and writes no figures: that is a Flight. Main thread only.
+// while (session.poll()) session.tick(pose, dt_s);
+// A session handles closing, resizing and minimising of its window, but no keys. A Flight adds a
+// path and measurements. Main thread only.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@
 #include "engine/input/recording.hpp"
 #include "engine/platform/input.hpp"
 
-// Include the header of what you use of these: most programs need none (docs/package.md).
+// Include the headers of the types that you use; most programs need none (docs/package.md).
 namespace psygen::platform {
 class Window;
 }
@@ -47,82 +47,85 @@ class Loading;
 
 class Session {
  public:
-  // Reads the world, opens device and window, starts the modelers. Every failure is a sentence:
-  // kParse for files, kNoDevice for a missing device or display, kOverBudget, kInvalidArgument,
-  // kIo; kInterrupted where the window was closed meanwhile.
+  // Reads the world, opens device and window, and starts the modelers. Fails with kParse for files,
+  // kNoDevice for a missing GPU or display, kOverBudget, kInvalidArgument, kIo, and kInterrupted if
+  // the window was closed during start-up.
   static core::Result<std::unique_ptr<Session>> create(SessionOptions options);
   ~Session();
 
-  // Makes what the first tick with this pose needs, as the paradigm says: fills the cache, or
-  // amplifies. Ends early once SessionOptions::stop is set; kInterrupted once the window was
-  // closed, kInvalidArgument for a pose that is none (core::is_valid).
+  // Prepares the first tick with this pose according to the paradigm: fills the cache, or
+  // amplifies. Ends early once SessionOptions::stop is set. Fails with kInterrupted if the window
+  // was closed, and with kInvalidArgument for an invalid pose (core::is_valid).
   core::Result<void> prepare(const core::CameraPose& first);
 
-  // Takes the events of the window: input(), its size, its end. Waits while it is minimised. Of a
-  // surface of the program's own (SessionOptions::surface) it takes the size, and never waits.
-  // False once the session is over: close(), a closed window, or SessionOptions::stop.
+  // Processes the events of the window: input(), its size, its end. Blocks while it is minimised.
+  // For the program's own surface (SessionOptions::surface), only follows the size and never
+  // blocks. Returns false once the session is over: close(), a closed window, or
+  // SessionOptions::stop.
   bool poll();
-  // One frame with a pose: runs the systems, draws and presents. Then moves the clock on by `dt_s`
-  // and calls the plugins. What it took governs how fine the next pictures are
-  // (SessionOptions::target_hz). Fails with kInvalidArgument for a time that is negative or not
-  // finite; with kDeviceLost and the like the session is over.
+  // Runs one frame with a pose: runs the systems, draws and presents, then advances the clock by
+  // `dt_s` and calls the plugins. Its duration controls the detail of the next frames
+  // (SessionOptions::target_hz). Fails with kInvalidArgument for a negative or non-finite time;
+  // after other errors such as kDeviceLost the session is over.
   core::Result<void> tick(const core::CameraPose& pose, double dt_s);
-  // The next poll() is the last.
+  // Makes the next poll() return false.
   void close() { closed_ = true; }
   bool over() const { return closed_ || stopped(); }
-  // Whether SessionOptions::stop is set.
+  // True if SessionOptions::stop is set.
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  // What the user did since the last poll but one, without what ImGui takes. Nothing when headless.
+  // The user's input between the last two polls, without input used by ImGui. Empty when headless.
   const platform::InputState& input() const { return input_; }
   // The actions of a game (docs/input.md). poll() feeds them, and every fixed step of the
-  // simulation begins with theirs. A resource of all systems: input::Actions.
+  // simulation begins with their states. A resource of all systems: input::Actions.
   input::Actions& actions() { return actions_; }
-  // From the next fixed step on the states come from a recording, until its end.
+  // From the next fixed step on, action states come from a recording, until its end.
   void replay(input::Replay replay) { replay_ = std::move(replay); }
   bool replays() const { return replay_.has_value(); }
 
-  // While a session is paused, ticks draw, but the clock stands still and plugins are told that no
-  // time has passed. The same for what the user does: input() goes on.
+  // While a session is paused, ticks draw, but the clock stands still and plugins receive a time
+  // step of zero. Pausing also stops actions; input() continues.
   void set_paused(bool paused) { paused_ = paused; }
   bool paused() const { return paused_; }
 
-  // What the game writes over the next pictures, until it writes something else (docs/hud.md).
+  // The HUD of the next frames. It persists until the game changes it (docs/hud.md).
   render::HudDrawing& hud();
-  // The ImGui of the plugins' on_gui; it is made when it is first asked for.
+  // The ImGui of the plugins' on_gui, created on first use.
   Gui& gui();
-  // The clock: seconds, at which the next tick is drawn. Times that are not finite are ignored.
+  // Clock in seconds at which the next tick is drawn. Non-finite times are ignored.
   double now_s() const;
   void set_now(double now_s);
-  // Pixels of the next picture; {0, 0} while the window is minimised.
+  // Pixels of the next frame; {0, 0} while the window is minimised.
   core::Extent picture_size() const;
 
-  // The picture of the last tick.
+  // The image of the last tick.
   core::Result<image::Image> picture();
-  // The same as a PNG; the name must end in .png.
+  // Saves the image of the last tick as a PNG; the name must end in .png.
   core::Result<void> save_picture(const std::filesystem::path& file);
   core::Result<void> write_picture(const std::filesystem::path& file, const image::Image& image);
-  // What save_picture() has written since the last call.
+  // Files written by save_picture() since the last call.
   std::vector<std::filesystem::path> take_saved() { return std::exchange(saved_, {}); }
 
-  // Replaces the world by that of a text, as Scene::set_world(): for editors. Fails as
-  // world::parse_world(), and with kInvalidArgument for other pictures of the ground
-  // (Palette::images), which the renderer takes only at the start; nothing has changed then.
+  // Replaces the world by that of a text, as Scene::set_world(): for editors. Fails like
+  // world::parse_world(). Also fails with kInvalidArgument if the ground textures change
+  // (Palette::images), which the renderer reads only at the start; nothing changes then.
   core::Result<void> set_world(std::string_view text);
-  // The same in two steps: any thread may call what this returns, while the session lives, also
-  // the plugins' register_models; then the main thread shows the world that it has made.
+  // Replaces the world in two steps: any thread may call the returned function while the session
+  // lives, which includes the plugins' register_models; then the main thread calls show_world()
+  // with its result.
   std::function<core::Result<scene::PreparedWorld>()> prepare_world(std::string text) const;
-  // The files beside the worlds of the next texts (SessionOptions::files).
+  // Sets the loader of external resources for later worlds (SessionOptions::files).
   void set_files(std::shared_ptr<const world::FilesBeside> files) {
     options_.files = std::move(files);
   }
   core::Result<void> show_world(scene::PreparedWorld prepared);
 
-  // Draws with another preset from the next tick on. The window stays alive meanwhile. Fails as
-  // Renderer::set_preset(), also where the session ended meanwhile; the old one stays then.
+  // Draws with another preset from the next tick on. The window stays responsive during the change.
+  // Fails like Renderer::set_preset(), also if the session ends during the change; the old preset
+  // then stays.
   core::Result<void> set_preset(render::Preset preset);
 
-  // Where the camera stands when nobody has moved it: above the ground in the middle of the world.
+  // Initial camera pose: above the ground in the centre of the world.
   core::CameraPose home() const;
   scene::Scene& scene() { return *scene_; }
   const scene::Scene& scene() const { return *scene_; }
@@ -133,8 +136,8 @@ class Session {
   telemetry::TraceLog* trace() { return trace_.get(); }
   const SessionOptions& options() const { return options_; }
 
-  // A model hangs and its modeler still writes: a program in this state should leave through
-  // std::_Exit, because the modeler's memory must not be torn down.
+  // True if a model hangs and its modeler still writes. The program should then leave through
+  // std::_Exit, because the modeler's memory must not be freed.
   bool has_hung_modelers() const;
 
  private:
@@ -156,17 +159,17 @@ class Session {
   core::Result<void> start();
 
   SessionOptions options_;
-  // Destroyed in the opposite order: the scene gives its memory back to the renderer.
+  // Destroyed in reverse order: the scene returns its memory to the renderer.
   std::unique_ptr<platform::Window> window_;
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<telemetry::TraceLog> trace_;
   input::Actions actions_;
   std::optional<input::Replay> replay_;
   std::unique_ptr<scene::Scene> scene_;
-  std::unique_ptr<Gui> gui_;                // null until it is needed
-  platform::InputState all_input_, input_;  // the latter without what ImGui takes
+  std::unique_ptr<Gui> gui_;                // null until it is used
+  platform::InputState all_input_, input_;  // the latter without input used by ImGui
   platform::InputFilter filter_;
-  core::Extent surface_size_;  // when it was last looked at
+  core::Extent surface_size_;  // at the last poll
   bool paused_ = false;
   bool closed_ = false;
   bool started_ = false;

@@ -62,7 +62,8 @@ struct Client::Parts {
         continue;
       }
       if (went < 0 && errno == EINTR) continue;
-      if (errno != EAGAIN && errno != EWOULDBLOCK) output.clear();  // answers may still come
+      // Earlier replies may still arrive.
+      if (errno != EAGAIN && errno != EWOULDBLOCK) output.clear();
       return;
     }
   }
@@ -95,7 +96,7 @@ core::Result<std::unique_ptr<Client>> Client::attach(const std::filesystem::path
                       fmt::format("{}: {}", socket.string(), std::strerror(errno)));
   if (!peer_of(client->parts_->fd.get()))
     return core::fail(core::ErrorCode::kIo,
-                      fmt::format("{}: it belongs to another user", socket.string()));
+                      fmt::format("{}: the socket belongs to another user", socket.string()));
   return client;
 }
 

@@ -1,5 +1,5 @@
-// The other end of inspect.hpp: finds sessions that can be inspected, and exchanges lines with one
-// (docs/inspect.md). Never waits, and knows no JSON. Linux. One thread.
+// Client of inspect.hpp: finds sessions that can be inspected and exchanges lines with one
+// (docs/inspect.md). Never blocks; does not parse JSON. Linux. One thread.
 #pragma once
 
 #include <filesystem>
@@ -13,32 +13,33 @@
 
 namespace psygen::inspect {
 
-// A session that runs and can be inspected.
+// A running session that can be inspected.
 struct Endpoint {
   std::filesystem::path socket;
   int pid = 0;
-  std::string command;  // of its process, as it was started
+  std::string command;  // command line of its process
 };
 
-// Those in a folder, or in $XDG_RUNTIME_DIR if it is empty, by process. Fails with kInvalidArgument
-// for folders that others may enter.
+// Sessions in a folder, or in $XDG_RUNTIME_DIR if it is empty, by process. Fails with
+// kInvalidArgument for folders that other users may enter.
 core::Result<std::vector<Endpoint>> endpoints(const std::filesystem::path& folder = {});
 
-// A connection to one.
+// A connection to a session.
 class Client {
  public:
-  // Connects. Fails with kIo where nobody of this user listens.
+  // Connects. Fails with kIo if no process of this user listens.
   static core::Result<std::unique_ptr<Client>> attach(const std::filesystem::path& socket);
-  // Leaves: the session puts back what was changed.
+  // Disconnects: the session restores what the client changed.
   ~Client();
 
-  // Sends a line, now or with the next calls. Ignored once the connection has ended.
+  // Queues a line and sends it, in this call or the next ones. Ignored once the connection has
+  // ended.
   void ask(std::string_view line);
-  // The next whole line that has come, without its end.
+  // The next complete line received, without its end.
   std::optional<std::string> take_answer();
-  // False once the session has ended, or refused; answers that have come can still be taken.
+  // False once the session has ended or rejected the connection; received replies remain available.
   bool is_open() const;
-  // Bytes that are not sent yet.
+  // Bytes not sent yet.
   std::size_t unsent() const;
 
  private:

@@ -15,12 +15,12 @@ namespace {
 
 constexpr int kMaxRequestsAFrame = 16;
 
-// A server with its visitor. A session's schedule owns it.
+// The server with its connection, owned by a session's schedule.
 struct Desk {
   std::unique_ptr<LineServer> server;
   Visit visit;
 
-  bool is_left = false;  // the visitor is gone, and has not ended
+  bool is_left = false;  // the client is gone, but the visit has not ended
 
   void frame(app::Session& session) {
     if (is_left) is_left = !visit.end(session);
@@ -47,14 +47,14 @@ struct Desk {
 }  // namespace
 
 app::Plugin plugin(InspectOptions options) {
-  // The systems own the desk: it ends with the scene, whoever else keeps the plugin.
+  // The systems own the server: it ends with the scene, even if the plugin is still held.
   const auto seat = std::make_shared<std::weak_ptr<Desk>>();
   app::Plugin plugin;
   plugin.name = "inspect";
   plugin.add_systems = [seat, options](scene::Systems& systems) -> core::Result<void> {
     auto server = LineServer::open(options.folder);
     if (!server) return tl::unexpected(server.error());
-    core::log_info(fmt::format("can be inspected at {}", (*server)->address().string()));
+    core::log_info(fmt::format("inspection socket: {}", (*server)->address().string()));
     const auto desk = std::make_shared<Desk>();
     desk->server = std::move(*server);
     *seat = desk;

@@ -1,7 +1,7 @@
-// Lets one program of the same user look into a running session and change it, over a local socket
-// (docs/inspect.md). The server of the protocol, as a plugin; client.hpp is the other end. Off
-// unless a program adds the plugin. While nobody is attached a frame costs one system call that
-// does not wait. Main thread.
+// Lets one program of the same user inspect and change a running session over a local socket
+// (docs/inspect.md). Server of the protocol, as a plugin; client.hpp is the client. Off unless a
+// program adds the plugin. Without a client, a frame costs one non-blocking system call. Main
+// thread.
 #pragma once
 
 #include <filesystem>
@@ -10,17 +10,17 @@
 
 namespace psygen::inspect {
 
-// The name and version of the protocol, as `hello` tells it.
+// Name and version of the protocol, as `hello` reports it.
 inline constexpr const char* kProtocol = "psygen.inspect/1";
 
-// How a session can be reached.
+// Location of a session's socket.
 struct InspectOptions {
-  // Where the socket is: a folder of ours that nobody else may enter. Empty: $XDG_RUNTIME_DIR.
+  // Folder of the socket: owned by this user and closed to others. Empty: $XDG_RUNTIME_DIR.
   std::filesystem::path folder = {};
 };
 
-// The plugin, for SessionOptions::plugins; one a session. A session that cannot have the socket is
-// not created: kInvalidArgument for a folder that others may enter, and kIo.
+// The plugin for SessionOptions::plugins; one per session. Session creation fails if the socket
+// cannot be created: kInvalidArgument for a folder that others may enter, or kIo.
 app::Plugin plugin(InspectOptions options = {});
 
 }  // namespace psygen::inspect

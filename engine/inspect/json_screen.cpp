@@ -4,7 +4,7 @@ namespace psygen::inspect {
 namespace {
 
 constexpr int kMaxMarks = 64, kMaxDepth = 4;
-constexpr std::size_t kMaxOutside = 4096;  // bytes outside of strings: numbers, blanks
+constexpr std::size_t kMaxOutside = 4096;  // bytes outside strings: numbers, blanks
 
 }  // namespace
 

@@ -14,10 +14,10 @@
 namespace psygen::inspect {
 namespace {
 
-constexpr std::size_t kReadBytes = 16 << 10, kMaxReads = 16;  // a frame
-constexpr std::size_t kMaxUnread = std::size_t{1} << 20;      // bytes of answers
+constexpr std::size_t kReadBytes = 16 << 10, kMaxReads = 16;  // per frame
+constexpr std::size_t kMaxUnread = std::size_t{1} << 20;      // bytes of replies
 constexpr double kGreetingSeconds = 5, kStuckSeconds = 10;
-constexpr int kMaxSockets = 16;  // of one process
+constexpr int kMaxSockets = 16;  // per process
 
 tl::unexpected<core::Error> no_socket(const std::filesystem::path& path) {
   return core::fail(core::ErrorCode::kIo,
@@ -29,7 +29,7 @@ bool is_ours(const std::filesystem::path& file) {
   return name.starts_with(kSocketPrefix) && name.ends_with(kSocketSuffix);
 }
 
-// Sockets at which nobody listens any more.
+// Removes sockets without a listening process.
 void remove_dead_sockets(const std::filesystem::path& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -52,7 +52,7 @@ core::Result<std::unique_ptr<LineServer>> LineServer::open(const std::filesystem
 core::Result<void> LineServer::listen(const std::filesystem::path& folder) {
   remove_dead_sockets(folder);
   Descriptor fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  // The mode of the file from its first moment on.
+  // Sets the mode of the file before it becomes visible.
   if (!fd || ::fchmod(fd.get(), 0600) != 0) return no_socket(folder);
   for (int i = 1; i <= kMaxSockets; ++i) {
     const std::string number = i > 1 ? fmt::format("-{}", i) : "";
@@ -61,7 +61,7 @@ core::Result<void> LineServer::listen(const std::filesystem::path& folder) {
     const auto address = address_of(path);
     if (!address)
       return core::fail(core::ErrorCode::kInvalidArgument,
-                        fmt::format("{}: too long for the name of a socket", path.string()));
+                        fmt::format("{}: too long for a socket address", path.string()));
     if (::bind(fd.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof(*address)) != 0) {
       if (errno == EADDRINUSE && i < kMaxSockets) continue;
       return no_socket(path);
@@ -105,7 +105,7 @@ void LineServer::refuse_others() const {
   const Descriptor other(
       ::accept4(listening_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   constexpr std::string_view kBusy =
-      "{\"ok\":false,\"error\":\"another program is attached already\"}\n";
+      "{\"ok\":false,\"error\":\"another program is already attached\"}\n";
   if (other && peer_of(other.get()))
     (void)!::send(other.get(), kBusy.data(), kBusy.size(), MSG_NOSIGNAL);
 }
@@ -114,7 +114,7 @@ void LineServer::receive() {
   refuse_others();
   std::array<char, kReadBytes> bytes;
   for (std::size_t i = 0; i < kMaxReads; ++i) {
-    // A whole line waits already, or too much of one is here.
+    // A complete line is waiting, or the input limit is reached.
     if (input_.find('\n', looked_at_) != std::string::npos) return;
     looked_at_ = input_.size();
     if (input_.size() > kMaxLineBytes) return drop();

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxNodes = 20'000;
 
-// The flags of a node, as docs/inspect.md lists them.
+// Flags of a node, as listed in docs/inspect.md.
 enum NodeFlag : unsigned { kInView = 1, kDrawn = 2, kStale = 4, kRequested = 8, kFailed = 16 };
 
 std::string name_of(const scene::State& state, models::ModelIndex model) {
@@ -24,7 +24,7 @@ std::string name_of(const scene::State& state, models::ModelIndex model) {
                                              : "?";
 }
 
-// [x, z, level, flags, drawn level or −1, layer, meshes that lack or −1, deadline or null, µs]
+// [x, z, level, flags, drawn level or −1, layer, missing meshes or −1, deadline or null, µs]
 Json node_json(const scene::State& state, const scene::Node& node, const scene::Visibility& seen,
                const scene::Lacking& lacking, const scene::Source& source,
                const scene::Demand& demand) {
@@ -243,7 +243,7 @@ std::string world_text(const app::Session& session) {
   } else if (auto read = world::read_text_file(options.world_file)) {
     text = std::move(*read);
   }
-  // The registry has the species, if it is the same world.
+  // The registry has the species if the world is the same.
   const models::Registry& types = facts.registry;
   auto world = world::parse_world(text, options.world_file.string(), types, &handmade::files());
   if (!world) return written;

@@ -21,7 +21,7 @@ core::Result<std::filesystem::path> socket_folder(const std::filesystem::path& f
     const char* runtime = std::getenv("XDG_RUNTIME_DIR");
     if (runtime == nullptr || *runtime != '/')
       return core::fail(core::ErrorCode::kInvalidArgument,
-                        "inspecting needs XDG_RUNTIME_DIR, a folder of this user alone");
+                        "inspection needs XDG_RUNTIME_DIR, a folder that only this user may enter");
     found = runtime;
   }
   struct stat is {};
@@ -30,8 +30,8 @@ core::Result<std::filesystem::path> socket_folder(const std::filesystem::path& f
                       fmt::format("{}: {}", found.string(), std::strerror(errno)));
   if (!S_ISDIR(is.st_mode) || is.st_uid != ::geteuid() || (is.st_mode & 077) != 0) {
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: the socket must be in a folder of this user that nobody "
-                                  "else may enter (mode 0700)",
+                      fmt::format("{}: the socket must be in a folder of this user that no other "
+                                  "user may enter (mode 0700)",
                                   found.string()));
   }
   return found;

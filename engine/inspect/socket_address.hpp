@@ -1,4 +1,4 @@
-// Where the sockets of inspected sessions are, and who is behind them. Linux. Any thread.
+// Addresses of the sockets of inspected sessions, and identity of their peers. Linux. Any thread.
 #pragma once
 
 #include <sys/un.h>
@@ -15,7 +15,7 @@ namespace psygen::inspect {
 
 inline constexpr std::string_view kSocketPrefix = "psygen-", kSocketSuffix = ".inspect";
 
-// A descriptor that is closed at the end.
+// A file descriptor, closed by the destructor.
 class Descriptor {
  public:
   explicit Descriptor(int fd = -1) : fd_(fd) {}
@@ -32,17 +32,17 @@ class Descriptor {
   int fd_;
 };
 
-// `folder`, or $XDG_RUNTIME_DIR if it is empty. Fails with kInvalidArgument unless it is a folder
-// of this user that nobody else may enter.
+// Returns `folder`, or $XDG_RUNTIME_DIR if it is empty. Fails with kInvalidArgument unless it is a
+// folder of this user that no other user may enter.
 core::Result<std::filesystem::path> socket_folder(const std::filesystem::path& folder);
 
-// Nothing where the path is too long for a socket.
+// Returns nullopt if the path is too long for a socket.
 std::optional<sockaddr_un> address_of(const std::filesystem::path& socket);
 
-// A socket that does not wait, connected; none where nobody listens there. errno says why.
+// Returns a connected non-blocking socket, or none if no process listens; errno has the reason.
 Descriptor connect_to(const std::filesystem::path& socket);
 
-// The process at the other end, if it is of the same user.
+// Returns the process id of the peer if it belongs to the same user.
 std::optional<int> peer_of(int fd);
 
 }  // namespace psygen::inspect

@@ -40,9 +40,9 @@ std::string written_world(const app::Session& session) {
 }  // namespace
 
 std::optional<std::string> Visit::answer(app::Session& session, std::string_view request) {
-  if (!is_small_json(request)) return refusal(nullptr, "a request is one small object of JSON");
+  if (!is_small_json(request)) return refusal(nullptr, "a request must be one small JSON object");
   const Json json = Json::parse(request, nullptr, false);
-  if (!json.is_object()) return refusal(nullptr, "a request is one small object of JSON");
+  if (!json.is_object()) return refusal(nullptr, "a request must be one small JSON object");
   Json id = json.contains("id") ? json["id"] : Json();
   if (!id.is_number_integer()) id = nullptr;
   if (greeted_ && json.value("do", Json()) == "set_world") {
@@ -56,10 +56,11 @@ std::optional<std::string> Visit::answer(app::Session& session, std::string_view
 
 Visit::Reply Visit::reply(app::Session& session, const Json& request) {
   const auto found = request.find("do");
-  if (found == request.end() || !found->is_string()) return refuse("a request has \"do\", a text");
+  if (found == request.end() || !found->is_string())
+    return refuse("a request needs \"do\", a text");
   const auto& what = found->get_ref<const std::string&>();
   if (what == "hello") return hello(session, request);
-  if (!greeted_) return refuse("the first request is hello");
+  if (!greeted_) return refuse("the first request must be hello");
   const scene::State& state = session.scene().state();
   if (what == "figures") return figures(session, frames_);
   if (what == "systems") return systems(state, frames_);
@@ -69,14 +70,15 @@ Visit::Reply Visit::reply(app::Session& session, const Json& request) {
   if (what == "pose") return place(session, request);
   if (what == "detach") return detach(request);
   return refuse(
-      "there are hello, figures, systems, entities, parameters, set_world, pause, pose and detach");
+      "the requests are hello, figures, systems, entities, parameters, set_world, pause, pose and "
+      "detach");
 }
 
 Visit::Reply Visit::hello(app::Session& session, const Json& request) {
   const auto protocol = request.find("protocol");
   if (protocol == request.end() || *protocol != kProtocol)
     return refuse(
-        fmt::format("hello has \"protocol\": \"{}\", the only one that is spoken here", kProtocol));
+        fmt::format("hello needs \"protocol\": \"{}\", the only supported one", kProtocol));
   greeted_ = true;
   const scene::State& state = session.scene().state();
   return Json{{"protocol", kProtocol},
@@ -91,7 +93,8 @@ Visit::Reply Visit::hello(app::Session& session, const Json& request) {
 
 core::Result<void> Visit::set_world(app::Session& session, const Json& request) {
   const auto text = request.find("text");
-  if (text == request.end() || !text->is_string()) return refuse("set_world has \"text\", a text");
+  if (text == request.end() || !text->is_string())
+    return refuse("set_world needs \"text\", a text");
   before_change_ = world_before_ ? std::string() : world_text(session);
   change_.start(session, text->get<std::string>());
   return {};
@@ -108,7 +111,7 @@ std::optional<std::string> Visit::late_answer(app::Session& session) {
 
 Visit::Reply Visit::pause(app::Session& session, const Json& request) {
   const auto on = request.find("on");
-  if (on == request.end() || !on->is_boolean()) return refuse("pause has \"on\", true or false");
+  if (on == request.end() || !on->is_boolean()) return refuse("pause needs \"on\", true or false");
   if (!paused_before_) paused_before_ = session.paused();
   paused_set_ = on->get<bool>();
   session.set_paused(paused_set_);
@@ -117,7 +120,8 @@ Visit::Reply Visit::pause(app::Session& session, const Json& request) {
 
 Visit::Reply Visit::place(app::Session& session, const Json& request) {
   const auto wanted = request.find("pose");
-  if (wanted == request.end()) return refuse("pose has \"pose\", an object, or null to let go");
+  if (wanted == request.end())
+    return refuse("pose needs \"pose\", an object, or null to release the camera");
   if (wanted->is_null()) {
     pose_.reset();
     return Json::object();
@@ -137,7 +141,7 @@ Visit::Reply Visit::detach(const Json& request) {
 bool Visit::end(app::Session& session) {
   pose_.reset();
   if (!is_ending_) {
-    if (!change_.drop()) return false;  // what was asked for last is not shown any more
+    if (!change_.drop()) return false;  // the last request is not shown any more
     is_ending_ = true;
     if (!keep_ && paused_before_ && session.paused() == paused_set_)
       session.set_paused(*paused_before_);
@@ -145,7 +149,7 @@ bool Visit::end(app::Session& session) {
       change_.start(session, *world_before_);
   }
   if (const auto done = change_.finish(session); done && !*done)
-    core::log_warning(fmt::format("the world before the visit is lost: {}", done->error().message));
+    core::log_warning(fmt::format("cannot restore the original world: {}", done->error().message));
   return !change_.is_under_way();
 }
 

@@ -1,5 +1,5 @@
-// One visit of a program that inspects a session: answers its requests, and when it leaves puts
-// back what it changed. Knows no sockets. Main thread.
+// One connection of an inspecting program: answers its requests, and restores its changes when it
+// leaves. Independent of sockets. Main thread.
 #pragma once
 
 #include <optional>
@@ -19,25 +19,25 @@ namespace psygen::inspect {
 
 class Visit {
  public:
-  // A new visitor: nothing is changed yet. Not before the one before has ended.
+  // Begins a new connection without changes. Requires that the previous one has ended.
   void begin() { *this = Visit(); }
-  // The visitor is gone: the world, the pause and the camera are again what they were, unless it
-  // asked to keep its changes, or the game has changed them since. Call it once a frame until it
-  // has ended, which it says: another thread prepares the world.
+  // The client is gone: restores the world, the pause and the camera, unless the client asked to
+  // keep its changes or the game has changed them since. Another thread prepares the world, so call
+  // this once a frame until it returns true.
   bool end(app::Session& session);
-  // Gathers what answers tell of frames since the last one. After every tick.
+  // Gathers the statistics of a frame for replies. Call after every tick.
   void note_frame(const scene::State& state) { frames_.note(state); }
 
-  // The answer to a request, one line of JSON without its end. Any text is answered; nothing: the
-  // answer comes late, and no other request may be made until then.
+  // Returns the reply to a request, one line of JSON without its end. Every text gets a reply.
+  // Returns nullopt if the reply comes later; no other request may be made until then.
   std::optional<std::string> answer(app::Session& session, std::string_view request);
-  // That answer, once it is there. Once a frame.
+  // Returns the deferred reply once it is ready. Call once a frame.
   std::optional<std::string> late_answer(app::Session& session);
   bool is_busy() const { return change_.is_under_way(); }
   bool has_greeted() const { return greeted_; }
-  // It said that it leaves.
+  // The client announced that it leaves.
   bool over() const { return over_; }
-  // Where the camera stands instead of where the game puts it.
+  // Camera pose that overrides the game's.
   const std::optional<core::CameraPose>& pose() const { return pose_; }
 
  private:
@@ -52,11 +52,11 @@ class Visit {
   bool greeted_ = false, over_ = false, keep_ = false;
   FrameNotes frames_;
   WorldChange change_;
-  Json change_id_;                           // of its request
-  std::string before_change_;                // the text of the world
-  bool is_ending_ = false;                   // the change puts back the world
-  std::optional<std::string> world_before_;  // the text; none: it was not changed
-  std::string world_set_;                    // as write_world() writes what was set last
+  Json change_id_;                           // id of its request
+  std::string before_change_;                // text of the world before the change
+  bool is_ending_ = false;                   // the change restores the world
+  std::optional<std::string> world_before_;  // original text of the world; nullopt: unchanged
+  std::string world_set_;                    // the last world set, as written by write_world()
   std::optional<bool> paused_before_;
   bool paused_set_ = false;
   std::optional<core::CameraPose> pose_;

@@ -1,5 +1,5 @@
-// Another world for a session, which a thread of its own prepares while the session goes on. On a
-// virtual clock the session waits for it, so that a flight stays the same. Main thread.
+// Replaces a session's world, prepared by another thread while the session continues. On a virtual
+// clock the session waits for it, so that a flight stays reproducible. Main thread.
 #pragma once
 
 #include <future>
@@ -23,13 +23,13 @@ class WorldChange {
   WorldChange(WorldChange&&) = default;
   WorldChange& operator=(WorldChange&& other) noexcept;
 
-  // Begins to prepare the world of a text. Not while one is under way.
+  // Starts to prepare the world of a text. Requires that no change is under way.
   void start(app::Session& session, std::string text);
   bool is_under_way() const { return prepared_.valid(); }
-  // Once it is prepared: shows it, and says how that went (Session::set_world()). Nothing until
-  // then, and without one.
+  // Shows the world once it is prepared and returns the result of Session::set_world(). Returns
+  // nullopt before that, and without a change.
   std::optional<core::Result<void>> finish(app::Session& session);
-  // Lets go of it once it is prepared, and shows nothing. Whether there is none any more.
+  // Discards the world once it is prepared, without showing it. Returns true if no change is left.
   bool drop();
 
  private:

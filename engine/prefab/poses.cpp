@@ -33,11 +33,11 @@ glm::mat3 scaled(const glm::quat& rotation, const glm::vec3& scale) {
   return basis;
 }
 
-// The rotation and the scale that come nearest to these axes.
+// Computes the rotation and the scale nearest to these axes.
 void decompose(const glm::mat3& basis, Transform& out) {
   for (int axis = 0; axis < 3; ++axis)
     out.scale[axis] = glm::length(basis[axis]);
-  if (!(out.scale.x > 0 && out.scale.y > 0 && out.scale.z > 0)) return;  // is not drawn
+  if (!(out.scale.x > 0 && out.scale.y > 0 && out.scale.z > 0)) return;  // not drawn
   if (glm::determinant(basis) < 0) out.scale.x = -out.scale.x;
   const glm::vec3 x = basis[0] / out.scale.x;
   const glm::vec3 z = glm::normalize(glm::cross(x, basis[1]));
@@ -51,7 +51,7 @@ class Composer {
         transforms_(entities.accessor<Transform>()),
         tick_(tick) {}
 
-  // An entity after all that is above it and was not placed in this tick.
+  // Places an entity after all its ancestors that this tick has not placed yet.
   void place(ecs::Entity entity) {
     chain_.clear();
     Attached* node = attached_.get(entity);

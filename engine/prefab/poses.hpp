@@ -1,4 +1,4 @@
-// The system "poses": plays the animations of instances, then places what is Attached, parents
+// The system "poses": plays the animations of instances, then places Attached entities, parents
 // first. Private to engine/prefab.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace psygen::prefab {
 
-// Reads and writes in any order of entities and at any depth; O(Attached + keys found).
+// Accepts entities in any order and at any depth; O(Attached + keys found).
 using PoseQuery = ecs::Query<const ecs::Children, Instance, Attached, scene::Transform>;
 void poses_system(const Library& library, const scene::FixedStep& step, const scene::Clock& clock,
                   PoseQuery entities);

@@ -17,7 +17,7 @@ namespace {
 using scene::Object;
 using scene::Transform;
 
-// Adds what a file has to the assets, each thing once.
+// Adds the content of a file to the assets, each object once.
 class Adder {
  public:
   Adder(const gltf::Model& model, scene::Assets& assets) : model_(model), assets_(assets) {}
@@ -128,7 +128,7 @@ ecs::Entity Library::spawn(ecs::World& world, PrefabId id, const Transform& tran
   made.column<Instance>()[0].prefab = id;
   const std::size_t nodes = prefab.nodes.size();
   std::vector<bool> has_object(nodes);
-  std::size_t more = 0;  // parts beyond the first one of a node
+  std::size_t more = 0;  // parts after the first one of a node
   for (const Prefab::Part& part : prefab.parts) {
     more += has_object[part.node] ? 1 : 0;
     has_object[part.node] = true;
@@ -164,8 +164,8 @@ core::Result<void> Library::play(Instance& instance, std::string_view animation,
     for (const gltf::Animation& one : prefab.animations)
       names += (names.empty() ? "" : ", ") + one.name;
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{} has no animation \"{}\"; it has {}", prefab.name, animation,
-                                  names.empty() ? "none" : names));
+                      fmt::format("{} has no animation \"{}\"; its animations are {}", prefab.name,
+                                  animation, names.empty() ? "none" : names));
   }
   instance.animation = static_cast<std::uint32_t>(found - prefab.animations.begin());
   instance.speed = how.speed;

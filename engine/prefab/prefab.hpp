@@ -1,7 +1,7 @@
-// Things made of several objects, from glTF files: a house with its door, a mill with its sails
-// (docs/objects.md). A prefab is a file's content in a scene. spawn() puts an instance of it into
-// the world: a root with a Transform, which moves the whole, and an entity for each node, which is
-// Attached to another one. To remove it: world.destroy_with_children(). Main thread only.
+// Models of several objects, from glTF files: a house with its door, a mill with its sails
+// (docs/objects.md). A prefab is the content of a file in a scene. spawn() creates an instance in
+// the world: a root with a Transform, which moves the whole instance, and an entity for each node,
+// which is Attached to another one. To remove it: world.destroy_with_children(). Main thread only.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@
 
 namespace psygen::prefab {
 
-// A file's content in a scene.
+// The content of a file in a scene.
 struct Prefab {
   struct Part {
     std::uint32_t node = 0;
@@ -30,43 +30,43 @@ struct Prefab {
   std::vector<Part> parts;  // by node
 };
 
-// Names a prefab of a library.
+// Identifies a prefab of a library.
 struct PrefabId {
   std::uint32_t index = UINT32_MAX;  // UINT32_MAX: none
   friend bool operator==(const PrefabId&, const PrefabId&) = default;
 };
 
-// What the system "poses" keeps of an Attached entity.
+// State of the system "poses" for an Attached entity.
 struct AttachedState {
-  glm::mat3 basis{1.0F};            // its axes in the world
-  std::uint32_t tick = UINT32_MAX;  // the last one in which it was placed
+  glm::mat3 basis{1.0F};            // axes in the world
+  std::uint32_t tick = UINT32_MAX;  // last tick in which it was placed
 };
 
-// Holds an entity to another one. The system "poses" writes its Transform in every frame, from that
-// of the parent, which may be Attached itself. An entity whose parent is dead or has no Transform
-// stays where it is; parents in a circle stand somewhere. Where a parent has different scales for
-// its axes, a turned child is scaled as well as possible, but not skewed.
+// Attaches an entity to another one. The system "poses" writes its Transform in every frame from
+// that of the parent, which may be Attached itself. An entity whose parent is dead or has no
+// Transform keeps its position; the position of entities in a cycle is unspecified. If a parent has
+// different scales per axis, a rotated child is scaled approximately, but not skewed.
 struct Attached {
   ecs::Entity parent;
   gltf::Pose pose;  // relative to the parent
   AttachedState state = {};
 };
 
-// The component of an instance's root: what it plays. Its children are the entities of the nodes,
-// in their order, and then those of further meshes. Library::play() writes it.
+// Component of an instance's root: the animation that it plays. Its children are the entities of
+// the nodes, in order, then those of further meshes. Library::play() writes it.
 struct Instance {
   PrefabId prefab;
-  std::uint32_t animation = gltf::kNone;  // of the prefab; kNone: nodes stay as they are
-  float speed = 1;                        // of the animation's seconds a second; may be negative
+  std::uint32_t animation = gltf::kNone;  // of the prefab; kNone: nodes keep their poses
+  float speed = 1;                        // animation seconds per second; may be negative
   bool loops = true;
-  bool rests = false;            // nodes had their rest poses since play() (the system "poses")
-  double from_s = 0;             // of the animation, in step `since_step`
+  bool rests = false;  // nodes have had their rest poses since play() (the system "poses")
+  double from_s = 0;   // position in the animation at step `since_step`
   std::uint64_t since_step = 0;  // FixedStep::index
 };
 
 }  // namespace psygen::prefab
 
-// For snapshots (engine/scene/objects/described.hpp), as those below.
+// For snapshots (engine/scene/objects/described.hpp), as the traits below.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::gltf::Pose> {
   static constexpr auto fields =
@@ -74,13 +74,13 @@ struct psygen::ecs::ComponentTraits<psygen::gltf::Pose> {
                  field("rotation", &gltf::Pose::rotation), field("scale", &gltf::Pose::scale)};
 };
 
-// Its number.
+// Saves its index.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::prefab::PrefabId> {
   static constexpr auto fields = std::tuple{field("index", &prefab::PrefabId::index)};
 };
 
-// The parent and the pose to it; where it was drawn comes anew.
+// Saves the parent and the pose relative to it; the drawn position is recomputed.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::prefab::Attached> {
   static constexpr std::string_view name = "Attached";
@@ -88,8 +88,8 @@ struct psygen::ecs::ComponentTraits<psygen::prefab::Attached> {
                                             field("pose", &prefab::Attached::pose)};
 };
 
-// Prefabs by their numbers: those of the same order of calls of Library. Steps count from the start
-// of a session: call Library::play() after loading.
+// Saves prefabs by index, which depends on the order of calls to Library. Steps count from the
+// start of a session: call Library::play() after loading.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::prefab::Instance> {
   static constexpr std::string_view name = "Instance";
@@ -101,49 +101,50 @@ struct psygen::ecs::ComponentTraits<psygen::prefab::Instance> {
 
 namespace psygen::prefab {
 
-// How an animation is played.
+// Options of playing an animation.
 struct Playback {
-  double from_s = 0;  // of the animation
+  double from_s = 0;  // start position in the animation
   float speed = 1;
   bool loops = true;
 };
 
-// The seconds of its animation that an instance shows in this frame, before its loop or its end.
+// Time in seconds within the animation that an instance shows in this frame, before looping or
+// clamping.
 double animation_time_s(const Instance& instance, const scene::FixedStep& step);
 
-// The prefabs of a scene. They live as long as it.
+// The prefabs of a scene. They live as long as the scene.
 class Library {
  public:
   Library() = default;
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 
-  // Adds the system "poses" to a scene, before "objects": it plays animations and places what is
-  // Attached. What moves roots runs before it: call this last in Plugin::add_systems, or name the
-  // place ecs::before("poses"). The library must outlive the scene.
+  // Adds the system "poses" to a scene, before "objects": it plays animations and places Attached
+  // entities. Systems that move roots must run before it: call this last in Plugin::add_systems, or
+  // order them by ecs::before("poses"). The library must outlive the scene.
   core::Result<void> add_systems(scene::Systems& systems);
 
-  // A .glb or .gltf file with its meshes and materials. What it has and the engine does not is
-  // logged. Fails like gltf::read_file() and add(). Too slow for the tick.
+  // Loads a .glb or .gltf file with its meshes and materials. Logs unsupported content. Fails like
+  // gltf::read_file() and add(). Too slow for the tick.
   core::Result<PrefabId> load(scene::Assets& assets, const std::filesystem::path& file);
-  // The same for what was read, in another thread for example; it needs no more to be kept. Meshes
-  // of more than 65,535 vertices become several. Fails like the functions of Assets; what was added
-  // to them until then stays.
+  // Adds a parsed model, for example one read in another thread; the model need not be kept. Splits
+  // meshes of more than 65,535 vertices. Fails like the functions of Assets; assets added before
+  // the failure stay.
   core::Result<PrefabId> add(scene::Assets& assets, const gltf::Model& model);
 
   bool exists(PrefabId prefab) const { return prefab.index < prefabs_.size(); }
   // A prefab that exists. It never moves.
   const Prefab& operator[](PrefabId prefab) const { return *prefabs_[prefab.index]; }
 
-  // A new instance of a prefab that exists: a root with Transform, Instance and ecs::Children, and
-  // its parts.
+  // Creates an instance of an existing prefab: a root with Transform, Instance and ecs::Children,
+  // and its parts.
   ecs::Entity spawn(ecs::World& world, PrefabId prefab, const scene::Transform& transform) const;
-  // Starts an animation of an instance. Its time is that of the simulation: it follows from the
-  // number of steps alone, and pictures lie between two of them. Fails with kInvalidArgument, and
-  // says which animations there are.
+  // Starts an animation of an instance. Its time depends only on the number of simulation steps;
+  // frames interpolate between steps. Fails with kInvalidArgument and a message that lists the
+  // animations.
   core::Result<void> play(Instance& instance, std::string_view animation,
                           const scene::FixedStep& step, const Playback& how = {}) const;
-  // The entity of an instance's node, the first one of this name; null where there is none.
+  // Entity of an instance's first node with this name; null if there is none.
   ecs::Entity node_of(const ecs::World& world, ecs::Entity instance, std::string_view name) const;
 
  private:

@@ -13,7 +13,7 @@
 
 namespace psygen::synthesis {
 
-// Destroyed when neither side uses it any more.
+// Destroy it only after both sides have stopped using it.
 class CompletionQueue {
  public:
   CompletionQueue() : tail_(new Segment), head_(tail_) {}
@@ -37,7 +37,7 @@ class CompletionQueue {
     tail_->written.store(n + 1, std::memory_order_release);
   }
 
-  // Consumer: appends everything there is, oldest first; returns how many.
+  // Consumer: appends all queued completions, oldest first; returns their number.
   std::size_t drain(std::vector<Completion>& out) {
     std::size_t count = 0;
     for (;;) {

@@ -1,6 +1,6 @@
-// Proof that two runs made the same world. A mesh's hash covers its key and every byte written; the
-// world's is a sum, so that neither the number of modelers nor the order of completion matters.
-// Pure functions; any thread.
+// Hashes that prove that two runs synthesised the same world. The hash of a mesh covers its key and
+// every byte written. The hash of a world is a sum, so neither the number of modelers nor the order
+// of completion matters. Pure functions; any thread.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ inline std::uint64_t content_hash(const MeshKey& key, const models::MeshView& me
   return core::combine(h, core::hash_bytes(std::as_bytes(mesh.indices)));
 }
 
-// The sum of the hashes of a world's meshes. The order of add() does not matter.
+// Sum of the hashes of a world's meshes. The order of add() does not matter.
 class WorldHash {
  public:
   // The content_hash() of one mesh.
@@ -25,12 +25,12 @@ class WorldHash {
     sum_ += core::mix64(mesh_hash);
     ++count_;
   }
-  // Another part of the same world.
+  // Adds the hash of another part of the same world.
   void add(const WorldHash& part) {
     sum_ += part.sum_;
     count_ += part.count_;
   }
-  // One whose sum() and count() were written down.
+  // Restores a hash from a stored sum() and count().
   static WorldHash restored(std::uint64_t sum, std::uint64_t count) {
     WorldHash hash;
     hash.sum_ = sum;
@@ -38,7 +38,7 @@ class WorldHash {
     return hash;
   }
   std::uint64_t sum() const { return sum_; }
-  // How many meshes were added, and the hash of all of them.
+  // Number of meshes added, and the hash of all of them.
   std::uint64_t count() const { return count_; }
   std::uint64_t value() const { return core::combine(sum_, count_); }
 

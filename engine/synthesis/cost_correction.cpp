@@ -5,12 +5,12 @@
 
 namespace psygen::synthesis {
 namespace {
-constexpr double kMinRate = 0.05;  // of one observation, however many there were
-// One observation counts as off by this factor at most, and as so much faster than a guess: a
-// request may be slow by chance, but not fast.
+constexpr double kMinRate = 0.05;  // weight of one observation never falls below this
+// An observation counts as off by at most kLargestSurprise, and as faster than a guess by at most
+// kLargestDoubt: chance can make a request slow, but not fast.
 constexpr double kLargestSurprise = 2.0, kLargestDoubt = 1000.0;
-// Steps towards an observation of what cold caches add: some microseconds at first, whatever it
-// says, because the very first requests of a thread take milliseconds.
+// Step sizes towards the observed cost of cold caches. The first steps are some microseconds
+// whatever the observation says, because the very first requests of a thread take milliseconds.
 constexpr double kFirstStep_s = 20e-6, kMinStep_s = 1e-6;
 constexpr std::uint32_t kFirst = 4;
 
@@ -37,8 +37,8 @@ void CostCorrection::follow(double warm_s, double seconds) {
 void CostCorrection::observe(double curve_s, Warmth warmth, double seconds, ColdSeconds& shared) {
   const double warm_s = factor_ * curve_s;
   if (warmth == Warmth::kWarm) return follow(warm_s, seconds);
-  // Cold caches only add time. Some levels are never met warm, so a curve that is too high would
-  // stay so.
+  // Cold caches only add time. Some levels are never requested warm, so without this a curve that
+  // is too high would stay so.
   if (seconds < warm_s) follow(warm_s, seconds);
   LearnedSeconds& own = cold_.of(warmth);
   LearnedSeconds& all = shared.of(warmth);

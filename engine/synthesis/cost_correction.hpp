@@ -1,7 +1,8 @@
-// What finished requests teach of one level of a type beyond its calibrated curve: a factor on all
-// of it, and what cold caches add. Calibration repeats a synthesis until everything it touches is
-// cached; a modeler that slept finds nothing there, and pays up to ten times as much for a small
-// mesh. Medians rather than means: of a hundred requests some are interrupted. Pure; O(1).
+// Learns a correction to the calibrated cost curve of one LOD from finished requests: a factor on
+// the curve, and the time that cold caches add. Calibration repeats a synthesis until all its data
+// is cached. A modeler that slept finds cold caches and needs up to ten times as long for a small
+// mesh. Uses medians instead of means, because some of a hundred requests are interrupted. Pure;
+// O(1).
 #pragma once
 
 #include <array>
@@ -10,29 +11,30 @@
 
 namespace psygen::synthesis {
 
-// What the caches of a modeler hold of what a request needs when it claims it.
+// State of a modeler's caches when it claims a request.
 enum class Warmth : std::uint8_t {
-  kWarm,   // it has run the same code since it slept
-  kCold,   // it has run something else
-  kWoken,  // nothing
+  kWarm,   // has run the same code since it slept
+  kCold,   // has run other code
+  kWoken,  // has just slept
 };
 inline constexpr std::size_t kWarmths = 3;
 
-// What is predicted of a request before it is known who claims it, and when.
+// Predicted cost of a request before it is known which modeler claims it, and when.
 struct RequestCost {
   std::array<double, kWarmths> seconds{};  // of one core, by warmth
   std::size_t code = 0;                    // CostModel::code_of
-  // Seconds of one core where the caches are warm, and by warmth.
+  // Seconds of one core with warm caches, and with caches of the given warmth.
   double warm_s() const { return seconds[0]; }
   double of(Warmth warmth) const { return seconds[static_cast<std::size_t>(warmth)]; }
 };
 
-// A number of seconds that follows the middle of its observations in steps of bounded size.
+// Estimate of a duration that follows the median of its observations in steps of bounded size.
 class LearnedSeconds {
  public:
-  // `beside_s`: what is known of the whole that this is added to. A step is at most half of both.
+  // `beside_s`: the known part of the total that this estimate is added to. A step is at most half
+  // of the total.
   void observe(double seconds, double beside_s);
-  // Takes over what is known elsewhere, as a first guess.
+  // Initialises the estimate, for example from another LOD.
   void guess(double seconds) { value_ = seconds; }
   double value() const { return value_; }  // never below 0
   std::uint32_t count() const { return count_; }
@@ -42,31 +44,31 @@ class LearnedSeconds {
   std::uint32_t count_ = 0;
 };
 
-// Added times of cold requests, of one level or of all types with the same code.
+// Time that cold requests add, of one level or of all types with the same code.
 class ColdSeconds {
  public:
-  static constexpr std::uint32_t kEnough = 3;  // observations that are believed
-  // What a request of this warmth takes beyond a warm one.
+  static constexpr std::uint32_t kEnough = 3;  // observations after which the estimate is trusted
+  // Time that a request of this warmth adds to a warm one.
   const LearnedSeconds& of(Warmth warmth) const { return added_[static_cast<std::size_t>(warmth)]; }
   LearnedSeconds& of(Warmth warmth) { return added_[static_cast<std::size_t>(warmth)]; }
 
  private:
-  std::array<LearnedSeconds, kWarmths> added_;  // nothing where it is warm
+  std::array<LearnedSeconds, kWarmths> added_;  // unused for kWarm
 };
 
-// What finished requests teach of one level of a type.
+// Correction learned from the finished requests of one level of a type.
 class CostCorrection {
  public:
-  // The curve was measured on this machine: one observation says little against it.
+  // Marks the curve as measured on this machine: a single observation then has little weight.
   void trust_curve() { count_ = kTrusted; }
-  // On the curve's prediction; 1 until something was observed.
+  // Factor on the curve's prediction; 1 before the first observation.
   double factor() const { return factor_; }
 
-  // A request that took `seconds` where the curve says `curve_s`, both above 0; `shared` knows of
-  // other levels with the same code. A cold one that took less than a warm one should lowers the
-  // factor too.
+  // Records a request that took `seconds` where the curve predicts `curve_s`, both above 0.
+  // `shared` holds the estimates of all levels with the same code. A cold request that is faster
+  // than a warm prediction lowers the factor too.
   void observe(double curve_s, Warmth warmth, double seconds, ColdSeconds& shared);
-  // Predicted of a request that the curve says takes `curve_s`.
+  // Predicted seconds of a request for which the curve predicts `curve_s`.
   double seconds(double curve_s, Warmth warmth, const ColdSeconds& shared) const;
 
  private:

@@ -17,7 +17,7 @@ CalibrationOptions with_clocks(CalibrationOptions options) {
   return options;
 }
 
-// Whether the formula of level 0 depends on this integer.
+// Returns true if the formula of level 0 depends on this integer.
 bool is_cost_parameter(const models::ModelType& type, std::size_t i) {
   const models::ParameterSpec& spec = type.parameters()[i];
   if (spec.type != models::ParameterType::kInteger ||
@@ -30,7 +30,7 @@ bool is_cost_parameter(const models::ModelType& type, std::size_t i) {
   return type.complexity(low, 0) != type.complexity(high, 0);
 }
 
-// Up to kMaxPoints integers from the least to the largest.
+// Returns up to kMaxPoints integers from the smallest to the largest.
 std::vector<std::int64_t> values_of(const models::ParameterSpec& spec) {
   const auto low = static_cast<std::int64_t>(spec.soft_min);
   const auto high = static_cast<std::int64_t>(spec.soft_max);
@@ -47,13 +47,13 @@ void add(Work& sum, const Work& work, double share) {
   sum.steps += share * work.steps;
 }
 
-// One sample and the least that it took; nothing while it was not measured.
+// One sample and its shortest time; no time until it is measured.
 struct Run {
   CostSample sample;
   std::optional<Measurement> measured;
 };
 
-// What is measured for a value of a parameter: once, or once for each seed.
+// Returns the runs for one value of a parameter: one, or one for each seed.
 std::vector<Run> runs_at(const models::ModelType& type, CostSample sample, int seeds) {
   std::vector<Run> runs;
   const int seed = models::parameter_index(type, "seed");
@@ -64,7 +64,7 @@ std::vector<Run> runs_at(const models::ModelType& type, CostSample sample, int s
   return runs;
 }
 
-// False if one was never measured: it cannot be synthesised, or the time is up.
+// Returns false if a run was never measured: its synthesis fails, or the time is up.
 bool measure_all(std::vector<Run>& runs, const CostModel& cost, const CalibrationOptions& options,
                  double deadline_s) {
   CalibrationReport ignored;
@@ -76,7 +76,7 @@ bool measure_all(std::vector<Run>& runs, const CostModel& cost, const Calibratio
   return true;
 }
 
-// The mean over the runs, all of which are measured.
+// Returns the mean over the runs, all of which are measured.
 CurvePoint point_of(std::span<const Run> runs, double value, const CostModel& cost) {
   const double share = 1.0 / static_cast<double>(runs.size());
   CurvePoint point{value, 0, 0, {}};
@@ -107,7 +107,7 @@ std::vector<CurvePoint> points_over(const models::ModelType& type, models::Model
     Value at{static_cast<double>(value), runs_at(type, sample, seeds)};
     if (measure_all(at.runs, cost, options, deadline_s)) values.push_back(std::move(at));
   }
-  // Other programs disturb single measurements, so the least counts.
+  // Other programs disturb single measurements, so the shortest counts.
   for (int sweep = 1; sweep < options.sweeps; ++sweep) {
     for (Value& at : values)
       measure_all(at.runs, cost, options, deadline_s);
@@ -118,7 +118,7 @@ std::vector<CurvePoint> points_over(const models::ModelType& type, models::Model
   return points;
 }
 
-// How many levels the samples of a type have; all where there are none.
+// Returns the number of levels of a type's samples; all levels if there are no samples.
 int needed_levels(const models::ModelType& type, models::ModelIndex model,
                   std::span<const CostSample> samples) {
   int most = 0;
@@ -127,7 +127,7 @@ int needed_levels(const models::ModelType& type, models::ModelIndex model,
   return most == 0 ? type.level_count() : most;
 }
 
-// Of the predictions for a level of the samples of one type that have it, in percent.
+// Returns the prediction errors for a level, over the samples of one type that have it, in percent.
 std::vector<double> errors_of(const models::ModelType& type, const CostModel& cost,
                               models::ModelIndex model, int level,
                               std::span<const CostSample> samples,
@@ -141,7 +141,7 @@ std::vector<double> errors_of(const models::ModelType& type, const CostModel& co
   std::vector<std::optional<Measurement>> measured(chosen.size());
   for (int sweep = 0; sweep < std::max(options.sweeps, 1); ++sweep) {
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-      if (sweep > 0 && !measured[i]) continue;  // it failed
+      if (sweep > 0 && !measured[i]) continue;  // its synthesis failed
       const auto now = cost.measure(*chosen[i], level, options, deadline_s, report);
       if (now && (!measured[i] || now->seconds < measured[i]->seconds)) measured[i] = now;
     }
@@ -215,7 +215,7 @@ std::vector<CostSample> random_samples(const models::Registry& registry, std::si
   for (std::size_t m = 0; m < registry.size(); ++m) {
     const auto model = static_cast<models::ModelIndex>(m);
     core::RandomStream random(seed, 0, 0, model, core::Purpose::kParameters);
-    // Parameters at their upper ends may give a mesh that is too large. Then draw again, a few
+    // Parameters at their upper ends may give too large a mesh. In that case draws again, a few
     // times.
     std::size_t found = 0;
     for (std::size_t tries = 0; found < count && tries < 100 * count; ++tries) {

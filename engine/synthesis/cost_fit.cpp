@@ -12,14 +12,15 @@ namespace {
 
 constexpr std::size_t kTerms = 4;
 constexpr int kReweightings = 8;
-// Errors up to this size count with their square, larger ones with their size (Huber).
+// Errors up to this size count by their square, larger ones by their size (Huber).
 constexpr double kTolerance = 0.05;
-// A further term must explain so much of the error that is left.
+// A further term must reduce the error to this fraction.
 constexpr double kWorth = 0.95;
-// A correction must leave less than this share of the error: some it always explains by chance.
+// A correction must reduce the error to less than this fraction: any correction explains a little
+// by chance.
 constexpr double kWorthBending = 0.7;
 
-using Row = std::array<double, kTerms>;  // the terms over the measured seconds
+using Row = std::array<double, kTerms>;  // the terms divided by the measured seconds
 using Coefficients = std::array<double, kTerms>;
 
 Row row_of(const Measurement& m) {
@@ -34,8 +35,8 @@ double residual(const Row& row, const Coefficients& c) {
   return sum;
 }
 
-// Gaussian elimination without exchanges over the terms of `subset` (a bit each). Nothing if they
-// cannot be told apart.
+// Gaussian elimination without row exchanges over the terms of `subset` (one bit each). Returns
+// nullopt if the terms are linearly dependent.
 std::optional<Coefficients> solve(std::span<const Row> rows, std::span<const double> weights,
                                   unsigned subset) {
   std::array<std::array<double, kTerms + 1>, kTerms> a{};
@@ -50,7 +51,7 @@ std::optional<Coefficients> solve(std::span<const Row> rows, std::span<const dou
       a[i][kTerms] += weights[r] * rows[r][i];
     }
   }
-  // Terms of one size, so that small pivots mean that they depend on each other.
+  // Scales all terms to one size, so that a small pivot means dependent terms.
   std::array<double, kTerms> scale{};
   for (std::size_t i = 0; i < kTerms; ++i)
     scale[i] = a[i][i] > 0 ? 1 / std::sqrt(a[i][i]) : 0;
@@ -60,7 +61,8 @@ std::optional<Coefficients> solve(std::span<const Row> rows, std::span<const dou
     a[i][kTerms] *= scale[i];
   }
   for (std::size_t i = 0; i < kTerms; ++i) {
-    if (!(std::abs(a[i][i]) > 1e-9)) return std::nullopt;  // symmetric and positive: no exchange
+    // Symmetric and positive: needs no exchange.
+    if (!(std::abs(a[i][i]) > 1e-9)) return std::nullopt;
     for (std::size_t k = i + 1; k < kTerms; ++k) {
       const double factor = a[k][i] / a[i][i];
       for (std::size_t j = i; j <= kTerms; ++j)
@@ -118,7 +120,7 @@ double mean_error(const CostFit& fit, std::span<const Measurement> measurements)
   return sum / static_cast<double>(std::max<std::size_t>(measurements.size(), 1));
 }
 
-// Bends `fit` through the medians of groups of measurements of about the same size.
+// Bends `fit` through the medians of groups of measurements of similar size.
 void add_correction(CostFit& fit, std::span<const Measurement> measurements) {
   std::vector<CostFit::Knot> ratios;
   for (const Measurement& m : measurements) {
@@ -136,7 +138,7 @@ void add_correction(CostFit& fit, std::span<const Measurement> measurements) {
       factors.push_back(ratios[i].factor);
     }
     const CostFit::Knot knot{median(sizes), median(factors)};
-    // Groups of one size have no slope between them.
+    // Two groups of one size define no slope.
     if (fit.knot_count > 0 && knot.log2_size - fit.knots[fit.knot_count - 1].log2_size < 1e-3)
       continue;
     fit.knots[fit.knot_count++] = knot;
@@ -149,7 +151,7 @@ double CostFit::correction(const Work& work) const {
   if (knot_count == 0) return 1;
   if (knot_count == 1) return knots[0].factor;
   const double size = log2_size(work);
-  std::size_t k = 1;  // the end of the segment; the outer ones go on
+  std::size_t k = 1;  // end of the segment; the outer segments extend beyond their knots
   while (k + 1 < knot_count && size > knots[k].log2_size)
     ++k;
   const Knot &a = knots[k - 1], &b = knots[k];
@@ -163,12 +165,12 @@ CostFit fit_cost(std::span<const Measurement> measurements) {
   for (const Measurement& m : measurements) {
     if (m.seconds > 0) rows.push_back(row_of(m));
   }
-  // Each term alone, pairs, and so on; the formula before the others.
+  // Subsets of one term, of two, and so on; the formula first.
   constexpr std::array<unsigned, 15> kSubsets{0b0010, 0b0100, 0b1000, 0b0001, 0b0011,
                                               0b0101, 0b1001, 0b0110, 0b1010, 0b1100,
                                               0b0111, 0b1011, 0b1101, 0b1110, 0b1111};
   const std::size_t tried = rows.size() < kMinForTerms ? 1 : kSubsets.size();
-  // Below it nothing is explained: rounding of exact fits.
+  // Errors below this are rounding errors of an exact fit.
   const double nothing = 1e-12 * static_cast<double>(rows.size());
   Solution best;
   for (std::size_t s = 0; s < tried; ++s) {

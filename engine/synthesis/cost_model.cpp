@@ -11,11 +11,11 @@
 
 namespace psygen::synthesis {
 namespace {
-// Of types before calibration, and of those that are not registered.
+// Cost of types before calibration and of unregistered types.
 constexpr CostFit kUnknown{.fixed_s = 0.3e-6, .per_triangle_s = 5e-9, .per_step_s = 10e-9};
 constexpr std::size_t kErrorWindow = 4096;
 
-// Of [model][level]; the nearest level of a type.
+// Element [model][level], or that of the type's nearest level.
 template <class T>
 const T& at(const std::vector<std::vector<T>>& table, models::ModelIndex model, int level) {
   const std::vector<T>& levels = table[model];
@@ -23,7 +23,7 @@ const T& at(const std::vector<std::vector<T>>& table, models::ModelIndex model, 
       std::clamp(level, 0, static_cast<int>(levels.size()) - 1))];
 }
 
-// What reading the clock takes: every request does.
+// Returns the seconds that reading the clock takes, which every request adds.
 double clock_seconds(const std::function<double()>& clock) {
   constexpr int kCalls = 64;
   const double start_s = clock();
@@ -119,7 +119,7 @@ Work CostModel::work(models::ModelIndex model, const models::Parameters& paramet
   Work work;
   if (size != nullptr) size->reset();
   if (model >= registry_.size()) return work;
-  try {  // types of users may throw; nothing of ours does
+  try {  // model types of users may throw; the engine's own do not
     const double x = registry_[model].complexity(parameters, level);
     if (std::isfinite(x) && x > 0) work.operations = x;
     const models::MeshSize mesh = registry_[model].mesh_size(parameters, level);
@@ -195,7 +195,8 @@ std::optional<Measurement> CostModel::measure(const CostSample& sample, int leve
   }
   double least = std::numeric_limits<double>::infinity();
   int repeats = 1;
-  for (int round = 0; round <= options.rounds; ++round) {  // the first one warms up and sizes
+  // The first round warms up and sizes the measurement.
+  for (int round = 0; round <= options.rounds; ++round) {
     if (options.wall_clock() >= deadline_s) break;
     const double cpu_start = options.cpu_clock(), start = options.wall_clock();
     for (int i = 0; i < repeats; ++i) {
@@ -206,8 +207,8 @@ std::optional<Measurement> CostModel::measure(const CostSample& sample, int leve
         return std::nullopt;
       }
     }
-    // Reading the processor time is a system call that counts itself; the other clock counts what
-    // other threads take. The less of both is nearer to the truth.
+    // Reading the processor time is a system call that measures itself too; the wall clock also
+    // counts other threads. The smaller of the two is nearer to the truth.
     const double elapsed = options.wall_clock() - start;
     const double each = std::min(elapsed, options.cpu_clock() - cpu_start) / repeats;
     ++report.measurements;
@@ -240,7 +241,7 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
   std::vector<Measurement> measured;
   std::vector<const CostSample*> taken;
   std::vector<double> ratios;
-  const auto set = [&](const CostFit& line) {  // also the best guess for what is not measured yet
+  const auto set = [&](const CostFit& line) {  // also the best guess for levels not measured yet
     for (int finer = level; finer >= 0; --finer)
       fits_[model][static_cast<std::size_t>(finer)] = line;
   };
@@ -302,7 +303,8 @@ CalibrationReport CostModel::calibrate(std::span<const CostSample> samples,
   CalibrationReport report;
   std::vector<double> errors;
   for (std::size_t m = 0; m < fits_.size(); ++m) {
-    // Each type may use its share of what is left, so that a slow one does not starve the rest.
+    // Each type may use its fraction of the remaining time, so that a slow one does not starve the
+    // others.
     const double now = options.wall_clock();
     const double left = start + options.seconds_limit - now;
     const double share = left / static_cast<double>(fits_.size() - m);

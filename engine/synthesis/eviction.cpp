@@ -1,6 +1,6 @@
-// The part of GeometryCache that keeps the budget: what is used, what is on its way back, and which
-// meshes go. Unwanted meshes go ahead of need, the oldest first; the order of eviction of all
-// the others is selected once per batch and then walked.
+// The part of GeometryCache that enforces the budget: accounts for used and returning bytes and
+// selects meshes to evict. Unwanted meshes are evicted ahead of need, oldest first. The eviction
+// order of all others is selected once per batch and then walked.
 #include <algorithm>
 #include <utility>
 
@@ -9,8 +9,8 @@
 namespace psygen::synthesis {
 namespace {
 constexpr std::size_t kCandidateBatch = 256;
-// Parts of the limit: where less than the first is free the second is made free, and the third
-// where the memory has only pieces that are too small.
+// Fractions 1/n of the limit. If less than kMinFreePart is free, kFreePart is freed; if the
+// memory has only pieces that are too small, kPiecesPart.
 constexpr std::uint64_t kMinFreePart = 64, kFreePart = 24, kPiecesPart = 8;
 }  // namespace
 
@@ -33,7 +33,7 @@ void GeometryCache::keep_room_free() {
   }
 }
 
-// Evicts the mesh that is unwanted for longest. False if there is none.
+// Evicts the mesh that has been unwanted for longest. Returns false if there is none.
 bool GeometryCache::evict_unwanted() {
   while (const std::optional<MeshHandle> mesh = unwanted_.pop()) {
     const MeshRecord* r = get(*mesh);
@@ -46,8 +46,9 @@ bool GeometryCache::evict_unwanted() {
   return false;
 }
 
-// The budget has room, but the memory has no piece of it that is large enough. Once a batch an
-// eighth is made free, with what is coming already: what came together goes together.
+// Handles fragmentation: the budget suffices, but no free piece of memory is large enough. Frees an
+// eighth once per batch, including bytes that return already: meshes allocated together are then
+// freed together.
 GeometryCache::Room GeometryCache::make_pieces(std::uint64_t need, Rank rank) {
   ++stats_.out_of_memory;
   if (pieces_ != Room::kNow) return pieces_;
@@ -69,7 +70,7 @@ void GeometryCache::set_budget(std::uint64_t bytes) {
 }
 
 // A range that a frame in flight still reads stays in used_bytes() after its release. Those bytes
-// come back by themselves, so nothing else need be evicted for them: they are counted apart.
+// return without further eviction, so they are counted separately.
 void GeometryCache::observe_memory() {
   const std::uint64_t used = memory_.used_bytes();
   if (used < last_used_bytes_) {
@@ -105,7 +106,7 @@ core::Result<core::GeometryReservation> GeometryCache::reserve_memory(const mode
   const auto refuse = [this](Room room) {
     stats_.refusals += room == Room::kNone ? 1 : 0;
     return room == Room::kLater
-               ? core::fail(core::ErrorCode::kNotYet, "the room for a mesh is not free yet")
+               ? core::fail(core::ErrorCode::kNotYet, "the memory for a mesh is not free yet")
                : core::fail(core::ErrorCode::kOverBudget,
                             "the geometry budget has no room for a mesh");
   };
@@ -119,7 +120,7 @@ core::Result<core::GeometryReservation> GeometryCache::reserve_memory(const mode
     if (!place && pieces_ == Room::kLater) return refuse(pieces_);
     if (!place) return place;
   }
-  if (memory_.used_bytes() > budget_bytes_) {  // charged more than it had said
+  if (memory_.used_bytes() > budget_bytes_) {  // the memory charged more than it had announced
     give_back(place->range);
     return refuse(Room::kNone);
   }
@@ -127,8 +128,8 @@ core::Result<core::GeometryReservation> GeometryCache::reserve_memory(const mode
   return place;
 }
 
-// Whether `need` bytes can be reserved now. Evicts only if that makes enough room, now or once
-// the memory has given the bytes back; in the second case they are promised to this request.
+// Returns whether `need` bytes can be reserved now. Evicts only if that frees enough, either now or
+// after the GPU has finished reading; in that case the bytes are promised to this request.
 GeometryCache::Room GeometryCache::make_room(std::uint64_t need, Rank rank) {
   observe_memory();
   if (need > limit_bytes_) return Room::kNone;
@@ -147,8 +148,8 @@ void GeometryCache::enforce_budget() {
   if (last_used_bytes_ > allowed) evict(last_used_bytes_ - allowed, nullptr);
 }
 
-// Evicts the worst meshes until `bytes` are on their way back. For a request: all or nothing, and
-// only what it may evict. Without one (a smaller budget): whatever there is.
+// Evicts the worst meshes until `bytes` are returning. For a request: all or nothing, and only
+// meshes that it may evict. Without a request (a smaller budget): any mesh.
 bool GeometryCache::evict(std::uint64_t bytes, const Rank* request) {
   for (std::size_t count = kCandidateBatch;; count *= 4) {
     if (!candidates_valid_) select_candidates(count);
@@ -197,7 +198,7 @@ void GeometryCache::evict_slot(Slot slot) {
   ++stats_.evictions;
   --stats_.ready;
   give_back(r);
-  evictable_[slot] = 0;  // already taken off the candidates, which stay valid
+  evictable_[slot] = 0;  // already removed from the candidates, which stay valid
   free_slot(slot);
 }
 

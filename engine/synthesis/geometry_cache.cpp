@@ -61,19 +61,19 @@ core::Result<models::MeshSize> GeometryCache::size_of(
                       fmt::format("{} has no level {}, the coarsest is {}", type.name(), key.level,
                                   type.level_count() - 1));
   }
-  try {  // types of users may throw; nothing of ours does
+  try {  // model types of users may throw; the engine's own do not
     const models::MeshSize size = known ? *known : type.mesh_size(parameters, key.level);
     if (size.vertex_count <= kMaxVertices && size.index_count <= kMaxIndices) return size;
     return core::fail(
         ErrorCode::kSynthesisFailed,
-        fmt::format("{} wants {} vertices and {} indices, at most {} and {} are allowed",
-                    type.name(), size.vertex_count, size.index_count, kMaxVertices, kMaxIndices));
+        fmt::format("{} needs {} vertices and {} indices; the limits are {} and {}", type.name(),
+                    size.vertex_count, size.index_count, kMaxVertices, kMaxIndices));
   } catch (const std::exception& e) {
     return core::fail(ErrorCode::kSynthesisFailed,
-                      fmt::format("{} threw while telling its size: {}", type.name(), e.what()));
+                      fmt::format("{} threw in mesh_size(): {}", type.name(), e.what()));
   } catch (...) {
     return core::fail(ErrorCode::kSynthesisFailed,
-                      fmt::format("{} threw while telling its size", type.name()));
+                      fmt::format("{} threw in mesh_size()", type.name()));
   }
 }
 
@@ -91,7 +91,8 @@ core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
     return tl::unexpected<core::Error>(size.error());
   }
   const std::uint64_t hash = hash_of(key);
-  if (hash == promised_to_) waiting_bytes_ -= std::exchange(promised_bytes_, 0);  // it asks again
+  // A repeated request.
+  if (hash == promised_to_) waiting_bytes_ -= std::exchange(promised_bytes_, 0);
   const std::uint64_t waiting = waiting_bytes_;
   const core::Result<core::GeometryReservation> place = reserve_memory(*size, rank);
   if (waiting_bytes_ > waiting) {
@@ -259,7 +260,7 @@ void GeometryCache::free_slot(Slot slot) {
   r.generation = generation + 1;
   if (evictable_[slot] != 0) candidates_valid_ = false;
   evictable_[slot] = 0;
-  if (r.generation != UINT32_MAX) free_slots_.push_back(slot);  // an exhausted slot retires
+  if (r.generation != UINT32_MAX) free_slots_.push_back(slot);  // an exhausted slot is never reused
 }
 
 std::span<const Eviction> GeometryCache::take_evictions() {

@@ -1,10 +1,11 @@
-// The cache: owner of every mesh and of the one hard byte budget (paper, section 5.1: Cache). Space
-// is reserved before synthesis, to the byte, so that resident meshes, reservations in flight and
+// The geometry cache: owner of every mesh and of the hard byte budget (paper, section 5.1: Cache).
+// It reserves memory before synthesis, to the byte. Resident meshes, reservations in flight and
 // ranges that the GPU still reads never exceed the budget together. Under pressure it evicts the
-// worst rank first, and refuses rather than let two meshes evict each other without end (rank.hpp).
+// worst rank first, and rejects requests rather than let two meshes evict each other without end
+// (rank.hpp).
 //
-// Main thread only; modelers see nothing but the destination of a reservation. Not a scheduler
-// (planner.hpp) and not an allocator (core::GeometryMemory). Look-ups O(1); evicting costs one
+// Main thread only; modelers see only the destination of a reservation. Not a scheduler
+// (planner.hpp) and not an allocator (core::GeometryMemory). Lookups are O(1). Eviction costs one
 // selection over all ready meshes per batch of requests, not a heap operation per mesh.
 #pragma once
 
@@ -27,54 +28,54 @@
 
 namespace psygen::synthesis {
 
-// All that the cache knows of one mesh.
+// Everything that the cache stores about one mesh.
 struct MeshRecord {
   MeshKey key;
   models::MeshSize size;
-  core::GeometryRange range;     // where to draw it from; index_count 0 where indices are shared
-  models::MeshView destination;  // what the modeler writes; only while requested
-  core::Bounds tight;            // of the vertices written; only when ready
-  std::any note;                 // what its modeler noted of it; only when ready, not in the budget
-  std::uint64_t owner = 0;       // the caller's name for the one that asked, e.g. an entity
+  core::GeometryRange range;     // draw range; index_count is 0 for shared indices
+  models::MeshView destination;  // written by the modeler; only while requested
+  core::Bounds tight;            // of the written vertices; only when ready
+  std::any note;                 // value of its Annotate; only when ready, not in the budget
+  std::uint64_t owner = 0;       // the caller's id of the requester, such as an entity
   Rank rank;
   std::uint32_t generation = 0;
   MeshState state = MeshState::kEmpty;
-  bool prefetched = false;     // became ready while invisible and has not been seen yet
-  bool released = false;       // given up by its owner while a modeler writes it
-  bool still_writing = false;  // failed, but a hung modeler holds the destination
+  bool prefetched = false;     // became ready while invisible and has not been visible yet
+  bool released = false;       // released by its owner while a modeler writes it
+  bool still_writing = false;  // failed, but a hung modeler may still write the destination
 };
 
-// A mesh that was taken to make room.
+// A mesh that was evicted.
 struct Eviction {
   std::uint64_t owner = 0;
   MeshKey key;
-  MeshHandle handle;  // stale by now
+  MeshHandle handle;  // already stale
 };
 
-// Figures of the cache: of now, and counts since it was made.
+// Statistics of the cache: current values, and counts since its creation.
 struct CacheStats {
   std::uint64_t budget_bytes = 0;
-  std::uint64_t capacity_bytes = 0;  // of the memory: below the budget where the system has no more
-  std::uint64_t limit_bytes = 0;     // the budget, or less for a while after memory ran out
-  std::uint64_t bytes = 0;           // used now, everything counted
-  std::uint64_t visible_bytes = 0;   // of meshes whose rank is that of something visible
+  std::uint64_t capacity_bytes = 0;  // of the memory: below the budget if the system has less
+  std::uint64_t limit_bytes = 0;     // the budget, or temporarily less after memory ran out
+  std::uint64_t bytes = 0;           // currently used, including reservations and returning ranges
+  std::uint64_t visible_bytes = 0;   // of meshes with a visible rank
   std::uint64_t unwanted_bytes = 0;  // of ready meshes that are unwanted
   std::uint64_t peak_bytes = 0;
   std::uint64_t hits = 0, misses = 0;  // of look_up()
   std::uint64_t evictions = 0;
-  std::uint64_t regenerations = 0;    // reservations of meshes evicted before (see EvictedKeys)
+  std::uint64_t regenerations = 0;    // reservations of keys evicted before (see EvictedKeys)
   std::uint64_t prefetched = 0;       // meshes that became ready before they were visible
-  std::uint64_t prefetch_hits = 0;    // those of them that became visible afterwards
+  std::uint64_t prefetch_hits = 0;    // prefetched meshes that became visible later
   std::uint64_t triangles = 0;        // of all meshes that became ready
-  std::uint64_t triangles_drawn = 0;  // of those of them that were ever drawn
-  std::uint64_t refusals = 0;         // reservations refused because of the budget
-  std::uint64_t out_of_memory = 0;    // reservations that the memory itself refused
+  std::uint64_t triangles_drawn = 0;  // of those meshes that were ever drawn
+  std::uint64_t refusals = 0;         // reservations rejected because of the budget
+  std::uint64_t out_of_memory = 0;    // reservations that failed in the memory itself
   std::uint64_t failures = 0;
   std::uint32_t ready = 0, requested = 0, failed = 0;  // meshes now
 };
 
-// Remembers which keys were evicted, in constant space: a direct-mapped table of 2^16 fingerprints.
-// Forgets on collision, so that regenerations are under-counted rather than over-counted.
+// Remembers evicted keys in constant space: a direct-mapped table of 2^16 fingerprints. Forgets on
+// collision, so regenerations are under-counted, never over-counted.
 class EvictedKeys {
  public:
   EvictedKeys() : table_(kSize) {}
@@ -101,65 +102,66 @@ class GeometryCache {
   // `memory` and `registry` outlive the cache.
   GeometryCache(core::GeometryMemory& memory, const models::Registry& registry,
                 std::uint64_t budget_bytes);
-  // Gives every range back; requires that no modeler runs, except hung ones whose range is kept.
+  // Releases every range. Requires that no modeler runs, except hung ones, whose ranges stay
+  // reserved.
   ~GeometryCache();
   GeometryCache(const GeometryCache&) = delete;
   GeometryCache& operator=(const GeometryCache&) = delete;
 
-  // The mesh with this key, requested, ready or failed; kNoMesh if it is empty.
+  // Handle of the mesh with this key if it is requested, ready or failed; else kNoMesh.
   MeshHandle find(const MeshKey& key) const;
-  // find(), counted: a hit if it is ready, else a miss.
+  // Like find(), and counts a hit if the mesh is ready, else a miss.
   MeshHandle look_up(const MeshKey& key);
-  // Its record, or nullptr if the handle is stale. Valid until the next reserve().
+  // Record of the mesh, or nullptr if the handle is stale. Valid until the next reserve().
   const MeshRecord* get(MeshHandle handle) const;
-  // Why a failed mesh failed; empty if it did not.
+  // Reason why a mesh failed; empty if it has not failed.
   std::string_view failure_reason(MeshHandle handle) const;
-  // All slots; those whose state is kEmpty are free. For statistics and debug views.
+  // All slots; those in state kEmpty are free. For statistics and debug views.
   std::span<const MeshRecord> records() const { return records_; }
   const models::Registry& registry() const { return registry_; }
 
-  // Starts a batch of reservations (a tick): enforces the budget, forgets who waits for room, and
-  // keeps a little room free for this batch and the next ones, as long as there are unwanted
-  // meshes. Memory that is freed only when it is needed comes back some frames later.
+  // Starts a batch of reservations (a tick): enforces the budget, forgets requests that wait for
+  // memory, and frees some memory ahead of need while there are unwanted meshes. Memory freed only
+  // on demand returns some frames later.
   void begin_batch();
 
-  // Room for the mesh `key`, exactly as large as its type says, evicting ready meshes that
-  // may_evict() allows. Returns the mesh there is if it is requested or ready already. Errors:
-  //   kOverBudget       no room: nothing worse to evict
-  //   kNotYet           the GPU still reads what was evicted for it
-  //   kOutOfMemory      the memory refused although the budget had room; the limit is lowered
-  //   kSynthesisFailed  this key failed before (the reason is in the message), or its size cannot
-  //                     be had; not retried while it is remembered (kMaxFailures)
-  // `size`: what the type says, where the caller has asked already.
+  // Reserves memory for the mesh `key`, exactly as large as its type says, and evicts ready meshes
+  // that may_evict() allows. Returns the existing mesh if it is requested or ready. Errors:
+  // kOverBudget       no memory: nothing worse to evict
+  // kNotYet           the GPU still reads the meshes evicted for this one
+  // kOutOfMemory      the allocation failed within the budget; the limit is lowered
+  // kSynthesisFailed  this key failed before (the message has the reason), or its size is
+  // unknown; not retried while it is remembered (kMaxFailures)
+  // `size`: the size by the type, if the caller knows it.
   core::Result<MeshHandle> reserve(const MeshKey& key, const models::Parameters& parameters,
                                    std::uint64_t owner, Rank rank,
                                    const std::optional<models::MeshSize>& size = {});
 
-  // The destination is written: the mesh is ready (or gone, if it was released meanwhile). The note
-  // stays as long as the mesh.
+  // The modeler has written the destination: the mesh becomes ready, or is freed if it was
+  // released. The note lives as long as the mesh.
   void complete(MeshHandle handle, const core::Bounds& tight, std::any note = {});
-  // Synthesis failed; the key is remembered with its reason. With `still_writing` the destination
-  // is kept until settle(), because a hung modeler may write to it yet.
+  // Synthesis failed; the key is remembered with its reason. With `still_writing`, the destination
+  // stays reserved until settle(), because a hung modeler may still write to it.
   void fail(MeshHandle handle, std::string reason, bool still_writing = false);
   void settle(MeshHandle handle);
-  // Gives back a reservation that no modeler claimed.
+  // Releases a reservation that no modeler has claimed.
   void cancel(MeshHandle handle);
-  // The mesh is no longer needed: a ready one goes at once, a requested one as soon as its
-  // modeler is done. Failed ones stay remembered.
+  // The mesh is no longer needed. A ready one is freed at once, a requested one after its modeler
+  // finishes. Failed ones stay remembered.
   void release(MeshHandle handle);
 
-  // Stale handles are ignored by all of these and by the four above.
+  // These functions and the four above ignore stale handles.
   void set_rank(MeshHandle handle, Rank rank);
-  // These meshes are drawn now. For the statistics: a mesh counts once.
+  // Records that these meshes are drawn. Statistics count each mesh once.
   void note_drawn(std::span<const MeshHandle> handles);
-  // Somebody (else) wants a mesh that is there: takes over its owner and rank, undoes a release.
+  // Another owner wants an existing mesh: replaces its owner and rank, and cancels a release.
   void adopt(MeshHandle handle, std::uint64_t owner, Rank rank);
 
-  // What was evicted since the last call, in order. Valid until the next call.
+  // Evictions since the last call, in order. Valid until the next call.
   std::span<const Eviction> take_evictions();
 
-  // A smaller budget evicts the worst at once, even what is visible; reservations in flight and
-  // ranges that the GPU reads are waited for without blocking, over the next batches.
+  // A smaller budget evicts the worst meshes at once, even visible ones. Reservations in flight and
+  // ranges that the GPU reads are freed over the next batches, without blocking.
   void set_budget(std::uint64_t bytes);
   std::uint64_t budget_bytes() const { return budget_bytes_; }
   CacheStats stats() const;
@@ -195,10 +197,10 @@ class GeometryCache {
   std::uint64_t budget_bytes_;
   std::uint64_t limit_bytes_;
   std::uint64_t last_used_bytes_ = 0;
-  std::uint64_t returning_bytes_ = 0;  // released, but the memory still reports them as used
-  std::uint64_t waiting_bytes_ = 0;    // promised in this batch to requests that must wait for them
+  std::uint64_t returning_bytes_ = 0;  // released, but still reported as used by the memory
+  std::uint64_t waiting_bytes_ = 0;    // promised in this batch to requests that wait for them
   std::uint64_t promised_to_ = 0, promised_bytes_ = 0;  // the last promise: hash of the key, bytes
-  Room pieces_ = Room::kNow;  // what make_pieces() found in this batch; kNow: not asked
+  Room pieces_ = Room::kNow;  // result of make_pieces() in this batch; kNow: not called
 
   std::vector<MeshRecord> records_;
   std::vector<std::uint8_t> drawn_;       // per slot: 1 once it was drawn

@@ -15,7 +15,7 @@ namespace psygen::synthesis {
 class KeyIndex {
  public:
   KeyIndex() : entries_(64) {}
-  // How many keys are there.
+  // Number of keys.
   std::size_t size() const { return size_; }
 
   // The slot with this hash for which same_key(slot) holds, or kNoSlot.
@@ -28,14 +28,14 @@ class KeyIndex {
     }
   }
 
-  // Requires that the key is not there.
+  // Requires that the key is absent.
   void insert(std::uint64_t hash, Slot slot) {
     if ((size_ + 1) * 5 > entries_.size() * 3) grow();
     place({hash, slot});
     ++size_;
   }
 
-  // Requires that (hash, slot) is there.
+  // Requires that (hash, slot) is present.
   void erase(std::uint64_t hash, Slot slot) {
     std::size_t hole = hash & mask();
     while (entries_[hole].slot != slot || entries_[hole].hash != hash)

@@ -18,7 +18,7 @@ LandingReport land(std::span<Completion> completions, GeometryCache& cache, Cost
         cost->observe(c.key.model, c.key.level, c.work, c.warmth, c.predicted_seconds, c.seconds);
       }
       cache.complete(c.handle, c.tight, std::move(c.note));
-      const MeshRecord* record = cache.get(c.handle);  // may be evicted or released already
+      const MeshRecord* record = cache.get(c.handle);  // may be evicted or released by now
       if (record == nullptr || record->state != MeshState::kReady) continue;
       ++report.ready;
       report.bytes += record->range.bytes;

@@ -1,4 +1,4 @@
-// What modelers need to make a mesh, here or from bytes that came. Not for others.
+// Helpers shared by local and remote modelers. Private to this folder.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,24 +13,24 @@
 
 namespace psygen::synthesis {
 
-// Calls what notes something of a mesh. Whatever it throws fails the request.
+// Calls a function that annotates a mesh. An exception fails the request.
 template <class Work>
 void noting(Completion& c, const Work& work) {
   try {
     work();
   } catch (const std::bad_alloc&) {
     c.ok = false;
-    c.error = core::out_of_memory("what is noted of a mesh");
+    c.error = core::out_of_memory("the annotation of a mesh");
   } catch (const std::exception& e) {
     c.ok = false;
-    c.error = fmt::format("nothing could be noted of a mesh: {}", e.what());
+    c.error = fmt::format("the annotation of a mesh failed: {}", e.what());
   } catch (...) {
     c.ok = false;
-    c.error = "nothing could be noted of a mesh";
+    c.error = "the annotation of a mesh failed";
   }
 }
 
-// What is noted of meshes of a type; null: nothing.
+// Annotation function for meshes of a type; null if there is none.
 inline const Annotate* annotate_of(const Workshop& workshop, models::ModelIndex model) {
   const std::vector<Annotate>& all = workshop.annotate;
   return model < all.size() && all[model] ? &all[model] : nullptr;

@@ -1,4 +1,4 @@
-// The figures of the manager and of its modelers.
+// Statistics of the manager and of its modelers.
 #include <algorithm>
 
 #include "engine/synthesis/synthesis_manager.hpp"

@@ -1,6 +1,6 @@
-// What names a mesh (MeshKey) and what names its place in the cache (MeshHandle). Values only.
-// A key says which mesh of the world is meant; two equal keys give the same bits of geometry.
-// A handle says where the cache keeps it; stale handles are recognised by their generation.
+// Names of a mesh (MeshKey) and of its slot in the cache (MeshHandle). Values only. A key
+// identifies a mesh of the world; equal keys give the same bits of geometry. A handle identifies a
+// slot of the cache; its generation detects stale handles.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ namespace psygen::synthesis {
 // Names a mesh of the world.
 struct MeshKey {
   core::BlockCoord block;
-  std::uint32_t index = 0;            // which model of the block; 0 is usually its terrain
+  std::uint32_t index = 0;            // model of the block; 0 is usually its terrain
   models::ModelIndex model = 0;       // type, in the registry's order
-  std::uint16_t level = 0;            // of detail, 0 is full
-  std::uint64_t parameters_hash = 0;  // models::Parameters::hash(): an edit makes another key
-  bool spare = false;                 // the same mesh once more, see spare_of()
+  std::uint16_t level = 0;            // LOD, 0 is full detail
+  std::uint64_t parameters_hash = 0;  // models::Parameters::hash(): an edit gives another key
+  bool spare = false;                 // a second copy of the mesh, see spare_of()
   friend bool operator==(const MeshKey&, const MeshKey&) = default;
 };
 
@@ -34,22 +34,22 @@ constexpr std::uint64_t hash_of(const MeshKey& key) {
   return key.spare ? core::combine(hash, 0x5BA2E) : hash;
 }
 
-// A second name of the same mesh, for when a modeler holds the first and must not be waited for.
+// Key of a duplicate of a mesh, for when a modeler holds the first and waiting for it is too slow.
 constexpr MeshKey spare_of(MeshKey key) {
   key.spare = true;
   return key;
 }
 
-// empty → requested → ready, or failed. A key that the cache does not know is empty.
+// empty → requested → ready or failed. A key unknown to the cache is empty.
 enum class MeshState : std::uint8_t { kEmpty, kRequested, kReady, kFailed };
 // "empty", "requested", "ready", "failed".
 std::string_view name_of(MeshState state);
 
-// A place in the cache.
+// Index of a slot in the cache.
 using Slot = std::uint32_t;
 inline constexpr Slot kNoSlot = UINT32_MAX;
 
-// Names a place in the cache and its tenant. Null by default.
+// Identifies a slot of the cache and the mesh in it. Null by default.
 struct MeshHandle {
   Slot slot = kNoSlot;
   std::uint32_t generation = 0;
@@ -61,7 +61,7 @@ inline constexpr MeshHandle kNoMesh{};
 
 }  // namespace psygen::synthesis
 
-// For std::unordered_map and its like.
+// For std::unordered_map and other hash containers.
 template <>
 struct std::hash<psygen::synthesis::MeshKey> {
   std::size_t operator()(const psygen::synthesis::MeshKey& key) const noexcept {

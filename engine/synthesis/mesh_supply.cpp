@@ -9,7 +9,7 @@ namespace psygen::synthesis {
 
 void MeshSupply::open(const models::Registry& registry, core::GeometryMemory& memory,
                       std::uint64_t budget_bytes) {
-  PSYGEN_CHECK(cache_ == nullptr, "a mesh supply is opened once");
+  PSYGEN_CHECK(cache_ == nullptr, "open() may be called only once");
   cache_ = std::make_unique<GeometryCache>(memory, registry, budget_bytes);
   cost_ = std::make_unique<CostModel>(registry);
 }

@@ -29,7 +29,7 @@ void Modeler::run(Workshop& workshop) {
     if (is_remote() && !place_.modelers->is_usable(place_.number)) break;
     const std::uint32_t epoch = epoch_of(workshop);
     const bool claimed = claim(workshop);
-    // The thread of a remote one hardly computes.
+    // A remote modeler's thread uses hardly any processor time.
     if (!lowered && !is_remote() && workshop.lowest_priority.load(std::memory_order_relaxed)) {
       lower_priority_of_this_thread();
       lowered = true;
@@ -78,8 +78,8 @@ bool Modeler::write_mesh(const models::ModelType& type, const models::MeshView& 
   return c.ok;
 }
 
-// Writes the mesh and what is noted of it. It is read where it is cached: destinations may
-// be slow to read, and a copy costs no more than writing in place.
+// Writes the mesh and its annotation. Synthesises into cached memory and annotates there, because
+// destinations may be slow to read; a copy costs no more than writing in place.
 void Modeler::write_noted_mesh(const models::ModelType& type, const Annotate& annotate,
                                Completion& c) {
   noting(c, [&] {
@@ -95,8 +95,8 @@ models::MeshView Modeler::scratch() {
   return models::mesh_view(scratch_.data(), current_.size);
 }
 
-// How warm the caches are for this request. After a pause, in sleep or without a processor, they
-// hold other data.
+// Returns the warmth of the caches for this request. A pause, asleep or without a processor, fills
+// them with other data.
 Warmth Modeler::warmth_at(double now_s) {
   constexpr double kForgotten_s = 100e-6;
   if (now_s - finished_s_ > kForgotten_s) warm_.clear();
@@ -116,7 +116,7 @@ bool Modeler::execute(Workshop& workshop) {
   c.started_s = workshop.clock();
   c.warmth = warmth_at(c.started_s);
   c.predicted_seconds = current_.cost.of(c.warmth);
-  // Looked up first: once the request can be given up, the types may change.
+  // Look up the type first: once the request can be abandoned, the types may change.
   const models::ModelIndex model = current_.key.model;
   const models::ModelType& type = (*workshop.registry)[model];
   const Annotate* annotate = annotate_of(workshop, model);
@@ -137,7 +137,7 @@ bool Modeler::execute(Workshop& workshop) {
     c.ok = false;
     c.late = true;
     c.note.reset();
-    c.error = "given up before it was done";
+    c.error = "abandoned before it was finished";
     queue_.push(std::move(c));
     return false;
   }
@@ -151,7 +151,7 @@ void Modeler::finish(Completion&& c) {
   finished_.store(finished_.load(std::memory_order_relaxed) + 1, std::memory_order_seq_cst);
 }
 
-// The last modeler to finish finds nothing more to claim: that is when all may be done.
+// The last modeler to finish claims nothing more; at that point all requests may be done.
 void Modeler::wake_waiting(Workshop& workshop) {
   if (!workshop.waiting.load(std::memory_order_seq_cst)) return;
   add(counters_.locks, std::uint64_t{1});
@@ -181,7 +181,7 @@ bool Modeler::give_up_if_older(double limit_s, double now_s, Completion& out) {
   if ((state & kPhaseMask) != kWorking) return false;
   const double started_s = started_s_.load(std::memory_order_relaxed);
   if (started_s >= limit_s) return false;
-  // Fails if the request ended meanwhile, even if another one runs by now: the serial differs.
+  // Fails if the request has ended, even if another one runs by now: the serial number differs.
   if (!state_.compare_exchange_strong(state, (state & ~std::uint64_t{kPhaseMask}) | kGivenUp,
                                       std::memory_order_acq_rel)) {
     return false;
@@ -191,8 +191,8 @@ bool Modeler::give_up_if_older(double limit_s, double now_s, Completion& out) {
   out.started_s = started_s;
   out.finished_s = now_s;
   out.remote = is_remote();
-  out.error = fmt::format("level {} was given up after {:.1f} s without an end", out.key.level,
-                          now_s - started_s);
+  out.error =
+      fmt::format("level {} was abandoned after {:.1f} s", out.key.level, now_s - started_s);
   return true;
 }
 

@@ -15,7 +15,7 @@ void PlanBoard::remove_reader(const std::shared_ptr<Reader>& reader) {
   std::erase(readers_, reader);
 }
 
-// A plan without readers, to reuse its memory, or a new one.
+// Returns a plan without readers, to reuse its memory, or a new one.
 std::unique_ptr<PlanBoard::Plan> PlanBoard::take_plan() {
   for (auto& plan : plans_) {
     const bool read = std::any_of(readers_.begin(), readers_.end(), [&](const auto& reader) {
@@ -30,7 +30,8 @@ std::unique_ptr<PlanBoard::Plan> PlanBoard::take_plan() {
 }
 
 void PlanBoard::publish(std::vector<Request>&& requests, std::vector<std::uint32_t>&& offered) {
-  PSYGEN_CHECK(current_.load(std::memory_order_relaxed) == nullptr, "the last plan is not closed");
+  PSYGEN_CHECK(current_.load(std::memory_order_relaxed) == nullptr,
+               "the previous plan is not closed");
   if (requests.empty()) return;
   std::unique_ptr<Plan> plan = take_plan();
   plan->requests = std::move(requests);
@@ -45,7 +46,7 @@ void PlanBoard::publish(std::vector<Request>&& requests, std::vector<std::uint32
   if (offers) wake_remote();
 }
 
-// Every request is taken in the end: by a modeler, or here.
+// Takes every remaining request, so that each request is taken exactly once: by a modeler, or here.
 std::size_t PlanBoard::close(std::vector<Request>& unclaimed) {
   Plan* plan = current_.load(std::memory_order_relaxed);
   if (plan == nullptr) return 0;
@@ -60,7 +61,8 @@ std::size_t PlanBoard::close(std::vector<Request>& unclaimed) {
   return plan->requests.size() - (unclaimed.size() - before);
 }
 
-// The newest plan, which is not reused while the reader names it; null where there is none.
+// Returns the newest plan and protects it from reuse while the reader names it; null if there is
+// none.
 PlanBoard::Plan* PlanBoard::hold_newest(Reader& reader, std::uint64_t& retries) const {
   Plan* plan = current_.load(std::memory_order_seq_cst);
   for (;;) {
@@ -75,7 +77,7 @@ PlanBoard::Plan* PlanBoard::hold_newest(Reader& reader, std::uint64_t& retries) 
 bool PlanBoard::claim(Reader& reader, Request& out, std::uint64_t& retries) {
   Plan* plan = hold_newest(reader, retries);
   bool claimed = false;
-  // Looking first keeps idle modelers from moving the cursor of an exhausted plan.
+  // Checking first keeps idle modelers from advancing the cursor of an exhausted plan.
   while (!claimed && plan != nullptr &&
          plan->cursor.load(std::memory_order_relaxed) < plan->requests.size()) {
     const std::uint64_t i = plan->cursor.fetch_add(1, std::memory_order_acq_rel);

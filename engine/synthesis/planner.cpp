@@ -8,7 +8,7 @@
 
 namespace psygen::synthesis {
 
-// Where the unclaimed request of this mesh is in reclaimed_, or kNone.
+// Position of the unclaimed request of this mesh in reclaimed_, or kNone.
 std::uint32_t Planner::reclaimed_position(MeshHandle handle) const {
   const auto it = std::lower_bound(
       by_slot_.begin(), by_slot_.end(), handle.slot,
@@ -16,7 +16,7 @@ std::uint32_t Planner::reclaimed_position(MeshHandle handle) const {
   return it != by_slot_.end() && reclaimed_[*it].handle == handle ? *it : kNone;
 }
 
-// Keeps the `count` of new_[first …] that would be served first.
+// Keeps the `count` of new_[first …] that are served first.
 void Planner::keep_first(std::size_t first, std::size_t count, Policy policy, PlanReport& report) {
   if (new_.size() - first <= count) return;
   const auto begin = new_.begin() + static_cast<std::ptrdiff_t>(first);
@@ -29,7 +29,8 @@ void Planner::keep_first(std::size_t first, std::size_t count, Policy policy, Pl
 }
 
 void Planner::leave_for_later(const PlanLimits& limits, Policy policy, PlanReport& report) {
-  if (policy == Policy::kShortest || policy == Policy::kLongest) return;  // led by time
+  // Served by predicted time, not by rank.
+  if (policy == Policy::kShortest || policy == Policy::kLongest) return;
   const auto hidden = std::partition(new_.begin(), new_.end(), [](const Item& item) {
     return is_visible(item.order.rank.group());
   });
@@ -45,15 +46,15 @@ void Planner::note_arrived(const SynthesisManager& manager) {
   std::ranges::sort(arrived_);
 }
 
-// Whether a modeler has claimed what is urgent and has not come back with it. It may hold it for
-// long, because modelers get only what others leave of the processors: then this thread makes the
-// mesh once more.
+// Returns true if a modeler has claimed an urgent mesh and not finished it. Modelers get only the
+// processor time that other threads leave, so it may take long; this thread then makes a duplicate.
 bool Planner::is_held_up(const Want& want, MeshHandle handle, const GeometryCache& cache) const {
   return handle && is_urgent(want, cache) && cache.get(handle)->state == MeshState::kRequested &&
          reclaimed_position(handle) == kNone && !std::ranges::binary_search(arrived_, handle.slot);
 }
 
-// Fills items_ with the wants that need a request, in serving order, and marks what is kept.
+// Fills items_ with the wants that need a request, in serving order, and marks reservations to
+// keep.
 void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
                        const PlanLimits& limits, Policy policy, PlanReport& report) {
   by_slot_.resize(reclaimed_.size());
@@ -66,8 +67,8 @@ void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const 
   new_.clear();
   for (std::uint32_t i = 0; i < wants.size(); ++i) {
     const Want& want = wants[i];
-    PSYGEN_ASSERT(want.parameters != nullptr, "a want needs parameters");
-    // First come, first served: what was requested before comes before what is new.
+    PSYGEN_ASSERT(want.parameters != nullptr, "a wanted mesh needs parameters");
+    // First come, first served: earlier requests precede new ones.
     Item item{{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, want.key, {}, {}, {}};
     MeshHandle handle = cache.find(item.key);
     if (is_held_up(want, handle, cache)) {
@@ -123,12 +124,12 @@ void Planner::give_back_unwanted(GeometryCache& cache, PlanReport& report) {
   }
 }
 
-// Gives back the reservation that would be served last, to make room for a better one.
+// Releases the reservation that is served last, to make memory for a better one.
 bool Planner::give_back_last(GeometryCache& cache, PlanReport& report) {
   while (!last_first_.empty()) {
     const std::uint32_t position = last_first_.back();
     last_first_.pop_back();
-    if (!kept_[position]) continue;  // carried into the plan already, or named by two wants
+    if (!kept_[position]) continue;  // already carried into the plan, or named by two wants
     kept_[position] = false;
     cache.cancel(reclaimed_[position].handle);
     ++report.cancelled;
@@ -137,17 +138,18 @@ bool Planner::give_back_last(GeometryCache& cache, PlanReport& report) {
   return false;
 }
 
-// What a request of these parameters must keep alive.
+// Returns the edit layer that a request with these parameters must keep alive.
 std::shared_ptr<const models::EditLayer> Planner::edits_for(
     const models::Parameters& parameters) const {
   if (parameters.edits() == nullptr) return nullptr;
-  PSYGEN_CHECK(parameters.edits() == edits_.get(), "wants refer to the edits that were set last");
+  PSYGEN_CHECK(parameters.edits() == edits_.get(),
+               "wanted meshes must use the edit layer set last");
   return edits_;
 }
 
 void Planner::add(const Item& item, const Want& want, GeometryCache& cache, PlanReport& report) {
   if (item.reclaimed != kNone && kept_[item.reclaimed]) {
-    kept_[item.reclaimed] = false;  // from now on it is the plan's
+    kept_[item.reclaimed] = false;  // the plan owns it now
     Request& request = reclaimed_[item.reclaimed];
     request.owner = want.owner;
     request.cost = item.cost;
@@ -157,10 +159,10 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
     report.predicted_seconds += item.order.predicted_seconds;
     return;
   }
-  if (cache.find(item.key)) return;  // a second want of the same mesh
+  if (cache.find(item.key)) return;  // a second want of this mesh
   auto handle = cache.reserve(item.key, *want.parameters, want.owner, want.rank, item.size);
   const bool hole = want.rank.group() == RankGroup::kVisibleHole;
-  const auto gives_way = [&] {  // a reservation's room is free at once
+  const auto gives_way = [&] {  // the memory of a reservation is free at once
     return handle.error().code == core::ErrorCode::kOverBudget ||
            (hole && handle.error().code == core::ErrorCode::kNotYet);
   };
@@ -186,11 +188,10 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
   report.predicted_seconds += item.order.predicted_seconds;
 }
 
-// Executes what is urgent until the time is over; the others keep their places in the plan. A model
-// that is predicted to take longer than the time that is left is never started here, unless it is
-// wanted at once. What counts is
-// the prediction: memory that is touched for the first time can take as long as a hundred models,
-// and must not leave the next of them undone.
+// Executes urgent requests until the time is used up; the others keep their places in the plan. A
+// model predicted to exceed the remaining time is not started here, unless it is wanted at once.
+// Only the prediction counts: first access to memory can take as long as a hundred models, and must
+// not leave the next ones undone.
 void Planner::execute_here(SynthesisManager& manager, double seconds, PlanReport& report) {
   double left_s = seconds;
   for (const Here& here : here_) {
@@ -221,7 +222,7 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
   here_.clear();
   waiting_seconds_ = 0;
   const double enough = limits.seconds_ahead * std::max(manager.modeler_count(), 1u);
-  // Of what remote modelers may make they have enough by themselves.
+  // Remote modelers limit their own share of the plan.
   const unsigned remote = manager.remote_count();
   const double enough_remote = remote > 0 ? limits.seconds_ahead * remote : 0;
   double offered_seconds = 0;

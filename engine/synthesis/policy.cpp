@@ -12,7 +12,7 @@ constexpr std::array<std::pair<Policy, std::string_view>, 5> kNames{
      {Policy::kLongest, "longest"},
      {Policy::kDeadline, "deadline"}}};
 
-// Falls through to the next criterion when two values are equal.
+// Compares two values; equal values fall through to the next criterion.
 template <class T>
 int compare(const T& a, const T& b) {
   return a < b ? -1 : (b < a ? 1 : 0);

@@ -1,11 +1,11 @@
-// How important a mesh is now, as one integer that sorts: smaller is more important. Ordered by
-// group, then by an integer of the group (PLP layer, or deadline), then by distance. The cache
-// evicts the largest rank first; the planner requests the smallest first.
+// The importance of a mesh as one integer; smaller is more important. Ordered by group, then by an
+// integer of the group (PLP layer, or deadline), then by distance. The cache evicts the largest
+// rank first; the planner requests the smallest first.
 //
-// Two laws make eviction safe. What is visible is taken only when nothing invisible is left,
-// because the visible groups come first. And a request takes only what may_evict() allows: what is
-// strictly worse, or what is drawn finer than it need be and can come back smaller. So evictions in
-// turn end, and unwanted detail never holds memory.
+// Two rules make eviction safe. A visible mesh is evicted only when no invisible one is left,
+// because the visible groups come first. A request evicts only meshes that may_evict() allows:
+// strictly worse ones, or meshes drawn finer than necessary, which can return smaller. So mutual
+// eviction ends, and unnecessary detail never holds memory.
 #pragma once
 
 #include <algorithm>
@@ -16,17 +16,18 @@
 
 namespace psygen::synthesis {
 
-// What a mesh or a request is for, most important first.
+// Purpose of a mesh or a request, most important first.
 enum class RankGroup : std::uint8_t {
-  kVisibleHole = 0,    // in view, drawn at no level
-  kVisibleFine = 1,    // in view, drawn finer than wanted; of a request: what frees that room
-  kVisibleCoarse = 2,  // in view, drawn, but not by the mesh that is wanted
-  kDrawn = 3,          // in view and drawn now; of a request: the same anew
-  kPredicted = 4,      // will be in view, by deadline
+  kVisibleHole = 0,  // in view, not drawn at any level
+  // In view, drawn finer than wanted; a request of this group replaces it with a smaller mesh.
+  kVisibleFine = 1,    //
+  kVisibleCoarse = 2,  // in view and drawn, but not by the wanted mesh
+  kDrawn = 3,          // in view and drawn; a request of this group makes the mesh again
+  kPredicted = 4,      // in view soon, by deadline
   kPrefetch = 5,       // around the camera, by PLP layer
-  kUnwanted = 6,       // not asked for; kept while there is room
+  kUnwanted = 6,       // not requested; kept while memory is free
 };
-// Whether it is of something in view.
+// Returns true if the group is in view.
 constexpr bool is_visible(RankGroup group) {
   return group <= RankGroup::kDrawn;
 }
@@ -44,31 +45,30 @@ class Rank {
       : bits_((std::uint64_t{static_cast<std::uint8_t>(group)} << 56) |
               (std::uint64_t{std::min(major, kMaxMajor)} << 32) | ordered(distance_m)) {}
 
-  // In view or prefetched: by PLP layer, then distance. What is in view has at most 16 bits of
-  // layer.
+  // In view or prefetched: by PLP layer, then distance. A layer in view is limited to 16 bits.
   static Rank by_layer(RankGroup group, std::uint32_t layer, float distance_m) {
     return {group, is_visible(group) ? std::min(layer, kMaxLayer) : layer, distance_m};
   }
-  // In view and drawn at no level: by `turn` (small is urgent, up to 255), then as by_layer().
+  // In view and not drawn: by `turn` (smaller is more urgent, up to 255), then as by_layer().
   static Rank hole(std::uint32_t turn, std::uint32_t layer, float distance_m) {
     return {RankGroup::kVisibleHole,
             (std::min(turn, 255u) << kLayerBits) | std::min(layer, kMaxLayer), distance_m};
   }
-  // Predicted visible in `deadline_s` seconds (0 … about 4 hours, kept in milliseconds).
+  // In view in `deadline_s` seconds (0 … about 4 hours, stored in milliseconds).
   static Rank by_deadline(float deadline_s, float distance_m) {
     const double ms = std::isnan(deadline_s) ? double{kMaxMajor} : double{deadline_s} * 1000.0;
     return {RankGroup::kPredicted,
             static_cast<std::uint32_t>(std::clamp(ms, 0.0, double{kMaxMajor})), distance_m};
   }
   static constexpr Rank unwanted() { return Rank(); }
-  // The rank of bits() that were written down.
+  // The rank with the given bits().
   static constexpr Rank from_bits(std::uint64_t bits) {
     Rank rank;
     rank.bits_ = bits;
     return rank;
   }
 
-  // The group, and all of it as an integer that sorts alike.
+  // The group, and the whole rank as an integer of the same order.
   constexpr RankGroup group() const { return static_cast<RankGroup>(bits_ >> 56); }
   constexpr std::uint64_t bits() const { return bits_; }
   friend constexpr auto operator<=>(Rank, Rank) = default;
@@ -82,9 +82,8 @@ class Rank {
 };
 static_assert(sizeof(Rank) == 8);
 
-// Where a ready mesh stands in the order of eviction, larger goes first: unwanted meshes are all
-// alike, and all visible groups are one, of which those that are too fine go first; then layer and
-// distance count.
+// Key by which ready meshes are evicted, largest first. Unwanted meshes are equal. All visible
+// groups form one, in which meshes that are too fine go first; then layer and distance count.
 constexpr std::uint64_t eviction_order(Rank rank) {
   if (rank.group() == RankGroup::kUnwanted) return Rank::unwanted().bits();
   if (!is_visible(rank.group())) return rank.bits();
@@ -94,10 +93,10 @@ constexpr std::uint64_t eviction_order(Rank rank) {
          (rank.bits() & kKeyMask);
 }
 
-// Whether a request of rank `request` may take the place of a ready mesh of rank `victim`. An
-// invisible one only if strictly worse. One that is too fine only for a hole, or for what replaces
-// one that is too fine. Another visible one only for a hole that is strictly nearer by layer and
-// distance. Refining what is drawn never costs anything that is visible.
+// Returns true if a request of rank `request` may evict a ready mesh of rank `victim`. An invisible
+// victim must be strictly worse. A victim that is too fine yields to a hole, or to the replacement
+// of a mesh that is too fine. Another visible victim yields only to a hole that is strictly nearer
+// by layer and distance. Refining a drawn mesh never evicts a visible one.
 constexpr bool may_evict(Rank request, Rank victim) {
   if (!is_visible(victim.group())) return victim > request;
   const bool hole = request.group() == RankGroup::kVisibleHole;

@@ -1,4 +1,4 @@
-// What a modeler does whose meshes are made elsewhere.
+// The request loop of a remote modeler.
 #include <mutex>
 #include <utility>
 
@@ -7,13 +7,14 @@
 
 namespace psygen::synthesis {
 
-// The destination is this thread's only once the mesh is here and nobody has given it up.
+// This thread owns the destination only after the mesh has arrived and unless the request was
+// abandoned.
 bool Modeler::execute_there(Workshop& workshop) {
   Completion c = completion_of(current_, number_);
   c.remote = true;
   c.started_s = workshop.clock();
   c.predicted_seconds = current_.cost.warm_s();
-  // Looked up first: once the request can be given up, the types may change.
+  // Look up the type first: once the request can be abandoned, the types may change.
   const models::ModelIndex model = current_.key.model;
   const models::ModelType& type = (*workshop.registry)[model];
   const Annotate* annotate = annotate_of(workshop, model);

@@ -1,7 +1,7 @@
-// Modelers that are no threads of this process, as the manager sees them: places where a mesh can
-// be made, whose bytes then come here. An interface; who the others are, and how requests travel,
-// is for who implements it (engine/cluster/remote_models.hpp). For meshes that take longer than
-// their way. Of one session: its manager cancels them at its end. Outlives it.
+// Interface to modelers outside this process: slots in which a mesh can be made, whose bytes are
+// then sent here. The implementation (engine/cluster/remote_models.hpp) knows the other processes
+// and the transport. For meshes that take longer than their round trip. Serves one session, whose
+// manager cancels the slots at its end. Outlives that session.
 #pragma once
 
 #include <cstdint>
@@ -14,41 +14,41 @@
 
 namespace psygen::synthesis {
 
-// What came back of a request.
+// Result of a remote request.
 struct RemoteMesh {
   enum class Answer : std::uint8_t {
-    kMade,    // the mesh is here
+    kMade,    // the mesh has arrived
     kFailed,  // its type failed, as it would here
-    kNone,    // nothing that can be used: the request goes back
+    kNone,    // nothing usable: the request is returned
   };
   Answer answer = Answer::kNone;
-  std::vector<std::byte> storage;  // of `bytes`
+  std::vector<std::byte> storage;  // holds `bytes`
   std::span<std::byte> bytes;      // if made: vertices, then own indices; sizes as requested
   core::Bounds tight;              // if made
-  double seconds = 0;              // of a core there
+  double seconds = 0;              // of a core on the remote machine
   std::string error;               // if failed: names the model and the level
 
   RemoteMesh() = default;
-  RemoteMesh(RemoteMesh&&) = default;  // a copy's `bytes` would be the original's
+  RemoteMesh(RemoteMesh&&) = default;  // a copy's `bytes` would point into the original
   RemoteMesh& operator=(RemoteMesh&&) = default;
 };
 
-// Calls of different places may come at the same time.
+// Calls for different slots may run concurrently.
 class RemoteModelers {
  public:
   virtual ~RemoteModelers() = default;
-  // The number of places, 0 … count() − 1: each works on one request at a time. Never changes.
+  // Number of slots, 0 … count() − 1; each works on one request at a time. Constant.
   virtual unsigned count() const = 0;
-  // Whether a request may go to any of the places: they know its type, and it is predicted to take
-  // longer than its way there and back. Main thread.
+  // Returns true if any slot may make this request: they know its type, and it is predicted to take
+  // longer than the round trip. Main thread.
   virtual bool takes(const models::ModelType& type, const Request& request) const = 0;
-  // Makes a mesh: blocks until there is an answer or cancel(). The thread of the place.
+  // Makes a mesh; blocks until the answer arrives or cancel() is called. The slot's thread.
   virtual RemoteMesh make(unsigned place, const models::ModelType& type,
                           const Request& request) = 0;
-  // False once nothing more is to be expected of a place. Any thread.
+  // Returns false once a slot can make no more meshes. Any thread.
   virtual bool is_usable(unsigned place) const = 0;
-  // Main thread: the place's make() returns at once, now and later. `stalled`: because there was no
-  // answer; other places may be lost with it.
+  // Main thread: the slot's make() returns at once, now and later. `stalled`: because no answer
+  // came; other slots of the same rank may be lost too.
   virtual void cancel(unsigned place, bool stalled) = 0;
 };
 

@@ -9,7 +9,7 @@
 namespace psygen::synthesis {
 
 SimulationResult simulate(std::span<const SimulatedJob> jobs, unsigned modelers, Policy policy) {
-  PSYGEN_CHECK(modelers >= 1, "a simulation needs a modeler");
+  PSYGEN_CHECK(modelers >= 1, "a simulation needs at least one modeler");
   std::vector<std::size_t> arriving(jobs.size());
   std::iota(arriving.begin(), arriving.end(), std::size_t{0});
   std::stable_sort(arriving.begin(), arriving.end(), [&](std::size_t a, std::size_t b) {
@@ -29,7 +29,7 @@ SimulationResult simulate(std::span<const SimulatedJob> jobs, unsigned modelers,
   double busy_seconds = 0, now = 0;
   for (std::size_t next = 0; next < arriving.size() || !waiting.empty();) {
     const auto modeler = std::min_element(free_at.begin(), free_at.end());
-    // A modeler that has been idle begins now, not when it became free.
+    // A modeler that was idle starts now, not when it became free.
     now = std::max(now, *modeler);
     if (waiting.empty()) now = std::max(now, jobs[arriving[next]].arrival_s);
     while (next < arriving.size() && jobs[arriving[next]].arrival_s <= now)

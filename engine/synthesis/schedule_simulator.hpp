@@ -1,6 +1,6 @@
-// What a policy would do, under a virtual clock: N modelers take the first job of the order
-// whenever they are free. Deterministic to the bit on every machine, no threads, no model is run.
-// For comparing policies on recorded request streams; not used by the tick.
+// Simulates a policy under a virtual clock: each of N modelers takes the first job of the order
+// whenever it is free. Bit-identical on every machine; runs no threads and no models. Compares
+// policies on recorded request streams; not used by the tick.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace psygen::synthesis {
 
 // One request to simulate.
 struct SimulatedJob {
-  double arrival_s = 0;   // before it the job is unknown
-  double seconds = 0;     // what it takes; the prediction is assumed to be right
-  double deadline_s = 0;  // absolute; when it should be finished
+  double arrival_s = 0;   // before it, the job is unknown
+  double seconds = 0;     // duration; the prediction is assumed to be exact
+  double deadline_s = 0;  // absolute time by which it should be finished
   Rank rank;
 };
 
-// When a job ran.
+// Time and modeler of a job.
 struct SimulatedRun {
   double start_s = 0, finish_s = 0;
   std::uint32_t modeler = 0;
@@ -27,8 +27,8 @@ struct SimulatedRun {
 
 // The result of a simulation.
 struct SimulationResult {
-  std::vector<SimulatedRun> runs;  // as the jobs were given
-  double makespan_s = 0;           // when the last one is finished
+  std::vector<SimulatedRun> runs;  // in the order of the jobs
+  double makespan_s = 0;           // end of the last job
   double mean_wait_s = 0;          // from arrival to finish
   double mean_lateness_s = 0;      // max(0, finish − deadline)
   double max_lateness_s = 0;

@@ -14,11 +14,11 @@
 
 namespace psygen::synthesis {
 namespace {
-// How often a blocked main thread looks at the watchdog.
+// Interval at which a blocked main thread runs the watchdog.
 constexpr std::chrono::milliseconds kWatchdogPeriod{20};
 constexpr std::chrono::microseconds kExitPeriod{100};
 
-// A virtual clock has one modeler, however many threads execute what it claims: their number must
+// A virtual clock has one modeler, however many threads execute its requests: their number must
 // change nothing.
 constexpr unsigned kVirtualModelers = 1;
 }  // namespace
@@ -28,7 +28,8 @@ unsigned modeler_count_for(unsigned requested) {
   return std::max(std::thread::hardware_concurrency(), 2u) - 1;
 }
 
-// Delegates, so that an exception in it meets the destructor and not running threads.
+// A delegating constructor, so that an exception in it runs the destructor and no threads stay
+// behind.
 SynthesisManager::SynthesisManager(const models::Registry& registry,
                                    const SynthesisOptions& options)
     : SynthesisManager(registry, options,
@@ -69,7 +70,7 @@ SynthesisManager::~SynthesisManager() {
 
 void SynthesisManager::leave(Worker& worker) {
   const RemotePlace& place = worker.modeler->place();
-  if (place.modelers != nullptr) {  // it waits for no answer any more
+  if (place.modelers != nullptr) {  // it no longer waits for an answer
     place.modelers->cancel(place.number, false);
     worker.thread.join();
     return;
@@ -86,7 +87,7 @@ void SynthesisManager::leave(Worker& worker) {
   worker.thread.join();
 }
 
-// There is room for one in active_.
+// Requires space for one more in active_.
 core::Result<void> SynthesisManager::start_modeler(RemotePlace place) {
   Worker worker;
   worker.modeler = std::make_shared<Modeler>(next_number_, workshop_->board.add_reader(), place);
@@ -102,20 +103,21 @@ core::Result<void> SynthesisManager::start_modeler(RemotePlace place) {
   return {};
 }
 
-// With fewer threads than places the others are idle.
+// If the system has fewer threads than slots, the other slots stay idle.
 void SynthesisManager::start_remote(RemoteModelers& remote) {
   bool any = remote.count() == 0;
   for (unsigned place = 0; place < remote.count() && !any; ++place)
     any = remote.is_usable(place);
   if (!any) {
     core::log_warning(
-        "no remote modeler can be used: their ranks were given up, or they have served a session");
+        "no remote modeler is usable: their ranks were lost, or they have already served a "
+        "session");
     return;
   }
   remote_ = &remote;
   for (unsigned place = 0; place < remote.count(); ++place) {
     if (auto ok = start_modeler({&remote, place}); !ok) {
-      core::log_warning(fmt::format("only {} of {} remote modelers are used: {}", place,
+      core::log_warning(fmt::format("using only {} of {} remote modelers: {}", place,
                                     remote.count(), ok.error().message));
       break;
     }
@@ -198,9 +200,9 @@ void SynthesisManager::drain_threads(std::vector<Completion>& out) {
   drain_retired(out);
 }
 
-// Any thread may execute any request at any time: completions come in the order of the virtual
-// clock, behind those of execute_here(), and say what they took by it. False if there was
-// no modeler left for some; these have failed.
+// Any thread may execute any request at any time. Completions come in the order of the virtual
+// clock, after those of execute_here(), with that clock's durations. Returns false if no modeler
+// was left for some requests; these have failed.
 bool SynthesisManager::execute_jobs(const std::vector<VirtualModelers::Job>& jobs) {
   std::vector<Request> plan;
   std::map<Slot, std::size_t> order;
@@ -275,11 +277,11 @@ bool SynthesisManager::wait_for_threads(const std::function<bool()>& go_on) {
   return all;
 }
 
-// Until modelers have found no more work, but not for long. False if all was finished before.
+// Waits briefly until the modelers find no more work. Returns false if all was finished before.
 bool SynthesisManager::await_finished() {
   {
-    // A modeler that finds no more work notifies under the lock, so nothing is missed between
-    // looking and sleeping.
+    // A modeler that finds no more work notifies under the lock, so no notification is lost between
+    // the check and the wait.
     std::unique_lock lock(workshop_->mutex);
     if (outstanding_in_threads() == 0) return false;
     workshop_->finished.wait_until(lock, std::chrono::system_clock::now() + kWatchdogPeriod);

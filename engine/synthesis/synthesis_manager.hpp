@@ -1,9 +1,9 @@
 // Keeps the modelers busy (paper, section 5.1: Synthesis Manager). The main thread publishes a
-// sorted plan; modelers claim the next request whenever they are free. Cancelling is replacing the
-// plan. The watchdog gives up what never ends, and puts a new modeler in place of the one that
-// hangs. Remote modelers (remote_modelers.hpp) take only what is worth its way; what one comes back
-// without is made here. Main thread only. Does not decide what is requested (planner.hpp), and does
-// not touch the cache (landing.hpp). wait_all(), come_to_rest() and the destructor block.
+// sorted plan; modelers claim the next request whenever they are free. Replacing the plan cancels
+// unclaimed requests. The watchdog abandons requests that never end and replaces hung modelers.
+// Remote modelers (remote_modelers.hpp) take only meshes that outweigh their round trip; a request
+// that one returns is made here. Main thread only. The planner (planner.hpp) decides the requests;
+// landing.hpp updates the cache. wait_all(), come_to_rest() and the destructor block.
 #pragma once
 
 #include <cstdint>
@@ -25,44 +25,45 @@ namespace psygen::synthesis {
 struct SynthesisOptions {
   unsigned modelers = 0;               // 0: number of cores − 1, at least 1
   bool hash_content = false;           // fill Completion::content_hash
-  double watchdog_seconds = 10;        // a request that runs longer is given up; 0: never
-  unsigned max_replacements = 8;       // modelers started in place of hung ones, altogether
+  double watchdog_seconds = 10;        // a request that runs longer is abandoned; 0: never
+  unsigned max_replacements = 8;       // total number of modelers started to replace hung ones
   std::function<double()> clock = {};  // thread-safe; default: core::monotonic_seconds
-  // If given, modelers take what is predicted of requests by this clock, which the caller moves
-  // (virtual_modelers.hpp). It has one modeler; `modelers` threads execute what that claims.
+  // If set, requests take their predicted time by this clock, which the caller advances
+  // (virtual_modelers.hpp). It has one modeler; `modelers` threads execute the requests that it
+  // claims.
   std::function<double()> virtual_clock = {};
-  // What is noted of meshes, by model index; empty ones and those beyond the end note nothing. What
-  // they refer to outlives the manager as the registry does. Meshes of these models are synthesised
-  // in memory of the modeler's own and copied to their destinations, which may be slow to read.
+  // Annotation functions by model index; empty ones and models beyond the end have none. Objects
+  // that they refer to outlive the manager, as the registry does. Annotated meshes are synthesised
+  // in the modeler's memory and copied to their destinations, which may be slow to read.
   std::vector<Annotate> annotate = {};
-  // Further modelers that are not threads here; null: none. Of this manager only, and not with a
-  // virtual clock.
+  // Additional modelers outside this process; null: none. They serve only this manager, and not
+  // with a virtual clock.
   RemoteModelers* remote = nullptr;
 };
 
-// Number of modelers that `requested` (0: default) stands for on this machine.
+// Number of modelers that `requested` means on this machine (0: default).
 unsigned modeler_count_for(unsigned requested);
 
-// Figures of one modeler.
+// Statistics of one modeler.
 struct ModelerStats {
   std::uint32_t modeler = 0;  // kMainThreadModeler: execute_here()
   std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
-  double cpu_seconds = 0;                // of its thread, in requests
-  double busy_seconds = 0;               // by the clock, in requests
+  double cpu_seconds = 0;                // of its thread, while executing requests
+  double busy_seconds = 0;               // by the clock, while executing requests
   std::uint64_t locks = 0, retries = 0;  // see ModelerCounters
   bool remote = false;
 };
 
-// Figures of all modelers.
+// Statistics of all modelers.
 struct SynthesisStats {
   std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
   double cpu_seconds = 0;  // of all modelers
-  // Reclaimed: also what remote modelers gave back, or were given up with.
+  // `reclaimed` includes requests that remote modelers returned or were abandoned with.
   std::uint64_t published = 0, reclaimed = 0, given_up = 0;
-  std::vector<ModelerStats> modelers;  // those that hung included
+  std::vector<ModelerStats> modelers;  // including hung ones
 };
 
-// A request that the watchdog gave up and whose modeler has not come back.
+// A request that the watchdog abandoned and whose modeler still runs.
 struct HungRequest {
   MeshHandle handle;
   MeshKey key;
@@ -74,61 +75,63 @@ struct HungRequest {
 // Owns the modelers.
 class SynthesisManager {
  public:
-  // Starts as many modelers as it gets threads and memory for; with none nothing is ever finished.
+  // Starts as many modelers as threads and memory allow; with none, no request is ever finished.
   // `registry` outlives the manager, and any modeler that hangs at the end of the program.
   explicit SynthesisManager(const models::Registry& registry, const SynthesisOptions& options = {});
-  // Joins within the time of the requests that run now; what is unclaimed is dropped. A modeler
-  // that overruns the watchdog is left to itself: its request's destination must stay valid until
-  // the process ends (a program in this state should leave without tearing its memory down).
+  // Joins after the running requests finish; drops unclaimed ones. A modeler that exceeds the
+  // watchdog's limit is detached: its request's destination must stay valid until the process ends,
+  // so such a program should exit without freeing its memory.
   ~SynthesisManager();
   SynthesisManager(const SynthesisManager&) = delete;
   SynthesisManager& operator=(const SynthesisManager&) = delete;
 
-  // Replaces the plan. Modelers take requests from the front. What was not claimed of the plan
-  // before is not lost: the next reclaim() returns it.
+  // Replaces the plan. Modelers claim requests from the front. The next reclaim() returns the
+  // unclaimed requests of the previous plan.
   void publish(std::vector<Request>&& plan);
-  // Executes a request that was never published, in the calling thread; its completion is collected
-  // like any other. For the few small meshes whose absence is seen: modelers at the lowest priority
-  // may not get a processor for a while.
+  // Executes an unpublished request in the calling thread; its completion is collected like any
+  // other. For the few small meshes whose absence is visible: modelers at the lowest priority may
+  // not get a processor for a while.
   void execute_here(const Request& request);
-  // Replaces SynthesisOptions::annotate. Only while nothing is outstanding.
+  // Replaces SynthesisOptions::annotate. Requires that nothing is outstanding.
   void set_notes(std::vector<Annotate> annotate) { workshop_->annotate = std::move(annotate); }
-  // From now on modelers take only what other threads leave of the processors: nice 19 per thread,
-  // where the system can. For when frames begin; before, the thread that waits for meshes has
-  // nothing else to do. With a virtual clock the caller waits for them, and they stay as they are.
+  // Limits modelers from now on to processor time that other threads leave: nice 19 per thread,
+  // where the system supports it. Call when frames begin; before, the thread that waits for meshes
+  // has nothing else to do. With a virtual clock the caller waits for the modelers, so their
+  // priority stays.
   void lower_priority() {
     if (!virtual_) workshop_->lowest_priority.store(true, std::memory_order_relaxed);
   }
-  // Closes the plan; returns what was not claimed, in order. Everything else was or will be
+  // Closes the plan and returns the unclaimed requests in order. All others were or will be
   // collected.
   std::vector<Request> reclaim();
-  // What was finished when the plan was last closed: the next collect() returns it.
+  // Completions that had arrived when the plan was last closed; the next collect() returns them.
   std::span<const Completion> arrived() const { return arrived_; }
-  // Appends the completions that have arrived, in order per modeler; returns how many. Runs the
+  // Appends the completions that have arrived, in order per modeler; returns their number. Runs the
   // watchdog. Each claimed request has exactly one completion (plus a `late` one if abandoned).
   std::size_t collect(std::vector<Completion>& out);
-  // Blocks until every published request is finished or given up; a virtual clock stands still
-  // meanwhile. For tools, tests and the lazy paradigm; the tick never calls it. False if no modeler
-  // is left here to finish them (remote ones may be at work still), and once `go_on`, called some
-  // 50 times a second, says so (never by a virtual clock, where nothing is waited for).
+  // Blocks until every published request is finished or abandoned; a virtual clock stands still
+  // during the call. For tools, tests and the lazy paradigm; the tick never calls it. Returns false
+  // if no local modeler is left to finish them (remote ones may still work), or once `go_on`
+  // returns false. `go_on` is called about 50 times a second, but never with a virtual clock, which
+  // waits for nothing.
   bool wait_all(const std::function<bool()>& go_on = {});
-  // Requires that the plan is empty. Blocks until everything that was claimed is finished or given
-  // up, by remote modelers too. Returns what these came back without, which nobody makes any more.
+  // Requires an empty plan. Blocks until all claimed requests are finished or abandoned, remote
+  // ones included. Returns requests that remote modelers returned; no modeler makes them any more.
   std::vector<Request> come_to_rest();
 
-  // Requests published and neither reclaimed nor finished.
+  // Number of published requests that are neither reclaimed nor finished.
   std::uint64_t outstanding() const;
-  // Those that are threads here, or of the virtual clock.
+  // Number of local modelers, or of modelers of the virtual clock.
   unsigned modeler_count() const {
     return virtual_ && !active_.empty() ? virtual_->count() : local_count();
   }
   unsigned remote_count() const { return static_cast<unsigned>(active_.size()) - local_count(); }
-  // Whether a request is offered to remote modelers, too.
+  // Returns true if a request is also offered to remote modelers.
   bool may_go(const Request& request) const;
-  // Why not all modelers that were asked for could be started; empty if they were.
+  // Reason why fewer modelers than requested started; empty otherwise.
   const std::string& shortage() const { return shortage_; }
   const std::vector<HungRequest>& hung() const { return hung_; }
-  // No modeler that was given up uses anything any more, as of the last collect().
+  // True if no abandoned modeler accesses anything any more, as of the last collect().
   bool is_at_rest() const { return retired_.empty(); }
   SynthesisStats stats() const;
 
@@ -169,13 +172,13 @@ class SynthesisManager {
   std::uint32_t next_number_ = 0;
   std::string shortage_;
   std::vector<Worker> active_;
-  std::vector<Worker> retired_;  // hung, or back from it and not yet joined
+  std::vector<Worker> retired_;  // hung, or returned from it and not yet joined
   std::vector<HungRequest> hung_;
   std::vector<Completion> abandoned_;  // not yet collected
   std::vector<Completion> arrived_;    // not yet collected
   std::vector<Request> unclaimed_;     // of closed plans, not yet returned
-  std::vector<Request> returned_;      // remote modelers have not made them
-  std::vector<ModelerStats> buried_;   // figures of modelers that are gone
+  std::vector<Request> returned_;      // remote modelers did not make them
+  std::vector<ModelerStats> buried_;   // of modelers that have ended
   std::uint64_t published_ = 0, reclaimed_ = 0, given_up_ = 0, buried_finished_ = 0;
 };
 

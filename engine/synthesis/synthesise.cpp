@@ -13,7 +13,7 @@ std::string named(const models::ModelType& type, int level, std::string_view wha
   return fmt::format("{} level {}{}", type.name(), level, what);
 }
 
-// Where memory has ended there may be none for the sentence either.
+// Without memory, even the error message may fail to allocate.
 template <class Sentence>
 SynthesisOutcome failed(const Sentence& sentence) noexcept {
   SynthesisOutcome outcome;
@@ -27,10 +27,10 @@ SynthesisOutcome failed(const Sentence& sentence) noexcept {
 
 SynthesisOutcome synthesise_guarded(const models::ModelType& type, const models::Parameters& p,
                                     int level, const models::MeshView& out) {
-  try {  // types of users may throw; nothing of ours does unless memory ends
+  try {  // model types of users may throw; the engine's own do so only without memory
     const core::Bounds tight = type.synthesise(p, level, out);
     if (core::is_box(tight)) return {true, tight, {}};
-    return {false, {}, named(type, level, " returned bounds that are not a box")};
+    return {false, {}, named(type, level, " returned invalid bounds")};
   } catch (const std::bad_alloc&) {
     SynthesisOutcome outcome = failed([&] { return core::out_of_memory(named(type, level, "")); });
     outcome.out_of_memory = true;
@@ -38,7 +38,8 @@ SynthesisOutcome synthesise_guarded(const models::ModelType& type, const models:
   } catch (const std::exception& e) {
     return failed([&] { return named(type, level, fmt::format(" threw: {}", e.what())); });
   } catch (...) {
-    return failed([&] { return named(type, level, " threw something that is no std::exception"); });
+    return failed(
+        [&] { return named(type, level, " threw an object that is not a std::exception"); });
   }
 }
 
@@ -49,11 +50,11 @@ core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
     size = type.mesh_size(p, level);
   } catch (...) {
     return core::fail(core::ErrorCode::kSynthesisFailed,
-                      named(type, level, " threw while telling its size"));
+                      named(type, level, " threw in mesh_size()"));
   }
   if (size.vertex_count > 65536 || size.index_count > (1u << 26)) {
     return core::fail(core::ErrorCode::kOverBudget,
-                      named(type, level, " is larger than a mesh with 16-bit indices can be"));
+                      named(type, level, " is too large for 16-bit indices"));
   }
   return size;
 }

@@ -1,6 +1,6 @@
-// One guarded call of a model type: whatever it throws becomes a sentence, and a box that is not a
-// box is a failure. Also heap memory of the right size for a single mesh (calibration, tools).
-// Stateless; usable from any thread. What a type writes beyond its spans cannot be caught here.
+// Guarded calls of a model type: an exception becomes an error message, and invalid bounds become a
+// failure. Also provides heap memory of the right size for a single mesh (calibration, tools).
+// Stateless; any thread. Writes beyond the spans cannot be detected.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,18 @@ namespace psygen::synthesis {
 // The result of one synthesis.
 struct SynthesisOutcome {
   bool ok = false;
-  core::Bounds tight;          // if ok
-  std::string error;           // else one sentence that names the model and the level
-  bool out_of_memory = false;  // that is why: elsewhere, or later, it may not fail
+  core::Bounds tight;  // if ok
+  std::string error;   // else a message that names the model and the level
+  // Cause of the failure: the request may succeed later or on another machine.
+  bool out_of_memory = false;
 };
 
 // Calls type.synthesise(); `out` has exactly the sizes of mesh_size(p, level).
 SynthesisOutcome synthesise_guarded(const models::ModelType& type, const models::Parameters& p,
                                     int level, const models::MeshView& out);
 
-// type.mesh_size(). Fails with kSynthesisFailed if the type throws, kOverBudget beyond 16-bit
-// meshes.
+// Calls type.mesh_size(). Fails with kSynthesisFailed if the type throws, with kOverBudget beyond
+// 16-bit meshes.
 core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
                                                  const models::Parameters& p, int level);
 

@@ -11,7 +11,7 @@ namespace psygen::synthesis {
 
 void lower_priority_of_this_thread() {
 #ifdef __linux__
-  // Linux keeps a nice value per thread when it is named by its thread id.
+  // Linux applies the nice value to a single thread if it is named by its thread id.
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 19);
 #endif
 }

@@ -1,15 +1,15 @@
-// The two things that modelers ask of the operating system. Best effort: on systems without
-// per-thread priorities nothing happens.
+// Thread priority and thread name. Best effort: does nothing on systems without per-thread
+// priorities.
 #pragma once
 
 #include <string>
 
 namespace psygen::synthesis {
 
-// Nice 19 for the calling thread alone (Linux): it gets the processor time that no other thread
-// wants.
+// Sets nice 19 for the calling thread alone (Linux): it uses processor time that no other thread
+// needs.
 void lower_priority_of_this_thread();
-// At most 15 characters are kept.
+// Sets the name of the calling thread; at most 15 characters are kept.
 void name_this_thread(const std::string& name);
 
 }  // namespace psygen::synthesis

@@ -1,5 +1,5 @@
-// Unwanted ready meshes, in the order in which they became unwanted. Knows nothing of what they
-// are: some may be wanted again, or gone.
+// Queue of unwanted ready meshes, in the order in which they became unwanted. Stores handles only:
+// some meshes may be wanted again, or freed.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace psygen::synthesis {
 // Empty at first.
 class UnwantedMeshes {
  public:
-  // Adds a mesh. Of several entries for a slot only the last counts.
+  // Adds a mesh. Only the last entry of a slot counts.
   void push(MeshHandle mesh) {
     if (mesh.slot >= turns_.size()) turns_.resize(std::size_t{mesh.slot} + 1);
     turns_[mesh.slot] = ++turn_;
@@ -24,7 +24,7 @@ class UnwantedMeshes {
     std::erase_if(queue_, [this](const Entry& entry) { return !is_last(entry); });
   }
 
-  // The mesh that is unwanted for longest.
+  // Removes and returns the mesh that has been unwanted for longest.
   std::optional<MeshHandle> pop() {
     while (!queue_.empty()) {
       const Entry first = queue_.front();
@@ -33,7 +33,7 @@ class UnwantedMeshes {
     }
     return std::nullopt;
   }
-  // At most two for each slot.
+  // Number of entries, at most two for each slot.
   std::size_t entries() const { return queue_.size(); }
 
  private:
@@ -44,7 +44,7 @@ class UnwantedMeshes {
   bool is_last(const Entry& entry) const { return turns_[entry.mesh.slot] == entry.turn; }
 
   std::deque<Entry> queue_;
-  std::vector<std::uint64_t> turns_;  // per slot: that of its last entry
+  std::vector<std::uint64_t> turns_;  // per slot: sequence number of its last entry
   std::uint64_t turn_ = 0;
 };
 

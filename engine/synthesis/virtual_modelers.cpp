@@ -9,7 +9,7 @@
 
 namespace psygen::synthesis {
 namespace {
-// By end; at one moment, by modeler.
+// Sorts by end, then by modeler.
 void sort_by_end(std::vector<VirtualModelers::Job>& jobs) {
   std::ranges::sort(jobs, [](const VirtualModelers::Job& a, const VirtualModelers::Job& b) {
     return std::pair(a.finished_s, a.modeler) < std::pair(b.finished_s, b.modeler);
@@ -18,14 +18,13 @@ void sort_by_end(std::vector<VirtualModelers::Job>& jobs) {
 }  // namespace
 
 void VirtualModelers::publish(std::vector<Request>&& plan, double now_s) {
-  PSYGEN_ASSERT(next_ == plan_.size(), "a plan is published before the last one was reclaimed");
+  PSYGEN_ASSERT(next_ == plan_.size(), "reclaim the previous plan before publishing");
   plan_ = std::move(plan);
   next_ = 0;
   published_s_ = now_s;
 }
 
-// The modeler that is free first claims next. A request that is claimed is finished, whatever
-// comes.
+// The modeler that is free first claims next. A claimed request always finishes.
 void VirtualModelers::claim_until(double now_s) {
   while (next_ < plan_.size()) {
     const auto first = std::ranges::min_element(free_s_);

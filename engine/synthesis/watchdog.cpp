@@ -1,5 +1,5 @@
-// The manager's watchdog: what becomes of requests without an end, of the modelers that hang with
-// them, and of what remote modelers come back without.
+// The manager's watchdog: handles requests that never end, modelers that hang on them, and requests
+// that remote modelers return without a mesh.
 #include <fmt/format.h>
 
 #include <iterator>
@@ -26,7 +26,7 @@ void SynthesisManager::run_watchdog() {
     active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(i));
     if (!replaced) continue;
     if (auto ok = start_modeler(); !ok) {
-      core::log_warning(fmt::format("no modeler takes its place: {}", ok.error().message));
+      core::log_warning(fmt::format("cannot replace the hung modeler: {}", ok.error().message));
     } else {
       --replacements_left_;
     }
@@ -46,7 +46,7 @@ bool SynthesisManager::give_up_local(const Worker& worker, double now_s) {
   return true;
 }
 
-// Its request goes back to be made here. True for those that left by themselves, too.
+// Returns its request to be made here. Returns true also for modelers that left by themselves.
 bool SynthesisManager::give_up_remote(const Worker& worker, double now_s) {
   Completion c;
   if (watchdog_seconds_ <= 0 ||
@@ -56,8 +56,8 @@ bool SynthesisManager::give_up_remote(const Worker& worker, double now_s) {
   returned_.back().stays_here = true;
   ++reclaimed_;
   worker.modeler->place().modelers->cancel(worker.modeler->place().number, true);
-  workshop_->board.wake_remote();  // its other places may be lost
-  core::log_warning(fmt::format("remote modeler {} does not answer: {} {}, and is made here",
+  workshop_->board.wake_remote();  // other slots of its rank may be lost
+  core::log_warning(fmt::format("remote modeler {} does not respond: {} {}, made here instead",
                                 c.modeler, (*workshop_->registry)[c.key.model].name(), c.error));
   return true;
 }
@@ -74,8 +74,8 @@ void SynthesisManager::take_returned() {
   workshop_->board.wake_remote();
 }
 
-// Publishes once more what remote modelers have not made, for those that are threads here. False if
-// there is nothing.
+// Publishes requests that remote modelers have returned again, for local modelers. Returns false if
+// there are none.
 bool SynthesisManager::publish_returned() {
   take_returned();
   if (returned_.empty()) return false;
@@ -85,7 +85,7 @@ bool SynthesisManager::publish_returned() {
   return true;
 }
 
-// Hung modelers still have completions of before; those that came back are joined and counted.
+// Hung modelers may have earlier completions; those that returned are joined and counted.
 void SynthesisManager::drain_retired(std::vector<Completion>& out) {
   std::erase_if(retired_, [&](Worker& w) {
     const bool exited = w.modeler->exited();  // read first: nothing is queued after it

@@ -11,14 +11,14 @@ namespace psygen::visibility {
 namespace {
 constexpr double kPi = std::numbers::pi;
 
-// The turn in [−π, π] from one angle to the other.
+// Returns the turn in [−π, π] from one angle to the other.
 double turn_between(double from, double to) {
   return std::remainder(to - from, 2 * kPi);
 }
 }  // namespace
 
 void CameraPredictor::observe(double time_s, const core::CameraPose& pose, double block_size_m) {
-  PSYGEN_ASSERT(block_size_m > 0, "blocks have a size");
+  PSYGEN_ASSERT(block_size_m > 0, "the block size must be positive");
   if (!core::is_valid(pose) || !std::isfinite(time_s)) return;
   const CameraPredictor before = *this;
   *this = CameraPredictor();

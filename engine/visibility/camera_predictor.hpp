@@ -1,6 +1,6 @@
-// Where the camera will be: constant velocity and constant turn rate, both smoothed over the last
-// tenths of a second and bounded (paper, section 4.3: prefetching). A teleport restarts it. Not a
-// filter for what is drawn: the pose itself is never changed. O(1). One thread at a time.
+// Predicts the camera's pose: constant velocity and constant turn rate, both smoothed over the last
+// tenths of a second and bounded (paper, section 4.3: prefetching). A teleport restarts the
+// prediction. Never changes the pose that is drawn. O(1). One thread at a time.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -23,15 +23,15 @@ class CameraPredictor {
   void observe(double time_s, const core::CameraPose& pose, double block_size_m);
 
   // The pose `tau_s` seconds after the last observation, normalised. The turn is at most half a
-  // circle and the pitch stays within ±90°. tau_s <= 0 gives the last observed pose, and the
-  // default pose when there was no observation.
+  // circle and the pitch stays within ±90°. Returns the last observed pose for tau_s <= 0, and the
+  // default pose without observations.
   core::CameraPose predict(double tau_s) const;
 
   // The smoothed velocity in m/s (+X, up, +Z) and turn rate to the right in rad/s.
   glm::dvec3 velocity_m_s() const { return velocity_; }
   double yaw_rate() const { return yaw_rate_; }
 
-  // Forgets everything.
+  // Forgets all observations.
   void reset() { *this = CameraPredictor(); }
 
  private:

@@ -72,7 +72,7 @@ struct Boxes4 {
 
 void intersects(const Frustum& frustum, std::span<const core::Bounds> boxes,
                 std::span<std::uint8_t> in_view) {
-  PSYGEN_ASSERT(boxes.size() == in_view.size(), "there is one answer for each box");
+  PSYGEN_ASSERT(boxes.size() == in_view.size(), "in_view needs one element per box");
   const SplitPlane planes[5] = {SplitPlane(frustum.planes[0]), SplitPlane(frustum.planes[1]),
                                 SplitPlane(frustum.planes[2]), SplitPlane(frustum.planes[3]),
                                 SplitPlane(frustum.planes[4])};

@@ -31,8 +31,8 @@ inline float rounding_slack(const core::Bounds& box) {
                   std::abs(box.max.x) + std::abs(box.max.y) + std::abs(box.max.z));
 }
 
-// False only if the whole box lies outside one plane. Boxes near a corner of the frustum may be
-// reported although they do not intersect. Rounding errors make the answer true.
+// Returns false only if the whole box lies outside one plane. A box near a corner of the frustum
+// may count as intersecting although it does not. Rounding errors make the result true.
 inline bool intersects(const Frustum& frustum, const core::Bounds& box) {
   const float slack = rounding_slack(box);
   for (const glm::vec4& plane : frustum.planes) {
@@ -45,7 +45,7 @@ inline bool intersects(const Frustum& frustum, const core::Bounds& box) {
   return true;
 }
 
-// The same for many boxes, faster: in_view[i] = 1 or 0. Both spans have the same length.
+// Tests many boxes at once, faster: in_view[i] = 1 or 0. Both spans have the same length.
 void intersects(const Frustum& frustum, std::span<const core::Bounds> boxes,
                 std::span<std::uint8_t> in_view);
 

@@ -10,7 +10,7 @@ namespace psygen::visibility {
 namespace {
 
 constexpr double kBinCount = Horizon::kBins;
-constexpr double kTolerance = 1e-3;  // of a bin, for ends that meet and for sides of boxes
+constexpr double kTolerance = 1e-3;  // of a bin, for touching ends and for sides of boxes
 constexpr double kSlack = 1e-5;  // more than all rounding errors; a hundredth of a pixel or less
 constexpr double kNoDistance = 1e-3;  // nearer points have no direction
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
@@ -96,7 +96,7 @@ void Horizon::reset() {
   right_.fill({1, kNothing, 0});
 }
 
-// How many bands reach no farther than `distance_m`.
+// Number of bands that end at or before `distance_m`.
 std::size_t Horizon::bands_within(float distance_m) {
   static_assert(kFirstBandM == 16);
   constexpr int kBias = 127 + 4 - 1;  // exponent of a float at 16 m, minus one

@@ -1,7 +1,7 @@
-// The horizon that the ground forms around the camera, to find what is hidden behind ridges. For
-// each of kBins directions it holds the highest elevation up to which ground is known to stand
+// The horizon that the ground forms around the camera; rejects boxes hidden behind ridges. For each
+// of kBins directions it stores the highest elevation up to which the ground is known to be solid
 // within each of several distances, and the distance of the highest ground of all. Conservative:
-// hides() is true only for boxes of which nothing can be seen, and may be false for others.
+// hides() is true only for boxes that are completely hidden, and may be false for others.
 // Everything is relative to the camera. Knows no entities. Adding costs a few divisions per point
 // and bin; a query costs a few operations per bin that the box spans. Allocates nothing; one thread
 // at a time while adding.
@@ -9,8 +9,8 @@
 // Use: call reset() for each camera position. Then, for the leaves of a cut from front to back
 // (quadtree.hpp), first call hides() with the leaf's box, then add() lines of its surface if it is
 // drawn. Correctness does not depend on the order, because distances are compared; but a line that
-// is added late does not affect earlier queries. Afterwards hides() may be called for any box:
-// where a higher line stands farther away, nearer lines still hide what is at least twice as far as
+// is added late does not affect earlier queries. Afterwards hides() may be called for any box. Even
+// below a higher, farther line, nearer lines still hide boxes that are at least twice as far as
 // they are.
 #pragma once
 
@@ -29,10 +29,10 @@ class Horizon {
  public:
   static constexpr std::size_t kBins = 1024;  // bin borders lie on the axes; 0.22° to 0.45° wide
 
-  // No ground at all.
+  // Starts without ground.
   Horizon();
 
-  // Forgets all ground.
+  // Removes all ground.
   void reset();
 
   // Adds a line that lies in the drawn surface or below it, straight from point to point. Ground is
@@ -41,8 +41,8 @@ class Horizon {
   // nodes whose ends meet, to a thousandth of a bin, count as one.
   void add(std::span<const glm::vec3> line);
 
-  // Whether all of a box with finite corners lies below the horizon and behind it. Never true for
-  // boxes above, below or around the camera.
+  // Returns true if the whole box, which has finite corners, lies below and behind the horizon.
+  // Never true for boxes above, below or around the camera.
   bool hides(const core::Bounds& box) const;
 
   // Elevation of the horizon (height per metre of horizontal distance) in the direction (x, z),

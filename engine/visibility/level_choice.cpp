@@ -5,7 +5,8 @@
 namespace psygen::visibility {
 namespace {
 
-// The coarsest level up to which every error is at most `allowed_m`. NaN counts as too large.
+// Returns the coarsest level up to which every error is at most `allowed_m`. NaN counts as too
+// large.
 int coarsest_within(std::span<const float> errors_m, float allowed_m) {
   int level = 0;
   while (level + 1 < static_cast<int>(errors_m.size()) &&

@@ -1,13 +1,14 @@
-// Which level of detail a mesh needs: the coarsest one whose error covers few enough pixels, with
-// hysteresis, so a camera on the border between two levels does not flicker. Not a budget: a budget
-// raises the allowed error instead. Pure functions; any thread; linear in the levels.
+// Chooses the LOD of a mesh: the coarsest level whose error covers few enough pixels, with
+// hysteresis, so that a camera on the border between two levels does not flicker. Enforces no
+// budget: a budget raises the allowed error instead. Pure functions; any thread; linear in the
+// levels.
 #pragma once
 
 #include <span>
 
 namespace psygen::visibility {
 
-// A coarser level is chosen only when its error is within this share of the allowed error.
+// A coarser level is chosen only if its error is within this fraction of the allowed error.
 inline constexpr float kCoarserShare = 0.8F;
 
 // The level for a mesh whose level l has the error level_errors_m[l] (0 at level 0, ascending). The

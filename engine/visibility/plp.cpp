@@ -89,7 +89,7 @@ class Search {
   }
 
  private:
-  // Distances, and which cells are in view.
+  // Computes distances, and tests which cells are in view.
   void measure_cells() {
     out_.in_view.resize(cells_);
     out_.distance_bits.resize(cells_);
@@ -123,7 +123,7 @@ class Search {
     out_.behind.resize(cells_);
     const float scale = in_.solidity_layers * float{kKeysPerLayer};
     for (std::size_t cell = 0; cell < cells_; ++cell) {
-      // 0 for NaN, too.
+      // NaN counts as 0.
       const float solidity = in_.solidity[cell] > 0 ? std::min(in_.solidity[cell], 1.0F) : 0.0F;
       out_.behind[cell] = kKeysPerLayer + static_cast<std::uint32_t>(
                                               static_cast<std::int32_t>(solidity * scale + 0.5F));
@@ -271,11 +271,13 @@ std::uint32_t clamp_to_axis(std::int32_t corner, std::uint32_t length, std::int3
 
 void run_plp(const PlpInput& input, PlpResult& result) {
   PSYGEN_ASSERT(input.bounds.size() == std::size_t{input.width} * input.depth,
-                "there is one box for each cell");
-  PSYGEN_ASSERT(input.width < kUnvisited && input.depth < kUnvisited, "layers fit 16 bits");
+                "bounds needs one box per cell");
+  PSYGEN_ASSERT(input.width < kUnvisited && input.depth < kUnvisited,
+                "the grid is too large for 16-bit layers");
   PSYGEN_ASSERT(input.mode == PlpMode::kLayers || input.solidity.size() == input.bounds.size(),
-                "there is one solidity for each cell");
-  PSYGEN_ASSERT(input.solidity_layers >= 0 && input.solidity_layers <= 64, "keys fit 32 bits");
+                "solidity needs one value per cell");
+  PSYGEN_ASSERT(input.solidity_layers >= 0 && input.solidity_layers <= 64,
+                "solidity_layers is out of range");
   if (!input.bounds.empty()) return Search(input, result).run();
   result.layer.clear();
   result.key.clear();
@@ -286,7 +288,7 @@ void run_plp(const PlpInput& input, PlpResult& result) {
 
 GridCell nearest_cell(core::BlockCoord corner, std::uint32_t width, std::uint32_t depth,
                       core::BlockCoord block) {
-  PSYGEN_ASSERT(width > 0 && depth > 0, "the grid has a cell");
+  PSYGEN_ASSERT(width > 0 && depth > 0, "the grid must not be empty");
   return {clamp_to_axis(corner.x, width, block.x), clamp_to_axis(corner.z, depth, block.z)};
 }
 

@@ -1,7 +1,7 @@
 // Prioritized-Layered Projection over a grid of blocks (Klosowski and Silva 2000, as the paper uses
-// it in section 4.2): which blocks are seen, in order of importance, and which surround them. A
-// cell's neighbours are the eight cells around it. Knows no entities, and nothing of a cell's
-// contents except, in the mode `solidity`, how much light it blocks. Linear in the number of cells
+// it in section 4.2): lists visible blocks in order of importance, and the blocks around them. A
+// cell's neighbours are the eight cells around it. Knows no entities, and of a cell's contents
+// only, in the mode `solidity`, the fraction of light that it blocks. Linear in the number of cells
 // and in the largest key; allocates only while results grow. Any thread.
 #pragma once
 
@@ -29,11 +29,12 @@ struct PlpInput {
   std::uint32_t start_x = 0, start_z = 0;  // the camera's cell; if outside, the nearest cell
   std::span<const core::Bounds> bounds;    // of each cell, metres, relative to the camera
   const Frustum* frustum = nullptr;
-  std::uint32_t max_visits = UINT32_MAX;  // the budget: at most this many cells are visited
+  std::uint32_t max_visits = UINT32_MAX;  // the budget: largest number of visited cells
   PlpMode mode = PlpMode::kLayers;
-  // By cell: the share in [0, 1] of the light through it that it blocks. Not read in kLayers.
+  // By cell: the fraction in [0, 1] of the light through the cell that it blocks. Unused in
+  // kLayers.
   std::span<const float> solidity = {};
-  // How many layers a cell of solidity 1 delays the cells behind it, in [0, 64].
+  // Number of layers by which a cell of solidity 1 delays the cells behind it, in [0, 64].
   float solidity_layers = 8;
 };
 
@@ -59,7 +60,7 @@ struct PlpInput {
 //
 // The caller keeps the result from tick to tick, so nothing is allocated in the long run.
 struct PlpResult {
-  std::vector<std::uint16_t> layer;     // per cell; kUnvisited where the search did not arrive
+  std::vector<std::uint16_t> layer;     // per cell; kUnvisited if the search did not reach it
   std::vector<std::uint32_t> key;       // per cell, visited or not
   std::vector<std::uint8_t> in_view;    // per cell: 1 or 0, visited or not
   std::vector<std::uint32_t> visible;   // visited cells in view, most important first

@@ -19,7 +19,7 @@ std::int32_t canonical(std::uint32_t index, std::uint8_t level) {
   return static_cast<std::int32_t>(index << level) >> level;
 }
 
-// Whether [a, a + length_a) and [b, b + length_b) overlap on the ring of block indices.
+// Returns true if [a, a + length_a) and [b, b + length_b) overlap on the ring of block indices.
 bool meet(std::int32_t a, std::uint32_t length_a, std::int32_t b, std::uint32_t length_b) {
   const std::uint32_t from_b = static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b);
   return from_b < length_b || 0U - from_b < length_a;
@@ -32,7 +32,7 @@ bool exists(const BlockArea& world, const NodeCoord& node) {
          (world.blocks_z == 0 || meet(corner.z, side, world.corner.z, world.blocks_z));
 }
 
-// Along one axis: steps from the first node of a square to the nodes of it that exist.
+// Along one axis: steps from the first node of a square to its existing nodes.
 struct Steps {
   std::int64_t first, last;
 };
@@ -43,7 +43,7 @@ Steps steps_to_roots(std::int32_t first, std::int32_t last, std::int32_t world_b
     return canonical(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(first), level);
   };
   const std::int64_t all = steps(last);
-  PSYGEN_ASSERT(all >= 0, "the roots do not surround the world");
+  PSYGEN_ASSERT(all >= 0, "the roots must surround the world");
   if (blocks == 0) return {0, all};
   const std::int64_t begin = steps(world_block >> level);
   const std::int64_t nodes =
@@ -51,7 +51,7 @@ Steps steps_to_roots(std::int32_t first, std::int32_t last, std::int32_t world_b
   return {std::max<std::int64_t>(begin, 0), std::min(begin + nodes - 1, all)};
 }
 
-// How far 0 is outside [low, low + length].
+// Distance of 0 from the interval [low, low + length].
 double outside(double low, double length) {
   return std::max({low, -(low + length), 0.0});
 }
@@ -147,10 +147,10 @@ NodeCoord neighbour_of(const NodeCoord& node, std::int32_t dx, std::int32_t dz) 
 void split_distances(std::span<const double> level_errors_m, const SplitSettings& settings,
                      std::span<LevelDistances> levels) {
   PSYGEN_ASSERT(level_errors_m.size() == levels.size() && levels.size() <= kMaxNodeLevel + 1U,
-                "there is one error for each level");
+                "levels needs one element per error");
   PSYGEN_ASSERT(settings.merge_factor >= 1 && settings.max_error_pixels > 0 &&
                     settings.morph_share > 0 && settings.morph_share <= 1,
-                "settings are in range");
+                "a setting is out of range");
   // Larger than the rounding errors of distances, so the proof holds for computed numbers.
   constexpr double kBeyondRounding = 1 + 1e-9;
   double merge_below = 0;      // splitting here lets morphing begin beyond the level below
@@ -198,7 +198,7 @@ void roots_around(const core::WorldPosition& camera, double block_size_m, double
 
 void drawn_nodes(const Cut& cut, std::span<const std::uint8_t> ready,
                  std::vector<std::uint8_t>& scratch, std::vector<std::uint32_t>& drawn) {
-  PSYGEN_ASSERT(ready.size() == cut.nodes.size(), "there is one answer for each node");
+  PSYGEN_ASSERT(ready.size() == cut.nodes.size(), "ready needs one element per node");
   // replaced[i]: the ready nodes below node i cover all of it. Children come after their parents.
   std::vector<std::uint8_t>& replaced = scratch;
   replaced.assign(cut.nodes.size(), 1);

@@ -1,9 +1,9 @@
-// The cut through the quadtree of blocks: which node of which level represents each piece of
-// ground. A node of level k covers 2^k × 2^k blocks; node (x, z) begins at block (x << k, z << k).
-// Distances alone decide, so a level is known before anything is generated. Restricted: leaves that
-// touch differ by two levels at most (proof at split_distances). Knows no entities and no meshes.
-// Linear in the nodes of the cut, whose number grows with the logarithm of the view distance;
-// allocates only while results grow. Values only; usable from any thread.
+// The cut through the quadtree of blocks: the set of nodes that covers the ground in one frame. A
+// node of level k covers 2^k × 2^k blocks; node (x, z) begins at block (x << k, z << k). Distances
+// alone decide, so a level is known before anything is synthesised. Restricted: touching leaves
+// differ by at most two levels (proof at split_distances). Knows no entities and no meshes. Linear
+// in the nodes of the cut, whose number grows with the logarithm of the view distance; allocates
+// only while results grow. Values only; any thread.
 #pragma once
 
 #include <compare>
@@ -60,24 +60,24 @@ NodeCoord neighbour_of(const NodeCoord& node, std::int32_t dx, std::int32_t dz);
 
 // ---- From errors to distances ------------------------------------------------------------------
 
-// What happens to a node of a level, by its distance in metres. 0 < split_m <= merge_m.
+// Distances in metres at which a node of a level changes. 0 < split_m <= merge_m.
 struct LevelDistances {
-  double split_m = 0;  // nearer than this it is split into its four children
+  double split_m = 0;  // a nearer node is split into its four children
   double merge_m = 0;  // once split, it stays split up to this distance
-  double morph_m = 0;  // its children begin to take its shape here, have it at split_m
+  double morph_m = 0;  // its children begin to take its shape here, and have it at split_m
 };
 
-// How errors in metres become distances. A node's side is 2^level blocks.
+// Conversion of errors in metres to distances. A node's side is 2^level blocks.
 struct SplitSettings {
   double block_size_m = 64;
   double pixels_per_radian = 1000;
-  double max_error_pixels = 1;  // how many pixels an error may cover
-  // A node is split nearer than this many of its sides, whatever its error.
+  double max_error_pixels = 1;  // number of pixels that an error may cover
+  // A node nearer than this many of its sides is split, whatever its error.
   double min_ratio = 1;
   // The error of a node alone never splits it at more than this many of its sides.
   double max_ratio = std::numeric_limits<double>::infinity();
   double merge_factor = 1.1;  // merge_m / split_m, >= 1
-  double morph_share = 0.7;   // share of split_m where morphing begins; above 0, at most 1
+  double morph_share = 0.7;   // fraction of split_m where morphing begins; above 0, at most 1
 };
 
 // One LevelDistances for each level. level_errors_m[k] is the error of the mesh of a node of level
@@ -101,20 +101,20 @@ void split_distances(std::span<const double> level_errors_m, const SplitSettings
 
 // ---- The cut -----------------------------------------------------------------------------------
 
-// A rectangle of blocks; nodes that do not reach into it do not exist. 0 along an axis: endless.
+// A rectangle of blocks. Nodes outside it do not exist. 0 along an axis: endless.
 struct BlockArea {
   core::BlockCoord corner;
   std::uint32_t blocks_x = 0, blocks_z = 0;
 };
 
-// What select_cut decides from. The spans must stay valid during the call.
+// Input of select_cut. The spans must stay valid during the call.
 struct CutInput {
   core::WorldPosition camera;  // within 2^30 blocks of all roots
   double block_size_m = 64;
   std::span<const NodeCoord> roots;        // canonical, of one level, each once
   std::span<const LevelDistances> levels;  // of split_distances, up to the roots' level at least
-  // By level: how far the camera is above (or below) all ground that nodes of the level could show,
-  // in metres. It must not grow with the level (see the proof above). Empty: 0 for all.
+  // By level: vertical distance in metres of the camera from all ground that nodes of the level
+  // could show. It must not grow with the level (see the proof above). Empty: 0 for all.
   std::span<const double> clearances_m;
   double view_distance_m = std::numeric_limits<double>::infinity();  // horizontal, for all nodes
   BlockArea world;
@@ -123,17 +123,17 @@ struct CutInput {
 // The parent of a root.
 inline constexpr std::uint32_t kNoNode = UINT32_MAX;
 
-// A node of the cut with its place relative to the camera.
+// A node of the cut with its position relative to the camera.
 struct CutNode {
   NodeCoord node;
-  bool leaf = true;                // wanted for drawing; otherwise its children are
-  bool fine = false;               // a leaf of level 0 so near that its finest mesh is wanted
+  bool leaf = true;                // drawn once its mesh is ready; otherwise its children are
+  bool fine = false;               // a leaf of level 0 near enough for its finest mesh
   std::uint32_t parent = kNoNode;  // index in Cut::nodes
   std::uint32_t end = 0;  // nodes[i + 1] … nodes[end − 1] are its descendants in the cut
   float corner_x_m = 0, corner_z_m = 0;  // of the node's corner, relative to the camera
   float side_m = 0;
-  float distance_m = 0;  // the deciding one: horizontal, combined with the clearance
-  // In [0, 1]. 0: its own shape. 1: the next coarser shape, which is a fine block's coarser mesh or
+  float distance_m = 0;  // decides the level: horizontal distance combined with the clearance
+  // In [0, 1]. 0: the node's own shape. 1: the next coarser shape: a fine block's coarser mesh, or
   // any other node's parent. As the camera moves, leaves appear with 1 when their parent is split,
   // and a node appears with 0 when its children, all at 1, merge.
   float morph = 0;
@@ -146,7 +146,7 @@ struct CutNode {
   }
 };
 
-// The caller keeps it from tick to tick: the nodes that were split before provide the hysteresis.
+// The caller keeps it from tick to tick: nodes that were split before provide the hysteresis.
 struct Cut {
   // Parents before their children, and front to back: seen from above, the leaves that any
   // half-line from the camera crosses appear here from near to far.
@@ -167,10 +167,10 @@ void select_cut(const CutInput& input, Cut& cut);
 void roots_around(const core::WorldPosition& camera, double block_size_m, double view_distance_m,
                   std::uint8_t level, std::vector<NodeCoord>& roots, const BlockArea& world = {});
 
-// What to draw while meshes are missing: ready[i] says whether cut.nodes[i] has one. A ready node
-// is drawn if it is a leaf, or if the ready nodes below it do not cover all of it. Drawn nodes
-// never overlap, and all ground under a ready node is covered. Indices into cut.nodes, in their
-// order, replace the contents of `drawn`; `scratch` is working memory. O(nodes).
+// Selects the nodes to draw while meshes are missing: ready[i] tells if cut.nodes[i] has a mesh. A
+// ready node is drawn if it is a leaf, or if the ready nodes below it do not cover all of it. Drawn
+// nodes never overlap, and all ground under a ready node is covered. Indices into cut.nodes, in
+// their order, replace the contents of `drawn`; `scratch` is working memory. O(nodes).
 void drawn_nodes(const Cut& cut, std::span<const std::uint8_t> ready,
                  std::vector<std::uint8_t>& scratch, std::vector<std::uint32_t>& drawn);
 

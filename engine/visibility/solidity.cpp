@@ -9,7 +9,7 @@
 namespace psygen::visibility {
 namespace {
 
-// Mean over heights h in [0, band] of the share of the ground that is higher than h.
+// Mean over heights h in [0, band] of the fraction of the ground that is higher than h.
 float ground_share(float relief_m, float band_m) {
   if (relief_m <= 0) return 0;
   return band_m <= relief_m ? 1 - band_m / (2 * relief_m) : relief_m / (2 * band_m);
@@ -25,7 +25,7 @@ float standing_share(const Standing& kind, float side_m, float band_m) {
 
 float estimate_solidity(float side_m, float relief_m, std::span<const Standing> standing,
                         float band_m) {
-  PSYGEN_ASSERT(side_m > 0 && band_m > 0, "a cell has a size, a band a height");
+  PSYGEN_ASSERT(side_m > 0 && band_m > 0, "side and band must be positive");
   float passes = 1 - ground_share(relief_m, band_m);
   for (const Standing& kind : standing)
     passes *= 1 - standing_share(kind, side_m, band_m);

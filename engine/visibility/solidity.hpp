@@ -1,6 +1,6 @@
-// How much light a cell of the world blocks, estimated from parameters before anything is
-// generated. PLP's mode `solidity` accumulates it. An estimate for ordering work, not for hiding
-// anything. Pure; usable from any thread; linear in the kinds.
+// Estimates from parameters, before anything is synthesised, how much light a cell of the world
+// blocks. PLP's mode `solidity` accumulates it. Suitable for ordering work, not for hiding
+// anything. Pure; any thread; linear in the kinds.
 #pragma once
 
 #include <span>
@@ -12,12 +12,12 @@ struct Standing {
   float count = 0;     // in the cell; may be an expected value
   float width_m = 0;   // seen from the side
   float height_m = 0;  // above the ground
-  float density = 1;   // share of the light through its outline that it blocks
+  float density = 1;   // fraction of the light through its outline that it blocks
 };
 
-// The share in [0, 1] of the light through a square cell that the cell blocks. The light is level
-// rays in all directions, at heights spread evenly over the `band_m` > 0 above the cell's lowest
-// ground: the band in which the ground behind the cell is to be seen.
+// Returns the fraction in [0, 1] of the light through a square cell that the cell blocks. The light
+// consists of level rays in all directions, at heights spread evenly over the `band_m` > 0 above
+// the cell's lowest ground: the band in which the ground behind the cell may be visible.
 //
 // - Ground: where a ray meets it, its height is spread evenly over `relief_m` >= 0 (highest less
 //   lowest of the cell).

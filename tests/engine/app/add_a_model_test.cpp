@@ -1,4 +1,4 @@
-// docs/add-a-model.md quotes this test and fence.hpp: a model type of a user's own.
+// docs/add-a-model.md quotes this test and fence.hpp: a user's model type.
 #include <fstream>
 
 #include "engine/synthesis/synthesise.hpp"
@@ -52,7 +52,7 @@ TEST(AddAModel, TheTypeFliesIsCostModelledAndListed) {
   auto session = app::Session::create(fenced_flight(folder));
   ASSERT_TRUE(session) << session.error().message;
 
-  // Listed, with its parameters, as `psygen models` and editors see it.
+  // Listed with its parameters, as in `psygen models` and editors.
   const models::Registry& registry = (*session)->scene().state().facts.registry;
   const int fence = registry.find("fence");
   ASSERT_GE(fence, 0);
@@ -65,7 +65,7 @@ TEST(AddAModel, TheTypeFliesIsCostModelledAndListed) {
   }
   EXPECT_EQ(levels, 2u);
 
-  // It flies: after the cache is filled nothing is missing, and there are fences to draw.
+  // It flies: after the cache is filled no mesh is missing, and there are fences to draw.
   const core::CameraPose pose = (*session)->home();
   (*session)->scene().settle(pose);
   ASSERT_TRUE((*session)->tick(pose, 1.0 / 60.0));
@@ -74,7 +74,7 @@ TEST(AddAModel, TheTypeFliesIsCostModelledAndListed) {
   EXPECT_EQ((*session)->scene().state().totals.failed, 0u);
 }
 
-// What docs/add-a-model.md says that every type must keep.
+// Promises of docs/add-a-model.md that every type must keep.
 TEST(AddAModel, TheTypeKeepsItsPromises) {
   const FenceType type;
   for (int i = 0; i < 200; ++i) {

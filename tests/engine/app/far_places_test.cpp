@@ -1,12 +1,12 @@
-// Far from the origin, and across the seam of the block indices, pictures are as steady and as
-// complete as anywhere.
+// Far from the origin, and across the seam of the block indices, images are as stable and as
+// complete as elsewhere.
 #include "engine/image/compare.hpp"
 #include "tests/engine/app/studio.hpp"
 
 namespace psygen::app {
 namespace {
 
-TEST(FarPlaces, AMillimetreChangesThePictureNoMoreThanAtTheOrigin) {
+TEST(FarPlaces, AMillimetreChangesTheImageNoMoreThanAtTheOrigin) {
   SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 1500;
@@ -29,8 +29,8 @@ TEST(FarPlaces, AMillimetreChangesThePictureNoMoreThanAtTheOrigin) {
   }
 }
 
-// Everything of the last place gives way, also what frames in flight might read.
-TEST(FarPlaces, SettlingAfterALeapWithAFullCacheIsLikeAFreshStart) {
+// All meshes of the previous place are evicted, including those that frames in flight might read.
+TEST(FarPlaces, SettlingAfterALeapWithAFullCacheEqualsAFreshStart) {
   SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 3000;
@@ -51,7 +51,7 @@ TEST(FarPlaces, SettlingAfterALeapWithAFullCacheIsLikeAFreshStart) {
   EXPECT_GT(studio.state().meshes.stats().evictions, 1000u);
 }
 
-// What frames in flight may read comes back later: that is no want of memory.
+// Meshes that frames in flight may read are freed later: that is no lack of memory.
 TEST(FarPlaces, AFlightThroughAFullCacheIsNoCoarserThanAFreshStart) {
   SessionOptions options = short_session();
   options.validation = false;
@@ -73,9 +73,9 @@ TEST(FarPlaces, AFlightThroughAFullCacheIsNoCoarserThanAFreshStart) {
   EXPECT_EQ(studio.state().quality.coarsening, 1.0F);
 }
 
-// What the last pictures drew may come back too late for this one: then pictures must get coarser
-// until there is room for three.
-TEST(FarPlaces, LazyEvaluationMissesNothingForLongWhereOnlyOnePictureFits) {
+// Meshes of the last images may be freed too late for the next one: images must then become coarser
+// until three of them fit into memory.
+TEST(FarPlaces, LazyEvaluationMissesLittleIfOnlyOneImageFits) {
   SessionOptions options = short_session();
   options.validation = false;
   options.scene.view_distance_m = 4000;

@@ -1,4 +1,4 @@
-// A model type as a user writes one; docs/add-a-model.md quotes it.
+// A model type as users write one; docs/add-a-model.md quotes it.
 #pragma once
 
 #include <algorithm>

@@ -24,7 +24,7 @@ inline SessionOptions short_session() {
   options.headless = true;
   options.validation = true;
   options.size = {320, 180};
-  options.scene.virtual_time = true;  // tests do not depend on what the machine has left over
+  options.scene.virtual_time = true;  // results do not depend on the load of the machine
   options.scene.view_distance_m = 200;
   options.scene.budget_bytes = 128ull << 20;
   return options;

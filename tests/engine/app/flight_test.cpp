@@ -41,7 +41,7 @@ TEST(Flight, WritesEveryOutputWithoutAValidationMessage) {
   EXPECT_TRUE(read_json(options.out_folder / "trace.json").contains("traceEvents"));
 }
 
-// Rows of frames.csv by the names of its columns.
+// Rows of frames.csv by column name.
 std::vector<std::map<std::string, std::string>> read_frames(const std::filesystem::path& file) {
   std::ifstream stream(file);
   const auto cells_of = [](const std::string& line) {
@@ -64,10 +64,10 @@ std::vector<std::map<std::string, std::string>> read_frames(const std::filesyste
   return rows;
 }
 
-TEST(Flight, FramesThatAreWrittenAndTheTwoAfterThemAreInNoFigureOfTimes) {
+TEST(Flight, WrittenFramesAndTheNextTwoAreNotInTimingStatistics) {
   const TemporaryFolder folder;
   FlightOptions options = short_flight();
-  options.session.scene.virtual_time = false;  // on which pictures take no time
+  options.session.scene.virtual_time = false;  // on the virtual clock images take no time
   options.out_folder = folder / "out";
   options.images_every = 10;
   const FlightReport report = fly(options);
@@ -85,7 +85,7 @@ TEST(Flight, FramesThatAreWrittenAndTheTwoAfterThemAreInNoFigureOfTimes) {
             (std::array<std::uint64_t, telemetry::kApartKinds>{25, 3, 6}));
 }
 
-TEST(Flight, AFrameInWhichAPluginTakesAPictureIsNotTimedAndGovernsNothing) {
+TEST(Flight, AFrameInWhichAPluginCapturesAnImageIsExcluded) {
   const TemporaryFolder folder;
   FlightOptions options = short_flight();
   options.session.scene.virtual_time = false;
@@ -107,12 +107,12 @@ TEST(Flight, AFrameInWhichAPluginTakesAPictureIsNotTimedAndGovernsNothing) {
   EXPECT_EQ(rows[6].at("apart"), "after_idle");
   EXPECT_EQ(rows[7].at("apart"), "after_idle");
   EXPECT_EQ(rows[8].at("apart"), "");
-  // What a frame is governed by is what the one before took.
+  // The governor sees the duration of the previous frame.
   for (std::size_t i = 1; i < governed_ms.size(); ++i)
     EXPECT_EQ(governed_ms[i] > 0, rows[i - 1].at("apart").empty()) << i;
 }
 
-TEST(Flight, WhereTheMachineIsSuspendedOrTheClockGoesBackTheFrameIsInNoFigureOfTimes) {
+TEST(Flight, AFrameWithASuspensionOrAClockThatGoesBackIsExcluded) {
   const TemporaryFolder folder;
   FlightOptions options = short_flight();
   options.session.scene.virtual_time = false;
@@ -133,15 +133,15 @@ TEST(Flight, WhereTheMachineIsSuspendedOrTheClockGoesBackTheFrameIsInNoFigureOfT
   for (const auto& row : read_frames(options.out_folder / "frames.csv")) {
     const int frame = std::stoi(row.at("frame"));
     const bool gap = frame == 4 || frame == 8;
-    // The first two follow the filling of the cache.
+    // The first two frames follow the filling of the cache.
     EXPECT_EQ(row.at("apart"), frame < 2 ? "after_idle" : gap ? "gap" : "") << frame;
-    EXPECT_GT(std::stod(row.at("time_s")), before_s) << "the flight's clock goes on";
+    EXPECT_GT(std::stod(row.at("time_s")), before_s) << "the flight's clock advances";
     before_s = std::stod(row.at("time_s"));
   }
   EXPECT_EQ(report.summary.run.apart_frames.back(), 2u);
 }
 
-TEST(Gap, IsWhatNoFrameTakes) {
+TEST(Gap, IsLongerThanAnyFrame) {
   EXPECT_FALSE(is_gap(4999, 10, 0));
   EXPECT_FALSE(is_gap(5001, 400, 0)) << "a slow machine";
   EXPECT_FALSE(is_gap(90'000, 0, 0)) << "the first frame";
@@ -150,10 +150,10 @@ TEST(Gap, IsWhatNoFrameTakes) {
   EXPECT_TRUE(is_gap(-1, 10, 0)) << "the clock went back";
 }
 
-TEST(Flight, WaitingIsApartFromTheSystemsAndTheDeviceHasTimesOfItsOwn) {
+TEST(Flight, WaitingAndGpuTimesAreSeparateFromTheSystems) {
   const TemporaryFolder folder;
   FlightOptions options = short_flight();
-  options.session.scene.virtual_time = false;  // which has no such times
+  options.session.scene.virtual_time = false;  // the virtual clock has no such times
   options.out_folder = folder / "out";
   const FlightReport report = fly(options);
   const auto rows = read_frames(options.out_folder / "frames.csv");
@@ -165,10 +165,10 @@ TEST(Flight, WaitingIsApartFromTheSystemsAndTheDeviceHasTimesOfItsOwn) {
                                "upload", "render", "telemetry"})
       all_ms += ms(std::string(system) + "_ms");
     EXPECT_LE(all_ms, ms("frame_ms") + 0.01) << i;
-    EXPECT_EQ(ms("wait_ms"), ms("device_wait_ms")) << "there is no window";
+    EXPECT_EQ(ms("wait_ms"), ms("device_wait_ms")) << "headless";
     EXPECT_GT(ms("record_ms"), 0);
     EXPECT_LE(ms("record_ms"), ms("render_ms") + 0.01);
-    // Known four frames later, so not of the last ones.
+    // Available four frames later, so the last frames have none.
     EXPECT_EQ(rows[i].at("gpu_ms").empty(), i >= 36) << i;
     EXPECT_EQ(rows[i].at("gpu_shadows_ms").empty(), i >= 36) << i;
   }
@@ -179,7 +179,7 @@ TEST(Flight, WaitingIsApartFromTheSystemsAndTheDeviceHasTimesOfItsOwn) {
   EXPECT_NE(trace.find("\"device ms\""), std::string::npos);
 }
 
-TEST(Flight, TheSummaryCarriesEveryFieldOrSaysWhyNot) {
+TEST(Flight, TheSummaryHasEveryFieldOrAReason) {
   const TemporaryFolder folder;
   FlightOptions options = short_flight();
   options.out_folder = folder / "out";
@@ -298,7 +298,7 @@ TEST(Flight, AMissingWorldOrPathFileIsNamed) {
   EXPECT_NE(flight.error().message.find("no_such_path.toml"), std::string::npos);
 }
 
-TEST(Flight, APathThatNeverComesNearTheWorldIsRefused) {
+TEST(Flight, APathThatNeverComesNearTheWorldIsRejected) {
   const TemporaryFolder folder;
   FlightOptions options = short_flight();
   options.path_file = folder / "far.toml";
@@ -308,11 +308,11 @@ TEST(Flight, APathThatNeverComesNearTheWorldIsRefused) {
   const auto flight = Flight::create(options);
   ASSERT_FALSE(flight);
   EXPECT_EQ(flight.error().code, core::ErrorCode::kInvalidArgument);
-  EXPECT_NE(flight.error().message.find("far.toml: nothing of the world"), std::string::npos)
+  EXPECT_NE(flight.error().message.find("far.toml: the world"), std::string::npos)
       << flight.error().message;
 }
 
-TEST(Flight, StoppingFromOutsideEndsTheFlightAndStillWritesItsOutputs) {
+TEST(Flight, AStopFlagEndsTheFlightWhichStillWritesItsOutputs) {
   std::atomic<bool> stop{true};
   const TemporaryFolder folder;
   FlightOptions options = short_flight();

@@ -1,4 +1,5 @@
-// How many frames a second an application holds, and that it is by the time of its own frames.
+// The target frame rate of an application, and its dependence on the time of the application's
+// frames.
 #include <algorithm>
 #include <functional>
 
@@ -14,7 +15,7 @@ double target_frame_ms(const FlightOptions& options) {
   return flight ? (*flight)->session().scene().state().settings.target_frame_ms : -1.0;
 }
 
-TEST(FrameTarget, Is60HzInAWindowNoneHeadlessAndWhateverTheOptionsSay) {
+TEST(FrameTarget, Is60HzInAWindowNoneHeadlessOrAsTheOptionsSay) {
   FlightOptions options = short_flight();
   EXPECT_EQ(target_frame_ms(options), 0);
   options.session.target_hz = 90;
@@ -39,7 +40,7 @@ FlightOptions governed(double target_hz) {
   return options;
 }
 
-// How coarse the pictures were: the error for all pixels.
+// Coarseness of the images: the error relative to full resolution.
 using Watched = std::vector<double>;
 double coarseness(Session& session) {
   const scene::Quality& quality = session.scene().state().quality;
@@ -60,7 +61,7 @@ Watched flight(double target_hz) {
   return seen;
 }
 
-// A game with a loop of its own.
+// A game with its own loop.
 Watched game(double target_hz) {
   Watched seen;
   const FlightOptions options = governed(target_hz);
@@ -74,11 +75,11 @@ Watched game(double target_hz) {
   return seen;
 }
 
-// No frame takes less than a microsecond, and hardly one more than ten seconds.
-TEST(FrameTarget, ThePicturesOfFlightsAndGamesFollowTheTimeOfTheirFrames) {
+// Every frame takes more than a microsecond and, practically always, less than ten seconds.
+TEST(FrameTarget, TheDetailOfFlightsAndGamesFollowsTheTimeOfTheirFrames) {
   for (const auto& fly : {flight, game}) {
     const Watched slow = fly(1e6), fast = fly(0.1);
-    EXPECT_EQ(slow.front(), 8);  // a software device starts with fewer pixels
+    EXPECT_EQ(slow.front(), 8);  // a software device starts with a lower resolution
     EXPECT_EQ(slow.back(), 24);
     EXPECT_TRUE(std::ranges::is_sorted(slow));
     EXPECT_EQ(fast.front(), 8);

@@ -1,5 +1,5 @@
-// Pictures against stored ones. To accept new pictures after looking at them:
-//   PSYGEN_GOLDEN_UPDATE=1 ctest --preset release -R Golden
+// Compares images with stored ones. To accept new images after inspecting them:
+// PSYGEN_GOLDEN_UPDATE=1 ctest --preset release -R Golden
 #pragma once
 
 #include <cstdlib>
@@ -12,8 +12,8 @@
 
 namespace psygen::app {
 
-// Fails where `image` is not the picture NAME.png of tests/engine/app/golden, which is then written
-// to the test's folder to be looked at.
+// Fails if `image` differs from the stored NAME.png of tests/engine/app/golden; `image` is then
+// written to the test's folder for inspection.
 inline void expect_golden(const std::string& name, const image::Image& image) {
   const auto stored =
       std::filesystem::path(source_file("tests/engine/app/golden")) / (name + ".png");
@@ -26,7 +26,7 @@ inline void expect_golden(const std::string& name, const image::Image& image) {
   if (image::matches_golden(difference)) return;
   const auto found = std::filesystem::path(testing::TempDir()) / (name + ".png");
   ASSERT_TRUE(image::write_png(found, image));
-  ADD_FAILURE() << "share of differing pixels " << difference.share_over << "; look at " << found;
+  ADD_FAILURE() << "fraction of differing pixels " << difference.share_over << "; see " << found;
 }
 
 inline image::Image captured(Session& session) {

@@ -1,5 +1,5 @@
-// Pictures in the middle of changes of models, and of models in the shade of hills: meadows, trees
-// and rocks of silver combe.
+// Images during changes of models, and of models in the shade of hills: meadows, trees and rocks of
+// silver combe.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -30,7 +30,7 @@ class GoldenCombe : public testing::Test {
   void TearDown() override {
     EXPECT_THAT(session_->renderer().validation_messages(), testing::IsEmpty());
   }
-  // Over a slope in the sun, with a valley in the shade behind it.
+  // Over a sunlit slope, with a valley in the shade behind it.
   core::CameraPose pose() {
     world::PathPoint point;
     point.at_m = {-2439, -610};
@@ -48,7 +48,7 @@ class GoldenCombe : public testing::Test {
   std::unique_ptr<Session> session_;
 };
 
-TEST_F(GoldenCombe, StandsInTheShadeOfItsHills) {
+TEST_F(GoldenCombe, LiesInTheShadeOfItsHills) {
   const core::CameraPose at = pose();
   session_->scene().settle(at);
   ASSERT_TRUE(session_->tick(at, 1.0 / 60.0));
@@ -57,8 +57,7 @@ TEST_F(GoldenCombe, StandsInTheShadeOfItsHills) {
   expect_golden("combe_shade", captured(*session_));
 }
 
-// Of what stands on a node as one mesh some is in the shade and some is not, also where everything
-// may cast a shadow.
+// A merged mesh may be partly in the shade, also where all of it may cast a shadow.
 TEST_F(GoldenCombe, MergedMeshesHaveTheLightOfTheirParts) {
   for (const bool with_cascades : {false, true}) {
     if (with_cascades) open(render::Preset::kHigh);
@@ -74,12 +73,12 @@ TEST_F(GoldenCombe, MergedMeshesHaveTheLightOfTheirParts) {
   }
 }
 
-// Thirty metres further on all is there already: every change of level begins in the first frame.
-TEST_F(GoldenCombe, HalfwayThroughItsFades) {
+// Thirty metres farther all meshes are ready: every change of level begins in the first frame.
+TEST_F(GoldenCombe, MatchesItsImageHalfwayThroughFades) {
   open(render::Preset::kLow, 3);
   const core::CameraPose from = pose();
   core::CameraPose to = from;
-  to.position.local += glm::dvec3(31, 0, 18);  // ahead
+  to.position.local += glm::dvec3(31, 0, 18);  // forward
   to.position = core::normalised(to.position, state().facts.world.block_size_m());
   for (const core::CameraPose& at : {to, from})
     session_->scene().settle(at);
@@ -100,7 +99,7 @@ TEST_F(GoldenCombe, HalfwayThroughItsFades) {
   const auto going = [](const render::MeshDraw& d) { return d.fade < -0.4F && d.fade > -0.6F; };
   EXPECT_GT(draws(coming), 20);
   EXPECT_GT(draws(going), 20);
-  EXPECT_GT(draws(as_before), draws(going) / 2) << "what goes keeps its light";
+  EXPECT_GT(draws(as_before), draws(going) / 2) << "disappearing models keep their light";
   expect_golden("combe_fades", captured(*session_));
 }
 

@@ -1,5 +1,5 @@
-// Trees of a glTF file whose leaves are cards with a texture that leaves out what is between them:
-// near, at all levels, and as pictures afar, beside the same with all detail everywhere.
+// Trees of a glTF file whose leaves are cards with an alpha-cutout texture: near, at all levels,
+// and as distant impostors, next to the same trees with full detail everywhere.
 #include "tests/engine/app/golden.hpp"
 #include "tests/engine/handmade/shapes.hpp"
 

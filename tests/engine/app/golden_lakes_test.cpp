@@ -1,4 +1,4 @@
-// Pictures of water, its shore and the sun's path on it, in the world that has some.
+// Images of water, its shore and the sun's path on it, in the world with lakes.
 #include "engine/render/preset.hpp"
 #include "engine/world/camera_path.hpp"
 #include "tests/engine/app/golden.hpp"

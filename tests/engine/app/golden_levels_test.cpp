@@ -1,5 +1,5 @@
-// Every change of level of a node, as pictures: the camera goes away from one place, and what
-// covers it takes the shape of the next coarser node and is replaced by it.
+// Images of every change of level of a node: the camera moves away from a position, and the node
+// that covers it morphs to the shape of the next coarser node and is replaced by it.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -26,7 +26,7 @@ class GoldenLevels : public testing::TestWithParam<unsigned> {
     session_ = std::move(*session);
   }
 
-  // Looks at the node of a level at kPlace from so far away (from its border).
+  // Looks at the node of a level at kPlace from this distance to its border.
   core::CameraPose away(unsigned level, double distance_m) {
     const world::World& world = state().facts.world;
     const double block_m = world.block_size_m(),
@@ -68,9 +68,9 @@ void put(const image::Image& part, std::uint32_t column, image::Image& sheet) {
   }
 }
 
-// Level 0 is a block whose finest mesh takes the shape of its coarser one; above it is a node whose
-// children take its shape.
-TEST_P(GoldenLevels, ANodeIsReplacedAsItWas) {
+// Level 0 is a block whose finest mesh morphs to its coarser one; above it, a node's children morph
+// to its shape.
+TEST_P(GoldenLevels, TheReplacementOfANodeMatchesTheStoredImages) {
   const unsigned level = GetParam();
   image::Image sheet = image::make_image(4 * kSize.width, kSize.height);
   seen_from(away(level, 10));  // the distances are known after a frame

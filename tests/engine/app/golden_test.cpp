@@ -11,19 +11,19 @@ namespace {
 
 struct Look {
   const char* name;
-  double seconds;  // of the walk
+  double seconds;  // position on the walk
   render::Preset preset = render::Preset::kLow;
   render::View view = render::View::kNormal;
 };
 
-// In names of tests, instead of its bytes.
+// Printed in names of tests instead of the bytes.
 void PrintTo(const Look& look, std::ostream* out) {
   *out << look.name;
 }
 
 class Golden : public testing::TestWithParam<Look> {};
 
-TEST_P(Golden, ASettledSceneLooksAsItDid) {
+TEST_P(Golden, ASettledSceneMatchesItsStoredImage) {
   const Look& look = GetParam();
   SessionOptions options = short_session();
   options.size = {480, 270};

@@ -1,4 +1,4 @@
-// Pictures of the ground that a world names: each fault is an error that names file and field.
+// Ground textures of a world file: each error names file and field.
 #include "engine/app/ground_pictures.hpp"
 
 #include <fstream>
@@ -24,7 +24,7 @@ class GroundPicturesTest : public ::testing::Test {
     return read_ground_pictures(world, place("w.toml"));
   }
 
-  // The error of a picture, which begins with the world's file and the field.
+  // The error of an image, which begins with the world's file and the field.
   std::string error_of(const std::string& name) const {
     const auto pictures = read(name);
     if (pictures) return "accepted";
@@ -55,7 +55,7 @@ TEST_F(GroundPicturesTest, AMissingOneIsNamed) {
   EXPECT_EQ(read("missing.png").error().code, core::ErrorCode::kIo);
 }
 
-TEST_F(GroundPicturesTest, ADamagedOneIsRefused) {
+TEST_F(GroundPicturesTest, ADamagedOneIsRejected) {
   write("whole.png", image::make_image(64, 64, 90, 80, 40, 255));
   std::filesystem::resize_file(place("whole.png"), 60);
   EXPECT_THAT(error_of("whole.png"), HasSubstr("truncated or damaged"));
@@ -63,12 +63,12 @@ TEST_F(GroundPicturesTest, ADamagedOneIsRefused) {
   EXPECT_THAT(error_of("text.png"), HasSubstr("is not a PNG or JPEG"));
 }
 
-TEST_F(GroundPicturesTest, AHugeOneIsRefusedBeforeItIsDecoded) {
+TEST_F(GroundPicturesTest, AHugeOneIsRejectedBeforeDecoding) {
   write("huge.png", image::make_image(5000, 16, 90, 80, 40, 255));
   EXPECT_THAT(error_of("huge.png"), HasSubstr("5000 x 16; at most 4096 x 4096"));
 }
 
-TEST_F(GroundPicturesTest, OneThatIsOnePixelWideTransparentOrNotTileableIsRefused) {
+TEST_F(GroundPicturesTest, AnUnusableOneIsRejected) {
   write("line.png", image::make_image(1, 64, 90, 80, 40, 255));
   EXPECT_THAT(error_of("line.png"), HasSubstr("1 x 64; it must be square"));
   write("glass.png", image::make_image(64, 64, 90, 80, 40, 128));
@@ -80,7 +80,7 @@ TEST_F(GroundPicturesTest, OneThatIsOnePixelWideTransparentOrNotTileableIsRefuse
   EXPECT_THAT(error_of("ramp.png"), HasSubstr("without a seam"));
 }
 
-TEST_F(GroundPicturesTest, ALinkOutOfTheFolderIsRefused) {
+TEST_F(GroundPicturesTest, ALinkOutOfTheFolderIsRejected) {
   write("a.png", image::make_image(64, 64, 9, 9, 9, 255));
   std::filesystem::create_directory(place("worlds"));
   std::filesystem::create_symlink(place("a.png"), place("worlds/link.png"));
@@ -92,7 +92,7 @@ TEST_F(GroundPicturesTest, ALinkOutOfTheFolderIsRefused) {
   EXPECT_TRUE(read_ground_pictures(world, place("w.toml")).error().code == core::ErrorCode::kIo);
 }
 
-TEST_F(GroundPicturesTest, ASessionWithABadOneDoesNotStartAndSaysWhy) {
+TEST_F(GroundPicturesTest, ASessionWithABadOneFailsWithAMessage) {
   std::ifstream paper(source_file("game/worlds/paper.toml"));
   std::string text{std::istreambuf_iterator<char>(paper), std::istreambuf_iterator<char>()};
   const std::size_t palette = text.find("[palette]\n");

@@ -1,4 +1,4 @@
-// Dear ImGui in a session, with a person that the test makes up.
+// Dear ImGui in a session, with simulated user input.
 #include "engine/app/gui.hpp"
 
 #include <imgui/imgui.h>
@@ -53,7 +53,7 @@ class GuiOfAPerson : public testing::Test {
   void click(const glm::dvec2& at) {
     input_.pointer_px = at;
     frame();
-    frame();  // ImGui knows from the last frame what is below the pointer
+    frame();  // ImGui detects the widget below the pointer from the last frame
     hold(MouseButton::kLeft, true);
     hold(MouseButton::kLeft, false);
     frame();
@@ -83,7 +83,7 @@ TEST_F(GuiOfAPerson, TakesTheMouseOverAWindowAndNowhereElse) {
   EXPECT_FALSE(gui_.takes_mouse()) << "a captured cursor is over nothing";
 }
 
-TEST_F(GuiOfAPerson, PressesButtons) {
+TEST_F(GuiOfAPerson, ClicksAButtonWithTheMouse) {
   frame();
   click(button_);
   EXPECT_EQ(presses_, 1);
@@ -116,7 +116,7 @@ TEST_F(GuiOfAPerson, IsDrawnAsTrianglesInsideThePicture) {
   ASSERT_FALSE(runs.empty());
   std::size_t next = 6, letters = 0;
   for (const render::GuiRun& run : runs) {
-    EXPECT_EQ(run.first_vertex, next) << "after what was there";
+    EXPECT_EQ(run.first_vertex, next) << "after the existing vertices";
     next += run.vertex_count;
     EXPECT_LE(run.x + run.width, kGuiSize.width);
     EXPECT_LE(run.y + run.height, kGuiSize.height);
@@ -128,7 +128,7 @@ TEST_F(GuiOfAPerson, IsDrawnAsTrianglesInsideThePicture) {
   EXPECT_LT(letters, out.size() - 6);
 }
 
-TEST_F(GuiOfAPerson, StandsTimesAndSizesThatMakeNoSense) {
+TEST_F(GuiOfAPerson, ToleratesInvalidTimesAndSizes) {
   for (const double dt_s : {0.0, -1.0, 1e300, std::nan("")}) {
     gui_.begin(input_, {0, 0}, NAN, dt_s);
     gui_.end();
@@ -143,7 +143,7 @@ TEST_F(GuiOfAPerson, StandsTimesAndSizesThatMakeNoSense) {
   EXPECT_EQ(presses_, 1);
 }
 
-TEST(GuiInAWindow, KeepsClicksOnAMenuFromTheGameAndLetsOthersThrough) {
+TEST(GuiInAWindow, KeepsClicksOnAMenuFromTheGameAndPassesOthers) {
   const auto display = platform::VirtualDisplay::start();
   ASSERT_NE(display, nullptr) << "these tests need xvfb, openbox and xdotool";
   int presses = 0;
@@ -188,7 +188,7 @@ TEST(GuiInAWindow, KeepsClicksOnAMenuFromTheGameAndLetsOthersThrough) {
   EXPECT_EQ(presses, 1);
 }
 
-TEST(GuiInASession, IsInPicturesWithoutAWindowAndOnlyInsideItsOwn) {
+TEST(GuiInASession, IsInImagesWithoutAWindowAndOnlyInItsOwnSession) {
   const auto picture = [](bool with_gui) {
     SessionOptions options = short_session();
     options.preset = render::Preset::kLow;

@@ -1,4 +1,4 @@
-// The ground is closed: wherever the true ground stands in the way, no sky is seen.
+// The ground is closed: no sky is visible through the true ground.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -35,7 +35,7 @@ TEST(Holes, LookingForwardAndDownFromAnyHeightTheGroundIsClosed) {
   }
 }
 
-// Over plains, along ridges and from above, as far as ground is drawn by the coarsest nodes.
+// Over plains, along ridges and from above, up to the view distance of the coarsest nodes.
 TEST(Holes, In16KilometresOfGroundNotASinglePixelIsOpen) {
   SessionOptions options = wide_view();
   options.scene.view_distance_m = 16'000;
@@ -57,7 +57,7 @@ TEST(Holes, In16KilometresOfGroundNotASinglePixelIsOpen) {
   }
 }
 
-// Where vertices lie on sides of other triangles, single pixels of sky are seen now and then.
+// Where vertices lie on edges of other triangles, single pixels of sky can become visible.
 TEST(Holes, InViewsOfAnyPlaceNotASinglePixelIsOpen) {
   for (const char* world : {"paper.toml", "five_species.toml"}) {
     SessionOptions options = wide_view();
@@ -77,7 +77,7 @@ TEST(Holes, InViewsOfAnyPlaceNotASinglePixelIsOpen) {
   }
 }
 
-// Blocks that no stride divides, coarse levels near the camera, steep ground.
+// Odd block sizes, coarse levels near the camera, steep ground.
 TEST(Holes, OddBlocksAndCoarseLevelsOfSteepGroundLeaveNoCracks) {
   for (const char* terrain : {"feature_m = 300\nrelief_m = 300\n", "relief_m = 900\n"}) {
     SessionOptions options = wide_view();
@@ -95,7 +95,7 @@ TEST(Holes, OddBlocksAndCoarseLevelsOfSteepGroundLeaveNoCracks) {
   }
 }
 
-// While levels change, with what has come so far.
+// During changes of levels, with the meshes that are ready.
 TEST(Holes, WhileTheCameraClimbsAndFliesTheGroundStaysClosed) {
   Studio studio("silver_combe.toml", wide_view());
   core::CameraPose pose = studio.above({250, 250}, 20, 20, 4, 0.8, -0.25);
@@ -112,13 +112,13 @@ TEST(Holes, WhileTheCameraClimbsAndFliesTheGroundStaysClosed) {
   }
 }
 
-TEST(Holes, AreFoundWhereGroundOrSkirtsAreLeftOut) {
+TEST(Holes, AreDetectedIfGroundOrSkirtsAreMissing) {
   Studio studio("paper.toml", wide_view());
   studio.settle(studio.above({250, 250}, 3, 60, 30, 0.3, -0.3));
   EXPECT_EQ(studio.holes(), 0u);
   std::vector<render::TerrainDraw>& draws = studio.state().draws.terrain;
   ASSERT_GE(draws.size(), 12u);
-  std::size_t most = 0;  // behind some near tiles lies a hill
+  std::size_t most = 0;  // a hill may lie behind near tiles
   for (std::size_t i = 0; i < 12; ++i) {
     const auto all = draws;
     draws.erase(draws.begin() + static_cast<std::ptrdiff_t>(i));
@@ -126,8 +126,7 @@ TEST(Holes, AreFoundWhereGroundOrSkirtsAreLeftOut) {
     draws = all;
   }
   EXPECT_GT(most, 1000u);
-  // Without morphing the borders of two levels do not meet, and skirts hide most of what is between
-  // them.
+  // Without morphing the borders of two levels do not meet, and skirts hide most of the gap.
   for (render::TerrainDraw& draw : draws)
     draw.morph = 0;
   const std::size_t with_skirts = studio.holes();

@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using Subject = Hud::Subject;
 
-// The text of all panels in a place, a line each.
+// Text of all panels at an anchor, one line each.
 std::string text(const std::vector<render::TextPanel>& panels, render::Anchor anchor) {
   std::string text;
   for (const render::TextPanel& panel : panels) {
@@ -51,7 +51,7 @@ class HudTest : public ::testing::Test {
   Hud hud_;
 };
 
-TEST_F(HudTest, SaysNothingBeforeTheFirstFrameAndTheMedianAfterwards) {
+TEST_F(HudTest, ShowsTheMedianAfterTheFirstFrame) {
   EXPECT_THAT(figures(), IsEmpty());
   for (const double ms : {10.0, 50.0, 20.0})
     hud_.add_frame(ms);
@@ -59,7 +59,7 @@ TEST_F(HudTest, SaysNothingBeforeTheFirstFrameAndTheMedianAfterwards) {
   EXPECT_THAT(figures(), HasSubstr("50.0 ms worst"));
 }
 
-TEST_F(HudTest, ShowsWhatIsWaitedAndWhatTheDeviceTakesWhereThatIsKnown) {
+TEST_F(HudTest, ShowsWaitingAndGpuTimesIfKnown) {
   scene::State& state = scene_->state();
   hud_.add_frame(20);
   state.record.device_wait_ms = 12;
@@ -69,7 +69,7 @@ TEST_F(HudTest, ShowsWhatIsWaitedAndWhatTheDeviceTakesWhereThatIsKnown) {
   EXPECT_THAT(figures(), HasSubstr("waits 12.5 ms   device 17.2 ms"));
 }
 
-TEST_F(HudTest, HasSpeedPresetAndErrorAmongItsFigures) {
+TEST_F(HudTest, ShowsSpeedPresetAndError) {
   hud_.add_frame(20);
   EXPECT_THAT(figures(), HasSubstr("preset high"));
   EXPECT_THAT(figures(), HasSubstr("error 4.0 pixels"));
@@ -82,7 +82,7 @@ TEST_F(HudTest, HasSpeedPresetAndErrorAmongItsFigures) {
   EXPECT_THAT(figures(), HasSubstr("speed 30.0 m/s"));
 }
 
-TEST_F(HudTest, SaysHowHighTheCameraIsOverTheGround) {
+TEST_F(HudTest, ShowsTheHeightOverTheGround) {
   hud_.add_frame(20);
   core::CameraPose pose = scene::pose_at(256, 256);
   pose.position.local.y =
@@ -93,7 +93,7 @@ TEST_F(HudTest, SaysHowHighTheCameraIsOverTheGround) {
   EXPECT_THAT(figures(), HasSubstr("1.7 m over ground"));
 }
 
-TEST_F(HudTest, GoesFromFiguresToHelpToNothingAndBack) {
+TEST_F(HudTest, CyclesFromStatisticsToHelpToNothing) {
   hud_.add_frame(20);
   EXPECT_THAT(figures(), HasSubstr("fps"));
   EXPECT_THAT(figures(), HasSubstr("F1 help"));
@@ -109,7 +109,7 @@ TEST_F(HudTest, GoesFromFiguresToHelpToNothingAndBack) {
   EXPECT_THAT(figures(), HasSubstr("fps"));
 }
 
-TEST_F(HudTest, FitsBesideALegendIntoASmallWindow) {
+TEST_F(HudTest, FitsNextToALegendInASmallWindow) {
   constexpr std::size_t kColumns = 86, kRows = 22;  // of 640 x 360
   hud_.add_frame(20);
   scene_->state().input.view = render::View::kCache;
@@ -134,14 +134,14 @@ TEST_F(HudTest, ShowsTheLegendOfTheViewOnEveryPage) {
     EXPECT_THAT(text(panels(0), render::Anchor::kTopRight), HasSubstr("view: missing"));
 }
 
-TEST_F(HudTest, ANoticeGoesAfterItsTime) {
+TEST_F(HudTest, ANoticeDisappearsAfterItsTime) {
   hud_.notify(Subject::kPicture, "wrote a.png", 100);
   EXPECT_EQ(notices(100), "wrote a.png\n");
   EXPECT_EQ(notices(100 + 0.9 * Hud::kNoticeSeconds), "wrote a.png\n");
   EXPECT_THAT(notices(100 + Hud::kNoticeSeconds), IsEmpty());
 }
 
-TEST_F(HudTest, ANewNoticeTakesThePlaceOfTheLastAboutTheSame) {
+TEST_F(HudTest, ANewNoticeReplacesTheLastOfItsSubject) {
   hud_.notify(Subject::kPreset, "preparing preset high ...", 1);
   hud_.notify(Subject::kPicture, "wrote a.png", 2);
   hud_.notify(Subject::kPreset, "preset high", 3);
@@ -156,7 +156,7 @@ TEST_F(HudTest, ANoticeMayStayUntilAKeyIsPressed) {
   EXPECT_EQ(notices(0), "wrote a.png\n");
 }
 
-TEST_F(HudTest, LeavesNoticesOutOfPicturesThatAreKept) {
+TEST_F(HudTest, OmitsNoticesFromSavedImages) {
   hud_.add_frame(20);
   hud_.notify(Subject::kPicture, "wrote a.png", 0);
   const auto lasting = hud_.lasting_panels(scene_->state(), facts_);

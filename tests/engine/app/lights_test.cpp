@@ -1,5 +1,5 @@
-// A lantern at night, smoke and snow in a session, on both paths. To accept new pictures after
-// looking at them: PSYGEN_GOLDEN_UPDATE=1
+// A lantern at night, smoke and snow in a session, on both paths. To accept new images after
+// inspecting them: PSYGEN_GOLDEN_UPDATE=1
 #include <array>
 #include <fstream>
 #include <ostream>
@@ -40,7 +40,7 @@ core::CameraPose low_pose(const Session& session) {
   return pose;
 }
 
-// A place so far to the right and ahead of the camera, so high above the ground.
+// A position to the right and ahead of the camera, at a height above the ground.
 scene::Transform at(Session& session, const core::CameraPose& pose, double right_m, double ahead_m,
                     double up_m) {
   const scene::State& state = session.scene().state();
@@ -54,7 +54,7 @@ scene::Transform at(Session& session, const core::CameraPose& pose, double right
   return transform;
 }
 
-// A post of half a metre and the lantern on it.
+// A post of half a metre with a lantern on it.
 void put_lantern(Session& session, const scene::Transform& transform) {
   scene::State& state = session.scene().state();
   core::MeshData box;
@@ -109,14 +109,14 @@ struct Case {
   void (*furnish)(Session&, const core::CameraPose&);
 };
 
-// The name of a test, which would hold addresses otherwise.
+// Name of a test, which would otherwise contain addresses.
 void PrintTo(const Case& test_case, std::ostream* out) {
   *out << test_case.name << ' ' << render::to_string(test_case.preset);
 }
 
 class EffectPictures : public testing::TestWithParam<Case> {};
 
-TEST_P(EffectPictures, AreTheSameOnBothPathsAndAsTheyWere) {
+TEST_P(EffectPictures, AreTheSameOnBothPathsAndMatchTheStoredImages) {
   std::array<image::Image, 2> images;
   for (std::size_t i = 0; i < 2; ++i) {
     const auto session = open(i == 0 ? RenderPath::kCpu : RenderPath::kGpu, GetParam().preset,

@@ -17,7 +17,7 @@ const render::HudText* find(const render::HudDrawing& drawing, std::string_view 
   return found == drawing.texts.end() ? nullptr : &*found;
 }
 
-TEST(LoadingPicture, SaysWhichWorldWhatGoesOnAndHowFar) {
+TEST(LoadingPicture, ShowsTheWorldTheTaskAndItsProgress) {
   const render::HudDrawing drawing =
       loading_picture("silver combe", "growing", 0.424, kLoadingSize);
   ASSERT_NE(find(drawing, "silver combe"), nullptr);
@@ -26,7 +26,7 @@ TEST(LoadingPicture, SaysWhichWorldWhatGoesOnAndHowFar) {
   EXPECT_GT(find(drawing, "silver combe")->size_px, 2 * find(drawing, "growing")->size_px);
 }
 
-TEST(LoadingPicture, HasABarAsLongAsWhatIsDone) {
+TEST(LoadingPicture, HasABarThatShowsTheProgress) {
   const auto bar = [](double fraction) {
     return loading_picture("w", "l", fraction, kLoadingSize).areas.back().size.share.x;
   };
@@ -37,7 +37,7 @@ TEST(LoadingPicture, HasABarAsLongAsWhatIsDone) {
   EXPECT_EQ(bar(std::nan("")), 0);
 }
 
-TEST(LoadingPicture, KeepsALongNameInThePictureAndFollowsItsHeight) {
+TEST(LoadingPicture, KeepsALongNameInTheImageAndScalesWithItsHeight) {
   std::string name = "\u00C4";
   name.append(120, 'W');
   for (const core::Extent picture : {core::Extent{1280, 720}, {320, 180}, {3840, 2160}}) {
@@ -49,14 +49,14 @@ TEST(LoadingPicture, KeepsALongNameInThePictureAndFollowsItsHeight) {
   }
 }
 
-TEST(LoadingPicture, WritesANameSmallerBeforeItIsShortened) {
+TEST(LoadingPicture, ShrinksANameBeforeShorteningIt) {
   const std::string name(30, 'W');
   const render::HudDrawing drawing = loading_picture(name, "l", 0, kLoadingSize);
   ASSERT_NE(find(drawing, name), nullptr);
   EXPECT_LT(find(drawing, name)->size_px, 60);
 }
 
-TEST(LoadingPicture, HasHillsOfItsOwnForEachWorld) {
+TEST(LoadingPicture, HasDifferentHillsForEachWorld) {
   const auto tops = [](std::string_view world) {
     std::vector<float> all;
     for (const render::HudArea& area : loading_picture(world, "l", 0, kLoadingSize).areas)

@@ -7,7 +7,7 @@
 namespace psygen::app {
 namespace {
 
-// Polls until `condition()` holds; false when it does not within so many looks.
+// Polls until `condition()` holds; returns false if it does not within a number of attempts.
 template <class Condition>
 bool eventually(platform::Window& window, const Condition& condition, int looks = 300) {
   for (int i = 0; i < looks; ++i) {
@@ -35,13 +35,13 @@ class LoadingInAWindow : public testing::Test {
   std::unique_ptr<platform::Window> window_;
 };
 
-TEST(Loading, EndsOnceItIsToldToStop) {
+TEST(Loading, EndsOnceTheStopFlagIsSet) {
   std::atomic<bool> stop{false};
   Loading loading("world", nullptr, &stop);
   EXPECT_TRUE(loading.update("filling", 0.1, nullptr));
   stop = true;
   EXPECT_FALSE(loading.update("filling", 0.2, nullptr));
-  EXPECT_FALSE(loading.closed()) << "nobody closed a window";
+  EXPECT_FALSE(loading.closed()) << "no window was closed";
   EXPECT_TRUE(Loading("world", nullptr, nullptr).update("filling", 0.1, nullptr));
 }
 
@@ -65,14 +65,14 @@ TEST_F(LoadingInAWindow, EndsByTheEscapeKeyAndFollowsF11) {
   EXPECT_TRUE(loading.closed());
 }
 
-TEST_F(LoadingInAWindow, ShowsABarAsLongAsWhatIsDone) {
+TEST_F(LoadingInAWindow, ShowsABarOfTheProgress) {
   render::RendererOptions options;
   options.validation = true;
   options.surface = window_.get();
   options.preset = render::Preset::kLow;
   const auto renderer = render::Renderer::create(options);
   ASSERT_TRUE(renderer) << renderer.error().message;
-  // Pixels that are as blue as nothing else of that picture.
+  // Pixels of a blue that only the bar has.
   const auto bar = [&](double fraction) {
     EXPECT_TRUE(eventually(*window_, [&] {
       Loading loading("world", window_.get(), nullptr);
@@ -92,21 +92,21 @@ TEST_F(LoadingInAWindow, ShowsABarAsLongAsWhatIsDone) {
   EXPECT_TRUE((*renderer)->validation_messages().empty());
 }
 
-TEST(Loading, NeverGoesBack) {
+TEST(Loading, NeverDecreasesTheProgress) {
   Loading loading("world", nullptr, nullptr);
   loading.update("filling", 0.5, nullptr);
   loading.update("filling", 0.3, nullptr);
   EXPECT_EQ(loading.fraction(), 0.5);
   loading.update("amplifying", 0.1, nullptr);
-  EXPECT_EQ(loading.fraction(), 0.1) << "of something else";
+  EXPECT_EQ(loading.fraction(), 0.1) << "of another task";
 }
 
-TEST(PicturePace, LeavesMostOfTheTimeToWhatIsLoading) {
+TEST(PicturePace, LeavesMostOfTheTimeToLoading) {
   PicturePace quick;
   EXPECT_TRUE(quick.is_due(10));
   quick.drawn(10, 10.001);
   EXPECT_FALSE(quick.is_due(10.04));
-  EXPECT_TRUE(quick.is_due(10.06)) << "20 pictures a second";
+  EXPECT_TRUE(quick.is_due(10.06)) << "20 images a second";
   PicturePace slow;
   slow.drawn(10, 12);
   EXPECT_FALSE(slow.is_due(19.9));

@@ -1,5 +1,5 @@
-// Objects of a game in a session, on both paths: code puts them into the world, and they stand in
-// its light. To accept a new picture after looking at it: PSYGEN_GOLDEN_UPDATE=1
+// Objects of a game in a session, on both paths: code adds them to the world, and its light applies
+// to them. To accept a new image after inspecting it: PSYGEN_GOLDEN_UPDATE=1
 #include <array>
 
 #include "engine/image/compare.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 using scene::MeshId;
 
-// A box of two metres with a whole texture on each side, on the ground.
+// A box of two metres with the whole texture on each side, on the ground.
 core::MeshData crate() {
   core::MeshData mesh;
   for (int axis = 0; axis < 3; ++axis) {
@@ -50,7 +50,7 @@ image::Image planks() {
   return picture;
 }
 
-// Two square metres of a fence, with holes between its posts.
+// Two square metres of a fence, with gaps between its posts.
 core::MeshData panel() {
   core::MeshData mesh;
   mesh.positions = {{-1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -95,7 +95,7 @@ void put(Session& session, const core::CameraPose& pose, glm::dvec2 at, const sc
   scene::spawn(state.entities, object, transform);
 }
 
-// Crates in a row, one that glows, a rock of the game's own, a fence with holes, and a tower beyond
+// A row of crates, one of which glows, a rock of the game, a fence with gaps, and a tower beyond
 // the view distance.
 void furnish(Session& session, const core::CameraPose& pose) {
   scene::Assets& assets = session.scene().state().assets;
@@ -124,7 +124,7 @@ void furnish(Session& session, const core::CameraPose& pose) {
 
 class ObjectPictures : public testing::TestWithParam<render::Preset> {};
 
-TEST_P(ObjectPictures, AreTheSameOnBothPathsAndAsTheyWere) {
+TEST_P(ObjectPictures, AreTheSameOnBothPathsAndMatchTheStoredImages) {
   std::array<image::Image, 2> images;
   for (std::size_t i = 0; i < 2; ++i) {
     const auto session =

@@ -1,4 +1,4 @@
-// What is left out behind ridges makes no difference to the picture: in any world, from any height.
+// Culling behind ridges does not change the image: in any world, from any height.
 #include "engine/image/compare.hpp"
 #include "engine/world/files/path_file.hpp"
 #include "tests/engine/app/studio.hpp"
@@ -6,7 +6,7 @@
 namespace psygen::app {
 namespace {
 
-// Coarse ground hides as much as fine.
+// Coarse ground hides as much as fine ground.
 SessionOptions occlusion_view() {
   SessionOptions options = short_session();
   options.validation = false;
@@ -15,7 +15,7 @@ SessionOptions occlusion_view() {
   return options;
 }
 
-// Meshes for everything on a node are drawn as a whole from now on.
+// Draws merged meshes as a whole from now on.
 void forget_parts(ecs::World& entities) {
   entities.each<scene::MeshParts>(
       [](std::span<const ecs::Entity>, std::span<scene::MeshParts> parts) {
@@ -24,7 +24,8 @@ void forget_parts(ecs::World& entities) {
       });
 }
 
-// Pixels that differ with and without occlusion, and with merged meshes in parts or as a whole.
+// Counts pixels that differ with and without culling, and with merged meshes in parts or as a
+// whole.
 std::uint64_t differing(Studio& studio, const core::CameraPose& pose, std::uint32_t& hidden) {
   studio.state().settings.occlusion = true;
   studio.settle(pose);
@@ -51,7 +52,7 @@ TEST(Occlusion, MakesNoDifferenceOnTheWalk) {
 
 class OcclusionOf : public testing::TestWithParam<const char*> {};
 
-TEST_P(OcclusionOf, MakesNoDifferenceToAnyPicture) {
+TEST_P(OcclusionOf, MakesNoDifferenceToAnyImage) {
   Studio studio(GetParam(), occlusion_view());
   std::uint32_t hidden = 0;
   int turn = 0;

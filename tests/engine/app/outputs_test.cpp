@@ -1,4 +1,4 @@
-// What a flight leaves behind where not everything can be written.
+// Outputs of a flight when not everything can be written.
 #include <sys/resource.h>
 
 #include <csignal>
@@ -11,7 +11,7 @@
 namespace psygen::app {
 namespace {
 
-// While it lives no file may become larger.
+// Limits the size of files during its lifetime.
 class FileLimit {
  public:
   explicit FileLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -50,11 +50,11 @@ std::vector<std::string> names_of(const FlightReport& report, const std::filesys
   return names;
 }
 
-TEST(Outputs, APictureThatCannotBeWrittenIsNamedAndTheFlightGoesOnWithoutAnyMore) {
+TEST(Outputs, AnImageThatCannotBeWrittenIsNamedAndIsTheLastOne) {
   const TemporaryFolder folder;
   auto flight = Flight::create(flight_into(folder.path()));
   ASSERT_TRUE(flight) << flight.error().message;
-  const FileLimit limit(5000);  // less than any picture
+  const FileLimit limit(5000);  // less than any image
   const auto report = (*flight)->run();
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->summary.run.frames, 7u);
@@ -63,14 +63,14 @@ TEST(Outputs, APictureThatCannotBeWrittenIsNamedAndTheFlightGoesOnWithoutAnyMore
                                   [](const std::string& name) { return name.ends_with(".png"); }),
             1);
   EXPECT_FALSE(report->summary.hash.images.value);
-  EXPECT_EQ(report->summary.hash.images.reason, "a picture was not written");
+  EXPECT_EQ(report->summary.hash.images.reason, "an image was not written");
 }
 
-TEST(Outputs, WhatFitsIsWrittenWhereTheRestDoesNotAndNothingIsCut) {
+TEST(Outputs, FilesThatFitAreWrittenCompletely) {
   const TemporaryFolder folder;
   auto flight = Flight::create(flight_into(folder.path()));
   ASSERT_TRUE(flight) << flight.error().message;
-  // Room for the first picture (made, written, flushed, closed, renamed, the folder flushed and
+  // Calls for the first image (made, written, flushed, closed, renamed, the folder flushed and
   // closed) and the begin of the next.
   const FullDisk full(folder.path(), 8);
   const auto report = (*flight)->run();
@@ -82,11 +82,11 @@ TEST(Outputs, WhatFitsIsWrittenWhereTheRestDoesNotAndNothingIsCut) {
   EXPECT_EQ(folder.file_count(), 1u);
 }
 
-TEST(Outputs, ALargeFileThatDoesNotFitTakesNoSmallerOneWithIt) {
+TEST(Outputs, ALargeFileThatDoesNotFitAffectsNoSmallerOne) {
   const TemporaryFolder folder;
   FlightOptions options = flight_into(folder.path());
   options.images_every = 0;
-  options.session.scene.virtual_time = false;  // jobs are traced
+  options.session.scene.virtual_time = false;  // modelers' jobs are traced
   auto flight = Flight::create(options);
   ASSERT_TRUE(flight) << flight.error().message;
   const FileLimit limit(12'000);
@@ -98,8 +98,8 @@ TEST(Outputs, ALargeFileThatDoesNotFitTakesNoSmallerOneWithIt) {
   EXPECT_TRUE(nlohmann::json::accept(summary));
 }
 
-// Nothing of ours throws, but libraries do when memory ends, and so does a plugin here.
-TEST(Outputs, WhereMemoryEndsTheFlightFailsAndWhatWasMeasuredIsWritten) {
+// psygen throws nothing, but libraries do when memory runs out, and so does the plugin here.
+TEST(Outputs, OutOfMemoryFailsTheFlightWhichStillWritesItsMeasurements) {
   const TemporaryFolder folder;
   FlightOptions options = flight_into(folder.path());
   options.session.plugins.push_back(

@@ -23,7 +23,7 @@ TEST(Plugin, IsCalledAtTheStartAndAfterEveryFrame) {
   EXPECT_NEAR(time_s, 5.0 / 30.0, 1e-9);
 }
 
-TEST(Plugin, ThatCannotRegisterItsModelsIsNamed) {
+TEST(Plugin, IsNamedIfItCannotRegisterItsModels) {
   FlightOptions options = short_flight();
   options.session.plugins.push_back(
       {.name = "broken", .register_models = [](models::Registry&) -> core::Result<void> {

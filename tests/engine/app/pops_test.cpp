@@ -1,6 +1,6 @@
-// A change of level is not seen: the picture of a frame and what the lists of the frame before
-// would show from the same place are nearly the same, everywhere. That leaves out the movement of
-// the camera and is all that levels of detail and what comes and goes change.
+// A change of level is invisible: the image of a frame, and the image of the previous frame's draw
+// lists from the same camera, are nearly the same everywhere. This excludes the movement of the
+// camera and includes all changes by LODs and fades.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kTile = 20;
 constexpr double kGroundTile = 12, kModelTile = 15;
 
-// Of 255: the mean over the picture, and over the tile that differs most.
+// Of 255: the mean over the image, and over the tile that differs most.
 struct Difference {
   double mean = 0, worst = 0;
 };
@@ -42,12 +42,13 @@ Difference difference(const image::Image& a, const image::Image& b) {
   return found;
 }
 
-// What was worst on a flight.
+// The worst values of a flight.
 struct Pops {
   Difference ground, models;
-  double motion = 0;         // the median over the frames of the mean that the flight itself makes
+  // Median over the frames of the mean difference that the camera's movement makes.
+  double motion = 0;         // medi
   std::size_t switches = 0;  // frames in which nodes were split or merged
-  std::set<int> levels;      // of nodes that were drawn
+  std::set<int> levels;      // of drawn nodes
 };
 
 void keep_worst(const Difference& now, Difference& worst) {
@@ -98,9 +99,9 @@ Pops fly(Studio& studio, core::CameraPose pose, int frames, const Move& move) {
 
 void expect_unseen(const Pops& pops) {
   EXPECT_LT(pops.ground.worst, kGroundTile);
-  EXPECT_LT(pops.ground.mean, pops.motion) << "less than a step of the flight changes";
+  EXPECT_LT(pops.ground.mean, pops.motion) << "less than the change by one step of the flight";
   EXPECT_LT(pops.models.worst, kModelTile);
-  EXPECT_LT(pops.models.mean, pops.motion) << "less than a step of the flight changes";
+  EXPECT_LT(pops.models.mean, pops.motion) << "less than the change by one step of the flight";
   EXPECT_GT(pops.switches, 3u);
 }
 
@@ -111,26 +112,26 @@ SessionOptions view() {
   return options;
 }
 
-TEST(Pops, FlyingForwardNoChangeOfLevelIsSeen) {
+TEST(Pops, FlyingForwardNoChangeOfLevelIsVisible) {
   Studio studio("paper.toml", view());
   expect_unseen(fly(studio, studio.above({250, 250}, 5, 60, 40, 0.3, -0.2), 30,
                     [](int) { return glm::dvec3(0.6, 0, -2.0); }));
 }
 
-TEST(Pops, FlyingBackwardNoChangeOfLevelIsSeen) {
+TEST(Pops, FlyingBackwardNoChangeOfLevelIsVisible) {
   Studio studio("paper.toml", view());
   expect_unseen(fly(studio, studio.above({300, 120}, 5, 60, 30, 0.3, -0.2), 30,
                     [](int) { return glm::dvec3(-0.5, 0.1, 2.0); }));
 }
 
-TEST(Pops, ClimbingNoChangeOfLevelIsSeen) {
+TEST(Pops, ClimbingNoChangeOfLevelIsVisible) {
   Studio studio("paper.toml", view());
   expect_unseen(fly(studio, studio.above({200, 270}, 5, 60, 20, 4.0, -0.35), 30,
                     [](int i) { return glm::dvec3(0.5, 0.1 * i, -0.5); }));
 }
 
-// The largest errors of a flight at 60 frames a second, as far as ground is drawn whose trees are
-// no more than its colour.
+// The largest errors of a flight at 60 frames a second, up to a distance at which trees only colour
+// the ground.
 SessionOptions coarse_view() {
   SessionOptions options = view();
   options.scene.view_distance_m = 6500;
@@ -145,19 +146,19 @@ void expect_unseen_near_and_far(const Studio& studio, const Pops& pops) {
   EXPECT_TRUE(levels[4].merged && !levels.back().merged);
 }
 
-TEST(Pops, FlyingForwardWithALargeErrorNoChangeOfLevelIsSeen) {
+TEST(Pops, FlyingForwardWithALargeErrorNoChangeOfLevelIsVisible) {
   Studio studio("paper.toml", coarse_view());
   expect_unseen_near_and_far(studio, fly(studio, studio.above({250, 250}, 5, 60, 40, 0.3, -0.2), 24,
                                          [](int) { return glm::dvec3(0.6, 0, -2.0); }));
 }
 
-TEST(Pops, FlyingBackwardWithALargeErrorNoChangeOfLevelIsSeen) {
+TEST(Pops, FlyingBackwardWithALargeErrorNoChangeOfLevelIsVisible) {
   Studio studio("paper.toml", coarse_view());
   expect_unseen_near_and_far(studio, fly(studio, studio.above({300, 120}, 5, 60, 30, 0.3, -0.2), 24,
                                          [](int) { return glm::dvec3(-0.5, 0.1, 2.0); }));
 }
 
-TEST(Pops, ClimbingWithALargeErrorNoChangeOfLevelIsSeen) {
+TEST(Pops, ClimbingWithALargeErrorNoChangeOfLevelIsVisible) {
   Studio studio("paper.toml", coarse_view());
   expect_unseen_near_and_far(studio, fly(studio, studio.above({200, 270}, 5, 60, 20, 4.0, -0.35),
                                          24, [](int i) { return glm::dvec3(0.5, 0.1 * i, -0.5); }));
@@ -187,7 +188,7 @@ Pops fly_while_coarsening(Studio& studio, const core::CameraPose& pose, glm::dve
   return pops;
 }
 
-TEST(Pops, WhileTheGovernorCoarsensNoChangeOfLevelIsSeen) {
+TEST(Pops, WhileTheGovernorCoarsensNoChangeOfLevelIsVisible) {
   SessionOptions options = coarse_view();
   options.scene.max_error_pixels = 2;
   options.scene.max_error_factor = 4;

@@ -7,7 +7,7 @@
 namespace psygen::app {
 namespace {
 
-// Both paths over the same frames: what was hidden in one may be seen in the next.
+// Both paths draw the same frames. Occlusion results of one frame apply to the next.
 TEST(RenderPath, TheGpuPathShowsWhatTheCpuPathShows) {
   std::array<std::unique_ptr<Session>, 2> sessions;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -31,7 +31,7 @@ TEST(RenderPath, TheGpuPathShowsWhatTheCpuPathShows) {
     }
     const image::ImageDifference difference = image::compare(images[0], images[1]);
     EXPECT_TRUE(image::matches_golden(difference))
-        << "share of differing pixels " << difference.share_over << " at " << seconds << " s";
+        << "fraction of differing pixels " << difference.share_over << " at " << seconds << " s";
   }
   for (const auto& session : sessions)
     EXPECT_THAT(session->renderer().validation_messages(), testing::IsEmpty());

@@ -1,4 +1,4 @@
-// A session without a flight: what a program with a loop of its own relies on.
+// A session without a flight, as programs with their own loop use it.
 #include "engine/app/session.hpp"
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace psygen::app {
 namespace {
 
-TEST(Session, IsDrivenByALoopOfItsOwnUntilItIsClosed) {
+TEST(Session, IsDrivenByTheProgramsLoopUntilItIsClosed) {
   auto session = Session::create(short_session());
   ASSERT_TRUE(session) << session.error().message;
   const core::CameraPose pose = (*session)->home();
@@ -30,7 +30,7 @@ TEST(Session, IsDrivenByALoopOfItsOwnUntilItIsClosed) {
   EXPECT_TRUE((*session)->renderer().validation_messages().empty());
 }
 
-TEST(Session, DrawsTheNextTickAtTheTimeToWhichItsClockWasSet) {
+TEST(Session, DrawsTheNextTickAtTheTimeOfItsClock) {
   std::vector<double> drawn_s;
   SessionOptions options = short_session();
   options.plugins.push_back(
@@ -52,7 +52,7 @@ TEST(Session, DrawsTheNextTickAtTheTimeToWhichItsClockWasSet) {
   EXPECT_EQ(drawn_s, (std::vector<double>{0, 2, 0.5}));
 }
 
-TEST(Session, EndsWhenItIsStoppedFromOutside) {
+TEST(Session, EndsOnceTheStopFlagIsSet) {
   std::atomic<bool> stop = false;
   SessionOptions options = short_session();
   options.stop = &stop;
@@ -64,7 +64,7 @@ TEST(Session, EndsWhenItIsStoppedFromOutside) {
   EXPECT_TRUE((*session)->stopped());
 }
 
-TEST(Session, CallsPluginsHoweverItIsDriven) {
+TEST(Session, CallsPluginsInAnyLoop) {
   std::vector<std::string> calls;
   SessionOptions options = short_session();
   options.plugins.push_back({.name = "counter",
@@ -82,19 +82,19 @@ TEST(Session, CallsPluginsHoweverItIsDriven) {
   EXPECT_EQ(calls, (std::vector<std::string>{"start", "frame", "frame"}));
 }
 
-TEST(Session, SavesThePictureOfTheLastTickAndChangesItsPreset) {
+TEST(Session, SavesTheImageOfTheLastTickAndChangesItsPreset) {
   SessionOptions options = short_session();
   options.preset = render::Preset::kLow;
   auto session = Session::create(options);
   ASSERT_TRUE(session) << session.error().message;
   const TemporaryFolder folder;
   const auto file = folder / "picture.png";
-  EXPECT_FALSE((*session)->save_picture(file)) << "there is none";
+  EXPECT_FALSE((*session)->save_picture(file)) << "there is no image";
   EXPECT_TRUE((*session)->take_saved().empty());
   ASSERT_TRUE((*session)->tick((*session)->home(), 0));
   ASSERT_TRUE((*session)->save_picture(file));
   EXPECT_EQ((*session)->take_saved(), std::vector{file});
-  EXPECT_TRUE((*session)->take_saved().empty()) << "told once";
+  EXPECT_TRUE((*session)->take_saved().empty()) << "reported once";
   scene::State& state = (*session)->scene().state();
   EXPECT_TRUE(state.facts.near_detail);
   ASSERT_TRUE(scene::ask_ready(state, (*session)->home().position, 40));
@@ -102,12 +102,12 @@ TEST(Session, SavesThePictureOfTheLastTickAndChangesItsPreset) {
   ASSERT_TRUE((*session)->set_preset(render::Preset::kMedium));
   EXPECT_EQ((*session)->scene().state().facts.shadows, (*session)->renderer().casts_shadows());
   EXPECT_FALSE(state.facts.near_detail);
-  EXPECT_TRUE(state.foresight.places[0].stale) << "other trees are near enough";
+  EXPECT_TRUE(state.foresight.places[0].stale) << "the preset changes the distance of trees";
   ASSERT_TRUE((*session)->tick((*session)->home(), 0));
   EXPECT_EQ((*session)->renderer().preset(), render::Preset::kMedium);
 }
 
-TEST(Session, APictureThatAPluginTakesIsNoPartOfWhatTheGovernorSees) {
+TEST(Session, TheGovernorIgnoresImagesCapturedByPlugins) {
   const TemporaryFolder folder;
   SessionOptions options = short_session();
   options.scene.virtual_time = false;
@@ -125,7 +125,7 @@ TEST(Session, APictureThatAPluginTakesIsNoPartOfWhatTheGovernorSees) {
   }
 }
 
-TEST(Session, RefusesPosesTargetsAndNamesThatAreNone) {
+TEST(Session, RejectsInvalidPosesTargetsAndNames) {
   SessionOptions options = short_session();
   for (const double hz : {-1.0, std::nan(""), 1e9, 1e300}) {
     options.target_hz = hz;
@@ -144,7 +144,7 @@ TEST(Session, RefusesPosesTargetsAndNamesThatAreNone) {
   ASSERT_TRUE((*session)->tick((*session)->home(), 0));
   const auto saved = (*session)->save_picture("x.jpg");
   ASSERT_FALSE(saved);
-  EXPECT_EQ(saved.error().message, "x.jpg: the name of a picture must end in .png");
+  EXPECT_EQ(saved.error().message, "x.jpg: the name of an image must end in .png");
 }
 
 TEST(Session, BeginsEveryFixedStepWithItsActionsAndReplaysThem) {
@@ -205,7 +205,7 @@ TEST(Session, TakesItsActionsFromTheUserAgainOneStepAfterTheEndOfAReplay) {
   ASSERT_TRUE(replay) << replay.error().message;
   (*session)->replay(std::move(*replay));
   EXPECT_TRUE((*session)->replays());
-  // A tick runs the steps of the time before it: none in the first one.
+  // A tick runs the steps of the time before it: none in the first tick.
   for (int i = 0; i < 6; ++i) {
     platform::InputState input;
     input.move_px.x = 7;
@@ -217,7 +217,7 @@ TEST(Session, TakesItsActionsFromTheUserAgainOneStepAfterTheEndOfAReplay) {
   EXPECT_FALSE((*session)->replays());
 }
 
-TEST(Session, StandsStillAndGoesOnDrawingWhileItIsPaused) {
+TEST(Session, StandsStillAndContinuesDrawingWhilePaused) {
   std::vector<double> told;
   SessionOptions options = short_session();
   int steps = 0;
@@ -237,14 +237,14 @@ TEST(Session, StandsStillAndGoesOnDrawingWhileItIsPaused) {
   EXPECT_EQ(steps, steps_before);
   EXPECT_TRUE((*session)->paused());
   EXPECT_EQ((*session)->now_s(), 0.5);
-  EXPECT_EQ((*session)->scene().state().counters.frame.frame, frame + 3) << "drawing goes on";
+  EXPECT_EQ((*session)->scene().state().counters.frame.frame, frame + 3) << "drawing continues";
   (*session)->set_paused(false);
   ASSERT_TRUE((*session)->tick(pose, 0.5));
   EXPECT_EQ((*session)->now_s(), 1.0);
   EXPECT_EQ(told, (std::vector<double>{0.5, 0, 0, 0, 0.5}));
 }
 
-TEST(Session, WritesWhatTheGameWritesOverThePicture) {
+TEST(Session, DrawsTheHudOfTheGameOverTheImage) {
   SessionOptions options = short_session();
   options.preset = render::Preset::kLow;
   auto session = Session::create(options);

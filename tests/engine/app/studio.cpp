@@ -8,7 +8,7 @@
 namespace psygen::app {
 namespace {
 
-// By how much the ground of a node may be off, of what its level of detail is off as a rule.
+// Tolerance of a node's ground, relative to the typical error of its level.
 constexpr double kMinToleranceM = 0.5;
 
 }  // namespace
@@ -77,14 +77,14 @@ std::size_t Studio::holes() {
   const std::size_t columns = width(), rows = height();
   std::size_t holes = 0;
   for (std::size_t x = 0; x < columns; ++x) {
-    bool below = false;  // there is ground higher up
+    bool below = false;  // there is higher ground in this column
     for (std::size_t y = 0; y < rows; ++y) {
       if (sky[y * columns + x] == 0) {
         below = true;
         continue;
       }
       const glm::dvec3 direction = direction_of(static_cast<double>(x), static_cast<double>(y));
-      // Where no ground is above only some are looked at: that is expensive.
+      // Checks only some pixels without ground above them, because each check is expensive.
       if ((below || (direction.y < 0 && (x + y) % 4 == 0)) && is_hole(direction)) ++holes;
     }
   }

@@ -1,5 +1,5 @@
-// A headless application for tests of what is seen: settled pictures of any pose, and where the
-// ground leaves the sky to be seen. Worlds are given as text, so that tests can vary them.
+// A headless application for image tests: settled images from any pose, and detection of sky that
+// is visible through the ground. Worlds are texts, so that tests can vary them.
 #pragma once
 
 #include <fstream>
@@ -12,7 +12,7 @@
 
 namespace psygen::app {
 
-// The paper's world with so many blocks along each side, 0: endless.
+// The paper's world with this number of blocks along each side, 0: endless.
 inline std::string paper_text(int blocks_x, int blocks_z, const std::string& terrain = {}) {
   const auto number = [](int n) { return std::to_string(n); };
   return "format = 1\n[world]\nname = \"studio\"\nseed = 2009\nblocks = [" + number(blocks_x) +
@@ -23,7 +23,7 @@ inline std::string paper_text(int blocks_x, int blocks_z, const std::string& ter
 
 class Studio {
  public:
-  // `world` is a file of game/worlds, or the text of one.
+  // `world` is a file of game/worlds, or the text of a world.
   Studio(const std::string& world, SessionOptions options) {
     options.world_file = std::filesystem::path(source_file("game/worlds")) / world;
     const TemporaryFolder folder;
@@ -42,7 +42,7 @@ class Studio {
   std::uint32_t width() { return session_->renderer().size().width; }
   std::uint32_t height() { return session_->renderer().size().height; }
 
-  // A pose so high above the ground at a place of a block.
+  // A pose at this height above the ground at a position of a block.
   core::CameraPose above(core::BlockCoord block, double x, double z, double height_m, double yaw,
                          double pitch) {
     core::CameraPose pose;
@@ -53,12 +53,12 @@ class Studio {
     return pose;
   }
 
-  // Everything is there, as if the camera had always been here.
+  // Makes all meshes ready, as if the camera had always been here.
   void settle(const core::CameraPose& pose) {
     scene().settle(pose);
     draw(pose);
   }
-  // The next frame of a flight, after everything that it asks for has come.
+  // Draws the next frame of a flight after all its requested meshes are ready.
   void fly(const core::CameraPose& pose) {
     for (int i = 0; i < 40; ++i) {
       draw(pose);
@@ -72,15 +72,15 @@ class Studio {
     ASSERT_TRUE(drawn) << drawn.error().message;
     frame_took(0, 0);
   }
-  // What the governor sees in the next frame instead of the real time.
+  // Sets the frame time that the governor sees in the next frame instead of the real one.
   void frame_took(double ms, double triangles) {
     state().input.frame_ms = ms;
     state().input.frame_triangles = triangles;
   }
-  // What the last frame drew, with clouds and wind standing still.
+  // The image of the last frame, with clouds and wind standing still.
   image::Image picture();
 
-  // The same of lists of an earlier frame, from where the camera is now.
+  // The image of an earlier frame's lists, from the current camera.
   struct Lists {
     core::WorldPosition eye;
     std::vector<render::TerrainDraw> terrain;
@@ -89,8 +89,8 @@ class Studio {
   Lists lists();
   image::Image picture_of(Lists terrain_of, const Lists& models_of);
 
-  // For each pixel, row by row: not 0 where the ground of the last frame (without what stands on
-  // it) leaves the sky to be seen. A sky of another colour changes nothing but the sky.
+  // For each pixel, row by row: nonzero if the ground of the last frame (without models) leaves the
+  // sky visible. Another colour of the sky changes only sky pixels.
   std::vector<std::uint8_t> sky() {
     const image::Image dark = ground_under(0.0F), bright = ground_under(1e6F);
     std::vector<std::uint8_t> sky(std::size_t{dark.width} * dark.height);
@@ -108,8 +108,8 @@ class Studio {
     return glm::normalize(glm::transpose(glm::dmat3(core::view_rotation(camera.pose))) * ray);
   }
 
-  // The pixels through which the sky is seen though the true ground stands in the way, by more than
-  // the levels of detail may be off.
+  // Number of pixels that show the sky although the true ground blocks the view by more than the
+  // allowed error of the LODs.
   std::size_t holes();
 
  private:

@@ -1,5 +1,4 @@
-// Systems of a game run among the engine's, however a session is driven, and what goes wrong in
-// them names them.
+// Systems of a game run among the engine's, in any loop, and their errors name them.
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -74,7 +73,7 @@ std::uint64_t hash_of_wolves(Session& session) {
   return hash;
 }
 
-TEST(Systems, TheSimulationIsTheSameWhateverTheFramesAndTheModelersAre) {
+TEST(Systems, TheSimulationIsTheSameForAnyFramesAndModelers) {
   std::mt19937 random(1);
   std::uint64_t first = 0;
   for (const std::uint32_t modelers : {1U, 4U}) {
@@ -95,7 +94,7 @@ TEST(Systems, TheSimulationIsTheSameWhateverTheFramesAndTheModelersAre) {
   }
 }
 
-TEST(Systems, RunBesideTheOnesThatTheyNameAndAreReported) {
+TEST(Systems, RunNextToTheSystemsThatTheyNameAndAreReported) {
   std::vector<std::string> order;
   Plugin plugin = wolves();
   plugin.add_systems = [&](Systems& systems) -> core::Result<void> {
@@ -131,7 +130,7 @@ TEST(Systems, RunBesideTheOnesThatTheyNameAndAreReported) {
   }
 }
 
-TEST(Systems, HooksRunHoweverTheSessionIsDriven) {
+TEST(Systems, HooksRunInAnyLoop) {
   std::vector<std::string> calls;
   const auto session =
       session_with({{.name = "hooks",
@@ -170,7 +169,7 @@ TEST(Systems, WrongNamesAndCyclesAreErrorsThatNameThem) {
             "two systems are called 'render'");
 }
 
-TEST(Systems, APluginMayNameSystemsOfPluginsThatComeLater) {
+TEST(Systems, APluginMayNameSystemsOfLaterPlugins) {
   const auto session =
       session_with({{.name = "sheep",
                      .add_systems = [](Systems& systems) -> core::Result<void> {
@@ -187,14 +186,14 @@ TEST(Systems, APluginMayNameSystemsOfPluginsThatComeLater) {
   EXPECT_EQ(std::ranges::find(names, "howl") + 1, std::ranges::find(names, "flee"));
 }
 
-TEST(Systems, WhatThrowsEndsTheSessionWithAnErrorThatNamesIt) {
+TEST(Systems, AnExceptionEndsTheSessionWithAnErrorThatNamesTheSystem) {
   const auto throws = [](auto&&...) { throw std::runtime_error("no moon"); };
   EXPECT_EQ(error_with({.register_models = [](models::Registry&) -> core::Result<void> {
               throw std::runtime_error("no moon");
             }}),
             "plugin wolves: register_models threw: no moon");
   EXPECT_EQ(error_with({.add_systems = [](Systems&) -> core::Result<void> { throw 7; }}),
-            "plugin wolves: add_systems threw: an exception of an unknown type");
+            "plugin wolves: add_systems threw: an exception of unknown type");
   EXPECT_EQ(tick_error_with({.on_start = throws}), "plugin wolves: on_start threw: no moon");
   EXPECT_EQ(tick_error_with({.on_frame = throws}), "plugin wolves: on_frame threw: no moon");
   EXPECT_EQ(tick_error_with({.on_step = throws}), "the system 'wolves on_step' threw: no moon");

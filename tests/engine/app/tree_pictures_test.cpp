@@ -1,5 +1,5 @@
-// The renderer gets the pictures of trees before the first frame, and does without where it has no
-// room for them.
+// The renderer receives the impostors of trees before the first frame, and draws without them if it
+// lacks memory for them.
 #include "engine/world/far/tree_pictures.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::unique_ptr<Scene> scene_of(render::Renderer& renderer) {
   return scene ? std::move(*scene) : nullptr;
 }
 
-TEST(PicturesOfTrees, GiveTheRendererTheirPicturesBeforeTheFirstFrame) {
+TEST(PicturesOfTrees, AreUploadedBeforeTheFirstFrame) {
   const auto renderer = small_renderer(64U << 20);
   ASSERT_TRUE(renderer);
   const auto scene = scene_of(*renderer);
@@ -41,7 +41,7 @@ TEST(PicturesOfTrees, GiveTheRendererTheirPicturesBeforeTheFirstFrame) {
   EXPECT_FALSE(s.output.error);
 }
 
-TEST(PicturesOfTrees, ThatAreFinishedWhileTheWorldIsReplacedAreNotLost) {
+TEST(PicturesOfTrees, AreNotLostIfFinishedWhileTheWorldIsReplaced) {
   const auto renderer = small_renderer(64U << 20);
   ASSERT_TRUE(renderer);
   models::Registry registry = models::make_standard_registry(),
@@ -53,7 +53,7 @@ TEST(PicturesOfTrees, ThatAreFinishedWhileTheWorldIsReplacedAreNotLost) {
   ASSERT_TRUE(made);
   Scene& scene = **made;
   const State& s = scene.state();
-  // Until some are made that nobody has taken.
+  // Until some are finished and not yet uploaded.
   const auto is_picture = [&s](const synthesis::Completion& job) {
     return job.key.model == s.facts.picture_model;
   };
@@ -71,7 +71,7 @@ TEST(PicturesOfTrees, ThatAreFinishedWhileTheWorldIsReplacedAreNotLost) {
   EXPECT_EQ(s.output.pictures_lacking, 0U);
 }
 
-TEST(PicturesOfTrees, AreMeshesWhereTheRendererHasNoRoomForPictures) {
+TEST(PicturesOfTrees, AreReplacedByMeshesIfTheRendererLacksMemory) {
   const auto renderer = small_renderer(1U << 20);
   ASSERT_TRUE(renderer);
   const auto scene = scene_of(*renderer);

@@ -1,4 +1,4 @@
-// The README quotes this test: a program of its own on top of the engine.
+// The README quotes this test: a program built on the engine.
 #include <gtest/gtest.h>
 
 #include "engine/app/session.hpp"
@@ -8,7 +8,7 @@
 namespace psygen {
 namespace {
 
-TEST(Tutorial, AProgramThatTurnsAroundOnceAndTakesAPicture) {
+TEST(Tutorial, AProgramTurnsAroundOnceAndSavesAnImage) {
   app::SessionOptions options;
   options.world_file = source_file("game/worlds/paper.toml");
   options.headless = true;

@@ -1,5 +1,5 @@
-// Flights in a window with a person at it: what happens at the end of a path, what the keys do, and
-// that a window can be closed while it loads.
+// Flights in a window with simulated users: the end of a path, the keys, and closing the window
+// while it loads.
 #include <fstream>
 #include <functional>
 #include <thread>
@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// Ends tests that would go on for ever: many more frames than any of them needs.
+// Stops tests that would never end: many more frames than any of them needs.
 constexpr std::uint64_t kMaxFrames = 20'000;
 
 class WindowFlight : public ::testing::Test {
@@ -26,7 +26,7 @@ class WindowFlight : public ::testing::Test {
     std::filesystem::create_directories(folder_);
   }
 
-  // In a window, along a path of half a second at 30 frames a second.
+  // A flight in a window, along a path of half a second at 30 frames a second.
   FlightOptions options() {
     FlightOptions made = short_flight();
     made.session.headless = false;
@@ -55,8 +55,8 @@ class WindowFlight : public ::testing::Test {
     return text;
   }
 
-  // What a person does, and what must come of it before they go on. A key that the window manager
-  // was not ready for is pressed again.
+  // An action of the user, and its effect, for which the next action waits. A key is pressed again
+  // if the window manager was not ready for it.
   struct Step {
     const char* key;
     std::function<bool(Session&)> done;
@@ -93,7 +93,7 @@ class WindowFlight : public ::testing::Test {
   std::atomic<bool> stop_{false};
 };
 
-TEST_F(WindowFlight, TheWindowStaysWhenThePathHasEndedAndTheReportIsThatOfTheFlight) {
+TEST_F(WindowFlight, TheWindowStaysAfterThePathAndTheReportCoversTheFlight) {
   FlightOptions made = options();
   made.images_every = 10;
   int ends = 0;
@@ -134,7 +134,7 @@ TEST_F(WindowFlight, TheWindowStaysWhenThePathHasEndedAndTheReportIsThatOfTheFli
   EXPECT_THAT(report->validation_messages, IsEmpty());
 }
 
-TEST_F(WindowFlight, TheWindowClosesAtTheEndOfSecondsAndFramesThatWereGiven) {
+TEST_F(WindowFlight, TheWindowClosesAfterTheGivenSecondsOrFrames) {
   for (const bool seconds : {true, false}) {
     FlightOptions made = options();
     made.seconds = seconds ? 0.2 : 0;
@@ -147,12 +147,12 @@ TEST_F(WindowFlight, TheWindowClosesAtTheEndOfSecondsAndFramesThatWereGiven) {
   }
 }
 
-TEST_F(WindowFlight, OutputsThatCannotBeWrittenAreToldInTheWindowAndInTheReport) {
+TEST_F(WindowFlight, OutputErrorsAreShownInTheWindowAndInTheReport) {
   FlightOptions made = options();
   std::string told;
   std::uint64_t frames = 0;
   made.session.plugins.push_back({.name = "watch", .on_frame = [&](Session& session, double) {
-                                    if (++frames == 5) {  // in the way of a file
+                                    if (++frames == 5) {  // blocks the path of a file
                                       std::filesystem::create_directories(folder_ / "frames.csv");
                                     }
                                     if (frames == 20) {
@@ -170,7 +170,7 @@ TEST_F(WindowFlight, OutputsThatCannotBeWrittenAreToldInTheWindowAndInTheReport)
   EXPECT_THAT(told, HasSubstr("frames.csv"));
 }
 
-TEST_F(WindowFlight, ItsKeysDoWhatTheHelpSays) {
+TEST_F(WindowFlight, ItsKeysMatchTheHelp) {
   const auto view_is = [](render::View view) {
     return [view](Session& session) { return session.scene().state().input.view == view; };
   };
@@ -214,22 +214,22 @@ TEST_F(WindowFlight, ItsKeysDoWhatTheHelpSays) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "screenshot_0000.png"));
 }
 
-TEST_F(WindowFlight, APictureThatCannotBeWrittenIsToldOnTheScreen) {
+TEST_F(WindowFlight, AScreenshotErrorIsShownOnTheScreen) {
   const std::filesystem::path moved = folder_.string() + "_moved";
   FlightOptions made = options();
   made.session.plugins.push_back(
       {.name = "mover", .on_start = [&](Session&) { std::filesystem::rename(folder_, moved); }});
   do_steps(made, {{"F12", [&](Session& session) {
-                     const bool told = notices(session).starts_with("no picture was written: ");
+                     const bool told = notices(session).starts_with("cannot save the screenshot: ");
                      if (told) std::filesystem::rename(moved, folder_);
                      return told;
                    }}});
 }
 
-TEST_F(WindowFlight, ClosingWhileTheCacheIsFilledEndsAtOnceAndIsNoFlight) {
+TEST_F(WindowFlight, ClosingWhileTheCacheIsFilledEndsAtOnceWithoutAFlight) {
   scene::Gate gate;
   FlightOptions made = options();
-  made.session.scene.virtual_time = false;  // modelers are real, and wait at the gate
+  made.session.scene.virtual_time = false;  // modelers are real threads and wait at the gate
   made.session.scene.watchdog_seconds = 1e6;
   made.session.world_file = folder_ / "slow.toml";
   std::ofstream(made.session.world_file)
@@ -249,7 +249,7 @@ TEST_F(WindowFlight, ClosingWhileTheCacheIsFilledEndsAtOnceAndIsNoFlight) {
        .on_start = [](Session&) { ADD_FAILURE() << "the flight began"; }});
   auto flight = Flight::create(made);
   ASSERT_TRUE(flight) << flight.error().message;
-  gate.set_open(false);  // from here on nothing is ever finished
+  gate.set_open(false);  // from here on no mesh is finished
   std::atomic<bool> ended{false};
   std::thread person([&] {
     while (!ended)

@@ -27,7 +27,7 @@ using ::testing::HasSubstr;
 
 const std::filesystem::path kWorld = source_file("game/worlds/paper.toml");
 
-// A headless session on the virtual clock that can be inspected, and a client in the same thread.
+// A headless session on the virtual clock with inspection, and a client in the same thread.
 class InspectTest : public ::testing::Test {
  protected:
   void SetUp() override { ASSERT_EQ(::chmod(folder_.path().c_str(), 0700), 0); }
@@ -54,7 +54,7 @@ class InspectTest : public ::testing::Test {
     const auto found = endpoints(folder_.path());
     ASSERT_TRUE(found) << found.error().message;
     ASSERT_EQ(found->size(), 1U);
-    tick();  // looks that the list took are over
+    tick();  // cancels requests that the list has processed
     tick();
     auto client = Client::attach(found->front().socket);
     ASSERT_TRUE(client) << client.error().message;
@@ -65,7 +65,7 @@ class InspectTest : public ::testing::Test {
     ASSERT_EQ(ask({{"do", "hello"}, {"protocol", kProtocol}})["ok"], true);
   }
   void tick() { ASSERT_TRUE(session_->tick(pose_, 1.0 / 60)); }
-  // The answer; null if there is none after some frames.
+  // Returns the reply; null if there is none after some frames.
   json ask_line(const std::string& line) {
     client_->ask(line);
     for (int frame = 0; frame < 50; ++frame) {
@@ -95,7 +95,7 @@ class InspectTest : public ::testing::Test {
   core::CameraPose pose_;
 };
 
-TEST_F(InspectTest, TellsWhatTheSessionIsAndDoes) {
+TEST_F(InspectTest, ReportsTheSessionAndItsStatistics) {
   open();
   greet();
   json answer = ask({{"id", 7}, {"do", "figures"}});
@@ -115,7 +115,7 @@ TEST_F(InspectTest, TellsWhatTheSessionIsAndDoes) {
   EXPECT_EQ(ask({{"do", "parameters"}})["text"], *world::read_text_file(kWorld));
 }
 
-TEST_F(InspectTest, WantsHelloFirstAndTheRightProtocol) {
+TEST_F(InspectTest, RequiresHelloFirstAndTheRightProtocol) {
   open();
   attach();
   EXPECT_THAT(ask({{"do", "figures"}})["error"].dump(), HasSubstr("hello"));
@@ -137,7 +137,7 @@ TEST_F(InspectTest, LeavesNoTrace) {
   ASSERT_EQ(ask({{"do", "pose"}, {"pose", pose}})["ok"], true);
   tick();
   EXPECT_EQ(session_->scene().state().camera.pose.yaw, 1.25);
-  client_.reset();  // a crash of the other program
+  client_.reset();  // a crash of the client
   tick();
   tick();
   EXPECT_EQ(written(), before);
@@ -145,7 +145,7 @@ TEST_F(InspectTest, LeavesNoTrace) {
   EXPECT_EQ(session_->scene().state().camera.pose.yaw, pose_.yaw);
 }
 
-TEST_F(InspectTest, KeepsChangesThatAreToBeKept) {
+TEST_F(InspectTest, KeepsChangesOnRequest) {
   open();
   greet();
   ASSERT_EQ(ask({{"do", "set_world"}, {"text", changed_text()}})["ok"], true);
@@ -157,7 +157,7 @@ TEST_F(InspectTest, KeepsChangesThatAreToBeKept) {
   EXPECT_EQ(written(), changed);
 }
 
-// A model type whose registration, a part of preparing a world, waits in other threads.
+// A model type whose registration, a part of preparing a world, blocks in other threads.
 struct SlowTypes {
   std::thread::id main = std::this_thread::get_id();
   std::mutex gate;
@@ -176,7 +176,7 @@ struct SlowTypes {
   }
 };
 
-TEST_F(InspectTest, FramesGoOnWhileAnotherThreadPreparesAWorld) {
+TEST_F(InspectTest, FramesContinueWhileAnotherThreadPreparesAWorld) {
   SlowTypes slow;
   virtual_time_ = false;
   plugins_.push_back(slow.plugin());
@@ -202,7 +202,7 @@ TEST_F(InspectTest, FramesGoOnWhileAnotherThreadPreparesAWorld) {
   EXPECT_EQ(answers[0]["ok"], true);
   EXPECT_EQ(answers[1]["id"], 2);
   EXPECT_NE(written(), before);
-  // Gone amid the next change: that one is never shown, and the first world comes back.
+  // The client leaves during the next change: that world is never shown, and the first one returns.
   closed.lock();
   slow.entered = 0;
   client_->ask(json({{"do", "set_world"}, {"text", changed_text_of(text)}}).dump());
@@ -215,7 +215,7 @@ TEST_F(InspectTest, FramesGoOnWhileAnotherThreadPreparesAWorld) {
     tick();
   attach();
   EXPECT_EQ(ask({{"do", "hello"}, {"protocol", kProtocol}})["ok"], true);
-  // The session ends amid a change.
+  // The session ends during a change.
   closed.lock();
   slow.entered = 0;
   client_->ask(json({{"do", "set_world"}, {"text", text}}).dump());
@@ -225,7 +225,7 @@ TEST_F(InspectTest, FramesGoOnWhileAnotherThreadPreparesAWorld) {
   session_.reset();
 }
 
-TEST_F(InspectTest, DoesNotUndoWhatTheGameChangedMeanwhile) {
+TEST_F(InspectTest, DoesNotUndoLaterChangesOfTheGame) {
   open();
   greet();
   const std::string text = changed_text();
@@ -240,7 +240,7 @@ TEST_F(InspectTest, DoesNotUndoWhatTheGameChangedMeanwhile) {
   EXPECT_EQ(written(), wanted);
 }
 
-TEST_F(InspectTest, RefusesWorldsThatAreNoneAndChangesNothing) {
+TEST_F(InspectTest, RejectsInvalidWorldsWithoutAnyChange) {
   open();
   greet();
   const std::string before = written();
@@ -250,7 +250,7 @@ TEST_F(InspectTest, RefusesWorldsThatAreNoneAndChangesNothing) {
   EXPECT_EQ(written(), before);
 }
 
-TEST_F(InspectTest, AnswersGarbageWithASentence) {
+TEST_F(InspectTest, AnswersInvalidRequestsWithAnErrorMessage) {
   open();
   greet();
   const std::string lines[] = {
@@ -279,7 +279,7 @@ TEST_F(InspectTest, AnswersGarbageWithASentence) {
   EXPECT_EQ(ask({{"do", "figures"}})["ok"], true);
 }
 
-TEST_F(InspectTest, LivesOnWhereverAConversationBreaksOff) {
+TEST_F(InspectTest, SurvivesADisconnectAtAnyPoint) {
   open();
   greet();
   const std::string before = written();
@@ -305,7 +305,7 @@ TEST_F(InspectTest, LivesOnWhereverAConversationBreaksOff) {
   EXPECT_EQ(ask({{"do", "hello"}, {"protocol", kProtocol}})["ok"], true);
 }
 
-TEST_F(InspectTest, AnswersAFloodWithAFewRequestsAFrame) {
+TEST_F(InspectTest, AnswersAFloodWithAFewRepliesAFrame) {
   open();
   greet();
   std::string flood;
@@ -314,7 +314,7 @@ TEST_F(InspectTest, AnswersAFloodWithAFewRequestsAFrame) {
   flood.pop_back();
   client_->ask(flood);
   for (int frame = 0; frame < 20; ++frame)
-    tick();  // nobody reads
+    tick();  // the client does not read
   std::size_t answers = 0;
   for (int frame = 0; frame < 400 && answers < 2000; ++frame) {
     tick();
@@ -347,14 +347,14 @@ TEST_F(InspectTest, EndsWithTheSession) {
   EXPECT_FALSE(std::filesystem::exists(socket));
 }
 
-TEST_F(InspectTest, FailsWhereOthersMayEnterTheFolder) {
+TEST_F(InspectTest, FailsIfOthersMayEnterTheFolder) {
   ASSERT_EQ(::chmod(folder_.path().c_str(), 0755), 0);
   const auto session = create();
   ASSERT_FALSE(session);
   EXPECT_THAT(session.error().message, HasSubstr("plugin inspect"));
 }
 
-TEST_F(InspectTest, ChangesNoPictureAndNoFigureWhileNobodyIsAttached) {
+TEST_F(InspectTest, ChangesNoImageAndNoStatisticsWithoutAClient) {
   const auto hash_of_flight = [&](bool inspect) {
     auto session = create();
     EXPECT_TRUE(session);
@@ -373,7 +373,7 @@ TEST_F(InspectTest, ChangesNoPictureAndNoFigureWhileNobodyIsAttached) {
     client_.reset();
     return figures;
   };
-  EXPECT_EQ(hash_of_flight(false), hash_of_flight(true));  // nor while somebody looks
+  EXPECT_EQ(hash_of_flight(false), hash_of_flight(true));  // also with a client that only reads
 }
 
 }  // namespace

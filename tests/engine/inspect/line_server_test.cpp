@@ -39,7 +39,7 @@ TEST_F(LineServerTest, HasASocketThatOnlyThisUserCanOpenAndRemovesIt) {
   EXPECT_FALSE(std::filesystem::exists(socket));
 }
 
-TEST_F(LineServerTest, RefusesFoldersThatOthersMayEnter) {
+TEST_F(LineServerTest, RejectsFoldersThatOthersMayEnter) {
   ASSERT_EQ(::chmod(folder_.path().c_str(), 0750), 0);
   EXPECT_EQ(LineServer::open(folder_.path()).error().code, core::ErrorCode::kInvalidArgument);
   EXPECT_EQ(endpoints(folder_.path()).error().code, core::ErrorCode::kInvalidArgument);
@@ -51,14 +51,14 @@ TEST_F(LineServerTest, RefusesFoldersThatOthersMayEnter) {
   EXPECT_FALSE(LineServer::open(folder_.path() / "nothing"));
 }
 
-TEST_F(LineServerTest, RefusesAFolderWhoseNameIsTooLongForASocket) {
+TEST_F(LineServerTest, RejectsAFolderWithANameTooLongForASocket) {
   const auto deep = folder_.path() / std::string(100, 'd');
   std::filesystem::create_directory(deep);
   ASSERT_EQ(::chmod(deep.c_str(), 0700), 0);
   EXPECT_EQ(LineServer::open(deep).error().code, core::ErrorCode::kInvalidArgument);
 }
 
-TEST_F(LineServerTest, RemovesTheSocketsOfProgramsThatCrashedOnly) {
+TEST_F(LineServerTest, RemovesOnlyTheSocketsOfCrashedPrograms) {
   const auto dead = folder_.path() / "psygen-1.inspect", file = folder_.path() / "psygen-2.inspect";
   {
     const Descriptor fd(::socket(AF_UNIX, SOCK_STREAM, 0));
@@ -75,7 +75,7 @@ TEST_F(LineServerTest, RemovesTheSocketsOfProgramsThatCrashedOnly) {
   EXPECT_EQ(endpoints(folder_.path())->size(), 2U);
 }
 
-TEST_F(LineServerTest, PutsHalfLinesTogether) {
+TEST_F(LineServerTest, JoinsPartialLines) {
   EXPECT_FALSE(server_->accept());
   const Descriptor client = connect_to(server_->address());
   ASSERT_TRUE(server_->accept());
@@ -92,7 +92,7 @@ TEST_F(LineServerTest, PutsHalfLinesTogether) {
   EXPECT_EQ(server_->take_line(), "three");
 }
 
-TEST_F(LineServerTest, EndsTheConnectionAtALineWithoutEnd) {
+TEST_F(LineServerTest, ClosesTheConnectionAtALineWithoutEnd) {
   const Descriptor client = connect_to(server_->address());
   ASSERT_TRUE(server_->accept());
   const std::string much(1 << 16, 'x');
@@ -107,7 +107,7 @@ TEST_F(LineServerTest, EndsTheConnectionAtALineWithoutEnd) {
   EXPECT_LT(sent, 2 * kMaxLineBytes);
 }
 
-TEST_F(LineServerTest, TakesNoMoreLinesFromAClientThatDoesNotRead) {
+TEST_F(LineServerTest, AcceptsNoMoreLinesFromAClientThatDoesNotRead) {
   const Descriptor client = connect_to(server_->address());
   ASSERT_TRUE(server_->accept());
   const std::string answer(100'000, 'a');
@@ -126,19 +126,19 @@ TEST_F(LineServerTest, TakesNoMoreLinesFromAClientThatDoesNotRead) {
   EXPECT_TRUE(server_->attached());
 }
 
-TEST_F(LineServerTest, RefusesASecondClientWithASentence) {
+TEST_F(LineServerTest, RejectsASecondClientWithAMessage) {
   const Descriptor first = connect_to(server_->address());
   ASSERT_TRUE(server_->accept());
   const auto second = Client::attach(server_->address());
   ASSERT_TRUE(second);
   server_->receive();
-  EXPECT_THAT((*second)->take_answer().value_or(""), ::testing::HasSubstr("attached already"));
+  EXPECT_THAT((*second)->take_answer().value_or(""), ::testing::HasSubstr("already attached"));
   EXPECT_EQ((*second)->take_answer(), std::nullopt);
   EXPECT_FALSE((*second)->is_open());
   EXPECT_TRUE(server_->attached());
 }
 
-TEST_F(LineServerTest, NoticesThatAClientIsGoneAndTakesTheNext) {
+TEST_F(LineServerTest, DetectsThatAClientIsGoneAndAcceptsTheNext) {
   {
     const Descriptor client = connect_to(server_->address());
     ASSERT_TRUE(server_->accept());

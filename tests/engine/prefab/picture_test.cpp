@@ -1,5 +1,5 @@
-// The mill of examples/09_gltf in a world, on both render paths. To accept a new picture after
-// looking at it: PSYGEN_GOLDEN_UPDATE=1
+// The mill of examples/09_gltf in a world, on both render paths. To accept a new image after
+// inspecting it: PSYGEN_GOLDEN_UPDATE=1
 #include <array>
 
 #include "engine/image/compare.hpp"
@@ -11,7 +11,7 @@
 namespace psygen::app {
 namespace {
 
-TEST(PrefabPicture, IsTheSameOnBothPathsAndAsItWas) {
+TEST(PrefabPicture, IsTheSameOnBothPathsAndMatchesTheStoredImage) {
   std::array<image::Image, 2> images;
   for (std::size_t i = 0; i < 2; ++i) {
     prefab::Library prefabs;

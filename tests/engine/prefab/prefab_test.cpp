@@ -1,5 +1,4 @@
-// Instances of glTF files on the null device: their hierarchy, their animations, and what goes
-// away.
+// Instances of glTF files on the null device: their hierarchy, their animations, and removal.
 #include "engine/prefab/prefab.hpp"
 
 #include <gmock/gmock.h>
@@ -85,7 +84,7 @@ TEST_F(Prefabs, AreDrawnAndFollowTheirRoot) {
   EXPECT_LT(glm::length(turned.rotation * glm::vec3(1, 0, 0) - glm::vec3(0, 1, 0)), 1e-5F);
 }
 
-TEST_F(Prefabs, MirrorAsTheirScalesSay) {
+TEST_F(Prefabs, MirrorByNegativeScales) {
   state().entities.get<Transform>(root_)->scale = {1, -2, 1};
   tick();
   const ecs::Entity hand = library_.node_of(state().entities, root_, "hand");
@@ -107,32 +106,32 @@ TEST_F(Prefabs, PlayAnimationsByTheStepsOfTheSimulation) {
   EXPECT_NEAR(place_of("hand").y, 2 * 2 * passed_s, 1e-5);
   const double before = place_of("arm").y;
   tick(60);
-  EXPECT_NEAR(place_of("arm").y, before, 1e-4) << "a second later it has gone around once";
+  EXPECT_NEAR(place_of("arm").y, before, 1e-4) << "a second later it has looped once";
   ASSERT_TRUE(library_.play(instance, "lift", step, {.from_s = 1.5, .loops = false}));
   tick(120);
-  EXPECT_NEAR(place_of("arm").y, 4, 1e-6) << "stays at its end";
+  EXPECT_NEAR(place_of("arm").y, 4, 1e-6) << "it stays at its end";
 }
 
-TEST_F(Prefabs, SayWhichAnimationsThereAre) {
+TEST_F(Prefabs, ListTheirAnimationsInErrors) {
   const auto played = library_.play(*state().entities.get<Instance>(root_), "sing", {});
   ASSERT_FALSE(played);
-  EXPECT_EQ(played.error().message, "arm.glb has no animation \"sing\"; it has lift");
+  EXPECT_EQ(played.error().message, "arm.glb has no animation \"sing\"; its animations are lift");
 }
 
-TEST_F(Prefabs, GoWithTheirRootAndLosePartsOneByOne) {
+TEST_F(Prefabs, DisappearWithTheirRootAndMayLoseSingleParts) {
   tick(3);
   const ecs::Entity arm = library_.node_of(state().entities, root_, "arm");
   state().entities.destroy(std::span(&arm, 1));
   ASSERT_TRUE(library_.play(*state().entities.get<Instance>(root_), "lift", {}));
   tick(3);
-  EXPECT_EQ(state().object_draws.objects.size(), 3u) << "what hung on it stays where it was";
+  EXPECT_EQ(state().object_draws.objects.size(), 3u) << "attached entities keep their positions";
   state().entities.destroy_with_children(std::span(&root_, 1));
   EXPECT_EQ(state().entities.count<Attached>(), 0u);
   tick();
   EXPECT_TRUE(state().object_draws.objects.empty());
 }
 
-TEST_F(Prefabs, HangOnOneAnotherInAnyOrderAndInCircles) {
+TEST_F(Prefabs, AttachToEachOtherInAnyOrderAndInCycles) {
   const auto made = state().entities.create<Transform, Attached>(3);
   const std::vector<ecs::Entity> own(made.entities.begin(), made.entities.end());
   for (std::size_t i = 0; i < 3; ++i)
@@ -165,8 +164,8 @@ TEST_F(Prefabs, SplitMeshesThatAreTooLarge) {
   EXPECT_EQ(library_[*added].parts.size(), 10u);
 }
 
-// A save keeps instances whole: where they stand, what they play, what holds to what.
-TEST(PrefabSnapshots, KeepObjectsAndInstancesWithTheirParts) {
+// A save contains complete instances: positions, animations and attachments.
+TEST(PrefabSnapshots, ContainObjectsAndInstancesWithTheirParts) {
   ecs::World world;
   scene::spawn(world, {}, {});  // so that handles differ
   Transform place;

@@ -7,7 +7,7 @@
 namespace psygen::synthesis {
 namespace {
 
-TEST(CostCorrection, AWarmLevelFollowsAFactorAndForgivesOutliers) {
+TEST(CostCorrection, AWarmLevelLearnsAFactorAndToleratesOutliers) {
   CostCorrection correction;
   ColdSeconds shared;
   for (int i = 0; i < 400; ++i)
@@ -16,7 +16,7 @@ TEST(CostCorrection, AWarmLevelFollowsAFactorAndForgivesOutliers) {
   EXPECT_NEAR(correction.seconds(40e-6, Warmth::kWarm, shared), 60e-6, 8e-6);
 }
 
-TEST(CostCorrection, OneObservationSaysLittleAgainstACurveThatWasMeasured) {
+TEST(CostCorrection, OneObservationHasLittleWeightAgainstAMeasuredCurve) {
   CostCorrection measured, guessed;
   ColdSeconds shared;
   measured.trust_curve();
@@ -26,7 +26,7 @@ TEST(CostCorrection, OneObservationSaysLittleAgainstACurveThatWasMeasured) {
   EXPECT_GT(guessed.factor(), 1.3);
 }
 
-TEST(CostCorrection, ColdCachesAddTimeThatDoesNotTouchWarmPredictions) {
+TEST(CostCorrection, ColdCachesAddTimeWithoutChangingWarmPredictions) {
   CostCorrection correction;
   ColdSeconds shared;
   for (int i = 0; i < 200; ++i) {
@@ -40,9 +40,9 @@ TEST(CostCorrection, ColdCachesAddTimeThatDoesNotTouchWarmPredictions) {
   EXPECT_NEAR(correction.seconds(9e-6, Warmth::kCold, shared), 13e-6, 0.5e-6) << "added";
 }
 
-// Where calibration had no time for a level, its curve is a guess that may be wrong a thousandfold,
-// and the ground of a node is seldom made twice in a row.
-TEST(CostCorrection, AGuessThatIsFarTooHighIsCorrectedThoughNoRequestIsWarm) {
+// If calibration had no time for a level, its curve is a guess that may be wrong by a factor of a
+// thousand, and the ground of a node is seldom synthesised twice in a row.
+TEST(CostCorrection, AGuessThatIsFarTooHighIsCorrectedWithoutWarmRequests) {
   CostCorrection correction;
   ColdSeconds shared;
   for (int i = 0; i < 10; ++i)
@@ -53,7 +53,7 @@ TEST(CostCorrection, AGuessThatIsFarTooHighIsCorrectedThoughNoRequestIsWarm) {
   EXPECT_NEAR(correction.seconds(100e-3, Warmth::kWoken, shared), 90e-6, 9e-6);
 }
 
-TEST(CostCorrection, TheFirstRequestOfAThreadTakesMillisecondsAndIsSoonForgotten) {
+TEST(CostCorrection, TheSlowFirstRequestOfAThreadIsSoonForgotten) {
   CostCorrection correction;
   ColdSeconds shared;
   correction.observe(2e-6, Warmth::kWoken, 5e-3, shared);
@@ -63,20 +63,21 @@ TEST(CostCorrection, TheFirstRequestOfAThreadTakesMillisecondsAndIsSoonForgotten
   EXPECT_NEAR(correction.seconds(2e-6, Warmth::kWoken, shared), 8e-6, 4e-6);
 }
 
-TEST(CostCorrection, ALevelThatWasNeverMetColdBorrowsFromOthersWithTheSameCode) {
+TEST(CostCorrection, ALevelWithoutColdRequestsBorrowsFromOthersWithTheSameCode) {
   CostCorrection known, unknown;
   ColdSeconds shared;
   for (int i = 0; i < 50; ++i)
     known.observe(2e-6, Warmth::kCold, 7e-6, shared);
   EXPECT_NEAR(unknown.seconds(1e-6, Warmth::kCold, shared), 6e-6, 0.5e-6);
-  EXPECT_EQ(unknown.seconds(1e-6, Warmth::kWoken, shared), 1e-6) << "nobody knows";
+  EXPECT_EQ(unknown.seconds(1e-6, Warmth::kWoken, shared), 1e-6) << "no observation yet";
   for (int i = 0; i < 50; ++i)
     unknown.observe(1e-6, Warmth::kCold, 2e-6, shared);
-  EXPECT_NEAR(unknown.seconds(1e-6, Warmth::kCold, shared), 2e-6, 0.5e-6) << "its own";
+  EXPECT_NEAR(unknown.seconds(1e-6, Warmth::kCold, shared), 2e-6, 0.5e-6) << "its own estimate";
 }
 
-// The middle of what is observed, where one of ten is far off: half of the errors are above.
-TEST(LearnedSeconds, StayNearTheMiddleOfNoisyObservations) {
+// The estimate follows the median of the observations although one of ten is far off: half of the
+// errors are positive.
+TEST(LearnedSeconds, StayNearTheMedianOfNoisyObservations) {
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kParameters);
   LearnedSeconds learned;
   for (int i = 0; i < 2000; ++i) {

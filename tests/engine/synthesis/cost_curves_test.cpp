@@ -10,7 +10,7 @@
 namespace psygen::synthesis {
 namespace {
 
-// Measurements end at once: what is tested does not depend on the machine's speed.
+// Measurements end at once, so that results do not depend on the machine's speed.
 CalibrationOptions quick() {
   CalibrationOptions options;
   options.seconds_limit = 60;
@@ -41,7 +41,8 @@ TEST(CostCurves, StandardTypesHaveTheCurvesOfThePaper) {
     EXPECT_TRUE(curves.contains(expected)) << expected;
 }
 
-// A type whose time is its vertices, and models of it with so many.
+// A type whose time is proportional to its vertices, and models of it with given numbers of
+// vertices.
 models::Registry proportional(double& now) {
   return testing::registry_of(std::make_unique<testing::ScriptedModel>(
       "timed", [&now](const models::Parameters& p, int level) {
@@ -59,7 +60,7 @@ std::vector<CostSample> samples_of(const models::Registry& registry,
   return samples;
 }
 
-TEST(CostCurves, APredictionStandsOnlyWhereTheModelWasCalibratedWithTheLike) {
+TEST(CostCurves, PredictsOnlyWhereTheModelWasCalibratedWithSimilarWork) {
   double now = 0;
   const models::Registry registry = proportional(now);
   CalibrationOptions options;
@@ -83,7 +84,7 @@ TEST(CostCurves, APredictionStandsOnlyWhereTheModelWasCalibratedWithTheLike) {
   EXPECT_LT(predicted, curves[0].points.size());
 }
 
-TEST(CostCurves, WhatElseRunsDuringOneSweepIsNotInThePoints) {
+TEST(CostCurves, ADisturbanceDuringOneSweepDoesNotChangeThePoints) {
   double now = 0;
   std::map<std::uint64_t, int> calls;
   const models::Registry registry = testing::registry_of(
@@ -95,7 +96,7 @@ TEST(CostCurves, WhatElseRunsDuringOneSweepIsNotInThePoints) {
   options.wall_clock = options.cpu_clock = [&now] { return now; };
   options.seconds_limit = 1e9;
   options.seconds_per_measurement = 1e-9;
-  options.rounds = 1;  // two calls a sweep
+  options.rounds = 1;  // two calls per sweep
   options.sweeps = 2;
   const std::vector<CostCurve> curves = cost_curves(registry, CostModel(registry), options, 3);
   for (const CurvePoint& point : curves[0].points)
@@ -116,7 +117,7 @@ TEST(CostCurves, RandomSamplesAreLegalDifferentAndReproducible) {
   EXPECT_NE(random_samples(registry, 20, 2).back().parameters, samples.back().parameters);
 }
 
-TEST(CostCurves, PredictionsThatAreExactHaveNoErrorAndOthersHaveTheirs) {
+TEST(CostCurves, ExactPredictionsHaveNoErrorAndOthersDo) {
   double now = 0;
   const models::Registry registry = testing::registry_of(std::make_unique<testing::ScriptedModel>(
       "timed", [&now](const models::Parameters& p, int level) {
@@ -132,12 +133,12 @@ TEST(CostCurves, PredictionsThatAreExactHaveNoErrorAndOthersHaveTheirs) {
   EXPECT_EQ(exact.levels.size(), 3u);
   EXPECT_EQ(exact.all.count, 90u);
   EXPECT_LT(exact.all.p95_percent, 1e-3);
-  const CostModel uncalibrated(registry);  // some 20 ns a vertex instead of 1 µs
+  const CostModel uncalibrated(registry);  // about 20 ns a vertex instead of 1 µs
   const Accuracy far = accuracy_of(registry, uncalibrated, samples, options);
   EXPECT_GT(far.all.p50_percent, 95);
 }
 
-TEST(CostCurves, ThePassesEndInTimeAndSayWhatWasNotMeasured) {
+TEST(CostCurves, ThePassesEndInTimeAndReportWhatIsMissing) {
   double now = 0;
   const models::Registry registry = testing::registry_of(std::make_unique<testing::ScriptedModel>(
       "slow", [&now](const models::Parameters&, int) { now += 1; }));
@@ -155,7 +156,7 @@ TEST(CostCurves, ThePassesEndInTimeAndSayWhatWasNotMeasured) {
   EXPECT_LE(now, 21);
 }
 
-TEST(CostCurves, TheWorstTypeIsNamedAndThoseThatThrowAreNotAmongTheMeasured) {
+TEST(CostCurves, TheWorstTypeIsNamedAndThrowingTypesAreNotMeasured) {
   double now = 0;
   models::Registry registry;
   const auto add = [&](const char* name, testing::ScriptedModel::Script script) {
@@ -172,7 +173,7 @@ TEST(CostCurves, TheWorstTypeIsNamedAndThoseThatThrowAreNotAmongTheMeasured) {
   CalibrationOptions options;
   options.wall_clock = options.cpu_clock = [&now] { return now; };
   options.seconds_limit = 1e9;
-  const CostModel cost(registry);  // some 20 ns a vertex
+  const CostModel cost(registry);  // about 20 ns a vertex
   const Accuracy accuracy = accuracy_of(registry, cost, random_samples(registry, 8, 1), options);
   ASSERT_TRUE(accuracy.worst);
   EXPECT_EQ(accuracy.worst->model, 1);

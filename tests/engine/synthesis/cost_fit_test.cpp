@@ -19,7 +19,7 @@ CostFit line(double fixed_s, double per_operation_s, double per_triangle_s, doub
   return fit;
 }
 
-// Measurements of a known line over random work, `noise` relative either way.
+// Measurements of a known line over random work, with a relative error of up to `noise`.
 std::vector<Measurement> measured(const CostFit& truth, std::size_t count, double noise = 0) {
   core::RandomStream random(3, 0, 0, 0, core::Purpose::kParameters);
   std::vector<Measurement> result;
@@ -38,7 +38,7 @@ void expect_near(const CostFit& fit, const CostFit& truth, double relative) {
   EXPECT_NEAR(fit.per_step_s, truth.per_step_s, relative * truth.per_step_s + 1e-15);
 }
 
-TEST(CostFit, FindsEveryLineThatThereCanBe) {
+TEST(CostFit, FindsEveryPossibleLine) {
   for (const CostFit& truth :
        {line(2e-6, 3e-8, 4e-9, 0), line(0, 3e-8, 4e-9, 0), line(2e-6, 0, 4e-9, 0),
         line(2e-6, 3e-8, 0, 0), line(2e-6, 0, 0, 0), line(1e-6, 0, 0, 3e-9),
@@ -47,7 +47,7 @@ TEST(CostFit, FindsEveryLineThatThereCanBe) {
   }
 }
 
-TEST(CostFit, IsNotThrownOffByAFewMeasurementsThatWereDisturbed) {
+TEST(CostFit, IgnoresAFewDisturbedMeasurements) {
   const CostFit truth = line(2e-6, 3e-8, 4e-9, 0);
   auto measurements = measured(truth, 40, 0.02);
   for (std::size_t i = 0; i < 4; ++i)
@@ -57,7 +57,7 @@ TEST(CostFit, IsNotThrownOffByAFewMeasurementsThatWereDisturbed) {
     EXPECT_NEAR(fit.seconds(m.work) / m.seconds, 1, 0.05);
 }
 
-TEST(CostFit, BendsWhereWorkDoesNotGrowInProportion) {
+TEST(CostFit, BendsWhereTimeIsNotProportionalToWork) {
   // Time grows with the logarithm of the size: no line describes it.
   core::RandomStream random(4, 0, 0, 0, core::Purpose::kParameters);
   std::vector<Measurement> measurements;
@@ -72,7 +72,7 @@ TEST(CostFit, BendsWhereWorkDoesNotGrowInProportion) {
 }
 
 TEST(CostFit, HasNoTermBelowZero) {
-  // Seconds that fall with the operations: only the fixed part is left.
+  // Seconds decrease as operations grow: only the fixed part remains.
   std::vector<Measurement> measurements;
   for (int i = 1; i < 10; ++i)
     measurements.push_back({{static_cast<double>(i), 10.0, 10.0}, 1e-6 * (20 - i)});
@@ -83,7 +83,7 @@ TEST(CostFit, HasNoTermBelowZero) {
   EXPECT_GT(fit.seconds({5, 10, 10}), 5e-6);
 }
 
-TEST(CostFit, OfFewMeasurementsIsTheFormulaAlone) {
+TEST(CostFit, UsesTheFormulaAloneForFewMeasurements) {
   const CostFit fit = fit_cost(measured(line(2e-6, 3e-8, 4e-9, 0), 3));
   EXPECT_EQ(fit.fixed_s, 0);
   EXPECT_EQ(fit.per_triangle_s, 0);
@@ -91,12 +91,12 @@ TEST(CostFit, OfFewMeasurementsIsTheFormulaAlone) {
   EXPECT_EQ(fit_cost({}).seconds({1, 1, 1}), 0);
 }
 
-TEST(CostFit, ModelsThatAreAllAlikeAreFitted) {
+TEST(CostFit, FitsIdenticalModels) {
   const std::vector<Measurement> same(8, {{100, 50, 50}, 1e-5});
   EXPECT_NEAR(fit_cost(same).seconds({100, 50, 50}), 1e-5, 1e-12);
 }
 
-TEST(FormulaFit, ExplainsAllOfWhatFollowsTheFormulaAndLittleOfWhatDoesNot) {
+TEST(FormulaFit, ExplainsTimesThatFollowTheFormulaAndFewOthers) {
   std::vector<Measurement> exact, other;
   for (int i = 1; i <= 6; ++i) {
     const double x = i * std::pow(4, i - 1);
@@ -109,7 +109,7 @@ TEST(FormulaFit, ExplainsAllOfWhatFollowsTheFormulaAndLittleOfWhatDoesNot) {
   EXPECT_EQ(fit_formula({}).seconds_per_operation, 0);
 }
 
-TEST(FormulaFit, KnowsAFixedTimeBesidesTheFormula) {
+TEST(FormulaFit, FindsAFixedTimeBesidesTheFormula) {
   std::vector<Measurement> measured;
   for (int i = 1; i <= 6; ++i)
     measured.push_back({{1e3 * i, 0, 0}, 4e-5 + 2e-9 * 1e3 * i});
@@ -118,7 +118,7 @@ TEST(FormulaFit, KnowsAFixedTimeBesidesTheFormula) {
   EXPECT_NEAR(fit.fixed_s, 4e-5, 1e-12);
   EXPECT_NEAR(fit.seconds_per_operation_above, 2e-9, 1e-16);
   EXPECT_NEAR(fit.r_squared_above, 1, 1e-9);
-  // One value of the parameter tells nothing about it.
+  // A single value of the parameter says nothing about its effect.
   const FormulaFit one = fit_formula(std::span(measured).first(1));
   EXPECT_EQ(one.seconds_per_operation_above, 0);
   EXPECT_NEAR(one.fixed_s, measured[0].seconds, 1e-15);

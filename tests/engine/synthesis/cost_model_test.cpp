@@ -12,7 +12,7 @@ using testing::FakeModel;
 using testing::parameters_of;
 using testing::registry_of;
 
-// A clock that models move: each synthesis takes what its formula says.
+// A clock that models advance: each synthesis takes the time of its formula.
 struct VirtualTime {
   double now = 0;
   std::uint64_t calls = 0;
@@ -55,9 +55,9 @@ TEST(CostModel, CalibrationFindsTheConstantOfALinearCost) {
     EXPECT_EQ(level.samples, 4u);
 }
 
-TEST(CostModel, WhatEverySynthesisTakesBesideItsFormulaIsFound) {
+TEST(CostModel, FindsTheFixedTimeOfEverySynthesis) {
   VirtualTime time;
-  time.seconds_fixed = 200e-6;  // the formula knows nothing of it
+  time.seconds_fixed = 200e-6;  // not part of the formula
   const models::Registry registry = time.registry();
   CostModel cost(registry);
   const CalibrationReport report =
@@ -66,7 +66,7 @@ TEST(CostModel, WhatEverySynthesisTakesBesideItsFormulaIsFound) {
   EXPECT_NEAR(cost.predict(0, parameters_of(1, 200), 0), 400e-6, 1e-9);
 }
 
-TEST(CostModel, CoversWhatIsAboutAsLargeAsWhatWasMeasuredAtThisLevel) {
+TEST(CostModel, CoversWorkOfAboutTheSizeMeasuredAtThisLevel) {
   VirtualTime time;
   const models::Registry registry = time.registry();
   CostModel cost(registry);
@@ -85,23 +85,23 @@ TEST(CostModel, CoversWhatIsAboutAsLargeAsWhatWasMeasuredAtThisLevel) {
   EXPECT_FALSE(cost.covers(1, 0, {64, 64, 64}));
 }
 
-TEST(CostModel, ALevelThatTookItsFitFromACoarserOneCoversNothing) {
+TEST(CostModel, ALevelWithTheFitOfACoarserOneCoversNothing) {
   VirtualTime time;
   time.seconds_per_vertex = 1e-3;
   const models::Registry registry = time.registry();
   CostModel cost(registry);
   const auto samples = samples_of({4096});
-  cost.calibrate(samples, time.options(5));  // of its finest level one synthesis takes 4 s
+  cost.calibrate(samples, time.options(5));  // one synthesis of its finest level takes 4 s
   EXPECT_TRUE(cost.covers(0, 2, cost.work(0, samples[0].parameters, 2)));
   EXPECT_FALSE(cost.covers(0, 0, cost.work(0, samples[0].parameters, 0)));
 }
 
-TEST(CostModel, AFormulaThatDoesNotFitIsReportedAsFitError) {
+TEST(CostModel, AWrongFormulaIsReportedAsFitError) {
   VirtualTime time;
   time.seconds_fixed = 200e-6;
   const models::Registry registry = time.registry();
   CostModel cost(registry);
-  // Too few samples to tell the fixed part from the formula.
+  // Too few samples to separate the fixed part from the formula.
   const CalibrationReport report = cost.calibrate(samples_of({8, 64, 512}), time.options());
   EXPECT_GT(report.fit_error_percent_p95, 20);
 }
@@ -114,7 +114,7 @@ TEST(CostModel, CalibrationStaysWithinItsLimit) {
   const CalibrationReport report = cost.calibrate(samples_of({16, 64, 4096}), time.options(0.4));
   EXPECT_LE(report.seconds, 0.4);
   EXPECT_GT(report.measurements, 0u);
-  // What was skipped is predicted from the levels and samples that were measured.
+  // Skipped levels are predicted from the measured levels and samples.
   EXPECT_NEAR(cost.predict(0, parameters_of(1, 4096), 0), 4.096, 1e-6);
 }
 
@@ -162,26 +162,26 @@ TEST(CostModel, TypesThatMisbehaveAreNamedAndDoNotStopTheOthers) {
   }
 }
 
-// What is predicted of a request for a mesh of 100 vertices.
+// Predicted cost of a request for a mesh of 100 vertices.
 RequestCost request_of(const CostModel& cost, int level) {
   return cost.predict_request(0, level, cost.work(0, parameters_of(1, 100), level));
 }
 
-TEST(CostModel, ObservationsMoveRequestsToTheTruthAndLeaveTheCurveAlone) {
+TEST(CostModel, ObservationsCorrectRequestsAndKeepTheCurve) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   CostModel cost(registry);
   const auto p = parameters_of(1, 100);
   const double curve = cost.predict(0, p, 0), coarser = cost.predict(0, p, 1);
   EXPECT_EQ(request_of(cost, 0).warm_s(), curve);
   const double truth = curve * 3;
-  for (int i = 0; i < 500; ++i)  // all were predicted long ago
+  for (int i = 0; i < 500; ++i)  // all were predicted long before
     cost.observe(0, 0, cost.work(0, p, 0), Warmth::kWarm, curve, truth);
   EXPECT_NEAR(request_of(cost, 0).warm_s() / truth, 1, 0.01);
-  EXPECT_EQ(request_of(cost, 1).warm_s(), coarser);  // other levels keep theirs
+  EXPECT_EQ(request_of(cost, 1).warm_s(), coarser);  // other levels keep their predictions
   EXPECT_EQ(cost.predict(0, p, 0), curve);
 }
 
-TEST(CostModel, WhatColdCachesAddIsSharedByTypesThatRunTheSameCode) {
+TEST(CostModel, TheCostOfColdCachesIsSharedByTypesThatRunTheSameCode) {
   models::Registry registry;
   ASSERT_TRUE(registry.add(std::make_unique<FakeModel>("a")));
   ASSERT_TRUE(registry.add(std::make_unique<FakeModel>("b")));
@@ -201,7 +201,7 @@ TEST(CostModel, WhatColdCachesAddIsSharedByTypesThatRunTheSameCode) {
   EXPECT_EQ(added(2), 0);
 }
 
-TEST(CostModel, ARequestTakesReadingTheClockBesideItsSynthesis) {
+TEST(CostModel, ARequestIncludesReadingTheClock) {
   VirtualTime time;
   const models::Registry registry = time.registry();
   CostModel cost(registry);
@@ -213,7 +213,7 @@ TEST(CostModel, ARequestTakesReadingTheClockBesideItsSynthesis) {
               1e-9);
 }
 
-TEST(CostModel, ErrorPercentilesAreThoseOfItsPredictions) {
+TEST(CostModel, ErrorPercentilesMatchItsPredictions) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   CostModel cost(registry);
   EXPECT_EQ(cost.error().count, 0u);
@@ -228,7 +228,7 @@ TEST(CostModel, ErrorPercentilesAreThoseOfItsPredictions) {
   EXPECT_NEAR(cost.error().p50_percent, 20, 1e-4);
 }
 
-TEST(CostModel, NonsenseIsNotObserved) {
+TEST(CostModel, InvalidObservationsAreIgnored) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   CostModel cost(registry);
   cost.observe(5, 0, {1, 0, 0}, Warmth::kWarm, 1, 1);
@@ -239,7 +239,7 @@ TEST(CostModel, NonsenseIsNotObserved) {
   EXPECT_EQ(cost.error().count, 0u);
 }
 
-// Counts its own steps, where `steps` is any number.
+// Reports its own steps; `steps` may be any number.
 class SteppingModel : public FakeModel {
  public:
   explicit SteppingModel(double steps) : steps_(steps) {}
@@ -249,7 +249,7 @@ class SteppingModel : public FakeModel {
   double steps_;
 };
 
-TEST(CostModel, TakesTheStepsOfATypeOrTheTrianglesOfItsFullDetail) {
+TEST(CostModel, UsesTheStepsOfATypeOrTheTrianglesOfItsFullDetail) {
   const models::Parameters p = parameters_of(1, 80);
   const auto steps_of = [&p](double steps, int level) {
     const models::Registry registry = registry_of(std::make_unique<SteppingModel>(steps));
@@ -260,12 +260,12 @@ TEST(CostModel, TakesTheStepsOfATypeOrTheTrianglesOfItsFullDetail) {
     return work.steps;
   };
   EXPECT_EQ(steps_of(500, 1), 501);
-  EXPECT_EQ(steps_of(-1, 0), 80) << "as many as triangles";
+  EXPECT_EQ(steps_of(-1, 0), 80) << "equal to the triangles";
   EXPECT_EQ(steps_of(-1, 1), 80);
   EXPECT_EQ(steps_of(std::nan(""), 2), 80);
 }
 
-// Says what its steps take.
+// Declares the duration of its steps.
 class TimedModel : public FakeModel {
  public:
   explicit TimedModel(double step_s) : step_s_(step_s) {}
@@ -275,7 +275,7 @@ class TimedModel : public FakeModel {
   double step_s_;
 };
 
-TEST(CostModel, BeforeAnythingIsMeasuredTypesSayWhatTheirStepsTake) {
+TEST(CostModel, BeforeCalibrationTypesDeclareTheCostOfTheirSteps) {
   const auto seconds_of = [](double step_s) {
     const models::Registry registry = registry_of(std::make_unique<TimedModel>(step_s));
     return CostModel(registry).predict(0, parameters_of(1, 1000), 0);

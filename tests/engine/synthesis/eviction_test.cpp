@@ -1,4 +1,5 @@
-// The budget under pressure: random loads against a model, memory that returns late or fails.
+// Tests the budget under pressure: random loads against a model, and memory that returns late or
+// fails.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +25,7 @@ Rank random_rank(core::RandomStream& random) {
                         static_cast<float>(random.next_integer(0, 5)) * 16);
 }
 
-// What the test believes to be in the cache.
+// The cache's content as the test expects it.
 struct Believed {
   MeshHandle handle;
   Rank rank;
@@ -33,7 +34,7 @@ struct Believed {
 };
 using Model = std::map<std::uint32_t, Believed>;
 
-// Each eviction took the worst that was ready, and only what the request may evict.
+// Expects that each eviction took the worst ready mesh, and only meshes that the request may evict.
 void expect_lawful(std::span<const Eviction> evictions, Model& model, const Rank* request) {
   for (const Eviction& e : evictions) {
     const auto victim = model.find(static_cast<std::uint32_t>(e.owner));
@@ -154,7 +155,7 @@ class PressureTest : public ::testing::Test {
   GeometryCache cache{memory, registry, 8 * kMeshBytes};
 };
 
-TEST_F(PressureTest, OneRequestThatWaitsForTheGpuEvictsOnceAndNotAgainEveryTick) {
+TEST_F(PressureTest, ARequestThatWaitsForTheGpuEvictsOnlyOnce) {
   fill(8);
   EXPECT_FALSE(reserve(100, prefetch(0)));
   EXPECT_EQ(cache.stats().evictions, 1u);
@@ -169,7 +170,7 @@ TEST_F(PressureTest, OneRequestThatWaitsForTheGpuEvictsOnceAndNotAgainEveryTick)
   EXPECT_EQ(memory.used_bytes(), 8 * kMeshBytes);
 }
 
-TEST_F(PressureTest, ARequestWhoseRoomIsOnItsWayIsToldSoAndNotThatThereIsNone) {
+TEST_F(PressureTest, ARequestWhoseMemoryIsBeingFreedIsToldToWait) {
   fill(8);
   const auto p = parameters_of(100, 80);
   const auto error_of = [&](std::uint32_t index, Rank rank) {
@@ -179,7 +180,7 @@ TEST_F(PressureTest, ARequestWhoseRoomIsOnItsWayIsToldSoAndNotThatThereIsNone) {
   EXPECT_EQ(error_of(101, prefetch(1e6F)), core::ErrorCode::kOverBudget);
 }
 
-TEST_F(PressureTest, ALittleRoomIsKeptFreeOfWhatNobodyWants) {
+TEST_F(PressureTest, SomeMemoryIsKeptFreeByEvictingUnwantedMeshes) {
   cache.set_budget(64 * kMeshBytes);
   fill(64);
   std::vector<MeshHandle> unwanted;  // in this order, others between them
@@ -203,14 +204,14 @@ TEST_F(PressureTest, ALittleRoomIsKeptFreeOfWhatNobodyWants) {
     EXPECT_TRUE(reserve(100 + i, prefetch(1e6F)));  // without waiting
 }
 
-TEST_F(PressureTest, NothingThatIsWantedGoesForTheSakeOfRoom) {
+TEST_F(PressureTest, NoWantedMeshIsEvictedAheadOfNeed) {
   fill(8);
   for (int i = 0; i < 10; ++i)
     cache.begin_batch();
   EXPECT_EQ(cache.stats().evictions, 0u);
 }
 
-TEST_F(PressureTest, WhatIsVisibleIsCountedHoweverItGoes) {
+TEST_F(PressureTest, VisibleBytesAreCountedForEveryWayToLeaveTheCache) {
   const auto visible = [](float distance) {
     return Rank::by_layer(RankGroup::kDrawn, 0, distance);
   };
@@ -228,7 +229,7 @@ TEST_F(PressureTest, WhatIsVisibleIsCountedHoweverItGoes) {
   EXPECT_EQ(cache.stats().visible_bytes, kMeshBytes);
 }
 
-TEST_F(PressureTest, WhereMemoryIsInPiecesWhatNobodyWantsGoesInAHeap) {
+TEST_F(PressureTest, FragmentedMemoryIsFreedInBatchesOfUnwantedMeshes) {
   FakeMemory immediate(1 << 20, 0);
   GeometryCache other(immediate, registry, 80 * kMeshBytes);
   const auto p = parameters_of(1, 80);
@@ -239,7 +240,7 @@ TEST_F(PressureTest, WhereMemoryIsInPiecesWhatNobodyWantsGoesInAHeap) {
   EXPECT_EQ(other.stats().evictions, 5u);  // an eighth
 }
 
-TEST_F(PressureTest, ARequestThatAsksAgainInTheSameBatchIsPromisedItsRoomOnce) {
+TEST_F(PressureTest, ARepeatedRequestInOneBatchIsPromisedItsMemoryOnce) {
   fill(8);
   for (int i = 0; i < 5; ++i)
     EXPECT_FALSE(reserve(100, prefetch(0)));
@@ -248,8 +249,8 @@ TEST_F(PressureTest, ARequestThatAsksAgainInTheSameBatchIsPromisedItsRoomOnce) {
   EXPECT_EQ(cache.stats().evictions, 2u);
 }
 
-TEST_F(PressureTest, PiecesThatAreOnTheirWayAreWaitedFor) {
-  GeometryCache other(memory, registry, 80 * kMeshBytes);  // whose memory returns two frames later
+TEST_F(PressureTest, ARequestWaitsForPiecesThatAreBeingFreed) {
+  GeometryCache other(memory, registry, 80 * kMeshBytes);  // its memory returns two frames later
   const auto p = parameters_of(1, 80);
   for (std::uint32_t i = 0; i < 40; ++i)
     other.complete(*other.reserve(key_of(i, p), p, i, Rank::unwanted()), {});
@@ -259,7 +260,7 @@ TEST_F(PressureTest, PiecesThatAreOnTheirWayAreWaitedFor) {
     const auto waits = other.reserve(key_of(50, p), p, 50, prefetch(0));
     ASSERT_FALSE(waits);
     EXPECT_EQ(waits.error().code, core::ErrorCode::kNotYet) << tick;
-    EXPECT_LE(other.stats().evictions, 7u) << tick;  // an eighth, and what the limit grew by
+    EXPECT_LE(other.stats().evictions, 7u) << tick;  // an eighth, and the growth of the limit
   }
   for (int frame = 0; frame < 2; ++frame)
     memory.end_frame();
@@ -267,7 +268,7 @@ TEST_F(PressureTest, PiecesThatAreOnTheirWayAreWaitedFor) {
   EXPECT_TRUE(other.reserve(key_of(50, p), p, 50, prefetch(0)));
 }
 
-TEST_F(PressureTest, EachOfSeveralWaitingRequestsGetsItsOwnRoom) {
+TEST_F(PressureTest, EachOfSeveralWaitingRequestsGetsItsMemory) {
   fill(8);
   for (std::uint32_t i = 0; i < 3; ++i)
     EXPECT_FALSE(reserve(100 + i, prefetch(0)));
@@ -291,7 +292,7 @@ TEST_F(PressureTest, AHalvedBudgetIsMetWithinTheNextFramesWithoutEvictingTooMuch
   EXPECT_EQ(cache.stats().evictions, 4u);
 }
 
-TEST_F(PressureTest, BytesOfOthersInTheSameMemoryCountAgainstTheBudget) {
+TEST_F(PressureTest, OtherBytesInTheSameMemoryCountAgainstTheBudget) {
   fill(6);
   const auto other = memory.reserve(core::VertexLayout::kModel, 80, 240);
   ASSERT_TRUE(other);
@@ -301,7 +302,7 @@ TEST_F(PressureTest, BytesOfOthersInTheSameMemoryCountAgainstTheBudget) {
   EXPECT_LE(cache.stats().peak_bytes, 8 * kMeshBytes);
 }
 
-TEST_F(PressureTest, MemoryThatRunsOutOnceIsSurvivedAndTheLimitRecovers) {
+TEST_F(PressureTest, TheLimitRecoversAfterMemoryRanOutOnce) {
   FakeMemory immediate(1 << 20, 0);
   GeometryCache other(immediate, registry, 8 * kMeshBytes);
   const auto p = parameters_of(1, 80);
@@ -317,7 +318,7 @@ TEST_F(PressureTest, MemoryThatRunsOutOnceIsSurvivedAndTheLimitRecovers) {
   EXPECT_EQ(other.stats().limit_bytes, 8 * kMeshBytes);
 }
 
-TEST_F(PressureTest, MemoryThatHasLessThanTheBudgetIsTheLimit) {
+TEST_F(PressureTest, AMemorySmallerThanTheBudgetIsTheLimit) {
   FakeMemory immediate(1 << 20, 0);
   GeometryCache other(immediate, registry, 8 * kMeshBytes);
   const auto p = parameters_of(1, 80);
@@ -332,7 +333,7 @@ TEST_F(PressureTest, MemoryThatHasLessThanTheBudgetIsTheLimit) {
   EXPECT_EQ(other.stats().capacity_bytes, 5 * kMeshBytes);
 }
 
-TEST_F(PressureTest, MemoryThatAlwaysFailsCostsOneEvictionATickAndIsAnError) {
+TEST_F(PressureTest, AMemoryThatAlwaysFailsCostsOneEvictionATickAndIsAnError) {
   FakeMemory immediate(1 << 20, 0);
   GeometryCache other(immediate, registry, 16 * kMeshBytes);
   const auto p = parameters_of(1, 80);

@@ -1,5 +1,5 @@
-// Geometry memory for tests: gives released bytes back only after some frames, as a GPU does, and
-// fails to reserve when told.
+// Geometry memory for tests: releases bytes only after some frames, as a GPU does, and fails to
+// reserve on demand.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ class FakeMemory final : public core::GeometryMemory {
       : heap_(capacity_bytes), frames_in_flight_(frames_in_flight) {}
 
   void fail_next_reservations(int count) { failures_ = count; }
-  // From now on it says that it has no more than this.
+  // Limits the capacity that it reports from now on.
   void limit_capacity(std::uint64_t bytes) { capacity_bytes_ = bytes; }
   void end_frame() {
     for (Pending& p : pending_)
@@ -31,7 +31,7 @@ class FakeMemory final : public core::GeometryMemory {
                                                   std::uint32_t indices) override {
     if (failures_ > 0) {
       --failures_;
-      return core::fail(core::ErrorCode::kOutOfMemory, "told to fail");
+      return core::fail(core::ErrorCode::kOutOfMemory, "the test asked for a failure");
     }
     return heap_.reserve(layout, vertices, indices);
   }

@@ -1,5 +1,4 @@
-// Model types for tests: cheap, deterministic, and some that misbehave. Not models of anything. And
-// the ranks that their meshes are asked for with.
+// Model types for tests, cheap and deterministic, and some that misbehave; and ranks of requests.
 #pragma once
 
 #include <array>
@@ -66,10 +65,10 @@ class FakeModel : public models::ModelType {
   int levels_;
 };
 
-// Of 80 vertices of 16 bytes, with 3 indices of 2 bytes each: a multiple of 16.
+// Size of a mesh of 80 vertices of 16 bytes, with 3 indices of 2 bytes each: a multiple of 16.
 inline constexpr std::uint64_t kMeshBytes = 80 * 22;
 
-// Does what a function says before it synthesises.
+// Calls a function before it synthesises.
 class ScriptedModel : public FakeModel {
  public:
   using Script = std::function<void(const models::Parameters&, int level)>;
@@ -86,7 +85,7 @@ class ScriptedModel : public FakeModel {
   Script script_;
 };
 
-// Lies: says that its box is not a number.
+// Returns bounds that are not numbers.
 class LyingModel : public FakeModel {
  public:
   LyingModel() : FakeModel("lying") {}
@@ -97,19 +96,19 @@ class LyingModel : public FakeModel {
   }
 };
 
-// Cannot tell its size, and has no sensible complexity.
+// Throws in mesh_size() and has an invalid complexity.
 class SizelessModel : public FakeModel {
  public:
   SizelessModel() : FakeModel("sizeless") {}
   models::MeshSize mesh_size(const models::Parameters&, int) const override {
-    throw std::runtime_error("no idea");
+    throw std::runtime_error("unknown size");
   }
   double complexity(const models::Parameters&, int) const override {
     return std::numeric_limits<double>::quiet_NaN();
   }
 };
 
-// Wants more vertices than 16-bit indices can name.
+// Has more vertices than 16-bit indices can address.
 class HugeModel : public FakeModel {
  public:
   HugeModel() : FakeModel("huge") {}
@@ -118,7 +117,7 @@ class HugeModel : public FakeModel {
   }
 };
 
-// A gate that a model hangs on until the test opens it.
+// A gate on which a model hangs until the test opens it.
 class Gate {
  public:
   void wait() {

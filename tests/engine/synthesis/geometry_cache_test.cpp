@@ -54,7 +54,7 @@ TEST_F(GeometryCacheTest, AMeshGoesFromEmptyToRequestedToReady) {
   EXPECT_EQ(memory.indices(record->range).size(), kVertices * 3u);  // committed
 }
 
-TEST_F(GeometryCacheTest, ReservingAMeshThatIsThereReturnsIt) {
+TEST_F(GeometryCacheTest, ReservingAnExistingMeshReturnsIt) {
   const MeshHandle handle = reserve(1, hole(1));
   EXPECT_EQ(reserve(1, hole(1)), handle);
   cache.complete(handle, {});
@@ -73,7 +73,7 @@ TEST_F(GeometryCacheTest, LookUpsAreCountedAsHitsOnlyWhenReady) {
   EXPECT_EQ(cache.stats().hits, 1u);
 }
 
-TEST_F(GeometryCacheTest, TheWorstRankIsEvictedFirstAndTheOwnerIsTold) {
+TEST_F(GeometryCacheTest, TheWorstRankIsEvictedFirstAndReportedToItsOwner) {
   add(1, prefetch(10));
   add(2, prefetch(400));
   add(3, drawn(1000));
@@ -91,7 +91,7 @@ TEST_F(GeometryCacheTest, TheWorstRankIsEvictedFirstAndTheOwnerIsTold) {
   EXPECT_LE(cache.stats().peak_bytes, 4 * kMeshBytes);
 }
 
-TEST_F(GeometryCacheTest, NothingVisibleGoesWhileSomethingInvisibleIsLeft) {
+TEST_F(GeometryCacheTest, NoVisibleMeshIsEvictedWhileAnInvisibleOneIsLeft) {
   add(1, drawn(1e6F));
   add(2, prefetch(1));
   add(3, drawn(1e5F));
@@ -103,10 +103,10 @@ TEST_F(GeometryCacheTest, NothingVisibleGoesWhileSomethingInvisibleIsLeft) {
   ASSERT_EQ(evictions.size(), 3u);
   EXPECT_EQ(evictions[0].owner, 2u);
   EXPECT_EQ(evictions[1].owner, 4u);
-  EXPECT_EQ(evictions[2].owner, 1u);  // only a nearer hole takes what is drawn, the farthest first
+  EXPECT_EQ(evictions[2].owner, 1u);  // only a nearer hole evicts drawn meshes, the farthest first
 }
 
-TEST_F(GeometryCacheTest, ARequestIsRefusedRatherThanEvictWhatIsAsGood) {
+TEST_F(GeometryCacheTest, ARequestIsRejectedRatherThanEvictAnEqualMesh) {
   for (std::uint32_t i = 1; i <= 4; ++i)
     add(i, prefetch(10));
   const auto p = parameters_of(5, kVertices);
@@ -115,7 +115,7 @@ TEST_F(GeometryCacheTest, ARequestIsRefusedRatherThanEvictWhatIsAsGood) {
   EXPECT_EQ(refused.error().code, core::ErrorCode::kOverBudget);
   EXPECT_TRUE(cache.take_evictions().empty());
   EXPECT_EQ(cache.stats().refusals, 1u);
-  EXPECT_FALSE(cache.find(key(5)));  // not remembered: it may be asked for again
+  EXPECT_FALSE(cache.find(key(5)));  // not remembered: it may be requested again
   EXPECT_TRUE(reserve(5, prefetch(5)));
 }
 
@@ -138,12 +138,12 @@ TEST_F(GeometryCacheTest, ReservationsInFlightAreNeverEvicted) {
   EXPECT_EQ(cache.stats().requested, 4u);
 }
 
-TEST_F(GeometryCacheTest, ChangedRanksDecideTheNextEviction) {
+TEST_F(GeometryCacheTest, AChangedRankDecidesTheNextEviction) {
   const MeshHandle a = add(1, drawn(1));
   add(2, prefetch(1));
   add(3, prefetch(2));
   add(4, prefetch(3));
-  ASSERT_TRUE(reserve(5, hole(1)));  // takes 4 and has selected the order
+  ASSERT_TRUE(reserve(5, hole(1)));  // evicts 4 and has selected the order
   cache.set_rank(a, Rank::unwanted());
   ASSERT_TRUE(reserve(6, hole(1)));
   const auto evictions = cache.take_evictions();
@@ -185,7 +185,7 @@ TEST_F(GeometryCacheTest, ACancelledReservationLeavesNothingBehind) {
   EXPECT_TRUE(cache.take_evictions().empty());
 }
 
-TEST_F(GeometryCacheTest, AMeshReleasedInFlightGoesWhenItIsDoneUnlessItIsAdopted) {
+TEST_F(GeometryCacheTest, AMeshReleasedInFlightIsFreedWhenFinishedUnlessAdopted) {
   const MeshHandle gone = reserve(1, hole(1)), kept = reserve(2, hole(1));
   cache.release(gone);
   cache.release(kept);
@@ -212,10 +212,10 @@ TEST_F(GeometryCacheTest, AFailedMeshIsRememberedWithItsReasonAndNotRetried) {
   EXPECT_EQ(again.error().message, "rock level 0 threw: too hard");
 }
 
-TEST_F(GeometryCacheTest, OldFailuresAreForgottenSoThatMemoryStaysBounded) {
+TEST_F(GeometryCacheTest, OldFailuresAreForgottenToBoundMemory) {
   const auto p = parameters_of(1, kVertices);
   MeshKey broken = key(0);
-  broken.level = 50;  // there is none
+  broken.level = 50;  // does not exist
   for (std::uint32_t i = 0; i < GeometryCache::kMaxFailures + 10; ++i) {
     broken.index = i;
     EXPECT_FALSE(cache.reserve(broken, p, 1, hole(1)));
@@ -227,7 +227,7 @@ TEST_F(GeometryCacheTest, OldFailuresAreForgottenSoThatMemoryStaysBounded) {
   EXPECT_TRUE(cache.find(broken));
 }
 
-TEST_F(GeometryCacheTest, AHungModelersDestinationStaysReservedUntilItLetsGo) {
+TEST_F(GeometryCacheTest, AHungModelersDestinationStaysReservedUntilItReleasesIt) {
   const MeshHandle handle = reserve(1, hole(1));
   cache.fail(handle, "hangs", true);
   EXPECT_EQ(memory.used_bytes(), kMeshBytes);
@@ -250,7 +250,7 @@ TEST_F(GeometryCacheTest, AHalvedBudgetIsMetAtOnceWorstFirstEvenIfVisible) {
   EXPECT_EQ(evictions[1].owner, 2u);
 }
 
-TEST_F(GeometryCacheTest, ReservationsInFlightMeetASmallerBudgetWhenTheyAreDone) {
+TEST_F(GeometryCacheTest, ReservationsInFlightMeetASmallerBudgetWhenFinished) {
   const MeshHandle a = reserve(1, drawn(1)), b = reserve(2, drawn(2)), c = reserve(3, drawn(3));
   cache.set_budget(kMeshBytes);
   EXPECT_EQ(memory.used_bytes(), 3 * kMeshBytes);
@@ -279,7 +279,7 @@ TEST_F(GeometryCacheTest, RegenerationsAndPrefetchHitsAreCounted) {
   EXPECT_EQ(stats.evictions, 1u);
 }
 
-TEST_F(GeometryCacheTest, TheDestructorGivesEverythingBack) {
+TEST_F(GeometryCacheTest, TheDestructorReleasesEverything) {
   {
     GeometryCache other(memory, registry, 1 << 20);
     const auto p = parameters_of(1, kVertices);
@@ -292,7 +292,7 @@ TEST_F(GeometryCacheTest, TheDestructorGivesEverythingBack) {
   EXPECT_EQ(memory.used_bytes(), 0u);
 }
 
-TEST(GeometryCacheTypes, TypesThatCannotTellTheirSizeOrWantTooMuchFailOnceAndForAll) {
+TEST(GeometryCacheTypes, TypesOfUnknownOrExcessiveSizeFailPermanently) {
   models::Registry registry;
   ASSERT_TRUE(registry.add(std::make_unique<testing::SizelessModel>()));
   ASSERT_TRUE(registry.add(std::make_unique<testing::HugeModel>()));

@@ -12,7 +12,7 @@ TEST(KeyIndex, BehavesLikeAMapUnderRandomInsertsAndErasesWithCollisions) {
   std::map<std::uint64_t, Slot> model;  // key number → slot
   std::vector<std::uint64_t> number_of_slot(4096, UINT64_MAX);
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kParameters);
-  // Few distinct hashes, so that probes run into each other and around the end of the table.
+  // Few distinct hashes, so that probe sequences overlap and wrap around the end of the table.
   const auto hash = [](std::uint64_t number) { return 60 + number % 17; };
   const auto find = [&](std::uint64_t number) {
     return index.find(hash(number), [&](Slot s) { return number_of_slot[s] == number; });

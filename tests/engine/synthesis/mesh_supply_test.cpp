@@ -23,7 +23,7 @@ class MeshSupplyTest : public ::testing::Test {
     EXPECT_EQ(meshes.start_modelers(options), 1u);
     EXPECT_EQ(meshes.shortage(), "");
   }
-  // Wants meshes 0 … n − 1 in this order and waits until they are made.
+  // Requests meshes 0 … n − 1 in this order and waits until they are synthesised.
   void make(std::uint32_t n) {
     meshes.begin_wants();
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -46,13 +46,13 @@ class MeshSupplyTest : public ::testing::Test {
   MeshSupply meshes;
 };
 
-TEST_F(MeshSupplyTest, WhatIsWantedIsReadyOnceItHasLanded) {
+TEST_F(MeshSupplyTest, AWantedMeshIsReadyOnceItHasLanded) {
   make(3);
   EXPECT_EQ(meshes.wants().size(), 3u);
   EXPECT_FALSE(meshes.has_arrived()) << "not collected";
   EXPECT_EQ(meshes.collect().size(), 3u);
   EXPECT_TRUE(meshes.has_arrived());
-  EXPECT_EQ(meshes.ready(meshes.find(keys[0])), nullptr) << "made, and not landed";
+  EXPECT_EQ(meshes.ready(meshes.find(keys[0])), nullptr) << "synthesised, but not made ready";
   const MeshSupply::Landed landed = meshes.land(UINT64_MAX);
   EXPECT_EQ(landed.completions.size(), 3u);
   EXPECT_EQ(landed.bytes, 3 * kMeshBytes);
@@ -81,14 +81,14 @@ TEST_F(MeshSupplyTest, LandsTheOldestFirstUntilTheBudgetOfATickIsReached) {
   EXPECT_EQ(land(UINT64_MAX), 0u);
 }
 
-TEST_F(MeshSupplyTest, WhatIsForgottenOrEvictedIsNotReady) {
+TEST_F(MeshSupplyTest, AForgottenOrEvictedMeshIsNotReady) {
   make(2);
   meshes.collect();
   meshes.land(UINT64_MAX);
   const MeshHandle first = meshes.find(keys[0]), second = meshes.find(keys[1]);
   meshes.forget(first);
   EXPECT_EQ(meshes.ready(first), nullptr);
-  EXPECT_TRUE(meshes.take_evictions().empty()) << "the caller knows";
+  EXPECT_TRUE(meshes.take_evictions().empty()) << "the caller freed the mesh itself";
   meshes.rank(second, Rank::unwanted());
   meshes.set_budget(1);
   EXPECT_EQ(meshes.ready(second), nullptr);
@@ -97,7 +97,7 @@ TEST_F(MeshSupplyTest, WhatIsForgottenOrEvictedIsNotReady) {
   EXPECT_EQ(evicted[0].owner, 1u);
 }
 
-TEST_F(MeshSupplyTest, EndsThoughModelersWorkAndNothingHasLanded) {
+TEST_F(MeshSupplyTest, EndsWhileModelersWorkAndNothingHasLanded) {
   parameters.push_back(std::make_unique<models::Parameters>(parameters_of(1, 60000)));
   meshes.want({key_of(1, *parameters.back(), 0), parameters.back().get(), 1,
                Rank::by_layer(RankGroup::kVisibleHole, 0, 0), 0});

@@ -1,4 +1,4 @@
-// What modelers note of meshes, from the hook to the end of the mesh.
+// Tests annotations of meshes, from the modeler's hook to the end of the mesh.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -23,14 +23,14 @@ using testing::ScriptedModel;
 
 constexpr models::ModelIndex kNoted = 0, kPlain = 1, kLying = 2;
 
-// What the hook of these tests notes. Shared, so that a test sees when its end has come.
+// Annotation of these tests. Shared, so that a test observes its destruction.
 struct Seen {
   std::uint64_t hash = 0;  // of the mesh
   std::thread::id thread;
 };
 using Note = std::shared_ptr<const Seen>;
 
-// Notes of one of three types, and of another that fails.
+// Annotates one of three types; the hook of another one fails.
 class NoteTest : public ::testing::Test {
  protected:
   NoteTest() {
@@ -74,7 +74,7 @@ class NoteTest : public ::testing::Test {
     manager.collect(done);
     return done;
   }
-  // The mesh, ready.
+  // Adds the mesh and makes it ready.
   MeshHandle add(std::uint32_t index) {
     std::vector<Completion> done = run({request(index)});
     EXPECT_EQ(land(done, cache, nullptr).ready, 1u);
@@ -88,7 +88,7 @@ class NoteTest : public ::testing::Test {
 
   Gate gate;
   std::atomic<std::thread::id> synthesised_by;
-  std::weak_ptr<const Seen> last;  // made
+  std::weak_ptr<const Seen> last;  // the last one made
   int made = 0;
   models::Registry registry;
   SynthesisOptions options;
@@ -113,7 +113,7 @@ TEST_F(NoteTest, IsMadeOfTheMeshByTheThreadThatSynthesisedIt) {
   EXPECT_EQ(seen(here[0].note)->thread, std::this_thread::get_id());
 }
 
-TEST_F(NoteTest, IsNotMadeOfOtherTypesNorOfWhatFailed) {
+TEST_F(NoteTest, IsNotMadeOfOtherTypesNorOfFailedMeshes) {
   std::vector<Completion> done = run({request(1, kPlain), request(2, kLying)});
   ASSERT_EQ(done.size(), 2u);
   EXPECT_TRUE(done[0].ok);
@@ -144,7 +144,8 @@ TEST_F(NoteTest, AHookThatThrowsFailsItsRequestOnly) {
   EXPECT_EQ(cache.get(done[0].handle)->state, MeshState::kFailed);
 }
 
-// Destinations may be slow to read: the hook sees the mesh elsewhere, and it arrives as it is.
+// Destinations may be slow to read: the hook sees the mesh in other memory, and the destination
+// receives the same bytes.
 TEST_F(NoteTest, IsMadeBeforeTheMeshIsCopiedToItsDestination) {
   std::vector<const std::byte*> places;
   const Annotate annotate = options.annotate[kNoted];
@@ -168,7 +169,7 @@ TEST_F(NoteTest, IsMadeBeforeTheMeshIsCopiedToItsDestination) {
   }
 }
 
-TEST_F(NoteTest, LandsWithItsMeshAndIsThereAtEveryHit) {
+TEST_F(NoteTest, ArrivesWithItsMeshAndIsAvailableAtEveryHit) {
   const MeshHandle handle = add(1);
   const auto p = parameters_of(1, 80);
   EXPECT_EQ(cache.look_up(key_of(1, p)), handle);
@@ -206,8 +207,8 @@ TEST_F(NoteTest, EndsWithTheCache) {
   EXPECT_TRUE(last.expired());
 }
 
-// Its owner gave it up, or the reservation is gone.
-TEST_F(NoteTest, OfAMeshThatNobodyWaitsForEndsWhenItLands) {
+// Its owner released it, or the reservation was cancelled.
+TEST_F(NoteTest, EndsAtArrivalIfItsMeshIsNoLongerWanted) {
   std::vector<Completion> done = run({request(1)});
   cache.release(done[0].handle);
   EXPECT_FALSE(last.expired());
@@ -221,8 +222,8 @@ TEST_F(NoteTest, OfAMeshThatNobodyWaitsForEndsWhenItLands) {
   EXPECT_TRUE(last.expired());
 }
 
-// By then what the hook refers to may be gone.
-TEST_F(NoteTest, OfARequestThatWasGivenUpIsNotMade) {
+// By then the objects that the hook refers to may be destroyed.
+TEST_F(NoteTest, IsNotMadeForAnAbandonedRequest) {
   std::atomic<double> now{100};
   options.watchdog_seconds = 10;
   options.clock = [&now] { return now.load(); };

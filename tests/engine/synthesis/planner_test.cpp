@@ -22,7 +22,7 @@ using testing::ScriptedModel;
 
 constexpr models::ModelIndex kWild = 1;
 
-// One modeler that works only while the gate is open. This thread always does.
+// One modeler that works only while the gate is open. The main thread always works.
 class PlannerTest : public ::testing::Test {
  protected:
   ~PlannerTest() override { gate.open(); }
@@ -49,7 +49,8 @@ class PlannerTest : public ::testing::Test {
     manager.publish(std::move(back));
     return owners;
   }
-  // Lets the modeler take one request and hang on it, so that the rest of any plan is unclaimed.
+  // Lets the modeler claim one request and hang on it, so that the rest of any plan stays
+  // unclaimed.
   void block_modeler() {
     plan({want(9999, hole(0))});
     gate.await(1);
@@ -76,7 +77,7 @@ class PlannerTest : public ::testing::Test {
   double burned_seconds = 0;
   Gate gate;
   std::vector<std::unique_ptr<models::Parameters>> parameters;
-  // Model 0 may run on the main thread, kWild may not.
+  // Model 0 may run on the main thread, kWild must not.
   models::Registry gated_and_wild() {
     const auto script = [this](const models::Parameters& p, int) {
       if (p.integer(0) == 666) throw std::runtime_error("the beast");
@@ -110,7 +111,7 @@ TEST_F(PlannerTest, WantsBecomeRequestsInOrderAndThenReadyMeshes) {
   EXPECT_EQ(next.published, 0u);
 }
 
-TEST_F(PlannerTest, UnclaimedReservationsAreCarriedOverOrGivenBack) {
+TEST_F(PlannerTest, UnclaimedReservationsAreCarriedOverOrReleased) {
   block_modeler();
   plan(wants_of({1, 2, 3}));
   const PlanReport report = plan(wants_of({2, 3, 4}));
@@ -122,7 +123,7 @@ TEST_F(PlannerTest, UnclaimedReservationsAreCarriedOverOrGivenBack) {
   EXPECT_EQ(memory.used_bytes(), 4 * kMeshBytes);  // the blocked one and three
 }
 
-TEST_F(PlannerTest, ACarriedRequestTakesOverRankAndOwnerOfItsNewWant) {
+TEST_F(PlannerTest, ACarriedRequestGetsRankAndOwnerOfItsNewWant) {
   block_modeler();
   plan({want(1, prefetch(5))});
   Want again = want(1, hole(2));
@@ -134,7 +135,7 @@ TEST_F(PlannerTest, ACarriedRequestTakesOverRankAndOwnerOfItsNewWant) {
   EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{55}));
 }
 
-TEST_F(PlannerTest, AMeshInTheHandsOfAModelerIsNeitherCancelledNorRequestedAgain) {
+TEST_F(PlannerTest, AClaimedMeshIsNeitherCancelledNorRequestedAgain) {
   block_modeler();
   const PlanReport wanted = plan({want(9999, hole(0))});
   EXPECT_EQ(wanted.in_flight, 1u);
@@ -150,7 +151,7 @@ TEST_F(PlannerTest, EnoughPredictedWorkEndsThePlanAndTheRestIsDeferred) {
   const PlanReport report = plan(wants_of({1, 2, 3, 4, 5}));
   EXPECT_EQ(report.published, 3u);
   EXPECT_EQ(report.deferred, 2u);
-  // Reservations of the last plan that fall behind the horizon are given back.
+  // Reservations of the last plan that fall behind the horizon are released.
   const PlanReport next = plan({want(10, hole(1)), want(11, hole(2)), want(12, hole(3)),
                                 want(1, hole(4)), want(2, hole(5)), want(3, hole(6))});
   EXPECT_EQ(next.published, 3u);
@@ -169,24 +170,24 @@ TEST_F(PlannerTest, OfManyNewWantsOnlyTheBestAreReservedInOnePlan) {
   EXPECT_EQ(first.reserved, 3u);
   EXPECT_EQ(first.deferred, 2u);
   EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{1, 2, 3}));
-  const PlanReport second = plan(wants);  // what is carried does not count
+  const PlanReport second = plan(wants);  // carried requests do not count
   EXPECT_EQ(second.carried, 3u);
   EXPECT_EQ(second.reserved, 2u);
   EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
 }
 
-TEST_F(PlannerTest, ABetterWantTakesTheRoomOfTheWorstUnclaimedReservation) {
+TEST_F(PlannerTest, ABetterWantReplacesTheWorstUnclaimedReservation) {
   block_modeler();
-  plan(wants_of({1, 2, 3, 4, 5}));  // the cache is full with what is in flight
+  plan(wants_of({1, 2, 3, 4, 5}));  // requests in flight fill the cache
   auto wants = wants_of({1, 2, 3, 4, 5});
   wants.push_back(want(100, hole(0)));
   const PlanReport report = plan(wants);
   EXPECT_EQ(report.cancelled, 1u);
-  EXPECT_EQ(report.refused, 1u);  // the fifth comes last now and finds no room
+  EXPECT_EQ(report.refused, 1u);  // the fifth is now last and finds no memory
   EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{100, 1, 2, 3, 4}));
 }
 
-TEST_F(PlannerTest, AFullCacheRefusesAFewAndGivesUpWithoutThrashing) {
+TEST_F(PlannerTest, AFullCacheRejectsAFewWantsAndStopsWithoutThrashing) {
   finish_all();
   for (const std::uint32_t i : {1u, 2u, 3u, 4u, 5u, 6u}) {
     plan({want(i, hole(static_cast<float>(i)))});
@@ -212,7 +213,7 @@ TEST_F(PlannerTest, RepeatedWantsMakeOneRequest) {
   EXPECT_EQ(carried.cancelled, 0u);
 }
 
-TEST_F(PlannerTest, AFailedMeshIsNotRequestedAgainAndAgain) {
+TEST_F(PlannerTest, AFailedMeshIsNotRequestedAgain) {
   finish_all();
   plan({want(666, hole(1))});
   finish_all();
@@ -224,7 +225,7 @@ TEST_F(PlannerTest, AFailedMeshIsNotRequestedAgainAndAgain) {
   EXPECT_EQ(report.published, 0u);
 }
 
-TEST_F(PlannerTest, FifoServesWhatWasRequestedBeforeAheadOfWhatIsNew) {
+TEST_F(PlannerTest, FifoServesEarlierRequestsFirst) {
   policy = Policy::kFifo;
   block_modeler();
   plan(wants_of({5, 4}));
@@ -232,7 +233,7 @@ TEST_F(PlannerTest, FifoServesWhatWasRequestedBeforeAheadOfWhatIsNew) {
   EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{5, 4, 1}));
 }
 
-TEST_F(PlannerTest, DeadlinesOrderWhatIsPredicted) {
+TEST_F(PlannerTest, DeadlinesOrderPredictedMeshes) {
   block_modeler();
   plan({want(1, Rank::by_deadline(3, 1), 3), want(2, Rank::by_deadline(1, 9), 1), want(3, hole(7)),
         want(4, prefetch(0), 9)});
@@ -263,7 +264,7 @@ TEST_F(PlannerTest, LandingDropsStaleHandlesAndKeepsHungDestinations) {
   EXPECT_EQ(memory.used_bytes(), kMeshBytes);
 }
 
-TEST_F(PlannerTest, VisibleHolesAreMadeAtOnceWithinTheirTimeAndNothingElseIs) {
+TEST_F(PlannerTest, OnlyVisibleHolesAreMadeAtOnceWithinTheirTime) {
   gate.open();
   limits.seconds_here = 10;
   const PlanReport report = plan({want(1, hole(10)), want(2, prefetch(10)), want(3, hole(20))});
@@ -279,7 +280,7 @@ TEST_F(PlannerTest, VisibleHolesAreMadeAtOnceWithinTheirTimeAndNothingElseIs) {
   EXPECT_EQ(land(done, cache, &cost).ready, 3u);
 }
 
-TEST_F(PlannerTest, WhereTheCallerSaysSoMoreOfWhatIsSeenIsMadeAtOnceInItsOrder) {
+TEST_F(PlannerTest, TheCallerMayHaveMoreVisibleMeshesMadeAtOnceInOrder) {
   gate.open();
   limits.seconds_here = 10;
   const std::vector<Want> wants{
@@ -298,7 +299,7 @@ TEST_F(PlannerTest, WhereTheCallerSaysSoMoreOfWhatIsSeenIsMadeAtOnceInItsOrder) 
   EXPECT_NE(done[3].modeler, kMainThreadModeler);
 }
 
-TEST_F(PlannerTest, OneThatIsPredictedToTakeTooLongDoesNotKeepTheNextFromBeingMadeAtOnce) {
+TEST_F(PlannerTest, AMeshPredictedToTakeTooLongDoesNotDelayTheNext) {
   gate.open();
   const std::vector<Want> wants{want(1, hole(10), 0, 800), want(2, hole(20), 0, 8)};
   const double large_s = cost.predict(wants[0].key.model, *wants[0].parameters, 0);
@@ -316,7 +317,7 @@ TEST_F(PlannerTest, OneThatIsPredictedToTakeTooLongDoesNotKeepTheNextFromBeingMa
   EXPECT_EQ(land(done, roomy, &cost).ready, 2u);
 }
 
-TEST_F(PlannerTest, AHoleThatIsPredictedToTakeTooLongIsLeftToTheModelers) {
+TEST_F(PlannerTest, AHolePredictedToTakeTooLongIsLeftToTheModelers) {
   gate.open();
   limits.seconds_here = 1e-12;
   const PlanReport report = plan({want(1, hole(10))});
@@ -324,9 +325,9 @@ TEST_F(PlannerTest, AHoleThatIsPredictedToTakeTooLongIsLeftToTheModelers) {
   EXPECT_EQ(report.published, 1u);
 }
 
-// Memory that is touched for the first time takes long whatever is predicted. The next hole is not
-// left open for it.
-TEST_F(PlannerTest, AHoleThatTookLongerThanPredictedDoesNotKeepTheNextFromBeingFilled) {
+// First access to memory is slow whatever the prediction says. The next hole must not stay open
+// because of it.
+TEST_F(PlannerTest, AHoleThatTookLongerThanPredictedDoesNotDelayTheNext) {
   gate.open();
   const std::vector<Want> wants{want(888, hole(10)), want(2, hole(20))};
   limits.seconds_here =
@@ -335,11 +336,11 @@ TEST_F(PlannerTest, AHoleThatTookLongerThanPredictedDoesNotKeepTheNextFromBeingF
   EXPECT_EQ(plan(wants).executed, 2u);
 }
 
-// A modeler that has claimed the mesh of a hole may not get a processor for long.
-TEST_F(PlannerTest, AHoleIsFilledHereThoughAModelerHoldsItsMesh) {
+// A modeler that has claimed the mesh of a hole may not get a processor for a long time.
+TEST_F(PlannerTest, AHoleIsFilledHereAlthoughAModelerHoldsItsMesh) {
   block_modeler();
   const Want held = want(9999, hole(0));
-  EXPECT_EQ(plan({held}).executed, 0u) << "no time is given to this thread";
+  EXPECT_EQ(plan({held}).executed, 0u) << "this thread has no time";
   limits.seconds_here = 10;
   const PlanReport report = plan({held});
   EXPECT_EQ(report.in_flight, 1u);
@@ -349,14 +350,14 @@ TEST_F(PlannerTest, AHoleIsFilledHereThoughAModelerHoldsItsMesh) {
   ASSERT_EQ(done.size(), 1u);
   EXPECT_EQ(done[0].modeler, kMainThreadModeler);
   EXPECT_EQ(done[0].owner, held.owner);
-  EXPECT_NE(done[0].handle, cache.find(held.key)) << "that is the modeler's to fill";
+  EXPECT_NE(done[0].handle, cache.find(held.key)) << "the modeler fills that one";
   EXPECT_EQ(land(done, cache, &cost).ready, 1u);
-  EXPECT_EQ(plan({held}).executed, 0u) << "it is there";
+  EXPECT_EQ(plan({held}).executed, 0u) << "the mesh is ready";
   finish_all();
   EXPECT_EQ(cache.get(cache.find(held.key))->state, MeshState::kReady);
 }
 
-TEST_F(PlannerTest, WhatAModelerHasBroughtBackIsNotMadeAgain) {
+TEST_F(PlannerTest, AMeshThatAModelerFinishedIsNotMadeAgain) {
   gate.open();
   const Want want_it = want(1, hole(0));
   plan({want_it});
@@ -367,8 +368,8 @@ TEST_F(PlannerTest, WhatAModelerHasBroughtBackIsNotMadeAgain) {
   EXPECT_EQ(report.executed, 0u);
 }
 
-// A hole that only a modeler may fill is not put behind what this thread had no time for.
-TEST_F(PlannerTest, WhatIsNotMadeAtOnceKeepsItsPlaceInThePlan) {
+// A hole that only a modeler may fill is not delayed by requests that this thread had no time for.
+TEST_F(PlannerTest, ARequestNotMadeAtOnceKeepsItsPlaceInThePlan) {
   block_modeler();
   limits.seconds_here = 1e-12;
   limits.here_up_to = RankGroup::kVisibleCoarse;
@@ -378,7 +379,7 @@ TEST_F(PlannerTest, WhatIsNotMadeAtOnceKeepsItsPlaceInThePlan) {
   EXPECT_EQ(unclaimed_owners(), (std::vector<std::uint64_t>{3, 2, 1}));
 }
 
-TEST_F(PlannerTest, WhatIsWantedAtOnceIsMadeHereWhateverItTakes) {
+TEST_F(PlannerTest, AMeshWantedAtOnceIsMadeHereHoweverLongItTakes) {
   limits.seconds_here = 1e-12;
   std::vector<Want> wants = wants_of({1, 2, 3});
   wants[1].at_once = true;
@@ -393,7 +394,7 @@ TEST_F(PlannerTest, WhatIsWantedAtOnceIsMadeHereWhateverItTakes) {
   EXPECT_EQ(plan(wants).executed, 0u) << "this thread makes nothing";
 }
 
-// Counts how often it is asked for its size: for trees that is hashing every branch.
+// Counts the calls of mesh_size(), which hashes every branch of a tree.
 class AskedModel : public testing::FakeModel {
  public:
   explicit AskedModel(int& asked) : asked_(asked) {}
@@ -406,7 +407,7 @@ class AskedModel : public testing::FakeModel {
   int& asked_;
 };
 
-TEST(PlannerSizes, ANewRequestAsksItsTypeForEachSizeOnce) {
+TEST(PlannerSizes, ANewRequestComputesEachSizeOnce) {
   int asked = 0;
   const models::Registry registry = registry_of(std::make_unique<AskedModel>(asked));
   core::HeapGeometryMemory memory(1 << 20);
@@ -423,11 +424,11 @@ TEST(PlannerSizes, ANewRequestAsksItsTypeForEachSizeOnce) {
   asked = 0;
   const std::vector<Want> coarse{{key_of(3, r, 0, 2), &r, 3, hole(3)}};
   planner.plan(coarse, cache, cost, manager, PlanLimits{1e9, 4096, 16}, Policy::kDeadline);
-  EXPECT_EQ(asked, 2) << "a coarse level's own size and that of full detail";
+  EXPECT_EQ(asked, 2) << "the sizes of the coarse level and of full detail";
   asked = 0;
   const std::vector<Want> refused{{key_of(4, s), &s, 4, prefetch(9)}};
   planner.plan(refused, cache, cost, manager, PlanLimits{1e9, 4096, 16}, Policy::kDeadline);
-  EXPECT_EQ(asked, 1) << "also where there is no room";
+  EXPECT_EQ(asked, 1) << "also without free memory";
 }
 
 }  // namespace

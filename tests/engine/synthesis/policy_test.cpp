@@ -39,7 +39,7 @@ TEST(Policy, ShortestAndLongestServeByPredictedTimeAlone) {
   EXPECT_EQ(order_by(Policy::kShortest), (Order{0, 4, 3, 5, 1, 2}));
   EXPECT_EQ(order_by(Policy::kLongest), (Order{2, 1, 5, 3, 4, 0}));
 }
-TEST(Policy, DeadlineServesTheVisibleFirstAndThenWhatBecomesVisibleFirst) {
+TEST(Policy, DeadlineServesTheVisibleFirstAndThenTheEarliest) {
   EXPECT_EQ(order_by(Policy::kDeadline), (Order{4, 3, 2, 1, 5, 0}));
 }
 

@@ -61,12 +61,12 @@ std::vector<Rank> many_ranks() {
   return ranks;
 }
 
-TEST(Rank, ARequestMayEvictOnlyWhatIsStrictlyWorse) {
+TEST(Rank, ARequestMayEvictOnlyStrictlyWorseMeshes) {
   for (const Rank request : many_ranks()) {
     for (const Rank victim : many_ranks()) {
       if (!may_evict(request, victim)) continue;
       if (victim.group() == RankGroup::kVisibleFine) {
-        EXPECT_LE(request.group(), RankGroup::kVisibleFine) << "a hole, or what replaces it";
+        EXPECT_LE(request.group(), RankGroup::kVisibleFine) << "a hole, or its replacement";
       } else {
         EXPECT_GT(victim, request);
       }
@@ -83,14 +83,14 @@ TEST(Rank, TwoMeshesCanNeverEvictEachOtherInTurn) {
       const std::uint64_t key = victim.bits() & ((std::uint64_t{1} << 56) - 1);
       const Rank back(RankGroup::kVisibleHole, static_cast<std::uint32_t>(key >> 32),
                       std::bit_cast<float>(static_cast<std::uint32_t>(key)));
-      // What was too fine comes back smaller, once: see the next test.
+      // A mesh that was too fine returns smaller, once: see the next test.
       if (victim.group() == RankGroup::kVisibleFine) continue;
       EXPECT_FALSE(may_evict(back, request));
     }
   }
 }
 
-// The layer and distance of a visible mesh, in another group; a hole takes the most urgent turn.
+// The layer and distance of a visible mesh in another group; a hole takes the most urgent value.
 Rank as(RankGroup group, Rank rank) {
   const std::uint64_t key = rank.bits() & ((std::uint64_t{1} << 48) - 1);
   return {group, static_cast<std::uint32_t>(key >> 32),
@@ -98,8 +98,8 @@ Rank as(RankGroup group, Rank rank) {
 }
 
 TEST(Rank, TwoMeshesCannotGoOnEvictingEachOther) {
-  // What a request is granted is drawn no finer than wanted: only what was too fine can be taken by
-  // what is farther, and only once.
+  // A granted request is never drawn finer than wanted. Only a mesh that is too fine can be evicted
+  // by a farther one, and only once.
   using enum RankGroup;
   for (const Rank request : many_ranks()) {
     for (const Rank victim : many_ranks()) {
@@ -112,8 +112,8 @@ TEST(Rank, TwoMeshesCannotGoOnEvictingEachOther) {
   }
 }
 
-// Meshes in view, most of them finer than wanted, in a cache that is too small even for coarse ones
-// of all: each that is drawn at no level, or too fine, requests a coarse mesh whenever its turn is.
+// Meshes in view, most of them finer than wanted, in a cache too small even for coarse versions of
+// all. Each mesh that is not drawn, or too fine, requests a coarse mesh at its turn.
 class CrowdedCache {
  public:
   explicit CrowdedCache(std::uint64_t seed) : random_(seed, 0, 0, 0, core::Purpose::kParameters) {
@@ -125,7 +125,7 @@ class CrowdedCache {
       meshes_.push_back({distance(), 0});
   }
 
-  // Lets everybody ask once, in another order than before; returns how many were evicted.
+  // Lets every mesh request once, in a new order; returns the number of evictions.
   int round() {
     int evicted = 0;
     for (std::size_t i = meshes_.size(); i > 1; --i)
@@ -137,7 +137,7 @@ class CrowdedCache {
   int too_fine() const {
     return static_cast<int>(std::ranges::count(meshes_, kFineBytes, &Mesh::bytes));
   }
-  // Whether what is drawn at no level is farther than all that is drawn.
+  // Returns true if every mesh that is not drawn is farther than all drawn meshes.
   bool nearest_are_drawn() const {
     float farthest_drawn = 0, nearest_hole = 1e9F;
     for (const Mesh& mesh : meshes_) {
@@ -162,7 +162,7 @@ class CrowdedCache {
     return Rank::by_layer(mesh.bytes == kFineBytes ? RankGroup::kVisibleFine : RankGroup::kDrawn,
                           layer, mesh.distance_m);
   }
-  // As the cache does it: the worst of what is drawn, if the request may evict that.
+  // Evicts as the cache does: the worst drawn mesh, if the request may evict it.
   int serve(Mesh& mesh) {
     const Rank request = rank_of(mesh);
     int evicted = 0;
@@ -191,17 +191,17 @@ TEST(Rank, EvictionsInTurnEndWithTheNearestDrawnAndNothingTooFine) {
     CrowdedCache cache(seed);
     EXPECT_GT(cache.too_fine(), 0);
     int rounds = 0, evicted = 0, of_round = 1;
-    // Quiet when a whole round in which all may ask evicts nothing.
+    // The cache is stable once a whole round of requests evicts nothing.
     for (; of_round > 0 && rounds < 100; ++rounds)
       evicted += of_round = cache.round();
-    EXPECT_LT(rounds, 100) << "evictions go on";
+    EXPECT_LT(rounds, 100) << "evictions never end";
     EXPECT_GT(evicted, 0);
     EXPECT_EQ(cache.too_fine(), 0);
     EXPECT_TRUE(cache.nearest_are_drawn()) << seed;
   }
 }
 
-TEST(Rank, AHoleTakesWhatIsFartherWhateverItsTurn) {
+TEST(Rank, AHoleEvictsFartherMeshesWhateverItsTurn) {
   const Rank hole = Rank::hole(30, 1, 20.0F);
   EXPECT_TRUE(may_evict(hole, Rank::by_layer(RankGroup::kDrawn, 2, 10.0F)));
   EXPECT_TRUE(may_evict(hole, Rank::by_layer(RankGroup::kDrawn, 1, 30.0F)));
@@ -209,7 +209,7 @@ TEST(Rank, AHoleTakesWhatIsFartherWhateverItsTurn) {
   EXPECT_FALSE(may_evict(hole, Rank::by_layer(RankGroup::kDrawn, 0, 30.0F)));
 }
 
-TEST(Rank, WhatIsTooFineGoesBeforeAllElseThatIsVisibleAndAfterWhatIsNot) {
+TEST(Rank, TooFineMeshesAreEvictedAfterInvisibleAndBeforeOtherVisibleOnes) {
   const Rank near_fine = Rank::by_layer(RankGroup::kVisibleFine, 0, 0.0F);
   const Rank far_drawn = Rank::by_layer(RankGroup::kDrawn, 60000, 1e6F);
   EXPECT_GT(eviction_order(near_fine), eviction_order(far_drawn));

@@ -1,4 +1,4 @@
-// The standard models through the whole chain: plan, modelers, landing, hash.
+// Tests the standard models through the whole pipeline: plan, modelers, cache, hash.
 #include <gtest/gtest.h>
 
 #include "engine/core/heap_geometry_memory.hpp"
@@ -14,7 +14,7 @@ struct World {
   std::vector<Want> wants;
 };
 
-// A few models of every type and level; parameters that are placed get different values.
+// A few models of every type and level; placed parameters get different values.
 World small_world(const models::Registry& registry) {
   World world;
   world.parameters.reserve(1024);

@@ -1,5 +1,5 @@
-// What the board, the manager and the planner do with modelers that are not threads of this
-// process. Here they make their meshes at once, in the thread that asks.
+// Tests the plan, the manager and the planner with modelers outside this process. Here these make
+// their meshes at once, in the calling thread.
 #include "engine/synthesis/remote_modelers.hpp"
 
 #include <gtest/gtest.h>
@@ -121,7 +121,7 @@ TEST(PlanBoard, EveryRequestIsClaimedOnceFromEitherSideOrReturned) {
     ASSERT_EQ(times, 1) << slot;
 }
 
-TEST(PlanBoard, RemoteModelersAreWokenOnlyWhereSomethingIsOffered) {
+TEST(PlanBoard, RemoteModelersAreWokenOnlyIfSomethingIsOffered) {
   PlanBoard board;
   std::vector<Request> unclaimed;
   const std::uint32_t before = board.offer_epoch(), plans = board.epoch();
@@ -133,10 +133,10 @@ TEST(PlanBoard, RemoteModelersAreWokenOnlyWhereSomethingIsOffered) {
   const std::uint32_t offered = board.offer_epoch();
   EXPECT_NE(offered, before);
   board.wake_all();
-  EXPECT_NE(board.offer_epoch(), offered) << "as at the end";
+  EXPECT_NE(board.offer_epoch(), offered) << "as at the end of the manager";
 }
 
-TEST(PlanBoard, WhatWasClaimedFromAfarIsNotReturned) {
+TEST(PlanBoard, ARemotelyClaimedRequestIsNotReturned) {
   PlanBoard board;
   const auto here = board.add_reader(), there = board.add_reader();
   board.publish({request_of(0, 0), request_of(1, 0), request_of(2, 0), request_of(3, 0)}, {1, 3});
@@ -147,7 +147,7 @@ TEST(PlanBoard, WhatWasClaimedFromAfarIsNotReturned) {
   ASSERT_TRUE(board.claim(*here, request, retries));
   EXPECT_EQ(request.handle.slot, 0u);
   ASSERT_TRUE(board.claim(*here, request, retries));
-  EXPECT_EQ(request.handle.slot, 2u) << "the one before went";
+  EXPECT_EQ(request.handle.slot, 2u) << "the one before was claimed";
   std::vector<Request> unclaimed;
   EXPECT_EQ(board.close(unclaimed), 3u);
   ASSERT_EQ(unclaimed.size(), 1u);
@@ -155,7 +155,7 @@ TEST(PlanBoard, WhatWasClaimedFromAfarIsNotReturned) {
   EXPECT_FALSE(board.claim_offered(*there, request, retries));
 }
 
-// Wants of one cache, planned with remote modelers.
+// Wanted meshes of one cache, planned with remote modelers.
 class Planned : public ::testing::Test {
  protected:
   PlanReport plan(unsigned places, std::vector<Annotate> annotate = {},
@@ -183,7 +183,7 @@ class Planned : public ::testing::Test {
     return done;
   }
 
-  // A mesh of it is predicted to take 10 ms.
+  // Its mesh is predicted to take 10 ms.
   struct SlowModel : FakeModel {
     double steps(const models::Parameters&, int) const override { return 1; }
     double step_seconds() const override { return 10e-3; }
@@ -198,12 +198,12 @@ class Planned : public ::testing::Test {
   std::optional<SynthesisManager> manager_;
 };
 
-TEST_F(Planned, WithoutRemoteModelersOneHasEnough) {
+TEST_F(Planned, WithoutRemoteModelersThePlanIsEnoughForOne) {
   EXPECT_EQ(plan(0).published, 5u);
   EXPECT_EQ(manager_->remote_count(), 0u);
 }
 
-TEST_F(Planned, ThreeRemoteModelersHaveAsMuchMoreInThePlan) {
+TEST_F(Planned, ThreeRemoteModelersExtendThePlanAccordingly) {
   EXPECT_EQ(plan(3).published, 20u);
   EXPECT_EQ(manager_->modeler_count(), 1u);
   EXPECT_EQ(manager_->remote_count(), 3u);
@@ -213,7 +213,7 @@ TEST_F(Planned, ThreeRemoteModelersHaveAsMuchMoreInThePlan) {
   EXPECT_EQ(static_cast<unsigned>(there), remote_->made());
 }
 
-TEST_F(Planned, NotesAreMadeHereOfMeshesThatCame) {
+TEST_F(Planned, ReceivedMeshesAreAnnotatedHere) {
   plan(2, {[](const Request& request, const models::MeshView& mesh) {
          return std::any(mesh.vertices.size() + request.key.index);
        }});
@@ -236,7 +236,7 @@ TEST_F(Planned, TheCostModelLearnsNothingFromOtherMachines) {
   EXPECT_EQ(cost_.error().count, here);
 }
 
-TEST_F(Planned, WhatComesBackWithoutAMeshIsMadeHereWhileAllIsAwaited) {
+TEST_F(Planned, WaitingForAllMakesReturnedRequestsHere) {
   EXPECT_EQ(plan(2, {}, true).published, 15u);
   const std::vector<Completion> done = land_all();
   EXPECT_EQ(done.size(), 15u);

@@ -1,5 +1,5 @@
-// A mesh supply that comes to rest while remote modelers are at work. Here these wait for a gate,
-// which opens once the main thread waits for them: it looks at the clock again and again.
+// Tests a mesh supply that quiesces while remote modelers work. Here these wait for a gate, which
+// opens once the main thread waits for them: it then polls the clock.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr models::ModelIndex kNear = 0, kFar = 1;
 
-// One place, which takes all meshes of kFar.
+// One slot, which takes all meshes of kFar.
 class MadeBehindAGate final : public RemoteModelers {
  public:
   unsigned count() const override { return 1; }
@@ -95,19 +95,19 @@ class RemoteRest : public ::testing::Test {
   MeshSupply meshes_;
 };
 
-TEST_F(RemoteRest, WithoutAModelerHereItWaitsForTheRemoteOnes) {
+TEST_F(RemoteRest, WithoutALocalModelerItWaitsForRemoteOnes) {
   want({kNear});
   near_.await(1);
   now_s_ = 11;
-  meshes_.collect();  // the only modeler here is given up
+  meshes_.collect();  // the only local modeler is abandoned
   want({kFar});
   remote_.gate.await(1);
-  EXPECT_FALSE(come_to_rest()) << "one hangs";
+  EXPECT_FALSE(come_to_rest()) << "one modeler hangs";
   EXPECT_EQ(meshes_.outstanding(), 0u);
   EXPECT_NE(meshes_.ready(meshes_.find(key_of(kFar))), nullptr);
 }
 
-TEST_F(RemoteRest, WhatComesBackWithoutAMeshIsNotMade) {
+TEST_F(RemoteRest, AReturnedRequestIsNotMade) {
   remote_.answers = false;
   want({kNear, kFar});
   near_.await(1);
@@ -117,7 +117,7 @@ TEST_F(RemoteRest, WhatComesBackWithoutAMeshIsNotMade) {
   EXPECT_EQ(meshes_.outstanding(), 0u);
   EXPECT_EQ(made_far_, 0);
   EXPECT_FALSE(meshes_.find(key_of(kFar)));
-  // It may be wanted again.
+  // The mesh may be requested again.
   want({kFar});
   EXPECT_TRUE(meshes_.wait());
   EXPECT_EQ(made_far_, 1);

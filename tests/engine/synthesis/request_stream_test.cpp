@@ -15,11 +15,11 @@ SimulatedJob job(double arrival_s, double seconds, double deadline_s, RankGroup 
 }
 
 // Flights over the paper's world, recorded by psygen fly --headless --size 160x90 and
-//   walk: --path game/paths/walk27.toml --fixed-step 60 --frames 30 --view-distance 80
-//   dash: --path game/paths/dash.toml   --fixed-step 60 --frames 60 --view-distance 80
-//   leap: --path game/paths/leaps.toml  --fixed-step 10 --frames 75 --view-distance 60
-// with --record-requests NAME.requests; of the leap what was wanted from 4.9 to 6.2 s, on the way.
-// Every synthesis takes 200 times as long, so that modelers have to choose.
+// walk: --path game/paths/walk27.toml --fixed-step 60 --frames 30 --view-distance 80
+// dash: --path game/paths/dash.toml   --fixed-step 60 --frames 60 --view-distance 80
+// leap: --path game/paths/leaps.toml  --fixed-step 10 --frames 75 --view-distance 60
+// with --record-requests NAME.requests; of the leap, the requests from 4.9 to 6.2 s, between two
+// places. Every synthesis takes 200 times as long, so that modelers have to choose.
 std::vector<SimulatedJob> recorded(const std::string& name) {
   std::ifstream file(source_file("tests/engine/synthesis/data/") + name + ".requests");
   std::stringstream text;
@@ -52,7 +52,7 @@ TEST(RequestStream, IsReadAsItWasWritten) {
   EXPECT_EQ(stream_text(*read), stream_text(jobs));
 }
 
-TEST(RequestStream, WhatIsNoStreamIsRefusedWithItsLine) {
+TEST(RequestStream, AnInvalidStreamIsRejectedWithItsLine) {
   const std::string head = "psygen requests 2\n";
   const std::pair<std::string, std::string> cases[] = {{"", "a:1"},
                                                        {"psygen requests 1\n", "a:1"},
@@ -71,8 +71,9 @@ TEST(RequestStream, WhatIsNoStreamIsRefusedWithItsLine) {
   }
 }
 
-// The figures by hand: one modeler, a long prefetch and a short hole at 0, a predicted one later.
-TEST(RequestStream, FiguresAreThoseOfTheSchedule) {
+// Results computed by hand: one modeler, a long prefetch and a short hole at 0, a predicted mesh
+// later.
+TEST(RequestStream, StatisticsMatchTheSchedule) {
   const std::vector<SimulatedJob> jobs{job(0, 0.4, kNoDeadline, RankGroup::kPrefetch),
                                        job(0, 0.1, 0, RankGroup::kVisibleHole),
                                        job(0.2, 0.2, 0.3, RankGroup::kPredicted)};
@@ -88,8 +89,8 @@ TEST(RequestStream, FiguresAreThoseOfTheSchedule) {
   EXPECT_NEAR(deadline.fill_idle_percent, 0, 1e-9);
 }
 
-// What is due when it is wanted is late in any order, and says nothing of one.
-TEST(RequestStream, OnlyWhatCouldBeInTimeIsLate) {
+// A request that is due on arrival is late in any order, and does not distinguish the policies.
+TEST(RequestStream, OnlyRequestsThatCouldBeInTimeCountAsLate) {
   const std::vector<SimulatedJob> jobs{job(0, 0.1, 0, RankGroup::kPredicted),
                                        job(0, 0.1, 0.15, RankGroup::kPredicted),
                                        job(0, 0.1, 0.25, RankGroup::kPredicted)};
@@ -116,9 +117,9 @@ TEST(RequestStream, ItsLoadIsTheWorkOverTheTimeOfTheModelers) {
   EXPECT_EQ(load_of(std::span(jobs).first(1), 2).percent, 0);
 }
 
-// The largest lateness of a feasible stream on one modeler is none, and earliest deadline first
-// finds that (Jackson's rule); in the mean, shortest first is less late of what is not feasible.
-TEST(RequestStream, EarliestDeadlineFirstIsInTimeWhereAnyOrderIsAndShortestFirstIsNot) {
+// A feasible stream on one modeler has a largest lateness of zero, which earliest deadline first
+// reaches (Jackson's rule). For infeasible streams, shortest first has less mean lateness.
+TEST(RequestStream, EarliestDeadlineFirstIsInTimeIfAnyOrderIsUnlikeShortestFirst) {
   std::vector<SimulatedJob> jobs;
   for (int i = 0; i < 8; ++i)  // the longest is due first
     jobs.push_back(job(0, 0.08 - 0.01 * i, 0.36 - 0.01 * (7 - i) * (6 - i) / 2.0 + 1e-6,
@@ -134,7 +135,7 @@ class RecordedFlight : public ::testing::TestWithParam<std::string> {
   const std::vector<PolicyFigures> rows_ = compare_policies(jobs_, 2);
 };
 
-TEST_P(RecordedFlight, TheDeadlinePolicyFillsHolesSoonerThanAllThatDoNotLookAtThePicture) {
+TEST_P(RecordedFlight, TheDeadlinePolicyFillsHolesSoonerThanPoliciesThatIgnoreTheView) {
   ASSERT_GT(jobs_.size(), 1000u);
   const PolicyFigures& due = row_of(rows_, Policy::kDeadline);
   for (const Policy other : {Policy::kFifo, Policy::kShortest, Policy::kLongest}) {
@@ -143,7 +144,7 @@ TEST_P(RecordedFlight, TheDeadlinePolicyFillsHolesSoonerThanAllThatDoNotLookAtTh
   }
 }
 
-// One modeler has to choose; two make the walk and the dash in time in any order.
+// One modeler has to choose; two finish the walk and the dash in time in any order.
 TEST_P(RecordedFlight, TheDeadlinePolicyIsNeverLaterThanTheOthers) {
   const auto rows = compare_policies(jobs_, 1);
   const PolicyFigures& due = row_of(rows, Policy::kDeadline);
@@ -152,10 +153,10 @@ TEST_P(RecordedFlight, TheDeadlinePolicyIsNeverLaterThanTheOthers) {
     EXPECT_LT(due.lateness_max_s, row_of(rows, other).lateness_max_s) << name_of(other);
 }
 
-// That begin with an empty cache.
+// Flights that begin with an empty cache.
 class RecordedStart : public RecordedFlight {};
 
-TEST_P(RecordedStart, ModelersAreHardlyEverIdleWhileTheyFillAndLongestFirstEndsSooner) {
+TEST_P(RecordedStart, ModelersAreRarelyIdleDuringTheFillAndLongestFirstEndsSooner) {
   for (const PolicyFigures& row : rows_) {
     EXPECT_GE(row.visible_p50_s, 0);
     EXPECT_GT(row.fill_s, 0.05);

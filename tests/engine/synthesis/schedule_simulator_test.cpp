@@ -20,13 +20,13 @@ TEST(ScheduleSimulator, ThePapersTenJobsTakeEightTenthsOnTwoModelers) {
   EXPECT_NEAR(simulate(jobs, 2, Policy::kFifo).makespan_s, 0.8, 1e-9);
   EXPECT_NEAR(simulate(jobs, 2, Policy::kLongest).makespan_s, 0.8, 1e-9);
   EXPECT_NEAR(simulate(jobs, 1, Policy::kFifo).makespan_s, 1.6, 1e-9);
-  // As the paper proposes: one modeler takes both long ones and the other all short ones.
+  // As the paper proposes: one modeler takes both long jobs and the other all short ones.
   const SimulationResult fifo = simulate(jobs, 2, Policy::kFifo);
   EXPECT_EQ(fifo.runs[0].modeler, fifo.runs[5].modeler);
   EXPECT_NEAR(fifo.idle_seconds, 0, 1e-9);
 }
 
-TEST(ScheduleSimulator, EightShortJobsAndALongOneTellThePoliciesApart) {
+TEST(ScheduleSimulator, EightShortJobsAndALongOneDistinguishThePolicies) {
   const auto jobs = jobs_of({0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.8});
   EXPECT_NEAR(simulate(jobs, 2, Policy::kFifo).makespan_s, 1.2, 1e-9);
   EXPECT_NEAR(simulate(jobs, 2, Policy::kShortest).makespan_s, 1.2, 1e-9);

@@ -22,7 +22,7 @@ using testing::parameters_of;
 using testing::registry_of;
 using testing::ScriptedModel;
 
-// Requests with destinations of their own, without a cache.
+// Makes requests, each with a destination in its memory, without a cache.
 class Jobs {
  public:
   explicit Jobs(const models::Registry& registry) : registry_(registry) {}
@@ -96,7 +96,7 @@ TEST(SynthesisManager, OneToEightModelersAndAnyOrderMakeTheSameWorld) {
   }
 }
 
-TEST(SynthesisManager, GoesOnWithTheModelersThatThereAreThreadsFor) {
+TEST(SynthesisManager, ContinuesWithTheModelersThatThreadsAllow) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   Jobs jobs(registry);
   const FewThreads few(2);
@@ -109,7 +109,7 @@ TEST(SynthesisManager, GoesOnWithTheModelersThatThereAreThreadsFor) {
   EXPECT_EQ(manager.collect(done), 50u);
 }
 
-TEST(SynthesisManager, WithoutASingleThreadItSaysSoAndWaitsForNothing) {
+TEST(SynthesisManager, WithoutAnyThreadItSaysSoAndWaitsForNothing) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   Jobs jobs(registry);
   const FewThreads few(0);
@@ -120,9 +120,9 @@ TEST(SynthesisManager, WithoutASingleThreadItSaysSoAndWaitsForNothing) {
   EXPECT_FALSE(manager.wait_all());
 }
 
-// Counted, not timed: what could make modelers wait for each other happens once in a while, not
-// once a request. The rest of a modeler's way is a fetch_add and queues that it alone writes.
-TEST(SynthesisManager, ModelersDoNotHoldEachOtherUp) {
+// Counts instead of timing: events that could make modelers wait for each other happen rarely, not
+// once per request. Otherwise a modeler uses one fetch_add and queues that only it writes.
+TEST(SynthesisManager, ModelersDoNotDelayEachOther) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   Jobs jobs(registry);
   constexpr std::uint32_t kRequests = 4000, kPlans = 8;
@@ -138,7 +138,7 @@ TEST(SynthesisManager, ModelersDoNotHoldEachOtherUp) {
     std::uint64_t held_up = 0;
     for (const ModelerStats& m : manager.stats().modelers)
       held_up += m.locks + m.retries;
-    // A modeler runs out of work once a plan, and may see each plan come and go.
+    // A modeler runs out of work once per plan, and may see each plan begin and end.
     EXPECT_LE(held_up, (3 * kPlans + 1) * modelers) << modelers;
     if (modelers == 2) {
       EXPECT_LE(static_cast<double>(held_up), 0.02 * kRequests);
@@ -146,7 +146,7 @@ TEST(SynthesisManager, ModelersDoNotHoldEachOtherUp) {
   }
 }
 
-TEST(SynthesisManager, ACompletionSaysWhatWasAskedAndWhatItTook) {
+TEST(SynthesisManager, ACompletionHoldsItsRequestAndItsDuration) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   Jobs jobs(registry);
   Request request = jobs.make(42);
@@ -167,7 +167,7 @@ TEST(SynthesisManager, ACompletionSaysWhatWasAskedAndWhatItTook) {
   EXPECT_EQ(c.content_hash, content_hash(request.key, request.destination));
 }
 
-TEST(SynthesisManager, ACompletionSaysHowWarmTheCachesWere) {
+TEST(SynthesisManager, ACompletionHoldsTheWarmthOfTheCaches) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   Jobs jobs(registry);
   double now_s = 1;
@@ -184,7 +184,7 @@ TEST(SynthesisManager, ACompletionSaysHowWarmTheCachesWere) {
     manager.publish(std::move(plan));
     ASSERT_TRUE(manager.wait_all());
     manager.collect(done);
-    if (done.size() == 5) now_s += 1e-3;  // the modeler does nothing for a millisecond
+    if (done.size() == 5) now_s += 1e-3;  // the modeler is idle for a millisecond
   }
   std::vector<Warmth> warmths;
   for (const Completion& c : done)
@@ -193,13 +193,13 @@ TEST(SynthesisManager, ACompletionSaysHowWarmTheCachesWere) {
   EXPECT_EQ(warmths, (std::vector{kWoken, kWarm, kCold, kWarm, kWarm, kWoken}));
 }
 
-TEST(SynthesisManager, OnAVirtualClockWhatIsMadeByWhenFollowsFromPredictionsAlone) {
+TEST(SynthesisManager, OnAVirtualClockPredictionsAloneDetermineTheSchedule) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   double now_s = 100;
   SynthesisOptions options = with(2);
   options.virtual_clock = [&now_s] { return now_s; };
   SynthesisManager manager(registry, options);
-  EXPECT_EQ(manager.modeler_count(), 1u) << "however many threads there are";
+  EXPECT_EQ(manager.modeler_count(), 1u) << "for any number of threads";
   Jobs jobs(registry);
   std::vector<Request> plan = jobs.make_many(0, 6);
   const std::array<double, 6> seconds{3, 1, 1, 5, 1, 1};
@@ -233,10 +233,10 @@ TEST(SynthesisManager, OnAVirtualClockWhatIsMadeByWhenFollowsFromPredictionsAlon
   EXPECT_EQ(owners_at(105.5), (Owners{2, 9})) << "at once";
   EXPECT_EQ(owners_at(109), Owners{});
   EXPECT_TRUE(manager.wait_all());
-  EXPECT_EQ(owners_at(109), (Owners{3})) << "whoever waits gets everything";
+  EXPECT_EQ(owners_at(109), (Owners{3})) << "a waiting caller gets everything";
 }
 
-TEST(SynthesisManager, OnAVirtualClockWithoutASingleThreadWhatIsClaimedFails) {
+TEST(SynthesisManager, OnAVirtualClockWithoutThreadsClaimedRequestsFail) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   Jobs jobs(registry);
   const FewThreads few(0);
@@ -263,7 +263,7 @@ TEST(SynthesisManager, RequestsAreClaimedInTheOrderOfThePlan) {
   EXPECT_EQ(order, (std::vector<std::int64_t>{5, 3, 9}));
 }
 
-TEST(SynthesisManager, WaitingAsksWhetherItShallGoOn) {
+TEST(SynthesisManager, WaitingAsksTheCallerWhetherToContinue) {
   Gate gate;
   const models::Registry registry = registry_of(std::make_unique<ScriptedModel>(
       "gated", [&](const models::Parameters&, int) { gate.wait(); }));
@@ -281,7 +281,7 @@ TEST(SynthesisManager, WaitingAsksWhetherItShallGoOn) {
 }
 
 #ifdef __linux__
-TEST(SynthesisManager, ModelersGiveUpTheirPriorityWhenTheyAreToldTo) {
+TEST(SynthesisManager, ModelersLowerTheirPriorityOnRequest) {
   std::vector<int> nice;  // of the modeler, in each request
   const models::Registry registry =
       registry_of(std::make_unique<ScriptedModel>("nice", [&](const models::Parameters&, int) {
@@ -309,7 +309,7 @@ TEST(SynthesisManager, UnderConstantReplanningEveryRequestIsDoneOnceOrReclaimedO
   SynthesisManager manager(registry, with(3));
   core::RandomStream random(5, 0, 0, 0, core::Purpose::kParameters);
   while (done.size() < kCount) {
-    // Everything or only a part is planned, sometimes twice without reclaiming in between.
+    // Plans all or some requests, sometimes twice without reclaiming in between.
     const auto some =
         static_cast<std::size_t>(random.next_integer(0, static_cast<std::int64_t>(pending.size())));
     std::vector<Request> plan(pending.end() - static_cast<std::ptrdiff_t>(some), pending.end());
@@ -336,7 +336,7 @@ TEST(SynthesisManager, UnderConstantReplanningEveryRequestIsDoneOnceOrReclaimedO
   EXPECT_EQ(stats.published, stats.reclaimed + kCount);
 }
 
-TEST(SynthesisManager, ReclaimReturnsWhatIsUnclaimedInOrderAndLeavesWhatRuns) {
+TEST(SynthesisManager, ReclaimReturnsUnclaimedRequestsInOrderAndKeepsRunningOnes) {
   Gate gate;
   const models::Registry registry = registry_of(std::make_unique<ScriptedModel>(
       "gated", [&](const models::Parameters&, int) { gate.wait(); }));
@@ -371,7 +371,7 @@ TEST(SynthesisManager, APlanPublishedOverAnotherLosesNothing) {
   gate.open();
 }
 
-TEST(SynthesisManager, AModelThatThrowsFailsAloneAndItsModelerGoesOn) {
+TEST(SynthesisManager, AModelThatThrowsFailsAloneAndItsModelerContinues) {
   models::Registry registry;
   ASSERT_TRUE(registry.add(std::make_unique<ScriptedModel>("moody", [](const auto& p, int) {
     if (p.integer(0) % 3 == 0) throw std::runtime_error("not today");
@@ -389,15 +389,15 @@ TEST(SynthesisManager, AModelThatThrowsFailsAloneAndItsModelerGoesOn) {
       EXPECT_EQ(c.error, "moody level 0 threw: not today");
     }
     if (c.owner == 1) {
-      EXPECT_EQ(c.error, "moody level 1 threw something that is no std::exception");
+      EXPECT_EQ(c.error, "moody level 1 threw an object that is not a std::exception");
     }
     if (c.owner == 9) {
-      EXPECT_EQ(c.error, "lying level 1 returned bounds that are not a box");
+      EXPECT_EQ(c.error, "lying level 1 returned invalid bounds");
     }
   }
 }
 
-// Hangs on requests with an even seed until the gate opens; time moves only by hand.
+// Hangs on requests with an even seed until the gate opens; the test advances the time.
 class HangingTest : public ::testing::Test {
  protected:
   SynthesisOptions options(unsigned modelers) {
@@ -417,7 +417,7 @@ class HangingTest : public ::testing::Test {
   std::vector<Completion> done;
 };
 
-TEST_F(HangingTest, TheWatchdogGivesUpAHungRequestAndTheOthersGoOnWithANewModeler) {
+TEST_F(HangingTest, TheWatchdogAbandonsAHungRequestAndTheOthersGetANewModeler) {
   SynthesisManager manager(registry, options(1));
   manager.publish({jobs.make(0), jobs.make(1), jobs.make(3)});
   gate.await(1);
@@ -431,7 +431,7 @@ TEST_F(HangingTest, TheWatchdogGivesUpAHungRequestAndTheOthersGoOnWithANewModele
   EXPECT_FALSE(done[0].ok);
   EXPECT_TRUE(done[0].abandoned);
   EXPECT_EQ(done[0].owner, 0u);
-  EXPECT_EQ(done[0].error, "hanging level 0 was given up after 11.0 s without an end");
+  EXPECT_EQ(done[0].error, "hanging level 0 was abandoned after 11.0 s");
   EXPECT_TRUE(done[1].ok && done[2].ok);
   ASSERT_EQ(manager.hung().size(), 1u);
   EXPECT_EQ(manager.hung()[0].owner, 0u);
@@ -451,7 +451,7 @@ TEST_F(HangingTest, TheWatchdogGivesUpAHungRequestAndTheOthersGoOnWithANewModele
   EXPECT_EQ(manager.stats().models, 2u);
 }
 
-TEST_F(HangingTest, WhereNoThreadCanTakeThePlaceOfAHungOneTheOthersGoOn) {
+TEST_F(HangingTest, WithoutAReplacementForAHungThreadTheOthersContinue) {
   SynthesisManager manager(registry, options(2));
   const FewThreads few(0);
   manager.publish({jobs.make(0), jobs.make(1), jobs.make(3)});
@@ -462,7 +462,7 @@ TEST_F(HangingTest, WhereNoThreadCanTakeThePlaceOfAHungOneTheOthersGoOn) {
   manager.collect(done);
   EXPECT_EQ(done.size(), 3u);
   gate.open();
-  while (!manager.hung().empty())  // its thread stands at the gate, which ends with this test
+  while (!manager.hung().empty())  // its thread waits at the gate, which ends with this test
     manager.collect(done);
 }
 
@@ -484,7 +484,7 @@ TEST_F(HangingTest, WhenEveryModelerHangsAndNoneIsLeftWaitingEnds) {
 }
 
 TEST(SynthesisManager, TheDestructorDoesNotWaitForAModelThatHangs) {
-  // What the hung model holds lives until the process ends, as the manager demands.
+  // The objects of the hung model live until the process ends, as the manager requires.
   struct Forever {
     std::atomic<double> now{100};
     Gate gate;  // never opened
@@ -503,7 +503,7 @@ TEST(SynthesisManager, TheDestructorDoesNotWaitForAModelThatHangs) {
     forever->gate.await(1);
     forever->now = 200;
   }
-  SUCCEED() << "it came back";
+  SUCCEED() << "the destructor returned";
 }
 
 TEST(SynthesisManager, IdleManagersAndDroppedPlansEndCleanly) {
@@ -539,7 +539,7 @@ TEST(SynthesisManager, StatisticsAddUpOverTheModelers) {
   EXPECT_EQ(modeler_count_for(5), 5u);
 }
 
-TEST(CompletionQueue, HandsOverEverythingInOrderAcrossSegments) {
+TEST(CompletionQueue, DeliversEverythingInOrderAcrossSegments) {
   CompletionQueue queue;
   constexpr std::uint64_t kCount = 10'000;
   std::thread producer([&] {

@@ -5,17 +5,17 @@
 namespace psygen::synthesis {
 namespace {
 
-TEST(UnwantedMeshes, ComeBackInTheOrderInWhichTheyBecameSo) {
+TEST(UnwantedMeshes, LeaveInTheOrderInWhichTheyBecameUnwanted) {
   UnwantedMeshes meshes;
   for (const std::uint32_t slot : {5u, 1u, 3u})
     meshes.push({slot, 7});
-  meshes.push({5, 7});  // wanted for a while
+  meshes.push({5, 7});  // wanted temporarily
   for (const std::uint32_t slot : {1u, 3u, 5u})
     EXPECT_EQ(meshes.pop(), (MeshHandle{slot, 7}));
   EXPECT_FALSE(meshes.pop());
 }
 
-TEST(UnwantedMeshes, TheNextMeshOfASlotIsNotLostBehindTheOneThatIsGone) {
+TEST(UnwantedMeshes, TheNextMeshOfASlotIsNotHiddenByAFreedOne) {
   UnwantedMeshes meshes;
   meshes.push({2, 1});
   meshes.push({4, 1});
@@ -25,7 +25,7 @@ TEST(UnwantedMeshes, TheNextMeshOfASlotIsNotLostBehindTheOneThatIsGone) {
   EXPECT_FALSE(meshes.pop());
 }
 
-TEST(UnwantedMeshes, ThoseThatAreWantedNowAndThenForEverTakeNoMoreMemory) {
+TEST(UnwantedMeshes, MeshesWantedAgainAndAgainNeedNoMoreMemory) {
   UnwantedMeshes meshes;
   for (std::uint32_t i = 0; i < 100'000; ++i)
     meshes.push({i % 10, 1});

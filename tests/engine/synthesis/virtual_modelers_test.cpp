@@ -7,7 +7,7 @@ namespace {
 
 using Job = VirtualModelers::Job;
 
-// Requests named by their slots, that take so many seconds each.
+// Requests named by their slots, with the given durations.
 std::vector<Request> plan_of(std::initializer_list<double> seconds, std::uint32_t first = 0) {
   std::vector<Request> plan;
   for (const double s : seconds) {
@@ -34,7 +34,7 @@ std::vector<std::uint32_t> slots_of(const std::vector<Request>& requests) {
 
 using Slots = std::vector<std::uint32_t>;
 
-TEST(VirtualModelers, WhoIsFreeFirstClaimsNextAndTimeIsWhatWasPredicted) {
+TEST(VirtualModelers, TheFirstFreeModelerClaimsNextAndTakesThePredictedTime) {
   VirtualModelers modelers(2);
   modelers.publish(plan_of({3, 1, 1, 1, 5}), 10);
   EXPECT_TRUE(modelers.take_finished(10.5).empty());
@@ -45,18 +45,18 @@ TEST(VirtualModelers, WhoIsFreeFirstClaimsNextAndTimeIsWhatWasPredicted) {
   EXPECT_EQ(finished[2].modeler, 0u);
   EXPECT_EQ(finished[3].finished_s, 13);
   EXPECT_EQ(modelers.outstanding(), 1u);
-  EXPECT_EQ(slots_of(modelers.reclaim(13)), (Slots{4})) << "at 13 nobody has begun it";
+  EXPECT_EQ(slots_of(modelers.reclaim(13)), (Slots{4})) << "not begun at 13";
   EXPECT_EQ(modelers.outstanding(), 0u);
 }
 
-TEST(VirtualModelers, WhatIsClaimedIsFinishedThoughThePlanIsReplaced) {
+TEST(VirtualModelers, AClaimedRequestIsFinishedAfterThePlanIsReplaced) {
   VirtualModelers modelers(1);
   modelers.publish(plan_of({2, 2, 2}), 0);
   EXPECT_EQ(slots_of(modelers.reclaim(1)), (Slots{1, 2}));
   modelers.publish(plan_of({1}, 7), 1);
   EXPECT_TRUE(modelers.take_finished(1.5).empty());
   EXPECT_EQ(slots_of(modelers.take_finished(2)), (Slots{0}));
-  EXPECT_EQ(slots_of(modelers.take_finished(3)), (Slots{7})) << "begun at 2";
+  EXPECT_EQ(slots_of(modelers.take_finished(3)), (Slots{7})) << "it began at 2";
 }
 
 TEST(VirtualModelers, AModelerThatWaitedStartsWhenThePlanComes) {
@@ -70,7 +70,7 @@ TEST(VirtualModelers, AModelerThatWaitedStartsWhenThePlanComes) {
   EXPECT_EQ(finished[0].started_s, 5);
 }
 
-TEST(VirtualModelers, WhoWaitsForAllGetsAllAndFindsEverybodyFree) {
+TEST(VirtualModelers, WaitingForAllFinishesAllAndFreesEveryModeler) {
   VirtualModelers modelers(3);
   modelers.publish(plan_of({1, 2, 3, 4, 5, 6, 7}), 0);
   EXPECT_EQ(modelers.finish_all(0.5).size(), 7u);

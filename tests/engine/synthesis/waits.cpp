@@ -68,7 +68,7 @@ int sched_yield() noexcept {
   ++waits;
   return real();
 }
-// Reads as many arguments as any call can have, as the C library's own does.
+// Reads as many arguments as any call can have, like the C library's function.
 __attribute__((no_sanitize_address)) long syscall(long number, ...) noexcept {
   static const auto real = next<long(long, ...)>("syscall");
   va_list list;

@@ -1,8 +1,7 @@
-// Counts, for each thread by itself, the calls by which a thread can wait for another one: locks of
-// all kinds, condition variables, semaphores, futexes (what std::atomic waits and notifies with)
-// and giving up the processor. The functions of the C library are replaced in the whole test
-// program by ones that count and go on to them (waits.cpp), so that a lock is counted whoever takes
-// it.
+// Counts, per thread, the calls by which a thread can wait for another one: locks of all kinds,
+// condition variables, semaphores, futexes (used by std::atomic to wait and notify) and yielding
+// the processor. The whole test program replaces these functions of the C library with ones that
+// count and then call them (waits.cpp), so every lock is counted, whatever code takes it.
 #pragma once
 
 #include <cstdint>

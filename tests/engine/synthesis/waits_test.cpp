@@ -1,6 +1,6 @@
 // Modelers do not contend: between two requests of one plan a modeler takes no lock, waits for
-// nothing and wakes nobody, whoever would have taken the lock. Counted, so that it does not depend
-// on what else the machine does.
+// nothing and wakes no thread. The test counts calls, so that it does not depend on the load of the
+// machine.
 #include "tests/engine/synthesis/waits.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct Counted {
   std::uint64_t waits = 0;  // from the begin of one to the begin of the next
 };
 
-// One plan of many requests, worked off by so many modelers.
+// Executes one plan of many requests with this number of modelers.
 Counted count_waits(unsigned modelers, const std::function<void()>& during = {}) {
   constexpr std::uint32_t kRequests = 3000;
   std::atomic<std::uint64_t> gaps{0}, waits{0};
@@ -64,7 +64,7 @@ Counted count_waits(unsigned modelers, const std::function<void()>& during = {})
   return {gaps.load(), waits.load()};
 }
 
-TEST(Waits, BetweenTwoRequestsOfAPlanAModelerWaitsForNobody) {
+TEST(Waits, BetweenTwoRequestsOfAPlanAModelerDoesNotWait) {
   for (const unsigned modelers : {1u, 2u, 4u, 16u}) {
     const Counted counted = count_waits(modelers);
     EXPECT_GE(counted.gaps, 3000u - modelers);
@@ -72,7 +72,7 @@ TEST(Waits, BetweenTwoRequestsOfAPlanAModelerWaitsForNobody) {
   }
 }
 
-TEST(Waits, ALockInTheWayOfARequestIsCounted) {
+TEST(Waits, ALockDuringARequestIsCounted) {
   std::mutex shared;
   const Counted counted = count_waits(2, [&] { const std::lock_guard lock(shared); });
   EXPECT_GE(counted.waits, counted.gaps);

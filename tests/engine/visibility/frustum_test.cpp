@@ -29,7 +29,7 @@ TEST(Frustum, PlanesHaveUnitNormals) {
   }
 }
 
-TEST(Frustum, WhatIsAheadIsInAndWhatIsBehindOrBesideIsOut) {
+TEST(Frustum, BoxesAheadAreInAndBoxesBehindOrBesideAreOut) {
   const Frustum frustum = frustum_of({});
   EXPECT_TRUE(intersects(frustum, cube({0, 0, -10}, 1)));
   EXPECT_FALSE(intersects(frustum, cube({0, 0, 10}, 1)));
@@ -53,7 +53,7 @@ TEST(Frustum, TheBoxAroundTheCameraIsAlwaysIn) {
     EXPECT_TRUE(intersects(frustum_of(random_pose(random, 9, 9)), cube({0, 0, 0}, 1)));
 }
 
-TEST(Frustum, NeverLosesABoxWithAPointThatProjectsIntoThePicture) {
+TEST(Frustum, NeverRejectsABoxWithAPointInsideTheImage) {
   core::RandomStream random = stream(11, 2);
   int in_picture = 0;
   for (int i = 0; i < 300; ++i) {
@@ -70,7 +70,7 @@ TEST(Frustum, NeverLosesABoxWithAPointThatProjectsIntoThePicture) {
   EXPECT_GT(in_picture, 300);
 }
 
-TEST(Frustum, RejectsMostOfWhatIsNotInView) {
+TEST(Frustum, RejectsMostBoxesOutOfView) {
   // A quarter of the circle at most lies between the planes; corners may add a little.
   const GridScene scene(41, 41, {{{20, 20}, {32, 50, 32}}, 0.3, -0.2});
   std::vector<std::uint8_t> in_view(scene.bounds.size());
@@ -80,7 +80,7 @@ TEST(Frustum, RejectsMostOfWhatIsNotInView) {
   EXPECT_LT(count, 41 * 41 * 2 / 5);
 }
 
-TEST(Frustum, TheBatchAnswersLikeTheSingleTest) {
+TEST(Frustum, TheBatchAgreesWithTheSingleTest) {
   core::RandomStream random = stream(11, 3);
   for (int i = 0; i < 20; ++i) {
     const GridScene scene(13, 7, random_pose(random, 13, 7));

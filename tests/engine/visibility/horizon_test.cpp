@@ -16,7 +16,7 @@ using testing::stream;
 
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
-// Triangles over a grid of heights, as terrain meshes are, and a camera above them. Places are
+// Triangles over a grid of heights, as terrain meshes are, and a camera above them. Positions are
 // relative to the camera.
 class Heightfield {
  public:
@@ -43,7 +43,7 @@ class Heightfield {
     camera_y_ = ground(0, 0) + camera_above_m;
   }
 
-  // Of the surface, relative to the camera.
+  // Height of the surface, relative to the camera.
   double height(double x, double z) const { return ground(x, z) - camera_y_; }
 
   // Lines of edges along both axes; each node is a part of the grid `side` cells wide.
@@ -63,8 +63,8 @@ class Heightfield {
     return lines;
   }
 
-  // Whether the ground leaves free the line from the camera to a point. Exact: along the line the
-  // ground is straight between the edges of the mesh.
+  // Returns true if the ground does not block the line from the camera to a point. Exact: along the
+  // line the ground is straight between the edges of the mesh.
   bool sees(const glm::dvec3& to) const {
     std::vector<double> stops{1};
     const auto edges = [&stops](double from, double by) {
@@ -115,10 +115,10 @@ class Heightfield {
   std::vector<double> heights_;
 };
 
-// Whether any of many points of the box is seen.
+// Returns true if any of many points of the box is visible.
 bool is_seen(const Heightfield& field, const core::Bounds& box, core::RandomStream& random) {
   for (int i = 0; i < 60; ++i) {
-    // The top decides; corners and edges of it more than its middle.
+    // The top decides, and its corners and edges more than its middle.
     const auto pick = [&](float low, float high) {
       const double f = std::clamp(random.next_real(-0.3, 1.3), 0.0, 1.0);
       return std::lerp(static_cast<double>(low), static_cast<double>(high), f);
@@ -157,7 +157,7 @@ Found compare(const Heightfield& field, const Horizon& horizon, int boxes,
   return found;
 }
 
-TEST(Horizon, NothingThatARayReachesIsEverHiddenAndMostOfTheRestIs) {
+TEST(Horizon, HidesNoBoxThatARayReachesAndMostOthers) {
   core::RandomStream random = stream(71, 0);
   Found all;
   for (int i = 0; i < 60; ++i) {
@@ -173,7 +173,7 @@ TEST(Horizon, NothingThatARayReachesIsEverHiddenAndMostOfTheRestIs) {
   EXPECT_GT(all.hidden, all.really_hidden * 6 / 10) << " of " << all.really_hidden;
 }
 
-TEST(Horizon, LinesInAnyOrderAndDirectionHideNothingThatIsSeen) {
+TEST(Horizon, LinesInAnyOrderAndDirectionHideNothingVisible) {
   core::RandomStream random = stream(71, 1);
   for (int i = 0; i < 20; ++i) {
     const Heightfield field(random, random.next_real(0.5, 30));
@@ -201,7 +201,7 @@ core::Bounds box_at(float x, float z, float top, float side = 20) {
   return {{x - side / 2, top - 30, z - side / 2}, {x + side / 2, top, z + side / 2}};
 }
 
-TEST(Horizon, ARidgeHidesWhatIsLowerBehindItAndNothingElse) {
+TEST(Horizon, ARidgeHidesOnlyLowerBoxesBehindIt) {
   for (const float sign : {1.0F, -1.0F}) {
     Horizon horizon;
     horizon.add(ridge(sign * 100, 10));
@@ -224,7 +224,7 @@ TEST(Horizon, WorksBelowTheCameraToo) {
   EXPECT_FALSE(horizon.hides(box_at(0, 200, -41)));
 }
 
-TEST(Horizon, ANearRidgeStillHidesWhatLiesBeforeAFarHigherOne) {
+TEST(Horizon, ANearRidgeHidesBoxesBeforeAFartherHigherOne) {
   for (const bool far_first : {false, true}) {
     Horizon horizon;
     if (far_first) horizon.add(ridge(800, 200, -4000, 4000));
@@ -238,7 +238,7 @@ TEST(Horizon, ANearRidgeStillHidesWhatLiesBeforeAFarHigherOne) {
   }
 }
 
-TEST(Horizon, WhatIsBeyondTheLastBandIsHeldAgainstTheHighestGround) {
+TEST(Horizon, BoxesBeyondTheLastBandAreComparedWithTheHighestGround) {
   Horizon horizon;
   horizon.add(ridge(20'000, 500, -50'000, 50'000));
   EXPECT_TRUE(horizon.hides(box_at(0, 30'000, 600, 500)));
@@ -257,7 +257,7 @@ TEST(Horizon, HasNoGapsWhereTheLinesOfNodesMeet) {
   EXPECT_FALSE(holed.hides({{-300, -10, 200}, {300, 15, 240}}));
 }
 
-TEST(Horizon, ALineThatCoversABinInPartRaisesNothing) {
+TEST(Horizon, ALineThatCoversPartOfABinRaisesNothing) {
   Horizon horizon;
   const float nearly = 1.0F / 300;
   horizon.add(std::vector<glm::vec3>{{100, 50, 0.01F}, {100, 50, 100 * nearly}});
@@ -285,7 +285,7 @@ TEST(Horizon, TwoPartsOfABinThatMeetCoverItUpToTheLowerOne) {
   }
 }
 
-TEST(Horizon, TwoPartsOfABinHideWhatIsBehindBoth) {
+TEST(Horizon, TwoPartsOfABinHideBoxesBehindBoth) {
   for (const bool far_left : {true, false}) {
     std::vector<glm::vec3> left = line_in_bins(9.5, 10.6, 50), right = line_in_bins(10.4, 11.5, 50);
     for (glm::vec3& point : far_left ? left : right)
@@ -326,7 +326,7 @@ TEST(Horizon, AClosedLineHidesAllAroundAcrossTheSeamOfTheBins) {
   }
 }
 
-TEST(Horizon, TakesLinesThroughTheCameraAndPointsThatAreNoNumbers) {
+TEST(Horizon, AcceptsLinesThroughTheCameraAndPointsThatAreNotNumbers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Horizon horizon;
   horizon.add(std::vector<glm::vec3>{{-50, -2, 0}, {0, -2, 0}, {50, -2, 0}, {50, -2, 0}});

@@ -21,7 +21,7 @@ int choose(float distance_m, int current = -1, float pixels = kPixels) {
   return choose_level(kErrors, distance_m, kPixelsPerRadian, pixels, current);
 }
 
-TEST(LevelChoice, TheErrorOfTheChosenLevelStaysWithinTheAllowedPixelsAndTheNextWouldNot) {
+TEST(LevelChoice, OnlyTheErrorOfTheNextLevelWouldExceedTheAllowedPixels) {
   for (float distance = 0.5F; distance < 3000; distance *= 1.03F) {
     const auto level = static_cast<std::size_t>(choose(distance));
     EXPECT_LE(error_pixels(level, distance), kPixels * 1.001F);
@@ -48,8 +48,8 @@ TEST(LevelChoice, LevelsGrowWithDistanceAndWithTheAllowedError) {
   }
 }
 
-TEST(LevelChoice, OnTheBorderOfTwoLevelsTheShownOneStays) {
-  // Level 2 is allowed from 149 m on, and comes from 186.25 m on.
+TEST(LevelChoice, TheShownLevelStaysOnTheBorderOfTwoLevels) {
+  // Level 2 is allowed from 149 m on, and chosen from 186.25 m on.
   EXPECT_EQ(choose(150), 2);
   EXPECT_EQ(choose(150, 1), 1);
   EXPECT_EQ(choose(185, 1), 1);
@@ -58,7 +58,7 @@ TEST(LevelChoice, OnTheBorderOfTwoLevelsTheShownOneStays) {
   EXPECT_EQ(choose(148, 2), 1);
 }
 
-TEST(LevelChoice, ShakingAroundABorderChangesTheLevelOnce) {
+TEST(LevelChoice, OscillationAroundABorderChangesTheLevelOnce) {
   int level = choose(140), changes = 0;
   for (int i = 0; i < 100; ++i) {
     const int next = choose(i % 2 == 0 ? 147.0F : 152.0F, level);
@@ -68,7 +68,7 @@ TEST(LevelChoice, ShakingAroundABorderChangesTheLevelOnce) {
   EXPECT_LE(changes, 1);
 }
 
-TEST(LevelChoice, InsideOfAMeshOrAtANonsensicalDistanceTheFinestLevelIsTaken) {
+TEST(LevelChoice, InsideAMeshOrAtAnInvalidDistanceTheFinestLevelIsChosen) {
   EXPECT_EQ(choose(0), 0);
   EXPECT_EQ(choose(-5, 3), 0);
   EXPECT_EQ(choose(std::numeric_limits<float>::quiet_NaN()), 0);

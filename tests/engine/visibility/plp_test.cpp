@@ -52,7 +52,7 @@ float distance(const core::Bounds& box) {
   return p.x * p.x + p.y * p.y + p.z * p.z;
 }
 
-// The definitions of the keys, written down for one cell at a time.
+// Computes the keys by their definition, one cell at a time.
 std::vector<std::uint32_t> keys_of(const PlpInput& input) {
   const int w = static_cast<int>(input.width), start_x = static_cast<int>(input.start_x),
             start_z = static_cast<int>(input.start_z);
@@ -88,7 +88,7 @@ std::vector<float> random_solidity(const GridScene& scene, core::RandomStream& r
   return solidity;
 }
 
-// The definition of PLP, written down with an ordered set as the front.
+// PLP by its definition, with an ordered set as the front.
 struct Oracle {
   // key, out of view, distance, cell
   using Key = std::tuple<std::uint32_t, bool, float, std::uint32_t>;
@@ -157,8 +157,9 @@ TEST(Plp, EqualsItsDefinitionOnLargeLayersThatAreSortedByBuckets) {
   expect_equal_to_definition(scene, input_of(scene));
 }
 
-TEST(Plp, EqualsItsDefinitionWhereMostCellsAreEquallyFar) {
-  // Boxes of all cells reach up to the camera, but for a few far ones that stretch the range.
+TEST(Plp, EqualsItsDefinitionIfMostCellsAreEquallyFar) {
+  // The boxes of all cells reach up to the camera, except for a few far ones that stretch the
+  // range.
   GridScene scene(60, 60, {{{30, 30}, {10, 20, 50}}, 0.4, 0});
   for (std::size_t i = 0; i < scene.bounds.size(); ++i) {
     if (i % 97 != 0) scene.bounds[i] = {glm::vec3(-1), glm::vec3(1)};
@@ -166,7 +167,7 @@ TEST(Plp, EqualsItsDefinitionWhereMostCellsAreEquallyFar) {
   expect_equal_to_definition(scene, input_of(scene));
 }
 
-TEST(Plp, WithEqualSolidityEverywhereIsThatOfLayersWithAnyBudget) {
+TEST(Plp, WithEqualSolidityEqualsLayersForAnyBudget) {
   core::RandomStream random = stream(23, 6);
   for (int i = 0; i < 30; ++i) {
     const GridScene scene(40, 33, random_pose(random, 40, 33));
@@ -210,7 +211,7 @@ TEST(Plp, MoreSolidCellsLowerNoKeyAndRaiseOnlyThoseBehindThem) {
   EXPECT_GT(after.key[changed + 1], before.key[changed + 1]);
 }
 
-TEST(Plp, WhatLiesBehindAWallComesAfterOpenGroundThatIsFurtherAway) {
+TEST(Plp, CellsBehindAWallComeAfterOpenGroundThatIsFartherAway) {
   const GridScene scene(41, 41, {{{20, 20}, {32, 30, 32}}, 0.78, 0});
   std::vector<float> solidity(scene.bounds.size(), 0.0F);
   for (std::uint32_t z = 0; z < 41; ++z)
@@ -220,7 +221,7 @@ TEST(Plp, WhatLiesBehindAWallComesAfterOpenGroundThatIsFurtherAway) {
   input.solidity = solidity;
   PlpResult result;
   run_plp(input, result);
-  EXPECT_EQ(result.key[20 * 41 + 23], 3U * 16);                   // the wall itself is seen
+  EXPECT_EQ(result.key[20 * 41 + 23], 3U * 16);                   // the wall itself is visible
   EXPECT_EQ(result.key[20 * 41 + 24], (4U + 8) * 16);             // eight layers later
   EXPECT_GT(result.key[20 * 41 + 24], result.key[10 * 41 + 20]);  // than ten cells ahead
 }
@@ -282,7 +283,7 @@ TEST(Plp, FindsExactlyTheCellsThatBruteForceFindsAndEachOnce) {
   EXPECT_GT(seen, 1000U);
 }
 
-TEST(Plp, FromAboveTheGroundTheHorizonIsFoundThoughNoNeighbourIsInView) {
+TEST(Plp, FromHighAboveTheHorizonIsFoundAlthoughNoNeighbourIsInView) {
   // 600 m up, looking level: the ground comes into view kilometres ahead.
   const GridScene scene(101, 101, {{{50, 50}, {32, 600, 32}}, 0, 0});
   const PlpResult result = run(scene);
@@ -358,7 +359,7 @@ TEST(Plp, AnEmptyGridHasNothingToVisit) {
   EXPECT_TRUE(result.layer.empty());
 }
 
-TEST(Plp, AResultThatIsUsedAgainIsNotChangedByItsPast) {
+TEST(Plp, AReusedResultDoesNotDependOnItsPast) {
   core::RandomStream random = stream(23, 5);
   PlpResult reused;
   for (const std::uint32_t side : {30U, 7U, 30U, 12U}) {

@@ -30,7 +30,7 @@ std::vector<LevelDistances> distances(std::size_t count, double first_error_m = 
   return levels;
 }
 
-// Roots of a level around a camera, and everything that a selection needs.
+// Roots of a level around a camera, and the other inputs of a selection.
 struct Scene {
   std::vector<LevelDistances> levels;
   std::vector<NodeCoord> roots;
@@ -46,7 +46,7 @@ struct Scene {
   }
 };
 
-// Every block of the roots' area with the level of the leaf on it, −1 where that is fine.
+// Every block of the roots' area with the level of its leaf, −1 if that is fine.
 using BlockLevels = std::map<std::pair<std::int64_t, std::int64_t>, int>;
 
 BlockLevels raster(const Cut& cut, core::BlockCoord origin) {
@@ -61,7 +61,7 @@ BlockLevels raster(const Cut& cut, core::BlockCoord origin) {
                 .emplace(std::pair(steps(corner.x, origin.x) + x, steps(corner.z, origin.z) + z),
                          node.fine ? -1 : node.node.level)
                 .second;
-        EXPECT_TRUE(first) << "two leaves lie on one block";
+        EXPECT_TRUE(first) << "two leaves cover one block";
       }
     }
   }
@@ -150,7 +150,7 @@ TEST(SplitDistances, ReachBeyondWhatTouchesNodesTwoLevelsBelow) {
   EXPECT_NEAR(levels[2].split_m, 10 + 64 * std::sqrt(2.0), 1e-3);
 }
 
-TEST(Roots, OfAFiniteWorldAreThoseThatReachIntoIt) {
+TEST(Roots, OfAFiniteWorldReachIntoIt) {
   core::RandomStream random = stream(41, 7);
   std::size_t some = 0, none = 0, all = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -160,7 +160,7 @@ TEST(Roots, OfAFiniteWorldAreThoseThatReachIntoIt) {
       return static_cast<std::uint32_t>(random.next_integer(0, most));
     };
     const BlockArea world{{}, blocks(), blocks()};
-    // At the world's corners, at the seam of the indices, anywhere.
+    // Cameras at the world's corners, at the seam of the indices, and anywhere.
     const auto index = [&](std::uint32_t count) {
       const std::int64_t places[] = {0, count, INT32_MIN, INT32_MAX,
                                      random.next_integer(INT32_MIN, INT32_MAX)};
@@ -189,7 +189,7 @@ TEST(Roots, OfAFiniteWorldAreThoseThatReachIntoIt) {
   EXPECT_GT(all, 50u);
 }
 
-TEST(Roots, OfATinyWorldAreFewHoweverFarTheViewReaches) {
+TEST(Roots, OfATinyWorldAreFewForAnyViewDistance) {
   std::vector<NodeCoord> roots;
   roots_around({{3000, -5}, {}}, 0.03, 65536, 0, roots, {{}, 1, 1});
   EXPECT_EQ(roots, (std::vector<NodeCoord>{{{0, 0}, 0}}));
@@ -239,7 +239,7 @@ TEST(Cut, StaysRestrictedWithHysteresisAndClearancesWhereverTheCameraMoves) {
   }
 }
 
-TEST(Cut, NodesStayTheLeafOfTheirLevelsDistances) {
+TEST(Cut, LeavesLieWithinTheDistancesOfTheirLevel) {
   const Scene scene({{3, 4}, {10, 20, 30}}, 7, 20'000, distances(8));
   Cut cut;
   select_cut(scene.input, cut);
@@ -264,7 +264,7 @@ TEST(Cut, NodesGrowWithTheLogarithmOfTheViewDistance) {
     counts.push_back(cut.nodes.size());
   }
   for (std::size_t i = 1; i < counts.size(); ++i) {
-    // As many for each doubling, though the area is four times as large.
+    // Each doubling adds the same number, although the area quadruples.
     EXPECT_NEAR(static_cast<double>(counts[i] - counts[i - 1]), 210, 15) << i;
   }
 }
@@ -288,7 +288,7 @@ TEST(Cut, IsTheSameAcrossTheSeamOfTheBlockIndices) {
   expect_restricted(raster(cut_b, seam.block));
 }
 
-// Where a half-line from the camera enters a node's square; negative where it does not.
+// Distance at which a half-line from the camera enters a node's square; negative if it does not.
 double entry(const CutNode& node, double dx, double dz) {
   const auto slab = [](double low, double high, double d) {
     return std::pair(std::min(low / d, high / d), std::max(low / d, high / d));
@@ -321,7 +321,7 @@ TEST(Cut, LeavesAreInFrontToBackOrderAlongEveryHalfLine) {
   }
 }
 
-TEST(Cut, ParentsComeBeforeTheirChildrenAndKnowWhereTheirSubtreeEnds) {
+TEST(Cut, ParentsPrecedeTheirChildrenAndStoreTheEndOfTheirSubtree) {
   const Scene scene({{3, 4}, {10, 20, 30}}, 5, 5000, distances(6));
   Cut cut;
   select_cut(scene.input, cut);
@@ -335,7 +335,7 @@ TEST(Cut, ParentsComeBeforeTheirChildrenAndKnowWhereTheirSubtreeEnds) {
   }
 }
 
-TEST(Cut, HysteresisKeepsWhatIsSplitUntilTheMergeDistance) {
+TEST(Cut, HysteresisKeepsSplitNodesUntilTheMergeDistance) {
   const std::vector<LevelDistances> levels = distances(1);
   const auto is_fine = [&](double distance_m, Cut& cut) {
     Scene scene({{0, 0}, {-distance_m, 0, 10}}, 0, 0, levels);
@@ -387,7 +387,7 @@ TEST(Cut, MorphHidesEveryChangeOfTheCutInASlowFlight) {
   EXPECT_GT(merges, 20);
 }
 
-TEST(Cut, NothingIsBeyondTheViewDistanceAndEverythingWithinIsThere) {
+TEST(Cut, CoversExactlyTheGroundWithinTheViewDistance) {
   Scene scene({{3, 4}, {10, 20, 30}}, 6, 8000, distances(7));
   Cut all, near;
   select_cut(scene.input, all);
@@ -425,7 +425,7 @@ TEST(Cut, OnlyNodesThatReachIntoTheWorldExist) {
   }
 }
 
-TEST(Cut, TheSameCameraNeedsNoMoreMemoryTheSecondTime) {
+TEST(Cut, TheSameCameraAllocatesNothingTheSecondTime) {
   const Scene scene({{3, 4}, {10, 20, 30}}, 6, 8000, distances(7));
   Cut cut;
   select_cut(scene.input, cut);
@@ -436,7 +436,7 @@ TEST(Cut, TheSameCameraNeedsNoMoreMemoryTheSecondTime) {
   EXPECT_EQ(memory, later);
 }
 
-TEST(DrawnNodes, WithEverythingReadyAreTheLeaves) {
+TEST(DrawnNodes, AreTheLeavesIfEverythingIsReady) {
   const Scene scene({{3, 4}, {10, 20, 30}}, 6, 8000, distances(7));
   Cut cut;
   select_cut(scene.input, cut);
@@ -491,7 +491,7 @@ TEST(DrawnNodes, AParentStaysUntilAllItsReplacementsAreReady) {
   ready[3] = 1;
   drawn_nodes(cut, ready, scratch, drawn);
   EXPECT_EQ(drawn, (std::vector<std::uint32_t>{1, 2, 3, 4}));
-  ready = {0, 1, 0, 0, 1};  // nothing to fall back to: what there is
+  ready = {0, 1, 0, 0, 1};  // without a fallback, draws the available nodes
   drawn_nodes(cut, ready, scratch, drawn);
   EXPECT_EQ(drawn, (std::vector<std::uint32_t>{1, 4}));
 }

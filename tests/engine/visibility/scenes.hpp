@@ -1,4 +1,4 @@
-// Random cameras and grids of blocks for the tests of visibility, the same in every run.
+// Random cameras and grids of blocks for the visibility tests, the same in every run.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace psygen::visibility::testing {
 // Side of a block in metres.
 inline constexpr double kBlock_m = 64;
 
-// Random numbers of a test. Each file has a seed of its own.
+// Random numbers of a test. Each file has its own seed.
 inline core::RandomStream stream(std::uint64_t seed, std::uint32_t index) {
   return {seed, 0, 0, index, core::Purpose::kPosition};
 }
@@ -26,7 +26,7 @@ struct GridScene {
   Frustum frustum;
   std::vector<core::Bounds> bounds;
 
-  // w × d cells; each box is 1 to `ground_m` metres high and stands at height 0.
+  // w × d cells; each box is 1 to `ground_m` metres high, with its bottom at height 0.
   GridScene(std::uint32_t w, std::uint32_t d, const core::CameraPose& camera, float ground_m = 40)
       : width(w),
         depth(d),

@@ -15,24 +15,24 @@ namespace {
 
 using testing::stream;
 
-TEST(EstimateSolidity, NothingStopsNoLight) {
+TEST(EstimateSolidity, AnEmptyCellBlocksNoLight) {
   EXPECT_EQ(estimate_solidity(64, 0, {}, 10), 0);
   EXPECT_EQ(estimate_solidity(64, 0, std::vector<Standing>{{0, 3, 5, 1}, {9, 3, 5, 0}}, 10), 0);
 }
 
-TEST(EstimateSolidity, GroundStopsTheShareOfTheBandThatItFillsOnAverage) {
+TEST(EstimateSolidity, GroundBlocksTheFractionOfTheBandThatItFillsOnAverage) {
   EXPECT_NEAR(estimate_solidity(64, 10, {}, 20), 0.25F, 1e-6F);
   EXPECT_NEAR(estimate_solidity(64, 10, {}, 10), 0.5F, 1e-6F);
   EXPECT_NEAR(estimate_solidity(64, 20, {}, 10), 0.75F, 1e-6F);
 }
 
-// The share of random straight rays through a square that meet one of `count` discs in it.
+// The fraction of random straight rays through a square that hit one of `count` discs in it.
 double share_met(int count, double width, double side, core::RandomStream& random) {
   int met = 0, rays = 0;
   while (rays < 20'000) {
     const double turn = random.next_real(0, 6.28318), aside = random.next_real(-side, side);
     const glm::dvec2 along(std::cos(turn), std::sin(turn)), normal(-along.y, along.x);
-    // Where the ray is in the square [−side/2, side/2]².
+    // Interval of the ray inside the square [−side/2, side/2]².
     double from = -1e9, to = 1e9;
     for (int axis = 0; axis < 2; ++axis) {
       const double a = (-side / 2 - aside * normal[axis]) / along[axis],
@@ -55,14 +55,14 @@ double share_met(int count, double width, double side, core::RandomStream& rando
   return static_cast<double>(met) / rays;
 }
 
-TEST(EstimateSolidity, OfThingsInACellIsTheShareOfRandomRaysThatMeetOne) {
+TEST(EstimateSolidity, OfObjectsEqualsTheFractionOfRandomRaysThatHitOne) {
   core::RandomStream random = stream(67, 0);
   for (const auto& [count, width] : {std::pair{10, 1.0}, {10, 4.0}, {40, 2.0}, {80, 3.0}}) {
     const std::vector<Standing> things{
         {static_cast<float>(count), static_cast<float>(width), 8, 1}};
     const float estimated = estimate_solidity(64, 0, things, 8);
     const double met = share_met(count, width, 64, random);
-    // Rays have different lengths: somewhat less is stopped than by as many mean rays.
+    // Rays have different lengths: they block somewhat less than the same number of mean rays.
     EXPECT_GT(estimated, met - 0.01) << count << " of " << width << " m";
     EXPECT_LT(estimated, met + 0.11) << count << " of " << width << " m";
     EXPECT_NEAR(estimate_solidity(64, 0, things, 32), estimated / 4, 1e-6F);
