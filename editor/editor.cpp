@@ -14,8 +14,8 @@
 #include "editor/shell/theme.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/core/log.hpp"
+#include "engine/render/device/software_tuning.hpp"
 #include "engine/render/preset.hpp"
-#include "engine/render/software_tuning.hpp"
 
 namespace psygen::editor {
 namespace {
