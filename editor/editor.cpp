@@ -13,9 +13,10 @@
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
 #include "engine/cli/shipped_files.hpp"
+#include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
-#include "engine/render/device/software_tuning.hpp"
 #include "engine/render/preset.hpp"
+#include "engine/render/software_tuning.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -68,7 +69,9 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   QApplication app(argc, argv);
   QApplication::setOrganizationName("psygen");
   QApplication::setApplicationName("psygen-editor");
-  QApplication::setApplicationVersion(PSYGEN_VERSION);
+  const std::string_view version = core::version();
+  QApplication::setApplicationVersion(
+      QString::fromUtf8(version.data(), static_cast<qsizetype>(version.size())));
   Arguments arguments;
   if (const auto code = read_arguments(app, arguments)) return *code;
   if (auto ok = render::fit_software_rendering_to_threads(); !ok)

@@ -213,7 +213,7 @@ void MainWindow::add_help_menu() {
                                      view_->session()->renderer().device().driver);
     QMessageBox::about(this, tr("About the psygen editor"),
                        tr("<b>psygen editor %1</b><br>Qt %2<br>Device: %3")
-                           .arg(PSYGEN_VERSION, qVersion(), device));
+                           .arg(QApplication::applicationVersion(), qVersion(), device));
   });
 }
 

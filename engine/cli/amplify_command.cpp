@@ -12,6 +12,7 @@
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/places.hpp"
 #include "engine/cli/text_values.hpp"
+#include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 #include "engine/models/kit/simd_targets.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -141,7 +142,7 @@ core::Result<amplify::Report> AmplifyCommand::make_shard(amplify::Job job,
                                                          amplify::JobFormat format,
                                                          const amplify::Options& options) const {
   if (auto ok = telemetry::create_output_folder(out_); !ok) return tl::unexpected(ok.error());
-  auto key = amplify::job_key(job.world, job.registry, region, format, PSYGEN_VERSION);
+  auto key = amplify::job_key(job.world, job.registry, region, format, core::version());
   if (!key) return tl::unexpected(key.error());
   job.key = std::move(*key);
   return amplify::amplify_shard(job, *shard_, out_, options);

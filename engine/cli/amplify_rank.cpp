@@ -6,6 +6,7 @@
 #include "engine/cli/rank_threads.hpp"
 #include "engine/cluster/job.hpp"
 #include "engine/cluster/one_mind.hpp"
+#include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 
@@ -49,7 +50,7 @@ int AmplifyCommand::run_rank(cluster::Peers& peers) {
     options.progress = [&bar](std::uint64_t blocks) { bar->update(static_cast<double>(blocks)); };
   }
   const amplify::JobFormat format = out_.empty() ? std::nullopt : exchange::format_from(format_);
-  const auto job = cluster::amplify_together(*world, registry, *region, format, PSYGEN_VERSION,
+  const auto job = cluster::amplify_together(*world, registry, *region, format, core::version(),
                                              out_, options, peers);
   if (!job && job.error().common) return end_with(job.error().error, peers);
   if (!job) {

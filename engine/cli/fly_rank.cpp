@@ -8,6 +8,7 @@
 #include "engine/cli/rank_threads.hpp"
 #include "engine/cluster/one_mind.hpp"
 #include "engine/cluster/serve_models.hpp"
+#include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 
 namespace psygen::cli {
@@ -56,7 +57,7 @@ int FlyCommand::run_rank(cluster::Peers& peers) {
       (peers.rank() == 0 ? find_files() : find_world(options_.session))
           .and_then([&] { return load_world(options_.session.world_file.string(), registry); })
           .map([&](const world::World& world) {
-            return cluster::flight_key(world, registry, PSYGEN_VERSION);
+            return cluster::flight_key(world, registry, core::version());
           });
   const std::uint32_t asked = options_.session.scene.modelers;
   const unsigned threads = asked > 0 ? asked : threads_for_rank(peers);

@@ -13,7 +13,8 @@
 #include "engine/cli/standard_streams.hpp"
 #include "engine/cli/test_command.hpp"
 #include "engine/cli/usage.hpp"
-#include "engine/render/device/software_tuning.hpp"
+#include "engine/core/data_file.hpp"
+#include "engine/render/software_tuning.hpp"
 
 int main(int argc, char** argv) {
   psygen::cli::hold_standard_streams();
@@ -22,7 +23,7 @@ int main(int argc, char** argv) {
   psygen::cli::ignore_what_write_errors_say();
 
   CLI::App cli("psygen: fly through procedural worlds larger than memory", "psygen");
-  cli.set_version_flag("--version", "psygen " PSYGEN_VERSION);
+  cli.set_version_flag("--version", "psygen " + std::string(psygen::core::version()));
   cli.require_subcommand(1);
   psygen::cli::FlyCommand fly(cli);
   psygen::cli::PictureCommand picture(cli);

@@ -86,4 +86,8 @@ Result<fs::path> user_folder(UserFolder folder, const std::string& program, cons
   return found;
 }
 
+std::string_view version() {
+  return PSYGEN_VERSION;
+}
+
 }  // namespace psygen::core

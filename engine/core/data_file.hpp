@@ -1,11 +1,13 @@
 // Finds data files of psygen or of a program (worlds, paths, images), independent of the folder of
 // installation, build or start; and the folders of a user that keep a program's data and settings.
-// It opens no file. Any thread, if no thread changes the environment at the same time.
+// Also the version of psygen. It opens no file. Any thread, if no thread changes the environment at
+// the same time.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/error.hpp"
@@ -42,5 +44,9 @@ enum class UserFolder : std::uint8_t { kData, kConfig };
 // with kIo if it cannot be created, or if neither the variable nor HOME is set.
 Result<std::filesystem::path> user_folder(UserFolder folder, const std::string& program,
                                           const std::filesystem::path& given = {});
+
+// "MAJOR.MINOR.PATCH" of psygen, from project() in CMakeLists.txt: the version that --version, the
+// package, ledgers and messages about other formats of files name.
+std::string_view version();
 
 }  // namespace psygen::core

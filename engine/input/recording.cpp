@@ -7,6 +7,7 @@
 
 #include "engine/core/assert.hpp"
 #include "engine/core/bytes.hpp"
+#include "engine/core/data_file.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/core/utf8.hpp"
@@ -139,8 +140,8 @@ core::Result<Recording> Recording::parse(std::string_view bytes, std::string_vie
   ByteReader rest(bytes.substr(kMagic.size()));
   const auto format = rest.get<std::uint32_t>();
   if (!rest.failed() && format != kRecordingFormat) {
-    return refused(name, fmt::format("its format is {}; this program reads format {}", format,
-                                     kRecordingFormat));
+    return refused(name, fmt::format("its format is {}; psygen {} reads format {}", format,
+                                     core::version(), kRecordingFormat));
   }
   const auto hash = ByteReader(bytes.substr(max_bytes)).get<std::uint64_t>();
   if (rest.failed() || hash != hash_of(bytes.substr(0, max_bytes)))

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "engine/core/data_file.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/save/game_tables.hpp"
@@ -102,9 +103,9 @@ core::Result<void> check_header(const Database& database) {
       big_endian(&header[68]) != kApplicationId)
     return refuse(file, "is not a saved game of psygen; it was not changed");
   if (const std::uint32_t format = big_endian(&header[60]); format > kSaveFormat)
-    return refuse(file, fmt::format("has format {} of a newer version; this version reads up to "
+    return refuse(file, fmt::format("has format {} of a newer version; psygen {} reads up to "
                                     "format {}",
-                                    format, kSaveFormat));
+                                    format, core::version(), kSaveFormat));
   else if (format == 0)
     return refuse(file, "has no format number; the file is damaged");
   // 1: rollback journal. 2 would be a write-ahead log, which this program never makes.

@@ -26,11 +26,16 @@ if grep -hE 'GLM_FORCE|ffp-contract|disable-new-dtags|'"$source" "$cmake_files"/
   echo "the package has the settings above for its users"; exit 1
 fi
 # Headers that are not public stay private; documents, worlds and paths are installed.
-for private in engine/render/device/vulkan.hpp engine/core/headroom.hpp engine/cli/places.hpp; do
+for private in engine/render/vulkan.hpp engine/core/headroom.hpp engine/cli/places.hpp; do
   [ ! -e "$folder/psygen/include/psygen/$private" ] || { echo "$private is installed"; exit 1; }
 done
 installed_docs="$folder/psygen/share/doc/psygen"
+[ -s "$folder/psygen/share/psygen/gdb/psygen.py" ]
 [ -s "$installed_docs/docs/guide/../../examples/template/game.cpp" ] && [ -s "$installed_docs/docs/architecture.md" ] && [ -s "$folder/psygen/share/psygen/paths/walk27.toml" ]
+
+# One version: the package's and the program's.
+grep -q "set(PACKAGE_VERSION \"$("$folder/psygen/bin/psygen" --version | cut -d' ' -f2)\")" \
+  "$cmake_files/psygen-config-version.cmake" || { echo "psygen --version is not the package's version"; exit 1; }
 
 configure only_ecs
 cmake --build "$folder/build/only_ecs" >/dev/null

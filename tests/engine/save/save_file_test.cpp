@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "engine/core/data_file.hpp"
 #include "tests/engine/save/support.hpp"
 #include "tests/faults.hpp"
 #include "tests/temporary_folder.hpp"
@@ -151,7 +152,8 @@ TEST(SaveFile, NewerFormatsAreRejected) {
   make_save(folder / "game.save");
   tamper(folder / "game.save", "PRAGMA user_version=2");
   EXPECT_EQ(refusal(folder, core::ErrorCode::kParse),
-            "has format 2 of a newer version; this version reads up to format 1");
+            fmt::format("has format 2 of a newer version; psygen {} reads up to format 1",
+                        core::version()));
 }
 
 TEST(SaveFile, AJournalOfAForeignFileIsNotChanged) {
@@ -400,7 +402,8 @@ TEST(SaveFile, TheWorldOfAnotherFileIsAnError) {
   make_save(folder / "newer");
   tamper(folder / "newer", "PRAGMA user_version=2");
   EXPECT_EQ(sentence("newer"),
-            "has format 2 of a newer version; this version reads up to format 1");
+            fmt::format("has format 2 of a newer version; psygen {} reads up to format 1",
+                        core::version()));
 }
 
 }  // namespace

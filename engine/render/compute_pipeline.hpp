@@ -1,0 +1,49 @@
+// A compute shader with the layout of its one descriptor set, and a fixed number of such sets. Owns
+// its Vulkan objects and records no barriers. Main thread. Private to engine/render.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/render/memory.hpp"
+
+namespace psygen::render {
+
+// Empty until create(). The device must outlive it.
+class ComputePipeline {
+ public:
+  // Creates everything. Binding i of the set has the type types[i]. Push constants have
+  // `push_bytes` from offset 0. The sets are numbered 0 … sets − 1. Fails as vulkan_error() says.
+  core::Result<void> create(const Device& device, std::span<const std::uint32_t> code,
+                            std::span<const VkDescriptorType> types, std::uint32_t push_bytes,
+                            std::uint32_t sets);
+
+  // Bind a whole buffer or an image to a binding of a set. The device must have finished all
+  // commands that use the set.
+  void write_buffer(const Device& device, std::size_t set, std::uint32_t binding,
+                    VkBuffer buffer) const;
+  void write_image(const Device& device, std::size_t set, std::uint32_t binding, VkSampler sampler,
+                   VkImageView view, VkImageLayout layout) const;
+
+  // Records the binding of the pipeline and a set.
+  void bind(const Device& device, VkCommandBuffer commands, std::size_t set) const;
+  // Records a dispatch of groups_x · groups_y workgroups. `push` points to push_bytes; requires
+  // bind() before.
+  void dispatch(const Device& device, VkCommandBuffer commands, const void* push,
+                std::uint32_t groups_x, std::uint32_t groups_y) const;
+
+ private:
+  void write(const Device& device, std::size_t set, std::uint32_t binding,
+             const VkDescriptorBufferInfo* buffer, const VkDescriptorImageInfo* image) const;
+
+  UniqueSetLayout set_layout_;
+  UniqueDescriptorPool pool_;
+  UniquePipelineLayout layout_;
+  UniquePipeline pipeline_;
+  std::vector<VkDescriptorType> types_;
+  std::vector<VkDescriptorSet> sets_;
+  std::uint32_t push_bytes_ = 0;
+};
+
+}  // namespace psygen::render

@@ -1,0 +1,331 @@
+#include "engine/render/device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+namespace psygen::render {
+
+using core::ErrorCode;
+
+namespace {
+
+bool has_extension(VkPhysicalDevice physical, const char* name) {
+  std::uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> extensions(count);
+  vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data());
+  return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& e) {
+    return std::strcmp(e.extensionName, name) == 0;
+  });
+}
+
+// The features that the renderer needs, chained for a query or for creation. Not movable.
+struct Features {
+  VkPhysicalDeviceFeatures2 base{};
+  VkPhysicalDeviceVulkan11Features v11{};
+  VkPhysicalDeviceVulkan12Features v12{};
+  VkPhysicalDeviceVulkan13Features v13{};
+  VkPhysicalDeviceMultiDrawFeaturesEXT multi_draw{};
+
+  Features() {
+    base.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    v11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
+    v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+    multi_draw.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_FEATURES_EXT;
+    base.pNext = &v11;
+    v11.pNext = &v12;
+    v12.pNext = &v13;
+  }
+  Features(const Features&) = delete;
+  Features& operator=(const Features&) = delete;
+
+  bool sufficient() const {
+    return v11.shaderDrawParameters && v12.timelineSemaphore && v13.dynamicRendering &&
+           v13.synchronization2;
+  }
+};
+
+// The GPU path needs indirect draws with their number in a buffer.
+bool offers_indirect_count(const Features& features) {
+  return features.v12.drawIndirectCount && features.base.features.multiDrawIndirect &&
+         features.base.features.drawIndirectFirstInstance;
+}
+
+bool offers_wireframe(VkPhysicalDevice physical) {
+  VkPhysicalDeviceFeatures features{};
+  vkGetPhysicalDeviceFeatures(physical, &features);
+  return features.fillModeNonSolid == VK_TRUE;
+}
+
+bool offers_multi_draw(VkPhysicalDevice physical) {
+  if (!has_extension(physical, VK_EXT_MULTI_DRAW_EXTENSION_NAME)) return false;
+  Features features;
+  features.v13.pNext = &features.multi_draw;
+  vkGetPhysicalDeviceFeatures2(physical, &features.base);
+  return features.multi_draw.multiDraw == VK_TRUE;
+}
+
+std::optional<std::uint32_t> find_queue_family(const Instance& instance, VkPhysicalDevice physical,
+                                               VkSurfaceKHR surface) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if ((families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) == 0) continue;
+    VkBool32 presents = VK_TRUE;
+    if (surface != VK_NULL_HANDLE) {
+      instance.surface_functions().support(physical, i, surface, &presents);
+    }
+    if (presents) return i;
+  }
+  return std::nullopt;
+}
+
+// A queue family only for transfers, or else the graphics family.
+std::uint32_t transfer_family_of(VkPhysicalDevice physical, std::uint32_t graphics) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const VkQueueFlags flags = families[i].queueFlags;
+    if ((flags & VK_QUEUE_TRANSFER_BIT) != 0 &&
+        (flags & (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT)) == 0)
+      return i;
+  }
+  return graphics;
+}
+
+VkQueueFamilyProperties family_properties(VkPhysicalDevice physical, std::uint32_t family) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  return families[family];
+}
+
+bool can_compute(VkPhysicalDevice physical, std::uint32_t family) {
+  return (family_properties(physical, family).queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
+}
+
+// The valid bits of a timestamp; 0: no timestamps.
+std::uint64_t timestamp_mask_of(VkPhysicalDevice physical, std::uint32_t family) {
+  const std::uint32_t bits = family_properties(physical, family).timestampValidBits;
+  return bits == 0 ? 0 : UINT64_MAX >> (64 - std::min(bits, 64U));
+}
+
+int rank_of(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevice physical,
+                                       VkSurfaceKHR surface) {
+  VkPhysicalDeviceDriverProperties driver{};
+  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = &driver;
+  vkGetPhysicalDeviceProperties2(physical, &properties);
+  const VkPhysicalDeviceProperties& p = properties.properties;
+  if (p.apiVersion < VK_API_VERSION_1_3) return std::nullopt;
+  Features features;
+  vkGetPhysicalDeviceFeatures2(physical, &features.base);
+  if (!features.sufficient()) return std::nullopt;
+  if (surface != VK_NULL_HANDLE && !has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
+    return std::nullopt;
+  }
+  const std::optional<std::uint32_t> family = find_queue_family(instance, physical, surface);
+  if (!family) return std::nullopt;
+
+  DeviceCandidate candidate;
+  candidate.physical = physical;
+  candidate.queue_family = *family;
+  candidate.rank = rank_of(p.deviceType);
+  candidate.info.name = p.deviceName;
+  candidate.info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
+  candidate.info.api_version =
+      fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(p.apiVersion),
+                  VK_API_VERSION_MINOR(p.apiVersion), VK_API_VERSION_PATCH(p.apiVersion));
+  candidate.info.software = p.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  candidate.info.multi_draw = offers_multi_draw(physical);
+  candidate.info.gpu_path = offers_indirect_count(features) && can_compute(physical, *family);
+  candidate.info.wireframe = offers_wireframe(physical);
+  return candidate;
+}
+
+// What psygen needs of every device, and what it uses where it is there.
+void enable(const DeviceInfo& info, Features& features, std::vector<const char*>& extensions) {
+  features.v11.shaderDrawParameters = VK_TRUE;
+  features.v12.timelineSemaphore = VK_TRUE;
+  const VkBool32 indirect = info.gpu_path ? VK_TRUE : VK_FALSE;
+  features.v12.drawIndirectCount = indirect;
+  features.base.features.multiDrawIndirect = indirect;
+  features.base.features.drawIndirectFirstInstance = indirect;
+  features.v13.dynamicRendering = VK_TRUE;
+  features.v13.synchronization2 = VK_TRUE;
+  features.v13.maintenance4 = VK_TRUE;  // for workgroup sizes; every 1.3 device has it
+  if (info.multi_draw) {
+    extensions.push_back(VK_EXT_MULTI_DRAW_EXTENSION_NAME);
+    features.multi_draw.multiDraw = VK_TRUE;
+    features.v13.pNext = &features.multi_draw;
+  }
+  features.base.features.fillModeNonSolid = info.wireframe ? VK_TRUE : VK_FALSE;
+}
+
+void read_limits(Device& device) {
+  VkPhysicalDeviceMultiDrawPropertiesEXT multi_draw{};
+  multi_draw.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_PROPERTIES_EXT;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = device.info.multi_draw ? &multi_draw : nullptr;
+  vkGetPhysicalDeviceProperties2(device.physical, &properties);
+  const VkPhysicalDeviceLimits& limits = properties.properties.limits;
+  device.max_image_side = limits.maxImageDimension2D;
+  device.sampled_depth_counts = limits.sampledImageDepthSampleCounts;
+  device.sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts;
+  device.max_multi_draw = multi_draw.maxMultiDrawCount;
+  device.timestamp_period_ns = static_cast<double>(limits.timestampPeriod);
+}
+
+}  // namespace
+
+std::vector<DeviceCandidate> find_devices(const Instance& instance, VkSurfaceKHR surface) {
+  std::vector<DeviceCandidate> found;
+  for (VkPhysicalDevice physical : instance.physical_devices()) {
+    if (auto candidate = examine(instance, physical, surface))
+      found.push_back(std::move(*candidate));
+  }
+  std::stable_sort(
+      found.begin(), found.end(),
+      [](const DeviceCandidate& a, const DeviceCandidate& b) { return a.rank > b.rank; });
+  return found;
+}
+
+core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& candidates,
+                                            const std::string& name) {
+  std::string names;
+  for (const DeviceCandidate& candidate : candidates) {
+    if (candidate.info.name.find(name) != std::string::npos) return candidate;
+    names += (names.empty() ? "'" : ", '") + candidate.info.name + "'";
+  }
+  if (candidates.empty()) {
+    return core::fail(ErrorCode::kNoDevice,
+                      "no device on this machine offers Vulkan 1.3 with dynamic rendering");
+  }
+  return core::fail(ErrorCode::kNoDevice,
+                    fmt::format("no Vulkan device is called '{}'; there is {}", name, names));
+}
+
+core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& candidate,
+                                                     bool windowed, bool timestamps,
+                                                     double timeout_seconds) {
+  std::unique_ptr<Device> self(new Device());
+  self->timeout_ns_ = static_cast<std::uint64_t>(timeout_seconds * 1e9);
+  self->physical = candidate.physical;
+  self->queue_family = candidate.queue_family;
+  self->transfer_family = transfer_family_of(self->physical, self->queue_family);
+  self->info = candidate.info;
+  vkGetPhysicalDeviceMemoryProperties(self->physical, &self->memory);
+
+  Features features;
+  std::vector<const char*> extensions;
+  if (windowed) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  enable(candidate.info, features, extensions);
+  const float priority = 1.0F;
+  VkDeviceQueueCreateInfo queue{};
+  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  queue.queueFamilyIndex = self->queue_family;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  std::vector<VkDeviceQueueCreateInfo> queues{queue};
+  queue.queueFamilyIndex = self->transfer_family;
+  if (self->transfer_family != self->queue_family) queues.push_back(queue);
+  VkDeviceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.pNext = &features.base;
+  info.queueCreateInfoCount = static_cast<std::uint32_t>(queues.size());
+  info.pQueueCreateInfos = queues.data();
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
+  const VkResult result = vkCreateDevice(self->physical, &info, nullptr, &self->handle);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating the Vulkan device");
+  volkLoadDeviceTable(&self->vk, self->handle);
+  self->vk.vkGetDeviceQueue(self->handle, self->queue_family, 0, &self->queue);
+  self->vk.vkGetDeviceQueue(self->handle, self->transfer_family, 0, &self->transfer_queue);
+
+  read_limits(*self);
+  if (timestamps) self->timestamp_mask = timestamp_mask_of(self->physical, self->queue_family);
+  self->info.timestamps = self->timestamp_mask != 0;
+  return self;
+}
+
+core::Result<void> Device::wait(VkSemaphore semaphore, std::uint64_t value,
+                                const char* what) const {
+  VkSemaphoreWaitInfo waited{};
+  waited.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
+  waited.semaphoreCount = 1;
+  waited.pSemaphores = &semaphore;
+  waited.pValues = &value;
+  const VkResult result = vk.vkWaitSemaphores(handle, &waited, timeout_ns_);
+  if (result == VK_SUCCESS) return {};
+  vk.hangs = vk.hangs || result == VK_TIMEOUT;
+  return vulkan_failure(result, what);
+}
+
+core::Result<void> Device::submit(VkQueue to, const VkSubmitInfo2& work, const char* what) const {
+  const std::scoped_lock lock(queues_);
+  const VkResult result = vk.vkQueueSubmit2(to, 1, &work, VK_NULL_HANDLE);
+  return result == VK_SUCCESS ? core::Result<void>{} : vulkan_failure(result, what);
+}
+
+VkResult Device::present(const VkPresentInfoKHR& picture) const {
+  const std::scoped_lock lock(queues_);
+  return vk.vkQueuePresentKHR(queue, &picture);
+}
+
+VkResult Device::wait_idle() const {
+  const std::scoped_lock lock(queues_);
+  return vk.vkDeviceWaitIdle(handle);
+}
+
+std::uint64_t Device::writable_bytes() const {
+  const VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT |
+                                       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                       VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  std::uint64_t bytes = 0;
+  for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+    if ((memory.memoryTypes[i].propertyFlags & wanted) != wanted) continue;
+    bytes =
+        std::max<std::uint64_t>(bytes, memory.memoryHeaps[memory.memoryTypes[i].heapIndex].size);
+  }
+  return bytes;
+}
+
+VkSampleCountFlagBits Device::samples_for(std::uint32_t wanted) const {
+  std::uint32_t samples = wanted;
+  while (samples > 1 && (sample_counts & samples) == 0)
+    samples /= 2;
+  return static_cast<VkSampleCountFlagBits>(samples);
+}
+
+Device::~Device() {
+  if (handle != VK_NULL_HANDLE) vk.vkDestroyDevice(handle, nullptr);
+}
+
+}  // namespace psygen::render

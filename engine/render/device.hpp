@@ -1,0 +1,83 @@
+// Selects a physical device and creates the logical one: queues, function table, features and
+// limits. Allocates no memory (memory.hpp). Main thread. Private to engine/render.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "engine/render/instance.hpp"
+#include "engine/render/types.hpp"
+#include "engine/render/vulkan.hpp"
+
+namespace psygen::render {
+
+// A physical device that has everything the renderer needs.
+struct DeviceCandidate {
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  std::uint32_t queue_family = 0;  // for graphics, and for presenting if there is a surface
+  int rank = 0;                    // higher is better: discrete, integrated, virtual, software
+  DeviceInfo info;
+};
+
+// All candidates, best first. With a surface, only devices that can present to it.
+std::vector<DeviceCandidate> find_devices(const Instance& instance, VkSurfaceKHR surface);
+
+// The best candidate whose name contains `name` (any if empty). Fails with kNoDevice; the message
+// lists the existing names.
+core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& candidates,
+                                            const std::string& name);
+
+// The logical device. Everything that is created with it must be destroyed before it.
+class Device {
+ public:
+  // Creates the device. `windowed`: it can present. `timestamps`: use them if the queue has any.
+  // `timeout_seconds`: longest wait for the device; after that it counts as lost.
+  static core::Result<std::unique_ptr<Device>> create(const DeviceCandidate& candidate,
+                                                      bool windowed, bool timestamps,
+                                                      double timeout_seconds);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  // The largest number of samples up to `wanted` (a power of two) that colour and depth can have.
+  VkSampleCountFlagBits samples_for(std::uint32_t wanted) const;
+
+  // Functions, handles, queues and limits; fixed after create().
+  DeviceTable vk{};
+  VkDevice handle = VK_NULL_HANDLE;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+  std::uint32_t queue_family = 0;
+  VkQueue transfer_queue = VK_NULL_HANDLE;  // `queue` if there is none only for transfers
+  std::uint32_t transfer_family = 0;
+  VkPhysicalDeviceMemoryProperties memory{};
+  std::uint32_t max_image_side = 0;                                 // pixels
+  VkSampleCountFlags sampled_depth_counts = VK_SAMPLE_COUNT_1_BIT;  // of depth read by shaders
+  VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;         // of colour and depth
+  std::uint32_t max_multi_draw = 0;                                 // 0: no VK_EXT_multi_draw
+  std::uint64_t timestamp_mask = 0;  // the valid bits; 0: no timestamps on the queue
+  double timestamp_period_ns = 0;
+  DeviceInfo info;
+
+  // Returns when a timeline semaphore has reached `value`. `what` is for the error: "waiting for
+  // ...". Fails with kDeviceLost, also after the timeout, which sets vk.hangs.
+  core::Result<void> wait(VkSemaphore semaphore, std::uint64_t value, const char* what) const;
+  // Queues, one call at a time: a software device's pictures are presented by a thread of their own
+  // (RendererImpl::present). submit() fails like vulkan_failure(); `what` is for the error.
+  core::Result<void> submit(VkQueue to, const VkSubmitInfo2& work, const char* what) const;
+  VkResult present(const VkPresentInfoKHR& picture) const;
+  // Waits for everything that was submitted.
+  VkResult wait_idle() const;
+  // Size in bytes of the largest device-local heap that the CPU can write.
+  std::uint64_t writable_bytes() const;
+
+ private:
+  Device() = default;
+
+  std::uint64_t timeout_ns_ = 0;
+  mutable std::mutex queues_;
+};
+
+}  // namespace psygen::render

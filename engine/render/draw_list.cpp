@@ -1,0 +1,154 @@
+#include "engine/render/draw_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "engine/core/assert.hpp"
+#include "engine/render/view_volume.hpp"
+
+namespace psygen::render {
+
+shaders::DrawData data_of(const TerrainDraw& draw) {
+  return {.origin = {draw.origin.x, draw.origin.y + draw.height_min_m, draw.origin.z, draw.cell_m},
+          .scale = {draw.height_range_m, draw.skirt_m, draw.morph, draw.cover},
+          .light = {},
+          .turn = {}};
+}
+
+static_assert(static_cast<int>(core::SurfaceKind::kStone) == PSYGEN_SURFACE_STONE);
+static_assert(static_cast<int>(core::SurfaceKind::kBark) == PSYGEN_SURFACE_BARK);
+
+shaders::DrawData data_of(const MeshDraw& draw) {
+  // The phase depends on the mesh, not on the camera. Neighbours differ because their boxes do.
+  const float phase = 7.31F * (draw.box_half_extent.x + draw.box_centre.x + draw.box_centre.z);
+  return {.origin = {draw.origin + draw.box_centre, phase - std::floor(phase)},
+          .scale = {draw.box_half_extent, draw.fade},
+          .light = {draw.sun, static_cast<float>(draw.surface), 0, 0},
+          .turn = {}};
+}
+
+shaders::DrawData data_of(const ObjectDraw& draw) {
+  const glm::vec3 centre = draw.origin + object_axes(draw) * draw.box_centre;
+  const auto number = static_cast<float>(std::min(draw.material, PSYGEN_MAX_MATERIALS - 1U));
+  const float phase = 0.9375F * (draw.phase - std::floor(draw.phase));  // stays below the number
+  return {.origin = {centre, number + phase},
+          .scale = {draw.scale * draw.box_half_extent, draw.fade},
+          .light = {draw.sun, 1.0F / draw.scale.x, 1.0F / draw.scale.y, 1.0F / draw.scale.z},
+          .turn = {draw.rotation[0], draw.rotation[1], draw.rotation[2], draw.rotation[3]}};
+}
+
+void set_colour(shaders::DrawData& data, const TerrainDraw& draw) {
+  data.scale.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
+}
+void set_colour(shaders::DrawData& data, const MeshDraw& draw) {
+  data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
+}
+
+void set_colour(shaders::DrawData& data, const ObjectDraw& draw) {
+  data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
+}
+
+IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indices,
+                     core::IndexPart part, std::span<const IndexList> lists) {
+  PSYGEN_ASSERT(shared_indices <= lists.size(), "unknown shared index list");
+  const IndexList all = shared_indices == kNoSharedIndices
+                            ? IndexList{range.first_index, range.index_count}
+                            : lists[shared_indices - 1];
+  if (part.count == 0) return all;
+  PSYGEN_ASSERT(part.first + part.count <= all.index_count, "a part is in its list");
+  return {all.first_index + part.first, part.count};
+}
+
+namespace {
+
+template <class Draw>
+IndexList indices_of(const Draw& draw, std::span<const IndexList> lists) {
+  return indices_of(draw.range, draw.shared_indices, draw.part, lists);
+}
+IndexList indices_of(const ObjectDraw& draw, std::span<const IndexList>) {
+  return {draw.range.first_index, draw.range.index_count};
+}
+
+}  // namespace
+
+// Of one draw, without its place.
+template <class Draw>
+DrawRun DrawList::run_of(const Draw& draw) const {
+  DrawRun run;
+  run.layout = draw.range.layout;
+  run.pushed = indices_of(draw, lists_).index_count >= pushed_from_;
+  run.pool_block = draw.range.pool_block;
+  run.lamps = !lights_.empty() && any_reaches(lights_, bounds_of(draw));
+  if constexpr (requires { draw.material; }) {
+    const MaterialKind kind = kind_of(materials_, draw.material);
+    run.coverage = coverage_of(draw, kind);
+    run.textures = kind.textured ? draw.material : kPlainMaterial;
+  } else {
+    run.coverage = coverage_of(draw);
+    run.shared = draw.shared_indices != kNoSharedIndices;
+  }
+  return run;
+}
+
+template <class Draw>
+void DrawList::append(const Draw& draw) {
+  const IndexList indices = indices_of(draw, lists_);
+  DrawRun run = run_of(draw);
+  run.first = static_cast<std::uint32_t>(draws_.size());
+  if (runs_.empty() || !run.continues(runs_.back())) runs_.push_back(run);
+  ++runs_.back().count;
+  draws_.push_back({indices.first_index, indices.index_count,
+                    static_cast<std::int32_t>(draw.range.first_vertex)});
+  data_.push_back(data_of(draw));
+  if (coloured_) set_colour(data_.back(), draw);
+  triangle_count_ += indices.index_count / 3;
+}
+
+template <class Draw>
+void DrawList::add(std::span<const Draw> input) {
+  // The properties that separate runs, as a sort key.
+  const auto key = [&](const Draw& draw) {
+    const DrawRun run = run_of(draw);
+    const bool terrain = std::is_same_v<Draw, TerrainDraw>;
+    // What is near comes first: it hides most.
+    const bool near = run.coverage == (terrain ? Coverage::kPart : Coverage::kNear);
+    const std::uint64_t order = near ? 0 : 1 + static_cast<std::uint64_t>(run.coverage);
+    return (run.lamps ? 0ULL : 1ULL) << 47 | std::uint64_t{run.textures} << 35 | order << 33 |
+           (run.pushed ? 0ULL : 2ULL) << 31 | std::uint64_t{run.pool_block} * 2 |
+           (run.shared ? 1u : 0u);
+  };
+  for (std::size_t first = 0; first < input.size(); first += kWindow) {
+    const std::span<const Draw> window =
+        input.subspan(first, std::min(kWindow, input.size() - first));
+    order_.clear();
+    for (std::size_t i = 0; i < window.size(); ++i)
+      order_.push_back({key(window[i]), i});
+    if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
+    for (const auto& [buffers, position] : order_)
+      append(window[position]);
+  }
+}
+
+void DrawList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
+                     std::span<const IndexList> lists, std::uint32_t pushed_from, bool coloured,
+                     std::span<const ObjectDraw> objects, MaterialKinds materials,
+                     std::span<const PointLight> lights) {
+  runs_.clear();
+  draws_.clear();
+  data_.clear();
+  triangle_count_ = 0;
+  lists_ = lists;
+  pushed_from_ = pushed_from;
+  coloured_ = coloured;
+  lights_ = lights;
+  add(terrain);
+  add(models);
+  materials_ = materials;
+  add(objects);
+  materials_ = {};
+  lists_ = {};
+  lights_ = {};
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,78 @@
+#include "engine/render/gpu_timer.hpp"
+
+#include <array>
+#include <cstring>
+
+namespace psygen::render {
+
+using core::Result;
+
+namespace {
+constexpr std::uint32_t kMarks = 3, kWithoutShadows = 2;
+using Ticks = std::array<std::uint64_t, kMarks>;
+}  // namespace
+
+Result<void> GpuTimer::create(const Device& device) {
+  if (device.timestamp_mask == 0) return {};
+  VkQueryPoolCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+  info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+  info.queryCount = kMarks;
+  VkQueryPool made = VK_NULL_HANDLE;
+  const VkResult result = device.vk.vkCreateQueryPool(device.handle, &info, nullptr, &made);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a query pool");
+  queries_ = UniqueQueryPool(device.vk, device.handle, made);
+  Result<Buffer> ticks =
+      make_buffer(device, sizeof(Ticks), VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::kRead);
+  if (!ticks) return tl::unexpected(ticks.error());
+  ticks_ = std::move(*ticks);
+  return {};
+}
+
+void GpuTimer::begin(const Device& device, VkCommandBuffer commands) {
+  if (queries_.get() == VK_NULL_HANDLE) return;
+  if (recorded_.timed) {
+    device.vk.vkCmdCopyQueryPoolResults(
+        commands, queries_.get(), 0, recorded_.shadows ? kMarks : kWithoutShadows,
+        ticks_.buffer.get(), 0, sizeof(Ticks::value_type),
+        VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);  // available, so it does not wait
+    // Software devices write the host's memory, and would finish all drawing at a barrier.
+    if (!device.info.software) {
+      memory_barrier(device, commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                     VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+    }
+  }
+  copied_ = recorded_;
+  recorded_ = {};
+  device.vk.vkCmdResetQueryPool(commands, queries_.get(), 0, kMarks);
+}
+
+void GpuTimer::mark(const Device& device, VkCommandBuffer commands, Mark mark) {
+  if (queries_.get() == VK_NULL_HANDLE) return;
+  device.vk.vkCmdWriteTimestamp2(commands,
+                                 mark == Mark::kBegin ? VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT
+                                                      : VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT,
+                                 queries_.get(), static_cast<std::uint32_t>(mark));
+  recorded_.timed = recorded_.timed || mark == Mark::kEnd;
+  recorded_.shadows = recorded_.shadows || mark == Mark::kShadows;
+}
+
+void GpuTimer::submitted(std::uint64_t frame, double now_s) {
+  recorded_.number = frame;
+  recorded_.submitted_s = now_s;
+}
+
+std::optional<GpuTime> GpuTimer::read(const Device& device) const {
+  if (!copied_.timed) return std::nullopt;
+  Ticks ticks{};
+  std::memcpy(ticks.data(), ticks_.mapped, sizeof(ticks));
+  const auto ms = [&](Mark from, Mark to) {  // ticks may wrap around once
+    const std::uint64_t passed =
+        ticks[static_cast<std::size_t>(to)] - ticks[static_cast<std::size_t>(from)];
+    return static_cast<double>(passed & device.timestamp_mask) * device.timestamp_period_ns * 1e-6;
+  };
+  return GpuTime{copied_.number, copied_.submitted_s, ms(Mark::kBegin, Mark::kEnd),
+                 copied_.shadows ? ms(Mark::kBegin, Mark::kShadows) : 0.0};
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,74 @@
+#include "engine/render/mirror.hpp"
+
+#include <array>
+#include <utility>
+
+#include "engine/render/pipeline_build.hpp"
+
+namespace psygen::render {
+
+using core::Result;
+
+namespace {
+
+// How both images are used, one after the other.
+struct Use {
+  VkPipelineStageFlags2 stage;
+  VkAccessFlags2 access;
+  VkImageLayout colour, depth;
+};
+// What they had is not needed any more.
+constexpr Use kForgotten{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_NONE,
+                         VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED};
+// Attachments are resolved, depth too, in the stage and with the access of colours.
+constexpr Use kResolved{
+    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+    VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
+constexpr Use kRead{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+
+void change_use(const Device& device, VkCommandBuffer commands, const Mirror& mirror,
+                const Use& from, const Use& to) {
+  std::array barriers{barrier_of(mirror.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT),
+                      barrier_of(mirror.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT)};
+  for (VkImageMemoryBarrier2& barrier : barriers) {
+    barrier.srcStageMask = from.stage;
+    barrier.srcAccessMask = from.access;
+    barrier.dstStageMask = to.stage;
+    barrier.dstAccessMask = to.access;
+  }
+  barriers[0].oldLayout = from.colour;
+  barriers[0].newLayout = to.colour;
+  barriers[1].oldLayout = from.depth;
+  barriers[1].newLayout = to.depth;
+  image_barriers(device, commands, barriers);
+}
+
+}  // namespace
+
+Result<Mirror> make_mirror(const Device& device, VkFormat format, core::Extent extent) {
+  Mirror mirror;
+  Result<Image> colour = make_image(
+      device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+      VK_IMAGE_ASPECT_COLOR_BIT);
+  if (!colour) return tl::unexpected(colour.error());
+  mirror.colour = std::move(*colour);
+  Result<Image> depth =
+      make_image(device, extent, kDepthFormat,
+                 VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                 VK_IMAGE_ASPECT_DEPTH_BIT);
+  if (!depth) return tl::unexpected(depth.error());
+  mirror.depth = std::move(*depth);
+  return mirror;
+}
+
+void mirror_to_attachments(const Device& device, VkCommandBuffer commands, const Mirror& mirror) {
+  change_use(device, commands, mirror, kForgotten, kResolved);
+}
+
+void mirror_to_textures(const Device& device, VkCommandBuffer commands, const Mirror& mirror) {
+  change_use(device, commands, mirror, kResolved, kRead);
+}
+
+}  // namespace psygen::render

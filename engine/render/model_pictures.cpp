@@ -1,0 +1,83 @@
+#include "engine/render/model_pictures.hpp"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "engine/core/assert.hpp"
+#include "engine/core/vertex_layout.hpp"
+#include "shaders/shared.h"
+
+static_assert(PSYGEN_PICTURE_BIT == psygen::core::kPictureBit);
+static_assert(PSYGEN_PICTURE_VIEWS == psygen::core::kPictureViews);
+
+namespace psygen::render {
+
+using core::Result;
+
+namespace {
+
+constexpr core::Extent kLayerSize{core::kPictureSide, core::kPictureSide};
+
+Result<UniqueSampler> make_picture_sampler(const Device& device) {
+  VkSamplerCreateInfo info{};
+  info.magFilter = VK_FILTER_LINEAR;
+  info.minFilter = VK_FILTER_LINEAR;
+  // Two levels at once would cost software devices twice as much.
+  info.mipmapMode =
+      device.info.software ? VK_SAMPLER_MIPMAP_MODE_NEAREST : VK_SAMPLER_MIPMAP_MODE_LINEAR;
+  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.maxLod = VK_LOD_CLAMP_NONE;
+  return make_sampler(device, info);
+}
+
+}  // namespace
+
+Result<void> ModelPictures::create(const Device& device,
+                                   std::span<const core::ModelPicture> pictures) {
+  PSYGEN_CHECK(pictures.size() <= core::kMaxPictures, "a byte names the picture");
+  if (sampler_.get() == VK_NULL_HANDLE) {
+    Result<UniqueSampler> sampler = make_picture_sampler(device);
+    if (!sampler) return tl::unexpected(sampler.error());
+    sampler_ = std::move(*sampler);
+  }
+  const auto layers = static_cast<std::uint32_t>(1 + pictures.size() * core::kPictureViews);
+  Result<Image> image = make_image(device, kLayerSize, VK_FORMAT_R8G8B8A8_UNORM,
+                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                   VK_IMAGE_ASPECT_COLOR_BIT,
+                                   {.array = true, .layers = layers, .mips = core::kPictureLevels});
+  if (!image) return tl::unexpected(image.error());
+  std::swap(image_, *image);
+  const std::size_t count_before = std::exchange(count_, pictures.size());
+  const std::vector<std::uint8_t> white(core::picture_bytes() / core::kPictureViews, 255);
+  Result<void> filled = fill(device, 0, 1, white);
+  for (std::size_t i = 0; filled && i < pictures.size(); ++i)
+    filled = set(device, i, pictures[i]);
+  if (!filled) {  // as it was
+    std::swap(image_, *image);
+    count_ = count_before;
+  }
+  return filled;
+}
+
+Result<void> ModelPictures::set(const Device& device, std::size_t number,
+                                const core::ModelPicture& picture) {
+  PSYGEN_CHECK(number < count_ && picture.size() == core::picture_bytes(),
+               "a picture that exists, of its size");
+  return fill(device, static_cast<std::uint32_t>(1 + number * core::kPictureViews),
+              core::kPictureViews, picture);
+}
+
+Result<void> ModelPictures::fill(const Device& device, std::uint32_t layer, std::uint32_t layers,
+                                 std::span<const std::uint8_t> texels) {
+  std::array<std::span<const std::byte>, core::kPictureLevels> levels;
+  std::size_t at = 0;
+  for (std::uint32_t level = 0; level < core::kPictureLevels; ++level) {
+    const std::size_t bytes = core::picture_level_bytes(level) / core::kPictureViews * layers;
+    levels[level] = std::as_bytes(texels.subspan(at, bytes));
+    at += bytes;
+  }
+  return upload_image(device, image_, kLayerSize, levels, layers, layer);
+}
+
+}  // namespace psygen::render

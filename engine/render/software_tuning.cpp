@@ -1,0 +1,69 @@
+#include "engine/render/software_tuning.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>  // defines __GLIBC__ where there is glibc
+#include <thread>
+
+#include "engine/core/headroom.hpp"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#include <sys/resource.h>
+
+#include <initializer_list>
+#endif
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace psygen::render {
+namespace {
+
+// llvmpipe starts one thread per processor, at most this many.
+constexpr std::size_t kMaxRasterThreads = 32;
+// Other threads: the driver's queue and a modeler, without which there is no picture, and two
+// threads of the driver's shader cache.
+constexpr std::size_t kMinThreads = 2, kOtherThreads = 4;
+
+}  // namespace
+
+void tune_allocator_for_software_rendering() {
+#ifdef __GLIBC__
+  for (const auto resource : {RLIMIT_DATA, RLIMIT_AS}) {
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY) return;
+  }
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_TOP_PAD, 64 << 20);
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+#endif
+}
+
+void prefer_huge_pages([[maybe_unused]] std::span<std::byte> memory) {
+#ifdef __linux__
+  constexpr std::uintptr_t kHugePage = 2u << 20;
+  const auto first = reinterpret_cast<std::uintptr_t>(memory.data());
+  const std::uintptr_t begin = (first + kHugePage - 1) / kHugePage * kHugePage;
+  const std::uintptr_t end = (first + memory.size()) / kHugePage * kHugePage;
+  if (begin < end) (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+#endif
+}
+
+core::Result<void> fit_software_rendering_to_threads() {
+  const std::size_t processors = std::max(std::thread::hardware_concurrency(), 1u);
+  const std::size_t wanted = std::min(processors, kMaxRasterThreads) + kOtherThreads;
+  const std::size_t left = core::threads_left(wanted);
+  if (left < kMinThreads) {
+    return core::fail(core::ErrorCode::kInternal,
+                      fmt::format("drawing needs at least {} threads; the system allows {} more",
+                                  kMinThreads, left));
+  }
+  const std::size_t raster = left - std::min(left, kOtherThreads);
+  if (left < wanted) setenv("LP_NUM_THREADS", std::to_string(raster).c_str(), /*overwrite=*/0);
+  return {};
+}
+
+}  // namespace psygen::render

@@ -1,0 +1,29 @@
+// Settings of the process, its C library and the kernel for software rasterisers, where the CPU
+// both writes and reads the geometry. They affect only speed and stability, not the picture.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "engine/core/error.hpp"
+
+namespace psygen::render {
+
+// Makes the C library keep freed memory instead of returning it to the kernel page by page, because
+// a software rasteriser allocates and frees its bins every frame. Call it first in main, before
+// other threads exist. Does nothing if the process's memory is limited (ulimit -d, ulimit -v), or
+// if the C library is not glibc.
+void tune_allocator_for_software_rendering();
+
+// Asks the kernel for pages of 2 MiB under fresh memory. The first access to a page costs a fault,
+// about 3 µs on a virtual machine, and the mesh of a tree has thirty small pages. Does nothing if
+// the kernel has no such pages, for device memory, and for memory smaller than such a page.
+void prefer_huge_pages(std::span<std::byte> memory);
+
+// For programs, before a renderer is created. llvmpipe waits forever for its own threads if it
+// could not start them. If the system does not allow all of them (ulimit -u, limits of containers),
+// this makes it start fewer (LP_NUM_THREADS, unless that is set). Fails with kInternal if there
+// would be no thread for drawing.
+core::Result<void> fit_software_rendering_to_threads();
+
+}  // namespace psygen::render

@@ -1,0 +1,189 @@
+#include "engine/render/staged_geometry.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+
+#include "engine/core/out_of_memory.hpp"
+
+namespace psygen::render {
+
+using core::ErrorCode;
+using core::Result;
+
+namespace {
+
+// Records barriers that release buffer ranges to another queue family, or acquire them.
+void hand_over(const Device& device, VkCommandBuffer commands,
+               std::span<const VkBufferMemoryBarrier2> barriers) {
+  VkDependencyInfo dependency{};
+  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  dependency.bufferMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size());
+  dependency.pBufferMemoryBarriers = barriers.data();
+  device.vk.vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+VkBufferMemoryBarrier2 ownership_of(const Device& device, VkBuffer buffer, std::uint64_t offset,
+                                    std::uint64_t bytes) {
+  VkBufferMemoryBarrier2 barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
+  barrier.srcQueueFamilyIndex = device.transfer_family;
+  barrier.dstQueueFamilyIndex = device.queue_family;
+  barrier.buffer = buffer;
+  barrier.offset = offset;
+  barrier.size = bytes;
+  return barrier;
+}
+
+}  // namespace
+
+Result<void> StagedGeometry::create_part(const Device& device, Part& part) {
+  Result<Buffer> staging =
+      make_buffer(device, kPartBytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::kRead);
+  if (!staging) return tl::unexpected(staging.error());
+  part.staging = std::move(*staging);
+  VkCommandPoolCreateInfo pool_info{};
+  pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+  pool_info.queueFamilyIndex = device.transfer_family;
+  VkCommandPool pool = VK_NULL_HANDLE;
+  VkResult result = device.vk.vkCreateCommandPool(device.handle, &pool_info, nullptr, &pool);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a command pool");
+  part.pool = UniqueCommandPool(device.vk, device.handle, pool);
+  VkCommandBufferAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  info.commandPool = pool;
+  info.commandBufferCount = 1;
+  result = device.vk.vkAllocateCommandBuffers(device.handle, &info, &part.commands);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating a command buffer");
+  return {};
+}
+
+Result<void> StagedGeometry::create(const Device& device) {
+  for (Part& part : parts_) {
+    if (Result<void> made = create_part(device, part); !made) return made;
+  }
+  Result<UniqueSemaphore> timeline = make_timeline(device);
+  if (!timeline) return tl::unexpected(timeline.error());
+  timeline_ = std::move(*timeline);
+  return {};
+}
+
+Result<std::byte*> StagedGeometry::add_block(std::uint64_t bytes) {
+  // Not initialised, because pages that are never written take no memory.
+  std::unique_ptr<std::byte[]> mirror(new (std::nothrow) std::byte[bytes]);
+  if (!mirror) {
+    return core::fail(ErrorCode::kOutOfMemory,
+                      core::out_of_memory("the mirror of geometry memory"));
+  }
+  mirrors_.push_back(std::move(mirror));
+  return mirrors_.back().get();
+}
+
+void StagedGeometry::commit(const core::GeometryRange& range) {
+  pool_.commit(range);
+  const std::uint64_t first = std::uint64_t{range.first_vertex} * vertex_stride_bytes(range.layout);
+  const std::uint64_t end =
+      (std::uint64_t{range.first_index} + range.index_count) * sizeof(std::uint16_t);
+  if (end > first) pending_.push_back({range.id, range.pool_block, first, end - first});
+}
+
+void StagedGeometry::release(const core::GeometryRange& range) {
+  // From here on its bytes may belong to another mesh.
+  std::erase_if(pending_, [&](const Piece& piece) { return piece.id == range.id; });
+  pool_.release(range);
+}
+
+Result<void> StagedGeometry::wait_for(const Device& device, const Part& part) const {
+  return device.wait(timeline_.get(), part.value, "waiting for copies of meshes");
+}
+
+// Fills a part with pending bytes, in order. The last mesh may be split.
+std::vector<StagedGeometry::Piece> StagedGeometry::fill(Part& part) {
+  std::vector<Piece> pieces;
+  std::uint64_t used = 0;
+  while (!pending_.empty() && used < kPartBytes) {
+    Piece& first = pending_.front();
+    Piece piece = first;
+    piece.bytes = std::min(first.bytes, kPartBytes - used);
+    std::memcpy(part.staging.mapped + used, mirrors_[piece.block].get() + piece.offset,
+                piece.bytes);
+    used += piece.bytes;
+    first.offset += piece.bytes;
+    first.bytes -= piece.bytes;
+    pieces.push_back(piece);
+    if (first.bytes == 0) pending_.pop_front();
+  }
+  return pieces;
+}
+
+Result<void> StagedGeometry::submit(const Device& device, std::span<const Buffer> blocks,
+                                    Part& part, std::span<const Piece> pieces) {
+  VkResult result = device.vk.vkResetCommandPool(device.handle, part.pool.get(), 0);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "resetting a command pool");
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  result = device.vk.vkBeginCommandBuffer(part.commands, &begin);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "beginning a command buffer");
+  std::vector<VkBufferMemoryBarrier2> given;
+  std::uint64_t from = 0;
+  for (const Piece& piece : pieces) {
+    const VkBuffer target = blocks[piece.block].buffer.get();
+    const VkBufferCopy copy{from, piece.offset, piece.bytes};
+    device.vk.vkCmdCopyBuffer(part.commands, part.staging.buffer.get(), target, 1, &copy);
+    from += piece.bytes;
+    given.push_back(ownership_of(device, target, piece.offset, piece.bytes));
+    given.back().srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+    given.back().srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  }
+  if (device.transfer_family != device.queue_family) hand_over(device, part.commands, given);
+  result = device.vk.vkEndCommandBuffer(part.commands);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "ending a command buffer");
+
+  VkCommandBufferSubmitInfo commands{};
+  commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
+  commands.commandBuffer = part.commands;
+  VkSemaphoreSubmitInfo signal{};
+  signal.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
+  signal.semaphore = timeline_.get();
+  signal.value = value_ + 1;
+  signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  VkSubmitInfo2 info{};
+  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
+  info.commandBufferInfoCount = 1;
+  info.pCommandBufferInfos = &commands;
+  info.signalSemaphoreInfoCount = 1;
+  info.pSignalSemaphoreInfos = &signal;
+  if (auto ok = device.submit(device.transfer_queue, info, "submitting copies of meshes"); !ok)
+    return ok;
+  part.value = ++value_;
+  return {};
+}
+
+Result<void> StagedGeometry::flush(const Device& device, std::span<const Buffer> blocks,
+                                   VkCommandBuffer commands) {
+  std::vector<VkBufferMemoryBarrier2> taken;
+  while (!pending_.empty()) {
+    Part& part = parts_[next_];
+    next_ = (next_ + 1) % kParts;
+    if (Result<void> waited = wait_for(device, part); !waited) return waited;
+    const std::vector<Piece> pieces = fill(part);
+    if (Result<void> sent = submit(device, blocks, part, pieces); !sent) return sent;
+    for (const Piece& piece : pieces) {
+      taken.push_back(
+          ownership_of(device, blocks[piece.block].buffer.get(), piece.offset, piece.bytes));
+      // The stage at which the frame waits for the copies.
+      taken.back().srcStageMask = VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT;
+      taken.back().dstStageMask = VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT;
+      taken.back().dstAccessMask =
+          VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT;
+    }
+  }
+  if (device.transfer_family != device.queue_family && !taken.empty()) {
+    hand_over(device, commands, taken);
+  }
+  return {};
+}
+
+}  // namespace psygen::render

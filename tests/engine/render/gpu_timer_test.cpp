@@ -1,0 +1,114 @@
+#include "engine/render/gpu_timer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "engine/core/clock.hpp"
+#include "engine/render/renderer.hpp"
+#include "tests/engine/render/synthetic_scene.hpp"
+
+namespace psygen::render {
+namespace {
+
+std::unique_ptr<Renderer> make(Preset preset, RenderPath path, bool timestamps = true) {
+  RendererOptions options;
+  options.validation = true;
+  options.size = {320, 240};
+  options.geometry_budget_bytes = 8 << 20;
+  options.preset = preset;
+  options.path = path;
+  options.timestamps = timestamps;
+  auto made = Renderer::create(options);
+  EXPECT_TRUE(made) << made.error().message;
+  return made ? std::move(*made) : nullptr;
+}
+
+// Ground with a box on it.
+struct Scene {
+  explicit Scene(Renderer& renderer) : renderer_(renderer) {
+    using synthetic::kGroundSide;
+    const auto grid = renderer.upload_shared_indices(synthetic::grid_indices(kGroundSide));
+    const auto ground =
+        synthetic::make_terrain(renderer.geometry(), kGroundSide, [](int, int) { return 0.0F; });
+    const auto box = synthetic::make_box(renderer.geometry(), glm::vec3(0.5F));
+    EXPECT_TRUE(grid && ground && box);
+    terrain_.range = *ground;
+    terrain_.shared_indices = *grid;
+    terrain_.origin = {-320.0F, -10.0F, -320.0F};
+    terrain_.cell_m = 10.0F;
+    terrain_.height_range_m = 100.0F;
+    model_.range = *box;
+    model_.origin = {0, -10, -30};
+    model_.box_half_extent = glm::vec3(4);
+  }
+  FrameResult draw() {
+    FrameInput input = synthetic::look(10.0, 0.0, renderer_.size());
+    input.terrain = std::span(&terrain_, 1);
+    input.models = std::span(&model_, 1);
+    return renderer_.render(input).value();
+  }
+
+ private:
+  Renderer& renderer_;
+  TerrainDraw terrain_;
+  MeshDraw model_;
+};
+
+class GpuTimerTest : public testing::TestWithParam<std::tuple<Preset, RenderPath>> {};
+
+TEST_P(GpuTimerTest, a_frame_gets_its_device_time_four_frames_later) {
+  const auto [preset, path] = GetParam();
+  const auto renderer = make(preset, path);
+  ASSERT_TRUE(renderer->device().timestamps);
+  Scene scene(*renderer);
+  std::set<std::uint64_t> frames;
+  const double start_s = core::monotonic_seconds();
+  for (int i = 0; i < 12; ++i) {
+    const FrameResult result = scene.draw();
+    EXPECT_EQ(result.gpu.has_value(), i >= 4) << i;
+    if (!result.gpu) continue;
+    EXPECT_EQ(result.gpu->frame + 4, result.frame);
+    EXPECT_GT(result.gpu->ms, 0.0);
+    EXPECT_GE(result.gpu->submitted_s, start_s);
+    // It was done after it was submitted and is over, so it took no longer than has passed since.
+    EXPECT_LE(result.gpu->ms, (core::monotonic_seconds() - result.gpu->submitted_s) * 1e3);
+    frames.insert(result.gpu->frame);
+  }
+  EXPECT_EQ(frames.size(), 8u);
+  renderer->wait_idle();
+  for (const std::string& message : renderer->validation_messages())
+    ADD_FAILURE() << message;
+}
+
+TEST_P(GpuTimerTest, shadows_are_a_part_of_it_where_there_are_any) {
+  const auto [preset, path] = GetParam();
+  const auto renderer = make(preset, path);
+  Scene scene(*renderer);
+  FrameResult result;
+  for (int i = 0; i < 6; ++i)
+    result = scene.draw();
+  ASSERT_TRUE(result.gpu);
+  EXPECT_EQ(result.gpu->shadows_ms > 0, renderer->casts_shadows());
+  EXPECT_LE(result.gpu->shadows_ms, result.gpu->ms);
+}
+
+INSTANTIATE_TEST_SUITE_P(PresetsAndPaths, GpuTimerTest,
+                         testing::Combine(testing::Values(Preset::kLow, Preset::kHigh),
+                                          testing::Values(RenderPath::kCpu, RenderPath::kGpu)),
+                         [](const auto& suite) {
+                           const bool low = std::get<0>(suite.param) == Preset::kLow;
+                           const bool cpu = std::get<1>(suite.param) == RenderPath::kCpu;
+                           return std::string(low ? "low_" : "high_") + (cpu ? "cpu" : "gpu");
+                         });
+
+TEST(GpuTimer, without_timestamps_everything_goes_on_without_its_time) {
+  const auto renderer = make(Preset::kLow, RenderPath::kCpu, false);
+  EXPECT_FALSE(renderer->device().timestamps);
+  Scene scene(*renderer);
+  for (int i = 0; i < 6; ++i)
+    EXPECT_FALSE(scene.draw().gpu);
+}
+
+}  // namespace
+}  // namespace psygen::render
