@@ -23,4 +23,5 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/psygen-config.cmake
 install(FILES cmake/PsygenFrameTest.cmake DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
 install(DIRECTORY cmake/modules DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)
+install(FILES tools/gdb/psygen.py DESTINATION ${CMAKE_INSTALL_DATADIR}/psygen/gdb COMPONENT psygen_data)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the packages that psygen needs on Debian 12, if they are missing.
 #   tools/setup.sh          packages to build, run and test
-#   tools/setup.sh --ci     also those of the complete check (clang-format)
+#   tools/setup.sh --ci     also those of the complete check (clang-format, clang-tidy)
 #   tools/setup.sh --clang  also clang and its sanitizers, for tools/fuzz.sh and tools/builds.sh
 set -euo pipefail
 
@@ -13,12 +13,12 @@ packages=(
   libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev libtinygltf-dev libmeshoptimizer-dev libsqlite3-dev
   libopenal-dev libsndfile1-dev libbullet-dev qt6-base-dev libxcb1-dev libopenmpi-dev openmpi-bin
   slurm-wlm munge
-  libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind
+  libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind gdb
   xvfb openbox xdotool x11-utils x11-xkb-utils chromium
 )
 # For the test that lets others read tilesets. A newer Node.js of one's own will do.
 command -v npm >/dev/null || packages+=(nodejs npm)
-[ "${1:-}" = "--ci" ] && packages+=(clang-format)
+[ "${1:-}" = "--ci" ] && packages+=(clang-format clang-tidy)
 [ "${1:-}" = "--clang" ] && packages+=(clang libclang-rt-dev)
 
 missing=()
