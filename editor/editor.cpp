@@ -15,8 +15,8 @@
 #include "engine/cli/shipped_files.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
+#include "engine/render/device/software_tuning.hpp"
 #include "engine/render/preset.hpp"
-#include "engine/render/software_tuning.hpp"
 
 namespace psygen::editor {
 namespace {

@@ -1,5 +1,5 @@
 // The input of the culling shader, declared once for GLSL and C++ like shared.h. Positions are in
-// metres, relative to the camera. engine/render/gpu_culling.cpp writes it.
+// metres, relative to the camera. engine/render/passes/gpu_culling.cpp writes it.
 #ifndef PSYGEN_SHADERS_CULL_SHARED_H
 #define PSYGEN_SHADERS_CULL_SHARED_H
 

@@ -64,7 +64,8 @@ using glm::vec4;
 // leaves.
 #define PSYGEN_NEAR_MODELS_M 128
 #define PSYGEN_LAYER_OF_MODELS 1
-// Cells of one metre along each side of the map of dark spots on near ground (ground_shade.hpp).
+// Cells of one metre along each side of the map of dark spots on near ground
+// (meshes/contact_shadow_map.hpp).
 #define PSYGEN_SHADE_SIDE 128
 
 // Materials of objects, and a factor by which DrawData carries their number beside the wind.

@@ -22,8 +22,8 @@
 #include "engine/core/log.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/models/terrain/ground.hpp"
+#include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer.hpp"
-#include "engine/render/software_tuning.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace psygen::editor {

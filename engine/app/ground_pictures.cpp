@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/image/image_io.hpp"
+#include "engine/render/textures/ground_texture_override.hpp"
 #include "engine/world/files/files_beside.hpp"
 #include "engine/world/world.hpp"
 

@@ -1,5 +1,6 @@
 // Reads the images that replace the ground textures of a world, from the folder of its file.
-// Creates no textures (render/ground_picture.hpp). Any thread; too slow for the tick.
+// Creates no textures (render/textures/ground_texture_override.hpp). Any thread; too slow for the
+// tick.
 #pragma once
 
 #include <array>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/render/text_panel.hpp"
+#include "engine/render/hud_drawing.hpp"
 #include "engine/render/types.hpp"
 #include "engine/scene/state.hpp"
 

@@ -16,7 +16,7 @@
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/platform/window.hpp"
-#include "engine/render/render_path.hpp"
+#include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/telemetry/trace_log.hpp"

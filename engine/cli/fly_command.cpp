@@ -13,8 +13,8 @@
 #include "engine/core/replace_file.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/inspect/inspect.hpp"
+#include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer.hpp"
-#include "engine/render/software_tuning.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/telemetry/output_file.hpp"
 

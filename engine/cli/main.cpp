@@ -14,7 +14,7 @@
 #include "engine/cli/test_command.hpp"
 #include "engine/cli/usage.hpp"
 #include "engine/core/data_file.hpp"
-#include "engine/render/software_tuning.hpp"
+#include "engine/render/device/software_tuning.hpp"
 
 int main(int argc, char** argv) {
   psygen::cli::hold_standard_streams();

@@ -4,7 +4,6 @@
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/text_values.hpp"
 #include "engine/render/preset.hpp"
-#include "engine/render/render_path.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace psygen::cli {

@@ -3,7 +3,7 @@
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/core/log.hpp"
-#include "engine/render/software_tuning.hpp"
+#include "engine/render/device/software_tuning.hpp"
 
 namespace psygen::cli {
 

@@ -9,7 +9,6 @@
 #include "engine/core/utf8.hpp"
 #include "engine/frametest/frame_test.hpp"
 #include "engine/render/preset.hpp"
-#include "engine/render/render_path.hpp"
 #include "engine/telemetry/summary_fields.hpp"
 #include "engine/world/files/document.hpp"
 #include "engine/world/files/table_reader.hpp"

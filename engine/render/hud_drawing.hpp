@@ -1,11 +1,13 @@
-// What a game writes and draws over the picture: text of any size anywhere, and areas of one
-// colour. Plain values, any thread. Positions are shares of the picture plus pixels, so that they
-// hold for every size of window. Panels for debugging are TextPanels (text_panel.hpp). docs/hud.md.
+// Drawings over the frame as plain values, any thread: the HUD of a game (text of any size, and
+// rectangles of one colour; docs/hud.md), and panels of text for debugging. HUD positions are
+// fractions of the frame plus pixels, so they hold for every window size. text/overlay_layout.hpp
+// lays both out.
 #pragma once
 
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,5 +59,21 @@ struct HudDrawing {
 
 // Width and height of a text in pixels, of all its lines, without outline and shadow. Any thread.
 glm::vec2 measure(const HudText& text);
+
+// The position of a panel. A panel on the right that would cover one on the left moves below it.
+enum class Anchor : std::uint8_t { kTopLeft, kTopRight, kBottom, kMiddle };
+
+// One line. If it is too long for the picture, it continues in the next row.
+struct TextLine {
+  std::string text;                          // UTF-8
+  std::optional<std::uint32_t> swatch = {};  // 0xRRGGBB: a square of this colour before the text
+  std::optional<float> bar = {};             // 0 … 1: a bar below the text, filled to this share
+};
+
+// One panel.
+struct TextPanel {
+  Anchor anchor = Anchor::kTopLeft;
+  std::vector<TextLine> lines;  // none: the panel is not drawn
+};
 
 }  // namespace psygen::render

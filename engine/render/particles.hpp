@@ -16,6 +16,8 @@ namespace psygen::render {
 inline constexpr std::uint32_t kMaxParticlesPerEmitter = 8192;
 inline constexpr std::uint32_t kMaxParticles = 65536;
 inline constexpr std::uint32_t kMaxEmitters = 256;
+// The smallest drag that is computed, 1/s: closed forms of motion divide by the drag.
+inline constexpr float kMinParticleDrag = 0.01F;
 
 // Where particles are born. kBox: in a box around the emitter, or at a point if that has no size.
 // kAroundCamera: everywhere, drawn in a box around the camera; for rain and snow. The emitter's

@@ -1,5 +1,5 @@
-// The traits of the presets (docs/presets.md), and the names of presets and views. Pure functions,
-// any thread. Knows no Vulkan.
+// The traits of the presets (docs/presets.md), and the names of presets, views and paths. Pure
+// functions, any thread. Knows no Vulkan.
 #pragma once
 
 #include <array>
@@ -34,6 +34,10 @@ Preset next_preset(Preset preset);  // after the last comes kLow
 std::string_view to_string(View view);  // "normal", "levels", "layers", "bounds", …
 core::Result<View> view_from(std::string_view name);
 View next_view(View view);  // after the last comes kNormal
+
+// The name of a path and its inverse, which fails with kInvalidArgument.
+std::string_view to_string(RenderPath path);  // "auto", "cpu", "gpu"
+core::Result<RenderPath> render_path_from(std::string_view name);
 
 // Whether a view shows draws in their debug colour instead of the landscape's.
 constexpr bool colours_draws(View view) {

@@ -9,8 +9,8 @@
 
 #include "engine/core/headroom.hpp"
 #include "engine/core/out_of_memory.hpp"
+#include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer_impl.hpp"
-#include "engine/render/software_tuning.hpp"
 
 namespace psygen::render {
 

@@ -10,9 +10,9 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/headroom.hpp"
 #include "engine/core/out_of_memory.hpp"
-#include "engine/render/emitter_data.hpp"
-#include "engine/render/frame_data.hpp"
-#include "engine/render/software_tuning.hpp"
+#include "engine/render/device/software_tuning.hpp"
+#include "engine/render/frame/frame_data.hpp"
+#include "engine/render/passes/particles.hpp"
 
 namespace psygen::render {
 

@@ -9,17 +9,17 @@
 #include <optional>
 #include <vector>
 
-#include "engine/render/device.hpp"
-#include "engine/render/frame_slot.hpp"
-#include "engine/render/geometry_pool.hpp"
-#include "engine/render/ground_shade.hpp"
-#include "engine/render/model_pictures.hpp"
-#include "engine/render/overlay.hpp"
-#include "engine/render/pipelines.hpp"
-#include "engine/render/scene_recorder.hpp"
-#include "engine/render/shared_index_lists.hpp"
-#include "engine/render/staged_geometry.hpp"
-#include "engine/render/swapchain.hpp"
+#include "engine/render/device/device.hpp"
+#include "engine/render/frame/frame_slot.hpp"
+#include "engine/render/frame/swapchain.hpp"
+#include "engine/render/memory/geometry_pool.hpp"
+#include "engine/render/memory/shared_index_lists.hpp"
+#include "engine/render/memory/staged_geometry.hpp"
+#include "engine/render/meshes/contact_shadow_map.hpp"
+#include "engine/render/passes/pipelines.hpp"
+#include "engine/render/passes/scene_recorder.hpp"
+#include "engine/render/text/overlay_layout.hpp"
+#include "engine/render/textures/model_pictures.hpp"
 #include "engine/render/types.hpp"
 
 namespace psygen::render {

@@ -2,10 +2,10 @@
 // and again for another preset. Also the text picture that is shown meanwhile.
 #include <utility>
 
-#include "engine/render/frame_data.hpp"
-#include "engine/render/progress.hpp"
+#include "engine/render/device/pipeline_build.hpp"
+#include "engine/render/frame/frame_data.hpp"
+#include "engine/render/passes/warm_up.hpp"
 #include "engine/render/renderer_impl.hpp"
-#include "engine/render/warm_up.hpp"
 
 namespace psygen::render {
 

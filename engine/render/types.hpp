@@ -17,9 +17,7 @@
 #include "engine/core/geometry_memory.hpp"
 #include "engine/core/surface_kind.hpp"
 #include "engine/core/surface_provider.hpp"
-#include "engine/render/ground_picture.hpp"
 #include "engine/render/hud_drawing.hpp"
-#include "engine/render/text_panel.hpp"
 
 struct ImDrawData;
 
@@ -50,6 +48,14 @@ enum class View : std::uint8_t {
   kWireframe,  // edges of triangles; the landscape if the device cannot draw them
   kMissing,    // each draw in its `debug_colour`, for its difference from the wanted level
   kCache,      // the same, for its share of the geometry cache
+};
+
+// Kinds of ground with a texture that can be replaced, in the order of world::GroundKind.
+inline constexpr std::size_t kGroundPictures = 6;
+// An image in place of a ground texture: 256 × 256 texels of red, green and blue, 0 to 1 and
+// linear, row by row. Empty: the texture stays. textures/ground_texture_override.hpp makes it.
+struct GroundPicture {
+  std::vector<float> rgb;
 };
 
 // Called with the progress of a long operation, a fraction in [0, 1]. Returning false cancels it.

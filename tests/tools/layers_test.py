@@ -80,6 +80,14 @@ INSIDE = {
 }
 NOT_UP = {"engine/models/kit"}
 
+# layer -> (its rooms in order, its values). A room is a folder: it may include itself, the rooms
+# before it, and the values, which are headers beside the rooms that include no room (file names
+# without endings). All other files beside the rooms may include every room, and no room them.
+ORDERED_ROOMS = {
+    "engine/render": (["device", "memory", "text", "textures", "frame", "meshes", "passes"],
+                      {"types", "preset", "particles", "hud_drawing"}),
+}
+
 # library header -> the only folders that may include it
 ONLY_IN = {
     r"^(vulkan/|volk\.h)": {"engine/render", "engine/platform", "editor/view"},
@@ -129,6 +137,26 @@ def room_violation(path, name):
     return None
 
 
+def order_violation(path, name):
+    """Why a file of a layer with ordered rooms must not include another header of it, or None."""
+    layer = folder_of(path)
+    if layer not in ORDERED_ROOMS or folder_of(name) != layer:
+        return None
+    rooms, values = ORDERED_ROOMS[layer]
+
+    def place(file):
+        """The number of a file's room, -1 for values, len(rooms) for other files beside the rooms."""
+        inside = pathlib.PurePosixPath(file).relative_to(layer)
+        if len(inside.parts) == 1:
+            return -1 if inside.stem in values else len(rooms)
+        return rooms.index(inside.parts[0]) if inside.parts[0] in rooms else None
+
+    user, used = place(path), place(name)
+    if user is None or used is None:
+        return f"the rooms of {layer} are {', '.join(rooms)}"
+    return f"of {layer}, {rooms[user] if 0 <= user else 'a value'} may know only what is before it" if used > user else None
+
+
 def violations(path, lines):
     """Sentences about the forbidden includes of one file."""
     layer = folder_of(path)
@@ -143,6 +171,8 @@ def violations(path, lines):
         if target and target != layer and target not in MAY_KNOW[layer]:
             found.append(f"{where}: {layer} must not know {target} ({name})")
         if reason := room_violation(path, name):
+            found.append(f"{where}: {reason} ({name})")
+        if reason := order_violation(path, name):
             found.append(f"{where}: {reason} ({name})")
         if not target and match.group(1) == '"' and name.split("/")[0] in ("engine", "tests", "tools"):
             found.append(f"{where}: {name} is not in a layer that {layer} may know")
@@ -173,6 +203,10 @@ def self_test():
         "engine/scene/b.hpp": '#include "editor/document/document.hpp"',
         "engine/world/b.hpp": "#include <QString>",
         "engine/amplify/a.cpp": "#include <mpi.h>",
+        "engine/render/memory/a.hpp": '#include "engine/render/frame/targets.hpp"',
+        "engine/render/passes/a.cpp": '#include "engine/render/renderer.hpp"',
+        "engine/render/types.hpp": '#include "engine/render/device/vulkan.hpp"',
+        "engine/render/attic/a.cpp": '#include "engine/render/types.hpp"',
     }
     for path, line in bad.items():
         assert violations(path, [line]), f"not noticed: {path}: {line}"
@@ -180,6 +214,9 @@ def self_test():
     assert not violations("engine/synthesis/a.cpp", ["#include <thread>"])
     for name in ("kit/packing.hpp", "model_type.hpp", "tree/plan.hpp"):
         assert not violations("engine/models/tree/a.cpp", [f'#include "engine/models/{name}"'])
+    for path, name in (("frame/a.cpp", "memory/memory.hpp"), ("frame/a.cpp", "types.hpp"),
+                       ("renderer_create.cpp", "passes/sky.hpp"), ("preset.cpp", "types.hpp")):
+        assert not violations(f"engine/render/{path}", [f'#include "engine/render/{name}"'])
     print("layers: the scanner notices forbidden arrows")
 
 

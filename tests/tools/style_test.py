@@ -720,7 +720,7 @@ MEASURES = [
     ("scene-headers", 115, 10, behind_scene, "project headers behind engine/scene/scene.hpp"),
     ("systems-sum", 140, 80, systems_sum, "parameters of all systems"),
     ("systems-max", 19, 7, systems_max, "most parameters of a system"),
-    ("pass-files", 28, 7, pass_files, "files of engine/render and shaders that name particles, build lists included"),
+    ("pass-files", 29, 7, pass_files, "files of engine/render and shaders that name particles, build lists included"),
     ("fragments", 7.2, 3.0, fragments, "% of subjects (a header with its source) under 40 lines"),
     ("lines", 112200, 109000, lines, "lines of C++ in ecs, engine, editor and game"),
     ("test-names", 154, 0, test_names, "names of tests that are no sentence in UpperCamel"),

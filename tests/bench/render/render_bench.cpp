@@ -13,8 +13,8 @@
 #include <ctime>
 #include <utility>
 
+#include "engine/render/device/software_tuning.hpp"
 #include "engine/render/particles.hpp"
-#include "engine/render/software_tuning.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
 
 namespace {

@@ -9,8 +9,8 @@
 #include <functional>
 
 #include "engine/image/image.hpp"
-#include "engine/render/overlay.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/render/text/overlay_layout.hpp"
 #include "tests/engine/app/fixture.hpp"
 #include "tests/engine/platform/virtual_display.hpp"
 

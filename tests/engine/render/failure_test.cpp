@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "engine/render/device/vulkan.hpp"
 #include "engine/render/renderer.hpp"
-#include "engine/render/vulkan.hpp"
 #include "tests/faults.hpp"
 
 namespace psygen::render {

@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "engine/render/preset.hpp"
-#include "engine/render/render_path.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
 #include "tests/engine/render/ways.hpp"
 

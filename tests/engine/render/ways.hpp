@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/render/preset.hpp"
-#include "engine/render/render_path.hpp"
 #include "engine/render/renderer.hpp"
 
 namespace psygen::render {
