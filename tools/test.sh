@@ -19,8 +19,8 @@ export LSAN_OPTIONS="suppressions=$PWD/tools/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$PWD/tools/tsan.supp:halt_on_error=1:second_deadlock_stack=1"
 export UBSAN_OPTIONS="print_stacktrace=1"
 
-# The presets leave out tests that run for an hour (label long), and under sanitizers some long ones
-# of code that others run too. What is not built with a sanitizer is in tests/CMakeLists.txt.
+# The presets leave out tests that run for an hour (label long), and sanitizers those with the labels
+# not_asan and not_tsan. tests/CMakeLists.txt lists the folders that a sanitizer does not build.
 cmake --preset "$preset" >/dev/null
 cmake --build --preset "$preset"
 ctest --preset "$preset" --parallel 2 "$@"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds README.md and docs/ together with the tree: links lead somewhere, nothing is left to be filled
 in, options of the command line are described, commands in the text have options, worlds, paths and
-scripts that exist, and the README's program is the tutorial test.
+scripts that exist, labels of tests name tests, and the README's program is the tutorial test.
 
 usage: docs_test.py SOURCE_DIR
 """
@@ -110,10 +110,22 @@ def wrong_commands(root):
     assert seen > 10, "the scan found too few commands to mean anything"
 
 
+def stray_labels(root):
+    """Filters of NOT_ASAN and NOT_TSAN (tests/CMakeLists.txt) that select no test of their folder."""
+    for cmake in sorted((root / "tests").rglob("CMakeLists.txt")):
+        text = re.sub(r"#[^\n]*", "", cmake.read_text(encoding="utf-8"))
+        names = [".".join(name) for source in cmake.parent.rglob("*.cpp")
+                 for name in re.findall(r"^TEST(?:_F|_P)?\((\w+),\s*(\w+)", source.read_text(encoding="utf-8"), re.M)]
+        for filters in re.findall(r"\bNOT_[AT]SAN\s+((?:[\w/*]+\.[\w/*]*\s+)+)", text):
+            for pattern in filters.split():
+                if not any(re.fullmatch(pattern.replace(".", r"\.").replace("*", ".*"), name) for name in names):
+                    yield f"{cmake.relative_to(root)}: {pattern} selects no test"
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
     found = [*dead_links(root), *gaps(root), *program_differences(root), *undescribed_options(root),
-             *wrong_commands(root)]
+             *wrong_commands(root), *stray_labels(root)]
     print("\n".join(found) or "docs: nothing missing")
     return 1 if found else 0
 
