@@ -1,9 +1,9 @@
 # psygen_add_frame_test(NAME FILE [PROGRAM target] [LABELS ...])
-# A CTest entry that runs the frame test FILE (docs/frame-tests.md) and fails where a budget is
-# missed. Without a device it is skipped. PROGRAM is a target of yours that ends in
-# frametest::frame_test_main(); without it `psygen test` flies without a game. Labels: frames, and
-# those given. Outputs, with pictures of the worst frames of a failed test, are in frame_tests/NAME of
-# the build folder. A test on the wall clock runs alone, because other tests would take its time.
+# Adds a CTest entry that runs the frame test FILE (docs/frame-tests.md) and fails if it misses a budget.
+# It is skipped without a device. PROGRAM is your target that calls frametest::frame_test_main(); without
+# it `psygen test` flies without a game. Labels: frames, and LABELS. Outputs are in frame_tests/NAME of the
+# build folder, with images of the worst frames of a failed test. Tests on the wall clock run alone, because
+# other tests would take their time.
 function(psygen_add_frame_test name file)
   cmake_parse_arguments(PARSE_ARGV 2 ARG "" "PROGRAM" "LABELS")
   cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})

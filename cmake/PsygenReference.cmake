@@ -1,6 +1,6 @@
-# The reference: pages of all public headers, made by Doxygen in reference/html of the build folder:
+# The reference: Doxygen makes pages of all public headers in reference/html of the build folder.
 #   cmake --build --preset release --target reference
-# Without Doxygen there is no such target.
+# The target exists only if Doxygen was found.
 find_package(Doxygen QUIET)
 if(NOT DOXYGEN_FOUND)
   return()

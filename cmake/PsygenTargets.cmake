@@ -1,17 +1,16 @@
 # Compiler settings, and the functions that every folder uses:
 #   psygen_library(NAME ...)                        the library of a folder: target, headers, component
 #   psygen_executable(NAME SOURCES ... PRIVATE ...) a program in bin/ of the build folder
-# All presets but dev compile with CMAKE_UNITY_BUILD, all files of a target at a time: that takes a
-# third of the time. Files whose private names clash with others have SKIP_UNITY_BUILD_INCLUSION.
-# All settings are of this project's own targets. Projects that use them, or that contain this one,
-# keep theirs.
+# All presets but dev use CMAKE_UNITY_BUILD: the files of a target are compiled together, in a third of the
+# time. SKIP_UNITY_BUILD_INCLUSION excludes files whose private names clash with others. All settings
+# apply to this project's targets only. Projects that use or contain this one keep theirs.
 include(GNUInstallDirs)
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a folder's packages are for whoever links the folder
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # targets that link a folder see its packages
 if(PROJECT_IS_TOP_LEVEL)
   set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
   if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
@@ -27,7 +26,7 @@ if(PSYGEN_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
 
-# What dlopen() needs: nothing where it is a part of the C library (glibc 2.34).
+# The library of dlopen(); none if it is part of the C library (glibc 2.34).
 include(CheckFunctionExists)
 check_function_exists(dlopen PSYGEN_DLOPEN_IN_LIBC)
 set(PSYGEN_DL "")
@@ -35,7 +34,7 @@ if(NOT PSYGEN_DLOPEN_IN_LIBC)
   set(PSYGEN_DL ${CMAKE_DL_LIBS})
 endif()
 
-# How this project compiles itself. None of it reaches projects that use its libraries.
+# Settings of this project's own compilation. None of them reaches projects that use its libraries.
 add_library(psygen_settings INTERFACE)
 add_library(psygen::settings ALIAS psygen_settings)
 # Same bits everywhere: no fused multiply-add unless the source asks for it (docs/models.md).
@@ -57,15 +56,15 @@ target_link_libraries(psygen_settings INTERFACE psygen_sanitizers)
 
 # psygen_library(NAME SOURCES ... HEADERS ... PUBLIC ... PRIVATE ... [PUBLIC_PACKAGES ...] [PACKAGES ...])
 # Target psygen_NAME with alias psygen::NAME. It is static, or shared with BUILD_SHARED_LIBS.
-#   HEADERS           the public headers, which are installed. They include only each other (a test
-#                     sees to that); all other headers are private.
+#   HEADERS           the public headers, which are installed. They include only each other, which a
+#                     test enforces; all other headers are private.
 #   PUBLIC, PRIVATE   the libraries that it may use. Folders are added in the order of their layers.
-#   PUBLIC_PACKAGES, PACKAGES   arguments of find_package(), one package an item ("fmt 9"): what
-#                     public headers need, and what only the sources need. They are looked for here
-#                     and by find_package(psygen COMPONENTS NAME). The latter are not looked for by
-#                     projects that use shared libraries.
+#   PUBLIC_PACKAGES, PACKAGES   arguments of find_package(), one package an item ("fmt 9"): packages of
+#                     public headers, and packages of the sources only. This function and
+#                     find_package(psygen COMPONENTS NAME) find them; projects that use shared libraries
+#                     do not need PACKAGES.
 # With PSYGEN_INSTALL it is installed as component psygen_NAME and exported as component NAME of the
-# package; nothing else has to list it.
+# package, without another list.
 function(psygen_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE;PUBLIC_PACKAGES;PACKAGES" ${ARGN})
   psygen_find_packages(${ARG_PUBLIC_PACKAGES} ${ARG_PACKAGES})
@@ -91,7 +90,7 @@ function(psygen_library name)
   endif()
 endfunction()
 
-# Looks for packages, each a string of arguments to find_package().
+# Finds packages; each item is a string of arguments to find_package().
 function(psygen_find_packages)
   foreach(package IN LISTS ARGN)
     separate_arguments(package)
@@ -99,8 +98,8 @@ function(psygen_find_packages)
   endforeach()
 endfunction()
 
-# Notes what cmake/PsygenInstall.cmake writes into the package: the components in the order of their
-# declaration, and for each the components that it needs, itself last, and its packages.
+# Records the data that cmake/PsygenInstall.cmake writes into the package: components in the order of their
+# declaration, and for each its packages and the components that it needs, itself last.
 function(psygen_note_component name libraries public_packages packages)
   set(needs "")
   foreach(library IN LISTS libraries)
@@ -121,13 +120,13 @@ function(psygen_note_component name libraries public_packages packages)
   set_property(TARGET psygen_settings APPEND PROPERTY PSYGEN_COMPONENTS ${name})
 endfunction()
 
-# Target NAME. PRIVATE lists the libraries that it uses.
+# Program NAME. PRIVATE lists the libraries that it uses.
 function(psygen_executable name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PRIVATE" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE psygen::settings psygen_warnings ${ARG_PRIVATE})
-  # The folders in which psygen::image finds its library. Old dynamic tags make them work inside the
-  # dlopen() of sanitizers too.
+  # psygen::image finds its library in these folders. Old dynamic tags make them work inside the dlopen()
+  # of sanitizers too.
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
     PSYGEN_OWN ON

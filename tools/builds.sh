@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds psygen with each compiler, static and shared, installs each build, and uses what was
-# installed from other projects. All must make the same meshes. Takes half an hour: it is not a part of
-# the complete check, which has g++ and static libraries.
+# Builds psygen with each compiler, static and shared, installs each build, and uses the installation from
+# other projects. All builds must make the same meshes. Takes half an hour, so it is not part of the
+# complete check, which builds static libraries with g++.
 #   tools/builds.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws what `psygen schedule --ranks` simulates; the same bytes on every machine:
+"""Draws the simulation of `psygen schedule --ranks`, with the same bytes on every machine:
   cluster.svg   efficiency and the busiest shared part over the number of ranks
   balance.svg   when ranks end whose blocks cost 1 to 100: a forest in the corner of a desert
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Pictures of all shipped worlds in all presets, side by side on a page, to see what a change of
-# rendering does to each of them. Takes some minutes; build release first.
+# Renders all shipped worlds in all presets, side by side on a page, to show the effect of a change of
+# rendering. Takes some minutes; build release first.
 #   tools/contact_sheet.sh [FOLDER [SIZE]]     default: out/contact_sheet, 480x270
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 out="${1:-out/contact_sheet}" size="${2:-480x270}"
 psygen="${PSYGEN:-build/release/bin/psygen}"
 presets=(low medium high ultra)
-# World, place, height, yaw and pitch of the view.
+# World, position, height, yaw and pitch of the camera.
 views=("silver_combe -1257,3978 24 110 -10"
        "lakes -90,-30 26 220 -7"
        "ember_pass -700,0 35 300 -7"
@@ -31,7 +31,7 @@ for view in "${views[@]}"; do
   for preset in "${presets[@]}"; do
     "$psygen" picture --world "$world" --at="$at" --height "$height" --yaw "$yaw" --pitch="$pitch" \
       --preset "$preset" --size "$size" --error 2 --out "$out/${world}_$preset.png" 2>/dev/null ||
-      { echo "no picture of $world in preset $preset" >&2; exit 1; }
+      { echo "no image of $world in preset $preset" >&2; exit 1; }
     echo "<td><img src=\"${world}_$preset.png\" alt=\"$world, $preset\">" >>"$page"
   done
 done

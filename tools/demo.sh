@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Flies for 27 seconds through the eight-terabyte world: in a window if there is a display, headless
-# otherwise. Sets up a fresh Debian 12 first (packages through apt). The window stays open until it
-# is closed; without a terminal it closes after 27 seconds.
+# Flies for 27 seconds through the eight-terabyte world, in a window, or headless without a display. Sets up
+# a fresh Debian 12 first (packages through apt). The window stays open until you close it; without a
+# terminal it closes after 27 seconds.
 #   tools/demo.sh [psygen fly options...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

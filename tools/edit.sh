@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Opens the editor with its most beautiful world, or with the given one. Sets up a fresh Debian 12
+# Opens the editor with a shipped world, or with the given one. Sets up a fresh Debian 12
 # first (packages through apt), and builds. Needs a display.
 #   tools/edit.sh [WORLD] [psygen-editor options...]
 set -euo pipefail

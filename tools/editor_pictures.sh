@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Takes the pictures of docs/editor.md on displays of their own: the window in the dark and the light
-# theme at 1280 × 800 and 1920 × 1080, and each panel dark in the small and light in the large window.
-# Some minutes; build release first.
+# Takes the screenshots of docs/editor.md on virtual displays: the window in the dark and the light theme at
+# 1280 × 800 and 1920 × 1080, and each panel, dark in the small window and light in the large one.
+# Takes some minutes; build release first.
 #   tools/editor_pictures.sh [FOLDER]     default: docs/images/editor
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

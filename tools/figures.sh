@@ -1,7 +1,7 @@
 #!/bin/sh
-# Measures the figures of docs/performance.md, "Targets". These are the flights, also
-# stopped midway, far from the origin and in a huge world; and the benchmarks of PLP and of the tick
-# without drawing. Needs a machine with nothing else running, and about twelve minutes.
+# Measures docs/performance.md, "Targets": the flights, also shortened, far from the origin and in a huge
+# world, and the benchmarks of PLP and of the tick without drawing. Needs an otherwise idle machine and
+# about twelve minutes.
 #
 # usage: tools/figures.sh [OUT]        (a folder, default out/figures; build preset release first)
 set -eu

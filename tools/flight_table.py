@@ -15,7 +15,7 @@ import math
 import pathlib
 import sys
 
-# heading -> where it is in a summary, how it is written, in units of how many
+# heading -> field of the summary, its format, and its divisor
 COLUMNS = {
     "p50 ms": (("frame_ms", "p50"), "{:.1f}", 1),
     "p99 ms": (("frame_ms", "p99"), "{:.1f}", 1),
@@ -41,7 +41,7 @@ def cell(summary, place, form, unit):
 
 
 def percentile(values, share):
-    """As those of summary.json (engine/telemetry/statistics.hpp): between the two nearest values."""
+    """Percentiles as in summary.json (engine/telemetry/statistics.hpp): between the two nearest values."""
     values = sorted(values)
     at = share * (len(values) - 1)
     below = math.floor(at)
@@ -50,7 +50,7 @@ def percentile(values, share):
 
 
 def of_frames(file, warm_up_s):
-    """p99 of what no summary sums up, of the frames after the warm-up that are not apart."""
+    """p99 of a sum that no summary has, over the frames after the warm-up that statistics include."""
     if not file.exists():
         return ["-"] * len(OF_FRAMES)
     with open(file, encoding="utf-8", newline="") as lines:

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Formats all C++ sources with clang-format, also those that are not added to git yet. With --check it
-# only lists unformatted files.
+# Formats all C++ sources with clang-format, untracked ones too. With --check it only lists unformatted
+# files.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mode=(-i)

@@ -2,7 +2,7 @@
 # Fuzzes all readers of user files with libFuzzer, under the address and undefined-behaviour
 # sanitizers. Starts from the shipped worlds and paths. Needs clang (tools/setup.sh --clang).
 #   tools/fuzz.sh [SECONDS [SEED]]     default: 60 seconds, another seed each time
-# Prints the number of inputs at the end. Inputs that fail are stored in build/fuzz/failures.
+# Prints the number of inputs at the end. Failing inputs are stored in build/fuzz/failures.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
-# How far pictures of the walk at sixty frames a second are from those at an error of half a pixel
-# with everything there: 1 - SSIM, and the share of the pixels that an eye tells apart, of 27 pictures.
-# Build release first; takes some minutes.
+# Compares 27 frames of the walk at 60 frames/s with complete frames at an error of half a pixel: 1 - SSIM,
+# and the fraction of visibly different pixels. Takes some minutes; build release first.
 #   tools/picture_difference.sh [PRESET [WORLD PATH]]     default: low paper walk27
-# CLOCK=virtual in the environment: sixty frames by the virtual clock, the same on every machine.
+# CLOCK=virtual in the environment: 60 frames/s by the virtual clock, identical on every machine.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset="${1:-low}" world="${2:-paper}" path="${3:-walk27}"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Plays Cairns, the game of psygen (docs/game.md). Sets up a fresh Debian 12 first (packages through
-# apt), and builds. Needs a display, unless it plays by itself without a window.
+# apt), and builds. Needs a display, except for --autoplay --headless.
 #   tools/play.sh [psygen-game options...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

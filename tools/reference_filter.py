@@ -15,7 +15,7 @@ TRAILING = re.compile(r"^(\s*\S.*?[;,{})\]\w]\s*)//(?!/)\s?(.*)$")
 
 
 def converted(path, lines):
-    """The lines with Doxygen's comments; as many as before."""
+    """Returns as many lines, with Doxygen's comments."""
     out = []
     on_top, behind = True, None  # the column of the comment behind the last declaration
     for line in lines:

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Repeats the evaluation of "Parallel Lazy Amplification" (Figures 8 and 9, the size of the world, the
-# three paradigms) and writes a page with plots that says what was measured on which machine.
-# Needs a machine with nothing else running, two processors, and about eight minutes.
+# three paradigms), and writes a page with plots, results and the machine. Needs an otherwise idle machine
+# with two processors, and about eight minutes.
 #   tools/reproduce_paper.sh [OUT]           a folder, default out/paper; build preset release first
-#   tools/reproduce_paper.sh --quick [OUT]   three seconds on the virtual clock: only whether it works
+#   tools/reproduce_paper.sh --quick [OUT]   three seconds on the virtual clock, to test the script
 # PSYGEN names another executable.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -29,12 +29,12 @@ rm -rf "$out"
 mkdir -p "$out"
 cp /proc/loadavg "$out/load_before"
 
-# Processors that this shell may use. With one there is nothing to compare, but the page says so.
+# Processors that this shell may use. With one there is nothing to compare, and the page states that.
 cpus="$(taskset -pc $$ | sed 's/.*: *//')"
 first="${cpus%%[-,]*}"
 second="${cpus##*[-,]}"
 
-# run FOLDER COMMAND...: notes the command line; a failure is noted, too, and shown on the page.
+# run FOLDER COMMAND...: records the command line and a failure, for the page.
 run() {
   local folder="$out/$1"
   shift
@@ -53,7 +53,7 @@ fly() { # FOLDER PROCESSORS THREADS options...: THREADS are those of a software 
 for priority in lowest normal; do
   fly "one_core_$priority" "$first" "" "${far[@]}" --modeler-priority "$priority"
   fly "two_cores_$priority" "$first,$second" "" "${far[@]}" --modeler-priority "$priority"
-  # Set up for two processors, and then there is only one.
+  # Checked for two processors before, but only one is available.
   fly "one_of_two_$priority" "$first" 2 "${far[@]}" --modeler-priority "$priority"
 done
 for paradigm in amplify lazy pla; do

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Writes paper.html from what tools/reproduce_paper.sh measured: plots, tables, and sentences that say
-what was measured on which machine.
+"""Writes paper.html from the results of tools/reproduce_paper.sh: plots, tables, text, and the machine.
 
 usage: reproduction_page.py FOLDER QUICK     (QUICK: 1 on the virtual clock)
 
@@ -20,7 +19,7 @@ CONFIGURATIONS = [("one_core", "one core"), ("two_cores", "two cores"),
                   ("one_of_two", "two cores, one of them off")]
 PARADIGMS = [("paradigm_amplify", "data amplification"), ("paradigm_lazy", "lazy evaluation"),
              ("paradigm_pla", "parallel lazy amplification")]
-# What the paper says of its world, and where it is in a summary.
+# Facts of the paper about its world, and their fields of a summary.
 WORLD = [("blocks", "512 × 512", lambda w: "{} × {}".format(*w["blocks"])),
          ("models on a block", "23 trees, 40 rocks", lambda w: f"{w['block']['models']:.0f}"),
          ("triangles of a block", "about 125,000", lambda w: f"{w['block']['triangles']:,.0f}"),
@@ -63,7 +62,7 @@ class Run:
             sums[2] = max(sums[2], float(row["missing_pixels_percent"]), float(row["too_coarse_percent"]))
 
     def fps(self, index):
-        """Of the frames that begin in a bin; a frame longer than a bin goes on into the next."""
+        """Values of the frames that begin in a bin. A frame longer than a bin continues in the next."""
         while index >= 0 and index not in self.bins:
             index -= 1
         return 1000 * self.bins[index][0] / self.bins[index][1] if index >= 0 else None
@@ -85,7 +84,7 @@ class Run:
 
 
 def plot(title, unit, note, series, kind="line", small=False, top=0):
-    """A figure as the reports' script draws it: engine/telemetry/report_plot.hpp."""
+    """A plot for the script of reports: engine/telemetry/report_plot.hpp."""
     data = {"title": title, "unit": unit, "kind": kind, "top": top, "zooms": True, "small": small,
             "levels": [], "series": [{"name": name, "colour": colour, "v": values}
                                      for name, colour, values in series]}
@@ -107,17 +106,17 @@ def rounded(values):
 
 
 def figure_8(runs, bins, quick):
-    out = ["<h1 class=\"part\">Figure 8: frame rate while models are made</h1>\n"]
-    out.append("<p>The paper flew for 27 seconds and measured the frame rate on one core, on two, and on two of "
-               "which one was off. With one core it fell from about 25 frames/s to less than 15 while models "
-               "were made; with two it did not. Here modelers have the lowest priority of the operating "
-               "system (ours); the second plot of each pair gives them the normal one, for contrast.</p>\n")
+    out = ["<h1 class=\"part\">Figure 8: frame rate during synthesis</h1>\n"]
+    out.append("<p>The paper flew for 27 seconds and measured the frame rate on one core, on two cores, and on two with "
+               "one of them off. With one core it fell from about 25 frames/s to less than 15 during synthesis; with "
+               "two it did not. psygen runs modelers at the lowest priority of the operating system (ours). The "
+               "second plot of each pair shows them at normal priority, for contrast.</p>\n")
     colours = {"one_core": 6, "two_cores": 3, "one_of_two": 4}
     for priority, words in (("lowest", "modelers at the lowest priority (ours)"),
                             ("normal", "modelers at normal priority")):
         for get, title, unit, kind in (
                 (Run.fps, "Frame rate, " + words, "frames/s", "line"),
-                (Run.missing, "Picture missing or too coarse, " + words, "% of the picture", "peaks")):
+                (Run.missing, "Meshes missing or too coarse, " + words, "% of the pixels", "peaks")):
             series = [(name, colours[key], rounded(get(runs[f"{key}_{priority}"], i) for i in range(bins)))
                       for key, name in CONFIGURATIONS if not runs[f"{key}_{priority}"].failed]
             out.append(plot(title, unit, f"In windows of {BIN_S} s.", series, kind, kind == "peaks"))
@@ -146,10 +145,10 @@ def figure_8(runs, bins, quick):
 
 
 def figure_9(folder):
-    out = ["<h1 class=\"part\">Figure 9: what a model costs</h1>\n<p>The time of one core for one model, over each "
-           "integer that the paper's formulas depend on, and the formula fitted to it.</p>\n"]
+    out = ["<h1 class=\"part\">Figure 9: the cost of a model</h1>\n<p>Time of one core for one model, over each "
+           "integer of the paper's formulas, and the fitted formula.</p>\n"]
     if (folder / "curves/failed").exists():
-        return out[0] + "<p>It was not measured: psygen calibrate failed.</p>\n"
+        return out[0] + "<p>There is no result: psygen calibrate failed.</p>\n"
     page = (folder / "curves/calibration.html").read_text(encoding="utf-8")
     names = ("terrain: time over size", "rock: time over subdivisions", "tree: time over iterations",
              "tree: time over branches")
@@ -169,7 +168,7 @@ def world_table(runs, folder):
     world = next((run.summary["world"] for run in runs.values() if run.summary), None)
     out = ["<h1 class=\"part\">The size of the world</h1>\n"]
     if world is None:
-        return out[0] + "<p>No flight came to its end.</p>\n"
+        return out[0] + "<p>No flight was completed.</p>\n"
     out.append(table(["", "paper", "here"], [[name, paper, get(world)] for name, paper, get in WORLD]))
     if not (folder / "world/failed").exists():
         made = json.loads((folder / "world/output.json").read_text())
@@ -182,14 +181,14 @@ def world_table(runs, folder):
 
 def paradigms(runs, bins):
     out = ["<h1 class=\"part\">The three paradigms</h1>\n<p>The same flight, with two cores and a shorter view. "
-           "<b>Data amplification</b> makes everything around the first pose before the first frame, and "
-           "nothing after it. <b>Lazy evaluation</b> makes what each frame shows and keeps nothing. "
-           "<b>Parallel lazy amplification</b> makes ahead what will be seen soon, beside the frames, and "
+           "<b>Data amplification</b> synthesises all meshes around the first pose before the first frame, and "
+           "none later. <b>Lazy evaluation</b> synthesises the meshes of each frame and keeps none. "
+           "<b>Parallel lazy amplification</b> synthesises in advance the meshes that will soon be visible, beside the frames, and "
            "keeps it.</p>\n"]
     flown = [(key, name) for key, name in PARADIGMS if not runs[key].failed]
     colours = {"paradigm_amplify": 5, "paradigm_lazy": 6, "paradigm_pla": 3}
     for get, title, unit, kind in ((Run.fps, "Frame rate of the three paradigms", "frames/s", "line"),
-                                   (Run.missing, "Picture missing or too coarse", "% of the picture", "peaks")):
+                                   (Run.missing, "Meshes missing or too coarse", "% of the pixels", "peaks")):
         out.append(plot(title, unit, f"In windows of {BIN_S} s.",
                         [(name, colours[key], rounded(get(runs[key], i) for i in range(bins)))
                          for key, name in flown], kind, kind == "peaks"))
@@ -211,10 +210,10 @@ def paradigms(runs, bins):
                       number(None if drawn is None else 100 * (1 - drawn)),
                       number(run.figure("cache", "regenerations"), "{:,}")])
     out.append(table(["", "frame p50, ms", "p99, ms", "frames with a hole", "too coarse, s", "geometry, MiB",
-                      "memory, MiB", "models made a frame", "never drawn, % of triangles", "made again"], lines))
-    out.append("<p>Work is wasted in two ways: triangles that are made and never drawn, and models that are made "
-               "again. Lazy evaluation makes nearly all it shows again in each frame, which is the column "
-               "of models made a frame.</p>\n")
+                      "memory, MiB", "models made per frame", "never drawn, % of triangles", "made again"], lines))
+    out.append("<p>Work is wasted in two ways: triangles that are never drawn, and models that are made again. Lazy "
+               "evaluation makes nearly all models of a frame again in each frame (column "
+               "&ldquo;models made per frame&rdquo;).</p>\n")
     return "".join(out)
 
 
@@ -230,12 +229,12 @@ def machine(folder, runs, quick):
     out = f"<p class=\"lead\">{text(words)}</p>\n"
     if quick:
         out += ("<section class=\"verdict fair\"><b>A quick run on the virtual clock</b><p>Its frame times are "
-                "prices, the same for any number of cores. It only shows that everything works.</p></section>\n")
+                "fixed costs, the same for any number of cores. It only shows that the script works.</p></section>\n")
     elif float(before) > 0.3:
         out += ("<section class=\"verdict bad\"><b>The machine was not quiet</b><p>Other programs used it, so "
-                "times are longer than they should be, and differ by chance.</p></section>\n")
+                "times are too long, and differ by chance.</p></section>\n")
     if (os.cpu_count() or 1) < 2:
-        out += "<p>There is one processor only: two cores could not be measured.</p>\n"
+        out += "<p>There is only one processor, so two cores could not be measured.</p>\n"
     return out
 
 

@@ -16,7 +16,7 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind gdb
   xvfb openbox xdotool x11-utils x11-xkb-utils chromium
 )
-# For the test that lets others read tilesets. A newer Node.js of one's own will do.
+# For the test in which other programs read tilesets. A newer Node.js from elsewhere works too.
 command -v npm >/dev/null || packages+=(nodejs npm)
 [ "${1:-}" = "--ci" ] && packages+=(clang-format clang-tidy)
 [ "${1:-}" = "--clang" ] && packages+=(clang libclang-rt-dev)
@@ -29,7 +29,7 @@ done
 [ ${#missing[@]} -eq 0 ] && exit 0
 
 if ! command -v apt-get >/dev/null; then
-  echo "setup: this is not Debian; please install the counterparts of: ${missing[*]}" >&2
+  echo "setup: this is not Debian; please install the equivalents of: ${missing[*]}" >&2
   exit 1
 fi
 sudo=""

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs the tests of a preset where they get little of the machine: beside four busy processes, on
-# one core, and at the lowest priority beside one busy process. No test may fail; one that does
-# depends on what the machine has left. Takes hours: it is not a part of the complete check.
+# Runs the tests of a preset on a starved machine: beside four busy processes, on one core, and at the lowest
+# priority beside one busy process. No test may fail: a failing test depends on free processor time.
+# Takes hours, so it is not part of the complete check.
 #   tools/starve.sh [PRESET [RUNS]]     default: release, 3 runs of each
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

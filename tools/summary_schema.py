@@ -38,7 +38,7 @@ def value_of(kind, nullable, unit, limits, meaning):
 
 
 def add(schema, names, value):
-    """Puts a field into the objects that its name goes through. NAME stands for any name."""
+    """Adds a field to the nested objects of its name. NAME stands for any name."""
     if not names:
         schema.update(value)
         return
@@ -54,7 +54,7 @@ def add(schema, names, value):
 
 
 def text_of(schema, indent=""):
-    """JSON with a field a line."""
+    """JSON with one field on each line."""
     if not isinstance(schema, dict) or not {"properties", "additionalProperties"} & schema.keys():
         return json.dumps(schema, ensure_ascii=False)
     deeper = indent + "  "

@@ -1,14 +1,13 @@
 #!/usr/bin/env bash
-# How much of the picture changes and changes back from one frame to the next while models and levels
-# of detail come and go: a path at 5 and at 50 m/s, 60 frames a second of the virtual clock, at an
-# error of 4 pixels, with fades and without, at that which --target-fps 60 gives, and at half a pixel
-# with everything there and nothing fading (reference). Prints for each the mean and the 95th
-# percentile of the share of the picture in percent, and how much more that is than the reference's
-# mean. Build release first; takes ten minutes and 200 MB.
+# Measures flicker: pixels that change and change back from one frame to the next while models and LODs
+# change. Flies a path at 5 and at 50 m/s with 60 frames/s of the virtual clock: at an error of 4 pixels
+# with and without fades, with --target-fps 60, and at half a pixel with every mesh and no fades
+# (reference). Prints the mean and the 95th percentile of the fraction of pixels in percent, and the
+# difference of the mean from the reference. Takes ten minutes and 200 MB; build release first.
 #   tools/transitions.sh [PRESET [WORLD PATH [SECONDS]]]   default: low paper walk27 3
-# PATH is a name in game/paths and flown at 50 m/s; at 5 m/s it takes ten times as long. The first second
-# is left out. In the environment: OUT, a folder; PSYGEN, the program; SPEEDS, "5 50"; KEEP=1, pictures
-# stay, with those of what flickers in red (1.5 GB).
+# PATH is a name in game/paths, flown at 50 m/s; at 5 m/s it takes ten times as long. The first second does
+# not count. In the environment: OUT, a folder; PSYGEN, the program; SPEEDS, "5 50"; KEEP=1 keeps the
+# frames, and images with flickering pixels in red (1.5 GB).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset="${1:-low}" world="${2:-paper}" path="${3:-walk27}" seconds="${4:-3}"

@@ -9,7 +9,7 @@ import os
 import subprocess
 import tempfile
 
-# What scripts below stand on. Events are those of a mouse.
+# Helpers for the scripts below. Events are those of a mouse.
 TOOLS = """
 const all = (what, from = document) => [...from.querySelectorAll(what)];
 const point = (plot, type, share) => {
@@ -33,7 +33,7 @@ class Browser:
     def __init__(self):
         self.profile = tempfile.TemporaryDirectory()
         (reads, to_browser), (from_browser, writes) = os.pipe(), os.pipe()
-        # It reads from file 3 and writes to file 4, which may be among these.
+        # Chromium reads from file 3 and writes to file 4, which may be among these.
         low, high = (reads, writes), [fcntl.fcntl(fd, fcntl.F_DUPFD, 10) for fd in (reads, writes)]
         self.process = subprocess.Popen(
             ["bash", "-c", f'exec "$@" 3<&{high[0]} 4>&{high[1]}',
@@ -61,7 +61,7 @@ class Browser:
         return json.loads(message[:-1])
 
     def call(self, method, session=None, **params):
-        """The result of a method. Events that arrive before it are kept."""
+        """Returns the result of a method. Keeps events that arrive before it."""
         self.calls += 1
         message = {"id": self.calls, "method": method, "params": params}
         if session:

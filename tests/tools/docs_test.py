@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Holds README.md and docs/ together with the tree: links lead somewhere, nothing is left to be filled
-in, options of the command line are described, commands in the text have options, worlds, paths and
+"""Compares README.md and docs/ with the tree: links have targets, no gap is left, options of the command line are described, commands in the text have options, worlds, paths and
 scripts that exist, labels of tests name tests, and the README's program is the tutorial test.
 
 usage: docs_test.py SOURCE_DIR
@@ -16,7 +15,7 @@ def pages(root):
 
 
 def anchors(page):
-    """What links within a page may name: its headings as GitHub writes them."""
+    """The anchors of a page: its headings as GitHub writes them."""
     text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
     headings = re.findall(r"^#+ (.*)$", text, re.M)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
@@ -38,10 +37,10 @@ def dead_links(root):
 def gaps(root):
     for page in pages(root):
         for gap in re.findall(r"@[A-Z_]+@|TODO|TBD", page.read_text(encoding="utf-8")):
-            yield f"{page.name}: {gap} is left to be filled in"
+            yield f"{page.name}: {gap} is left"
 
 
-# page -> the files of which its C++ is made
+# page -> the files that contain its C++
 PROGRAMS = {
     "README.md": ["tests/engine/app/tutorial_test.cpp"],
     "docs/add-a-model.md": ["tests/engine/app/fence.hpp", "tests/engine/app/add_a_model_test.cpp"],
@@ -65,7 +64,7 @@ def undescribed_options(root):
     described = (root / "docs/cli.md").read_text(encoding="utf-8")
     sections = dict(re.findall(r"^## psygen (\w+)\n(.*?)(?=^## |\Z)", described, re.S | re.M))
     sources = sorted((root / "engine/cli").glob("*_command.cpp"))
-    assert len(sources) > 2, "the scan found too few commands to mean anything"
+    assert len(sources) > 2, "the scan found too few commands"
     for source in sources:
         command = source.name.removesuffix("_command.cpp")
         options = re.findall(r'"!?(--[a-z-]+)"', source.read_text(encoding="utf-8"))
@@ -84,7 +83,7 @@ def options_of(root, command):
 
 
 def commands(text):
-    """The command lines in blocks of code for a shell, without comments."""
+    """Command lines in shell blocks, without comments."""
     for block in re.findall(r"```sh\n(.*?)```", text, re.S):
         for line in block.replace("\\\n", " ").splitlines():
             yield re.sub(r"\s#.*", "", line)
@@ -107,7 +106,7 @@ def wrong_commands(root):
             for script in re.findall(r"(?<!\S)(?:tools|\.ci)/[\w.]+", line):
                 if not (root / script).exists():
                     yield f"{page.name}: there is no {script}"
-    assert seen > 10, "the scan found too few commands to mean anything"
+    assert seen > 10, "the scan found too few commands"
 
 
 def stray_labels(root):

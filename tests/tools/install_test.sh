@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs the build into an empty folder, builds and runs other projects against it (tests/tools/consumer),
-# and runs what was installed: from other folders, after the installation has been moved. Nothing of
-# the engine is compiled again.
+# Installs the build into an empty folder, builds and runs other projects against it (tests/tools/consumer), and
+# runs the installed programs from other folders after moving the installation. Compiles nothing of the
+# engine.
 #   install_test.sh BUILD_DIR SOURCE_DIR
 set -euo pipefail
 build="$1" source="$2"
@@ -48,7 +48,7 @@ height="$(cd / && "$folder/build/consumer" "$folder/picture.png")"
 [ -s "$folder/picture.png" ]
 echo "ground height $height"
 [[ "$height" =~ ^[0-9]+\.[0-9]{6}$ ]]
-# What both load later lies in the installed folder.
+# Both find the modules that they load later in the installed folder.
 for program in "$folder/build/consumer" "$folder/psygen/bin/psygen"; do
   readelf -d "$program" | grep -E '(RPATH|RUNPATH).*(ORIGIN/\.\.|psygen)/lib[^]]*/psygen' >/dev/null
 done

@@ -123,7 +123,7 @@ def folder_of(path):
 
 
 def room_violation(path, name):
-    """Why a file inside a layer must not include another header of that layer, or None."""
+    """The reason why a file must not include another header of its layer, or None."""
     room, target = (str(pathlib.PurePosixPath(p).parent) for p in (path, name))
     if room == target or room not in INSIDE:
         return None
@@ -138,7 +138,7 @@ def room_violation(path, name):
 
 
 def order_violation(path, name):
-    """Why a file of a layer with ordered rooms must not include another header of it, or None."""
+    """The same for a layer with ordered rooms."""
     layer = folder_of(path)
     if layer not in ORDERED_ROOMS or folder_of(name) != layer:
         return None
@@ -158,7 +158,7 @@ def order_violation(path, name):
 
 
 def violations(path, lines):
-    """Sentences about the forbidden includes of one file."""
+    """The forbidden includes of one file, as messages."""
     layer = folder_of(path)
     found = []
     for number, line in enumerate(lines, 1):
@@ -232,7 +232,7 @@ def main():
                 found += violations(file.relative_to(root).as_posix(),
                                     file.read_text(encoding="utf-8").splitlines())
     print("\n".join(found) or f"layers: {scanned} files, no forbidden arrow")
-    assert scanned > 20, "the scan found too few files to mean anything"
+    assert scanned > 20, "the scan found too few files"
     return 1 if found else 0
 
 

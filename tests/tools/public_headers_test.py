@@ -32,7 +32,7 @@ def listed(folder, cmake):
 
 
 def violations(public, text_of):
-    """Sentences about the public headers; text_of gives a header's text, None if there is none."""
+    """Violations of the public headers; text_of returns a header's text, or None."""
     for header in sorted(public):
         text = text_of(header)
         if text is None:
@@ -47,7 +47,7 @@ def violations(public, text_of):
 
 
 def beyond_the_package(public, sources):
-    """Sentences about sources, by name, of a program that has the installed package alone."""
+    """Violations in the sources of a program that uses only the installed package."""
     for name, text in sorted(sources.items()):
         for header in INCLUDE.findall(text):
             if header.startswith(("engine/", "ecs/")) and header not in public:
@@ -76,7 +76,7 @@ def main():
     public = set()
     for file in [root / "ecs/CMakeLists.txt", *sorted(root.glob("engine/*/CMakeLists.txt"))]:
         public.update(listed(file.parent.relative_to(root).as_posix(), file.read_text(encoding="utf-8")))
-    assert len(public) > 50, "the scan found too few headers to mean anything"
+    assert len(public) > 50, "the scan found too few headers"
     texts = {name: (root / name).read_text(encoding="utf-8") for name in public if (root / name).exists()}
     game = {file.relative_to(root).as_posix(): file.read_text(encoding="utf-8") for file in root.glob("game/**/*.?pp")}
     found = [*violations(public, texts.get), *beyond_the_package(public, game)]

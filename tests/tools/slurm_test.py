@@ -62,7 +62,7 @@ PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch"]
 
 
 def program(name):
-    """Where a program is; daemons are outside of the path of most users."""
+    """The path of a program; daemons are outside of the PATH of most users."""
     return shutil.which(name) or shutil.which(name, path="/usr/sbin:/sbin")
 
 
@@ -99,7 +99,7 @@ class Slurm:
         subprocess.run(self.munged, check=True, capture_output=True)  # returns when the daemon listens
 
     def start(self, name, ready, *options):
-        """Starts a daemon, and reads what it says until it is ready."""
+        """Starts a daemon, and reads its output until it is ready."""
         daemon = subprocess.Popen([program(name), "-D", "-v", "-f", self.folder / "slurm.conf", *options], text=True,
                                   env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         self.daemons.append(daemon)
@@ -110,7 +110,7 @@ class Slurm:
                 break
         else:
             raise AssertionError(f"{name} ended at its start:\n{''.join(said[-20:])}")
-        # Goes on reading, so that the daemon never waits for us.
+        # Keeps reading, so that the daemon never blocks.
         subprocess.Popen(["cat"], stdin=daemon.stderr, stdout=subprocess.DEVNULL)
 
     def __enter__(self):
@@ -137,7 +137,7 @@ class Slurm:
         self.stop()
 
     def run(self, *arguments, output):
-        """Submits a script and waits until it has ended; what it wrote."""
+        """Submits a script, waits for its end, and returns its output."""
         job = subprocess.run([program("sbatch"), "--wait", f"--output={self.folder / output}", f"--chdir={self.folder}", *arguments],
                              env=self.environment, capture_output=True, text=True)
         said = "".join(each.read_text(encoding="utf-8") for each in sorted(self.folder.glob(output.replace("%a", "*"))))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds tools/flight_table.py and tools/lap_table.py to figures that are known.
+"""Tests tools/flight_table.py and tools/lap_table.py on known numbers.
 
 usage: tables_test.py SOURCE_DIR
 """
@@ -24,7 +24,7 @@ SUMMARY = {
 
 
 def write_frames(file, frames):
-    """`frames` are time, length in ms, of which every system takes a tenth, and what sets one apart."""
+    """`frames` are time, length in ms, of which every system takes a tenth, and the reason of an exclusion."""
     with open(file, "w", encoding="utf-8", newline="") as lines:
         rows = csv.writer(lines)
         rows.writerow(["time_s", "frame_ms", "main_cpu_ms", "apart", "triangles", "holes", "models_synthesised",
@@ -43,7 +43,7 @@ def main():
         flight = pathlib.Path(folder) / "flight"
         flight.mkdir()
         (flight / "summary.json").write_text(json.dumps(SUMMARY), encoding="utf-8")
-        # The warm-up's 50 ms and the picture's are in no figure; 2 of 100 frames take 20 ms, the others 10.
+        # Statistics exclude the 50 ms of the warm-up and of the image; 2 of 100 frames take 20 ms, the others 10.
         write_frames(flight / "frames.csv", [(0.5, 50), (1.5, 500, "picture"), *((1 + i / 100, 10 if i < 98 else 20) for i in range(100))])
         lines = output_of(tools / "flight_table.py", flight / "summary.json", flight.parent / "none/summary.json")
         heading, row, missing = lines.splitlines()

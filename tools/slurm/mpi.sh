@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One region by all tasks of a job, over MPI.
+# Makes one region with all tasks of a job, over MPI.
 #   sbatch --ntasks=8 --cpus-per-task=4 tools/slurm/mpi.sh OUT [options of psygen amplify]
 #SBATCH --job-name=psygen
 #SBATCH --requeue

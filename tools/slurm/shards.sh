@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# One shard of a region for each task of a job array; then tools/slurm/merge.sh.
+# Makes one shard of a region in each task of a job array; run tools/slurm/merge.sh afterwards.
 #   sbatch --array=1-N tools/slurm/shards.sh N OUT [options of psygen amplify: --world, --region, --format …]
-# Every shard may be killed, requeued and submitted again (--array=3): it goes on where it was.
+# Every shard may be killed, requeued and submitted again (--array=3): it resumes.
 #SBATCH --job-name=psygen-shards
 #SBATCH --ntasks=1
 #SBATCH --requeue
