@@ -34,7 +34,7 @@ class TemporaryFolder {
   // The path of a file in the folder, and of the folder itself.
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   const std::filesystem::path& path() const { return path_; }
-  // How many files and folders lie directly in it.
+  // Number of files and folders directly in it.
   std::size_t file_count() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
   }

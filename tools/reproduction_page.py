@@ -184,7 +184,7 @@ def paradigms(runs, bins):
            "<b>Data amplification</b> synthesises all meshes around the first pose before the first frame, and "
            "none later. <b>Lazy evaluation</b> synthesises the meshes of each frame and keeps none. "
            "<b>Parallel lazy amplification</b> synthesises in advance the meshes that will soon be visible, beside the frames, and "
-           "keeps it.</p>\n"]
+           "keeps them.</p>\n"]
     flown = [(key, name) for key, name in PARADIGMS if not runs[key].failed]
     colours = {"paradigm_amplify": 5, "paradigm_lazy": 6, "paradigm_pla": 3}
     for get, title, unit, kind in ((Run.fps, "Frame rate of the three paradigms", "frames/s", "line"),

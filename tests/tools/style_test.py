@@ -123,7 +123,7 @@ def prose_of_script(text):
 
 def prose_of_markdown(text):
     """Paragraphs, items, headings and cells of tables, without blocks of code."""
-    text = re.sub(r"^```.*?^```", lambda m: "\n" * m.group(0).count("\n"), text, flags=re.S | re.M)
+    text = re.sub(r"^```.*?^```", lambda m: re.sub(r"[^\n]", " ", m.group(0)), text, flags=re.S | re.M)
     block, start, at = [], 0, 0
     for line in text.split("\n") + [""]:
         cell_line = line.lstrip().startswith("|")
@@ -709,7 +709,7 @@ def names_left(tree):
 
 # figure, limit that holds today (lower it when a figure falls), target, how it is counted, its rule
 MEASURES = [
-    ("noun-clauses", 3.8, 0.2, per_thousand, "sentences that open with a noun clause, per 1,000 words of comments, docs and messages"),
+    ("noun-clauses", 1.5, 0.2, per_thousand, "sentences that open with a noun clause, per 1,000 words of comments, docs and messages"),
     ("uncommented", 4.9, 1.0, comments_percent, "% of groups of public declarations, in all headers, without a comment"),
     ("long-sentences", 5.0, 5.0, long_percent, "% of sentences over 25 words in docs/architecture.md"),
     ("parameters", 30, 0, count(long_parameter_lists), "functions with more than 7 parameters, outside kernels"),
