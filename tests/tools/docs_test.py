@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Compares README.md and docs/ with the tree: links have targets, no gap is left, options of the command line are described, commands in the text have options, worlds, paths and
-scripts that exist, labels of tests name tests, and the README's program is the tutorial test.
+"""Compares README.md and docs/ with the tree. Links have targets, and no gap is left. Options of the command line are
+described; commands in the text have options, worlds, paths and scripts that exist. Labels of tests name tests.
+Versions agree. The README's program is the tutorial test.
 
 usage: docs_test.py SOURCE_DIR
 """
@@ -121,10 +122,20 @@ def stray_labels(root):
                     yield f"{cmake.relative_to(root)}: {pattern} selects no test"
 
 
+def other_versions(root):
+    """Places that name another version than project() of CMakeLists.txt."""
+    version = re.search(r"project\(psygen VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+    for page, pattern in (("CITATION.cff", r"^version: ([\d.]+)"), ("CHANGELOG.md", r"^## ([\d.]+)")):
+        found = re.search(pattern, (root / page).read_text(encoding="utf-8"), re.M)
+        if not found or found[1] != version:
+            yield f"{page} names version {found and found[1]} instead of {version}"
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
     found = [*dead_links(root), *gaps(root), *program_differences(root), *undescribed_options(root),
-             *wrong_commands(root), *stray_labels(root)]
+             *wrong_commands(root), *stray_labels(root),
+             *other_versions(root)]
     print("\n".join(found) or "docs: nothing missing")
     return 1 if found else 0
 
