@@ -48,7 +48,7 @@ struct EditLayer;  // edits.hpp
 // of the world that they show.
 class Parameters {
  public:
-  static constexpr std::size_t kMaxCount = 16;
+  static constexpr std::size_t kMaxCount = 24;
   // Value `i` of the schema, `i` < kMaxCount. The caller knows the type of value `i` from the
   // schema.
   std::int64_t integer(std::size_t i) const { return std::bit_cast<std::int64_t>(bits_[i]); }
@@ -64,11 +64,16 @@ class Parameters {
   const EditLayer* edits() const { return edits_; }
   std::uint64_t edits_hash() const { return edits_hash_; }
   // Hash of the bits of all values, and of the edits if there are any. Equal parameters have equal
-  // hashes.
+  // hashes. Values from kFirstOptional on count only if they are not 0, so a schema may grow there
+  // by parameters with the default 0, and old worlds, edits and saves keep their hashes.
+  static constexpr std::size_t kFirstOptional = 16;
   std::uint64_t hash() const {
     std::uint64_t h = 0;
-    for (const std::uint64_t b : bits_)
-      h = core::combine(h, b);
+    for (std::size_t i = 0; i < kFirstOptional; ++i)
+      h = core::combine(h, bits_[i]);
+    for (std::size_t i = kFirstOptional; i < kMaxCount; ++i) {
+      if (bits_[i] != 0) h = core::combine(core::combine(h, i), bits_[i]);
+    }
     return edits_hash_ == 0 ? h : core::combine(h, edits_hash_);
   }
   // Equal layers may differ in edits that do not change the mesh.
@@ -81,7 +86,7 @@ class Parameters {
   std::uint64_t edits_hash_ = 0;
   const EditLayer* edits_ = nullptr;
 };
-static_assert(sizeof(Parameters) == 144);
+static_assert(sizeof(Parameters) == 208);
 
 // The exact size of one mesh.
 struct MeshSize {

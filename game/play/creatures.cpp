@@ -108,7 +108,8 @@ void Creatures::add_group(Kind kind, int count, const core::WorldPosition& home,
     c.yaw = random.next_real(-3.1, 3.1);
     c.beat = random.next_real(0, 6.2);
     c.at = home;
-    c.at.local += glm::dvec3(random.next_real(-9, 9), 0, random.next_real(-9, 9));
+    const double south_m = random.next_real(-9, 9), east_m = random.next_real(-9, 9);
+    c.at.local += glm::dvec3(east_m, 0, south_m);
     c.at = core::normalised(c.at, query_->world().block_size_m());
     const auto ground = query_->ground(c.at);
     const bool is_wet = ground && ground->water_depth_m > 0.7;

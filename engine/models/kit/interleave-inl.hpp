@@ -27,6 +27,15 @@ class Interleave3 {
   using Tag = hn::CappedTag<std::uint32_t, 16>;
   using V = hn::Vec<Tag>;
 
+  // Written out, because GCC compiles implicit constructors for the file's own instruction set, not
+  // for the kernel's: at -O0 they would call lanes_of() with another calling convention.
+  HWY_INLINE Interleave3()
+      : from_a_(lanes_of(0)),
+        from_b_(lanes_of(1)),
+        from_c_(lanes_of(2)),
+        first_(third_of(0)),
+        second_(third_of(1)) {}
+
   // Writes a0 b0 c0 a1 b1 c1 … to `bytes`: 3 · lanes words, at any alignment.
   HWY_INLINE void store(V a, V b, V c, void* bytes) const {
     const Tag d;
@@ -69,8 +78,8 @@ class Interleave3 {
     return hn::Eq(hn::Load(Tag(), kThirds), hn::Set(Tag(), number));
   }
 
-  const Lanes from_a_ = lanes_of(0), from_b_ = lanes_of(1), from_c_ = lanes_of(2);
-  const Mask first_ = third_of(0), second_ = third_of(1);
+  const Lanes from_a_, from_b_, from_c_;
+  const Mask first_, second_;
 };
 
 }  // namespace psygen::models::HWY_NAMESPACE

@@ -31,12 +31,16 @@ using Uint = hn::Vec<hn::RebindToUnsigned<D>>;
 template <class D>
 struct Items {
   hn::Vec<D> rows[4];
+  HWY_INLINE Items() {}  // in the kernel's instruction set (docs/models.md#arithmetic)
 };
 
 // The items as one vector per component.
 template <class D>
 struct Vectors {
   hn::Vec<D> x, y, z, w;
+  HWY_INLINE Vectors() {}
+  HWY_INLINE Vectors(hn::Vec<D> to_x, hn::Vec<D> to_y, hn::Vec<D> to_z, hn::Vec<D> to_w)
+      : x(to_x), y(to_y), z(to_z), w(to_w) {}
 };
 
 // Loads the item at `base` + offsets[lane] for each lane. Offsets count floats.

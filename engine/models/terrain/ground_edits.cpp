@@ -303,8 +303,7 @@ std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadPlace& node, doub
   for (const auto* cells : {&below_, &cells_})
     add_roads(cells->root(), area_of(node), block_m, roads);
   std::ranges::sort(roads);
-  const auto again = std::ranges::unique(roads);
-  roads.erase(again.begin(), again.end());
+  roads.erase(std::unique(roads.begin(), roads.end()), roads.end());
   return roads;
 }
 

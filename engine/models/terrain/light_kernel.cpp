@@ -41,6 +41,7 @@ struct Seen {
   Float horizon[kDirections];
   // A point above `lit_above` sees the whole disc of the sun, one below `dark_below` none of it.
   Float lit_above, dark_below;
+  HWY_INLINE Seen() {}  // in the kernel's instruction set (docs/models.md#arithmetic)
 };
 
 // A row of a wider grid, interpolated at a row of the finer one.

@@ -63,6 +63,7 @@ struct Branches {
   VF length, radius;
   VU noise;  // times kNoiseFactor
   VU normal[kMaxSides], point_normal;
+  HWY_INLINE Branches() {}
 };
 
 HWY_INLINE void gather(const BarkJob& job, const BarkLanes& lanes, std::size_t i, Branches& b) {

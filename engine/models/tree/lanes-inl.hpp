@@ -32,6 +32,8 @@ using VU = hn::Vec<DU>;
 // A 3-D vector per lane.
 struct Vec3 {
   VF x, y, z;
+  HWY_INLINE Vec3() {}  // in the kernel's instruction set (docs/models.md#arithmetic)
+  HWY_INLINE Vec3(VF to_x, VF to_y, VF to_z) : x(to_x), y(to_y), z(to_z) {}
 };
 
 // The same number in every lane.
@@ -243,6 +245,7 @@ HWY_INLINE void store_apart(const Vertices& v, std::size_t lanes, std::size_t st
 // clear(). The words are those of xy_word() and z_word().
 struct Extent {
   hn::Vec<D16> low_xy, high_xy, low_z, high_z;
+  HWY_INLINE Extent() {}
   // Empties it; adds vertices; widens the packed box [low, high] by all of them.
   HWY_INLINE void clear() {
     low_xy = low_z = hn::Set(D16(), 32767);

@@ -109,9 +109,12 @@ class BlockReader {
       const auto type = read_type();
       if (!type) return tl::unexpected(type.error());
       p.model = *type;
-      const std::size_t values = registry_[p.model].parameters().size();
-      if (in_.get<std::uint8_t>() != values)
-        return wrong(fmt::format("{} has {} parameters", registry_[p.model].name(), values));
+      // An older version of the type may have had fewer parameters; the others have their defaults.
+      const std::size_t known = registry_[p.model].parameters().size();
+      const std::size_t values = in_.get<std::uint8_t>();
+      if (values > known)
+        return wrong(fmt::format("{} has {} parameters", registry_[p.model].name(), known));
+      p.parameters = models::default_parameters(registry_[p.model]);
       for (std::size_t k = 0; k < values; ++k)
         p.parameters.set_integer(k, in_.get<std::int64_t>());
       if (in_.failed()) return {};

@@ -51,7 +51,8 @@ world::Edits edits_of(const world::World& world, const models::Registry& registr
     if (i % 16 == 0) {
       (void)edits.move(world, registry, model, at);
     } else if (i % 4 == 0) {
-      (void)edits.raise(world, at, random.next_real(1, 12), random.next_real(-1, 1));
+      const double radius_m = random.next_real(1, 12);
+      (void)edits.raise(world, at, radius_m, random.next_real(-1, 1));
     } else {
       (void)edits.remove(world, model);
     }

@@ -178,9 +178,9 @@ TEST(EveryModel, HasTheSameBytesOnEveryThreadInAnyOrder) {
 TEST(Packing, OctahedralNormalsAreRestored) {
   core::RandomStream random(2, 0, 0, 0, core::Purpose::kPosition);
   for (int i = 0; i < 2000; ++i) {
-    const glm::vec3 n = glm::normalize(glm::vec3(static_cast<float>(random.next_real(-1, 1)),
+    const glm::vec3 n = glm::normalize(glm::vec3{static_cast<float>(random.next_real(-1, 1)),
                                                  static_cast<float>(random.next_real(-1, 1)),
-                                                 static_cast<float>(random.next_real(-1, 1))));
+                                                 static_cast<float>(random.next_real(-1, 1))});
     const glm::vec2 e = encode_octahedral(n);
     const glm::vec2 stored{pack_snorm16(e.x) / 32767.0F, pack_snorm16(e.y) / 32767.0F};
     EXPECT_GT(glm::dot(decode_octahedral(stored), n), 0.999999F);

@@ -42,7 +42,7 @@ TEST(PhysicsTerrain, HeightfieldsAreTheTrianglesOfTheFinestMesh) {
     terrain.need({0, 0}, {100, 100}, 1);
     core::RandomStream random(1, 0, 0, 0, core::Purpose::kPosition);
     for (int i = 0; i < 2000; ++i) {
-      const btVector3 at(random.next_real(0, 100), 0, random.next_real(0, 100));
+      const btVector3 at{random.next_real(0, 100), 0, random.next_real(0, 100)};
       const double height = terrain.ground(at).height_m;
       const double hit = bare.cast(at + btVector3(0, 5000, 0), at - btVector3(0, 5000, 0), kGround);
       ASSERT_NEAR(5000 - hit * 10'000, height, 1e-6) << name;
@@ -134,7 +134,7 @@ TEST(PhysicsTerrain, MovesWithTheOriginWithoutBeingRebuilt) {
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kPosition);
   std::vector<std::pair<core::WorldPosition, double>> models;  // positions above ground and models
   for (int i = 0; i < 500; ++i) {
-    const btVector3 at(random.next_real(0, 100), 2000, random.next_real(0, 100));
+    const btVector3 at{random.next_real(0, 100), 2000, random.next_real(0, 100)};
     models.emplace_back(terrain.position(at),
                         bare.cast(at, at - btVector3(0, 2000, 0), kGround | kModels));
   }

@@ -78,8 +78,8 @@ TEST(GroundGrid, VerticalRaysHitTheHeightOfThePoint) {
     // Also exactly on vertices, edges and diagonals.
     const double step = i % 2 == 0 ? 1.5 : 0.75;
     const glm::dvec2 at =
-        i % 4 < 2 ? glm::dvec2(random.next_real(0, kEnd), random.next_real(0, kEnd))
-                  : step * glm::dvec2(random.next_integer(0, 20), random.next_integer(0, 20));
+        i % 4 < 2 ? glm::dvec2{random.next_real(0, kEnd), random.next_real(0, kEnd)}
+                  : step * glm::dvec2{random.next_integer(0, 20), random.next_integer(0, 20)};
     const models::GroundPoint ground = grid.at(at);
     Side side = Side::kUnknown;
     const auto down = grid.cast(ray_of({at.x, 100, at.y}, {0, -1, 0}), 0, 1e9, side);
@@ -98,12 +98,12 @@ TEST(GroundGrid, NoRayPassesBetweenTwoTriangles) {
   // Aimed exactly at vertices and middles of edges, from exact and from inexact positions.
   core::RandomStream random(6, 0, 0, 0, core::Purpose::kPosition);
   for (int i = 0; i < 5000; ++i) {
-    const glm::dvec2 at = 0.75 * glm::dvec2(random.next_integer(2, 40), random.next_integer(2, 40));
+    const glm::dvec2 at = 0.75 * glm::dvec2{random.next_integer(2, 40), random.next_integer(2, 40)};
     const glm::dvec3 target(at.x, grid.at(at).height_m - 1e-3, at.y);
     const glm::dvec3 from =
-        i % 2 == 0 ? glm::dvec3(1.5 * static_cast<double>(random.next_integer(0, 21)), 45,
-                                1.5 * static_cast<double>(random.next_integer(0, 21)))
-                   : glm::dvec3(random.next_real(0, kEnd), 45, random.next_real(0, kEnd));
+        i % 2 == 0 ? glm::dvec3{1.5 * static_cast<double>(random.next_integer(0, 21)), 45,
+                                1.5 * static_cast<double>(random.next_integer(0, 21))}
+                   : glm::dvec3{random.next_real(0, kEnd), 45, random.next_real(0, kEnd)};
     const double length = glm::length(target - from);
     Side side = Side::kUnknown;
     const auto hit = grid.cast(ray_of(from, (target - from) / length), 0, length, side);
@@ -116,7 +116,7 @@ TEST(GroundGrid, ARayThatBeginsOnTheGroundHitsItUnlessItRises) {
   const GroundGrid grid = rough(7);
   core::RandomStream random(8, 0, 0, 0, core::Purpose::kPosition);
   for (int i = 0; i < 500; ++i) {
-    const glm::dvec2 at(random.next_real(1, kEnd - 1), random.next_real(1, kEnd - 1));
+    const glm::dvec2 at{random.next_real(1, kEnd - 1), random.next_real(1, kEnd - 1)};
     const models::GroundPoint ground = grid.at(at);
     const glm::dvec3 from(at.x, ground.height_m, at.y);
     Side side = Side::kUnknown;

@@ -27,8 +27,8 @@ std::vector<Step> steps_of(const PlaneLine& line, double side, double from, doub
 TEST(March, CoversTheWholeLineWithTouchingSquares) {
   core::RandomStream random(3, 0, 0, 0, core::Purpose::kPosition);
   for (int i = 0; i < 500; ++i) {
-    const glm::dvec2 from(random.next_real(-50, 50), random.next_real(-50, 50));
-    const glm::dvec2 step(random.next_real(-1, 1), random.next_real(-1, 1));
+    const glm::dvec2 from{random.next_real(-50, 50), random.next_real(-50, 50)};
+    const glm::dvec2 step{random.next_real(-1, 1), random.next_real(-1, 1)};
     const PlaneLine line(from, step);
     const double side = random.next_real(0.5, 9), end = random.next_real(1, 100);
     const std::vector<Step> steps = steps_of(line, side, 0, end);

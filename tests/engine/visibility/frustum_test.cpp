@@ -59,7 +59,7 @@ TEST(Frustum, NeverRejectsABoxWithAPointInsideTheImage) {
   for (int i = 0; i < 300; ++i) {
     const GridScene scene(6, 6, random_pose(random, 6, 6));
     for (const core::Bounds& box : scene.bounds) {
-      const glm::vec3 t(random.next_unit(), random.next_unit(), random.next_unit());
+      const glm::vec3 t{random.next_unit(), random.next_unit(), random.next_unit()};
       const glm::vec3 point = box.min + t * (box.max - box.min);
       const glm::vec4 clip = scene.view_projection * glm::vec4(point, 1);
       if (std::abs(clip.x) > clip.w || std::abs(clip.y) > clip.w || clip.z > clip.w) continue;

@@ -89,7 +89,7 @@ class Heightfield {
 
   glm::dvec2 random_place(core::RandomStream& random) const {
     const double far = (kSide - 1) * kCell_m;
-    return glm::dvec2(random.next_real(0, far), random.next_real(0, far)) - origin_;
+    return glm::dvec2{random.next_real(0, far), random.next_real(0, far)} - origin_;
   }
 
  private:
@@ -133,7 +133,7 @@ bool is_seen(const Heightfield& field, const core::Bounds& box, core::RandomStre
 
 core::Bounds random_box(const Heightfield& field, core::RandomStream& random) {
   const glm::dvec2 at = field.random_place(random);
-  const glm::dvec2 size(random.next_real(0, 40), random.next_real(0, 40));
+  const glm::dvec2 size{random.next_real(0, 40), random.next_real(0, 40)};
   const double low = field.height(at.x, at.y) - 5, high = low + random.next_real(0, 25);
   return {glm::vec3(at.x, low, at.y), glm::vec3(at.x + size.x, high, at.y + size.y)};
 }

@@ -43,8 +43,8 @@ double share_met(int count, double width, double side, core::RandomStream& rando
     if (from >= to) continue;
     ++rays;
     for (int i = 0; i < count; ++i) {
-      const glm::dvec2 disc(random.next_real(-side / 2, side / 2),
-                            random.next_real(-side / 2, side / 2));
+      const glm::dvec2 disc{random.next_real(-side / 2, side / 2),
+                            random.next_real(-side / 2, side / 2)};
       const double at = glm::dot(disc, along);
       if (std::abs(glm::dot(disc, normal) - aside) < width / 2 && at > from && at < to) {
         ++met;

@@ -1,9 +1,14 @@
 // Compares the mesh of a tree, `tree` or species, with the oracle, vertex by vertex: positions to
 // half a step of the packing and 1e-5 of the tree's size, everything else to half a step and 1e-5.
+// Normals of sprays are sums of directions. Where these nearly cancel out, single precision leaves
+// the direction of the sum uncertain in inverse proportion to its length: one spray in a thousand
+// of random grammars has a sum of 0.01, and an error of 3e-5, while the sum itself is exact to
+// 4e-7.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <vector>
@@ -33,7 +38,9 @@ inline void expect_as_oracle(const TreeOracle& oracle,
         << "level " << level << " vertex " << k;
     Look look = oracle.looks().at(expected[k].look);
     look.normal = expected[k].normal;
-    ASSERT_EQ(fault_of(vertices[k], look), "") << "level " << level << " vertex " << k;
+    const double uncertainty = std::max(1e-5, 1e-6 / glm::length(look.normal));
+    ASSERT_EQ(fault_of(vertices[k], look, {.normal = uncertainty}), "")
+        << "level " << level << " vertex " << k;
   }
 }
 

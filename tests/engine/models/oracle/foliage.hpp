@@ -25,7 +25,8 @@ class FoliageOracle : public BranchOracle {
       : BranchOracle(plan), with_looks_(with_looks) {}
 
   struct Vertex {
-    glm::dvec3 place, normal;
+    glm::dvec3 place;
+    glm::dvec3 normal;       // sum of directions, whose length says how far they cancel out
     bool bark = false;       // of a tube: the tree's bounds never clamp it
     std::uint32_t look = 0;  // index into looks()
   };
@@ -115,7 +116,7 @@ class FoliageOracle : public BranchOracle {
     const glm::dvec3 side = glm::normalize(glm::cross(
         d(f.side_out) * out + d(f.side_random) * random + glm::dvec3{0, d(f.side_up), 0}, axis));
     const glm::dvec3 face = glm::cross(axis, side);
-    const glm::dvec3 normal = glm::normalize(out + 0.3 * axis + glm::dvec3{0, d(f.normal_up), 0});
+    const glm::dvec3 normal = out + 0.3 * axis + glm::dvec3{0, d(f.normal_up), 0};
     std::array<std::uint32_t, 2> numbers{};  // indices of the looks of corner 0 and of the others
     if (with_looks_) numbers = spray_looks(centre_ + place, h[3], h[4]);
     const glm::dvec3 limit = room - 1.3 * length;

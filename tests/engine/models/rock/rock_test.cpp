@@ -22,6 +22,13 @@ class Rock : public ::testing::Test {
  protected:
   std::unique_ptr<ModelType> type = make_rock_type();
 
+  // A rock with a random seed, and amplitude and decay below these bounds (`random` draws all
+  // three).
+  Parameters random_rock(core::RandomStream& random, int subdivisions, double amplitude) const {
+    const auto seed = static_cast<std::int64_t>(random.next_u64());
+    const double drawn = random.next_real(0, amplitude);
+    return rock(seed, subdivisions, drawn, random.next_real(0, 1));
+  }
   Parameters rock(std::int64_t seed, int subdivisions, double amplitude, double decay) const {
     Parameters p = default_parameters(*type);
     p.set_integer(kRockSeed, seed);
@@ -67,8 +74,7 @@ TEST_F(Rock, PositionsEqualTheOracle) {
   core::RandomStream random(6, 0, 0, 0, core::Purpose::kParameters);
   for (int trial = 0; trial < 45; ++trial) {
     const int n = trial % 5;
-    Parameters p = rock(static_cast<std::int64_t>(random.next_u64()), n, random.next_real(0, 0.6),
-                        random.next_real(0, 1));
+    Parameters p = random_rock(random, n, 0.6);
     p.set_real(kRockRadiusM, random.next_real(0.05, 20));
     p.set_integer(kRockFamily, trial % kRockFamilyCount);
     const test::RockOracle oracle = test::rock_oracle(p);
@@ -90,8 +96,8 @@ TEST_F(Rock, PositionsEqualTheOracle) {
 TEST_F(Rock, SharedVerticesHaveTheMeanNormalOfTheirTriangles) {
   core::RandomStream random(8, 0, 0, 0, core::Purpose::kParameters);
   for (int trial = 0; trial < 42; ++trial) {
-    Parameters p = rock(static_cast<std::int64_t>(random.next_u64()), trial % 7,
-                        random.next_real(0, 0.4), random.next_real(0.3, 0.8));
+    Parameters p = random_rock(random, trial % 7, 0.4);
+    p.set_real(kRockDecay, random.next_real(0.3, 0.8));
     p.set_integer(kRockFamily, trial % 2 == 0 ? kRockRounded : kRockLayered);
     const test::RockOracle oracle = test::rock_oracle(p);
     const auto expected = oracle.normals();
@@ -109,9 +115,11 @@ TEST_F(Rock, IsWatertightAndFacesAwayFromItsCentreForLegalParameters) {
   core::RandomStream random(9, 0, 0, 0, core::Purpose::kParameters);
   for (int trial = 0; trial < 120; ++trial) {
     const bool extreme = trial % 3 == 0;
-    Parameters p =
-        rock(static_cast<std::int64_t>(random.next_u64()), trial % 4,
-             extreme ? 0.6 : random.next_real(0, 0.6), extreme ? 1.0 : random.next_real(0, 1));
+    Parameters p = random_rock(random, trial % 4, 0.6);
+    if (extreme) {
+      p.set_real(kRockAmplitude, 0.6);
+      p.set_real(kRockDecay, 1);
+    }
     p.set_integer(kRockFamily, trial / 4 % kRockFamilyCount);
     const Mesh mesh = synthesise(*type, p, 0);
     const auto v = mesh.vertices<ModelVertex>();

@@ -62,10 +62,12 @@ std::optional<Species> random_species(core::RandomStream& random) {
     const std::int64_t rules = i == 0 ? 1 : random.next_integer(0, 2);
     for (std::int64_t r = 0; r < rules; ++r) {
       std::string to;
-      for (std::int64_t n = random.next_integer(1, 3); n > 0; --n)
-        to += s.kinds[static_cast<std::size_t>(random.next_integer(0, static_cast<int>(kinds) - 1))]
-                  .symbol +
-              std::to_string(random.next_integer(1, 4));
+      for (std::int64_t n = random.next_integer(1, 3); n > 0; --n) {
+        const auto kind =
+            static_cast<std::size_t>(random.next_integer(0, static_cast<int>(kinds) - 1));
+        const std::int64_t count = random.next_integer(1, 4);
+        to += s.kinds[kind].symbol + std::to_string(count);
+      }
       if (random.next_integer(0, 1) == 0) to += s.kinds[kinds - 1].symbol + "*";
       s.rules.push_back({s.kinds[i].symbol, to, 1.0 / static_cast<double>(rules)});
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <random>
+#include <span>
 
 #include "tests/engine/world/edits/edited_world.hpp"
 
@@ -77,6 +78,38 @@ TEST_F(EditBytes, TruncatedOrExtendedBytesAreRejected) {
   EXPECT_FALSE(load_block(loaded, world, registry, {2, 3}, longer));
   EXPECT_FALSE(load_block(loaded, world, registry, {-2, 3}, whole)) << "outside the world";
   EXPECT_TRUE(loaded.empty());
+}
+
+// Old saves hold models of types that have gained a parameter since.
+TEST_F(EditBytes, AParameterThatAnOlderVersionLackedHasItsDefault) {
+  const models::PlacedModel& moved = edits.layer()->block({2, 3})->placed.front();
+  const models::ModelType& type = registry[moved.model];
+  const std::size_t last = type.parameters().size() - 1;
+  std::vector<std::byte> bytes = encode_block(edits, registry, {2, 3});
+  const auto name = std::ranges::search(bytes, std::as_bytes(std::span(type.name())));
+  const auto count = name.end();
+  ASSERT_EQ(std::to_integer<std::size_t>(*count), last + 1);
+  *count = std::byte(last);
+  const auto value = count + 1 + static_cast<std::ptrdiff_t>(8 * last);
+  bytes.erase(value, value + 8);
+  Edits loaded;
+  const auto ok = load_block(loaded, world, registry, {2, 3}, bytes);
+  ASSERT_TRUE(ok) << ok.error().message;
+  const models::Parameters& found = loaded.layer()->block({2, 3})->placed.front().parameters;
+  EXPECT_EQ(found.integer(last), models::default_parameters(type).integer(last));
+  for (std::size_t i = 0; i < last; ++i)
+    EXPECT_EQ(found.integer(i), moved.parameters.integer(i));
+}
+
+TEST_F(EditBytes, MoreParametersThanTheTypeHasAreRejected) {
+  const models::ModelType& type = registry[edits.layer()->block({2, 3})->placed.front().model];
+  std::vector<std::byte> bytes = encode_block(edits, registry, {2, 3});
+  const auto name = std::ranges::search(bytes, std::as_bytes(std::span(type.name())));
+  *name.end() = std::byte(type.parameters().size() + 1);
+  Edits loaded;
+  const auto ok = load_block(loaded, world, registry, {2, 3}, bytes);
+  ASSERT_FALSE(ok);
+  EXPECT_THAT(ok.error().message, HasSubstr("parameters"));
 }
 
 TEST_F(EditBytes, ANewerVersionIsRejectedByItsNumber) {
