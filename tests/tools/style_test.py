@@ -606,9 +606,12 @@ def renamed_names(tree):
     return names
 
 
+extra_names = set()  # of --names
+
+
 def old_names(tree, names):
     """Uses of names that have a successor, and of names with most and least instead of max and min."""
-    names = sorted(n for n in names if not re.search(r"[^\w:]", n))
+    names = sorted(n for n in names if re.fullmatch(r"\w+(?:::\w+)+", n) or n in extra_names)
     old = re.compile(r"(?<![\w:])(?:" + "|".join(map(re.escape, names)) + r")\b") if names else None
     for name, text in tree.select((*CODE, "tests", "examples", "shaders"), CXX + SHADERS):
         blank = tree.blank(name)
@@ -697,9 +700,6 @@ def lines(tree):
 def test_names(tree):
     rows = list(odd_test_names(tree))
     return Figure(sum(len(at) for _, at, _ in rows), {n: at for n, at, _ in rows if at}, f"of {sum(n for *_, n in rows)}")
-
-
-extra_names = set()
 
 
 def names_left(tree):
@@ -815,8 +815,8 @@ auto p = Preset{.a = 1, .b = 2, .c = 3, .d = 4, .e = 5};
         "engine/scene/b.hpp": '#include "engine/scene/c/d.hpp"\n\n// Of f.\nint f(int a);\n\nint g();\n\n'
                               "class C {\n private:\n  int h();\n};\n",
         "engine/scene/c/d.hpp": '#include "engine/scene/b.hpp"\n',
-        "CHANGELOG.md": "## Names\n\n| old | new |\n| --- | --- |\n| `kOld`, `World::land` | `kNew` |\n",
-        "game/x.cpp": "int kOld = k" "MostThings;\n"})
+        "CHANGELOG.md": "## Names\n\n| old | new |\n| --- | --- |\n| `a::kOld`, `World::land` | `a::kNew` |\n",
+        "game/x.cpp": "int b = a::kOld = k" "MostThings;\n"})
     names = {f: p for _, f, p in tree.functions("engine/scene/a.cpp")}
     assert len(names["eight"]) == 8 and len(names["load_system"]) == 2 and names["get"] == [], names
     assert names["set"] == ["bool near", "bool far"] and "A::A" in names and "call" not in names, names

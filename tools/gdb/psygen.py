@@ -111,7 +111,7 @@ class MeshKeyPrinter:
 
     def to_string(self):
         v = self.value
-        again = " (duplicate)" if bool(v["spare"]) else ""
+        again = " (duplicate)" if bool(v[v.type.fields()[-1]]) else ""  # the last member
         return (f"{BlockPrinter(v['block']).to_string()}, index {number(v['index'])}, type {number(v['model'])}, "
                 f"LOD {number(v['level'])}, parameters {number(v['parameters_hash']):#018x}{again}")
 
