@@ -13,7 +13,7 @@
 #include "editor/gallery/library_panel.hpp"
 #include "editor/pictures/picture_server.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/world/surface.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 namespace {

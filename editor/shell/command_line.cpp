@@ -7,7 +7,7 @@
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/world/surface.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 

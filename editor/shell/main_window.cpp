@@ -27,7 +27,7 @@
 #include "editor/tools/view_tools.hpp"
 #include "engine/core/log.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/world/surface.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/world/surface.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 namespace {

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "engine/world/surface.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 namespace {

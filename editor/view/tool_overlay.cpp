@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "editor/view/segment.hpp"
-#include "engine/world/surface.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 namespace {

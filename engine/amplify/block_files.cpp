@@ -204,7 +204,7 @@ core::Result<void> BlockFolder::claim() const {
     if (auto ok = claim("files.hash", hash, "this world with other files"); !ok) return ok;
   }
   const auto sample = sample_of(world_, registry_, format_);
-  if (!sample) return {};  // a later run with a sample will refuse these blocks
+  if (!sample) return {};  // a later run with a sample rejects these blocks
   return claim(format_ == exchange::Format::kGlb ? "sample_glb.hash" : "sample_obj.hash",
                fmt::format("{:016x}\n", *sample), "this world from another version");
 }

@@ -51,7 +51,7 @@ std::string ledger_text(const LedgerText& ledger);
 core::Result<LedgerText> parse_ledger(std::string_view text, const std::string& name);
 core::Result<LedgerText> read_ledger(const std::filesystem::path& file);
 
-// A ledger that is being written. The file is locked meanwhile, if its file system can lock.
+// A ledger that is being written. The file is locked during that time, if its file system can lock.
 class Ledger {
  public:
   // Opens or creates `file` for the part with the key, name and share of `ledger`;

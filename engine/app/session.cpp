@@ -285,7 +285,8 @@ void Session::follow_surface() {
 
 void Session::take_events() {
   all_input_ = window_->poll();
-  input_ = filter_.apply(all_input_, gui_ && gui_->takes_keyboard(), gui_ && gui_->takes_mouse());
+  input_ = filter_.apply(all_input_, {.keyboard = gui_ && gui_->takes_keyboard(),
+                                      .mouse = gui_ && gui_->takes_mouse()});
   actions_.feed(input_);
   if (input_.resized) resize(window_->framebuffer_size());
   if (window_->should_close()) closed_ = true;

@@ -42,6 +42,12 @@ core::Result<void> check(const Play& how, std::uint32_t channels) {
 
 }  // namespace
 
+double attenuation(double distance_m, const Range& range) {
+  if (distance_m <= range.near_m) return 1;
+  if (!(distance_m < range.far_m)) return 0;
+  return range.near_m / distance_m * (range.far_m - distance_m) / (range.far_m - range.near_m);
+}
+
 struct Audio::State {
   AudioOptions options;
   std::unique_ptr<Output> output;

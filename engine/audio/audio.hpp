@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "engine/audio/clip.hpp"
-#include "engine/audio/loudness.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/error.hpp"
 
@@ -32,6 +31,17 @@ enum class Destination : std::uint8_t {
   kNowhere,   // silence, but sounds advance
   kRendered,  // to render(), for recordings and tests
 };
+
+// Metres. A sound has its full gain up to near_m, falls off as near_m / distance, and is silent
+// from far_m on. 0 < near_m < far_m.
+struct Range {
+  double near_m = 2;
+  double far_m = 200;
+};
+
+// The remaining fraction of the gain, 0 to 1: near / d · (far − d) / (far − near) between the two.
+// Pure; any thread.
+double attenuation(double distance_m, const Range& range);
 
 struct AudioOptions {
   Destination destination = Destination::kDevice;

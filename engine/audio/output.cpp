@@ -32,7 +32,7 @@ std::unique_ptr<Output> Output::open(bool rendered) {
   }
   std::unique_ptr<Output> output(new Output(device, context, rendered));
   output->use();
-  alDistanceModel(AL_NONE);  // loudness.hpp
+  alDistanceModel(AL_NONE);  // attenuation() does that
   return output;
 }
 

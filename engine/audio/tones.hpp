@@ -12,6 +12,7 @@
 
 namespace psygen::audio {
 
+// Samples of one channel; audible within -1 … 1.
 using Samples = std::vector<float>;
 
 inline constexpr std::uint32_t kToneRateHz = 22050;

@@ -34,6 +34,7 @@ struct Sound {
   std::deque<Piece> pieces;
   bool file_ended = false;
 
+  // The rate and the length of the clip or file.
   double rate_hz() const { return clip ? clip->rate_hz : file->rate_hz(); }
   double frames() const {
     return static_cast<double>(clip ? clip->frames() : static_cast<std::size_t>(file->frames()));

@@ -21,7 +21,7 @@
 #include "engine/scene/scene.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/world/camera_path.hpp"
-#include "engine/world/surface.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::cli {
 namespace {

@@ -55,6 +55,7 @@ struct Node {
   Pose rest;                     // pose without animations
 };
 
+// The interpolation between two values, and the animated property of a node.
 enum class Interpolation : std::uint8_t { kStep, kLinear, kCubic };
 enum class Property : std::uint8_t { kTranslation, kRotation, kScale };
 

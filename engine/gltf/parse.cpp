@@ -11,7 +11,6 @@
 
 #include "engine/core/read_file.hpp"
 #include "engine/core/utf8.hpp"
-#include "engine/gltf/json_shape.hpp"
 
 namespace psygen::gltf {
 namespace {
@@ -68,14 +67,6 @@ bool read_beside(std::vector<unsigned char>* out, std::string* message, const st
   return true;
 }
 
-// Keeps the encoded bytes of an image that is not in a buffer. The `bytes` of an image in a buffer
-// may be out of its range.
-bool keep_picture(tinygltf::Image* image, int, std::string*, std::string*, int, int,
-                  const unsigned char* bytes, int size, void*) {
-  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
-  return true;
-}
-
 std::string_view characters(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
@@ -104,6 +95,44 @@ core::Result<void> check_version(const tinygltf::Model& model) {
     }
   }
   return {};
+}
+
+// glTF itself needs seven; the rest is for program data in "extras".
+constexpr std::uint32_t kMaxDepth = 64;
+
+// The position after a string that begins at `at`.
+std::size_t behind_string(std::string_view json, std::size_t at) {
+  for (++at; at < json.size() && json[at] != '"'; ++at)
+    at += json[at] == '\\' ? 1 : 0;
+  return at + 1;
+}
+
+// Rejects JSON that is far larger in memory than as text: endlessly nested lists, and millions of
+// small values. Text that is not JSON passes. Fails with kOverBudget; the message does not name the
+// file. O(characters).
+core::Result<void> check_shape(std::string_view json, std::uint32_t max_values) {
+  std::uint32_t depth = 0, values = 0;
+  for (std::size_t at = 0; at < json.size();) {
+    const char c = json[at];
+    if (c == '"') {
+      at = behind_string(json, at);
+      continue;
+    }
+    ++at;
+    if ((c == ']' || c == '}') && depth > 0) --depth;
+    if (c == ',') ++values;
+    if (c != '[' && c != '{') continue;
+    ++values;
+    if (++depth > kMaxDepth) {
+      return core::fail(core::ErrorCode::kOverBudget,
+                        fmt::format("its JSON is nested more than {} levels deep at character {}",
+                                    kMaxDepth, at));
+    }
+    if (values > max_values) break;
+  }
+  if (values <= max_values) return {};
+  return core::fail(core::ErrorCode::kOverBudget,
+                    fmt::format("its JSON has more than {} values", max_values));
 }
 
 // Compares the length with the header of a .glb.
@@ -151,7 +180,15 @@ core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Lim
   files.ReadWholeFile = read_beside;
   files.user_data = &gate;
   reader.SetFsCallbacks(files);
-  reader.SetImageLoader(keep_picture, nullptr);
+  // Keeps the encoded bytes of an image that is not in a buffer. The `encoded` of an image in a
+  // buffer may be out of its range.
+  reader.SetImageLoader(
+      [](tinygltf::Image* image, int, std::string*, std::string*, int, int,
+         const unsigned char* encoded, int length, void*) {
+        if (image->bufferView < 0) image->image.assign(encoded, encoded + length);
+        return true;
+      },
+      nullptr);
 
   tinygltf::Model model;
   std::string errors, warnings;

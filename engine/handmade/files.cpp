@@ -14,8 +14,8 @@
 #include "engine/core/hash.hpp"
 #include "engine/core/log.hpp"
 #include "engine/gltf/read_file.hpp"
-#include "engine/handmade/gltf_limits.hpp"
 #include "engine/handmade/handmade_type.hpp"
+#include "engine/handmade/triangles.hpp"
 #include "engine/image/image_io.hpp"
 
 namespace psygen::handmade {

@@ -17,10 +17,19 @@ using models::Parameters;
 enum HandmadeParameter : std::size_t { kScale, kTurn };
 
 constexpr models::ParameterSpec kHandmadeSchema[] = {
-    {"scale", models::ParameterType::kReal, "1", 1, 0.01, 100, 0.5, 2,
-     "factor on the model's size"},
-    {"turn_deg", models::ParameterType::kReal, "degrees", 0, 0, 360, 0, 360,
-     "rotation about the vertical axis; [0, 360]: all directions"},
+    {.name = "scale",
+     .unit = "1",
+     .default_value = 1,
+     .hard_min = 0.01,
+     .hard_max = 100,
+     .soft_min = 0.5,
+     .soft_max = 2,
+     .doc = "factor on the model's size"},
+    {.name = "turn_deg",
+     .unit = "degrees",
+     .hard_max = 360,
+     .soft_max = 360,
+     .doc = "rotation about the vertical axis; [0, 360]: all directions"},
 };
 
 // A rotation from +Z towards +X, like a positive rotation about +Y.

@@ -5,7 +5,7 @@
 #include "engine/core/read_file.hpp"
 #include "engine/gltf/read_file.hpp"
 #include "engine/handmade/files.hpp"
-#include "engine/handmade/gltf_limits.hpp"
+#include "engine/handmade/triangles.hpp"
 
 namespace psygen::handmade {
 

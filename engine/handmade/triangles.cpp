@@ -142,6 +142,18 @@ core::Result<void> place(const world::HandmadeModel& how, Triangles& out) {
 
 }  // namespace
 
+gltf::Limits gltf_limits() {
+  gltf::Limits limits;
+  limits.bytes = std::uint64_t{128} << 20;
+  limits.vertices = kMaxVertices;
+  limits.indices = 6 * kMaxVertices;
+  limits.images = {.max_width = 4096,
+                   .max_height = 4096,
+                   .max_bytes = std::uint64_t{64} << 20,
+                   .max_file_bytes = std::uint64_t{32} << 20};
+  return limits;
+}
+
 core::Result<Triangles> triangles_of(const gltf::Model& model, const world::HandmadeModel& how) {
   Triangles out;
   std::vector<glm::mat4> placed;

@@ -9,13 +9,16 @@
 
 #include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
-#include "engine/gltf/model.hpp"
+#include "engine/gltf/read_file.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::handmade {
 
 // Limits: vertices of all nodes together; twice as many triangles are allowed.
 inline constexpr std::size_t kMaxVertices = 1U << 20;
+
+// The limits for model files that a world file names.
+gltf::Limits gltf_limits();
 
 // A corner of triangles.
 struct Vertex {

@@ -39,6 +39,7 @@ struct ActionState {
 // The index of an action, in the order in which actions were added.
 using ActionId = std::size_t;
 
+// The actions of a game with their bindings and states.
 class Actions {
  public:
   static constexpr std::size_t kMaxActions = 256, kMaxBindings = 32, kMaxNameBytes = 64;

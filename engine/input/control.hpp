@@ -21,6 +21,7 @@ constexpr bool is_of_pad(Device device) {
   return device == Device::kPadButton || device == Device::kPadAxis;
 }
 
+// Directions of the wheel and the mouse, and half axes of gamepads.
 enum class WheelWay : std::uint8_t { kUp, kDown, kLeft, kRight, kCount };
 enum class MouseWay : std::uint8_t { kUp, kDown, kLeft, kRight, kCount };
 enum class PadWay : std::uint8_t {
@@ -37,6 +38,7 @@ enum class PadWay : std::uint8_t {
   kCount
 };
 
+// One control, identified by its device and a code of that device.
 struct Control {
   Device device = Device::kKey;
   std::uint8_t code = 0;

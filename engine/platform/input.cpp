@@ -34,16 +34,16 @@ void leave_out(std::bitset<kCount>& held, std::bitset<kCount>& went_down,
 
 }  // namespace
 
-InputState InputFilter::apply(const InputState& now, bool keyboard, bool mouse) {
+InputState InputFilter::apply(const InputState& now, TakenDevices taken) {
   InputState rest = now;
-  leave_out(rest.held, rest.went_down, rest.went_up, held_, taken_, keyboard);
+  leave_out(rest.held, rest.went_down, rest.went_up, held_, taken_, taken.keyboard);
   leave_out(rest.buttons_held, rest.buttons_went_down, rest.buttons_went_up, buttons_held_,
-            buttons_taken_, mouse);
-  if (keyboard) {
+            buttons_taken_, taken.mouse);
+  if (taken.keyboard) {
     rest.repeated.reset();
     rest.text.clear();
   }
-  if (mouse) {
+  if (taken.mouse) {
     rest.move_px = rest.look_px = {};
     rest.wheel = rest.wheel_x = 0;
     rest.looking = false;

@@ -19,7 +19,7 @@ struct InputState {
   KeySet repeated;   // repeated by the keyboard while held; for text fields
   MouseButtonSet buttons_held, buttons_went_down, buttons_went_up;
   std::string text;               // typed text, UTF-8; at most kMaxTextBytes
-  glm::dvec2 pointer_px{0.0};     // in the picture, from its upper left corner; while the cursor is
+  glm::dvec2 pointer_px{0.0};     // in the image, from its upper left corner; while the cursor is
                                   // captured it means nothing
   glm::dvec2 move_px{0.0};        // mouse movement: right, down; screen coordinates
   glm::dvec2 look_px{0.0};        // the same while looking
@@ -49,13 +49,18 @@ struct InputState {
 // Clears the events of a frame; held controls stay.
 void clear_changes(InputState& input);
 
+// The devices whose input another reader takes.
+struct TakenDevices {
+  bool keyboard = false, mouse = false;
+};
+
 // Removes input that another reader takes, such as a text field or a menu. One filter per reader.
 class InputFilter {
  public:
   // `now` without keyboard and text, or without the mouse. Releases once what the last result held.
   // A control that was pressed while taken stays hidden until it is released. Gamepads are not
   // filtered.
-  InputState apply(const InputState& now, bool keyboard, bool mouse);
+  InputState apply(const InputState& now, TakenDevices taken);
 
  private:
   KeySet held_, taken_;

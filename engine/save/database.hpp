@@ -70,6 +70,7 @@ class Database {
   // True if a transaction is open.
   bool in_transaction() const { return sqlite3_get_autocommit(get()) == 0; }
 
+  // The connection of SQLite, and the path of the file.
   sqlite3* get() const { return database_.get(); }
   const std::filesystem::path& file() const { return file_; }
 

@@ -29,11 +29,11 @@ int authorise(void* names_changed, int action, const char* first, const char* se
     case SQLITE_FUNCTION:
     case SQLITE_RECURSIVE:
       return SQLITE_OK;
-    case SQLITE_READ:  // also what creating a table reads, and tables without a name
+    case SQLITE_READ:  // also reads while creating a table, and tables without a name
       return decide(first == nullptr || !starts_with(first, "psygen_"));
     case SQLITE_INSERT:
     case SQLITE_UPDATE:
-    case SQLITE_DELETE:  // creating writes to the list of tables, which nobody can do directly
+    case SQLITE_DELETE:  // creating writes to the list of tables; direct writes are impossible
       return decide(game(first) || starts_with(first, "sqlite_"));
     case SQLITE_CREATE_TABLE:  // AUTOINCREMENT makes a table of SQLite's own
     case SQLITE_DROP_TABLE:

@@ -12,6 +12,7 @@
 
 namespace psygen::save {
 
+// The bytes of a blob, and a value of any type; std::monostate is NULL.
 using Bytes = std::vector<std::byte>;
 using Value = std::variant<std::monostate, std::int64_t, double, std::string, Bytes>;
 

@@ -27,7 +27,9 @@ struct Box {
 
 TileBox tile_box(const Box& box) {
   const glm::dvec3 centre = (box.min + box.max) * 0.5, half = (box.max - box.min) * 0.5;
-  return {centre.x, -centre.z, centre.y, half.x, 0, 0, 0, half.z, 0, 0, 0, half.y};
+  TileBox made{centre.x, -centre.z, centre.y};
+  made[3] = half.x, made[7] = half.z, made[11] = half.y;
+  return made;
 }
 
 // The existing tiles of a level: a rectangle.

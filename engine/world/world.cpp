@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/models/edits.hpp"
+#include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::world {
@@ -14,6 +15,11 @@ double World::block_size_m() const {
 
 double World::cell_m() const {
   return terrain.real(models::kTerrainCellM);
+}
+
+double surface_height_m(const World& world, const core::WorldPosition& at) {
+  const double ground_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
+  return world.water.exists() ? std::max(ground_m, world.water.level_m) : ground_m;
 }
 
 void set_edits(World& world, std::shared_ptr<const models::EditLayer> edits) {

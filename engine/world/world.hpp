@@ -178,6 +178,10 @@ struct World {
   friend bool operator==(const World&, const World&) = default;
 };
 
+// The height of the ground at a position, or of the water above it, in metres of the world. Ignores
+// the position's own height. engine/query answers exact questions about drawn ground.
+double surface_height_m(const World& world, const core::WorldPosition& at);
+
 // Replaces the edits of a world; null: none. They then include its shaped ground: if there is any,
 // World::edits differs from `edits`. O(1).
 void set_edits(World& world, std::shared_ptr<const models::EditLayer> edits);

@@ -166,7 +166,7 @@ class BlockReader {
     map->rows = in_.get<std::uint32_t>();
     const bool fits = map->columns <= kMaxHeightmapSide && map->rows <= kMaxHeightmapSide;
     if (fits) map->heights_m = in_.get_all<float>(std::size_t{map->columns} * map->rows);
-    return map;  // check_ground() refuses what is too large
+    return map;  // check_ground() rejects maps that are too large
   }
 
   const World& world_;

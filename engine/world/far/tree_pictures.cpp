@@ -252,7 +252,8 @@ void PictureSet::make_quad(models::ModelIndex model, const Parameters& p, Sample
     out.corners[i] = corner;
     out.aside[i] = {right ? half_m : -half_m, top ? kLean * half_m : 0.0F};
   }
-  out.indices = {0, 1, 2, 0, 2, 3};
+  static constexpr std::uint16_t kQuad[] = {0, 1, 2, 0, 2, 3};
+  std::ranges::copy(kQuad, out.indices.begin());
 }
 
 core::ModelPicture PictureSet::bake(std::size_t number, int level, std::uint32_t views) const {

@@ -10,6 +10,7 @@
 
 namespace psygen::world {
 
+// Limits, unit and description of a field.
 using FieldSpec = models::NumberSpec;
 
 // A visitor that writes every field as TOML.
@@ -26,6 +27,7 @@ struct FieldWriter {
   }
 };
 
+// The limits of common quantities; `usual` is the end of a slider.
 constexpr FieldSpec radiance(double usual, std::string_view doc) {
   return {0, 1000, 0, usual, "", doc};
 }

@@ -200,25 +200,6 @@ std::optional<std::string> value_text(std::string_view text, const TextPath& pat
   return std::string(value_of(*layout, static_cast<std::size_t>(at)));
 }
 
-core::Result<std::string> with_values(std::string_view text, const TextPath& path,
-                                      std::string_view keys) {
-  const auto layout = lay_out(keys, "the keys");
-  if (!layout) return tl::unexpected(layout.error());
-  core::Result<std::string> changed = std::string(text);
-  for (std::size_t i = 0; i < layout->places.size(); ++i) {
-    const TextPlace& place = layout->places[i];
-    if (place.is_header())
-      return refuse_edit(place.path, "the keys of a table must not contain headers");
-    if (place.nested) continue;
-    TextPath full = path;
-    for (const TextStep& step : place.path.steps)
-      full.steps.push_back(step);
-    changed = with_value(*changed, full, value_of(*layout, i));
-    if (!changed) return changed;
-  }
-  return changed;
-}
-
 std::size_t item_count(std::string_view text, const TextPath& path) {
   const auto layout = lay_out_edited(text);
   return layout ? layout->item_count(path) : 0;

@@ -40,10 +40,6 @@ core::Result<std::string> with_table_duplicated(std::string_view text, const Tex
 // The text with an item of an array of tables moved to another index of the same array.
 core::Result<std::string> with_table_moved(std::string_view text, const TextPath& item,
                                            std::size_t to);
-// The text with several values set in the table at `path`. `keys` has lines "key = value" of one
-// table without headers. Other keys of the table stay.
-core::Result<std::string> with_values(std::string_view text, const TextPath& path,
-                                      std::string_view keys);
 // A table with the tables in it and the comments between them, or nothing if no header has this
 // path.
 std::optional<std::string> table_text(std::string_view text, const TextPath& path);

@@ -46,6 +46,11 @@ FieldValue text_value(const std::string& v, FieldKind kind = FieldKind::kText) {
 
 constexpr double kDecades = 100;  // minimum ratio of the ends of a logarithmic scale
 
+// The specification of a field without limits.
+constexpr models::NumberSpec without_limits(std::string_view doc, std::string_view unit = "") {
+  return {.unit = unit, .doc = doc};
+}
+
 class SchemaBuilder {
  public:
   SchemaBuilder(const TextLayout& layout, const World& world, const models::Registry& registry)
@@ -125,7 +130,7 @@ class SchemaBuilder {
   void add_choice(WorldSection& to, std::string_view key, const std::string& now,
                   const std::string& usual, const std::array<std::string_view, n>& choices,
                   std::string_view doc) const {
-    add(to, key, text_value(now, FieldKind::kChoice), toml_string(usual), {0, 0, 0, 0, "", doc})
+    add(to, key, text_value(now, FieldKind::kChoice), toml_string(usual), without_limits(doc))
         .choices.assign(choices.begin(), choices.end());
   }
   // Adds the fields that `visit_fields` visits.
@@ -150,7 +155,12 @@ class SchemaBuilder {
     FieldValue value{kind, toml_range(now.low, now.high, integer), {now.low}};
     if (is_range) value.numbers.push_back(now.high);
     add(to, key, std::move(value), toml_range(spec.default_value, spec.default_value, integer),
-        {spec.hard_min, spec.hard_max, spec.soft_min, spec.soft_max, spec.unit, spec.doc});
+        {.low = spec.hard_min,
+         .high = spec.hard_max,
+         .soft_low = spec.soft_min,
+         .soft_high = spec.soft_max,
+         .unit = spec.unit,
+         .doc = spec.doc});
   }
   void add_terrain_parameter(WorldSection& to, std::string_view key, std::size_t i) const {
     const models::ModelType& type = registry_[world_.terrain_model];
@@ -160,13 +170,14 @@ class SchemaBuilder {
 
   WorldSection world_section() const {
     WorldSection made = section(SectionKind::kWorld, {"world"}, "World");
-    add_required(made, "name", text_value(world_.name), {0, 0, 0, 0, "", "name of the world"});
+    add_required(made, "name", text_value(world_.name), without_limits("name of the world"));
     FieldValue seed{FieldKind::kSeed,
                     toml_seed(world_.seed),
                     {static_cast<double>(world_.seed)},
                     fmt::format("{}", world_.seed)};
-    add_required(made, "seed", std::move(seed),
-                 {0, 0x1.0p64, 0, 0x1.0p63, "", "random seed of the world"});
+    add_required(
+        made, "seed", std::move(seed),
+        {.high = 0x1.0p64, .soft_high = 0x1.0p63, .unit = "", .doc = "random seed of the world"});
     const double x = static_cast<double>(world_.blocks_x), z = static_cast<double>(world_.blocks_z);
     FieldValue blocks{
         FieldKind::kIntegerPair, fmt::format("[{}, {}]", world_.blocks_x, world_.blocks_z), {x, z}};
@@ -195,7 +206,7 @@ class SchemaBuilder {
     add_all(made, world_.palette, Palette{}, [](auto& o, const auto& v) { visit_palette(o, v); });
     for (std::size_t i = 0; i < kPaletteImages.size(); ++i)
       add(made, kPaletteImages[i], text_value(world_.palette.images[i], FieldKind::kImage), "",
-          {0, 0, 0, 0, "", "a square image that repeats and replaces the texture"});
+          without_limits("a square image that repeats and replaces the texture"));
     return made;
   }
 
@@ -203,10 +214,10 @@ class SchemaBuilder {
     const models::Species usual;
     WorldSection made = section(SectionKind::kSpecies, path, s.name);
     add_required(made, "name", text_value(s.name),
-                 {0, 0, 0, 0, "", "snake_case, different from all other models"});
-    add(made, "doc", text_value(s.doc), "", {0, 0, 0, 0, "", "description in one sentence"});
+                 without_limits("snake_case, different from all other models"));
+    add(made, "doc", text_value(s.doc), "", without_limits("description in one sentence"));
     add_required(made, "axiom", text_value(s.axiom),
-                 {0, 0, 0, 0, "", "the symbol of the trunk's kind"});
+                 without_limits("the symbol of the trunk's kind"));
     add_all(made, s, usual, [](auto& o, const auto& v) { models::visit_counts(o, v); });
     add_all(made, s, usual, [](auto& o, const auto& v) { models::visit_numbers(o, v); });
     for (std::size_t i = 0; i < s.kinds.size(); ++i)
@@ -228,9 +239,9 @@ class SchemaBuilder {
     const models::SpeciesKind usual;
     WorldSection made = section(SectionKind::kSpeciesKind, std::move(path), k.symbol);
     add_required(made, "symbol", text_value(k.symbol),
-                 {0, 0, 0, 0, "", "the letter of this kind in rules"});
+                 without_limits("the letter of this kind in rules"));
     add(made, "leader", value_of(k.leader), "false",
-        {0, 0, 0, 0, "", "continues its parent from the end, in its direction"});
+        without_limits("continues its parent from the end, in its direction"));
     add_choice(made, "leaves", k.leaves, usual.leaves, models::kLeavesChoices,
                "branches with leaves; tips: branches that do not branch further");
     add_all(made, k, usual, [](auto& o, const auto& v) { models::visit_kind_numbers(o, v); });
@@ -240,9 +251,9 @@ class SchemaBuilder {
   WorldSection rule_section(const models::SpeciesRule& r, TextPath path) const {
     WorldSection made =
         section(SectionKind::kSpeciesRule, std::move(path), fmt::format("{} -> {}", r.from, r.to));
-    add_required(made, "from", text_value(r.from), {0, 0, 0, 0, "", "the kind that branches"});
+    add_required(made, "from", text_value(r.from), without_limits("the kind that branches"));
     add_required(made, "to", text_value(r.to),
-                 {0, 0, 0, 0, "", "its branches: letters, each with a number or, once, a star"});
+                 without_limits("its branches: letters, each with a number or, once, a star"));
     add_all(made, r, models::SpeciesRule{},
             [](auto& o, const auto& v) { models::visit_rule_numbers(o, v); });
     return made;
@@ -252,10 +263,9 @@ class SchemaBuilder {
     const HandmadeModel usual;
     WorldSection made = section(SectionKind::kModel, path, m.name);
     add_required(made, "name", text_value(m.name),
-                 {0, 0, 0, 0, "", "snake_case, different from all other models"});
-    add_required(
-        made, "file", text_value(m.file),
-        {0, 0, 0, 0, "", "a glTF file (.glb or .gltf) in the folder of the world or below"});
+                 without_limits("snake_case, different from all other models"));
+    add_required(made, "file", text_value(m.file),
+                 without_limits("a glTF file (.glb or .gltf) in the folder of the world or below"));
     add_all(made, m, usual, [](auto& o, const auto& v) { visit_handmade(o, v); });
     add_choice(made, "collider", m.collider, usual.collider, kHandmadeColliders,
                "collider: the hull of its points, their box, or none");
@@ -265,11 +275,11 @@ class SchemaBuilder {
   void add_mask(WorldSection& to, const ScatterMask& mask) const {
     const bool whole_world = mask.area_m == std::array<double, 4>{};
     add(to, "on_ground", {FieldKind::kToml, mask.ground == 0 ? "" : toml_grounds(mask.ground), {}},
-        "", {0, 0, 0, 0, "", "kinds of ground with instances: [\"grass\", \"forest\"]"});
+        "", without_limits("kinds of ground with instances: [\"grass\", \"forest\"]"));
     add(to, "mask_image", text_value(mask.image, FieldKind::kImage), "",
-        {0, 0, 0, 0, "", "an image whose grey is the fraction of instances kept; white: all"});
+        without_limits("an image whose grey is the fraction of instances kept; white: all"));
     add(to, "mask_area_m", {FieldKind::kToml, whole_world ? "" : toml_vector(mask.area_m), {}}, "",
-        {0, 0, 0, 0, "m", "area of the image: [x0, z0, x1, z1]; default: the whole world"});
+        without_limits("area of the image: [x0, z0, x1, z1]; default: the whole world", "m"));
     add_all(to, mask, ScatterMask{}, [](auto& o, const auto& v) { visit_mask(o, v); });
   }
 
@@ -277,7 +287,7 @@ class SchemaBuilder {
     const models::ModelType& type = registry_[s.model];
     WorldSection made = section(SectionKind::kScatter, path, std::string(type.name()));
     WorldField& model = add(made, "model", text_value(std::string(type.name()), FieldKind::kChoice),
-                            "", {0, 0, 0, 0, "", "model type of the instances"});
+                            "", without_limits("model type of the instances"));
     model.required = true;
     for (models::ModelIndex i = 0; i < registry_.size(); ++i)
       if (i != world_.terrain_model) model.choices.emplace_back(registry_[i].name());
@@ -296,12 +306,12 @@ class SchemaBuilder {
     const models::ModelType& type = registry_[p.model];
     WorldSection made = section(SectionKind::kPlace, path, std::string(type.name()));
     WorldField& model = add(made, "model", text_value(std::string(type.name()), FieldKind::kChoice),
-                            "", {0, 0, 0, 0, "", "model type"});
+                            "", without_limits("model type"));
     model.required = true;
     for (models::ModelIndex i = 0; i < registry_.size(); ++i)
       if (i != world_.terrain_model) model.choices.emplace_back(registry_[i].name());
     add_required(made, "at_m", {FieldKind::kToml, toml_vector(std::array{p.at_m.x, p.at_m.y}), {}},
-                 {0, 0, 0, 0, "m", "position: [x, z]"});
+                 without_limits("position: [x, z]", "m"));
     add_all(made, p, Place{}, [](auto& o, const auto& v) { visit_placed(o, v); });
     const auto specs = type.parameters();
     for (std::size_t i = 0; i < specs.size(); ++i) {
@@ -316,10 +326,10 @@ class SchemaBuilder {
     const Stamp usual;
     WorldSection made = section(SectionKind::kStamp, path, s.image);
     add_required(made, "image", text_value(s.image, FieldKind::kImage),
-                 {0, 0, 0, 0, "", "an image whose grey is the height"});
+                 without_limits("an image whose grey is the height"));
     add_required(made, "centre_m",
                  {FieldKind::kToml, toml_vector(std::array{s.centre_m.x, s.centre_m.y}), {}},
-                 {0, 0, 0, 0, "m", "centre of the square: [x, z]"});
+                 without_limits("centre of the square: [x, z]", "m"));
     add_all(made, s, usual, [](auto& o, const auto& v) { visit_stamp(o, v); });
     add_choice(made, "mode", s.mode, usual.mode, kStampModes, "adds to the ground, or replaces it");
     return made;
@@ -329,7 +339,7 @@ class SchemaBuilder {
     WorldSection made =
         section(SectionKind::kRoad, path, fmt::format("road {}", path.back().index + 1));
     add_required(made, "points_m", {FieldKind::kToml, toml_points(r.points_m), {}},
-                 {0, 0, 0, 0, "m", "points on the road: [[x, z], [x, z]]"});
+                 without_limits("points on the road: [[x, z], [x, z]]", "m"));
     add_all(made, r, Road{}, [](auto& o, const auto& v) { visit_road(o, v); });
     return made;
   }
@@ -399,29 +409,6 @@ std::string field_label(std::string_view key, std::string_view unit) {
   if (!label.empty() && label[0] >= 'a' && label[0] <= 'z')
     label[0] = static_cast<char>(label[0] - 'a' + 'A');
   return label;
-}
-
-std::size_t max_tables(SectionKind kind) {
-  switch (kind) {
-    case SectionKind::kSpecies:
-      return kMaxSpecies;
-    case SectionKind::kSpeciesKind:
-      return models::kMaxKinds;
-    case SectionKind::kSpeciesRule:
-      return models::kMaxRules;
-    case SectionKind::kModel:
-      return kMaxHandmadeModels;
-    case SectionKind::kScatter:
-      return kMaxScatters;
-    case SectionKind::kPlace:
-      return kMaxPlaces;
-    case SectionKind::kStamp:
-      return kMaxStamps;
-    case SectionKind::kRoad:
-      return kMaxRoads;
-    default:
-      return 1;
-  }
 }
 
 }  // namespace psygen::world

@@ -96,8 +96,4 @@ const WorldField* find_field(const std::vector<WorldSection>& sections, const Te
 // The label for a key: "sun_elevation_deg" in degrees gives "Sun elevation".
 std::string field_label(std::string_view key, std::string_view unit);
 
-// The maximum number of tables in a file: species, kinds and rules of one species, handmade models,
-// scatters, places, stamps, roads.
-std::size_t max_tables(SectionKind kind);
-
 }  // namespace psygen::world

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "engine/world/surface.hpp"
+#include "engine/world/world.hpp"
 #include "tests/editor/document/support.hpp"
 
 namespace psygen::editor {

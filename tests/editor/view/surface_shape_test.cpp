@@ -7,7 +7,7 @@
 #include "editor/document/parsed_world.hpp"
 #include "editor/view/ground_grid.hpp"
 #include "editor/view/tool_overlay.hpp"
-#include "engine/world/surface.hpp"
+#include "engine/world/world.hpp"
 #include "tests/editor/document/support.hpp"
 
 namespace psygen::editor {

@@ -3,7 +3,7 @@
 
 #include <QToolBar>
 
-#include "engine/world/surface.hpp"
+#include "engine/world/world.hpp"
 #include "tests/editor/window/window_fixture.hpp"
 
 namespace psygen::editor {

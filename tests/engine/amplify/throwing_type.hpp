@@ -1,5 +1,5 @@
-// A model type that throws until it is told not to, and a small world in which two of it stand on
-// each block before everything else.
+// A model type that throws until a test disables it, and a small world in which each block has two
+// instances of it before all other models.
 #pragma once
 
 #include <atomic>

@@ -1,8 +1,8 @@
-#include "engine/audio/loudness.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "engine/audio/audio.hpp"
 
 namespace psygen::audio {
 namespace {

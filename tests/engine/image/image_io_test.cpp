@@ -23,7 +23,7 @@ void put_big_endian(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint3
     bytes[at + i] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
 }
 
-// Makes the checksum of the chunk at `at` fit what the chunk holds now.
+// Updates the checksum of the chunk at `at` to its present content.
 void repair_checksum(std::vector<std::uint8_t>& bytes, std::size_t at, std::size_t length) {
   std::uint32_t crc = 0xFFFFFFFFU;
   for (std::size_t i = at + 4; i < at + 8 + length; ++i) {
@@ -34,7 +34,7 @@ void repair_checksum(std::vector<std::uint8_t>& bytes, std::size_t at, std::size
   put_big_endian(bytes, at + 8 + length, ~crc);
 }
 
-// A written PNG whose header claims another size, so that the claim is what has to be refused.
+// A written PNG whose header states another size, so that the reader must reject the header.
 std::vector<std::uint8_t> png_that_claims(const std::filesystem::path& path, std::uint32_t width,
                                           std::uint32_t height) {
   EXPECT_TRUE(write_png(path, make_image(1, 1)));
@@ -233,7 +233,7 @@ TEST(ImageIo, APngCutOffAtAnyByteIsAnErrorWithThePath) {
 TEST(ImageIo, AnyDamagedByteGivesAnImageOfTheSameSizeOrAnError) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_png(folder / "a.png", noise_image(5, 5)));
-  // Every byte of the PNG; every fifth of the JPEG, whose decoder goes on after damage.
+  // Every byte of the PNG; every fifth of the JPEG, whose decoder continues after damage.
   for (const std::vector<std::uint8_t>& bytes : {bytes_of(folder / "a.png"), bytes_of(kJpegFile)}) {
     for (std::size_t i = 0; i < bytes.size(); i += bytes[0] == 0xFF ? 5 : 1) {
       std::vector<std::uint8_t> damaged = bytes;

@@ -24,7 +24,7 @@ TEST(Similarity, IsOneForAnImageAndItselfWithAnyAlpha) {
   EXPECT_DOUBLE_EQ(structural_similarity(image, clear), 1.0);
 }
 
-// By hand: (2 · 100 · 150 + 6.5025) / (100² + 150² + 6.5025), there is no structure.
+// By hand: (2 · 100 · 150 + 6.5025) / (100² + 150² + 6.5025), without structure.
 TEST(Similarity, OfTwoGreysIsThatOfTheirMeans) {
   const Image a = make_image(20, 12, 100, 100, 100, 255);
   const Image b = make_image(20, 12, 150, 150, 150, 255);

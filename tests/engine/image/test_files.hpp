@@ -1,4 +1,4 @@
-// Files and pictures for the tests of image.
+// Files and images for the tests of image.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace psygen::image {
 
-// The content of a file; empty when it cannot be read.
+// The content of a file; empty if it cannot be read.
 inline std::vector<std::uint8_t> bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -31,7 +31,7 @@ inline void write_bytes(const std::filesystem::path& path, std::span<const std::
              static_cast<std::streamsize>(bytes.size()));
 }
 
-// A picture with noise in all four channels, the same in every run.
+// An image with noise in all four channels, the same in every run.
 inline Image noise_image(std::uint32_t width, std::uint32_t height) {
   Image image = make_image(width, height);
   for (std::size_t i = 0; i < image.rgba.size(); ++i)

@@ -33,28 +33,28 @@ TEST(InputState, ClearsEventsAndKeepsHeldControls) {
 
 TEST(InputFilter, PassesEverythingThatIsNotTaken) {
   InputFilter filter;
-  EXPECT_TRUE(filter.apply(frame(true, true), false, false).was_pressed(Key::kW));
-  EXPECT_TRUE(filter.apply(frame(true), false, false).is_held(Key::kW));
-  EXPECT_TRUE(filter.apply(frame(false, false, true), false, false).was_released(Key::kW));
+  EXPECT_TRUE(filter.apply(frame(true, true), {}).was_pressed(Key::kW));
+  EXPECT_TRUE(filter.apply(frame(true), {}).is_held(Key::kW));
+  EXPECT_TRUE(filter.apply(frame(false, false, true), {}).was_released(Key::kW));
 }
 
 TEST(InputFilter, ReleasesHeldControlsOnceWhenTheyAreTaken) {
   InputFilter filter;
-  filter.apply(frame(true, true), false, false);
-  const InputState taken = filter.apply(frame(true), true, false);
+  filter.apply(frame(true, true), {});
+  const InputState taken = filter.apply(frame(true), {.keyboard = true});
   EXPECT_TRUE(taken.was_released(Key::kW));
   EXPECT_FALSE(taken.is_held(Key::kW));
-  EXPECT_FALSE(filter.apply(frame(true), true, false).was_released(Key::kW));
+  EXPECT_FALSE(filter.apply(frame(true), {.keyboard = true}).was_released(Key::kW));
 }
 
 TEST(InputFilter, HidesControlsPressedWhileTakenUntilTheirRelease) {
   InputFilter filter;
   InputState typed = frame(true, true);
   typed.text.push_back('w');
-  EXPECT_TRUE(filter.apply(typed, true, false).text.empty());
-  EXPECT_FALSE(filter.apply(frame(true), false, false).is_held(Key::kW)) << "it was typed";
-  EXPECT_FALSE(filter.apply(frame(false, false, true), false, false).was_released(Key::kW));
-  EXPECT_TRUE(filter.apply(frame(true, true), false, false).is_held(Key::kW));
+  EXPECT_TRUE(filter.apply(typed, {.keyboard = true}).text.empty());
+  EXPECT_FALSE(filter.apply(frame(true), {}).is_held(Key::kW)) << "it was typed";
+  EXPECT_FALSE(filter.apply(frame(false, false, true), {}).was_released(Key::kW));
+  EXPECT_TRUE(filter.apply(frame(true, true), {}).is_held(Key::kW));
 }
 
 TEST(InputFilter, TakesTheMouseWithoutTheKeyboard) {
@@ -64,7 +64,7 @@ TEST(InputFilter, TakesTheMouseWithoutTheKeyboard) {
   input.wheel = 2;
   input.move_px = {3, 4};
   input.pads[0].connected = true;
-  const InputState rest = filter.apply(input, false, true);
+  const InputState rest = filter.apply(input, {.mouse = true});
   EXPECT_TRUE(rest.is_held(Key::kW));
   EXPECT_FALSE(rest.is_held(MouseButton::kLeft));
   EXPECT_EQ(rest.wheel, 0);

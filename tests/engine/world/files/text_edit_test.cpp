@@ -167,13 +167,6 @@ TEST(TextEdit, ASpeciesIsCopiedWithItsKindsAndRules) {
   EXPECT_EQ(world->species.back(), first);
 }
 
-TEST(TextEdit, SeveralKeysOfATableAreSetTogether) {
-  const auto changed = with_values(kText, {"water"}, "# a part\nlevel_m = 4 # high\nshore_m = 2\n");
-  ASSERT_TRUE(changed) << changed.error().message;
-  EXPECT_EQ(*changed, replaced("level_m = 3\n", "level_m = 4\nshore_m = 2\n"));
-  EXPECT_FALSE(with_values(kText, {"water"}, "[a]\nb = 1"));
-}
-
 TEST(TomlValues, AreTheShortestThatReadBackEqual) {
   EXPECT_EQ(toml_number(0.1), "0.1");
   EXPECT_EQ(toml_number(3.0), "3");
