@@ -1,4 +1,4 @@
-// The bindings of the one descriptor set that every pipeline uses.
+// The data of the frame, in set 0 of every pipeline.
 #ifndef PSYGEN_FRAME_GLSL
 #define PSYGEN_FRAME_GLSL
 #extension GL_GOOGLE_include_directive : require

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 
-layout(set = 0, binding = PSYGEN_BINDING_GLYPHS, std430) readonly buffer Ends {
+layout(set = 2, binding = PSYGEN_LINE_ENDS, std430) readonly buffer Ends {
   OverlayVertex ends[];
 };
 layout(location = 0) out vec3 colour;

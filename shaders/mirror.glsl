@@ -1,8 +1,8 @@
 // The land that water mirrors, taken from the picture of the landscape without water: the mirrored
 // ray is followed through its depth. What that picture lacks, beyond its edges or behind something,
 // is not mirrored. After McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing" (2014).
-layout(set = 0, binding = PSYGEN_BINDING_MIRROR) uniform sampler2D mirror;
-layout(set = 0, binding = PSYGEN_BINDING_MIRROR_DEPTH) uniform sampler2D mirror_depth;
+layout(set = 2, binding = PSYGEN_REFLECTION_COLOUR) uniform sampler2D mirror;
+layout(set = 2, binding = PSYGEN_REFLECTION_DEPTH) uniform sampler2D mirror_depth;
 
 const int kMirrorSteps = 32, kMirrorHalvings = 5;
 

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 
-layout(set = 0, binding = PSYGEN_BINDING_FONT) uniform sampler2D font;
+layout(set = 2, binding = PSYGEN_OVERLAY_FONT) uniform sampler2D font;
 layout(location = 0) in vec4 colour;
 layout(location = 1) in vec2 uv;
 layout(location = 2) flat in vec4 look;

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 
-layout(set = 0, binding = PSYGEN_BINDING_GLYPHS, std430) readonly buffer Glyphs {
+layout(set = 2, binding = PSYGEN_OVERLAY_VERTICES, std430) readonly buffer Glyphs {
   OverlayVertex vertices[];
 };
 layout(location = 0) out vec4 colour;

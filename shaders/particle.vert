@@ -8,7 +8,7 @@
 #include "lighting.glsl"
 #include "lamps.glsl"
 
-layout(set = 0, binding = PSYGEN_BINDING_EMITTER, std140) uniform Emitter { EmitterData e; };
+layout(set = 2, binding = PSYGEN_PARTICLE_EMITTER, std140) uniform Emitter { EmitterData e; };
 layout(location = 0) out vec4 colour;
 layout(location = 1) out vec2 place;                // −1 … 1 in the particle
 layout(location = 2) flat out vec2 covers_softness;  // share of what is behind that it covers

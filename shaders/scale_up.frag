@@ -5,8 +5,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 
-layout(set = 0, binding = PSYGEN_BINDING_COARSE) uniform sampler2D coarse;
+layout(set = 0, binding = PSYGEN_SCALE_UP_LANDSCAPE) uniform sampler2D landscape;
 layout(location = 0) in vec4 place;
 layout(location = 0) out vec4 pixel;
 
-void main() { pixel = texture(coarse, place.xy); }
+void main() { pixel = texture(landscape, place.xy); }

@@ -13,26 +13,30 @@ using glm::mat4;
 using glm::vec4;
 #endif
 
-// Bindings of the descriptor set.
+// Bindings of set 0, which all passes share.
 #define PSYGEN_BINDING_FRAME 0
 #define PSYGEN_BINDING_DRAWS 1
-#define PSYGEN_BINDING_COARSE 2  // the first texture: see scale_up.frag
-#define PSYGEN_BINDING_CLOUDS 3
-#define PSYGEN_BINDING_FONT 4
-#define PSYGEN_BINDING_GLYPHS 5
-#define PSYGEN_BINDING_SHADOWS 6
-#define PSYGEN_BINDING_MATERIALS 7
-#define PSYGEN_BINDING_EMITTER 8
-#define PSYGEN_BINDING_GROUND 9
-#define PSYGEN_BINDING_SHADE 10
-#define PSYGEN_BINDING_PICTURES 11
-#define PSYGEN_BINDING_MIRROR 12
-#define PSYGEN_BINDING_MIRROR_DEPTH 13
+#define PSYGEN_BINDING_CLOUDS 2
+#define PSYGEN_BINDING_SHADOWS 3
+#define PSYGEN_BINDING_MATERIALS 4
+#define PSYGEN_BINDING_GROUND 5
+#define PSYGEN_BINDING_SHADE 6
+#define PSYGEN_BINDING_PICTURES 7
 
-// Bindings of the second descriptor set: the textures of a material.
+// Bindings of set 1: the textures of a material.
 #define PSYGEN_TEXTURE_BASE 0
 #define PSYGEN_TEXTURE_NORMAL 1
 #define PSYGEN_TEXTURE_EMISSIVE 2
+
+// Bindings of set 2, of each pass that has one.
+#define PSYGEN_REFLECTION_COLOUR 0
+#define PSYGEN_REFLECTION_DEPTH 1
+#define PSYGEN_PARTICLE_EMITTER 0
+#define PSYGEN_LINE_ENDS 0
+#define PSYGEN_OVERLAY_FONT 0
+#define PSYGEN_OVERLAY_VERTICES 1
+// The texture in the only set of scale_up.frag, beside PSYGEN_BINDING_FRAME.
+#define PSYGEN_SCALE_UP_LANDSCAPE 1
 
 // Bits of MaterialData::options.x.
 #define PSYGEN_MATERIAL_NORMAL_MAP 1u

@@ -49,14 +49,8 @@ Result<void> Renderer::set_model_picture(std::size_t number, const core::ModelPi
 Result<MaterialId> Renderer::add_material(const Material& material) {
   return impl_->add_material(material);
 }
-Result<void> Renderer::prepare_lights() {
-  return impl_->prepare_lights();
-}
-Result<void> Renderer::prepare_particles() {
-  return impl_->prepare_particles();
-}
-Result<void> Renderer::prepare_objects() {
-  return impl_->prepare_objects();
+Result<void> Renderer::prepare(Feature feature) {
+  return impl_->prepare(feature);
 }
 std::uint64_t Renderer::texture_bytes() const {
   return impl_->texture_bytes();

@@ -48,12 +48,9 @@ class Renderer {
   // for numbers that are not finite or colours below 0, and for unknown textures; kOverBudget
   // beyond 4096 materials.
   core::Result<MaterialId> add_material(const Material& material);
-  // Creates the pipelines for objects, if they do not exist. Otherwise the first frame with objects
-  // does. Takes up to a second. Fails with kOutOfMemory or kDeviceLost.
-  core::Result<void> prepare_objects();
-  // The same for what point lights reach, and for particles.
-  core::Result<void> prepare_lights();
-  core::Result<void> prepare_particles();
+  // Creates the pipelines of a feature, if they do not exist. Otherwise the first frame that needs
+  // them does. Takes up to a second. Fails with kOutOfMemory or kDeviceLost.
+  core::Result<void> prepare(Feature feature);
   // The pictures of models (MeshDraw::pictured), by number, for the scene that is drawn. Replaces
   // all. Waits for the device. Fails, and changes nothing, with kOverBudget for more than
   // core::kMaxPictures or beyond the budget of textures; kInvalidArgument for other sizes than

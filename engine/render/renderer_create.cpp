@@ -61,8 +61,10 @@ Result<void> RendererImpl::create_device() {
   Result<DeviceCandidate> chosen =
       choose_device(find_devices(*instance_, surface_.get()), options_.device_name);
   if (!chosen) return tl::unexpected(chosen.error());
-  Result<std::unique_ptr<Device>> device = Device::create(
-      *chosen, options_.surface != nullptr, options_.timestamps, options_.device_timeout_seconds);
+  Result<std::unique_ptr<Device>> device =
+      Device::create(*chosen, {.windowed = options_.surface != nullptr,
+                               .timestamps = options_.timestamps,
+                               .timeout_seconds = options_.device_timeout_seconds});
   if (!device) return tl::unexpected(device.error());
   device_ = std::move(*device);
   if (options_.surface != nullptr) {
@@ -96,8 +98,8 @@ Result<void> RendererImpl::create(const Progress& progress) {
   if (Result<void> made = materials_.create(*device_, options_.texture_budget_bytes); !made)
     return made;
   if (Result<void> made = pictures_.create(*device_, {}); !made) return made;
-  for (FrameSlot& slot : slots_) {
-    if (Result<void> made = slot.create(*device_); !made) return made;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (Result<void> made = slots_[i].create(*device_, i); !made) return made;
   }
   const Preset preset =
       options_.preset.value_or(device_->info.software ? Preset::kLow : Preset::kHigh);
@@ -133,7 +135,7 @@ Result<void> RendererImpl::create_culling() {
   if (options_.path == RenderPath::kCpu || (options_.path == RenderPath::kAuto && !suits))
     return {};
   culling_ = std::make_unique<GpuCulling>();
-  const VkSampleCountFlagBits samples = pipelines_.samples();
+  const VkSampleCountFlagBits samples = looks_.samples;
   const bool readable = (device_->sampled_depth_counts & samples) != 0;
   return culling_->create(*device_, options_.occlusion && readable, samples, kFramesInFlight);
 }
@@ -174,7 +176,7 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
   std::vector<Targets> targets;
   for (std::size_t i = 0; i < (culling_ ? 1 : kFramesInFlight); ++i) {
     Result<Targets> made =
-        make_targets(*device_, colour_format_, extent, pipelines_.samples(), pipelines_.mirrors());
+        make_targets(*device_, colour_format_, extent, looks_.samples, looks_.reflections);
     if (!made) return tl::unexpected(made.error());
     made->host_ordered = !culling_;
     made->keeps_order = !culling_ && device_->info.software && !made->has_samples();
@@ -193,10 +195,10 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
 core::Extent RendererImpl::landscape_size(float resolution) {
   const core::Extent whole = size();
   if (!(resolution < 1) || !scales_up_) return whole;
-  if (targets_.back().coarse.image.get() == VK_NULL_HANDLE) {
+  if (targets_.back().low_resolution.image.get() == VK_NULL_HANDLE) {
     wait_idle();
     for (Targets& targets : targets_)
-      scales_up_ = scales_up_ && add_coarse(*device_, colour_format_, targets).has_value();
+      scales_up_ = scales_up_ && add_low_resolution(*device_, colour_format_, targets).has_value();
     use_targets();
     if (!scales_up_) return whole;
   }

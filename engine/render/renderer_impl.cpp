@@ -12,7 +12,6 @@
 #include "engine/core/out_of_memory.hpp"
 #include "engine/render/device/software_tuning.hpp"
 #include "engine/render/frame/frame_data.hpp"
-#include "engine/render/passes/particles.hpp"
 
 namespace psygen::render {
 
@@ -113,25 +112,18 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
     const Result<void> copied = staged_->flush(*device_, pool_blocks_, slot.commands());
     if (!copied) return copied;
   }
-  const ScenePass pass{.list = list_,
-                       .materials = &materials_,
-                       .buffers = {pool_blocks_, shared_.buffer()},
-                       .culled = {culling_.get(), index_of(slot)},
-                       .glyph_vertex_count = text_vertices_,
-                       .line_vertex_count = line_vertices_,
-                       .gui = gui_runs_,
-                       .view = view_,
-                       .water = water_,
-                       .lamps = frame_.lamp_count.x > 0,
-                       .emitters = emitter_runs_,
-                       .shadows = frame_.shadow.y > 0};
   Targets& targets = targets_of(slot);
   targets.drawn = drawn_;
   // Frames without a barrier need no parts: their pixels are filled beside the triangles of the
   // next.
-  targets.in_parts = targets.keeps_order && (options_.surface != nullptr || targets.is_coarse());
-  targets.mirrors = water_ && targets.mirror.exists();
-  record_scene(*device_, pipelines_, slot, targets, pass);
+  targets.in_parts =
+      targets.keeps_order && (options_.surface != nullptr || targets.is_low_resolution());
+  targets.reflects = water_ && targets.reflection.exists();
+  Recording to = recording(slot, targets);
+  to.culling = culling_.get();
+  to.view = view_;
+  to.lamps = frame_.lamp_count.x > 0;
+  record_frame(looks_.passes, to);
   if (windowed) {
     record_copy_to_window(*device_, slot.commands(), targets, swapchain_.image(),
                           swapchain_.extent());
@@ -139,15 +131,17 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
   return slot.end(*device_);
 }
 
-// Makes what only few programs need and this frame is the first to have.
-Result<void> RendererImpl::prepare(const FrameInput& input) {
-  if (!input.objects.empty()) {
-    if (Result<void> made = prepare_objects(); !made) return made;
-  }
-  if (!input.point_lights.empty()) {
-    if (Result<void> made = prepare_lights(); !made) return made;
-  }
-  return input.particles.empty() ? Result<void>{} : prepare_particles();
+// Makes the features that this frame is the first to have.
+Result<void> RendererImpl::prepare_for(const FrameInput& input) {
+  Result<void> made;
+  if (!input.objects.empty()) made = prepare(Feature::kObjects);
+  if (made && !input.point_lights.empty()) made = prepare(Feature::kPointLights);
+  if (!made) return made;
+  return try_each_pass(looks_.passes, [&](const auto& pass) -> Result<void> {
+    if constexpr (requires { pass.needs_feature(input); })
+      return pass.needs_feature(input) ? prepare(pass.kFeature) : Result<void>{};
+    return {};
+  });
 }
 
 Result<void> RendererImpl::set_pictures(std::span<const core::ModelPicture> pictures) {
@@ -168,7 +162,7 @@ Result<void> RendererImpl::set_pictures(std::span<const core::ModelPicture> pict
   Result<void> made = noted(pictures_.create(*device_, pictures));
   if (!made) return made;
   materials_.set_budget(options_.texture_budget_bytes - pictures_.bytes());
-  use_pipelines();
+  use_sets();
   return {};
 }
 
@@ -199,7 +193,7 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
   if (targets_.empty()) {
     return core::fail(ErrorCode::kOutOfMemory, "there was no memory for a picture of this size");
   }
-  if (Result<void> made = prepare(input); !made) return tl::unexpected(made.error());
+  if (Result<void> made = prepare_for(input); !made) return tl::unexpected(made.error());
   Result<FrameResult> drawn = noted(draw_frame(input, slot_of(frame_value_ + 1)));
   if (drawn && presents) drawn->present = settled;
   return drawn;
@@ -207,44 +201,40 @@ Result<FrameResult> RendererImpl::render(const FrameInput& input) {
 
 // Makes the list of draws: all draws, or candidates for the device.
 void RendererImpl::list_draws(const FrameInput& input) {
-  const bool coloured = colours_draws(input.view);
-  std::uint32_t pushed_from = pushed_from_;
   const std::size_t lamps = std::min(input.point_lights.size(), kMaxPointLights);
+  ListFacts facts{.shared = shared_.lists(),
+                  .materials = materials_.kinds(),
+                  .lights = input.point_lights.first(lamps),
+                  .pushed_from = pushed_from_,
+                  .coloured = colours_draws(input.view)};
   if (culling_) {
-    culling_->set_frame(view_volume(frame_.clip_from_camera), frame_, input, drawn_,
-                        shared_.lists(), materials_.kinds());
+    culling_->set_frame(input, frame_, drawn_, facts);
     // Cascades are drawn from a list of the CPU, with pushed data.
     if (frame_.shadow.y <= 0) return list_.build({}, {}, {});
-    pushed_from = 0;
+    facts.pushed_from = 0;
   }
-  list_.build(input.terrain, input.models, shared_.lists(), pushed_from, coloured, input.objects,
-              materials_.kinds(), input.point_lights.first(lamps));
+  list_.build(facts, input.terrain, input.models, input.objects);
 }
 
-// Views for debugging show no particles.
-void RendererImpl::list_particles(const FrameInput& input) {
-  emitters_.clear();
-  emitter_runs_.clear();
-  if (colours_draws(input.view) || input.view == View::kWireframe) return;
-  const std::size_t last = input.particles.size();
-  for (std::size_t i = last - std::min<std::size_t>(last, kMaxEmitters); i < last; ++i) {
-    const ParticleDraw& draw = input.particles[i];
-    const MaterialId material = draw.kind.material;
-    const bool textured = kind_of(materials_.kinds(), material).textured;
-    emitters_.push_back(data_of(draw));
-    emitter_runs_.push_back(
-        {std::min(draw.count, kMaxParticlesPerEmitter), textured ? material : kPlainMaterial});
-  }
+void RendererImpl::list_frame(const FrameInput& input) {
+  const FrameFacts facts{frame_, materials_.kinds(), overlay_, size()};
+  for_each_pass(looks_.passes, [&](auto& pass) {
+    if constexpr (requires { pass.list(input, facts); }) pass.list(input, facts);
+  });
 }
 
 Result<void> RendererImpl::write_frame(FrameSlot& slot) {
-  Result<void> written =
-      slot.write(*device_, pipelines_.bindings(), frame_, list_.data(), glyphs_, emitters_);
-  if (written) slot.write_shade(shade_.words());
+  const std::size_t number = slot.number();
+  Result<void> written = slot.write(*device_, looks_.sets, frame_, list_.data()).and_then([&] {
+    slot.write_shade(shade_.words());
+    return try_each_pass(looks_.passes, [&](auto& pass) -> Result<void> {
+      if constexpr (requires { pass.write(*device_, number); }) return pass.write(*device_, number);
+      return {};
+    });
+  });
   if (!written || !culling_) return written;
-  written = culling_->write(*device_, index_of(slot));
-  if (written)
-    slot.read_draws_from(*device_, pipelines_.bindings(), culling_->draw_data(index_of(slot)));
+  written = culling_->write(*device_, number);
+  if (written) looks_.sets.write_draws(*device_, number, culling_->draw_data(number));
   return written;
 }
 
@@ -252,24 +242,6 @@ Result<void> RendererImpl::write_frame(FrameSlot& slot) {
 Apart RendererImpl::apart_now() {
   if (std::exchange(resized_, false)) return Apart::kResized;
   return frame_value_ - idle_value_ < kFramesInFlight ? Apart::kAfterIdle : Apart::kNo;
-}
-
-void RendererImpl::lay_out_overlay(const FrameInput& input) {
-  glyphs_.clear();
-  if (input.hud != nullptr) overlay_.lay_out(*input.hud, size(), glyphs_);
-  overlay_.lay_out(input.panels, size(), input.text_scale, glyphs_);
-  text_vertices_ = static_cast<std::uint32_t>(glyphs_.size());
-  add_lines(input.lines);
-  gui_runs_.clear();
-  if (input.gui != nullptr) overlay_.lay_out(*input.gui, size(), glyphs_, gui_runs_);
-}
-
-void RendererImpl::add_lines(std::span<const Line> lines) {
-  line_vertices_ = static_cast<std::uint32_t>(2 * std::min(lines.size(), kMaxLines));
-  for (const Line& line : lines.first(line_vertices_ / 2)) {
-    glyphs_.push_back({{line.from, 1.0F}, {line.colour, 1.0F}, {}});
-    glyphs_.push_back({{line.to, 1.0F}, {line.colour, 1.0F}, {}});
-  }
 }
 
 Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot& slot) {
@@ -282,10 +254,9 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   if (const auto gpu = slot.timer().read(*device_); gpu && gpu->frame > warm_up_value_) gpu_ = gpu;
 
   const double build_start = core::monotonic_seconds();
-  lay_out_overlay(input);
   view_ = input.view;
   water_ = input.water.has_value();
-  frame_ = frame_data(input, size(), pipelines_.traits());
+  frame_ = frame_data(input, size(), looks_.traits);
   const glm::dvec3& at = input.pose.position.local;
   shade_.build(input.spots, {at.x, at.z});
   drawn_ = landscape_size(input.resolution);
@@ -293,9 +264,9 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
                   static_cast<float>(drawn_.height)};
   out.resolution = static_cast<double>(drawn_.height) / size().height;
   const GpuCulling::Counts counted =
-      culling_ && has_list_ ? culling_->read_counts(index_of(slot)) : GpuCulling::Counts{};
+      culling_ && has_list_ ? culling_->read_counts(slot.number()) : GpuCulling::Counts{};
   list_draws(input);
-  list_particles(input);
+  list_frame(input);
   if (Result<void> written = write_frame(slot); !written) return tl::unexpected(written.error());
   out.cpu_ms = ms_since(build_start);
 

@@ -16,13 +16,25 @@
 #include "engine/render/memory/shared_index_lists.hpp"
 #include "engine/render/memory/staged_geometry.hpp"
 #include "engine/render/meshes/contact_shadow_map.hpp"
-#include "engine/render/passes/pipelines.hpp"
-#include "engine/render/passes/scene_recorder.hpp"
+#include "engine/render/passes/gpu_culling.hpp"
+#include "engine/render/passes/record.hpp"
 #include "engine/render/text/overlay_layout.hpp"
 #include "engine/render/textures/model_pictures.hpp"
 #include "engine/render/types.hpp"
 
 namespace psygen::render {
+
+// What a preset decides, and what is created for it.
+struct Looks {
+  Preset preset = Preset::kLow;
+  PresetTraits traits;
+  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;  // of the preset, if the device has them
+  bool reflections = false;                               // water reflects the land
+  Features features;                                      // that can be drawn
+  FrameSets sets;
+  MeshTables meshes;
+  Passes passes;
+};
 
 // Its parts are in renderer_create.cpp, renderer_impl.cpp (frames), renderer_preset.cpp,
 // renderer_readback.cpp and renderer_window.cpp.
@@ -53,9 +65,7 @@ class RendererImpl {
   core::Result<MaterialId> add_material(const Material& material) {
     return materials_.add(*device_, material);
   }
-  core::Result<void> prepare_objects();
-  core::Result<void> prepare_lights();
-  core::Result<void> prepare_particles();
+  core::Result<void> prepare(Feature feature);
   core::Result<void> set_pictures(std::span<const core::ModelPicture> pictures);
   core::Result<void> set_picture(std::size_t number, const core::ModelPicture& picture);
   std::uint64_t texture_bytes() const { return materials_.texture_bytes() + pictures_.bytes(); }
@@ -64,7 +74,7 @@ class RendererImpl {
                           const HudDrawing& hud);
   ImFontAtlas& font_atlas() { return overlay_.font_atlas(); }
   core::Result<void> set_preset(Preset preset, const Progress& progress);
-  Preset preset() const { return preset_; }
+  Preset preset() const { return looks_.preset; }
   core::Result<Picture> capture();
   core::Result<void> resize(core::Extent size);
   core::Extent size() const { return targets_.empty() ? core::Extent{} : targets_[0].extent; }
@@ -73,8 +83,8 @@ class RendererImpl {
   core::Result<double> replay_floor_ms(int repeats);
   core::Result<std::vector<DrawnMesh>> drawn_meshes();
   RenderPath path() const { return culling_ ? RenderPath::kGpu : RenderPath::kCpu; }
-  bool casts_shadows() const { return pipelines_.traits().cascades > 0; }
-  bool has_near_models() const { return !pipelines_.traits().pixel_light; }
+  bool casts_shadows() const { return looks_.traits.cascades > 0; }
+  bool has_near_models() const { return !looks_.traits.pixel_light; }
   void wait_idle();
   bool hangs() const;
 
@@ -86,22 +96,33 @@ class RendererImpl {
   core::Result<void> create_geometry();
   core::Result<void> create_culling();
   core::Result<void> create_looks(Preset preset, const Progress& progress);
-  void use_pipelines();
+  core::Result<void> create_text_passes();
+  core::Result<void> create_passes(Features features, const Progress& progress);
+  void use_sets();
   void use_targets();
+  void use_targets(const FrameSlot& slot, const Targets& targets);
   core::Result<Targets> make_small_targets();
   core::Result<void> warm_up(const Progress& progress);
-  core::Result<void> warm_up_objects(bool lamps);
-  using RecordStep = std::function<void(FrameSlot&, Targets&, VkDescriptorSet, int)>;
-  core::Result<void> warm_up_later(int steps, const RecordStep& record);
+  core::Result<void> warm_up_later(Feature feature, bool lamps);
+  core::Result<void> draw_step(FrameSlot& slot, Targets& small, const WarmUpStep& step,
+                               VkDescriptorSet textures);
   core::Result<void> warm_up_culling(FrameSlot& slot, Targets& small);
   core::Result<void> write_frame(FrameSlot& slot);
+  void list_frame(const FrameInput& input);
   void list_draws(const FrameInput& input);
-  void list_particles(const FrameInput& input);
-  core::Result<void> prepare(const FrameInput& input);
-  std::size_t index_of(const FrameSlot& slot) const {
-    return static_cast<std::size_t>(&slot - slots_.data());
+  core::Result<void> prepare_for(const FrameInput& input);
+  // What all passes record with; the GPU path adds its culling.
+  Recording recording(FrameSlot& slot, Targets& targets) const {
+    return {.device = *device_,
+            .slot = slot,
+            .sets = looks_.sets,
+            .targets = targets,
+            .buffers = {pool_blocks_, shared_.buffer()},
+            .materials = materials_,
+            .meshes = looks_.meshes,
+            .list = list_};
   }
-  Targets& targets_of(const FrameSlot& slot) { return targets_[index_of(slot) % targets_.size()]; }
+  Targets& targets_of(const FrameSlot& slot) { return targets_[slot.number() % targets_.size()]; }
   // The slot of the frame with this timeline value.
   FrameSlot& slot_of(std::uint64_t value) { return slots_[value % kFramesInFlight]; }
   core::Result<std::byte*> add_pool_block(std::uint64_t bytes);
@@ -118,8 +139,6 @@ class RendererImpl {
   core::Result<FrameResult> draw_frame(const FrameInput& input, FrameSlot& slot);
   Apart apart_now();
   core::Extent landscape_size(float resolution);
-  void lay_out_overlay(const FrameInput& input);
-  void add_lines(std::span<const Line> lines);
   // Stores in lost_ that the device was lost. After that nothing more is submitted.
   template <class T>
   core::Result<T> noted(core::Result<T> result) {
@@ -128,7 +147,7 @@ class RendererImpl {
   }
 
   RendererOptions options_;
-  Overlay overlay_;
+  OverlayLayout overlay_;
   std::unique_ptr<Instance> instance_;
   UniqueSurface surface_;
   std::unique_ptr<Device> device_;
@@ -140,8 +159,7 @@ class RendererImpl {
   SharedIndexLists shared_;
   MaterialTable materials_;
   ModelPictures pictures_;
-  Preset preset_ = Preset::kLow;
-  Pipelines pipelines_;
+  Looks looks_;
   std::array<FrameSlot, kFramesInFlight> slots_;
   std::unique_ptr<GpuCulling> culling_;  // null on the CPU path
   UniqueSemaphore timeline_;
@@ -164,12 +182,7 @@ class RendererImpl {
   bool lost_ = false;
   DrawList list_;  // on the CPU path
   shaders::FrameData frame_{};
-  std::vector<shaders::EmitterData> emitters_;
-  std::vector<EmitterRun> emitter_runs_;
-  GroundShade shade_;
-  std::vector<shaders::OverlayVertex> glyphs_;  // text, then the ends of lines, then ImGui's
-  std::uint32_t text_vertices_ = 0, line_vertices_ = 0;
-  std::vector<GuiRun> gui_runs_;
+  ContactShadowMap shade_;
   View view_ = View::kNormal;
   bool water_ = false;
   std::optional<GpuTime> gpu_;

@@ -1,10 +1,10 @@
 // The renderer's objects for one preset: pipelines, culling, targets. They are created at the start
 // and again for another preset. Also the text picture that is shown meanwhile.
+#include <algorithm>
 #include <utility>
 
 #include "engine/render/device/pipeline_build.hpp"
 #include "engine/render/frame/frame_data.hpp"
-#include "engine/render/passes/warm_up.hpp"
 #include "engine/render/renderer_impl.hpp"
 
 namespace psygen::render {
@@ -24,12 +24,19 @@ Progress part_of(const Progress& whole, double from, double to) {
 }  // namespace
 
 Result<void> RendererImpl::create_looks(Preset preset, const Progress& progress) {
-  preset_ = preset;
-  return pipelines_
-      .create(*device_, colour_format_, traits_of(preset), overlay_,
-              static_cast<std::uint32_t>(kFramesInFlight), materials_, pictures_, options_.ground)
+  looks_.preset = preset;
+  looks_.traits = traits_of(preset);
+  looks_.samples = device_->samples_for(looks_.traits.samples);
+  looks_.reflections = looks_.traits.waves && looks_.samples != VK_SAMPLE_COUNT_1_BIT;
+  return looks_.sets
+      .create(*device_, kFramesInFlight,
+              {.traits = looks_.traits,
+               .materials = materials_,
+               .pictures = pictures_,
+               .ground = options_.ground})
+      .and_then([&] { return create_text_passes(); })
       .and_then([&] {
-        use_pipelines();
+        use_sets();
         return create_culling();
       })
       .and_then([&]() -> Result<void> {
@@ -37,51 +44,88 @@ Result<void> RendererImpl::create_looks(Preset preset, const Progress& progress)
         return swapchain_.exists() ? create_targets(swapchain_.extent()) : Result<void>{};
       })
       .and_then([&] { return go_on(progress, 0); })
-      .and_then(
-          [&] { return pipelines_.create_others(*device_, part_of(progress, 0, kPipelinesShare)); })
+      .and_then([&] {
+        Features first;
+        first.add(Feature::kLandscape);
+        return create_passes(first, part_of(progress, 0, kPipelinesShare));
+      })
       .and_then([&] { return warm_up(part_of(progress, kPipelinesShare, 1)); });
 }
 
-void RendererImpl::use_pipelines() {
-  for (FrameSlot& slot : slots_)
-    slot.use(*device_, pipelines_.bindings(), index_of(slot));
+// Creates the passes of show(), which `progress` may call while all others are created.
+Result<void> RendererImpl::create_text_passes() {
+  PipelineMaker pipelines(*device_, {colour_format_, looks_.samples});
+  const PassSetup setup{.device = *device_,
+                        .traits = looks_.traits,
+                        .sets = looks_.sets,
+                        .pipelines = pipelines,
+                        .overlay = overlay_,
+                        .features = {}};
+  return std::get<Overlay>(looks_.passes).create(setup).and_then([&] {
+    return std::get<ScaleUp>(looks_.passes).create(setup);
+  });
+}
+
+// Creates what the vertex layouts and passes lack for these features.
+Result<void> RendererImpl::create_passes(Features features, const Progress& progress) {
+  PipelineMaker pipelines(*device_, {colour_format_, looks_.samples}, progress);
+  const PassSetup setup{.device = *device_,
+                        .traits = looks_.traits,
+                        .sets = looks_.sets,
+                        .pipelines = pipelines,
+                        .overlay = overlay_,
+                        .reflections = looks_.reflections,
+                        .features = features};
+  Result<void> made = looks_.meshes.create(setup).and_then(
+      [&] { return try_each_pass(looks_.passes, [&](auto& pass) { return pass.create(setup); }); });
+  if (made) looks_.features = features;
+  return made;
+}
+
+void RendererImpl::use_sets() {
+  for (const FrameSlot& slot : slots_)
+    slot.use(*device_, looks_.sets);
   use_targets();
 }
 
-// Binds what shaders read of the targets to the sets of the slots, after either has changed.
+// Tells the passes the targets of all slots, after either has changed.
 void RendererImpl::use_targets() {
   if (targets_.empty()) return;
   for (const FrameSlot& slot : slots_)
-    pipelines_.bindings().write_targets(*device_, slot.set(), targets_of(slot));
+    use_targets(slot, targets_of(slot));
+}
+
+void RendererImpl::use_targets(const FrameSlot& slot, const Targets& targets) {
+  for_each_pass(looks_.passes, [&](auto& pass) {
+    if constexpr (requires { pass.use(*device_, slot, targets); })
+      pass.use(*device_, slot, targets);
+  });
 }
 
 Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
   if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
-  if (preset == preset_) return {};
+  if (preset == looks_.preset) return {};
   wait_idle();
   if (!targets_.empty()) options_.size = size();
-  Preset other_preset = preset_;
-  Pipelines other_pipelines;
+  Looks other_looks;
+  other_looks.preset = looks_.preset;
   std::unique_ptr<GpuCulling> other_culling;
   std::vector<Targets> other_targets;
   const auto exchange = [&] {
-    std::swap(other_preset, preset_);
-    std::swap(other_pipelines, pipelines_);
+    std::swap(other_looks, looks_);
     std::swap(other_culling, culling_);
     std::swap(other_targets, targets_);
   };
   exchange();  // keeps the old ones until the new ones exist
   Result<void> made = noted(create_looks(preset, progress));
-  if (made && other_pipelines.has_objects()) made = noted(pipelines_.create_objects(*device_));
-  if (made && other_pipelines.has_lamps()) made = noted(pipelines_.create_lamps(*device_));
-  if (made && other_pipelines.has_particles()) made = noted(pipelines_.create_particles(*device_));
+  if (made) made = noted(create_passes(other_looks.features, {}));
   wait_idle();
   has_list_ = has_picture_ = false;
   gpu_.reset();
   idle_value_ = warm_up_value_ = frame_value_;
   if (!made) {
     exchange();
-    use_pipelines();
+    use_sets();
     swapchain_stale_ = true;  // the window may have changed meanwhile
     return made;
   }
@@ -92,110 +136,74 @@ Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
 Result<Targets> RendererImpl::make_small_targets() {
   wait_idle();
   Result<Targets> small =
-      make_targets(*device_, colour_format_, {16, 16}, pipelines_.samples(), pipelines_.mirrors());
+      make_targets(*device_, colour_format_, {16, 16}, looks_.samples, looks_.reflections);
   if (!small) return small;
   if (scales_up_) {
-    if (Result<void> added = add_coarse(*device_, colour_format_, *small); !added)
+    if (Result<void> added = add_low_resolution(*device_, colour_format_, *small); !added)
       return tl::unexpected(added.error());
   }
   for (const FrameSlot& slot : slots_)
-    pipelines_.bindings().write_targets(*device_, slot.set(), *small);
+    use_targets(slot, *small);
   return small;
+}
+
+Result<void> RendererImpl::draw_step(FrameSlot& slot, Targets& small, const WarmUpStep& step,
+                                     VkDescriptorSet textures) {
+  return slot
+      .write(*device_, looks_.sets, frame_data({}, small.extent), std::vector<shaders::DrawData>(1))
+      .and_then([&] { return slot.begin(*device_); })
+      .and_then([&] {
+        record_warm_up(looks_.passes, recording(slot, small), step, textures);
+        return slot.end(*device_);
+      })
+      .and_then([&] { return submit(slot, false); })
+      .and_then([&] { return wait_for(slot); });
 }
 
 Result<void> RendererImpl::warm_up(const Progress& progress) {
   Result<Targets> small = make_small_targets();
   if (!small) return tl::unexpected(small.error());
-  FrameSlot& slot = slots_[0];
-  const FrameInput nothing;
-  for (int step = 0; step < kWarmUpSteps; ++step) {
-    const Result<void> drawn =
-        slot.write(*device_, pipelines_.bindings(), frame_data(nothing, small->extent),
-                   std::vector<shaders::DrawData>(1), std::vector<shaders::OverlayVertex>(3))
-            .and_then([&] { return slot.begin(*device_); })
-            .and_then([&] {
-              const bool coarse = scales_up_ && step == kWarmUpSteps - 1;
-              small->drawn = coarse ? core::Extent{8, 8} : small->extent;
-              record_warm_up(*device_, pipelines_, slot, *small, shared_.buffer(), step);
-              return slot.end(*device_);
-            })
-            .and_then([&] { return submit(slot, false); })
-            .and_then([&] { return wait_for(slot); })
-            .and_then([&] { return go_on(progress, (step + 1.0) / kWarmUpSteps); });
+  const int steps = warm_up_steps(Feature::kLandscape);
+  for (int i = 0; i < steps; ++i) {
+    const WarmUpStep step{.feature = Feature::kLandscape, .number = i};
+    const Result<void> drawn = draw_step(slots_[0], *small, step, VK_NULL_HANDLE).and_then([&] {
+      return go_on(progress, (i + 1.0) / steps);
+    });
     if (!drawn) return drawn;
   }
   use_targets();
   small->drawn = small->extent;
-  return culling_ ? warm_up_culling(slot, *small) : Result<void>{};
+  return culling_ ? warm_up_culling(slots_[0], *small) : Result<void>{};
 }
 
-Result<void> RendererImpl::prepare_objects() {
+Result<void> RendererImpl::prepare(Feature feature) {
   if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
-  if (pipelines_.has_objects()) return {};
-  return noted(pipelines_.create_objects(*device_)
-                   .and_then([&] { return warm_up_objects(false); })
-                   .and_then([&] {
-                     return pipelines_.has_lamps() ? warm_up_objects(true) : Result<void>{};
-                   }));
-}
-
-Result<void> RendererImpl::prepare_lights() {
-  if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
-  if (pipelines_.has_lamps()) return {};
+  if (looks_.features.has(feature)) return {};
+  Features features = looks_.features;
+  features.add(feature);
+  // Objects and point lights together have pipelines of their own.
+  const bool both = features.has(Feature::kObjects) && features.has(Feature::kPointLights) &&
+                    (feature == Feature::kObjects || feature == Feature::kPointLights);
   return noted(
-      pipelines_.create_lamps(*device_)
-          .and_then([&] {
-            return warm_up_later(
-                kLampWarmUpSteps, [&](FrameSlot& slot, Targets& small, VkDescriptorSet, int step) {
-                  record_warm_up(*device_, pipelines_, slot, small, shared_.buffer(), step, true);
-                });
-          })
+      create_passes(features, {})
+          .and_then([&] { return warm_up_later(feature, feature == Feature::kPointLights); })
           .and_then(
-              [&] { return pipelines_.has_objects() ? warm_up_objects(true) : Result<void>{}; }));
-}
-
-Result<void> RendererImpl::prepare_particles() {
-  if (lost_) return core::fail(core::ErrorCode::kDeviceLost, "the device was lost before");
-  if (pipelines_.has_particles()) return {};
-  return noted(pipelines_.create_particles(*device_).and_then([&] {
-    return warm_up_later(kParticleWarmUpSteps, [&](FrameSlot& slot, Targets& small,
-                                                   VkDescriptorSet textures, int step) {
-      record_particle_warm_up(*device_, pipelines_, slot, small, textures, step);
-    });
-  }));
-}
-
-Result<void> RendererImpl::warm_up_objects(bool lamps) {
-  return warm_up_later(kObjectWarmUpSteps,
-                       [&](FrameSlot& slot, Targets& small, VkDescriptorSet textures, int step) {
-                         record_object_warm_up(*device_, pipelines_, slot, small, shared_.buffer(),
-                                               textures, step, lamps);
-                       });
+              [&] { return both ? warm_up_later(Feature::kObjects, true) : Result<void>{}; }));
 }
 
 // Draws with pipelines that were made after the first frames. An even number of submissions: the
 // last picture stays that of the slot of the last frame.
-Result<void> RendererImpl::warm_up_later(int steps, const RecordStep& record) {
-  static_assert(kObjectWarmUpSteps % kFramesInFlight == 0);
-  static_assert(kLampWarmUpSteps % kFramesInFlight == 0);
-  static_assert(kParticleWarmUpSteps % kFramesInFlight == 0);
+Result<void> RendererImpl::warm_up_later(Feature feature, bool lamps) {
+  static_assert(kFramesInFlight == 2);
   Result<Targets> small = make_small_targets();
   if (!small) return tl::unexpected(small.error());
   const Result<VkDescriptorSet> textures = materials_.blank_set(*device_);
   if (!textures) return tl::unexpected(textures.error());
-  const std::vector<shaders::EmitterData> emitters(1);
+  const int steps = warm_up_steps(feature), submissions = steps + steps % 2;
   Result<void> drawn;
-  for (int step = 0; drawn && step < steps; ++step) {
-    FrameSlot& slot = slot_of(frame_value_ + 1);
-    drawn = slot.write(*device_, pipelines_.bindings(), frame_data({}, small->extent),
-                       std::vector<shaders::DrawData>(1), {}, emitters)
-                .and_then([&] { return slot.begin(*device_); })
-                .and_then([&] {
-                  record(slot, *small, *textures, step);
-                  return slot.end(*device_);
-                })
-                .and_then([&] { return submit(slot, false); })
-                .and_then([&] { return wait_for(slot); });
+  for (int i = 0; drawn && i < submissions; ++i) {
+    const WarmUpStep step{.feature = feature, .lamps = lamps, .number = std::min(i, steps - 1)};
+    drawn = draw_step(slot_of(frame_value_ + 1), *small, step, *textures);
   }
   use_targets();
   idle_value_ = warm_up_value_ = frame_value_;
@@ -206,13 +214,14 @@ Result<void> RendererImpl::warm_up_later(int steps, const RecordStep& record) {
 Result<void> RendererImpl::warm_up_culling(FrameSlot& slot, Targets& small) {
   return culling_->resize(*device_, small.extent, small.depth)
       .and_then([&] {
-        culling_->set_frame({}, {}, {}, small.extent, {});
+        culling_->set_frame({}, {}, small.extent, {});
         return write_frame(slot);
       })
       .and_then([&] { return slot.begin(*device_); })
       .and_then([&] {
-        record_scene(*device_, pipelines_, slot, small,
-                     {.list = list_, .buffers = {}, .culled = {culling_.get(), index_of(slot)}});
+        Recording to = recording(slot, small);
+        to.culling = culling_.get();
+        record_frame(looks_.passes, to);
         return slot.end(*device_);
       })
       .and_then([&] { return submit(slot, false); })
@@ -243,8 +252,11 @@ Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_sc
   only_text.hud = &hud;
   only_text.panels = panels;
   only_text.text_scale = text_scale;
-  lay_out_overlay(only_text);
-  overlay_.put_ground_under(size(), glyphs_);
+  const shaders::FrameData frame = frame_data({}, size());
+  const FrameFacts facts{frame, materials_.kinds(), overlay_, size()};
+  Overlay& text = std::get<Overlay>(looks_.passes);
+  text.list(only_text, facts);
+  text.put_background(facts);
   has_list_ = false;
   if (windowed) {
     const Result<WindowState> acquired = noted(acquire_window(slot));
@@ -252,12 +264,12 @@ Result<void> RendererImpl::show(std::span<const TextPanel> panels, float text_sc
     if (*acquired == WindowState::kNotNow) return {};
   }
   const Result<void> drawn =
-      noted(slot.write(*device_, pipelines_.bindings(), frame_data({}, size()), {}, glyphs_)
+      noted(slot.write(*device_, looks_.sets, frame, {})
+                .and_then([&] { return text.write(*device_, slot.number()); })
                 .and_then([&] { return slot.begin(*device_); })
                 .and_then([&] {
                   targets_of(slot).drawn = size();
-                  record_text(*device_, pipelines_, slot, targets_of(slot),
-                              static_cast<std::uint32_t>(glyphs_.size()));
+                  record_text(looks_.passes, recording(slot, targets_of(slot)));
                   if (windowed) {
                     record_copy_to_window(*device_, slot.commands(), targets_of(slot),
                                           swapchain_.image(), swapchain_.extent());

@@ -39,6 +39,10 @@ enum class Upload : std::uint8_t { kAuto, kDirect, kStaged };
 // The amount of light and detail in a picture. preset.hpp and docs/presets.md list the differences.
 enum class Preset : std::uint8_t { kLow, kMedium, kHigh, kUltra };
 
+// Parts of the renderer whose pipelines are created when they are first needed, except those of the
+// landscape (Renderer::prepare()).
+enum class Feature : std::uint8_t { kLandscape, kObjects, kPointLights, kParticles };
+
 // What a picture shows: the landscape, or a view for debugging.
 enum class View : std::uint8_t {
   kNormal,
@@ -119,7 +123,7 @@ struct Light {
 };
 
 // A plane of water to the horizon.
-struct Water {
+struct WaterSurface {
   float level_m = 0.0F;                      // height in the world
   glm::vec3 colour{0.010F, 0.045F, 0.050F};  // linear albedo of deep water
 };
@@ -285,7 +289,7 @@ struct FrameInput {
   core::Projection projection;
   Light light;
   TerrainPalette palette;
-  std::optional<Water> water;
+  std::optional<WaterSurface> water;
   Canopy canopy;
   WorldEdge edge;
   View view = View::kNormal;

@@ -25,8 +25,10 @@ struct RegionSize {
 // Makes the pipelines of light and particles, which the first frame would wait for otherwise. What
 // fails here fails there too.
 void prepare_effects(const ecs::World& entities, render::Renderer& renderer) {
-  if (entities.count<PointLight>() > 0) static_cast<void>(renderer.prepare_lights());
-  if (entities.count<ParticleEmitter>() > 0) static_cast<void>(renderer.prepare_particles());
+  if (entities.count<PointLight>() > 0)
+    static_cast<void>(renderer.prepare(render::Feature::kPointLights));
+  if (entities.count<ParticleEmitter>() > 0)
+    static_cast<void>(renderer.prepare(render::Feature::kParticles));
 }
 
 // How many levels of a mesh entity amplification makes, finest first.

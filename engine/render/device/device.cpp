@@ -23,14 +23,14 @@ bool has_extension(VkPhysicalDevice physical, const char* name) {
 }
 
 // The features that the renderer needs, chained for a query or for creation. Not movable.
-struct Features {
+struct FeatureChain {
   VkPhysicalDeviceFeatures2 base{};
   VkPhysicalDeviceVulkan11Features v11{};
   VkPhysicalDeviceVulkan12Features v12{};
   VkPhysicalDeviceVulkan13Features v13{};
   VkPhysicalDeviceMultiDrawFeaturesEXT multi_draw{};
 
-  Features() {
+  FeatureChain() {
     base.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     v11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
     v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -40,8 +40,8 @@ struct Features {
     v11.pNext = &v12;
     v12.pNext = &v13;
   }
-  Features(const Features&) = delete;
-  Features& operator=(const Features&) = delete;
+  FeatureChain(const FeatureChain&) = delete;
+  FeatureChain& operator=(const FeatureChain&) = delete;
 
   bool sufficient() const {
     return v11.shaderDrawParameters && v12.timelineSemaphore && v13.dynamicRendering &&
@@ -50,7 +50,7 @@ struct Features {
 };
 
 // The GPU path needs indirect draws with their number in a buffer.
-bool offers_indirect_count(const Features& features) {
+bool offers_indirect_count(const FeatureChain& features) {
   return features.v12.drawIndirectCount && features.base.features.multiDrawIndirect &&
          features.base.features.drawIndirectFirstInstance;
 }
@@ -63,7 +63,7 @@ bool offers_wireframe(VkPhysicalDevice physical) {
 
 bool offers_multi_draw(VkPhysicalDevice physical) {
   if (!has_extension(physical, VK_EXT_MULTI_DRAW_EXTENSION_NAME)) return false;
-  Features features;
+  FeatureChain features;
   features.v13.pNext = &features.multi_draw;
   vkGetPhysicalDeviceFeatures2(physical, &features.base);
   return features.multi_draw.multiDraw == VK_TRUE;
@@ -144,7 +144,7 @@ std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevic
   vkGetPhysicalDeviceProperties2(physical, &properties);
   const VkPhysicalDeviceProperties& p = properties.properties;
   if (p.apiVersion < VK_API_VERSION_1_3) return std::nullopt;
-  Features features;
+  FeatureChain features;
   vkGetPhysicalDeviceFeatures2(physical, &features.base);
   if (!features.sufficient()) return std::nullopt;
   if (surface != VK_NULL_HANDLE && !has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
@@ -170,7 +170,7 @@ std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevic
 }
 
 // What psygen needs of every device, and what it uses where it is there.
-void enable(const DeviceInfo& info, Features& features, std::vector<const char*>& extensions) {
+void enable(const DeviceInfo& info, FeatureChain& features, std::vector<const char*>& extensions) {
   features.v11.shaderDrawParameters = VK_TRUE;
   features.v12.timelineSemaphore = VK_TRUE;
   const VkBool32 indirect = info.gpu_path ? VK_TRUE : VK_FALSE;
@@ -233,19 +233,18 @@ core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& 
 }
 
 core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& candidate,
-                                                     bool windowed, bool timestamps,
-                                                     double timeout_seconds) {
+                                                     const DeviceOptions& options) {
   std::unique_ptr<Device> self(new Device());
-  self->timeout_ns_ = static_cast<std::uint64_t>(timeout_seconds * 1e9);
+  self->timeout_ns_ = static_cast<std::uint64_t>(options.timeout_seconds * 1e9);
   self->physical = candidate.physical;
   self->queue_family = candidate.queue_family;
   self->transfer_family = transfer_family_of(self->physical, self->queue_family);
   self->info = candidate.info;
   vkGetPhysicalDeviceMemoryProperties(self->physical, &self->memory);
 
-  Features features;
+  FeatureChain features;
   std::vector<const char*> extensions;
-  if (windowed) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  if (options.windowed) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   enable(candidate.info, features, extensions);
   const float priority = 1.0F;
   VkDeviceQueueCreateInfo queue{};
@@ -270,7 +269,8 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   self->vk.vkGetDeviceQueue(self->handle, self->transfer_family, 0, &self->transfer_queue);
 
   read_limits(*self);
-  if (timestamps) self->timestamp_mask = timestamp_mask_of(self->physical, self->queue_family);
+  if (options.timestamps)
+    self->timestamp_mask = timestamp_mask_of(self->physical, self->queue_family);
   self->info.timestamps = self->timestamp_mask != 0;
   return self;
 }

@@ -29,14 +29,19 @@ std::vector<DeviceCandidate> find_devices(const Instance& instance, VkSurfaceKHR
 core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& candidates,
                                             const std::string& name);
 
+// The options of Device::create().
+struct DeviceOptions {
+  bool windowed = false;        // it can present
+  bool timestamps = true;       // used if the queue has any
+  double timeout_seconds = 60;  // longest wait for the device; after that it counts as lost
+};
+
 // The logical device. Everything that is created with it must be destroyed before it.
 class Device {
  public:
-  // Creates the device. `windowed`: it can present. `timestamps`: use them if the queue has any.
-  // `timeout_seconds`: longest wait for the device; after that it counts as lost.
+  // Creates the device.
   static core::Result<std::unique_ptr<Device>> create(const DeviceCandidate& candidate,
-                                                      bool windowed, bool timestamps,
-                                                      double timeout_seconds);
+                                                      const DeviceOptions& options);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;

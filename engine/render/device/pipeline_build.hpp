@@ -1,48 +1,74 @@
-// Creates one graphics pipeline from a short description. Owns nothing. Main thread. Private to
+// Creates graphics pipelines from short descriptions. Owns none of them. Main thread. Private to
 // engine/render.
 #pragma once
 
 #include <array>
+#include <optional>
 
+#include "engine/core/error.hpp"
 #include "engine/core/vertex_layout.hpp"
 #include "engine/render/device/device.hpp"
-#include "engine/render/device/shader_code.hpp"
+#include "engine/render/device/shaders.hpp"
+#include "engine/render/types.hpp"
 
 namespace psygen::render {
 
 inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
-// What a pipeline draws. Vertex input, topology, blending and depth test follow from it.
-enum class PipelineKind : std::uint8_t {
-  kTerrain,
-  kModel,
-  kObject,
-  kWater,
-  kSky,
-  kDome,
-  kSun,
-  kParticles,
-  kLines,
-  kScaleUp,
-  kOverlay
+// The attachments that a pipeline draws to.
+enum class DrawTarget : std::uint8_t {
+  kLandscape,  // colour and depth, with the samples of the preset
+  kPicture,    // colour only, one sample per pixel
+  kShadowMap,  // depth only
 };
+// How colours are combined with those of the target. kAlpha multiplies them by their opacity,
+// kPremultiplied expects that they are.
+enum class Blend : std::uint8_t { kNone, kAlpha, kPremultiplied };
+// Use of depth: none, test against it (equal depths pass), or test and write.
+enum class DepthUse : std::uint8_t { kNone, kTest, kWrite };
 
 // The description of a pipeline.
 struct PipelineShape {
-  PipelineKind kind = PipelineKind::kSky;
-  ShaderCode vert, frag;
-  VkFormat colour_format = VK_FORMAT_UNDEFINED;
-  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
-  // Of both shaders; those that they lack are ignored: fine grain or waves, shadows, point lights.
-  std::array<VkBool32, 3> constants{};
+  Shader vert{};
+  std::optional<Shader> frag = {};                  // none: it writes only depth
+  std::optional<core::VertexLayout> vertices = {};  // none: the shader makes them
+  VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  Blend blend = Blend::kNone;
+  DepthUse depth = DepthUse::kTest;
+  DrawTarget target = DrawTarget::kLandscape;
+  // Specialisation constants of both shaders, by number; those that they lack are ignored.
+  std::array<VkBool32, 8> constants{};
   bool wireframe = false;  // needs DeviceInfo::wireframe
-  bool flat = false;       // in a pass without depth and with one sample per pixel
-  bool shadow = false;     // only depth, of a cascade; `frag` may be empty
 };
 
-// Creates a pipeline. Takes milliseconds to seconds, if the driver has to compile the shaders.
-core::Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layout,
-                                           const PipelineShape& shape);
+// A specialisation constant.
+constexpr VkBool32 on(bool yes) {
+  return yes ? VK_TRUE : VK_FALSE;
+}
+
+// The attachments of all pipelines of a preset.
+struct PipelineTargets {
+  VkFormat colour_format = VK_FORMAT_UNDEFINED;
+  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;  // of DrawTarget::kLandscape
+};
+
+// Creates the pipelines of a preset and reports the progress. The device must outlive it.
+class PipelineMaker {
+ public:
+  // `progress` may be empty.
+  PipelineMaker(const Device& device, PipelineTargets targets, const Progress& progress = {})
+      : device_(device), targets_(targets), progress_(progress) {}
+
+  // Creates a pipeline in `out`. Takes milliseconds to seconds, if the driver has to compile the
+  // shaders. Fails as vulkan_error() says, and with kInterrupted by the progress.
+  core::Result<void> make(VkPipelineLayout layout, const PipelineShape& shape, UniquePipeline& out);
+
+ private:
+  const Device& device_;
+  PipelineTargets targets_;
+  Progress progress_;
+  int made_ = 0;
+};
 
 // Reports `fraction` in [0, 1]. Fails with kInterrupted if `progress` returns false; an empty one
 // never does.

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "engine/render/frame/swapchain.hpp"
-#include "engine/render/particles.hpp"
 
 namespace psygen::render {
 
@@ -20,7 +19,8 @@ Result<Buffer> storage_buffer(const Device& device, std::uint64_t bytes) {
 
 }  // namespace
 
-Result<void> FrameSlot::create(const Device& device) {
+Result<void> FrameSlot::create(const Device& device, std::size_t number) {
+  number_ = number;
   VkCommandPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
@@ -45,13 +45,6 @@ Result<void> FrameSlot::create(const Device& device) {
   if (!frame) return tl::unexpected(frame.error());
   Result<Buffer> draws = storage_buffer(device, kFirstDraws * sizeof(shaders::DrawData));
   if (!draws) return tl::unexpected(draws.error());
-  Result<Buffer> glyphs =
-      storage_buffer(device, Overlay::kMaxQuads * 6 * sizeof(shaders::OverlayVertex));
-  if (!glyphs) return tl::unexpected(glyphs.error());
-  Result<Buffer> emitters = make_buffer(device, kMaxEmitters * sizeof(shaders::EmitterData),
-                                        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::kWrite);
-  if (!emitters) return tl::unexpected(emitters.error());
-  emitters_ = std::move(*emitters);
   constexpr std::size_t kShadeBytes = std::size_t{PSYGEN_SHADE_SIDE} * PSYGEN_SHADE_SIDE * 2;
   Result<Buffer> shade = storage_buffer(device, kShadeBytes);
   if (!shade) return tl::unexpected(shade.error());
@@ -59,34 +52,24 @@ Result<void> FrameSlot::create(const Device& device) {
   std::memset(shade_.mapped, 0, kShadeBytes);
   frame_ = std::move(*frame);
   draws_ = std::move(*draws);
-  glyphs_ = std::move(*glyphs);
   return {};
 }
 
-void FrameSlot::use(const Device& device, const Bindings& bindings, std::size_t number) {
-  set_ = bindings.set(number);
-  bindings.write(device, set_, {frame_, draws_, glyphs_, emitters_, shade_});
+void FrameSlot::use(const Device& device, const FrameSets& sets) const {
+  sets.write(device, number_, {frame_, draws_, shade_});
 }
 
-Result<void> FrameSlot::write(const Device& device, const Bindings& bindings,
+Result<void> FrameSlot::write(const Device& device, const FrameSets& sets,
                               const shaders::FrameData& frame,
-                              std::span<const shaders::DrawData> draws,
-                              std::span<const shaders::OverlayVertex> glyphs,
-                              std::span<const shaders::EmitterData> emitters) {
-  const auto grow = [&](Buffer& buffer, std::size_t bytes) -> Result<void> {
-    if (bytes <= buffer.bytes) return {};
-    Result<Buffer> larger = storage_buffer(device, std::bit_ceil(bytes));
+                              std::span<const shaders::DrawData> draws) {
+  if (draws.size_bytes() > draws_.bytes) {
+    Result<Buffer> larger = storage_buffer(device, std::bit_ceil(draws.size_bytes()));
     if (!larger) return tl::unexpected(larger.error());
-    buffer = std::move(*larger);
-    bindings.write(device, set_, {frame_, draws_, glyphs_, emitters_, shade_});
-    return {};
-  };
-  if (Result<void> grown = grow(draws_, draws.size_bytes()); !grown) return grown;
-  if (Result<void> grown = grow(glyphs_, glyphs.size_bytes()); !grown) return grown;
+    draws_ = std::move(*larger);
+    use(device, sets);
+  }
   std::memcpy(frame_.mapped, &frame, sizeof(frame));
-  if (!emitters.empty()) std::memcpy(emitters_.mapped, emitters.data(), emitters.size_bytes());
   if (!draws.empty()) std::memcpy(draws_.mapped, draws.data(), draws.size_bytes());
-  if (!glyphs.empty()) std::memcpy(glyphs_.mapped, glyphs.data(), glyphs.size_bytes());
   return {};
 }
 

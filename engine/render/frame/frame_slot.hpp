@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "engine/render/frame/bindings.hpp"
+#include "engine/render/frame/frame_sets.hpp"
 #include "engine/render/frame/gpu_timer.hpp"
 #include "engine/render/memory/memory.hpp"
 #include "shaders/shared.h"
@@ -15,32 +15,25 @@ namespace psygen::render {
 // Empty until create(). The device must outlive it.
 class FrameSlot {
  public:
-  // Creates all objects, once.
-  core::Result<void> create(const Device& device);
-  // Records frames with a set of these bindings from now on. `number` is that of the slot, from 0.
-  void use(const Device& device, const Bindings& bindings, std::size_t number);
+  // Creates all objects, once. `number` is that of the slot, from 0.
+  core::Result<void> create(const Device& device, std::size_t number);
+  std::size_t number() const { return number_; }
+  // Names the slot's buffers in its set. Call it for new sets.
+  void use(const Device& device, const FrameSets& sets) const;
 
   // Copies a frame's data into the slot's buffers. They grow if needed, which can fail with
-  // kOutOfMemory. At most kMaxEmitters emitters.
-  core::Result<void> write(const Device& device, const Bindings& bindings,
+  // kOutOfMemory.
+  core::Result<void> write(const Device& device, const FrameSets& sets,
                            const shaders::FrameData& frame,
-                           std::span<const shaders::DrawData> draws,
-                           std::span<const shaders::OverlayVertex> glyphs,
-                           std::span<const shaders::EmitterData> emitters = {});
-
-  // The same for the map of dark spots (GroundShade::words()).
+                           std::span<const shaders::DrawData> draws);
+  // Copies the map of contact shadows (ContactShadowMap::words()).
   void write_shade(std::span<const std::uint32_t> words);
+  const Buffer& frame_data() const { return frame_; }  // shaders::FrameData
 
   // begin() resets the command buffer and starts recording; end() makes it ready to submit.
   core::Result<void> begin(const Device& device);
   core::Result<void> end(const Device& device);
-  // The command buffer, and the descriptor set of the frame.
   VkCommandBuffer commands() const { return commands_; }
-  VkDescriptorSet set() const { return set_; }
-  // Binds `draws`, which the device writes, instead of the slot's own data of draws.
-  void read_draws_from(const Device& device, const Bindings& bindings, const Buffer& draws) const {
-    bindings.write(device, set_, {frame_, draws, glyphs_, emitters_, shade_});
-  }
   // The semaphore for the acquired image of the window, and the frame's timestamps.
   VkSemaphore acquired() const { return acquired_.get(); }
 
@@ -51,8 +44,8 @@ class FrameSlot {
  private:
   UniqueCommandPool pool_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  Buffer frame_, draws_, glyphs_, emitters_, shade_;
-  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  Buffer frame_, draws_, shade_;
+  std::size_t number_ = 0;
   UniqueSemaphore acquired_;
   GpuTimer timer_;
 };

@@ -23,7 +23,7 @@ class GpuTimer {
 
   // Call it at the start of a frame's commands. The slot's last frame must have finished.
   void begin(const Device& device, VkCommandBuffer commands);
-  // Records a timestamp, outside of a render pass. kShadows may be left out. A frame without kEnd
+  // Records a timestamp, outside of a rendering. kShadows may be left out. A frame without kEnd
   // is not timed.
   void mark(const Device& device, VkCommandBuffer commands, Mark mark);
   // Call it when the frame has been submitted. `frame` is its number, `now_s` the time.

@@ -28,10 +28,10 @@ constexpr Use kRead{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_
                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 
-void change_use(const Device& device, VkCommandBuffer commands, const Mirror& mirror,
+void change_use(const Device& device, VkCommandBuffer commands, const ReflectionTargets& reflection,
                 const Use& from, const Use& to) {
-  std::array barriers{barrier_of(mirror.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT),
-                      barrier_of(mirror.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT)};
+  std::array barriers{barrier_of(reflection.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT),
+                      barrier_of(reflection.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT)};
   for (VkImageMemoryBarrier2& barrier : barriers) {
     barrier.srcStageMask = from.stage;
     barrier.srcAccessMask = from.access;
@@ -47,28 +47,31 @@ void change_use(const Device& device, VkCommandBuffer commands, const Mirror& mi
 
 }  // namespace
 
-Result<Mirror> make_mirror(const Device& device, VkFormat format, core::Extent extent) {
-  Mirror mirror;
+Result<ReflectionTargets> make_reflection_targets(const Device& device, VkFormat format,
+                                                  core::Extent extent) {
+  ReflectionTargets reflection;
   Result<Image> colour = make_image(
       device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
       VK_IMAGE_ASPECT_COLOR_BIT);
   if (!colour) return tl::unexpected(colour.error());
-  mirror.colour = std::move(*colour);
+  reflection.colour = std::move(*colour);
   Result<Image> depth =
       make_image(device, extent, kDepthFormat,
                  VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                  VK_IMAGE_ASPECT_DEPTH_BIT);
   if (!depth) return tl::unexpected(depth.error());
-  mirror.depth = std::move(*depth);
-  return mirror;
+  reflection.depth = std::move(*depth);
+  return reflection;
 }
 
-void mirror_to_attachments(const Device& device, VkCommandBuffer commands, const Mirror& mirror) {
-  change_use(device, commands, mirror, kForgotten, kResolved);
+void reflection_to_attachments(const Device& device, VkCommandBuffer commands,
+                               const ReflectionTargets& reflection) {
+  change_use(device, commands, reflection, kForgotten, kResolved);
 }
 
-void mirror_to_textures(const Device& device, VkCommandBuffer commands, const Mirror& mirror) {
-  change_use(device, commands, mirror, kResolved, kRead);
+void reflection_to_textures(const Device& device, VkCommandBuffer commands,
+                            const ReflectionTargets& reflection) {
+  change_use(device, commands, reflection, kResolved, kRead);
 }
 
 }  // namespace psygen::render

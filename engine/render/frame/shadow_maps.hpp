@@ -1,5 +1,5 @@
 // The depth images of the sun's shadow, one layer per cascade, and the place of each cascade.
-// Without cascades it is one texel that nothing reads. Draws no meshes itself (scene_recorder.hpp).
+// Without cascades it is one texel that nothing reads. Draws no meshes itself (passes/shadows.hpp).
 // Main thread. Private to engine/render.
 #pragma once
 
@@ -22,8 +22,8 @@ class ShadowMaps {
   VkImageView all_layers() const { return image_.view.get(); }
   std::uint32_t cascades() const { return cascades_; }
 
-  // Records, outside of a render pass: clears every cascade i, calls draw(i) inside its pass, and
-  // makes all of them readable by fragment shaders.
+  // Records, outside of a rendering: clears every cascade i, calls draw(i) inside its rendering,
+  // and makes all of them readable by fragment shaders.
   void record(const Device& device, VkCommandBuffer commands,
               const std::function<void(std::uint32_t)>& draw) const;
 

@@ -17,15 +17,16 @@ constexpr VkImageSubresourceLayers kColourLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0,
 
 // The image that the landscape gets its colours in, and the layout for that.
 const Image& landscape_of(const Targets& targets) {
-  return targets.is_coarse() ? targets.coarse : targets.colour;
+  return targets.is_low_resolution() ? targets.low_resolution : targets.colour;
 }
 VkImageLayout landscape_layout(const Targets& targets) {
-  return targets.is_coarse() ? kCoarseLayout : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  return targets.is_low_resolution() ? kLowResolutionLayout
+                                     : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 }
 
-// Whether the landscape is complete after this part of a frame, and water mirrors it.
-bool is_mirrored(const Targets& targets, PassPart part) {
-  return targets.mirrors && (part == PassPart::kWhole || part == PassPart::kSecond);
+// Returns true if the landscape is complete after this part of a frame, and water reflects it.
+bool is_reflected(const Targets& targets, RenderingPart part) {
+  return targets.reflects && (part == RenderingPart::kWhole || part == RenderingPart::kSecond);
 }
 
 // Makes a colour image an attachment that forgets what it had, after it was drawn to and read.
@@ -43,15 +44,17 @@ VkImageMemoryBarrier2 to_attachment(const Image& image, VkImageLayout layout,
 
 // Moves the targets to the layouts of attachments, after all previous uses.
 void to_attachments(const Device& device, VkCommandBuffer commands, Targets& targets,
-                    PassPart part) {
-  VkImageLayout& layout = targets.is_coarse() ? targets.coarse_layout : targets.colour_layout;
-  if (is_mirrored(targets, part)) mirror_to_attachments(device, commands, targets.mirror);
-  if (part == PassPart::kWater) mirror_to_textures(device, commands, targets.mirror);
+                    RenderingPart part) {
+  VkImageLayout& layout =
+      targets.is_low_resolution() ? targets.low_resolution_layout : targets.colour_layout;
+  if (is_reflected(targets, part)) reflection_to_attachments(device, commands, targets.reflection);
+  if (part == RenderingPart::kWater) reflection_to_textures(device, commands, targets.reflection);
   const VkImageLayout drawn_to = landscape_layout(targets);
-  if (part == PassPart::kWhole && targets.host_ordered && layout == drawn_to) return;
-  VkImageMemoryBarrier2 colour = to_attachment(
-      landscape_of(targets), drawn_to,
-      targets.is_coarse() ? VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT : VK_PIPELINE_STAGE_2_COPY_BIT);
+  if (part == RenderingPart::kWhole && targets.host_ordered && layout == drawn_to) return;
+  VkImageMemoryBarrier2 colour =
+      to_attachment(landscape_of(targets), drawn_to,
+                    targets.is_low_resolution() ? VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT
+                                                : VK_PIPELINE_STAGE_2_COPY_BIT);
   VkImageMemoryBarrier2 depth = barrier_of(targets.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT);
   depth.srcStageMask = VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
   depth.srcAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
@@ -60,13 +63,13 @@ void to_attachments(const Device& device, VkCommandBuffer commands, Targets& tar
   depth.dstAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
                         VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
   depth.newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-  if (part == PassPart::kSecond) {
+  if (part == RenderingPart::kSecond) {
     colour.oldLayout = drawn_to;
     depth.oldLayout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
     depth.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     depth.srcAccessMask = VK_ACCESS_2_NONE;
   }
-  if (part == PassPart::kWater) {
+  if (part == RenderingPart::kWater) {
     colour.oldLayout = drawn_to;
     depth.oldLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
   }
@@ -92,14 +95,15 @@ void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& tar
   targets.colour_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
 }
 
-// After the passes of a coarse frame: what they drew can be read, and the picture be drawn to.
+// After a landscape of fewer pixels: shaders can read it, and the picture can be drawn to.
 void to_scaling_up(const Device& device, VkCommandBuffer commands, Targets& targets) {
-  VkImageMemoryBarrier2 from = barrier_of(targets.coarse.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
+  VkImageMemoryBarrier2 from =
+      barrier_of(targets.low_resolution.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
   from.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
   from.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
   from.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
   from.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-  from.oldLayout = from.newLayout = kCoarseLayout;
+  from.oldLayout = from.newLayout = kLowResolutionLayout;
   const VkImageMemoryBarrier2 to = to_attachment(
       targets.colour, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT);
   image_barriers(device, commands, std::array{from, to});
@@ -114,43 +118,43 @@ VkImageUsageFlags depth_usage(const Device& device, VkSampleCountFlagBits sample
   return usage;
 }
 
-VkRenderingAttachmentInfo colour_of_pass(const Targets& targets, PassPart part) {
-  const bool loads = part == PassPart::kSecond || part == PassPart::kWater;
+VkRenderingAttachmentInfo colour_of(const Targets& targets, RenderingPart part) {
+  const bool loads = part == RenderingPart::kSecond || part == RenderingPart::kWater;
   VkRenderingAttachmentInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   info.imageView = landscape_of(targets).view.get();
   info.imageLayout = landscape_layout(targets);
-  // Before the first pass nothing is kept: the sky covers all other pixels.
+  // Before the first rendering nothing is kept: the sky covers all other pixels.
   info.loadOp = loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   if (!targets.has_samples()) return info;
   info.imageView = targets.samples.view.get();
   info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  if (part == PassPart::kFirst) return info;
-  const bool mirrored = is_mirrored(targets, part);
-  const Image& mean = mirrored ? targets.mirror.colour : landscape_of(targets);
-  if (!mirrored) info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  if (part == RenderingPart::kFirst) return info;
+  const bool reflected = is_reflected(targets, part);
+  const Image& mean = reflected ? targets.reflection.colour : landscape_of(targets);
+  if (!reflected) info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
   info.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
   info.resolveImageView = mean.view.get();
   info.resolveImageLayout =
-      mirrored ? VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL : landscape_layout(targets);
+      reflected ? VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL : landscape_layout(targets);
   return info;
 }
 
-VkRenderingAttachmentInfo depth_of_pass(const Targets& targets, PassPart part) {
-  const bool loads = part == PassPart::kSecond || part == PassPart::kWater;
-  const bool mirrored = is_mirrored(targets, part);
+VkRenderingAttachmentInfo depth_of(const Targets& targets, RenderingPart part) {
+  const bool loads = part == RenderingPart::kSecond || part == RenderingPart::kWater;
+  const bool reflected = is_reflected(targets, part);
   VkRenderingAttachmentInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   info.imageView = targets.depth.view.get();
   info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
   // Cleared to 0, infinitely far.
   info.loadOp = loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR;
-  const bool read_later = mirrored || part == PassPart::kFirst || targets.in_parts;
+  const bool read_later = reflected || part == RenderingPart::kFirst || targets.in_parts;
   info.storeOp = read_later ? VK_ATTACHMENT_STORE_OP_STORE : VK_ATTACHMENT_STORE_OP_DONT_CARE;
-  if (!mirrored) return info;
+  if (!reflected) return info;
   info.resolveMode = VK_RESOLVE_MODE_SAMPLE_ZERO_BIT;
-  info.resolveImageView = targets.mirror.depth.view.get();
+  info.resolveImageView = targets.reflection.depth.view.get();
   info.resolveImageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
   return info;
 }
@@ -165,7 +169,7 @@ VkRenderingInfo rendering_info(const VkRect2D& area, const VkRenderingAttachment
   return info;
 }
 
-void begin_rendering(const Device& device, VkCommandBuffer commands, const VkRenderingInfo& info) {
+void begin_on(const Device& device, VkCommandBuffer commands, const VkRenderingInfo& info) {
   device.vk.vkCmdBeginRendering(commands, &info);
   const VkRect2D& area = info.renderArea;
   const VkViewport viewport{
@@ -185,17 +189,17 @@ bool can_scale_up(const Device& device, VkFormat format) {
   return (properties.optimalTilingFeatures & kNeeded) == kNeeded;
 }
 
-Result<void> add_coarse(const Device& device, VkFormat format, Targets& targets) {
+Result<void> add_low_resolution(const Device& device, VkFormat format, Targets& targets) {
   Result<Image> made = make_image(device, targets.extent, format,
                                   VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                                   VK_IMAGE_ASPECT_COLOR_BIT);
   if (!made) return tl::unexpected(made.error());
-  targets.coarse = std::move(*made);
+  targets.low_resolution = std::move(*made);
   return {};
 }
 
 Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
-                             VkSampleCountFlagBits samples, bool mirrored) {
+                             VkSampleCountFlagBits samples, bool reflections) {
   Targets targets;
   targets.extent = targets.drawn = extent;
   Result<Image> colour = make_image(
@@ -212,42 +216,43 @@ Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent
                                    VK_IMAGE_ASPECT_COLOR_BIT, {.samples = samples});
   if (!drawn) return tl::unexpected(drawn.error());
   targets.samples = std::move(*drawn);
-  if (!mirrored) return targets;
-  Result<Mirror> mirror = make_mirror(device, format, extent);
-  if (!mirror) return tl::unexpected(mirror.error());
-  targets.mirror = std::move(*mirror);
+  if (!reflections) return targets;
+  Result<ReflectionTargets> reflection = make_reflection_targets(device, format, extent);
+  if (!reflection) return tl::unexpected(reflection.error());
+  targets.reflection = std::move(*reflection);
   return targets;
 }
 
-void begin_pass(const Device& device, VkCommandBuffer commands, Targets& targets, PassPart part) {
+void begin_rendering(const Device& device, VkCommandBuffer commands, Targets& targets,
+                     RenderingPart part) {
   to_attachments(device, commands, targets, part);
-  const VkRenderingAttachmentInfo colour = colour_of_pass(targets, part);
-  const VkRenderingAttachmentInfo depth = depth_of_pass(targets, part);
+  const VkRenderingAttachmentInfo colour = colour_of(targets, part);
+  const VkRenderingAttachmentInfo depth = depth_of(targets, part);
   VkRenderingInfo info =
       rendering_info({{0, 0}, {targets.drawn.width, targets.drawn.height}}, colour);
   info.pDepthAttachment = &depth;
-  begin_rendering(device, commands, info);
+  begin_on(device, commands, info);
 }
 
-void go_on_in_new_pass(const Device& device, VkCommandBuffer commands, const Targets& targets) {
+void split_rendering(const Device& device, VkCommandBuffer commands, const Targets& targets) {
   device.vk.vkCmdEndRendering(commands);
-  // A pass on the same images would be taken for the same pass.
+  // lavapipe would take a rendering on the same images for the same rendering.
   VkRenderingInfo other{};
   other.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
   other.renderArea = {{0, 0}, {1, 1}};
   other.layerCount = 1;
   device.vk.vkCmdBeginRendering(commands, &other);
   device.vk.vkCmdEndRendering(commands);
-  VkRenderingAttachmentInfo colour = colour_of_pass(targets, PassPart::kWhole);
-  VkRenderingAttachmentInfo depth = depth_of_pass(targets, PassPart::kWhole);
+  VkRenderingAttachmentInfo colour = colour_of(targets, RenderingPart::kWhole);
+  VkRenderingAttachmentInfo depth = depth_of(targets, RenderingPart::kWhole);
   colour.loadOp = depth.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
   VkRenderingInfo info =
       rendering_info({{0, 0}, {targets.drawn.width, targets.drawn.height}}, colour);
   info.pDepthAttachment = &depth;
-  begin_rendering(device, commands, info);
+  begin_on(device, commands, info);
 }
 
-void begin_pass_over_coarse(const Device& device, VkCommandBuffer commands, Targets& targets) {
+void begin_upscale_rendering(const Device& device, VkCommandBuffer commands, Targets& targets) {
   to_scaling_up(device, commands, targets);
   VkRenderingAttachmentInfo colour{};
   colour.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
@@ -256,7 +261,7 @@ void begin_pass_over_coarse(const Device& device, VkCommandBuffer commands, Targ
   colour.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   colour.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   const VkRect2D area{{0, 0}, {targets.extent.width, targets.extent.height}};
-  begin_rendering(device, commands, rendering_info(area, colour));
+  begin_on(device, commands, rendering_info(area, colour));
 }
 
 void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,

@@ -21,7 +21,10 @@ std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool sh
       static_cast<std::size_t>(range.layout == core::VertexLayout::kTerrain ? 1 : 0);
   if (key >= open_.size()) open_.resize(key + 1);
   if (open_[key] == 0 || groups_[open_[key] - 1].capacity == kGroupCapacity) {
-    groups_.push_back({range.layout, shared, coverage, range.pool_block, 0, 0, kPlainMaterial});
+    groups_.push_back({.layout = range.layout,
+                       .shared = shared,
+                       .coverage = coverage,
+                       .pool_block = range.pool_block});
     open_[key] = static_cast<std::uint32_t>(groups_.size());
   }
   ++groups_[open_[key] - 1].capacity;
@@ -29,9 +32,9 @@ std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool sh
 }
 
 template <class Draw>
-void CandidateList::add(const Draw& draw, bool coloured) {
+void CandidateList::add(const Draw& draw) {
   const core::Bounds box = bounds_of(draw);
-  const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, lists_);
+  const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, facts_.shared);
   const std::uint32_t group =
       group_for(draw.range, draw.shared_indices != kNoSharedIndices, coverage_of(draw));
   // Meshes without an id share bit 0.
@@ -42,22 +45,22 @@ void CandidateList::add(const Draw& draw, bool coloured) {
                          data_of(draw),
                          {indices.first_index, indices.index_count, draw.range.first_vertex, group},
                          {name, 0, 0, 0}});
-  if (coloured) set_colour(candidates_.back().data, draw);
+  if (facts_.coloured) set_colour(candidates_.back().data, draw);
 }
 
-void CandidateList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-                          std::span<const IndexList> lists, bool coloured) {
+void CandidateList::build(const ListFacts& facts, std::span<const TerrainDraw> terrain,
+                          std::span<const MeshDraw> models, std::span<const ObjectDraw> objects) {
   candidates_.clear();
   groups_.clear();
-  first_commands_.clear();
   std::fill(open_.begin(), open_.end(), 0u);
   name_count_ = 1;
-  lists_ = lists;
+  facts_ = facts;
   for (const TerrainDraw& draw : terrain)
-    add(draw, coloured);
+    add(draw);
   for (const MeshDraw& draw : models)
-    add(draw, coloured);
-  lists_ = {};
+    add(draw);
+  add_objects(objects);
+  facts_ = {};
   place_groups();
 }
 
@@ -90,23 +93,23 @@ std::uint32_t CandidateList::group_for(const ObjectDraw& draw, MaterialKind kind
   const auto [open, is_new] = open_objects_.try_emplace(key, 0u);
   if (is_new || !fits(groups_[open->second])) {
     open->second = static_cast<std::uint32_t>(groups_.size());
-    groups_.push_back(
-        {core::VertexLayout::kObject, false, coverage, draw.range.pool_block, 0, 0, textures});
+    groups_.push_back({.layout = core::VertexLayout::kObject,
+                       .coverage = coverage,
+                       .pool_block = draw.range.pool_block,
+                       .textures = textures});
   }
   ++groups_[open->second].capacity;
   return open->second;
 }
 
-void CandidateList::add_objects(std::span<const ObjectDraw> objects, MaterialKinds materials,
-                                bool coloured) {
-  if (objects.empty()) return;
+void CandidateList::add_objects(std::span<const ObjectDraw> objects) {
   open_objects_.clear();
   // Above the bits of other meshes. Their number may change from frame to frame. Then a bit names
   // another object for a frame, which costs a test and leaves nothing out (gpu_culling.hpp).
   const std::uint32_t first_name = std::bit_ceil(name_count_);
   for (const ObjectDraw& draw : objects) {
     const core::Bounds box = bounds_of(draw);
-    const std::uint32_t group = group_for(draw, kind_of(materials, draw.material));
+    const std::uint32_t group = group_for(draw, kind_of(facts_.materials, draw.material));
     const std::uint32_t name = first_name + draw.name % kMaxNames;
     name_count_ = std::max(name_count_, name + 1);
     candidates_.push_back(
@@ -115,9 +118,8 @@ void CandidateList::add_objects(std::span<const ObjectDraw> objects, MaterialKin
          data_of(draw),
          {draw.range.first_index, draw.range.index_count, draw.range.first_vertex, group},
          {name, 0, 0, 0}});
-    if (coloured) set_colour(candidates_.back().data, draw);
+    if (facts_.coloured) set_colour(candidates_.back().data, draw);
   }
-  place_groups();
 }
 
 }  // namespace psygen::render

@@ -23,6 +23,11 @@ struct DrawGroup {
   std::uint32_t first_command = 0;
   std::uint32_t capacity = 0;
   MaterialId textures = kPlainMaterial;  // of objects: the material whose textures are bound
+
+  // The variant of a group in a frame with or without point lights.
+  MeshVariant variant(bool lamps) const {
+    return {.coverage = coverage, .textured = textures != kPlainMaterial, .lamps = lamps};
+  }
 };
 
 // The candidates of one frame. Spans are valid until the next build().
@@ -31,13 +36,9 @@ class CandidateList {
   // Number of draws that every device with indirect draws accepts in one call.
   static constexpr std::uint32_t kGroupCapacity = 65535;
 
-  // Replaces the list: terrain first, then models. With `coloured` the data has the debug colour of
-  // each draw. `lists` is indexed by shared_indices − 1.
-  void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-             std::span<const IndexList> lists, bool coloured = false);
-  // Adds objects, after build(), with the same `coloured`.
-  void add_objects(std::span<const ObjectDraw> objects, MaterialKinds materials,
-                   bool coloured = false);
+  // Replaces the list: terrain first, then models, then objects. Uses no lights.
+  void build(const ListFacts& facts, std::span<const TerrainDraw> terrain,
+             std::span<const MeshDraw> models, std::span<const ObjectDraw> objects = {});
 
   // The list: candidates, groups, and first commands in the order of groups().
   std::span<const shaders::CullCandidate> candidates() const { return candidates_; }
@@ -49,7 +50,8 @@ class CandidateList {
 
  private:
   template <class Draw>
-  void add(const Draw& draw, bool coloured);
+  void add(const Draw& draw);
+  void add_objects(std::span<const ObjectDraw> objects);
   std::uint32_t group_for(const core::GeometryRange& range, bool shared, Coverage coverage);
   std::uint32_t group_for(const ObjectDraw& draw, MaterialKind kind);
   void place_groups();
@@ -59,7 +61,7 @@ class CandidateList {
   std::vector<std::uint32_t> first_commands_;
   std::vector<std::uint32_t> open_;  // 1 + the group being filled, by layout and buffers
   std::unordered_map<std::uint64_t, std::uint32_t> open_objects_;  // the group being filled
-  std::span<const IndexList> lists_;                               // while build() runs
+  ListFacts facts_;                                                // while build() runs
   std::uint32_t name_count_ = 0;
 };
 

@@ -20,7 +20,7 @@ std::uint32_t with_more(std::uint32_t missing, float share, std::uint32_t most) 
 
 }  // namespace
 
-void GroundShade::build(std::span<const GroundSpot> spots, glm::dvec2 camera) {
+void ContactShadowMap::build(std::span<const GroundSpot> spots, glm::dvec2 camera) {
   std::fill(words_.begin(), words_.end(), 0U);
   constexpr double kHalf = kShadeSide / 2;
   corner_ = {static_cast<float>(std::floor(camera.x) - camera.x - kHalf),
@@ -29,7 +29,7 @@ void GroundShade::build(std::span<const GroundSpot> spots, glm::dvec2 camera) {
     add(spot);
 }
 
-void GroundShade::add(const GroundSpot& spot) {
+void ContactShadowMap::add(const GroundSpot& spot) {
   const glm::vec2 middle = spot.middle - corner_ - 0.5F;  // in cells, from the middle of the first
   if (!(spot.radius_m > 0) || !(std::abs(middle.x) + std::abs(middle.y) < 4.0F * kShadeSide))
     return;

@@ -16,7 +16,7 @@
 namespace psygen::render {
 
 // Empty until build().
-class GroundShade {
+class ContactShadowMap {
  public:
   // Replaces the map. `camera`: its x and z in metres; cells stay where they are in the world when
   // it moves.

@@ -9,46 +9,6 @@
 
 namespace psygen::render {
 
-shaders::DrawData data_of(const TerrainDraw& draw) {
-  return {.origin = {draw.origin.x, draw.origin.y + draw.height_min_m, draw.origin.z, draw.cell_m},
-          .scale = {draw.height_range_m, draw.skirt_m, draw.morph, draw.cover},
-          .light = {},
-          .turn = {}};
-}
-
-static_assert(static_cast<int>(core::SurfaceKind::kStone) == PSYGEN_SURFACE_STONE);
-static_assert(static_cast<int>(core::SurfaceKind::kBark) == PSYGEN_SURFACE_BARK);
-
-shaders::DrawData data_of(const MeshDraw& draw) {
-  // The phase depends on the mesh, not on the camera. Neighbours differ because their boxes do.
-  const float phase = 7.31F * (draw.box_half_extent.x + draw.box_centre.x + draw.box_centre.z);
-  return {.origin = {draw.origin + draw.box_centre, phase - std::floor(phase)},
-          .scale = {draw.box_half_extent, draw.fade},
-          .light = {draw.sun, static_cast<float>(draw.surface), 0, 0},
-          .turn = {}};
-}
-
-shaders::DrawData data_of(const ObjectDraw& draw) {
-  const glm::vec3 centre = draw.origin + object_axes(draw) * draw.box_centre;
-  const auto number = static_cast<float>(std::min(draw.material, PSYGEN_MAX_MATERIALS - 1U));
-  const float phase = 0.9375F * (draw.phase - std::floor(draw.phase));  // stays below the number
-  return {.origin = {centre, number + phase},
-          .scale = {draw.scale * draw.box_half_extent, draw.fade},
-          .light = {draw.sun, 1.0F / draw.scale.x, 1.0F / draw.scale.y, 1.0F / draw.scale.z},
-          .turn = {draw.rotation[0], draw.rotation[1], draw.rotation[2], draw.rotation[3]}};
-}
-
-void set_colour(shaders::DrawData& data, const TerrainDraw& draw) {
-  data.scale.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
-}
-void set_colour(shaders::DrawData& data, const MeshDraw& draw) {
-  data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
-}
-
-void set_colour(shaders::DrawData& data, const ObjectDraw& draw) {
-  data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
-}
-
 IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indices,
                      core::IndexPart part, std::span<const IndexList> lists) {
   PSYGEN_ASSERT(shared_indices <= lists.size(), "unknown shared index list");
@@ -77,11 +37,11 @@ template <class Draw>
 DrawRun DrawList::run_of(const Draw& draw) const {
   DrawRun run;
   run.layout = draw.range.layout;
-  run.pushed = indices_of(draw, lists_).index_count >= pushed_from_;
+  run.pushed = indices_of(draw, facts_.shared).index_count >= facts_.pushed_from;
   run.pool_block = draw.range.pool_block;
-  run.lamps = !lights_.empty() && any_reaches(lights_, bounds_of(draw));
+  run.lamps = !facts_.lights.empty() && any_reaches(facts_.lights, bounds_of(draw));
   if constexpr (requires { draw.material; }) {
-    const MaterialKind kind = kind_of(materials_, draw.material);
+    const MaterialKind kind = kind_of(facts_.materials, draw.material);
     run.coverage = coverage_of(draw, kind);
     run.textures = kind.textured ? draw.material : kPlainMaterial;
   } else {
@@ -93,7 +53,7 @@ DrawRun DrawList::run_of(const Draw& draw) const {
 
 template <class Draw>
 void DrawList::append(const Draw& draw) {
-  const IndexList indices = indices_of(draw, lists_);
+  const IndexList indices = indices_of(draw, facts_.shared);
   DrawRun run = run_of(draw);
   run.first = static_cast<std::uint32_t>(draws_.size());
   if (runs_.empty() || !run.continues(runs_.back())) runs_.push_back(run);
@@ -101,7 +61,7 @@ void DrawList::append(const Draw& draw) {
   draws_.push_back({indices.first_index, indices.index_count,
                     static_cast<std::int32_t>(draw.range.first_vertex)});
   data_.push_back(data_of(draw));
-  if (coloured_) set_colour(data_.back(), draw);
+  if (facts_.coloured) set_colour(data_.back(), draw);
   triangle_count_ += indices.index_count / 3;
 }
 
@@ -130,25 +90,17 @@ void DrawList::add(std::span<const Draw> input) {
   }
 }
 
-void DrawList::build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-                     std::span<const IndexList> lists, std::uint32_t pushed_from, bool coloured,
-                     std::span<const ObjectDraw> objects, MaterialKinds materials,
-                     std::span<const PointLight> lights) {
+void DrawList::build(const ListFacts& facts, std::span<const TerrainDraw> terrain,
+                     std::span<const MeshDraw> models, std::span<const ObjectDraw> objects) {
   runs_.clear();
   draws_.clear();
   data_.clear();
   triangle_count_ = 0;
-  lists_ = lists;
-  pushed_from_ = pushed_from;
-  coloured_ = coloured;
-  lights_ = lights;
+  facts_ = facts;
   add(terrain);
   add(models);
-  materials_ = materials;
   add(objects);
-  materials_ = {};
-  lists_ = {};
-  lights_ = {};
+  facts_ = {};
 }
 
 }  // namespace psygen::render

@@ -11,6 +11,10 @@
 
 #include "engine/core/vertex_layout.hpp"
 #include "engine/render/memory/shared_index_lists.hpp"
+#include "engine/render/meshes/mesh_tables.hpp"
+#include "engine/render/meshes/models.hpp"
+#include "engine/render/meshes/objects.hpp"
+#include "engine/render/meshes/terrain.hpp"
 #include "engine/render/textures/materials.hpp"
 #include "engine/render/types.hpp"
 #include "shaders/shared.h"
@@ -22,34 +26,14 @@ namespace psygen::render {
 IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indices,
                      core::IndexPart part, std::span<const IndexList> lists);
 
-// The data of a draw for the shaders.
-shaders::DrawData data_of(const TerrainDraw& draw);
-shaders::DrawData data_of(const MeshDraw& draw);
-shaders::DrawData data_of(const ObjectDraw& draw);
-// Which of its pixels a draw covers. Each has a pipeline of its own.
-enum class Coverage : std::uint8_t {
-  kWhole,
-  kPart,      // models that fade in or out, objects with holes; of terrain, what is near
-  kPictured,  // models with pictures, whether they fade or not
-  kNear,      // near models, whether they fade or not
+// Facts about the draws of a frame that decide how they are listed. Valid while a list is built.
+struct ListFacts {
+  std::span<const IndexList> shared = {};  // indexed by shared_indices − 1
+  MaterialKinds materials = {};
+  std::span<const PointLight> lights = {};  // runs that they may reach are apart
+  std::uint32_t pushed_from = UINT32_MAX;   // meshes with at least this many indices are pushed
+  bool coloured = false;                    // the data has the debug colour of each draw (shared.h)
 };
-constexpr Coverage coverage_of(const TerrainDraw& draw) {
-  return draw.near ? Coverage::kPart : Coverage::kWhole;
-}
-constexpr Coverage coverage_of(const MeshDraw& draw) {
-  return draw.pictured      ? Coverage::kPictured
-         : draw.near        ? Coverage::kNear
-         : draw.fade < 1.0F ? Coverage::kPart
-                            : Coverage::kWhole;
-}
-// Puts the debug colour of a draw into its data, for the views that show it.
-void set_colour(shaders::DrawData& data, const TerrainDraw& draw);
-void set_colour(shaders::DrawData& data, const MeshDraw& draw);
-void set_colour(shaders::DrawData& data, const ObjectDraw& draw);
-
-inline Coverage coverage_of(const ObjectDraw& draw, MaterialKind kind) {
-  return kind.holes || draw.fade < 1.0F ? Coverage::kPart : Coverage::kWhole;
-}
 
 // One draw, in indices and vertices of its buffers. Same layout as VkMultiDrawIndexedInfoEXT.
 struct IndexedDraw {
@@ -70,7 +54,13 @@ struct DrawRun {
   std::uint32_t count = 0;
   MaterialId textures = kPlainMaterial;  // of objects: the material whose textures are bound
 
-  // Whether this draw can be appended to the run `r`.
+  MeshVariant variant() const {
+    return {.coverage = coverage,
+            .pushed = pushed,
+            .textured = textures != kPlainMaterial,
+            .lamps = lamps};
+  }
+  // Returns true if this draw can be appended to the run `r`.
   bool continues(const DrawRun& r) const {
     return layout == r.layout && shared == r.shared && pushed == r.pushed &&
            coverage == r.coverage && lamps == r.lamps && pool_block == r.pool_block &&
@@ -83,13 +73,9 @@ class DrawList {
  public:
   static constexpr std::size_t kWindow = 512;  // draws that may be reordered together
 
-  // Replaces the list: terrain first, then models, then objects. `lists` is indexed by
-  // shared_indices − 1. Meshes with at least `pushed_from` indices are pushed. With `coloured` the
-  // data has the debug colour of each draw (shared.h). Runs that `lights` may reach are apart.
-  void build(std::span<const TerrainDraw> terrain, std::span<const MeshDraw> models,
-             std::span<const IndexList> lists, std::uint32_t pushed_from = UINT32_MAX,
-             bool coloured = false, std::span<const ObjectDraw> objects = {},
-             MaterialKinds materials = {}, std::span<const PointLight> lights = {});
+  // Replaces the list: terrain first, then models, then objects.
+  void build(const ListFacts& facts, std::span<const TerrainDraw> terrain,
+             std::span<const MeshDraw> models, std::span<const ObjectDraw> objects = {});
 
   // The list: runs, draws, their data, and the triangles of all of them.
   std::span<const DrawRun> runs() const { return runs_; }
@@ -110,11 +96,7 @@ class DrawList {
   std::vector<shaders::DrawData> data_;
   std::vector<std::pair<std::uint64_t, std::size_t>> order_;  // (buffers, position) of a window
   std::uint64_t triangle_count_ = 0;
-  std::span<const IndexList> lists_;    // while build() runs
-  MaterialKinds materials_;             // the same
-  std::span<const PointLight> lights_;  // the same
-  std::uint32_t pushed_from_ = UINT32_MAX;
-  bool coloured_ = false;
+  ListFacts facts_;  // while build() runs
 };
 
 }  // namespace psygen::render

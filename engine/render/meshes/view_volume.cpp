@@ -9,8 +9,7 @@ namespace psygen::render {
 
 namespace {
 
-constexpr float kLargestGrid = 127.0F;  // cells (core::TerrainVertex)
-constexpr float kSlackShare = 1e-6F;    // slack for rounding, relative to a box's coordinates
+constexpr float kSlackShare = 1e-6F;  // slack for rounding, relative to a box's coordinates
 
 }  // namespace
 
@@ -37,40 +36,11 @@ bool in_view(const ViewVolume& volume, const core::Bounds& box) {
   return true;
 }
 
-core::Bounds bounds_of(const TerrainDraw& draw) {
-  const float side = draw.side_m > 0 ? draw.side_m : kLargestGrid * draw.cell_m;
-  const float bottom = draw.origin.y + draw.height_min_m;
-  return {{draw.origin.x, bottom - draw.skirt_m, draw.origin.z},
-          {draw.origin.x + side, bottom + draw.height_range_m, draw.origin.z + side}};
-}
-
-core::Bounds bounds_of(const MeshDraw& draw) {
-  return core::Bounds::around(draw.origin + draw.box_centre, draw.box_half_extent + kSwayM);
-}
-
-// The box around the turned box: each of its half extents is the sum of the projections of the
-// turned axes.
-core::Bounds bounds_of(const ObjectDraw& draw) {
-  const glm::mat3 axes = object_axes(draw);
-  const glm::vec3 extent = glm::abs(axes[0]) * draw.box_half_extent.x +
-                           glm::abs(axes[1]) * draw.box_half_extent.y +
-                           glm::abs(axes[2]) * draw.box_half_extent.z;
-  return core::Bounds::around(draw.origin + axes * draw.box_centre, extent + kSwayM);
-}
-
 bool any_reaches(std::span<const PointLight> lights, const core::Bounds& box) {
   return std::ranges::any_of(lights, [&](const PointLight& light) {
     const glm::vec3 away = light.position - glm::clamp(light.position, box.min, box.max);
     return glm::dot(away, away) < light.range_m * light.range_m;
   });
-}
-
-glm::mat3 object_axes(const ObjectDraw& draw) {
-  const auto [x, y, z, w] = draw.rotation;
-  return {
-      glm::vec3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)) * draw.scale.x,
-      glm::vec3(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)) * draw.scale.y,
-      glm::vec3(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)) * draw.scale.z};
 }
 
 }  // namespace psygen::render

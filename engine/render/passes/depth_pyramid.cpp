@@ -3,21 +3,14 @@
 #include <bit>
 #include <glm/ext/vector_int2.hpp>
 
+#include "engine/render/device/shaders.hpp"
+
 namespace psygen::render {
 
 using core::Result;
 
 namespace {
 
-constexpr std::uint32_t kFirstCode[] =
-#include "depth_pyramid_first_comp_spv.h"
-    ;
-constexpr std::uint32_t kSamplesCode[] =
-#include "depth_pyramid_samples_comp_spv.h"
-    ;
-constexpr std::uint32_t kNextCode[] =
-#include "depth_pyramid_comp_spv.h"
-    ;
 constexpr VkFormat kFormat = VK_FORMAT_R32_SFLOAT;
 constexpr std::uint32_t kThreads = 8;  // per side of a workgroup, as in depth_pyramid.comp
 
@@ -59,13 +52,14 @@ Result<void> DepthPyramid::create(const Device& device, VkSampleCountFlagBits sa
   const VkDescriptorType target = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
   const VkDescriptorType from_depth[] = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, target};
   const VkDescriptorType from_level[] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, target};
-  using Code = std::span<const std::uint32_t>;
-  const Code first = samples == VK_SAMPLE_COUNT_1_BIT ? Code(kFirstCode) : Code(kSamplesCode);
+  const Shader first = samples == VK_SAMPLE_COUNT_1_BIT ? Shader::kDepthPyramidFromDepthComp
+                                                        : Shader::kDepthPyramidSamplesComp;
   Result<UniqueSampler> sampler = make_nearest_sampler(device);
   if (!sampler) return tl::unexpected(sampler.error());
   sampler_ = std::move(*sampler);
-  return first_.create(device, first, from_depth, sizeof(glm::ivec2), 1).and_then([&] {
-    return next_.create(device, kNextCode, from_level, sizeof(glm::ivec2), kMaxLevels);
+  return first_.create(device, code_of(first), from_depth, sizeof(glm::ivec2), 1).and_then([&] {
+    return next_.create(device, code_of(Shader::kDepthPyramidComp), from_level, sizeof(glm::ivec2),
+                        kMaxLevels);
   });
 }
 

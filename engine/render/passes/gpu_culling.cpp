@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstring>
 
-#include "engine/render/preset.hpp"
+#include "engine/render/device/shaders.hpp"
 
 namespace psygen::render {
 
@@ -12,9 +12,6 @@ using core::Result;
 
 namespace {
 
-constexpr std::uint32_t kCode[] =
-#include "cull_comp_spv.h"
-    ;
 constexpr std::uint64_t kFirstCandidates = 4096;
 constexpr std::uint64_t kFirstNames = 1 << 20;
 constexpr std::uint32_t kWordBytes = sizeof(std::uint32_t);
@@ -71,7 +68,9 @@ Result<void> GpuCulling::create(const Device& device, bool occlusion, VkSampleCo
   types[PSYGEN_CULL_FRAME] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   types[PSYGEN_CULL_PYRAMID] = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   slots_.resize(slots);
-  return pipeline_.create(device, kCode, types, kWordBytes, static_cast<std::uint32_t>(slots))
+  return pipeline_
+      .create(device, code_of(Shader::kCullComp), types, kWordBytes,
+              static_cast<std::uint32_t>(slots))
       .and_then([&] { return pyramid_.create(device, samples); })
       .and_then([&] { return grow_seen(device); });
 }
@@ -101,11 +100,10 @@ Result<void> GpuCulling::grow_seen(const Device& device) {
   return {};
 }
 
-void GpuCulling::set_frame(const ViewVolume& volume, const shaders::FrameData& frame,
-                           const FrameInput& input, core::Extent size,
-                           std::span<const IndexList> lists, MaterialKinds materials) {
-  list_.build(input.terrain, input.models, lists, colours_draws(input.view));
-  list_.add_objects(input.objects, materials, colours_draws(input.view));
+void GpuCulling::set_frame(const FrameInput& input, const shaders::FrameData& frame,
+                           core::Extent size, const ListFacts& facts) {
+  list_.build(facts, input.terrain, input.models, input.objects);
+  const ViewVolume volume = view_volume(frame.clip_from_camera);
   std::copy(volume.planes.begin(), volume.planes.end(), frame_.planes);
   frame_.clip_from_camera = frame.clip_from_camera;
   frame_.near = {input.projection.near_m, 0.0F, 0.0F, 0.0F};
@@ -213,14 +211,14 @@ void GpuCulling::record_counts(const Device& device, VkCommandBuffer commands,
   to_host(device, commands);
 }
 
-void GpuCulling::draw_group(const Device& device, VkCommandBuffer commands, std::size_t slot,
-                            std::size_t group, std::uint32_t phase) const {
-  const Slot& s = slots_[slot];
-  const DrawGroup& drawn = list_.groups()[group];
-  const std::uint64_t first = std::uint64_t{phase} * s.command_count + drawn.first_command;
-  const std::uint64_t count = std::uint64_t{phase} * s.group_count + group;
+void GpuCulling::draw_group(const Device& device, VkCommandBuffer commands,
+                            const GroupDraw& draw) const {
+  const Slot& s = slots_[draw.slot];
+  const DrawGroup& group = list_.groups()[draw.group];
+  const std::uint64_t first = std::uint64_t{draw.phase} * s.command_count + group.first_command;
+  const std::uint64_t count = std::uint64_t{draw.phase} * s.group_count + draw.group;
   device.vk.vkCmdDrawIndexedIndirectCount(commands, s.commands.buffer.get(), first * kCommandBytes,
-                                          s.counts.buffer.get(), count * kWordBytes, drawn.capacity,
+                                          s.counts.buffer.get(), count * kWordBytes, group.capacity,
                                           kCommandBytes);
 }
 

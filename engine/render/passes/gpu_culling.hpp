@@ -26,8 +26,9 @@ class GpuCulling {
   core::Result<void> resize(const Device& device, core::Extent size, const Image& depth);
 
   // Sets the candidates of the following frames, until the next call. Linear in the draws.
-  void set_frame(const ViewVolume& volume, const shaders::FrameData& frame, const FrameInput& input,
-                 core::Extent size, std::span<const IndexList> lists, MaterialKinds materials = {});
+  // `size`: of the landscape in pixels.
+  void set_frame(const FrameInput& input, const shaders::FrameData& frame, core::Extent size,
+                 const ListFacts& facts);
   // Copies them into the buffers of a slot whose last frame has finished. Fails with kOutOfMemory
   // if the buffers cannot grow.
   core::Result<void> write(const Device& device, std::size_t slot);
@@ -44,8 +45,11 @@ class GpuCulling {
                      const Image& depth) const;
   void record_counts(const Device& device, VkCommandBuffer commands, std::size_t slot) const;
   std::span<const DrawGroup> groups() const { return list_.groups(); }
-  void draw_group(const Device& device, VkCommandBuffer commands, std::size_t slot,
-                  std::size_t group, std::uint32_t phase) const;
+  struct GroupDraw {
+    std::size_t slot = 0, group = 0;
+    std::uint32_t phase = 0;
+  };
+  void draw_group(const Device& device, VkCommandBuffer commands, const GroupDraw& draw) const;
 
   // Numbers of one frame.
   struct Counts {

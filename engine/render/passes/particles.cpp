@@ -4,13 +4,14 @@
 
 namespace psygen::render {
 
+using core::Result;
+
 namespace {
 
 // Shares of a life that divide are at least this.
 constexpr float kMinShare = 1e-3F;
 
-}  // namespace
-
+// An emitter as the shaders read it.
 shaders::EmitterData data_of(const ParticleDraw& draw) {
   const ParticleKind& k = draw.kind;
   const bool around = k.volume == ParticleVolume::kAroundCamera;
@@ -36,6 +37,81 @@ shaders::EmitterData data_of(const ParticleDraw& draw) {
   out.around = {around ? 2.0F * k.half_extent_m : glm::vec3(0.0F), k.brightness_variation};
   out.cycle = {draw.cycle_s, 0, 0, 0};
   return out;
+}
+
+}  // namespace
+
+Result<void> Particles::create(const PassSetup& setup) {
+  if (!setup.features.has(kFeature) || set_.exists()) return {};
+  const Device& device = setup.device;
+  const std::size_t slots = setup.sets.slots();
+  const std::array bindings{
+      PassBinding{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT}};
+  PipelineShape shape{.vert = Shader::kParticleVert, .blend = Blend::kPremultiplied};
+  shape.constants[2] = VK_TRUE;
+  PassSet set;
+  Result<void> made =
+      set.create(device, slots, bindings, setup.sets.shared())
+          .and_then([&] {
+            return emitters_.create(device, slots, kMaxEmitters * sizeof(shaders::EmitterData),
+                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+          })
+          .and_then([&] {
+            for (std::size_t slot = 0; slot < slots; ++slot)
+              set.write(device, slot, PSYGEN_PARTICLE_EMITTER, emitters_.at(slot),
+                        sizeof(shaders::EmitterData));
+            shape.frag = Shader::kParticleTexturedFrag;
+            return setup.pipelines.make(set.layout(), shape, textured_);
+          })
+          .and_then([&] {
+            shape.frag = Shader::kParticleFrag;
+            return setup.pipelines.make(set.layout(), shape, plain_);
+          });
+  if (made) set_ = std::move(set);
+  return made;
+}
+
+// Views for debugging show no particles.
+void Particles::list(const FrameInput& input, const FrameFacts& facts) {
+  listed_.clear();
+  runs_.clear();
+  if (use_in(input.view) != MeshUse::kLandscape) return;
+  const std::size_t last = input.particles.size();
+  for (std::size_t i = last - std::min<std::size_t>(last, kMaxEmitters); i < last; ++i) {
+    const ParticleDraw& draw = input.particles[i];
+    const MaterialId material = draw.kind.material;
+    const bool textured = kind_of(facts.materials, material).textured;
+    listed_.push_back(data_of(draw));
+    runs_.push_back({.count = std::min(draw.count, kMaxParticlesPerEmitter),
+                     .textures = textured ? material : kPlainMaterial});
+  }
+}
+
+Result<void> Particles::write(const Device& device, std::size_t slot) {
+  if (listed_.empty()) return {};
+  const Result<bool> written = emitters_.write(device, slot, std::as_bytes(std::span(listed_)));
+  return written ? Result<void>{} : tl::unexpected(written.error());
+}
+
+void Particles::record(const Recording& to) const {
+  TextureBinder textures(to);
+  VkPipeline bound = VK_NULL_HANDLE;
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    const EmitterRun& run = runs_[i];
+    const VkPipeline pipeline = run.textures != kPlainMaterial ? textured_.get() : plain_.get();
+    if (pipeline != bound) to.bind_pipeline(pipeline);
+    bound = pipeline;
+    set_.bind(to.device, to.commands(), to.slot.number(),
+              static_cast<std::uint32_t>(i * sizeof(shaders::EmitterData)));
+    textures.bind(run.textures);
+    to.draw(run.count * PSYGEN_PARTICLE_VERTICES);
+  }
+}
+
+void Particles::warm_up(const Recording& to, const WarmUpStep& step) const {
+  to.bind_pipeline(step.number == 1 ? textured_.get() : plain_.get());
+  set_.bind(to.device, to.commands(), to.slot.number(), 0);
+  to.draw(PSYGEN_PARTICLE_VERTICES);
 }
 
 }  // namespace psygen::render

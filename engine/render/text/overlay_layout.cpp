@@ -14,7 +14,7 @@
 
 namespace psygen::render {
 
-struct Overlay::Fonts {
+struct OverlayLayout::Fonts {
   ImFontAtlas atlas;
   std::array<ImFont*, kMaxScale> by_scale{};
   unsigned char* pixels = nullptr;  // owned by the atlas
@@ -131,7 +131,7 @@ class Layout {
         advance_(font.FindGlyph(' ')->AdvanceX),
         width_(static_cast<float>(picture.width)),
         height_(static_cast<float>(picture.height)),
-        max_(out.size() + Overlay::kMaxQuads * 6),
+        max_(out.size() + OverlayLayout::kMaxQuads * 6),
         out_(out) {}
 
   void add(const TextPanel& panel) {
@@ -220,7 +220,7 @@ class Layout {
 
 }  // namespace
 
-Overlay::Overlay() : fonts_(std::make_unique<Fonts>()) {
+OverlayLayout::OverlayLayout() : fonts_(std::make_unique<Fonts>()) {
   ImFontAtlas& atlas = fonts_->atlas;
   const HudFont& hud = hud_font();
   atlas.Flags |= ImFontAtlasFlags_NoPowerOfTwoHeight;
@@ -247,7 +247,7 @@ Overlay::Overlay() : fonts_(std::make_unique<Fonts>()) {
 }
 
 // Copies the letters into the atlas, and makes a font of ImGui from them.
-void Overlay::put_hud_font() {
+void OverlayLayout::put_hud_font() {
   const HudFont& hud = hud_font();
   const auto width = static_cast<std::size_t>(fonts_->width);
   const auto left = static_cast<std::size_t>(fonts_->hud_corner.x);
@@ -275,12 +275,12 @@ void Overlay::put_hud_font() {
   font.BuildLookupTable();
 }
 
-ImFontAtlas& Overlay::font_atlas() const {
+ImFontAtlas& OverlayLayout::font_atlas() const {
   return fonts_->atlas;
 }
 
-void Overlay::lay_out(const HudDrawing& drawing, core::Extent picture,
-                      std::vector<shaders::OverlayVertex>& out) const {
+void OverlayLayout::lay_out(const HudDrawing& drawing, core::Extent picture,
+                            std::vector<shaders::OverlayVertex>& out) const {
   const ImVec2 white = fonts_->atlas.TexUvWhitePixel;
   lay_out_hud(drawing, picture, {atlas_size(), fonts_->hud_corner, {white.x, white.y}}, out);
 }
@@ -302,8 +302,9 @@ GuiRun clip_of(const ImDrawCmd& command, const ImDrawData& drawn, core::Extent p
 
 }  // namespace
 
-void Overlay::lay_out(const ImDrawData& drawn, core::Extent picture,
-                      std::vector<shaders::OverlayVertex>& out, std::vector<GuiRun>& runs) const {
+void OverlayLayout::lay_out(const ImDrawData& drawn, core::Extent picture,
+                            std::vector<shaders::OverlayVertex>& out,
+                            std::vector<GuiRun>& runs) const {
   runs.clear();
   const HudFont& hud = hud_font();
   // Where letters of the HUD's font lie in the atlas.
@@ -336,19 +337,19 @@ void Overlay::lay_out(const ImDrawData& drawn, core::Extent picture,
   }
 }
 
-Overlay::~Overlay() = default;
+OverlayLayout::~OverlayLayout() = default;
 
-core::Extent Overlay::atlas_size() const {
+core::Extent OverlayLayout::atlas_size() const {
   return {static_cast<std::uint32_t>(fonts_->width), static_cast<std::uint32_t>(fonts_->height)};
 }
 
-std::span<const std::byte> Overlay::atlas() const {
+std::span<const std::byte> OverlayLayout::atlas() const {
   return {reinterpret_cast<const std::byte*>(fonts_->pixels),
           static_cast<std::size_t>(fonts_->width) * static_cast<std::size_t>(fonts_->height)};
 }
 
-void Overlay::lay_out(std::span<const TextPanel> panels, core::Extent picture, float scale,
-                      std::vector<shaders::OverlayVertex>& out) const {
+void OverlayLayout::lay_out(std::span<const TextPanel> panels, core::Extent picture, float scale,
+                            std::vector<shaders::OverlayVertex>& out) const {
   const float whole =
       std::isfinite(scale) ? std::clamp(std::round(scale), 1.0F, float{kMaxScale}) : 1.0F;
   const ImFont& font = *fonts_->by_scale[static_cast<std::size_t>(whole) - 1];
@@ -358,8 +359,8 @@ void Overlay::lay_out(std::span<const TextPanel> panels, core::Extent picture, f
   layout.cut_off();
 }
 
-void Overlay::put_ground_under(core::Extent picture,
-                               std::vector<shaders::OverlayVertex>& out) const {
+void OverlayLayout::put_ground_under(core::Extent picture,
+                                     std::vector<shaders::OverlayVertex>& out) const {
   std::vector<shaders::OverlayVertex> ground;
   add_area(ground, {0, 0, static_cast<float>(picture.width), static_cast<float>(picture.height)},
            fonts_->atlas, kGroundColour);

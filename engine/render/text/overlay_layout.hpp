@@ -26,17 +26,17 @@ struct GuiRun {
 };
 
 // The fonts and the layout.
-class Overlay {
+class OverlayLayout {
  public:
   static constexpr std::size_t kMaxQuads = 4096;  // further quads are left out
   static constexpr int kMaxScale = 4;
   static constexpr std::size_t kMaxGuiVertices = 600'000;  // further draws are left out
 
   // Builds the font atlas of all scales.
-  Overlay();
-  ~Overlay();
-  Overlay(const Overlay&) = delete;
-  Overlay& operator=(const Overlay&) = delete;
+  OverlayLayout();
+  ~OverlayLayout();
+  OverlayLayout(const OverlayLayout&) = delete;
+  OverlayLayout& operator=(const OverlayLayout&) = delete;
 
   // The font atlas: one byte of coverage per texel, row by row. Valid while this object lives.
   core::Extent atlas_size() const;

@@ -16,8 +16,8 @@ namespace psygen::render {
 
 using core::Result;
 
-Result<void> GroundImage::create(const Device& device, const PresetTraits& traits,
-                                 std::span<const GroundPicture> pictures) {
+Result<void> GroundTextureArray::create(const Device& device, const PresetTraits& traits,
+                                        std::span<const GroundPicture> pictures) {
   VkSamplerCreateInfo info{};
   info.magFilter = VK_FILTER_LINEAR;
   info.minFilter = VK_FILTER_LINEAR;

@@ -12,7 +12,7 @@
 namespace psygen::render {
 
 // Empty until create(). The device must outlive it.
-class GroundImage {
+class GroundTextureArray {
  public:
   // Computes and uploads the textures that the preset needs. Once; waits for the device.
   // `pictures`: RendererOptions::ground.

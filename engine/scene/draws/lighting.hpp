@@ -13,7 +13,7 @@ namespace psygen::scene {
 render::Light light_of(const world::World& world, double view_distance_m, double time_s = 0);
 // Puts sun and sky of `light`, made by light_of, where they are at `time_s`.
 void move_sun(const world::World& world, double time_s, render::Light& light);
-std::optional<render::Water> water_of(const world::World& world);
+std::optional<render::WaterSurface> water_of(const world::World& world);
 render::TerrainPalette palette_of(const world::World& world);
 // Where the world's plants may stand, in the colour that they have from above.
 render::Canopy canopy_of(const world::World& world, const glm::vec3& albedo);

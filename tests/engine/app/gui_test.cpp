@@ -59,7 +59,7 @@ class GuiOfAPerson : public testing::Test {
     frame();
   }
 
-  render::Overlay overlay_;
+  render::OverlayLayout overlay_;
   Gui gui_{overlay_.font_atlas(), nullptr};
   InputState input_;
   glm::dvec2 button_{0.0}, field_{0.0};

@@ -18,7 +18,7 @@ class SteadyShaders : public OneOfEach {
     OneOfEach::SetUp();
     if (!renderer_) return;
     if (!renderer_->device().software) GTEST_SKIP() << "only software devices do";
-    input_.water = Water{};
+    input_.water = WaterSurface{};
     input_.block_size_m = 64;
     emitter_.kind.half_extent_m = {2, 2, 0.5F};
     emitter_.origin = {0, 0, -12};

@@ -24,7 +24,7 @@ TEST(CandidateList, gathers_draws_of_the_same_buffers_in_groups_with_room_for_al
   terrain[0].range.layout = core::VertexLayout::kTerrain;
   terrain[0].shared_indices = 1;
   CandidateList list;
-  list.build(terrain, models, lists);
+  list.build({.shared = lists}, terrain, models);
   ASSERT_EQ(list.candidates().size(), 5u);
   ASSERT_EQ(list.groups().size(), 4u);
   EXPECT_EQ(list.groups()[0].layout, core::VertexLayout::kTerrain);
@@ -47,7 +47,7 @@ TEST(CandidateList, takes_parts_of_a_mesh_as_candidates_of_one_name) {
   models[0].part = {0, 6};
   models[1].part = {12, 9};
   CandidateList list;
-  list.build({}, models, {});
+  list.build({}, {}, models);
   ASSERT_EQ(list.candidates().size(), 2u);
   EXPECT_EQ(list.candidates()[0].draw, glm::uvec4(400, 6, 40, 0));
   EXPECT_EQ(list.candidates()[1].draw, glm::uvec4(412, 9, 40, 0));
@@ -60,7 +60,7 @@ TEST(CandidateList, groups_what_has_the_same_pipeline_and_buffers) {
   models[2].near = models[3].near = true;
   models[3].fade = 0.5F;
   CandidateList list;
-  list.build({}, models, {});
+  list.build({}, {}, models);
   ASSERT_EQ(list.groups().size(), 3u);
   EXPECT_EQ(list.groups()[1].coverage, Coverage::kWhole);
   EXPECT_EQ(list.groups()[2].coverage, Coverage::kNear);
@@ -70,12 +70,12 @@ TEST(CandidateList, groups_what_has_the_same_pipeline_and_buffers) {
 TEST(CandidateList, starts_a_new_group_where_one_call_can_take_no_more) {
   const std::vector<MeshDraw> models(CandidateList::kGroupCapacity + 5, candidate(1, 0, 0));
   CandidateList list;
-  list.build({}, models, {});
+  list.build({}, {}, models);
   ASSERT_EQ(list.groups().size(), 2u);
   EXPECT_EQ(list.groups()[0].capacity, CandidateList::kGroupCapacity);
   EXPECT_EQ(list.groups()[1].capacity, 5u);
   EXPECT_EQ(list.groups()[1].first_command, CandidateList::kGroupCapacity);
-  list.build({}, std::span(models).first(2), {});
+  list.build({}, {}, std::span(models).first(2));
   EXPECT_EQ(list.groups().size(), 1u) << "nothing is left of the frame before";
 }
 

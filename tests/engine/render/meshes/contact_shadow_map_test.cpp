@@ -11,14 +11,14 @@ namespace {
 constexpr int kShadeSide = PSYGEN_SHADE_SIDE;
 
 // The missing share of the sun, of 255, in the cell at a place relative to the camera.
-std::uint32_t sun_at(const GroundShade& shade, glm::vec2 place) {
+std::uint32_t sun_at(const ContactShadowMap& shade, glm::vec2 place) {
   const glm::vec2 cell = place - shade.corner();
   const int x = static_cast<int>(cell.x), z = static_cast<int>(cell.y);
   return shade.words()[static_cast<std::size_t>(z * kShadeSide + x) / 2] >> ((x & 1) * 16) & 0xFF;
 }
 
-TEST(GroundShade, ASpotIsDarkestInItsMiddleAndEndsAtItsRadius) {
-  GroundShade shade;
+TEST(ContactShadowMap, ASpotIsDarkestInItsMiddleAndEndsAtItsRadius) {
+  ContactShadowMap shade;
   const std::array spots{GroundSpot{{10.5F, -3.5F}, 4, 0.5F, 0}};
   shade.build(spots, {0, 0});
   EXPECT_NEAR(sun_at(shade, {10.5F, -3.5F}), 127, 2);
@@ -30,16 +30,16 @@ TEST(GroundShade, ASpotIsDarkestInItsMiddleAndEndsAtItsRadius) {
   })) << "nothing of the sky is missing";
 }
 
-TEST(GroundShade, SpotsOverEachOtherLeaveAShareOfAShare) {
-  GroundShade shade;
+TEST(ContactShadowMap, SpotsOverEachOtherLeaveAShareOfAShare) {
+  ContactShadowMap shade;
   const std::array spots{GroundSpot{{0.5F, 0.5F}, 4, 0.5F, 1},
                          GroundSpot{{0.5F, 0.5F}, 4, 0.5F, 0}};
   shade.build(spots, {0, 0});
   EXPECT_NEAR(sun_at(shade, {0.5F, 0.5F}), 191, 2);
 }
 
-TEST(GroundShade, CellsStayWhereTheyAreInTheWorld) {
-  GroundShade from, to;
+TEST(ContactShadowMap, CellsStayWhereTheyAreInTheWorld) {
+  ContactShadowMap from, to;
   const std::array at{GroundSpot{{7.3F, 5.1F}, 3, 0.8F, 0.2F}};
   from.build(at, {100.25, 200.5});
   const std::array moved{GroundSpot{{6.9F, 5.0F}, 3, 0.8F, 0.2F}};
@@ -48,8 +48,8 @@ TEST(GroundShade, CellsStayWhereTheyAreInTheWorld) {
   EXPECT_NE(from.corner(), to.corner());
 }
 
-TEST(GroundShade, WhatLiesBesideTheMapOrIsNoDiscLeavesNothing) {
-  GroundShade shade;
+TEST(ContactShadowMap, WhatLiesBesideTheMapOrIsNoDiscLeavesNothing) {
+  ContactShadowMap shade;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::array spots{GroundSpot{{1000, 0}, 4, 1, 1},      GroundSpot{{0, 0}, 0, 1, 1},
                          GroundSpot{{0, 0}, -1, 1, 1},        GroundSpot{{nan, 0}, 4, 1, 1},

@@ -23,7 +23,7 @@ TEST(DrawList, gathers_draws_of_the_same_buffers_and_keeps_their_order) {
                                      model(0, 4, 0), model(0, 5, 1), model(1, 6, 0)};
   const std::vector<IndexList> lists{{7, 9}};
   DrawList list;
-  list.build({}, models, lists);
+  list.build({.shared = lists}, {}, models);
   ASSERT_EQ(list.runs().size(), 3u);
   std::vector<std::int32_t> order;
   for (const IndexedDraw& draw : list.draws())
@@ -41,7 +41,7 @@ TEST(DrawList, changes_the_order_only_within_a_window) {
   for (std::uint32_t i = 0; i < 2 * DrawList::kWindow; ++i)
     models.push_back(model(1 - i % 2, i, 0));
   DrawList list;
-  list.build({}, models, {});
+  list.build({}, {}, models);
   ASSERT_EQ(list.draws().size(), models.size());
   for (std::size_t i = 0; i < models.size(); ++i) {
     const auto was = static_cast<std::size_t>(list.draws()[i].vertex_offset);
@@ -54,7 +54,7 @@ TEST(DrawList, pushes_the_data_of_large_meshes_only) {
   const std::vector<MeshDraw> models{model(0, 1, 0), model(0, 2, 1), model(0, 3, 0)};
   const std::vector<IndexList> lists{{0, 600}};
   DrawList list;
-  list.build({}, models, lists, 100);
+  list.build({.shared = lists, .pushed_from = 100}, {}, models);
   ASSERT_EQ(list.runs().size(), 2u);
   EXPECT_TRUE(list.runs()[0].pushed);
   EXPECT_EQ(list.runs()[0].count, 1u);
@@ -72,7 +72,7 @@ TEST(DrawList, puts_terrain_first_and_folds_its_least_height_into_the_origin) {
   ground.cell_m = 0.5F;
   const std::vector<MeshDraw> models{model(0, 1, 0)};
   DrawList list;
-  list.build(std::span(&ground, 1), models, {});
+  list.build({}, std::span(&ground, 1), models);
   ASSERT_EQ(list.runs().size(), 2u);
   EXPECT_EQ(list.runs()[0].layout, core::VertexLayout::kTerrain);
   EXPECT_EQ(list.data()[0].origin, glm::vec4(1, 12, 3, 0.5F));
@@ -87,7 +87,7 @@ TEST(DrawList, draws_near_terrain_apart_and_before_the_rest_of_its_window) {
     terrain[i].near = i == 0 || i == 2;
   }
   DrawList list;
-  list.build(terrain, {}, {});
+  list.build({}, terrain, {});
   ASSERT_EQ(list.runs().size(), 2u);
   EXPECT_EQ(list.runs()[0].coverage, Coverage::kPart);
   EXPECT_EQ(list.runs()[1].coverage, Coverage::kWhole);
@@ -101,7 +101,7 @@ TEST(DrawList, draws_what_comes_and_goes_apart_and_after_the_rest_of_its_window)
   draws[2].fade = -0.5F;
   draws[3].fade = 0.0F;
   DrawList list;
-  list.build({}, draws, {});
+  list.build({}, {}, draws);
   ASSERT_EQ(list.runs().size(), 2u);
   EXPECT_EQ(list.runs()[0].coverage, Coverage::kWhole);
   EXPECT_EQ(list.runs()[0].count, 2u);
@@ -119,7 +119,7 @@ TEST(DrawList, draws_near_models_first_whether_they_fade_or_not) {
   draws[2].fade = draws[3].fade = 0.5F;
   draws[5].pictured = true;
   DrawList list;
-  list.build({}, draws, {});
+  list.build({}, {}, draws);
   ASSERT_EQ(list.runs().size(), 4u);
   constexpr std::array kOrder{Coverage::kNear, Coverage::kWhole, Coverage::kPart,
                               Coverage::kPictured};
@@ -139,7 +139,7 @@ TEST(DrawList, draws_the_part_that_is_asked_for_of_own_and_of_shared_indices) {
   shared.part = {6, 9};
   const IndexList lists[] = {{1000, 60}};
   DrawList list;
-  list.build(std::span(&shared, 1), std::span(&own, 1), lists);
+  list.build({.shared = lists}, std::span(&shared, 1), std::span(&own, 1));
   ASSERT_EQ(list.draws().size(), 2u);
   EXPECT_EQ(list.draws()[0].first_index, 1006u);
   EXPECT_EQ(list.draws()[0].index_count, 9u);
@@ -151,7 +151,7 @@ TEST(DrawList, draws_the_part_that_is_asked_for_of_own_and_of_shared_indices) {
 TEST(DrawList, is_empty_again_when_built_from_nothing) {
   const std::vector<MeshDraw> models{model(0, 1, 0)};
   DrawList list;
-  list.build({}, models, {});
+  list.build({}, {}, models);
   list.build({}, {}, {});
   EXPECT_TRUE(list.runs().empty());
   EXPECT_TRUE(list.draws().empty());

@@ -1,0 +1,126 @@
+#include "engine/render/meshes/models.hpp"
+
+#include <cmath>
+
+namespace psygen::render {
+
+using core::Result;
+
+namespace {
+
+static_assert(static_cast<int>(core::SurfaceKind::kStone) == PSYGEN_SURFACE_STONE);
+static_assert(static_cast<int>(core::SurfaceKind::kBark) == PSYGEN_SURFACE_BARK);
+
+// The fragment shaders of a use: of whole models, of fading ones, and of those with pictures.
+struct ModelShaders {
+  std::optional<Shader> whole;
+  Shader fading, pictured;
+};
+
+// Adds the pipelines of a look: of whole models, then of those that cover only some of their
+// pixels. `shape` has what all share; `fits` says which variants they may be used for.
+template <class Fits>
+Result<void> add_models(const PassSetup& setup, PipelineShape shape, const ModelShaders& shaders,
+                        MeshLook look, MeshUse use, const Fits& fits, MeshTables& tables) {
+  shape.vertices = core::VertexLayout::kModel;
+  shape.depth = DepthUse::kWrite;
+  Result<void> made;
+  for (const bool pushed : {false, true}) {
+    const auto add = [&](Shader vert, std::optional<Shader> frag, auto&& covers) {
+      shape.vert = mesh_shader(vert, look, pushed);
+      shape.frag = frag;
+      if (!made) return;
+      made = tables.add(setup, shape, use, [&](MeshVariant v) {
+        return v.pushed == pushed && fits(v) && covers(v.coverage);
+      });
+    };
+    add(Shader::kModelVert, shaders.whole, [](Coverage c) { return c == Coverage::kWhole; });
+    add(Shader::kModelFadingVert, shaders.fading,
+        [](Coverage c) { return c == Coverage::kPart || c == Coverage::kNear; });
+    add(Shader::kModelFadingPictureVert, shaders.pictured,
+        [](Coverage c) { return c == Coverage::kPictured; });
+  }
+  return made;
+}
+
+}  // namespace
+
+shaders::DrawData data_of(const MeshDraw& draw) {
+  // The phase depends on the mesh, not on the camera. Neighbours differ because their boxes do.
+  const float phase = 7.31F * (draw.box_half_extent.x + draw.box_centre.x + draw.box_centre.z);
+  return {.origin = {draw.origin + draw.box_centre, phase - std::floor(phase)},
+          .scale = {draw.box_half_extent, draw.fade},
+          .light = {draw.sun, static_cast<float>(draw.surface), 0, 0},
+          .turn = {}};
+}
+
+void set_colour(shaders::DrawData& data, const MeshDraw& draw) {
+  data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
+}
+
+core::Bounds bounds_of(const MeshDraw& draw) {
+  return core::Bounds::around(draw.origin + draw.box_centre, draw.box_half_extent + kSwayM);
+}
+
+Result<void> add_model_pipelines(const PassSetup& setup, bool lamps, MeshTables& tables) {
+  const PresetTraits& traits = setup.traits;
+  const bool lit = traits.pixel_light;
+  const auto fits = [&](MeshVariant v) { return v.lamps == lamps; };
+  PipelineShape shape;
+  shape.constants = {on(traits.fine_grain), on(traits.cascades > 0), on(lamps)};
+  const ModelShaders shaders = lit ? ModelShaders{.whole = Shader::kSurfaceLitFrag,
+                                                  .fading = Shader::kSurfaceLitFadingFrag,
+                                                  .pictured = Shader::kSurfaceLitFadingPictureFrag}
+                                   : ModelShaders{.whole = Shader::kSurfaceFrag,
+                                                  .fading = Shader::kSurfaceFadingFrag,
+                                                  .pictured = Shader::kSurfaceFadingPictureFrag};
+  Result<void> made = add_models(setup, shape, shaders, lit ? MeshLook::kLit : MeshLook::kColour,
+                                 MeshUse::kLandscape, fits, tables);
+  // Where light is per vertex, near models have textures. Where it is per pixel all models have.
+  if (lit) return made;
+  shape.vertices = core::VertexLayout::kModel;
+  shape.depth = DepthUse::kWrite;
+  shape.frag = Shader::kModelDetailFadingFrag;
+  for (const bool pushed : {false, true}) {
+    shape.vert = pushed ? Shader::kModelFadingModelDetailDrawPushedVert
+                        : Shader::kModelFadingModelDetailVert;
+    if (!made) return made;
+    made = tables.add(setup, shape, MeshUse::kLandscape, [&](MeshVariant v) {
+      return v.pushed == pushed && fits(v) && v.coverage == Coverage::kNear;
+    });
+  }
+  return made;
+}
+
+Result<void> add_model_views(const PassSetup& setup, MeshTables& tables) {
+  const auto all = [](MeshVariant) { return true; };
+  Result<void> made = add_models(setup, {},
+                                 {.whole = Shader::kSurfaceFrag,
+                                  .fading = Shader::kSurfaceFadingFrag,
+                                  .pictured = Shader::kSurfaceFadingPictureDrawColourFrag},
+                                 MeshLook::kDrawColour, MeshUse::kDrawColour, all, tables);
+  if (made && setup.traits.cascades > 0) {
+    PipelineShape shadow;
+    shadow.target = DrawTarget::kShadowMap;
+    made = add_models(setup, shadow,
+                      {.whole = std::nullopt,
+                       .fading = Shader::kShadowFadingFadingFrag,
+                       .pictured = Shader::kShadowFadingFadingPictureFrag},
+                      MeshLook::kShadow, MeshUse::kShadow, all, tables);
+  }
+  if (!setup.device.info.wireframe) return made;
+  // Edges show all of a model.
+  for (const bool pushed : {false, true}) {
+    const PipelineShape edges{.vert = mesh_shader(Shader::kModelVert, MeshLook::kColour, pushed),
+                              .frag = Shader::kSurfaceFrag,
+                              .vertices = core::VertexLayout::kModel,
+                              .depth = DepthUse::kWrite,
+                              .wireframe = true};
+    if (!made) return made;
+    made = tables.add(setup, edges, MeshUse::kWireframe,
+                      [&](MeshVariant v) { return v.pushed == pushed; });
+  }
+  return made;
+}
+
+}  // namespace psygen::render
