@@ -1,5 +1,5 @@
 // Selects the candidates of a frame to draw, and writes the commands of indirect draws. One thread
-// per candidate. What is in view is decided as in engine/render/meshes/view_volume.cpp, with the same
+// per candidate. The test of the view is that of engine/render/meshes/view_volume.cpp, with the same
 // operations in the same order, so both find the same.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -25,7 +25,7 @@ float ground_pattern(vec2 plane) {
   return mix(0.5, noise, frame.ground_colour.w > 0.0);
 }
 
-// How much each kind of ground covers of those before it, from grass on, 0 to 1.
+// The share that each kind of ground covers of those before it, from grass on, 0 to 1.
 struct Blends {
   float forest, dry, sand, rock, canopy, snow;
 };

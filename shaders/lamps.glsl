@@ -18,7 +18,7 @@ vec3 lamp_at(int i, vec3 p, out vec3 to_lamp) {
   return frame.lamps[2 * i + 1].rgb * (inside * inside / max(distance2, kLampRadius2));
 }
 
-// How many lamps there are. lavapipe compiles a shader anew, for a tenth of a second, for each value
+// The number of lamps. lavapipe compiles a shader anew, for a tenth of a second, for each value
 // of a uniform that alone decides a loop or a branch. So the number seems to depend on the place.
 int lamp_count_at(vec3 p) {
   return int(frame.lamp_count.x) - int(p.x > 1e30);

@@ -1,6 +1,6 @@
 // The land that water mirrors, taken from the picture of the landscape without water: the mirrored
-// ray is followed through its depth. What that picture lacks, beyond its edges or behind something,
-// is not mirrored. After McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing" (2014).
+// ray is followed through its depth. It does not reflect things beyond the edges of that picture, or
+// hidden in it. After McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing" (2014).
 layout(set = 2, binding = PSYGEN_REFLECTION_COLOUR) uniform sampler2D mirror;
 layout(set = 2, binding = PSYGEN_REFLECTION_DEPTH) uniform sampler2D mirror_depth;
 
@@ -35,7 +35,7 @@ vec4 mirrored_land(vec3 p, vec3 r) {
     float s = last * (float(i) + 0.5 + ordered_noise() * 0.5) * (1.0 / float(kMirrorSteps));
     float ray = depth * (1.0 - s);
     float scene = mirror_depth_at(start + s * line);
-    // What is in front of the ray hides it, unless it is so far in front that the ray passes behind.
+    // A surface in front of the ray hides it, unless the ray passes far behind that surface.
     float away = 1.0 / ray;
     float behind_by = away - 1.0 / (depth * (1.0 - before)) + 0.1 * away;
     if (scene > ray && away - 1.0 / scene < behind_by) {

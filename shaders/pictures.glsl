@@ -1,5 +1,5 @@
 // Pictures of models seen from around (engine/core/model_picture.hpp): alpha-tested, with the square
-// root of the albedo. What has no picture of such a mesh is of layer 0, which is white.
+// root of the albedo. Vertices of such a mesh without a picture use layer 0, which is white.
 #ifdef PSYGEN_PICTURE
 layout(set = 0, binding = PSYGEN_BINDING_PICTURES) uniform sampler2DArray pictures;
 layout(location = 5) in vec2 uv;

@@ -57,7 +57,7 @@ using glm::vec4;
 #define PSYGEN_TEXTURE_BARK 8
 #define PSYGEN_TEXTURE_LEAVES 9
 #define PSYGEN_GROUND_TEXTURES 10
-// What a model is made of (core::SurfaceKind).
+// Materials of models (core::SurfaceKind).
 #define PSYGEN_SURFACE_STONE 1
 #define PSYGEN_SURFACE_BARK 2
 #define PSYGEN_SURFACE_LEAVES 3  // those of bark

@@ -12,7 +12,7 @@ float way_to_shore(float depth, float up) {
   return depth / max(slope, 0.04);
 }
 
-// How far the edge has moved into the water; it moves to and fro. `phase`: varies from place to
+// Distance of the edge into the water; it moves to and fro. `phase`: varies from place to
 // place; 1 is four turns.
 float swash_at(float phase) { return 0.5 * sin(0.9 * frame.sun_direction.w + 25.0 * phase) - 0.3; }
 

@@ -1,4 +1,4 @@
-// What models are made of, near the camera: stone from all sides, bark along the trunk, and leaves
+// Textures of models near the camera: stone from all sides, bark along the trunk, and leaves
 // with gaps between them.
 #include "texture_look.glsl"
 

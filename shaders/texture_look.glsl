@@ -6,7 +6,7 @@ layout(set = 0, binding = PSYGEN_BINDING_GROUND) uniform sampler2DArray textures
 // Of the pattern; all textures repeat a whole number of times in it.
 const float kPeriod = float(PSYGEN_GROUND_PERIOD_M);
 
-// What a texture looks like at a place.
+// The look of a texture at a place.
 struct Look {
   vec4 colour;  // factor of the albedo, height
   vec3 bump;    // added to the normal

@@ -20,7 +20,7 @@ struct HudPlace {
   glm::vec2 px{0.0F};
 };
 
-// How something lies at its place. kTop: the place is at its top.
+// Alignment of a text to its place. kTop: the place is at its top.
 enum class HudAlign : std::uint8_t { kLeft, kCentre, kRight };
 enum class HudVertical : std::uint8_t { kTop, kMiddle, kBottom };
 
@@ -53,7 +53,7 @@ struct HudDrawing {
   std::vector<HudArea> areas;
   std::vector<HudText> texts;
 
-  // Whether there is nothing to draw.
+  // Returns true if it has no areas and no texts.
   bool empty() const { return areas.empty() && texts.empty(); }
 };
 

@@ -73,9 +73,9 @@ struct ParticleDraw {
   float opacity = 1;                      // of all of them
 };
 
-// Whether all numbers of a kind are within their ranges.
+// Returns true if all numbers of a kind are within their ranges.
 bool is_valid(const ParticleKind& kind);
-// How many particles live at a time: rate · lifetime, 1 … kMaxParticlesPerEmitter.
+// The number of particles that live at a time: rate · lifetime, 1 … kMaxParticlesPerEmitter.
 std::uint32_t particle_count(const ParticleKind& kind);
 // A bound of the distance between where an emitter is and what it draws, in metres. `scale` as of
 // ParticleDraw, `half_diagonal_m` of its turned box.

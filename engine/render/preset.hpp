@@ -39,7 +39,7 @@ View next_view(View view);  // after the last comes kNormal
 std::string_view to_string(RenderPath path);  // "auto", "cpu", "gpu"
 core::Result<RenderPath> render_path_from(std::string_view name);
 
-// Whether a view shows draws in their debug colour instead of the landscape's.
+// Returns true if a view shows draws in their debug colour instead of the landscape's.
 constexpr bool colours_draws(View view) {
   return view == View::kLevels || view == View::kLayers || view == View::kMissing ||
          view == View::kCache;

@@ -108,9 +108,9 @@ class Renderer {
 
   // The path in use for RendererOptions::path: kCpu or kGpu.
   RenderPath path() const;
-  // Whether meshes cast shadows into cascades. Then draws outside the picture matter too.
+  // True if meshes cast shadows into cascades. Then draws outside the picture matter too.
   bool casts_shadows() const;
-  // Whether the preset draws near models in a way of their own (MeshDraw::near).
+  // True if the preset has special pipelines for near models (MeshDraw::near).
   bool has_near_models() const;
 
   // Waits until the device has finished everything. Released ranges are free afterwards.

@@ -238,7 +238,7 @@ Result<void> RendererImpl::write_frame(FrameSlot& slot) {
   return written;
 }
 
-// How the frame that begins differs from others, as far as it is known before drawing.
+// The difference of the next frame from others, as far as it is known before drawing.
 Apart RendererImpl::apart_now() {
   if (std::exchange(resized_, false)) return Apart::kResized;
   return frame_value_ - idle_value_ < kFramesInFlight ? Apart::kAfterIdle : Apart::kNo;

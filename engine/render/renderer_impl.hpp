@@ -24,7 +24,7 @@
 
 namespace psygen::render {
 
-// What a preset decides, and what is created for it.
+// The choices of a preset, and the objects that are created for it.
 struct Looks {
   Preset preset = Preset::kLow;
   PresetTraits traits;
@@ -111,7 +111,7 @@ class RendererImpl {
   void list_frame(const FrameInput& input);
   void list_draws(const FrameInput& input);
   core::Result<void> prepare_for(const FrameInput& input);
-  // What all passes record with; the GPU path adds its culling.
+  // The recording of a frame; the GPU path adds its culling.
   Recording recording(FrameSlot& slot, Targets& targets) const {
     return {.device = *device_,
             .slot = slot,

@@ -23,7 +23,7 @@ struct ImDrawData;
 
 namespace psygen::render {
 
-// How draws are submitted: many per call with their data in a buffer (kMultiDraw), or one per call
+// Submission of draws: many per call with their data in a buffer (kMultiDraw), or one per call
 // with its data in push constants (kPushed). A pushed draw is more expensive, but its vertices are
 // cheaper on software devices. kAuto: multi-draw on hardware; on software devices by mesh size.
 enum class Submission : std::uint8_t { kAuto, kMultiDraw, kPushed };
@@ -32,7 +32,7 @@ enum class Submission : std::uint8_t { kAuto, kMultiDraw, kPushed };
 // also culls hidden meshes (gpu_culling.hpp). kAuto: on the device, except software devices.
 enum class RenderPath : std::uint8_t { kAuto, kCpu, kGpu };
 
-// How meshes get into device memory: the CPU writes it directly, or writes its own memory, which is
+// The way into device memory: the CPU writes meshes directly, or writes its own memory, which is
 // copied. kAuto: directly, if the device has enough memory that the CPU can write.
 enum class Upload : std::uint8_t { kAuto, kDirect, kStaged };
 
@@ -43,7 +43,7 @@ enum class Preset : std::uint8_t { kLow, kMedium, kHigh, kUltra };
 // landscape (Renderer::prepare()).
 enum class Feature : std::uint8_t { kLandscape, kObjects, kPointLights, kParticles };
 
-// What a picture shows: the landscape, or a view for debugging.
+// The content of a picture: the landscape, or a view for debugging.
 enum class View : std::uint8_t {
   kNormal,
   kLevels,     // each draw in its `debug_colour`, for its level of detail
@@ -207,7 +207,7 @@ using MaterialId = std::uint32_t;
 inline constexpr TextureId kNoTexture = 0;
 inline constexpr MaterialId kPlainMaterial = 0;
 
-// How the surface of an object looks. All parts are multiplied: the colours of its vertices, of the
+// The look of an object's surface. All parts are multiplied: the colours of its vertices, of the
 // material and of the texture.
 struct Material {
   glm::vec3 base_colour{1.0F};  // linear albedo
@@ -294,7 +294,7 @@ struct FrameInput {
   WorldEdge edge;
   View view = View::kNormal;
   // Share of the picture's width and height that the landscape has, kMinResolution … 1; it is
-  // scaled up to the picture. What lies over it always has all pixels.
+  // scaled up to the picture. Text over it always has all pixels.
   float resolution = 1;
   Morph morph;
   float fade_phase = 0;     // 0 to 1, of the pattern in which draws with `fade` share their pixels

@@ -723,7 +723,7 @@ MEASURES = [
     ("pass-files", 10, 7, pass_files, "files of engine/render and shaders that name particles, build lists included"),
     ("fragments", 7.2, 3.0, fragments, "% of subjects (a header with its source) under 40 lines"),
     ("lines", 112200, 109000, lines, "lines of C++ in ecs, engine, editor and game"),
-    ("test-names", 154, 0, test_names, "names of tests that are no sentence in UpperCamel"),
+    ("test-names", 0, 0, test_names, "names of tests that are no sentence in UpperCamel"),
     ("old-names", 0, 0, names_left, "old names of the changelog's table in code, and names with most or least for max or min"),
 ]
 

@@ -169,7 +169,7 @@ std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevic
   return candidate;
 }
 
-// What psygen needs of every device, and what it uses where it is there.
+// Enables the features that psygen needs on every device, and the optional ones that exist.
 void enable(const DeviceInfo& info, FeatureChain& features, std::vector<const char*>& extensions) {
   features.v11.shaderDrawParameters = VK_TRUE;
   features.v12.timelineSemaphore = VK_TRUE;

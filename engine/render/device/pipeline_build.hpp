@@ -21,8 +21,8 @@ enum class DrawTarget : std::uint8_t {
   kPicture,    // colour only, one sample per pixel
   kShadowMap,  // depth only
 };
-// How colours are combined with those of the target. kAlpha multiplies them by their opacity,
-// kPremultiplied expects that they are.
+// Combination of colours with those of the target. kAlpha multiplies them by their opacity;
+// kPremultiplied expects multiplied ones.
 enum class Blend : std::uint8_t { kNone, kAlpha, kPremultiplied };
 // Use of depth: none, test against it (equal depths pass), or test and write.
 enum class DepthUse : std::uint8_t { kNone, kTest, kWrite };

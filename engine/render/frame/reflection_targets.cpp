@@ -11,13 +11,13 @@ using core::Result;
 
 namespace {
 
-// How both images are used, one after the other.
+// A use of both images, which change uses together.
 struct Use {
   VkPipelineStageFlags2 stage;
   VkAccessFlags2 access;
   VkImageLayout colour, depth;
 };
-// What they had is not needed any more.
+// Their old content is discarded.
 constexpr Use kForgotten{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_NONE,
                          VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED};
 // Attachments are resolved, depth too, in the stage and with the access of colours.

@@ -56,7 +56,7 @@ class Swapchain {
   // pixels (minimised).
   core::Result<SwapchainState> create(const Device& device, const UniqueSurface& surface,
                                       core::Extent size, bool vsync);
-  // Destroys the swapchain, if there is one. Whether there is one, and its size in pixels.
+  // Destroys the swapchain, if any. True if it exists, and its size in pixels.
   void destroy();
   bool exists() const { return swapchain_.get() != VK_NULL_HANDLE; }
   core::Extent extent() const { return extent_; }

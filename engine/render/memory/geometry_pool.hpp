@@ -57,7 +57,7 @@ class GeometryPool final : public core::GeometryMemory {
   // Call it when the device has passed `value`. Ranges released before the next frame become free.
   void frames_finished(std::uint64_t value);
 
-  // Whether a range may be drawn; number of blocks, and their sum in bytes.
+  // True if a range may be drawn; the number of blocks, and their sum in bytes.
   bool is_committed(const core::GeometryRange& range) const;
   std::size_t block_count() const { return blocks_.size(); }
   std::uint64_t block_bytes_total() const { return block_bytes_total_; }

@@ -27,7 +27,7 @@ struct Image {
   UniqueImageView view;
 };
 
-// How the memory of a buffer is used.
+// Use of a buffer's memory.
 enum class MemoryUse : std::uint8_t {
   kWrite,   // written by the CPU, read by the device: device-local if possible
   kRead,    // read by the CPU: cached if possible

@@ -12,7 +12,7 @@ constexpr int kShadeSide = PSYGEN_SHADE_SIDE;  // cells of 1 m
 // Most of the sun and of the sky that all spots together take, of 255: ground is never black.
 constexpr std::uint32_t kMaxSun = 210, kMaxSky = 170;
 
-// What is missing, of 255, after a share of the rest is missing too.
+// The missing light, of 255, after a share of the rest is missing too.
 std::uint32_t with_more(std::uint32_t missing, float share, std::uint32_t most) {
   const auto left = static_cast<float>(255 - missing);
   return std::min(255 - static_cast<std::uint32_t>(left * (1 - share) + 0.5F), most);

@@ -71,7 +71,7 @@ void DrawList::add(std::span<const Draw> input) {
   const auto key = [&](const Draw& draw) {
     const DrawRun run = run_of(draw);
     const bool terrain = std::is_same_v<Draw, TerrainDraw>;
-    // What is near comes first: it hides most.
+    // Near draws come first: they hide most.
     const bool near = run.coverage == (terrain ? Coverage::kPart : Coverage::kNear);
     const std::uint64_t order = near ? 0 : 1 + static_cast<std::uint64_t>(run.coverage);
     return (run.lamps ? 0ULL : 1ULL) << 47 | std::uint64_t{run.textures} << 35 | order << 33 |

@@ -76,7 +76,7 @@ Result<void> add_model_pipelines(const PassSetup& setup, bool lamps, MeshTables&
                                                   .pictured = Shader::kSurfaceFadingPictureFrag};
   Result<void> made = add_models(setup, shape, shaders, lit ? MeshLook::kLit : MeshLook::kColour,
                                  MeshUse::kLandscape, fits, tables);
-  // Where light is per vertex, near models have textures. Where it is per pixel all models have.
+  // With light per vertex, near models have textures. With light per pixel, all models have.
   if (lit) return made;
   shape.vertices = core::VertexLayout::kModel;
   shape.depth = DepthUse::kWrite;

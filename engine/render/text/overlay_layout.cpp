@@ -307,7 +307,7 @@ void OverlayLayout::lay_out(const ImDrawData& drawn, core::Extent picture,
                             std::vector<GuiRun>& runs) const {
   runs.clear();
   const HudFont& hud = hud_font();
-  // Where letters of the HUD's font lie in the atlas.
+  // The place of the HUD's letters in the atlas.
   const glm::vec2 texels(fonts_->width, fonts_->height);
   const glm::vec2 from = fonts_->hud_corner / texels;
   const glm::vec2 to = from + glm::vec2(hud.size.width, hud.size.height) / texels;

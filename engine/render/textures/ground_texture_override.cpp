@@ -50,7 +50,7 @@ std::vector<std::uint64_t> steps_in(const Pixels& image, bool down) {
   return out;
 }
 
-// Whether the picture's ends differ more than neighbours do anywhere inside.
+// Returns true if the picture's ends differ more than any neighbours inside.
 bool has_seam(const Pixels& image, bool down) {
   const std::vector<std::uint64_t> all = steps_in(image, down);
   const std::uint64_t most = *std::max_element(all.begin() + 1, all.end());

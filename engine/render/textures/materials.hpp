@@ -44,14 +44,14 @@ class MaterialTable {
   // A set with white textures, for the warm-up of pipelines. Made with the first call.
   core::Result<VkDescriptorSet> blank_set(const Device& device);
 
-  // What draws need of the materials, by their ids.
+  // The kinds of all materials, by id, for lists of draws.
   MaterialKinds kinds() const { return kinds_; }
   // The set with a material's textures; null for plain ones.
   VkDescriptorSet set(MaterialId material) const { return sets_[material]; }
   VkDescriptorSetLayout set_layout() const { return set_layout_.get(); }
   const Buffer& buffer() const { return buffer_; }  // of shaders::MaterialData
   std::uint64_t texture_bytes() const { return texture_bytes_; }
-  // What textures may take from now on. Textures that exist stay.
+  // Sets the budget of textures. Textures that exist stay.
   void set_budget(std::uint64_t bytes) { texture_budget_bytes_ = bytes; }
 
  private:

@@ -98,7 +98,7 @@ TEST_P(Billboard, LooksTheSameFromAllSides) {
   }
 }
 
-TEST_P(Billboard, LeansAwayFromWhoLooksFromAbove) {
+TEST_P(Billboard, LeansAwayFromACameraAbove) {
   const Seen above = seen_at({0, -25, -0.5F}, 0, -std::numbers::pi / 2);
   EXPECT_GT(above.count, 150);
   ASSERT_GT(above.bottom - above.top, 12);

@@ -75,7 +75,7 @@ class Cascades : public testing::Test {
   double fov_ = 1;
 };
 
-TEST_F(Cascades, end_without_an_edge) {
+TEST_F(Cascades, EndWithoutAnEdge) {
   const auto lit = draw(false), shaded = draw(true);
   const double end = traits_of(Preset::kHigh).reach_m[1];
   double before = -1, largest = 0, steepest = 0, last = 0;

@@ -65,7 +65,7 @@ class CloudShadows : public testing::Test {
   double left_on_ground(float seconds, double moved_m = 0) {
     return middle(-1.5, 0.5F, seconds, moved_m) / middle(-1.5, -1.0F, seconds, moved_m);
   }
-  // Whether the sky around the sun differs from a clear one.
+  // The difference of the sky around the sun from a clear sky.
   double hidden_sun(float seconds) {
     const double up = std::asin(kSun.y);
     return std::abs(middle(up, 0.5F, seconds) - middle(up, -1.0F, seconds));
@@ -75,7 +75,7 @@ class CloudShadows : public testing::Test {
   TerrainDraw terrain_;
 };
 
-TEST_F(CloudShadows, lie_where_clouds_hide_the_sun) {
+TEST_F(CloudShadows, LieWhereCloudsHideTheSun) {
   open(Preset::kHigh);
   int shaded = 0, lit = 0;
   for (float seconds = 0; seconds < 400; seconds += 20) {
@@ -96,7 +96,7 @@ TEST_F(CloudShadows, lie_where_clouds_hide_the_sun) {
 // After so many metres clouds repeat (frame_data.cpp).
 constexpr double kPeriodM = 1100.0 / 0.27;
 
-TEST_F(CloudShadows, stand_over_the_land_when_the_camera_moves) {
+TEST_F(CloudShadows, StandOverTheLandWhenTheCameraMoves) {
   open(Preset::kHigh);
   double changed = 0;
   for (float seconds = 180; seconds < 300; seconds += 20) {
@@ -107,7 +107,7 @@ TEST_F(CloudShadows, stand_over_the_land_when_the_camera_moves) {
   EXPECT_GT(changed, 0.2);
 }
 
-TEST_F(CloudShadows, are_not_in_presets_without_shadows) {
+TEST_F(CloudShadows, AreNotInPresetsWithoutShadows) {
   open(Preset::kMedium);
   for (float seconds = 0; seconds < 400; seconds += 100)
     EXPECT_NEAR(left_on_ground(seconds), 1.0, 1e-6);

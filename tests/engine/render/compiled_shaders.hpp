@@ -1,5 +1,5 @@
-// How many shaders llvmpipe has compiled in this process: stands in for the function of LLVM with
-// which it begins each of them. Only in a program that exports it (tests/engine/render).
+// Counts the shaders that llvmpipe compiles in this process: stands in for the function of LLVM
+// with which it begins each of them. Only in a program that exports it (tests/engine/render).
 #pragma once
 
 #include <cstdint>

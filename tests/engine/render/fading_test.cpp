@@ -48,7 +48,7 @@ class Fading : public OnAPath {
   FrameInput input_;
 };
 
-TEST_P(Fading, what_goes_and_what_comes_cover_every_pixel_once) {
+TEST_P(Fading, AFadingPairCoversEveryPixelOnce) {
   const std::array whole{mesh(0, 1), mesh(2, 1)};
   const Picture expected = draw(whole);
   for (const float fade : {0.01F, 0.3F, 0.5F, 0.97F}) {
@@ -60,7 +60,7 @@ TEST_P(Fading, what_goes_and_what_comes_cover_every_pixel_once) {
   }
 }
 
-TEST_P(Fading, a_mesh_covers_as_large_a_share_of_its_pixels_as_it_is_there) {
+TEST_P(Fading, AMeshCoversAsLargeAShareOfItsPixelsAsItIsThere) {
   const Picture empty = draw({});
   const std::array whole{mesh(0, 1)};
   const auto all = static_cast<double>(different(draw(whole), empty));
@@ -75,7 +75,7 @@ TEST_P(Fading, a_mesh_covers_as_large_a_share_of_its_pixels_as_it_is_there) {
 }
 
 // Shares rise from frame to frame, and the pattern moves by half as much.
-TEST_P(Fading, a_pixel_changes_once_in_a_fade_and_never_back) {
+TEST_P(Fading, APixelChangesOnceInAFadeAndNeverBack) {
   meshes_[1].box_half_extent = {1, 2, 1};  // what goes is smaller
   const Picture before = draw(std::array{mesh(1, 1)}), after = draw(std::array{mesh(0, 1)});
   constexpr int kFrames = 6;
@@ -98,7 +98,7 @@ TEST_P(Fading, a_pixel_changes_once_in_a_fade_and_never_back) {
   EXPECT_LE(often, samples ? static_cast<std::ptrdiff_t>(all / 2) : 0);
 }
 
-TEST_P(Fading, the_pattern_moves_with_its_phase_and_is_the_same_for_the_same_phase) {
+TEST_P(Fading, ThePatternMovesWithItsPhaseAndIsTheSameForTheSamePhase) {
   const std::array half{mesh(0, 0.5F)};
   const Picture whole = draw(std::array{mesh(0, 1)});
   const std::size_t all = different(whole, draw({}));
@@ -113,7 +113,7 @@ TEST_P(Fading, the_pattern_moves_with_its_phase_and_is_the_same_for_the_same_pha
 }
 
 // Also of its shadow.
-TEST_P(Fading, a_hint_of_another_mesh_changes_a_hint_of_the_picture) {
+TEST_P(Fading, AHintOfAnotherMeshChangesAHintOfThePicture) {
   const std::array whole{mesh(0, 1)};
   const Picture before = draw(whole);
   meshes_[1].box_half_extent = {2.6F, 4.6F, 2.6F};
@@ -126,7 +126,7 @@ TEST_P(Fading, a_hint_of_another_mesh_changes_a_hint_of_the_picture) {
   EXPECT_LT(different(almost, draw(larger)), all / 5);
 }
 
-TEST_P(Fading, views_for_understanding_fade_too) {
+TEST_P(Fading, ViewsForUnderstandingFadeToo) {
   for (const View view : {View::kLevels, View::kWireframe, View::kBounds}) {
     input_.view = view;
     const std::array whole{mesh(0, 1)};

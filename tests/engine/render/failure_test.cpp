@@ -10,7 +10,7 @@
 namespace psygen::render {
 namespace {
 
-TEST(RendererFailure, an_unknown_device_name_is_answered_with_the_names_there_are) {
+TEST(RendererFailure, AnUnknownDeviceNameIsAnsweredWithTheNamesThereAre) {
   RendererOptions options;
   options.device_name = "no such card";
   const auto renderer = Renderer::create(options);
@@ -23,7 +23,7 @@ TEST(RendererFailure, an_unknown_device_name_is_answered_with_the_names_there_ar
   EXPECT_NE(renderer.error().message.find(devices->front().name), std::string::npos);
 }
 
-TEST(RendererFailure, a_part_of_the_name_chooses_a_device) {
+TEST(RendererFailure, APartOfTheNameChoosesADevice) {
   const auto devices = list_devices();
   ASSERT_TRUE(devices) << devices.error().message;
   RendererOptions options;
@@ -35,7 +35,7 @@ TEST(RendererFailure, a_part_of_the_name_chooses_a_device) {
   EXPECT_FALSE((*renderer)->device().driver.empty());
 }
 
-TEST(RendererFailure, a_picture_without_pixels_is_refused) {
+TEST(RendererFailure, APictureWithoutPixelsIsRefused) {
   RendererOptions options;
   options.size = {0, 720};
   const auto renderer = Renderer::create(options);
@@ -43,7 +43,7 @@ TEST(RendererFailure, a_picture_without_pixels_is_refused) {
   EXPECT_EQ(renderer.error().code, core::ErrorCode::kInvalidArgument);
 }
 
-TEST(RendererFailure, a_picture_larger_than_memory_is_refused) {
+TEST(RendererFailure, APictureLargerThanMemoryIsRefused) {
   RendererOptions options;
   options.size = {1u << 30, 1u << 30};
   EXPECT_FALSE(Renderer::create(options));
@@ -59,7 +59,7 @@ void create_without_drivers() {
   std::_Exit(clear ? 4 : 1);
 }
 
-TEST(RendererFailureDeathTest, a_machine_without_a_driver_gets_one_clear_sentence) {
+TEST(RendererFailureDeathTest, AMachineWithoutADriverGetsOneClearSentence) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(create_without_drivers(), testing::ExitedWithCode(4), "no Vulkan driver");
 }
@@ -77,15 +77,14 @@ void create_with_few_threads_of_the_driver() {
   std::_Exit(0);
 }
 
-TEST(RendererFailureDeathTest,
-     a_driver_that_never_answers_is_given_up_and_not_waited_for_at_the_end) {
+TEST(RendererFailureDeathTest, ADriverThatNeverAnswersIsGivenUpAndNotWaitedForAtTheEnd) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(create_with_few_threads_of_the_driver(), testing::ExitedWithCode(0), "");
 }
 
 int destroyed_buffers = 0;
 
-TEST(RendererFailure, objects_of_a_device_that_hangs_are_not_destroyed) {
+TEST(RendererFailure, ObjectsOfADeviceThatHangsAreNotDestroyed) {
   DeviceTable table;
   table.vkDestroyBuffer = [](VkDevice, VkBuffer, const VkAllocationCallbacks*) {
     ++destroyed_buffers;

@@ -37,7 +37,7 @@ class PointLights : public OneOfEach {
   static double ground_of(const Picture& p) { return brightness(p, 60, 100, 90, 118); }
 };
 
-TEST_P(PointLights, light_ground_models_and_objects_that_they_reach) {
+TEST_P(PointLights, LightGroundModelsAndObjectsThatTheyReach) {
   const Picture dark = lit_by({});
   const Picture lit = lit_by({{{0, 1, -8}, 30, glm::vec3(20.0F)}});
   EXPECT_GT(model_of(lit), model_of(dark) + 20);
@@ -45,14 +45,14 @@ TEST_P(PointLights, light_ground_models_and_objects_that_they_reach) {
   EXPECT_GT(ground_of(lit), ground_of(dark) + 20);
 }
 
-TEST_P(PointLights, light_nothing_beyond_their_range) {
+TEST_P(PointLights, LightNothingBeyondTheirRange) {
   const Picture dark = lit_by({});
   const Picture lit = lit_by({{{3, 0, -8}, 4, glm::vec3(20.0F)}});
   EXPECT_GT(object_of(lit), object_of(dark) + 20);
   EXPECT_NEAR(model_of(lit), model_of(dark), 1.01);
 }
 
-TEST_P(PointLights, of_no_light_change_nothing) {
+TEST_P(PointLights, OfNoLightChangeNothing) {
   const Picture dark = lit_by({});
   const Picture black = lit_by({{{0, 1, -8}, 30, glm::vec3(0.0F)}});
   int most = 0;
@@ -62,7 +62,7 @@ TEST_P(PointLights, of_no_light_change_nothing) {
   EXPECT_EQ(lit_by({}).rgba, dark.rgba) << "without lights again";
 }
 
-TEST_P(PointLights, have_a_colour_and_add_up) {
+TEST_P(PointLights, HaveAColourAndAddUp) {
   const Picture red = lit_by({{{0, 1, -8}, 30, {9, 0, 0}}});
   const Picture green = lit_by({{{0, 1, -8}, 30, {0, 9, 0}}});
   const Picture both = lit_by({{{0, 1, -8}, 30, {9, 0, 0}}, {{0, 1, -8}, 30, {0, 9, 0}}});
@@ -73,7 +73,7 @@ TEST_P(PointLights, have_a_colour_and_add_up) {
   EXPECT_NEAR(both.rgba[at + 1], green.rgba[at + 1], 2);
 }
 
-TEST_P(PointLights, beyond_the_most_are_ignored) {
+TEST_P(PointLights, BeyondTheMostAreIgnored) {
   std::vector<PointLight> many(kMaxPointLights + 100, {{0, 1, 60}, 5, glm::vec3(1.0F)});
   many.back() = {{0, 1, -8}, 30, glm::vec3(20.0F)};
   EXPECT_NEAR(object_of(lit_by(many)), object_of(lit_by({})), 1.01);
@@ -81,7 +81,7 @@ TEST_P(PointLights, beyond_the_most_are_ignored) {
   EXPECT_GT(object_of(lit_by(many)), object_of(lit_by({})) + 20);
 }
 
-TEST_P(PointLights, survive_a_change_of_preset) {
+TEST_P(PointLights, SurviveAChangeOfPreset) {
   lit_by({{{0, 1, -8}, 30, glm::vec3(20.0F)}});
   ASSERT_TRUE(renderer_->set_preset(next_preset(renderer_->preset())));
   const Picture dark = lit_by({});

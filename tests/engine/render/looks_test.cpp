@@ -94,14 +94,14 @@ class Looks : public testing::Test {
 
 class LooksOfPresets : public Looks, public testing::WithParamInterface<Preset> {};
 
-TEST_P(LooksOfPresets, are_as_they_were_and_the_same_twice) {
+TEST_P(LooksOfPresets, AreAsTheyWereAndTheSameTwice) {
   open(GetParam());
   const image::Image first = draw();
   EXPECT_EQ(draw().rgba, first.rgba);
   expect_golden(first, std::string("preset_") + std::string(to_string(GetParam())));
 }
 
-TEST_P(LooksOfPresets, survive_a_camera_under_water_and_a_sun_below_the_horizon) {
+TEST_P(LooksOfPresets, SurviveACameraUnderWaterAndASunBelowTheHorizon) {
   open(GetParam());
   input_.water->level_m = 100.0F;
   const image::Image drowned = draw();
@@ -119,7 +119,7 @@ double light_below(const image::Image& image) {
   return sum;
 }
 
-TEST_P(LooksOfPresets, near_ground_has_detail_around_the_colour_that_it_has_without) {
+TEST_P(LooksOfPresets, NearGroundHasDetailAroundTheColourThatItHasWithout) {
   open(GetParam());
   input_.water.reset();
   input_.models = {};
@@ -140,7 +140,7 @@ double light_of(const image::Image& image) {
   return sum;
 }
 
-TEST_P(LooksOfPresets, stone_and_bark_have_detail_around_the_colour_that_they_have_without) {
+TEST_P(LooksOfPresets, StoneAndBarkHaveDetailAroundTheColourThatTheyHaveWithout) {
   open(GetParam());
   input_.terrain = {};
   input_.water.reset();
@@ -165,7 +165,7 @@ TEST_P(LooksOfPresets, stone_and_bark_have_detail_around_the_colour_that_they_ha
   EXPECT_EQ(draw().rgba, far.rgba) << "out of reach";
 }
 
-TEST_P(LooksOfPresets, near_leaves_of_trees_have_gaps_also_while_they_fade) {
+TEST_P(LooksOfPresets, NearLeavesOfTreesHaveGapsAlsoWhileTheyFade) {
   open(GetParam());
   input_.terrain = {};
   input_.water.reset();
@@ -194,7 +194,7 @@ TEST_P(LooksOfPresets, near_leaves_of_trees_have_gaps_also_while_they_fade) {
   EXPECT_EQ(far > fading, !traits_of(GetParam()).pixel_light);
 }
 
-TEST_P(LooksOfPresets, spots_darken_near_ground_and_nothing_else) {
+TEST_P(LooksOfPresets, SpotsDarkenNearGroundAndNothingElse) {
   open(GetParam());
   input_.models = {};
   const GroundSpot under_far_ground{{0, -20}, 30, 0.9F, 0.9F};
@@ -218,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(Presets, LooksOfPresets,
 
 class LooksOfViews : public Looks, public testing::WithParamInterface<View> {};
 
-TEST_P(LooksOfViews, are_as_they_were) {
+TEST_P(LooksOfViews, AreAsTheyWere) {
   open(Preset::kLow);
   const Line line{{-20, -5, -50}, {20, 15, -50}, {1, 1, 0}};
   if (GetParam() == View::kBounds) input_.lines = {&line, 1};
@@ -234,7 +234,7 @@ INSTANTIATE_TEST_SUITE_P(Views, LooksOfViews,
                                          View::kWireframe, View::kMissing),
                          [](const auto& test) { return std::string(to_string(test.param)); });
 
-TEST_F(Looks, leaves_of_trees_are_no_picture_of_the_forest_floor) {
+TEST_F(Looks, LeavesOfTreesAreNoPictureOfTheForestFloor) {
   const auto leaves = [&](GroundPicture forest_floor) {
     renderer_.reset();
     open(Preset::kHigh, std::move(forest_floor));
@@ -253,7 +253,7 @@ TEST_F(Looks, leaves_of_trees_are_no_picture_of_the_forest_floor) {
   EXPECT_EQ(leaves(stripes).rgba, leaves({}).rgba);
 }
 
-TEST_F(Looks, lines_are_seen_and_do_not_stay) {
+TEST_F(Looks, LinesAreSeenAndDoNotStay) {
   open(Preset::kLow);
   const image::Image without = draw();
   const Line line{{-20, 5, -50}, {20, 5, -50}, {1, 1, 0}};
@@ -263,7 +263,7 @@ TEST_F(Looks, lines_are_seen_and_do_not_stay) {
   EXPECT_EQ(draw().rgba, without.rgba);
 }
 
-TEST_F(Looks, terrain_ends_at_the_edge_of_the_world) {
+TEST_F(Looks, TerrainEndsAtTheEdgeOfTheWorld) {
   open(Preset::kLow);
   input_.water.reset();
   const image::Image whole = draw();
@@ -274,7 +274,7 @@ TEST_F(Looks, terrain_ends_at_the_edge_of_the_world) {
   EXPECT_NE(draw().rgba, whole.rgba);
 }
 
-TEST_F(Looks, far_forests_darken_the_ground_that_can_bear_them) {
+TEST_F(Looks, FarForestsDarkenTheGroundThatCanBearThem) {
   open(Preset::kLow);
   input_.water.reset();
   input_.models = {};
@@ -293,7 +293,7 @@ TEST_F(Looks, far_forests_darken_the_ground_that_can_bear_them) {
   EXPECT_EQ(draw().rgba, bare.rgba);
 }
 
-TEST(Presets, have_names_that_are_read_back) {
+TEST(Presets, HaveNamesThatAreReadBack) {
   for (const char* name : {"low", "medium", "high", "ultra"})
     EXPECT_EQ(to_string(preset_from(name).value()), name);
   EXPECT_FALSE(preset_from("best"));

@@ -100,7 +100,7 @@ class Objects : public OnAPath {
   FrameInput input_;
 };
 
-TEST_P(Objects, look_like_models_where_they_are_not_turned) {
+TEST_P(Objects, LookLikeModelsWhereTheyAreNotTurned) {
   model_.box_half_extent = object_.box_half_extent = {2, 3, 1};
   model_.box_centre = object_.box_centre = {0.5F, 0.25F, -1};
   const Picture expected = draw_models({&model_, 1});
@@ -108,7 +108,7 @@ TEST_P(Objects, look_like_models_where_they_are_not_turned) {
   EXPECT_GT(difference(draw_objects({}), expected), 1);
 }
 
-TEST_P(Objects, are_turned_and_scaled_as_their_box_says) {
+TEST_P(Objects, AreTurnedAndScaledAsTheirBoxSays) {
   model_.box_half_extent = {1, 3, 2};
   model_.box_centre = {0, 1, -0.5F};
   const Picture expected = draw_models({&model_, 1});
@@ -119,7 +119,7 @@ TEST_P(Objects, are_turned_and_scaled_as_their_box_says) {
   EXPECT_LT(difference(draw_objects({&object_, 1}), expected), 0.05);
 }
 
-TEST_P(Objects, fade_like_models) {
+TEST_P(Objects, FadeLikeModels) {
   object_.fade = 0.4F;
   ObjectDraw other = object_;
   other.fade = -0.4F;
@@ -128,7 +128,7 @@ TEST_P(Objects, fade_like_models) {
   EXPECT_EQ(draw_objects(both).rgba, draw_objects({&object_, 1}).rgba);
 }
 
-TEST_P(Objects, with_holes_show_what_is_behind_them) {
+TEST_P(Objects, WithHolesShowWhatIsBehindThem) {
   const TextureId texture = checks();
   object_.box_half_extent = {3, 3, 1};
   object_.material = material({.base_texture = texture});
@@ -139,7 +139,7 @@ TEST_P(Objects, with_holes_show_what_is_behind_them) {
   EXPECT_LT(difference(holes, draw_objects({})), 0.8 * difference(whole, draw_objects({})));
 }
 
-TEST_P(Objects, that_emit_light_are_brighter_than_the_sun_makes_them) {
+TEST_P(Objects, ThatEmitLightAreBrighterThanTheSunMakesThem) {
   const Picture before = draw_objects({&object_, 1});
   object_.material = material({.emissive = {0.5F, 0.5F, 0.5F}});
   const Picture after = draw_objects({&object_, 1});
@@ -152,7 +152,7 @@ TEST_P(Objects, that_emit_light_are_brighter_than_the_sun_makes_them) {
   EXPECT_GT(brighter, 1000);
 }
 
-TEST_P(Objects, behind_the_camera_or_a_wall_change_nothing_and_come_back_at_once) {
+TEST_P(Objects, BehindTheCameraOrAWallChangeNothingAndComeBackAtOnce) {
   ObjectDraw wall = object({0, 0, -8});
   wall.box_half_extent = {8, 8, 0.5F};
   wall.name = 1;
@@ -175,7 +175,7 @@ TEST_P(Objects, behind_the_camera_or_a_wall_change_nothing_and_come_back_at_once
   EXPECT_EQ(drawn->size(), 1u) << "only the wall";
 }
 
-TEST_P(Objects, survive_every_view_and_a_change_of_preset) {
+TEST_P(Objects, SurviveEveryViewAndAChangeOfPreset) {
   const std::array objects{object({-3, 0, -12}), object({3, 0, -12}, about(2, 0.5F))};
   for (View view : {View::kLevels, View::kWireframe, View::kBounds}) {
     input_.view = view;
@@ -186,7 +186,7 @@ TEST_P(Objects, survive_every_view_and_a_change_of_preset) {
   EXPECT_NE(draw_objects(objects).rgba, draw_objects({}).rgba);
 }
 
-TEST_P(Objects, of_all_kinds_look_as_they_did) {
+TEST_P(Objects, OfAllKindsLookAsTheyDid) {
   const TextureId pattern = checks(), relief = studs();
   std::vector<ObjectDraw> objects{object({-5, 1, -14}, about(1, 0.6F)),
                                   object({-1.6F, 1, -14}, about(1, 0.6F)),

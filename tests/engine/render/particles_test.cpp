@@ -114,7 +114,7 @@ class Particles : public OnAPath {
   FrameInput input_;
 };
 
-TEST_P(Particles, are_the_same_every_time_and_others_with_another_seed) {
+TEST_P(Particles, AreTheSameEveryTimeAndOthersWithAnotherSeed) {
   const Picture first = with_one();
   EXPECT_GT(changed(first, with({})), 1000);
   EXPECT_EQ(with_one().rgba, first.rgba);
@@ -122,7 +122,7 @@ TEST_P(Particles, are_the_same_every_time_and_others_with_another_seed) {
   EXPECT_GT(changed(with_one(), first), 100);
 }
 
-TEST_P(Particles, lie_where_their_box_is_and_nowhere_else) {
+TEST_P(Particles, LieWhereTheirBoxIsAndNowhereElse) {
   const Picture without = with({}), some = with_one();
   EXPECT_LT(at(some, 80, 60), at(without, 80, 60) - 30) << "they are dark";
   for (const std::uint32_t x : {8U, 152U})
@@ -131,7 +131,7 @@ TEST_P(Particles, lie_where_their_box_is_and_nowhere_else) {
   EXPECT_EQ(with_one().rgba, without.rgba) << "behind the camera";
 }
 
-TEST_P(Particles, that_cover_nothing_only_add_light) {
+TEST_P(Particles, ThatCoverNothingOnlyAddLight) {
   emitter_.kind.cover = 0;
   emitter_.kind.glow = 1;
   emitter_.kind.first_colour = emitter_.kind.last_colour = {0.5F, 0.3F, 0.1F, 0.5F};
@@ -143,7 +143,7 @@ TEST_P(Particles, that_cover_nothing_only_add_light) {
   EXPECT_GT(changed(fire, without), 1000);
 }
 
-TEST_P(Particles, are_hidden_by_what_is_in_front) {
+TEST_P(Particles, AreHiddenByMeshesInFront) {
   const auto box = synthetic::make_box(renderer_->geometry(), glm::vec3(0.3F));
   ASSERT_TRUE(box);
   MeshDraw wall;
@@ -154,7 +154,7 @@ TEST_P(Particles, are_hidden_by_what_is_in_front) {
   EXPECT_EQ(with_one().rgba, with({}).rgba);
 }
 
-TEST_P(Particles, that_are_too_young_or_too_old_are_not_there) {
+TEST_P(Particles, ThatAreTooYoungOrTooOldAreNotThere) {
   const Picture without = with({});
   emitter_.youngest_s = 4;
   EXPECT_EQ(with_one().rgba, without.rgba);
@@ -163,7 +163,7 @@ TEST_P(Particles, that_are_too_young_or_too_old_are_not_there) {
   EXPECT_LT(changed(with_one(), without), 60) << "at most the one born now";
 }
 
-TEST_P(Particles, around_the_camera_fill_the_picture_and_stay_in_the_world) {
+TEST_P(Particles, AroundTheCameraFillThePictureAndStayInTheWorld) {
   emitter_.kind.volume = ParticleVolume::kAroundCamera;
   emitter_.kind.half_extent_m = {8, 8, 8};
   emitter_.count = 3000;
@@ -185,7 +185,7 @@ TEST_P(Particles, around_the_camera_fill_the_picture_and_stay_in_the_world) {
   EXPECT_LT(changed(with_one(), here), 20);
 }
 
-TEST_P(Particles, show_the_texture_of_their_material) {
+TEST_P(Particles, ShowTheTextureOfTheirMaterial) {
   const std::vector<std::uint8_t> clear(4 * 4 * 4, 0);
   const auto texture = renderer_->add_texture({4, 4, clear, true});
   ASSERT_TRUE(texture);
@@ -195,7 +195,7 @@ TEST_P(Particles, show_the_texture_of_their_material) {
   EXPECT_EQ(with_one().rgba, with({}).rgba) << "nothing is left of a clear texture";
 }
 
-TEST_P(Particles, of_many_emitters_are_bounded_and_survive_views_and_presets) {
+TEST_P(Particles, OfManyEmittersAreBoundedAndSurviveViewsAndPresets) {
   std::vector<ParticleDraw> many(kMaxEmitters + 50, emitter_);
   for (ParticleDraw& one : many)
     one.count = 3;

@@ -163,7 +163,7 @@ TEST_P(Pictures, MixTwoViewsInSpotsThatMoveWithThePicture) {
   EXPECT_GT(same, 0.9 * both);
 }
 
-TEST_P(Pictures, LeaveOutWhatIsTransparent) {
+TEST_P(Pictures, LeaveOutTransparentPixels) {
   const Counted half = seen(quad(1, 0), 0);
   EXPECT_NEAR(half.top, kSize.height / 2, 2);  // the camera is as high as the middle
   EXPECT_GT(half.bottom, half.top + 10);

@@ -77,7 +77,7 @@ class RendererPreset : public testing::TestWithParam<RenderPath> {
   };
 };
 
-TEST_P(RendererPreset, that_was_changed_draws_what_it_would_have_drawn_from_the_start) {
+TEST_P(RendererPreset, AfterAChangeDrawsLikeOneFromTheStart) {
   std::array<std::vector<std::uint8_t>, kPresets.size()> expected;
   for (const Preset preset : kPresets) {
     RendererOptions options = small(GetParam());
@@ -101,7 +101,7 @@ TEST_P(RendererPreset, that_was_changed_draws_what_it_would_have_drawn_from_the_
   EXPECT_TRUE(scene.renderer->replay_floor_ms(1));
 }
 
-TEST_P(RendererPreset, has_no_picture_until_the_next_frame_and_keeps_the_size) {
+TEST_P(RendererPreset, HasNoPictureUntilTheNextFrameAndKeepsTheSize) {
   Scene scene(small(GetParam()));
   scene.draw();
   ASSERT_TRUE(scene.renderer->resize({97, 61}));
@@ -113,7 +113,7 @@ TEST_P(RendererPreset, has_no_picture_until_the_next_frame_and_keeps_the_size) {
   EXPECT_EQ(scene.draw().size(), 97u * 61 * 4);
 }
 
-TEST_P(RendererPreset, that_is_given_up_leaves_the_old_one_as_it_was) {
+TEST_P(RendererPreset, ThatIsGivenUpLeavesTheOldOneAsItWas) {
   RendererOptions options = small(GetParam());
   options.preset = Preset::kMedium;
   Scene scene(options);
@@ -132,7 +132,7 @@ TEST_P(RendererPreset, that_is_given_up_leaves_the_old_one_as_it_was) {
   }
 }
 
-TEST_P(RendererPreset, shows_how_far_it_is_while_it_is_made) {
+TEST_P(RendererPreset, ShowsHowFarItIsWhileItIsMade) {
   RendererOptions options = small(GetParam());
   options.preset = Preset::kHigh;
   std::vector<double> fractions;
@@ -163,7 +163,7 @@ TEST_P(RendererPreset, shows_how_far_it_is_while_it_is_made) {
   EXPECT_EQ(scene.draw(), Scene(options).draw());
 }
 
-TEST_P(RendererPreset, can_be_given_up_while_it_is_made) {
+TEST_P(RendererPreset, CanBeGivenUpWhileItIsMade) {
   for (const double until : {0.0, 0.5}) {
     RendererOptions options = small(GetParam());
     options.progress = [until](Renderer&, double fraction) { return fraction < until; };
@@ -178,7 +178,7 @@ INSTANTIATE_TEST_SUITE_P(Paths, RendererPreset, testing::Values(RenderPath::kCpu
                            return test.param == RenderPath::kCpu ? "cpu" : "gpu";
                          });
 
-TEST(Presets, come_one_after_the_other_and_then_the_first_again) {
+TEST(Presets, ComeOneAfterTheOtherAndThenTheFirstAgain) {
   Preset preset = Preset::kLow;
   for (const Preset expected : {Preset::kMedium, Preset::kHigh, Preset::kUltra, Preset::kLow}) {
     preset = next_preset(preset);

@@ -94,7 +94,7 @@ class RendererTest : public testing::TestWithParam<Submission> {
   std::vector<MeshDraw> models_;
 };
 
-TEST_P(RendererTest, shows_sky_above_the_horizon_and_ground_below_it) {
+TEST_P(RendererTest, ShowsSkyAboveTheHorizonAndGroundBelowIt) {
   add_ground();
   const Picture picture = draw(input());
   ASSERT_EQ(picture.width, kPictureSize.width);
@@ -108,7 +108,7 @@ TEST_P(RendererTest, shows_sky_above_the_horizon_and_ground_below_it) {
   }
 }
 
-TEST_P(RendererTest, counts_what_it_draws) {
+TEST_P(RendererTest, CountsItsDraws) {
   add_ground();
   add_box({0, -10, -30}, 8, {0.5F, 0.1F, 0.1F});
   const auto result = renderer_->render(input());
@@ -119,7 +119,7 @@ TEST_P(RendererTest, counts_what_it_draws) {
   EXPECT_GE(result->cpu_ms, 0.0);
 }
 
-TEST_P(RendererTest, puts_a_box_where_it_stands_and_hides_what_is_behind_it) {
+TEST_P(RendererTest, DrawsABoxAtItsPlaceAndHidesMeshesBehindIt) {
   add_ground();
   const Picture before = draw(input());
   add_box({0, -10, -30}, 12, {0.6F, 0.02F, 0.02F});  // 12 m wide, 30 m ahead
@@ -139,7 +139,7 @@ TEST_P(RendererTest, puts_a_box_where_it_stands_and_hides_what_is_behind_it) {
   EXPECT_NEAR(red, expected, 2.0);
 }
 
-TEST_P(RendererTest, draws_the_same_picture_again_from_the_same_input) {
+TEST_P(RendererTest, DrawsTheSamePictureAgainFromTheSameInput) {
   add_ground();
   add_box({3, -10, -40}, 9, {0.3F, 0.3F, 0.1F});
   const Picture first = draw(input(0.1));
@@ -147,7 +147,7 @@ TEST_P(RendererTest, draws_the_same_picture_again_from_the_same_input) {
     EXPECT_EQ(draw(input(0.1)).rgba, first.rgba);
 }
 
-TEST_P(RendererTest, follows_a_change_of_size) {
+TEST_P(RendererTest, FollowsAChangeOfSize) {
   add_ground();
   draw(input());
   ASSERT_TRUE(renderer_->resize({97, 61}));
@@ -160,7 +160,7 @@ TEST_P(RendererTest, follows_a_change_of_size) {
   EXPECT_FALSE(renderer_->resize({0, 0}));
 }
 
-TEST_P(RendererTest, melts_far_ground_into_the_sky_at_the_horizon) {
+TEST_P(RendererTest, MeltsFarGroundIntoTheSkyAtTheHorizon) {
   add_ground();
   FrameInput hazy = input();
   hazy.light.haze_density = 0.08F;
@@ -175,7 +175,7 @@ TEST_P(RendererTest, melts_far_ground_into_the_sky_at_the_horizon) {
   }
 }
 
-TEST_P(RendererTest, colours_the_ground_by_height_and_slope) {
+TEST_P(RendererTest, ColoursTheGroundByHeightAndSlope) {
   FrameInput frame = input(-0.6);
   add_ground(0.0F);
   frame = input(-0.6);
@@ -194,7 +194,7 @@ TEST_P(RendererTest, colours_the_ground_by_height_and_slope) {
   EXPECT_GT(snow.sum(), meadow.sum() + 150);
 }
 
-TEST_P(RendererTest, sways_leaves_with_the_time_and_nothing_else) {
+TEST_P(RendererTest, SwaysLeavesWithTheTimeAndNothingElse) {
   add_ground();
   add_box({0, -10, -30}, 12, {0.6F, 0.02F, 0.02F});
   FrameInput frame = input();
@@ -208,7 +208,7 @@ TEST_P(RendererTest, sways_leaves_with_the_time_and_nothing_else) {
       << "a box without sway stands still";
 }
 
-TEST_P(RendererTest, writes_a_panel_into_its_corner_only) {
+TEST_P(RendererTest, WritesAPanelIntoItsCornerOnly) {
   add_ground();
   const Picture plain = draw(input());
   const TextPanel panel{Anchor::kTopLeft, {{"16.7 ms"}, {"123 draws"}}};
@@ -226,7 +226,7 @@ TEST_P(RendererTest, writes_a_panel_into_its_corner_only) {
   EXPECT_EQ(changed_right, 0);
 }
 
-TEST_P(RendererTest, refuses_cameras_that_cannot_be_drawn_and_draws_the_next_valid_one) {
+TEST_P(RendererTest, RefusesCamerasThatCannotBeDrawnAndDrawsTheNextValidOne) {
   add_ground();
   const Picture good = draw(input(0.05));
   FrameInput bad = input(0.05);
@@ -243,7 +243,7 @@ TEST_P(RendererTest, refuses_cameras_that_cannot_be_drawn_and_draws_the_next_val
   EXPECT_EQ(draw(input(0.05)).rgba, good.rgba);
 }
 
-TEST_P(RendererTest, replays_the_last_frame_as_its_floor) {
+TEST_P(RendererTest, ReplaysTheLastFrameAsItsFloor) {
   EXPECT_FALSE(renderer_->replay_floor_ms(1)) << "no frame yet";
   add_ground();
   const Picture before = draw(input());
@@ -255,7 +255,7 @@ TEST_P(RendererTest, replays_the_last_frame_as_its_floor) {
   EXPECT_EQ(after->rgba, before.rgba);
 }
 
-TEST_P(RendererTest, holds_more_draws_than_its_first_buffers) {
+TEST_P(RendererTest, HoldsMoreDrawsThanItsFirstBuffers) {
   add_ground();
   add_box({0, -10, -30}, 4, {0.5F, 0.5F, 0.5F});
   models_.resize(5000, models_.front());
@@ -273,7 +273,7 @@ TEST_P(RendererTest, holds_more_draws_than_its_first_buffers) {
   EXPECT_GT(box.sum(), 100);
 }
 
-TEST_P(RendererTest, refuses_index_lists_that_do_not_fit) {
+TEST_P(RendererTest, RefusesIndexListsThatDoNotFit) {
   const std::vector<std::uint16_t> large(3u << 20);
   const auto refused = renderer_->upload_shared_indices(large);
   ASSERT_FALSE(refused);
@@ -281,7 +281,7 @@ TEST_P(RendererTest, refuses_index_lists_that_do_not_fit) {
   EXPECT_FALSE(renderer_->upload_shared_indices({}));
 }
 
-TEST_P(RendererTest, tells_which_frames_are_not_like_the_others) {
+TEST_P(RendererTest, TellsWhichFramesAreNotLikeTheOthers) {
   add_ground();
   const auto apart = [&] { return renderer_->render(input()).value().apart; };
   const auto expect_two_after_idle = [&](const char* what) {
@@ -303,7 +303,7 @@ TEST_P(RendererTest, tells_which_frames_are_not_like_the_others) {
   EXPECT_EQ(apart(), Apart::kNo);
 }
 
-TEST_P(RendererTest, waiting_is_not_among_the_time_of_recording) {
+TEST_P(RendererTest, WaitingIsNotAmongTheTimeOfRecording) {
   add_ground();
   for (int i = 0; i < 6; ++i) {
     const double start_s = core::monotonic_seconds();

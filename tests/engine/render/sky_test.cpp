@@ -75,7 +75,7 @@ class Sky : public testing::Test {
   std::unique_ptr<Renderer> dome_, exact_;
 };
 
-TEST_F(Sky, of_few_corners_looks_like_that_of_each_pixel) {
+TEST_F(Sky, OfFewCornersLooksLikeThatOfEachPixel) {
   for (const double elevation_deg : {60.0, 44.0, 12.0, 2.0, -4.0}) {
     for (const double pitch : {-0.2, 0.1, 0.5, 1.2}) {
       for (const double yaw : {0.0, 0.64, 1.6, 3.5}) {

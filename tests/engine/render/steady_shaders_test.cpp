@@ -37,7 +37,7 @@ class SteadyShaders : public OneOfEach {
   std::uint64_t known_ = 0;
 };
 
-TEST_P(SteadyShaders, are_the_same_for_all_emitters) {
+TEST_P(SteadyShaders, AreTheSameForAllEmitters) {
   input_.particles = {&emitter_, 1};
   EXPECT_GT(compiled_for(input_), 0U) << "compilations are not counted";
   for (int i = 1; i <= 8; ++i) {
@@ -50,7 +50,7 @@ TEST_P(SteadyShaders, are_the_same_for_all_emitters) {
   }
 }
 
-TEST_P(SteadyShaders, are_the_same_for_any_number_of_lights) {
+TEST_P(SteadyShaders, AreTheSameForAnyNumberOfLights) {
   input_.particles = {&emitter_, 1};
   std::vector<PointLight> lights;
   for (int i = 1; i <= 6; ++i) {
@@ -62,7 +62,7 @@ TEST_P(SteadyShaders, are_the_same_for_any_number_of_lights) {
   }
 }
 
-TEST_P(SteadyShaders, are_the_same_wherever_the_camera_the_sun_and_the_ground_are) {
+TEST_P(SteadyShaders, AreTheSameWhereverTheCameraTheSunAndTheGroundAre) {
   compiled_for(input_);
   for (int i = 1; i <= 6; ++i) {
     const auto number = static_cast<float>(i);

@@ -11,7 +11,7 @@
 
 namespace psygen::render::synthetic {
 
-// What most tests draw: a small picture, and ground of so many vertices along a side.
+// The scene of most tests: a small picture, and ground of so many vertices along a side.
 inline constexpr core::Extent kPictureSize{160, 120};
 inline constexpr int kGroundSide = 65;
 

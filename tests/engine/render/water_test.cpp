@@ -76,7 +76,7 @@ class WaterOfPresets : public testing::TestWithParam<Preset> {
   FrameInput input_;
 };
 
-TEST_P(WaterOfPresets, shows_its_depth_and_over_deep_ground_none) {
+TEST_P(WaterOfPresets, ShowsItsDepthAndOverDeepGroundNone) {
   const auto renderer = open(GetParam());
   ASSERT_TRUE(renderer);
   const image::Image beach = draw(*renderer);
@@ -89,7 +89,7 @@ TEST_P(WaterOfPresets, shows_its_depth_and_over_deep_ground_none) {
   EXPECT_NEAR(row(beach, deep), row(open_water, deep), 6);
 }
 
-TEST_P(WaterOfPresets, has_foam_along_its_edge) {
+TEST_P(WaterOfPresets, HasFoamAlongItsEdge) {
   const auto renderer = open(GetParam());
   ASSERT_TRUE(renderer);
   const image::Image beach = draw(*renderer);
@@ -102,7 +102,7 @@ TEST_P(WaterOfPresets, has_foam_along_its_edge) {
 }
 
 // Haze is that of the way to the water, not to what lies deep under it.
-TEST_P(WaterOfPresets, hides_deep_ground_in_haze_too) {
+TEST_P(WaterOfPresets, HidesDeepGroundInHazeToo) {
   const auto renderer = open(GetParam());
   ASSERT_TRUE(renderer);
   input_.light.haze_density = 0.01F;
@@ -115,7 +115,7 @@ TEST_P(WaterOfPresets, hides_deep_ground_in_haze_too) {
 
 // The cliff is 56 m ahead and 20 m high. The water is 12 m deep before it. At half of the
 // resolution the mirrored picture is smaller than its image.
-TEST_P(WaterOfPresets, mirrors_a_cliff_where_it_has_waves) {
+TEST_P(WaterOfPresets, MirrorsACliffWhereItHasWaves) {
   const auto renderer = open(GetParam());
   ASSERT_TRUE(renderer);
   const auto cliff = synthetic::make_terrain(renderer->geometry(), kGroundSide,
@@ -162,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(All, WaterOfPresets,
 
 using GlitterOfWater = WaterOfPresets;
 
-TEST_F(GlitterOfWater, with_light_per_vertex_has_the_glitter_of_that_per_pixel) {
+TEST_F(GlitterOfWater, WithLightPerVertexHasTheGlitterOfThatPerPixel) {
   const auto vertices = open(Preset::kLow), pixels = open(Preset::kMedium);
   ASSERT_TRUE(vertices && pixels);
   input_.terrain = {};

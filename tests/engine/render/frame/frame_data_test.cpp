@@ -9,7 +9,7 @@ namespace {
 
 constexpr core::Extent kFrameSize{400, 200};
 
-TEST(FrameData, rays_of_the_sky_agree_with_the_projection_of_meshes) {
+TEST(FrameData, RaysOfTheSkyAgreeWithTheProjectionOfMeshes) {
   FrameInput input;
   input.pose.yaw = 0.7;
   input.pose.pitch = -0.3;
@@ -24,7 +24,7 @@ TEST(FrameData, rays_of_the_sky_agree_with_the_projection_of_meshes) {
   }
 }
 
-TEST(FrameData, the_ground_pattern_does_not_move_with_the_camera) {
+TEST(FrameData, TheGroundPatternDoesNotMoveWithTheCamera) {
   FrameInput here, there;
   here.block_size_m = there.block_size_m = 60.0;
   here.pose.position.block = {-3, 1'000'000'007};
@@ -39,7 +39,7 @@ TEST(FrameData, the_ground_pattern_does_not_move_with_the_camera) {
   EXPECT_LT(a.x, 2048.0F);
 }
 
-TEST(FrameData, haze_thins_with_the_height_of_the_camera) {
+TEST(FrameData, HazeThinsWithTheHeightOfTheCamera) {
   FrameInput input;
   const float low = frame_data(input, kFrameSize).haze_extinction.y;
   input.pose.position.local.y = 500;
@@ -47,7 +47,7 @@ TEST(FrameData, haze_thins_with_the_height_of_the_camera) {
   EXPECT_NEAR(high / low, std::exp(-500.0F * input.light.haze_height_falloff), 1e-4F);
 }
 
-TEST(FrameData, survives_a_sun_without_direction_and_palettes_without_blends) {
+TEST(FrameData, SurvivesASunWithoutDirectionAndPalettesWithoutBlends) {
   FrameInput input;
   input.light.sun_direction = {0, 0, 0};
   input.palette.dry_blend_m = 0;

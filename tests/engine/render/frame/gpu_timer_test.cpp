@@ -57,7 +57,7 @@ struct Scene {
 
 class GpuTimerTest : public testing::TestWithParam<std::tuple<Preset, RenderPath>> {};
 
-TEST_P(GpuTimerTest, a_frame_gets_its_device_time_four_frames_later) {
+TEST_P(GpuTimerTest, AFrameGetsItsDeviceTimeFourFramesLater) {
   const auto [preset, path] = GetParam();
   const auto renderer = make(preset, path);
   ASSERT_TRUE(renderer->device().timestamps);
@@ -81,7 +81,7 @@ TEST_P(GpuTimerTest, a_frame_gets_its_device_time_four_frames_later) {
     ADD_FAILURE() << message;
 }
 
-TEST_P(GpuTimerTest, shadows_are_a_part_of_it_where_there_are_any) {
+TEST_P(GpuTimerTest, ShadowsAreAPartOfItWhereThereAreAny) {
   const auto [preset, path] = GetParam();
   const auto renderer = make(preset, path);
   Scene scene(*renderer);
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(PresetsAndPaths, GpuTimerTest,
                            return std::string(low ? "low_" : "high_") + (cpu ? "cpu" : "gpu");
                          });
 
-TEST(GpuTimer, without_timestamps_everything_goes_on_without_its_time) {
+TEST(GpuTimer, WithoutTimestampsEverythingGoesOnWithoutItsTime) {
   const auto renderer = make(Preset::kLow, RenderPath::kCpu, false);
   EXPECT_FALSE(renderer->device().timestamps);
   Scene scene(*renderer);

@@ -25,7 +25,7 @@ struct HeapBlocks {
   }
 };
 
-TEST(GeometryPool, makes_no_block_before_it_is_needed) {
+TEST(GeometryPool, MakesNoBlockBeforeItIsNeeded) {
   HeapBlocks heap;
   GeometryPool pool(256ull << 20, heap.source());
   EXPECT_EQ(pool.block_count(), 0u);
@@ -34,7 +34,7 @@ TEST(GeometryPool, makes_no_block_before_it_is_needed) {
   EXPECT_EQ(pool.block_count(), 1u);
 }
 
-TEST(GeometryPool, places_vertices_at_whole_strides_and_indices_behind_them) {
+TEST(GeometryPool, PlacesVerticesAtWholeStridesAndIndicesBehindThem) {
   HeapBlocks heap;
   GeometryPool pool(1 << 20, heap.source());
   std::vector<std::pair<GeometryRange, std::byte>> held;
@@ -65,7 +65,7 @@ TEST(GeometryPool, places_vertices_at_whole_strides_and_indices_behind_them) {
   }
 }
 
-TEST(GeometryPool, counts_a_released_range_until_the_device_has_passed_it) {
+TEST(GeometryPool, CountsAReleasedRangeUntilTheDeviceHasPassedIt) {
   HeapBlocks heap;
   GeometryPool pool(1 << 20, heap.source());
   const auto a = pool.reserve(VertexLayout::kModel, 10, 30).value().range;
@@ -79,7 +79,7 @@ TEST(GeometryPool, counts_a_released_range_until_the_device_has_passed_it) {
   EXPECT_EQ(pool.used_bytes(), 0u);
 }
 
-TEST(GeometryPool, frees_at_once_what_no_frame_could_read) {
+TEST(GeometryPool, FreesRangesThatNoFrameReadsImmediately) {
   HeapBlocks heap;
   GeometryPool pool(1 << 20, heap.source());
   pool.frame_submitted(5);
@@ -93,7 +93,7 @@ TEST(GeometryPool, frees_at_once_what_no_frame_could_read) {
   EXPECT_EQ(pool.used_bytes(), 0u);
 }
 
-TEST(GeometryPool, never_exceeds_its_budget_and_says_so) {
+TEST(GeometryPool, NeverExceedsItsBudgetAndSaysSo) {
   HeapBlocks heap;
   GeometryPool pool(64 * 1024 + 7, heap.source());
   EXPECT_EQ(pool.capacity_bytes(), 64u * 1024);
@@ -111,7 +111,7 @@ TEST(GeometryPool, never_exceeds_its_budget_and_says_so) {
   EXPECT_LE(pool.block_bytes_total(), pool.capacity_bytes());
 }
 
-TEST(GeometryPool, goes_on_in_a_second_block_when_the_first_is_full) {
+TEST(GeometryPool, GoesOnInASecondBlockWhenTheFirstIsFull) {
   HeapBlocks heap;
   GeometryPool pool(GeometryPool::kBlockBytes + (8 << 20), heap.source());
   std::size_t in_second = 0;
@@ -122,7 +122,7 @@ TEST(GeometryPool, goes_on_in_a_second_block_when_the_first_is_full) {
   EXPECT_EQ(pool.block_bytes_total(), pool.capacity_bytes());
 }
 
-TEST(GeometryPool, reports_a_device_without_memory_and_goes_on) {
+TEST(GeometryPool, ReportsADeviceWithoutMemoryAndGoesOn) {
   HeapBlocks heap;
   heap.limit = 0;
   GeometryPool pool(1 << 20, heap.source());
@@ -134,7 +134,7 @@ TEST(GeometryPool, reports_a_device_without_memory_and_goes_on) {
   EXPECT_TRUE(pool.reserve(VertexLayout::kModel, 10, 30));
 }
 
-TEST(GeometryPool, takes_smaller_blocks_where_there_is_no_memory_for_whole_ones) {
+TEST(GeometryPool, TakesSmallerBlocksWhereThereIsNoMemoryForWholeOnes) {
   std::uint64_t left = 100ull << 20;
   std::vector<std::unique_ptr<std::byte[]>> blocks;
   GeometryPool pool(256ull << 20, [&](std::uint64_t bytes) -> core::Result<std::byte*> {
@@ -154,7 +154,7 @@ TEST(GeometryPool, takes_smaller_blocks_where_there_is_no_memory_for_whole_ones)
   EXPECT_EQ(pool.block_bytes_total(), (64ull + 32 + 4 + 64) << 20);
 }
 
-TEST(GeometryPool, without_any_memory_the_first_block_is_an_error) {
+TEST(GeometryPool, WithoutAnyMemoryTheFirstBlockIsAnError) {
   HeapBlocks heap;
   heap.limit = 0;
   GeometryPool pool(256ull << 20, heap.source());
@@ -163,14 +163,14 @@ TEST(GeometryPool, without_any_memory_the_first_block_is_an_error) {
   EXPECT_EQ(made.error().message, "no block left");
 }
 
-TEST(GeometryPool, refuses_a_mesh_larger_than_a_block_without_overflow) {
+TEST(GeometryPool, RefusesAMeshLargerThanABlockWithoutOverflow) {
   HeapBlocks heap;
   GeometryPool pool(1ull << 32, heap.source());
   EXPECT_FALSE(pool.reserve(VertexLayout::kModel, UINT32_MAX, UINT32_MAX));
   EXPECT_EQ(pool.block_count(), 0u);
 }
 
-TEST(GeometryPool, keeps_what_was_written_while_others_come_and_go) {
+TEST(GeometryPool, KeepsMeshesWhileOthersAreReservedAndReleased) {
   HeapBlocks heap;
   GeometryPool pool(1 << 20, heap.source());
   struct Held {

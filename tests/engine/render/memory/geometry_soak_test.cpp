@@ -8,7 +8,7 @@
 namespace psygen::render {
 namespace {
 
-TEST(GeometrySoak, uploads_and_releases_every_frame_without_exceeding_the_budget) {
+TEST(GeometrySoak, UploadsAndReleasesEveryFrameWithoutExceedingTheBudget) {
   RendererOptions options;
   options.validation = true;
   options.size = {64, 48};

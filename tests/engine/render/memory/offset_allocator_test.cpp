@@ -8,7 +8,7 @@
 namespace psygen::render {
 namespace {
 
-TEST(OffsetAllocator, gives_the_whole_line_at_once_when_asked) {
+TEST(OffsetAllocator, AllocatesTheWholeLineInOneRange) {
   OffsetAllocator allocator(1000);
   const auto all = allocator.allocate(1000);
   ASSERT_TRUE(all);
@@ -19,7 +19,7 @@ TEST(OffsetAllocator, gives_the_whole_line_at_once_when_asked) {
   EXPECT_EQ(allocator.free_units(), 1000u);
 }
 
-TEST(OffsetAllocator, merges_neighbours_in_any_order_of_freeing) {
+TEST(OffsetAllocator, MergesNeighboursInAnyOrderOfFreeing) {
   for (const std::array<int, 3> order :
        {std::array{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}) {
     OffsetAllocator allocator(300);
@@ -33,7 +33,7 @@ TEST(OffsetAllocator, merges_neighbours_in_any_order_of_freeing) {
 }
 
 // Against a map of what is allocated: no overlap, nothing outside, exact counts, all comes back.
-TEST(OffsetAllocator, behaves_like_a_simple_model_under_random_operations) {
+TEST(OffsetAllocator, BehavesLikeASimpleModelUnderRandomOperations) {
   constexpr std::uint32_t kSize = 100'000;
   for (const unsigned seed : {1u, 2u, 3u}) {
     std::mt19937 random(seed);
@@ -73,7 +73,7 @@ TEST(OffsetAllocator, behaves_like_a_simple_model_under_random_operations) {
   }
 }
 
-TEST(OffsetAllocatorDeathTest, notices_a_range_that_is_freed_twice) {
+TEST(OffsetAllocatorDeathTest, NoticesARangeThatIsFreedTwice) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   OffsetAllocator allocator(64);
   const auto part = allocator.allocate(8).value();

@@ -62,7 +62,7 @@ class StagedGeometryTest : public testing::Test {
   Writer direct_, staged_;
 };
 
-TEST_F(StagedGeometryTest, shows_meshes_in_the_first_frame_after_they_were_committed) {
+TEST_F(StagedGeometryTest, ShowsMeshesInTheFirstFrameAfterTheyWereCommitted) {
   EXPECT_FALSE(staged_.renderer->geometry().zero_copy());
   EXPECT_TRUE(direct_.renderer->geometry().zero_copy());
   const auto empty = staged_.picture();
@@ -74,7 +74,7 @@ TEST_F(StagedGeometryTest, shows_meshes_in_the_first_frame_after_they_were_commi
   EXPECT_NE(staged_.picture(), empty);
 }
 
-TEST_F(StagedGeometryTest, copies_more_in_one_frame_than_its_ring_holds) {
+TEST_F(StagedGeometryTest, CopiesMoreInOneFrameThanItsRingHolds) {
   std::uint64_t bytes = 0;
   for (Writer* side : {&direct_, &staged_}) {
     bytes = 0;
@@ -94,7 +94,7 @@ TEST_F(StagedGeometryTest, copies_more_in_one_frame_than_its_ring_holds) {
   EXPECT_EQ(staged_.picture(), direct_.picture());
 }
 
-TEST_F(StagedGeometryTest, forgets_what_is_released_before_it_was_copied) {
+TEST_F(StagedGeometryTest, DropsMeshesReleasedBeforeTheirCopy) {
   const auto first = synthetic::make_box(staged_.renderer->geometry(), {0.9F, 0.0F, 0.0F});
   ASSERT_TRUE(first);
   staged_.renderer->geometry().release(*first);
@@ -104,7 +104,7 @@ TEST_F(StagedGeometryTest, forgets_what_is_released_before_it_was_copied) {
   EXPECT_EQ(staged_.picture(), direct_.picture());
 }
 
-TEST_F(StagedGeometryTest, reuses_places_from_frame_to_frame) {
+TEST_F(StagedGeometryTest, ReusesPlacesFromFrameToFrame) {
   for (int frame = 0; frame < 30; ++frame) {
     for (Writer* side : {&direct_, &staged_}) {
       if (side->models.size() == 3) {

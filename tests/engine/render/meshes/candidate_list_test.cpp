@@ -16,7 +16,7 @@ MeshDraw candidate(std::uint32_t id, std::uint32_t block, std::uint32_t shared) 
   return draw;
 }
 
-TEST(CandidateList, gathers_draws_of_the_same_buffers_in_groups_with_room_for_all) {
+TEST(CandidateList, GathersDrawsOfTheSameBuffersInGroupsWithRoomForAll) {
   const std::vector<IndexList> lists{{7, 9}};
   std::vector<MeshDraw> models{candidate(1, 0, 0), candidate(2, 1, 0), candidate(3, 0, 1),
                                candidate(4, 0, 0)};
@@ -41,7 +41,7 @@ TEST(CandidateList, gathers_draws_of_the_same_buffers_in_groups_with_room_for_al
   EXPECT_EQ(list.name_count(), 6u);
 }
 
-TEST(CandidateList, takes_parts_of_a_mesh_as_candidates_of_one_name) {
+TEST(CandidateList, TakesPartsOfAMeshAsCandidatesOfOneName) {
   std::vector<MeshDraw> models{candidate(4, 0, 0), candidate(4, 0, 0)};
   models[0].range.index_count = models[1].range.index_count = 30;
   models[0].part = {0, 6};
@@ -54,7 +54,7 @@ TEST(CandidateList, takes_parts_of_a_mesh_as_candidates_of_one_name) {
   EXPECT_EQ(list.candidates()[0].name.x, list.candidates()[1].name.x);
 }
 
-TEST(CandidateList, groups_what_has_the_same_pipeline_and_buffers) {
+TEST(CandidateList, GroupsDrawsWithTheSamePipelineAndBuffers) {
   std::vector<MeshDraw> models(4, candidate(1, 0, 0));
   models[1].range.pool_block = 1;
   models[2].near = models[3].near = true;
@@ -67,7 +67,7 @@ TEST(CandidateList, groups_what_has_the_same_pipeline_and_buffers) {
   EXPECT_EQ(list.groups()[2].capacity, 2u);
 }
 
-TEST(CandidateList, starts_a_new_group_where_one_call_can_take_no_more) {
+TEST(CandidateList, StartsANewGroupWhereOneCallCanTakeNoMore) {
   const std::vector<MeshDraw> models(CandidateList::kGroupCapacity + 5, candidate(1, 0, 0));
   CandidateList list;
   list.build({}, {}, models);

@@ -48,7 +48,7 @@ TEST(ContactShadowMap, CellsStayWhereTheyAreInTheWorld) {
   EXPECT_NE(from.corner(), to.corner());
 }
 
-TEST(ContactShadowMap, WhatLiesBesideTheMapOrIsNoDiscLeavesNothing) {
+TEST(ContactShadowMap, DiscsOutsideTheMapAndWithoutRadiusLeaveNothing) {
   ContactShadowMap shade;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::array spots{GroundSpot{{1000, 0}, 4, 1, 1},      GroundSpot{{0, 0}, 0, 1, 1},

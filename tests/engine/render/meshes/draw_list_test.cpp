@@ -18,7 +18,7 @@ MeshDraw model(std::uint32_t block, std::uint32_t first_vertex, std::uint32_t sh
   return draw;
 }
 
-TEST(DrawList, gathers_draws_of_the_same_buffers_and_keeps_their_order) {
+TEST(DrawList, GathersDrawsOfTheSameBuffersAndKeepsTheirOrder) {
   const std::vector<MeshDraw> models{model(0, 1, 0), model(0, 2, 1), model(1, 3, 0),
                                      model(0, 4, 0), model(0, 5, 1), model(1, 6, 0)};
   const std::vector<IndexList> lists{{7, 9}};
@@ -36,7 +36,7 @@ TEST(DrawList, gathers_draws_of_the_same_buffers_and_keeps_their_order) {
   EXPECT_EQ(list.triangle_count(), 4u * 2 + 2u * 3);
 }
 
-TEST(DrawList, changes_the_order_only_within_a_window) {
+TEST(DrawList, ChangesTheOrderOnlyWithinAWindow) {
   std::vector<MeshDraw> models;
   for (std::uint32_t i = 0; i < 2 * DrawList::kWindow; ++i)
     models.push_back(model(1 - i % 2, i, 0));
@@ -50,7 +50,7 @@ TEST(DrawList, changes_the_order_only_within_a_window) {
   EXPECT_LE(list.runs().size(), 4u);
 }
 
-TEST(DrawList, pushes_the_data_of_large_meshes_only) {
+TEST(DrawList, PushesTheDataOfLargeMeshesOnly) {
   const std::vector<MeshDraw> models{model(0, 1, 0), model(0, 2, 1), model(0, 3, 0)};
   const std::vector<IndexList> lists{{0, 600}};
   DrawList list;
@@ -62,7 +62,7 @@ TEST(DrawList, pushes_the_data_of_large_meshes_only) {
   EXPECT_EQ(list.runs()[1].count, 2u);
 }
 
-TEST(DrawList, puts_terrain_first_and_folds_its_least_height_into_the_origin) {
+TEST(DrawList, PutsTerrainFirstAndFoldsItsLeastHeightIntoTheOrigin) {
   TerrainDraw ground;
   ground.range.layout = core::VertexLayout::kTerrain;
   ground.range.index_count = 3;
@@ -79,7 +79,7 @@ TEST(DrawList, puts_terrain_first_and_folds_its_least_height_into_the_origin) {
   EXPECT_EQ(list.data()[0].scale.x, 50.0F);
 }
 
-TEST(DrawList, draws_near_terrain_apart_and_before_the_rest_of_its_window) {
+TEST(DrawList, DrawsNearTerrainApartAndBeforeTheRestOfItsWindow) {
   std::vector<TerrainDraw> terrain(4);
   for (std::uint32_t i = 0; i < 4; ++i) {
     terrain[i].range.layout = core::VertexLayout::kTerrain;
@@ -95,7 +95,7 @@ TEST(DrawList, draws_near_terrain_apart_and_before_the_rest_of_its_window) {
   EXPECT_EQ(list.draws()[2].vertex_offset, 1);
 }
 
-TEST(DrawList, draws_what_comes_and_goes_apart_and_after_the_rest_of_its_window) {
+TEST(DrawList, DrawsFadingModelsAfterTheRestOfTheirWindow) {
   std::vector<MeshDraw> draws(5, model(0, 0, 0));
   draws[0].fade = 0.5F;
   draws[2].fade = -0.5F;
@@ -113,7 +113,7 @@ TEST(DrawList, draws_what_comes_and_goes_apart_and_after_the_rest_of_its_window)
   EXPECT_EQ(list.data()[4].scale.w, 0.0F);
 }
 
-TEST(DrawList, draws_near_models_first_whether_they_fade_or_not) {
+TEST(DrawList, DrawsNearModelsFirstWhetherTheyFadeOrNot) {
   std::vector<MeshDraw> draws(6, model(0, 0, 0));
   draws[1].near = draws[3].near = draws[5].near = true;
   draws[2].fade = draws[3].fade = 0.5F;
@@ -128,7 +128,7 @@ TEST(DrawList, draws_near_models_first_whether_they_fade_or_not) {
   EXPECT_EQ(list.runs()[0].count, 2u);
 }
 
-TEST(DrawList, draws_the_part_that_is_asked_for_of_own_and_of_shared_indices) {
+TEST(DrawList, DrawsThePartThatIsAskedForOfOwnAndOfSharedIndices) {
   MeshDraw own = model(0, 0, 0);
   own.range.first_index = 300;
   own.range.index_count = 90;
@@ -148,7 +148,7 @@ TEST(DrawList, draws_the_part_that_is_asked_for_of_own_and_of_shared_indices) {
   EXPECT_EQ(list.triangle_count(), 7u);
 }
 
-TEST(DrawList, is_empty_again_when_built_from_nothing) {
+TEST(DrawList, IsEmptyAgainWhenBuiltFromNothing) {
   const std::vector<MeshDraw> models{model(0, 1, 0)};
   DrawList list;
   list.build({}, {}, models);

@@ -36,7 +36,7 @@ glm::mat4 clip_of(const FrameInput& input) {
   return core::projection_matrix(input.projection) * core::view_rotation(input.pose);
 }
 
-TEST(ViewVolume, sees_what_the_frustum_of_the_visibility_system_sees) {
+TEST(ViewVolume, AgreesWithTheFrustumOfTheVisibilitySystem) {
   Random random;
   int seen = 0;
   for (int camera = 0; camera < 20; ++camera) {
@@ -53,7 +53,7 @@ TEST(ViewVolume, sees_what_the_frustum_of_the_visibility_system_sees) {
   EXPECT_LT(seen, 9500);
 }
 
-TEST(ViewVolume, puts_skirts_and_wind_into_the_boxes) {
+TEST(ViewVolume, PutsSkirtsAndWindIntoTheBoxes) {
   TerrainDraw terrain;
   terrain.origin = {10, -5, 20};
   terrain.cell_m = 2;

@@ -190,7 +190,7 @@ class GpuCullingTest : public testing::Test {
   Landscape cpu_, gpu_;
 };
 
-TEST_F(GpuCullingTest, draws_the_same_list_as_the_cpu_path_from_any_place) {
+TEST_F(GpuCullingTest, DrawsTheSameListAsTheCpuPathFromAnyPlace) {
   landscape(false);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> turn(-3, 3), tilt(-0.8, 0.5);
@@ -208,14 +208,14 @@ TEST_F(GpuCullingTest, draws_the_same_list_as_the_cpu_path_from_any_place) {
   EXPECT_LT(most, 1000u) << "something is out of view";
 }
 
-TEST_F(GpuCullingTest, draws_all_that_is_in_view_in_its_first_frame) {
+TEST_F(GpuCullingTest, DrawsAllThatIsInViewInItsFirstFrame) {
   landscape(true);
   cpu_.draw(look(0.4, -0.05));
   gpu_.draw(look(0.4, -0.05));
   expect_same_lists(gpu_.drawn(), cpu_.drawn());
 }
 
-TEST_F(GpuCullingTest, shows_the_pictures_of_the_cpu_path_while_the_camera_moves) {
+TEST_F(GpuCullingTest, ShowsThePicturesOfTheCpuPathWhileTheCameraMoves) {
   landscape(true);
   std::size_t fewer = 0;
   for (int i = 0; i < 16; ++i) {
@@ -228,7 +228,7 @@ TEST_F(GpuCullingTest, shows_the_pictures_of_the_cpu_path_while_the_camera_moves
   EXPECT_GT(fewer, 4u) << "nothing was ever hidden";
 }
 
-TEST_F(GpuCullingTest, leaves_out_what_a_wall_hides_from_the_third_frame_on) {
+TEST_F(GpuCullingTest, CullsMeshesBehindAWallFromTheThirdFrameOn) {
   gpu_.create(RenderPath::kGpu, true);
   gpu_.add_box({0, 0, -20}, {15, 15, 1}, {0.5F, 0.1F, 0.1F});  // the wall
   gpu_.add_box({0, 0, -60}, {3, 3, 3}, {0.1F, 0.5F, 0.1F});    // behind it
@@ -252,7 +252,7 @@ TEST_F(GpuCullingTest, leaves_out_what_a_wall_hides_from_the_third_frame_on) {
   EXPECT_GT(seen.rgba[middle + 1], seen.rgba[middle]);
 }
 
-TEST_F(GpuCullingTest, does_not_hide_what_looks_out_over_a_wall_by_a_pixel) {
+TEST_F(GpuCullingTest, KeepsMeshesThatRiseAPixelAboveAWall) {
   gpu_.create(RenderPath::kGpu, true);
   cpu_.create(RenderPath::kCpu, true);
   for (Landscape* side : {&cpu_, &gpu_}) {
@@ -273,7 +273,7 @@ TEST_F(GpuCullingTest, does_not_hide_what_looks_out_over_a_wall_by_a_pixel) {
 }
 
 // Samples, shadows and the colours of a view, which have ways of their own through the GPU path.
-TEST_F(GpuCullingTest, shows_the_pictures_of_the_cpu_path_in_the_high_preset_and_in_views) {
+TEST_F(GpuCullingTest, ShowsThePicturesOfTheCpuPathInTheHighPresetAndInViews) {
   cpu_.create(RenderPath::kCpu, true, Preset::kHigh);
   gpu_.create(RenderPath::kGpu, true, Preset::kHigh);
   for (Landscape* side : {&cpu_, &gpu_}) {
@@ -290,7 +290,7 @@ TEST_F(GpuCullingTest, shows_the_pictures_of_the_cpu_path_in_the_high_preset_and
   EXPECT_LT(gpu_.drawn().size(), cpu_.drawn().size()) << "nothing was ever hidden";
 }
 
-TEST_F(GpuCullingTest, counts_what_a_finished_frame_drew) {
+TEST_F(GpuCullingTest, CountsTheDrawsOfAFinishedFrame) {
   gpu_.create(RenderPath::kGpu, true);
   gpu_.add_hills(1);
   gpu_.add_box({0, 0, -20}, {1, 1, 1}, {0.5F, 0.1F, 0.1F});
@@ -307,7 +307,7 @@ TEST_F(GpuCullingTest, counts_what_a_finished_frame_drew) {
   EXPECT_GT(triangles, 2000u);
 }
 
-TEST_F(GpuCullingTest, follows_changes_of_size_and_replays_its_frame) {
+TEST_F(GpuCullingTest, FollowsChangesOfSizeAndReplaysItsFrame) {
   landscape(true);
   for (const core::Extent size :
        {core::Extent{1, 1}, core::Extent{64, 512}, core::Extent{97, 61}}) {
@@ -325,7 +325,7 @@ TEST_F(GpuCullingTest, follows_changes_of_size_and_replays_its_frame) {
   expect_same_pictures(gpu_.picture(), before);
 }
 
-TEST_F(GpuCullingTest, holds_more_draws_than_its_first_buffers_and_than_one_call_takes) {
+TEST_F(GpuCullingTest, HoldsMoreDrawsThanItsFirstBuffersAndThanOneCallTakes) {
   gpu_.create(RenderPath::kGpu, false);
   gpu_.add_box({0, 0, -30}, glm::vec3(0.01F), {0.5F, 0.5F, 0.5F});
   gpu_.models.resize(CandidateList::kGroupCapacity + 100, gpu_.models.front());
@@ -333,7 +333,7 @@ TEST_F(GpuCullingTest, holds_more_draws_than_its_first_buffers_and_than_one_call
   EXPECT_EQ(gpu_.drawn().size(), CandidateList::kGroupCapacity + 100u);
 }
 
-TEST(RenderPathOption, has_names_and_says_which_are_allowed) {
+TEST(RenderPathOption, HasNamesAndSaysWhichAreAllowed) {
   for (const RenderPath path : {RenderPath::kAuto, RenderPath::kCpu, RenderPath::kGpu})
     EXPECT_EQ(render_path_from(to_string(path)).value(), path);
   const auto unknown = render_path_from("npu");
@@ -341,7 +341,7 @@ TEST(RenderPathOption, has_names_and_says_which_are_allowed) {
   EXPECT_EQ(unknown.error().message, "render path 'npu' is unknown; allowed are auto, cpu, gpu");
 }
 
-TEST(RenderPathOption, takes_the_cpu_path_on_software_devices_unless_told) {
+TEST(RenderPathOption, TakesTheCpuPathOnSoftwareDevicesUnlessTold) {
   RendererOptions options;
   options.size = {16, 16};
   options.geometry_budget_bytes = 1 << 20;

@@ -40,18 +40,18 @@ bool all_in(const Vertices& out, const Area& area) {
   });
 }
 
-TEST(OverlayLayout, lays_nothing_out_for_no_panel_and_for_one_without_lines) {
+TEST(OverlayLayout, LaysNothingOutForNoPanelAndForOneWithoutLines) {
   EXPECT_TRUE(lay_out({}).empty());
   EXPECT_TRUE(lay_out({{Anchor::kMiddle, {}}}).empty());
 }
 
-TEST(OverlayLayout, makes_one_quad_a_visible_character_and_a_panel_around_them) {
+TEST(OverlayLayout, MakesOneQuadAVisibleCharacterAndAPanelAroundThem) {
   const Vertices out = lay_out({{Anchor::kTopLeft, {{"12 ms"}, {"frame"}}}});
   ASSERT_EQ(out.size(), (1u + 4 + 5) * 6);
   EXPECT_TRUE(all_in(out, area(out, 0)));
 }
 
-TEST(OverlayLayout, appends_panels_to_what_is_there) {
+TEST(OverlayLayout, AppendsPanelsToItsOutput) {
   Vertices out(6);
   OverlayLayout().lay_out(std::vector<TextPanel>{{Anchor::kTopLeft, {{"12 ms"}}}}, kPicture, 1,
                           out);
@@ -60,7 +60,7 @@ TEST(OverlayLayout, appends_panels_to_what_is_there) {
   EXPECT_NE(out[6].colour, glm::vec4(0.0F));
 }
 
-TEST(OverlayLayout, puts_panels_where_they_belong) {
+TEST(OverlayLayout, PutsPanelsWhereTheyBelong) {
   const auto placed = [](Anchor anchor) { return area(lay_out({{anchor, {{"some words"}}}}), 0); };
   EXPECT_LT(placed(Anchor::kTopLeft).x1, 320);
   EXPECT_LT(placed(Anchor::kTopLeft).y1, 180);
@@ -75,7 +75,7 @@ TEST(OverlayLayout, puts_panels_where_they_belong) {
   EXPECT_NEAR((middle.y0 + middle.y1) / 2, 180, 1);
 }
 
-TEST(OverlayLayout, goes_on_in_the_next_row_where_the_picture_is_too_narrow) {
+TEST(OverlayLayout, GoesOnInTheNextRowWhereThePictureIsTooNarrow) {
   const std::string sentence = "a sentence of words that is longer than a narrow picture is wide";
   const auto letters =
       static_cast<std::size_t>(std::ranges::count_if(sentence, [](char c) { return c != ' '; }));
@@ -91,7 +91,7 @@ TEST(OverlayLayout, goes_on_in_the_next_row_where_the_picture_is_too_narrow) {
   EXPECT_TRUE(all_in(word, {0, 0, 200, 360}));
 }
 
-TEST(OverlayLayout, puts_a_panel_on_the_right_below_one_on_the_left_that_it_would_cover) {
+TEST(OverlayLayout, PutsAPanelOnTheRightBelowOneOnTheLeftThatItWouldCover) {
   const std::vector<TextPanel> panels{{Anchor::kTopLeft, {{std::string(50, 'x')}}},
                                       {Anchor::kTopRight, {{std::string(30, 'y')}}}};
   const Vertices wide = lay_out(panels, {1280, 720}), narrow = lay_out(panels, {480, 360});
@@ -99,7 +99,7 @@ TEST(OverlayLayout, puts_a_panel_on_the_right_below_one_on_the_left_that_it_woul
   EXPECT_GT(area(narrow, 51).y0, area(narrow, 0).y1);
 }
 
-TEST(OverlayLayout, draws_swatches_in_their_colour_and_bars_as_long_as_they_are) {
+TEST(OverlayLayout, DrawsSwatchesInTheirColourAndBarsAsLongAsTheyAre) {
   const Vertices swatch = lay_out({{Anchor::kTopLeft, {{"", 0x3366CC}}}});
   ASSERT_EQ(swatch.size(), 3u * 6);
   EXPECT_NEAR(swatch.back().colour.x, 0.2F, 1e-5F);
@@ -114,7 +114,7 @@ TEST(OverlayLayout, draws_swatches_in_their_colour_and_bars_as_long_as_they_are)
   }
 }
 
-TEST(OverlayLayout, is_larger_by_whole_factors) {
+TEST(OverlayLayout, IsLargerByWholeFactors) {
   const std::vector<TextPanel> panels{{Anchor::kTopLeft, {{"words", 0xFF0000, 0.5F}}}};
   const Area once = area(lay_out(panels, {2560, 1440}, 1), 0);
   for (const auto& [scale, factor] : {std::pair{1.4F, 1.0F},
@@ -133,28 +133,28 @@ TEST(OverlayLayout, is_larger_by_whole_factors) {
   }
 }
 
-TEST(OverlayLayout, takes_letters_of_utf_8_as_one_character) {
+TEST(OverlayLayout, TakesLettersOfUtf8AsOneCharacter) {
   EXPECT_EQ(lay_out({{Anchor::kTopLeft, {{"h\xC3\xB6he"}}}}).size(), (1u + 4) * 6);
   EXPECT_EQ(lay_out({{Anchor::kTopLeft, {{"\xF0\x9F\x8C\xB2"}}}}).size(), (1u + 1) * 6);
 }
 
-TEST(OverlayLayout, takes_bytes_that_are_no_text_without_harm) {
+TEST(OverlayLayout, TakesBytesThatAreNoTextWithoutHarm) {
   EXPECT_GE(lay_out({{Anchor::kTopLeft, {{"\xFF\xC3\x28\x01 ok\xE2\x82"}}}}).size(), 3u * 6);
 }
 
-TEST(OverlayLayout, cuts_text_off_instead_of_growing_without_end) {
+TEST(OverlayLayout, CutsTextOffInsteadOfGrowingWithoutEnd) {
   const std::vector<TextLine> lines(100, {std::string(1000, 'W')});
   EXPECT_EQ(lay_out({{Anchor::kTopLeft, lines}}).size(), OverlayLayout::kMaxQuads * 6);
 }
 
-TEST(OverlayLayout, lays_out_for_pictures_smaller_than_a_letter) {
+TEST(OverlayLayout, LaysOutForPicturesSmallerThanALetter) {
   for (const core::Extent picture : {core::Extent{1, 1}, {3, 300}, {300, 3}}) {
     EXPECT_FALSE(lay_out({{Anchor::kBottom, {{"words"}}}, {Anchor::kTopRight, {{"more"}}}}, picture)
                      .empty());
   }
 }
 
-TEST(OverlayLayout, puts_a_ground_under_everything) {
+TEST(OverlayLayout, PutsAGroundUnderEverything) {
   const OverlayLayout overlay;
   Vertices out;
   overlay.lay_out(std::vector{TextPanel{Anchor::kMiddle, {{"a"}}}}, kPicture, 1, out);
@@ -167,7 +167,7 @@ TEST(OverlayLayout, puts_a_ground_under_everything) {
   EXPECT_EQ(area(out, 1).x0, area(before, 0).x0);
 }
 
-TEST(OverlayLayout, has_an_atlas_with_something_in_it) {
+TEST(OverlayLayout, HasAnAtlasWithSomethingInIt) {
   const OverlayLayout overlay;
   EXPECT_EQ(overlay.atlas().size(),
             std::size_t{overlay.atlas_size().width} * overlay.atlas_size().height);

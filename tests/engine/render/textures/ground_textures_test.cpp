@@ -145,7 +145,7 @@ TEST(GroundTextures, AreTheSameEachTime) {
   EXPECT_EQ(make_ground_detail(), make_ground_detail());
 }
 
-TEST(GroundPatterns, AStrokeCoversWhatIsLowerAndGoesOnBeyondTheBorder) {
+TEST(GroundPatterns, AStrokeCoversLowerTexelsAndContinuesBeyondTheBorder) {
   Field height, tone;
   height.at(4, 8) = 2.0F;
   draw_stroke({250, 8, 20, 0, 3, 0.5F, 0.5F, 0.7F}, height, tone);
@@ -157,7 +157,7 @@ TEST(GroundPatterns, AStrokeCoversWhatIsLowerAndGoesOnBeyondTheBorder) {
   EXPECT_EQ(height.at(252, 20), 0.0F);
 }
 
-TEST(GroundPatterns, WhatIsRaisedIsAboveTheMeanOfItsSurroundings) {
+TEST(GroundPatterns, RaisedTexelsAreAboveTheMeanOfTheirSurroundings) {
   Field height;
   height.at(0, 0) = 1.0F;
   const Field above = raised(height, 1);

@@ -9,7 +9,7 @@
 namespace psygen::render {
 namespace {
 
-TEST(MipLevels, halve_down_to_one_texel) {
+TEST(MipLevels, HalveDownToOneTexel) {
   const std::vector<std::uint8_t> pixels(5 * 3 * 4, 100);
   const auto levels = mip_levels({5, 3, pixels, true});
   ASSERT_EQ(levels.size(), 2u);
@@ -17,7 +17,7 @@ TEST(MipLevels, halve_down_to_one_texel) {
   EXPECT_EQ(levels[1], std::vector<std::uint8_t>(4, 100));
 }
 
-TEST(MipLevels, mix_colours_as_light_and_numbers_as_they_are) {
+TEST(MipLevels, MixColoursAsLightAndNumbersAsTheyAre) {
   const std::vector<std::uint8_t> pixels{0, 0, 0, 0, 255, 255, 255, 255};
   const auto colours = mip_levels({2, 1, pixels, true});
   ASSERT_EQ(colours.size(), 1u);
@@ -55,7 +55,7 @@ class Materials : public testing::Test {
   std::unique_ptr<Renderer> renderer_;
 };
 
-TEST_F(Materials, refuse_textures_whose_size_is_not_that_of_their_bytes) {
+TEST_F(Materials, RejectTexturesWhoseBytesDoNotMatchTheirSize) {
   for (const auto& [width, height, bytes] :
        {std::tuple{0u, 4u, 0u}, {4u, 0u, 0u}, {4u, 4u, 63u}, {9000u, 1u, 36000u}}) {
     const auto added = add(width, height, bytes);
@@ -65,7 +65,7 @@ TEST_F(Materials, refuse_textures_whose_size_is_not_that_of_their_bytes) {
   EXPECT_EQ(renderer_->texture_bytes(), 0u);
 }
 
-TEST_F(Materials, refuse_textures_beyond_the_budget_and_keep_the_others) {
+TEST_F(Materials, RefuseTexturesBeyondTheBudgetAndKeepTheOthers) {
   ASSERT_TRUE(add(16, 16, 1024));
   const std::uint64_t used = renderer_->texture_bytes();
   EXPECT_GT(used, 1024u);
@@ -76,7 +76,7 @@ TEST_F(Materials, refuse_textures_beyond_the_budget_and_keep_the_others) {
   EXPECT_TRUE(add(16, 16, 1024));
 }
 
-TEST_F(Materials, refuse_numbers_that_are_none_and_textures_that_do_not_exist) {
+TEST_F(Materials, RefuseNumbersThatAreNoneAndTexturesThatDoNotExist) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const core::ErrorCode refused = core::ErrorCode::kInvalidArgument;
   EXPECT_EQ(code_of({.base_colour = {1, nan, 1}}), refused);
@@ -86,7 +86,7 @@ TEST_F(Materials, refuse_numbers_that_are_none_and_textures_that_do_not_exist) {
   EXPECT_TRUE(renderer_->add_material({}));
 }
 
-TEST_F(Materials, end_at_four_thousand) {
+TEST_F(Materials, EndAtFourThousand) {
   std::size_t added = 1;  // the plain one
   while (renderer_->add_material({}))
     ++added;
