@@ -2,7 +2,7 @@
 """Runs clang-tidy on the lines that differ from a base: on changed sources, and for a changed header on a source that
 includes it. Prints the findings and fails if there are any. Passes if there is no base.
 
-usage: tools/tidy.py [BASE] [--minutes N]     BASE: a commit; default: $PSYGEN_BASE, or origin/main
+usage: tools/tidy.py [BASE] [--minutes N]     BASE: a commit; default: $PSYGEN_BASE
 
 Files that N minutes (default 10) do not suffice for are named and left out. The check easily-swappable-parameters
 reports three or more parameters of a kind, and two bools.
@@ -29,7 +29,7 @@ def git(*arguments):
 
 def base_commit(name):
     """The commit in which HEAD and the base part, or None if the base does not exist here."""
-    for candidate in (name, os.environ.get("PSYGEN_BASE"), "origin/main"):
+    for candidate in (name, os.environ.get("PSYGEN_BASE")):
         if candidate and set(candidate) != {"0"}:  # a hosted push of a new branch has a base of zeros
             merge_base = git("merge-base", candidate, "HEAD")
             return merge_base.strip() if merge_base else None
