@@ -31,9 +31,21 @@ PresetTraits traits_of(Preset preset) {
     case Preset::kMedium:
       return {.pixel_light = true};
     case Preset::kHigh:
-      return {true, true, true, 4, 2, 2048, {90.0F, 450.0F, 0.0F}};
+      return {.pixel_light = true,
+              .fine_grain = true,
+              .waves = true,
+              .samples = 4,
+              .cascades = 2,
+              .shadow_size = 2048,
+              .reach_m = {90.0F, 450.0F, 0.0F}};
     case Preset::kUltra:
-      return {true, true, true, 8, 3, 4096, {70.0F, 300.0F, 1500.0F}};
+      return {.pixel_light = true,
+              .fine_grain = true,
+              .waves = true,
+              .samples = 8,
+              .cascades = 3,
+              .shadow_size = 4096,
+              .reach_m = {70.0F, 300.0F, 1500.0F}};
     case Preset::kLow:
       break;
   }

@@ -131,7 +131,7 @@ void draw_stroke(const Stroke& s, Field& height, Field& tone) {
   }
 }
 
-std::array<Field, 2> relief(const Field& height) {
+std::array<Field, 2> height_gradient(const Field& height) {
   std::array<Field, 2> out;
   for (int y = 0; y < kPatternSide; ++y) {
     for (int x = 0; x < kPatternSide; ++x) {

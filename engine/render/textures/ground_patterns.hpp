@@ -1,5 +1,5 @@
 // Patterns that repeat, from which the materials of the ground are made: fields of numbers over a
-// square whose borders join, noise, cells, strokes and their relief. Deterministic: single
+// square whose borders join, noise, cells, strokes and gradients of height. Deterministic: single
 // precision, counter-based random numbers, and no library function but the square root. Pure, any
 // thread. It knows no material and no Vulkan (ground_textures.hpp). Private to engine/render.
 #pragma once
@@ -50,7 +50,7 @@ struct Stroke {
 void draw_stroke(const Stroke& stroke, Field& height, Field& tone);
 
 // Rise of a height per texel to the right and downwards.
-std::array<Field, 2> relief(const Field& height);
+std::array<Field, 2> height_gradient(const Field& height);
 
 // The height minus the mean of the square of texels around it: below 0 in hollows, above 0 on tops.
 Field raised(const Field& height, int reach);

@@ -16,7 +16,7 @@ struct Ground {
   Field height = {};            // in about [0, 1]
   Field light = {};             // factor of the albedo, of any mean
   Field warm = {};              // from bluish (−1) to yellowish (1)
-  float relief_texels = 1;      // how high a height of 1 is
+  float bump_texels = 1;        // how high a height of 1 is
   float rough = 1;              // where the height is 0 …
   float rough_top = 1;          // … and where it is 1
   std::vector<float> rgb = {};  // in place of `light` and `warm`, if it is not empty
@@ -45,7 +45,7 @@ struct Blades {
 };
 
 Ground blades(const Blades& b, std::uint32_t stream) {
-  Ground out{.relief_texels = 9, .rough = 1, .rough_top = 0.75F};
+  Ground out{.bump_texels = 9, .rough = 1, .rough_top = 0.75F};
   const Field lean_x = tiled_noise(8, 8, 2, 0.6F, stream + 1),
               lean_y = tiled_noise(8, 8, 2, 0.6F, stream + 2);
   const Field earth = tiled_noise(32, 32, 3, 0.7F, stream + 3);
@@ -82,17 +82,17 @@ Ground blades(const Blades& b, std::uint32_t stream) {
 }
 
 Ground grass() {
-  return blades({3400, 14, 34, 2.6F, 0.45F}, 100);
+  return blades({.count = 3400, .shortest = 14, .longest = 34, .width = 2.6F, .earth = 0.45F}, 100);
 }
 
 Ground dry_grass() {
-  return blades({2100, 20, 48, 2.2F, 0.75F}, 300);
+  return blades({.count = 2100, .shortest = 20, .longest = 48, .width = 2.2F, .earth = 0.75F}, 300);
 }
 
 // Leaves and twigs on moss and earth.
 Ground forest_floor() {
   constexpr std::uint32_t kStream = 200;
-  Ground out{.relief_texels = 6, .rough = 1, .rough_top = 0.7F};
+  Ground out{.bump_texels = 6, .rough = 1, .rough_top = 0.7F};
   const Field earth = tiled_noise(16, 16, 5, 0.65F, kStream + 1);
   fill(out.height, [&](std::size_t i) { return 0.18F + 0.09F * earth.values[i]; });
   fill(out.warm, [](std::size_t) { return -2.0F; });
@@ -126,7 +126,7 @@ Ground forest_floor() {
 
 Ground sand() {
   constexpr std::uint32_t kStream = 400;
-  Ground out{.relief_texels = 3, .rough = 0.9F, .rough_top = 0.7F};
+  Ground out{.bump_texels = 3, .rough = 0.9F, .rough_top = 0.7F};
   const Field ripples = tiled_noise(4, 16, 2, 0.4F, kStream + 1),
               grain = tiled_noise(128, 128, 2, 1, kStream + 2);
   const Field slow = tiled_noise(8, 8, 3, 0.5F, kStream + 3);
@@ -147,7 +147,7 @@ Ground sand() {
 // Weathered rock with cracks: the valleys of noise.
 Ground rock() {
   constexpr std::uint32_t kStream = 500;
-  Ground out{.relief_texels = 20, .rough = 0.95F, .rough_top = 0.6F};
+  Ground out{.bump_texels = 20, .rough = 0.95F, .rough_top = 0.6F};
   const Field folds = tiled_noise(4, 4, 5, 0.6F, kStream + 1),
               fine = tiled_noise(8, 8, 5, 0.6F, kStream + 2);
   const Field layers = tiled_noise(4, 16, 4, 0.6F, kStream + 3);
@@ -176,7 +176,7 @@ Ground rock() {
 // Stones of two sizes.
 Ground scree() {
   constexpr std::uint32_t kStream = 700;
-  Ground out{.relief_texels = 12, .rough = 1, .rough_top = 0.65F};
+  Ground out{.bump_texels = 12, .rough = 1, .rough_top = 0.65F};
   const Cells large = cells(16, kStream + 1), small = cells(32, kStream + 2);
   const Field rough = tiled_noise(32, 32, 4, 0.7F, kStream + 3);
   Field is_large;
@@ -205,7 +205,7 @@ Ground scree() {
 
 Ground snow() {
   constexpr std::uint32_t kStream = 600;
-  Ground out{.relief_texels = 5, .rough = 0.75F, .rough_top = 0.5F};
+  Ground out{.bump_texels = 5, .rough = 0.75F, .rough_top = 0.5F};
   const Field drifts = tiled_noise(4, 8, 3, 0.5F, kStream + 1),
               grain = tiled_noise(128, 128, 2, 1, kStream + 2);
   fill(out.height,
@@ -221,7 +221,7 @@ Ground snow() {
 // Furrows along the trunk, and cracks across its ridges.
 Ground bark() {
   constexpr std::uint32_t kStream = 900;
-  Ground out{.relief_texels = 11, .rough = 1, .rough_top = 0.85F};
+  Ground out{.bump_texels = 11, .rough = 1, .rough_top = 0.85F};
   const Field plates = tiled_noise(16, 4, 4, 0.6F, kStream + 1),
               cracks = tiled_noise(16, 16, 4, 0.6F, kStream + 2),
               fibres = tiled_noise(64, 8, 3, 0.7F, kStream + 3);
@@ -243,7 +243,7 @@ Ground bark() {
 
 Ground patches() {
   constexpr std::uint32_t kStream = 800;
-  Ground out{.relief_texels = 6, .rough = 1, .rough_top = 1};
+  Ground out{.bump_texels = 6, .rough = 1, .rough_top = 1};
   const Field even = tiled_noise(4, 4, 7, 0.62F, kStream + 1),
               hue = tiled_noise(4, 4, 4, 0.55F, kStream + 2);
   out.height = even;
@@ -255,7 +255,7 @@ Ground patches() {
 
 // A picture has its own colours; what is brighter is higher.
 Ground pictured(const GroundPicture& picture) {
-  Ground out{.relief_texels = 8, .rough = 1, .rough_top = 0.7F, .rgb = picture.rgb};
+  Ground out{.bump_texels = 8, .rough = 1, .rough_top = 0.7F, .rgb = picture.rgb};
   fill(out.light, [&](std::size_t i) {
     return 0.2F * picture.rgb[i * 3] + 0.7F * picture.rgb[i * 3 + 1] +
            0.1F * picture.rgb[i * 3 + 2];
@@ -300,11 +300,11 @@ void pack_colour(const Ground& ground, std::uint8_t* out) {
 }
 
 void pack_normal(const Ground& ground, std::uint8_t* out) {
-  const std::array<Field, 2> rise = relief(ground.height);
+  const std::array<Field, 2> rise = height_gradient(ground.height);
   const Field above = raised(ground.height, 5);
   for (std::size_t i = 0; i < kTexels; ++i) {
-    const float x = -rise[0].values[i] * ground.relief_texels;
-    const float z = -rise[1].values[i] * ground.relief_texels;
+    const float x = -rise[0].values[i] * ground.bump_texels;
+    const float z = -rise[1].values[i] * ground.bump_texels;
     const float scale = 0.5F / std::sqrt(1 + x * x + z * z);
     const float height = std::clamp(ground.height.values[i], 0.0F, 1.0F);
     out[i * 4] = unorm8(0.5F + x * scale);
