@@ -7,10 +7,17 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 #include "engine/platform/window.hpp"
+#include "engine/render/renderer.hpp"
+#include "engine/scene/facts/world_facts.hpp"
+#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/frame/clock.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/world/edits/edits.hpp"
+#include "engine/world/world.hpp"
 
 namespace cairns {
 namespace {
@@ -92,13 +99,13 @@ core::Result<void> Game::start(app::Session& session) {
   if (auto ok = scenery_.open(session); !ok) return ok;
   const auto destination =
       options_.sound ? audio::Destination::kDevice : audio::Destination::kNowhere;
-  sounds_.emplace(session.scene().state().facts.world.block_size_m(), destination);
+  sounds_.emplace(session.scene().world().block_size_m(), destination);
   apply_settings(session);
   if (session.window() != nullptr) {
     session.window()->set_title("Cairns");
     session.window()->set_right_button_looks(false);
   }
-  const double step_s = session.scene().state().simulation.step.step_s;
+  const double step_s = session.scene().step().step_s;
   if (!options_.record.empty()) recording_.emplace(session.actions(), step_s);
   if (!options_.replay.empty()) {
     auto recording = input::Recording::load(options_.replay);
@@ -127,7 +134,7 @@ core::Result<void> Game::begin(app::Session& session, Loaded loaded) {
     if (!saved) return tl::unexpected(saved.error());
     opened.emplace(std::move(*saved));
   }
-  if (seed != session.scene().state().facts.world.seed) {
+  if (seed != session.scene().world().seed) {
     title_query_.reset();
     if (auto ok = session.set_world(loaded.land->text); !ok) return ok;
   }
@@ -292,7 +299,7 @@ void Game::apply_settings(app::Session& session) {
 core::CameraPose Game::title_camera(app::Session& session, double dt_s) {
   if (!settings_.reduced_motion) title_s_ += dt_s;
   const double angle = title_s_ * 2 * std::numbers::pi / kTitleTurnS;
-  const scene::WorldFacts& facts = session.scene().state().facts;
+  const scene::WorldFacts& facts = session.scene().facts();
   const world::World& world = facts.world;
   if (!title_query_) title_query_.emplace(world, facts.registry);
   core::CameraPose pose;
@@ -356,9 +363,9 @@ core::CameraPose Game::playing(app::Session& session, double dt_s) {
   Play& play = *lands_->play;
   take_keys(session);
   keep_up(session, dt_s);
-  scene::State& state = session.scene().state();
+  scene::Scene& scene = session.scene();
   const bool photo = menu_.page == Page::kPhoto;
-  const double share = state.simulation.step.share;
+  const double share = scene.step().share;
   core::CameraPose pose = play.walker().eyes(share);
   const bool sways = !settings_.reduced_motion && play.walker().gait() == Gait::kGround;
   if (sways) pose.position.local.y += kSwayM * std::sin(play.walker().walked_m() * kSwayPerM);
@@ -376,7 +383,7 @@ core::CameraPose Game::playing(app::Session& session, double dt_s) {
   } else {
     session.hud() = hud_.draw(play, session, settings_, zoom_, dt_s);
   }
-  state.camera.projection.vertical_fov = static_cast<float>(glm::radians(fov_deg));
+  scene.set_field_of_view(static_cast<float>(glm::radians(fov_deg)));
   return pose;
 }
 

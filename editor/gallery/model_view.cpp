@@ -4,6 +4,9 @@
 #include <utility>
 
 #include "editor/pictures/model_world.hpp"
+#include "engine/core/camera.hpp"
+#include "engine/scene/facts/world_facts.hpp"
+#include "engine/scene/frame/camera.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
@@ -21,18 +24,18 @@ std::optional<world::TextPath> subject_of(const world::TextPath& path) {
 
 // In front of the model of a portrait world. With `before` the camera keeps its direction and
 // distance.
-std::optional<WorldView::Stand> stand_of(const scene::State& state,
+std::optional<WorldView::Stand> stand_of(const scene::Scene& scene,
                                          const std::optional<WorldView::Stand>& before) {
-  const scene::WorldFacts& facts = state.facts;
+  const scene::WorldFacts& facts = scene.facts();
   const auto model = lonely_model(facts.world, facts.registry);
   if (!model) return std::nullopt;
   // What its type usually fills of its box.
   const core::Bounds whole = facts.registry[model->model].bounds(model->parameters);
-  const core::Bounds& part = facts.usual_boxes[model->model];
+  const core::Bounds& part = facts.typical_bounds[model->model];
   const core::Bounds box{whole.centre() + part.min * whole.half_extent(),
                          whole.centre() + part.max * whole.half_extent()};
   const double block_m = facts.world.block_size_m();
-  const PortraitPose front = pose_before(model->foot, box, block_m, state.camera.projection);
+  const PortraitPose front = pose_before(model->foot, box, block_m, scene.camera().projection);
   if (!before || !before->pivot) return WorldView::Stand{front.pose, front.middle};
   core::CameraPose pose = before->pose;
   const glm::dvec3 to =
@@ -99,7 +102,7 @@ void ModelView::close() {
   view_.camera().set_turntable(false);
   view_.select(std::nullopt);
   show(false);
-  view_.stand_with_text([pose = *std::exchange(world_pose_, std::nullopt)](const scene::State&) {
+  view_.stand_with_text([pose = *std::exchange(world_pose_, std::nullopt)](const scene::Scene&) {
     return WorldView::Stand{pose, std::nullopt};
   });
   Q_EMIT switched();
@@ -120,7 +123,7 @@ void ModelView::set_seed(std::uint64_t seed) {
 void ModelView::stand_before(bool keep_direction) {
   std::optional<WorldView::Stand> before;
   if (keep_direction) before = {view_.camera().pose(), view_.camera().pivot()};
-  view_.stand_with_text([before](const scene::State& state) { return stand_of(state, before); });
+  view_.stand_with_text([before](const scene::Scene& scene) { return stand_of(scene, before); });
 }
 
 core::CameraPose ModelView::world_pose() const {

@@ -12,7 +12,10 @@
 #include "editor/gallery/export_dialog.hpp"
 #include "editor/gallery/library_panel.hpp"
 #include "editor/pictures/picture_server.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::editor {
@@ -49,9 +52,9 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
   service_.set_pictures([this] { return document_.pictures(); });
   connect(library_, &LibraryPanel::told, this, &PictureTools::told);
   connect(&view_, &WorldView::drawn, this, [this] {
-    const scene::State& state = view_.session()->scene().state();
+    const scene::Scene& scene = view_.session()->scene();
     view_.set_yielding(Beside::kPictures, service_.waiting() > 0);
-    service_.set_busy(state.counters.awaited > 0 || state.meshes.outstanding() > 0);
+    service_.set_busy(scene.statistics().awaited > 0 || scene.meshes().outstanding() > 0);
   });
   connect(&document_, &Document::changed, this, [this](Changes what) {
     // The view shows the document's text again.
@@ -91,7 +94,7 @@ void PictureTools::stand(double above_m) {
 
 std::optional<ViewState> PictureTools::view_state() const {
   if (view_.session() == nullptr || !on_world_) return std::nullopt;
-  const world::World& world = view_.session()->scene().state().facts.world;
+  const world::World& world = view_.session()->scene().world();
   const core::CameraPose& pose = view_.camera().pose();
   const core::WorldPosition& at = pose.position;
   const double block_m = world.block_size_m();

@@ -2,7 +2,12 @@
 
 #include <algorithm>
 
-#include "engine/scene/state.hpp"
+#include "ecs/ecs.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/scene/components.hpp"
+#include "engine/scene/facts/world_facts.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -10,17 +15,17 @@ namespace {
 constexpr std::size_t kSampled = 256;  // entities of each column, for predicted times
 
 // Mean predicted seconds of meshes that are drawn, by model type; 0 where none was sampled.
-std::vector<double> mean_seconds(const scene::State& state) {
-  std::vector<double> sums(state.facts.registry.size());
+std::vector<double> mean_seconds(const scene::Scene& scene) {
+  std::vector<double> sums(scene.registry().size());
   std::vector<double> counts(sums.size());
-  state.entities.each<const scene::Source, const scene::Demand>(
-      [&](std::span<const ecs::Entity>, std::span<const scene::Source> sources,
-          std::span<const scene::Demand> demands) {
+  scene.entities().each<const scene::MeshSource, const scene::MeshDemand>(
+      [&](std::span<const ecs::Entity>, std::span<const scene::MeshSource> sources,
+          std::span<const scene::MeshDemand> demands) {
         const std::size_t step = std::max<std::size_t>(sources.size() / kSampled, 1);
         for (std::size_t i = 0; i < sources.size(); i += step) {
-          const scene::Source& source = sources[i];
+          const scene::MeshSource& source = sources[i];
           if (demands[i].drawn_level == scene::kNoLevel || source.model >= sums.size()) continue;
-          sums[source.model] += state.meshes.costs().predict(
+          sums[source.model] += scene.meshes().costs().predict(
               source.model, source.parameters, source.first_level + demands[i].drawn_level);
           ++counts[source.model];
         }
@@ -32,9 +37,9 @@ std::vector<double> mean_seconds(const scene::State& state) {
 
 }  // namespace
 
-std::vector<HeldOfType> held_by_type(const scene::State& state) {
-  std::vector<HeldOfType> held(state.facts.registry.size());
-  for (const synthesis::MeshRecord& record : state.meshes.records()) {
+std::vector<HeldOfType> held_by_type(const scene::Scene& scene) {
+  std::vector<HeldOfType> held(scene.registry().size());
+  for (const synthesis::MeshRecord& record : scene.meshes().records()) {
     if (record.state != synthesis::MeshState::kReady || record.key.model >= held.size()) continue;
     HeldOfType& of = held[record.key.model];
     ++of.meshes;
@@ -45,15 +50,15 @@ std::vector<HeldOfType> held_by_type(const scene::State& state) {
   return held;
 }
 
-CacheContents contents_of(const scene::State& state) {
+CacheContents contents_of(const scene::Scene& scene) {
   using Kind = HeldMeshes::Kind;
   CacheContents contents;
-  contents.budget_bytes = static_cast<double>(state.meshes.stats().budget_bytes);
+  contents.budget_bytes = static_cast<double>(scene.meshes().stats().budget_bytes);
   contents.modelers =
-      std::max(static_cast<unsigned>(state.meshes.modeler_stats().modelers.size()), 1U);
-  const scene::WorldFacts& facts = state.facts;
-  const std::vector<HeldOfType> of_type = held_by_type(state);
-  const std::vector<double> seconds = mean_seconds(state);
+      std::max(static_cast<unsigned>(scene.meshes().modeler_stats().modelers.size()), 1U);
+  const scene::WorldFacts& facts = scene.facts();
+  const std::vector<HeldOfType> of_type = held_by_type(scene);
+  const std::vector<double> seconds = mean_seconds(scene);
   for (models::ModelIndex i = 0; i < of_type.size(); ++i) {
     if (of_type[i].meshes == 0) continue;
     HeldMeshes held;

@@ -9,7 +9,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/scene/state.hpp"
+#include "ecs/ecs.hpp"
+#include "engine/scene/components.hpp"
+#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/frame/clock.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -69,60 +75,63 @@ void CacheMap::set_colour(MapColour colour) {
   update();
 }
 
-void CacheMap::note(const scene::State& state) {
+void CacheMap::note(const scene::Scene& scene) {
   std::unordered_map<std::uint64_t, Known> known;
-  state.entities.each<const scene::Node, const scene::Mesh, const scene::Demand>(
-      [&](std::span<const ecs::Entity> entities, std::span<const scene::Node>,
-          std::span<const scene::Mesh> meshes, std::span<const scene::Demand> demands) {
+  scene.entities().each<const scene::QuadtreeNode, const scene::Mesh, const scene::MeshDemand>(
+      [&](std::span<const ecs::Entity> entities, std::span<const scene::QuadtreeNode>,
+          std::span<const scene::Mesh> meshes, std::span<const scene::MeshDemand> demands) {
         for (std::size_t i = 0; i < entities.size(); ++i) {
           if (demands[i].drawn_level == scene::kNoLevel) continue;
           const std::uint64_t owner = scene::owner_of(entities[i]);
           const auto before = known_.find(owner);
           const bool same = before != known_.end() && before->second.mesh == meshes[i].handle;
-          known[owner] = same ? before->second : Known{meshes[i].handle, state.clock.real_s};
+          known[owner] = same ? before->second : Known{meshes[i].handle, scene.clock().real_s};
         }
       });
   known_ = std::move(known);
 }
 
-void CacheMap::show(const scene::State& state) {
+void CacheMap::show(const scene::Scene& scene) {
   cells_.clear();
-  const core::WorldPosition& camera = state.camera.pose.position;
-  const double block_m = state.facts.world.block_size_m();
-  yaw_ = state.camera.pose.yaw;
-  fov_ = 2 * std::atan(std::tan(double{state.camera.projection.vertical_fov} / 2) *
-                       double{state.camera.projection.aspect});
+  const core::WorldPosition& camera = scene.camera().pose.position;
+  const double block_m = scene.world().block_size_m();
+  yaw_ = scene.camera().pose.yaw;
+  fov_ = 2 * std::atan(std::tan(double{scene.camera().projection.vertical_fov} / 2) *
+                       double{scene.camera().projection.aspect});
   std::vector<bool> chosen;
-  state.entities.each<const scene::Node, const scene::Visibility, const scene::Lacking,
-                      const scene::Source, const scene::Demand>(
-      [&](std::span<const ecs::Entity> entities, std::span<const scene::Node> nodes,
-          std::span<const scene::Visibility> seen, std::span<const scene::Lacking> lacking,
-          std::span<const scene::Source> sources, std::span<const scene::Demand> demands) {
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-          Cell cell;
-          cell.at = nodes[i].at;
-          cell.size_m = block_m * static_cast<double>(1U << cell.at.level);
-          const glm::dvec3 corner =
-              core::offset_m(visibility::corner_block(cell.at), camera, block_m);
-          cell.x_m = corner.x;
-          cell.z_m = corner.z;
-          const scene::Demand& demand = demands[i];
-          cell.in_view = seen[i].in_view != 0;
-          cell.drawn = demand.drawn_level != scene::kNoLevel;
-          cell.stale = demand.stale;
-          cell.requested = demand.requested_level != scene::kNoLevel;
-          cell.failed = demand.failed_levels != 0;
-          cell.level_drawn = demand.drawn_level;
-          cell.layer = seen[i].layer;
-          cell.deadline_s = double{seen[i].deadline_s};
-          cell.lacking = lacking[i].meshes;
-          cell.cost_s = state.meshes.costs().predict(sources[i].model, sources[i].parameters,
-                                                     sources[i].first_level);
-          const auto known = known_.find(scene::owner_of(entities[i]));
-          if (known != known_.end()) cell.age_s = state.clock.real_s - known->second.since_s;
-          cells_.push_back(cell);
-        }
-      });
+  scene.entities()
+      .each<const scene::QuadtreeNode, const scene::Visibility, const scene::MissingMeshes,
+            const scene::MeshSource, const scene::MeshDemand>(
+          [&](std::span<const ecs::Entity> entities, std::span<const scene::QuadtreeNode> nodes,
+              std::span<const scene::Visibility> seen,
+              std::span<const scene::MissingMeshes> lacking,
+              std::span<const scene::MeshSource> sources,
+              std::span<const scene::MeshDemand> demands) {
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+              Cell cell;
+              cell.at = nodes[i].at;
+              cell.size_m = block_m * static_cast<double>(1U << cell.at.level);
+              const glm::dvec3 corner =
+                  core::offset_m(visibility::corner_block(cell.at), camera, block_m);
+              cell.x_m = corner.x;
+              cell.z_m = corner.z;
+              const scene::MeshDemand& demand = demands[i];
+              cell.in_view = seen[i].in_view != 0;
+              cell.drawn = demand.drawn_level != scene::kNoLevel;
+              cell.stale = demand.stale;
+              cell.requested = demand.requested_level != scene::kNoLevel;
+              cell.failed = demand.failed_levels != 0;
+              cell.level_drawn = demand.drawn_level;
+              cell.layer = seen[i].layer;
+              cell.deadline_s = double{seen[i].deadline_s};
+              cell.lacking = lacking[i].meshes;
+              cell.cost_s = scene.meshes().costs().predict(sources[i].model, sources[i].parameters,
+                                                           sources[i].first_level);
+              const auto known = known_.find(scene::owner_of(entities[i]));
+              if (known != known_.end()) cell.age_s = scene.clock().real_s - known->second.since_s;
+              cells_.push_back(cell);
+            }
+          });
   std::ranges::sort(cells_, std::greater{}, [](const Cell& cell) { return cell.at.level; });
   update();
 }

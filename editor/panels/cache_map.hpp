@@ -13,7 +13,7 @@
 #include "engine/visibility/quadtree.hpp"
 
 namespace psygen::scene {
-struct State;
+class Scene;
 }
 
 namespace psygen::editor {
@@ -41,9 +41,9 @@ class CacheMap final : public QWidget {
   };
   explicit CacheMap(QWidget* parent = nullptr);
   // Notes which meshes are new, for their ages; some times a second, also while nobody looks.
-  void note(const scene::State& state);
+  void note(const scene::Scene& scene);
   // Takes over what there is now, after note().
-  void show(const scene::State& state);
+  void show(const scene::Scene& scene);
   // The same of nodes from elsewhere, coarse ones first; yaw and field of view in radians.
   void show_cells(std::vector<Cell> cells, double yaw, double horizontal_fov);
   void set_colour(MapColour colour);

@@ -10,7 +10,10 @@
 
 #include "editor/panels/cache_contents.hpp"
 #include "editor/panels/cost_strip.hpp"
-#include "engine/scene/state.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -20,11 +23,11 @@ constexpr std::size_t kSamples = 512;
 const QLocale kEnglish(QLocale::English);
 
 // Of types that have meshes, by name.
-std::map<std::string, HeldOfType> held_by_name(const scene::State& state) {
-  const std::vector<HeldOfType> of_type = held_by_type(state);
+std::map<std::string, HeldOfType> held_by_name(const scene::Scene& scene) {
+  const std::vector<HeldOfType> of_type = held_by_type(scene);
   std::map<std::string, HeldOfType> held;
   for (models::ModelIndex i = 0; i < of_type.size(); ++i) {
-    if (of_type[i].meshes > 0) held[std::string(state.facts.registry[i].name())] = of_type[i];
+    if (of_type[i].meshes > 0) held[std::string(scene.registry()[i].name())] = of_type[i];
   }
   return held;
 }
@@ -83,10 +86,10 @@ StatisticsPanel::StatisticsPanel(QWidget* parent)
   layout->addWidget(table_, 1);
 }
 
-void StatisticsPanel::note(const scene::State& state) {
-  for (const auto& cost : state.counters.costs) {
-    if (cost.model >= state.facts.registry.size()) continue;
-    Made& made = made_[std::string(state.facts.registry[cost.model].name())];
+void StatisticsPanel::note(const scene::Scene& scene) {
+  for (const auto& cost : scene.statistics().costs) {
+    if (cost.model >= scene.registry().size()) continue;
+    Made& made = made_[std::string(scene.registry()[cost.model].name())];
     if (made.ms.size() < kSamples) made.ms.push_back(0);
     made.ms[made.next] = cost.actual_s * 1e3;
     made.next = (made.next + 1) % kSamples;
@@ -97,16 +100,17 @@ void StatisticsPanel::forget() {
   made_.clear();
 }
 
-void StatisticsPanel::show(const scene::State& state) {
-  const synthesis::CacheStats stats = state.meshes.stats();
-  cache_->setText(tr("Cache: %1 of %2 in %3 meshes, %4 of it in view. %5 evicted, %6 waiting.")
-                      .arg(kEnglish.formattedDataSize(static_cast<qint64>(stats.bytes)),
-                           kEnglish.formattedDataSize(static_cast<qint64>(stats.budget_bytes)),
-                           kEnglish.toString(stats.ready),
-                           kEnglish.formattedDataSize(static_cast<qint64>(stats.visible_bytes)),
-                           kEnglish.toString(static_cast<qulonglong>(stats.evictions)),
-                           kEnglish.toString(static_cast<qulonglong>(state.meshes.outstanding()))));
-  const auto held = held_by_name(state);
+void StatisticsPanel::show(const scene::Scene& scene) {
+  const synthesis::CacheStats stats = scene.meshes().stats();
+  cache_->setText(
+      tr("Cache: %1 of %2 in %3 meshes, %4 of it in view. %5 evicted, %6 waiting.")
+          .arg(kEnglish.formattedDataSize(static_cast<qint64>(stats.bytes)),
+               kEnglish.formattedDataSize(static_cast<qint64>(stats.budget_bytes)),
+               kEnglish.toString(stats.ready),
+               kEnglish.formattedDataSize(static_cast<qint64>(stats.visible_bytes)),
+               kEnglish.toString(static_cast<qulonglong>(stats.evictions)),
+               kEnglish.toString(static_cast<qulonglong>(scene.meshes().outstanding()))));
+  const auto held = held_by_name(scene);
   table_->setRowCount(static_cast<int>(held.size()));
   int row = 0;
   bool changed = false;
@@ -146,8 +150,8 @@ void StatisticsPanel::show_world_cost(const BlockCost& cost, double blocks) {
   world_->setText(text);
 }
 
-QString describe(const Selection& selection, const scene::State& state) {
-  const models::ModelType& type = state.facts.registry[selection.model];
+QString describe(const Selection& selection, const scene::Scene& scene) {
+  const models::ModelType& type = scene.registry()[selection.model];
   const models::Parameters& p = selection.parameters;
   const bool model = selection.kind == query::HitKind::kModel;
   QString text = QString::fromUtf8(type.name().data(), static_cast<int>(type.name().size()));
@@ -169,7 +173,7 @@ QString describe(const Selection& selection, const scene::State& state) {
                 .arg(level)
                 .arg(kEnglish.toString(size.triangle_count()))
                 .arg(type.level_error_m(p, level), 0, 'g', 3)
-                .arg(state.meshes.costs().predict(selection.model, p, level) * 1e6, 0, 'f', 1);
+                .arg(scene.meshes().costs().predict(selection.model, p, level) * 1e6, 0, 'f', 1);
   }
   return text + "\n" + parameters_text(type, p);
 }

@@ -15,7 +15,7 @@ class QLabel;
 class QTableWidget;
 
 namespace psygen::scene {
-struct State;
+class Scene;
 }
 
 namespace psygen::editor {
@@ -27,9 +27,9 @@ class StatisticsPanel final : public QWidget {
   explicit StatisticsPanel(QWidget* parent = nullptr);
 
   // Takes over what was made in the last tick; once a picture.
-  void note(const scene::State& state);
+  void note(const scene::Scene& scene);
   // Shows the figures; some times a second.
-  void show(const scene::State& state);
+  void show(const scene::Scene& scene);
   void show_world_cost(const BlockCost& cost, double blocks);
   void forget();  // another world
 
@@ -45,6 +45,6 @@ class StatisticsPanel final : public QWidget {
 };
 
 // What is known of a selected model or place, as lines.
-QString describe(const Selection& selection, const scene::State& state);
+QString describe(const Selection& selection, const scene::Scene& scene);
 
 }  // namespace psygen::editor

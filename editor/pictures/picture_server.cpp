@@ -19,12 +19,19 @@
 #include "editor/pictures/model_world.hpp"
 #include "editor/pictures/picture_request.hpp"
 #include "engine/app/session.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/log.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/models/terrain/ground.hpp"
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -147,13 +154,13 @@ class PictureServer {
   }
 
   const synthesis::CostModel* learnt() const {
-    return session_ ? &session_->scene().state().meshes.costs() : nullptr;
+    return session_ ? &session_->scene().meshes().costs() : nullptr;
   }
 
   core::Result<void> draw(const PictureRequest& request, const ParsedWorld& parsed,
                           PictureReply& reply) {
     if (auto ok = show(request, parsed); !ok) return ok;
-    scene::State& state = session_->scene().state();
+    scene::Scene& scene = session_->scene();
     const core::Projection projection = projection_of(request);
     core::CameraPose pose = session_->home();
     if (request.kind == PictureKind::kPortrait) {
@@ -166,17 +173,17 @@ class PictureServer {
     if (!core::is_valid(pose)) return tl::unexpected(failed("there is no such place"));
     session_->set_now(request.now_s);
     const bool small = request.kind == PictureKind::kPicture && request.size.width <= kSmallWidth;
-    state.settings.max_error_pixels = small ? kSmallErrorPixels : kErrorPixels;
-    state.input.size = session_->picture_size();
-    const std::uint64_t failed_before = state.totals.failed;
+    scene.set_max_error(small ? kSmallErrorPixels : kErrorPixels);
+    scene.input().size = session_->picture_size();
+    const std::uint64_t failed_before = scene.statistics().failed_in_all;
     session_->scene().settle(pose, [&](std::string_view, double) {
       reply.dropped = reply.dropped || input_.waiting();
       return !reply.dropped;
     });
     if (reply.dropped) return {};
     if (auto ok = session_->tick(pose, 0); !ok) return ok;
-    if (state.totals.failed > failed_before || state.counters.holes > 0)
-      return tl::unexpected(failed(what_failed(state)));
+    if (scene.statistics().failed_in_all > failed_before || scene.statistics().holes > 0)
+      return tl::unexpected(failed(what_failed(scene)));
     reply.cost = block_cost(parsed, block_of(request, parsed.world), learnt(), false);
     return session_->save_picture(request.out);
   }
@@ -188,8 +195,8 @@ class PictureServer {
     return projection;
   }
 
-  static std::string what_failed(const scene::State& state) {
-    const auto& hung = state.meshes.hung();
+  static std::string what_failed(const scene::Scene& scene) {
+    const auto& hung = scene.meshes().hung();
     if (!hung.empty()) return fmt::format("a model takes more than {} s", kServerWatchdogS);
     return "a model could not be made";
   }

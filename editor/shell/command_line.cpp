@@ -7,14 +7,15 @@
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::editor {
 
 QString picture_command(app::Session& session, const std::filesystem::path& world_file,
                         const core::CameraPose& pose) {
-  const scene::State& state = session.scene().state();
-  const world::World& world = state.facts.world;
+  const scene::Scene& scene = session.scene();
+  const world::World& world = scene.world();
   const double block_m = world.block_size_m();
   const core::WorldPosition& at = pose.position;
   const double surface_m = world::surface_height_m(world, at);
@@ -32,7 +33,7 @@ QString picture_command(app::Session& session, const std::filesystem::path& worl
       .arg(glm::degrees(pose.yaw), 0, 'f', 1)
       .arg(glm::degrees(pose.pitch), 0, 'f', 1)
       .arg(QString::fromUtf8(name.data(), static_cast<int>(name.size())))
-      .arg(state.settings.max_error_pixels, 0, 'g', 4);
+      .arg(scene.settings().max_error_pixels, 0, 'g', 4);
 }
 
 }  // namespace psygen::editor

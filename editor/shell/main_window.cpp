@@ -25,8 +25,13 @@
 #include "editor/shell/command_palette.hpp"
 #include "editor/shell/docks.hpp"
 #include "editor/tools/view_tools.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/log.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/render/types.hpp"
+#include "engine/scene/frame/quality.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::editor {
@@ -157,14 +162,14 @@ void MainWindow::connect_view() {
   });
   connect(view_, &WorldView::drawn, this, [this](double ms) {
     frame_ms_ += (ms - frame_ms_) * (frame_ms_ == 0 ? 1 : kSmoothing);
-    statistics_->note(view_->session()->scene().state());
+    statistics_->note(view_->session()->scene());
   });
   connect(view_, &WorldView::selected, this, [this] {
     const auto& selection = view_->selection();
     if (!selection) return selection_text_->clear();
-    const scene::State& state = view_->session()->scene().state();
-    selection_text_->setPlainText(describe(*selection, state));
-    const std::string name(state.facts.registry[selection->model].name());
+    const scene::Scene& scene = view_->session()->scene();
+    selection_text_->setPlainText(describe(*selection, scene));
+    const std::string name(scene.registry()[selection->model].name());
     for (const world::WorldSection& section : document_.sections()) {
       if (section.title == name || (section.kind == world::SectionKind::kTerrain &&
                                     selection->kind == query::HitKind::kGround))
@@ -181,17 +186,17 @@ void MainWindow::connect_view() {
 
 void MainWindow::show_figures() {
   if (view_->session() == nullptr) return figures_->setText(tr("No picture"));
-  const scene::State& state = view_->session()->scene().state();
-  figures_->setText(tr("%1 ms  ·  %2 triangles  ·  error %3 px  ·  %4 waiting  ·  %5 m/s")
-                        .arg(frame_ms_, 0, 'f', 1)
-                        .arg(QLocale(QLocale::English)
-                                 .toString(static_cast<qulonglong>(state.counters.frame.triangles)))
-                        .arg(state.quality.error_pixels, 0, 'f', 1)
-                        .arg(state.meshes.outstanding())
-                        .arg(view_->camera().speed_m_s(), 0, 'f', 0));
-  if (statistics_->isVisible()) statistics_->show(state);
-  map_->note(state);
-  if (map_->isVisible()) map_->show(state);
+  const scene::Scene& scene = view_->session()->scene();
+  figures_->setText(
+      tr("%1 ms  ·  %2 triangles  ·  error %3 px  ·  %4 waiting  ·  %5 m/s")
+          .arg(frame_ms_, 0, 'f', 1)
+          .arg(QLocale(QLocale::English).toString(static_cast<qulonglong>(scene.drawn().triangles)))
+          .arg(scene.quality().error_pixels, 0, 'f', 1)
+          .arg(scene.meshes().outstanding())
+          .arg(view_->camera().speed_m_s(), 0, 'f', 0));
+  if (statistics_->isVisible()) statistics_->show(scene);
+  map_->note(scene);
+  if (map_->isVisible()) map_->show(scene);
 }
 
 bool MainWindow::tell(const core::Result<void>& result) {

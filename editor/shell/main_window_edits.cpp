@@ -16,6 +16,7 @@
 #include "editor/panels/statistics_panel.hpp"
 #include "editor/shell/main_window.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -138,9 +139,9 @@ void MainWindow::look_at_scene() {
   if (view_->session() == nullptr || (learnt_ && drag_from_) ||
       (looked_.isValid() && looked_.elapsed() < kLearntMs))
     return;
-  const scene::State& state = view_->session()->scene().state();
-  learnt_ = std::make_shared<synthesis::CostModel>(state.meshes.costs());
-  contents_ = contents_of(state);
+  const scene::Scene& scene = view_->session()->scene();
+  learnt_ = std::make_shared<synthesis::CostModel>(scene.meshes().costs());
+  contents_ = contents_of(scene);
   looked_.start();
 }
 

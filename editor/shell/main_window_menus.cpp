@@ -20,6 +20,7 @@
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace psygen::editor {
@@ -133,7 +134,7 @@ void MainWindow::add_view_menu() {
   for (const auto& [name, kind] : kinds) {
     QAction* action =
         menu->addAction(name, QString("Ctrl+%1").arg(key++), this, [this, kind = kind] {
-          if (view_->session() != nullptr) view_->session()->scene().state().input.view = kind;
+          if (view_->session() != nullptr) view_->session()->scene().input().view = kind;
         });
     action->setCheckable(true);
     action->setChecked(kind == render::View::kNormal);

@@ -13,7 +13,9 @@
 #include "editor/shell/docks.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/tools/view_tools.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/scene/facts/prepared_world.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace psygen::editor {

@@ -4,8 +4,12 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "engine/scene/state.hpp"
+#include "ecs/ecs.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/scene/components.hpp"
+#include "engine/scene/scene.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -14,20 +18,21 @@ constexpr double kFarM = 20'000;
 constexpr double kCrownShare = 0.7;  // of the sphere around a model, that a click must meet
 
 // Around its vertices where it is drawn, else around all that its parameters could lead to.
-core::Bounds box_of(const Selection& model, const scene::State& state) {
+core::Bounds box_of(const Selection& model, const scene::Scene& scene) {
   std::optional<core::Bounds> tight;
-  state.entities
-      .each<const scene::Placed, const scene::Source, const scene::Demand, const scene::Mesh>(
-          [&](std::span<const ecs::Entity>, std::span<const scene::Placed> placed,
-              std::span<const scene::Source> sources, std::span<const scene::Demand> demands,
-              std::span<const scene::Mesh> meshes) {
+  scene.entities()
+      .each<const scene::MeshPlacement, const scene::MeshSource, const scene::MeshDemand,
+            const scene::Mesh>(
+          [&](std::span<const ecs::Entity>, std::span<const scene::MeshPlacement> placed,
+              std::span<const scene::MeshSource> sources,
+              std::span<const scene::MeshDemand> demands, std::span<const scene::Mesh> meshes) {
             for (std::size_t i = 0; i < placed.size(); ++i) {
               if (sources[i].index == model.index && placed[i].block == model.block &&
                   demands[i].drawn_level != scene::kNoLevel)
                 tight = meshes[i].tight;
             }
           });
-  return tight ? *tight : state.facts.registry[model.model].bounds(model.parameters);
+  return tight ? *tight : scene.registry()[model.model].bounds(model.parameters);
 }
 
 // A model that a ray passes through the middle of.
@@ -38,25 +43,29 @@ struct Crown {
 };
 
 // The one in front, nearer than `longest_m`, of those that are drawn.
-std::optional<Crown> crown_on(const query::Ray& ray, double longest_m, const scene::State& state) {
+std::optional<Crown> crown_on(const query::Ray& ray, double longest_m, const scene::Scene& scene) {
   std::optional<Crown> found;
-  const double block_m = state.facts.world.block_size_m();
-  state.entities.each<const scene::Placed, const scene::Source, const scene::Demand>(
-      [&](std::span<const ecs::Entity>, std::span<const scene::Placed> placed,
-          std::span<const scene::Source> sources, std::span<const scene::Demand> demands) {
-        for (std::size_t i = 0; i < placed.size(); ++i) {
-          if (demands[i].drawn_level == scene::kNoLevel || sources[i].index >= scene::kMergedIndex)
-            continue;
-          const scene::Placed& at = placed[i];
-          const glm::dvec3 middle = core::offset_m(at.block, ray.origin, block_m) +
-                                    glm::dvec3(at.position) + glm::dvec3(at.middle);
-          const double along = glm::dot(middle, ray.direction);
-          const double aside = glm::length(middle - along * ray.direction);
-          const double nearest = found ? found->distance_m : longest_m;
-          if (along <= 0 || along >= nearest || aside > kCrownShare * double{at.radius_m}) continue;
-          found = {at.block, sources[i].index, along};
-        }
-      });
+  const double block_m = scene.world().block_size_m();
+  scene.entities()
+      .each<const scene::MeshPlacement, const scene::MeshSource, const scene::MeshDemand>(
+          [&](std::span<const ecs::Entity>, std::span<const scene::MeshPlacement> placed,
+              std::span<const scene::MeshSource> sources,
+              std::span<const scene::MeshDemand> demands) {
+            for (std::size_t i = 0; i < placed.size(); ++i) {
+              if (demands[i].drawn_level == scene::kNoLevel ||
+                  sources[i].index >= scene::kMergedIndex)
+                continue;
+              const scene::MeshPlacement& at = placed[i];
+              const glm::dvec3 middle = core::offset_m(at.block, ray.origin, block_m) +
+                                        glm::dvec3(at.position) + glm::dvec3(at.middle);
+              const double along = glm::dot(middle, ray.direction);
+              const double aside = glm::length(middle - along * ray.direction);
+              const double nearest = found ? found->distance_m : longest_m;
+              if (along <= 0 || along >= nearest || aside > kCrownShare * double{at.radius_m})
+                continue;
+              found = {at.block, sources[i].index, along};
+            }
+          });
   return found;
 }
 
@@ -72,10 +81,10 @@ glm::dvec3 direction_of(QPointF pixel, core::Extent size, const core::CameraPose
   return glm::normalize(glm::dvec3(direction.x, direction.y, direction.z));
 }
 
-std::optional<Selection> pick(const scene::State& state, const core::CameraPose& pose,
+std::optional<Selection> pick(const scene::Scene& scene, const core::CameraPose& pose,
                               const glm::dvec3& direction) {
-  const world::World& world = state.facts.world;
-  query::World queries(world, state.facts.registry);
+  const world::World& world = scene.world();
+  query::World queries(world, scene.registry());
   query::Ray ray;
   ray.origin = pose.position;
   ray.direction = direction;
@@ -84,7 +93,7 @@ std::optional<Selection> pick(const scene::State& state, const core::CameraPose&
   if (!hit) return std::nullopt;
   const bool model = hit->kind == query::HitKind::kModel;
   std::optional<Crown> crown;
-  if (!model) crown = crown_on(ray, hit->distance_m, state);
+  if (!model) crown = crown_on(ray, hit->distance_m, scene);
   if (!model && !crown && hit->kind == query::HitKind::kNothing) return std::nullopt;
   if (model || crown) {
     Selection selection;
@@ -92,31 +101,31 @@ std::optional<Selection> pick(const scene::State& state, const core::CameraPose&
     selection.block = crown ? crown->block : hit->block;
     selection.index = crown ? crown->index : hit->index;
     selection.distance_m = crown ? crown->distance_m : hit->distance_m;
-    return found_again(selection, state);
+    return found_again(selection, scene);
   }
   Selection selection;
   selection.kind = query::HitKind::kGround;
   selection.block = hit->block;
   selection.at = hit->position;
   selection.distance_m = hit->distance_m;
-  return found_again(selection, state);
+  return found_again(selection, scene);
 }
 
-GroundRays::Ground::Ground(const scene::State& state)
-    : shape(state.facts.world),
+GroundRays::Ground::Ground(const scene::Scene& scene)
+    : shape(scene.world()),
       world([&] {
-        world::World bare = state.facts.world;
+        world::World bare = scene.world();
         bare.scatter.clear();
         bare.places = {};
         return bare;
       }()),
-      queries(world, state.facts.registry) {}
+      queries(world, scene.registry()) {}
 
-std::optional<glm::dvec2> GroundRays::at(const scene::State& state, const core::CameraPose& pose,
+std::optional<glm::dvec2> GroundRays::at(const scene::Scene& scene, const core::CameraPose& pose,
                                          const glm::dvec3& direction) {
   const bool is_new = std::exchange(world_is_new_, false);
-  if (!ground_ || (is_new && !(ground_->shape == SurfaceShape(state.facts.world))))
-    ground_ = std::make_unique<Ground>(state);
+  if (!ground_ || (is_new && !(ground_->shape == SurfaceShape(scene.world()))))
+    ground_ = std::make_unique<Ground>(scene);
   query::Ray ray;
   ray.origin = pose.position;
   ray.direction = direction;
@@ -129,21 +138,21 @@ std::optional<glm::dvec2> GroundRays::at(const scene::State& state, const core::
   return glm::dvec2(at.block.x * block_m + at.local.x, at.block.z * block_m + at.local.z);
 }
 
-std::optional<Selection> found_again(const Selection& before, const scene::State& state) {
-  const world::World& world = state.facts.world;
+std::optional<Selection> found_again(const Selection& before, const scene::Scene& scene) {
+  const world::World& world = scene.world();
   Selection selection = before;
   if (before.kind == query::HitKind::kGround) {
     selection.model = world.terrain_model;
     selection.parameters = world::terrain_parameters(world, before.block);
     return selection;
   }
-  query::World queries(world, state.facts.registry);
+  query::World queries(world, scene.registry());
   const auto placed = queries.placement(before.block, before.index);
   if (!placed) return std::nullopt;
   selection.model = placed->model;
   selection.parameters = placed->parameters;
   selection.at = {before.block, glm::dvec3(placed->position)};
-  selection.box = box_of(selection, state);
+  selection.box = box_of(selection, scene);
   return selection;
 }
 

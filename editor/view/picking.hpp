@@ -12,7 +12,7 @@
 #include "engine/query/world.hpp"
 
 namespace psygen::scene {
-struct State;
+class Scene;
 }
 
 namespace psygen::editor {
@@ -34,7 +34,7 @@ glm::dvec3 direction_of(QPointF pixel, core::Extent size, const core::CameraPose
                         const core::Projection& projection);
 
 // The first thing from the camera in a direction, within 20 km; nothing: the sky.
-std::optional<Selection> pick(const scene::State& state, const core::CameraPose& pose,
+std::optional<Selection> pick(const scene::Scene& scene, const core::CameraPose& pose,
                               const glm::dvec3& direction);
 
 // Rays against the ground of the worlds that a view shows one after the other. What is known of the
@@ -43,7 +43,7 @@ class GroundRays {
  public:
   // The ground from the camera in a direction, as x and z in metres of the world; nothing: the sky,
   // or more than 20 km away. Models are in nobody's way.
-  std::optional<glm::dvec2> at(const scene::State& state, const core::CameraPose& pose,
+  std::optional<glm::dvec2> at(const scene::Scene& scene, const core::CameraPose& pose,
                                const glm::dvec3& direction);
   // The state has another world.
   void note_world() { world_is_new_ = true; }
@@ -53,7 +53,7 @@ class GroundRays {
  private:
   // Without models, so that only the ground matters.
   struct Ground {
-    explicit Ground(const scene::State& state);
+    explicit Ground(const scene::Scene& scene);
     SurfaceShape shape;
     world::World world;
     query::World queries;
@@ -63,6 +63,6 @@ class GroundRays {
 };
 
 // The same model, or the same place of the ground, in the present world; nothing if it is gone.
-std::optional<Selection> found_again(const Selection& selection, const scene::State& state);
+std::optional<Selection> found_again(const Selection& selection, const scene::Scene& scene);
 
 }  // namespace psygen::editor

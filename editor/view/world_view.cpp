@@ -7,10 +7,16 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "editor/view/world_before.hpp"
 #include "engine/core/start_thread.hpp"
 #include "engine/render/hud_drawing.hpp"
+#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/frame/input.hpp"
+#include "engine/scene/frame/quality.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -147,7 +153,7 @@ void WorldView::take_prepared() {
   since_taken_ = since_prepared_;
   has_landed_ = false;
   take_stand();
-  if (selection_) select(found_again(*selection_, session_->scene().state()));
+  if (selection_) select(found_again(*selection_, session_->scene()));
 }
 
 void WorldView::tick() {
@@ -159,17 +165,17 @@ void WorldView::tick() {
   const platform::InputState input = input_.take_frame();
   const bool moved = camera_.update(input, dt_s);
   if (const auto click = input_.take_click()) {
-    const scene::State& seen = session_->scene().state();
+    const scene::Scene& scene = session_->scene();
     select(pick(
-        seen, camera_.pose(),
-        direction_of(*click, session_->picture_size(), camera_.pose(), seen.camera.projection)));
+        scene, camera_.pose(),
+        direction_of(*click, session_->picture_size(), camera_.pose(), scene.camera().projection)));
   }
   serve_tool();
   write_over_picture();
-  scene::State& state = session_->scene().state();
+  scene::Scene& scene = session_->scene();
   // The first picture of a change is coarse, so that it comes soon.
-  state.input.draft = draft_ || since_taken_.isValid();
-  state.input.lines = lines_;
+  scene.input().draft = draft_ || since_taken_.isValid();
+  scene.input().lines = lines_;
   QElapsedTimer spent;
   spent.start();
   const bool over = !session_->poll();
@@ -198,10 +204,10 @@ void WorldView::take_stand() {
   grid_.note_world();
   overlay_.note_world();
   ground_.note_world();
-  const scene::State& state = session_->scene().state();
-  camera_.set_block_size(state.facts.world.block_size_m());
+  const scene::Scene& scene = session_->scene();
+  camera_.set_block_size(scene.world().block_size_m());
   const FindStand find = std::exchange(find_stand_, nullptr);
-  const auto stand = find ? find(state) : std::nullopt;
+  const auto stand = find ? find(scene) : std::nullopt;
   if (!stand) return;
   camera_.set_pose(stand->pose);
   camera_.set_pivot(stand->pivot);
@@ -210,18 +216,18 @@ void WorldView::take_stand() {
 // Looks alone change at once. Where nothing near changes, the first mesh that lands is the answer.
 void WorldView::note_answered() {
   if (!since_taken_.isValid()) return;
-  const scene::State& state = session_->scene().state();
-  has_landed_ = has_landed_ || state.counters.completed > 0;
-  if ((!has_landed_ && state.meshes.outstanding() > 0) || shows_world_before(state)) return;
+  const scene::Scene& scene = session_->scene();
+  has_landed_ = has_landed_ || scene.statistics().completed > 0;
+  if ((!has_landed_ && scene.meshes().outstanding() > 0) || scene.shows_replaced_world()) return;
   Q_EMIT answered(static_cast<double>(since_taken_.nsecsElapsed()) * 1e-6);
   since_taken_.invalidate();
 }
 
 void WorldView::note_settled() {
   if (!since_text_.isValid() || text_is_new_ || prepared_.valid() || draft_) return;
-  const scene::State& state = session_->scene().state();
-  if (state.counters.awaited > 0 || state.meshes.outstanding() > 0 || state.quality.draft ||
-      state.output.pictures_lacking != 0)
+  const scene::Scene& scene = session_->scene();
+  if (scene.statistics().awaited > 0 || scene.meshes().outstanding() > 0 || scene.quality().draft ||
+      scene.statistics().impostors_missing)
     return;
   Q_EMIT settled(static_cast<double>(since_text_.nsecsElapsed()) * 1e-6);
   since_text_.invalidate();
@@ -230,13 +236,13 @@ void WorldView::note_settled() {
 void WorldView::write_over_picture() {
   render::HudDrawing& hud = session_->hud();
   hud = {};
-  const scene::State& state = session_->scene().state();
-  const auto grid = grid_.lines(state.facts.world, camera_.pose().position);
+  const scene::Scene& scene = session_->scene();
+  const auto grid = grid_.lines(scene.world(), camera_.pose().position);
   lines_.assign(grid.begin(), grid.end());
   const Lens seen = lens();
   write_frame(seen);
   if (tool_ == nullptr) return;
-  overlay_.set(tool_->marks(), state.facts.world);
+  overlay_.set(tool_->marks(), scene.world());
   overlay_.add_lines(seen.pose.position, seen.block_m, lines_);
   overlay_.add_handles(seen, hud);
 }

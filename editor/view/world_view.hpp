@@ -25,7 +25,9 @@
 #include "editor/view/view_tool.hpp"
 #include "editor/view/window_surface.hpp"
 #include "engine/app/session.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/handmade/files.hpp"
+#include "engine/scene/facts/prepared_world.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace psygen::editor {
@@ -74,7 +76,7 @@ class WorldView final : public QWindow {
   };
   // Asked for with the scene of the text that was given last, when that is taken over; nothing: the
   // camera stays.
-  using FindStand = std::function<std::optional<Stand>(const scene::State&)>;
+  using FindStand = std::function<std::optional<Stand>(const scene::Scene&)>;
   void stand_with_text(FindStand find) { find_stand_ = std::move(find); }
   // Whether something of the text that was given last is still to be made; a draft, which waits for
   // more, counts as made.

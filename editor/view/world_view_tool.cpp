@@ -1,6 +1,8 @@
 // The tool of a view: the mouse as points of the ground.
 #include "editor/view/world_view.hpp"
+#include "engine/scene/frame/camera.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 
@@ -16,26 +18,26 @@ void WorldView::set_tool(ViewTool* tool) {
 }
 
 Lens WorldView::lens() const {
-  const scene::State& state = session_->scene().state();
-  return {camera_.pose(), state.camera.projection, session_->picture_size(),
-          state.facts.world.block_size_m()};
+  const scene::Scene& scene = session_->scene();
+  return {camera_.pose(), scene.camera().projection, session_->picture_size(),
+          scene.world().block_size_m()};
 }
 
 std::optional<QPointF> WorldView::pixel_of(glm::dvec2 at_m) const {
   if (!session_) return std::nullopt;
-  const auto pixel = lens().pixel_of(on_surface(at_m, session_->scene().state().facts.world));
+  const auto pixel = lens().pixel_of(on_surface(at_m, session_->scene().world()));
   if (!pixel) return std::nullopt;
   return QPointF(static_cast<double>(pixel->x), static_cast<double>(pixel->y)) / devicePixelRatio();
 }
 
 ToolPoint WorldView::point_at(const ToolEvent& event) {
-  const scene::State& state = session_->scene().state();
+  const scene::Scene& scene = session_->scene();
   const Lens seen = lens();
   ToolPoint point;
   point.fine = event.fine;
   point.ground_m =
-      ground_.at(state, seen.pose, direction_of(event.at, seen.size, seen.pose, seen.projection));
-  overlay_.set(tool_->marks(), state.facts.world);
+      ground_.at(scene, seen.pose, direction_of(event.at, seen.size, seen.pose, seen.projection));
+  overlay_.set(tool_->marks(), scene.world());
   overlay_.hit(event.at, seen, point);
   return point;
 }

@@ -10,6 +10,8 @@
 #include "engine/platform/window.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/render/types.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace psygen::app {
@@ -35,7 +37,7 @@ void Flight::handle_keys() {
   if (input.went_down.any()) hud_.key_pressed();
   if (input.was_pressed(kF1)) hud_.next_page();
   if (input.was_pressed(kF2)) {
-    render::View& view = session_->scene().state().input.view;
+    render::View& view = session_->scene().input().view;
     view = render::next_view(view);
   }
   if (input.was_pressed(kF3)) {
@@ -59,14 +61,18 @@ void Flight::handle_keys() {
 
 // Screenshots show no notices, which are about other images.
 void Flight::write_over_picture() {
-  scene::State& state = session_->scene().state();
-  const HudFacts facts{session_->renderer().device(), session_->renderer().preset(),
-                       fly_camera_.speed_m_s()};
-  state.input.panels = photograph_ ? hud_.lasting_panels(state, facts)
-                                   : hud_.panels(state, facts, core::monotonic_seconds());
+  scene::Scene& scene = session_->scene();
+  HudFacts facts;
+  facts.device = session_->renderer().device();
+  facts.preset = session_->renderer().preset();
+  facts.key_speed_m_s = fly_camera_.speed_m_s();
+  facts.record = record_;
+  facts.gpu = scene.drawn().gpu;
+  scene.input().panels = photograph_ ? hud_.lasting_panels(scene, facts)
+                                     : hud_.panels(scene, facts, core::monotonic_seconds());
   if (session_->paused() && !photograph_)
-    state.input.panels.push_back({render::Anchor::kMiddle, {{"paused; press P to continue"}}});
-  state.input.text_scale =
+    scene.input().panels.push_back({render::Anchor::kMiddle, {{"paused; press P to continue"}}});
+  scene.input().text_scale =
       text_scale(session_->window()->content_scale(), session_->picture_size());
 }
 

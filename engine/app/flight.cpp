@@ -13,6 +13,7 @@
 #include "engine/app/gap.hpp"
 #include "engine/app/plugin_call.hpp"
 #include "engine/app/virtual_frame.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
@@ -20,10 +21,15 @@
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/platform/window.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/render/types.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "engine/world/files/path_file.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::app {
 namespace {
@@ -80,13 +86,13 @@ core::Result<void> Flight::open() {
   if (!session) return tl::unexpected(session.error());
   session_ = std::move(*session);
   const double view_m = options_.session.scene.view_distance_m;
-  const world::World& world = session_->scene().state().facts.world;
+  const world::World& world = session_->scene().world();
   if (path_ && !path_->comes_within(view_m, world))
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("{}: the world {} is never in view: every point is "
                                   "more than the view distance, {:g} m, outside the world",
                                   options_.path_file.string(), world.name, view_m));
-  log_ = std::make_unique<telemetry::FrameLog>(scene::system_names(session_->scene().state()));
+  log_ = std::make_unique<telemetry::FrameLog>(session_->scene().system_names());
   return {};
 }
 
@@ -109,7 +115,7 @@ bool Flight::stays_open() const {
 
 core::CameraPose Flight::next_pose(double dt_s) {
   const double now_s = session_->now_s();
-  const world::World& world = session_->scene().state().facts.world;
+  const world::World& world = session_->scene().world();
   if (options_.camera) {
     pose_ = options_.camera(*session_, dt_s);
   } else if (user_flies_) {
@@ -136,7 +142,7 @@ bool Flight::saves_picture() const {
 }
 
 core::Result<void> Flight::fly_frame(double dt_s) {
-  scene::State& state = session_->scene().state();
+  scene::Scene& scene = session_->scene();
   if (session_->window() != nullptr) write_over_picture();
   const double now_s = session_->now_s();
   const double start_s = core::monotonic_seconds();
@@ -146,7 +152,8 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   // waited.
   if (saves_picture()) session_->renderer().wait_idle();
   const double frame_ms = (core::monotonic_seconds() - start_s) * 1000.0;
-  telemetry::FrameRecord& record = state.record;
+  telemetry::FrameRecord& record = record_;
+  record = scene.record();
   const auto saved = session_->take_saved();  // by plugins
   files_.insert(files_.end(), saved.begin(), saved.end());
   if (!saved.empty() || saves_picture()) record.apart = telemetry::Apart::kPicture;
@@ -158,14 +165,14 @@ core::Result<void> Flight::fly_frame(double dt_s) {
     record.apart = telemetry::Apart::kGap;
   record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_start_s) * 1000.0;
   if (has_virtual_frames(options_.session)) {
-    record.frame_ms = state.input.frame_ms;
+    record.frame_ms = scene.input().frame_ms;
     forget_real_times(record);
   }
   if (recorded_ && !session_->paused()) log_frame();
   const bool like_others = record.apart == telemetry::Apart::kNo;
   if (like_others) usual_ms_ = record.frame_ms;
   if (like_others) hud_.add_frame(record.frame_ms);
-  if (!like_others) state.input.frame_ms = 0;  // an excluded frame must not affect the governor
+  if (!like_others) scene.input().frame_ms = 0;  // an excluded frame must not affect the governor
   return {};
 }
 
@@ -187,7 +194,7 @@ core::Result<void> Flight::loop() {
     if (hz <= 0) {
       const double passed_s = core::monotonic_seconds() - start_s;
       if (has_virtual_frames(options_.session)) {
-        dt_s = session_->scene().state().record.frame_ms * 1e-3;
+        dt_s = record_.frame_ms * 1e-3;
       } else if (!is_gap(passed_s * 1000, usual_ms_, 0)) {
         dt_s = passed_s;  // the flight does not jump over a gap
       }
@@ -232,18 +239,19 @@ core::Result<void> Flight::save_numbered_picture() {
 
 // Logs the last frame, and late results of earlier frames.
 void Flight::log_frame() {
-  const scene::State& state = session_->scene().state();
+  const scene::Scene& scene = session_->scene();
   if (has_virtual_frames(options_.session)) {
-    log_->add(state.record);
+    log_->add(record_);
   } else {
-    log_->add(state.record, state.system_ms);
+    log_->add(record_, scene.system_ms());
   }
-  if (const auto& gpu = state.counters.frame.gpu; gpu && !has_virtual_frames(options_.session))
+  if (const auto& gpu = scene.drawn().gpu; gpu && !has_virtual_frames(options_.session))
     log_->set_gpu_ms(gpu->frame, gpu->ms, gpu->shadows_ms);
-  for (const float ms : state.counters.time_to_visible_ms)
-    log_->add_time_to_visible(state.record.time_s, ms);
-  for (const auto& cost : state.counters.costs) {
-    log_->add_cost_error(state.record.time_s, cost.predicted_s, cost.actual_s);
+  const scene::Statistics statistics = scene.statistics();
+  for (const float ms : statistics.time_to_visible_ms)
+    log_->add_time_to_visible(record_.time_s, ms);
+  for (const auto& cost : statistics.costs) {
+    log_->add_cost_error(record_.time_s, cost.predicted_s, cost.actual_s);
   }
 }
 
@@ -258,7 +266,7 @@ FlightReport Flight::land(bool whole) {
         return {};
       });
   if (!written) failures_.push_back(written.error());
-  session_->scene().state().trace.log = nullptr;  // the flight is over
+  session_->scene().end_trace();  // the flight is over
   report.files = files_;
   report.failures = failures_;
   report.validation_messages = session_->renderer().validation_messages();
@@ -266,7 +274,7 @@ FlightReport Flight::land(bool whole) {
 }
 
 core::Result<FlightReport> Flight::run() {
-  const world::World& world = session_->scene().state().facts.world;
+  const world::World& world = session_->scene().world();
   pose_ = path_ ? path_->pose_at(0, world) : session_->home();
   const auto prepared =
       core::within_memory("preparing the first view", [this] { return session_->prepare(pose_); });

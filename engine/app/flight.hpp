@@ -77,7 +77,8 @@ class Flight {
   platform::FlyCamera fly_camera_;
   core::CameraPose pose_;
   std::uint64_t frames_ = 0;
-  double usual_ms_ = 0;  // of the last frame that is not excluded
+  telemetry::FrameRecord record_;  // of the last frame, completed
+  double usual_ms_ = 0;            // of the last frame that is not excluded
   bool recorded_ = false;
   bool user_flies_ = false;
   Hud hud_;

@@ -10,17 +10,25 @@
 #include "engine/app/keys.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/preset.hpp"
-#include "engine/scene/draws/views.hpp"
+#include "engine/render/types.hpp"
+#include "engine/scene/facts/world_facts.hpp"
+#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/frame/input.hpp"
+#include "engine/scene/settings.hpp"
+#include "engine/scene/view/debug_colours.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
+#include "engine/telemetry/frame_log.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::app {
 namespace {
 
 constexpr double kMiB = 1 << 20;
 
-double height_above_ground_m(const scene::State& state) {
-  const core::WorldPosition& at = state.camera.pose.position;
+double height_above_ground_m(const scene::Scene& scene) {
+  const core::WorldPosition& at = scene.camera().pose.position;
   return at.local.y -
-         models::ground_height_m(state.facts.world.terrain, at.block, at.local.x, at.local.z);
+         models::ground_height_m(scene.world().terrain, at.block, at.local.x, at.local.z);
 }
 
 std::vector<render::TextLine> help() {
@@ -57,16 +65,16 @@ void Hud::key_pressed() {
   }
 }
 
-std::vector<render::TextLine> Hud::figures(const scene::State& state, const HudFacts& facts) const {
+std::vector<render::TextLine> Hud::figures(const scene::Scene& scene, const HudFacts& facts) const {
   std::array<double, kFrames> sorted = frame_ms_;
   const std::size_t count = std::min(count_, kFrames);
   if (count == 0) return {};
   std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
   const double median_ms = sorted[count / 2], worst_ms = sorted[count - 1];
-  const telemetry::FrameRecord& record = state.record;
-  const std::optional<render::GpuTime>& gpu = state.counters.frame.gpu;
-  const core::WorldPosition& at = state.camera.pose.position;
-  const double speed_m_s = glm::length(state.camera.predictor.velocity_m_s());
+  const telemetry::FrameRecord& record = facts.record;
+  const std::optional<render::GpuTime>& gpu = facts.gpu;
+  const core::WorldPosition& at = scene.camera().pose.position;
+  const double speed_m_s = glm::length(scene.camera().predictor.velocity_m_s());
   return {
       {fmt::format("{:5.1f} fps   {:5.1f} ms median   {:5.1f} ms worst", 1000.0 / median_ms,
                    median_ms, worst_ms)},
@@ -76,34 +84,34 @@ std::vector<render::TextLine> Hud::figures(const scene::State& state, const HudF
                    record.error_pixels, 100 * record.resolution)},
       {fmt::format("speed {:.1f} m/s   keys fly at {:.3g} m/s", speed_m_s, facts.key_speed_m_s)},
       {fmt::format("block {}, {}   {:.0f} m high, {:.1f} m over ground", at.block.x, at.block.z,
-                   at.local.y, height_above_ground_m(state))},
+                   at.local.y, height_above_ground_m(scene))},
       {fmt::format("{} triangles   {} draws   {} nodes in view", record.triangles, record.draws,
                    record.nodes_in_view)},
       {fmt::format("cache {:.0f} of {:.0f} MiB   {} missing   {} coarse",
                    static_cast<double>(record.cache_bytes) / kMiB,
-                   static_cast<double>(state.meshes.stats().budget_bytes) / kMiB, record.holes,
+                   static_cast<double>(scene.meshes().stats().budget_bytes) / kMiB, record.holes,
                    record.coarse_nodes)},
       {fmt::format("{} requests   {} models made   modelers: {}", record.requests_queued,
-                   record.models_synthesised, state.settings.modelers)},
+                   record.models_synthesised, scene.settings().modelers)},
       {facts.device.name},
       {"F1 help"},
   };
 }
 
-std::vector<render::TextPanel> Hud::lasting_panels(const scene::State& state,
+std::vector<render::TextPanel> Hud::lasting_panels(const scene::Scene& scene,
                                                    const HudFacts& facts) const {
   std::vector<render::TextPanel> panels;
-  if (page_ == Page::kFigures) panels.push_back({render::Anchor::kTopLeft, figures(state, facts)});
+  if (page_ == Page::kFigures) panels.push_back({render::Anchor::kTopLeft, figures(scene, facts)});
   if (page_ == Page::kHelp) panels.push_back({render::Anchor::kTopLeft, help()});
   panels.push_back(
       {render::Anchor::kTopRight,
-       scene::legend_of(state.input.view, state.facts.levels.size(), facts.device.wireframe)});
+       scene::legend_of(scene.input().view, scene.facts().levels.size(), facts.device.wireframe)});
   return panels;
 }
 
-std::vector<render::TextPanel> Hud::panels(const scene::State& state, const HudFacts& facts,
+std::vector<render::TextPanel> Hud::panels(const scene::Scene& scene, const HudFacts& facts,
                                            double now_s) const {
-  std::vector<render::TextPanel> panels = lasting_panels(state, facts);
+  std::vector<render::TextPanel> panels = lasting_panels(scene, facts);
   render::TextPanel notices{render::Anchor::kBottom, {}};
   for (const Notice& notice : notices_) {
     if (!notice.text.empty() && now_s < notice.end_s) notices.lines.push_back({notice.text});

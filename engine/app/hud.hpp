@@ -4,12 +4,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/render/hud_drawing.hpp"
 #include "engine/render/types.hpp"
-#include "engine/scene/state.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/telemetry/frame_log.hpp"
 
 namespace psygen::app {
 
@@ -17,7 +19,9 @@ namespace psygen::app {
 struct HudFacts {
   render::DeviceInfo device;
   render::Preset preset = render::Preset::kLow;
-  double key_speed_m_s = 0;  // speed at which the keys move the camera
+  double key_speed_m_s = 0;            // speed at which the keys move the camera
+  telemetry::FrameRecord record;       // of the last frame
+  std::optional<render::GpuTime> gpu;  // of the latest frame whose GPU time is known
 };
 
 // Shows statistics at first.
@@ -38,10 +42,10 @@ class Hud {
   void key_pressed();
 
   // Text at `now_s` seconds. The statistics are those of the last tick.
-  std::vector<render::TextPanel> panels(const scene::State& state, const HudFacts& facts,
+  std::vector<render::TextPanel> panels(const scene::Scene& scene, const HudFacts& facts,
                                         double now_s) const;
   // Text without notices, for saved images.
-  std::vector<render::TextPanel> lasting_panels(const scene::State& state,
+  std::vector<render::TextPanel> lasting_panels(const scene::Scene& scene,
                                                 const HudFacts& facts) const;
 
  private:
@@ -50,7 +54,7 @@ class Hud {
     std::string text;
     double end_s = 0;  // +inf: until a key is pressed
   };
-  std::vector<render::TextLine> figures(const scene::State& state, const HudFacts& facts) const;
+  std::vector<render::TextLine> figures(const scene::Scene& scene, const HudFacts& facts) const;
 
   static constexpr std::size_t kFrames = 60;
   std::array<double, kFrames> frame_ms_{};

@@ -84,7 +84,7 @@ struct SessionOptions {
   std::optional<double> target_hz;
   bool prefill = true;  // fill the cache for the first pose before the first tick
   bool trace = false;   // record spans of systems and modelers (Session::trace())
-  scene::Settings scene;
+  scene::SceneSettings scene;
   // Remote modelers of other processes (docs/cluster.md). They serve only this session and outlive
   // it. Null: none.
   synthesis::RemoteModelers* remote = nullptr;

@@ -4,13 +4,17 @@
 #include "engine/amplify/block_synthesiser.hpp"
 #include "engine/app/flight.hpp"
 #include "engine/app/virtual_frame.hpp"
+#include "engine/models/registry.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 #include "engine/telemetry/process_command.hpp"
 #include "engine/telemetry/process_memory.hpp"
 #include "engine/telemetry/report.hpp"
 #include "engine/telemetry/trace_log.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::app {
 namespace {
@@ -61,8 +65,8 @@ telemetry::Figure floor_ratio(const telemetry::FrameLog& log, render::Renderer& 
   return last[kFloorFrames / 2] / *floor_ms;
 }
 
-telemetry::Count sample_hash(const scene::State& state, core::BlockCoord block) {
-  const auto hash = amplify::sample_world_hash(state.facts.world, state.facts.registry, block);
+telemetry::Count sample_hash(const scene::Scene& scene, core::BlockCoord block) {
+  const auto hash = amplify::sample_world_hash(scene.world(), scene.registry(), block);
   return hash ? telemetry::Count(*hash) : telemetry::Count::missing("a model there failed");
 }
 
@@ -71,17 +75,17 @@ telemetry::Count sample_hash(const scene::State& state, core::BlockCoord block) 
 // `whole`: the flight was completed. Otherwise draws no frames and synthesises no models for
 // measurements.
 telemetry::RunFacts Flight::run_facts(bool whole) {
-  scene::State& state = session_->scene().state();
+  scene::Scene& scene = session_->scene();
   const SessionOptions& session = session_->options();
   telemetry::RunFacts facts;
-  facts.world = world_facts(state.facts.world, state.facts.registry);
+  facts.world = world_facts(scene.world(), scene.registry());
   const render::DeviceInfo& device = session_->renderer().device();
   facts.device = {device.name, device.driver, device.api_version, device.timestamps};
   const core::Extent size = session_->renderer().size();
   facts.run.path = options_.path_file.stem().string();
   facts.run.paradigm = scene::to_string(session.scene.paradigm);
   facts.run.policy = synthesis::name_of(session.scene.policy);
-  facts.run.modelers = state.settings.modelers;
+  facts.run.modelers = scene.settings().modelers;
   facts.run.width = size.width;
   facts.run.height = size.height;
   facts.run.lod = session.scene.levels_of_detail;
@@ -95,7 +99,7 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   facts.run.command = telemetry::process_command();
   facts.run.preset = render::to_string(session_->renderer().preset());
   facts.run.view_distance_m = session.scene.view_distance_m;
-  const synthesis::CacheStats cache = state.meshes.stats();
+  const synthesis::CacheStats cache = scene.meshes().stats();
   facts.cache_budget_bytes = cache.budget_bytes;
   facts.cache_peak_bytes = cache.peak_bytes;
   facts.prefetch_hit_percent =
@@ -111,13 +115,13 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
     facts.floor_ratio = telemetry::Figure::missing("the clock is virtual");
   } else if (whole) {
     // Nothing else runs during the measurement.
-    const bool alone = state.meshes.wait([this] { return !session_->stopped(); });
+    const bool alone = scene.wait_for_modelers([this] { return !session_->stopped(); });
     facts.floor_ratio = alone ? floor_ratio(*log_, session_->renderer())
                               : telemetry::Figure::missing("the flight was stopped");
   }
   facts.peak_rss_bytes = telemetry::peak_rss_bytes();
   facts.world_hash = !options_.hash_world ? telemetry::Count::missing("switched off")
-                     : whole              ? sample_hash(state, session_->home().position.block)
+                     : whole              ? sample_hash(scene, session_->home().position.block)
                                           : telemetry::Count::missing("the flight failed");
   facts.path_hash =
       path_ ? telemetry::Count(path_->hash()) : telemetry::Count::missing("the run had no path");

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ecs/ecs.hpp"
 #include "engine/app/gui.hpp"
 #include "engine/app/loading.hpp"
 #include "engine/app/plugin_call.hpp"
 #include "engine/app/virtual_frame.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
@@ -18,9 +20,18 @@
 #include "engine/platform/window.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/render/types.hpp"
+#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/frame/clock.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
+#include "engine/scene/systems.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
+#include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/trace_log.hpp"
 #include "engine/world/files/world_file.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::app {
 namespace {
@@ -123,7 +134,7 @@ std::function<core::Result<scene::PreparedWorld>()> Session::prepare_world(std::
 }
 
 core::Result<void> Session::show_world(scene::PreparedWorld prepared) {
-  if (prepared.facts.world.palette.images != scene_->state().facts.world.palette.images) {
+  if (prepared.facts.world.palette.images != scene_->world().palette.images) {
     return core::fail(core::ErrorCode::kInvalidArgument,
                       "changed ground textures take effect when the world is reopened");
   }
@@ -189,17 +200,17 @@ core::Result<void> Session::open_scene(world::World world, models::Registry regi
   if (loading.closed()) return closed_early();
   scene_ = std::move(*scene);
   if (auto ok = add_systems(); !ok) return ok;
-  scene_->state().input.size = picture_size();  // affects LODs
+  scene_->input().size = picture_size();  // affects LODs
   if (const synthesis::CalibrationReport& costs = scene_->calibration(); costs.measurements > 0) {
     core::log_info(fmt::format("cost model calibrated in {:.2f} s, median error {:.0f} %",
                                costs.seconds, costs.fit_error_percent_p50));
   }
-  scene_->state().input.view = options_.view;
+  scene_->input().view = options_.view;
   return {};
 }
 
 core::CameraPose Session::home() const {
-  const world::World& world = scene_->state().facts.world;
+  const world::World& world = scene_->world();
   core::CameraPose pose;
   pose.position.block = {static_cast<std::int32_t>(world.blocks_x / 2),
                          static_cast<std::int32_t>(world.blocks_z / 2)};
@@ -215,13 +226,13 @@ core::CameraPose Session::home() const {
 core::Result<void> Session::prepare(const core::CameraPose& first) {
   if (!core::is_valid(first))
     return core::fail(core::ErrorCode::kInvalidArgument, "the first pose is not finite");
-  Loading loading(scene_->state().facts.world.name, window_.get(), options_.stop);
+  Loading loading(scene_->world().name, window_.get(), options_.stop);
   const auto progress = [&](std::string_view label, double fraction) {
     return loading.update(label, fraction, renderer_.get());
   };
   const double start_s = core::monotonic_seconds();
   std::uint64_t meshes = 0;
-  scene_->state().input.size = picture_size();  // a window may have changed its size
+  scene_->input().size = picture_size();  // a window may have changed its size
   if (options_.scene.paradigm == scene::Paradigm::kDataAmplification) {
     auto amplified = scene_->amplify(first, progress);
     if (!amplified) return tl::unexpected(amplified.error());
@@ -246,15 +257,15 @@ core::Extent Session::picture_size() const {
 }
 
 double Session::now_s() const {
-  return scene_->state().clock.now_s;
+  return scene_->clock().now_s;
 }
 
 void Session::set_now(double now_s) {
-  if (std::isfinite(now_s)) scene_->state().clock.now_s = now_s;
+  if (std::isfinite(now_s)) scene_->set_now(now_s);
 }
 
 bool Session::has_hung_modelers() const {
-  return !scene_->state().meshes.hung().empty();
+  return !scene_->meshes().hung().empty();
 }
 
 bool Session::poll() {
@@ -335,7 +346,7 @@ core::Result<void> Session::start() {
 }
 
 render::HudDrawing& Session::hud() {
-  return scene_->state().input.hud;
+  return scene_->input().hud;
 }
 
 Gui& Session::gui() {
@@ -353,7 +364,7 @@ core::Result<void> Session::draw_gui(double dt_s) {
     if (drawn && plugin.on_gui)
       drawn = call_plugin(plugin, "on_gui", [&] { plugin.on_gui(*this); });
   }
-  scene_->state().input.gui = gui_->end();
+  scene_->input().gui = gui_->end();
   return drawn;
 }
 
@@ -361,11 +372,11 @@ core::Result<void> Session::draw_gui(double dt_s) {
 // display does not count. A software device's time is that of this machine. Images captured by
 // plugins do not count.
 void Session::tell_governor(double tick_ms, bool took_pictures) {
-  scene::State& state = scene_->state();
-  const render::FrameResult& drawn = state.counters.frame;
+  scene::Scene& scene = *scene_;
+  const render::FrameResult& drawn = scene.drawn();
   if (has_virtual_frames(options_)) {
-    tick_ms = virtual_frame_ms(state.record.triangles, state.record.draws, state.input.size,
-                               state.record.resolution);
+    tick_ms = virtual_frame_ms(scene.record().triangles, scene.record().draws, scene.input().size,
+                               scene.record().resolution);
   } else if (took_pictures) {
     tick_ms = 0;  // unknown
   } else if (renderer_->device().software) {
@@ -373,9 +384,9 @@ void Session::tell_governor(double tick_ms, bool took_pictures) {
   } else {
     tick_ms = std::max(tick_ms - drawn.wait_ms(), drawn.gpu ? drawn.gpu->ms : 0.0);
   }
-  state.input.frame_ms = tick_ms;
+  scene.input().frame_ms = tick_ms;
   // A hardware GPU reports the time of an earlier frame.
-  state.input.frame_triangles = static_cast<double>(drawn.triangles);
+  scene.input().frame_triangles = static_cast<double>(drawn.triangles);
 }
 
 core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
@@ -386,15 +397,15 @@ core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
                       fmt::format("{} is not a valid frame time in seconds", dt_s));
   }
   if (auto ok = start(); !ok) return ok;
-  scene::State& state = scene_->state();
-  state.input.pose = pose;
-  state.input.size = picture_size();
+  scene::Scene& scene = *scene_;
+  scene.input().pose = pose;
+  scene.input().size = picture_size();
   if (auto ok = draw_gui(dt_s); !ok) return ok;
   if (paused_) dt_s = 0;
-  scene::tick(state);
-  state.input.gui = nullptr;
-  state.clock.now_s += dt_s;
-  if (state.output.error) return tl::unexpected(*state.output.error);
+  const auto ticked = scene.tick();
+  scene.input().gui = nullptr;
+  scene.set_now(scene.clock().now_s + dt_s);
+  if (!ticked) return ticked;
   for (const Plugin& plugin : options_.plugins) {
     if (!plugin.on_frame) continue;
     if (auto ok = call_plugin(plugin, "on_frame", [&] { plugin.on_frame(*this, dt_s); }); !ok)
@@ -414,10 +425,7 @@ core::Result<void> Session::write_picture(const std::filesystem::path& file,
                                           const image::Image& image) {
   const double start_s = core::monotonic_seconds();
   auto written = image::write_png(file, image);
-  if (trace_) {
-    trace_->add_span(scene_->state().trace.main, trace_->intern("write an image"), start_s,
-                     core::monotonic_seconds());
-  }
+  scene_->trace_span("write an image", start_s, core::monotonic_seconds());
   return written;
 }
 
@@ -438,7 +446,7 @@ core::Result<void> Session::set_preset(render::Preset preset) {
     window_->keep_alive();
     return !window_->should_close() && !stopped();
   });
-  if (changed) scene_->take_over_preset();
+  if (changed) scene_->on_preset_changed();
   return changed;
 }
 

@@ -16,6 +16,7 @@
 #include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
 #include "engine/telemetry/output_file.hpp"
 
 namespace psygen::cli {
@@ -69,7 +70,7 @@ void FlyCommand::add_flight_options() {
 
 void FlyCommand::add_synthesis_options() {
   CLI::App& c = *command_;
-  scene::Settings& scene = options_.session.scene;
+  scene::SceneSettings& scene = options_.session.scene;
   c.add_option_function<std::string>(
        "--paradigm",
        [&scene](const std::string& text) { scene.paradigm = *scene::paradigm_from(text); },
@@ -97,7 +98,7 @@ void FlyCommand::add_synthesis_options() {
 
 void FlyCommand::add_picture_options() {
   CLI::App& c = *command_;
-  scene::Settings& scene = options_.session.scene;
+  scene::SceneSettings& scene = options_.session.scene;
   c.add_option_function<double>(
        "--target-fps", [this](double hz) { options_.session.target_hz = hz; },
        "Hold this frame rate by a lower resolution, then by a larger error (up to 4 times); 0: "
@@ -177,7 +178,7 @@ int FlyCommand::run_here() {
     if (auto ok = telemetry::create_output_folder(folder.empty() ? "." : folder); !ok)
       return code_of(ok.error());
     reporter.on_frame = [this](app::Session& session, double) {
-      if (flight_->is_recorded()) recorder_.observe(session.scene().state());
+      if (flight_->is_recorded()) recorder_.observe(session.scene());
     };
   }
   // Runs at the end of the flight, not only when its window closes.

@@ -13,12 +13,17 @@
 #include "engine/cli/places.hpp"
 #include "engine/cli/scene_options.hpp"
 #include "engine/cli/text_values.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/log.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/scene/frame/quality.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/world/camera_path.hpp"
 #include "engine/world/world.hpp"
@@ -38,17 +43,17 @@ core::Result<std::string> png_name(const std::string& file) {
 
 // An incomplete image would depend on the order of requests: coarser levels replace meshes without
 // memory.
-core::Result<void> check_complete(const scene::State& state) {
-  if (state.quality.coarsening > 1 || state.counters.refused > 0) {
+core::Result<void> check_complete(const scene::Scene& scene) {
+  if (scene.quality().coarsening > 1 || scene.statistics().refused > 0) {
     constexpr double kMiB = 1 << 20;
     return core::fail(
         core::ErrorCode::kOverBudget,
         fmt::format("the budget of {:.0f} MiB is too small for this image with an error of {:g} "
                     "pixels; raise --budget or --error",
-                    static_cast<double>(state.meshes.stats().budget_bytes) / kMiB,
-                    state.settings.max_error_pixels));
+                    static_cast<double>(scene.meshes().stats().budget_bytes) / kMiB,
+                    scene.settings().max_error_pixels));
   }
-  if (state.totals.failed > 0 || state.counters.holes > 0)
+  if (scene.statistics().failed_in_all > 0 || scene.statistics().holes > 0)
     return core::fail(core::ErrorCode::kSynthesisFailed,
                       "some visible meshes could not be synthesised");
   return {};
@@ -106,7 +111,7 @@ int PictureCommand::run() {
 }
 
 core::Result<void> PictureCommand::take(app::Session& session) const {
-  const world::World& world = session.scene().state().facts.world;
+  const world::World& world = session.scene().world();
   core::CameraPose pose = session.home();
   if (at_) {
     const auto at = position_at(world, *at_);
@@ -119,7 +124,7 @@ core::Result<void> PictureCommand::take(app::Session& session) const {
   if (auto ok = session.prepare(pose); !ok) return ok;
   if (options_.stop->load()) return core::fail(core::ErrorCode::kInterrupted, "interrupted");
   if (auto ok = session.tick(pose, 0); !ok) return ok;
-  if (auto ok = check_complete(session.scene().state()); !ok) return ok;
+  if (auto ok = check_complete(session.scene()); !ok) return ok;
   if (auto ok = session.save_picture(out_); !ok) return ok;
   const auto messages = session.renderer().validation_messages();
   if (messages.empty()) return {};

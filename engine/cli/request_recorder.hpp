@@ -4,7 +4,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "engine/scene/state.hpp"
+#include "engine/scene/scene.hpp"
 #include "engine/synthesis/request_stream.hpp"
 
 namespace psygen::cli {
@@ -13,7 +13,7 @@ namespace psygen::cli {
 class RequestRecorder {
  public:
   // Call after each tick: records its wanted meshes. Times are those of the flight.
-  void observe(const scene::State& state);
+  void observe(const scene::Scene& scene);
   const std::vector<synthesis::SimulatedJob>& jobs() const { return jobs_; }
 
  private:

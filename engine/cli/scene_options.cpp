@@ -5,6 +5,7 @@
 #include "engine/cli/text_values.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -28,7 +29,7 @@ void add_picture(CLI::App& c, app::SessionOptions& options) {
       ->default_str("normal");
 }
 
-void add_detail(CLI::App& c, scene::Settings& scene) {
+void add_detail(CLI::App& c, scene::SceneSettings& scene) {
   c.add_option_function<std::string>(
        "--lod", [&scene](const std::string& text) { scene.levels_of_detail = text == "on"; },
        "Levels of detail: on, or off for full detail everywhere")

@@ -4,12 +4,16 @@
 
 #include <optional>
 
+#include "engine/core/camera.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/frametest/escaped.hpp"
 #include "engine/frametest/start_flight.hpp"
 #include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
+#include "engine/scene/frame/input.hpp"
+#include "engine/scene/frame/quality.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
 #include "engine/telemetry/page_style.hpp"
 
 namespace psygen::frametest {
@@ -39,7 +43,7 @@ app::Plugin photographer(const WorstFrame& frame, bool numbered, Seen& seen) {
     const double end_s = session.now_s();  // end of the frame
     const bool is_it = numbered ? count++ == frame.index : end_s > frame.time_s;
     if (!is_it || seen.picture) return;
-    seen.pose = session.scene().state().input.pose;
+    seen.pose = session.scene().input().pose;
     seen.time_s = end_s - dt_s;
     seen.picture = session.picture();
   };
@@ -49,11 +53,10 @@ app::Plugin photographer(const WorstFrame& frame, bool numbered, Seen& seen) {
 // Renders the same position and time with all meshes ready that fit into the budget.
 core::Result<image::Image> expected_picture(app::Session& session, const Seen& seen) {
   constexpr int kTicks = 2;  // in the first tick, meshes of the last frame may still cross-fade
-  scene::State& state = session.scene().state();
+  scene::Scene& scene = session.scene();
   session.set_now(seen.time_s);
   session.set_paused(true);
-  state.settings.fade_seconds = 0;
-  state.quality.governor = scene::Governor();  // uses the error that the test requests
+  scene.stop_adapting();  // uses the error that the test requests
   session.scene().settle(seen.pose);
   for (int i = 0; i < kTicks; ++i)
     if (auto ok = session.tick(seen.pose, 0); !ok) return tl::unexpected(ok.error());

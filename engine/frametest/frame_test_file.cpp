@@ -58,7 +58,7 @@ core::Result<synthesis::Policy> policy_from(const std::string& text) {
   return core::fail(core::ErrorCode::kParse, "it must be fifo, plp, shortest, longest or deadline");
 }
 
-void read_scene(TableReader& reader, scene::Settings& scene) {
+void read_scene(TableReader& reader, scene::SceneSettings& scene) {
   read_word(reader, "clock", virtual_clock_from, scene.virtual_time);
   read_word(reader, "paradigm", scene::paradigm_from, scene.paradigm);
   read_word(reader, "policy", policy_from, scene.policy);

@@ -4,11 +4,14 @@
 
 #include <memory>
 
+#include "ecs/ecs.hpp"
 #include "engine/app/session.hpp"
 #include "engine/core/log.hpp"
 #include "engine/inspect/line_server.hpp"
 #include "engine/inspect/visit.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/systems.hpp"
 
 namespace psygen::inspect {
 namespace {
@@ -29,7 +32,7 @@ struct Desk {
       if (!server->accept()) return;
       visit.begin();
     }
-    visit.note_frame(session.scene().state());
+    visit.note_frame(session.scene());
     server->receive();
     if (const auto late = visit.late_answer(session)) server->send(*late);
     for (int i = 0; i < kMaxRequestsAFrame && !visit.over() && !visit.is_busy(); ++i) {

@@ -4,12 +4,25 @@
 #include <cmath>
 #include <map>
 
+#include "ecs/ecs.hpp"
 #include "engine/app/session.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/handmade/files.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/render/types.hpp"
+#include "engine/scene/components.hpp"
+#include "engine/scene/facts/world_facts.hpp"
+#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/frame/quality.hpp"
+#include "engine/scene/objects/components.hpp"
+#include "engine/scene/objects/effects.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 #include "engine/world/files/text_file.hpp"
 #include "engine/world/files/world_file.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::inspect {
 namespace {
@@ -19,22 +32,21 @@ constexpr std::size_t kMaxNodes = 20'000;
 // Flags of a node, as listed in docs/inspect.md.
 enum NodeFlag : unsigned { kInView = 1, kDrawn = 2, kStale = 4, kRequested = 8, kFailed = 16 };
 
-std::string name_of(const scene::State& state, models::ModelIndex model) {
-  return model < state.facts.registry.size() ? std::string(state.facts.registry[model].name())
-                                             : "?";
+std::string name_of(const scene::Scene& scene, models::ModelIndex model) {
+  return model < scene.registry().size() ? std::string(scene.registry()[model].name()) : "?";
 }
 
 // [x, z, level, flags, drawn level or −1, layer, missing meshes or −1, deadline or null, µs]
-Json node_json(const scene::State& state, const scene::Node& node, const scene::Visibility& seen,
-               const scene::Lacking& lacking, const scene::Source& source,
-               const scene::Demand& demand) {
+Json node_json(const scene::Scene& scene, const scene::QuadtreeNode& node,
+               const scene::Visibility& seen, const scene::MissingMeshes& lacking,
+               const scene::MeshSource& source, const scene::MeshDemand& demand) {
   const bool drawn = demand.drawn_level != scene::kNoLevel;
   const bool requested = demand.requested_level != scene::kNoLevel;
   const unsigned flags = (seen.in_view != 0 ? kInView : 0U) | (drawn ? kDrawn : 0U) |
                          (demand.stale ? kStale : 0U) | (requested ? kRequested : 0U) |
                          (demand.failed_levels != 0 ? kFailed : 0U);
   const double cost_us =
-      1e6 * state.meshes.costs().predict(source.model, source.parameters, source.first_level);
+      1e6 * scene.meshes().costs().predict(source.model, source.parameters, source.first_level);
   const std::int64_t lacks =
       lacking.meshes == UINT32_MAX ? -1 : static_cast<std::int64_t>(lacking.meshes);
   return Json::array({node.at.coord.x, node.at.coord.z, node.at.level, flags,
@@ -42,17 +54,20 @@ Json node_json(const scene::State& state, const scene::Node& node, const scene::
                       double{seen.deadline_s}, std::round(cost_us)});
 }
 
-Json node_list(const scene::State& state) {
+Json node_list(const scene::Scene& scene) {
   std::vector<std::pair<std::uint8_t, Json>> nodes;
-  state.entities.each<const scene::Node, const scene::Visibility, const scene::Lacking,
-                      const scene::Source, const scene::Demand>(
-      [&](std::span<const ecs::Entity>, std::span<const scene::Node> at,
-          std::span<const scene::Visibility> seen, std::span<const scene::Lacking> lacking,
-          std::span<const scene::Source> sources, std::span<const scene::Demand> demands) {
-        for (std::size_t i = 0; i < at.size() && nodes.size() < kMaxNodes; ++i)
-          nodes.emplace_back(at[i].at.level,
-                             node_json(state, at[i], seen[i], lacking[i], sources[i], demands[i]));
-      });
+  scene.entities()
+      .each<const scene::QuadtreeNode, const scene::Visibility, const scene::MissingMeshes,
+            const scene::MeshSource, const scene::MeshDemand>(
+          [&](std::span<const ecs::Entity>, std::span<const scene::QuadtreeNode> at,
+              std::span<const scene::Visibility> seen,
+              std::span<const scene::MissingMeshes> lacking,
+              std::span<const scene::MeshSource> sources,
+              std::span<const scene::MeshDemand> demands) {
+            for (std::size_t i = 0; i < at.size() && nodes.size() < kMaxNodes; ++i)
+              nodes.emplace_back(at[i].at.level, node_json(scene, at[i], seen[i], lacking[i],
+                                                           sources[i], demands[i]));
+          });
   std::ranges::stable_sort(nodes, std::greater{}, [](const auto& node) { return node.first; });
   Json list = Json::array();
   for (auto& [level, node] : nodes)
@@ -64,13 +79,13 @@ struct KindCount {
   std::uint64_t entities = 0, drawn = 0;
 };
 
-Json kind_counts(const scene::State& state) {
+Json kind_counts(const scene::Scene& scene) {
   std::map<std::string, KindCount> kinds;
-  state.entities.each<const scene::Source, const scene::Demand>(
-      [&](std::span<const ecs::Entity>, std::span<const scene::Source> sources,
-          std::span<const scene::Demand> demands) {
+  scene.entities().each<const scene::MeshSource, const scene::MeshDemand>(
+      [&](std::span<const ecs::Entity>, std::span<const scene::MeshSource> sources,
+          std::span<const scene::MeshDemand> demands) {
         for (std::size_t i = 0; i < sources.size(); ++i) {
-          KindCount& kind = kinds[name_of(state, sources[i].model)];
+          KindCount& kind = kinds[name_of(scene, sources[i].model)];
           ++kind.entities;
           kind.drawn += demands[i].drawn_level != scene::kNoLevel ? 1 : 0;
         }
@@ -78,17 +93,18 @@ Json kind_counts(const scene::State& state) {
   const auto add = [&](const char* name, std::uint64_t count, std::uint64_t drawn) {
     if (count > 0) kinds[name] = {count, drawn};
   };
-  add("objects", state.entities.count<scene::Object>(), state.counters.objects_drawn);
-  add("lights", state.entities.count<scene::PointLight>(), state.counters.lights_lit);
-  add("emitters", state.entities.count<scene::ParticleEmitter>(), state.counters.emitters_drawn);
+  add("objects", scene.entities().count<scene::Object>(), scene.statistics().objects_drawn);
+  add("lights", scene.entities().count<scene::PointLight>(), scene.statistics().lights_lit);
+  add("emitters", scene.entities().count<scene::ParticleEmitter>(),
+      scene.statistics().emitters_drawn);
   Json list = Json::object();
   for (const auto& [name, kind] : kinds)
     list[name] = {{"entities", kind.entities}, {"drawn", kind.drawn}};
   return list;
 }
 
-Json cache_json(const scene::State& state) {
-  const synthesis::CacheStats stats = state.meshes.stats();
+Json cache_json(const scene::Scene& scene) {
+  const synthesis::CacheStats stats = scene.meshes().stats();
   return {{"bytes", stats.bytes},
           {"budget_bytes", stats.budget_bytes},
           {"visible_bytes", stats.visible_bytes},
@@ -108,10 +124,10 @@ Json access_json(const ecs::SystemInfo& info, bool writes) {
 
 }  // namespace
 
-void FrameNotes::note(const scene::State& state) {
+void FrameNotes::note(const scene::Scene& scene) {
   const double now_s = core::monotonic_seconds();
   ++frames;
-  synthesis_s += state.counters.synthesis_seconds;
+  synthesis_s += scene.statistics().synthesis_seconds;
   if (last_frame_s > 0) {
     const double ms = (now_s - last_frame_s) * 1e3;
     ++figures;
@@ -121,23 +137,23 @@ void FrameNotes::note(const scene::State& state) {
     figures_since_s = now_s;
   }
   last_frame_s = now_s;
-  if (system_sum_ms.size() != state.system_ms.size()) {
-    system_sum_ms.assign(state.system_ms.size(), 0);
-    system_longest_ms.assign(state.system_ms.size(), 0);
+  if (system_sum_ms.size() != scene.system_ms().size()) {
+    system_sum_ms.assign(scene.system_ms().size(), 0);
+    system_longest_ms.assign(scene.system_ms().size(), 0);
     timed = 0;
   }
   ++timed;
   for (std::size_t i = 0; i < system_sum_ms.size(); ++i) {
-    system_sum_ms[i] += double{state.system_ms[i]};
-    system_longest_ms[i] = std::max(system_longest_ms[i], double{state.system_ms[i]});
+    system_sum_ms[i] += double{scene.system_ms()[i]};
+    system_longest_ms[i] = std::max(system_longest_ms[i], double{scene.system_ms()[i]});
   }
 }
 
 Json figures(const app::Session& session, FrameNotes& notes) {
-  const scene::State& state = session.scene().state();
-  const scene::Counters& counters = state.counters;
+  const scene::Scene& scene = session.scene();
+  const scene::Statistics statistics = scene.statistics();
   const double now_s = core::monotonic_seconds();
-  const double modelers = std::max(1.0, static_cast<double>(state.settings.modelers));
+  const double modelers = std::max(1.0, static_cast<double>(scene.settings().modelers));
   const double passed_s = std::max(now_s - notes.figures_since_s, 1e-3);
   Json json = {
       {"frames", notes.frames},
@@ -145,29 +161,29 @@ Json figures(const app::Session& session, FrameNotes& notes) {
       {"paused", session.paused()},
       {"frame_ms", notes.figures > 0 ? notes.sum_ms / static_cast<double>(notes.figures) : 0.0},
       {"longest_ms", notes.longest_ms},
-      {"triangles", counters.frame.triangles},
-      {"draws", counters.frame.draws},
-      {"nodes_in_view", counters.nodes_in_view},
-      {"holes", counters.holes},
-      {"coarse_nodes", counters.coarse},
-      {"missing_pixels_percent", counters.missing_pixels_percent},
-      {"error_pixels", state.quality.error_pixels},
-      {"resolution", state.quality.resolution},
-      {"queued", counters.requests},
-      {"outstanding", state.meshes.outstanding()},
+      {"triangles", scene.drawn().triangles},
+      {"draws", scene.drawn().draws},
+      {"nodes_in_view", statistics.nodes_in_view},
+      {"holes", statistics.holes},
+      {"coarse_nodes", statistics.coarse},
+      {"missing_pixels_percent", statistics.missing_pixels_percent},
+      {"error_pixels", scene.quality().error_pixels},
+      {"resolution", scene.quality().resolution},
+      {"queued", statistics.requests},
+      {"outstanding", scene.meshes().outstanding()},
       {"modelers", modelers},
       {"busy_percent", std::min(100.0, 100 * notes.synthesis_s / (passed_s * modelers))},
-      {"cache", cache_json(state)},
-      {"camera", pose_json(state.camera.pose)}};
+      {"cache", cache_json(scene)},
+      {"camera", pose_json(scene.camera().pose)}};
   notes.figures = 0;
   notes.sum_ms = notes.longest_ms = notes.synthesis_s = 0;
   notes.figures_since_s = now_s;
   return json;
 }
 
-Json systems(const scene::State& state, FrameNotes& notes) {
-  const std::vector<std::string> names = scene::system_names(state);
-  const std::span<const ecs::SystemInfo> tick = state.tick.systems();
+Json systems(const scene::Scene& scene, FrameNotes& notes) {
+  const std::vector<std::string> names = scene.system_names();
+  const std::span<const ecs::SystemInfo> tick = scene.frame_systems();
   Json list = Json::array();
   const double frames = std::max(1.0, static_cast<double>(notes.timed));
   for (std::size_t i = 0; i < std::min(names.size(), notes.system_sum_ms.size()); ++i) {
@@ -186,15 +202,15 @@ Json systems(const scene::State& state, FrameNotes& notes) {
   return {{"systems", std::move(list)}};
 }
 
-Json entities(const scene::State& state) {
-  const core::Projection& lens = state.camera.projection;
-  return {{"entities", state.entities.size()},
-          {"kinds", kind_counts(state)},
-          {"block_m", state.facts.world.block_size_m()},
-          {"camera", pose_json(state.camera.pose)},
+Json entities(const scene::Scene& scene) {
+  const core::Projection& lens = scene.camera().projection;
+  return {{"entities", scene.entities().size()},
+          {"kinds", kind_counts(scene)},
+          {"block_m", scene.world().block_size_m()},
+          {"camera", pose_json(scene.camera().pose)},
           {"horizontal_fov",
            2 * std::atan(std::tan(double{lens.vertical_fov} / 2) * double{lens.aspect})},
-          {"nodes", node_list(state)}};
+          {"nodes", node_list(scene)}};
 }
 
 Json pose_json(const core::CameraPose& pose) {
@@ -234,7 +250,7 @@ core::Result<core::CameraPose> pose_from(const Json& json, double block_m) {
 }
 
 std::string world_text(const app::Session& session) {
-  const scene::WorldFacts& facts = session.scene().state().facts;
+  const scene::WorldFacts& facts = session.scene().facts();
   std::string written = world::write_world(facts.world, facts.registry);
   const app::SessionOptions& options = session.options();
   std::string text;

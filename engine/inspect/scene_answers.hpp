@@ -8,7 +8,7 @@
 
 #include "engine/core/camera.hpp"
 #include "engine/core/error.hpp"
-#include "engine/scene/state.hpp"
+#include "engine/scene/scene.hpp"
 
 namespace psygen::app {
 class Session;
@@ -28,13 +28,13 @@ struct FrameNotes {
   std::uint64_t timed = 0;  // for systems()
   std::vector<double> system_sum_ms, system_longest_ms;
 
-  void note(const scene::State& state);
+  void note(const scene::Scene& scene);
 };
 
 Json figures(const app::Session& session, FrameNotes& notes);
-Json systems(const scene::State& state, FrameNotes& notes);
+Json systems(const scene::Scene& scene, FrameNotes& notes);
 // Counts of entities by archetype, and the nodes for a map, coarse ones first.
-Json entities(const scene::State& state);
+Json entities(const scene::Scene& scene);
 
 Json pose_json(const core::CameraPose& pose);
 core::Result<core::CameraPose> pose_from(const Json& json, double block_m);

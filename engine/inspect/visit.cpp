@@ -8,8 +8,11 @@
 #include "engine/inspect/inspect.hpp"
 #include "engine/inspect/json_screen.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
 #include "engine/world/files/world_file.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::inspect {
 namespace {
@@ -33,7 +36,7 @@ std::string reply_line(const Json& id, const Json& found) {
 }
 
 std::string written_world(const app::Session& session) {
-  const scene::WorldFacts& facts = session.scene().state().facts;
+  const scene::WorldFacts& facts = session.scene().facts();
   return world::write_world(facts.world, facts.registry);
 }
 
@@ -61,10 +64,10 @@ Visit::Reply Visit::reply(app::Session& session, const Json& request) {
   const auto& what = found->get_ref<const std::string&>();
   if (what == "hello") return hello(session, request);
   if (!greeted_) return refuse("the first request must be hello");
-  const scene::State& state = session.scene().state();
+  const scene::Scene& scene = session.scene();
   if (what == "figures") return figures(session, frames_);
-  if (what == "systems") return systems(state, frames_);
-  if (what == "entities") return entities(state);
+  if (what == "systems") return systems(scene, frames_);
+  if (what == "entities") return entities(scene);
   if (what == "parameters") return Json{{"text", world_text(session)}};
   if (what == "pause") return pause(session, request);
   if (what == "pose") return place(session, request);
@@ -80,15 +83,15 @@ Visit::Reply Visit::hello(app::Session& session, const Json& request) {
     return refuse(
         fmt::format("hello needs \"protocol\": \"{}\", the only supported one", kProtocol));
   greeted_ = true;
-  const scene::State& state = session.scene().state();
+  const scene::Scene& scene = session.scene();
   return Json{{"protocol", kProtocol},
               {"pid", ::getpid()},
-              {"world", state.facts.world.name},
+              {"world", scene.world().name},
               {"file", session.options().world_file.string()},
               {"device", session.renderer().device().name},
-              {"block_m", state.facts.world.block_size_m()},
+              {"block_m", scene.world().block_size_m()},
               {"headless", session.options().headless},
-              {"virtual_clock", state.settings.virtual_time}};
+              {"virtual_clock", scene.settings().virtual_time}};
 }
 
 core::Result<void> Visit::set_world(app::Session& session, const Json& request) {
@@ -126,7 +129,7 @@ Visit::Reply Visit::place(app::Session& session, const Json& request) {
     pose_.reset();
     return Json::object();
   }
-  auto pose = pose_from(*wanted, session.scene().state().facts.world.block_size_m());
+  auto pose = pose_from(*wanted, session.scene().world().block_size_m());
   if (!pose) return tl::unexpected(pose.error());
   pose_ = *pose;
   return Json::object();

@@ -26,7 +26,7 @@ class Visit {
   // this once a frame until it returns true.
   bool end(app::Session& session);
   // Gathers the statistics of a frame for replies. Call after every tick.
-  void note_frame(const scene::State& state) { frames_.note(state); }
+  void note_frame(const scene::Scene& scene) { frames_.note(scene); }
 
   // Returns the reply to a request, one line of JSON without its end. Every text gets a reply.
   // Returns nullopt if the reply comes later; no other request may be made until then.

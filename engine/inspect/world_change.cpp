@@ -6,6 +6,7 @@
 
 #include "engine/app/session.hpp"
 #include "engine/core/start_thread.hpp"
+#include "engine/scene/settings.hpp"
 
 namespace psygen::inspect {
 
@@ -22,7 +23,7 @@ void WorldChange::start(app::Session& session, std::string text) {
   auto thread = core::start_thread([task] { (*task)(); });
   if (!thread) return (*task)();
   thread->detach();
-  if (session.scene().state().settings.virtual_time) wait();
+  if (session.scene().settings().virtual_time) wait();
 }
 
 bool WorldChange::is_ready() const {

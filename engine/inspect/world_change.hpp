@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/core/error.hpp"
+#include "engine/scene/facts/prepared_world.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace psygen::app {

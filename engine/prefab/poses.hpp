@@ -2,8 +2,11 @@
 // first. Private to engine/prefab.
 #pragma once
 
+#include "ecs/ecs.hpp"
 #include "engine/prefab/prefab.hpp"
-#include "engine/scene/state.hpp"
+#include "engine/scene/frame/clock.hpp"
+#include "engine/scene/objects/components.hpp"
+#include "engine/scene/scene.hpp"
 
 namespace psygen::prefab {
 

@@ -12,9 +12,11 @@
 
 #include "ecs/ecs.hpp"
 #include "engine/gltf/model.hpp"
+#include "engine/scene/frame/clock.hpp"
 #include "engine/scene/objects/assets.hpp"
+#include "engine/scene/objects/components.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/scene/simulation.hpp"
+#include "engine/scene/systems.hpp"
 
 namespace psygen::prefab {
 

@@ -1,19 +1,18 @@
-// What happens to nodes, models and meshes, as events that systems of a game drain
-// (ecs/event_queue.hpp): a system takes ecs::EventReader<ModelCreated>& and sees each event once.
-// Queues without readers cost nothing. Entities may be dead by the time that an event is read.
-// Plain values.
+// Events of nodes, models and meshes. A system of a game takes ecs::EventReader<ModelCreated>& and
+// sees each event once (ecs/event_queue.hpp). Queues without readers cost nothing. Entities may be
+// dead when an event is read. Plain values.
 #pragma once
 
 #include "ecs/ecs.hpp"
 #include "engine/core/coordinates.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/scene/readiness.hpp"
+#include "engine/scene/places.hpp"
 #include "engine/synthesis/mesh_key.hpp"
 #include "engine/visibility/quadtree.hpp"
 
 namespace psygen::scene {
 
-// A node is drawn in this frame and was not in the one before, or the other way round. A node is a
+// A node is drawn in this frame but was not drawn in the frame before, or the reverse. A node is a
 // block (level 0) or a square of 2^level × 2^level blocks.
 struct NodeShown {
   ecs::Entity node;
@@ -24,8 +23,9 @@ struct NodeHidden {
   visibility::NodeCoord at;
 };
 
-// The entity of a model on a block, near enough to be drawn alone, was created; or is destroyed in
-// this tick, because the camera went away or an edit removed it.
+// The entity of a model on a block was created, because the model is near enough to be drawn
+// individually; or it is destroyed in this tick, because the camera moved away or an edit removed
+// it.
 struct ModelCreated {
   ecs::Entity entity;
   core::BlockCoord block;
@@ -39,9 +39,9 @@ struct ModelRemoved {
   models::ModelIndex model = 0;
 };
 
-// A mesh was made and can be drawn from this frame on; or gave way to others. `entity` is the one
-// it was made for.
-struct MeshLanded {
+// A mesh was synthesised and can be drawn from this frame on; or it was evicted. `entity` is the
+// one that requested it.
+struct MeshReady {
   ecs::Entity entity;
   synthesis::MeshKey key;
 };
@@ -56,7 +56,7 @@ struct Events {
   ecs::EventQueue<NodeHidden> hidden;
   ecs::EventQueue<ModelCreated> created;
   ecs::EventQueue<ModelRemoved> removed;
-  ecs::EventQueue<MeshLanded> landed;
+  ecs::EventQueue<MeshReady> ready;
   ecs::EventQueue<MeshEvicted> evicted;
   ecs::EventQueue<PlaceReady> places_ready;
 };

@@ -1,4 +1,4 @@
-// The work before the first frame: fills the cache for a pose, or amplifies a region.
+// Work before the first frame: filling the cache for a pose, or amplifying a region.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,24 +6,23 @@
 
 #include "engine/render/renderer.hpp"
 #include "engine/scene/nodes/mesh_entity.hpp"
-#include "engine/scene/scene.hpp"
-#include "engine/scene/systems.hpp"
+#include "engine/scene/state.hpp"
 
 namespace psygen::scene {
 namespace {
 
-// Nodes around the camera are revisited every 8th tick, so nothing is missing after 9 quiet ones.
+// Nodes around the camera are visited every 8th tick, so no mesh is missing after 9 quiet ones.
 constexpr int kQuietTicks = 9;
 // Filling ends after 40 ticks in a row in which no mesh became ready, or after 300 ticks in which a
-// request was refused for want of memory.
+// request found no memory.
 constexpr int kIdleTicks = 40, kRefusedTicks = 300;
 
 struct RegionSize {
   std::uint64_t meshes = 0, bytes = 0;
 };
 
-// Makes the pipelines of light and particles, which the first frame would wait for otherwise. What
-// fails here fails there too.
+// Makes the pipelines of lights and particles, so that the first frame does not wait for them. The
+// first frame reports failures.
 void prepare_effects(const ecs::World& entities, render::Renderer& renderer) {
   if (entities.count<PointLight>() > 0)
     static_cast<void>(renderer.prepare(render::Feature::kPointLights));
@@ -31,17 +30,17 @@ void prepare_effects(const ecs::World& entities, render::Renderer& renderer) {
     static_cast<void>(renderer.prepare(render::Feature::kParticles));
 }
 
-// How many levels of a mesh entity amplification makes, finest first.
-int levels_needed(const Settings& settings, const Detail& detail) {
+// Number of levels of a mesh entity that amplification makes, finest first.
+int levels_needed(const SceneSettings& settings, const LodErrors& detail) {
   return settings.levels_of_detail ? static_cast<int>(detail.level_count) : 1;
 }
 
-// The size of all meshes of the entities that exist now.
+// The size of all meshes of the existing entities.
 RegionSize region_size(const State& s) {
   RegionSize size;
-  s.entities.each<const Source, const Detail>([&](std::span<const ecs::Entity>,
-                                                  std::span<const Source> sources,
-                                                  std::span<const Detail> details) {
+  s.entities.each<const MeshSource, const LodErrors>([&](std::span<const ecs::Entity>,
+                                                         std::span<const MeshSource> sources,
+                                                         std::span<const LodErrors> details) {
     for (std::size_t i = 0; i < sources.size(); ++i) {
       for (int level = 0; level < levels_needed(s.settings, details[i]); ++level) {
         const models::MeshSize mesh = s.facts.registry[sources[i].model].mesh_size(
@@ -55,12 +54,12 @@ RegionSize region_size(const State& s) {
   return size;
 }
 
-// Wants for all meshes of the entities that exist now.
+// Wants for all meshes of the existing entities.
 std::vector<synthesis::Want> want_everything(const State& s) {
   std::vector<synthesis::Want> wants;
-  s.entities.each<const Placed, const Source, const Detail>(
-      [&](std::span<const ecs::Entity> entities, std::span<const Placed> placed,
-          std::span<const Source> sources, std::span<const Detail> details) {
+  s.entities.each<const MeshPlacement, const MeshSource, const LodErrors>(
+      [&](std::span<const ecs::Entity> entities, std::span<const MeshPlacement> placed,
+          std::span<const MeshSource> sources, std::span<const LodErrors> details) {
         for (std::size_t i = 0; i < entities.size(); ++i) {
           for (int level = 0; level < levels_needed(s.settings, details[i]); ++level) {
             const synthesis::MeshKey key =
@@ -73,57 +72,68 @@ std::vector<synthesis::Want> want_everything(const State& s) {
   return wants;
 }
 
-void land_everything(State& s) {
-  Settings unlimited = s.settings;
+void upload_everything(State& s) {
+  SceneSettings unlimited = s.settings;
   unlimited.upload_budget_bytes = UINT64_MAX;
-  synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);
-  s.found.meshes.clear();
-  upload_system(unlimited, s.rules, s.clock, s.facts, s.found, UploadQuery(s.entities), s.meshes,
-                s.output, s.events.landed, s.counters, s.totals);
+  synthesis_system(s.frame(), s.supply, s.meshes, s.trace);
+  s.meshes.found.clear();
+  upload_system({unlimited, s.rules, s.clock}, s.facts, UploadQuery(s.entities), s.upload_work());
 }
 
-// False if it was ended early.
+// Returns false if `go_on` stopped it.
 bool create_all_nodes(State& s, const std::function<bool()>& go_on) {
   do {
-    streaming_system(s.settings, s.rules, s.camera, s.quality, s.facts, s.daylight, s.streaming,
-                     s.entities, s.meshes, s.events.created, s.events.removed, s.counters);
+    streaming_system(s.streaming_context(), s.streaming, s.node_work());
     if (!go_on()) return false;
   } while (!s.streaming.missing.empty());
   return true;
 }
 
-}  // namespace
+// The systems up to edits.
+void begin_tick(State& s) {
+  input_system(s.input, s.clock, s.facts, s.camera);
+  quality_system(s.frame(), s.input, s.pressure, s.supply, s.quality);
+  daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
+  edits_system(s.daylight, s.pending_edits, s.facts, s.node_work());
+}
 
-void Scene::tick_without_drawing(const core::CameraPose& pose, const std::function<bool()>& go_on) {
-  State& s = state_;
+void tick_without_drawing(State& s, const core::CameraPose& pose,
+                          const std::function<bool()>& go_on) {
   s.input.pose = pose;
   s.clock.real_s = s.clock.read_real_s();
-  s.counters = {};
+  reset_counts(s);
   s.rules = rules_of(s.settings, true);
   s.pressure.awaited = 0;  // nothing is drawn
-  input_system(s.input, s.clock, s.facts, s.camera);
-  quality_system(s.settings, s.rules, s.input, s.pressure, s.meshes, s.quality);
-  daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
-  edits_system(s.daylight, s.editing, s.facts, s.entities, s.meshes, s.foresight, s.events.created,
-               s.events.removed);
-  streaming_system(s.settings, s.rules, s.camera, s.quality, s.facts, s.daylight, s.streaming,
-                   s.entities, s.meshes, s.events.created, s.events.removed, s.counters);
-  visibility_system(s.settings, s.rules, s.camera, s.facts, s.streaming,
-                    VisibilityQuery(s.entities), s.view, s.counters);
-  cache_system(s.settings, s.rules, s.clock, s.camera, s.quality, s.facts, s.daylight, s.streaming,
-               s.view, CacheQuery(s.entities), s.assets, s.output, s.meshes, s.found, s.foresight,
-               s.pressure, s.events.evicted, s.events.places_ready, s.counters);
-  s.meshes.wait(go_on);
-  synthesis_system(s.settings, s.rules, s.meshes, s.counters, s.trace);
-  upload_system(s.settings, s.rules, s.clock, s.facts, s.found, UploadQuery(s.entities), s.meshes,
-                s.output, s.events.landed, s.counters, s.totals);
-  objects_system(s.settings, s.rules, s.input, s.clock, s.camera, s.quality, s.facts, s.streaming,
-                 s.view, ObjectQuery(s.entities), s.meshes, s.assets, s.object_draws, s.counters);
+  begin_tick(s);
+  streaming_system(s.streaming_context(), s.streaming, s.node_work());
+  visibility_system(s.frame(), s.camera, s.facts, s.streaming, VisibilityQuery(s.entities), s.view);
+  cache_system(s.streaming_context(), {s.streaming, s.view}, s.assets, CacheQuery(s.entities),
+               s.cache_work());
+  s.supply.wait(go_on);
+  synthesis_system(s.frame(), s.supply, s.meshes, s.trace);
+  upload_system(s.frame(), s.facts, UploadQuery(s.entities), s.upload_work());
+  objects_system(s.render_context(), ObjectQuery(s.entities), {s.supply, s.assets, s.object_draws});
   ++s.clock.tick;
 }
 
+// Fails if the meshes of all entities do not fit into the budget.
+core::Result<void> check_region(const State& s) {
+  const RegionSize size = region_size(s);
+  const std::uint64_t budget_bytes = s.supply.stats().budget_bytes;
+  if (size.bytes <= budget_bytes) return {};
+  constexpr double kMiB = 1 << 20;
+  return core::fail(
+      core::ErrorCode::kOverBudget,
+      fmt::format("amplifying the {} nodes around the camera takes {:.0f} MiB for {} meshes, more "
+                  "than the budget of {:.0f} MiB; lower the view distance or raise the budget",
+                  s.entities.count<QuadtreeNode>(), static_cast<double>(size.bytes) / kMiB,
+                  size.meshes, static_cast<double>(budget_bytes) / kMiB));
+}
+
+}  // namespace
+
 std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progress) {
-  State& s = state_;
+  State& s = *state_;
   std::uint64_t synthesised = 0;
   int quiet = 0, idle = 0, refused = 0;
   double fraction = 0;
@@ -131,67 +141,51 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
   s.pressure = {};
   s.quality.coarsening = 1;
   s.camera.predictor.reset();  // no movement led here
-  // What frames in flight may read cannot be given back before they are done, and none follows.
+  // The cache cannot reuse memory that frames in flight may read, and no frame will follow.
   if (s.output.renderer != nullptr) s.output.renderer->wait_idle();
   while (quiet < kQuietTicks && idle < kIdleTicks && refused < kRefusedTicks) {
     const float coarsening = s.quality.coarsening;
-    tick_without_drawing(pose, go_on);
-    synthesised += s.counters.models_synthesised;
-    const bool moved = s.counters.models_synthesised > 0 || s.counters.failed > 0 ||
-                       s.counters.nodes_created > 0 || s.quality.coarsening != coarsening;
-    refused += s.counters.refused > 0 ? 1 : 0;
+    tick_without_drawing(s, pose, go_on);
+    const MeshCounts& made = s.meshes.counts;
+    synthesised += made.models_synthesised;
+    const bool moved = made.models_synthesised > 0 || made.failed > 0 ||
+                       s.streaming.counts.created > 0 || s.quality.coarsening != coarsening;
+    refused += made.refused > 0 ? 1 : 0;
     idle = moved ? 0 : idle + 1;
-    const bool complete = s.streaming.missing.empty() && !s.meshes.has_arrived();
-    quiet = complete && s.counters.requests == 0 ? quiet + 1 : 0;
-    const double missing = s.counters.requests + static_cast<double>(s.streaming.missing.size()) *
-                                                     (1.0 + s.facts.models_per_block);
-    const double made = static_cast<double>(synthesised);
-    fraction = made / (made + missing + 1.0);
+    const bool complete = s.streaming.missing.empty() && !s.supply.has_arrived();
+    quiet = complete && made.requests == 0 ? quiet + 1 : 0;
+    const double missing = made.requests + static_cast<double>(s.streaming.missing.size()) *
+                                               (1.0 + s.facts.models_per_block);
+    const double done = static_cast<double>(synthesised);
+    fraction = done / (done + missing + 1.0);
     if (!go_on()) break;
   }
   if (s.output.renderer != nullptr) prepare_effects(s.entities, *s.output.renderer);
   return synthesised;
 }
 
-core::Result<void> Scene::check_region() const {
-  const RegionSize size = region_size(state_);
-  const std::uint64_t budget_bytes = state_.meshes.stats().budget_bytes;
-  if (size.bytes <= budget_bytes) return {};
-  constexpr double kMiB = 1 << 20;
-  return core::fail(
-      core::ErrorCode::kOverBudget,
-      fmt::format("amplifying the {} nodes around the camera takes {:.0f} MiB for {} meshes, more "
-                  "than the budget of {:.0f} MiB; lower the view distance or raise the budget",
-                  state_.entities.count<Node>(), static_cast<double>(size.bytes) / kMiB,
-                  size.meshes, static_cast<double>(budget_bytes) / kMiB));
-}
-
 core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const Progress& progress) {
-  State& s = state_;
+  State& s = *state_;
   s.input.pose = pose;
   s.rules = rules_of(s.settings, false);
-  input_system(s.input, s.clock, s.facts, s.camera);
-  quality_system(s.settings, s.rules, s.input, s.pressure, s.meshes, s.quality);
-  daylight_system(s.clock, s.facts, DaylightQuery(s.entities), s.daylight);
-  edits_system(s.daylight, s.editing, s.facts, s.entities, s.meshes, s.foresight, s.events.created,
-               s.events.removed);
+  begin_tick(s);
   double fraction = 0;
   const auto go_on = [&] { return !progress || progress("amplifying", fraction); };
   if (!create_all_nodes(s, go_on)) return 0;
-  if (auto fits = check_region(); !fits) return tl::unexpected(fits.error());
+  if (auto fits = check_region(s); !fits) return tl::unexpected(fits.error());
   const std::vector<synthesis::Want> all = want_everything(s);
   constexpr std::size_t kBatch = 2048;
   std::uint64_t done = 0, failed = 0;
   for (std::size_t first = 0; first < all.size(); first += kBatch) {
     const std::size_t count = std::min(kBatch, all.size() - first);
-    s.meshes.plan(std::span(all).subspan(first, count),
+    s.supply.plan(std::span(all).subspan(first, count),
                   {std::numeric_limits<double>::infinity(), UINT32_MAX},
                   synthesis::Policy::kLongest);
-    s.meshes.wait(go_on);
-    s.counters = {};
-    land_everything(s);
-    done += s.counters.models_synthesised;
-    failed += s.counters.failed;
+    s.supply.wait(go_on);
+    reset_counts(s);
+    upload_everything(s);
+    done += s.meshes.counts.models_synthesised;
+    failed += s.meshes.counts.failed;
     fraction = static_cast<double>(first + count) / static_cast<double>(all.size());
     if (!go_on()) return done;
   }

@@ -1,146 +1,228 @@
-// A scene: one world, its entities, its modelers and its cache, ready to tick. Owns the State; the
-// tick itself is in tick.cpp. Works without a renderer (a null device): then nothing is drawn.
-// Main thread only; the modelers are threads of its own.
+// A scene: one world with its entities, modelers, meshes and tick. The tick itself is in tick.cpp.
+// Works without a renderer (a null device): then it draws nothing. Main thread only; modelers are
+// threads of the scene.
+//
+// This header declares most types only. Include the header of each type that you use: it is named
+// beside the function that returns it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
-#include <unordered_map>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "engine/scene/state.hpp"
-#include "engine/scene/tick.hpp"
+#include "engine/core/error.hpp"
+#include "engine/scene/places.hpp"
+
+namespace psygen::core {
+struct CameraPose;
+struct WorldPosition;
+}  // namespace psygen::core
+namespace psygen::ecs {
+struct SystemInfo;
+class World;
+}  // namespace psygen::ecs
+namespace psygen::models {
+class Registry;
+}
+namespace psygen::render {
+struct FrameResult;
+class Renderer;
+}  // namespace psygen::render
+namespace psygen::synthesis {
+struct CalibrationReport;
+class MeshSupply;
+class RemoteModelers;
+}  // namespace psygen::synthesis
+namespace psygen::telemetry {
+struct FrameRecord;
+class TraceLog;
+}  // namespace psygen::telemetry
+namespace psygen::world {
+class Edits;
+struct Sky;
+struct World;
+}  // namespace psygen::world
 
 namespace psygen::scene {
 
-// Told how far something long has come: a label and a fraction in [0, 1]; often enough for a window
-// to stay alive. False ends filling the cache early; creating a scene is not ended.
+class Assets;
+struct Camera;
+struct Clock;
+struct FixedStep;
+struct Input;
+struct PreparedWorld;
+struct Quality;
+struct SceneSettings;
+struct SceneSnapshot;
+struct State;
+struct Statistics;
+struct Systems;
+struct WorldFacts;
+
+// Reports the progress of long work: a label and a fraction in [0, 1], often enough for a window to
+// stay responsive. Return false to stop filling the cache early; creating a scene cannot be
+// stopped.
 using Progress = std::function<bool(std::string_view, double)>;
 
-// What code of a game adds to: components and entities of its own, systems that run once a frame
-// among the engine's (docs/architecture.md lists their names), and systems that run once a fixed
-// step. Systems of a frame may take any part of State, systems of a step WorldFacts and FixedStep;
-// both take queues of events and what resource() made.
-struct Systems {
-  ecs::World& entities;
-  ecs::Schedule& frame;
-  ecs::Schedule& step;
-
-  // A resource for both kinds of systems. It lives as long as the scene.
-  template <class R, class... Args>
-  R& resource(Args&&... args) {
-    R& made = frame.emplace<R>(std::forward<Args>(args)...);
-    step.provide(made);
-    return made;
-  }
-};
-
-// What prepare_world() has to know of a scene. A copy, for another thread.
-struct SceneSnapshot {
-  Settings settings;
-  world::World world;                      // without edits
-  std::vector<core::BlockCoord> blocks;    // whose models exist
-  std::shared_ptr<const Derived> derived;  // of the world; null: nothing can be taken over
-};
-
-// A world that is ready to take the place of a scene's.
-struct PreparedWorld {
-  WorldFacts facts;  // without pictures of trees in the renderer
-  // Only sky, water, palette or name differ, and of `facts` there is nothing else.
-  bool looks_only = false;
-  // What stands on the blocks of the snapshot, but for the scatters that are the same as in the
-  // world of `before`; null: there are none.
-  std::unordered_map<core::BlockCoord, std::vector<world::Placement>, core::BlockCoordHash> models;
-  std::shared_ptr<const Derived> before;
-};
-
-// Does what takes time of taking over another world (Scene::set_world). Any thread. Fails as
-// Scene::create(). Some 10 ms, and 0.2 ms for each block; less where only some scatters differ.
+// Does the slow part of Scene::set_world() (facts/prepared_world.hpp). Any thread. Fails as
+// Scene::create(). Takes about 10 ms, and 0.2 ms for each block; less if only some scatters differ.
 core::Result<PreparedWorld> prepare_world(world::World world, models::Registry registry,
                                           const SceneSnapshot& snapshot);
 
 // One world with its entities, its meshes and its tick.
 class Scene {
  public:
-  // `world` may have edits. `renderer`, `trace` and `remote` (further modelers, not with virtual
-  // time) may be null and outlive the scene.
-  // Starts the modelers and calibrates the cost model (below 0.5 s). Fails as check(), and with
-  // kOverBudget for a view with more than kMaxEntities nodes and models or kMaxPlaces places for
-  // nodes.
+  // Starts the modelers and calibrates the cost model (below 0.5 s). `world` may have edits.
+  // `renderer`, `trace` and `remote` (further modelers, not with virtual time) may be null and must
+  // outlive the scene. Fails as check(), and with kOverBudget for a view with too many nodes and
+  // models (facts/derive.hpp).
   static core::Result<std::unique_ptr<Scene>> create(world::World world, models::Registry registry,
-                                                     const Settings& settings,
+                                                     const SceneSettings& settings,
                                                      render::Renderer* renderer,
                                                      telemetry::TraceLog* trace = nullptr,
                                                      const Progress& progress = {},
                                                      synthesis::RemoteModelers* remote = nullptr);
+  ~Scene();
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
 
-  // All that the tick reads and writes.
-  State& state() { return state_; }
-  const State& state() const { return state_; }
-  const synthesis::CalibrationReport& calibration() const { return calibration_; }
-
-  // What code of a game adds to, before the first tick.
-  Systems systems() { return {state_.entities, state_.tick, state_.simulation.systems}; }
-  // Puts all systems into the order of their places. Fails with kInvalidArgument for two systems of
-  // one name, and for systems that name others that there are not, or wait for each other.
-  core::Result<void> arrange();
-
-  // Fills the cache for a pose before the first frame (paper, section 4: the initial cache): ticks
-  // without drawing and waits for the modelers, until nothing is missing, or nothing more can be
-  // had (a small budget, models that fail); with a target of frame times at the error of the
-  // start. Also what makes a picture independent of timing.
-  // Returns how many meshes were synthesised.
-  std::uint64_t settle(const core::CameraPose& pose, const Progress& progress = {});
-
-  // Data amplification (section 3.3.1): synthesises all models around the pose at every level that
-  // a flight can want, once and for all. Fails with kOverBudget, saying how much it would need.
-  core::Result<std::uint64_t> amplify(const core::CameraPose& pose, const Progress& progress = {});
-
-  // The edits of the world: all that were asked for, though some may be drawn only in a few ticks.
-  // A copy is O(1), and editing a copy changes nothing here.
-  const world::Edits& edits() const { return state_.editing.edits; }
-  // Replaces them, from the next tick on. `edits` must be made for this world and registry. What is
-  // drawn stays until the new meshes are there. An edit taken back restores the very same meshes.
-  void edit(world::Edits edits);
-
-  // Replaces the world and its types, from the next tick on: for editors, and for games whose world
-  // changes. Meshes that are the same stay, others are drawn until the new ones are there; where
-  // blocks have another size or other levels, everything is made anew. The edits are kept. Waits
-  // for requests that modelers work on. Queries of the old world (query::World) end. After
-  // kDeviceLost the scene is lost, after other errors nothing has changed.
-  core::Result<void> set_world(PreparedWorld prepared);
-  // The same with all that takes time.
-  core::Result<void> set_world(world::World world, models::Registry registry);
-  // What prepare_world() needs.
-  SceneSnapshot snapshot() const;
-
-  // Replaces the sky from the next tick on: weather, and the hour. O(1); may be called every frame.
-  // The ground's shadows follow a sun that has moved. Fails with kInvalidArgument for numbers that
-  // are not finite, and for visibility_m, haze_height_m or exposure not above 0.
-  core::Result<void> set_sky(const world::Sky& sky);
-
-  // Fails with kInvalidArgument for settings that make no sense, and with kOverBudget for a budget
-  // below kMinBudgetBytes or above kMaxBudgetBytes.
-  static core::Result<void> check(const Settings& settings);
-
-  // To be called after Renderer::set_preset(): with shadows what is out of the picture matters too,
-  // and near trees may be coarser where textures hide it.
-  void take_over_preset();
-
+  // Fails with kInvalidArgument for settings out of range, and with kOverBudget for a budget below
+  // kMinBudgetBytes or above kMaxBudgetBytes.
+  static core::Result<void> check(const SceneSettings& settings);
   static constexpr std::uint64_t kMinBudgetBytes = 4ull << 20;
   static constexpr std::uint64_t kMaxBudgetBytes = 1ull << 40;
-  static constexpr double kMaxEntities = 2e6;
-  static constexpr double kMaxPlaces = 4e6;  // of nodes around the camera that may exist
+
+  // The world, its model types, and values derived from both (facts/world_facts.hpp).
+  const world::World& world() const;
+  const models::Registry& registry() const;
+  const WorldFacts& facts() const;
+
+  // The entities (ecs/ecs.hpp; scene/components.hpp and scene/objects/ declare components).
+  ecs::World& entities();
+  const ecs::World& entities() const;
+  // Meshes, textures and materials of objects (objects/assets.hpp).
+  Assets& assets();
+  const Assets& assets() const;
+
+  // Requests for the next tick (frame/input.hpp).
+  Input& input();
+  const Input& input() const;
+  // The clock (frame/clock.hpp), and the time of the next tick in seconds.
+  const Clock& clock() const;
+  void set_now(double now_s);
+  // The camera of the last tick (frame/camera.hpp), and its vertical field of view from the next
+  // tick on.
+  const Camera& camera() const;
+  void set_field_of_view(float radians);
+  // Fixed steps of the simulation (frame/fixed_step.hpp).
+  const FixedStep& step() const;
+
+  // The settings (settings.hpp), and the allowed screen-space error from the next tick on.
+  const SceneSettings& settings() const;
+  void set_max_error(double pixels);
+  // Resolution and errors of the last tick (frame/quality.hpp).
+  const Quality& quality() const;
+  // Holds the error and resolution of the settings from now on, and switches fades off: frames
+  // depend on neither time nor history.
+  void stop_adapting();
+
+  // Requests, modelers and geometry cache (engine/synthesis/mesh_supply.hpp).
+  const synthesis::MeshSupply& meshes() const;
+  // Waits until the modelers have finished all requests, or until `go_on`, which is called often,
+  // returns false. Returns false if a modeler hangs.
+  bool wait_for_modelers(const std::function<bool()>& go_on = {});
+  const synthesis::CalibrationReport& calibration() const;
+
+  // Counts of the last tick (statistics.hpp).
+  Statistics statistics() const;
+  // The renderer's result of the last tick (engine/render/types.hpp).
+  const render::FrameResult& drawn() const;
+  // The record of the last tick (engine/telemetry/frame_log.hpp).
+  const telemetry::FrameRecord& record() const;
+  // Milliseconds of each system in the last tick, in the order of system_names().
+  std::span<const float> system_ms() const;
+  // The systems of the tick in their order, then those of fixed steps as "step <name>".
+  std::vector<std::string> system_names() const;
+  // The systems of the tick with their accesses (ecs/ecs.hpp).
+  std::span<const ecs::SystemInfo> frame_systems() const;
+  // True if the last frame showed meshes of a replaced world, for which newer ones are requested.
+  bool shows_replaced_world() const;
+
+  // The extension points for code of a game (systems.hpp), before the first tick.
+  Systems systems();
+  // Puts all systems into their order. Fails with kInvalidArgument for two systems of one name, for
+  // systems that name unknown ones or wait for each other, and for systems of a game that use
+  // values which are private to the engine.
+  core::Result<void> arrange();
+
+  // Runs one tick with the present input. Fails with the error that ends the flight: a lost device,
+  // or an exception of a game's system.
+  core::Result<void> tick();
+
+  // Fills the cache for a pose before the first frame (paper, section 4: the initial cache): ticks
+  // without drawing and waits for the modelers, until no mesh is missing, or none can be had (a
+  // small budget, failing models). If there is a target frame time, it starts with the error of the
+  // first frame. Makes frames independent of timing. Returns the number of synthesised meshes.
+  std::uint64_t settle(const core::CameraPose& pose, const Progress& progress = {});
+  // Data amplification (section 3.3.1): synthesises all models around the pose once, at every level
+  // that a flight can want. Fails with kOverBudget and tells how much memory it would need.
+  core::Result<std::uint64_t> amplify(const core::CameraPose& pose, const Progress& progress = {});
+
+  // Requests that a place becomes ready and stays so, through edits, the course of the sun and
+  // changes of the frame's size. Fails with kInvalidArgument for a position that is not finite and
+  // for a radius outside (0, kMaxReadyRadiusM], and with kOverBudget if it needs more than half of
+  // the memory for meshes, alone or together with other places.
+  core::Result<PlaceId> request_place(const core::WorldPosition& at, double radius_m);
+  // Returns the meshes that a place needs now, and how many of them are missing. Fails as
+  // request_place() with kInvalidArgument. Places models on every block: about 20 µs a block.
+  core::Result<Readiness> readiness(const core::WorldPosition& at, double radius_m) const;
+  // The same of a requested place, as of the last tick. No meshes for an id that is not requested.
+  Readiness readiness(PlaceId id) const;
+  // Stops keeping the meshes of a place. Ignores ids that are not requested.
+  void release_place(PlaceId id);
+
+  // The edits of the world: all that were given to edit(), though some may be drawn only some ticks
+  // later (engine/world/edits/edits.hpp). A copy is O(1), and editing a copy changes nothing here.
+  const world::Edits& edits() const;
+  // Replaces the edits from the next tick on. They must be made for this world and registry. Old
+  // meshes are drawn until the new ones are ready. An edit taken back restores the same meshes.
+  void edit(world::Edits edits);
+
+  // Replaces the world and its types from the next tick on (facts/prepared_world.hpp): for editors,
+  // and for games whose world changes. Equal meshes stay, others are drawn until the new ones are
+  // ready; worlds with another block size or other levels are built from nothing. Edits are kept.
+  // Waits for requests that modelers work on. Ends queries of the old world (query::World). After
+  // kDeviceLost the scene is lost; after other errors nothing has changed.
+  core::Result<void> set_world(PreparedWorld prepared);
+  // As above, with the slow part included.
+  core::Result<void> set_world(world::World world, models::Registry registry);
+  // The input of prepare_world().
+  SceneSnapshot snapshot() const;
+
+  // Replaces the sky from the next tick on, for weather or the hour. O(1); may be called every
+  // frame. The ground's shadows follow the sun. Fails with kInvalidArgument for numbers that are
+  // not finite, and for visibility_m, haze_height_m or exposure not above 0.
+  core::Result<void> set_sky(const world::Sky& sky);
+  // Call it after Renderer::set_preset(): presets with shadows need models outside the frustum, and
+  // presets with textures allow coarser near trees.
+  void on_preset_changed();
+
+  // Adds a span to the main thread's track of the trace, if there is one. Seconds of
+  // core::monotonic_seconds().
+  void trace_span(std::string_view name, double start_s, double end_s);
+  // Ends the trace.
+  void end_trace();
 
  private:
-  Scene() = default;
-  core::Result<void> check_region() const;
-  void tick_without_drawing(const core::CameraPose& pose, const std::function<bool()>& go_on);
+  Scene();
+  friend State& state_of(Scene& scene);
+  friend const State& state_of(const Scene& scene);
 
-  State state_;
-  synthesis::CalibrationReport calibration_;
-  // Types of worlds before, that objects or modelers that hang still use.
-  std::vector<models::Registry> retired_types_;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace psygen::scene

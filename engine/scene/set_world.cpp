@@ -1,26 +1,27 @@
-// Replaces the world of a running scene: takes over what is derived from the new one, then gives
-// every node and model what it is there. What is drawn stays until the new meshes are there; that
-// is synthesis like any other.
+// Replaces the world of a running scene: reuses values derived from the old world, then gives every
+// node and model its values in the new one. Old meshes are drawn until the new ones are ready, as
+// after any other request.
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include "engine/scene/cost_samples.hpp"
-#include "engine/scene/draws/lighting.hpp"
-#include "engine/scene/mesh_notes.hpp"
+#include "engine/scene/facts/cost_samples.hpp"
+#include "engine/scene/facts/derive.hpp"
+#include "engine/scene/facts/lighting.hpp"
+#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/facts/typical_bounds.hpp"
+#include "engine/scene/meshes/mesh_annotations.hpp"
+#include "engine/scene/meshes/tree_impostors.hpp"
 #include "engine/scene/nodes/entities.hpp"
-#include "engine/scene/nodes/usual_boxes.hpp"
-#include "engine/scene/scene.hpp"
-#include "engine/scene/tree_pictures.hpp"
-#include "engine/scene/world_facts.hpp"
+#include "engine/scene/state.hpp"
 #include "engine/world/far/tree_pictures.hpp"
 #include "engine/world/ground_blends.hpp"
 
 namespace psygen::scene {
 namespace {
 
-// Whether nodes of both worlds are the same pieces of ground with meshes of the same layout.
+// True if the nodes of both worlds cover the same ground with meshes of the same layout.
 bool same_nodes(const WorldFacts& a, const WorldFacts& b) {
   const auto same_level = [](const NodeLevel& x, const NodeLevel& y) {
     return x.size_m == y.size_m && x.mesh_level == y.mesh_level && x.merged == y.merged;
@@ -38,7 +39,7 @@ bool same_windows(std::span<const NodeGrid> a, std::span<const NodeGrid> b) {
   return std::ranges::equal(a, b, {}, &NodeGrid::max_radius, &NodeGrid::max_radius);
 }
 
-// Types whose shared indices may be those of another type now.
+// False if shared indices may belong to another type now.
 bool same_types(const models::Registry& a, const models::Registry& b) {
   const std::size_t count = std::min(a.size(), b.size());
   for (models::ModelIndex i = 0; i < count; ++i) {
@@ -49,25 +50,26 @@ bool same_types(const models::Registry& a, const models::Registry& b) {
 
 std::vector<ecs::Entity> nodes_of(const ecs::World& entities) {
   std::vector<ecs::Entity> nodes;
-  entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node>) {
-    nodes.insert(nodes.end(), rows.begin(), rows.end());
-  });
+  entities.each<const QuadtreeNode>(
+      [&](std::span<const ecs::Entity> rows, std::span<const QuadtreeNode>) {
+        nodes.insert(nodes.end(), rows.begin(), rows.end());
+      });
   return nodes;
 }
 
-// They are created anew in the next tick.
+// Destroys all nodes; the next tick creates new ones.
 void destroy_all_nodes(const WorldFacts& facts, State& s) {
-  destroy_nodes(nodes_of(s.entities), s.meshes, s.entities, s.events.removed);
+  destroy_nodes(nodes_of(s.entities), s.node_work());
   s.streaming = {};
   s.streaming.grids = node_grids(s.settings, facts);
-  s.draws.handover = {};
+  s.draws.cross_fade = {};
 }
 
-// What stays of the instances of each scatter. Parameters that depend on the ground's slope are
-// drawn where it is known.
-std::vector<KeptModels::Stays> what_stays(const Derived& before, const WorldFacts& facts) {
+// Tells how the instances of each scatter stay. Parameters that depend on the ground's slope are
+// computed where the slope is known.
+std::vector<KeptModels::Stays> stays_of(const DerivedWorldData& before, const WorldFacts& facts) {
   using enum KeptModels::Stays;
-  const Derived& after = *facts.derived;
+  const DerivedWorldData& after = *facts.derived;
   std::vector<KeptModels::Stays> stays(facts.world.scatter.size(), kNothing);
   if (before.types != after.types || before.parts.ground != after.parts.ground) return stays;
   for (std::size_t s = 0; s < std::min(stays.size(), before.parts.places.size()); ++s) {
@@ -79,9 +81,9 @@ std::vector<KeptModels::Stays> what_stays(const Derived& before, const WorldFact
   return stays;
 }
 
-// What stays of a scene's models when the facts `before` are replaced.
+// The models of a scene that stay when the facts `before` are replaced.
 KeptModels kept_models(const WorldFacts& before, const WorldFacts& after) {
-  KeptModels kept{what_stays(*before.derived, after), {}, {}};
+  KeptModels kept{stays_of(*before.derived, after), {}, {}};
   for (std::size_t s = 0; s < kept.stays.size(); ++s)
     kept.scatter_of.insert(kept.scatter_of.end(), after.world.scatter[s].count,
                            static_cast<std::uint32_t>(s));
@@ -90,26 +92,25 @@ KeptModels kept_models(const WorldFacts& before, const WorldFacts& after) {
     return std::pair(has ? facts.quad_models[model] : models::ModelIndex{0},
                      has ? facts.pictures->identity_of_quads(model) : 0);
   };
-  // The types that can stand on a block; registries also have those of objects.
-  const std::size_t types = std::min(before.usual_boxes.size(), after.usual_boxes.size());
+  // The types of models on blocks; registries also hold those of objects.
+  const std::size_t types = std::min(before.typical_bounds.size(), after.typical_bounds.size());
   for (models::ModelIndex model = 0; model < types; ++model)
-    kept.refit.push_back(before.usual_boxes[model] != after.usual_boxes[model] ||
+    kept.refit.push_back(before.typical_bounds[model] != after.typical_bounds[model] ||
                          quads(before, model) != quads(after, model));
   return kept;
 }
 
-// `kept`: null: nothing.
+// `kept`: null: none.
 void update_all_nodes(PreparedWorld& prepared, const KeptModels* kept, State& s) {
   std::vector<world::Placement> scratch;
   for (const ecs::Entity node : nodes_of(s.entities)) {
-    const visibility::NodeCoord at = s.entities.get<Node>(node)->at;
+    const visibility::NodeCoord at = s.entities.get<QuadtreeNode>(node)->at;
     const auto models = at.level == 0 ? prepared.models.find(at.coord) : prepared.models.end();
     const bool known = models != prepared.models.end();
     if (known) scratch = std::move(models->second);
     const NodeChange change{
         .ground = kept == nullptr, .world = true, .placed = known, .kept = kept};
-    update_node(s.facts, s.daylight, node, change, scratch, s.meshes, s.entities,
-                {s.events.created, s.events.removed});
+    update_node(s.facts, s.daylight, node, change, scratch, s.node_work());
   }
 }
 
@@ -118,14 +119,14 @@ world::World without_edits(world::World world) {
   return world;
 }
 
-// The types that a world came with.
+// The types that came with a world.
 models::Registry without_own_types(WorldFacts& facts) {
   models::Registry registry = std::move(facts.registry);
   registry.shrink(facts.given_types);
   return registry;
 }
 
-// Whether worlds without edits differ in nothing that meshes or places depend on.
+// True if worlds without edits differ in nothing that meshes or places depend on.
 bool same_but_looks(world::World a, const world::World& b) {
   if (world::placing_hash(a) != world::placing_hash(b)) return false;
   a.name = b.name;
@@ -135,19 +136,19 @@ bool same_but_looks(world::World a, const world::World& b) {
   return a == b;
 }
 
-// Sun and shadows follow by themselves (daylight_system).
-void take_over_sky(const world::Sky& sky, State& s) {
+// Replaces the sky. daylight_system() updates sun and shadows.
+void replace_sky(const world::Sky& sky, State& s) {
   s.facts.world.sky = sky;
   s.facts.light = light_of(s.facts.world, s.settings.view_distance_m);
 }
 
-void take_over_looks(const world::World& world, State& s) {
+void replace_looks(const world::World& world, State& s) {
   WorldFacts& facts = s.facts;
   facts.world.name = world.name;
   facts.world.water = world.water;
   facts.world.palette = world.palette;
   facts.palette = palette_of(facts.world);
-  take_over_sky(world.sky, s);
+  replace_sky(world.sky, s);
 }
 
 bool is_usable(const world::Sky& sky) {
@@ -182,9 +183,9 @@ core::Result<PreparedWorld> prepare_world(world::World world, models::Registry r
   prepared.before = snapshot.derived;
   if (auto ok = derive(snapshot.settings, true, facts, prepared.before.get()); !ok)
     return tl::unexpected(ok.error());
-  facts.usual_boxes = usual_boxes(facts.registry, models_on(facts, {}));
+  facts.typical_bounds = typical_bounds(facts.registry, models_on(facts, {}));
   const std::vector<bool> wanted =
-      prepared.before ? KeptModels{what_stays(*prepared.before, facts), {}, {}}.wanted()
+      prepared.before ? KeptModels{stays_of(*prepared.before, facts), {}, {}}.wanted()
                       : std::vector<bool>(facts.world.scatter.size(), true);
   for (const core::BlockCoord block : snapshot.blocks)
     world::place_models(facts.world, facts.registry, block, wanted, prepared.models[block]);
@@ -192,15 +193,16 @@ core::Result<PreparedWorld> prepare_world(world::World world, models::Registry r
 }
 
 SceneSnapshot Scene::snapshot() const {
-  const WorldFacts& facts = state_.facts;
+  const WorldFacts& facts = state_->facts;
   SceneSnapshot snapshot{
-      state_.settings, facts.world, {}, facts.world.edits ? nullptr : facts.derived};
+      state_->settings, facts.world, {}, facts.world.edits ? nullptr : facts.derived};
   world::set_edits(snapshot.world, nullptr);
-  state_.entities.each<const Node>([&](std::span<const ecs::Entity>, std::span<const Node> nodes) {
-    for (const Node& node : nodes) {
-      if (node.at.level == 0) snapshot.blocks.push_back(node.at.coord);
-    }
-  });
+  state_->entities.each<const QuadtreeNode>(
+      [&](std::span<const ecs::Entity>, std::span<const QuadtreeNode> nodes) {
+        for (const QuadtreeNode& node : nodes) {
+          if (node.at.level == 0) snapshot.blocks.push_back(node.at.coord);
+        }
+      });
   return snapshot;
 }
 
@@ -211,7 +213,7 @@ core::Result<void> Scene::set_world(world::World world, models::Registry registr
 }
 
 core::Result<void> Scene::set_world(PreparedWorld prepared) {
-  State& s = state_;
+  State& s = *state_;
   WorldFacts& next = prepared.facts;
   // The scene may have changed since the snapshot.
   if (prepared.looks_only && !same_but_looks(next.world, without_edits(s.facts.world)))
@@ -219,36 +221,36 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
   const bool other = prepared.before && (prepared.before != s.facts.derived || s.facts.world.edits);
   if (other) return set_world(std::move(next.world), without_own_types(next));
   if (prepared.looks_only) {
-    take_over_looks(next.world, s);
+    replace_looks(next.world, s);
     return {};
   }
-  if (!show_stand_ins(next, s.facts.pictures.get(), s.output)) {
+  if (!show_stand_ins(next, s.facts.pictures.get(), s.meshes, s.output)) {
     if (auto ok = derive(s.settings, false, next); !ok) return ok;
-    next.usual_boxes = usual_boxes(next.registry, models_on(next, {}));
+    next.typical_bounds = typical_bounds(next.registry, models_on(next, {}));
     prepared.models.clear();  // without pictures other things stay
     prepared.before = nullptr;
   }
-  const bool rested = s.meshes.come_to_rest();
-  forget_pictures(s.facts, s.meshes);
+  const bool rested = s.supply.come_to_rest();
+  forget_pictures(s.facts, s.supply);
   // Nothing fails from here on: the same types were added before.
   if (auto ok = s.assets.follow(next.registry); !ok) return ok;
   const bool same =
       same_nodes(s.facts, next) && same_windows(s.streaming.grids, node_grids(s.settings, next));
-  if (!same || !same_types(s.facts.registry, next.registry)) s.output.shared_indices.clear();
+  if (!same || !same_types(s.facts.registry, next.registry)) s.meshes.shared_indices.clear();
   if (!same) destroy_all_nodes(next, s);
   const bool same_ground = same && prepared.before &&
                            prepared.before->types == next.derived->types &&
                            prepared.before->parts.ground == next.derived->parts.ground;
   const auto kept = same_ground ? std::optional(kept_models(s.facts, next)) : std::nullopt;
   std::swap(s.facts, next);
-  if (!rested || s.assets.mesh_count() > 0) retired_types_.push_back(std::move(next.registry));
-  s.meshes.take_over_types(mesh_notes(s.facts));
-  s.meshes.set_edits(s.facts.world.layer());
-  take_over_preset();
+  if (!rested || s.assets.mesh_count() > 0) s.retired_types.push_back(std::move(next.registry));
+  s.supply.take_over_types(mesh_annotations(s.facts));
+  s.supply.set_edits(s.facts.world.layer());
+  on_preset_changed();
   name_types(s.facts.registry, s.trace);
-  edit(std::move(s.editing.edits));
+  edit(std::move(s.pending_edits.edits));
   if (same) update_all_nodes(prepared, kept ? &*kept : nullptr, s);
-  for (Foresight::Place& place : s.foresight.places)
+  for (RequestedPlace& place : s.meshes.places.places)
     place.stale = true;
   return {};
 }
@@ -257,7 +259,7 @@ core::Result<void> Scene::set_sky(const world::Sky& sky) {
   if (!is_usable(sky))
     return core::fail(core::ErrorCode::kInvalidArgument,
                       "a sky has finite numbers, and visibility, haze height and exposure above 0");
-  take_over_sky(sky, state_);
+  replace_sky(sky, *state_);
   return {};
 }
 

@@ -16,17 +16,6 @@ std::string_view to_string(Paradigm paradigm) {
   return "pla";
 }
 
-Rules rules_of(const Settings& settings, bool settling) {
-  const bool lazy = settings.paradigm == Paradigm::kLazyEvaluation;
-  const bool pla = settings.paradigm == Paradigm::kParallelLazyAmplification;
-  return {.request = settings.paradigm != Paradigm::kDataAmplification,
-          .wait = lazy,
-          .keep = !lazy,
-          .look_ahead = pla,
-          .coarse_first = pla && settings.levels_of_detail,
-          .settle = settling};
-}
-
 core::Result<Paradigm> paradigm_from(std::string_view name) {
   if (name == "pla") return Paradigm::kParallelLazyAmplification;
   if (name == "amplify") return Paradigm::kDataAmplification;

@@ -1,8 +1,5 @@
-// The whole frame, in order. Each system is a free function; what it reads and writes is what its
-// parameters in systems.hpp say. docs/architecture.md shows this list with it, and a test holds the
-// two together.
-#include "engine/scene/tick.hpp"
-
+// The whole frame, in order. Each system is a free function; its parameters say what it reads and
+// writes. docs/architecture.md shows this list with them, and a test holds the two together.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +8,7 @@
 #include <string_view>
 
 #include "engine/core/clock.hpp"
-#include "engine/scene/systems.hpp"
+#include "engine/scene/state.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -19,12 +16,12 @@ constexpr std::string_view kRenderSystem = "render", kSimulationSystem = "simula
 }  // namespace
 
 void build_tick(State& s) {
-  s.tick.provide(s.settings, s.facts, s.input, s.clock, s.camera, s.quality, s.daylight, s.editing,
-                 s.streaming, s.view, s.output, s.meshes, s.found, s.draws, s.counters, s.totals,
-                 s.trace, s.record, s.rules, s.pressure, s.assets, s.object_draws, s.light_draws,
-                 s.particle_draws, s.shown, s.simulation, s.simulation.step, s.events.shown,
-                 s.events.hidden, s.events.created, s.events.removed, s.events.landed,
-                 s.events.evicted, s.events.places_ready, s.foresight);
+  Events& events = s.events;
+  s.tick.provide(s.settings, s.rules, s.facts, s.input, s.clock, s.camera, s.pressure, s.quality,
+                 s.daylight, s.pending_edits, s.streaming, s.view, s.output, s.supply, s.meshes,
+                 s.draws, s.assets, s.object_draws, s.light_draws, s.particle_draws, s.shown,
+                 s.simulation, s.step, s.trace, s.telemetry, events.shown, events.hidden,
+                 events.created, events.removed, events.ready, events.evicted, events.places_ready);
   s.tick.add(kSimulationSystem, simulation_system);
   s.tick.add("input", input_system);
   s.tick.add("quality", quality_system);
@@ -41,9 +38,10 @@ void build_tick(State& s) {
   s.tick.add(kRenderSystem, render_system, ecs::RunsOn::kCallingThread);
   s.tick.add("events", events_system);
   s.tick.add("telemetry", telemetry_system);
-  s.simulation.systems.provide(s.facts, s.simulation.step, s.events.shown, s.events.hidden,
-                               s.events.created, s.events.removed, s.events.landed,
-                               s.events.evicted, s.events.places_ready);
+  for (const ecs::SystemInfo& system : s.tick.systems())
+    s.engine_systems.push_back(system.name);
+  s.simulation.systems.provide(s.facts, s.step, events.shown, events.hidden, events.created,
+                               events.removed, events.ready, events.evicted, events.places_ready);
 }
 
 std::vector<std::string> system_names(const State& state) {
@@ -57,7 +55,7 @@ std::vector<std::string> system_names(const State& state) {
 
 namespace {
 
-// What the renderer waited for, and what the device took for the latest frame that is known.
+// Adds the renderer's waits, and the device time of the latest frame whose time is known.
 void trace_frame(const render::FrameResult& frame, Tracing& trace) {
   const auto add = [&](telemetry::TraceLog::Name name, const render::Wait& wait) {
     if (wait.ms > 0)
@@ -85,19 +83,20 @@ void trace_tick(State& state) {
     log.add_span(state.trace.main, state.trace.systems[i], start_s,
                  start_s + systems[i].last_seconds, state.clock.tick);
   }
-  trace_frame(state.counters.frame, state.trace);
+  trace_frame(state.draws.frame, state.trace);
   const double now_s = core::monotonic_seconds();
-  log.add_value(state.trace.cache_bytes, now_s, static_cast<double>(state.record.cache_bytes));
-  log.add_value(state.trace.requests, now_s, state.record.requests_queued);
+  log.add_value(state.trace.cache_bytes, now_s,
+                static_cast<double>(state.telemetry.record.cache_bytes));
+  log.add_value(state.trace.requests, now_s, state.telemetry.record.requests_queued);
 }
 
-// Without waiting for the device and the display, which only drawing does. Systems of the
-// simulation have times of their own, which are not those of "simulation".
-void note_system_times(State& state) {
+// Measures the systems without waits for the device and the display. The time of "simulation"
+// excludes its systems, which have their own times.
+void measure_systems(State& state) {
   const std::vector<float>& step_ms = state.simulation.step_ms;
   state.system_ms.clear();
   for (const ecs::SystemInfo& system : state.tick.systems()) {
-    double elsewhere_ms = system.name == kRenderSystem ? state.record.wait_ms() : 0.0;
+    double elsewhere_ms = system.name == kRenderSystem ? state.telemetry.record.wait_ms() : 0.0;
     if (system.name == kSimulationSystem)
       elsewhere_ms = std::accumulate(step_ms.begin(), step_ms.end(), 0.0);
     const double ms = system.last_seconds * 1000.0 - elsewhere_ms;
@@ -106,7 +105,8 @@ void note_system_times(State& state) {
   state.system_ms.insert(state.system_ms.end(), step_ms.begin(), step_ms.end());
 }
 
-// Runs all systems. What one throws ends the flight with a sentence, except that memory ran out.
+// Runs all systems. An exception of a system ends the flight with an error; std::bad_alloc passes
+// through.
 void run_systems(State& state) {
   const auto fail = [&state](const char* what) {
     const std::string& outer = state.tick.threw();
@@ -129,14 +129,14 @@ void run_systems(State& state) {
 }  // namespace
 
 void tick(State& state) {
-  state.counters = {};
+  reset_counts(state);
   state.output.error.reset();
   state.clock.real_s = state.clock.read_real_s();
-  state.record = {};
+  state.telemetry.record = {};
   state.rules = rules_of(state.settings, false);
-  if (state.settings.modelers_yield) state.meshes.lower_priority();
+  if (state.settings.modelers_yield) state.supply.lower_priority();
   run_systems(state);
-  note_system_times(state);
+  measure_systems(state);
   if (state.trace.log != nullptr) trace_tick(state);
   ++state.clock.tick;
 }

@@ -6,9 +6,16 @@
 #include <cstdlib>
 #include <utility>
 
+#include "ecs/ecs.hpp"
 #include "engine/app/session.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
+#include "engine/scene/events.hpp"
+#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/frame/clock.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/systems.hpp"
 
 using namespace psygen;
 
@@ -89,10 +96,9 @@ int main(int argc, char** argv) {
   for (double now_s = 0; now_s < seconds; now_s += 1.0 / 30) {
     if (auto ok = (*session)->tick(trip->start, 1.0 / 30); !ok) return failed(ok.error());
   }
-  const scene::State& state = (*session)->scene().state();
-  const core::WorldPosition& at = state.camera.pose.position;
+  const scene::Scene& scene = (*session)->scene();
+  const core::WorldPosition& at = scene.camera().pose.position;
   std::printf("%llu steps, block %d, %zu models seen\n",
-              static_cast<unsigned long long>(state.simulation.step.index), at.block.x,
-              trip->models_seen);
+              static_cast<unsigned long long>(scene.step().index), at.block.x, trip->models_seen);
   return 0;
 }

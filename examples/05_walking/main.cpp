@@ -11,12 +11,16 @@
 #include <utility>
 
 #include "engine/app/session.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/input/actions.hpp"
+#include "engine/models/registry.hpp"
 #include "engine/physics/world.hpp"
 #include "engine/platform/window.hpp"
 #include "engine/query/world.hpp"
+#include "engine/scene/frame/clock.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/world/world.hpp"
 
 using namespace psygen;
 
@@ -111,8 +115,8 @@ int main(int argc, char** argv) {
   if (!session) return failed(session.error());
   if (auto ok = add_actions((*session)->actions(), game); !ok) return failed(ok.error());
 
-  scene::State& state = (*session)->scene().state();
-  game.query.emplace(state.facts.world, state.facts.registry);
+  scene::Scene& scene = (*session)->scene();
+  game.query.emplace(scene.world(), scene.registry());
   auto physics = physics::World::create(*game.query);
   if (!physics) return failed(physics.error());
   game.physics.emplace(std::move(*physics));
@@ -127,7 +131,7 @@ int main(int argc, char** argv) {
   Clock::time_point last = Clock::now();
   double dt_s = 1.0 / 60;
   while ((*session)->poll() && !(by_itself && (*session)->now_s() >= std::atof(argv[1]))) {
-    const auto drawn = (*session)->tick(eyes(game, state.simulation.step.share), dt_s);
+    const auto drawn = (*session)->tick(eyes(game, scene.step().share), dt_s);
     if (!drawn) return failed(drawn.error());
     const Clock::time_point now = Clock::now();
     if (!by_itself) dt_s = std::chrono::duration<double>(now - std::exchange(last, now)).count();

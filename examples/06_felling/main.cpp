@@ -4,11 +4,14 @@
 #include <cstdio>
 
 #include "engine/app/session.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/query/world.hpp"
 #include "engine/save/save_game.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/edits/edit_bytes.hpp"
+#include "engine/world/edits/edits.hpp"
 
 using namespace psygen;
 
@@ -49,7 +52,7 @@ core::Result<void> fell(const char* save_file, const char* picture) {
   options.headless = true;
   auto session = app::Session::create(options);
   if (!session) return tl::unexpected(session.error());
-  const scene::WorldFacts& facts = (*session)->scene().state().facts;
+  const scene::WorldFacts& facts = (*session)->scene().facts();
 
   auto save = save::SaveGame::open(save_file, save::identity_of(facts.world, facts.registry));
   if (!save) return tl::unexpected(save.error());

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/app/session.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/platform/input.hpp"
 #include "engine/scene/scene.hpp"

@@ -6,10 +6,18 @@
 #include <cstdio>
 #include <utility>
 
+#include "ecs/ecs.hpp"
 #include "engine/app/session.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
+#include "engine/models/registry.hpp"
 #include "engine/query/world.hpp"
+#include "engine/scene/frame/clock.hpp"
+#include "engine/scene/objects/assets.hpp"
+#include "engine/scene/objects/components.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/systems.hpp"
+#include "engine/world/world.hpp"
 
 using namespace psygen;
 
@@ -84,25 +92,25 @@ image::Image lattice() {
 }
 
 core::Result<void> build(app::Session& session, const core::CameraPose& pose) {
-  scene::State& state = session.scene().state();
-  const auto texture = state.assets.add_texture(lattice());
+  scene::Scene& scene = session.scene();
+  const auto texture = scene.assets().add_texture(lattice());
   if (!texture) return tl::unexpected(texture.error());
-  const auto wood = state.assets.add_material({.min_opacity = 0.5F, .base_texture = *texture});
-  const auto walls = state.assets.add_mesh(tower(), "tower");
-  const auto sails = state.assets.add_mesh(cross(), "sails");
+  const auto wood = scene.assets().add_material({.min_opacity = 0.5F, .base_texture = *texture});
+  const auto walls = scene.assets().add_mesh(tower(), "tower");
+  const auto sails = scene.assets().add_mesh(cross(), "sails");
   if (!wood) return tl::unexpected(wood.error());
   if (!walls) return tl::unexpected(walls.error());
   if (!sails) return tl::unexpected(sails.error());
-  query::World query(state.facts.world, state.facts.registry);
+  query::World query(scene.world(), scene.registry());
   for (int i = 0; i < 3; ++i) {
     core::WorldPosition at = pose.position;
     at.local += glm::dvec3(-14 + 20 * i, 0, -38 - 24 * i);
     const auto ground = query.ground(at);
     if (!ground) return tl::unexpected(ground.error());
     at.local.y = ground->height_m;
-    scene::spawn(state.entities, {.mesh = *walls}, {.position = at});
+    scene::spawn(scene.entities(), {.mesh = *walls}, {.position = at});
     at.local += glm::dvec3(0, 11, 3.6);  // the hub, in front of the tower
-    const auto mill = state.entities.create<Sails, scene::Transform, scene::Object>(1);
+    const auto mill = scene.entities().create<Sails, scene::Transform, scene::Object>(1);
     mill.column<Sails>()[0] = {.speed = 0.9 - 0.2 * i, .angle = 0.3 * i, .angle_before = 0.3 * i};
     mill.column<scene::Transform>()[0] = {.position = at};
     mill.column<scene::Object>()[0] = {.mesh = *sails, .material = *wood};

@@ -4,11 +4,19 @@
 #include <chrono>
 #include <cstdio>
 
+#include "ecs/ecs.hpp"
 #include "engine/app/session.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
+#include "engine/models/registry.hpp"
 #include "engine/prefab/prefab.hpp"
 #include "engine/query/world.hpp"
+#include "engine/scene/frame/clock.hpp"
+#include "engine/scene/objects/assets.hpp"
+#include "engine/scene/objects/components.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/systems.hpp"
+#include "engine/world/world.hpp"
 
 using namespace psygen;
 
@@ -16,12 +24,12 @@ namespace {
 
 core::Result<void> build(app::Session& session, prefab::Library& prefabs,
                          const core::CameraPose& pose) {
-  scene::State& state = session.scene().state();
+  scene::Scene& scene = session.scene();
   const auto file = core::data_file("windmill.glb");
   if (!file) return tl::unexpected(file.error());
-  const auto mill = prefabs.load(state.assets, *file);
+  const auto mill = prefabs.load(scene.assets(), *file);
   if (!mill) return tl::unexpected(mill.error());
-  query::World query(state.facts.world, state.facts.registry);
+  query::World query(scene.world(), scene.registry());
   for (int i = 0; i < 2; ++i) {
     scene::Transform where{.position = pose.position};
     where.position.local += glm::dvec3(-3 + 26 * i, 0, -22 - 34 * i);
@@ -29,10 +37,10 @@ core::Result<void> build(app::Session& session, prefab::Library& prefabs,
     if (!ground) return tl::unexpected(ground.error());
     where.position.local.y = ground->height_m;
     where.rotation = glm::angleAxis(0.5F - 0.9F * static_cast<float>(i), glm::vec3(0, 1, 0));
-    const ecs::Entity entity = prefabs.spawn(state.entities, *mill, where);
-    auto* instance = state.entities.get<prefab::Instance>(entity);
+    const ecs::Entity entity = prefabs.spawn(scene.entities(), *mill, where);
+    auto* instance = scene.entities().get<prefab::Instance>(entity);
     const prefab::Playback how{.from_s = 0.7 + i, .speed = 1.0F - 0.3F * static_cast<float>(i)};
-    if (auto ok = prefabs.play(*instance, "turn", state.simulation.step, how); !ok) return ok;
+    if (auto ok = prefabs.play(*instance, "turn", scene.step(), how); !ok) return ok;
   }
   return {};
 }

@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <utility>
 
+#include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/platform/window.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/scene.hpp"
 
 using namespace psygen;
@@ -32,7 +34,7 @@ core::Result<app::SessionOptions> Game::options() {
 
 core::Result<void> Game::start(app::Session& session) {
   if (auto added = add_actions(session.actions()); !added) return added;
-  const scene::WorldFacts& facts = session.scene().state().facts;
+  const scene::WorldFacts& facts = session.scene().facts();
   query_.emplace(facts.world, facts.registry);
   auto physics = physics::World::create(*query_);
   if (!physics) return tl::unexpected(physics.error());

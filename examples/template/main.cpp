@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "engine/scene/frame/clock.hpp"
 #include "engine/scene/scene.hpp"
 #include "game.hpp"
 
@@ -26,7 +27,7 @@ core::Result<void> play(const char* picture) {
   double dt_s = 1.0 / 60;
   while (session.poll() && (picture == nullptr || session.now_s() < 2)) {
     game.write_hud(session);
-    const double share = session.scene().state().simulation.step.share;
+    const double share = session.scene().step().share;
     if (auto ok = session.tick(game.eyes(share), dt_s); !ok) return ok;
     const Clock::time_point now = Clock::now();
     if (picture == nullptr) dt_s = std::chrono::duration<double>(now - last).count();

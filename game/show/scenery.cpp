@@ -6,6 +6,9 @@
 
 #include "engine/scene/objects/effects.hpp"
 #include "engine/scene/objects/particle_kinds.hpp"
+#include "engine/scene/objects/assets.hpp"
+#include "engine/world/world.hpp"
+#include "ecs/ecs.hpp"
 
 namespace cairns {
 namespace {
@@ -47,18 +50,18 @@ render::ParticleKind beacon_smoke() {
 }  // namespace
 
 core::Result<void> Scenery::open(app::Session& session) {
-  scene::State& state = session.scene().state();
-  clear_sky_ = state.facts.world.sky;
+  scene::Scene& scene = session.scene();
+  clear_sky_ = scene.world().sky;
   for (std::size_t kind = 0; kind < kKinds; ++kind) {
     shapes_[kind] = parts_of(static_cast<Kind>(kind));
     for (std::size_t part = 0; part < kParts; ++part) {
       if (shapes_[kind][part].mesh.indices.empty()) continue;
-      const auto mesh = state.assets.add_mesh(shapes_[kind][part].mesh, "creature");
+      const auto mesh = scene.assets().add_mesh(shapes_[kind][part].mesh, "creature");
       if (!mesh) return tl::unexpected(mesh.error());
       meshes_[kind][part] = *mesh;
     }
   }
-  ecs::World& world = state.entities;
+  ecs::World& world = scene.entities();
   smoke_ = scene::spawn_emitter(world, {.kind = beacon_smoke(), .visible = false}, {});
   glow_ = scene::spawn_emitter(world, {.kind = scene::sparks(), .visible = false}, {});
   beacon_light_ = scene::spawn_light(
@@ -72,20 +75,20 @@ core::Result<void> Scenery::open(app::Session& session) {
 
 void Scenery::update(app::Session& session, const Play& play, double share, double hour) {
   ++frame_;
-  scene::State& state = session.scene().state();
-  update_creatures(state, play, share);
-  update_fires(state, play);
-  update_beacon(state, play);
-  update_falling(state, play);
+  scene::Scene& scene = session.scene();
+  update_creatures(scene, play, share);
+  update_fires(scene, play);
+  update_beacon(scene, play);
+  update_falling(scene, play);
   update_weather(session, play, hour);
   const core::CameraPose eyes = play.walker().eyes(share);
-  state.entities.get<scene::Transform>(lantern_)->position =
+  scene.entities().get<scene::Transform>(lantern_)->position =
       at_end_of(eyes.position, 0.6 * glm::dvec3(core::forward_of(eyes)), play.block_m());
-  state.entities.get<scene::PointLight>(lantern_)->visible = play.progress().lantern;
+  scene.entities().get<scene::PointLight>(lantern_)->visible = play.progress().lantern;
 }
 
-void Scenery::update_creatures(scene::State& state, const Play& play, double share) {
-  ecs::World& world = state.entities;
+void Scenery::update_creatures(scene::Scene& scene, const Play& play, double share) {
+  ecs::World& world = scene.entities();
   for (const Creature& c : play.creatures().all()) {
     const auto kind = static_cast<std::size_t>(c.kind);
     Shown& shown = shown_[c.seed];
@@ -116,8 +119,8 @@ void Scenery::update_creatures(scene::State& state, const Play& play, double sha
   });
 }
 
-void Scenery::update_fires(scene::State& state, const Play& play) {
-  ecs::World& world = state.entities;
+void Scenery::update_fires(scene::Scene& scene, const Play& play) {
+  ecs::World& world = scene.entities();
   const double time_s = play.progress().time_s;
   for (const Fire& fire : play.progress().fires) {
     if (fire.until_s < time_s) continue;
@@ -144,36 +147,36 @@ void Scenery::update_fires(scene::State& state, const Play& play) {
 }
 
 // Marks the next cairn with smoke by day and light by night.
-void Scenery::update_beacon(scene::State& state, const Play& play) {
+void Scenery::update_beacon(scene::Scene& scene, const Play& play) {
   const auto next = play.next_cairn();
   const core::WorldPosition at =
       next ? raised(play.route().cairns[*next], kBeaconM) : core::WorldPosition();
   const bool night = play.is_night();
   for (const ecs::Entity entity : {smoke_, glow_, beacon_light_})
-    state.entities.get<scene::Transform>(entity)->position = at;
-  state.entities.get<scene::ParticleEmitter>(smoke_)->visible = next && !night;
-  state.entities.get<scene::ParticleEmitter>(glow_)->visible = next && night;
-  state.entities.get<scene::PointLight>(beacon_light_)->visible = next && night;
+    scene.entities().get<scene::Transform>(entity)->position = at;
+  scene.entities().get<scene::ParticleEmitter>(smoke_)->visible = next && !night;
+  scene.entities().get<scene::ParticleEmitter>(glow_)->visible = next && night;
+  scene.entities().get<scene::PointLight>(beacon_light_)->visible = next && night;
 }
 
-void Scenery::take_away(const Falling& tree, scene::State& state) {
-  state.entities.destroy(std::array{tree.entity});
-  state.assets.remove_mesh(tree.mesh);
+void Scenery::take_away(const Falling& tree, scene::Scene& scene) {
+  scene.entities().destroy(std::array{tree.entity});
+  scene.assets().remove_mesh(tree.mesh);
 }
 
-void Scenery::update_falling(scene::State& state, const Play& play) {
+void Scenery::update_falling(scene::Scene& scene, const Play& play) {
   std::erase_if(falling_, [&](const Falling& tree) {
     const double age_s = play.progress().time_s - tree.since_s;
     const double share = std::clamp(age_s / kFallS, 0.0, 1.0);
     const auto angle = static_cast<float>(1.5 * share * share * share);
     const glm::vec3 axis(static_cast<float>(std::cos(tree.yaw)), 0,
                          static_cast<float>(std::sin(tree.yaw)));
-    if (auto* there = state.entities.get<scene::Transform>(tree.entity))
+    if (auto* there = scene.entities().get<scene::Transform>(tree.entity))
       there->rotation = glm::angleAxis(-angle, axis);
     const bool gone = age_s > kFallS + kLiesS || age_s < 0;
-    if (gone) take_away(tree, state);
+    if (gone) take_away(tree, scene);
     if (age_s > kFallS + kLiesS - 1 && !gone)
-      state.entities.get<scene::Object>(tree.entity)->visible = false;
+      scene.entities().get<scene::Object>(tree.entity)->visible = false;
     return gone;
   });
 }
@@ -190,12 +193,12 @@ void Scenery::update_weather(app::Session& session, const Play& play, double hou
   // Eyes adapt to the night.
   sky.exposure *= 1 + kNightEyes * std::clamp((std::abs(hour - 12) - kDuskH) / 1.5, 0.0, 1.0);
   (void)session.scene().set_sky(sky);
-  scene::State& state = session.scene().state();
+  scene::Scene& scene = session.scene();
   const bool cold = play.progress().feet.local.y > kSnowLineM;
   const auto wet = static_cast<float>(weather.wet);
   const glm::vec3 wind(weather.wind);
   const auto fall = [&](ecs::Entity entity, render::ParticleKind kind, bool here) {
-    auto* emitter = state.entities.get<scene::ParticleEmitter>(entity);
+    auto* emitter = scene.entities().get<scene::ParticleEmitter>(entity);
     emitter->visible = here && wet > 0.02F;
     kind.first_colour.w *= wet;
     kind.last_colour.w *= wet;
@@ -207,26 +210,26 @@ void Scenery::update_weather(app::Session& session, const Play& play, double hou
 
 void Scenery::tell(app::Session& session, const Happening& happening, const Play& play) {
   if (happening.kind != Happening::Kind::kFelled || !happening.tree) return;
-  scene::State& state = session.scene().state();
+  scene::Scene& scene = session.scene();
   const models::ModelType& type = play.registry()[happening.tree->model];
-  const auto mesh = state.assets.add_model(type.name(), happening.tree->parameters, 0, 2);
+  const auto mesh = scene.assets().add_model(type.name(), happening.tree->parameters, 0, 2);
   if (!mesh) return;
   Falling tree;
   tree.yaw = play.walker().yaw();
   tree.since_s = play.progress().time_s;
   tree.mesh = *mesh;
-  tree.entity = scene::spawn(state.entities, {.mesh = *mesh}, {.position = happening.at});
+  tree.entity = scene::spawn(scene.entities(), {.mesh = *mesh}, {.position = happening.at});
   falling_.push_back(tree);
 }
 
 void Scenery::clear(app::Session& session) {
-  ecs::World& world = session.scene().state().entities;
+  ecs::World& world = session.scene().entities();
   for (const auto& [seed, shown] : shown_)
     world.destroy(shown.parts);
   for (const auto& [place, flame] : flames_)
     world.destroy(std::array{flame.fire, flame.smoke, flame.light});
   for (const Falling& tree : falling_)
-    take_away(tree, session.scene().state());
+    take_away(tree, session.scene());
   for (const ecs::Entity entity : {smoke_, glow_, rain_, snow_})
     world.get<scene::ParticleEmitter>(entity)->visible = false;
   for (const ecs::Entity entity : {beacon_light_, lantern_})

@@ -6,7 +6,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "ecs/ecs.hpp"
 #include "engine/app/session.hpp"
+#include "engine/scene/objects/components.hpp"
 #include "engine/scene/scene.hpp"
 #include "game/play/play.hpp"
 #include "game/show/shapes.hpp"
@@ -40,12 +42,12 @@ class Scenery {
     scene::MeshId mesh;
     double yaw = 0, since_s = 0;
   };
-  void update_creatures(scene::State& state, const Play& play, double share);
-  void update_fires(scene::State& state, const Play& play);
-  void update_beacon(scene::State& state, const Play& play);
+  void update_creatures(scene::Scene& scene, const Play& play, double share);
+  void update_fires(scene::Scene& scene, const Play& play);
+  void update_beacon(scene::Scene& scene, const Play& play);
   void update_weather(app::Session& session, const Play& play, double hour);
-  void update_falling(scene::State& state, const Play& play);
-  static void take_away(const Falling& tree, scene::State& state);
+  void update_falling(scene::Scene& scene, const Play& play);
+  static void take_away(const Falling& tree, scene::Scene& scene);
 
   std::array<std::array<Part, kParts>, kKinds> shapes_;
   std::array<std::array<scene::MeshId, kParts>, kKinds> meshes_;

@@ -2,6 +2,7 @@
 // recorded input, settings, and rejected files.
 #include <fstream>
 
+#include "engine/scene/objects/assets.hpp"
 #include "game/show/scenery.hpp"
 #include "tests/game/game_fixture.hpp"
 
@@ -86,7 +87,7 @@ TEST_F(GameSession, FelledTreesReleaseTheirMeshes) {
   tree.parameters = models::default_parameters(play.registry()[tree.model]);
   const Happening felled{
       .kind = Happening::Kind::kFelled, .at = play.progress().feet, .tree = tree};
-  const scene::Assets& assets = run.session->scene().state().assets;
+  const scene::Assets& assets = run.session->scene().assets();
   const std::size_t before = assets.mesh_count();
   scenery.tell(*run.session, felled, play);
   EXPECT_EQ(assets.mesh_count(), before + 1);

@@ -68,11 +68,6 @@ INSIDE = {
     "engine/models/tree": {"kit"},
     "engine/models/rock": {"kit"},
     "engine/models/grass": {"kit"},
-    "engine/scene/systems": {"nodes", "draws", "quality", "objects"},
-    "engine/scene/objects": set(),
-    "engine/scene/nodes": set(),
-    "engine/scene/draws": set(),
-    "engine/scene/quality": set(),
     "engine/world": set(),
     "engine/world/files": set(),
     "engine/world/far": set(),
@@ -86,6 +81,8 @@ NOT_UP = {"engine/models/kit"}
 ORDERED_ROOMS = {
     "engine/render": (["device", "memory", "text", "textures", "frame", "meshes", "passes"],
                       {"types", "preset", "particles", "hud_drawing"}),
+    "engine/scene": (["facts", "frame", "nodes", "view", "objects", "meshes", "draws"],
+                     {"components", "events", "places", "settings", "statistics", "systems"}),
 }
 
 # library header -> the only folders that may include it
@@ -137,6 +134,10 @@ def room_violation(path, name):
     return None
 
 
+# header -> the only folders that may include it
+PRIVATE = {"engine/scene/state.hpp": ("engine/scene/", "tests/engine/scene/", "tests/engine/app/", "tests/bench/scene/")}
+
+
 def order_violation(path, name):
     """The same for a layer with ordered rooms."""
     layer = folder_of(path)
@@ -174,6 +175,8 @@ def violations(path, lines):
             found.append(f"{where}: {reason} ({name})")
         if reason := order_violation(path, name):
             found.append(f"{where}: {reason} ({name})")
+        if not path.startswith(PRIVATE.get(name, "")):
+            found.append(f"{where}: {name} is private")
         if not target and match.group(1) == '"' and name.split("/")[0] in ("engine", "tests", "tools"):
             found.append(f"{where}: {name} is not in a layer that {layer} may know")
         for pattern, folders in ONLY_IN.items():
@@ -207,11 +210,17 @@ def self_test():
         "engine/render/passes/a.cpp": '#include "engine/render/renderer.hpp"',
         "engine/render/types.hpp": '#include "engine/render/device/vulkan.hpp"',
         "engine/render/attic/a.cpp": '#include "engine/render/types.hpp"',
+        "engine/scene/view/a.hpp": '#include "engine/scene/draws/ground.hpp"',
+        "engine/scene/draws/a.cpp": '#include "engine/scene/state.hpp"',
+        "engine/scene/events.hpp": '#include "engine/scene/view/view.hpp"',
+        "engine/app/b.cpp": '#include "engine/scene/state.hpp"',
     }
     for path, line in bad.items():
         assert violations(path, [line]), f"not noticed: {path}: {line}"
     assert not violations("engine/world/a.cpp", ['#include "engine/models/registry.hpp"'])
     assert not violations("engine/synthesis/a.cpp", ["#include <thread>"])
+    assert not violations("engine/scene/draws/a.cpp", ['#include "engine/scene/view/view.hpp"'])
+    assert not violations("engine/scene/tick.cpp", ['#include "engine/scene/state.hpp"'])
     for name in ("kit/packing.hpp", "model_type.hpp", "tree/plan.hpp"):
         assert not violations("engine/models/tree/a.cpp", [f'#include "engine/models/{name}"'])
     for path, name in (("frame/a.cpp", "memory/memory.hpp"), ("frame/a.cpp", "types.hpp"),
@@ -231,6 +240,12 @@ def main():
                 scanned += 1
                 found += violations(file.relative_to(root).as_posix(),
                                     file.read_text(encoding="utf-8").splitlines())
+    for file in sorted((root / "tests").rglob("*.?pp")):
+        path = file.relative_to(root).as_posix()
+        for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+            match = INCLUDE.match(line)
+            if match and not path.startswith(PRIVATE.get(match.group(2), "")):
+                found.append(f"{path}:{number}: {match.group(2)} is private")
     print("\n".join(found) or f"layers: {scanned} files, no forbidden arrow")
     assert scanned > 20, "the scan found too few files"
     return 1 if found else 0

@@ -6,17 +6,17 @@
 #include <glm/geometric.hpp>
 
 #include "engine/scene/draws/parts.hpp"
-#include "engine/scene/draws/seen.hpp"
+#include "engine/scene/view/visibility.hpp"
 
 namespace psygen::scene {
 namespace {
 
 using models::TerrainTiles;
 
-// Which tiles of a block are fine. So are all skirts: they have every vertex of the border.
+// The fine tiles of a block. All skirts are fine: they have every vertex of the border.
 class FineTiles {
  public:
-  // `skirts`: the sides (TerrainTiles::Sides) that have some.
+  // `skirts`: the sides (TerrainTiles::Sides) with skirts.
   FineTiles(int side, std::uint8_t skirts) {
     for (int i = 0; i < side; ++i) {
       set(i, -1, (skirts & TerrainTiles::kNorth) != 0);
@@ -27,7 +27,7 @@ class FineTiles {
   }
   void set(int column, int row, bool fine) { fine_[place(column, row)] = fine; }
   bool fine(int column, int row) const { return fine_[place(column, row)]; }
-  // The sides of a tile that it shares with what is fine.
+  // The sides on which a tile borders fine tiles or skirts.
   std::uint8_t fine_sides(int column, int row) const {
     const std::size_t at = place(column, row);
     return static_cast<std::uint8_t>(
@@ -45,7 +45,7 @@ class FineTiles {
 
 using Parts = DrawParts<render::TerrainDraw>;
 
-// Seen from above.
+// Distance in the horizontal plane.
 float distance_m(const core::Bounds& box) {
   const glm::vec3 nearest = glm::clamp(glm::vec3(0.0F), box.min, box.max);
   return glm::length(glm::vec2(nearest.x, nearest.z));
@@ -59,15 +59,15 @@ std::uint32_t bit(int tile) {
   return 1U << static_cast<unsigned>(tile);
 }
 
-// The sides (TerrainTiles::Sides) with skirts: those that show their outside, with which a gap
-// beside a tile that is drawn is closed, or all where all tiles are drawn.
+// The sides (TerrainTiles::Sides) with visible skirts: those that show their outside and close gaps
+// beside drawn tiles; all of them if all tiles are drawn.
 std::uint8_t sides_with_skirts(const NodeTiles& tiles, std::uint32_t in_view) {
   if (in_view == kAllTiles) return TerrainTiles::kAll;
   const int side = tiles.grid.tiles_per_side();
   const core::Bounds first = tiles.box(0, 0), last = tiles.box(side - 1, side - 1);
   struct Side {
     bool faces_camera;
-    int tile, step;  // of the tiles along it: the first, from one to the next
+    int tile, step;  // of the tiles along the side: the first one, and the step to the next
   };
   const bool north = first.min.z > 0.0F, east = last.max.x < 0.0F;
   const bool south = last.max.z<0.0F, west = first.min.x> 0.0F;
@@ -103,14 +103,14 @@ core::Bounds NodeTiles::box(int column, int row) const {
   const auto line = [&](int i) { return static_cast<float>(grid.tile_line(i)) * step_m; };
   const auto tile = static_cast<std::size_t>(row * grid.tiles_per_side() + column);
   return {corner + glm::vec3(line(column), low_m, line(row)),
-          corner + glm::vec3(line(column + 1), relief.top_m[tile], line(row + 1))};
+          corner + glm::vec3(line(column + 1), occluder.top_m[tile], line(row + 1))};
 }
 
 std::uint32_t tiles_in_view(const NodeTiles& tiles, const View& view) {
   const int side = tiles.grid.tiles_per_side();
   std::uint32_t in_view = 0;
   for (int i = 0; i < side * side; ++i)
-    in_view |= can_be_seen(tiles.box(i % side, i / side), view) ? bit(i) : 0;
+    in_view |= may_be_visible(tiles.box(i % side, i / side), view) ? bit(i) : 0;
   return in_view;
 }
 

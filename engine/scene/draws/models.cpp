@@ -1,42 +1,43 @@
 #include "engine/scene/draws/models.hpp"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 
-#include "engine/scene/draws/mesh_parts.hpp"
-#include "engine/scene/draws/missing.hpp"
-#include "engine/scene/draws/seen.hpp"
+#include "engine/scene/draws/missing_coverage.hpp"
+#include "engine/scene/draws/parts.hpp"
+#include "engine/scene/view/visibility.hpp"
 
 namespace psygen::scene {
 namespace {
 
 // A row of the columns of a model.
 struct ModelRow {
-  const Placed& placed;
-  const Demand& demand;
+  const MeshPlacement& placed;
+  const MeshDemand& demand;
   const Mesh& mesh;
   Fading& fading;
-  const MeshParts* parts;      // of a merged mesh; null for a single model
-  const MeshParts* old_parts;  // … of what it takes the place of
+  const MeshParts* parts;      // of a merged mesh; null for an individual model
+  const MeshParts* old_parts;  // of the mesh that it replaces
 };
 
-// visit(row) for all models of a node.
+// Calls visit(row) for all models of a node.
 template <class Visit>
 void each_model(const RenderQuery& entities, const ecs::Children& children, bool merged,
                 const Visit& visit) {
-  entities.each_of<const Placed, const Demand, const Mesh, Fading>(
+  entities.each_of<const MeshPlacement, const MeshDemand, const Mesh, Fading>(
       entities.children(children),
       [&](auto rows, auto placed, auto demands, auto meshes, auto fading) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
           const bool replaces = merged && fading[i].old_mesh;
           visit(ModelRow{placed[i], demands[i], meshes[i], fading[i],
                          merged ? entities.get<MeshParts>(rows[i]) : nullptr,
-                         replaces ? &entities.get<OldParts>(rows[i])->parts : nullptr});
+                         replaces ? &entities.get<ReplacedParts>(rows[i])->parts : nullptr});
         }
       });
 }
 
-// Adds `draw`, of which mesh, share and colour are set. Returns whether anything can be seen.
-bool add_mesh(const ModelGround& ground, const View& view, const Placed& placed,
+// Adds `draw`, whose mesh, fade and colour are set. Returns true if any part may be visible.
+bool add_mesh(const ModelGround& ground, const View& view, const MeshPlacement& placed,
               const MeshParts* parts, render::MeshDraw draw, std::vector<render::MeshDraw>& draws) {
   draw.origin = ground.corner + placed.position;
   draw.box_centre = placed.box_centre;
@@ -50,13 +51,13 @@ bool add_mesh(const ModelGround& ground, const View& view, const Placed& placed,
     draws.push_back(draw);
     return true;
   }
-  // What is not in the picture may cast a shadow into it.
+  // A model out of view may cast a shadow into the frame.
   return add_parts(*parts, ground.shadows ? nullptr : &view, *ground.sun, ground.side_m, draw,
                    draws);
 }
 
-// Single models have levels of their own.
-std::uint32_t colour_at(const ModelGround& ground, const Demand& demand, std::uint8_t level) {
+// Individual models show their own LOD.
+std::uint32_t colour_at(const ModelGround& ground, const MeshDemand& demand, std::uint8_t level) {
   DrawFacts facts = ground.node;
   if (facts.level == 0) {
     facts.level = level;
@@ -65,7 +66,7 @@ std::uint32_t colour_at(const ModelGround& ground, const Demand& demand, std::ui
   return colour_of(ground.shown, facts);
 }
 
-// The mesh that the model has. Returns whether anything of it can be seen.
+// Adds the present mesh of a model. Returns true if any part may be visible.
 bool add_present(const ModelGround& ground, const View& view, const ModelRow& model, float fade,
                  DrawLists& draws) {
   render::MeshDraw draw;
@@ -79,7 +80,7 @@ bool add_present(const ModelGround& ground, const View& view, const ModelRow& mo
   return true;
 }
 
-// What the mesh replaces, in the pixels that it leaves out.
+// Adds the replaced mesh, in the pixels that the present one leaves out.
 void add_replaced(const ModelGround& ground, const View& view, const ModelRow& model,
                   DrawLists& draws) {
   const Fading& fading = model.fading;
@@ -93,33 +94,34 @@ void add_replaced(const ModelGround& ground, const View& view, const ModelRow& m
     draws.meshes.push_back(fading.old_mesh);
 }
 
-// Returns whether anything of it can be seen.
+// Adds a model that is drawn. Returns true if any part may be visible.
 bool add_coming(const ModelGround& ground, const View& view, const ModelRow& model, bool fades_in,
                 DrawLists& draws) {
-  const float share = come(model.fading, ground.step, fades_in);
+  const float share = advance_fade_in(model.fading, ground.step, fades_in);
   if (!add_present(ground, view, model, share, draws)) return false;
   if (model.fading.old_mesh) add_replaced(ground, view, model, draws);
   return true;
 }
 
-// Returns whether anything of it is left.
+// Adds a model that fades out. Returns true if any pixel is left.
 bool add_going(const ModelGround& ground, const View& view, const ModelRow& model,
                DrawLists& draws) {
   const bool there = model.demand.drawn_level != kNoLevel;
   const glm::vec3 foot = ground.corner + model.placed.position;
-  if (!there || !mesh_can_be_seen(model.mesh.tight, foot, view)) return false;
-  const float share = go(model.fading, ground.step);
+  if (!there || !mesh_may_be_visible(model.mesh.tight, foot, view)) return false;
+  const float share = advance_fade_out(model.fading, ground.step);
   return share > 0 && add_present(ground, view, model, share - 1.0F, draws);
 }
 
 }  // namespace
 
-void add_models(const ModelGround& ground, NodeEntry entry, bool twice, const Camera& camera,
-                const View& view, const RenderQuery& entities, const ecs::Children& children,
-                DrawLists& draws, Counters& counters) {
+void add_models(const ModelGround& ground, NodeEntry entry, bool twice,
+                const RenderContext& context, const RenderQuery& entities,
+                const ecs::Children& children, DrawLists& draws) {
+  const View& view = context.view;
   const bool merged = ground.node.level > 0;
   each_model(entities, children, merged, [&](const ModelRow& model) {
-    const Demand& demand = model.demand;
+    const MeshDemand& demand = model.demand;
     if (demand.in_view_tick != ground.step.tick) return;
     if (demand.wanted_level == kNoLevel) {  // too small by now
       add_going(ground, view, model, draws);
@@ -129,14 +131,14 @@ void add_models(const ModelGround& ground, NodeEntry entry, bool twice, const Ca
     const bool appears = entry == NodeEntry::kStays && demand.entered_tick != ground.step.tick;
     const bool fades_in = appears || entry == NodeEntry::kReplaces;
     if (!hole && !add_coming(ground, view, model, fades_in, draws)) return;
-    count_seen(camera,
-               {.centre = ground.corner + model.placed.position + model.placed.middle,
-                .radius_m = model.placed.radius_m,
-                .hole = hole,
-                .coarse = !hole && demand.drawn_level > demand.wanted_level + 1,
-                .twice = twice && merged,
-                .awaits = demand.failed_levels == 0},
-               counters);
+    count_visible(context.camera,
+                  {.centre = ground.corner + model.placed.position + model.placed.middle,
+                   .radius_m = model.placed.radius_m,
+                   .hole = hole,
+                   .coarse = !hole && demand.drawn_level > demand.wanted_level + 1,
+                   .twice = twice && merged,
+                   .awaits = demand.failed_levels == 0},
+                  draws.counts);
   });
 }
 

@@ -2,18 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace psygen::scene {
+namespace {
+
+template <class Event>
+void emit_difference(std::span<const ShownNode> those, std::span<const ShownNode> others,
+                     ecs::EventQueue<Event>& queue) {
+  if (!queue.has_readers()) return;
+  std::vector<ShownNode> gone;
+  std::ranges::set_difference(those, others, std::back_inserter(gone), {}, &ShownNode::at,
+                              &ShownNode::at);
+  for (const ShownNode& node : gone)
+    queue.emit(Event{node.entity, node.at});
+}
+
+}  // namespace
 
 void find_ready(const View& view, const RenderQuery& entities, DrawLists& draws) {
   const std::vector<visibility::CutNode>& cut = view.cut.nodes;
   draws.ready.assign(cut.size(), 0);
-  std::vector<std::uint8_t>& covered = draws.scratch;  // by the node or an ancestor
+  std::vector<std::uint8_t>& covered = draws.scratch;  // by the node itself or an ancestor
   covered.assign(cut.size(), 0);
   for (std::size_t i = 0; i < cut.size(); ++i) {
     const bool above = cut[i].parent != visibility::kNoNode && covered[cut[i].parent] != 0;
-    const Demand* demand = entities.get<Demand>(draws.entities[i]);
+    const MeshDemand* demand = entities.get<MeshDemand>(draws.entities[i]);
     const bool ground = demand != nullptr && demand->drawn_level != kNoLevel;
     draws.ready[i] = ground && (view.ready[i] != 0 || !above) ? 1 : 0;
     covered[i] = above || draws.ready[i] != 0 ? 1 : 0;
@@ -57,6 +72,19 @@ float nearest_m(const View& view, std::uint32_t index, float highest_m) {
     if (cut[i].leaf && view.in_view[i] != 0) nearest = std::min(nearest, cut[i].distance_m);
   }
   return std::hypot(nearest, std::max(-highest_m, 0.0F));
+}
+
+void events_system(const View& view, const DrawLists& draws, ShownNodes& shown,
+                   ecs::EventQueue<NodeShown>& nodes_shown,
+                   ecs::EventQueue<NodeHidden>& nodes_hidden) {
+  if (!nodes_shown.has_readers() && !nodes_hidden.has_readers()) return shown.nodes.clear();
+  std::vector<ShownNode> now;
+  for (const std::uint32_t i : draws.shown)
+    now.push_back({draws.entities[i], view.cut.nodes[i].node});
+  std::ranges::sort(now, {}, &ShownNode::at);
+  emit_difference(now, shown.nodes, nodes_shown);
+  emit_difference(shown.nodes, now, nodes_hidden);
+  shown.nodes = std::move(now);
 }
 
 }  // namespace psygen::scene

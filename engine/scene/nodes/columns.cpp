@@ -9,7 +9,7 @@
 namespace psygen::scene {
 namespace {
 
-// The level that is a picture; coarser ones of the type are not used then. 0: none is.
+// The level that is an impostor; the type's coarser levels are not used then. 0: none.
 int picture_level_of(const WorldFacts& facts, const world::Placement& placement) {
   const models::ModelIndex model = placement.model;
   if (model >= facts.quad_models.size() || facts.quad_models[model] == 0) return 0;
@@ -26,7 +26,7 @@ MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
   const int picture_level = picture_level_of(facts, placement);
   if (picture_level > 0) last_level = picture_level;
   MeshColumns columns{placed_at(block, placement.position, type.bounds(placement.parameters),
-                                facts.usual_boxes[placement.model]),
+                                facts.typical_bounds[placement.model]),
                       detail_of(type, placement.parameters, first_level, last_level),
                       {placement.parameters, models::parameters_hash(type, placement.parameters),
                        placement.index, placement.model, static_cast<std::uint16_t>(first_level)}};

@@ -1,26 +1,26 @@
-// What a model, or the ground of a node, is as a mesh entity: the values of the columns that both
-// have. For entities, and for places that have none yet (readiness.hpp). Pure functions.
+// The column values of a mesh entity: a model, or the ground of a node. For entities, and for
+// requested places without entities (meshes/requested_places.hpp). Pure functions.
 #pragma once
 
 #include <climits>
 
 #include "engine/scene/components.hpp"
-#include "engine/scene/state.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::scene {
 
 struct MeshColumns {
-  Placed placed;
-  Detail detail;
-  Source source;
+  MeshPlacement placed;
+  LodErrors detail;
+  MeshSource source;
 };
-// Of the levels of the type only these are used; where there are pictures, none beyond the picture.
+// Uses only these levels of the type, and none beyond an impostor.
 MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
                        const world::Placement& placement, int first_level = 0,
                        int last_level = INT_MAX);
 
-// The one mesh of all models on a node of level 1 or above.
+// The merged mesh of a node of level 1 or above.
 world::Placement merged_placement(const WorldFacts& facts, const visibility::NodeCoord& at);
 
 }  // namespace psygen::scene

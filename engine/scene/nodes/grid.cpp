@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "engine/scene/facts/world_facts.hpp"
+
 namespace psygen::scene {
 
 NodeGrid::NodeGrid(std::uint8_t level, std::uint32_t radius)
@@ -12,8 +14,8 @@ NodeGrid::NodeGrid(std::uint8_t level, std::uint32_t radius)
       centre_{{}, level},
       cells_(std::size_t{mask_ + 1} * (mask_ + 1)) {}
 
-// Position in the window along one axis; beyond side − 1 for what lies outside. Coordinates have
-// 32 − level bits.
+// Position in the window along one axis; above side − 1 for nodes outside. Coordinates have 32 −
+// level bits.
 std::uint32_t NodeGrid::column_of(std::int32_t index, std::int32_t centre) const {
   const std::uint32_t column =
       static_cast<std::uint32_t>(index) - static_cast<std::uint32_t>(centre) + radius_;
@@ -46,6 +48,14 @@ ecs::Entity& NodeGrid::entity_of(core::BlockCoord coord) {
 }
 ecs::Entity NodeGrid::entity_of(core::BlockCoord coord) const {
   return cells_[cell_of(coord)];
+}
+
+std::vector<NodeGrid> node_grids(const SceneSettings& settings, const WorldFacts& facts) {
+  std::vector<NodeGrid> grids;
+  for (std::size_t k = 0; k < facts.levels.size(); ++k)
+    grids.emplace_back(static_cast<std::uint8_t>(k),
+                       largest_radius(facts.world, facts.levels, settings, k));
+  return grids;
 }
 
 }  // namespace psygen::scene

@@ -1,7 +1,6 @@
-// The window of nodes of one level around the camera that may exist as entities: a square of side ×
-// side nodes, as large as is needed at the moment, in a table addressed modulo a power of two, so
-// that moving the window touches only what enters and leaves, and node coordinates may wrap. Holds
-// handles, not data. Main thread.
+// The window of nodes of one level that may exist as entities: a square of side × side nodes around
+// the camera. Its table is addressed modulo a power of two, so moving the window touches only nodes
+// that enter or leave it, and node coordinates may wrap. Holds handles, not data. Main thread.
 #pragma once
 
 #include <cstdint>
@@ -12,30 +11,33 @@
 
 namespace psygen::scene {
 
+struct SceneSettings;
+struct WorldFacts;
+
 // The window of one level.
 class NodeGrid {
  public:
-  // A window of 2·radius + 1 nodes of `level` a side, which is the largest that it can have.
+  // A window of 2 · radius + 1 nodes of `level` along each side, its maximum size.
   explicit NodeGrid(std::uint8_t level = 0, std::uint32_t radius = 0);
 
-  // The level, and how many nodes the window reaches from its middle and across.
+  // The level, the number of nodes from the middle to a side, and the side.
   std::uint8_t level() const { return level_; }
   std::uint32_t radius() const { return radius_; }
   std::uint32_t side() const { return 2 * radius_ + 1; }
-  // At most max_radius(). Nodes outside the new window are to be destroyed before anything asks for
-  // their place in it.
+  // Sets the radius, at most max_radius(). Destroy nodes outside the new window before any look-up
+  // of their cells.
   void set_radius(std::uint32_t radius) { radius_ = radius; }
   std::uint32_t max_radius() const { return max_radius_; }
   visibility::NodeCoord centre() const { return centre_; }
   void set_centre(core::BlockCoord block) { centre_ = visibility::node_of(block, level_); }
 
-  // The node at window position (column, row), 0 … side − 1 each.
+  // The node at window position (column, row), each 0 … side − 1.
   visibility::NodeCoord node_at(std::uint32_t column, std::uint32_t row) const;
-  // row · side + column of a node of the window.
+  // row · side + column of a node in the window.
   std::size_t window_index(core::BlockCoord coord) const;
   // True if the node lies in the window.
   bool contains(core::BlockCoord coord) const;
-  // The entity kept for a node of the window; null if there is none.
+  // The entity of a node in the window; null if there is none.
   ecs::Entity& entity_of(core::BlockCoord coord);
   ecs::Entity entity_of(core::BlockCoord coord) const;
 
@@ -49,5 +51,8 @@ class NodeGrid {
   visibility::NodeCoord centre_;
   std::vector<ecs::Entity> cells_;
 };
+
+// The windows of a world, one for each level, at their largest.
+std::vector<NodeGrid> node_grids(const SceneSettings& settings, const WorldFacts& facts);
 
 }  // namespace psygen::scene

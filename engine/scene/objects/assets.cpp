@@ -10,7 +10,7 @@ using core::ErrorCode;
 
 namespace {
 
-// Of ecs::kNullEntity: no entity that a finished mesh lands in.
+// The owner of meshes that belong to no entity.
 constexpr std::uint64_t kNoOwner = ecs::kNullEntity.index;
 
 }  // namespace
@@ -29,7 +29,7 @@ core::Result<void> Assets::follow(models::Registry& registry) {
   for (ObjectMesh& mesh : meshes_) {
     for (std::uint32_t i = 0; i < mesh.level_count; ++i) {
       ObjectMeshLevel& level = mesh.levels[i];
-      removed_.push_back(level.key);  // the cache has it under that name
+      removed_.push_back(level.key);  // the cache may have it under this key
       level.key.model = level.key.model == copied ? copied_ : synthesised_;
       level.handle = {};
       level.ready = level.failed = false;

@@ -1,7 +1,7 @@
 // The meshes, textures and materials of a scene's objects, by number. They live as long as the
-// scene, meshes until they are removed. The vertices of copied meshes stay with the host; what is
-// drawn lies in the geometry memory, is charged to the byte budget and may be evicted and copied
-// again. Main thread only.
+// scene, meshes until they are removed. The host keeps the vertices of copied meshes. Drawn copies
+// lie in the geometry memory, count against the byte budget, and may be evicted and copied again.
+// Main thread only.
 #pragma once
 
 #include <array>
@@ -20,15 +20,15 @@
 
 namespace psygen::scene {
 
-// One level of detail of a mesh, as objects_system keeps it.
+// One LOD of a mesh, with the state that objects_system() keeps.
 struct ObjectMeshLevel {
   synthesis::MeshKey key;
   synthesis::MeshHandle handle;
   core::GeometryRange range;  // if `ready`
   float error_m = 0;
-  float nearest_m = 0;                 // distance of the nearest object that uses it, in `tick`
-  float hole_m = 0;                    // of the nearest that can draw nothing instead
-  std::uint32_t tick = UINT32_MAX;     // the last one in which an object used it
+  float nearest_m = 0;              // distance of the nearest object that uses it, in `tick`
+  float hole_m = 0;                 // distance of the nearest object that has no other LOD to draw
+  std::uint32_t tick = UINT32_MAX;  // the last tick in which an object used it
   bool ready = false, failed = false;  // in `tick`
   bool seen = false, hole = false;     // by an object in view
 };
@@ -36,7 +36,7 @@ struct ObjectMeshLevel {
 // One mesh.
 struct ObjectMesh {
   static constexpr std::size_t kMaxLevels = 8;
-  MeshId id;  // none: it was removed
+  MeshId id;  // invalid: it was removed
   core::Bounds box;
   models::Parameters parameters;
   std::uint32_t level_count = 0;
@@ -45,49 +45,47 @@ struct ObjectMesh {
 
 class Assets {
  public:
-  // For a scene with this registry, to which it adds the types of object meshes. `renderer` may be
-  // null. Both outlive it. Once. Fails like Registry::add().
+  // Opens the assets of a scene and adds the types of object meshes to its registry. Call it once.
+  // `renderer` may be null; both must outlive the assets. Fails as Registry::add().
   core::Result<void> open(models::Registry& registry, render::Renderer* renderer);
 
-  // Adds the same types to another registry, which is about to take the place of the one of open().
-  // Meshes of objects are the same, under other keys. Those of model types keep their types, which
-  // must live on.
+  // Adds the same types to the registry that will replace the one of open(). Object meshes stay,
+  // under other keys. Meshes of model types keep their types, which must live on.
   core::Result<void> follow(models::Registry& registry);
 
-  // A mesh of the program's own, or of a file, and the levels of detail that are made of it, of
-  // which each object takes one by its distance. Takes about 0.5 ms for 1,000 triangles: add large
-  // ones while a game loads. `name` is for messages. Fails like scene::pack(),
-  // and with kOverBudget beyond 65,536 meshes at a time.
+  // Adds a mesh from code or from a file, with LODs made from it; each object uses one by its
+  // distance. Takes about 0.5 ms for 1,000 triangles: add large meshes while a game loads. `name`
+  // is for messages. Fails as scene::pack(), and with kOverBudget beyond 65,536 meshes at a time.
   core::Result<MeshId> add_mesh(const core::MeshData& mesh, std::string name = "mesh");
-  // The mesh of a model type ("tree", "rock", or one of a plugin), made by modelers when it is
-  // needed. `level_count` levels of detail from `first_level` on, of which each object takes one by
-  // its distance; 0: all that there are. Fails with kInvalidArgument for unknown types, terrain,
-  // parameters that models::validate() refuses and levels that do not exist.
+  // Adds the mesh of a model type ("tree", "rock", or a plugin's), synthesised by modelers on
+  // demand. `level_count` LODs from `first_level` on, of which each object uses one by its
+  // distance; 0: all. Fails with kInvalidArgument for unknown types, terrain, parameters that
+  // models::validate() rejects, and levels that do not exist.
   core::Result<MeshId> add_model(std::string_view type, const models::Parameters& parameters,
                                  int first_level = 0, int level_count = 0);
-  // Removes a mesh. Objects with it are not drawn from the next tick on, and do not fade. Host
-  // memory is freed once no modeler uses it, geometry memory in a later tick. Its name is never
-  // used again. Ignores meshes that do not exist.
+  // Removes a mesh. Its objects are not drawn from the next tick on, without a fade. Host memory is
+  // freed once no modeler uses it, geometry memory in a later tick. Its number is never used again.
+  // Ignores meshes that do not exist.
   void remove_mesh(MeshId mesh);
-  // A picture as a texture; `colours`: else numbers, as normal maps have. Fails like
+  // Adds an image as a texture. `colours`: false for data such as normal maps. Fails as
   // Renderer::add_texture(). Without a renderer it only gets a number.
   core::Result<render::TextureId> add_texture(const image::Image& picture, bool colours = true);
-  // Fails like Renderer::add_material(). Without a renderer it only gets a number.
+  // Adds a material. Fails as Renderer::add_material(). Without a renderer it only gets a number.
   core::Result<render::MaterialId> add_material(const render::Material& material);
 
   bool exists(MeshId mesh) const {
     return slot_of(mesh) < meshes_.size() && meshes_[slot_of(mesh)].id == mesh && mesh != MeshId{};
   }
   std::size_t mesh_count() const { return count_; }
-  // The box of a mesh that exists, in metres from its origin.
+  // The bounds of an existing mesh, in metres from its origin.
   const core::Bounds& box(MeshId mesh) const { return meshes_[slot_of(mesh)].box; }
 
-  // The engine's: what a mesh has, and the wants of those that lack something (cache_system).
+  // For the engine: a mesh, and the wants of meshes with missing LODs (cache_system).
   ObjectMesh& mesh(MeshId mesh) { return meshes_[slot_of(mesh)]; }
   void want_all(synthesis::MeshSupply& meshes) const;
-  // Gives back what the cache has of meshes that were removed, or that have other keys now.
+  // Evicts the cached meshes that were removed, or that have other keys now.
   void forget_removed(synthesis::MeshSupply& meshes);
-  // Meshes that objects used in the last tick, for objects_system.
+  // Meshes that objects used in the last ticks, for objects_system().
   std::vector<std::pair<MeshId, std::uint32_t>> used, used_before;  // mesh, level
 
  private:
@@ -101,8 +99,8 @@ class Assets {
   render::Renderer* renderer_ = nullptr;
   std::uint32_t textures_ = 0, materials_ = 0;  // without a renderer
   std::vector<ObjectMesh> meshes_;              // by slot
-  std::size_t count_ = 0;                       // of those that were not removed
-  std::vector<synthesis::MeshKey> removed_;     // what the cache may have of those
+  std::size_t count_ = 0;                       // of meshes that exist
+  std::vector<synthesis::MeshKey> removed_;     // keys that the cache may still have
 };
 
 }  // namespace psygen::scene

@@ -5,6 +5,9 @@
 #include <glm/common.hpp>
 #include <utility>
 
+#include "engine/scene/components.hpp"
+#include "engine/scene/facts/world_facts.hpp"
+
 namespace psygen::scene {
 
 core::Result<ColliderId> Colliders::add(models::Collider collider, std::string_view name) {
@@ -21,7 +24,7 @@ core::Result<ColliderId> Colliders::box_of(const Assets& assets, MeshId mesh) {
                       fmt::format("there is no mesh {} to take a box of", mesh.index));
   if (const auto known = boxes_.find(mesh.index); known != boxes_.end()) return known->second;
   const core::Bounds& box = assets.box(mesh);
-  // A little more than the least, as floats round.
+  // Slightly above the minimum, because floats round.
   constexpr auto kMinHalf = static_cast<float>(0.501 * query::Objects::kMinSizeM);
   models::Collider collider;
   collider.shapes.emplace_back(
@@ -34,7 +37,7 @@ core::Result<ColliderId> Colliders::box_of(const Assets& assets, MeshId mesh) {
 void Colliders::follow(ecs::Entity entity, const Transform& transform, ObjectCollider& collider) {
   const query::ObjectPose pose{transform.position, glm::dquat(transform.rotation), transform.scale};
   const query::PlacedObject* object = objects_.find(collider.object);
-  // A copy of the component, or one that was loaded, has the object of another entity.
+  // A copied or loaded component refers to the object of another entity.
   const bool is_own = object != nullptr && object->name == owner_of(entity);
   if (is_own && collider.object_shape == collider.shape) {
     if (objects_.move(collider.object, pose)) return;
@@ -45,7 +48,7 @@ void Colliders::follow(ecs::Entity entity, const Transform& transform, ObjectCol
     collider.object_shape = collider.shape;
     if (added) return;
   }
-  // Untold, so it is removed.
+  // remove_stale() removes it, because it was not set.
   ++invalid_;
 }
 
@@ -66,16 +69,17 @@ core::Result<void> Colliders::add_systems(Systems& systems) {
   return {};
 }
 
-core::Result<void> Colliders::make_solid(State& state, ecs::Entity entity) {
-  const Object* object = state.entities.get<Object>(entity);
-  if (object == nullptr || state.entities.get<Transform>(entity) == nullptr)
+core::Result<void> Colliders::make_solid(ecs::World& entities, const Assets& assets,
+                                         ecs::Entity entity) {
+  const Object* object = entities.get<Object>(entity);
+  if (object == nullptr || entities.get<Transform>(entity) == nullptr)
     return core::fail(core::ErrorCode::kInvalidArgument,
                       "an entity needs an Object and a Transform to become solid");
-  const auto box = box_of(state.assets, object->mesh);
+  const auto box = box_of(assets, object->mesh);
   if (!box) return tl::unexpected(box.error());
-  if (state.entities.get<ObjectCollider>(entity) == nullptr)
-    state.entities.add<ObjectCollider>(std::span(&entity, 1));
-  state.entities.get<ObjectCollider>(entity)->shape = *box;
+  if (entities.get<ObjectCollider>(entity) == nullptr)
+    entities.add<ObjectCollider>(std::span(&entity, 1));
+  entities.get<ObjectCollider>(entity)->shape = *box;
   return {};
 }
 

@@ -1,5 +1,5 @@
-// What makes an entity of the game visible. Give it a Transform and an Object, in one call or two,
-// and it is drawn, culled, shadowed and faded; destroy the entity and it is gone:
+// Visible entities of a game. An entity with a Transform and an Object is drawn, culled, shadowed
+// and faded until it is destroyed:
 //   world.create<Transform, Object>(1)
 // or scene::spawn(). Meshes and materials come from the scene's Assets (assets.hpp). Plain data;
 // main thread only.
@@ -16,44 +16,45 @@
 
 namespace psygen::scene {
 
-// Names a mesh of Assets. No two meshes of a scene ever have the same name.
+// The number of a mesh in Assets. A scene never uses a number twice.
 struct MeshId {
   std::uint32_t index = UINT32_MAX;  // UINT32_MAX: none
   friend bool operator==(const MeshId&, const MeshId&) = default;
 };
 
-// Where an entity is. An object with numbers that are not finite, without a rotation, or with a
-// scale outside of 10⁻⁴ … 10⁴ is not drawn (Counters::objects_invalid).
+// The place of an entity. An object with numbers that are not finite, without a rotation, or with a
+// scale outside of 10⁻⁴ … 10⁴ is not drawn (Statistics::objects_invalid).
 struct Transform {
   core::WorldPosition position;                // need not be normalised
   glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};  // w, x, y, z; need not be unit
   glm::vec3 scale{1.0F};                       // before the rotation; negative ones mirror
 };
 
-// How an object is drawn now. Only the engine writes it (objects_system).
+// The draw state of an object. Only the engine writes it (objects_system).
 struct ObjectState {
   static constexpr std::uint8_t kNoLevel = 0xFF;
-  float share = 0;                          // of its pixels that are there
-  float sun = 1;                            // share of the sun that no terrain hides
+  float share = 0;                          // fraction of its pixels that are drawn
+  float sun = 1;                            // fraction of sunlight that no terrain hides
   std::uint32_t drawn_tick = UINT32_MAX;    // the last one in which it was drawn
   std::uint32_t in_view_tick = UINT32_MAX;  // the last one in which it was in view
   std::uint8_t level = kNoLevel;            // of detail that is drawn
-  std::uint8_t old_level = kNoLevel;        // that it takes the place of, until `share` is 1
+  std::uint8_t old_level = kNoLevel;        // LOD that it replaces, until `share` is 1
   bool fresh = true;                        // never in view so far
 };
 
-// What an entity looks like.
+// The look of an entity.
 struct Object {
   MeshId mesh;
-  render::MaterialId material = render::kPlainMaterial;  // also drawn where there is none such
-  bool visible = true;                                   // else it fades out, and stays away
+  render::MaterialId material =
+      render::kPlainMaterial;  // also drawn for a material that does not exist
+  bool visible = true;         // false: fades out and stays hidden
   ObjectState state = {};
 };
 static_assert(sizeof(Object) == 32);
 
 }  // namespace psygen::scene
 
-// For snapshots (described.hpp), as those below.
+// Described for snapshots (described.hpp), like the types below.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::scene::MeshId> {
   static constexpr auto fields = std::tuple{field("index", &scene::MeshId::index)};
@@ -68,7 +69,8 @@ struct psygen::ecs::ComponentTraits<psygen::scene::Transform> {
                                             field("scale", &scene::Transform::scale)};
 };
 
-// Meshes and materials by their numbers: those of the same order of calls of Assets.
+// Saves meshes and materials by number: make the same calls of Assets in the same order before
+// loading.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::scene::Object> {
   static constexpr std::string_view name = "Object";
@@ -79,7 +81,7 @@ struct psygen::ecs::ComponentTraits<psygen::scene::Object> {
 
 namespace psygen::scene {
 
-// A new object: an entity with a Transform and an Object.
+// Creates an object: an entity with a Transform and an Object.
 inline ecs::Entity spawn(ecs::World& world, const Object& object, const Transform& transform) {
   const auto made = world.create<Transform, Object>(1);
   made.column<Transform>()[0] = transform;

@@ -1,6 +1,6 @@
-// The fields of what a game gives its entities, so that snapshots and saves keep them
-// (ecs/fields.hpp, docs/saves.md). What the engine alone writes is left out: it comes anew.
-// Included by the components' own headers.
+// Field descriptions of the components that a game gives its entities, for snapshots and saves
+// (ecs/fields.hpp, docs/saves.md). Leaves out state that only the engine writes. Included by the
+// components' headers.
 #pragma once
 
 #include <glm/gtc/quaternion.hpp>
@@ -9,7 +9,7 @@
 #include "ecs/fields.hpp"
 #include "engine/core/coordinates.hpp"
 
-// Vectors, rotations and positions by their numbers.
+// Vectors, rotations and positions, by their numbers.
 template <>
 struct psygen::ecs::ComponentTraits<glm::vec3> {
   static constexpr auto fields =

@@ -9,12 +9,12 @@
 namespace psygen::scene {
 namespace {
 
-constexpr std::size_t kFewestIndices = 3 * 48;  // of a mesh that has a coarser level
+constexpr std::size_t kFewestIndices = 3 * 48;  // minimum for a mesh with a coarser level
 constexpr std::size_t kMinIndices = 3 * 8;      // of any level
-constexpr double kMinArea = 0.5;                // of any level, of that of the finest
+constexpr double kMinArea = 0.5;  // of any level, as a fraction of the finest level's surface
 
-// Of all triangles, in square metres. Loose ones vanish one by one where a surface would only
-// become coarser: then there is less of it.
+// Of the surface of all triangles. Simplifying loose triangles removes them one by one instead of
+// making a surface coarser, so the total shrinks.
 double area_m2(const core::MeshData& mesh, const std::vector<std::uint16_t>& indices) {
   double area = 0;
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
@@ -25,7 +25,7 @@ double area_m2(const core::MeshData& mesh, const std::vector<std::uint16_t>& ind
   return area;
 }
 
-// The vertices that the indices use, in the order of their use.
+// The vertices that the indices use, in the order of use.
 PackedMesh with_indices(const PackedMesh& finest, std::vector<std::uint16_t> indices) {
   PackedMesh mesh;
   mesh.box = finest.box;
@@ -49,7 +49,7 @@ std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh fi
   const std::size_t count = mesh.positions.size(), stride = sizeof(glm::vec3);
   const auto scale = static_cast<double>(meshopt_simplifyScale(places, count, stride));
   const double min_area = kMinArea * area_m2(mesh, levels[0].mesh.indices);
-  // Each from the one before: all of them together cost little more than the first.
+  // Each level comes from the one before: all together cost little more than the first.
   std::vector<std::uint16_t> last = levels[0].mesh.indices;
   while (levels.size() < most && last.size() >= kFewestIndices) {
     const std::size_t before = last.size();

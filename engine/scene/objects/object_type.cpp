@@ -87,8 +87,8 @@ class ObjectType final : public models::ModelType {
     return number < source.copied.size() ? source.copied[number] : none;
   }
 
-  // Of a mesh that was removed after it was asked for. It is in the cache under a name that nobody
-  // uses any more.
+  // A mesh that was removed after its request. The cache keeps it under a name that is not used any
+  // more.
   static core::Bounds nothing(const models::MeshView& out) {
     std::ranges::fill(out.vertices, std::byte{0});
     std::ranges::fill(out.indices, std::uint16_t{0});
@@ -96,7 +96,7 @@ class ObjectType final : public models::ModelType {
   }
 
   std::shared_ptr<const ObjectSource> of(const models::Parameters& p) const {
-    // A mesh that there is not, or no more, has no vertices.
+    // An unknown or removed mesh has no vertices.
     static const auto none = std::make_shared<const ObjectSource>();
     auto source = sources_->find(static_cast<std::uint32_t>(p.integer(0)));
     return source ? source : none;

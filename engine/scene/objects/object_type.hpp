@@ -1,9 +1,9 @@
-// The meshes of objects as model types, so that they are made by modelers, cached, ranked and
-// evicted like all others: a copied mesh (of code or of a file), or the mesh of another model type
-// with its vertices widened. Which mesh is meant is the only parameter.
+// Object meshes as model types, so that modelers make them and the cache ranks and evicts them like
+// all others: a copied mesh (from code or a file), or the mesh of another model type with widened
+// vertices. The only parameter is the number of the source.
 //
-// Modelers look entries up while the main thread adds and removes others. An entry never changes,
-// and lives on while a modeler uses it.
+// Modelers look sources up while the main thread adds and removes others. A source never changes,
+// and lives while a modeler uses it.
 #pragma once
 
 #include <memory>
@@ -17,45 +17,45 @@
 
 namespace psygen::scene {
 
-// Where the mesh of an object comes from.
+// The source of an object's mesh.
 struct ObjectSource {
   std::string name;                         // for messages
-  std::vector<ObjectLevel> copied;          // if `type` is null: level_count of them
-  const models::ModelType* type = nullptr;  // else it is synthesised
+  std::vector<ObjectLevel> copied;          // if `type` is null: level_count levels
+  const models::ModelType* type = nullptr;  // null: the mesh is copied
   models::Parameters parameters;
   int first_level = 0;  // of the type
   int level_count = 1;
   core::Bounds box;
 };
 
-// All of a scene. Any thread.
+// All sources of a scene. Any thread.
 class ObjectSources {
  public:
   static constexpr std::uint32_t kMax = 1 << 16;
 
-  // The name of a new entry; nothing if kMax exist. The lower 16 bits are a slot, which is
-  // used again after remove(), the upper ones count how often it was. No name comes twice.
+  // Adds a source and returns its name; nothing if kMax exist. The lower 16 bits are a slot, reused
+  // after remove(); the upper bits count its uses. No name occurs twice.
   std::optional<std::uint32_t> add(ObjectSource source);
   // Ignores unknown names.
   void remove(std::uint32_t name);
-  // Null: there is no entry of this name, or it was removed.
+  // Returns the source, or null if the name is unknown or was removed.
   std::shared_ptr<const ObjectSource> find(std::uint32_t name) const;
 
  private:
   struct Slot {
     std::shared_ptr<const ObjectSource> source;
-    std::uint32_t name = 0;  // of `source`, or of the next one
+    std::uint32_t name = 0;  // of `source`, or of the slot's next source
   };
-  mutable std::mutex mutex_;  // guards all of it
+  mutable std::mutex mutex_;  // guards all members
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_;
 };
 
-// The type of copied meshes, or that of synthesised ones, which only modelers make.
+// The types of copied and of synthesised meshes. Only modelers synthesise.
 std::unique_ptr<models::ModelType> make_object_type(std::shared_ptr<const ObjectSources> sources,
                                                     bool copied);
 
-// The parameters that name a source.
+// The parameters of a source.
 models::Parameters object_parameters(std::uint32_t name);
 
 }  // namespace psygen::scene

@@ -1,5 +1,5 @@
-// A mesh in the bytes that are drawn (core::ObjectVertex), kept by the host: what is evicted from
-// the geometry memory is copied there again. Pure; any thread.
+// A mesh in the vertex format that is drawn (core::ObjectVertex), kept by the host and copied again
+// after an eviction. Pure; any thread.
 #pragma once
 
 #include <vector>
@@ -16,8 +16,9 @@ struct PackedMesh {
   core::Bounds box;  // of the snorm16 positions
 };
 
-// Fails like core::check(), and with kOverBudget beyond core::kMaxMeshVertices (core::split).
-// Missing normals are the means of those of the triangles around a vertex, by area. O(n).
+// Packs a mesh. Fails as core::check(), and with kOverBudget beyond core::kMaxMeshVertices
+// (core::split). Missing normals are the means of the adjacent triangles' normals, weighted by
+// area. O(n).
 core::Result<PackedMesh> pack(const core::MeshData& mesh);
 
 }  // namespace psygen::scene

@@ -15,9 +15,13 @@
 #include "engine/cluster/meeting.hpp"
 #include "engine/cluster/remote_models.hpp"
 #include "engine/cluster/serve_models.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/core/clock.hpp"
-#include "engine/scene/readiness.hpp"
+#include "engine/scene/frame/clock.hpp"
+#include "engine/scene/frame/input.hpp"
+#include "engine/scene/meshes/requested_places.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/settings.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 
@@ -74,13 +78,12 @@ struct Filled {
   std::uint32_t meshes = 0;
 };
 Filled fill(scene::Scene& scene) {
-  scene::State& state = scene.state();
   const double begin_s = core::monotonic_seconds();
   for (double next_s = begin_s;; next_s += kFrame_s) {
-    state.input.pose = middle();
-    scene::tick(state);
-    state.clock.now_s += kFrame_s;
-    const auto there = scene::readiness(state, middle().position, kView_m).value();
+    scene.input().pose = middle();
+    if (auto ok = scene.tick(); !ok) return {};
+    scene.set_now(scene.clock().now_s + kFrame_s);
+    const auto there = scene.readiness(middle().position, kView_m).value();
     if (there.ready()) return {core::monotonic_seconds() - begin_s, there.meshes};
     std::this_thread::sleep_for(
         std::chrono::duration<double>(next_s + kFrame_s - core::monotonic_seconds()));
@@ -88,7 +91,7 @@ Filled fill(scene::Scene& scene) {
 }
 
 int fly(world::World world, models::Registry registry, cluster::RemoteModels* remote) {
-  scene::Settings settings;
+  scene::SceneSettings settings;
   settings.modelers = 1;
   settings.view_distance_m = kView_m;
   auto scene = scene::Scene::create(std::move(world), std::move(registry), settings, nullptr,

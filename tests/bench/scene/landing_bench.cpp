@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/scene/draws/mesh_parts.hpp"
-#include "engine/scene/mesh_notes.hpp"
-#include "engine/scene/nodes/ground_relief.hpp"
+#include "engine/scene/meshes/mesh_annotations.hpp"
+#include "engine/scene/meshes/mesh_parts.hpp"
+#include "engine/scene/nodes/ground_occluder.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/placement.hpp"
@@ -61,8 +61,8 @@ void note_of_ground(benchmark::State& state) {
   const core::Bounds box = type.bounds(p);
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        ground_relief(mesh.vertices, grid, box.min.y, box.max.y - box.min.y, 0.0F));
-    benchmark::DoNotOptimize(ground_sun(mesh.vertices, static_cast<std::size_t>(grid.n)));
+        ground_occluder(mesh.vertices, grid, box.min.y, box.max.y - box.min.y, 0.0F));
+    benchmark::DoNotOptimize(ground_sunlight(mesh.vertices, static_cast<std::size_t>(grid.n)));
   }
 }
 BENCHMARK(note_of_ground)->ArgName("level")->DenseRange(0, 1);
@@ -80,7 +80,7 @@ void note_lands(benchmark::State& state) {
     next = (next + 7919) % kNotes;
   }
 }
-BENCHMARK(note_lands<GroundNote>);
+BENCHMARK(note_lands<GroundAnnotation>);
 BENCHMARK(note_lands<MeshParts>);
 
 }  // namespace

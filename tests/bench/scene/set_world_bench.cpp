@@ -7,7 +7,9 @@
 #include <iterator>
 
 #include "engine/core/log.hpp"
+#include "engine/scene/facts/prepared_world.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/state.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "tests/source_file.hpp"
@@ -43,7 +45,7 @@ void set_world(benchmark::State& state, Part part, const world::TextPath& path, 
   const std::string texts[] = {world::with_value(text, path, low).value(),
                                world::with_value(text, path, high).value()};
   Parsed first(texts[0]);
-  Settings settings;
+  SceneSettings settings;
   settings.modelers = 1;
   auto scene = Scene::create(first.world, std::move(first.registry), settings, nullptr).value();
   const core::CameraPose pose = usual_pose();
@@ -71,21 +73,21 @@ void make_meshes(benchmark::State& state, bool draft, const world::TextPath& pat
   const core::CameraPose pose = usual_pose();
   for (auto _ : state) {
     Parsed first(texts[0]), second(texts[1]);
-    Settings settings;
+    SceneSettings settings;
     settings.modelers = 1;
     settings.main_thread_budget_ms = 0;
     auto scene = Scene::create(first.world, std::move(first.registry), settings, nullptr).value();
     scene->settle(pose);
-    const double before_s = scene->state().meshes.modeler_stats().cpu_seconds;
+    const double before_s = state_of(*scene).supply.modeler_stats().cpu_seconds;
     benchmark::DoNotOptimize(scene->set_world(std::move(second.world), std::move(second.registry)));
-    scene->state().input.pose = pose;
-    scene->state().input.draft = draft;
+    state_of(*scene).input.pose = pose;
+    state_of(*scene).input.draft = draft;
     for (int quiet = 0; quiet < 16;) {
-      tick(scene->state());
-      scene->state().meshes.wait();
-      quiet = scene->state().counters.requests == 0 ? quiet + 1 : 0;
+      tick(state_of(*scene));
+      state_of(*scene).supply.wait();
+      quiet = scene->statistics().requests == 0 ? quiet + 1 : 0;
     }
-    state.SetIterationTime(scene->state().meshes.modeler_stats().cpu_seconds - before_s);
+    state.SetIterationTime(state_of(*scene).supply.modeler_stats().cpu_seconds - before_s);
   }
 }
 

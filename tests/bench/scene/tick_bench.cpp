@@ -17,6 +17,7 @@
 #include "engine/core/hash.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/state.hpp"
 #include "engine/world/camera_path.hpp"
 #include "engine/world/files/path_file.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -65,13 +66,13 @@ world::Edits edits_of(const world::World& world, const models::Registry& registr
 std::vector<std::vector<double>> fly(const world::World& world, const world::Edits& edits,
                                      const world::CameraPath& path, double hz,
                                      render::Renderer* renderer, std::vector<std::string>& names) {
-  Settings settings;
+  SceneSettings settings;
   settings.modelers = 1;
   auto made = Scene::create(world, models::make_standard_registry(), settings, renderer);
   if (!made) return {};
   Scene& scene = **made;
   scene.edit(edits);
-  State& state = scene.state();
+  State& state = state_of(scene);
   scene.settle(path.pose_at(0, world));
   names = system_names(state);
   std::vector<std::vector<double>> times(names.size());
@@ -82,7 +83,7 @@ std::vector<std::vector<double>> fly(const world::World& world, const world::Edi
     tick(state);
     for (std::size_t k = 0; k < names.size(); ++k)
       times[k].push_back(static_cast<double>(state.system_ms[k]));
-    state.meshes.wait();
+    state.supply.wait();
   }
   return times;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/app/session.hpp"
 #include "engine/inspect/inspect.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "tests/source_file.hpp"
@@ -60,7 +61,7 @@ class RemoteSessionTest : public ::testing::Test {
     return so();
   }
   std::string written() const {
-    const scene::WorldFacts& facts = session_->scene().state().facts;
+    const scene::WorldFacts& facts = session_->scene().facts();
     return world::write_world(facts.world, facts.registry);
   }
   std::string with_seed(const std::string& digits) const {

@@ -41,6 +41,7 @@
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
 #include "editor/tools/view_tools.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/scene/scene.hpp"
 #include "tests/editor/own_display.hpp"
 #include "tests/source_file.hpp"
@@ -175,9 +176,9 @@ void take_fields(Photographer& take) {
 }
 
 void take_panels(Photographer& take, MainWindow& window) {
-  const scene::State& state = window.view().session()->scene().state();
+  const scene::Scene& scene = window.view().session()->scene();
   const glm::vec3 ahead = core::forward_of(window.view().camera().pose());
-  window.view().select(pick(state, window.view().camera().pose(), glm::dvec3(ahead)));
+  window.view().select(pick(scene, window.view().camera().pose(), glm::dvec3(ahead)));
   take.panel("selection", "selection");
   take.panel("history", "history");
   take.panel("map", "map");
@@ -352,12 +353,12 @@ void take_sheet(Photographer& take, MainWindow& window) {
 // The selected oak and how it is exported. The dialog waits for an answer: the picture is taken
 // from within, with names as they are in the folder of the sources.
 void take_export(Photographer& take, MainWindow& window) {
-  const scene::State& state = window.view().session()->scene().state();
+  const scene::Scene& scene = window.view().session()->scene();
   const core::CameraPose pose = window.view().camera().pose();
   for (double aside = -0.3; aside < 0.3; aside += 0.02) {
     core::CameraPose turned = pose;
     turned.yaw += aside;
-    window.view().select(pick(state, pose, glm::dvec3(core::forward_of(turned))));
+    window.view().select(pick(scene, pose, glm::dvec3(core::forward_of(turned))));
     const auto& selection = window.view().selection();
     if (selection && selection->kind == query::HitKind::kModel) break;
   }

@@ -6,6 +6,7 @@
 #include "editor/cost/edit_cost.hpp"
 #include "editor/panels/field_row.hpp"
 #include "editor/panels/impact_bar.hpp"
+#include "engine/scene/frame/quality.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "tests/editor/window/window_fixture.hpp"
 
@@ -99,7 +100,7 @@ TEST_F(CostQuestion, PicturesAreCoarseWhileASliderIsHeld) {
   double answered = 0;
   QObject::connect(&window_->view(), &WorldView::answered, window_.get(),
                    [&](double ms) { answered = ms; });
-  const auto& quality = window_->view().session()->scene().state().quality;
+  const auto& quality = window_->view().session()->scene().quality();
   const QPoint at(slider.width() * slider.value() / slider.maximum(), slider.height() / 2);
   QTest::mousePress(&slider, Qt::LeftButton, {}, at);
   QTest::mouseMove(&slider, at - QPoint(slider.width() / 10, 0));

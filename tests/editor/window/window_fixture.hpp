@@ -15,6 +15,7 @@
 #include "editor/shell/main_window.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/world/world.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::editor {
@@ -122,7 +123,7 @@ class EditorWindow : public testing::Test {
   image::Image picture() { return window_->view().session()->picture().value(); }
 
   // The world that the view shows.
-  const world::World& shown() { return window_->view().session()->scene().state().facts.world; }
+  const world::World& shown() { return window_->view().session()->scene().world(); }
 
   TemporaryFolder folder_;
   std::filesystem::path file_;

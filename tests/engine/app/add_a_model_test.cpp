@@ -1,6 +1,9 @@
 // docs/add-a-model.md quotes this test and fence.hpp: a user's model type.
 #include <fstream>
 
+#include "engine/models/registry.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/synthesis/cost_model.hpp"
 #include "engine/synthesis/synthesise.hpp"
 #include "tests/engine/app/fence.hpp"
 #include "tests/engine/app/fixture.hpp"
@@ -53,7 +56,7 @@ TEST(AddAModel, TheTypeFliesIsCostModelledAndListed) {
   ASSERT_TRUE(session) << session.error().message;
 
   // Listed with its parameters, as in `psygen models` and editors.
-  const models::Registry& registry = (*session)->scene().state().facts.registry;
+  const models::Registry& registry = (*session)->scene().registry();
   const int fence = registry.find("fence");
   ASSERT_GE(fence, 0);
   EXPECT_EQ(registry[static_cast<models::ModelIndex>(fence)].parameters()[kPosts].name, "posts");
@@ -69,9 +72,9 @@ TEST(AddAModel, TheTypeFliesIsCostModelledAndListed) {
   const core::CameraPose pose = (*session)->home();
   (*session)->scene().settle(pose);
   ASSERT_TRUE((*session)->tick(pose, 1.0 / 60.0));
-  EXPECT_EQ((*session)->scene().state().counters.holes, 0u);
-  EXPECT_GT((*session)->scene().state().draws.models.size(), 5u);
-  EXPECT_EQ((*session)->scene().state().totals.failed, 0u);
+  EXPECT_EQ((*session)->scene().statistics().holes, 0u);
+  EXPECT_GT((*session)->scene().statistics().models_drawn, 5u);
+  EXPECT_EQ((*session)->scene().statistics().failed_in_all, 0u);
 }
 
 // Promises of docs/add-a-model.md that every type must keep.

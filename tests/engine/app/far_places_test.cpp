@@ -17,7 +17,7 @@ TEST(FarPlaces, AMillimetreChangesTheImageNoMoreThanAtTheOrigin) {
     core::CameraPose pose = studio.above(block, 62.9995, 0.0005, 0, 0.8, -0.3);
     pose.position.local.y = 130;  // higher than any ground: at the seam there is a cliff
     studio.settle(pose);
-    EXPECT_EQ(studio.state().counters.holes, 0u);
+    EXPECT_EQ(studio.scene().statistics().holes, 0u);
     EXPECT_EQ(studio.holes(), 0u);
     const image::Image before = studio.picture();
     pose.position.local += glm::dvec3(0.001, 0, -0.001);  // into the next block
@@ -42,13 +42,13 @@ TEST(FarPlaces, SettlingAfterALeapWithAFullCacheEqualsAFreshStart) {
     const core::CameraPose pose = studio.above(block, 20, 30, 6, 0.5, -0.2);
     for (Studio* at : {&studio, &fresh}) {
       at->settle(pose);
-      EXPECT_EQ(at->state().counters.requests, 0u) << block.x;
-      EXPECT_EQ(at->state().counters.refused, 0u) << block.x;
+      EXPECT_EQ(at->scene().statistics().requests, 0u) << block.x;
+      EXPECT_EQ(at->scene().statistics().refused, 0u) << block.x;
     }
     EXPECT_EQ(studio.state().quality.coarsening, fresh.state().quality.coarsening);
     EXPECT_EQ(image::compare(studio.picture(), fresh.picture(), 0).pixels_over, 0u) << block.x;
   }
-  EXPECT_GT(studio.state().meshes.stats().evictions, 1000u);
+  EXPECT_GT(studio.state().supply.stats().evictions, 1000u);
 }
 
 // Meshes that frames in flight may read are freed later: that is no lack of memory.
@@ -65,9 +65,9 @@ TEST(FarPlaces, AFlightThroughAFullCacheIsNoCoarserThanAFreshStart) {
     pose.position.local.x += 20;
     pose.position = core::normalised(pose.position, 63);
     studio.draw(pose);
-    studio.state().meshes.wait();
+    studio.state().supply.wait();
   }
-  const synthesis::CacheStats stats = studio.state().meshes.stats();
+  const synthesis::CacheStats stats = studio.state().supply.stats();
   EXPECT_GT(stats.evictions, 1000u);
   EXPECT_GT(stats.peak_bytes, options.scene.budget_bytes * 9 / 10);
   EXPECT_EQ(studio.state().quality.coarsening, 1.0F);
@@ -84,14 +84,14 @@ TEST(FarPlaces, LazyEvaluationMissesLittleIfOnlyOneImageFits) {
   Studio ample("paper.toml", options);
   const core::CameraPose pose = ample.above({256, 256}, 20, 30, 6, 0.5, -0.2);
   ample.draw(pose);
-  options.scene.budget_bytes = ample.state().meshes.stats().bytes * 5 / 4;
+  options.scene.budget_bytes = ample.state().supply.stats().bytes * 5 / 4;
   Studio studio("paper.toml", options);
   for (int i = 0; i < 80; ++i)
     studio.draw(pose);
   EXPECT_GT(studio.state().quality.coarsening, 1.0F);
   for (int i = 0; i < 8; ++i) {
     studio.draw(pose);
-    EXPECT_EQ(studio.state().counters.holes, 0u) << i;
+    EXPECT_EQ(studio.scene().statistics().holes, 0u) << i;
   }
 }
 

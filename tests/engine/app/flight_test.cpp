@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "engine/app/gap.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "tests/engine/app/fixture.hpp"
 #include "tests/faults.hpp"
 
@@ -95,7 +96,7 @@ TEST(Flight, AFrameInWhichAPluginCapturesAnImageIsExcluded) {
   std::vector<double> governed_ms;
   options.session.plugins.push_back(
       {.name = "photographer", .on_frame = [&](Session& session, double) {
-         governed_ms.push_back(session.scene().state().input.frame_ms);
+         governed_ms.push_back(session.scene().input().frame_ms);
          if (governed_ms.size() != 6) return;
          EXPECT_TRUE(session.save_picture(options.out_folder / "picture.png"));
        }});

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "engine/scene/frame/quality.hpp"
+#include "engine/scene/settings.hpp"
 #include "tests/engine/app/fixture.hpp"
 #include "tests/engine/platform/virtual_display.hpp"
 
@@ -12,7 +14,7 @@ namespace {
 double target_frame_ms(const FlightOptions& options) {
   const auto flight = Flight::create(options);
   EXPECT_TRUE(flight) << flight.error().message;
-  return flight ? (*flight)->session().scene().state().settings.target_frame_ms : -1.0;
+  return flight ? (*flight)->session().scene().settings().target_frame_ms : -1.0;
 }
 
 TEST(FrameTarget, Is60HzInAWindowNoneHeadlessOrAsTheOptionsSay) {
@@ -43,7 +45,7 @@ FlightOptions governed(double target_hz) {
 // Coarseness of the images: the error relative to full resolution.
 using Watched = std::vector<double>;
 double coarseness(Session& session) {
-  const scene::Quality& quality = session.scene().state().quality;
+  const scene::Quality& quality = session.scene().quality();
   return quality.error_pixels / quality.resolution;
 }
 

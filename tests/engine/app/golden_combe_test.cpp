@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "engine/scene/state.hpp"
 #include "engine/world/camera_path.hpp"
 #include "tests/engine/app/golden.hpp"
 #include "tests/source_file.hpp"
@@ -39,7 +40,7 @@ class GoldenCombe : public testing::Test {
     point.pitch_deg = -9;
     return world::CameraPath({}, {point}).pose_at(0, state().facts.world);
   }
-  scene::State& state() { return session_->scene().state(); }
+  scene::State& state() { return scene::state_of(session_->scene()); }
   template <class Predicate>
   std::ptrdiff_t draws(const Predicate& predicate) {
     return std::ranges::count_if(state().draws.models, predicate);

@@ -1,6 +1,7 @@
 // Images of water, its shore and the sun's path on it, in the world with lakes.
 #include "engine/render/preset.hpp"
 #include "engine/world/camera_path.hpp"
+#include "engine/world/world.hpp"
 #include "tests/engine/app/golden.hpp"
 #include "tests/source_file.hpp"
 
@@ -23,7 +24,7 @@ TEST_P(GoldenLakes, LieBetweenTheirHills) {
   point.heading_deg = 220;
   point.pitch_deg = -8;
   const core::CameraPose pose =
-      world::CameraPath({}, {point}).pose_at(0, (*session)->scene().state().facts.world);
+      world::CameraPath({}, {point}).pose_at(0, (*session)->scene().world());
   (*session)->scene().settle(pose);
   ASSERT_TRUE((*session)->tick(pose, 1.0 / 60.0));
   expect_golden("lakes_" + std::string(render::to_string(GetParam())), captured(**session));

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/scene/state.hpp"
 #include "engine/visibility/quadtree.hpp"
 #include "tests/engine/app/golden.hpp"
 
@@ -41,7 +42,7 @@ class GoldenLevels : public testing::TestWithParam<unsigned> {
     pose.pitch = -0.1;
     return pose;
   }
-  scene::State& state() { return session_->scene().state(); }
+  scene::State& state() { return scene::state_of(session_->scene()); }
 
   // The node of a level at kPlace in the cut of the last frame.
   const visibility::CutNode* node(unsigned level) {

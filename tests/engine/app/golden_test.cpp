@@ -5,6 +5,7 @@
 
 #include "engine/render/preset.hpp"
 #include "engine/world/files/path_file.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::app {
 namespace {
@@ -35,8 +36,7 @@ TEST_P(Golden, ASettledSceneMatchesItsStoredImage) {
   ASSERT_TRUE(session) << session.error().message;
   const auto path = world::load_camera_path(kWalk);
   ASSERT_TRUE(path);
-  const core::CameraPose pose =
-      path->pose_at(look.seconds, (*session)->scene().state().facts.world);
+  const core::CameraPose pose = path->pose_at(look.seconds, (*session)->scene().world());
   (*session)->scene().settle(pose);
   ASSERT_TRUE((*session)->tick(pose, 1.0 / 60.0));
   expect_golden(look.name, captured(**session));

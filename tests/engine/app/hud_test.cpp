@@ -8,6 +8,10 @@
 
 #include "engine/app/keys.hpp"
 #include "engine/render/preset.hpp"
+#include "engine/render/types.hpp"
+#include "engine/scene/frame/input.hpp"
+#include "engine/telemetry/frame_log.hpp"
+#include "engine/world/world.hpp"
 #include "tests/engine/scene/fixture.hpp"
 #include "tests/source_file.hpp"
 
@@ -35,6 +39,7 @@ class HudTest : public ::testing::Test {
   HudTest() : scene_(scene::make_scene(scene::small_settings())) {
     scene_->settle(scene::pose_at(256, 256));
     scene::tick_at(*scene_, scene::pose_at(256, 256));
+    facts_.record = scene_->record();
     facts_.device.name = "a device";
     facts_.device.wireframe = true;
     facts_.preset = render::Preset::kHigh;
@@ -43,7 +48,7 @@ class HudTest : public ::testing::Test {
   std::string figures() { return text(panels(0), render::Anchor::kTopLeft); }
   std::string notices(double now_s) { return text(panels(now_s), render::Anchor::kBottom); }
   std::vector<render::TextPanel> panels(double now_s) {
-    return hud_.panels(scene_->state(), facts_, now_s);
+    return hud_.panels(*scene_, facts_, now_s);
   }
 
   std::unique_ptr<scene::Scene> scene_;
@@ -60,12 +65,11 @@ TEST_F(HudTest, ShowsTheMedianAfterTheFirstFrame) {
 }
 
 TEST_F(HudTest, ShowsWaitingAndGpuTimesIfKnown) {
-  scene::State& state = scene_->state();
   hud_.add_frame(20);
-  state.record.device_wait_ms = 12;
-  state.record.present_ms = 0.5;
+  facts_.record.device_wait_ms = 12;
+  facts_.record.present_ms = 0.5;
   EXPECT_THAT(figures(), HasSubstr("waits 12.5 ms\n"));
-  state.counters.frame.gpu = render::GpuTime{1, 0, 17.25, 0};
+  facts_.gpu = render::GpuTime{1, 0, 17.25, 0};
   EXPECT_THAT(figures(), HasSubstr("waits 12.5 ms   device 17.2 ms"));
 }
 
@@ -85,10 +89,9 @@ TEST_F(HudTest, ShowsSpeedPresetAndError) {
 TEST_F(HudTest, ShowsTheHeightOverTheGround) {
   hud_.add_frame(20);
   core::CameraPose pose = scene::pose_at(256, 256);
-  pose.position.local.y =
-      models::ground_height_m(scene_->state().facts.world.terrain, pose.position.block,
-                              pose.position.local.x, pose.position.local.z) +
-      1.7;
+  pose.position.local.y = models::ground_height_m(scene_->world().terrain, pose.position.block,
+                                                  pose.position.local.x, pose.position.local.z) +
+                          1.7;
   scene::tick_at(*scene_, pose);
   EXPECT_THAT(figures(), HasSubstr("1.7 m over ground"));
 }
@@ -112,7 +115,7 @@ TEST_F(HudTest, CyclesFromStatisticsToHelpToNothing) {
 TEST_F(HudTest, FitsNextToALegendInASmallWindow) {
   constexpr std::size_t kColumns = 86, kRows = 22;  // of 640 x 360
   hud_.add_frame(20);
-  scene_->state().input.view = render::View::kCache;
+  scene_->input().view = render::View::kCache;
   for (int page = 0; page < 3; ++page, hud_.next_page()) {
     std::size_t widths = 0;
     for (const render::TextPanel& panel : panels(0)) {
@@ -129,7 +132,7 @@ TEST_F(HudTest, FitsNextToALegendInASmallWindow) {
 TEST_F(HudTest, ShowsTheLegendOfTheViewOnEveryPage) {
   hud_.add_frame(20);
   EXPECT_THAT(text(panels(0), render::Anchor::kTopRight), IsEmpty());
-  scene_->state().input.view = render::View::kMissing;
+  scene_->input().view = render::View::kMissing;
   for (int page = 0; page < 3; ++page, hud_.next_page())
     EXPECT_THAT(text(panels(0), render::Anchor::kTopRight), HasSubstr("view: missing"));
 }
@@ -159,7 +162,7 @@ TEST_F(HudTest, ANoticeMayStayUntilAKeyIsPressed) {
 TEST_F(HudTest, OmitsNoticesFromSavedImages) {
   hud_.add_frame(20);
   hud_.notify(Subject::kPicture, "wrote a.png", 0);
-  const auto lasting = hud_.lasting_panels(scene_->state(), facts_);
+  const auto lasting = hud_.lasting_panels(*scene_, facts_);
   EXPECT_THAT(text(lasting, render::Anchor::kBottom), IsEmpty());
   EXPECT_EQ(text(lasting, render::Anchor::kTopLeft), figures());
 }

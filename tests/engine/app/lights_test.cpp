@@ -4,9 +4,13 @@
 #include <fstream>
 #include <ostream>
 
+#include "ecs/ecs.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/preset.hpp"
+#include "engine/scene/frame/clock.hpp"
+#include "engine/scene/objects/assets.hpp"
 #include "engine/scene/objects/particle_kinds.hpp"
+#include "engine/world/world.hpp"
 #include "tests/engine/app/golden.hpp"
 
 namespace psygen::app {
@@ -43,51 +47,51 @@ core::CameraPose low_pose(const Session& session) {
 // A position to the right and ahead of the camera, at a height above the ground.
 scene::Transform at(Session& session, const core::CameraPose& pose, double right_m, double ahead_m,
                     double up_m) {
-  const scene::State& state = session.scene().state();
+  const scene::Scene& scene = session.scene();
   scene::Transform transform;
   transform.position = pose.position;
   transform.position.local += glm::dvec3(right_m, 0, -ahead_m);
-  transform.position = core::normalised(transform.position, state.facts.world.block_size_m());
+  transform.position = core::normalised(transform.position, scene.world().block_size_m());
   const core::WorldPosition& p = transform.position;
   transform.position.local.y =
-      up_m + models::ground_height_m(state.facts.world.terrain, p.block, p.local.x, p.local.z);
+      up_m + models::ground_height_m(scene.world().terrain, p.block, p.local.x, p.local.z);
   return transform;
 }
 
 // A post of half a metre with a lantern on it.
 void put_lantern(Session& session, const scene::Transform& transform) {
-  scene::State& state = session.scene().state();
+  scene::Scene& scene = session.scene();
   core::MeshData box;
   for (int corner = 0; corner < 8; ++corner)
     box.positions.push_back(
         {corner & 1 ? 0.5F : -0.5F, corner & 2 ? 0.5F : -0.5F, corner & 4 ? 0.5F : -0.5F});
   box.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
                  2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
-  const auto mesh = state.assets.add_mesh(box, "box");
-  const auto glass = state.assets.add_material({.emissive = {3, 2, 1}});
+  const auto mesh = scene.assets().add_mesh(box, "box");
+  const auto glass = scene.assets().add_material({.emissive = {3, 2, 1}});
   ASSERT_TRUE(mesh && glass);
   scene::Transform part = transform;
   part.scale = glm::vec3(0.3F);
-  scene::spawn(state.entities, {.mesh = *mesh, .material = *glass}, part);
+  scene::spawn(scene.entities(), {.mesh = *mesh, .material = *glass}, part);
   part.position.local += glm::dvec3(1.5, -1, 0);
   part.scale = {1, 3, 1};
-  scene::spawn(state.entities, {.mesh = *mesh}, part);
-  scene::spawn_light(state.entities, {.intensity = 6, .range_m = 25}, transform);
+  scene::spawn(scene.entities(), {.mesh = *mesh}, part);
+  scene::spawn_light(scene.entities(), {.intensity = 6, .range_m = 25}, transform);
 }
 
 void furnish_night(Session& session, const core::CameraPose& pose) {
   put_lantern(session, at(session, pose, -2, 12, 2.5));
-  scene::spawn_light(session.scene().state().entities,
+  scene::spawn_light(session.scene().entities(),
                      {.colour = {0.7F, 0.85F, 1}, .intensity = 14, .range_m = 40},
                      at(session, pose, 13, 33, 4));
-  scene::spawn_emitter(session.scene().state().entities, {.kind = scene::fire()},
+  scene::spawn_emitter(session.scene().entities(), {.kind = scene::fire()},
                        at(session, pose, 4, 14, 0.1));
-  scene::spawn_light(session.scene().state().entities,
-                     {.colour = {1, 0.45F, 0.15F}, .intensity = 3}, at(session, pose, 4, 14, 0.8));
+  scene::spawn_light(session.scene().entities(), {.colour = {1, 0.45F, 0.15F}, .intensity = 3},
+                     at(session, pose, 4, 14, 0.8));
 }
 
 void furnish_day(Session& session, const core::CameraPose& pose) {
-  ecs::World& entities = session.scene().state().entities;
+  ecs::World& entities = session.scene().entities();
   scene::spawn_emitter(entities, {.kind = scene::smoke()}, at(session, pose, -3, 22, 0));
   scene::spawn_emitter(entities, {.kind = scene::snow()}, {});
   scene::spawn_emitter(entities, {.kind = scene::leaves(), .seed = 3}, at(session, pose, 4, 12, 3));
@@ -95,7 +99,7 @@ void furnish_day(Session& session, const core::CameraPose& pose) {
 
 image::Image picture(Session& session, const core::CameraPose& pose) {
   session.scene().settle(pose);
-  session.scene().state().clock.now_s = 20;
+  session.scene().set_now(20);
   for (int frame = 0; frame < 3; ++frame)
     EXPECT_TRUE(session.tick(pose, 1.0 / 60.0));
   EXPECT_THAT(session.renderer().validation_messages(), testing::IsEmpty());

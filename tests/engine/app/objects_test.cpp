@@ -2,9 +2,15 @@
 // to them. To accept a new image after inspecting it: PSYGEN_GOLDEN_UPDATE=1
 #include <array>
 
+#include "ecs/ecs.hpp"
 #include "engine/image/compare.hpp"
+#include "engine/models/registry.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/preset.hpp"
+#include "engine/scene/objects/assets.hpp"
+#include "engine/scene/settings.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/world/world.hpp"
 #include "tests/engine/app/golden.hpp"
 
 namespace psygen::app {
@@ -82,29 +88,29 @@ std::unique_ptr<Session> open(render::RenderPath path, render::Preset preset) {
 
 void put(Session& session, const core::CameraPose& pose, glm::dvec2 at, const scene::Object& object,
          float yaw, glm::vec3 scale = glm::vec3(1.0F)) {
-  scene::State& state = session.scene().state();
+  scene::Scene& scene = session.scene();
   scene::Transform transform;
   transform.position = pose.position;
   transform.position.local += glm::dvec3(at.x, 0, at.y);
-  transform.position = core::normalised(transform.position, state.facts.world.block_size_m());
+  transform.position = core::normalised(transform.position, scene.world().block_size_m());
   const core::WorldPosition& p = transform.position;
   transform.position.local.y =
-      models::ground_height_m(state.facts.world.terrain, p.block, p.local.x, p.local.z);
+      models::ground_height_m(scene.world().terrain, p.block, p.local.x, p.local.z);
   transform.rotation = glm::angleAxis(yaw, glm::vec3(0, 1, 0));
   transform.scale = scale;
-  scene::spawn(state.entities, object, transform);
+  scene::spawn(scene.entities(), object, transform);
 }
 
 // A row of crates, one of which glows, a rock of the game, a fence with gaps, and a tower beyond
 // the view distance.
 void furnish(Session& session, const core::CameraPose& pose) {
-  scene::Assets& assets = session.scene().state().assets;
+  scene::Assets& assets = session.scene().assets();
   const auto mesh = assets.add_mesh(crate(), "crate");
   const auto texture = assets.add_texture(planks());
   ASSERT_TRUE(mesh && texture);
   const auto wood = assets.add_material({.base_texture = *texture});
   const auto lamp = assets.add_material({.base_colour = {0.2F, 0.2F, 0.2F}, .emissive = {3, 2, 1}});
-  const models::Registry& registry = session.scene().state().facts.registry;
+  const models::Registry& registry = session.scene().registry();
   const auto& rock = registry[static_cast<models::ModelIndex>(registry.find("rock"))];
   const auto boulder = assets.add_model("rock", models::default_parameters(rock));
   const auto board = assets.add_mesh(panel(), "fence");
@@ -118,7 +124,7 @@ void furnish(Session& session, const core::CameraPose& pose) {
   put(session, pose, {3, -11}, {.mesh = *mesh, .material = *lamp}, 0.5F, glm::vec3(0.4F));
   put(session, pose, {-4, -11}, {.mesh = *boulder}, 0, glm::vec3(1.5F));
   put(session, pose, {0, -10}, {.mesh = *board, .material = *holes}, 0.2F);
-  const double beyond_m = session.scene().state().settings.view_distance_m + 60;
+  const double beyond_m = session.scene().settings().view_distance_m + 60;
   put(session, pose, {0, -beyond_m}, {.mesh = *mesh}, 0, glm::vec3(4, 40, 4));
 }
 
@@ -137,7 +143,7 @@ TEST_P(ObjectPictures, AreTheSameOnBothPathsAndMatchTheStoredImages) {
     session->scene().settle(pose);
     for (int frame = 0; frame < 3; ++frame)
       ASSERT_TRUE(session->tick(pose, 1.0 / 60.0));
-    EXPECT_EQ(session->scene().state().counters.objects_drawn, 8u);
+    EXPECT_EQ(session->scene().statistics().objects_drawn, 8u);
     images[i] = captured(*session);
     EXPECT_THAT(session->renderer().validation_messages(), testing::IsEmpty());
   }

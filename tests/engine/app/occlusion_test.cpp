@@ -29,11 +29,11 @@ void forget_parts(ecs::World& entities) {
 std::uint64_t differing(Studio& studio, const core::CameraPose& pose, std::uint32_t& hidden) {
   studio.state().settings.occlusion = true;
   studio.settle(pose);
-  hidden += studio.state().counters.nodes_hidden;
+  hidden += studio.scene().statistics().nodes_hidden;
   const image::Image without = studio.picture();
   studio.state().settings.occlusion = false;
   studio.settle(pose);
-  EXPECT_EQ(studio.state().counters.nodes_hidden, 0u);
+  EXPECT_EQ(studio.scene().statistics().nodes_hidden, 0u);
   forget_parts(studio.state().entities);
   return image::compare(studio.picture(), without, 0).pixels_over;
 }

@@ -175,7 +175,7 @@ Pops fly_while_coarsening(Studio& studio, const core::CameraPose& pose, glm::dve
     const double triangles = 20'000 + 1000 * (i % 7);
     studio.state().quality.governor.observe(frame_ms_of(triangles), triangles);
   }
-  EXPECT_EQ(studio.state().quality.governor.relief(), 1);
+  EXPECT_EQ(studio.state().quality.governor.load_reduction(), 1);
   double before = 2, largest_step = 0;
   const Pops pops = fly(studio, pose, 40, [&](int) {
     const double error = studio.state().quality.error_pixels;

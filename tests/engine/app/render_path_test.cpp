@@ -2,6 +2,7 @@
 
 #include "engine/image/compare.hpp"
 #include "engine/world/files/path_file.hpp"
+#include "engine/world/world.hpp"
 #include "tests/engine/app/golden.hpp"
 
 namespace psygen::app {
@@ -24,7 +25,7 @@ TEST(RenderPath, TheGpuPathShowsWhatTheCpuPathShows) {
   for (const double seconds : {1.0, 1.1, 1.2, 13.0, 13.1, 13.2, 25.0}) {
     std::array<image::Image, 2> images;
     for (std::size_t i = 0; i < 2; ++i) {
-      const auto pose = path->pose_at(seconds, sessions[i]->scene().state().facts.world);
+      const auto pose = path->pose_at(seconds, sessions[i]->scene().world());
       sessions[i]->scene().settle(pose);
       ASSERT_TRUE(sessions[i]->tick(pose, 1.0 / 60.0));
       images[i] = captured(*sessions[i]);

@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "engine/render/renderer.hpp"
-#include "engine/scene/readiness.hpp"
+#include "engine/scene/meshes/requested_places.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/state.hpp"
 #include "tests/engine/app/fixture.hpp"
 
 namespace psygen::app {
@@ -20,7 +21,7 @@ TEST(Session, IsDrivenByTheProgramsLoopUntilItIsClosed) {
   while ((*session)->poll()) {
     EXPECT_DOUBLE_EQ((*session)->now_s(), 0.25 * ticks);
     ASSERT_TRUE((*session)->tick(pose, 0.25));
-    EXPECT_EQ((*session)->scene().state().counters.holes, 0u);
+    EXPECT_EQ((*session)->scene().statistics().holes, 0u);
     if (++ticks == 3) (*session)->close();
   }
   EXPECT_EQ(ticks, 3);
@@ -95,14 +96,14 @@ TEST(Session, SavesTheImageOfTheLastTickAndChangesItsPreset) {
   ASSERT_TRUE((*session)->save_picture(file));
   EXPECT_EQ((*session)->take_saved(), std::vector{file});
   EXPECT_TRUE((*session)->take_saved().empty()) << "reported once";
-  scene::State& state = (*session)->scene().state();
+  scene::State& state = scene::state_of((*session)->scene());
   EXPECT_TRUE(state.facts.near_detail);
-  ASSERT_TRUE(scene::ask_ready(state, (*session)->home().position, 40));
-  EXPECT_FALSE(state.foresight.places[0].stale);
+  ASSERT_TRUE((*session)->scene().request_place((*session)->home().position, 40));
+  EXPECT_FALSE(state.meshes.places.places[0].stale);
   ASSERT_TRUE((*session)->set_preset(render::Preset::kMedium));
-  EXPECT_EQ((*session)->scene().state().facts.shadows, (*session)->renderer().casts_shadows());
+  EXPECT_EQ(state.facts.shadows, (*session)->renderer().casts_shadows());
   EXPECT_FALSE(state.facts.near_detail);
-  EXPECT_TRUE(state.foresight.places[0].stale) << "the preset changes the distance of trees";
+  EXPECT_TRUE(state.meshes.places.places[0].stale) << "the preset changes the distance of trees";
   ASSERT_TRUE((*session)->tick((*session)->home(), 0));
   EXPECT_EQ((*session)->renderer().preset(), render::Preset::kMedium);
 }
@@ -121,7 +122,7 @@ TEST(Session, TheGovernorIgnoresImagesCapturedByPlugins) {
   for (const bool now : {false, true, false}) {
     takes = now;
     ASSERT_TRUE((*session)->tick((*session)->home(), 0.01));
-    EXPECT_EQ((*session)->scene().state().input.frame_ms > 0, !takes);
+    EXPECT_EQ(scene::state_of((*session)->scene()).input.frame_ms > 0, !takes);
   }
 }
 
@@ -229,7 +230,7 @@ TEST(Session, StandsStillAndContinuesDrawingWhilePaused) {
   const core::CameraPose pose = (*session)->home();
   ASSERT_TRUE((*session)->tick(pose, 0.5));
   (*session)->set_paused(true);
-  const std::uint64_t frame = (*session)->scene().state().counters.frame.frame;
+  const std::uint64_t frame = (*session)->scene().drawn().frame;
   ASSERT_TRUE((*session)->tick(pose, 0.5));  // the steps of the time before
   const int steps_before = steps;
   for (int i = 0; i < 2; ++i)
@@ -237,7 +238,7 @@ TEST(Session, StandsStillAndContinuesDrawingWhilePaused) {
   EXPECT_EQ(steps, steps_before);
   EXPECT_TRUE((*session)->paused());
   EXPECT_EQ((*session)->now_s(), 0.5);
-  EXPECT_EQ((*session)->scene().state().counters.frame.frame, frame + 3) << "drawing continues";
+  EXPECT_EQ((*session)->scene().drawn().frame, frame + 3) << "drawing continues";
   (*session)->set_paused(false);
   ASSERT_TRUE((*session)->tick(pose, 0.5));
   EXPECT_EQ((*session)->now_s(), 1.0);

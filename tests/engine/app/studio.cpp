@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/scene/draws/ground.hpp"
+#include "engine/scene/state.hpp"
 
 namespace psygen::app {
 namespace {

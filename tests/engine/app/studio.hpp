@@ -7,6 +7,7 @@
 
 #include "engine/image/image.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/scene/state.hpp"
 #include "tests/engine/app/fixture.hpp"
 #include "tests/source_file.hpp"
 
@@ -37,8 +38,8 @@ class Studio {
   }
 
   scene::Scene& scene() { return session_->scene(); }
-  scene::State& state() { return session_->scene().state(); }
-  const scene::State& state() const { return session_->scene().state(); }
+  scene::State& state() { return scene::state_of(session_->scene()); }
+  const scene::State& state() const { return scene::state_of(session_->scene()); }
   std::uint32_t width() { return session_->renderer().size().width; }
   std::uint32_t height() { return session_->renderer().size().height; }
 
@@ -62,8 +63,8 @@ class Studio {
   void fly(const core::CameraPose& pose) {
     for (int i = 0; i < 40; ++i) {
       draw(pose);
-      state().meshes.wait();
-      if (state().counters.requests == 0 && !state().meshes.has_arrived()) break;
+      state().supply.wait();
+      if (scene().statistics().requests == 0 && !state().supply.has_arrived()) break;
     }
     draw(pose);
   }

@@ -5,6 +5,9 @@
 #include <random>
 #include <stdexcept>
 
+#include "ecs/ecs.hpp"
+#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/frame/clock.hpp"
 #include "tests/engine/app/fixture.hpp"
 
 namespace psygen::app {
@@ -66,7 +69,7 @@ std::string tick_error_with(Plugin plugin) {
 
 std::uint64_t hash_of_wolves(Session& session) {
   std::uint64_t hash = 0;
-  session.scene().state().entities.each<const Wolf>([&](auto, std::span<const Wolf> all) {
+  session.scene().entities().each<const Wolf>([&](auto, std::span<const Wolf> all) {
     for (const Wolf& wolf : all)
       hash = core::combine(hash, std::bit_cast<std::uint64_t>(wolf.x_m));
   });
@@ -83,7 +86,7 @@ TEST(Systems, TheSimulationIsTheSameForAnyFramesAndModelers) {
       options.scene.modelers = modelers;
       auto session = Session::create(options);
       ASSERT_TRUE(session) << session.error().message;
-      const FixedStep& step = (*session)->scene().state().simulation.step;
+      const FixedStep& step = (*session)->scene().step();
       std::uniform_real_distribution<double> dt_s(0.001, 0.03);
       while (step.index < 120)
         ASSERT_TRUE((*session)->tick((*session)->home(), even ? 1.0 / 30 : dt_s(random)));
@@ -117,7 +120,7 @@ TEST(Systems, RunNextToTheSystemsThatTheyNameAndAreReported) {
   ASSERT_TRUE(flight) << flight.error().message;
   const auto report = (*flight)->run();
   ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ((*flight)->session().scene().state().camera.pose.pitch, -0.5);
+  EXPECT_EQ((*flight)->session().scene().camera().pose.pitch, -0.5);
   std::vector<std::string> names;
   for (const telemetry::SystemTimes& system : report->summary.system_ms)
     names.push_back(system.name);
@@ -182,7 +185,7 @@ TEST(Systems, APluginMayNameSystemsOfLaterPlugins) {
                            "howl", [](const scene::Clock&) {}, ecs::before("input"));
                        return {};
                      }}});
-  const std::vector<std::string> names = scene::system_names(session->scene().state());
+  const std::vector<std::string> names = session->scene().system_names();
   EXPECT_EQ(std::ranges::find(names, "howl") + 1, std::ranges::find(names, "flee"));
 }
 

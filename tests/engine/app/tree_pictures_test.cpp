@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/scene/state.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {
@@ -32,12 +33,12 @@ TEST(PicturesOfTrees, AreUploadedBeforeTheFirstFrame) {
   ASSERT_TRUE(renderer);
   const auto scene = scene_of(*renderer);
   ASSERT_TRUE(scene);
-  const State& s = scene->state();
+  const State& s = scene::state_of(*scene);
   ASSERT_TRUE(s.facts.pictures);
-  EXPECT_EQ(s.output.pictures_lacking, (1U << s.facts.pictures->count()) - 1);
+  EXPECT_EQ(s.meshes.pictures_lacking, (1U << s.facts.pictures->count()) - 1);
   EXPECT_EQ(renderer->texture_bytes(), s.facts.pictures->count() * core::picture_bytes());
   scene->settle(pose_at(256, 256));
-  EXPECT_EQ(s.output.pictures_lacking, 0U);
+  EXPECT_EQ(s.meshes.pictures_lacking, 0U);
   EXPECT_FALSE(s.output.error);
 }
 
@@ -47,12 +48,12 @@ TEST(PicturesOfTrees, AreNotLostIfFinishedWhileTheWorldIsReplaced) {
   models::Registry registry = models::make_standard_registry(),
                    next = models::make_standard_registry();
   world::World world = paper_world(registry);
-  Settings settings = small_settings();
+  SceneSettings settings = small_settings();
   settings.virtual_time = false;
   auto made = Scene::create(world, std::move(registry), settings, renderer.get());
   ASSERT_TRUE(made);
   Scene& scene = **made;
-  const State& s = scene.state();
+  const State& s = scene::state_of(scene);
   // Until some are finished and not yet uploaded.
   const auto is_picture = [&s](const synthesis::Completion& job) {
     return job.key.model == s.facts.picture_model;
@@ -60,15 +61,15 @@ TEST(PicturesOfTrees, AreNotLostIfFinishedWhileTheWorldIsReplaced) {
   bool made_some = false;
   for (int i = 0; i < 100 && !made_some; ++i) {
     tick_at(scene, pose_at(256, 256));
-    scene.state().meshes.wait();
-    made_some = std::ranges::any_of(scene.state().meshes.collect(), is_picture);
+    scene::state_of(scene).supply.wait();
+    made_some = std::ranges::any_of(scene::state_of(scene).supply.collect(), is_picture);
   }
   ASSERT_TRUE(made_some);
-  ASSERT_NE(s.output.pictures_lacking, 0U);
+  ASSERT_NE(s.meshes.pictures_lacking, 0U);
   world.scatter[1].count += 1;
   ASSERT_TRUE(scene.set_world(world, std::move(next)));
   scene.settle(pose_at(256, 256));
-  EXPECT_EQ(s.output.pictures_lacking, 0U);
+  EXPECT_EQ(s.meshes.pictures_lacking, 0U);
 }
 
 TEST(PicturesOfTrees, AreReplacedByMeshesIfTheRendererLacksMemory) {
@@ -76,11 +77,11 @@ TEST(PicturesOfTrees, AreReplacedByMeshesIfTheRendererLacksMemory) {
   ASSERT_TRUE(renderer);
   const auto scene = scene_of(*renderer);
   ASSERT_TRUE(scene);
-  EXPECT_EQ(scene->state().facts.pictures, nullptr);
+  EXPECT_EQ(scene::state_of(*scene).facts.pictures, nullptr);
   scene->settle(pose_at(256, 256));
   tick_at(*scene, pose_at(256, 256));
-  EXPECT_GT(scene->state().draws.models.size(), 10U);
-  for (const render::MeshDraw& draw : scene->state().draws.models)
+  EXPECT_GT(scene::state_of(*scene).draws.models.size(), 10U);
+  for (const render::MeshDraw& draw : scene::state_of(*scene).draws.models)
     EXPECT_FALSE(draw.pictured);
 }
 

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "engine/app/session.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/statistics.hpp"
 #include "tests/source_file.hpp"
 
 namespace psygen {
@@ -23,7 +25,7 @@ TEST(Tutorial, AProgramTurnsAroundOnceAndSavesAnImage) {
     pose.yaw += 0.52;
     const auto drawn = (*session)->tick(pose, 1.0 / 60.0);
     ASSERT_TRUE(drawn) << drawn.error().message;
-    EXPECT_EQ((*session)->scene().state().counters.holes, 0u);
+    EXPECT_EQ((*session)->scene().statistics().holes, 0u);
   }
   const auto file = std::filesystem::path(testing::TempDir()) / "tutorial.png";
   ASSERT_TRUE((*session)->save_picture(file));

@@ -5,6 +5,8 @@
 #include <thread>
 
 #include "engine/render/preset.hpp"
+#include "engine/scene/facts/world_facts.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "tests/engine/app/fixture.hpp"
 #include "tests/engine/platform/virtual_display.hpp"
 #include "tests/engine/scene/gate.hpp"
@@ -48,7 +50,7 @@ class WindowFlight : public ::testing::Test {
   }
   static std::string notices(Session& session) {
     std::string text;
-    for (const render::TextPanel& panel : session.scene().state().input.panels) {
+    for (const render::TextPanel& panel : session.scene().input().panels) {
       for (const render::TextLine& line : panel.lines)
         if (panel.anchor == render::Anchor::kBottom) text += line.text + "\n";
     }
@@ -172,11 +174,11 @@ TEST_F(WindowFlight, OutputErrorsAreShownInTheWindowAndInTheReport) {
 
 TEST_F(WindowFlight, ItsKeysMatchTheHelp) {
   const auto view_is = [](render::View view) {
-    return [view](Session& session) { return session.scene().state().input.view == view; };
+    return [view](Session& session) { return session.scene().input().view == view; };
   };
   const auto text_has = [](render::Anchor anchor, const char* words) {
     return [=](Session& session) {
-      for (const render::TextPanel& panel : session.scene().state().input.panels) {
+      for (const render::TextPanel& panel : session.scene().input().panels) {
         for (const render::TextLine& line : panel.lines)
           if (panel.anchor == anchor && line.text.find(words) != std::string::npos) return true;
       }
@@ -186,8 +188,8 @@ TEST_F(WindowFlight, ItsKeysMatchTheHelp) {
   const auto preset_is = [](render::Preset preset) {
     return [preset](Session& session) {
       return session.renderer().preset() == preset &&
-             session.scene().state().facts.shadows == session.renderer().casts_shadows() &&
-             session.scene().state().facts.near_detail == session.renderer().has_near_models();
+             session.scene().facts().shadows == session.renderer().casts_shadows() &&
+             session.scene().facts().near_detail == session.renderer().has_near_models();
     };
   };
   const auto size_is = [](core::Extent size) {
@@ -196,21 +198,20 @@ TEST_F(WindowFlight, ItsKeysMatchTheHelp) {
   using render::Anchor;
   FlightOptions made = options();
   made.session.preset = render::Preset::kMedium;
-  do_steps(
-      made,
-      {{"F1", text_has(Anchor::kTopLeft, "full screen")},
-       {"F1", [](Session& session) { return session.scene().state().input.panels.size() == 2; }},
-       {"F1", text_has(Anchor::kTopLeft, "preset medium")},
-       {"F2", view_is(render::View::kLevels)},
-       {"F2", view_is(render::View::kLayers)},
-       {"F2", text_has(Anchor::kTopRight, "view: bounds")},
-       {"F11", size_is({1280, 1024})},
-       {"F11", size_is({320, 180})},
-       {"p", [](Session& session) { return session.paused(); }},
-       {"p", [](Session& session) { return !session.paused(); }},
-       {"F12", text_has(Anchor::kBottom, "screenshot_0000.png")},
-       {"F3", preset_is(render::Preset::kHigh)},
-       {"F1", text_has(Anchor::kBottom, "preset high")}});
+  do_steps(made,
+           {{"F1", text_has(Anchor::kTopLeft, "full screen")},
+            {"F1", [](Session& session) { return session.scene().input().panels.size() == 2; }},
+            {"F1", text_has(Anchor::kTopLeft, "preset medium")},
+            {"F2", view_is(render::View::kLevels)},
+            {"F2", view_is(render::View::kLayers)},
+            {"F2", text_has(Anchor::kTopRight, "view: bounds")},
+            {"F11", size_is({1280, 1024})},
+            {"F11", size_is({320, 180})},
+            {"p", [](Session& session) { return session.paused(); }},
+            {"p", [](Session& session) { return !session.paused(); }},
+            {"F12", text_has(Anchor::kBottom, "screenshot_0000.png")},
+            {"F3", preset_is(render::Preset::kHigh)},
+            {"F1", text_has(Anchor::kBottom, "preset high")}});
   EXPECT_TRUE(std::filesystem::exists(folder_ / "screenshot_0000.png"));
 }
 

@@ -11,9 +11,14 @@
 #include <thread>
 
 #include "engine/app/session.hpp"
+#include "engine/core/camera.hpp"
 #include "engine/inspect/client.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/facts/world_facts.hpp"
+#include "engine/scene/frame/camera.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/telemetry/frame_log.hpp"
 #include "engine/world/files/text_file.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "tests/source_file.hpp"
@@ -76,7 +81,7 @@ class InspectTest : public ::testing::Test {
   }
   json ask(const json& request) { return ask_line(request.dump()); }
   std::string written() const {
-    const scene::WorldFacts& facts = session_->scene().state().facts;
+    const scene::WorldFacts& facts = session_->scene().facts();
     return world::write_world(facts.world, facts.registry);
   }
   std::string changed_text() { return changed_text_of(ask({{"do", "parameters"}})["text"]); }
@@ -136,13 +141,13 @@ TEST_F(InspectTest, LeavesNoTrace) {
   pose["yaw"] = 1.25;
   ASSERT_EQ(ask({{"do", "pose"}, {"pose", pose}})["ok"], true);
   tick();
-  EXPECT_EQ(session_->scene().state().camera.pose.yaw, 1.25);
+  EXPECT_EQ(session_->scene().camera().pose.yaw, 1.25);
   client_.reset();  // a crash of the client
   tick();
   tick();
   EXPECT_EQ(written(), before);
   EXPECT_FALSE(session_->paused());
-  EXPECT_EQ(session_->scene().state().camera.pose.yaw, pose_.yaw);
+  EXPECT_EQ(session_->scene().camera().pose.yaw, pose_.yaw);
 }
 
 TEST_F(InspectTest, KeepsChangesOnRequest) {
@@ -366,7 +371,7 @@ TEST_F(InspectTest, ChangesNoImageAndNoStatisticsWithoutAClient) {
       if (inspect) client_->ask(R"({"do":"hello","protocol":"psygen.inspect/1"})");
       if (inspect) client_->ask(R"({"do":"entities"})");
       EXPECT_TRUE((*session)->tick(pose, 1.0 / 60));
-      const telemetry::FrameRecord& record = (*session)->scene().state().record;
+      const telemetry::FrameRecord& record = (*session)->scene().record();
       figures.insert(figures.end(),
                      {record.triangles, record.cache_bytes, record.draws, record.requests_queued});
     }

@@ -2,10 +2,15 @@
 // inspecting it: PSYGEN_GOLDEN_UPDATE=1
 #include <array>
 
+#include "ecs/ecs.hpp"
 #include "engine/image/compare.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/prefab/prefab.hpp"
 #include "engine/render/preset.hpp"
+#include "engine/scene/frame/clock.hpp"
+#include "engine/scene/objects/assets.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/world/world.hpp"
 #include "tests/engine/app/golden.hpp"
 
 namespace psygen::app {
@@ -25,25 +30,25 @@ TEST(PrefabPicture, IsTheSameOnBothPathsAndMatchesTheStoredImage) {
     options.plugins.push_back(plugin);
     const auto session = Session::create(options);
     ASSERT_TRUE(session) << session.error().message;
-    scene::State& state = (*session)->scene().state();
+    scene::Scene& scene = (*session)->scene();
     core::CameraPose pose = (*session)->home();
     pose.position.local.y -= 20;
-    const auto mill = prefabs.load(state.assets, source_file("examples/09_gltf/windmill.glb"));
+    const auto mill = prefabs.load(scene.assets(), source_file("examples/09_gltf/windmill.glb"));
     ASSERT_TRUE(mill) << mill.error().message;
     scene::Transform where{.position = pose.position};
     where.position.local += glm::dvec3(-2, 0, -30);
-    where.position = core::normalised(where.position, state.facts.world.block_size_m());
+    where.position = core::normalised(where.position, scene.world().block_size_m());
     const core::WorldPosition& at = where.position;
     where.position.local.y =
-        models::ground_height_m(state.facts.world.terrain, at.block, at.local.x, at.local.z);
+        models::ground_height_m(scene.world().terrain, at.block, at.local.x, at.local.z);
     where.rotation = glm::angleAxis(0.4F, glm::vec3(0, 1, 0));
-    const ecs::Entity entity = prefabs.spawn(state.entities, *mill, where);
+    const ecs::Entity entity = prefabs.spawn(scene.entities(), *mill, where);
     (*session)->scene().settle(pose);
-    auto* instance = state.entities.get<prefab::Instance>(entity);
-    ASSERT_TRUE(prefabs.play(*instance, "turn", state.simulation.step, {.from_s = 1}));
+    auto* instance = scene.entities().get<prefab::Instance>(entity);
+    ASSERT_TRUE(prefabs.play(*instance, "turn", scene.step(), {.from_s = 1}));
     for (int frame = 0; frame < 30; ++frame)
       ASSERT_TRUE((*session)->tick(pose, 1.0 / 60.0));
-    EXPECT_GT(state.counters.objects_drawn, 10u);
+    EXPECT_GT(scene.statistics().objects_drawn, 10u);
     images[i] = captured(**session);
     EXPECT_THAT((*session)->renderer().validation_messages(), testing::IsEmpty());
   }

@@ -44,21 +44,20 @@ class Prefabs : public testing::Test {
     scene::Systems systems = scene_->systems();
     ASSERT_TRUE(library_.add_systems(systems));
     scene_->settle(pose_);
-    const auto added = library_.add(state().assets, two_nodes());
+    const auto added = library_.add(scene_->assets(), two_nodes());
     ASSERT_TRUE(added) << added.error().message;
     arm_ = *added;
     where_.position = pose_.position;
     where_.position.local += glm::dvec3(0, -4, -20);
-    root_ = library_.spawn(state().entities, arm_, where_);
+    root_ = library_.spawn(scene_->entities(), arm_, where_);
   }
-  scene::State& state() { return scene_->state(); }
   void tick(int count = 1) {
     for (int i = 0; i < count; ++i)
       scene::tick_at(*scene_, pose_);
   }
   glm::dvec3 place_of(const char* node) {
-    const ecs::Entity entity = library_.node_of(state().entities, root_, node);
-    return state().entities.get<Transform>(entity)->position.local - where_.position.local;
+    const ecs::Entity entity = library_.node_of(scene_->entities(), root_, node);
+    return scene_->entities().get<Transform>(entity)->position.local - where_.position.local;
   }
 
   core::CameraPose pose_ = scene::pose_at(0, 0);
@@ -71,35 +70,35 @@ class Prefabs : public testing::Test {
 
 TEST_F(Prefabs, AreDrawnAndFollowTheirRoot) {
   tick(3);
-  EXPECT_EQ(state().object_draws.objects.size(), 4u) << "two nodes with two materials each";
+  EXPECT_EQ(scene_->statistics().objects_drawn, 4u) << "two nodes with two materials each";
   EXPECT_EQ(place_of("hand"), glm::dvec3(2, 0, 0));
-  Transform& root = *state().entities.get<Transform>(root_);
+  Transform& root = *scene_->entities().get<Transform>(root_);
   root.rotation = glm::angleAxis(1.5707964F, glm::vec3(0, 0, 1));
   root.scale = {3, 1, 1};
   tick();
   EXPECT_LT(glm::length(place_of("hand") - glm::dvec3(0, 6, 0)), 1e-5);
-  const ecs::Entity hand = library_.node_of(state().entities, root_, "hand");
-  const Transform& turned = *state().entities.get<Transform>(hand);
+  const ecs::Entity hand = library_.node_of(scene_->entities(), root_, "hand");
+  const Transform& turned = *scene_->entities().get<Transform>(hand);
   EXPECT_LT(glm::length(turned.scale - glm::vec3(3, 1, 1)), 1e-5F);
   EXPECT_LT(glm::length(turned.rotation * glm::vec3(1, 0, 0) - glm::vec3(0, 1, 0)), 1e-5F);
 }
 
 TEST_F(Prefabs, MirrorByNegativeScales) {
-  state().entities.get<Transform>(root_)->scale = {1, -2, 1};
+  scene_->entities().get<Transform>(root_)->scale = {1, -2, 1};
   tick();
-  const ecs::Entity hand = library_.node_of(state().entities, root_, "hand");
-  const Transform& mirrored = *state().entities.get<Transform>(hand);
+  const ecs::Entity hand = library_.node_of(scene_->entities(), root_, "hand");
+  const Transform& mirrored = *scene_->entities().get<Transform>(hand);
   const auto place = [&](glm::vec3 p) { return mirrored.rotation * (mirrored.scale * p); };
   EXPECT_LT(glm::length(place({1, 2, 3}) - glm::vec3(1, -4, 3)), 1e-5F);
 }
 
 TEST_F(Prefabs, PlayAnimationsByTheStepsOfTheSimulation) {
-  Instance& instance = *state().entities.get<Instance>(root_);
+  Instance& instance = *scene_->entities().get<Instance>(root_);
   tick();
-  ASSERT_TRUE(library_.play(instance, "lift", state().simulation.step, {.speed = 2}));
-  const std::uint64_t from = state().simulation.step.index;
+  ASSERT_TRUE(library_.play(instance, "lift", scene_->step(), {.speed = 2}));
+  const std::uint64_t from = scene_->step().index;
   tick(31);
-  const scene::FixedStep& step = state().simulation.step;
+  const scene::FixedStep& step = scene_->step();
   const double passed_s = (static_cast<double>(step.index - from) - 1 + step.share) * step.step_s;
   ASSERT_GT(passed_s, 0.4);
   EXPECT_NEAR(place_of("arm").y, 2 * 2 * passed_s, 1e-5) << "2 m a second, twice as fast";
@@ -113,37 +112,37 @@ TEST_F(Prefabs, PlayAnimationsByTheStepsOfTheSimulation) {
 }
 
 TEST_F(Prefabs, ListTheirAnimationsInErrors) {
-  const auto played = library_.play(*state().entities.get<Instance>(root_), "sing", {});
+  const auto played = library_.play(*scene_->entities().get<Instance>(root_), "sing", {});
   ASSERT_FALSE(played);
   EXPECT_EQ(played.error().message, "arm.glb has no animation \"sing\"; its animations are lift");
 }
 
 TEST_F(Prefabs, DisappearWithTheirRootAndMayLoseSingleParts) {
   tick(3);
-  const ecs::Entity arm = library_.node_of(state().entities, root_, "arm");
-  state().entities.destroy(std::span(&arm, 1));
-  ASSERT_TRUE(library_.play(*state().entities.get<Instance>(root_), "lift", {}));
+  const ecs::Entity arm = library_.node_of(scene_->entities(), root_, "arm");
+  scene_->entities().destroy(std::span(&arm, 1));
+  ASSERT_TRUE(library_.play(*scene_->entities().get<Instance>(root_), "lift", {}));
   tick(3);
-  EXPECT_EQ(state().object_draws.objects.size(), 3u) << "attached entities keep their positions";
-  state().entities.destroy_with_children(std::span(&root_, 1));
-  EXPECT_EQ(state().entities.count<Attached>(), 0u);
+  EXPECT_EQ(scene_->statistics().objects_drawn, 3u) << "attached entities keep their positions";
+  scene_->entities().destroy_with_children(std::span(&root_, 1));
+  EXPECT_EQ(scene_->entities().count<Attached>(), 0u);
   tick();
-  EXPECT_TRUE(state().object_draws.objects.empty());
+  EXPECT_EQ(scene_->statistics().objects_drawn, 0u);
 }
 
 TEST_F(Prefabs, AttachToEachOtherInAnyOrderAndInCycles) {
-  const auto made = state().entities.create<Transform, Attached>(3);
+  const auto made = scene_->entities().create<Transform, Attached>(3);
   const std::vector<ecs::Entity> own(made.entities.begin(), made.entities.end());
   for (std::size_t i = 0; i < 3; ++i)
     made.column<Attached>()[i] = {.parent = i == 2 ? root_ : own[i + 1],
                                   .pose = {.translation = {1, 0, 0}}};
   tick();
   const auto x = [&](std::size_t i) {
-    return state().entities.get<Transform>(own[i])->position.local.x - where_.position.local.x;
+    return scene_->entities().get<Transform>(own[i])->position.local.x - where_.position.local.x;
   };
   EXPECT_EQ(x(0), 3);
   EXPECT_EQ(x(2), 1);
-  state().entities.get<Attached>(own[2])->parent = own[0];
+  scene_->entities().get<Attached>(own[2])->parent = own[0];
   tick(3);
 }
 
@@ -157,10 +156,10 @@ TEST_F(Prefabs, SplitMeshesThatAreTooLarge) {
                           {{at * 1e-3F, 0, 0}, {at * 1e-3F, 1, 0}, {at * 1e-3F, 0, 1}});
     mesh.indices.insert(mesh.indices.end(), {3 * i, 3 * i + 1, 3 * i + 2});
   }
-  const std::size_t before = state().assets.mesh_count();
-  const auto added = library_.add(state().assets, model);
+  const std::size_t before = scene_->assets().mesh_count();
+  const auto added = library_.add(scene_->assets(), model);
   ASSERT_TRUE(added) << added.error().message;
-  EXPECT_EQ(state().assets.mesh_count() - before, 5u) << "four parts, and the second material";
+  EXPECT_EQ(scene_->assets().mesh_count() - before, 5u) << "four parts, and the second material";
   EXPECT_EQ(library_[*added].parts.size(), 10u);
 }
 

@@ -7,15 +7,17 @@
 #include <set>
 
 #include "engine/core/clock.hpp"
+#include "engine/scene/facts/prepared_world.hpp"
 #include "engine/scene/nodes/mesh_entity.hpp"
-#include "engine/scene/scene.hpp"
+#include "engine/scene/state.hpp"
+#include "engine/scene/systems.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "tests/source_file.hpp"
 
 namespace psygen::scene {
 
-inline Settings small_settings() {
-  Settings settings;
+inline SceneSettings small_settings() {
+  SceneSettings settings;
   settings.view_distance_m = 130;
   settings.budget_bytes = 64ull << 20;
   settings.modelers = 1;
@@ -31,7 +33,7 @@ inline world::World paper_world(const models::Registry& registry) {
   return *world;
 }
 
-inline std::unique_ptr<Scene> make_scene(const world::World& world, const Settings& settings,
+inline std::unique_ptr<Scene> make_scene(const world::World& world, const SceneSettings& settings,
                                          models::Registry registry) {
   auto scene = Scene::create(world, std::move(registry), settings, nullptr);
   EXPECT_TRUE(scene) << scene.error().message;
@@ -40,7 +42,7 @@ inline std::unique_ptr<Scene> make_scene(const world::World& world, const Settin
 
 // The paper's world with some things changed.
 template <class Change>
-std::unique_ptr<Scene> make_scene_of(const Settings& settings, const Change& change) {
+std::unique_ptr<Scene> make_scene_of(const SceneSettings& settings, const Change& change) {
   models::Registry registry = models::make_standard_registry();
   world::World world = paper_world(registry);
   change(world);
@@ -48,7 +50,7 @@ std::unique_ptr<Scene> make_scene_of(const Settings& settings, const Change& cha
 }
 
 inline std::unique_ptr<Scene> make_scene(
-    const Settings& settings, models::Registry registry = models::make_standard_registry()) {
+    const SceneSettings& settings, models::Registry registry = models::make_standard_registry()) {
   const world::World world = paper_world(registry);
   return make_scene(world, settings, std::move(registry));
 }
@@ -61,28 +63,28 @@ inline core::CameraPose pose_at(std::int32_t block_x, std::int32_t block_z, doub
   return pose;
 }
 
-// One tick; what it asks for may arrive in a later one.
+// Runs one tick; its requests may be ready in a later one.
 inline void tick_at(Scene& scene, const core::CameraPose& pose) {
-  State& state = scene.state();
+  State& state = state_of(scene);
   state.input.pose = pose;
   tick(state);
   state.clock.now_s += 1.0 / 60.0;
 }
 
 inline void expect_within_budget(const Scene& scene) {
-  const synthesis::CacheStats stats = scene.state().meshes.stats();
+  const synthesis::CacheStats stats = state_of(scene).supply.stats();
   EXPECT_LE(stats.peak_bytes, stats.budget_bytes);
-  EXPECT_LE(scene.state().memory->used_bytes(), stats.budget_bytes);
+  EXPECT_LE(state_of(scene).memory->used_bytes(), stats.budget_bytes);
 }
 
-// What the last tick drew is alive in the cache.
+// Expects that the cache holds everything that the last tick drew.
 inline void expect_drawn_alive(const Scene& scene) {
-  const State& s = scene.state();
+  const State& s = state_of(scene);
   if (s.draws.tick + 1 != s.clock.tick) return;  // the last tick drew nothing
   std::set<std::uint32_t> alive;
   std::size_t wrong = 0;
   for (const synthesis::MeshHandle handle : s.draws.meshes) {
-    const synthesis::MeshRecord* record = s.meshes.get(handle);
+    const synthesis::MeshRecord* record = s.supply.get(handle);
     if (record != nullptr && record->state == synthesis::MeshState::kReady)
       alive.insert(record->range.id);
     else
@@ -93,15 +95,15 @@ inline void expect_drawn_alive(const Scene& scene) {
   EXPECT_EQ(wrong, 0u);
 }
 
-// Whatever an entity draws is alive in the cache, and is what the entity thinks it is.
+// Expects that the cache holds the drawn mesh of each entity, at the level that the entity records.
 inline void expect_consistent(Scene& scene) {
-  const synthesis::MeshSupply& supply = scene.state().meshes;
+  const synthesis::MeshSupply& supply = state_of(scene).supply;
   std::size_t wrong = 0;
-  std::as_const(scene.state().entities)
-      .each<const Demand, const Mesh, const Detail, const Source>(
-          [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
-              std::span<const Mesh> meshes, std::span<const Detail> details,
-              std::span<const Source> sources) {
+  std::as_const(state_of(scene).entities)
+      .each<const MeshDemand, const Mesh, const LodErrors, const MeshSource>(
+          [&](std::span<const ecs::Entity>, std::span<const MeshDemand> demands,
+              std::span<const Mesh> meshes, std::span<const LodErrors> details,
+              std::span<const MeshSource> sources) {
             for (std::size_t i = 0; i < demands.size(); ++i) {
               if (demands[i].drawn_level == kNoLevel) continue;
               const synthesis::MeshRecord* record = supply.get(meshes[i].handle);

@@ -1,5 +1,5 @@
-// The paper's walk with a single modeler that is no faster than it need be, and how little more a
-// wide view takes than a narrow one.
+// The paper's walk with a single slow modeler, and the cost of wide views compared with narrow
+// ones.
 #include <algorithm>
 #include <map>
 
@@ -11,38 +11,38 @@
 namespace psygen::scene {
 namespace {
 
-// From an empty cache on. One that takes 0.4 ms for each piece of ground and for each tree, many
-// times as long as a core of today.
-TEST(Flights, OnThePapersWalkOneModelerIsEnoughForNoHoles) {
+// Starts with an empty cache. The modeler takes 0.4 ms for each ground mesh and tree, many times as
+// long as a present-day core.
+TEST(Flights, OneModelerLeavesNoHolesOnThePapersWalk) {
   constexpr int kMeshesPerTick = 40, kWarmupTicks = 60;
   const auto path = world::load_camera_path(source_file("game/paths/walk27.toml"));
   ASSERT_TRUE(path) << path.error().message;
-  Settings settings = gated_settings();
-  settings.plan_seconds_ahead = 1e6;  // nothing that depends on what the machine takes
+  SceneSettings settings = gated_settings();
+  settings.plan_seconds_ahead = 1e6;  // independent of the machine's speed
   GatedScene gated(settings);
   gated.gate.set_open(false);
-  const State& s = gated.scene->state();
+  const State& s = state_of(*gated.scene);
   ASSERT_EQ(s.settings.modelers, 1u);
   std::size_t holes_before = 0, made = 0, max_in_view = 0;
   for (int tick = 0; tick / 60.0 < path->duration_seconds(); ++tick) {
     tick_at(*gated.scene, path->pose_at(tick / 60.0, s.facts.world));
     if (tick >= kWarmupTicks) {
-      EXPECT_EQ(s.counters.holes, 0u) << "tick " << tick;
+      EXPECT_EQ(statistics_of(s).holes, 0u) << "tick " << tick;
     } else {
-      holes_before += s.counters.holes;
+      holes_before += statistics_of(s).holes;
     }
-    made += s.counters.models_synthesised;
-    max_in_view = std::max<std::size_t>(max_in_view, s.counters.nodes_in_view);
+    made += statistics_of(s).models_synthesised;
+    max_in_view = std::max<std::size_t>(max_in_view, statistics_of(s).nodes_in_view);
     gated.make(kMeshesPerTick);
   }
   EXPECT_GT(holes_before, 0u);
   EXPECT_GT(made, 5000u);
   EXPECT_GT(max_in_view, 300u);
-  const synthesis::CacheStats& made_and_drawn = s.meshes.stats();
+  const synthesis::CacheStats& made_and_drawn = s.supply.stats();
   EXPECT_GT(made_and_drawn.triangles_drawn, made_and_drawn.triangles * 7 / 10);
 }
 
-// What single models drew in the last tick, and how far away they are, by entity.
+// The LODs that individual models drew in the last tick, and their distances, by entity.
 struct ShownModel {
   int level;
   float distance_m;
@@ -51,27 +51,27 @@ std::map<std::uint32_t, ShownModel> shown_models(const State& s) {
   std::map<std::uint32_t, ShownModel> shown;
   for (const ChosenNode& chosen : s.view.chosen) {
     if (chosen.level > 0) continue;
-    const Node& node = *s.entities.get<Node>(chosen.entity);
+    const QuadtreeNode& node = *s.entities.get<QuadtreeNode>(chosen.entity);
     const glm::dvec3 corner = core::offset_m(visibility::corner_block(node.at),
                                              s.camera.pose.position, s.facts.world.block_size_m());
     for (const ecs::Entity model :
          s.entities.children(*s.entities.get<ecs::Children>(chosen.entity))) {
-      const Demand& demand = *s.entities.get<Demand>(model);
+      const MeshDemand& demand = *s.entities.get<MeshDemand>(model);
       if (demand.in_view_tick != s.clock.tick - 1 || demand.drawn_level == kNoLevel) continue;
-      const glm::vec3 foot = glm::vec3(corner) + s.entities.get<Placed>(model)->position;
+      const glm::vec3 foot = glm::vec3(corner) + s.entities.get<MeshPlacement>(model)->position;
       shown[model.index] = {demand.drawn_level, glm::length(foot)};
     }
   }
   return shown;
 }
 
-// The level that a model will need is there before it is wanted, and it stays.
-TEST(Flights, AModelThatComesNearerNeverGetsCoarser) {
-  Settings settings = small_settings();
+// The next LOD is ready before it is wanted, and it stays.
+TEST(Flights, AnApproachingModelNeverGetsCoarser) {
+  SceneSettings settings = small_settings();
   settings.view_distance_m = 600;
   settings.max_error_pixels = 12;
   const auto scene = make_scene(settings);
-  const State& s = scene->state();
+  const State& s = state_of(*scene);
   core::CameraPose pose = pose_at(256, 256, 0.3);
   pose.position.local.y = 40;
   scene->settle(pose);
@@ -93,13 +93,13 @@ TEST(Flights, AModelThatComesNearerNeverGetsCoarser) {
   EXPECT_GT(finer, 100);
 }
 
-// What a settled scene takes.
+// The size of a settled scene.
 struct Size {
   double entities, nodes, cut, terrain_draws, model_draws, megabytes;
 };
 
 Size size_at(double view_distance_m) {
-  Settings settings = gated_settings();
+  SceneSettings settings = gated_settings();
   settings.view_distance_m = view_distance_m;
   settings.max_error_pixels = 4;
   settings.budget_bytes = 512ull << 20;
@@ -110,16 +110,16 @@ Size size_at(double view_distance_m) {
   pose.position.local.y = 200;
   scene->settle(pose);
   tick_at(*scene, pose);
-  const State& s = scene->state();
-  EXPECT_EQ(s.counters.holes, 0u);
+  const State& s = state_of(*scene);
+  EXPECT_EQ(statistics_of(s).holes, 0u);
   const auto number = [](std::size_t count) { return static_cast<double>(count); };
-  return {number(s.entities.size()),       number(s.entities.count<Node>()),
+  return {number(s.entities.size()),       number(s.entities.count<QuadtreeNode>()),
           number(s.view.cut.nodes.size()), number(s.draws.terrain.size()),
-          number(s.draws.models.size()),   number(s.meshes.stats().bytes) / (1 << 20)};
+          number(s.draws.models.size()),   number(s.supply.stats().bytes) / (1 << 20)};
 }
 
-// If it grew with the distance, each doubling would add twice as much as the one before.
-TEST(Flights, EachDoublingOfTheViewDistanceAddsNoMoreThanTheFirst) {
+// Growth with the distance would make each doubling add twice as much as the one before.
+TEST(Flights, EachDoublingOfTheViewDistanceAddsAtMostAsMuchAsTheFirst) {
   std::vector<Size> sizes;
   for (const double view_km : {2, 4, 8, 16, 32})
     sizes.push_back(size_at(1000 * view_km));

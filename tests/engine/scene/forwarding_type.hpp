@@ -1,4 +1,4 @@
-// A model type that is like another in all but its name and how it is synthesised.
+// A model type that differs from another only in its name and its synthesis.
 #pragma once
 
 #include <atomic>
@@ -40,8 +40,7 @@ class ForwardingType : public models::ModelType {
   const models::ModelType& of_;
 };
 
-// Counts how often a mesh of it is made, but for the coarsest level, of which other meshes are made
-// too (those of whole nodes). In everything else like the other one.
+// Counts the syntheses of its meshes, except the coarsest level, which merged meshes use too.
 class CountingType final : public ForwardingType {
  public:
   CountingType(std::string name, const models::ModelType& of, std::atomic<int>& made)

@@ -1,5 +1,5 @@
-// Modelers that wait at a gate, so that tests say how much of what is wanted comes, whatever the
-// speed of the machine.
+// Modelers that wait at a gate, so that tests control how many meshes become ready, at any speed of
+// the machine.
 #pragma once
 
 #include <chrono>
@@ -25,11 +25,11 @@ class Gate {
   void let_through(int passes) {
     change([&] { passes_ += passes; });
   }
-  // So many from now on: who was let through before and did not come is not.
+  // Lets only this many pass from now on.
   void let_only(int passes) {
     change([&] { passes_ = passes; });
   }
-  // Whether somebody waits whom nobody lets through.
+  // True if a modeler waits and none may pass.
   bool blocks() {
     const std::lock_guard lock(mutex_);
     return waiting_ > 0 && !open_ && passes_ == 0;
@@ -76,12 +76,12 @@ class SlowType final : public ForwardingType {
 
 // Latencies are those of the flight, though modelers are real.
 inline void tell_time_of_flight(Scene& scene) {
-  Clock& clock = scene.state().clock;
+  Clock& clock = state_of(scene).clock;
   clock.read_real_s = [&clock] { return clock.now_s; };
 }
 
 // The paper's world whose ground and trees wait at a gate. Latencies are those of the flight.
-inline std::unique_ptr<Scene> slow_scene(const Settings& settings, Gate& gate) {
+inline std::unique_ptr<Scene> slow_scene(const SceneSettings& settings, Gate& gate) {
   models::Registry registry = models::make_standard_registry();
   world::World world = paper_world(registry);
   const auto slow = [&](models::ModelIndex model) {
@@ -97,10 +97,10 @@ inline std::unique_ptr<Scene> slow_scene(const Settings& settings, Gate& gate) {
   return scene;
 }
 
-// A view of a kilometre for slow_scene(): the main thread helps nobody, and nobody who waits at the
-// gate is given up.
-inline Settings gated_settings() {
-  Settings settings = small_settings();
+// A view of a kilometre for slow_scene(): the main thread does not help, and requests that wait at
+// the gate are not abandoned.
+inline SceneSettings gated_settings() {
+  SceneSettings settings = small_settings();
   settings.virtual_time = false;  // modelers are real, and wait at the gate
   settings.view_distance_m = 1000;
   settings.max_error_pixels = 12;
@@ -110,15 +110,15 @@ inline Settings gated_settings() {
   return settings;
 }
 
-// slow_scene() with its gate, which is open again when the modelers end.
+// slow_scene() with its gate, which opens when the modelers end.
 struct GatedScene {
-  explicit GatedScene(const Settings& settings) : scene(slow_scene(settings, gate)) {}
+  explicit GatedScene(const SceneSettings& settings) : scene(slow_scene(settings, gate)) {}
   ~GatedScene() { gate.set_open(true); }
-  // Waits until the only modeler has made so many of the meshes that wait at the gate, and those
-  // in between, or has nothing more to do.
+  // Waits until the only modeler has made this many of the meshes that wait at the gate, and those
+  // between them, or is idle.
   void make(int meshes) {
     gate.let_only(meshes);
-    while (scene->state().meshes.outstanding() > 0 && !gate.blocks())
+    while (state_of(*scene).supply.outstanding() > 0 && !gate.blocks())
       std::this_thread::sleep_for(std::chrono::microseconds(50));
   }
   GatedScene(const GatedScene&) = delete;

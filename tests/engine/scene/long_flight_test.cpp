@@ -29,7 +29,7 @@ std::uint64_t resident_bytes() {
   return resident * 4096;
 }
 
-// Turns at random, for some seconds each, with leaps to anywhere now and then.
+// Turns at random for some seconds each, and sometimes jumps anywhere.
 class RandomPath {
  public:
   core::CameraPose next(const world::World& world) {
@@ -65,7 +65,7 @@ class RandomPath {
   double x_ = 0, z_ = 0, yaw_ = 0, turn_ = 0, height_m_ = 10;
 };
 
-// What a flight leaves behind.
+// The result of a flight.
 struct End {
   std::uint64_t hash = 0;  // of every tick's record, and of the cache
   std::uint64_t models = 0, evictions = 0;
@@ -74,7 +74,7 @@ struct End {
 };
 
 std::uint64_t hash_of(const State& s, std::uint64_t hash) {
-  const telemetry::FrameRecord& r = s.record;
+  const telemetry::FrameRecord& r = s.telemetry.record;
   for (const std::uint64_t value :
        {r.cache_bytes, r.triangles, r.triangles_synthesised, std::uint64_t{r.draws},
         std::uint64_t{r.holes}, std::uint64_t{r.coarse_nodes}, std::uint64_t{r.cache_misses},
@@ -84,11 +84,11 @@ std::uint64_t hash_of(const State& s, std::uint64_t hash) {
 }
 
 End fly(double hours) {
-  Settings settings = small_settings();
+  SceneSettings settings = small_settings();
   settings.view_distance_m = 400;
   settings.budget_bytes = 6ull << 20;
   const auto scene = make_scene(settings);
-  State& s = scene->state();
+  State& s = state_of(*scene);
   const std::uint64_t first_tick = s.clock.tick;
   RandomPath path;
   End end;
@@ -97,14 +97,14 @@ End fly(double hours) {
     s.input.pose = path.next(s.facts.world);
     tick(s);
     s.clock.now_s = static_cast<double>(tick_index + 1) * kStepS;
-    const synthesis::CacheStats stats = s.meshes.stats();
+    const synthesis::CacheStats stats = s.supply.stats();
     if (stats.bytes > settings.budget_bytes || s.memory->used_bytes() > settings.budget_bytes ||
         s.output.error) {
       ADD_FAILURE() << "tick " << tick_index << ": " << stats.bytes << " bytes";
       break;
     }
     end.hash = hash_of(s, end.hash);
-    end.models += s.record.models_synthesised;
+    end.models += s.telemetry.record.models_synthesised;
     if (tick_index == ticks / 4) {
       end.resident_early = resident_bytes();
       end.entities_early = s.entities.size();
@@ -112,7 +112,7 @@ End fly(double hours) {
   }
   end.resident_late = resident_bytes();
   end.entities_late = s.entities.size();
-  const synthesis::CacheStats stats = s.meshes.stats();
+  const synthesis::CacheStats stats = s.supply.stats();
   EXPECT_LE(stats.peak_bytes, settings.budget_bytes);
   EXPECT_EQ(s.clock.tick, first_tick + ticks);
   EXPECT_NEAR(s.clock.real_s, hours * 3600 - kStepS, 1e-6) << "the clock drifts";
@@ -123,7 +123,7 @@ End fly(double hours) {
   return end;
 }
 
-TEST(LongFlight, StaysWithinItsBudgetAndMemoryAndEndsTheSameEachTime) {
+TEST(LongFlight, StaysWithinItsBudgetAndRepeatsExactly) {
   const double hours = hours_wanted();
   ASSERT_GT(hours, 0) << "PSYGEN_LONG_FLIGHT_HOURS";
   const End first = fly(hours);

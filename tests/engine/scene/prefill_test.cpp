@@ -1,5 +1,4 @@
-// What happens before the first frame tells how far it has come, while modelers work too, and ends
-// when it is told to.
+// Work before the first frame reports its progress, even while modelers work, and stops on request.
 #include "tests/engine/scene/gate.hpp"
 
 namespace psygen::scene {
@@ -15,15 +14,15 @@ class Prefilling : public ::testing::TestWithParam<const char*> {
       EXPECT_TRUE(amplified) << amplified.error().message;
     }
   }
-  static Settings settings() {
-    Settings settings = gated_settings();
+  static SceneSettings settings() {
+    SceneSettings settings = gated_settings();
     settings.view_distance_m = 100;
     settings.budget_bytes = 512ull << 20;
     return settings;
   }
 };
 
-TEST_P(Prefilling, TellsHowFarItHasComeWhileModelersWork) {
+TEST_P(Prefilling, ReportsProgressWhileModelersWork) {
   GatedScene gated(settings());
   gated.gate.set_open(false);
   int waiting = 0;
@@ -40,12 +39,12 @@ TEST_P(Prefilling, TellsHowFarItHasComeWhileModelersWork) {
   EXPECT_GT(last, 0.9);
 }
 
-TEST_P(Prefilling, EndsWhenItIsToldToThoughModelersWork) {
+TEST_P(Prefilling, StopsOnRequestWhileModelersWork) {
   GatedScene gated(settings());
   gated.gate.set_open(false);
   prefill(*gated.scene, [&](std::string_view, double) { return !gated.gate.blocks(); });
   EXPECT_TRUE(gated.gate.blocks());
-  EXPECT_GT(gated.scene->state().meshes.outstanding(), 0u);
+  EXPECT_GT(state_of(*gated.scene).supply.outstanding(), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, Prefilling, ::testing::Values("settle", "amplify"),

@@ -1,5 +1,5 @@
-// What is asked for, and in which order: what is in view, then what the camera is going to see,
-// then what lies around it; what hides behind ridges not before its turn.
+// The order of requests: meshes in view, then those that the camera is expected to see, then those
+// around it. Meshes behind ridges come late.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,7 +17,7 @@ using synthesis::Rank;
 using synthesis::RankGroup;
 using synthesis::Want;
 
-TEST(Requests, WhoTurnsAroundSeesNoHoleThoughNothingMoreIsSynthesised) {
+TEST(Requests, TurningAroundShowsNoHoleWithoutFurtherSynthesis) {
   GatedScene gated(gated_settings());
   Scene& scene = *gated.scene;
   for (const double yaw : {0.3, 2.0}) {
@@ -26,31 +26,31 @@ TEST(Requests, WhoTurnsAroundSeesNoHoleThoughNothingMoreIsSynthesised) {
     gated.gate.set_open(false);
     for (int i = 0; i < 5; ++i) {
       tick_at(scene, pose_at(256, 256, yaw + std::numbers::pi));
-      const Counters& counters = scene.state().counters;
+      const DrawCounts& counters = state_of(scene).draws.counts;
       EXPECT_EQ(counters.holes, 0u) << "tick " << i;
-      // Coarser nodes stand for most of what nobody expected there.
+      // Coarser nodes replace most nodes that were not expected there.
       EXPECT_GT(counters.nodes_in_view, 50u);
-      EXPECT_GT(scene.state().draws.terrain.size(), 10u);
+      EXPECT_GT(state_of(scene).draws.terrain.size(), 10u);
     }
     expect_consistent(scene);
   }
 }
 
-// By the main thread itself.
+// Meshes made by the main thread itself.
 std::uint64_t made_here(const Scene& scene) {
-  for (const synthesis::ModelerStats& made : scene.state().meshes.modeler_stats().modelers)
+  for (const synthesis::ModelerStats& made : state_of(scene).supply.modeler_stats().modelers)
     if (made.modeler == synthesis::kMainThreadModeler) return made.models;
   return 0;
 }
 
-TEST(Requests, WhereModelersGetNoProcessorTheMainThreadHelpsWithWhatIsSeenAfterAWhile) {
+TEST(Requests, TheMainThreadHelpsWithVisibleMeshesIfModelersGetNoProcessor) {
   for (const double budget_ms : {0.0, 1000.0}) {
-    Settings settings = gated_settings();
+    SceneSettings settings = gated_settings();
     settings.main_thread_budget_ms = budget_ms;
     settings.plan_seconds_ahead = 1e6;  // nothing that depends on what the machine takes
     GatedScene gated(settings);
     Scene& scene = *gated.scene;
-    const Counters& counters = scene.state().counters;
+    const DrawCounts& counters = state_of(scene).draws.counts;
     scene.settle(pose_at(256, 256, 0.3));
     gated.gate.set_open(false);
     const std::uint64_t before = made_here(scene);
@@ -59,7 +59,7 @@ TEST(Requests, WhereModelersGetNoProcessorTheMainThreadHelpsWithWhatIsSeenAfterA
     ASSERT_GT(counters.coarse, 0u);
     EXPECT_EQ(made_here(scene), before) << "no hole, and it has only just become too coarse";
     const double missing_percent = counters.missing_pixels_percent;
-    scene.state().clock.now_s += 0.12;
+    state_of(scene).clock.now_s += 0.12;
     for (int i = 0; i < 5; ++i)
       tick_at(scene, pose_at(256, 248, 0.3));
     if (budget_ms > 0) {
@@ -72,26 +72,26 @@ TEST(Requests, WhereModelersGetNoProcessorTheMainThreadHelpsWithWhatIsSeenAfterA
   }
 }
 
-// What is drawn and was made twice.
+// Drawn meshes that were made twice.
 std::vector<ecs::Entity> drawn_spares(const State& s) {
   std::vector<ecs::Entity> found;
-  s.entities.each<const Demand, const Mesh>([&](std::span<const ecs::Entity> rows,
-                                                std::span<const Demand> demands,
-                                                std::span<const Mesh> meshes) {
+  s.entities.each<const MeshDemand, const Mesh>([&](std::span<const ecs::Entity> rows,
+                                                    std::span<const MeshDemand> demands,
+                                                    std::span<const Mesh> meshes) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (demands[i].drawn_level == kNoLevel) continue;
       EXPECT_FALSE(demands[i].stale);
-      if (s.meshes.get(meshes[i].handle)->key.spare) found.push_back(rows[i]);
+      if (s.supply.get(meshes[i].handle)->key.spare) found.push_back(rows[i]);
     }
   });
   return found;
 }
 
-TEST(Requests, AHoleThatAModelerHoldsIsFilledByTheMainThreadAndWhatTheModelerBringsIsDropped) {
+TEST(Requests, TheMainThreadFillsAHoleThatAModelerHoldsAndTheLateMeshIsDropped) {
   GatedScene gated(gated_settings());
   gated.gate.set_open(false);
   Scene& scene = *gated.scene;
-  State& s = scene.state();
+  State& s = state_of(scene);
   const core::CameraPose pose = pose_at(256, 256, 0.3);
   tick_at(scene, pose);
   gated.make(0);
@@ -99,13 +99,13 @@ TEST(Requests, AHoleThatAModelerHoldsIsFilledByTheMainThreadAndWhatTheModelerBri
   s.settings.plan_seconds_ahead = 1e6;
   for (int i = 0; i < 3; ++i)
     tick_at(scene, pose);
-  EXPECT_EQ(s.counters.holes, 0u);
+  EXPECT_EQ(statistics_of(s).holes, 0u);
   const std::vector<ecs::Entity> spares = drawn_spares(s);
   ASSERT_EQ(spares.size(), 1u) << "one modeler holds one mesh";
   const synthesis::MeshHandle drawn = s.entities.get<Mesh>(spares[0])->handle;
-  synthesis::MeshKey held = s.meshes.get(drawn)->key;
+  synthesis::MeshKey held = s.supply.get(drawn)->key;
   held.spare = false;
-  const auto record_of_held = [&] { return s.meshes.get(s.meshes.find(held)); };
+  const auto record_of_held = [&] { return s.supply.get(s.supply.find(held)); };
   ASSERT_EQ(record_of_held()->state, synthesis::MeshState::kRequested);
 
   gated.make(1);
@@ -113,12 +113,12 @@ TEST(Requests, AHoleThatAModelerHoldsIsFilledByTheMainThreadAndWhatTheModelerBri
   EXPECT_EQ(s.entities.get<Mesh>(spares[0])->handle, drawn) << "nothing takes its place";
   const synthesis::MeshRecord* dropped = record_of_held();
   EXPECT_TRUE(dropped == nullptr || dropped->rank == Rank::unwanted());
-  for (const Want& want : s.meshes.wants())
+  for (const Want& want : s.supply.wants())
     EXPECT_FALSE(want.key == held) << "it is there";
   expect_consistent(scene);
 }
 
-// Nodes in view that are drawn though one above them could be.
+// Nodes in view that are drawn although an ancestor could be.
 std::vector<ecs::Entity> drawn_below_complete_ones(const State& s) {
   std::vector<ecs::Entity> found;
   for (const std::uint32_t drawn : s.draws.nodes) {
@@ -128,7 +128,7 @@ std::vector<ecs::Entity> drawn_below_complete_ones(const State& s) {
     };
     bool complete_above = false;
     for (std::uint32_t at = cut[drawn].parent; at != visibility::kNoNode; at = cut[at].parent) {
-      const Lacking* lacking = s.entities.get<Lacking>(entity_of_cut(at));
+      const MissingMeshes* lacking = s.entities.get<MissingMeshes>(entity_of_cut(at));
       complete_above = complete_above || (lacking != nullptr && lacking->meshes == 0);
     }
     if (complete_above && s.view.in_view[drawn] != 0) found.push_back(entity_of_cut(drawn));
@@ -136,12 +136,12 @@ std::vector<ecs::Entity> drawn_below_complete_ones(const State& s) {
   return found;
 }
 
-// A model that has just grown large enough to be seen: the node stays drawn for this tick, so that
-// nothing stands for the model.
-TEST(Requests, WhatADrawnNodeLacksIsAHoleThoughOneAboveItIsComplete) {
+// A model that has just become large enough to be visible: its node stays drawn in this tick, and
+// nothing replaces the model.
+TEST(Requests, AMeshMissingInADrawnNodeIsAHoleEvenUnderACompleteAncestor) {
   GatedScene gated(gated_settings());
   Scene& scene = *gated.scene;
-  State& s = scene.state();
+  State& s = state_of(scene);
   scene.settle(pose_at(256, 262, 0));
   for (const int block : {261, 260, 259, 258})
     scene.settle(pose_at(256, block, 0));
@@ -150,16 +150,16 @@ TEST(Requests, WhatADrawnNodeLacksIsAHoleThoughOneAboveItIsComplete) {
   std::set<std::uint64_t> taken;
   for (const ecs::Entity node : drawn_below_complete_ones(s)) {
     for (const ecs::Entity model : s.entities.children(node)) {
-      Demand& demand = *s.entities.get<Demand>(model);
+      MeshDemand& demand = *s.entities.get<MeshDemand>(model);
       if (demand.drawn_level == kNoLevel || demand.in_view_tick + 1 != s.clock.tick) continue;
       demand.drawn_level = kNoLevel;
-      s.meshes.forget(s.entities.get<Mesh>(model)->handle);
+      s.supply.forget(s.entities.get<Mesh>(model)->handle);
       taken.insert(owner_of(model));
     }
   }
   tick_at(scene, pose_at(256, 258, 0));
   std::size_t holes = 0;
-  for (const Want& want : s.meshes.wants()) {
+  for (const Want& want : s.supply.wants()) {
     if (!taken.contains(want.owner)) continue;
     EXPECT_EQ(want.rank.group(), RankGroup::kVisibleHole);
     ++holes;
@@ -167,10 +167,10 @@ TEST(Requests, WhatADrawnNodeLacksIsAHoleThoughOneAboveItIsComplete) {
   EXPECT_GT(holes, 10u);
 }
 
-// Of two levels of nodes nothing can be drawn by more than one too coarse, and there is nothing on
-// the ground.
+// With two levels of nodes no node can be more than one level too coarse, and no models are on the
+// ground.
 std::unique_ptr<Scene> bare_scene(Gate& gate) {
-  Settings settings = gated_settings();
+  SceneSettings settings = gated_settings();
   settings.view_distance_m = 130;
   settings.max_error_pixels = 4;
   settings.plan_seconds_ahead = 1e6;  // nothing that depends on what the machine takes
@@ -186,20 +186,20 @@ std::unique_ptr<Scene> bare_scene(Gate& gate) {
   return scene;
 }
 
-TEST(Requests, GroundNearTheCameraThatIsASingleLevelTooCoarseIsHelpedWithToo) {
+TEST(Requests, TheMainThreadAlsoHelpsWithNearGroundOneLevelTooCoarse) {
   Gate gate;
   const auto scene = bare_scene(gate);
-  State& s = scene->state();
+  State& s = state_of(*scene);
   ASSERT_EQ(s.facts.levels.size(), 2u);
   scene->settle(pose_at(256, 256, 0.3));
   tick_at(*scene, pose_at(256, 256, 0.3));
-  EXPECT_EQ(s.record.too_coarse_percent, 0.0);
+  EXPECT_EQ(s.telemetry.record.too_coarse_percent, 0.0);
   gate.set_open(false);
   const core::CameraPose pose = pose_at(256, 254, 0.3);
   tick_at(*scene, pose);
-  EXPECT_EQ(s.record.holes + s.record.coarse_nodes, 0u);
-  EXPECT_EQ(s.record.missing_pixels_percent, 0.0);
-  const double before_percent = s.record.too_coarse_percent;
+  EXPECT_EQ(s.telemetry.record.holes + s.telemetry.record.coarse_nodes, 0u);
+  EXPECT_EQ(s.telemetry.record.missing_pixels_percent, 0.0);
+  const double before_percent = s.telemetry.record.too_coarse_percent;
   EXPECT_GT(before_percent, 10.0);
   s.clock.now_s += 0.12;
   s.settings.main_thread_budget_ms = 1000;
@@ -207,24 +207,25 @@ TEST(Requests, GroundNearTheCameraThatIsASingleLevelTooCoarseIsHelpedWithToo) {
   for (int i = 0; i < 5; ++i)
     tick_at(*scene, pose);
   EXPECT_GT(made_here(*scene), before);
-  EXPECT_LT(s.record.too_coarse_percent, 0.5 * before_percent);
+  EXPECT_LT(s.telemetry.record.too_coarse_percent, 0.5 * before_percent);
   gate.set_open(true);
 }
 
-// By Want::owner: the node that is wanted, or on which stands what is.
+// By Want::owner: the wanted node, or the node under the wanted model.
 std::unordered_map<std::uint64_t, ecs::Entity> nodes_of_owners(const State& s) {
   std::unordered_map<std::uint64_t, ecs::Entity> nodes;
-  s.entities.each<const Node>([&](std::span<const ecs::Entity> rows, std::span<const Node>) {
-    for (const ecs::Entity node : rows) {
-      nodes[owner_of(node)] = node;
-      for (const ecs::Entity child : s.entities.children(node))
-        nodes[owner_of(child)] = node;
-    }
-  });
+  s.entities.each<const QuadtreeNode>(
+      [&](std::span<const ecs::Entity> rows, std::span<const QuadtreeNode>) {
+        for (const ecs::Entity node : rows) {
+          nodes[owner_of(node)] = node;
+          for (const ecs::Entity child : s.entities.children(node))
+            nodes[owner_of(child)] = node;
+        }
+      });
   return nodes;
 }
 
-// A want for a node out of view that is going to be seen.
+// A want for a node out of view that is expected in view.
 struct Expected {
   Rank rank;
   float deadline_s = 0;
@@ -233,7 +234,7 @@ struct Expected {
       0.0};  // of the node, metres from the camera, to the camera's right and behind it
   double side_m = 0;
 
-  // By how much the camera would have to turn to the right until it looks at the nearest corner.
+  // The angle by which the camera must turn right until it looks at the nearest corner.
   double angle() const {
     double least = std::numbers::pi;
     for (const double x : {corner.x, corner.x + side_m}) {
@@ -248,12 +249,12 @@ struct Expected {
 std::vector<Expected> expected_wants(const State& s) {
   const auto nodes = nodes_of_owners(s);
   std::vector<Expected> found;
-  for (const Want& want : s.meshes.wants()) {
+  for (const Want& want : s.supply.wants()) {
     const ecs::Entity entity = nodes.at(want.owner);
     if (want.rank.group() != RankGroup::kPredicted ||
         s.entities.get<Visibility>(entity)->in_view != 0)
       continue;
-    const visibility::NodeCoord& at = s.entities.get<Node>(entity)->at;
+    const visibility::NodeCoord& at = s.entities.get<QuadtreeNode>(entity)->at;
     found.push_back({want.rank, want.deadline_s, at.level,
                      core::offset_m(visibility::corner_block(at), s.camera.pose.position,
                                     s.facts.world.block_size_m()),
@@ -278,19 +279,19 @@ void expect_sooner_first(const std::vector<Expected>& wants) {
   EXPECT_EQ(wrong, 0u) << "ranked in another order than by when they are needed";
 }
 
-// A second of a flight in which nothing comes.
+// A second of a flight without any synthesis.
 template <class Pose>
 std::vector<Expected> wants_after(const Pose& pose_of) {
-  Settings settings = gated_settings();
+  SceneSettings settings = gated_settings();
   settings.view_distance_m = 3000;
   GatedScene gated(settings);
   gated.gate.set_open(false);
   for (int i = -60; i <= 0; ++i)
     tick_at(*gated.scene, pose_of(i / 60.0));
-  return expected_wants(gated.scene->state());
+  return expected_wants(state_of(*gated.scene));
 }
 
-TEST(Requests, WhatATurningCameraWillSeeIsAskedForSoonestFirst) {
+TEST(Requests, ATurningCameraRequestsItsFutureViewSoonestFirst) {
   constexpr double kTurnRate = 0.5;  // radians a second, to the right
   const std::vector<Expected> wants = wants_after([](double time_s) {
     core::CameraPose pose = pose_at(256, 256, kTurnRate * time_s);
@@ -298,8 +299,8 @@ TEST(Requests, WhatATurningCameraWillSeeIsAskedForSoonestFirst) {
     return pose;
   });
   expect_sooner_first(wants);
-  // Boxes are wider than nodes: by this much sooner they may be seen. Cameras are predicted at some
-  // times only, each at most three times as late as the one before.
+  // Boxes are wider than nodes, so they may be visible this much sooner. Cameras are predicted at
+  // some times only, each at most three times as late as the one before.
   constexpr double kWiderRad = 0.1, kFirst_s = 0.25, kTimesLater = 3;
   const core::Projection projection;
   const double half_fov = std::atan(1280.0 / 720 * std::tan(projection.vertical_fov / 2));
@@ -317,7 +318,7 @@ TEST(Requests, WhatATurningCameraWillSeeIsAskedForSoonestFirst) {
   EXPECT_GT(ordered, 100u);
 }
 
-TEST(Requests, WhatACameraThatMovesWillSeeIsAskedForSoonestFirst) {
+TEST(Requests, AMovingCameraRequestsItsFutureViewSoonestFirst) {
   const std::vector<Expected> wants = wants_after([](double time_s) {
     core::CameraPose pose = pose_at(256, 256, 0);
     pose.pitch = 0;
@@ -338,8 +339,8 @@ TEST(Requests, WhatACameraThatMovesWillSeeIsAskedForSoonestFirst) {
   EXPECT_GT(neighbours, 100u);
 }
 
-// Whether a node, and the one above it, hides behind the ground that is drawn. (A hidden node is
-// needed when its siblings are seen.)
+// True if a node and its parent are hidden behind drawn ground. (A hidden node is needed if its
+// siblings are visible.)
 bool hides(const State& s, visibility::NodeCoord at) {
   const auto hidden = [&](const visibility::NodeCoord& node) {
     const std::size_t cell = s.streaming.grids[node.level].window_index(node.coord);
@@ -349,16 +350,16 @@ bool hides(const State& s, visibility::NodeCoord at) {
          (at.level + 1U == s.facts.levels.size() || hidden(visibility::parent_of(at)));
 }
 
-// Near the ground, in four valleys, from an empty cache on and a few meshes at a time.
-TEST(Requests, WhatHidesBehindARidgeComesAfterAllThatIsSeen) {
-  Settings settings = gated_settings();
+// Near the ground in four valleys, with an empty cache and a few meshes at a time.
+TEST(Requests, MeshesBehindARidgeComeAfterVisibleOnes) {
+  SceneSettings settings = gated_settings();
   settings.view_distance_m = 3000;
   settings.plan_max_new = settings.plan_max_requests = 16;
   std::size_t hidden = 0;
   for (const auto& [x, z, yaw] : {std::tuple(256, 256, 0.3), std::tuple(100, 300, 2.0),
                                   std::tuple(200, 200, 1.0), std::tuple(340, 222, 5.0)}) {
     const auto scene = make_scene(settings);
-    const State& s = scene->state();
+    const State& s = state_of(*scene);
     core::CameraPose pose = pose_at(x, z, yaw);
     pose.pitch = 0;
     pose.position.local.y = models::ground_height_m(s.facts.world.terrain, {x, z}, 31.5, 31.5) + 5;
@@ -366,8 +367,8 @@ TEST(Requests, WhatHidesBehindARidgeComesAfterAllThatIsSeen) {
       tick_at(*scene, pose);
       const auto nodes = nodes_of_owners(s);
       Rank first_hidden = Rank::unwanted(), last_seen = Rank::from_bits(0);
-      for (const Want& want : s.meshes.wants()) {
-        if (hides(s, s.entities.get<Node>(nodes.at(want.owner))->at)) {
+      for (const Want& want : s.supply.wants()) {
+        if (hides(s, s.entities.get<QuadtreeNode>(nodes.at(want.owner))->at)) {
           first_hidden = std::min(first_hidden, want.rank);
           ++hidden;
         } else if (synthesis::is_visible(want.rank.group())) {
@@ -376,7 +377,7 @@ TEST(Requests, WhatHidesBehindARidgeComesAfterAllThatIsSeen) {
       }
       EXPECT_FALSE(synthesis::is_visible(first_hidden.group())) << "tick " << i;
       EXPECT_LT(last_seen, first_hidden) << "tick " << i;
-      scene->state().meshes.wait();
+      state_of(*scene).supply.wait();
     }
   }
   EXPECT_GT(hidden, 500u);

@@ -1,4 +1,4 @@
-// A world that is replaced while it is drawn.
+// Replacing a world while it is drawn.
 #include <fstream>
 #include <limits>
 #include <map>
@@ -33,7 +33,7 @@ struct Parsed {
   }
 };
 
-std::unique_ptr<Scene> scene_of(const std::string& text, const Settings& settings) {
+std::unique_ptr<Scene> scene_of(const std::string& text, const SceneSettings& settings) {
   Parsed parsed(text);
   return make_scene(parsed.world, settings, std::move(parsed.registry));
 }
@@ -43,9 +43,9 @@ core::Result<void> set(Scene& scene, const std::string& text) {
   return scene.set_world(std::move(parsed.world), std::move(parsed.registry));
 }
 
-// The nodes in view, and what stands on them, by index.
+// The nodes in view and their models, by index.
 std::set<std::uint32_t> seen_in(Scene& scene) {
-  const State& s = scene.state();
+  const State& s = state_of(scene);
   std::set<std::uint32_t> seen;
   for (const ChosenNode& node : s.view.chosen) {
     if (!node.in_view) continue;
@@ -57,24 +57,24 @@ std::set<std::uint32_t> seen_in(Scene& scene) {
   return seen;
 }
 
-// Everything that stands in a scene, by place: what it is, where, and what is drawn of it where it
-// is seen. The rest keeps what it has, which is of the world as it is.
+// All mesh entities of a scene, by place: type, position, and the drawn mesh if it is in view.
+// Others keep their meshes, which belong to the present world.
 using What = std::tuple<std::string, std::uint64_t, float, float, float, int, std::uint64_t>;
 std::multimap<std::tuple<int, int, std::uint32_t>, What> contents_of(Scene& scene) {
   std::multimap<std::tuple<int, int, std::uint32_t>, What> contents;
-  const State& s = scene.state();
+  const State& s = state_of(scene);
   const std::set<std::uint32_t> seen = seen_in(scene);
-  std::as_const(scene.state().entities)
-      .each<const Placed, const Source, const Demand, const Mesh>(
-          [&](std::span<const ecs::Entity> entities, std::span<const Placed> placed,
-              std::span<const Source> sources, std::span<const Demand> demands,
+  std::as_const(state_of(scene).entities)
+      .each<const MeshPlacement, const MeshSource, const MeshDemand, const Mesh>(
+          [&](std::span<const ecs::Entity> entities, std::span<const MeshPlacement> placed,
+              std::span<const MeshSource> sources, std::span<const MeshDemand> demands,
               std::span<const Mesh> meshes) {
             for (std::size_t i = 0; i < placed.size(); ++i) {
               const bool shown = demands[i].drawn_level != kNoLevel;
               const bool compared = shown && seen.contains(entities[i].index);
               const synthesis::MeshRecord* drawn =
-                  compared ? s.meshes.ready(meshes[i].handle) : nullptr;
-              const Placed& at = placed[i];
+                  compared ? s.supply.ready(meshes[i].handle) : nullptr;
+              const MeshPlacement& at = placed[i];
               contents.emplace(
                   std::tuple{at.block.x, at.block.z, sources[i].index},
                   What{s.facts.registry[sources[i].model].name(), sources[i].parameters_hash,
@@ -95,17 +95,18 @@ std::size_t drawn_in(Scene& scene) {
 
 bool draws_of_a_world_before(Scene& scene) {
   bool any = false;
-  std::as_const(scene.state().entities)
-      .each<const Demand>([&](std::span<const ecs::Entity>, std::span<const Demand> demands) {
-        for (const Demand& demand : demands)
-          any |= demand.drawn_level != kNoLevel && demand.stale;
-      });
+  std::as_const(state_of(scene).entities)
+      .each<const MeshDemand>(
+          [&](std::span<const ecs::Entity>, std::span<const MeshDemand> demands) {
+            for (const MeshDemand& demand : demands)
+              any |= demand.drawn_level != kNoLevel && demand.stale;
+          });
   return any;
 }
 
 class SetWorld : public testing::Test {
  protected:
-  // In a scene of `before` that is given `after`, everything is as in one of `after`.
+  // A scene of `before` that gets `after` equals a scene of `after`.
   void expect_like_new(const std::string& before, const std::string& after) {
     const auto changed = scene_of(before, settings_);
     changed->settle(pose_);
@@ -118,7 +119,7 @@ class SetWorld : public testing::Test {
     EXPECT_EQ(contents_of(*changed), contents_of(*fresh));
   }
 
-  const Settings settings_ = small_settings();
+  const SceneSettings settings_ = small_settings();
   const core::CameraPose pose_ = pose_at(256, 256);
   const std::string paper_ = text_of("paper.toml"), species_ = text_of("five_species.toml");
 };
@@ -127,14 +128,14 @@ TEST_F(SetWorld, OtherParametersOfTreesLeadToTheSameSceneAsANewOne) {
   expect_like_new(paper_, replaced(paper_, "branches = [2, 4]", "branches = [3, 3]"));
 }
 
-// What stands there, and the pictures of other species, are kept.
+// Instances, and the impostors of other species, are kept.
 TEST_F(SetWorld, OneSpeciesOfManyLeadsToTheSameSceneAsANewOne) {
   expect_like_new(species_, replaced(species_, "size_m = [1.9, 3.0]", "size_m = [1.9, 2.4]"));
   expect_like_new(species_, replaced(species_, "flare = 0.9", "flare = 1.1"));
   expect_like_new(species_, replaced(species_, "max_slope_deg = 38", "max_slope_deg = 12"));
 }
 
-// A world of two kinds of trees and rocks, of which made meshes are counted.
+// A world with two types of trees and rocks that counts synthesised meshes.
 struct Counting {
   std::atomic<int> oaks = 0, firs = 0, rocks = 0;
   models::Registry standard = models::make_standard_registry();
@@ -165,11 +166,11 @@ struct Counting {
 std::map<std::uint32_t, std::pair<ecs::Entity, synthesis::MeshHandle>> entities_of(
     Scene& scene, const std::string& type) {
   std::map<std::uint32_t, std::pair<ecs::Entity, synthesis::MeshHandle>> found;
-  const State& s = scene.state();
+  const State& s = state_of(scene);
   std::as_const(s.entities)
-      .each<const Source, const Mesh>([&](std::span<const ecs::Entity> rows,
-                                          std::span<const Source> sources,
-                                          std::span<const Mesh> meshes) {
+      .each<const MeshSource, const Mesh>([&](std::span<const ecs::Entity> rows,
+                                              std::span<const MeshSource> sources,
+                                              std::span<const Mesh> meshes) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
           if (sources[i].index < kMergedIndex && s.facts.registry[sources[i].model].name() == type)
             found.emplace(rows[i].index, std::pair{rows[i], meshes[i].handle});
@@ -178,7 +179,7 @@ std::map<std::uint32_t, std::pair<ecs::Entity, synthesis::MeshHandle>> entities_
   return found;
 }
 
-TEST_F(SetWorld, WhatIsKeptIsNotMadeAgain) {
+TEST_F(SetWorld, KeptMeshesAreNotSynthesisedAgain) {
   Counting counting;
   auto [world, registry] = counting.parsed("iterations = [3, 4]\n");
   const auto scene = make_scene(world, settings_, std::move(registry));
@@ -231,13 +232,13 @@ std::string with_road(const std::string& text, const char* width = "8") {
          width + "\n";
 }
 
-TEST_F(SetWorld, ARoadThatComesOrGoesLeadsToTheSameSceneAsANewOne) {
+TEST_F(SetWorld, AddingOrRemovingARoadLeadsToTheSameSceneAsANewOne) {
   expect_like_new(paper_, with_road(paper_));
   expect_like_new(with_road(paper_), with_road(paper_, "12"));
   expect_like_new(with_road(paper_), paper_);
 }
 
-// Equal roads are not laid anew when colours change.
+// Equal roads are not computed again when colours change.
 TEST_F(SetWorld, LooksOfAWorldWithARoadAreLooksOnly) {
   const std::string road = with_road(paper_);
   const auto scene = scene_of(road, settings_);
@@ -248,9 +249,9 @@ TEST_F(SetWorld, LooksOfAWorldWithARoadAreLooksOnly) {
   EXPECT_TRUE(prepared->looks_only);
 }
 
-TEST_F(SetWorld, ASkyIsTakenOverAtOnceAndNothingElseChanges) {
+TEST_F(SetWorld, ANewSkyIsUsedAtOnceAndNothingElseChanges) {
   const auto scene = scene_of(paper_, settings_);
-  const WorldFacts& facts = scene->state().facts;
+  const WorldFacts& facts = state_of(*scene).facts;
   world::Sky sky = facts.world.sky;
   sky.cloud_cover = 0.9;
   sky.visibility_m = 40;
@@ -267,7 +268,7 @@ TEST_F(SetWorld, ASkyIsTakenOverAtOnceAndNothingElseChanges) {
   EXPECT_FLOAT_EQ(facts.light.cloud_cover, 0.9F);
 }
 
-// Where the palette decides what stands where, it is more than looks.
+// Where the palette decides the placement of models, it is more than looks.
 TEST_F(SetWorld, OtherKindsOfGroundLeadToTheSameSceneAsANewOne) {
   const std::string dry = replaced(paper_, "count = 23", "count = 23\non_ground = [\"dry\"]");
   expect_like_new(dry, dry + "\n[palette]\ndry_start_m = 20\n");
@@ -294,7 +295,7 @@ TEST_F(SetWorld, BlocksOfAnotherSizeLeadToTheSameSceneAsANewOne) {
   expect_like_new(paper_, replaced(paper_, "block_vertices = 64", "block_vertices = 32"));
 }
 
-TEST_F(SetWorld, WhatIsDrawnStaysUntilTheNewMeshesAreThere) {
+TEST_F(SetWorld, OldMeshesAreDrawnUntilTheNewOnesAreReady) {
   const auto scene = scene_of(paper_, settings_);
   scene->settle(pose_);
   const std::size_t drawn = drawn_in(*scene);
@@ -303,22 +304,20 @@ TEST_F(SetWorld, WhatIsDrawnStaysUntilTheNewMeshesAreThere) {
   EXPECT_EQ(drawn_in(*scene), drawn);
   tick_at(*scene, pose_);
   EXPECT_EQ(drawn_in(*scene), drawn);
-  EXPECT_EQ(scene->state().counters.holes, 0u);
+  EXPECT_EQ(scene->statistics().holes, 0u);
 }
 
-// Ticks until nothing is asked for any more.
+// Ticks until there are no requests.
 void tick_until_quiet(Scene& scene, const core::CameraPose& pose) {
   for (int quiet = 0; quiet < 16;) {
     tick_at(scene, pose);
-    scene.state().meshes.wait();
-    quiet = scene.state().counters.requests == 0 && scene.state().counters.completed == 0
-                ? quiet + 1
-                : 0;
+    state_of(scene).supply.wait();
+    quiet = scene.statistics().requests == 0 && scene.statistics().completed == 0 ? quiet + 1 : 0;
   }
 }
 
-// Triangles of what is drawn of models, whether any of it is of a world before, and how many levels
-// coarser than wanted it is at most.
+// The triangles of drawn models, whether any belongs to the replaced world, and by how many levels
+// the coarsest is too coarse.
 struct DrawnModels {
   std::uint64_t triangles = 0;
   bool stale = false;
@@ -326,16 +325,16 @@ struct DrawnModels {
 };
 DrawnModels models_drawn(Scene& scene) {
   DrawnModels drawn;
-  std::as_const(scene.state().entities)
-      .each<const Demand, const Mesh, const Source>(
-          [&](std::span<const ecs::Entity>, std::span<const Demand> demands,
-              std::span<const Mesh> meshes, std::span<const Source> sources) {
+  std::as_const(state_of(scene).entities)
+      .each<const MeshDemand, const Mesh, const MeshSource>(
+          [&](std::span<const ecs::Entity>, std::span<const MeshDemand> demands,
+              std::span<const Mesh> meshes, std::span<const MeshSource> sources) {
             for (std::size_t i = 0; i < demands.size(); ++i) {
-              const Demand& demand = demands[i];
+              const MeshDemand& demand = demands[i];
               if (sources[i].index >= kMergedIndex || demand.drawn_level == kNoLevel ||
                   demand.wanted_level == kNoLevel)
                 continue;
-              if (const auto* record = scene.state().meshes.ready(meshes[i].handle))
+              if (const auto* record = state_of(scene).supply.ready(meshes[i].handle))
                 drawn.triangles += record->size.triangle_count();
               drawn.stale |= demand.stale;
               drawn.coarser = std::max(drawn.coarser, demand.drawn_level - demand.wanted_level);
@@ -351,13 +350,13 @@ TEST_F(SetWorld, ADraftIsCoarseAndGetsFineWhenItEnds) {
   const DrawnModels before = models_drawn(*scene);
   EXPECT_EQ(before.coarser, 0);
   ASSERT_TRUE(set(*scene, replaced(paper_, "branches = [2, 4]", "branches = [3, 3]")));
-  scene->state().input.draft = true;
+  state_of(*scene).input.draft = true;
   tick_until_quiet(*scene, pose_);
   const DrawnModels draft = models_drawn(*scene);
   EXPECT_FALSE(draft.stale) << "everything is of the new world";
   EXPECT_GT(draft.coarser, 0);
   EXPECT_LT(draft.triangles, before.triangles);
-  scene->state().input.draft = false;
+  state_of(*scene).input.draft = false;
   tick_until_quiet(*scene, pose_);
   const DrawnModels fine = models_drawn(*scene);
   EXPECT_FALSE(fine.stale);
@@ -366,19 +365,19 @@ TEST_F(SetWorld, ADraftIsCoarseAndGetsFineWhenItEnds) {
   expect_consistent(*scene);
 }
 
-// In virtual time no modeler has had any time: the main thread makes them.
-TEST_F(SetWorld, InADraftTheNearestModelsAreNewInTheNextPicture) {
+// In virtual time the modelers had no time yet: the main thread makes the meshes.
+TEST_F(SetWorld, ADraftRenewsTheNearestModelsInTheNextFrame) {
   const auto scene = scene_of(paper_, settings_);
   scene->settle(pose_);
   tick_until_quiet(*scene, pose_);
   ASSERT_TRUE(set(*scene, replaced(paper_, "branches = [2, 4]", "branches = [3, 3]")));
   const auto stale_in_view = [&] {
     std::size_t stale = 0;
-    const std::uint32_t tick = scene->state().clock.tick - 1;
-    std::as_const(scene->state().entities)
-        .each<const Demand, const Source>([&](std::span<const ecs::Entity>,
-                                              std::span<const Demand> demands,
-                                              std::span<const Source> sources) {
+    const std::uint32_t tick = state_of(*scene).clock.tick - 1;
+    std::as_const(state_of(*scene).entities)
+        .each<const MeshDemand, const MeshSource>([&](std::span<const ecs::Entity>,
+                                                      std::span<const MeshDemand> demands,
+                                                      std::span<const MeshSource> sources) {
           for (std::size_t i = 0; i < demands.size(); ++i)
             stale += sources[i].index < kMergedIndex && demands[i].in_view_tick == tick &&
                      demands[i].stale;
@@ -387,12 +386,12 @@ TEST_F(SetWorld, InADraftTheNearestModelsAreNewInTheNextPicture) {
   };
   const std::size_t before = stale_in_view();
   ASSERT_GT(before, 0u);
-  scene->state().input.draft = true;
+  state_of(*scene).input.draft = true;
   tick_at(*scene, pose_);
   EXPECT_LT(stale_in_view(), before);
 }
 
-TEST_F(SetWorld, WhatIsTakenBackIsStillInTheCache) {
+TEST_F(SetWorld, MeshesOfAnUndoneChangeAreStillInTheCache) {
   const auto scene = scene_of(paper_, settings_);
   scene->settle(pose_);
   const auto before = contents_of(*scene);
@@ -404,7 +403,7 @@ TEST_F(SetWorld, WhatIsTakenBackIsStillInTheCache) {
   EXPECT_EQ(contents_of(*scene), before);
 }
 
-TEST_F(SetWorld, AWorldThatIsRefusedChangesNothing) {
+TEST_F(SetWorld, ARejectedWorldChangesNothing) {
   const auto scene = scene_of(paper_, settings_);
   scene->settle(pose_);
   const auto before = contents_of(*scene);
@@ -433,15 +432,15 @@ TEST_F(SetWorld, EditsAreKept) {
   EXPECT_EQ(contents_of(*scene).count({256, 256, 3}), 0u);
 }
 
-// The newest wins, however often it changes.
-TEST_F(SetWorld, ChangesInEveryTickEndWhereTheLastOneSays) {
+// The newest world wins, however often it changes.
+TEST_F(SetWorld, ChangesInEveryTickEndWithTheLastOne) {
   const auto scene = scene_of(paper_, settings_);
   scene->settle(pose_);
   for (int i = 0; i < 30; ++i) {
     ASSERT_TRUE(set(*scene, replaced(paper_, "branches = [2, 4]",
                                      i % 2 == 0 ? "branches = [2, 2]" : "branches = [2, 3]")));
     tick_at(*scene, pose_);
-    EXPECT_EQ(scene->state().counters.holes, 0u);
+    EXPECT_EQ(scene->statistics().holes, 0u);
     expect_consistent(*scene);
   }
   ASSERT_TRUE(set(*scene, paper_));

@@ -5,7 +5,7 @@
 namespace psygen::scene {
 namespace {
 
-TEST(Settings, ParadigmsHaveNamesThatReadBack) {
+TEST(SceneSettings, ParadigmsHaveNamesThatReadBack) {
   for (const Paradigm paradigm : {Paradigm::kParallelLazyAmplification,
                                   Paradigm::kDataAmplification, Paradigm::kLazyEvaluation}) {
     const auto read = paradigm_from(to_string(paradigm));
@@ -14,7 +14,7 @@ TEST(Settings, ParadigmsHaveNamesThatReadBack) {
   }
 }
 
-TEST(Settings, AnUnknownParadigmIsRefusedAndTheKnownOnesAreNamed) {
+TEST(SceneSettings, AnUnknownParadigmIsRejectedAndTheKnownOnesAreListed) {
   const auto read = paradigm_from("eager");
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, core::ErrorCode::kInvalidArgument);
@@ -23,7 +23,7 @@ TEST(Settings, AnUnknownParadigmIsRefusedAndTheKnownOnesAreNamed) {
   }
 }
 
-TEST(Settings, ModesOfPlpHaveNamesAndNothingElseIsOne) {
+TEST(SceneSettings, ModesOfPlpHaveNamesAndOthersAreRejected) {
   for (const auto mode : {visibility::PlpMode::kLayers, visibility::PlpMode::kSolidity})
     EXPECT_EQ(*plp_mode_from(to_string(mode)), mode);
   EXPECT_FALSE(plp_mode_from("nonsense"));

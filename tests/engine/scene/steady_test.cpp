@@ -1,4 +1,4 @@
-// What must hold in every frame of a flight, however fast it is and however slow the modelers are.
+// Invariants of every frame of a flight, at any speed and with modelers of any speed.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,11 +17,10 @@ struct Square {
   }
 };
 
-// Whether the ground of a node of the cut is there: in the list of draws, or resident with no tile
-// that can be seen.
+// True if the ground of a node of the cut is drawn, or resident without a visible tile.
 bool has_ground(const State& s, std::uint32_t index) {
   const ecs::Entity entity = s.draws.entities[index];
-  const Demand* demand = s.entities.get<Demand>(entity);
+  const MeshDemand* demand = s.entities.get<MeshDemand>(entity);
   if (demand == nullptr || demand->drawn_level == kNoLevel) return false;
   const Mesh& mesh = *s.entities.get<Mesh>(entity);
   const auto is_its = [&](const render::TerrainDraw& draw) {
@@ -34,13 +33,13 @@ bool has_ground(const State& s, std::uint32_t index) {
   const glm::vec3 corner(core::offset_m(visibility::corner_block(node.node), s.camera.pose.position,
                                         s.facts.world.block_size_m()));
   const NodeTiles tiles{s.facts.grids[static_cast<std::size_t>(level)],
-                        *s.entities.get<GroundRelief>(entity), corner,
+                        *s.entities.get<GroundOccluder>(entity), corner,
                         s.facts.cell_m * static_cast<float>(1U << node.node.level),
-                        s.entities.get<Node>(entity)->low_m};
+                        s.entities.get<QuadtreeNode>(entity)->low_m};
   return tiles_in_view(tiles, s.view) == 0;
 }
 
-// Of the nodes that are drawn.
+// The ground of the drawn nodes.
 std::vector<Square> drawn_ground(const State& s) {
   std::vector<Square> squares;
   const double block_m = s.facts.world.block_size_m();
@@ -55,12 +54,11 @@ std::vector<Square> drawn_ground(const State& s) {
   return squares;
 }
 
-// Nodes whose ground hides others, but is not what is drawn there; without what was evicted in this
-// tick.
+// Nodes whose ground occludes others but is not drawn there; without those evicted in this tick.
 std::size_t hiding_but_not_drawn(const State& s) {
   std::size_t count = 0;
   for (const std::uint32_t index : s.view.drawn) {
-    const Demand* demand = s.entities.get<Demand>(s.draws.entities[index]);
+    const MeshDemand* demand = s.entities.get<MeshDemand>(s.draws.entities[index]);
     const bool resident = demand != nullptr && demand->drawn_level != kNoLevel;
     count += resident && s.view.in_view[index] != 0 &&
              std::ranges::find(s.draws.nodes, index) == s.draws.nodes.end();
@@ -83,7 +81,7 @@ bool is_drawn(const std::vector<Square>& squares, double x, double z) {
   return std::ranges::any_of(squares, [&](const Square& s) { return s.holds(x, z); });
 }
 
-// Leaves in view that are not drawn at any level, though they were in the frame before.
+// Leaves in view that are drawn at no level, although they were drawn in the frame before.
 std::size_t vanished(const State& s, const std::vector<Square>& before,
                      const std::vector<Square>& now) {
   std::size_t count = 0;
@@ -100,8 +98,8 @@ std::size_t vanished(const State& s, const std::vector<Square>& before,
   return count;
 }
 
-Settings steady_settings() {
-  Settings settings = small_settings();
+SceneSettings steady_settings() {
+  SceneSettings settings = small_settings();
   settings.view_distance_m = 1000;
   settings.max_error_pixels = 12;
   settings.budget_bytes = 128ull << 20;
@@ -112,14 +110,14 @@ Settings steady_settings() {
 template <class Pose, class Passes>
 void fly_starved(const Pose& pose_of, const Passes& passes) {
   Gate gate;
-  Settings settings = steady_settings();
+  SceneSettings settings = steady_settings();
   settings.virtual_time = false;  // modelers are real, and wait at the gate
   settings.main_thread_budget_ms = 0;
   settings.watchdog_seconds = 1e6;
   const auto scene = slow_scene(settings, gate);
   scene->settle(pose_of(0));
   gate.set_open(false);
-  State& s = scene->state();
+  State& s = state_of(*scene);
   std::vector<Square> before;
   std::size_t coarse = 0;
   for (int i = 0; i < 180; ++i) {
@@ -140,7 +138,7 @@ void fly_starved(const Pose& pose_of, const Passes& passes) {
 
 constexpr auto kSome = [](int i) { return i % 3; };
 
-TEST(Steady, FlyingForwardWhatWasDrawnStaysUntilAllThatReplacesItIsThere) {
+TEST(Steady, FlyingForwardNodesAreDrawnUntilAllTheirReplacementsAreReady) {
   const auto pose_of = [](int i) {
     core::CameraPose pose = pose_at(256, 256, 0.3 + 0.3 * std::sin(0.07 * i));
     pose.position.local += glm::dvec3(0, 40 * std::sin(0.05 * i), -3.0 * i);
@@ -150,7 +148,7 @@ TEST(Steady, FlyingForwardWhatWasDrawnStaysUntilAllThatReplacesItIsThere) {
   fly_starved(pose_of, [](int) { return 0; });
 }
 
-TEST(Steady, FlyingBackwardWhatWasDrawnStaysUntilAllThatReplacesItIsThere) {
+TEST(Steady, FlyingBackwardNodesAreDrawnUntilAllTheirReplacementsAreReady) {
   const auto pose_of = [](int i) {
     core::CameraPose pose = pose_at(256, 256, 0.3);
     // Forward first, so that there is something to merge.
@@ -161,7 +159,7 @@ TEST(Steady, FlyingBackwardWhatWasDrawnStaysUntilAllThatReplacesItIsThere) {
   fly_starved(pose_of, [](int i) { return i < 60 ? 40 : 0; });
 }
 
-TEST(Steady, LookingAroundWhatWasDrawnStaysUntilAllThatReplacesItIsThere) {
+TEST(Steady, LookingAroundNodesAreDrawnUntilAllTheirReplacementsAreReady) {
   const auto pose_of = [](int i) {
     core::CameraPose pose = pose_at(256, 256, 0.04 * i);
     pose.position.local.x += 4.0 * i;
@@ -170,7 +168,7 @@ TEST(Steady, LookingAroundWhatWasDrawnStaysUntilAllThatReplacesItIsThere) {
   fly_starved(pose_of, kSome);
 }
 
-// Entities that can exist at most: all nodes of all windows with what stands on them.
+// Maximum number of entities: all nodes of all windows with their models.
 std::size_t max_entities(const State& s) {
   std::size_t most = 0;
   for (const NodeGrid& grid : s.streaming.grids)
@@ -180,28 +178,28 @@ std::size_t max_entities(const State& s) {
 }
 
 void expect_bounded(const Scene& scene) {
-  const State& s = scene.state();
+  const State& s = state_of(scene);
   expect_within_budget(scene);
-  EXPECT_LE(s.meshes.outstanding(), s.settings.plan_max_requests + 64u);
+  EXPECT_LE(s.supply.outstanding(), s.settings.plan_max_requests + 64u);
   EXPECT_LE(s.entities.size(), max_entities(s));
 }
 
-// One second at 60 Hz, with modelers that keep up; then what is in view is there.
+// One second at 60 Hz with modelers that keep up; then everything in view is ready.
 template <class Pose>
-void fly_a_second(const Settings& settings, const Pose& pose_of) {
+void fly_a_second(const SceneSettings& settings, const Pose& pose_of) {
   const auto scene = make_scene(settings);
   scene->settle(pose_of(0));
   for (int i = 1; i <= 60; ++i) {
     tick_at(*scene, pose_of(i));
-    scene->state().meshes.wait();
+    state_of(*scene).supply.wait();
     expect_bounded(*scene);
-    EXPECT_EQ(overlaps(drawn_ground(scene->state())), 0u) << "frame " << i;
+    EXPECT_EQ(overlaps(drawn_ground(state_of(*scene))), 0u) << "frame " << i;
   }
-  // A plan is what modelers do in a moment: on a slow machine it takes several.
-  const Counters& counters = scene->state().counters;
+  // Modelers finish a plan within a moment; a slow machine takes several.
+  const DrawCounts& counters = state_of(*scene).draws.counts;
   for (int i = 0; i < 3 || (i < 60 && counters.holes + counters.coarse > 0); ++i) {
     tick_at(*scene, pose_of(60));
-    scene->state().meshes.wait();
+    state_of(*scene).supply.wait();
   }
   EXPECT_EQ(counters.holes, 0u);
   EXPECT_EQ(counters.coarse, 0u);
@@ -228,13 +226,13 @@ TEST(Steady, AfterTeleportsNothingIsMissing) {
   });
 }
 
-// Coarse views have few nodes; those that stand for all others are there at once, although new
-// nodes are spread over ticks and the main thread has time for nothing else.
+// Coarse views have few nodes. Those that replace all others exist at once, although new nodes are
+// spread over ticks and the main thread has time for nothing else.
 TEST(Steady, AJumpShowsNoHoleWhereverItLeads) {
-  Settings settings = steady_settings();
+  SceneSettings settings = steady_settings();
   settings.view_distance_m = 16'000;
   settings.max_error_pixels = 16;
-  settings.streaming_ticks = Settings{}.streaming_ticks;
+  settings.streaming_ticks = SceneSettings{}.streaming_ticks;
   settings.streaming_budget_ms = 0;
   settings.main_thread_budget_ms = 1e-9;
   const auto scene = make_scene(settings);
@@ -244,36 +242,36 @@ TEST(Steady, AJumpShowsNoHoleWhereverItLeads) {
   for (const core::CameraPose& pose : {home, away, home, pose_at(160, 350, 4.0), away}) {
     for (int i = 0; i < 60; ++i) {
       tick_at(*scene, pose);
-      EXPECT_EQ(scene->state().counters.holes, 0u) << "tick " << i;
+      EXPECT_EQ(scene->statistics().holes, 0u) << "tick " << i;
     }
   }
   expect_consistent(*scene);
 }
 
-// Nodes whose ground is there while their models are not wait for these: what stands for them has
-// landed in the tick before.
+// Nodes with ground but without their models wait for the models: their replacement became ready in
+// the tick before.
 TEST(Steady, AfterAJumpNoNodeIsDrawnWithoutItsModels) {
-  Settings settings = steady_settings();
+  SceneSettings settings = steady_settings();
   settings.view_distance_m = 16'000;
   const auto scene = make_scene(settings);
-  State& s = scene->state();
+  State& s = state_of(*scene);
   const core::CameraPose home = pose_at(128, 128, 0.3);
   scene->settle(home);
   tick_at(*scene, home);
   for (int i = 0; i < 60; ++i)
     tick_at(*scene, pose_at(366, 318, 2.0));
   std::size_t released = 0;
-  for (const synthesis::MeshRecord& record : s.meshes.records()) {
+  for (const synthesis::MeshRecord& record : s.supply.records()) {
     if (record.state != synthesis::MeshState::kReady || record.key.model != s.facts.merged_model)
       continue;
-    s.meshes.forget(s.meshes.find(record.key));
+    s.supply.forget(s.supply.find(record.key));
     ++released;
   }
   EXPECT_GT(released, 20u);
-  s.settings.plan_seconds_ahead = 0;  // and nobody makes them anew
+  s.settings.plan_seconds_ahead = 0;  // so that nobody synthesises them again
   for (int i = 0; i < 10; ++i) {
     tick_at(*scene, home);
-    EXPECT_EQ(s.counters.holes, 0u) << "tick " << i;
+    EXPECT_EQ(statistics_of(s).holes, 0u) << "tick " << i;
   }
 }
 
@@ -287,7 +285,7 @@ TEST(Steady, AfterAFallFrom2000MetresNothingIsMissing) {
 }
 
 TEST(Steady, TooLittleMemoryMakesNoHolesInTheGround) {
-  Settings settings = steady_settings();
+  SceneSettings settings = steady_settings();
   settings.budget_bytes = 6ull << 20;
   const auto scene = make_scene(settings);
   std::vector<Square> before;
@@ -295,17 +293,17 @@ TEST(Steady, TooLittleMemoryMakesNoHolesInTheGround) {
     core::CameraPose pose = pose_at(200, 200, 0.05 * i);
     pose.position.local.x += 8.0 * i;
     tick_at(*scene, pose);
-    scene->state().meshes.wait();
+    state_of(*scene).supply.wait();
     expect_bounded(*scene);
-    const std::vector<Square> now = drawn_ground(scene->state());
+    const std::vector<Square> now = drawn_ground(state_of(*scene));
     EXPECT_EQ(overlaps(now), 0u) << "frame " << i;
-    EXPECT_EQ(vanished(scene->state(), before, now), 0u) << "frame " << i;
+    EXPECT_EQ(vanished(state_of(*scene), before, now), 0u) << "frame " << i;
     before = now;
   }
   expect_consistent(*scene);
 }
 
-// Nodes that were drawn in the last tick, and of which an ancestor is drawn now.
+// Nodes drawn in the last tick, of which an ancestor is drawn now.
 std::size_t gave_way(const std::vector<visibility::NodeCoord>& before, const State& s) {
   return static_cast<std::size_t>(std::ranges::count_if(before, [&](visibility::NodeCoord node) {
     while (std::size_t{node.level} + 1 < s.facts.levels.size()) {
@@ -318,24 +316,25 @@ std::size_t gave_way(const std::vector<visibility::NodeCoord>& before, const Sta
 
 std::size_t drawn_single_models(const State& s) {
   std::size_t count = 0;
-  s.entities.each<const Demand, const Fading>(
-      [&](std::span<const ecs::Entity>, std::span<const Demand> demands, std::span<const Fading>) {
-        count += static_cast<std::size_t>(std::ranges::count_if(
-            demands, [](const Demand& demand) { return demand.drawn_level != kNoLevel; }));
-      });
+  s.entities.each<const MeshDemand, const Fading>([&](std::span<const ecs::Entity>,
+                                                      std::span<const MeshDemand> demands,
+                                                      std::span<const Fading>) {
+    count += static_cast<std::size_t>(std::ranges::count_if(
+        demands, [](const MeshDemand& demand) { return demand.drawn_level != kNoLevel; }));
+  });
   return count;
 }
 
-// Otherwise all models of a block would fade away, and come back, for each stone on it.
-TEST(Steady, NoNodeGivesWayToACoarserOneForAModelThatBecomesLargeEnough) {
-  Settings settings = small_settings();
+// Otherwise all models of a block would fade out and in again for each stone on it.
+TEST(Steady, AModelThatBecomesLargeEnoughDoesNotMakeItsNodeCoarser) {
+  SceneSettings settings = small_settings();
   settings.view_distance_m = 500;
   settings.min_size_pixels = 8;
   const auto scene = make_scene(settings);
   core::CameraPose pose = pose_at(256, 256);
   for (int i = 0; i < 120; ++i)
     tick_at(*scene, pose);
-  const State& s = scene->state();
+  const State& s = state_of(*scene);
   const std::size_t models_before = drawn_single_models(s);
   std::size_t given_way = 0;
   for (int i = 0; i < 400; ++i) {

@@ -1,21 +1,21 @@
-// Neither the size of the world nor the distance from its origin makes a difference.
+// Scenes do not depend on the size of the world or the distance from its origin.
 #include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {
 namespace {
 
-Settings far_settings() {
-  Settings settings = small_settings();
+SceneSettings far_settings() {
+  SceneSettings settings = small_settings();
   settings.view_distance_m = 3000;
   settings.max_error_pixels = 16;
   return settings;
 }
 
-// Endless and nearly flat, so that every place looks like every other; nothing is random but
-// where models stand.
+// An endless and nearly flat world, so that all places look alike; only the places of models are
+// random.
 std::unique_ptr<Scene> endless_scene() {
-  Settings settings = far_settings();
+  SceneSettings settings = far_settings();
   settings.occlusion = false;
   return make_scene_of(settings, [](world::World& world) {
     world.blocks_x = world.blocks_z = 0;
@@ -38,7 +38,7 @@ constexpr core::BlockCoord kPlaces[] = {{0, 0},
                                         {INT32_MIN, INT32_MAX},
                                         {INT32_MAX - 15, 15}};
 
-TEST(Extent, EverywhereInAnEndlessWorldAsMuchExistsAndIsDrawn) {
+TEST(Extent, EveryPlaceInAnEndlessWorldHasAsManyNodesAndDraws) {
   std::size_t nodes = 0, entities = 0, draws = 0;
   for (const core::BlockCoord block : kPlaces) {
     SCOPED_TRACE(testing::Message() << "block " << block.x << ", " << block.z);
@@ -47,8 +47,8 @@ TEST(Extent, EverywhereInAnEndlessWorldAsMuchExistsAndIsDrawn) {
     const core::BlockCoord aligned{block.x & ~31, block.z & ~31};
     scene->settle(endless_pose(aligned));
     tick_at(*scene, endless_pose(aligned));
-    const State& s = scene->state();
-    EXPECT_EQ(s.counters.holes, 0u);
+    const State& s = state_of(*scene);
+    EXPECT_EQ(statistics_of(s).holes, 0u);
     if (nodes == 0) {
       nodes = s.view.cut.nodes.size();
       entities = s.entities.size();
@@ -67,17 +67,17 @@ std::int64_t steps(std::int32_t from, std::int32_t to) {
                                    static_cast<std::uint32_t>(from));
 }
 
-TEST(Extent, EverythingIsDrawnWhereItIsToTheMillimetre) {
+TEST(Extent, PositionsAreExactToTheMillimetre) {
   for (const core::BlockCoord block : kPlaces) {
     SCOPED_TRACE(testing::Message() << "block " << block.x << ", " << block.z);
-    Settings settings = far_settings();
+    SceneSettings settings = far_settings();
     settings.view_distance_m = 1500;
     const auto scene =
         make_scene_of(settings, [](world::World& world) { world.blocks_x = world.blocks_z = 0; });
     const core::CameraPose pose = endless_pose(block);
     scene->settle(pose);
     tick_at(*scene, pose);
-    const State& s = scene->state();
+    const State& s = state_of(*scene);
     // In units of 2^-10 mm everything is whole: blocks are 63 m wide.
     constexpr std::int64_t kPerM = 1'024'000, kBlock = 63 * kPerM;
     const auto eye_x = static_cast<std::int64_t>(20.25 * kPerM),
@@ -106,7 +106,7 @@ TEST(Extent, EverythingIsDrawnWhereItIsToTheMillimetre) {
   }
 }
 
-TEST(Extent, WhenTheCameraMovesByAMillimetreNothingMovesFarther) {
+TEST(Extent, ACameraThatMovesByAMillimetreMovesNothingFarther) {
   for (const core::BlockCoord block : kPlaces) {
     SCOPED_TRACE(testing::Message() << "block " << block.x << ", " << block.z);
     const auto scene = make_scene_of(
@@ -114,10 +114,10 @@ TEST(Extent, WhenTheCameraMovesByAMillimetreNothingMovesFarther) {
     core::CameraPose pose = endless_pose(block);
     scene->settle(pose);
     tick_at(*scene, pose);
-    const DrawLists before = scene->state().draws;
+    const DrawLists before = state_of(*scene).draws;
     pose.position.local += glm::dvec3(0.001, 0, -0.001);
     tick_at(*scene, pose);
-    const DrawLists& now = scene->state().draws;
+    const DrawLists& now = state_of(*scene).draws;
     ASSERT_EQ(now.terrain.size(), before.terrain.size());
     ASSERT_EQ(now.models.size(), before.models.size());
     float farthest_m = 0;
@@ -141,9 +141,8 @@ TEST(Extent, AWorldOfAMillionBlocksASideTakesNoMoreThanOneOf512) {
     std::uint64_t bytes;
     bool operator==(const Taken&) const = default;
   };
-  // Nothing that depends on the time that a mesh takes: the cache keeps what was drawn for a
-  // moment.
-  Settings settings = far_settings();
+  // Independent of synthesis times: the cache keeps recently drawn meshes.
+  SceneSettings settings = far_settings();
   settings.main_thread_budget_ms = 0;
   settings.plan_seconds_ahead = 1e6;
   std::vector<Taken> sizes;
@@ -153,8 +152,8 @@ TEST(Extent, AWorldOfAMillionBlocksASideTakesNoMoreThanOneOf512) {
     core::CameraPose pose = pose_at(256, 256, 0.3);
     scene->settle(pose);
     tick_at(*scene, pose);
-    const State& s = scene->state();
-    const synthesis::CacheStats stats = s.meshes.stats();
+    const State& s = state_of(*scene);
+    const synthesis::CacheStats stats = s.supply.stats();
     sizes.push_back({s.entities.size(), s.view.cut.nodes.size(), s.draws.terrain.size(),
                      s.draws.models.size(), stats.ready, stats.bytes});
   }
@@ -173,33 +172,33 @@ void make_small(world::World& world, std::int64_t blocks) {
 
 std::size_t places_of(const Scene& scene) {
   std::size_t places = 0;
-  for (const NodeGrid& grid : scene.state().streaming.grids)
+  for (const NodeGrid& grid : state_of(scene).streaming.grids)
     places += std::size_t{grid.side()} * grid.side();
   return places;
 }
 
-TEST(Extent, AWorldOfAFewCentimetresIsDrawnFromInsideAndFromAfar) {
+TEST(Extent, AWorldOfAFewCentimetresIsDrawnFromInsideAndFromADistance) {
   for (const std::int64_t blocks : {1, 30}) {
-    Settings settings = small_settings();
+    SceneSettings settings = small_settings();
     settings.view_distance_m = 16'000;
     const auto scene =
         make_scene_of(settings, [blocks](world::World& world) { make_small(world, blocks); });
     EXPECT_LT(places_of(*scene), 10'000u);
-    const State& s = scene->state();
+    const State& s = state_of(*scene);
     for (const std::int32_t x : {0, -3000, 3000}) {  // 90 m to the west and to the east
       const core::CameraPose pose = pose_at(x, 0);
       scene->settle(pose);
       tick_at(*scene, pose);
       EXPECT_FALSE(s.view.cut.nodes.empty()) << blocks << " blocks, from " << x;
-      EXPECT_GT(s.entities.count<Node>(), 0u) << blocks << " blocks, from " << x;
+      EXPECT_GT(s.entities.count<QuadtreeNode>(), 0u) << blocks << " blocks, from " << x;
       EXPECT_TRUE(s.streaming.missing.empty());
     }
   }
 }
 
-// Without levels of detail every block has a place of its own.
-TEST(Extent, AStripOfTinyBlocksThatIsFarLongerThanWideIsRefused) {
-  Settings settings = small_settings();
+// Without levels of detail every block has its own cell.
+TEST(Extent, AVeryLongStripOfTinyBlocksIsRejected) {
+  SceneSettings settings = small_settings();
   settings.view_distance_m = 16'000;
   settings.levels_of_detail = false;
   for (const std::int64_t depth : {0, 1 << 30}) {
@@ -216,16 +215,16 @@ TEST(Extent, AStripOfTinyBlocksThatIsFarLongerThanWideIsRefused) {
   }
 }
 
-// Inside, on the edge, just outside, and so far outside that the world is as far as one sees.
-TEST(Extent, EveryNodeOfASmallWorldThatIsWantedExistsWhereverTheCameraIs) {
-  Settings settings = small_settings();
+// Inside, on the edge, just outside, and at the view distance from the world.
+TEST(Extent, EveryWantedNodeOfASmallWorldExistsForAnyCamera) {
+  SceneSettings settings = small_settings();
   settings.view_distance_m = 1000;
   const auto scene = make_scene_of(settings, [](world::World& world) {
     world.blocks_x = 6;
     world.blocks_z = 3;
     world.scatter.clear();
   });
-  const State& s = scene->state();
+  const State& s = state_of(*scene);
   for (const core::BlockCoord block :
        {core::BlockCoord{2, 1}, {5, 2}, {6, 0}, {-1, -1}, {12, 1}, {1, -14}, {-15, 2}, {2, 1}}) {
     tick_at(*scene, pose_at(block.x, block.z));

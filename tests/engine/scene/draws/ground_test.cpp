@@ -18,7 +18,7 @@ constexpr std::uint32_t kAll = (1U << 9) - 1;
 struct Fixture {
   models::TerrainGrid grid{64, 1};
   models::TerrainTiles fine{64};
-  GroundRelief relief;
+  GroundOccluder occluder;
   View view;
   glm::vec3 corner;
 
@@ -26,10 +26,10 @@ struct Fixture {
     const core::Projection projection;
     view.frustum = visibility::make_frustum(core::projection_matrix(projection) *
                                             core::view_rotation(core::CameraPose{}));
-    relief.top_m.fill(2);
+    occluder.top_m.fill(2);
   }
-  NodeTiles tiles() const { return {grid, relief, corner, 1.0F, -5.0F}; }
-  NodeTiles fine_tiles() const { return {fine.grid(), relief, corner, 1.0F, -5.0F}; }
+  NodeTiles tiles() const { return {grid, occluder, corner, 1.0F, -5.0F}; }
+  NodeTiles fine_tiles() const { return {fine.grid(), occluder, corner, 1.0F, -5.0F}; }
 
   std::vector<render::TerrainDraw> draws(std::uint32_t in_view) const {
     std::vector<render::TerrainDraw> list;
@@ -40,7 +40,7 @@ struct Fixture {
   }
 };
 
-// A ridge across the view, so far away and so high.
+// A ridge across the view, at this distance and height.
 void add_ridge(View& view, float distance_m, float height_m) {
   const std::vector<glm::vec3> line{{-2 * distance_m, height_m, -distance_m},
                                     {2 * distance_m, height_m, -distance_m}};
@@ -61,7 +61,7 @@ void insert(core::IndexPart part, std::set<std::uint32_t>& all) {
     all.insert(part.first + i);
 }
 
-TEST(GroundDraws, TilesInFrontAreInViewAndThoseBesideTheFrustumAreNot) {
+TEST(GroundDraws, TilesInTheFrustumAreInViewAndOthersAreNot) {
   EXPECT_EQ(tiles_in_view(Fixture({-31, -10, -200}).tiles(), Fixture({}).view), kAll);
   EXPECT_EQ(tiles_in_view(Fixture({-31, -10, 100}).tiles(), Fixture({}).view), 0U);
   // 50 m ahead the picture is 86 m wide.
@@ -77,9 +77,9 @@ TEST(GroundDraws, TilesBehindARidgeAreHiddenOnlyIfTheyAreLower) {
   Fixture node({-31, -10, -263});
   add_ridge(node.view, 150, -6);
   EXPECT_EQ(tiles_in_view(node.tiles(), node.view), kAll);  // tops at −8 m are seen over it
-  node.relief.top_m.fill(-2);
+  node.occluder.top_m.fill(-2);
   EXPECT_EQ(tiles_in_view(node.tiles(), node.view), 0U);
-  node.relief.top_m[4] = 3;
+  node.occluder.top_m[4] = 3;
   EXPECT_EQ(tiles_in_view(node.tiles(), node.view), 1U << 4);
 }
 
@@ -101,7 +101,7 @@ TEST(GroundDraws, AllTilesAreOneDrawWithTheSkirtsThatFaceTheCamera) {
   EXPECT_EQ(indices_of(north_east.draws(kAll)), expected);
 }
 
-TEST(GroundDraws, OfSomeTilesOnlyTheseAreDrawnAndNoSkirtAwayFromThem) {
+TEST(GroundDraws, OnlyVisibleTilesAndTheirSkirtsAreDrawn) {
   const Fixture node({-31, -10, -200});
   for (std::uint32_t in_view = 0; in_view <= kAll; ++in_view) {
     std::set<std::uint32_t> expected;
@@ -113,7 +113,7 @@ TEST(GroundDraws, OfSomeTilesOnlyTheseAreDrawnAndNoSkirtAwayFromThem) {
   }
 }
 
-TEST(GroundDraws, TilesOfWhichSomeIsNearHaveDrawsOfTheirOwn) {
+TEST(GroundDraws, TilesThatReachNearHaveSeparateDraws) {
   // Its rows begin 20, 41 and 62 m away, and 10 m below: the last one has 1.2 m that are near.
   const Fixture node({-31, -10, -83});
   for (const render::TerrainDraw& draw : node.draws(kAll & ~7U))
@@ -130,7 +130,7 @@ TEST(GroundDraws, TilesOfWhichSomeIsNearHaveDrawsOfTheirOwn) {
   EXPECT_EQ(near, expected);
 }
 
-TEST(GroundDraws, OfABlocksFinestGroundTheNearTilesAreFine) {
+TEST(GroundDraws, NearTilesOfABlocksFinestGroundAreFine) {
   const Fixture node({-31, -10, -120});
   std::vector<render::TerrainDraw> draws;
   // The southern row begins 78 m away.
@@ -148,8 +148,8 @@ TEST(GroundDraws, OfABlocksFinestGroundTheNearTilesAreFine) {
   }));
 }
 
-// A side with a skirt has every vertex of it.
-TEST(GroundDraws, OfABlocksFinestGroundTilesWithSkirtsHaveTheirVertices) {
+// A side with a skirt has all its vertices.
+TEST(GroundDraws, TilesBesideSkirtsHaveTheSkirtsVertices) {
   const Fixture node({-31, -10, -120});
   constexpr std::uint32_t kSouthernRow = 7U << 6U;
   std::vector<render::TerrainDraw> draws;

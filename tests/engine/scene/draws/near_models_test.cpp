@@ -1,4 +1,4 @@
-// Single models near the camera are drawn with detail if the preset has it, and no others.
+// Individual models near the camera are drawn with detail if the preset has it; others are not.
 #include "engine/core/coordinates.hpp"
 #include "engine/render/types.hpp"
 #include "tests/engine/scene/fixture.hpp"
@@ -11,14 +11,14 @@ std::size_t near_draws(const State& state) {
       std::ranges::count_if(state.draws.models, [](const auto& draw) { return draw.near; }));
 }
 
-// Trees and rocks that are drawn in this tick and reach into the distance.
+// Trees and rocks that this tick draws within the distance.
 std::size_t models_in_reach(State& state, const core::WorldPosition& camera) {
   std::size_t count = 0;
-  state.entities.each<const Placed, const Demand, const Source>(
-      [&](auto, std::span<const Placed> placed, std::span<const Demand> demands,
-          std::span<const Source> sources) {
+  state.entities.each<const MeshPlacement, const MeshDemand, const MeshSource>(
+      [&](auto, std::span<const MeshPlacement> placed, std::span<const MeshDemand> demands,
+          std::span<const MeshSource> sources) {
         for (std::size_t i = 0; i < placed.size(); ++i) {
-          const Placed& model = placed[i];
+          const MeshPlacement& model = placed[i];
           const glm::vec3 from_camera(
               core::offset_m(model.block, camera, state.facts.world.block_size_m()));
           const glm::vec3 middle = from_camera + model.position + model.middle;
@@ -33,11 +33,11 @@ std::size_t models_in_reach(State& state, const core::WorldPosition& camera) {
   return count;
 }
 
-TEST(NearModels, AreThoseOfBarkAndStoneWithinReachIfThePresetHasThem) {
-  Settings settings = small_settings();
+TEST(NearModels, AreBarkAndStoneWithinTheDistanceIfThePresetHasThem) {
+  SceneSettings settings = small_settings();
   settings.view_distance_m = 1000;
   const auto scene = make_scene(settings);
-  State& state = scene->state();
+  State& state = state_of(*scene);
   const core::CameraPose pose = pose_at(256, 256);
   for (const bool has_detail : {false, true}) {
     state.facts.near_detail = has_detail;

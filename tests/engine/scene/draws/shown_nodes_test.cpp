@@ -32,26 +32,26 @@ struct Entities {
   ecs::World world;
   DrawLists draws;
   Entities() {
-    const auto made = world.create<Demand>(5).entities;
+    const auto made = world.create<MeshDemand>(5).entities;
     draws.entities.assign(made.begin(), made.end());
   }
-  void draw(std::size_t node) { world.get<Demand>(draws.entities[node])->drawn_level = 0; }
+  void draw(std::size_t node) { world.get<MeshDemand>(draws.entities[node])->drawn_level = 0; }
 };
 
 using NodeIndices = std::vector<std::uint32_t>;
 using Flags = std::vector<std::uint8_t>;
 
-TEST(ShownNodes, ReadyIsWhatHasAMeshAndWasSeenToBeReadyOrHasNothingAbove) {
+TEST(ShownNodes, AreReadyWithAMeshIfTheyWereReadyOrNoAncestorIs) {
   View view = view_of_five_nodes();
   Entities entities;
   for (const std::size_t node : {0, 1, 3})
     entities.draw(node);
   view.ready = {1, 1, 1, 0, 0};
   find_ready(view, RenderQuery(entities.world), entities.draws);
-  // Node 2 was evicted since; node 3 has come since, below the root.
+  // QuadtreeNode 2 was evicted since; node 3 has come since, below the root.
   EXPECT_EQ(entities.draws.ready, (Flags{1, 1, 0, 0, 0}));
   view.ready = {0, 0, 0, 0, 0};
-  entities.world.get<Demand>(entities.draws.entities[0])->drawn_level = kNoLevel;
+  entities.world.get<MeshDemand>(entities.draws.entities[0])->drawn_level = kNoLevel;
   find_ready(view, RenderQuery(entities.world), entities.draws);
   EXPECT_EQ(entities.draws.ready, (Flags{0, 1, 0, 1, 0}));
 }
@@ -66,7 +66,7 @@ TEST(ShownNodes, DestroyedEntitiesAreNotReady) {
   EXPECT_EQ(entities.draws.ready, Flags(5, 0));
 }
 
-TEST(ShownNodes, AreTheDrawnOnesAndLeavesThatNothingStandsFor) {
+TEST(ShownNodes, AreDrawnNodesAndLeavesWithoutAReplacement) {
   View view = view_of_five_nodes();
   DrawLists draws;
   draws.nodes = {0};
@@ -81,7 +81,7 @@ TEST(ShownNodes, AreTheDrawnOnesAndLeavesThatNothingStandsFor) {
   EXPECT_EQ(draws.shown, (NodeIndices{3, 4}));
 }
 
-TEST(ShownNodes, AreCoarserByTheLevelsOfTheFinestNodeInView) {
+TEST(ShownNodes, AreCoarserByTheLevelsToTheFinestNodeInView) {
   View view = view_of_five_nodes();
   EXPECT_EQ(coarser_by(view, 0), 2u);
   EXPECT_EQ(coarser_by(view, 1), 0u);
@@ -89,7 +89,7 @@ TEST(ShownNodes, AreCoarserByTheLevelsOfTheFinestNodeInView) {
   EXPECT_EQ(coarser_by(view, 0), 1u);
 }
 
-TEST(ShownNodes, LeavesAreAsWantedUnlessTheyLackTheirFinestMesh) {
+TEST(ShownNodes, LeavesAreAsWantedUnlessTheirFinestMeshIsMissing) {
   visibility::CutNode node;
   EXPECT_EQ(min_distance_m(node, 1, 100), 0);
   node.fine = true;

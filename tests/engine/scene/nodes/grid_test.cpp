@@ -32,7 +32,7 @@ TEST(NodeGrid, ASmallerWindowKeepsTheEntitiesThatLieInIt) {
   EXPECT_EQ(grid.entity_of({6, 4}), (ecs::Entity{42, 1}));
 }
 
-TEST(NodeGrid, OfACoarserLevelItIsCentredOnTheNodeOfTheBlock) {
+TEST(NodeGrid, ACoarserWindowIsCentredOnTheNodeOfTheBlock) {
   NodeGrid grid(3, 1);
   grid.set_centre({17, -1});
   EXPECT_EQ(grid.centre().coord, (core::BlockCoord{2, -1}));
@@ -41,7 +41,7 @@ TEST(NodeGrid, OfACoarserLevelItIsCentredOnTheNodeOfTheBlock) {
   EXPECT_FALSE(grid.contains({4, -1}));
 }
 
-TEST(NodeGrid, EveryNodeOfTheWindowHasAPlaceOfItsOwnAlsoAcrossTheWrapOfIndices) {
+TEST(NodeGrid, EveryNodeHasItsOwnCellAlsoAcrossTheWrapOfIndices) {
   for (const std::uint8_t level : {std::uint8_t{0}, std::uint8_t{5}}) {
     for (const std::int32_t x : {0, -7, INT32_MAX, INT32_MIN}) {
       NodeGrid grid(level, 3);

@@ -1,4 +1,4 @@
-// Solid objects of a scene: what rays meet of entities, step by step.
+// Solid objects of a scene: rays hit entities, step by step.
 #include "engine/scene/objects/colliders.hpp"
 
 #include <gmock/gmock.h>
@@ -41,7 +41,7 @@ class SolidObjects : public testing::Test {
     ASSERT_TRUE(ball_of_1_m) << ball_of_1_m.error().message;
     ball_ = *ball_of_1_m;
   }
-  State& state() { return scene_->state(); }
+  State& state() { return state_of(*scene_); }
   // A place high above the ground.
   static core::WorldPosition sky(double x = 0) { return {{2, 3}, {x, 4000, 10}}; }
   ecs::Entity put(const core::WorldPosition& at) {
@@ -64,7 +64,7 @@ class SolidObjects : public testing::Test {
   std::function<void(ecs::World&)> in_step_;
 };
 
-TEST_F(SolidObjects, AreMetByRaysWhereTheLastStepLeftThem) {
+TEST_F(SolidObjects, AreHitByRaysAtTheirPlaceOfTheLastStep) {
   const ecs::Entity entity = put(sky(20));
   EXPECT_EQ(east_of(0).kind, query::HitKind::kNothing);
   step();
@@ -79,13 +79,13 @@ TEST_F(SolidObjects, AreMetByRaysWhereTheLastStepLeftThem) {
   EXPECT_NEAR(east_of(0).distance_m, 29, 1e-9) << "where it is only drawn";
 }
 
-TEST_F(SolidObjects, AreThereWithoutAStepOnceUpdated) {
+TEST_F(SolidObjects, AreSolidAfterAnUpdateWithoutAStep) {
   put(sky(20));
-  colliders_.update(state());
+  colliders_.update(scene_->facts(), scene_->entities());
   EXPECT_EQ(east_of(0).kind, query::HitKind::kObject);
 }
 
-TEST_F(SolidObjects, ThatAreDestroyedInAStepAreGoneAfterIt) {
+TEST_F(SolidObjects, DestroyedInAStepAreGoneAfterIt) {
   const ecs::Entity entity = put(sky(20)), other = put(sky(40));
   step();
   in_step_ = [&](ecs::World& entities) { entities.destroy(std::span(&entity, 1)); };
@@ -101,7 +101,7 @@ TEST_F(SolidObjects, ThatAreDestroyedInAStepAreGoneAfterIt) {
   EXPECT_EQ(entity_of(east_of(0).object), third);
 }
 
-TEST_F(SolidObjects, ThatLoseTheComponentAreMetNoMoreAndWithAnotherColliderAreInIt) {
+TEST_F(SolidObjects, FollowChangesOfTheirComponent) {
   const ecs::Entity entity = put(sky(20));
   step();
   state().entities.get<ObjectCollider>(entity)->shape = *colliders_.add(ball(5));
@@ -115,7 +115,7 @@ TEST_F(SolidObjects, ThatLoseTheComponentAreMetNoMoreAndWithAnotherColliderAreIn
   EXPECT_EQ(east_of(0).kind, query::HitKind::kNothing);
 }
 
-TEST_F(SolidObjects, WithACopyOfAnothersComponentAreObjectsOfTheirOwn) {
+TEST_F(SolidObjects, WithACopiedComponentAreSeparateObjects) {
   const ecs::Entity first = put(sky(20)), second = put(sky(40));
   step();
   *state().entities.get<ObjectCollider>(second) = *state().entities.get<ObjectCollider>(first);
@@ -125,7 +125,7 @@ TEST_F(SolidObjects, WithACopyOfAnothersComponentAreObjectsOfTheirOwn) {
   EXPECT_EQ(colliders_.objects().size(), 2u);
 }
 
-TEST_F(SolidObjects, WithPlacesSizesOrCollidersThatAreNoneAreCountedAndComeBack) {
+TEST_F(SolidObjects, WithInvalidValuesAreCountedAndRecover) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<ecs::Entity> bad;
   for (int i = 0; i < 6; ++i)
@@ -150,18 +150,18 @@ TEST_F(SolidObjects, WithPlacesSizesOrCollidersThatAreNoneAreCountedAndComeBack)
   EXPECT_EQ(entity_of(east_of(0).object), bad[4]);
 }
 
-TEST_F(SolidObjects, CollidersThatAreNoneAreRefusedByTheirName) {
+TEST_F(SolidObjects, InvalidCollidersAreRejectedByName) {
   const auto refused = colliders_.add(ball(-1), "barrel");
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, testing::HasSubstr("barrel: part 0 of the collider"));
 }
 
-TEST_F(SolidObjects, TakeTheBoxOfTheirMeshInOneCallThoughItIsFlat) {
+TEST_F(SolidObjects, TakeTheBoxOfTheirMeshEvenIfItIsFlat) {
   const auto mesh = state().assets.add_mesh(quad());
   ASSERT_TRUE(mesh) << mesh.error().message;
   const ecs::Entity entity = spawn(state().entities, {.mesh = *mesh}, {.position = sky(20)});
-  ASSERT_TRUE(colliders_.make_solid(state(), entity));
-  ASSERT_TRUE(colliders_.make_solid(state(), entity)) << "again";
+  ASSERT_TRUE(colliders_.make_solid(scene_->entities(), scene_->assets(), entity));
+  ASSERT_TRUE(colliders_.make_solid(scene_->entities(), scene_->assets(), entity)) << "again";
   step();
   core::WorldPosition above = sky(21.9);
   above.local.y += 11;
@@ -170,8 +170,8 @@ TEST_F(SolidObjects, TakeTheBoxOfTheirMeshInOneCallThoughItIsFlat) {
   EXPECT_EQ(entity_of(hit->object), entity);
   EXPECT_NEAR(hit->distance_m, 10, 0.006);
   EXPECT_EQ(*colliders_.box_of(state().assets, *mesh), *colliders_.box_of(state().assets, *mesh));
-  EXPECT_FALSE(colliders_.make_solid(state(), put(sky())));
-  EXPECT_FALSE(colliders_.make_solid(state(), {}));
+  EXPECT_FALSE(colliders_.make_solid(scene_->entities(), scene_->assets(), put(sky())));
+  EXPECT_FALSE(colliders_.make_solid(scene_->entities(), scene_->assets(), {}));
   EXPECT_FALSE(colliders_.box_of(state().assets, {999}));
 }
 

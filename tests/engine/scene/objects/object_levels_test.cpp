@@ -49,7 +49,7 @@ TEST(ObjectLevels, HaveFewerTrianglesAndLargerErrors) {
   }
 }
 
-TEST(ObjectLevels, UseVerticesOfTheFinestAndNoOthers) {
+TEST(ObjectLevels, UseOnlyVerticesOfTheFinest) {
   const std::vector<ObjectLevel> levels = levels_of(sphere(16), 8);
   const auto& all = levels[0].mesh.vertices;
   for (const ObjectLevel& level : levels) {
@@ -68,7 +68,7 @@ TEST(ObjectLevels, UseVerticesOfTheFinestAndNoOthers) {
   }
 }
 
-TEST(ObjectLevels, AreAsManyAsWantedAtMostAndOneForSmallMeshes) {
+TEST(ObjectLevels, AreAtMostAsManyAsWantedAndOneForSmallMeshes) {
   EXPECT_EQ(levels_of(sphere(24), 1).size(), 1U);
   EXPECT_EQ(levels_of(sphere(24), 2).size(), 2U);
   EXPECT_EQ(levels_of(sphere(3), 8).size(), 1U);

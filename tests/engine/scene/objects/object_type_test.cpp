@@ -41,7 +41,7 @@ TEST(ObjectSources, NamesAreNotUsedTwiceThoughSlotsAre) {
   EXPECT_EQ(sources.find(UINT32_MAX), nullptr);
 }
 
-TEST(ObjectSources, HaveABoundAtATime) {
+TEST(ObjectSources, HaveAMaximum) {
   ObjectSources sources;
   for (std::uint32_t i = 0; i < ObjectSources::kMax; ++i)
     ASSERT_EQ(sources.add({}), i);
@@ -51,8 +51,8 @@ TEST(ObjectSources, HaveABoundAtATime) {
   EXPECT_FALSE(sources.add({}));
 }
 
-// Otherwise one of its names would be that of no mesh, or come again.
-TEST(ObjectSources, ASlotThatHasHadAllItsNamesIsNotUsedAgain) {
+// Otherwise one of its names would mean "none", or repeat.
+TEST(ObjectSources, ASlotIsNotUsedAfterItsLastName) {
   ObjectSources sources;
   std::uint32_t last = 0;
   for (std::uint32_t i = 0; i < 2 * ObjectSources::kMax; ++i) {
@@ -70,8 +70,8 @@ TEST(ObjectSources, ASlotThatHasHadAllItsNamesIsNotUsedAgain) {
   EXPECT_EQ(last % ObjectSources::kMax, 2u);
 }
 
-// It was asked for, and its room is reserved.
-TEST(ObjectType, AMeshThatIsRemovedBeforeItIsMadeIsEmpty) {
+// It was requested, and its memory is reserved.
+TEST(ObjectType, AMeshRemovedBeforeSynthesisIsEmpty) {
   const auto sources = std::make_shared<ObjectSources>();
   const auto type = make_object_type(sources, true);
   const auto name = sources->add(triangle());

@@ -18,7 +18,7 @@ core::MeshData roof() {
   return mesh;
 }
 
-TEST(PackedMesh, HoldsPositionsToAPartOfItsBox) {
+TEST(PackedMesh, KeepsPositionsWithinAFractionOfItsBounds) {
   const core::MeshData mesh = roof();
   const auto packed = pack(mesh);
   ASSERT_TRUE(packed) << packed.error().message;
@@ -56,7 +56,7 @@ TEST(PackedMesh, SurvivesAMeshWithoutExtent) {
   EXPECT_EQ(packed->box.half_extent(), glm::vec3(0));
 }
 
-TEST(PackedMesh, RefusesWhatCannotBeDrawn) {
+TEST(PackedMesh, RejectsMeshesThatCannotBeDrawn) {
   core::MeshData mesh = roof();
   mesh.indices[0] = 9;
   EXPECT_FALSE(pack(mesh));

@@ -1,0 +1,64 @@
+// The draw lists of a frame, and the system that fills and renders them. Values; main thread only.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/render/types.hpp"
+#include "engine/scene/components.hpp"
+#include "engine/scene/draws/node_cross_fade.hpp"
+#include "engine/scene/frame/output.hpp"
+#include "engine/scene/frame/quality.hpp"
+#include "engine/scene/nodes/ground_occluder.hpp"
+#include "engine/scene/nodes/ground_sunlight.hpp"
+#include "engine/scene/objects/scene_draws.hpp"
+#include "engine/scene/view/visibility.hpp"
+
+namespace psygen::scene {
+
+// Counts of one tick (draws/missing_coverage.hpp).
+struct DrawCounts {
+  std::uint32_t nodes_in_view = 0;
+  std::uint32_t holes = 0;    // nodes in view that are drawn at no level
+  std::uint32_t coarse = 0;   // nodes in view coarser than wanted by more than one level
+  std::uint32_t awaited = 0;  // Statistics::awaited
+  double missing_pixels_percent = 0;
+  double seen_area = 0, too_coarse_area = 0;  // of visible pieces, in percent of the frame
+};
+
+// The lists of this tick, and working memory.
+struct DrawLists {
+  std::vector<ecs::Entity> entities;  // per node of the cut; null if there is none
+  std::vector<std::uint32_t> nodes;  // of the cut: drawn in place of nodes whose meshes are missing
+  std::vector<std::uint8_t> ready, scratch;  // per node of the cut
+  std::vector<std::uint32_t> shown;          // of `nodes` and holes, those in view
+  std::vector<visibility::NodeCoord> shown_nodes;
+  std::vector<render::TerrainDraw> terrain;
+  std::vector<render::MeshDraw> models;
+  std::vector<synthesis::MeshHandle> meshes;  // of both
+  std::vector<render::GroundSpot> spots;      // contact shadows of models near the camera
+  std::vector<render::Line> lines;            // bounds of drawn nodes, in the debug view of bounds
+  NodeCrossFade cross_fade;
+  std::uint32_t tick = 0;  // of these lists
+  double now_s = 0;        // the clock in that tick
+  float fade_phase = 0;    // of the pattern of fades (next_phase)
+  DrawCounts counts;
+  render::FrameResult frame;
+};
+
+// Bundle: everything that render_system() writes besides components.
+struct DrawWork {
+  synthesis::MeshSupply& supply;
+  DrawLists& draws;
+  Output& output;
+  MemoryPressure& pressure;
+};
+
+// System: fills the draw lists, measures missing detail, and renders them if there is a renderer.
+using RenderQuery =
+    ecs::Query<const QuadtreeNode, const ecs::Children, const Visibility, const MeshPlacement,
+               const MeshDemand, const MeshSource, const Mesh, const MeshParts, const ReplacedParts,
+               const GroundOccluder, const GroundSunlight, Fading>;
+void render_system(RenderContext context, SceneDraws scene, RenderQuery entities, DrawWork work);
+
+}  // namespace psygen::scene

@@ -1,0 +1,143 @@
+#include "engine/scene/facts/derive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "engine/core/hash.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/scene/facts/find_impostors.hpp"
+#include "engine/scene/facts/lighting.hpp"
+#include "engine/scene/facts/solidity.hpp"
+#include "engine/scene/facts/typical_bounds.hpp"
+#include "engine/world/far/merged_models.hpp"
+#include "engine/world/models_reach.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// Maximum number of nodes of a level: they lie in a disc, and in the world.
+double max_nodes(const world::World& world, double radius, std::size_t level) {
+  const auto along = [&](std::int64_t blocks) {
+    const double window = 2 * radius + 1;
+    return blocks == 0 ? window : std::min(window, static_cast<double>(nodes_along(blocks, level)));
+  };
+  return std::min(std::numbers::pi * radius * radius,
+                  along(world.blocks_x) * along(world.blocks_z));
+}
+
+// Checks the maximum number of nodes and models, and of cells of the windows, before allocating
+// any.
+core::Result<void> check_size(const world::World& world, std::span<const NodeLevel> levels,
+                              const SceneSettings& settings) {
+  const double models = static_cast<double>(world::models_per_block(world));
+  double entities = 0, places = 0;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const double radius = window_radius(levels, settings, k);
+    entities += max_nodes(world, radius, k) * (k == 0 ? 1 + models : 2);
+    const double side = 2.0 * largest_radius(world, levels, settings, k) + 1;
+    places += side * side;
+  }
+  if (places > kMaxPlaces) {
+    return core::fail(
+        core::ErrorCode::kOverBudget,
+        fmt::format(
+            "a view of {:.0f} m over blocks of {:g} m (block_vertices, cell_m) needs places "
+            "for {:.3g} nodes; at most {:.0f} are allowed",
+            settings.view_distance_m, world.block_size_m(), places, kMaxPlaces));
+  }
+  if (entities <= kMaxEntities) return {};
+  return core::fail(
+      core::ErrorCode::kOverBudget,
+      fmt::format(
+          "a view of {:.0f} m over blocks of {:g} m (block_vertices, cell_m) with {} models "
+          "each (count) needs {:.3g} entities; at most {:.0f} are allowed",
+          settings.view_distance_m, world.block_size_m(), world::models_per_block(world), entities,
+          kMaxEntities));
+}
+
+std::uint64_t hash_of_names(const models::Registry& registry) {
+  std::uint64_t hash = registry.size();
+  for (models::ModelIndex i = 0; i < registry.size(); ++i)
+    hash = core::hash_bytes(std::as_bytes(std::span(registry[i].name())), hash);
+  return hash;
+}
+
+// The instances per block of each scatter whose places are the same as before.
+std::vector<std::optional<double>> known_placed(const world::WorldParts& parts,
+                                                const DerivedWorldData* before) {
+  std::vector<std::optional<double>> known(before != nullptr ? parts.places.size() : 0);
+  for (std::size_t s = 0; s < std::min(known.size(), before ? before->placed.size() : 0); ++s) {
+    if (parts.places[s] == before->parts.places[s]) known[s] = before->placed[s];
+  }
+  return known;
+}
+
+// Derives the levels of the quadtree, far forests, and the type of merged meshes.
+core::Result<void> find_levels(const SceneSettings& settings, WorldFacts& facts,
+                               const DerivedWorldData* before) {
+  const models::ModelType* merged = nullptr;
+  const auto world = std::make_shared<const world::World>(facts.world);
+  const auto scatters = world::far_scatters(world, facts.registry,
+                                            before != nullptr ? before->scatters.get() : nullptr);
+  DerivedWorldData derived{
+      world::parts_of(*world, facts.registry), 0, scatters, {}, {}, facts.pictures};
+  if (settings.levels_of_detail && world::models_per_block(facts.world) > 0) {
+    const auto added = facts.registry.add(
+        world::make_merged_type(world, facts.registry, facts.pictures, scatters));
+    if (!added) return tl::unexpected(added.error());
+    facts.merged_model = *added;
+    merged = &facts.registry[*added];
+  }
+  const bool same_ground = before != nullptr && before->parts.ground == derived.parts.ground;
+  facts.levels = node_levels(facts.world, facts.registry, settings, merged,
+                             same_ground ? before->levels : std::span<const NodeLevel>{});
+  const auto size = static_cast<int>(facts.world.terrain.integer(models::kTerrainSize));
+  for (int level = 0; level < models::kTerrainLevels; ++level)
+    facts.grids.emplace_back(size, level);
+  if (facts.levels[0].mesh_level != 0) facts.tiles.emplace(size);
+  derived.placed =
+      world::placed_per_block(facts.world, facts.registry, known_placed(derived.parts, before));
+  const world::FarCover cover = world::far_cover(facts.world, *scatters, derived.placed);
+  facts.canopy = canopy_of(facts.world, cover.albedo);
+  facts.cover_share = cover.share;
+  derived.types = hash_of_names(facts.registry);
+  derived.levels = facts.levels;
+  facts.derived = std::make_shared<const DerivedWorldData>(std::move(derived));
+  return {};
+}
+
+}  // namespace
+
+core::Result<void> derive(const SceneSettings& settings, bool pictures, WorldFacts& facts,
+                          const DerivedWorldData* before) {
+  WorldFacts given;
+  given.world = std::move(facts.world);
+  given.registry = std::move(facts.registry);
+  given.given_types = facts.given_types;
+  facts = std::move(given);
+  if (facts.given_types == 0) facts.given_types = facts.registry.size();
+  facts.registry.shrink(facts.given_types);
+  const world::World& world = facts.world;
+  facts.light = light_of(world, settings.view_distance_m);
+  facts.palette = palette_of(world);
+  facts.models_per_block = static_cast<std::uint32_t>(world::models_per_block(world));
+  facts.cell_m = static_cast<float>(world.cell_m());
+  facts.scattered_reach_m = world::models_reach_m(world, facts.registry);
+  facts.models_reach_m = facts.scattered_reach_m;
+  facts.standing = obstacles_on_block(world, facts.registry);
+  if (pictures) {
+    const world::PictureSet* known = before != nullptr ? before->pictures.get() : nullptr;
+    if (auto ok = find_pictures(settings, facts, known); !ok) return ok;
+  }
+  if (auto ok = find_levels(settings, facts, before); !ok) return ok;
+  return check_size(world, facts.levels, settings);
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,186 @@
+#include "engine/scene/facts/levels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/scene/facts/ground_error.hpp"
+#include "engine/world/far/merged_models.hpp"
+#include "engine/world/far/node_walk.hpp"
+#include "engine/world/placement.hpp"
+
+namespace psygen::scene {
+namespace {
+
+constexpr double kMinSplitRatio = 0.6, kMaxSplitRatio = 3.0;
+constexpr double kMergeFactor = 1.1;
+// Children exist within this multiple of the split distance of their parent, and nodes of the
+// coarsest level within this multiple of the view distance.
+constexpr double kAheadFactor = 1.1;
+// The error of a terrain level is the sum of the amplitudes that its octaves can lose. The largest
+// error in a block of the paper's world is 0.9 of that sum, and 1.1 to 2.5 in nodes of level 1 to 7
+// (medians of 60 each). The largest of 16 each in four worlds are 1.6 and 3.2.
+constexpr double kBlockBound = 1.75, kNodeBound = 3.5;
+// Height of skirts, in metres per metre of the error bound, and its minimum.
+constexpr float kSkirtPerBound = 0.8F, kMinSkirtM = 1.0F;
+// Error of a merged mesh of level 1, as a fraction of the height of its models; it doubles with
+// each level.
+constexpr double kMergedErrorPerHeight = 0.06;
+// Forests are more than a colour up to this distance, however large the allowed error is: models
+// missing beyond the last merged meshes count as this error, up to 3 sides of the node.
+constexpr double kForestsSeenM = 3000;
+// Finite, and larger than all distances.
+constexpr double kEverywhereM = 1e30;
+
+int count_of_levels(const world::World& world, const SceneSettings& settings) {
+  if (!settings.levels_of_detail) return 1;
+  const auto side = [&](int level) { return std::ldexp(world.block_size_m(), level); };
+  const std::int64_t blocks =
+      world.is_endless() ? INT32_MAX : std::max(world.blocks_x, world.blocks_z);
+  int top = 0;
+  while (top < visibility::kMaxNodeLevel / 2 && 2 * side(top) < settings.view_distance_m &&
+         (std::int64_t{1} << top) < blocks)
+    ++top;
+  return top + 1;
+}
+
+}  // namespace
+
+models::Parameters node_terrain(const world::World& world, const visibility::NodeCoord& node) {
+  return world::terrain_parameters(world, node.coord, node.level);
+}
+
+core::BlockCoord any_block(const world::World& world, core::RandomStream& random) {
+  constexpr std::int64_t kEndlessReach = 4096;
+  const auto index = [&](std::int64_t blocks) {
+    return static_cast<std::int32_t>(blocks > 0
+                                         ? random.next_integer(0, blocks - 1)
+                                         : random.next_integer(-kEndlessReach, kEndlessReach));
+  };
+  const std::int32_t x = index(world.blocks_x);
+  return {x, index(world.blocks_z)};
+}
+
+core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block) {
+  const auto nearest = [](std::int32_t index, std::int64_t count) {
+    return count == 0 ? index
+                      : static_cast<std::int32_t>(std::clamp<std::int64_t>(index, 0, count - 1));
+  };
+  return {nearest(block.x, world.blocks_x), nearest(block.z, world.blocks_z)};
+}
+
+bool contains(const world::World& world, const visibility::NodeCoord& node) {
+  const core::BlockCoord corner = visibility::corner_block(node);
+  const std::int64_t side = std::int64_t{1} << node.level;
+  const auto inside = [side](std::int64_t first, std::int64_t count) {
+    return count == 0 || (first + side > 0 && first < count);
+  };
+  return inside(corner.x, world.blocks_x) && inside(corner.z, world.blocks_z);
+}
+
+bool overhangs(const world::World& world, const visibility::NodeCoord& node) {
+  const core::BlockCoord corner = visibility::corner_block(node);
+  const std::int64_t side = std::int64_t{1} << node.level;
+  const auto beyond = [side](std::int64_t first, std::int64_t count) {
+    return count != 0 && (first < 0 || first + side > count);
+  };
+  return beyond(corner.x, world.blocks_x) || beyond(corner.z, world.blocks_z);
+}
+
+std::vector<NodeLevel> node_levels(const world::World& world, const models::Registry& registry,
+                                   const SceneSettings& settings, const models::ModelType* merged,
+                                   std::span<const NodeLevel> before) {
+  const models::ModelType& terrain = registry[world.terrain_model];
+  const int mesh_level = settings.levels_of_detail ? world::node_mesh_level(world) : 0;
+  std::vector<NodeLevel> levels(static_cast<std::size_t>(count_of_levels(world, settings)));
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    NodeLevel& level = levels[k];
+    const models::Parameters p = node_terrain(world, {{}, static_cast<std::uint8_t>(k)});
+    level.size_m = std::ldexp(world.block_size_m(), static_cast<int>(k));
+    level.mesh_level = static_cast<std::uint16_t>(mesh_level);
+    level.bounds = terrain.bounds(p);
+    level.ground_bound_m = (k == 0 ? kBlockBound : kNodeBound) * terrain.level_error_m(p, 1);
+    level.ground_error_m = k < before.size()
+                               ? before[k].ground_error_m
+                               : measured_ground_error_m(world, registry, static_cast<int>(k));
+    if (k > 0) level.ground_error_m = std::max(level.ground_error_m, levels[k - 1].ground_error_m);
+    level.error_m = level.ground_error_m;
+    level.skirt_m = kMinSkirtM + kSkirtPerBound * static_cast<float>(level.ground_bound_m);
+    if (merged == nullptr || k == 0 || k > world::kMaxMergedLevel) continue;
+    const models::Parameters all = world::merged_parameters({}, static_cast<int>(k));
+    level.merged = merged->mesh_size(all, 0).vertex_count > 0;
+    if (!level.merged) continue;
+    const double height_m = merged->bounds(all).max.y - level.bounds.max.y;
+    level.error_m = std::max(level.error_m,
+                             kMergedErrorPerHeight * std::ldexp(height_m, static_cast<int>(k) - 1));
+  }
+  return levels;
+}
+
+void split_distances(std::span<const NodeLevel> levels, const SceneSettings& settings,
+                     double pixels_per_radian, double error_pixels,
+                     std::vector<visibility::LevelDistances>& distances) {
+  distances.resize(levels.size());
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const bool leaves_out = k == world::kMaxMergedLevel + 1 && levels[k - 1].merged;
+    const double least = leaves_out ? kForestsSeenM * error_pixels / pixels_per_radian : 0.0;
+    errors.push_back(std::max(levels[k].error_m, least));
+  }
+  visibility::SplitSettings split;
+  split.block_size_m = levels[0].size_m;
+  split.pixels_per_radian = pixels_per_radian;
+  split.max_error_pixels = error_pixels;
+  split.min_ratio = kMinSplitRatio;
+  split.max_ratio = kMaxSplitRatio;
+  split.merge_factor = kMergeFactor;
+  visibility::split_distances(errors, split, distances);
+  // Blocks use their finest mesh only where its error requires it.
+  const double seen_m =
+      std::min(errors[0] * pixels_per_radian / error_pixels, kMaxSplitRatio * levels[0].size_m);
+  const double fine_m = settings.levels_of_detail ? seen_m : kEverywhereM;
+  distances[0] = {fine_m, fine_m * kMergeFactor, fine_m * split.morph_share};
+}
+
+double existing_distance_m(std::span<const NodeLevel> levels, const SceneSettings& settings,
+                           std::size_t level,
+                           std::span<const visibility::LevelDistances> distances) {
+  // The camera moves within its block before the windows are listed again.
+  const double step_m = std::numbers::sqrt2 / 2 * levels[0].size_m;
+  if (level + 1 >= levels.size()) return kAheadFactor * settings.view_distance_m + step_m;
+  const double split_m = distances[level + 1].merge_m * kAheadFactor;
+  return std::min(split_m, settings.view_distance_m) + step_m;
+}
+
+std::uint32_t window_radius(std::span<const NodeLevel> levels, const SceneSettings& settings,
+                            std::size_t level) {
+  std::vector<visibility::LevelDistances> farthest(levels.size());
+  double below_m = 0;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const double split_m = std::max(kMaxSplitRatio * levels[k].size_m, below_m);
+    farthest[k] = {split_m, kMergeFactor * split_m, split_m};
+    below_m = farthest[k].merge_m + std::numbers::sqrt2 * levels[k].size_m;
+  }
+  return window_radius(levels, settings, level, farthest);
+}
+
+std::uint32_t window_radius(std::span<const NodeLevel> levels, const SceneSettings& settings,
+                            std::size_t level,
+                            std::span<const visibility::LevelDistances> distances) {
+  const double reach_m = existing_distance_m(levels, settings, level, distances);
+  // A parent at that distance may extend one more node beyond, and the camera may be anywhere in
+  // its own node.
+  return static_cast<std::uint32_t>(std::ceil(reach_m / levels[level].size_m)) + 2;
+}
+
+std::uint32_t largest_radius(const world::World& world, std::span<const NodeLevel> levels,
+                             const SceneSettings& settings, std::size_t level) {
+  const std::int64_t radius = window_radius(levels, settings, level);
+  if (world.is_endless()) return static_cast<std::uint32_t>(radius);
+  const std::int64_t most =
+      nodes_along(std::max(world.blocks_x, world.blocks_z), level) - 1;  // to the other end
+  return static_cast<std::uint32_t>(std::min(radius, most));
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,87 @@
+// The levels of a scene's quadtree: their number, the meshes that nodes of each level draw, and the
+// distances at which a node splits into its four children. Pure; knows nothing of the nodes that
+// exist.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/core/hash.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/scene/settings.hpp"
+#include "engine/visibility/quadtree.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::scene {
+
+// The properties that all nodes of one level share.
+struct NodeLevel {
+  double size_m = 0;          // side of a node
+  double ground_error_m = 0;  // error of the drawn ground (blocks: when not near), in nearly all
+                              // places (ground_error.hpp)
+  double ground_bound_m = 0;  // maximum of that error over all nodes
+  double error_m = 0;         // including models
+  float skirt_m = 0;          // height of the skirts at its borders
+  std::uint16_t mesh_level =
+      0;                // level of the terrain type that its nodes draw (blocks: when not near)
+  bool merged = false;  // its nodes have merged meshes
+  core::Bounds bounds;  // of the ground, relative to the node's corner
+};
+
+// Returns the levels, finest first; only one if levels of detail are off. `merged` is the type of
+// merged meshes; null: none. `before`: levels of a world with the same ground, whose errors are
+// reused; empty: none.
+std::vector<NodeLevel> node_levels(const world::World& world, const models::Registry& registry,
+                                   const SceneSettings& settings, const models::ModelType* merged,
+                                   std::span<const NodeLevel> before = {});
+
+// The number of nodes of a level along an axis of a world with this many blocks. 0 stands for
+// endless.
+constexpr std::int64_t nodes_along(std::int64_t blocks, std::size_t level) {
+  return (blocks + (std::int64_t{1} << level) - 1) >> level;
+}
+
+// The parameters of a node's ground.
+models::Parameters node_terrain(const world::World& world, const visibility::NodeCoord& node);
+
+// The block of the world nearest to `block`; `block` itself if it exists.
+core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block);
+
+// A block anywhere in the world; in an endless one within some thousand blocks of its origin.
+core::BlockCoord any_block(const world::World& world, core::RandomStream& random);
+
+// True if any block of the node exists.
+bool contains(const world::World& world, const visibility::NodeCoord& node);
+// True if any of its blocks does not exist.
+bool overhangs(const world::World& world, const visibility::NodeCoord& node);
+
+// Computes `distances`, one for each level: the distance at which an error covers `error_pixels`,
+// clamped to 0.6 … 3 sides of the node; beyond the last merged meshes at least 3 km or 3 sides.
+// Blocks use their finest mesh up to the distance that its error gives, at most 3 sides.
+void split_distances(std::span<const NodeLevel> levels, const SceneSettings& settings,
+                     double pixels_per_radian, double error_pixels,
+                     std::vector<visibility::LevelDistances>& distances);
+
+// The distance within which nodes of a level exist as entities, measured from the middle of the
+// camera's block to their parent. It exceeds every split distance, so that nodes are ready when
+// they are needed. Nodes of the coarsest level exist up to this distance themselves, which exceeds
+// the view distance.
+double existing_distance_m(std::span<const NodeLevel> levels, const SceneSettings& settings,
+                           std::size_t level,
+                           std::span<const visibility::LevelDistances> distances);
+
+// The maximum number of existing nodes to each side of the camera's node, or of the world's nearest
+// node if the camera is outside the world.
+std::uint32_t window_radius(std::span<const NodeLevel> levels, const SceneSettings& settings,
+                            std::size_t level);
+// As above, for these split distances.
+std::uint32_t window_radius(std::span<const NodeLevel> levels, const SceneSettings& settings,
+                            std::size_t level,
+                            std::span<const visibility::LevelDistances> distances);
+
+// The largest window of a level: a square that holds all nodes of the world within reach.
+std::uint32_t largest_radius(const world::World& world, std::span<const NodeLevel> levels,
+                             const SceneSettings& settings, std::size_t level);
+
+}  // namespace psygen::scene

@@ -1,0 +1,21 @@
+// Typical bounds of model types. The conservative bounds of a type cover all parameters, for a tree
+// several times its size: good for tests that must never miss, but not for distance or size. Runs
+// models; at start only.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/core/coordinates.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/synthesis/cost_model.hpp"
+
+namespace psygen::scene {
+
+// Returns for each type the bounds around the coarsest meshes of its first samples, in −1 … 1 along
+// each axis of ModelType::bounds(). Types without samples, and types that fail, get the whole
+// bounds.
+std::vector<core::Bounds> typical_bounds(const models::Registry& registry,
+                                         std::span<const synthesis::CostSample> samples);
+
+}  // namespace psygen::scene

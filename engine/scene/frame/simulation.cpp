@@ -1,0 +1,57 @@
+#include "engine/scene/frame/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/frame/clock.hpp"
+#include "engine/scene/frame/output.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// A step is due this fraction of a step early: sums of frame times are not exact.
+constexpr double kEarly = 1e-6;
+
+void trace_step(const Simulation& simulation, std::uint64_t step, Tracing& trace) {
+  if (trace.log == nullptr) return;
+  const auto systems = simulation.systems.systems();
+  if (trace.steps.size() != systems.size()) {
+    trace.steps.clear();
+    for (const ecs::SystemInfo& system : systems)
+      trace.steps.push_back(trace.log->intern(system.name));
+  }
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    const double start_s = systems[i].last_start_s;
+    trace.log->add_span(trace.main, trace.steps[i], start_s, start_s + systems[i].last_seconds,
+                        step);
+  }
+}
+
+}  // namespace
+
+void simulation_system(const Clock& clock, ecs::World&, Simulation& simulation, FixedStep& step,
+                       Tracing& trace) {
+  if (!std::isfinite(clock.now_s)) return;
+  // A clock that is set back does not undo steps.
+  simulation.behind_s += std::max(clock.now_s - simulation.clock_s, 0.0);
+  simulation.clock_s = clock.now_s;
+  const double max_s = step.step_s * simulation.max_steps;
+  if (simulation.behind_s > max_s) {
+    simulation.lost_s += simulation.behind_s - max_s;
+    simulation.behind_s = max_s;
+  }
+  simulation.step_ms.assign(simulation.systems.systems().size(), 0.0F);
+  while (simulation.behind_s >= step.step_s * (1 - kEarly)) {
+    simulation.behind_s = std::max(simulation.behind_s - step.step_s, 0.0);
+    ++step.index;
+    step.share = 0;
+    simulation.systems.run();
+    const auto systems = simulation.systems.systems();
+    for (std::size_t i = 0; i < systems.size(); ++i)
+      simulation.step_ms[i] += static_cast<float>(systems[i].last_seconds * 1000.0);
+    trace_step(simulation, step.index, trace);
+  }
+  step.share = std::min(simulation.behind_s / step.step_s, 1.0);
+}
+
+}  // namespace psygen::scene

@@ -1,0 +1,167 @@
+#include "engine/scene/nodes/streaming.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/clock.hpp"
+#include "engine/scene/facts/levels.hpp"
+#include "engine/scene/facts/world_facts.hpp"
+
+namespace psygen::scene {
+namespace {
+
+// The windows are listed again when distances have changed by this fraction.
+constexpr double kRelistedChange = 0.05;
+// Nodes that one tick creates at least, if as many are missing and time allows.
+constexpr std::size_t kFewestCreated = 3;
+// Cost of creating one entity on a virtual clock: about its time on a present-day core.
+constexpr double kEntitySeconds = 0.5e-6;
+// More missing nodes mean that the camera has jumped: then a tick creates as many as time allows.
+constexpr std::size_t kLeapt = 256;
+
+// Distance from the middle of the camera's block to a node's square.
+double distance_m(const Camera& camera, const WorldFacts& facts, const visibility::NodeCoord& at) {
+  const double block_m = facts.world.block_size_m();
+  const core::WorldPosition middle{camera.pose.position.block, {block_m / 2, 0, block_m / 2}};
+  const glm::dvec3 corner = core::offset_m(visibility::corner_block(at), middle, block_m);
+  const double size_m = facts.levels[at.level].size_m;
+  const auto outside = [size_m](double low) { return std::max({low, -(low + size_m), 0.0}); };
+  return std::hypot(outside(corner.x), outside(corner.z));
+}
+
+// The radius with which a window holds all nodes that may exist or be wanted.
+std::uint32_t needed_radius(const WorldFacts& facts, const SceneSettings& settings,
+                            const Streaming& streaming, const NodeGrid& grid) {
+  return std::min(window_radius(facts.levels, settings, grid.level(), streaming.distances),
+                  grid.max_radius());
+}
+
+bool windows_too_small(const WorldFacts& facts, const SceneSettings& settings,
+                       const Streaming& streaming) {
+  return std::ranges::any_of(streaming.grids, [&](const NodeGrid& grid) {
+    return grid.radius() < needed_radius(facts, settings, streaming, grid);
+  });
+}
+
+// Tells which nodes exist for a camera position.
+class Window {
+ public:
+  Window(const SceneSettings& settings, const Camera& camera, const WorldFacts& facts,
+         const Streaming& streaming)
+      : camera_(camera), facts_(facts) {
+    for (std::size_t k = 0; k < facts.levels.size(); ++k)
+      reach_m_.push_back(existing_distance_m(facts.levels, settings, k, streaming.distances));
+  }
+
+  bool holds(const visibility::NodeCoord& at) const {
+    if (!contains(facts_.world, at)) return false;
+    const bool top = at.level + 1U == facts_.levels.size();
+    return distance_m(camera_, facts_, top ? at : visibility::parent_of(at)) < reach_m_[at.level];
+  }
+
+ private:
+  const Camera& camera_;
+  const WorldFacts& facts_;
+  std::vector<double> reach_m_;
+};
+
+void destroy_leaving_nodes(const Window& window, Streaming& streaming, const NodeWork& work) {
+  std::vector<ecs::Entity> leaving;
+  work.entities.each<const QuadtreeNode>(
+      [&](std::span<const ecs::Entity> rows, std::span<const QuadtreeNode> nodes) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          const visibility::NodeCoord& at = nodes[i].at;
+          if (!streaming.grids[at.level].contains(at.coord) || !window.holds(at))
+            leaving.push_back(rows[i]);
+        }
+      });
+  streaming.counts.destroyed += static_cast<std::uint32_t>(leaving.size());
+  destroy_nodes(leaving, work);
+}
+
+// Coarse nodes come first: they are few and stand in for all finer ones.
+void list_missing_nodes(const Window& window, const Camera& camera, const WorldFacts& facts,
+                        const ecs::World& entities, Streaming& streaming) {
+  streaming.missing.clear();
+  struct Missing {
+    double distance_m;
+    visibility::NodeCoord at;
+  };
+  std::vector<Missing> of_level;
+  for (const NodeGrid& grid : streaming.grids) {
+    of_level.clear();
+    for (std::uint32_t row = 0; row < grid.side(); ++row) {
+      for (std::uint32_t column = 0; column < grid.side(); ++column) {
+        const visibility::NodeCoord at = grid.node_at(column, row);
+        if (!entities.alive(grid.entity_of(at.coord)) && window.holds(at))
+          of_level.push_back({distance_m(camera, facts, at), at});
+      }
+    }
+    std::ranges::sort(of_level, std::greater{}, &Missing::distance_m);
+    for (const Missing& missing : of_level)
+      streaming.missing.push_back(missing.at);
+  }
+}
+
+// Spreads the creation of new nodes over half of the ticks since the windows were last listed: at
+// this speed they exist halfway to the next listing.
+void spread_missing(const SceneSettings& settings, Streaming& streaming) {
+  const bool leapt = streaming.missing.size() > kLeapt;
+  const std::uint32_t ticks =
+      leapt ? 1 : std::clamp(streaming.ticks_since_listed / 2, 1U, settings.streaming_ticks);
+  streaming.ticks_since_listed = 0;
+  streaming.per_tick = std::max(kFewestCreated, (streaming.missing.size() + ticks - 1) / ticks);
+  streaming.spread_ticks = ticks;
+}
+
+}  // namespace
+
+void streaming_system(StreamingContext context, Streaming& streaming, NodeWork work) {
+  const SceneSettings& settings = context.frame.settings;
+  const Rules& rules = context.frame.rules;
+  const WorldFacts& facts = context.facts;
+  const Camera& camera = context.camera;
+  split_distances(facts.levels, settings, camera.pixels_per_radian, context.quality.error_pixels,
+                  streaming.distances);
+  const core::BlockCoord place = camera.pose.position.block;
+  const double reach = streaming.distances.back().split_m;
+  if (place != streaming.listed_at ||
+      std::abs(reach - streaming.listed_split_m) > kRelistedChange * reach ||
+      windows_too_small(facts, settings, streaming)) {
+    for (NodeGrid& grid : streaming.grids) {
+      grid.set_centre(nearest_block(facts.world, place));
+      grid.set_radius(needed_radius(facts, settings, streaming, grid));
+    }
+    streaming.listed_split_m = reach;
+    streaming.listed_at = place;
+    const Window window(settings, camera, facts, streaming);
+    destroy_leaving_nodes(window, streaming, work);
+    list_missing_nodes(window, camera, facts, work.entities, streaming);
+    spread_missing(settings, streaming);
+  }
+  ++streaming.ticks_since_listed;
+  // Lazy evaluation creates all nodes in every frame; so does filling the cache.
+  const bool all = rules.wait || rules.settle;
+  const std::size_t count = all ? streaming.missing.size() : streaming.per_tick;
+  core::Stopwatch spent(settings.virtual_time);
+  std::vector<world::Placement> scratch;
+  std::size_t created = 0;
+  // Nodes of the coarsest level stand in for all others. Without them there is a hole.
+  const auto may_wait = [&](const visibility::NodeCoord& node) {
+    const bool late = !rules.wait && spent.seconds() * 1000.0 > settings.streaming_budget_ms;
+    return node.level + std::size_t{1} < facts.levels.size() && (created >= count || late);
+  };
+  while (!streaming.missing.empty() && !may_wait(streaming.missing.back())) {
+    const std::size_t before = work.entities.size();
+    const visibility::NodeCoord& at = streaming.missing.back();
+    streaming.grids[at.level].entity_of(at.coord) =
+        create_node(settings, facts, context.daylight, at, scratch, work);
+    spent.charge(kEntitySeconds * static_cast<double>(work.entities.size() - before));
+    streaming.missing.pop_back();
+    ++streaming.counts.created;
+    ++created;
+  }
+  if (streaming.missing.empty()) streaming.spread_ticks = 1;
+}
+
+}  // namespace psygen::scene

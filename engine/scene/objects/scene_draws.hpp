@@ -1,0 +1,86 @@
+// Draw lists of a game's objects, point lights and particle emitters, and the systems that fill
+// them. Values; main thread only.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/render/particles.hpp"
+#include "engine/render/types.hpp"
+#include "engine/scene/nodes/ground_sunlight.hpp"
+#include "engine/scene/objects/components.hpp"
+#include "engine/scene/objects/effects.hpp"
+#include "engine/scene/view/visibility.hpp"
+#include "engine/synthesis/mesh_key.hpp"
+
+namespace psygen::scene {
+
+class Assets;
+
+// Counts of one tick: objects in view that are drawn; in view without a drawable mesh; with an
+// invalid Transform.
+struct ObjectCounts {
+  std::uint32_t drawn = 0, missing = 0, invalid = 0;
+};
+// Counts of one tick: lights that light the frame; in view but beyond the maximum; with invalid
+// values.
+struct LightCounts {
+  std::uint32_t lit = 0, left_out = 0, invalid = 0;
+};
+// Counts of one tick, as LightCounts, of emitters and of their particles.
+struct ParticleCounts {
+  std::uint32_t emitters_drawn = 0, emitters_left_out = 0, emitters_invalid = 0;
+  std::uint64_t particles_drawn = 0, particles_left_out = 0;
+};
+
+struct ObjectDraws {
+  std::vector<render::ObjectDraw> objects;
+  std::vector<synthesis::MeshHandle> meshes;  // of objects in view
+  std::uint32_t tick = 0;                     // of these lists
+  double now_s = 0;                           // the clock in that tick
+  ObjectCounts counts;
+};
+
+struct LightDraws {
+  std::vector<render::PointLight> lights;
+  std::uint32_t tick = 0;  // of this list
+  double now_s = 0;        // the clock in that tick
+  LightCounts counts;
+};
+
+struct ParticleDraws {
+  std::vector<render::ParticleDraw> emitters;  // back to front
+  ParticleCounts counts;
+};
+
+// Bundle: all lists of this room.
+struct SceneDraws {
+  const ObjectDraws& objects;
+  const LightDraws& lights;
+  const ParticleDraws& particles;
+};
+
+// Bundle: everything that objects_system() writes besides components.
+struct ObjectWork {
+  synthesis::MeshSupply& supply;
+  Assets& assets;
+  ObjectDraws& draws;
+};
+
+// System: draws the objects in view whose meshes are ready, each at the LOD for its distance, and
+// fades them in and out. Meshes that objects lack are wanted in the next tick (Assets).
+using ObjectQuery = ecs::Query<const Transform, const GroundSunlight, Object>;
+void objects_system(RenderContext context, ObjectQuery entities, ObjectWork work);
+
+// System: chooses the point lights that light the frame, at most 32, and fades others out.
+// O(lights).
+using LightQuery = ecs::Query<const Transform, PointLight>;
+void lights_system(FrameContext frame, const Camera& camera, const WorldFacts& facts,
+                   const View& view, LightQuery entities, LightDraws& draws);
+
+// System: chooses the emitters that are drawn, nearest first. O(emitters).
+using ParticleQuery = ecs::Query<const Transform, const ParticleEmitter, const GroundSunlight>;
+void particles_system(FrameContext frame, const Camera& camera, const WorldFacts& facts,
+                      VisibleNodes nodes, ParticleQuery entities, ParticleDraws& draws);
+
+}  // namespace psygen::scene
