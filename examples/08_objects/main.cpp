@@ -4,20 +4,14 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <utility>
 
-#include "ecs/ecs.hpp"
 #include "engine/app/session.hpp"
-#include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
-#include "engine/models/registry.hpp"
 #include "engine/query/world.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/objects/assets.hpp"
-#include "engine/scene/objects/components.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/systems.hpp"
-#include "engine/world/world.hpp"
 
 using namespace psygen;
 
@@ -46,10 +40,9 @@ void pose_sails(const scene::FixedStep& step, ecs::Query<const Sails, scene::Tra
 }
 
 void add_quad(core::MeshData& mesh, std::initializer_list<glm::vec3> corners) {
-  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   mesh.positions.insert(mesh.positions.end(), corners);
-  for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U})
-    mesh.indices.push_back(first + i);
+  for (const std::uint32_t i : {4U, 3U, 2U, 4U, 2U, 1U})
+    mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()) - i);
 }
 
 // An eight-sided tower with its roof, in metres. Front faces are counter-clockwise.
@@ -99,8 +92,7 @@ core::Result<void> build(app::Session& session, const core::CameraPose& pose) {
   const auto walls = scene.assets().add_mesh(tower(), "tower");
   const auto sails = scene.assets().add_mesh(cross(), "sails");
   if (!wood) return tl::unexpected(wood.error());
-  if (!walls) return tl::unexpected(walls.error());
-  if (!sails) return tl::unexpected(sails.error());
+  if (!walls || !sails) return tl::unexpected((walls ? sails : walls).error());
   query::World query(scene.world(), scene.registry());
   for (int i = 0; i < 3; ++i) {
     core::WorldPosition at = pose.position;
