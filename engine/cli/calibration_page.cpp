@@ -11,7 +11,7 @@
 
 #include "engine/models/tree/species.hpp"
 #include "engine/telemetry/curve_plot.hpp"
-#include "engine/telemetry/page_style.hpp"
+#include "engine/telemetry/page_files.hpp"
 #include "engine/telemetry/report_plot.hpp"
 
 namespace psygen::cli {
@@ -293,7 +293,7 @@ std::string calibration_page(const Calibration& found, const models::Registry& r
       found.world.empty() ? "Cost of synthesis" : "Cost of synthesis: " + found.world;
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
   html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
-  html += fmt::format("<title>psygen: {}</title><style>{}{}</style></head><body><main>\n",
+  html += fmt::format("<title>psygen: {}</title><style>\n{}{}</style></head><body><main>\n",
                       telemetry::escaped(title), telemetry::page_style(), kStyle);
   html += fmt::format("<h1>{}</h1>\n<p class=\"lead\">{}</p>\n<div class=\"plots\">\n",
                       telemetry::escaped(title), telemetry::escaped(lead_of(found, registry)));

@@ -7,9 +7,8 @@
 #include <iterator>
 #include <limits>
 
+#include "engine/telemetry/page_files.hpp"
 #include "engine/telemetry/page_rows.hpp"
-#include "engine/telemetry/page_script.hpp"
-#include "engine/telemetry/page_style.hpp"
 #include "engine/telemetry/units.hpp"
 
 namespace psygen::compare {
@@ -246,7 +245,7 @@ std::string to_html(const Comparison& comparison, Runs a, Runs b, const Sides& s
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
   html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
   html += fmt::format(
-      "<title>psygen: B is {} A</title><style>{}{}</style></head><body><main>\n"
+      "<title>psygen: B is {} A</title><style>\n{}{}</style></head><body><main>\n"
       "<h1>Comparison of two builds</h1>\n<p class=\"lead\">{} of each, at {} × {}{}</p>\n"
       "<p class=\"command\"><span class=\"swatch{} key\">A</span> <code>{}</code><br>"
       "<span class=\"swatch{} key\">B</span> <code>{}</code></p>\n",

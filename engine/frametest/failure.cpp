@@ -14,7 +14,7 @@
 #include "engine/scene/frame/quality.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/settings.hpp"
-#include "engine/telemetry/page_style.hpp"
+#include "engine/telemetry/page_files.hpp"
 
 namespace psygen::frametest {
 namespace {
@@ -141,7 +141,7 @@ std::string head_html(const FrameTest& test) {
   const bool exact = test.flight.session.scene.virtual_time;
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: budgets "
-      "missed</title><style>{1}{2}</style></head><body><main>\n<h1>{0}: budgets missed</h1>\n"
+      "missed</title><style>\n{1}{2}</style></head><body><main>\n<h1>{0}: budgets missed</h1>\n"
       "<p class=\"lead\">The worst frames as drawn, the same frames with all meshes ready, and "
       "their "
       "difference (yellow to red). {3} <a href=\"report.html\">The whole flight</a></p>\n",

@@ -1,5 +1,5 @@
 // A plot of values over a parameter as an SVG image: measured values as points, curves through them
-// as lines, with axes and a legend. In the style of page_style.cpp. Plots over time are in
+// as lines, with axes and a legend. In the style of page_style.css. Plots over time are in
 // report_plot.hpp. Pure; linear in the values.
 #pragma once
 

@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/core/replace_file.hpp"
-#include "engine/telemetry/page_script.hpp"
-#include "engine/telemetry/page_style.hpp"
+#include "engine/telemetry/page_files.hpp"
 #include "engine/telemetry/report_parts.hpp"
 
 namespace psygen::telemetry {
@@ -13,7 +12,7 @@ std::string report_html(const FrameLog& log, const Summary& s) {
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
   html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
   html += fmt::format("<title>psygen: flight through {}</title>", escaped(s.world.name));
-  html += fmt::format("<style>{}</style></head><body><main>\n", page_style());
+  html += fmt::format("<style>\n{}</style></head><body><main>\n", page_style());
   html += fmt::format(
       "<h1>Flight through {}</h1>\n<p class=\"lead\">{} frame{} in {} s at {} × {} on {}</p>\n",
       escaped(s.world.name), s.run.frames, s.run.frames == 1 ? "" : "s",

@@ -1,5 +1,5 @@
 // One plot of a page: values over time, as a figure element whose data the page's script
-// (page_script.hpp) draws. Independent of frames. Pure; linear in the values.
+// (page_script.js) draws. Independent of frames. Pure; linear in the values.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ enum class PlotKind : std::uint8_t {
 // One quantity over time.
 struct PlotSeries {
   std::string name;
-  int colour = 0;              // palette index of page_style.cpp, 1 … 8; 0 and 9 are greys
+  int colour = 0;              // palette index of page_style.css, 1 … 8; 0 and 9 are greys
   std::vector<double> values;  // one per row of the page; non-finite: missing
 };
 
