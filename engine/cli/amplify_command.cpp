@@ -1,4 +1,6 @@
 // psygen amplify: synthesises a region or the whole world and prints its hash.
+#include "engine/cli/amplify_command.hpp"
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -7,10 +9,10 @@
 #include "engine/amplify/block_files.hpp"
 #include "engine/amplify/shard.hpp"
 #include "engine/cli/amplify_figures.hpp"
-#include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/places.hpp"
+#include "engine/cli/standard_streams.hpp"
 #include "engine/cli/text_values.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
@@ -22,7 +24,7 @@
 
 namespace psygen::cli {
 AmplifyCommand::AmplifyCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("amplify", "Synthesise a region or the whole world")) {
+    : Command(cli, "amplify", "Synthesise a region or the whole world") {
   CLI::App& c = *command_;
   c.add_option("--world", world_, "World definition: a TOML file or the name of a shipped one")
       ->capture_default_str();

@@ -28,6 +28,7 @@ struct AmplifyFigures {
   std::uint64_t messages = 0;  // between ranks
 };
 
+// Formats the results for the terminal, and as JSON.
 std::string text_of(const AmplifyFigures& figures);
 std::string json_of(const AmplifyFigures& figures);
 

@@ -1,9 +1,10 @@
 // psygen amplify as one rank of a cluster.
 #include <fmt/format.h>
 
-#include "engine/cli/commands.hpp"
+#include "engine/cli/amplify_command.hpp"
+#include "engine/cli/amplify_figures.hpp"
 #include "engine/cli/interrupt.hpp"
-#include "engine/cli/rank_threads.hpp"
+#include "engine/cli/shipped_files.hpp"
 #include "engine/cluster/job.hpp"
 #include "engine/cluster/one_mind.hpp"
 #include "engine/core/data_file.hpp"
@@ -41,7 +42,8 @@ int AmplifyCommand::run_rank(cluster::Peers& peers) {
   if (!region) loaded = tl::unexpected(region.error());
   if (auto ok = cluster::agree(loaded, peers); !ok) return end_with(ok.error(), peers);
   amplify::Options options;
-  options.threads = threads_ > 0 ? threads_ : amplify::threads_for(threads_for_rank(peers));
+  options.threads =
+      threads_ > 0 ? threads_ : amplify::threads_for(cluster::threads_for_rank(peers));
   options.stop = &stop_at_interrupt();
   std::optional<telemetry::ProgressBar> bar;
   if (peers.rank() == 0) {
@@ -50,8 +52,8 @@ int AmplifyCommand::run_rank(cluster::Peers& peers) {
     options.progress = [&bar](std::uint64_t blocks) { bar->update(static_cast<double>(blocks)); };
   }
   const amplify::JobFormat format = out_.empty() ? std::nullopt : exchange::format_from(format_);
-  const auto job = cluster::amplify_together(*world, registry, *region, format, core::version(),
-                                             out_, options, peers);
+  const auto key = amplify::job_key(*world, registry, *region, format, core::version());
+  const auto job = cluster::amplify_together(*world, registry, key, out_, options, peers);
   if (!job && job.error().common) return end_with(job.error().error, peers);
   if (!job) {
     core::log_error(

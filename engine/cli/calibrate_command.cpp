@@ -1,12 +1,14 @@
 // psygen calibrate: the paper's Figure 9 on this machine, and the accuracy of predictions.
+#include "engine/cli/calibrate_command.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "engine/cli/calibration_page.hpp"
 #include "engine/cli/calibration_samples.hpp"
-#include "engine/cli/commands.hpp"
 #include "engine/cli/option_checks.hpp"
+#include "engine/cli/standard_streams.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
@@ -32,7 +34,7 @@ void warn_of(std::vector<std::string> failures) {
 }  // namespace
 
 CalibrateCommand::CalibrateCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("calibrate", "Measure the cost of synthesis on this machine")) {
+    : Command(cli, "calibrate", "Measure the cost of synthesis on this machine") {
   CLI::App& c = *command_;
   c.add_option("--out", out_, "Folder for calibration.html and calibration.json");
   auto* world = c.add_option("--world", world_, "World whose models are fitted and predicted")
@@ -47,7 +49,7 @@ CalibrateCommand::CalibrateCommand(CLI::App& cli)
   c.add_flag("--json", json_, "Print the results as JSON");
 }
 
-int CalibrateCommand::run() const {
+int CalibrateCommand::run() {
   const auto fail = [](const core::Error& error) {
     core::log_error(error.message);
     return exit_code_of(error);

@@ -5,9 +5,8 @@
 #include <random>
 
 #include "engine/cli/child_process.hpp"
-#include "engine/cli/commands.hpp"
-#include "engine/cli/instruction_count.hpp"
 #include "engine/cli/option_checks.hpp"
+#include "engine/cli/standard_streams.hpp"
 #include "engine/compare/compare_page.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
@@ -25,7 +24,7 @@ bool is_folder(const std::string& name) {
 }  // namespace
 
 CompareCommand::CompareCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("compare", "Compare frame times and content of two builds")) {
+    : Command(cli, "compare", "Compare frame times and content of two builds") {
   CLI::App& c = *command_;
   c.add_option("A", a_, "Baseline: a folder of runs, or a command like \"old/psygen test\"")
       ->required();
@@ -111,7 +110,7 @@ std::string CompareCommand::misuse() const {
 }
 
 int CompareCommand::run() {
-  if (instructions_) return compare_instructions({a_, b_, out_, json_});
+  if (instructions_) return compare_instructions();
   if (const std::string sentence = misuse(); !sentence.empty()) {
     core::log_error(sentence);
     return kUsage;

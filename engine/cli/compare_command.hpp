@@ -2,20 +2,21 @@
 // thread.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "engine/cli/commands.hpp"
 #include "engine/compare/compare.hpp"
+#include "engine/compare/instructions.hpp"
 
 namespace psygen::cli {
 
-class CompareCommand {
+// The command.
+class CompareCommand final : public Command {
  public:
   explicit CompareCommand(CLI::App& cli);
-  bool chosen() const { return command_->parsed(); }
-  int run();
+  int run() override;
 
  private:
   std::string misuse() const;
@@ -23,13 +24,13 @@ class CompareCommand {
   core::Result<void> record_batch(int batch);
   core::Result<compare::RecordedRun> record(const std::string& command,
                                             const std::filesystem::path& folder) const;
+  core::Result<compare::Instructions> count_instructions() const;
+  int compare_instructions() const;
 
-  CLI::App* command_;
-  std::string a_, b_, test_;
+  std::string a_, b_, test_;  // commands or folders; a bare program may count instructions
   std::filesystem::path out_;
   std::size_t pairs_ = 8, aa_ = 0;
-  bool json_ = false;
-  bool instructions_ = false;
+  bool json_ = false, instructions_ = false;
   std::vector<compare::RecordedRun> runs_a_, runs_b_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "engine/cli/commands.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/compare/viewer_csv.hpp"
 #include "engine/core/log.hpp"
@@ -11,13 +10,13 @@
 namespace psygen::cli {
 
 ConvertCommand::ConvertCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("convert", "Convert the frames of a run for other viewers")) {
+    : Command(cli, "convert", "Convert the frames of a run for other viewers") {
   CLI::App& c = *command_;
   c.add_option("RUN", run_, "Folder of a run, with frames.csv and summary.json")->required();
   c.add_option("--to", viewer_, "Format: mangohud, or capframex (PresentMon 1.x)")
       ->required()
       ->check(one_of({"mangohud", "capframex"}));
-  c.add_option("--out", out_, "File to write: .csv")->required();
+  c.add_option("--out", out_, "Output file: .csv")->required();
 }
 
 int ConvertCommand::run() {

@@ -1,19 +1,19 @@
 // `psygen convert`: converts the frames of a recorded run for other viewers. Main thread.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
+
+#include "engine/cli/commands.hpp"
 
 namespace psygen::cli {
 
-class ConvertCommand {
+// The command.
+class ConvertCommand final : public Command {
  public:
   explicit ConvertCommand(CLI::App& cli);
-  bool chosen() const { return command_->parsed(); }
-  int run();
+  int run() override;
 
  private:
-  CLI::App* command_;
   std::string run_, viewer_, out_;
 };
 

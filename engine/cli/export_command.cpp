@@ -1,4 +1,6 @@
 // psygen export: writes a model, a block or a region.
+#include "engine/cli/export_command.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,7 +10,6 @@
 #include <set>
 
 #include "engine/amplify/block_files.hpp"
-#include "engine/cli/commands.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/text_values.hpp"
 #include "engine/core/log.hpp"
@@ -126,7 +127,7 @@ core::Result<void> check_level(const models::ModelType& type, int level) {
 }  // namespace
 
 ExportCommand::ExportCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("export", "Write a model, a block or a region")) {
+    : Command(cli, "export", "Write a model, a block or a region") {
   CLI::App& c = *command_;
   auto* model = c.add_option("--model", model_, "Name of a model type");
   c.add_option("--set", settings_,
@@ -167,7 +168,7 @@ ExportCommand::ExportCommand(CLI::App& cli)
   });
 }
 
-int ExportCommand::run() const {
+int ExportCommand::run() {
   models::Registry registry = models::make_standard_registry();
   std::optional<world::World> world;
   if (block_ || region_ || command_->count("--world") > 0) {

@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "engine/cli/commands.hpp"
+#include "engine/cli/export_command.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/core/log.hpp"
 #include "engine/telemetry/progress_bar.hpp"

@@ -1,14 +1,17 @@
 // psygen fly: a flight through a world, in a window or headless, and its measurements.
+#include "engine/cli/fly_command.hpp"
+
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <filesystem>
 
 #include "engine/app/flight.hpp"
-#include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/scene_options.hpp"
+#include "engine/cli/shipped_files.hpp"
+#include "engine/cli/standard_streams.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/image/image_io.hpp"
@@ -22,7 +25,7 @@
 namespace psygen::cli {
 
 FlyCommand::FlyCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("fly", "Fly through a world, in a window or headless")) {
+    : Command(cli, "fly", "Fly through a world, in a window or headless") {
   add_scene_options(*command_, options_.session);
   add_flight_options();
   add_synthesis_options();

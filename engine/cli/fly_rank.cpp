@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "engine/cli/commands.hpp"
-#include "engine/cli/rank_threads.hpp"
+#include "engine/cli/fly_command.hpp"
+#include "engine/cli/shipped_files.hpp"
+#include "engine/cli/standard_streams.hpp"
 #include "engine/cluster/one_mind.hpp"
 #include "engine/cluster/serve_models.hpp"
 #include "engine/core/data_file.hpp"
@@ -60,7 +61,7 @@ int FlyCommand::run_rank(cluster::Peers& peers) {
             return cluster::flight_key(world, registry, core::version());
           });
   const std::uint32_t asked = options_.session.scene.modelers;
-  const unsigned threads = asked > 0 ? asked : threads_for_rank(peers);
+  const unsigned threads = asked > 0 ? asked : cluster::threads_for_rank(peers);
   const auto all = cluster::meet(key, threads, peers);
   if (!all) {
     if (peers.rank() == 0) core::log_error(all.error().message);
@@ -83,7 +84,7 @@ int FlyCommand::run_rank(cluster::Peers& peers) {
 int FlyCommand::run_first_rank(cluster::FlightKey key, const std::vector<unsigned>& threads,
                                cluster::Peers& peers) {
   std::uint32_t& modelers = options_.session.scene.modelers;
-  if (modelers == 0) modelers = std::max(threads_for_rank(peers), 2U) - 1;
+  if (modelers == 0) modelers = std::max(cluster::threads_for_rank(peers), 2U) - 1;
   auto remote = cluster::RemoteModels::start(std::move(key), threads, peers, remote_options_);
   if (!remote) {
     core::log_error(remote.error().message);

@@ -1,5 +1,4 @@
-#include "engine/cli/instruction_count.hpp"
-
+// psygen compare --instructions: compares two commands under callgrind.
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <link.h>
@@ -10,7 +9,8 @@
 #include <iterator>
 
 #include "engine/cli/child_process.hpp"
-#include "engine/cli/commands.hpp"
+#include "engine/cli/compare_command.hpp"
+#include "engine/cli/standard_streams.hpp"
 #include "engine/compare/instructions.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
@@ -86,14 +86,15 @@ core::Result<Counted> count(const std::string& command, const std::filesystem::p
   return Counted{*instructions, std::string(compare::hash_in(whole_text(log)))};
 }
 
-core::Result<compare::Instructions> count_both(const InstructionOptions& options) {
-  if (options.out.empty())
+}  // namespace
+
+core::Result<compare::Instructions> CompareCommand::count_instructions() const {
+  if (out_.empty())
     return core::fail(core::ErrorCode::kInvalidArgument, "--instructions needs --out");
-  if (auto ok = telemetry::create_output_folder(options.out); !ok)
-    return tl::unexpected(ok.error());
-  const auto a = count(options.a, options.out, "a");
+  if (auto ok = telemetry::create_output_folder(out_); !ok) return tl::unexpected(ok.error());
+  const auto a = count(a_, out_, "a");
   if (!a) return tl::unexpected(a.error());
-  const auto b = count(options.b, options.out, "b");
+  const auto b = count(b_, out_, "b");
   if (!b) return tl::unexpected(b.error());
   if (a->hash != b->hash)
     return core::fail(core::ErrorCode::kInvalidArgument,
@@ -103,21 +104,21 @@ core::Result<compare::Instructions> count_both(const InstructionOptions& options
   return compare::Instructions{a->instructions, b->instructions};
 }
 
-}  // namespace
-
-int compare_instructions(const InstructionOptions& options) {
-  const auto counted = count_both(options);
+// Returns 0; 3 if B executes over 1 % more instructions; 77 if valgrind is missing or cannot run a
+// command; otherwise 1.
+int CompareCommand::compare_instructions() const {
+  const auto counted = count_instructions();
   if (!counted) {
     core::log_error(counted.error().message);
     return counted.error().code == core::ErrorCode::kNoDevice ? int{frametest::kSkipped}
                                                               : exit_code_of(counted.error());
   }
   const std::string json = compare::to_json(*counted);
-  if (auto ok = core::replace_file(options.out / "compare.json", json); !ok) {
+  if (auto ok = core::replace_file(out_ / "compare.json", json); !ok) {
     core::log_error(ok.error().message);
     return kFailed;
   }
-  const int printed = print(options.json ? json : compare::to_text(*counted));
+  const int printed = print(json_ ? json : compare::to_text(*counted));
   if (printed != kOk) return printed;
   return counted->verdict() == compare::Verdict::kWorse ? int{frametest::kMissed} : kOk;
 }

@@ -1,17 +1,13 @@
-// psygen: the command line. Each subcommand has a file; this one only selects. Data goes to stdout,
-// messages and progress to stderr. Exit codes: 0 success, 1 failure, 2 usage error, 3 missed budget
-// or regression in B, 4 no usable GPU or display (77 from psygen test).
+// psygen: the command line. commands.cpp lists the subcommands; this file selects one. Data goes to
+// stdout, messages and progress to stderr. Exit codes: 0 success, 1 failure, 2 usage error, 3
+// missed budget or regression in B, 4 no usable GPU or display (77 from psygen test).
 
 #include <CLI/CLI.hpp>
 
 #include "engine/cli/commands.hpp"
-#include "engine/cli/compare_command.hpp"
-#include "engine/cli/convert_command.hpp"
 #include "engine/cli/fatal.hpp"
 #include "engine/cli/interrupt.hpp"
-#include "engine/cli/merge_command.hpp"
 #include "engine/cli/standard_streams.hpp"
-#include "engine/cli/test_command.hpp"
 #include "engine/cli/usage.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/render/device/software_tuning.hpp"
@@ -25,17 +21,7 @@ int main(int argc, char** argv) {
   CLI::App cli("psygen: fly through procedural worlds larger than memory", "psygen");
   cli.set_version_flag("--version", "psygen " + std::string(psygen::core::version()));
   cli.require_subcommand(1);
-  psygen::cli::FlyCommand fly(cli);
-  psygen::cli::PictureCommand picture(cli);
-  psygen::cli::ModelsCommand models(cli);
-  psygen::cli::AmplifyCommand amplify(cli);
-  psygen::cli::MergeCommand merge(cli);
-  psygen::cli::ExportCommand exporter(cli);
-  psygen::cli::CalibrateCommand calibrate(cli);
-  psygen::cli::ScheduleCommand schedule(cli);
-  psygen::cli::TestCommand test(cli);
-  psygen::cli::CompareCommand compare(cli);
-  psygen::cli::ConvertCommand convert(cli);
+  const auto commands = psygen::cli::make_commands(cli);
   // After the commands, which would otherwise inherit the footer.
   cli.footer(
       "Example:\n"
@@ -44,18 +30,10 @@ int main(int argc, char** argv) {
   if (const auto code = psygen::cli::read_command_line(cli, argc, argv)) return *code;
   // psygen throws nothing, but libraries do when memory runs out.
   try {
-    if (fly.chosen()) return fly.run();
-    if (picture.chosen()) return picture.run();
-    if (amplify.chosen()) return amplify.run();
-    if (merge.chosen()) return merge.run();
-    if (exporter.chosen()) return exporter.run();
-    if (calibrate.chosen()) return calibrate.run();
-    if (schedule.chosen()) return schedule.run();
-    if (test.chosen()) return test.run();
-    if (compare.chosen()) return compare.run();
-    if (convert.chosen()) return convert.run();
-    return models.run();
+    for (const auto& command : commands)
+      if (command->chosen()) return command->run();
   } catch (...) {
     return psygen::cli::say_what_was_thrown();
   }
+  return psygen::cli::kUsage;
 }

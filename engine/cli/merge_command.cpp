@@ -2,18 +2,18 @@
 
 #include "engine/amplify/merge.hpp"
 #include "engine/cli/amplify_figures.hpp"
-#include "engine/cli/commands.hpp"
+#include "engine/cli/standard_streams.hpp"
 #include "engine/core/log.hpp"
 
 namespace psygen::cli {
 
 MergeCommand::MergeCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("merge", "Check and merge the shards of psygen amplify")) {
+    : Command(cli, "merge", "Check and merge the shards of psygen amplify") {
   command_->add_option("PATH", paths_, "Shard folders or ledger files")->required();
   command_->add_flag("--json", json_, "Print the results as JSON");
 }
 
-int MergeCommand::run() const {
+int MergeCommand::run() {
   const std::vector<std::filesystem::path> paths(paths_.begin(), paths_.end());
   const auto ledgers = amplify::read_ledgers(paths);
   if (!ledgers) {

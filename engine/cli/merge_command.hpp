@@ -1,21 +1,20 @@
 // `psygen merge`: merges the ledgers of shards. Main thread.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "engine/cli/commands.hpp"
+
 namespace psygen::cli {
 
-class MergeCommand {
+// The command.
+class MergeCommand final : public Command {
  public:
   explicit MergeCommand(CLI::App& cli);
-  bool chosen() const { return command_->parsed(); }
-  int run() const;
+  int run() override;
 
  private:
-  CLI::App* command_;
   std::vector<std::string> paths_;
   bool json_ = false;
 };

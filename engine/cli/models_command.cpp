@@ -1,9 +1,12 @@
 // psygen models: lists every model type and every parameter, from the schemas.
+#include "engine/cli/models_command.hpp"
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "engine/cli/commands.hpp"
+#include "engine/cli/shipped_files.hpp"
+#include "engine/cli/standard_streams.hpp"
 #include "engine/core/log.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -69,12 +72,12 @@ std::string table_of(const models::Registry& registry) {
 }  // namespace
 
 ModelsCommand::ModelsCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("models", "List every model type and its parameters")) {
+    : Command(cli, "models", "List every model type and its parameters") {
   command_->add_flag("--json", json_, "Print the list as JSON");
   command_->add_option("--world", world_, "Include the species of this world");
 }
 
-int ModelsCommand::run() const {
+int ModelsCommand::run() {
   models::Registry registry = models::make_standard_registry();
   if (!world_.empty()) {
     if (const auto world = load_world(world_, registry); !world) {

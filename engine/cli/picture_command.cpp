@@ -1,4 +1,6 @@
 // psygen picture: renders one still image of a world, with all its meshes complete.
+#include "engine/cli/picture_command.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,11 +9,11 @@
 #include <glm/trigonometric.hpp>
 
 #include "engine/app/session.hpp"
-#include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/places.hpp"
 #include "engine/cli/scene_options.hpp"
+#include "engine/cli/shipped_files.hpp"
 #include "engine/cli/text_values.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/log.hpp"
@@ -62,7 +64,7 @@ core::Result<void> check_complete(const scene::Scene& scene) {
 }  // namespace
 
 PictureCommand::PictureCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("picture", "Render one still image of a world as PNG")) {
+    : Command(cli, "picture", "Render one still image of a world as PNG") {
   using world::CameraPath;
   CLI::App& c = *command_;
   options_.scene.max_error_pixels = kStillErrorPixels;

@@ -10,6 +10,17 @@
 namespace psygen::cli {
 namespace {
 
+// The names of all debug views, beginning with "normal".
+std::vector<std::string_view> view_names() {
+  std::vector<std::string_view> names;
+  render::View view = render::View::kNormal;
+  do {
+    names.push_back(render::to_string(view));
+    view = render::next_view(view);
+  } while (view != render::View::kNormal);
+  return names;
+}
+
 void add_picture(CLI::App& c, app::SessionOptions& options) {
   c.add_option_function<std::string>(
        "--size", [&options](const std::string& text) { options.size = *parse_size(text); },
@@ -24,8 +35,8 @@ void add_picture(CLI::App& c, app::SessionOptions& options) {
       ->default_str(options.preset ? std::string(to_string(*options.preset)) : "chosen by GPU");
   c.add_option_function<std::string>(
        "--view", [&options](const std::string& text) { options.view = *render::view_from(text); },
-       "Debug view: normal, levels, layers, bounds, wireframe, missing, cache")
-      ->check(valid_if(render::view_from, "normal|levels|layers|bounds|wireframe|missing|cache"))
+       "Debug view")
+      ->check(one_of(view_names()))
       ->default_str("normal");
 }
 

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "engine/cli/commands.hpp"
+#include "engine/cli/schedule_command.hpp"
+#include "engine/cli/shipped_files.hpp"
+#include "engine/cli/standard_streams.hpp"
 #include "engine/cluster/simulate.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/log.hpp"

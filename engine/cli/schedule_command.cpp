@@ -1,11 +1,13 @@
 // psygen schedule: simulates each policy on a recorded stream of requests, under the virtual clock.
+#include "engine/cli/schedule_command.hpp"
+
 #include <fmt/format.h>
 
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "engine/cli/commands.hpp"
 #include "engine/cli/option_checks.hpp"
+#include "engine/cli/standard_streams.hpp"
 #include "engine/core/log.hpp"
 #include "engine/synthesis/request_stream.hpp"
 #include "engine/world/files/text_file.hpp"
@@ -109,7 +111,7 @@ CLI::Option* add_cluster_options(CLI::App& c, ClusterOptions& o) {
 }  // namespace
 
 ScheduleCommand::ScheduleCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("schedule", "Compare scheduling policies on recorded requests")) {
+    : Command(cli, "schedule", "Compare scheduling policies on recorded requests") {
   CLI::App& c = *command_;
   auto* requests =
       c.add_option("--requests", file_, "File written by `psygen fly --record-requests`");
@@ -128,7 +130,7 @@ ScheduleCommand::ScheduleCommand(CLI::App& cli)
   c.footer(std::string("Columns:\n") + kColumns);
 }
 
-int ScheduleCommand::run() const {
+int ScheduleCommand::run() {
   return cluster_.ranks > 0 ? simulate_cluster() : compare_policies();
 }
 

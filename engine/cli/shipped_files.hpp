@@ -12,6 +12,7 @@ namespace psygen::cli {
 
 inline constexpr const char* kDefaultWorld = "paper";
 
+// Kind of a shipped file.
 enum class Shipped : std::uint8_t { kWorld, kPath };
 
 // Resolves the value of an option: the file `name` if it exists, else the shipped file of that

@@ -8,7 +8,7 @@
 namespace psygen::cli {
 
 TestCommand::TestCommand(CLI::App& cli)
-    : command_(cli.add_subcommand("test", "Run frame tests and check their budgets")) {
+    : Command(cli, "test", "Run frame tests and check their budgets") {
   CLI::App& c = *command_;
   c.add_option("FILE", options_.files, "Frame tests: TOML files")->required();
   c.add_option("--junit", options_.junit, "Write the results to this file as JUnit XML");

@@ -1,20 +1,18 @@
 // `psygen test`: runs frame tests (docs/frame-tests.md). Main thread.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "engine/cli/commands.hpp"
 #include "engine/frametest/run.hpp"
 
 namespace psygen::cli {
 
-class TestCommand {
+// The command.
+class TestCommand final : public Command {
  public:
   explicit TestCommand(CLI::App& cli);
-  bool chosen() const { return command_->parsed(); }
-  int run();
+  int run() override;
 
  private:
-  CLI::App* command_;
   frametest::RunOptions options_;
 };
 

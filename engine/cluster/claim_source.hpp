@@ -16,6 +16,7 @@ class ClaimSource final : public amplify::RunSource {
   // All arguments must outlive the source. A null `ledger` records nothing.
   ClaimSource(const Plan& plan, Peers& peers, unsigned threads, amplify::Ledger* ledger);
 
+  // See amplify::RunSource.
   core::Result<std::optional<amplify::BlockRun>> next() override;
   core::Result<void> finished(const amplify::BlockRun& run, const amplify::Totals& totals) override;
 

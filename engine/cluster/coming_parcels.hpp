@@ -15,6 +15,7 @@
 
 namespace psygen::cluster {
 
+// The incoming messages of all ranks.
 template <class Request>
 class ComingParcels {
  public:

@@ -1,11 +1,13 @@
 #include "engine/cluster/job.hpp"
 
 #include <fmt/format.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <sstream>
+#include <thread>
 #include <utility>
 
 #include "engine/cluster/claim_source.hpp"
@@ -174,11 +176,20 @@ unsigned threads_for_rank(unsigned allowed, unsigned of_machine, unsigned ranks_
   return std::max(1u, std::min(allowed, of_machine / std::max(1u, ranks_here)));
 }
 
-tl::expected<JobReport, JobError> amplify_together(
-    const world::World& world, const models::Registry& registry, const amplify::Region& region,
-    amplify::JobFormat format, std::string_view version, const std::filesystem::path& folder,
-    const amplify::Options& options, Peers& peers) {
-  const auto key = amplify::job_key(world, registry, region, format, version);
+unsigned threads_for_rank(const Peers& peers) {
+  const unsigned of_machine = std::thread::hardware_concurrency();
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  const bool known = sched_getaffinity(0, sizeof(set), &set) == 0;
+  const unsigned allowed = known ? static_cast<unsigned>(CPU_COUNT(&set)) : of_machine;
+  return threads_for_rank(allowed, of_machine, peers.count_here());
+}
+
+tl::expected<JobReport, JobError> amplify_together(const world::World& world,
+                                                   const models::Registry& registry,
+                                                   const core::Result<amplify::JobKey>& key,
+                                                   const std::filesystem::path& folder,
+                                                   const amplify::Options& options, Peers& peers) {
   if (auto ok = check_keys(key, !folder.empty(), peers); !ok) return common(ok.error());
   Start start{world, registry, folder, peers, *key};
   if (!folder.empty())

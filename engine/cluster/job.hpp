@@ -26,21 +26,25 @@ struct JobError {
   bool common = false;  // all ranks have this error: one of them should print it
 };
 
-// `folder` receives files and ledgers. If it is empty, the job writes nothing and resumes nothing.
-// `options` holds the settings of this rank; its source and sinks are ignored.
+// `key` is that of amplify::job_key(), or the reason why this rank has none. `folder` receives
+// files and ledgers. If it is empty, the job writes nothing and resumes nothing. `options` holds
+// the settings of this rank; its source and sinks are ignored.
 //
 // All ranks fail before the first block if they have different versions, worlds, regions or
 // formats, compute different bits for the same blocks, or see different folders. Otherwise fails
 // like BlockFolder::open(), Ledger::open() and amplify(). The caller then calls Peers::abort(),
 // unless the error is common. A rank that receives a stop signal returns at once, without waiting
 // for the others: its report is `stopped` and covers only its own blocks.
-tl::expected<JobReport, JobError> amplify_together(
-    const world::World& world, const models::Registry& registry, const amplify::Region& region,
-    amplify::JobFormat format, std::string_view version, const std::filesystem::path& folder,
-    const amplify::Options& options, Peers& peers);
+tl::expected<JobReport, JobError> amplify_together(const world::World& world,
+                                                   const models::Registry& registry,
+                                                   const core::Result<amplify::JobKey>& key,
+                                                   const std::filesystem::path& folder,
+                                                   const amplify::Options& options, Peers& peers);
 
 // Default number of threads of a rank: the processors that the process may use or the rank's part
 // of the machine, whichever is smaller; at least 1.
 unsigned threads_for_rank(unsigned allowed, unsigned of_machine, unsigned ranks_here);
+// The default for a rank of this process, on this machine.
+unsigned threads_for_rank(const Peers& peers);
 
 }  // namespace psygen::cluster

@@ -15,6 +15,7 @@
 
 namespace psygen::cluster {
 
+// The content of a message.
 using Bytes = std::vector<std::byte>;
 
 // A message from another rank.

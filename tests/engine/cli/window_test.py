@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Flights in a window under Xvfb: resize, minimise, restore, press keys, close; and what the end of a
-path leaves behind while the window stays.
+"""Flights in a window under Xvfb: resize, minimise, restore, press keys, close; and the outputs at the end
+of a path while the window stays.
 
 usage: window_test.py PSYGEN SOURCE_DIR
 
-Fails on a wrong exit code, a validation message, or a picture that was not written.
+Fails on a wrong exit code, a validation message, or an image that was not written.
 """
 import csv
 import json
@@ -32,7 +32,7 @@ PATIENCE_S = 240  # for a slow machine; nothing below depends on how fast it is
 
 
 def wait_for(what, condition):
-    """Polls until condition() is true; the value is returned."""
+    """Polls until condition() is true; returns its value."""
     end = time.monotonic() + PATIENCE_S
     while time.monotonic() < end:
         value = condition()
@@ -43,7 +43,7 @@ def wait_for(what, condition):
 
 
 class Display:
-    """An X server of our own with a window manager."""
+    """An X server with a window manager."""
 
     def __enter__(self):
         read_end, write_end = os.pipe()
@@ -71,7 +71,7 @@ class Display:
             process.wait()
 
     def tool(self, *arguments):
-        """xdotool; its output, or None if it failed."""
+        """Runs xdotool; returns its output, or None if it failed."""
         result = subprocess.run(["xdotool", *map(str, arguments)], env=self.environment,
                                 capture_output=True, text=True, check=False)
         return result.stdout.strip() if result.returncode == 0 else None
@@ -95,7 +95,7 @@ def find_window(display):
 
 
 def close(display, process):
-    """Lets the window manager ask the window to close, until the process ends."""
+    """Asks the window to close through the window manager, until the process ends."""
     display.tool("windowactivate", "--sync", find_window(display))
 
     def ended():
@@ -113,7 +113,7 @@ def finish(process):
 
 
 def screenshot_in(display, folder):
-    """Presses the key, and says which pictures there are."""
+    """Presses the key, and returns the images."""
     def screenshot():
         display.tool("key", "--window", find_window(display), "F12")
         display.tool("key", "F12")

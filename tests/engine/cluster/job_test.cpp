@@ -33,8 +33,10 @@ std::vector<Outcome> run_ranks(unsigned count, const std::function<RankSetup(uns
   std::vector<Outcome> outcomes(count, tl::unexpected(JobError{}));
   ThreadsAsRanks(count).run([&](Peers& peers) {
     const RankSetup mine = setup(peers.rank());
-    outcomes[peers.rank()] = amplify_together(mine.world, registry(), {0, 0, 6, 4}, mine.format,
-                                              mine.version, mine.folder, mine.options, peers);
+    const auto key =
+        amplify::job_key(mine.world, registry(), {0, 0, 6, 4}, mine.format, mine.version);
+    outcomes[peers.rank()] =
+        amplify_together(mine.world, registry(), key, mine.folder, mine.options, peers);
   });
   return outcomes;
 }
