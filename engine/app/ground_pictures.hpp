@@ -15,6 +15,7 @@ struct World;
 
 namespace psygen::app {
 
+// Replacement images by kind of ground; empty where the world has none.
 using GroundPictures = std::array<render::GroundPicture, render::kGroundPictures>;
 
 // Reads the images of world::Palette::images. Error messages begin with the world's file and the

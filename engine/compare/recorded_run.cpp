@@ -10,7 +10,6 @@
 #include <span>
 
 #include "engine/compare/csv_rows.hpp"
-#include "engine/compare/run_files.hpp"
 
 namespace psygen::compare {
 namespace {

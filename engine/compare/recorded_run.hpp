@@ -33,6 +33,14 @@ struct RecordedRun {
   std::optional<double> fixed_step;                // Hz
 };
 
+// Texts of the files of a run.
+struct RunFiles {
+  std::string frames_csv, summary_json;
+};
+
+// Reads frames.csv and summary.json of a folder. Fails with kIo, naming the file.
+core::Result<RunFiles> read_run_files(const std::filesystem::path& folder);
+
 // Reads a run. Fails with kIo for missing files. Fails with kParse, naming file, line and column,
 // for content that no run writes: truncated files, missing columns, cells that are not numbers, a
 // clock that goes backwards.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/compare/csv_rows.hpp"
-#include "engine/compare/run_files.hpp"
+#include "engine/compare/recorded_run.hpp"
 
 namespace psygen::compare {
 namespace {

@@ -130,8 +130,4 @@ bool Client::is_open() const {
   return static_cast<bool>(parts_->fd);
 }
 
-std::size_t Client::unsent() const {
-  return parts_->output.size();
-}
-
 }  // namespace psygen::inspect

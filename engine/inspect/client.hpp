@@ -39,8 +39,6 @@ class Client {
   std::optional<std::string> take_answer();
   // False once the session has ended or rejected the connection; received replies remain available.
   bool is_open() const;
-  // Bytes not sent yet.
-  std::size_t unsent() const;
 
  private:
   Client();

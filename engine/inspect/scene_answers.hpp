@@ -16,6 +16,7 @@ class Session;
 
 namespace psygen::inspect {
 
+// JSON with members in the order of insertion.
 using Json = nlohmann::ordered_json;
 
 // Statistics of the frames since the last reply.
@@ -28,6 +29,7 @@ struct FrameNotes {
   std::uint64_t timed = 0;  // for systems()
   std::vector<double> system_sum_ms, system_longest_ms;
 
+  // Adds the last frame. Call after every tick.
   void note(const scene::Scene& scene);
 };
 
@@ -36,6 +38,7 @@ Json systems(const scene::Scene& scene, FrameNotes& notes);
 // Counts of entities by archetype, and the nodes for a map, coarse ones first.
 Json entities(const scene::Scene& scene);
 
+// Conversion of poses; pose_from() fails with kInvalidArgument for invalid members.
 Json pose_json(const core::CameraPose& pose);
 core::Result<core::CameraPose> pose_from(const Json& json, double block_m);
 

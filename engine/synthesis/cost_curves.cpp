@@ -127,17 +127,22 @@ int needed_levels(const models::ModelType& type, models::ModelIndex model,
   return most == 0 ? type.level_count() : most;
 }
 
-// Returns the prediction errors for a level, over the samples of one type that have it, in percent.
-std::vector<double> errors_of(const models::ModelType& type, const CostModel& cost,
-                              models::ModelIndex model, int level,
-                              std::span<const CostSample> samples,
-                              const CalibrationOptions& options, double deadline_s,
-                              CalibrationReport& report) {
+// Returns the samples of a type that have a level.
+std::vector<const CostSample*> samples_with(const models::ModelType& type, models::ModelIndex model,
+                                            int level, std::span<const CostSample> samples) {
   std::vector<const CostSample*> chosen;
   for (const CostSample& sample : samples) {
     if (sample.model == model && level < type.level_count_of(sample.parameters))
       chosen.push_back(&sample);
   }
+  return chosen;
+}
+
+// Returns the prediction errors for a level of samples that have it, in percent.
+std::vector<double> errors_of(const CostModel& cost, int level,
+                              std::span<const CostSample* const> chosen,
+                              const CalibrationOptions& options, double deadline_s,
+                              CalibrationReport& report) {
   std::vector<std::optional<Measurement>> measured(chosen.size());
   for (int sweep = 0; sweep < std::max(options.sweeps, 1); ++sweep) {
     for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -147,10 +152,11 @@ std::vector<double> errors_of(const models::ModelType& type, const CostModel& co
     }
   }
   std::vector<double> percents;
-  for (const auto& m : measured) {
-    if (!m) continue;
-    const double predicted = cost.predict_from(model, level, m->work);
-    percents.push_back(std::abs(predicted - m->seconds) / m->seconds * 100);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (!measured[i]) continue;
+    const Measurement& m = *measured[i];
+    const double predicted = cost.predict_from(chosen[i]->model, level, m.work);
+    percents.push_back(std::abs(predicted - m.seconds) / m.seconds * 100);
   }
   return percents;
 }
@@ -241,8 +247,8 @@ Accuracy accuracy_of(const models::Registry& registry, const CostModel& cost,
     std::vector<double> of_type;
     const models::ModelType& type = registry[model];
     for (int level = 0; level < needed_levels(type, model, samples); ++level) {
-      std::vector<double> percents =
-          errors_of(type, cost, model, level, samples, options, deadline_s, report);
+      std::vector<double> percents = errors_of(
+          cost, level, samples_with(type, model, level, samples), options, deadline_s, report);
       of_type.insert(of_type.end(), percents.begin(), percents.end());
       accuracy.levels.push_back({model, level, error_of(percents)});
     }

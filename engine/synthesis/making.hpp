@@ -36,6 +36,7 @@ inline const Annotate* annotate_of(const Workshop& workshop, models::ModelIndex 
   return model < all.size() && all[model] ? &all[model] : nullptr;
 }
 
+// Copies vertices and indices. Both meshes have the same size.
 inline void copy_mesh(const models::MeshView& mesh, const models::MeshView& destination) {
   std::ranges::copy(mesh.vertices, destination.vertices.begin());
   std::ranges::copy(mesh.indices, destination.indices.begin());

@@ -116,7 +116,7 @@ void Horizon::raise(std::size_t bin, float tangent, float distance_m) {
 // Records a piece that ends at `other_end`. It covers its bin, or a part of it that may join
 // another.
 void Horizon::place(const Piece& piece, double other_end) {
-  // Along a straight line the elevation is A · cos(angle − angle0). Where it is negative its
+  // Along a straight line the elevation is A · cos(angle − angle0). If it is negative, its
   // minimum may lie inside the bin. That minimum is lower than both ends by a factor of at most 1 /
   // cos(half the width of the bin), which exceeds 1 by less than kSlack.
   static_assert(8 / kBinCount * (8 / kBinCount) / 8 < kSlack);

@@ -17,7 +17,7 @@ namespace psygen::visibility {
 // The layer of a cell that the search did not visit.
 inline constexpr std::uint16_t kUnvisited = UINT16_MAX;
 
-// How a cell's key is computed (see PlpResult).
+// Definition of a cell's key (see PlpResult).
 enum class PlpMode : std::uint8_t { kLayers, kSolidity };
 
 // Keys count sixteenths of a layer.
