@@ -49,10 +49,10 @@ std::vector<fs::path> data_folders(const fs::path& given, const fs::path& built_
 Result<fs::path> data_file(const fs::path& name, const fs::path& given,
                            const fs::path& built_with) {
   if (name.empty() || name.is_absolute() || std::ranges::find(name, "..") != name.end()) {
-    return fail(ErrorCode::kInvalidArgument,
-                fmt::format("\"{}\": the name of a data file must be a path without \"..\" that is "
-                            "relative to a data folder",
-                            name.string()));
+    return invalid_argument(
+        fmt::format("\"{}\": the name of a data file must be a path without \"..\" that is "
+                    "relative to a data folder",
+                    name.string()));
   }
   const std::vector<fs::path> folders = data_folders(given, built_with);
   std::string looked;

@@ -39,4 +39,9 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string message) {
   return tl::unexpected<Error>(Error{code, std::move(message)});
 }
 
+// Makes an Error for an argument outside its documented range.
+inline tl::unexpected<Error> invalid_argument(std::string message) {
+  return fail(ErrorCode::kInvalidArgument, std::move(message));
+}
+
 }  // namespace psygen::core

@@ -9,21 +9,18 @@
 namespace psygen::core {
 namespace {
 
-tl::unexpected<Error> refuse(std::string sentence) {
-  return fail(ErrorCode::kInvalidArgument, std::move(sentence));
-}
-
 // Checks the length of a list, and that the absolute value of every number is at most `most`.
 template <class Vector>
 Result<void> check_list(std::string_view name, const std::vector<Vector>& list, std::size_t count,
                         float most) {
   if (!list.empty() && list.size() != count)
-    return refuse(fmt::format("a mesh has {} positions but {} {}", count, list.size(), name));
+    return invalid_argument(
+        fmt::format("a mesh has {} positions but {} {}", count, list.size(), name));
   for (std::size_t i = 0; i < list.size(); ++i) {
     for (glm::length_t axis = 0; axis < list[i].length(); ++axis) {
       if (std::abs(list[i][axis]) <= most) continue;
-      return refuse(fmt::format("{}[{}] of a mesh is {}; at most {} is allowed", name, i,
-                                list[i][axis], most));
+      return invalid_argument(fmt::format("{}[{}] of a mesh is {}; at most {} is allowed", name, i,
+                                          list[i][axis], most));
     }
   }
   return {};
@@ -33,16 +30,17 @@ Result<void> check_list(std::string_view name, const std::vector<Vector>& list, 
 
 Result<void> check(const MeshData& mesh) {
   const std::size_t count = mesh.positions.size();
-  if (count == 0 || mesh.indices.empty()) return refuse("a mesh has no triangles");
+  if (count == 0 || mesh.indices.empty()) return invalid_argument("a mesh has no triangles");
   if (mesh.indices.size() % 3 != 0) {
-    return refuse(fmt::format("a mesh has {} indices; three make a triangle", mesh.indices.size()));
+    return invalid_argument(
+        fmt::format("a mesh has {} indices; three make a triangle", mesh.indices.size()));
   }
   if (count > UINT32_MAX || mesh.indices.size() > UINT32_MAX)
-    return refuse("a mesh has more than 2^32 vertices or indices");
+    return invalid_argument("a mesh has more than 2^32 vertices or indices");
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     if (mesh.indices[i] >= count) {
-      return refuse(fmt::format("indices[{}] of a mesh is {}, but it has {} vertices", i,
-                                mesh.indices[i], count));
+      return invalid_argument(fmt::format("indices[{}] of a mesh is {}, but it has {} vertices", i,
+                                          mesh.indices[i], count));
     }
   }
   constexpr float kMaxUv = 1e6F;

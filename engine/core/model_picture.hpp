@@ -20,6 +20,7 @@ inline constexpr std::uint32_t kPictureLevels = 6;  // the last one has 4 x 4 te
 // layers.
 inline constexpr std::uint32_t kMaxPictures = 31;
 
+// The texels of one impostor.
 using ModelPicture = std::vector<std::uint8_t>;
 
 // Bytes of one level of all views, and of a whole impostor.

@@ -77,6 +77,14 @@ constexpr float billboard_reach_m(const ModelVertex& v) {
          (kBillboardReachM / 32767.0F);
 }
 
+// The material of all of a model except its leaves, which chooses its textures. The shaders use the
+// same numbers (PSYGEN_SURFACE_…).
+enum class SurfaceKind : std::uint8_t {
+  kPlain = 0,  // vertex colours only
+  kStone = 1,
+  kBark = 2,
+};
+
 // Bytes per vertex of a layout.
 constexpr std::uint32_t vertex_stride_bytes(VertexLayout layout) {
   switch (layout) {

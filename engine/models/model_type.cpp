@@ -61,10 +61,10 @@ core::Result<void> validate(const ModelType& type, const Parameters& p, double m
     // An integer converts to the nearest double. The only bounds beyond 2^53 are ±2^63.
     const double value = parameter_number(type, p, i);
     if (value >= specs[i].hard_min && value <= specs[i].hard_max) continue;  // false for NaN
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: {} = {} is not allowed: it must be {} ({})", type.name(),
-                                  specs[i].name, value_text(specs[i], p, i), allowed_text(specs[i]),
-                                  predicted_cost_text(type.log2_cost(p))));
+    return core::invalid_argument(fmt::format("{}: {} = {} is not allowed: it must be {} ({})",
+                                              type.name(), specs[i].name,
+                                              value_text(specs[i], p, i), allowed_text(specs[i]),
+                                              predicted_cost_text(type.log2_cost(p))));
   }
   const double cost = type.log2_cost(p);
   if (cost <= max_log2_cost) return {};

@@ -16,7 +16,6 @@
 #include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/hash.hpp"
-#include "engine/core/surface_kind.hpp"
 #include "engine/core/vertex_layout.hpp"
 #include "engine/models/collider.hpp"
 
@@ -39,6 +38,48 @@ struct ParameterSpec {
   double soft_min = 0, soft_max = 0;  // the range of a slider
   std::string_view doc;               // one line for users
   ParameterSource source = ParameterSource::kUser;
+};
+// The ranges of a parameter: allowed values, and those of a slider.
+struct HardRange {
+  double min, max;
+};
+struct SoftRange {
+  double min, max;
+};
+// Make the entry of a real parameter, of an integer, and of a parameter that the world sets.
+constexpr ParameterSpec real_parameter(std::string_view name, std::string_view unit,
+                                       double default_value, HardRange hard, SoftRange soft,
+                                       std::string_view doc) {
+  return {.name = name,
+          .type = ParameterType::kReal,
+          .unit = unit,
+          .default_value = default_value,
+          .hard_min = hard.min,
+          .hard_max = hard.max,
+          .soft_min = soft.min,
+          .soft_max = soft.max,
+          .doc = doc};
+}
+constexpr ParameterSpec integer_parameter(std::string_view name, std::string_view unit,
+                                          double default_value, HardRange hard, SoftRange soft,
+                                          std::string_view doc) {
+  ParameterSpec spec = real_parameter(name, unit, default_value, hard, soft, doc);
+  spec.type = ParameterType::kInteger;
+  return spec;
+}
+constexpr ParameterSpec placed(ParameterSpec spec) {
+  spec.source = ParameterSource::kPlaced;
+  return spec;
+}
+
+// A number that is not a parameter of a model type, for editors: unit, allowed and usual range, and
+// a line of help. The lists of such numbers (tree/species.hpp, world/files/fields.hpp) are visited
+// with it. The strings are literals.
+struct NumberSpec {
+  double low = 0, high = 0;            // values outside are rejected
+  double soft_low = 0, soft_high = 0;  // the range of a slider
+  std::string_view unit;               // "m", "degrees"; "" for none
+  std::string_view doc;                // one line for users
 };
 
 struct EditLayer;  // edits.hpp

@@ -39,8 +39,8 @@ std::string_view fault_of(const ParameterSpec& spec) {
 
 core::Result<void> check_schema(const ModelType& type) {
   const auto refuse = [&](std::string_view parameter, std::string_view fault) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("model type {}: parameter {} {}", type.name(), parameter, fault));
+    return core::invalid_argument(
+        fmt::format("model type {}: parameter {} {}", type.name(), parameter, fault));
   };
   const std::span<const ParameterSpec> specs = type.parameters();
   if (specs.size() > Parameters::kMaxCount)
@@ -59,19 +59,19 @@ core::Result<void> check_schema(const ModelType& type) {
 
 core::Result<ModelIndex> Registry::add(std::unique_ptr<ModelType> type) {
   using core::ErrorCode;
-  if (!type) return core::fail(ErrorCode::kInvalidArgument, "a model type must not be null");
+  if (!type) return core::invalid_argument("a model type must not be null");
   if (!is_snake_case(type->name()))
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("model type \"{}\": its name is not snake_case", type->name()));
+    return core::invalid_argument(
+        fmt::format("model type \"{}\": its name is not snake_case", type->name()));
   if (find(type->name()) >= 0)
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("model type {}: the name is already taken", type->name()));
+    return core::invalid_argument(
+        fmt::format("model type {}: the name is already taken", type->name()));
   if (types_.size() > std::numeric_limits<ModelIndex>::max())
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("model type {}: the registry is full", type->name()));
   if (type->level_count() < 1)
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("model type {}: it has no level of detail", type->name()));
+    return core::invalid_argument(
+        fmt::format("model type {}: it has no level of detail", type->name()));
   if (auto checked = check_schema(*type); !checked)
     return tl::unexpected<core::Error>(std::move(checked.error()));
   types_.push_back(std::move(type));

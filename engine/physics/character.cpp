@@ -6,7 +6,7 @@
 #include <glm/trigonometric.hpp>
 #include <utility>
 
-#include "engine/physics/convert.hpp"
+#include "engine/physics/shapes.hpp"
 
 namespace psygen::physics {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "engine/physics/convert.hpp"
+#include "engine/physics/shapes.hpp"
 #include "engine/physics/types.hpp"
 
 namespace psygen::physics {

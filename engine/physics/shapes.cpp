@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/physics/convert.hpp"
 #include "engine/physics/types.hpp"
 
 namespace psygen::physics {
@@ -67,10 +66,10 @@ PlacedShape make_part(const Collider::Shape& shape) {
 
 core::Result<OwnedShape> make_shape(const models::Collider& collider) {
   if (collider.empty() || !std::ranges::all_of(collider.shapes, is_legal))
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the shape of a body needs parts of {} to {} m, with finite "
-                                  "values and at least four points for a hull",
-                                  kMinSizeM, kMaxSizeM));
+    return core::invalid_argument(
+        fmt::format("the shape of a body needs parts of {} to {} m, with finite "
+                    "values and at least four points for a hull",
+                    kMinSizeM, kMaxSizeM));
   OwnedShape owned;
   auto whole = std::make_unique<btCompoundShape>();
   double inner = 0;

@@ -1,8 +1,11 @@
-// Conversion of colliders into Bullet's shapes. Internal to physics. One thread.
+// Conversions of vectors, rotations and colliders into Bullet's types. Internal to physics. One
+// thread.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
 
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <vector>
 
@@ -10,6 +13,23 @@
 #include "engine/models/collider.hpp"
 
 namespace psygen::physics {
+
+// Convert between GLM's types and Bullet's.
+inline btVector3 to_bt(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+inline btVector3 to_bt(const glm::vec3& v) {
+  return to_bt(glm::dvec3(v));
+}
+inline btQuaternion to_bt(const glm::dquat& q) {
+  return {q.x, q.y, q.z, q.w};
+}
+inline glm::dvec3 to_glm(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline glm::dquat to_glm(const btQuaternion& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
 
 // A shape with the parts that it points to.
 struct OwnedShape {

@@ -7,7 +7,6 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/physics/convert.hpp"
 #include "engine/physics/shapes.hpp"
 
 namespace psygen::physics {

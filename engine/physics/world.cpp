@@ -7,30 +7,31 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/physics/convert.hpp"
+#include "engine/physics/shapes.hpp"
 #include "engine/physics/world_impl.hpp"
 
 namespace psygen::physics {
 namespace {
 
 tl::unexpected<core::Error> no_character(CharacterId id) {
-  return refuse(fmt::format("character {} does not exist", id.number));
+  return core::invalid_argument(fmt::format("character {} does not exist", id.number));
 }
 
 core::Result<void> check(const CharacterSettings& s) {
   const auto is_in = [](double v, double low, double high) { return v >= low && v <= high; };
   if (!is_in(s.radius_m, kMinSizeM, kMaxSizeM) || !is_in(s.height_m, 2 * s.radius_m, kMaxSizeM))
-    return refuse(
+    return core::invalid_argument(
         fmt::format("a character of radius {} m and height {} m: both must be {} … {} m, and "
                     "the height at least twice the radius",
                     s.radius_m, s.height_m, kMinSizeM, kMaxSizeM));
   if (!is_in(s.walk_speed, 0, 100) || !is_in(s.run_speed, 0, 100) || !is_in(s.jump_speed, 0, 100))
-    return refuse("the speeds of a character must be 0 … 100 m/s");
+    return core::invalid_argument("the speeds of a character must be 0 … 100 m/s");
   if (!is_in(s.step_height_m, 0, s.height_m))
-    return refuse("the steps of a character must not be higher than itself");
-  if (!is_in(s.steepest_deg, 0, 89)) return refuse("the steepest slope must be 0 … 89 degrees");
+    return core::invalid_argument("the steps of a character must not be higher than itself");
+  if (!is_in(s.steepest_deg, 0, 89))
+    return core::invalid_argument("the steepest slope must be 0 … 89 degrees");
   if (!is_in(s.mass_kg, 1e-3, 1e9))
-    return refuse("the mass of a character must be 0.001 … 10^9 kg");
+    return core::invalid_argument("the mass of a character must be 0.001 … 10^9 kg");
   return {};
 }
 
@@ -46,8 +47,9 @@ struct NearestBody : btCollisionWorld::ClosestRayResultCallback {
 
 core::Result<World> World::create(query::World& query, const Settings& settings) {
   if (!(settings.gravity >= 0 && settings.gravity <= 100))
-    return refuse(fmt::format("gravity must be 0 … 100 m/s², not {}", settings.gravity));
-  if (settings.max_bodies > 1'000'000) return refuse("at most 1,000,000 bodies");
+    return core::invalid_argument(
+        fmt::format("gravity must be 0 … 100 m/s², not {}", settings.gravity));
+  if (settings.max_bodies > 1'000'000) return core::invalid_argument("at most 1,000,000 bodies");
   return World(std::make_unique<Impl>(query, settings));
 }
 
@@ -82,11 +84,12 @@ core::Result<void> World::tell(CharacterId id, const CharacterInput& input) {
   Character* character = impl_->find(id);
   if (character == nullptr) return no_character(id);
   if (!is_within({input.direction.x, 0, input.direction.y}, 1e6))
-    return refuse("the direction of a character must be finite and at most 10^6 long");
+    return core::invalid_argument(
+        "the direction of a character must be finite and at most 10^6 long");
   if (!(input.speed >= 0 && input.speed <= kMaxSpeed))
-    return refuse("the speed of a character must be 0 … 1000 m/s");
+    return core::invalid_argument("the speed of a character must be 0 … 1000 m/s");
   if (input.rise && !(std::abs(*input.rise) <= kMaxSpeed))
-    return refuse("a character must not rise or sink faster than 1000 m/s");
+    return core::invalid_argument("a character must not rise or sink faster than 1000 m/s");
   character->input = input;
   return {};
 }
@@ -104,7 +107,7 @@ core::Result<void> World::set_velocity(CharacterId id, const glm::dvec3& velocit
   Character* character = impl_->find(id);
   if (character == nullptr) return no_character(id);
   if (!is_within(velocity, kMaxSpeed))
-    return refuse(
+    return core::invalid_argument(
         fmt::format("a velocity must be finite, and at most {} m/s along each axis", kMaxSpeed));
   character->velocity = to_bt(velocity);
   if (velocity.y > 0) character->on_ground = false;
@@ -113,7 +116,7 @@ core::Result<void> World::set_velocity(CharacterId id, const glm::dvec3& velocit
 
 core::Result<void> World::step(double dt) {
   if (!(dt >= 0.001 && dt <= 0.1))
-    return refuse(fmt::format("a step must take 0.001 to 0.1 s, not {}", dt));
+    return core::invalid_argument(fmt::format("a step must take 0.001 to 0.1 s, not {}", dt));
   impl_->step(dt);
   return {};
 }
@@ -126,7 +129,7 @@ core::Result<std::optional<BodyHit>> World::cast(const core::WorldPosition& orig
   const double largest =
       std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
   if (!is_within(direction, 1e300) || largest == 0 || !(longest_m > 0))
-    return refuse("a ray needs a finite, non-zero direction and a length above 0");
+    return core::invalid_argument("a ray needs a finite, non-zero direction and a length above 0");
   const btVector3 unit = to_bt(direction / largest).normalized();
   const btVector3 start = impl_->terrain.coordinates(*from);
   const btVector3 end = start + unit * std::min(longest_m, 1e6);

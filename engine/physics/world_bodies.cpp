@@ -5,37 +5,38 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "engine/physics/convert.hpp"
+#include "engine/physics/shapes.hpp"
 #include "engine/physics/world_impl.hpp"
 
 namespace psygen::physics {
 namespace {
 
 tl::unexpected<core::Error> no_body(BodyId id) {
-  return refuse(fmt::format("body {} does not exist", id.number));
+  return core::invalid_argument(fmt::format("body {} does not exist", id.number));
 }
 
 core::Result<glm::dquat> checked_rotation(const glm::dquat& q) {
   const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   if (!(length > 1e-6 && length < 1e6))
-    return refuse("the rotation is not a finite quaternion above zero");
+    return core::invalid_argument("the rotation is not a finite quaternion above zero");
   return glm::dquat(q.w / length, q.x / length, q.y / length, q.z / length);
 }
 
 core::Result<void> check_speeds(const glm::dvec3& velocity, const glm::dvec3& spin) {
   if (is_within(velocity, kMaxSpeed) && is_within(spin, kMaxSpeed)) return {};
-  return refuse(
+  return core::invalid_argument(
       fmt::format("velocity and spin must be finite, and at most {} along each axis", kMaxSpeed));
 }
 
 core::Result<void> check(const BodySettings& s) {
   if (auto speeds = check_speeds(s.velocity, s.spin); !speeds) return speeds;
   if (s.motion == Motion::kDynamic && !(s.mass_kg > 0 && s.mass_kg <= 1e9))
-    return refuse(fmt::format("the mass must be above 0 and at most 10^9 kg, not {}", s.mass_kg));
+    return core::invalid_argument(
+        fmt::format("the mass must be above 0 and at most 10^9 kg, not {}", s.mass_kg));
   if (!(s.friction >= 0 && s.friction <= 10))
-    return refuse(fmt::format("the friction {} is not in 0 … 10", s.friction));
+    return core::invalid_argument(fmt::format("the friction {} is not in 0 … 10", s.friction));
   if (!(s.restitution >= 0 && s.restitution <= 1))
-    return refuse(fmt::format("the restitution {} is not in 0 … 1", s.restitution));
+    return core::invalid_argument(fmt::format("the restitution {} is not in 0 … 1", s.restitution));
   return {};
 }
 
@@ -129,7 +130,8 @@ core::Result<void> World::set_velocity(BodyId id, const glm::dvec3& velocity,
                                        const glm::dvec3& spin) {
   Impl::Body* body = impl_->find(id);
   if (body == nullptr) return no_body(id);
-  if (body->kind != Motion::kDynamic) return refuse("only dynamic bodies have a velocity to set");
+  if (body->kind != Motion::kDynamic)
+    return core::invalid_argument("only dynamic bodies have a velocity to set");
   if (auto speeds = check_speeds(velocity, spin); !speeds) return speeds;
   body->rigid->setLinearVelocity(to_bt(velocity));
   body->rigid->setAngularVelocity(to_bt(spin));
@@ -140,10 +142,11 @@ core::Result<void> World::set_velocity(BodyId id, const glm::dvec3& velocity,
 core::Result<void> World::push(BodyId id, const glm::dvec3& impulse) {
   Impl::Body* body = impl_->find(id);
   if (body == nullptr) return no_body(id);
-  if (body->kind != Motion::kDynamic) return refuse("only dynamic bodies can be pushed");
+  if (body->kind != Motion::kDynamic)
+    return core::invalid_argument("only dynamic bodies can be pushed");
   const double mass = 1 / body->rigid->getInvMass();
   if (!is_within(impulse / mass, kMaxSpeed))
-    return refuse(
+    return core::invalid_argument(
         fmt::format("an impulse must be finite and change the speed by at most {} m/s", kMaxSpeed));
   body->rigid->applyCentralImpulse(to_bt(impulse));
   body->rigid->activate(true);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/physics/convert.hpp"
+#include "engine/physics/shapes.hpp"
 
 namespace psygen::physics {
 namespace {
@@ -56,7 +56,7 @@ core::Result<btVector3> World::Impl::place(const core::WorldPosition& at) {
   const auto sound = query::checked(at, query.world().block_size_m());
   if (!sound) return tl::unexpected(sound.error());
   if (!query.world().contains(sound->block))
-    return refuse(
+    return core::invalid_argument(
         fmt::format("block ({}, {}) is outside the world", sound->block.x, sound->block.z));
   const btVector3 to = terrain.coordinates(*sound);
   if (btVector3(to.x(), 0, to.z()).length() <= kMaxFromOriginM || count() > 1) return to;

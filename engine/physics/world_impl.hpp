@@ -27,6 +27,7 @@ struct World::Impl {
     bool is_moved = false;      // true if a kinematic body has a new pose for the next step
   };
 
+  // `queries` must outlive it; the settings are legal.
   Impl(query::World& queries, const Settings& wanted);
   ~Impl();
 
@@ -66,10 +67,6 @@ struct World::Impl {
   std::uint64_t steps = 0;
 };
 
-// Makes an error with code kInvalidArgument.
-inline tl::unexpected<core::Error> refuse(std::string message) {
-  return core::fail(core::ErrorCode::kInvalidArgument, std::move(message));
-}
 // True if every component is finite and its absolute value at most `most`.
 bool is_within(const glm::dvec3& v, double most);
 

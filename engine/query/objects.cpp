@@ -14,10 +14,6 @@ namespace {
 
 using models::Collider;
 
-tl::unexpected<core::Error> refused(std::string message) {
-  return core::fail(core::ErrorCode::kInvalidArgument, std::move(message));
-}
-
 // Returns the error of a part's size; empty if there is none.
 std::string size_error(const Collider::Shape& shape) {
   if (const auto* capsule = std::get_if<Collider::Capsule>(&shape);
@@ -81,8 +77,9 @@ core::Result<ObjectShape> scaled_solid(const ObjectShape& shape, const glm::vec3
   for (const Collider::Shape& part : shape->collider().shapes) {
     Collider::Shape scaled = scaled_shape(part, scale);
     if (const std::string error = size_error(scaled); !error.empty())
-      return refused(fmt::format("scaled by ({}, {}, {}), part {} of the collider is unusable: {}",
-                                 scale.x, scale.y, scale.z, collider.shapes.size(), error));
+      return core::invalid_argument(
+          fmt::format("scaled by ({}, {}, {}), part {} of the collider is unusable: {}", scale.x,
+                      scale.y, scale.z, collider.shapes.size(), error));
     collider.shapes.push_back(std::move(scaled));
   }
   return std::make_shared<Solid>(std::move(collider));
@@ -97,11 +94,12 @@ bool ObjectPose::operator==(const ObjectPose& other) const {
 
 core::Result<ObjectShape> Objects::make_shape(Collider collider) {
   if (collider.empty() || collider.shapes.size() > kMaxParts)
-    return refused(
+    return core::invalid_argument(
         fmt::format("a collider has 1 … {} parts, not {}", kMaxParts, collider.shapes.size()));
   for (std::size_t i = 0; i < collider.shapes.size(); ++i) {
     if (const std::string error = part_error(collider.shapes[i]); !error.empty())
-      return refused(fmt::format("part {} of the collider is unusable: {}", i, error));
+      return core::invalid_argument(
+          fmt::format("part {} of the collider is unusable: {}", i, error));
   }
   return std::make_shared<Solid>(std::move(collider));
 }
@@ -111,10 +109,11 @@ core::Result<PlacedObject> Objects::placed(const ObjectPose& pose) const {
   const auto at = checked(pose.position, world_->block_size_m());
   if (!at) return tl::unexpected(at.error());
   if (!world_->contains(at->block))
-    return refused(fmt::format("block ({}, {}) is outside the world", at->block.x, at->block.z));
+    return core::invalid_argument(
+        fmt::format("block ({}, {}) is outside the world", at->block.x, at->block.z));
   const double length = glm::length(pose.rotation);
   if (!(length > 1e-6 && length < 1e6))
-    return refused("the rotation is not a finite quaternion above zero");
+    return core::invalid_argument("the rotation is not a finite quaternion above zero");
   PlacedObject object;
   object.pose = pose;
   object.position = *at;
@@ -139,7 +138,7 @@ WideBox Objects::box_of(const PlacedObject& object) const {
 core::Result<ObjectId> Objects::add(ObjectName name, const ObjectShape& shape,
                                     const ObjectPose& pose) {
   if (world_ == nullptr || shape == nullptr || name == 0)
-    return refused("an object needs a world, a shape and a name above 0");
+    return core::invalid_argument("an object needs a world, a shape and a name above 0");
   if (size() >= kMaxObjects)
     return core::fail(core::ErrorCode::kOverBudget,
                       fmt::format("there are {} objects already", kMaxObjects));
@@ -167,7 +166,7 @@ core::Result<ObjectId> Objects::add(ObjectName name, const ObjectShape& shape,
 }
 
 core::Result<void> Objects::move(ObjectId id, const ObjectPose& pose) {
-  if (find(id) == nullptr) return refused("the object does not exist");
+  if (find(id) == nullptr) return core::invalid_argument("the object does not exist");
   Slot& slot = slots_[id.slot];
   if (slot.object.pose == pose) {
     slot.told = true;

@@ -26,6 +26,7 @@ struct PathSettings {
   std::size_t max_cells = 150'000;
 };
 
+// Searches paths in the world of its queries. Movable; not copyable.
 class PathFinder {
  public:
   static constexpr double kCellM = 2;

@@ -34,8 +34,7 @@ auto rank(const NearModel& m) {
 core::Result<core::WorldPosition> checked(const core::WorldPosition& at, double block_size_m) {
   const auto is_sound = [](double v) { return std::abs(v) <= World::kMaxLocalM; };  // not of NaN
   if (!is_sound(at.local.x) || !is_sound(at.local.y) || !is_sound(at.local.z))
-    return core::fail(
-        ErrorCode::kInvalidArgument,
+    return core::invalid_argument(
         fmt::format("the position ({}, {}, {}) m in block ({}, {}) is not finite or "
                     "farther than {} m from its block",
                     at.local.x, at.local.y, at.local.z, at.block.x, at.block.z, World::kMaxLocalM));
@@ -55,8 +54,7 @@ core::Result<Ground> World::ground(const core::WorldPosition& position) {
   const auto at = checked(position, block_m_);
   if (!at) return tl::unexpected(at.error());
   if (!world_->contains(at->block))
-    return core::fail(
-        ErrorCode::kInvalidArgument,
+    return core::invalid_argument(
         fmt::format("no ground: block ({}, {}) is outside the world", at->block.x, at->block.z));
   const glm::dvec2 local(at->local.x, at->local.z);
   const models::GroundPoint point = cache_.ground(at->block).at(local);
@@ -87,12 +85,12 @@ core::Result<Hit> World::cast(const Ray& ray) {
   const double largest =
       std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
   if (!core::is_finite(ray.direction) || largest == 0)
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("the direction ({}, {}, {}) of the ray is zero or not finite",
-                                  ray.direction.x, ray.direction.y, ray.direction.z));
+    return core::invalid_argument(
+        fmt::format("the direction ({}, {}, {}) of the ray is zero or not finite", ray.direction.x,
+                    ray.direction.y, ray.direction.z));
   if (!(ray.longest_m > 0))
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("the length {} m of the ray is not above 0", ray.longest_m));
+    return core::invalid_argument(
+        fmt::format("the length {} m of the ray is not above 0", ray.longest_m));
   const glm::dvec3 scaled = ray.direction / largest;
   const Course course{*origin, scaled / std::sqrt(glm::dot(scaled, scaled)),
                       std::min(ray.longest_m, kMaxLocalM)};
@@ -224,8 +222,7 @@ void World::cast_objects(const Course& course, Hit& hit) const {
 core::Result<std::vector<World::BlockAround>> World::blocks_within(const core::WorldPosition& at,
                                                                    double radius_m) const {
   if (!(radius_m >= 0) || !std::isfinite(radius_m))
-    return core::fail(
-        ErrorCode::kInvalidArgument,
+    return core::invalid_argument(
         fmt::format("the radius must be finite and not negative, not {} m", radius_m));
   const glm::dvec2 centre(at.local.x, at.local.z);
   const BlockRange range = blocks_around(centre - radius_m, centre + radius_m, block_m_);

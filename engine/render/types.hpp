@@ -15,8 +15,8 @@
 
 #include "engine/core/camera.hpp"
 #include "engine/core/geometry_memory.hpp"
-#include "engine/core/surface_kind.hpp"
 #include "engine/core/surface_provider.hpp"
+#include "engine/core/vertex_layout.hpp"
 #include "engine/render/hud_drawing.hpp"
 
 struct ImDrawData;

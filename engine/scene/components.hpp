@@ -12,7 +12,7 @@
 #include "ecs/ecs.hpp"
 #include "engine/core/coordinates.hpp"
 #include "engine/core/geometry_memory.hpp"
-#include "engine/core/surface_kind.hpp"
+#include "engine/core/vertex_layout.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/synthesis/geometry_cache.hpp"
 #include "engine/visibility/quadtree.hpp"

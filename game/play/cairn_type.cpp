@@ -13,12 +13,12 @@ namespace cairns {
 namespace {
 
 constexpr models::ParameterSpec kSchema[] = {
-    {"seed", models::ParameterType::kInteger, "", 1, -0x1p63, 0x1p63, 0, 1000, "Random seed",
-     models::ParameterSource::kPlaced},
-    {"stones", models::ParameterType::kInteger, "1", 7, 1, 24, 3, 12,
-     "Number of stones in the stack"},
-    {"width_m", models::ParameterType::kReal, "m", 1.1, 0.1, 6, 0.4, 2,
-     "Width of the lowest stone"},
+    models::placed(models::integer_parameter("seed", "", 1, models::HardRange{-0x1p63, 0x1p63},
+                                             models::SoftRange{0, 1000}, "Random seed")),
+    models::integer_parameter("stones", "1", 7, models::HardRange{1, 24}, models::SoftRange{3, 12},
+                              "Number of stones in the stack"),
+    models::real_parameter("width_m", "m", 1.1, models::HardRange{0.1, 6},
+                           models::SoftRange{0.4, 2}, "Width of the lowest stone"),
 };
 
 // Per LOD level: corners around a stone, and rings between its poles.

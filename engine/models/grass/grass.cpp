@@ -12,28 +12,6 @@
 namespace psygen::models {
 namespace {
 
-constexpr ParameterType kInteger = ParameterType::kInteger;
-constexpr ParameterType kReal = ParameterType::kReal;
-constexpr ParameterSource kPlaced = ParameterSource::kPlaced;
-
-constexpr ParameterSpec kSchema[kGrassParameterCount] = {
-    {"seed", kInteger, "", 1, -0x1.0p63, 0x1.0p63, 0, 1000, "selects one of all patches", kPlaced},
-    {"slope_x", kReal, "1", 0, -1.5, 1.5, -0.6, 0.6, "of the ground, rise per metre along x",
-     kPlaced},
-    {"slope_z", kReal, "1", 0, -1.5, 1.5, -0.6, 0.6, "of the ground, rise per metre along z",
-     kPlaced},
-    {"blades", kInteger, "", 120, 1, 4096, 20, 400, "number of blades"},
-    {"flowers", kInteger, "", 0, 0, 1024, 0, 40, "number of flowers"},
-    {"radius_m", kReal, "m", 1, 0.01, 20, 0.2, 2.5, "of the patch"},
-    {"height_m", kReal, "m", 0.35, 0.01, 5, 0.08, 0.9, "of the highest blades"},
-    {"width_m", kReal, "m", 0.025, 0.001, 1, 0.008, 0.06, "of a blade at its base"},
-    {"lean", kReal, "1", 0.5, 0, 1.5, 0.1, 1, "shift of a blade's tip, relative to its height"},
-    {"albedo", kReal, "1", 0.11, 0.01, 0.9, 0.05, 0.3, "mean reflected fraction of light"},
-    {"dryness", kReal, "1", 0.1, 0, 1, 0, 1, "green (0) to straw (1)"},
-    {"flower", kInteger, "", kWhiteFlower, 0, kFlowerCount - 1, 0, kFlowerCount - 1,
-     "0 white, 1 yellow, 2 pink, 3 blue"},
-};
-
 constexpr int kLevels = 4;
 
 std::uint32_t blades_of(const Parameters& p) {
@@ -71,7 +49,7 @@ class GrassType final : public ModelType {
   std::string_view doc() const override {
     return "patch of grass: tufts of blades, 3 triangles each, and flowers";
   }
-  std::span<const ParameterSpec> parameters() const override { return kSchema; }
+  std::span<const ParameterSpec> parameters() const override { return kGrassSchema; }
   int level_count() const override { return kLevels; }
   int level_count_of(const Parameters& p) const override {
     const std::uint32_t most = std::max(blades_of(p), flowers_of(p));

@@ -5,13 +5,14 @@
 #pragma once
 
 #include <cstddef>
+#include <iterator>
 #include <memory>
 
 #include "engine/models/model_type.hpp"
 
 namespace psygen::models {
 
-// Indices into the schema of the type "grass".
+// Indices into kGrassSchema.
 enum GrassParameter : std::size_t {
   kGrassSeed = 0,
   kGrassSlopeX,  // of the ground, rise per metre
@@ -30,6 +31,32 @@ enum GrassParameter : std::size_t {
 
 // Values of kGrassFlower.
 enum GrassFlower : int { kWhiteFlower = 0, kYellowFlower, kPinkFlower, kBlueFlower, kFlowerCount };
+
+// The schema of the type "grass", by GrassParameter.
+inline constexpr ParameterSpec kGrassSchema[] = {
+    placed(integer_parameter("seed", "", 1, HardRange{-0x1.0p63, 0x1.0p63}, SoftRange{0, 1000},
+                             "selects one of all patches")),
+    placed(real_parameter("slope_x", "1", 0, HardRange{-1.5, 1.5}, SoftRange{-0.6, 0.6},
+                          "of the ground, rise per metre along x")),
+    placed(real_parameter("slope_z", "1", 0, HardRange{-1.5, 1.5}, SoftRange{-0.6, 0.6},
+                          "of the ground, rise per metre along z")),
+    integer_parameter("blades", "", 120, HardRange{1, 4096}, SoftRange{20, 400},
+                      "number of blades"),
+    integer_parameter("flowers", "", 0, HardRange{0, 1024}, SoftRange{0, 40}, "number of flowers"),
+    real_parameter("radius_m", "m", 1, HardRange{0.01, 20}, SoftRange{0.2, 2.5}, "of the patch"),
+    real_parameter("height_m", "m", 0.35, HardRange{0.01, 5}, SoftRange{0.08, 0.9},
+                   "of the highest blades"),
+    real_parameter("width_m", "m", 0.025, HardRange{0.001, 1}, SoftRange{0.008, 0.06},
+                   "of a blade at its base"),
+    real_parameter("lean", "1", 0.5, HardRange{0, 1.5}, SoftRange{0.1, 1},
+                   "shift of a blade's tip, relative to its height"),
+    real_parameter("albedo", "1", 0.11, HardRange{0.01, 0.9}, SoftRange{0.05, 0.3},
+                   "mean reflected fraction of light"),
+    real_parameter("dryness", "1", 0.1, HardRange{0, 1}, SoftRange{0, 1}, "green (0) to straw (1)"),
+    integer_parameter("flower", "", kWhiteFlower, HardRange{0, kFlowerCount - 1},
+                      SoftRange{0, kFlowerCount - 1}, "0 white, 1 yellow, 2 pink, 3 blue"),
+};
+static_assert(std::size(kGrassSchema) == kGrassParameterCount);
 
 // The model type "grass". Level 0 has 3 triangles a blade and 3 + 4 a flower. Level 1 has one
 // triangle for each blade and each flower. Levels 2 and 3 keep a third and a ninth of these,

@@ -1,4 +1,4 @@
-// The 32-bit hash of docs/models.md, "mix32". simd_hash-inl.hpp has the same function for vectors.
+// The 32-bit hash of docs/models.md, "mix32". mix32-inl.hpp has the same function for vectors.
 // Pure, constant time. Not for hash tables that an attacker can fill.
 #pragma once
 

@@ -11,7 +11,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "engine/models/kit/simd_hash-inl.hpp"
+#include "engine/models/kit/mix32-inl.hpp"
 #include "engine/models/rock/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

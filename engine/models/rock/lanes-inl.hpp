@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/models/kit/octahedral-inl.hpp"
+#include "engine/models/kit/packing-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {

@@ -15,25 +15,6 @@
 namespace psygen::models {
 namespace {
 
-constexpr ParameterType kInteger = ParameterType::kInteger;
-constexpr ParameterType kReal = ParameterType::kReal;
-
-constexpr ParameterSpec kSchema[kRockParameterCount] = {
-    {"seed", kInteger, "", 1, -0x1.0p63, 0x1.0p63, 0, 1000, "selects one of all rocks",
-     ParameterSource::kPlaced},
-    {"subdivisions", kInteger, "", 2, 0, kMaxSubdivisions, 0, 4,
-     "number of times that every triangle is split into four"},
-    {"radius_m", kReal, "m", 0.6, 0.01, 100, 0.1, 4, "mean radius"},
-    {"amplitude", kReal, "1", 0.24, 0, 0.6, 0, 0.4,
-     "roughness: displacement relative to the radius"},
-    {"decay", kReal, "1", 0.55, 0, 1, 0.3, 0.9, "ratio of the displacements of two subdivisions"},
-    {"albedo", kReal, "1", 0.26, 0.02, 0.9, 0.1, 0.5, "mean reflected fraction of light"},
-    {"warmth", kReal, "1", 0.25, -1, 1, -0.5, 0.7, "blue-grey (-1) to red-brown (1)"},
-    {"moss", kReal, "1", 0.3, 0, 1, 0, 1, "cover of moss on surfaces that face up"},
-    {"family", kInteger, "", kRockRounded, 0, kRockFamilyCount - 1, 0, kRockFamilyCount - 1,
-     "0 rounded, 1 faceted, 2 layered"},
-};
-
 constexpr float kLift = 0.45F;    // height of the centre above the ground over the half-height
 constexpr float kWidest = 1.2F;   // largest stretch along x and z
 constexpr float kHighest = 0.9F;  // largest stretch along y
@@ -48,7 +29,9 @@ struct Family {
                       // colour
 };
 constexpr Family kFamilies[kRockFamilyCount] = {
-    {0.8F, 1.0F, 0, 0, 0}, {1.0F, 1.0F, 0.7F, 0, 0}, {0.8F, 0.75F, 0, 0.13F, 0.14F}};
+    {.amplitude = 0.8F, .height = 1.0F, .facet = 0, .ledge = 0, .tint = 0},
+    {.amplitude = 1.0F, .height = 1.0F, .facet = 0.7F, .ledge = 0, .tint = 0},
+    {.amplitude = 0.8F, .height = 0.75F, .facet = 0, .ledge = 0.13F, .tint = 0.14F}};
 const Family& family_of(const Parameters& p) {
   return kFamilies[static_cast<std::size_t>(p.integer(kRockFamily))];
 }
@@ -111,7 +94,7 @@ class RockType final : public ModelType {
   std::string_view doc() const override {
     return "rock: midpoint displacement on a tetrahedron, 4*4^subdivisions triangles";
   }
-  std::span<const ParameterSpec> parameters() const override { return kSchema; }
+  std::span<const ParameterSpec> parameters() const override { return kRockSchema; }
   int level_count() const override { return kMaxSubdivisions + 1; }
   int level_count_of(const Parameters& p) const override { return subdivisions_at(p, 0) + 1; }
   bool may_run_on_main_thread() const override { return true; }

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-namespace psygen::models {
+#include "engine/models/rock/rock.hpp"
 
-inline constexpr int kMaxSubdivisions = 6;
+namespace psygen::models {
 
 // Triangles and shared vertices after n subdivisions: 4·4^n and 2·4^n + 2.
 constexpr std::uint32_t rock_triangles(int subdivisions) {

@@ -14,8 +14,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/models/kit/mix32-inl.hpp"
 #include "engine/models/kit/mix32.hpp"
-#include "engine/models/kit/simd_hash-inl.hpp"
 #include "engine/models/terrain/ridged_axis-inl.hpp"
 #include "engine/models/terrain/ridged_kernel.hpp"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "engine/core/assert.hpp"
@@ -17,37 +16,6 @@
 
 namespace psygen::models {
 namespace {
-
-constexpr double kInt32Min = std::numeric_limits<std::int32_t>::min();
-constexpr double kInt32Max = std::numeric_limits<std::int32_t>::max();
-constexpr ParameterType kInteger = ParameterType::kInteger;
-constexpr ParameterType kReal = ParameterType::kReal;
-constexpr ParameterSource kPlaced = ParameterSource::kPlaced;
-
-constexpr ParameterSpec kSchema[kTerrainParameterCount] = {
-    {"seed", kInteger, "", 1, -0x1.0p63, 0x1.0p63, 0, 1000, "selects one of all terrains", kPlaced},
-    {"block_x", kInteger, "blocks", 0, kInt32Min, kInt32Max, -1000, 1000, "block along x", kPlaced},
-    {"block_z", kInteger, "blocks", 0, kInt32Min, kInt32Max, -1000, 1000, "block along z", kPlaced},
-    {"node_level", kInteger, "", 0, 0, 20, 0, 10,
-     "cells are 2^node_level times as wide; blocks are counted in these wider ones", kPlaced},
-    {"size", kInteger, "vertices", 64, kMinTerrainSize, kMaxTerrainSize, 16, 128,
-     "vertices per side of a block"},
-    {"cell_m", kReal, "m", 1, 0.01, 1000, 0.25, 16, "distance between neighbouring vertices"},
-    {"height", kReal, "1", 1.2, 0, 4, 0.5, 1.5,
-     "fractal increment H: the larger, the smoother; octave o counts lacunarity^(-H o)"},
-    {"lacunarity", kReal, "1", 2, 1, 4, 1.5, 3, "ratio of the frequencies of two octaves"},
-    {"octaves", kInteger, "", 9, 1, kMaxOctaves, 1, 12, "number of layers of noise"},
-    {"offset", kReal, "1", 0.88, 0, 4, 0.7, 1.2, "height of the ridges before squaring"},
-    {"gain", kReal, "1", 2, 0, 100, 1, 4, "influence of an octave on the next"},
-    {"feature_m", kReal, "m", 600, 1, 1e5, 50, 2000, "width of the largest features"},
-    {"relief_m", kReal, "m", 120, 0.01, 1e5, 10, 500, "largest possible height"},
-    {"warp", kReal, "1", 0, 0, 1, 0, 0.5,
-     "bends the coarse ridges: largest displacement, in parts of feature_m; 0 is fastest"},
-    {"sun_azimuth_deg", kReal, "degrees", 0, -360, 360, 0, 360,
-     "direction of the sun that casts shadows, from north over east", kPlaced},
-    {"sun_elevation_deg", kReal, "degrees", 90, -90, 90, 0, 90,
-     "of the sun that casts shadows: at 90 none, at 0 and below all is dark", kPlaced},
-};
 
 // Sample positions along one axis: every vertex of the level, and its neighbours one cell away.
 // Vertex k is sample vertex(k). Samples are grid positions −1 … size.
@@ -78,7 +46,7 @@ class TerrainType final : public ModelType {
   std::string_view doc() const override {
     return "ground of one block: ridged multifractal heightfield (Musgrave)";
   }
-  std::span<const ParameterSpec> parameters() const override { return kSchema; }
+  std::span<const ParameterSpec> parameters() const override { return kTerrainSchema; }
   int level_count() const override { return kTerrainLevels; }
   bool may_run_on_main_thread() const override { return true; }
   double level_error_m(const Parameters& p, int level) const override;

@@ -5,17 +5,22 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <iterator>
+#include <limits>
 #include <memory>
 #include <span>
 
 #include "engine/core/coordinates.hpp"
 #include "engine/models/model_type.hpp"
+#include "engine/models/terrain/grid.hpp"
+#include "engine/models/terrain/ridged_kernel.hpp"
 
 namespace psygen::models {
 
-// Indices into the schema of the type "terrain".
+// Indices into kTerrainSchema.
 enum TerrainParameter : std::size_t {
   kTerrainSeed = 0,
   kTerrainBlockX,
@@ -35,6 +40,50 @@ enum TerrainParameter : std::size_t {
   kTerrainSunElevation,
   kTerrainParameterCount
 };
+
+// The limits of a block's index along an axis.
+inline constexpr double kMinBlock = std::numeric_limits<std::int32_t>::min();
+inline constexpr double kMaxBlock = std::numeric_limits<std::int32_t>::max();
+
+// The schema of the type "terrain", by TerrainParameter.
+inline constexpr ParameterSpec kTerrainSchema[] = {
+    placed(integer_parameter("seed", "", 1, HardRange{-0x1.0p63, 0x1.0p63}, SoftRange{0, 1000},
+                             "selects one of all terrains")),
+    placed(integer_parameter("block_x", "blocks", 0, HardRange{kMinBlock, kMaxBlock},
+                             SoftRange{-1000, 1000}, "block along x")),
+    placed(integer_parameter("block_z", "blocks", 0, HardRange{kMinBlock, kMaxBlock},
+                             SoftRange{-1000, 1000}, "block along z")),
+    placed(integer_parameter(
+        "node_level", "", 0, HardRange{0, 20}, SoftRange{0, 10},
+        "cells are 2^node_level times as wide; blocks are counted in these wider ones")),
+    integer_parameter("size", "vertices", 64, HardRange{kMinTerrainSize, kMaxTerrainSize},
+                      SoftRange{16, 128}, "vertices per side of a block"),
+    real_parameter("cell_m", "m", 1, HardRange{0.01, 1000}, SoftRange{0.25, 16},
+                   "distance between neighbouring vertices"),
+    real_parameter(
+        "height", "1", 1.2, HardRange{0, 4}, SoftRange{0.5, 1.5},
+        "fractal increment H: the larger, the smoother; octave o counts lacunarity^(-H o)"),
+    real_parameter("lacunarity", "1", 2, HardRange{1, 4}, SoftRange{1.5, 3},
+                   "ratio of the frequencies of two octaves"),
+    integer_parameter("octaves", "", 9, HardRange{1, kMaxOctaves}, SoftRange{1, 12},
+                      "number of layers of noise"),
+    real_parameter("offset", "1", 0.88, HardRange{0, 4}, SoftRange{0.7, 1.2},
+                   "height of the ridges before squaring"),
+    real_parameter("gain", "1", 2, HardRange{0, 100}, SoftRange{1, 4},
+                   "influence of an octave on the next"),
+    real_parameter("feature_m", "m", 600, HardRange{1, 1e5}, SoftRange{50, 2000},
+                   "width of the largest features"),
+    real_parameter("relief_m", "m", 120, HardRange{0.01, 1e5}, SoftRange{10, 500},
+                   "largest possible height"),
+    real_parameter(
+        "warp", "1", 0, HardRange{0, 1}, SoftRange{0, 0.5},
+        "bends the coarse ridges: largest displacement, in parts of feature_m; 0 is fastest"),
+    placed(real_parameter("sun_azimuth_deg", "degrees", 0, HardRange{-360, 360}, SoftRange{0, 360},
+                          "direction of the sun that casts shadows, from north over east")),
+    placed(real_parameter("sun_elevation_deg", "degrees", 90, HardRange{-90, 90}, SoftRange{0, 90},
+                          "of the sun that casts shadows: at 90 none, at 0 and below all is dark")),
+};
+static_assert(std::size(kTerrainSchema) == kTerrainParameterCount);
 
 // The model type "terrain". Level 0 has every vertex, levels 1 … 3 every Nth one (terrain_strides()
 // in grid.hpp). Vertices are core::TerrainVertex: n² of the surface, then 4·(n − 1) of the skirt.

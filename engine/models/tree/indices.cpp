@@ -50,14 +50,11 @@ struct Tubes {
 };
 
 template <std::uint32_t kSides, std::uint32_t kSegments>
-const std::uint16_t* pattern_of(bool pointed, bool blocked) {
-  if (pointed)
-    return (blocked ? Tubes<kSides, kSegments, true>::kBlocked
-                    : Tubes<kSides, kSegments, true>::kApart)
-        .indices;
-  return (blocked ? Tubes<kSides, kSegments, false>::kBlocked
-                  : Tubes<kSides, kSegments, false>::kApart)
-      .indices;
+const std::uint16_t* pattern_of(const TubePlan& tube, bool blocked) {
+  using Pointed = Tubes<kSides, kSegments, true>;
+  using Open = Tubes<kSides, kSegments, false>;
+  if (tube.pointed) return (blocked ? Pointed::kBlocked : Pointed::kApart).indices;
+  return (blocked ? Open::kBlocked : Open::kApart).indices;
 }
 
 template <std::uint32_t kTriangles>
@@ -78,18 +75,17 @@ constexpr auto kPatchBlock = spray_block<4>(kPatch);
 }  // namespace
 
 const std::uint16_t* tube_pattern(const TubePlan& tube, bool blocked) {
-  const bool pointed = tube.pointed;
   switch (10 * tube.sides + tube.segments) {
     case 31:
-      return pattern_of<3, 1>(pointed, blocked);
+      return pattern_of<3, 1>(tube, blocked);
     case 42:
-      return pattern_of<4, 2>(pointed, blocked);
+      return pattern_of<4, 2>(tube, blocked);
     case 53:
-      return pattern_of<5, 3>(pointed, blocked);
+      return pattern_of<5, 3>(tube, blocked);
     case 63:
-      return pattern_of<6, 3>(pointed, blocked);
+      return pattern_of<6, 3>(tube, blocked);
     case 86:
-      return pattern_of<8, 6>(pointed, blocked);
+      return pattern_of<8, 6>(tube, blocked);
     default:
       break;
   }

@@ -12,8 +12,8 @@
 
 #include <cstring>
 
-#include "engine/models/kit/octahedral-inl.hpp"
-#include "engine/models/kit/simd_hash-inl.hpp"
+#include "engine/models/kit/mix32-inl.hpp"
+#include "engine/models/kit/packing-inl.hpp"
 #include "engine/models/tree/random.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -301,6 +301,7 @@ HWY_INLINE VU z_word(VU z, VU light) {
   return (z & u1(0xFFFFU)) | (light & u1(0xFFFF0000U));
 }
 
+// Two words of the lane.
 struct Pair {
   VU low, high;
 };
@@ -308,6 +309,7 @@ HWY_INLINE Pair paired(VU a, VU b) {
   return {a, b};
 }
 
+// The vertex of the lane, four words.
 struct Vertices {
   std::uint32_t words[4];
 };
@@ -322,6 +324,7 @@ HWY_INLINE void store_apart(const Vertices& v, std::size_t, std::size_t, std::by
   std::memcpy(to, v.words, 16);
 }
 
+// Smallest and largest packed positions so far. Undefined before clear().
 struct Extent {
   std::int16_t least[3], most[3];
   HWY_INLINE void clear() {

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "engine/models/model_type.hpp"
-#include "engine/models/number_spec.hpp"
 #include "engine/models/tree/plan.hpp"
 
 namespace psygen::models {

@@ -10,7 +10,6 @@
 namespace psygen::models {
 namespace {
 
-using enum ParameterType;
 constexpr std::size_t kMaxBranches = 8;
 constexpr float kTurnsPerDegree = 1.0F / 360.0F;
 
@@ -22,20 +21,20 @@ KindPlan kind_plan(const SpeciesKind& k) {
   const LeavesOn leaves = k.leaves == "all"    ? LeavesOn::kAll
                           : k.leaves == "tips" ? LeavesOn::kTips
                                                : LeavesOn::kNone;
-  return {f(k.angle_deg) * kTurnsPerDegree,
-          f(k.angle_low_deg) * kTurnsPerDegree,
-          f(k.angle_variation),
-          f(k.whorl_deg) * kTurnsPerDegree,
-          k.leader ? 1.0F : f(k.along_low),
-          k.leader ? 1.0F : f(k.along_high),
-          f(k.length),
-          f(k.length_low),
-          f(k.radius),
-          f(k.leader ? 0.5 * k.tropism : k.tropism),
-          f(0.35 * k.tropism),
-          f(k.curvature),
-          k.leader,
-          leaves};
+  return {.angle_high = f(k.angle_deg) * kTurnsPerDegree,
+          .angle_low = f(k.angle_low_deg) * kTurnsPerDegree,
+          .angle_variation = f(k.angle_variation),
+          .whorl = f(k.whorl_deg) * kTurnsPerDegree,
+          .along_low = k.leader ? 1.0F : f(k.along_low),
+          .along_high = k.leader ? 1.0F : f(k.along_high),
+          .length_high = f(k.length),
+          .length_foot = f(k.length_low),
+          .radius = f(k.radius),
+          .lift = f(k.leader ? 0.5 * k.tropism : k.tropism),
+          .bend_up = f(0.35 * k.tropism),
+          .curvature = f(k.curvature),
+          .leader = k.leader,
+          .leaves = leaves};
 }
 
 FoliagePlan foliage_plan(const SpeciesFoliage& s) {
@@ -44,21 +43,20 @@ FoliagePlan foliage_plan(const SpeciesFoliage& s) {
                           : s.form == "fronds"  ? &kFrond
                           : s.form == "clump"   ? &kClump
                                                 : nullptr;
-  return {near,
-          near == nullptr ? nullptr : &kPatch,
-          f(s.random),
-          f(s.out),
-          f(s.branch),
-          f(s.up),
-          f(s.side_random),
-          f(s.side_out),
-          f(s.side_up),
-          f(s.normal_up),
-          f(s.from),
-          f(s.cluster),
-          f(s.size),
-          f(s.density),
-          1.0F};
+  return {.near = near,
+          .far = near == nullptr ? nullptr : &kPatch,
+          .random = f(s.random),
+          .out = f(s.out),
+          .branch = f(s.branch),
+          .up = f(s.up),
+          .side_random = f(s.side_random),
+          .side_out = f(s.side_out),
+          .side_up = f(s.side_up),
+          .normal_up = f(s.normal_up),
+          .from = f(s.from),
+          .cluster = f(s.cluster),
+          .fill = f(s.size),
+          .density = f(s.density)};
 }
 
 std::uint64_t identity_of(const Species& s) {
@@ -167,22 +165,31 @@ class SpeciesType final : public PlannedTree {
 void SpeciesType::set_schema() {
   const auto n = static_cast<double>(species_.iterations);
   const auto m = static_cast<double>(species_.branches);
-  schema_ = {{
-      {"seed", kInteger, "", 1, -9.3e18, 9.3e18, 0, 1e6, "selects one tree of the species",
-       ParameterSource::kPlaced},
-      {"iterations", kInteger, "1", n, 1, kMaxTreeIterations, std::max(n - 1, 1.0), n,
-       "number of times that the rules apply"},
-      {"branches", kInteger, "1", m, 1, kMaxBranches, std::max(m - 1, 1.0), m,
-       "mean number of branches that a star fills up to"},
-      {"size_m", kReal, "m", species_.size_m, 0.05, 30, 0.7 * species_.size_m,
-       std::min(1.4 * species_.size_m, 30.0), "length of the trunk up to its end"},
-      {"radius_m", kReal, "m", species_.radius_m, 0.002, 3, 0.7 * species_.radius_m,
-       std::min(1.4 * species_.radius_m, 3.0), "radius of the trunk above its flare"},
-      {"season", kReal, "1", 1, 0, 4, 0, 4, "0 spring, 1 summer, 2 autumn, 3 winter, 4 spring"},
-      {"leaf_scale", kReal, "1", 1, 0.1, 3, 0.7, 1.4, "size of leaves, relative to the species"},
-      {"colour_variation", kReal, "1", species_.colour_variation, 0, 1, 0, 1,
-       "spread of colour between leaves and trees"},
-  }};
+  schema_[kSpeciesSeed] =
+      placed(integer_parameter("seed", "", 1, HardRange{-9.3e18, 9.3e18}, SoftRange{0, 1e6},
+                               "selects one tree of the species"));
+  schema_[kSpeciesIterations] =
+      integer_parameter("iterations", "1", n, HardRange{1, kMaxTreeIterations},
+                        SoftRange{std::max(n - 1, 1.0), n}, "number of times that the rules apply");
+  schema_[kSpeciesBranches] = integer_parameter("branches", "1", m, HardRange{1, kMaxBranches},
+                                                SoftRange{std::max(m - 1, 1.0), m},
+                                                "mean number of branches that a star fills up to");
+  schema_[kSpeciesSizeM] =
+      real_parameter("size_m", "m", species_.size_m, HardRange{0.05, 30},
+                     SoftRange{0.7 * species_.size_m, std::min(1.4 * species_.size_m, 30.0)},
+                     "length of the trunk up to its end");
+  schema_[kSpeciesRadiusM] =
+      real_parameter("radius_m", "m", species_.radius_m, HardRange{0.002, 3},
+                     SoftRange{0.7 * species_.radius_m, std::min(1.4 * species_.radius_m, 3.0)},
+                     "radius of the trunk above its flare");
+  schema_[kSpeciesSeason] = real_parameter("season", "1", 1, HardRange{0, 4}, SoftRange{0, 4},
+                                           "0 spring, 1 summer, 2 autumn, 3 winter, 4 spring");
+  schema_[kSpeciesLeafScale] =
+      real_parameter("leaf_scale", "1", 1, HardRange{0.1, 3}, SoftRange{0.7, 1.4},
+                     "size of leaves, relative to the species");
+  schema_[kSpeciesColourVariation] =
+      real_parameter("colour_variation", "1", species_.colour_variation, HardRange{0, 1},
+                     SoftRange{0, 1}, "spread of colour between leaves and trees");
   for (ParameterSpec& spec : schema_)  // ranges around extreme defaults
     spec.soft_min = std::max(spec.soft_min, spec.hard_min);
 }

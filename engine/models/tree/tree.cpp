@@ -9,40 +9,14 @@
 namespace psygen::models {
 namespace {
 
-using enum ParameterType;
-constexpr int kTreeMaxIterations = 8;
-constexpr ParameterSpec kSchema[kTreeParameterCount] = {
-    {"seed", kInteger, "", 1, -9.3e18, 9.3e18, 0, 1e6, "selects one of all trees",
-     ParameterSource::kPlaced},
-    {"iterations", kInteger, "1", 4, 1, kTreeMaxIterations, 2, 5,
-     "number of times that every branch end branches again"},
-    {"branches", kInteger, "1", 3, 1, 6, 2, 4,
-     "branches of each node on average: each draws from two less to two more, at least 1"},
-    {"size_m", kReal, "m", 2.4, 0.1, 30, 1, 6, "length of the trunk up to its end"},
-    {"radius_m", kReal, "m", 0.17, 0.005, 3, 0.05, 0.6, "radius of the trunk above its flare"},
-    {"branch_angle", kReal, "rad", 0.8, 0, 2.5, 0.3, 1.3, "between a branch and its parent"},
-    {"angle_variation", kReal, "1", 0.35, 0, 1, 0, 0.8, "spread of the angles"},
-    {"length_decay", kReal, "1", 0.76, 0.3, 1, 0.55, 0.9, "length of a branch over its parent's"},
-    {"radius_decay", kReal, "1", 0.62, 0.2, 1, 0.4, 0.8,
-     "radius of a side branch over its parent's"},
-    {"tropism", kReal, "1", 0.18, -1, 1, -0.3, 0.5, "bends branches up, or down where negative"},
-    {"curvature", kReal, "1", 0.4, 0, 1, 0, 0.8, "crookedness of the branches"},
-    {"flare", kReal, "1", 0.7, 0, 3, 0, 1.5, "widening of the trunk at its base"},
-    {"leaf_scale", kReal, "1", 1, 0.1, 3, 0.5, 1.5,
-     "size of leaves over the size that just fills the crown"},
-    {"leaf_hue", kReal, "1", 0.14, 0, 1, 0, 1,
-     "from deep green (0) over green, yellow and orange to red (1)"},
-    {"colour_variation", kReal, "1", 0.5, 0, 1, 0, 1, "spread of colour between leaves and trees"},
-    {"bark_tone", kReal, "1", 0.55, 0, 1, 0, 1, "from grey (0) to brown (1)"},
-};
-
 // Kinds: the trunk, the leader that continues it, the limbs of the trunk, the side branches of
 // other branches. Every node becomes a leader and a drawn number of others.
 enum Kind : std::uint8_t { kTrunk, kLeader, kLimb, kSide };
 constexpr Grammar kGrammar = [] {
   Grammar g;
   g.kinds = 4;
-  g.first_rule = {0, 1, 2, 3, 4, 4, 4, 4, 4};
+  for (std::size_t i = 0; i < g.first_rule.size(); ++i)
+    g.first_rule[i] = static_cast<std::uint8_t>(i < 4 ? i : 4);
   for (std::size_t i = 0; i < 4; ++i) {
     g.rules[i].count[kLeader] = 1;
     g.rules[i].fixed = 1;
@@ -91,11 +65,20 @@ void set_kinds(const Parameters& p, TreePlan& plan) {
   const auto real = [&p](TreeParameter i) { return static_cast<float>(p.real(i)); };
   const float angle = real(kTreeBranchAngle) * 0.159154943F, decay = real(kTreeLengthDecay);
   const float tropism = real(kTreeTropism), bend_up = 0.35F * tropism;
-  KindPlan side{0.75F * angle, 1.15F * angle,  real(kTreeAngleVariation),
-                0.381966011F,  0.4F,           1.0F,
-                0.85F * decay, 1.25F * decay,  real(kTreeRadiusDecay),
-                tropism,       bend_up,        real(kTreeCurvature),
-                false,         LeavesOn::kTips};
+  KindPlan side{.angle_high = 0.75F * angle,
+                .angle_low = 1.15F * angle,
+                .angle_variation = real(kTreeAngleVariation),
+                .whorl = 0.381966011F,
+                .along_low = 0.4F,
+                .along_high = 1.0F,
+                .length_high = 0.85F * decay,
+                .length_foot = 1.25F * decay,
+                .radius = real(kTreeRadiusDecay),
+                .lift = tropism,
+                .bend_up = bend_up,
+                .curvature = real(kTreeCurvature),
+                .leader = false,
+                .leaves = LeavesOn::kTips};
   plan.kinds[kSide] = side;
   side.along_low = 0.7F;
   plan.kinds[kLimb] = side;
@@ -107,8 +90,20 @@ void set_kinds(const Parameters& p, TreePlan& plan) {
   plan.kinds[kLeader] = plan.kinds[kTrunk] = side;
 }
 
-constexpr FoliagePlan kBroadleaf{&kLeaflets, &kPatch, 0.7F, 0.7F, 0.0F, -0.25F, 0.9F, 0.7F,
-                                 0.3F,       0.25F,   0.0F, 1.0F, 1.0F, 1.6F,   1.0F};
+constexpr FoliagePlan kBroadleaf{.near = &kLeaflets,
+                                 .far = &kPatch,
+                                 .random = 0.7F,
+                                 .out = 0.7F,
+                                 .branch = 0.0F,
+                                 .up = -0.25F,
+                                 .side_random = 0.9F,
+                                 .side_out = 0.7F,
+                                 .side_up = 0.3F,
+                                 .normal_up = 0.25F,
+                                 .from = 0.0F,
+                                 .cluster = 1.0F,
+                                 .fill = 1.0F,
+                                 .density = 1.6F};
 constexpr std::array<std::array<float, 3>, 5> kLeafRamp = {{{0.21F, 0.33F, 0.17F},
                                                             {0.32F, 0.42F, 0.17F},
                                                             {0.62F, 0.56F, 0.17F},
@@ -122,7 +117,7 @@ class TreeType final : public PlannedTree {
     return "a broadleaf tree grown by a stochastic L-system; cost is proportional to "
            "branches^iterations";
   }
-  std::span<const ParameterSpec> parameters() const override { return kSchema; }
+  std::span<const ParameterSpec> parameters() const override { return kTreeSchema; }
   double complexity(const Parameters& p, int level) const override {
     return kLevelShares[level] * std::pow(static_cast<double>(p.integer(kTreeBranches)),
                                           static_cast<double>(p.integer(kTreeIterations)));
@@ -135,7 +130,7 @@ double TreeType::log2_cost(const Parameters& p) const {
   const double n = std::max(0.0, static_cast<double>(p.integer(kTreeIterations)));
   const double m = std::max(1.0, static_cast<double>(p.integer(kTreeBranches)));
   const double grown = std::max(n * std::log2(m + 2.0) + 5.0, 12.0);
-  const bool capped = n <= kTreeMaxIterations && m <= kSchema[kTreeBranches].hard_max;
+  const bool capped = n <= kTreeMaxIterations && m <= kTreeSchema[kTreeBranches].hard_max;
   return capped ? std::min(grown, 15.8) : grown;
 }
 

@@ -8,9 +8,9 @@ namespace {
 
 constexpr int kObjectLevels = 8;
 constexpr double kMaxName = UINT32_MAX;
-constexpr std::array kSchema{models::ParameterSpec{"mesh", models::ParameterType::kInteger, "", 0,
-                                                   0, kMaxName, 0, kMaxName, "name of the mesh",
-                                                   models::ParameterSource::kPlaced}};
+constexpr std::array kSchema{
+    models::placed(models::integer_parameter("mesh", "", 0, models::HardRange{0, kMaxName},
+                                             models::SoftRange{0, kMaxName}, "name of the mesh"))};
 
 class ObjectType final : public models::ModelType {
  public:

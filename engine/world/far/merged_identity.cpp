@@ -10,17 +10,18 @@ namespace {
 
 using models::ParameterSpec;
 
-constexpr models::ParameterType kInteger = models::ParameterType::kInteger;
-constexpr models::ParameterSource kPlaced = models::ParameterSource::kPlaced;
 constexpr std::uint64_t kEdition = 4;  // version of the meshes of merged_models.cpp
 
 constexpr ParameterSpec kSchema[kMergedParameterCount] = {
-    {"block_x", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along x",
-     kPlaced},
-    {"block_z", kInteger, "nodes", 0, -0x1.0p31, 0x1.0p31 - 1, -1000, 1000, "node along z",
-     kPlaced},
-    {"node_level", kInteger, "", 1, 1, kMaxMergedLevel, 1, kMaxMergedLevel,
-     "the node is 2^node_level blocks wide and long", kPlaced},
+    models::placed(models::integer_parameter("block_x", "nodes", 0,
+                                             models::HardRange{-0x1.0p31, 0x1.0p31 - 1},
+                                             models::SoftRange{-1000, 1000}, "node along x")),
+    models::placed(models::integer_parameter("block_z", "nodes", 0,
+                                             models::HardRange{-0x1.0p31, 0x1.0p31 - 1},
+                                             models::SoftRange{-1000, 1000}, "node along z")),
+    models::placed(models::integer_parameter(
+        "node_level", "", 1, models::HardRange{1, kMaxMergedLevel},
+        models::SoftRange{1, kMaxMergedLevel}, "the node is 2^node_level blocks wide and long")),
 };
 
 }  // namespace

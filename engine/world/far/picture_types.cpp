@@ -17,8 +17,10 @@ using models::Parameters;
 using models::ParameterSpec;
 
 constexpr ParameterSpec kPictureSchema[] = {
-    {"number", models::ParameterType::kInteger, "", 0, 0, core::kMaxPictures - 1, 0,
-     core::kMaxPictures - 1, "number of the impostor", models::ParameterSource::kPlaced}};
+    models::placed(models::integer_parameter(
+        "number", "", 0, models::HardRange{0, core::kMaxPictures - 1},
+        models::SoftRange{0, core::kMaxPictures - 1}, "number of the impostor")),
+};
 
 class PictureType final : public ModelType {
  public:

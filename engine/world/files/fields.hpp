@@ -3,7 +3,7 @@
 // file. It reads no text (table_reader.hpp). Internal to world.
 #pragma once
 
-#include "engine/models/number_spec.hpp"
+#include "engine/models/model_type.hpp"
 #include "engine/world/files/table_reader.hpp"
 #include "engine/world/files/toml_values.hpp"
 #include "engine/world/world.hpp"

@@ -16,11 +16,15 @@ using namespace psygen;
 enum FenceParameter : std::size_t { kSeed, kPosts, kSpacingM, kHeightM };
 
 constexpr models::ParameterSpec kFenceSchema[] = {
-    {"seed", models::ParameterType::kInteger, "", 1, -0x1p63, 0x1p63, 0, 1000,
-     "which of all fences", models::ParameterSource::kPlaced},
-    {"posts", models::ParameterType::kInteger, "1", 8, 2, 64, 2, 24, "number of posts"},
-    {"spacing_m", models::ParameterType::kReal, "m", 1.5, 0.2, 10, 0.5, 3, "from post to post"},
-    {"height_m", models::ParameterType::kReal, "m", 1.2, 0.2, 5, 0.6, 2, "of the posts"},
+    models::placed(models::integer_parameter("seed", "", 1, models::HardRange{-0x1p63, 0x1p63},
+                                             models::SoftRange{0, 1000},
+                                             "selects one of all fences")),
+    models::integer_parameter("posts", "1", 8, models::HardRange{2, 64}, models::SoftRange{2, 24},
+                              "number of posts"),
+    models::real_parameter("spacing_m", "m", 1.5, models::HardRange{0.2, 10},
+                           models::SoftRange{0.5, 3}, "from post to post"),
+    models::real_parameter("height_m", "m", 1.2, models::HardRange{0.2, 5},
+                           models::SoftRange{0.6, 2}, "of the posts"),
 };
 
 // Writes boxes into the spans of one mesh.

@@ -4,8 +4,6 @@
 
 #include <limits>
 
-#include "engine/physics/convert.hpp"
-
 namespace psygen::physics {
 namespace {
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "engine/physics/convert.hpp"
+#include "engine/physics/shapes.hpp"
 #include "tests/engine/physics/scene.hpp"
 
 namespace psygen::physics {

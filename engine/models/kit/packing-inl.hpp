@@ -1,10 +1,10 @@
 // Octahedral normals (packing.hpp) for SIMD lanes. Kernels include it after foreach_target.h and
 // before their own namespace, once per instruction set; hence the unusual include guard.
-#if defined(PSYGEN_MODELS_OCTAHEDRAL_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef PSYGEN_MODELS_OCTAHEDRAL_INL
-#undef PSYGEN_MODELS_OCTAHEDRAL_INL
+#if defined(PSYGEN_MODELS_PACKING_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef PSYGEN_MODELS_PACKING_INL
+#undef PSYGEN_MODELS_PACKING_INL
 #else
-#define PSYGEN_MODELS_OCTAHEDRAL_INL
+#define PSYGEN_MODELS_PACKING_INL
 #endif
 
 #include <hwy/highway.h>

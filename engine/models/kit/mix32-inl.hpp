@@ -1,11 +1,11 @@
 // The 32-bit hash of mix32.hpp for SIMD lanes, and vectors of consecutive integers. Kernels include
 // it after foreach_target.h and before their own namespace, once per instruction set; hence the
 // unusual include guard.
-#if defined(PSYGEN_MODELS_SIMD_HASH_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef PSYGEN_MODELS_SIMD_HASH_INL
-#undef PSYGEN_MODELS_SIMD_HASH_INL
+#if defined(PSYGEN_MODELS_MIX32_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef PSYGEN_MODELS_MIX32_INL
+#undef PSYGEN_MODELS_MIX32_INL
 #else
-#define PSYGEN_MODELS_SIMD_HASH_INL
+#define PSYGEN_MODELS_MIX32_INL
 #endif
 
 #include <hwy/highway.h>
