@@ -31,7 +31,7 @@ struct Finished {
 struct LedgerText {
   JobKey key;
   std::string part;  // "shard 3 of 8", "rank 2"
-  BlockRun share;    // the blocks that the part has to finish
+  BlockRun share;    // an upper bound of the part's blocks
   std::vector<Finished> finished;
   std::size_t whole_bytes = 0;  // size up to the end of the last whole line
 };

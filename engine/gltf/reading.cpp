@@ -55,7 +55,7 @@ core::Result<void> count_up(std::uint64_t& sum, std::uint64_t more, std::uint64_
                             std::string_view what) {
   if (more > most || sum > most - more) {
     return core::fail(ErrorCode::kOverBudget,
-                      fmt::format("has more than the allowed {} {}", most, what));
+                      fmt::format("has more than {} {}, the limit", most, what));
   }
   sum += more;
   return {};

@@ -1,6 +1,5 @@
 #include "engine/platform/keys.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace psygen::platform {
@@ -54,12 +53,6 @@ std::string_view name_of(MouseButton button) {
 }
 std::string_view name_of(PadButton button) {
   return kPadButtonNames[static_cast<std::size_t>(button)];
-}
-
-std::optional<Key> key_named(std::string_view name) {
-  const auto found = std::ranges::find(kKeyNames, name);
-  if (found == kKeyNames.end()) return std::nullopt;
-  return static_cast<Key>(found - kKeyNames.begin());
 }
 
 }  // namespace psygen::platform

@@ -1,6 +1,5 @@
 // Keys, mouse buttons, and the buttons and axes of gamepads, with their names for binding files and
-// menus. Window::label_of() gives the label on a key's cap. Plain values, any thread. Searching a
-// name is linear.
+// menus. Window::label_of() gives the label on a key's cap. Plain values, any thread.
 #pragma once
 
 #include <bitset>
@@ -63,7 +62,5 @@ using PadButtonSet = std::bitset<kPadButtons>;
 std::string_view name_of(Key key);
 std::string_view name_of(MouseButton button);
 std::string_view name_of(PadButton button);
-// The key with exactly this name, or nothing.
-std::optional<Key> key_named(std::string_view name);
 
 }  // namespace psygen::platform

@@ -117,7 +117,7 @@ TEST(Recording, RejectsActionsAndStepsThatTheGameLacks) {
   EXPECT_THAT(Replay::create(played.recording, other, kStepS).error().message,
               HasSubstr("\"move_x\""));
   EXPECT_THAT(Replay::create(played.recording, recording_actions(), 1.0 / 30).error().message,
-              HasSubstr("60 steps a second"));
+              HasSubstr("60 steps per second"));
 }
 
 TEST(Recording, RejectsEveryFileThatIsTruncatedOrDamagedInAByte) {

@@ -196,7 +196,7 @@ TEST(SaveGame, TheModeDecidesAboutExistingAndMissingFiles) {
   const std::filesystem::path file = folder / "game.save";
   const auto missing = SaveGame::open(file, testing::kWorld, OpenMode::kOpenExisting);
   ASSERT_FALSE(missing);
-  EXPECT_EQ(missing.error().message, file.string() + ": there is no such file");
+  EXPECT_EQ(missing.error().message, file.string() + ": the file does not exist");
   ASSERT_TRUE(SaveGame::open(file, testing::kWorld, OpenMode::kCreateNew));
   ASSERT_TRUE(SaveGame::open(file, testing::kWorld, OpenMode::kOpenExisting));
   const auto there = SaveGame::open(file, testing::kWorld, OpenMode::kCreateNew);
