@@ -2,14 +2,13 @@
 
 #include <QApplication>
 #include <QCommandLineParser>
-#include <QSettings>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <glm/trigonometric.hpp>
 
 #include "editor/pictures/picture_server.hpp"
-#include "editor/shell/first_world.hpp"
+#include "editor/shell/default_world.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
 #include "engine/cli/shipped_files.hpp"
@@ -27,30 +26,30 @@ struct Arguments {
   app::SessionOptions session;
 };
 
-int usage(const QString& sentence) {
-  std::fprintf(stderr, "psygen-editor: %s\n", qPrintable(sentence));
+int usage_error(const QString& message) {
+  std::fprintf(stderr, "psygen-editor: %s\n", qPrintable(message));
   return 2;
 }
 
-// Nothing on success, else the exit code.
+// Returns the exit code of an error, or nullopt.
 std::optional<int> read_arguments(const QApplication& app, Arguments& arguments) {
   QCommandLineParser parser;
-  parser.setApplicationDescription("Edits a world of psygen while it is drawn.");
+  parser.setApplicationDescription("Edits a world while psygen renders it.");
   parser.addHelpOption();
   parser.addVersionOption();
-  parser.addPositionalArgument("world", "A world file, or the name of one that comes with psygen.",
+  parser.addPositionalArgument("world", "A world file, or the name of a world of psygen.",
                                "[world]");
   parser.addOptions({{"safe", "Open with synthesis paused, for a world that hangs."},
-                     {"preset", "Light and detail: low, medium, high, ultra.", "preset"},
+                     {"preset", "Quality: low, medium, high, ultra.", "preset"},
                      {"device", "Part of the name of the Vulkan device.", "name"},
-                     {"validation", "Vulkan validation."}});
-  if (!parser.parse(app.arguments())) return usage(parser.errorText());
+                     {"validation", "Enable Vulkan validation."}});
+  if (!parser.parse(app.arguments())) return usage_error(parser.errorText());
   if (parser.isSet("help")) parser.showHelp(0);
   if (parser.isSet("version")) parser.showVersion();
-  if (parser.positionalArguments().size() > 1) return usage("one world at a time");
+  if (parser.positionalArguments().size() > 1) return usage_error("give at most one world");
   if (parser.isSet("preset")) {
     const auto preset = render::preset_from(parser.value("preset").toStdString());
-    if (!preset) return usage(QString::fromStdString(preset.error().message));
+    if (!preset) return usage_error(QString::fromStdString(preset.error().message));
     arguments.session.preset = *preset;
   }
   arguments.file = parser.positionalArguments().value(0);
@@ -63,7 +62,7 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
 }  // namespace
 
 int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
-  // The process that draws pictures beside the view (gallery/picture_tools.hpp).
+  // The rendering process of the gallery (pictures/picture_server.hpp).
   if (argc > 1 && std::strcmp(argv[1], kPicturesOption) == 0)
     return render_pictures(std::move(plugins), argc > 2 ? argv[2] : "");
   QApplication app(argc, argv);
@@ -76,8 +75,7 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   if (const auto code = read_arguments(app, arguments)) return *code;
   if (auto ok = render::fit_software_rendering_to_threads(); !ok)
     return core::log_error(ok.error().message), 1;
-  apply_theme(QSettings().value("theme", "dark").toString());
-  apply_scale(QSettings().value("scale", 100).toInt());
+  apply_saved_look();
 
   MainWindowOptions options;
   options.session = std::move(arguments.session);
@@ -88,14 +86,16 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   options.session.plugins = std::move(plugins);
   MainWindow window(std::move(options));
   window.show();
-  const auto file = cli::find_file(
-      cli::Shipped::kWorld, arguments.file.isEmpty() ? kFirstWorld : arguments.file.toStdString());
-  if (arguments.file.isEmpty()) window.set_first_place(first_pose(), kFirstHeightM);
-  if (!file) return usage(QString::fromStdString(file.error().message));
-  if (!window.open_file(*file) && !arguments.file.isEmpty())
-    std::fprintf(stderr, "psygen-editor: the world could not be opened; the messages say why\n");
+  const auto file =
+      cli::find_file(cli::Shipped::kWorld,
+                     arguments.file.isEmpty() ? kDefaultWorld : arguments.file.toStdString());
+  if (arguments.file.isEmpty()) window.set_default_pose(default_pose(), kDefaultEyeHeightM);
+  if (!file) return usage_error(QString::fromStdString(file.error().message));
+  const core::Result<void> opened = window.open_file(*file);
+  if (!opened && !arguments.file.isEmpty())
+    std::fprintf(stderr, "psygen-editor: %s\n", opened.error().message.c_str());
   const int code = QApplication::exec();
-  // The memory of a modeler that hangs must not be torn down.
+  // A modeler that hangs may still write into memory, so the process ends without destructors.
   if (window.view().has_hung()) std::_Exit(code);
   return code;
 }

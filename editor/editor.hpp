@@ -1,4 +1,4 @@
-// The whole editor as a function, so that a program can have it with its own model types:
+// The whole editor as a function, so that a program can use it with its own model types:
 //   int main(int argc, char** argv) { return psygen::editor::run(argc, argv, {my_plugin}); }
 #pragma once
 
@@ -8,8 +8,9 @@
 
 namespace psygen::editor {
 
-// Opens the editor's window and returns the exit code when it is closed: 0, 1 for failures, 2 for
-// usage, as psygen's commands. Plugins add model types, components and systems to every session.
+// Opens the editor's window and returns the exit code after it is closed: 0, 1 for failures, 2 for
+// usage errors, like psygen's commands. Plugins add model types, components and systems to every
+// session.
 int run(int argc, char** argv, std::vector<app::Plugin> plugins = {});
 
 }  // namespace psygen::editor

@@ -1,4 +1,4 @@
-// The editor with the model types that come with psygen.
+// The editor with the model types of psygen.
 #include "editor/editor.hpp"
 
 int main(int argc, char** argv) {

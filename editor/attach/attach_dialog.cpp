@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kListMs = 1000;
 
-// Without the folder of the program.
+// The command without the folder of its program.
 QString command_text(const std::string& command) {
   const std::size_t end = command.find(' ');
   const std::size_t slash = command.rfind('/', end);
@@ -63,10 +63,10 @@ void AttachDialog::list() {
   attach_->setEnabled(!endpoints_.empty());
   hint_->setText(!found ? QString::fromStdString(found.error().message)
                  : endpoints_.empty()
-                     ? tr("Nothing can be inspected now. Start a flight with <b>psygen fly "
-                          "--inspect</b>, or a game with the plugin inspect; it appears here.")
-                     : tr("Your changes go to the program while it is attached. When you detach, "
-                          "it is as it was."));
+                     ? tr("No program can be inspected now. Start a flight with <b>psygen fly "
+                          "--inspect</b>, or a game with the plugin inspect.")
+                     : tr("The attached program gets your changes. Detaching restores its original "
+                          "state."));
 }
 
 std::optional<inspect::Endpoint> AttachDialog::chosen() const {

@@ -1,4 +1,5 @@
-// Chooses a running game or flight that can be inspected. The list follows what runs. Main thread.
+// Lists the running games and flights that can be inspected, and lets the user choose one. Updates
+// the list every second. Main thread.
 #pragma once
 
 #include <QDialog>
@@ -14,12 +15,13 @@ class QPushButton;
 
 namespace psygen::editor {
 
+// The dialog "Attach". Modal.
 class AttachDialog final : public QDialog {
   Q_OBJECT
 
  public:
   explicit AttachDialog(QWidget* parent);
-  // The one that was chosen, once the dialog is accepted.
+  // The chosen program, after the dialog was accepted.
   std::optional<inspect::Endpoint> chosen() const;
 
  private:

@@ -64,33 +64,33 @@ RemotePanel::RemotePanel(RemoteSession& remote, QWidget* parent)
     : QWidget(parent),
       remote_(remote),
       title_(words_label()),
-      figures_(words_label()),
+      statistics_(words_label()),
       kinds_(words_label()),
       bars_(new SystemBars),
       map_(new CacheMap),
-      pause_(new QCheckBox(tr("Pause it"))),
-      follow_(new QCheckBox(tr("Its camera follows mine"))),
+      pause_(new QCheckBox(tr("Pause program"))),
+      follow_(new QCheckBox(tr("Sync its camera to this view"))),
       keep_(new QCheckBox(tr("Keep my changes"))),
       go_(new QPushButton(tr("Go to its camera"))),
       detach_(new QPushButton(tr("Detach"))) {
   auto* colours = new QComboBox;
   colours->addItems({tr("State"), tr("Level"), tr("PLP layer"), tr("Cost")});
-  colours->setAccessibleName(tr("What colours of its map mean"));
+  colours->setAccessibleName(tr("Colouring of the program's map"));
   keep_->setToolTip(
-      tr("When you detach, the program keeps the world that you have made. Otherwise "
-         "it is as it was before."));
+      tr("Detaching leaves your world in the program. Without this option it restores the "
+         "program's original state."));
   auto* content = new QWidget;
   auto* layout = new QVBoxLayout(content);
-  auto* leave_row = new QHBoxLayout;
-  leave_row->addWidget(detach_);
-  leave_row->addWidget(keep_, 1);
+  auto* detach_row = new QHBoxLayout;
+  detach_row->addWidget(detach_);
+  detach_row->addWidget(keep_, 1);
   layout->addWidget(title_);
-  layout->addLayout(leave_row);
+  layout->addLayout(detach_row);
   layout->addWidget(pause_);
   layout->addWidget(follow_);
   layout->addWidget(go_, 0, Qt::AlignLeft);
-  layout->addWidget(figures_);
-  layout->addWidget(new QLabel(tr("<b>Systems</b>: mean, and the longest")));
+  layout->addWidget(statistics_);
+  layout->addWidget(new QLabel(tr("<b>Systems</b>: mean (bar) and maximum (mark)")));
   layout->addWidget(bars_);
   layout->addWidget(kinds_);
   layout->addWidget(colours);
@@ -107,13 +107,13 @@ RemotePanel::RemotePanel(RemoteSession& remote, QWidget* parent)
   connect(colours, &QComboBox::activated, map_,
           [this](int index) { map_->set_colour(static_cast<MapColour>(index)); });
   connect(pause_, &QCheckBox::toggled, this, [this](bool on) { remote_.set_paused(on); });
-  connect(follow_, &QCheckBox::toggled, this, &RemotePanel::follow_me);
+  connect(follow_, &QCheckBox::toggled, this, &RemotePanel::sync_camera_requested);
   connect(go_, &QPushButton::clicked, this, [this] {
-    if (remote_.pose()) Q_EMIT go_to(*remote_.pose());
+    if (remote_.pose()) Q_EMIT go_to_requested(*remote_.pose());
   });
   connect(detach_, &QPushButton::clicked, this, [this] { remote_.detach(keep_->isChecked()); });
   connect(&remote_, &RemoteSession::attached, this, &RemotePanel::show_hello);
-  connect(&remote_, &RemoteSession::figures, this, &RemotePanel::show_figures);
+  connect(&remote_, &RemoteSession::statistics, this, &RemotePanel::show_statistics);
   connect(&remote_, &RemoteSession::systems, this, &RemotePanel::show_systems);
   connect(&remote_, &RemoteSession::entities, this, &RemotePanel::show_entities);
   connect(&remote_, &RemoteSession::ended, this, &RemotePanel::show_end);
@@ -121,7 +121,7 @@ RemotePanel::RemotePanel(RemoteSession& remote, QWidget* parent)
 }
 
 void RemotePanel::show_hello(const QJsonObject& hello) {
-  title_->setText(tr("<b>%1</b> in process %2, drawn by %3%4")
+  title_->setText(tr("<b>%1</b> in process %2, on %3%4")
                       .arg(hello["world"].toString().toHtmlEscaped())
                       .arg(hello["pid"].toInt())
                       .arg(hello["device"].toString().toHtmlEscaped(),
@@ -130,15 +130,15 @@ void RemotePanel::show_hello(const QJsonObject& hello) {
     widget->setEnabled(true);
 }
 
-void RemotePanel::show_figures(const QJsonObject& f) {
+void RemotePanel::show_statistics(const QJsonObject& f) {
   const QJsonObject cache = f["cache"].toObject();
   const auto bytes = [&](const char* name) {
     return kPanelLocale.formattedDataSize(static_cast<qint64>(cache[name].toDouble()));
   };
-  figures_->setText(
-      tr("%1 s into it%2. Frames take %3 ms, at most %4 ms. %5 triangles in %6 draws, error %7 px, "
-         "%8 % of the picture missing.<br>%9 waiting; %10 modelers, %11 % busy. "
-         "Cache: %12 of %13 in %14 meshes.")
+  statistics_->setText(
+      tr("Running for %1 s%2. Frame time %3 ms (max %4). %5 triangles in %6 draws, error %7 px, "
+         "%8 % of pixels missing.<br>%9 queued; %10 modelers, %11 % busy. "
+         "Cache: %14 meshes, %12 of %13.")
           .arg(f["time_s"].toDouble(), 0, 'f', 1)
           .arg(f["paused"].toBool() ? tr(", paused") : QString())
           .arg(f["frame_ms"].toDouble(), 0, 'f', 1)
@@ -158,15 +158,14 @@ void RemotePanel::show_systems(const QJsonObject& object) {
   std::vector<SystemBars::Bar> bars;
   for (const QJsonValue& value : object["systems"].toArray()) {
     const QJsonObject system = value.toObject();
-    SystemBars::Bar bar{system["name"].toString(),
-                        system["mean_ms"].toDouble(),
-                        system["longest_ms"].toDouble(),
-                        {}};
-    bar.words = tr("%1: mean %2 ms, longest %3 ms\nreads %4\nwrites %5")
-                    .arg(bar.name)
-                    .arg(bar.mean_ms, 0, 'f', 3)
-                    .arg(bar.longest_ms, 0, 'f', 3)
-                    .arg(names(system["reads"]), names(system["writes"]));
+    SystemBars::Bar bar{.name = system["name"].toString(),
+                        .mean_ms = system["mean_ms"].toDouble(),
+                        .max_ms = system["longest_ms"].toDouble()};
+    bar.tool_tip = tr("%1: mean %2 ms, maximum %3 ms\nreads %4\nwrites %5")
+                       .arg(bar.name)
+                       .arg(bar.mean_ms, 0, 'f', 3)
+                       .arg(bar.max_ms, 0, 'f', 3)
+                       .arg(names(system["reads"]), names(system["writes"]));
     bars.push_back(std::move(bar));
   }
   bars_->show_bars(std::move(bars));
@@ -184,7 +183,7 @@ void RemotePanel::show_entities(const QJsonObject& object) {
                 .arg(of["entities"].toInt())
                 .arg(of["drawn"].toInt());
   }
-  kinds_->setText(tr("<b>Entities</b>: %1<table><tr><td></td><td>there&nbsp;&nbsp;</td>"
+  kinds_->setText(tr("<b>Entities</b>: %1<table><tr><td></td><td>number&nbsp;&nbsp;</td>"
                      "<td>with a mesh</td></tr>%2</table>")
                       .arg(object["entities"].toInt())
                       .arg(rows));
@@ -198,8 +197,8 @@ void RemotePanel::show_entities(const QJsonObject& object) {
 }
 
 void RemotePanel::show_end(const QString&) {
-  title_->setText(tr("Nothing is attached. File, Attach … lists what can be."));
-  figures_->clear();
+  title_->setText(tr("No program is attached. Choose one with File > Attach …"));
+  statistics_->clear();
   kinds_->clear();
   bars_->show_bars({});
   map_->show_cells({}, 0, 0.9);
@@ -207,7 +206,7 @@ void RemotePanel::show_end(const QString&) {
     const QSignalBlocker quiet(box);
     box->setChecked(false);
   }
-  Q_EMIT follow_me(false);
+  Q_EMIT sync_camera_requested(false);
   for (QWidget* widget : std::initializer_list<QWidget*>{pause_, follow_, keep_, go_, detach_})
     widget->setEnabled(false);
 }

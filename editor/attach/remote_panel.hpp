@@ -1,5 +1,5 @@
-// What an attached session does: figures, times of its systems, its entities and a map of its
-// cache, and the commands that it takes. Main thread.
+// The panel "Attached": statistics, system times, entities and cache map of an attached session,
+// and its commands. Main thread.
 #pragma once
 
 #include <QJsonObject>
@@ -17,28 +17,29 @@ namespace psygen::editor {
 class CacheMap;
 class SystemBars;
 
+// Shows the last answers of the session, and an empty panel without one.
 class RemotePanel final : public QWidget {
   Q_OBJECT
 
  public:
-  // Of a session that outlives the panel.
+  // The session outlives the panel.
   explicit RemotePanel(RemoteSession& remote, QWidget* parent = nullptr);
 
  Q_SIGNALS:
-  // The view shall show what the attached session's camera sees.
-  void go_to(const psygen::core::CameraPose& pose);
-  // Whether the attached session's camera shall follow the view's.
-  void follow_me(bool on);
+  // The user asks to move the view to the session's camera.
+  void go_to_requested(const psygen::core::CameraPose& pose);
+  // The user switches the sync of the session's camera to the view on or off.
+  void sync_camera_requested(bool on);
 
  private:
   void show_hello(const QJsonObject& hello);
-  void show_figures(const QJsonObject& figures);
+  void show_statistics(const QJsonObject& statistics);
   void show_systems(const QJsonObject& systems);
   void show_entities(const QJsonObject& entities);
   void show_end(const QString& sentence);
 
   RemoteSession& remote_;
-  QLabel *title_, *figures_, *kinds_;
+  QLabel *title_, *statistics_, *kinds_;
   SystemBars* bars_;
   CacheMap* map_;
   QCheckBox *pause_, *follow_, *keep_;

@@ -9,7 +9,8 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kPollMs = 30, kPollsAFigure = 8, kPollsAMap = 16, kLeavingMs = 5000;
+constexpr int kPollMs = 30, kMaxDetachMs = 5000;
+constexpr int kPollsPerStatistics = 8, kPollsPerMap = 16;
 
 }  // namespace
 
@@ -44,47 +45,47 @@ core::Result<void> RemoteSession::attach(const inspect::Endpoint& endpoint) {
   if (!client) return tl::unexpected(client.error());
   client_ = std::move(*client);
   endpoint_ = endpoint;
-  asked_.clear();
+  unanswered_.clear();
   hello_ = {};
   greeted_ = world_is_sent_ = false;
   next_world_.reset();
   pose_.reset();
   polls_ = 0;
-  refusal_.clear();
-  leaving_.invalidate();
-  ask("hello", {{"protocol", inspect::kProtocol}});
-  ask("parameters");
+  rejection_.clear();
+  detaching_.invalidate();
+  send("hello", {{"protocol", inspect::kProtocol}});
+  send("parameters");
   timer_.start(kPollMs);
   return {};
 }
 
 void RemoteSession::detach(bool keep) {
   if (!client_) return;
-  if (leaving_.isValid()) return;
+  if (detaching_.isValid()) return;
   if (!keep) return end({});
-  // The connection stays open until it is answered, so that nothing sent before is lost.
+  // The connection stays open until the answer, so that nothing sent before is lost.
   if (next_world_) send_world();
-  ask("detach", {{"keep", true}});
-  leaving_.start();
+  send("detach", {{"keep", true}});
+  detaching_.start();
 }
 
-void RemoteSession::end(const QString& sentence) {
+void RemoteSession::end(const QString& reason) {
   timer_.stop();
   client_.reset();
-  leaving_.invalidate();
-  Q_EMIT ended(sentence);
+  detaching_.invalidate();
+  Q_EMIT ended(reason);
 }
 
-void RemoteSession::ask(const QString& what, QJsonObject request) {
+void RemoteSession::send(const QString& command, QJsonObject request) {
   if (!client_) return;
-  request["do"] = what;
-  asked_.push_back(what);
+  request["do"] = command;
+  unanswered_.push_back(command);
   client_->ask(QJsonDocument(request).toJson(QJsonDocument::Compact).toStdString());
 }
 
 void RemoteSession::send_world() {
   world_is_sent_ = true;
-  ask("set_world", {{"text", QString::fromStdString(*std::exchange(next_world_, std::nullopt))}});
+  send("set_world", {{"text", QString::fromStdString(*std::exchange(next_world_, std::nullopt))}});
 }
 
 void RemoteSession::set_world(const std::string& text) {
@@ -94,12 +95,12 @@ void RemoteSession::set_world(const std::string& text) {
 }
 
 void RemoteSession::set_paused(bool paused) {
-  ask("pause", {{"on", paused}});
+  send("pause", {{"on", paused}});
 }
 
 void RemoteSession::set_pose(const std::optional<core::CameraPose>& pose) {
-  if (asked_.count("pose") > 1 && pose) return;  // the next one will do
-  ask("pose", {{"pose", pose ? QJsonValue(pose_object(*pose)) : QJsonValue()}});
+  if (unanswered_.count("pose") > 1 && pose) return;  // a later pose replaces this one
+  send("pose", {{"pose", pose ? QJsonValue(pose_object(*pose)) : QJsonValue()}});
 }
 
 void RemoteSession::poll() {
@@ -110,52 +111,53 @@ void RemoteSession::poll() {
   }
   if (!client_) return;
   if (!client_->is_open()) {
-    if (leaving_.isValid()) return end({});
-    return end(refusal_.isEmpty() ? tr("The program that was attached has ended.") : refusal_);
+    if (detaching_.isValid()) return end({});
+    return end(rejection_.isEmpty() ? tr("The attached program has ended.") : rejection_);
   }
-  if (leaving_.isValid()) {
-    if (leaving_.hasExpired(kLeavingMs)) end(tr("The program did not answer: it is as it was."));
+  if (detaching_.isValid()) {
+    if (detaching_.hasExpired(kMaxDetachMs))
+      end(tr("The program did not answer. It keeps its original state."));
     return;
   }
   if (!greeted_) return;
   ++polls_;
-  if (polls_ % kPollsAFigure == 0 && !asked_.contains("systems")) {
-    ask("figures");
-    ask("systems");
+  if (polls_ % kPollsPerStatistics == 0 && !unanswered_.contains("systems")) {
+    send("figures");
+    send("systems");
   }
-  if (polls_ % kPollsAMap == 0 && !asked_.contains("entities")) ask("entities");
+  if (polls_ % kPollsPerMap == 0 && !unanswered_.contains("entities")) send("entities");
 }
 
 void RemoteSession::take(const QJsonObject& answer) {
-  const QString what = asked_.isEmpty() ? QString() : asked_.takeFirst();
+  const QString command = unanswered_.isEmpty() ? QString() : unanswered_.takeFirst();
   const QString error = answer["error"].toString();
-  if (what == "set_world") {
+  if (command == "set_world") {
     world_is_sent_ = false;
     if (next_world_) {
       send_world();
     } else if (error.isEmpty()) {
-      Q_EMIT world_taken();
+      Q_EMIT world_applied();
     }
   }
   if (!answer["ok"].toBool()) {
     if (greeted_) {
-      Q_EMIT told(error);
+      Q_EMIT message_posted(error);
     } else {
-      refusal_ = error;
+      rejection_ = error;
     }
     return;
   }
-  if (what == "hello") hello_ = answer;
-  if (what == "parameters" && !greeted_) {
+  if (command == "hello") hello_ = answer;
+  if (command == "parameters" && !greeted_) {
     greeted_ = true;
     Q_EMIT attached(hello_, answer["text"].toString().toStdString());
   }
-  if (what == "figures") {
+  if (command == "figures") {
     pose_ = pose_of(answer["camera"].toObject());
-    Q_EMIT figures(answer);
+    Q_EMIT statistics(answer);
   }
-  if (what == "systems") Q_EMIT systems(answer);
-  if (what == "entities") Q_EMIT entities(answer);
+  if (command == "systems") Q_EMIT systems(answer);
+  if (command == "entities") Q_EMIT entities(answer);
 }
 
 }  // namespace psygen::editor

@@ -8,7 +8,7 @@
 namespace psygen::editor {
 
 SystemBars::SystemBars(QWidget* parent) : QWidget(parent) {
-  setAccessibleName(tr("Times of systems"));
+  setAccessibleName(tr("System times"));
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   setToolTip(" ");
 }
@@ -33,7 +33,7 @@ void SystemBars::paintEvent(QPaintEvent*) {
   double max_ms = 0.1;
   int name_width = 0;
   for (const Bar& bar : bars_) {
-    max_ms = std::max(max_ms, bar.longest_ms);
+    max_ms = std::max(max_ms, bar.max_ms);
     name_width = std::max(name_width, fontMetrics().horizontalAdvance(bar.name));
   }
   const int number_width = fontMetrics().horizontalAdvance("00.00 ms ");
@@ -45,8 +45,7 @@ void SystemBars::paintEvent(QPaintEvent*) {
     painter.drawText(2, y, name_width, row_height(), Qt::AlignVCenter, bar.name);
     painter.fillRect(left, y + 3, std::max(1, length(bar.mean_ms)), row_height() - 6,
                      palette().color(QPalette::Highlight));
-    painter.fillRect(left + length(bar.longest_ms), y + 3, 2, row_height() - 6,
-                     QColor(230, 150, 40));
+    painter.fillRect(left + length(bar.max_ms), y + 3, 2, row_height() - 6, QColor(230, 150, 40));
     painter.drawText(left + room, y, number_width, row_height(), Qt::AlignVCenter | Qt::AlignRight,
                      tr("%1 ms").arg(bar.mean_ms, 0, 'f', 2));
     y += row_height();
@@ -57,7 +56,7 @@ bool SystemBars::event(QEvent* event) {
   if (event->type() != QEvent::ToolTip) return QWidget::event(event);
   const auto* help = static_cast<QHelpEvent*>(event);
   const auto row = static_cast<std::size_t>(std::max(0, help->pos().y() - 2) / row_height());
-  QToolTip::showText(help->globalPos(), row < bars_.size() ? bars_[row].words : QString(), this);
+  QToolTip::showText(help->globalPos(), row < bars_.size() ? bars_[row].tool_tip : QString(), this);
   return true;
 }
 

@@ -1,5 +1,4 @@
-// The times of systems as bars, one below the other: the mean, and a mark at the longest. Main
-// thread.
+// System times as bars: the mean, and a mark at the maximum. Main thread.
 #pragma once
 
 #include <QString>
@@ -8,14 +7,16 @@
 
 namespace psygen::editor {
 
+// One bar per system, in the given order.
 class SystemBars final : public QWidget {
   Q_OBJECT
 
  public:
+  // Times of one system per frame.
   struct Bar {
     QString name;
-    double mean_ms = 0, longest_ms = 0;
-    QString words;  // what the mouse says
+    double mean_ms = 0, max_ms = 0;
+    QString tool_tip = {};
   };
   explicit SystemBars(QWidget* parent = nullptr);
   void show_bars(std::vector<Bar> bars);

@@ -1,5 +1,7 @@
 #include "editor/cost/block_cost.hpp"
 
+#include <QLocale>
+#include <QObject>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +29,7 @@ std::string toml_of(const world::WorldField& field, double value) {
   return world::toml_range(std::min(field.numbers[0], value), value, integer);
 }
 
-// A text with one value after the other: where the value stands is found once.
+// Makes texts that differ in one value. Finds the position of the value only once.
 class TextsOfField {
  public:
   TextsOfField(const std::string& text, const world::TextPath& path) : text_(text), path_(path) {
@@ -64,17 +66,17 @@ std::vector<double> values_of(const world::WorldField& field) {
 }  // namespace
 
 core::BlockCoord block_near(const world::World& world, core::BlockCoord around, int number) {
-  // Corners of a square, then the middles of the sides of a larger one, then both further out.
+  // The corners of a square, then the middles of the sides of a larger one, then both farther out.
   constexpr std::array<std::array<int, 2>, 8> kOffsets{
       {{-3, -3}, {3, 3}, {3, -3}, {-3, 3}, {0, -6}, {0, 6}, {-6, 0}, {6, 0}}};
   const auto& offset = kOffsets[static_cast<std::size_t>(number) % kOffsets.size()];
   const int ring = 1 + number / static_cast<int>(kOffsets.size());
-  const auto place = [](std::int64_t at, std::int64_t blocks) {
+  const auto clamped = [](std::int64_t at, std::int64_t blocks) {
     return static_cast<std::int32_t>(blocks == 0 ? at
                                                  : std::clamp<std::int64_t>(at, 0, blocks - 1));
   };
-  return {place(std::int64_t{around.x} + offset[0] * ring, world.blocks_x),
-          place(std::int64_t{around.z} + offset[1] * ring, world.blocks_z)};
+  return {clamped(std::int64_t{around.x} + offset[0] * ring, world.blocks_x),
+          clamped(std::int64_t{around.z} + offset[1] * ring, world.blocks_z)};
 }
 
 MeshCost mesh_cost(const ParsedWorld& parsed, models::ModelIndex model, const models::Parameters& p,
@@ -102,31 +104,35 @@ BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,
   return BlockSurvey(around, learnt).cost(parsed, measure);
 }
 
-std::vector<CostPoint> cost_curve(const std::string& text, const std::string& file,
-                                  const RegisterModels& register_models,
-                                  const world::WorldField& field, core::BlockCoord around,
-                                  const synthesis::CostModel* learnt,
-                                  const std::function<bool()>& go_on,
-                                  const world::FilesBeside* files) {
+std::vector<CostPoint> cost_curve(const CurveInput& input, const std::function<bool()>& go_on) {
+  const world::WorldField& field = input.field;
   std::vector<CostPoint> curve;
   if (!has_cost_curve(field)) return curve;
-  BlockSurvey survey(around, learnt);
-  const TextsOfField texts(text, field.path);
+  BlockSurvey survey(input.around, input.learnt);
+  const TextsOfField texts(input.text, field.path);
   int number = 0;
   for (const double value : values_of(field)) {
     if (!go_on()) return {};
-    CostPoint point{value, {}, {}};
+    CostPoint point{.value = value};
     const auto changed = texts.with(toml_of(field, value));
-    const auto parsed = changed ? parse_world_text(*changed, file, register_models, files)
-                                : tl::make_unexpected(changed.error());
+    const auto parsed =
+        changed ? parse_world_text(*changed, input.file, input.register_models, input.files)
+                : tl::make_unexpected(changed.error());
     if (parsed) {
       point.cost = survey.cost(**parsed, number++ % kMeasuredEvery == 0);
     } else {
-      point.refusal = parsed.error().message;
+      point.error = parsed.error().message;
     }
     curve.push_back(std::move(point));
   }
   return curve;
+}
+
+QString seconds_text(double seconds) {
+  const QLocale english(QLocale::English);
+  if (seconds < 0.0995) return QObject::tr("%1 ms").arg(english.toString(seconds * 1e3, 'g', 2));
+  if (seconds < 9.5) return QObject::tr("%1 s").arg(english.toString(seconds, 'g', 2));
+  return QObject::tr("%1 s").arg(english.toString(seconds, 'f', 0));
 }
 
 }  // namespace psygen::editor

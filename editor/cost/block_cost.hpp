@@ -1,8 +1,9 @@
-// What a world costs at full detail, per block: predicted without synthesis, and measured by making
-// some blocks. From this comes the cost of a value before anybody commits to it. Pure but for
-// clocks; any thread, with a parsed world and a cost model of its own.
+// The cost of a world per block at full detail: predicted without synthesis, and measured on a few
+// blocks. The editor shows it before an edit is applied. Pure except for clocks; any thread, with
+// its own parsed world and cost model.
 #pragma once
 
+#include <QString>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,47 +17,57 @@ namespace psygen::editor {
 // Means over some blocks of the world.
 struct BlockCost {
   double models = 0, triangles = 0, bytes = 0;
-  double seconds = 0;                      // of one core, predicted
-  std::optional<double> measured_seconds;  // of one core, if blocks were made
+  double seconds = 0;                           // on one core, predicted
+  std::optional<double> measured_seconds = {};  // on one core, if blocks were synthesised
 };
 
-// The cost of a world, of some blocks around one. `learnt`: what a cost model of the same program
-// knows (null: nothing). `measure`: also makes one of the blocks, unless that is predicted to take
-// over 12.5 ms, and takes what that took, in parts of what was predicted, for all.
+// The mean cost of blocks around a block. `learnt`: a cost model of the same program whose
+// corrections are used, or null. `measure`: also synthesises one of the blocks, unless that is
+// predicted to take over 12.5 ms, and scales the prediction by the ratio of measured to predicted
+// time.
 BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,
                      const synthesis::CostModel* learnt, bool measure);
 
-// Blocks of which means are taken: number 0, 1, … around a block, a few hundred metres apart,
-// within the world. The block is in the middle of each four of them, unless the world ends there.
+// Returns sample block number 0, 1, … around a block. Sample blocks are a few hundred metres apart
+// and inside the world. The block is in the middle of each four of them, except at the border of
+// the world.
 core::BlockCoord block_near(const world::World& world, core::BlockCoord around, int number);
 
-// What a mesh takes at full detail. Bytes are those of its vertices and of the indices that are its
-// own; without a size, as of a type that fails, they are 0.
+// The cost of one mesh at full detail. Bytes count its vertices and the indices that it does not
+// share. Triangles and bytes are 0 if the model type fails to give a size.
 struct MeshCost {
   double triangles = 0, bytes = 0;
-  double seconds = 0;  // of one core, predicted
+  double seconds = 0;  // on one core, predicted
 };
 MeshCost mesh_cost(const ParsedWorld& parsed, models::ModelIndex model, const models::Parameters& p,
                    const synthesis::CostModel& costs);
 
-// Whether numbers of a field change what is made, so that there is a curve of it.
+// True if the cost depends on the numbers of the field, so that it has a cost curve.
 bool has_cost_curve(const world::WorldField& field);
 
-// One value of a field and what the world would cost with it.
+// One value of a field and the cost of the world with it.
 struct CostPoint {
   double value = 0;
-  std::optional<BlockCost> cost;  // nothing: the value is refused
-  std::string refusal;            // then why
+  std::optional<BlockCost> cost = {};  // empty: the value is invalid
+  std::string error = {};              // message for an invalid value
 };
 
-// Costs over the soft range of a field of numbers, evenly on its scale; of ranges the highest end
-// varies. Some values are measured. Empty for other kinds of fields. `go_on` is asked between
-// values. `files` as for parse_world_text(). Some milliseconds a value.
-std::vector<CostPoint> cost_curve(const std::string& text, const std::string& file,
-                                  const RegisterModels& register_models,
-                                  const world::WorldField& field, core::BlockCoord around,
-                                  const synthesis::CostModel* learnt,
-                                  const std::function<bool()>& go_on,
-                                  const world::FilesBeside* files = nullptr);
+// Costs over the soft range of a field of numbers, evenly spaced on its scale; of a range, the
+// maximum varies. Some values are measured. Empty for other kinds of fields. Stops as soon as
+// `go_on`, called between values, returns false. `files` as for parse_world_text(). Takes some
+// milliseconds per value.
+struct CurveInput {
+  const std::string& text;
+  const std::string& file;
+  const RegisterModels& register_models;
+  const world::WorldField& field;
+  core::BlockCoord around;
+  const synthesis::CostModel* learnt = nullptr;
+  const world::FilesBeside* files = nullptr;
+};
+std::vector<CostPoint> cost_curve(const CurveInput& input, const std::function<bool()>& go_on);
+
+// Returns a duration for people: "31 ms", "0.3 s", "12 s".
+QString seconds_text(double seconds);
 
 }  // namespace psygen::editor

@@ -10,10 +10,10 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kBlocks = 4;                // over which means are taken
-constexpr double kMaxMeasuredS = 0.0125;  // predicted, of the block that is made
+constexpr int kBlocks = 4;                // in the mean
+constexpr double kMaxMeasuredS = 0.0125;  // predicted, of the synthesised block
 
-// Seconds of this thread to make a mesh; nothing if it fails.
+// Processor seconds to synthesise a mesh; nullopt if that fails.
 std::optional<double> make_mesh(const models::ModelType& type, const models::Parameters& p) {
   const auto memory = synthesis::HeapDestination::make(type, p, 0);
   if (!memory) return std::nullopt;
@@ -22,7 +22,7 @@ std::optional<double> make_mesh(const models::ModelType& type, const models::Par
   return core::thread_cpu_seconds() - start_s;
 }
 
-// Of each scatter, and behind them of the ground.
+// Hashes of the inputs of each scatter, and last of the ground.
 std::vector<std::uint64_t> keys_of(const ParsedWorld& parsed) {
   const world::WorldParts parts = world::parts_of(parsed.world, parsed.registry);
   std::vector<std::uint64_t> keys;
@@ -47,13 +47,13 @@ void BlockSurvey::Part::add(const MeshCost& mesh) {
   seconds += mesh.seconds;
 }
 
-// Adds the parts that are not known, and what was placed by hand.
-void BlockSurvey::look_at(const ParsedWorld& parsed, const synthesis::CostModel& costs,
-                          const std::vector<std::uint64_t>& keys, Part& by_hand) {
+// Adds unknown parts to known_, and the models placed by hand to `by_hand`.
+void BlockSurvey::add_unknown_parts(const ParsedWorld& parsed, const synthesis::CostModel& costs,
+                                    const std::vector<std::uint64_t>& keys, Part& by_hand) {
   const world::World& world = parsed.world;
-  std::vector<bool> wanted;
+  std::vector<bool> is_unknown;
   for (std::size_t s = 0; s < world.scatter.size(); ++s)
-    wanted.push_back(!known_.contains(keys[s]));
+    is_unknown.push_back(!known_.contains(keys[s]));
   const bool ground = !known_.contains(keys.back());
   for (const std::uint64_t key : keys)
     known_[key];
@@ -63,7 +63,7 @@ void BlockSurvey::look_at(const ParsedWorld& parsed, const synthesis::CostModel&
       known_[keys.back()].add(
           mesh_cost(parsed, world.terrain_model, world::terrain_parameters(world, block), costs));
     }
-    world::place_models(world, parsed.registry, block, wanted, placements_);
+    world::place_models(world, parsed.registry, block, is_unknown, placements_);
     for (const world::Placement& placed : placements_) {
       Part& part = placed.index >= world::kPlacedIndex
                        ? by_hand
@@ -74,7 +74,7 @@ void BlockSurvey::look_at(const ParsedWorld& parsed, const synthesis::CostModel&
   }
 }
 
-// What making a block took, in parts of what had been predicted; 0: it is not made.
+// Ratio of measured to predicted synthesis time of a block; 0 if the block is not synthesised.
 double BlockSurvey::measured_factor(const ParsedWorld& parsed, const synthesis::CostModel& costs) {
   const core::BlockCoord block = block_near(parsed.world, around_, 0);
   world::place_models(parsed.world, parsed.registry, block, placements_);
@@ -94,18 +94,17 @@ BlockCost BlockSurvey::cost(const ParsedWorld& parsed, bool measure) {
   if (learnt_ != nullptr) costs.learn_from(*learnt_);
   const std::vector<std::uint64_t> keys = keys_of(parsed);
   Part all;
-  look_at(parsed, costs, keys, all);
+  add_unknown_parts(parsed, costs, keys, all);
   const std::set<std::uint64_t> present(keys.begin(), keys.end());
   std::erase_if(known_, [&](const auto& entry) { return !present.contains(entry.first); });
   for (const auto& [key, part] : known_) {
     all.models += part.models;
     all.add({part.triangles, part.bytes, part.seconds});
   }
-  BlockCost mean{all.models / kBlocks,
-                 all.triangles / kBlocks,
-                 all.bytes / kBlocks,
-                 all.seconds / kBlocks,
-                 {}};
+  BlockCost mean{.models = all.models / kBlocks,
+                 .triangles = all.triangles / kBlocks,
+                 .bytes = all.bytes / kBlocks,
+                 .seconds = all.seconds / kBlocks};
   if (const double factor = measure ? measured_factor(parsed, costs) : 0; factor > 0)
     mean.measured_seconds = factor * mean.seconds;
   return mean;

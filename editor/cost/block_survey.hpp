@@ -1,6 +1,6 @@
-// What blocks of worlds cost that differ little, one after the other, as along the slider of a
-// field: the ground and the scatters that two of them have in common are looked at once. Makes
-// meshes only of one block, and only where that is asked for. One thread.
+// Block costs of a series of similar worlds, such as the values of a slider. Keeps the costs of the
+// ground and of the scatters that a world has in common with the previous one. Synthesises meshes
+// of one block only, and only on request. One thread.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace psygen::editor {
 
 class BlockSurvey {
  public:
-  // Of some blocks around one. `learnt` as in block_cost(); outlives this.
+  // Surveys blocks around a block. `learnt` as in block_cost(); it outlives the survey.
   BlockSurvey(core::BlockCoord around, const synthesis::CostModel* learnt)
       : around_(around), learnt_(learnt) {}
 
@@ -22,18 +22,18 @@ class BlockSurvey {
   BlockCost cost(const ParsedWorld& parsed, bool measure);
 
  private:
-  // Sums over all blocks, of the ground or the instances of one scatter.
+  // Sums over all blocks, for the ground or for the instances of one scatter.
   struct Part {
     double models = 0, triangles = 0, bytes = 0, seconds = 0;
     void add(const MeshCost& mesh);
   };
-  void look_at(const ParsedWorld& parsed, const synthesis::CostModel& costs,
-               const std::vector<std::uint64_t>& keys, Part& by_hand);
+  void add_unknown_parts(const ParsedWorld& parsed, const synthesis::CostModel& costs,
+                         const std::vector<std::uint64_t>& keys, Part& by_hand);
   double measured_factor(const ParsedWorld& parsed, const synthesis::CostModel& costs);
 
   core::BlockCoord around_;
   const synthesis::CostModel* learnt_;
-  std::map<std::uint64_t, Part> known_;  // of the world before, by what they depend on
+  std::map<std::uint64_t, Part> known_;  // of the previous world, by a hash of their inputs
   std::vector<world::Placement> placements_;
 };
 

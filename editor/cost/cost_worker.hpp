@@ -1,5 +1,5 @@
-// Computes costs of fields in a thread of its own, at the lowest priority: what is asked last comes
-// first, and what is not wanted any more is dropped. Signals arrive in the thread that made it.
+// Computes the costs of fields in a thread of lowest priority. A new request replaces the previous
+// one of its kind. Signals arrive in the thread that created the worker.
 #pragma once
 
 #include <QObject>
@@ -17,60 +17,59 @@
 
 namespace psygen::editor {
 
+// The destructor waits for the thread, which checks for the end between values.
 class CostWorker final : public QObject {
   Q_OBJECT
 
  public:
+  // Starts the thread. `register_models` is called in it.
   explicit CostWorker(RegisterModels register_models, QObject* parent = nullptr);
   ~CostWorker() override;
 
-  // Curves of these fields in this text, and the cost of the text itself, of blocks around one.
-  // `files` reads those beside it. Replaces what was asked before. `learnt` may be null.
-  void ask(std::string text, std::string file, std::vector<world::WorldField> fields,
-           core::BlockCoord around, std::shared_ptr<const synthesis::CostModel> learnt,
-           handmade::FilesPtr files);
-  // What `after` changes of a cache that has meshes of `before`. Goes before curves, and replaces
-  // only the impact that was asked before.
-  void ask_impact(ParsedWorldPtr before, ParsedWorldPtr after, core::BlockCoord around,
-                  CacheContents contents, std::shared_ptr<const synthesis::CostModel> learnt);
-  // Something that a person waits for needs the processors: nothing more is computed until go_on(),
-  // or for this long.
-  void rest(std::chrono::milliseconds most);
-  void go_on() { rest(std::chrono::milliseconds(0)); }
+  // Cost curves of the fields of a world text, and the cost of the text itself.
+  struct CurveRequest {
+    std::string text, file;  // file: for messages and for the folder of resources
+    std::vector<world::WorldField> fields = {};
+    core::BlockCoord around;
+    std::shared_ptr<const synthesis::CostModel> learnt = {};  // may be null
+    handmade::FilesPtr files;                                 // reads the resources
+  };
+  // The impact of replacing `before` by `after` on a cache with meshes of `before`.
+  struct ImpactRequest {
+    ParsedWorldPtr before, after;
+    core::BlockCoord around;
+    CacheContents contents = {};
+    std::shared_ptr<const synthesis::CostModel> learnt = {};  // may be null
+  };
+  // Replaces the previous request for curves.
+  void request_curves(CurveRequest request);
+  // Replaces the previous request for an impact. Impacts come before curves.
+  void request_impact(ImpactRequest request);
+  // Computes nothing until resume(), or for this long, so that the view gets the processors.
+  void rest(std::chrono::milliseconds duration);
+  void resume() { rest(std::chrono::milliseconds(0)); }
 
  Q_SIGNALS:
+  // Results of the newest requests. `path`: of the field, as TextPath::text() writes it.
   void world_cost(const psygen::editor::BlockCost& cost);
   void curve(const std::string& path, const std::vector<psygen::editor::CostPoint>& points);
   void impact(const psygen::editor::WorldImpact& impact);
 
  private:
-  struct Job {
-    std::string text, file;
-    std::vector<world::WorldField> fields;
-    core::BlockCoord around;
-    std::shared_ptr<const synthesis::CostModel> learnt;
-    handmade::FilesPtr files;
-    std::uint64_t number = 0;
-  };
-  struct ImpactJob {
-    ParsedWorldPtr before, after;
-    core::BlockCoord around;
-    CacheContents contents;
-    std::shared_ptr<const synthesis::CostModel> learnt;
-  };
   void run();
   bool is_over() const;
   void wait_while_resting(std::unique_lock<std::mutex>& lock);
-  void work(const Job& job);
-  void work_on_impact();
+  void compute_curves(const CurveRequest& request, std::uint64_t number);
+  void compute_impact();
 
   RegisterModels register_models_;
   std::mutex mutex_;
-  std::condition_variable asked_;
-  std::optional<Job> next_;
-  std::optional<ImpactJob> next_impact_;
+  std::condition_variable changed_;
+  std::optional<CurveRequest> next_;
+  std::uint64_t next_number_ = 0;  // of the newest request
+  std::optional<ImpactRequest> next_impact_;
   std::chrono::steady_clock::time_point rest_until_{};
-  std::atomic<std::uint64_t> newest_{0};  // number of the newest job; UINT64_MAX: the end
+  std::atomic<std::uint64_t> newest_{0};  // the same, without a lock; UINT64_MAX: the end
   std::thread thread_;
 };
 

@@ -6,15 +6,14 @@
 #include <cmath>
 
 #include "editor/cost/block_cost.hpp"
-#include "editor/cost/seconds_text.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::editor {
 namespace {
 
-constexpr std::uint32_t kInstances = 6;  // of each scatter, and one with the highest values
+constexpr std::uint32_t kInstances = 6;  // per scatter, besides one with the maximum values
 
-models::Parameters highest(const ParsedWorld& parsed, const world::Scatter& scatter) {
+models::Parameters max_parameters(const ParsedWorld& parsed, const world::Scatter& scatter) {
   const models::ModelType& type = parsed.registry[scatter.model];
   models::Parameters p = world::scatter_parameters(parsed.registry, scatter);
   const auto specs = type.parameters();
@@ -25,11 +24,11 @@ models::Parameters highest(const ParsedWorld& parsed, const world::Scatter& scat
   return p;
 }
 
-// `first`: the index of its first instance in a block.
+// `first`: index of the scatter's first instance in a block.
 void add_scatter(const ParsedWorld& parsed, const world::Scatter& scatter, std::uint32_t first,
                  const synthesis::CostModel& costs, EditCost& sum) {
   const std::uint32_t drawn = std::min(scatter.count, kInstances);
-  MeshCost mean, most = mesh_cost(parsed, scatter.model, highest(parsed, scatter), costs);
+  MeshCost mean, most = mesh_cost(parsed, scatter.model, max_parameters(parsed, scatter), costs);
   for (std::uint32_t i = 0; i < drawn; ++i) {
     const MeshCost one = mesh_cost(
         parsed, scatter.model,
@@ -63,22 +62,23 @@ EditCost edit_cost(const ParsedWorld& parsed, const synthesis::CostModel* learnt
   return sum;
 }
 
-QString cost_question(const EditCost& before, const EditCost& after, const CostLimits& limits) {
+QString confirmation_for(const EditCost& before, const EditCost& after, const CostLimits& limits) {
   const auto is_beyond = [&](double EditCost::*of, double limit) {
     return after.*of > limit && after.*of > before.*of;
   };
   const QLocale english(QLocale::English);
   if (is_beyond(&EditCost::model_seconds, limits.model_seconds))
-    return QObject::tr("One model “%1” would take %2 of one core.")
+    return QObject::tr("One model “%1” takes %2 to synthesise.")
         .arg(QString::fromStdString(after.model), seconds_text(after.model_seconds));
   if (!is_beyond(&EditCost::block_seconds, limits.block_seconds) &&
       !is_beyond(&EditCost::block_bytes, limits.cache_bytes / limits.blocks))
     return {};
-  return QObject::tr(
-             "A block at full detail would take %1 of one core and %2. The cache holds %3 of them.")
-      .arg(seconds_text(after.block_seconds),
-           english.formattedDataSize(std::llround(after.block_bytes), 1),
-           english.toString(std::floor(limits.cache_bytes / std::max(after.block_bytes, 1.0))));
+  return QObject::
+      tr("A block at full detail takes %1 to synthesise and %2 of memory. The cache holds %3 such "
+         "blocks.")
+          .arg(seconds_text(after.block_seconds),
+               english.formattedDataSize(std::llround(after.block_bytes), 1),
+               english.toString(std::floor(limits.cache_bytes / std::max(after.block_bytes, 1.0))));
 }
 
 }  // namespace psygen::editor

@@ -1,6 +1,6 @@
-// What the most expensive model and a block of a world would cost, from its parameters alone:
-// nothing is placed and no mesh is made, so a value can be judged before anything is made with it.
-// From this comes the question that a costly edit asks first. Pure; any thread.
+// The predicted cost of a world's most expensive model and of a block, from parameters alone:
+// without placing models or synthesising meshes. The editor asks for confirmation of edits whose
+// cost is beyond a limit. Pure; any thread.
 #pragma once
 
 #include <QString>
@@ -13,23 +13,24 @@ namespace psygen::editor {
 
 // At full detail, on one core.
 struct EditCost {
-  std::string model;  // the type of the most expensive model
+  std::string model;  // type of the most expensive model
   double model_seconds = 0;
-  double block_seconds = 0, block_bytes = 0;  // of ground and all models that may stand on it
+  double block_seconds = 0, block_bytes = 0;  // of the ground and of all instances of the scatters
 };
 
-// What is asked beyond.
+// Edits beyond these limits need confirmation.
 struct CostLimits {
   double model_seconds = 0.1, block_seconds = 0.25;
-  // The cache shall have room for so many blocks at full detail: those around the camera.
+  // The cache must hold this number of blocks at full detail: those around the camera.
   double cache_bytes = 512 << 20, blocks = 16;
 };
 
-// The cost of a world. `learnt`: what a cost model of the same program knows (null: nothing). Asks
-// each model type for the sizes of some meshes.
+// The cost of a world. `learnt`: a cost model of the same program whose corrections are used, or
+// null. Asks each model type for the sizes of a few meshes.
 EditCost edit_cost(const ParsedWorld& parsed, const synthesis::CostModel* learnt);
 
-// A sentence if `after` is beyond a limit and more expensive than `before`, else empty.
-QString cost_question(const EditCost& before, const EditCost& after, const CostLimits& limits);
+// Returns the question to confirm an edit: not empty if `after` is beyond a limit and more
+// expensive than `before`.
+QString confirmation_for(const EditCost& before, const EditCost& after, const CostLimits& limits);
 
 }  // namespace psygen::editor

@@ -8,7 +8,6 @@
 #include <unordered_map>
 
 #include "editor/cost/block_cost.hpp"
-#include "editor/cost/seconds_text.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world_parts.hpp"
 
@@ -16,8 +15,8 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kImpactBlocks = 8;
-constexpr std::size_t kCosted = 24;    // meshes of each type, whose cost is asked for
-constexpr double kUsualDetail = 0.25;  // of full detail, where nothing is known
+constexpr std::size_t kSamples = 24;     // meshes of each type whose cost is predicted
+constexpr double kTypicalDetail = 0.25;  // fraction of full detail, if nothing is known
 
 // Means over some meshes of a type at full detail.
 struct MeanCost {
@@ -26,7 +25,7 @@ struct MeanCost {
 
   void add(const ParsedWorld& parsed, models::ModelIndex model, const models::Parameters& p,
            const synthesis::CostModel& costs) {
-    if (count == kCosted) return;
+    if (count == kSamples) return;
     const MeshCost one = mesh_cost(parsed, model, p, costs);
     const double share = 1.0 / static_cast<double>(++count);
     mean.seconds += (one.seconds - mean.seconds) * share;
@@ -34,7 +33,7 @@ struct MeanCost {
   }
 };
 
-// What some blocks have of a type: before, of these what is the same afterwards, and what is new.
+// Meshes of one type in the sample blocks: before, unchanged, and new or changed.
 struct TypeChange {
   double before = 0, same = 0, fresh = 0;
   MeanCost cost_before, cost_fresh;
@@ -45,7 +44,7 @@ struct TypeChange {
   }
 };
 
-// Both worlds on some blocks.
+// Compares both worlds on the sample blocks.
 class Comparison {
  public:
   Comparison(const ParsedWorld& before, const ParsedWorld& after,
@@ -113,11 +112,11 @@ class Comparison {
   TypeChange ground_;
 };
 
-// Adds a type of which the cache has some meshes.
+// Adds a type with cached meshes.
 void add_held(const HeldMeshes& held, const TypeChange& change, WorldImpact& impact) {
   const auto meshes = static_cast<double>(held.meshes);
   impact.held += meshes;
-  if (change.before <= 0) {  // none stands where we looked
+  if (change.before <= 0) {  // no instance in the sample blocks
     impact.bytes += held.bytes;
     return;
   }
@@ -127,7 +126,7 @@ void add_held(const HeldMeshes& held, const TypeChange& change, WorldImpact& imp
   impact.bytes += held.bytes * (same + fresh * change.factor(&MeshCost::bytes));
 }
 
-// Adds types that the cache has no meshes of yet, at the detail that it has of others.
+// Adds types without cached meshes, at the detail of the types that have some.
 void add_new(const Comparison& comparison, const CacheContents& contents, WorldImpact& impact) {
   double meshes = 0, placed = 0, seconds = 0, full_seconds = 0;
   std::map<std::string, bool> known;
@@ -141,7 +140,7 @@ void add_new(const Comparison& comparison, const CacheContents& contents, WorldI
     full_seconds += static_cast<double>(held.meshes) * type->second.cost_before.mean.seconds;
   }
   if (placed <= 0) return;
-  const double detail = full_seconds > 0 ? std::min(seconds / full_seconds, 1.0) : kUsualDetail;
+  const double detail = full_seconds > 0 ? std::min(seconds / full_seconds, 1.0) : kTypicalDetail;
   for (const auto& [name, type] : comparison.types()) {
     if (known.contains(name) || type.fresh <= 0) continue;
     const double made = type.fresh * meshes / placed;
@@ -151,7 +150,7 @@ void add_new(const Comparison& comparison, const CacheContents& contents, WorldI
   }
 }
 
-// Whether any mesh of the worlds may differ, wherever it is.
+// True if any mesh of the worlds may differ, at any place.
 bool places_differ(const ParsedWorld& a, const ParsedWorld& b) {
   return world::parts_of(a.world, a.registry) != world::parts_of(b.world, b.registry) ||
          world::places_hash(a.world, a.registry) != world::places_hash(b.world, b.registry);
@@ -164,7 +163,7 @@ WorldImpact impact_of(const ParsedWorld& before, const ParsedWorld& after, core:
   Comparison comparison(before, after, learnt);
   for (int i = 0; i < kImpactBlocks; ++i)
     comparison.add(block_near(before.world, around, i));
-  TypeChange derived;  // each stands for many models, of which one is enough
+  TypeChange derived;  // a derived mesh merges many models: it changes if one of them does
   derived.before = 1;
   (comparison.any_model_changes() || comparison.ground().fresh > 0 ? derived.fresh : derived.same) =
       1;
@@ -188,14 +187,11 @@ WorldImpact impact_of(const ParsedWorld& before, const ParsedWorld& after, core:
 QString impact_text(const WorldImpact& impact) {
   const QLocale english(QLocale::English);
   if (impact.changed < 0.5 && impact.seconds <= 0) {
-    return impact.is_elsewhere
-               ? QObject::tr("Few meshes change, and none of those around the camera.")
-               : QObject::tr("No mesh changes.");
+    return impact.is_elsewhere ? QObject::tr("Nothing near the camera needs rebuilding.")
+                               : QObject::tr("Nothing to rebuild.");
   }
   const auto whole = [&](double count) { return english.toString(std::llround(count)); };
-  return QObject::tr(
-             "About %1 meshes change of %2 in the cache; %3 to make them. Then the world takes %4 "
-             "of %5.")
+  return QObject::tr("Rebuilds %1 of %2 meshes (%3). Memory afterwards: %4 of %5.")
       .arg(whole(impact.changed), whole(impact.held), seconds_text(impact.seconds),
            english.formattedDataSize(std::llround(impact.bytes), 1),
            english.formattedDataSize(std::llround(impact.budget_bytes), 0));

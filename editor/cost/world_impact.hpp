@@ -1,7 +1,6 @@
-// What a change of the world does to the meshes that a cache holds: how many have to be made anew,
-// how long that takes, how full the cache is then. Estimated from some blocks of both worlds and
-// what the cost model predicts; nothing is made. Pure; any thread, with parsed worlds and a cost
-// model of its own.
+// The impact of a world's change on a cache: the number of meshes to rebuild, the time, and the
+// memory used afterwards. Estimated from sample blocks of both worlds and the cost model, without
+// synthesis. Pure; any thread, with its own parsed worlds and cost model.
 #pragma once
 
 #include <QString>
@@ -15,14 +14,14 @@
 
 namespace psygen::editor {
 
-// What a cache holds of one model type.
+// The cached meshes of one model type.
 struct HeldMeshes {
   enum class Kind : std::uint8_t { kGround, kModel, kDerived };
   std::string type;
-  Kind kind = Kind::kModel;  // kDerived: of the scene's own types, made from what is scattered
+  Kind kind = Kind::kModel;  // kDerived: types of the scene, such as merged vegetation
   std::uint64_t meshes = 0;
   double bytes = 0;
-  double seconds = 0;  // of one core, predicted to make all of them
+  double seconds = 0;  // predicted synthesis time of all of them on one core
 };
 struct CacheContents {
   std::vector<HeldMeshes> held;
@@ -31,19 +30,19 @@ struct CacheContents {
 };
 
 struct WorldImpact {
-  double held = 0, changed = 0;        // meshes; those that are made anew
-  double seconds = 0;                  // of all modelers together
-  double bytes = 0, budget_bytes = 0;  // of what is needed afterwards, and of the cache
-  // The worlds differ, but not where it was looked: a road, a model at a place, a spot of a mask.
+  double held = 0, changed = 0;        // cached meshes, and those to rebuild
+  double seconds = 0;                  // with all modelers in parallel
+  double bytes = 0, budget_bytes = 0;  // used afterwards, and of the cache
+  // The worlds differ, but not in the sample blocks: a road, a placed model, a spot of a mask.
   bool is_elsewhere = false;
 };
 
-// The impact of `after` where `contents` are of `before`; of blocks around one. `learnt`: as in
-// block_cost(). Some milliseconds.
+// The impact of replacing `before`, of which the cache has `contents`, by `after`. The sample
+// blocks are around a block. `learnt` as in block_cost(). Takes some milliseconds.
 WorldImpact impact_of(const ParsedWorld& before, const ParsedWorld& after, core::BlockCoord around,
                       const CacheContents& contents, const synthesis::CostModel* learnt);
 
-// "About 3,412 meshes change of 8,120 in the cache; 0.7 s to make them. …".
+// Returns a text such as "Rebuilds 3,412 of 8,120 meshes (0.7 s). Memory afterwards: …".
 QString impact_text(const WorldImpact& impact);
 
 }  // namespace psygen::editor

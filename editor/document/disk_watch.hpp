@@ -1,5 +1,5 @@
-// Notices that a file has changed on the disk, also when it is replaced, removed or made anew. It
-// reads nothing: whoever hears the signal looks. Main thread.
+// Reports changes of a file on the disk, also its replacement, removal and creation. It reads no
+// file: receivers of the signal check the contents. Main thread.
 #pragma once
 
 #include <QFileSystemWatcher>
@@ -15,11 +15,11 @@ class DiskWatch : public QObject {
 
  public:
   explicit DiskWatch(QObject* parent = nullptr);
-  // Watches this file from now on; empty: none.
+  // Watches this file instead of the previous one; empty: none.
   void watch(const std::filesystem::path& file);
 
  Q_SIGNALS:
-  // Once after a burst of changes; some of them may have left the file as it was.
+  // Emitted once after a burst of changes. The contents may be the same as before.
   void maybe_changed();
 
  private:

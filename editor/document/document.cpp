@@ -19,7 +19,7 @@ constexpr const char* kNewWorld = R"(format = 1
 [world]
 name = "new world"
 seed = 1
-blocks = [0, 0]            # without an end
+blocks = [0, 0]            # endless
 
 [terrain]
 
@@ -36,7 +36,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   return !a.empty() && !b.empty() && file_key(a) == file_key(b);
 }
 
-// Replaces a file as a whole, also behind a symbolic link, and keeps its permissions.
+// Replaces a file atomically, also behind a symbolic link, and keeps its permissions.
 core::Result<void> write_whole(const std::filesystem::path& file, std::string_view text) {
   std::error_code error;
   const std::filesystem::path target = std::filesystem::canonical(file, error);
@@ -62,7 +62,7 @@ Document::Document(DocumentOptions options, QObject* parent)
   connect(&watch_, &DiskWatch::maybe_changed, this, [this] { check_disk(); });
   text_ = std::make_shared<const std::string>(kNewWorld);
   const auto made = make_new();
-  PSYGEN_CHECK(made.has_value(), "a new world is a world");
+  PSYGEN_CHECK(made.has_value(), "the text of a new world must be valid");
 }
 
 Document::~Document() {
@@ -95,7 +95,7 @@ core::Result<void> Document::open(const std::filesystem::path& file, bool share)
   if (!parsed) return tl::unexpected(std::move(parsed.error()));
   auto session = session_of(file, share);
   if (!session) return tl::unexpected(std::move(session.error()));
-  adopt(file, *std::move(text), *std::move(parsed), *std::move(session));
+  set_document_text(file, *std::move(text), *std::move(parsed), *std::move(session));
   return {};
 }
 
@@ -106,13 +106,14 @@ core::Result<void> Document::make_new(std::string text, handmade::MemoryPictures
   if (!parsed) return tl::unexpected(std::move(parsed.error()));
   auto session = session_of({}, false);
   if (!session) return tl::unexpected(std::move(session.error()));
-  adopt({}, std::move(text), *std::move(parsed), *std::move(session), std::move(pictures));
+  set_document_text({}, std::move(text), *std::move(parsed), *std::move(session),
+                    std::move(pictures));
   return {};
 }
 
-void Document::adopt(const std::filesystem::path& file, std::string text, ParsedWorldPtr parsed,
-                     std::unique_ptr<RecoverySession> session,
-                     handmade::MemoryPicturesPtr pictures) {
+void Document::set_document_text(const std::filesystem::path& file, std::string text,
+                                 ParsedWorldPtr parsed, std::unique_ptr<RecoverySession> session,
+                                 handmade::MemoryPicturesPtr pictures) {
   save_locks();
   autosave_timer_.stop();
   session_ = std::move(session);
@@ -121,7 +122,7 @@ void Document::adopt(const std::filesystem::path& file, std::string text, Parsed
   locks_ = kept_locks_ =
       file_.empty() ? FieldLocks() : FieldLocks::load(options_.state_folder, file_);
   drag_ = 0;
-  drop_asked();
+  discard_proposed_edit();
   text_ = std::make_shared<const std::string>(std::move(text));
   parsed_ = std::move(parsed);
   sections_.reset();
@@ -151,12 +152,12 @@ void Document::note_modified() {
 
 core::Result<void> Document::require_known_disk() const {
   std::error_code error;
-  if (!std::filesystem::exists(file_, error)) return {};  // nothing is lost
+  if (!std::filesystem::exists(file_, error)) return {};  // saving overwrites no changes
   const auto text = world::read_text_file(file_);
   if (text && *text == saved_) return {};
   return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("{}: the file was changed by others since it was read; reload it, "
-                                "or keep your text and save again",
+                    fmt::format("{}: another program changed the file; reload it, or keep your "
+                                "version and save again",
                                 name()));
 }
 
@@ -182,8 +183,7 @@ core::Result<void> Document::write_all(const std::filesystem::path& file) {
 core::Result<std::vector<std::string>> Document::save_as(const std::filesystem::path& file,
                                                          bool share) {
   std::vector<std::string> copied;
-  if (file.empty())
-    return core::fail(core::ErrorCode::kInvalidArgument, "a file to write must have a name");
+  if (file.empty()) return core::fail(core::ErrorCode::kInvalidArgument, "the file has no name");
   if (auto known = require_known_pictures(file); !known)
     return tl::unexpected(std::move(known.error()));
   if (same_file(file, file_)) {
@@ -193,7 +193,7 @@ core::Result<std::vector<std::string>> Document::save_as(const std::filesystem::
     auto session = RecoverySession::start(options_.state_folder, file, share);
     if (!session) return tl::unexpected(std::move(session.error()));
     FileCopies copies;
-    auto taken = take_along(file, copies);
+    auto taken = copy_referenced_files(file, copies);
     if (!taken) return taken;
     for (const std::string& name : unsaved_pictures())
       copies.expect(file.parent_path() / name);
@@ -228,9 +228,9 @@ bool Document::is_read_only() const {
 }
 
 std::string Document::unsaved_diff() const {
-  std::string diff = unified_diff(saved_, *text_, name(), name() + " (not saved)");
+  std::string diff = unified_diff(saved_, *text_, name(), name() + " (unsaved)");
   for (const std::string& picture : unsaved_pictures())
-    diff += fmt::format("Binary files {0} and {0} (not saved) differ\n", picture);
+    diff += fmt::format("Binary files {0} and {0} (unsaved) differ\n", picture);
   return diff;
 }
 
@@ -261,7 +261,7 @@ core::Result<void> Document::reload() {
   return {};
 }
 
-void Document::keep_mine() {
+void Document::keep_editor_version() {
   check_disk();
   saved_ = seen_.value_or("");
   note_modified();
@@ -271,7 +271,7 @@ void Document::keep_mine() {
 const std::vector<world::WorldSection>& Document::sections() const {
   if (!sections_) {
     auto made = world::world_schema(*text_, parsed_->world, parsed_->registry);
-    PSYGEN_CHECK(made.has_value(), "the world is that of the text");
+    PSYGEN_CHECK(made.has_value(), "the world must match the text");
     sections_ = *std::move(made);
   }
   return *sections_;
@@ -288,11 +288,11 @@ void Document::show(const ShownText& shown) {
   } else {
     end_preview();
     auto parsed = parse(*shown.text);
-    parsed_ = parsed ? *std::move(parsed) : shown.world;  // files beside it may be gone
+    parsed_ = parsed ? *std::move(parsed) : shown.world;  // resources may be missing
   }
   text_ = shown.text;
   sections_.reset();
-  drop_asked();
+  discard_proposed_edit();
   Q_EMIT changed(Change::kText | changes_between(*before, *parsed_));
   note_modified();
   if (!autosave_timer_.isActive()) autosave_timer_.start();
@@ -303,25 +303,25 @@ core::Result<void> Document::write_recovery() {
     session_->clear();
     return {};
   }
-  return session_->write({file_,
-                          *text_,
-                          saved_,
-                          undo_.index(),
-                          {},
-                          {},
-                          pictures_ ? pictures_->in_place : handmade::NamedPictures()});
+  return session_->write({.world_file = file_,
+                          .text = *text_,
+                          .saved_text = saved_,
+                          .undo_index = undo_.index(),
+                          .time = {},
+                          .file = {},
+                          .pictures = pictures_ ? pictures_->in_place : handmade::NamedPictures()});
 }
 
 void Document::autosave() {
   const auto written = write_recovery();
-  if (!written && !autosave_told_)
+  if (!written && !autosave_has_failed_)
     Q_EMIT autosave_failed(QString::fromStdString(written.error().message));
-  autosave_told_ = !written;
+  autosave_has_failed_ = !written;
 }
 
 void Document::save_locks() const {
   if (!file_.empty() && locks_ != kept_locks_)
-    (void)locks_.save(options_.state_folder, file_);  // a comfort, not worth a question
+    (void)locks_.save(options_.state_folder, file_);  // losing the locks is acceptable
 }
 
 core::Result<void> Document::recover(const Recovery& recovery) {

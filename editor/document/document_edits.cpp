@@ -1,6 +1,7 @@
-// Edits of a document: each is a change of its text (engine/world/files/text_edit.hpp).
+// Edits of a document: each changes its text (engine/world/files/text_edit.hpp).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "editor/document/document.hpp"
@@ -13,7 +14,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kTries = 8;  // of random values for a field
+constexpr int kTries = 8;  // random values per field
 
 QString shown(const world::TextPath& path) {
   return QString::fromStdString(path.text());
@@ -21,7 +22,7 @@ QString shown(const world::TextPath& path) {
 
 using Text = core::Result<std::string>;
 
-// All fields whose path begins with this one, in order.
+// All fields below a path, in order.
 std::vector<const world::WorldField*> fields_below(
     const world::TextPath& path, const std::vector<world::WorldSection>& sections) {
   std::vector<const world::WorldField*> fields;
@@ -35,23 +36,89 @@ std::vector<const world::WorldField*> fields_below(
   return fields;
 }
 
+// The name in a TOML string; names of model types need no escapes.
+std::string_view unquoted(std::string_view toml) {
+  return toml.size() >= 2 ? toml.substr(1, toml.size() - 2) : std::string_view();
+}
+
+// True for paths such as species[2].name, of a table in an array of the root.
+bool is_key_of_item(const world::TextPath& path, std::string_view key) {
+  return path.size() == 3 && path.steps[1].is_index && path.back().key == key;
+}
+
+// Model types of the scatter layers and of the models placed by hand, with the paths of their
+// tables.
+std::vector<std::pair<world::TextPath, models::ModelIndex>> models_in_use(
+    const world::World& world) {
+  std::vector<std::pair<world::TextPath, models::ModelIndex>> models;
+  for (std::size_t i = 0; i < world.scatter.size(); ++i)
+    models.emplace_back(world::TextPath{"scatter", i}, world.scatter[i].model);
+  for (std::size_t i = 0; i < world.places.all.size(); ++i)
+    models.emplace_back(world::TextPath{"place", i}, world.places.all[i].model);
+  return models;
+}
+
+// The text after a new name at `path`, with the new name in all tables that use the model type.
+// `before` is the world of the old name.
+Text with_model_renamed(std::string text, const world::TextPath& path, const ParsedWorld& before) {
+  const world::World& world = before.world;
+  const std::size_t item = path.steps[1].index;
+  std::string old_name;
+  if (path.steps[0].key == "species" && item < world.species.size())
+    old_name = world.species[item].name;
+  if (path.steps[0].key == "model" && item < world.models.size())
+    old_name = world.models[item].name;
+  const auto name = world::value_text(text, path);
+  if (old_name.empty() || !name) return text;
+  for (const auto& [table, model] : models_in_use(world)) {
+    if (before.registry[model].name() != old_name) continue;
+    Text renamed = world::with_value(text, table.with("model"), *name);
+    if (!renamed) return renamed;
+    text = *std::move(renamed);
+  }
+  return text;
+}
+
+// The text after another model type at `path`, without parameters that this type does not have.
+// `before` is the world of the old type.
+Text without_unknown_parameters(std::string text, const world::TextPath& path,
+                                const ParsedWorld& before) {
+  const auto is_same_table = [&](const auto& used) { return used.first == path.parent(); };
+  const auto models = models_in_use(before.world);
+  const auto used = std::ranges::find_if(models, is_same_table);
+  const int now = before.registry.find(unquoted(world::value_text(text, path).value_or("")));
+  if (used == models.end() || now < 0) return text;
+  const models::ModelType& type = before.registry[static_cast<models::ModelIndex>(now)];
+  for (const models::ParameterSpec& spec : before.registry[used->second].parameters()) {
+    const int i = models::parameter_index(type, spec.name);
+    if (i >= 0 &&
+        type.parameters()[static_cast<std::size_t>(i)].source == models::ParameterSource::kUser)
+      continue;
+    Text fewer = world::without_value(text, path.parent().with(spec.name));
+    if (!fewer) return fewer;
+    text = *std::move(fewer);
+  }
+  return text;
+}
+
 }  // namespace
 
 core::Result<void> Document::push(std::string text, const QString& step,
                                   std::optional<FieldLocks> locks, bool guarded) {
-  if (text == *text_) return drop_asked(), core::Result<void>{};
+  if (text == *text_) return discard_proposed_edit(), core::Result<void>{};
   auto parsed = parse(text);
   if (!parsed) return tl::unexpected(std::move(parsed.error()));
-  Edit edit{std::move(text), step, std::move(locks), drag_};
+  Edit edit{.text = std::move(text), .step = step, .locks = std::move(locks), .drag = drag_};
   if (guarded && guard_) {
-    const QString question = guard_(*parsed_, **parsed);
-    if (!question.isEmpty()) return ask(std::move(edit), question), core::Result<void>{};
+    const QString confirmation = guard_(*parsed_, **parsed);
+    if (!confirmation.isEmpty())
+      return propose_edit(std::move(edit), confirmation), core::Result<void>{};
   }
-  make(std::move(edit), *std::move(parsed));
+  apply_edit(std::move(edit), *std::move(parsed));
   return {};
 }
 
-void Document::make(Edit edit, ParsedWorldPtr parsed) {
+void Document::apply_edit(Edit edit, ParsedWorldPtr parsed) {
   const ShownText before{text_, parsed_};
   const ShownText after{std::make_shared<const std::string>(std::move(edit.text)), parsed};
   next_parsed_ = std::move(parsed);
@@ -63,25 +130,26 @@ void Document::make(Edit edit, ParsedWorldPtr parsed) {
     };
   if (!edit.paint.empty())
     show_step = [this, first = text_, paint = std::move(edit.paint)](const ShownText& shown) {
-      apply(paint, shown.text != first);
+      apply_paint(paint, shown.text != first);
       show(shown);
     };
   undo_.push(new TextCommand(edit.step, before, after, edit.drag, std::move(show_step)));
   before_preview_.reset();
 }
 
-void Document::ask(std::optional<Edit> edit, const QString& question) {
-  asked_ = std::move(edit);
-  if (std::exchange(question_, question) != question) Q_EMIT asked(question);
+void Document::propose_edit(std::optional<Edit> edit, const QString& confirmation) {
+  proposed_edit_ = std::move(edit);
+  if (std::exchange(confirmation_, confirmation) != confirmation)
+    Q_EMIT edit_proposed(confirmation);
 }
 
-core::Result<void> Document::apply_asked() {
-  if (!asked_) return {};
-  Edit edit = *std::move(asked_);
-  drop_asked();
+core::Result<void> Document::apply_proposed_edit() {
+  if (!proposed_edit_) return {};
+  Edit edit = *std::move(proposed_edit_);
+  discard_proposed_edit();
   auto parsed = parse(edit.text);
   if (!parsed) return tl::unexpected(std::move(parsed.error()));
-  make(std::move(edit), *std::move(parsed));
+  apply_edit(std::move(edit), *std::move(parsed));
   return {};
 }
 
@@ -101,8 +169,14 @@ int Document::begin_drag() {
 }
 
 core::Result<void> Document::set_value(const world::TextPath& path, std::string_view toml_value) {
-  return edit(tr("Set %1").arg(shown(path)),
-              [&](std::string_view text) { return world::with_value(text, path, toml_value); });
+  return edit(tr("Set %1").arg(shown(path)), [&](std::string_view text) -> Text {
+    const Text changed = world::with_value(text, path, toml_value);
+    if (changed && is_key_of_item(path, "name"))
+      return with_model_renamed(*changed, path, *parsed_);
+    if (changed && is_key_of_item(path, "model"))
+      return without_unknown_parameters(*changed, path, *parsed_);
+    return changed;
+  });
 }
 
 core::Result<void> Document::reset_value(const world::TextPath& path) {
@@ -148,37 +222,6 @@ core::Result<void> Document::duplicate_table(const world::TextPath& item) {
   FieldLocks locks = locks_;
   locks.note_inserted(copy);
   return push(*std::move(text), tr("Duplicate %1").arg(shown(item)), std::move(locks));
-}
-
-core::Result<void> Document::rename_species(std::size_t species, const std::string& name) {
-  return edit(tr("Rename species"), [&](std::string_view before) {
-    const std::string value = world::toml_string(name);
-    Text text = world::with_value(before, {"species", species, "name"}, value);
-    if (species >= world().species.size()) return text;
-    for (std::size_t i = 0; text && i < world().scatter.size(); ++i) {
-      if (parsed_->registry[world().scatter[i].model].name() == world().species[species].name)
-        text = world::with_value(*text, {"scatter", i, "model"}, value);
-    }
-    return text;
-  });
-}
-
-core::Result<void> Document::set_scatter_model(std::size_t scatter, const std::string& model) {
-  return edit(tr("Set model"), [&](std::string_view before) {
-    const world::TextPath path{"scatter", scatter};
-    Text text = world::with_value(before, path.with("model"), world::toml_string(model));
-    const int now = parsed_->registry.find(model);
-    if (now < 0 || scatter >= world().scatter.size()) return text;
-    const auto& type = parsed_->registry[static_cast<models::ModelIndex>(now)];
-    for (const models::ParameterSpec& spec :
-         parsed_->registry[world().scatter[scatter].model].parameters()) {
-      const int i = models::parameter_index(type, spec.name);
-      const bool has = i >= 0 && type.parameters()[static_cast<std::size_t>(i)].source ==
-                                     models::ParameterSource::kUser;
-      if (text && !has) text = world::without_value(*text, path.with(spec.name));
-    }
-    return text;
-  });
 }
 
 core::Result<std::string> Document::copy(const world::TextPath& path) const {
@@ -240,7 +283,7 @@ core::Result<void> Document::step_value(const world::TextPath& path, int steps) 
   const auto value = of != nullptr ? stepped_value(*of, steps) : std::nullopt;
   if (!value)
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: there is no number to step", path.text()));
+                      fmt::format("{}: the field has no number to step", path.text()));
   return set_value(path, *value);
 }
 

@@ -1,16 +1,16 @@
-// The pictures of a document that are painted: they are held in memory until the world is saved,
-// and are then written beside its file.
+// The painted images of a document: they stay in memory until the world is saved, which writes them
+// beside its file.
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "editor/document/document.hpp"
-#include "editor/document/picture_file.hpp"
+#include "editor/document/paint_change.hpp"
 #include "engine/handmade/files.hpp"
 
 namespace psygen::editor {
 namespace {
 
-// The picture of a name that a world has.
+// The image that a world has under a name; null: none.
 PicturePtr picture_of(const world::World& world, const std::string& name) {
   for (const world::Scatter& scatter : world.scatter)
     if (scatter.mask.image == name) return scatter.mask.picture;
@@ -24,10 +24,10 @@ core::Result<void> write_picture(const std::filesystem::path& file,
   std::error_code error;
   if (std::filesystem::exists(file, error) && access(file.c_str(), W_OK) != 0)
     return core::fail(core::ErrorCode::kIo,
-                      fmt::format("{}: the picture is read-only; make it writable and save again, "
+                      fmt::format("{}: the image is read-only; make it writable and save again, "
                                   "or save the world in another folder",
                                   file.string()));
-  std::filesystem::create_directories(file.parent_path(), error);  // writing says what is wrong
+  std::filesystem::create_directories(file.parent_path(), error);  // writing reports errors
   return write_picture_file(file, picture);
 }
 
@@ -41,7 +41,7 @@ PicturePtr Document::picture(const std::string& name) const {
   return picture_of(world(), name);
 }
 
-// Only those that the world names: undo may bring the others back.
+// Only images that the world names; undo may restore the others.
 std::vector<std::string> Document::unsaved_pictures() const {
   std::vector<std::string> names;
   if (!pictures_) return names;
@@ -50,7 +50,7 @@ std::vector<std::string> Document::unsaved_pictures() const {
   return names;
 }
 
-// What is on the disk is read from there again.
+// An image that equals its file is dropped from memory, so that the file is read again.
 handmade::MemoryPicturesPtr Document::with_picture(const std::string& name,
                                                    const PicturePtr& picture) const {
   auto next = pictures_ ? std::make_shared<handmade::MemoryPictures>(*pictures_)
@@ -99,17 +99,17 @@ core::Result<void> Document::paint(const QString& step, std::vector<PaintChange>
   auto shown = show_pictures(pictures_, text);
   pictures_ = before;
   if (!shown) return shown;
-  Edit edit{std::move(text), step, {}, 0, std::move(changes)};
-  make(std::move(edit), std::exchange(next_parsed_, nullptr));
+  Edit edit{.text = std::move(text), .step = step, .locks = {}, .paint = std::move(changes)};
+  apply_edit(std::move(edit), std::exchange(next_parsed_, nullptr));
   return {};
 }
 
-// What was only shown and is no step goes before a step is taken back.
+// Removes a preview, which is no undo step, before a step is undone.
 void Document::end_preview() {
   if (before_preview_) pictures_ = *std::exchange(before_preview_, std::nullopt);
 }
 
-void Document::apply(const std::vector<PaintChange>& changes, bool done) {
+void Document::apply_paint(const std::vector<PaintChange>& changes, bool done) {
   end_preview();
   for (const PaintChange& change : changes)
     pictures_ = with_picture(change.name(), change.applied(picture(change.name()), done));
@@ -123,7 +123,7 @@ core::Result<void> Document::require_known_pictures(const std::filesystem::path&
     const std::filesystem::path at = file.parent_path() / name;
     if (picture_of(world(), name) == nullptr || !std::filesystem::exists(at, error)) continue;
     const auto now = disk->read_grey(at);
-    const std::uint64_t hash = now ? (*now)->hash : 0;  // what is no picture is somebody's too
+    const std::uint64_t hash = now ? (*now)->hash : 0;  // 0: a file that is no image
     const auto known = disk_pictures_.find(name);
     const bool is_known = known != disk_pictures_.end() && known->second == hash;
     if (is_known || (now && hash == painted->hash)) continue;
@@ -131,14 +131,14 @@ core::Result<void> Document::require_known_pictures(const std::filesystem::path&
     if (refused != refused_files_.end() && refused->second == hash) continue;
     refused_files_[at.string()] = hash;
     return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: the picture there is not the one that was painted on; move "
-                                  "it away to keep it, or save again to replace it",
+                      fmt::format("{}: another program replaced this image; move it away to keep "
+                                  "it, or save again to replace it",
                                   at.string()));
   }
   return {};
 }
 
-// Refuses files that would be replaced, until it is asked again for the same ones.
+// Fails if files would be replaced, until the next call with the same files.
 core::Result<void> Document::require_free(const std::vector<std::filesystem::path>& taken) {
   std::string others;
   bool is_known = true;
@@ -152,15 +152,16 @@ core::Result<void> Document::require_free(const std::vector<std::filesystem::pat
   if (is_known) return {};
   return core::fail(
       core::ErrorCode::kInvalidArgument,
-      fmt::format("{}: another file of this name is there{}; choose another folder, or save again "
-                  "to replace it",
+      fmt::format("{}: another file of this name exists{}; choose another folder, or save again to "
+                  "replace it",
                   taken.front().string(),
-                  others.empty() ? others : fmt::format(" (and also {})", others)));
+                  others.empty() ? others : fmt::format(" (also {})", others)));
 }
 
-// Copies what a world in another folder would miss, under temporary names, and tells its names.
-core::Result<std::vector<std::string>> Document::take_along(const std::filesystem::path& file,
-                                                            FileCopies& copies) {
+// Copies the files that a world in another folder would lack, under temporary names. Returns their
+// final names.
+core::Result<std::vector<std::string>> Document::copy_referenced_files(
+    const std::filesystem::path& file, FileCopies& copies) {
   const auto names = handmade::files_named_by(world(), file_);
   if (!names) return tl::unexpected(names.error());
   std::vector<std::string> copied;

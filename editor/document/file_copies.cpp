@@ -25,8 +25,8 @@ std::string_view next_chunk(std::ifstream& file, std::array<char, kChunkBytes>& 
 }
 
 core::Result<void> cannot_copy(const fs::path& from, const fs::path& to, std::string_view why) {
-  return core::fail(core::ErrorCode::kIo, fmt::format("{}: it cannot be copied to {}: {}",
-                                                      from.string(), to.string(), why));
+  return core::fail(core::ErrorCode::kIo,
+                    fmt::format("{}: cannot be copied to {}: {}", from.string(), to.string(), why));
 }
 
 }  // namespace
@@ -35,13 +35,13 @@ FileCopies::~FileCopies() {
   files_.clear();
   std::error_code error;
   for (auto at = made_.rbegin(); at != made_.rend(); ++at)
-    fs::remove(*at, error);  // of folders only those that are empty
+    fs::remove(*at, error);  // removes folders only if they are empty
 }
 
 core::Result<void> FileCopies::add(const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (!fs::is_regular_file(from, error))
-    return cannot_copy(from, to, error ? error.message() : "it is not a regular file");
+    return cannot_copy(from, to, error ? error.message() : "not a regular file");
   std::ifstream source(from, std::ios::binary);
   if (!source) return cannot_copy(from, to, std::strerror(errno));
   make_folders(to);
@@ -49,7 +49,7 @@ core::Result<void> FileCopies::add(const fs::path& from, const fs::path& to) {
   std::array<char, kChunkBytes> bytes;
   for (auto chunk = next_chunk(source, bytes); !chunk.empty(); chunk = next_chunk(source, bytes))
     file->write(chunk);
-  if (source.bad()) return cannot_copy(from, to, "it cannot be read to its end");
+  if (source.bad()) return cannot_copy(from, to, "reading failed before its end");
   if (auto flushed = file->flush(); !flushed) return flushed;
   files_.push_back(std::move(file));
   targets_.push_back(to);
@@ -62,7 +62,7 @@ void FileCopies::expect(const fs::path& file) {
   if (!fs::exists(file, error)) made_.push_back(file);
 }
 
-// Writing says what is wrong where that fails.
+// Ignores errors: writing the file reports them.
 void FileCopies::make_folders(const fs::path& file) {
   std::error_code error;
   std::vector<fs::path> missing;

@@ -1,6 +1,6 @@
-// Copies of files beside a world that is saved in another folder. All of them are written under
-// temporary names before the first gets its own, so that a full disk leaves nothing; what is new
-// goes away again unless it is kept. Knows no world. One thread.
+// Copies the files that a world references when it is saved in another folder. Writes all copies
+// under temporary names before it renames the first one, so that a full disk leaves no files.
+// Removes new files and folders again unless keep() is called. Knows no world. One thread.
 #pragma once
 
 #include <cstdint>
@@ -21,28 +21,27 @@ class FileCopies {
   FileCopies(const FileCopies&) = delete;
   FileCopies& operator=(const FileCopies&) = delete;
 
-  // Copies a file under a temporary name and makes the folders that it needs. Fails with kIo; the
-  // message starts with the file that cannot be read or written.
+  // Copies a file under a temporary name and creates its folders. Fails with kIo; the message
+  // starts with the file that cannot be read or written.
   core::Result<void> add(const std::filesystem::path& from, const std::filesystem::path& to);
-  // A file that is about to be written by somebody else: it goes away too, if it is new. Makes the
-  // folders that it needs.
+  // Registers a file that the caller will write, and creates its folders. The destructor removes it
+  // too, if it is new.
   void expect(const std::filesystem::path& file);
-  // Gives all of them their names; what was there is replaced. Fails with kIo.
+  // Renames all copies to their final names and replaces existing files. Fails with kIo.
   core::Result<void> commit();
-  // They stay.
+  // Keeps all new files and folders.
   void keep() { made_.clear(); }
 
  private:
   void make_folders(const std::filesystem::path& file);
 
   std::vector<std::unique_ptr<core::FileReplacement>> files_;
-  std::vector<std::filesystem::path> targets_, made_;  // made: folders, and files that are new
+  std::vector<std::filesystem::path> targets_, made_;  // made_: new folders and new files
 };
 
-// Whether two files have the same bytes; also where they are one file. False where one cannot be
-// read.
+// True if two paths name the same file, or files with the same bytes. False if one is unreadable.
 bool same_content(const std::filesystem::path& a, const std::filesystem::path& b);
-// Changes with a file that others write: of its size and its time.
+// A hash of the size and the modification time of a file, which changes when the file is written.
 std::uint64_t stamp_of(const std::filesystem::path& file);
 
 }  // namespace psygen::editor

@@ -21,7 +21,7 @@ Lines lines_of(std::string_view text) {
   return lines;
 }
 
-// Appends the differences of a[from, a_end) and b[from, b_end), which begin and end differently.
+// Appends the differences of a[from, a_end) and b[from, b_end), whose first and last lines differ.
 void add_middle(const Lines& a, const Lines& b, std::size_t from, std::size_t a_end,
                 std::size_t b_end, std::vector<DiffLine>& out) {
   using enum DiffLine::Kind;

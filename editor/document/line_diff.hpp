@@ -1,6 +1,6 @@
-// The lines in which two texts differ, as `diff -u` writes them, for "what will be saved". By the
-// longest common subsequence of lines; texts that differ in very many lines are shown as one block.
-// Pure, any thread. Time and memory are bounded by kMaxPairs.
+// The lines in which two texts differ, in the format of `diff -u`, for the list of unsaved changes.
+// Uses the longest common subsequence of lines; if very many lines differ, they become one block.
+// Pure; any thread. kMaxPairs bounds time and memory.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@
 
 namespace psygen::editor {
 
-// Largest product of the numbers of lines that differ.
+// Maximum product of the numbers of differing lines of both texts.
 inline constexpr std::size_t kMaxPairs = 4'000'000;
 
-// A line with what happens to it.
+// A line that is in both texts, or only in the first or the second one.
 struct DiffLine {
   enum class Kind { kSame, kRemoved, kAdded };
   Kind kind = Kind::kSame;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/image/image_io.hpp"
+
 namespace psygen::editor {
 
 void PixelRect::add(const PixelRect& other) {
@@ -48,6 +50,11 @@ PicturePtr PaintChange::applied(const PicturePtr& now, bool done) const {
     next->hash += world::row_hash(*next, y);
   }
   return next;
+}
+
+core::Result<void> write_picture_file(const std::filesystem::path& file,
+                                      const world::GreyPicture& picture) {
+  return image::write_png(file, image::GreyImage{picture.width, picture.height, picture.pixels});
 }
 
 }  // namespace psygen::editor

@@ -1,6 +1,6 @@
-// A world text as the engine reads it: the world, and the registry that its model indices mean.
-// Immutable and shared, so views may keep an old one while the text goes on. It knows no document
-// and no Qt but flags. Any thread may read.
+// A parsed world text: the world, and the registry that its model indices refer to. Immutable and
+// shared, so that views can keep it while the text changes. Uses only flags of Qt. Any thread may
+// read.
 #pragma once
 
 #include <QFlags>
@@ -18,38 +18,38 @@ namespace psygen::editor {
 // Adds the model types of a program to the standard ones (app::Plugin has the same member).
 using RegisterModels = std::function<core::Result<void>(models::Registry&)>;
 
-// The registry has the species of the file too.
+// The registry contains the species of the file too.
 struct ParsedWorld {
   models::Registry registry;
   world::World world;
 };
 using ParsedWorldPtr = std::shared_ptr<const ParsedWorld>;
 
-// Reads a text as a session does, with a registry of its own. Fails like world::parse_world(), and
-// like `register_models`, which may be empty. `files` reads those beside it; null:
+// Parses a text like a session, with a new registry. Fails like world::parse_world(), and like
+// `register_models`, which may be empty. `files` loads the resources of the world; null:
 // handmade::files().
 core::Result<ParsedWorldPtr> parse_world_text(const std::string& text, const std::string& file_name,
                                               const RegisterModels& register_models,
                                               const world::FilesBeside* files = nullptr);
 
-// What differs between two texts and their worlds.
+// Parts in which two texts and their worlds differ.
 enum class Change : unsigned {
-  kText = 1,     // any byte; alone: comments, or the same values written in another way
+  kText = 1,     // any byte; alone: comments, or the same values in another notation
   kWorld = 2,    // name, seed, number of blocks
   kTerrain = 4,  // parameters of the ground, with cell_m and block_vertices
   kSky = 8,
   kWater = 16,
   kPalette = 32,
   kSpecies = 64,
-  kScatter = 128,  // also models that were made by hand
-  kTables = 256,   // how many tables there are, or the model of one: controls must be made anew
+  kScatter = 128,  // also models from files
+  kTables = 256,   // number of tables, or the model type of one: controls must be recreated
   kFile = 512,     // another file was opened
-  kAll = 1023,     // what comes with kFile
+  kAll = 1023,     // all of the above, after opening another file
 };
 Q_DECLARE_FLAGS(Changes, Change)
 Q_DECLARE_OPERATORS_FOR_FLAGS(Changes)
 
-// All but kText and kFile.
+// The differences except kText and kFile.
 Changes changes_between(const ParsedWorld& before, const ParsedWorld& after);
 
 }  // namespace psygen::editor

@@ -32,10 +32,4 @@ void note_recent_file(QSettings& settings, const std::filesystem::path& file) {
   settings.setValue(recent_key(), names.mid(0, static_cast<qsizetype>(kMaxRecentFiles)));
 }
 
-void forget_recent_file(QSettings& settings, const std::filesystem::path& file) {
-  QStringList names = settings.value(recent_key()).toStringList();
-  names.removeAll(whole_name(file));
-  settings.setValue(recent_key(), names);
-}
-
 }  // namespace psygen::editor

@@ -1,4 +1,4 @@
-// The worlds that were opened last, kept in the settings of the user. Main thread.
+// Recently opened worlds, kept in the settings of the user. Main thread.
 #pragma once
 
 #include <QSettings>
@@ -9,11 +9,9 @@ namespace psygen::editor {
 
 inline constexpr std::size_t kMaxRecentFiles = 12;
 
-// The files, newest first. Files that are gone stay in the list: a disk may be back tomorrow.
+// The files, newest first. Missing files stay in the list, because a disk may be mounted again.
 std::vector<std::filesystem::path> recent_files(const QSettings& settings);
-// Puts a file in front, once.
+// Puts a file at the front; it is in the list only once.
 void note_recent_file(QSettings& settings, const std::filesystem::path& file);
-// Takes a file out.
-void forget_recent_file(QSettings& settings, const std::filesystem::path& file);
 
 }  // namespace psygen::editor

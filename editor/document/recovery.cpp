@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "editor/document/picture_file.hpp"
+#include "editor/document/paint_change.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
 
@@ -28,14 +28,14 @@ QString q(const std::filesystem::path& path) {
   return QString::fromStdString(path.string());
 }
 
-// The pictures of a recovery file: ID.HASH.png.
+// The image files of a recovery file: ID.HASH.png.
 std::filesystem::path picture_file(const std::filesystem::path& recovery_file,
                                    const world::GreyPicture& picture) {
   return recovery_file.parent_path() /
          fmt::format("{}.{:016x}.png", recovery_file.stem().string(), picture.hash);
 }
 
-// Removes those that are not in `kept`.
+// Removes the image files of a recovery file that are not in `kept`.
 void remove_pictures(const std::filesystem::path& recovery_file,
                      const std::set<std::filesystem::path>& kept) {
   const std::string start = recovery_file.stem().string() + ".";
@@ -51,7 +51,7 @@ void remove_pictures(const std::filesystem::path& recovery_file,
     std::filesystem::remove(file, error);
 }
 
-// Names of pictures and of their files. Those that cannot be read are left out.
+// Reads the images of a recovery. `names`: image names and their files. Skips unreadable files.
 handmade::NamedPictures read_pictures(const std::filesystem::path& folder,
                                       const QJsonObject& names) {
   handmade::NamedPictures pictures;
@@ -69,7 +69,7 @@ QString lock_name(const std::filesystem::path& recovery_file) {
 
 std::unique_ptr<QLockFile> locked(const QString& name) {
   auto lock = std::make_unique<QLockFile>(name);
-  lock->setStaleLockTime(0);  // never by age: only when its process is gone
+  lock->setStaleLockTime(0);  // a lock becomes stale only by the end of its process
   lock->tryLock(0);
   return lock;
 }
@@ -83,7 +83,7 @@ core::Error open_elsewhere(const QLockFile& lock, const std::filesystem::path& w
                       world_file.string(), process, host.toStdString())};
 }
 
-// Nothing where the file is damaged or of a newer version.
+// Returns nullopt if the file is damaged or of a newer version.
 std::optional<Recovery> read_recovery(const std::filesystem::path& file) {
   const auto bytes = core::read_file(file, kMaxBytes);
   if (!bytes) return {};
@@ -126,7 +126,7 @@ core::Result<std::unique_ptr<RecoverySession>> RecoverySession::start(
     const std::filesystem::path& state_folder, const std::filesystem::path& world_file,
     bool share) {
   std::unique_ptr<RecoverySession> session(new RecoverySession);
-  std::error_code ignored;  // then the locks cannot be taken
+  std::error_code ignored;  // acquiring the locks fails too
   std::filesystem::create_directories(state_folder, ignored);
   const QString id = QUuid::createUuid().toString(QUuid::Id128);
   session->file_ = state_folder / (id.toStdString() + kEnding);

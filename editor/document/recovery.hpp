@@ -1,7 +1,6 @@
-// Unsaved texts that survive a crash: one file per session in the editor's state folder, with
-// painted pictures beside it, and locks
-// that tell which sessions still run. Not the undo history, and not a backup of saved files. Main
-// thread; several processes may use the same folder.
+// Unsaved texts that survive a crash: one file per session in the editor's state folder, its
+// painted images, and locks that show which sessions still run. It contains no undo history and is
+// no backup of saved files. Main thread; several processes may use the same folder.
 #pragma once
 
 #include <QDateTime>
@@ -19,27 +18,28 @@ namespace psygen::editor {
 
 // An unsaved text.
 struct Recovery {
-  std::filesystem::path world_file;       // empty: it had no name yet
-  std::string text;                       // with the changes
-  std::string saved_text;                 // what the file held
-  int undo_index = 0;                     // steps that were done
-  QDateTime time;                         // when it was written
+  std::filesystem::path world_file;       // empty: the world was never saved
+  std::string text;                       // with the unsaved changes
+  std::string saved_text;                 // contents of the world file
+  int undo_index = 0;                     // number of undo steps
+  QDateTime time;                         // of writing the recovery file
   std::filesystem::path file;             // the recovery file
-  handmade::NamedPictures pictures = {};  // painted and not written
+  handmade::NamedPictures pictures = {};  // painted and unsaved
 };
 
 // $XDG_STATE_HOME/psygen-editor, else ~/.local/state/psygen-editor.
 std::filesystem::path default_state_folder();
 
-// The key of a world file in names of files of the state folder. The same for all paths of a file.
+// The key of a world file in file names of the state folder. All paths of one file have the same
+// key.
 QString file_key(const std::filesystem::path& world_file);
 
 // The recovery file and the locks of one open document.
 class RecoverySession {
  public:
-  // Takes the locks. `world_file` is empty for a world without a name. Fails with kInvalidArgument
-  // if another editor has the file open, naming its process; not with `share`. Where the folder
-  // cannot be written there are no locks and write() fails.
+  // Acquires the locks. `world_file` is empty for a world without a file. Fails with
+  // kInvalidArgument, naming the process, if another editor has the file open; not with `share`. If
+  // the folder is not writable, there are no locks and write() fails.
   static core::Result<std::unique_ptr<RecoverySession>> start(
       const std::filesystem::path& state_folder, const std::filesystem::path& world_file,
       bool share = false);
@@ -50,9 +50,9 @@ class RecoverySession {
 
   // Replaces the recovery file as a whole. Fails with kIo.
   core::Result<void> write(const Recovery& recovery) const;
-  // Removes it: nothing is unsaved.
+  // Removes the recovery file, because nothing is unsaved.
   void clear() const;
-  // Where it is, or will be.
+  // Path of the recovery file, which need not exist yet.
   const std::filesystem::path& file() const { return file_; }
 
  private:
@@ -62,9 +62,9 @@ class RecoverySession {
   std::unique_ptr<QLockFile> document_;  // while it has the world file open
 };
 
-// What sessions left that ended without closing, newest first. Damaged files are left out.
+// Recoveries of sessions that ended without closing, newest first. Damaged files are skipped.
 std::vector<Recovery> left_recoveries(const std::filesystem::path& state_folder);
-// Removes one of them.
+// Removes the files of a recovery.
 void discard_recovery(const Recovery& recovery);
 
 }  // namespace psygen::editor

@@ -15,14 +15,15 @@ double with_digits(double value) {
   return read;
 }
 
-double Scale::at(double share) const {
-  if (share <= 0) return low;
-  if (share >= 1) return high;
-  const double value = logarithmic ? low * std::pow(high / low, share) : low + share * (high - low);
+double Scale::at(double fraction) const {
+  if (fraction <= 0) return low;
+  if (fraction >= 1) return high;
+  const double value =
+      logarithmic ? low * std::pow(high / low, fraction) : low + fraction * (high - low);
   return std::clamp(whole ? std::round(value) : with_digits(value), low, high);
 }
 
-double Scale::share_of(double value) const {
+double Scale::fraction_of(double value) const {
   if (!(high > low)) return 0;
   const double v = std::clamp(value, low, high);
   return logarithmic ? std::log(v / low) / std::log(high / low) : (v - low) / (high - low);

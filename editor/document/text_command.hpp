@@ -1,5 +1,5 @@
-// One undo step: the texts before and after, with their worlds. Steps of one drag become one. It
-// does not know whether a text is a world (document.hpp refuses those that are not). Main thread.
+// One undo step: the texts before and after, with their worlds. Steps of one drag merge. It does
+// not validate texts (document.hpp does). Main thread.
 #pragma once
 
 #include <QUndoCommand>
@@ -11,18 +11,20 @@
 
 namespace psygen::editor {
 
+// A text, shared and immutable.
 using TextPtr = std::shared_ptr<const std::string>;
 
-// A text and the world that it was. Read again it may be another one, where files beside it have
-// changed, or none, where they are gone.
+// A text and its world at the time of the step. Parsing the text again may give another world if
+// its resources have changed, or an error if they are missing.
 struct ShownText {
   TextPtr text;
   ParsedWorldPtr world;
 };
 
+// An undo step of a document's QUndoStack.
 class TextCommand : public QUndoCommand {
  public:
-  // `drag`: steps with the same number merge; 0: none. `show` makes a text the document's.
+  // `drag`: steps with the same number merge; 0: none. `show` sets the text of the document.
   TextCommand(const QString& name, ShownText before, ShownText after, int drag,
               std::function<void(const ShownText&)> show)
       : QUndoCommand(name),
@@ -34,7 +36,7 @@ class TextCommand : public QUndoCommand {
   void undo() override { show_(before_); }
   void redo() override { show_(after_); }
   int id() const override { return drag_ == 0 ? -1 : drag_; }
-  // A drag that ends where it began is no step.
+  // A drag that ends at its first text is no step.
   bool mergeWith(const QUndoCommand* next) override {
     after_ = static_cast<const TextCommand*>(next)->after_;
     setObsolete(*before_.text == *after_.text);

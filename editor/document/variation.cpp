@@ -24,12 +24,12 @@ constexpr double kStepsOfRange = 100;
 constexpr std::uint64_t kMaxLockBytes = 1 << 20;
 
 // 0 … 1, the same on every machine.
-double share(std::mt19937_64& random) {
+double random_fraction(std::mt19937_64& random) {
   return static_cast<double>(random() >> 11) * 0x1.0p-53;
 }
 
 double drawn(const WorldField& field, std::mt19937_64& random) {
-  const double low = field.soft_min, high = field.soft_max, at = share(random);
+  const double low = field.soft_min, high = field.soft_max, at = random_fraction(random);
   // All integers are equally likely.
   if (is_whole(field.kind)) return std::min(high, std::floor(low + at * (high - low + 1)));
   return std::clamp(scale_of(field).at(at), field.hard_min, field.hard_max);
@@ -41,7 +41,7 @@ double stepped(const WorldField& field, double value, int steps) {
     next = field.logarithmic && value > 0
                ? value * std::pow(field.soft_max / field.soft_min, steps / kStepsOfRange)
                : value + steps * (field.soft_max - field.soft_min) / kStepsOfRange;
-    // As many digits as a step needs.
+    // A step needs six digits.
     const std::string digits = fmt::format("{:.6g}", next);
     std::from_chars(digits.data(), digits.data() + digits.size(), next);
   }

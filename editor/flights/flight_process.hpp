@@ -1,4 +1,4 @@
-// Flies a path with `psygen` in another process, which gives way to everything else. Main thread.
+// Renders a flight along a path with `psygen` in another process of lowest priority. Main thread.
 #pragma once
 
 #include <QObject>
@@ -9,23 +9,25 @@
 
 namespace psygen::editor {
 
+// One process at a time.
 class FlightProcess final : public QObject {
   Q_OBJECT
 
  public:
   explicit FlightProcess(QObject* parent = nullptr);
-  // Ends a flight that is under way.
+  // Ends a running flight.
   ~FlightProcess() override;
 
-  // Flies; flown() or failed() follow. One at a time.
+  // Starts a flight; flown() or failed() follows. Does nothing while a flight runs.
   void fly(const FlightSettings& settings, const std::filesystem::path& world,
            const std::filesystem::path& path, const std::filesystem::path& out);
   void cancel();
   bool is_flying() const { return process_.state() != QProcess::NotRunning; }
 
  Q_SIGNALS:
+  // The result of a flight, or its error.
   void flown(const psygen::editor::FlightRun& run);
-  void failed(const QString& sentence);
+  void failed(const QString& error);
 
  private:
   void finish(int code, QProcess::ExitStatus status);
@@ -36,7 +38,7 @@ class FlightProcess final : public QObject {
   bool cancelled_ = false;
 };
 
-// The program `psygen`: beside this one, else where the system finds it.
+// The program `psygen`: from the folder of this program, else from the system's search path.
 QString psygen_program();
 
 }  // namespace psygen::editor

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kMaxRunBytes = std::size_t{1} << 30;
 constexpr double kBusyWindowS = 0.25;
-constexpr double kWallMargin = 1.5;
+constexpr double kWallMargin = 1.5;  // factor of the budgets on the wall clock
 
 constexpr std::string_view kRunColumns[] = {"time_s",           "frame_ms",
                                             "requests_queued",  "cache_bytes",
@@ -34,9 +34,9 @@ core::Result<double> value_in(std::string_view cell, const std::string& where,
   return compare::number_in(cell, where, name);
 }
 
-// Of what modelers have finished around each frame.
-std::vector<double> busy_share(const std::vector<double>& time_s, const std::vector<double>& made_s,
-                               double modelers) {
+// Percentage of the time that modelers are busy around each frame.
+std::vector<double> busy_percent(const std::vector<double>& time_s,
+                                 const std::vector<double>& made_s, double modelers) {
   std::vector<double> busy(time_s.size(), 0);
   double sum_s = 0;
   std::size_t first = 0;
@@ -50,7 +50,7 @@ std::vector<double> busy_share(const std::vector<double>& time_s, const std::vec
   return busy;
 }
 
-// A field of summary.json by its name with points; NaN where it was not measured.
+// A field of summary.json by its dotted name; NaN if it was not measured.
 double summary_number(const QJsonObject& summary, const QString& field) {
   QJsonValue value = summary;
   for (const QString& part : field.split('.'))
@@ -58,11 +58,11 @@ double summary_number(const QJsonObject& summary, const QString& field) {
   return value.isDouble() ? value.toDouble() : std::numeric_limits<double>::quiet_NaN();
 }
 
-// Not below `value`, with three digits or so.
+// Rounds up to about three digits.
 double rounded_up(double value) {
   if (!(value > 0)) return 0;
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
-  // Without the last bits of the product, which nobody wants to read.
+  // The format removes rounding errors of the product.
   return std::max(value, std::stod(fmt::format("{:.6g}", std::ceil(value / unit - 1e-9) * unit)));
 }
 
@@ -72,8 +72,8 @@ QString settings_text(const FlightSettings& settings) {
   const std::string_view policy = synthesis::name_of(settings.policy);
   return QString("%1, %2, %3 MiB, %4 px, %5")
       .arg(settings.virtual_clock ? QObject::tr("virtual clock") : QObject::tr("wall clock"),
-           settings.modelers == 0 ? QObject::tr("modelers as usual")
-                                  : QObject::tr("%1 modelers").arg(settings.modelers))
+           settings.modelers == 0 ? QObject::tr("default worker threads")
+                                  : QObject::tr("%1 worker threads").arg(settings.modelers))
       .arg(settings.budget_mib)
       .arg(settings.error_pixels)
       .arg(QString::fromUtf8(policy.data(), static_cast<int>(policy.size())));
@@ -125,12 +125,12 @@ core::Result<FlightRun> parse_flight_run(const std::string& frames_csv, const st
   };
   if (auto ok = compare::read_csv(frames_csv, "frames.csv", header, row); !ok)
     return tl::unexpected(ok.error());
-  if (run.time_s.empty()) return compare::refuse_file("frames.csv", "it has no frame");
+  if (run.time_s.empty()) return compare::refuse_file("frames.csv", "it contains no frame");
   run.summary = QJsonDocument::fromJson(QByteArray::fromStdString(summary)).object();
   if (!run.summary["schema"].toString().startsWith("psygen.summary/1"))
     return compare::refuse_file("summary.json", "it is not a summary of a flight");
   const double modelers = summary_number(run.summary, "run.modelers");
-  run.busy_percent = busy_share(run.time_s, made_s, std::max(1.0, modelers));
+  run.busy_percent = busy_percent(run.time_s, made_s, std::max(1.0, modelers));
   for (double& bytes : run.cache_mib)
     bytes /= 1 << 20;
   return run;
@@ -152,11 +152,11 @@ std::string frame_test_text(const FlightRun& run, const std::string& name, const
                             const std::string& path) {
   const FlightSettings& s = run.settings;
   std::string text = fmt::format(
-      "# Made by psygen-editor from a run of this flight: its budgets are what the run took{}.\n"
+      "# Made by psygen-editor. The budgets are the values of a run of this flight{}.\n"
       "format = 1\nname = {}\n\n[flight]\nworld = {}\npath = {}\nsize = [{}, {}]\nclock = {}\n"
       "modelers = {}\nbudget_mib = {}\nerror = {}\npolicy = {}\npreset = {}\nwarmup = {}\n",
-      s.virtual_clock ? "" : ", and half as much again", world::toml_string(name),
-      world::toml_string(world), world::toml_string(path), s.size.width, s.size.height,
+      s.virtual_clock ? "" : ", times 1.5", world::toml_string(name), world::toml_string(world),
+      world::toml_string(path), s.size.width, s.size.height,
       s.virtual_clock ? "\"virtual\"" : "\"wall\"", s.modelers, s.budget_mib,
       world::toml_number(s.error_pixels), world::toml_string(synthesis::name_of(s.policy)),
       world::toml_string(render::to_string(s.preset)), world::toml_number(s.warmup_s));
@@ -172,7 +172,7 @@ std::string frame_test_text(const FlightRun& run, const std::string& name, const
   for (const char* field : kBudgets) {
     const double value = summary_number(run.summary, field);
     if (std::isnan(value)) continue;
-    // A margin of nothing is nothing: on the wall clock something may be missing another time.
+    // A factor does not raise 0, but on the wall clock another run may miss some pixels.
     const double least = s.virtual_clock || !QString(field).contains("percent") ? 0.0 : 1.0;
     fmt::format_to(to, "{} = {}\n", field,
                    world::toml_number(std::max(least, rounded_up(value * margin))));

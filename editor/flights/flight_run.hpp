@@ -1,5 +1,5 @@
-// A flight that was flown by `psygen fly`, as curves over its time: what its folder tells. Reads
-// and checks; draws nothing. Any thread.
+// A flight recorded by `psygen fly`, as curves over its time. Reads and checks the files of its
+// folder; draws nothing. Any thread.
 #pragma once
 
 #include <QJsonObject>
@@ -15,10 +15,10 @@
 
 namespace psygen::editor {
 
-// What a flight is flown with.
+// Options of a flight.
 struct FlightSettings {
   bool virtual_clock = true;
-  unsigned modelers = 0;  // 0: as many as suit the machine
+  unsigned modelers = 0;  // 0: the default of the machine
   int budget_mib = 512;
   double error_pixels = 4;
   synthesis::Policy policy = synthesis::Policy::kDeadline;
@@ -28,10 +28,10 @@ struct FlightSettings {
   friend bool operator==(const FlightSettings&, const FlightSettings&) = default;
 };
 
-// "virtual clock, 2 modelers, 512 MiB, 4 px, deadline".
+// Returns a text such as "virtual clock, 2 worker threads, 512 MiB, 4 px, deadline".
 QString settings_text(const FlightSettings& settings);
 
-// A curve has a value for each frame; NaN: not known.
+// Each curve has one value per frame; NaN: unknown.
 struct FlightRun {
   FlightSettings settings;
   std::filesystem::path folder;
@@ -47,13 +47,13 @@ QStringList flight_arguments(const FlightSettings& settings, const std::filesyst
 // Reads frames.csv and summary.json of a folder. Fails with kIo and kParse, naming file and line.
 core::Result<FlightRun> read_flight_run(const std::filesystem::path& folder,
                                         const FlightSettings& settings);
-// The same of texts in memory.
+// Like read_flight_run(), from texts in memory.
 core::Result<FlightRun> parse_flight_run(const std::string& frames_csv, const std::string& summary,
                                          const FlightSettings& settings);
 
-// The text of a frame test (docs/frame-tests.md) whose budgets the run keeps. On the virtual clock
-// they are what the run took; on the wall clock, which is never the same, half as much again.
-// `world` and `path` are as the file names them.
+// Returns the text of a frame test (docs/frame-tests.md) whose budgets the run keeps. On the
+// virtual clock the budgets are the run's values; on the wall clock, which varies, 1.5 times the
+// values. `world` and `path` are file names for the test.
 std::string frame_test_text(const FlightRun& run, const std::string& name, const std::string& world,
                             const std::string& path);
 

@@ -19,7 +19,7 @@ bool has_pictures(const world::World& world) {
 
 }  // namespace
 
-// The world as it is now; pictures of the ground lie beside a file that is not copied.
+// Writes the present world. It copies no ground images: a saved world uses its own file.
 core::Result<std::filesystem::path> TimelinePanel::write_world(
     const std::filesystem::path& folder) const {
   if (auto saved = host_.saved_world(); !saved.empty()) return saved;
@@ -37,22 +37,23 @@ void TimelinePanel::save_test() {
   if (!file.endsWith(".toml")) file += ".toml";
   const std::filesystem::path test = file.toStdString();
   const std::string stem = test.stem().string();
-  const auto beside = [&](const char* what) {
-    return test.parent_path() / fmt::format("{}.{}.toml", stem, what);
+  const auto file_of = [&](const char* part) {
+    return test.parent_path() / fmt::format("{}.{}.toml", stem, part);
   };
-  core::Result<void> ok = core::replace_file(beside("path"), world::write_camera_path(*path_));
-  std::string world = beside("world").filename().string();
+  core::Result<void> ok = core::replace_file(file_of("path"), world::write_camera_path(*path_));
+  std::string world = file_of("world").filename().string();
   if (has_pictures(host_.world())) {
     world = world_file_.string();
   } else if (ok) {
-    ok = core::replace_file(beside("world"), run_world_);
+    ok = core::replace_file(file_of("world"), run_world_);
   }
   if (ok) {
     ok = core::replace_file(
-        test, frame_test_text(runs_.back(), stem, world, beside("path").filename().string()));
+        test, frame_test_text(runs_.back(), stem, world, file_of("path").filename().string()));
   }
-  Q_EMIT told(ok ? tr("Saved %1 with its path and world. psygen test runs it.").arg(file)
-                 : QString::fromStdString(ok.error().message));
+  Q_EMIT message_posted(
+      ok ? tr("Saved %1 with its path and world. Run it with psygen test.").arg(file)
+         : QString::fromStdString(ok.error().message));
 }
 
 void TimelinePanel::save_path() {
@@ -62,7 +63,8 @@ void TimelinePanel::save_path() {
   if (file.isEmpty()) return;
   if (!file.endsWith(".toml")) file += ".toml";
   const auto ok = core::replace_file(file.toStdString(), world::write_camera_path(*path_));
-  Q_EMIT told(ok ? tr("Saved %1.").arg(file) : QString::fromStdString(ok.error().message));
+  Q_EMIT message_posted(ok ? tr("Saved %1.").arg(file)
+                           : QString::fromStdString(ok.error().message));
 }
 
 void TimelinePanel::open_path() {
@@ -73,7 +75,7 @@ void TimelinePanel::open_path() {
 
 void TimelinePanel::open_path_file(const std::filesystem::path& file) {
   auto path = world::load_camera_path(file);
-  if (!path) return Q_EMIT told(QString::fromStdString(path.error().message));
+  if (!path) return Q_EMIT message_posted(QString::fromStdString(path.error().message));
   show_path(std::move(*path));
   scrub(0);
 }

@@ -23,7 +23,7 @@ namespace {
 constexpr double kSampleS = 0.1, kMinFlightS = 0.3;
 constexpr std::size_t kSpeeds = 200;
 
-// Metres a second along a path, at even steps.
+// Speeds in m/s along a path, at even steps.
 std::vector<double> speeds_of(const world::CameraPath& path, const world::World& world) {
   std::vector<double> speeds;
   const double step_s = path.duration_seconds() / static_cast<double>(kSpeeds);
@@ -49,7 +49,7 @@ TimelinePanel::TimelinePanel(TimelineHost host, QWidget* parent)
       plot_(new TimelinePlot),
       record_(new QPushButton(tr("Record"))),
       play_(new QPushButton(tr("Play"))),
-      fly_(new QPushButton(tr("Run again"))),
+      fly_(new QPushButton(tr("Re-run"))),
       cancel_(new QPushButton(tr("Cancel"))),
       save_test_(new QPushButton(tr("Save as frame test …"))),
       save_path_(new QPushButton(tr("Save path …"))),
@@ -66,8 +66,8 @@ TimelinePanel::TimelinePanel(TimelineHost host, QWidget* parent)
   clock_->addItems({tr("virtual clock"), tr("wall clock")});
   clock_->setAccessibleName(tr("Clock of the run"));
   clock_->setToolTip(
-      tr("On the virtual clock everything has a fixed price: the run is the same on "
-         "any machine. The wall clock measures this machine."));
+      tr("The virtual clock uses fixed costs, so the run is identical on every machine. The wall "
+         "clock measures this machine."));
   for (const synthesis::Policy policy : synthesis::kAllPolicies) {
     const std::string_view name = synthesis::name_of(policy);
     policy_->addItem(QString::fromUtf8(name.data(), static_cast<int>(name.size())));
@@ -75,12 +75,12 @@ TimelinePanel::TimelinePanel(TimelineHost host, QWidget* parent)
   policy_->setCurrentText("deadline");
   policy_->setAccessibleName(tr("Order of synthesis"));
   modelers_->setRange(0, 256);
-  modelers_->setSpecialValueText(tr("as usual"));
-  modelers_->setAccessibleName(tr("Modelers"));
+  modelers_->setSpecialValueText(tr("default"));
+  modelers_->setAccessibleName(tr("Worker threads"));
   budget_->setRange(4, 1 << 16);
   budget_->setValue(512);
   budget_->setSuffix(" MiB");
-  budget_->setAccessibleName(tr("Budget of geometry"));
+  budget_->setAccessibleName(tr("Geometry budget"));
   error_->setRange(0.1, 1000);
   error_->setValue(4);
   error_->setDecimals(1);
@@ -100,7 +100,7 @@ TimelinePanel::TimelinePanel(TimelineHost host, QWidget* parent)
   with->addWidget(fly_);
   with->addWidget(new QLabel(tr("with")));
   with->addWidget(clock_);
-  with->addWidget(new QLabel(tr("modelers")));
+  with->addWidget(new QLabel(tr("Worker threads:")));
   for (QWidget* widget : std::initializer_list<QWidget*>{modelers_, budget_, error_, policy_})
     with->addWidget(widget);
   with->addSpacing(12);
@@ -120,21 +120,21 @@ TimelinePanel::TimelinePanel(TimelineHost host, QWidget* parent)
     scrub(time_s);
   });
   connect(&process_, &FlightProcess::flown, this, &TimelinePanel::show_run);
-  connect(&process_, &FlightProcess::failed, this, [this](const QString& sentence) {
-    state_->setText(sentence);
-    Q_EMIT told(sentence);
-    fit_buttons();
+  connect(&process_, &FlightProcess::failed, this, [this](const QString& error) {
+    state_->setText(error);
+    Q_EMIT message_posted(error);
+    update_buttons();
   });
-  fit_buttons();
+  update_buttons();
 }
 
 TimelinePanel::~TimelinePanel() = default;
 
-void TimelinePanel::fit_buttons() {
+void TimelinePanel::update_buttons() {
   const bool flying = process_.is_flying();
   play_->setEnabled(path_.has_value() && !is_recording());
   fly_->setEnabled(path_.has_value() && !flying && !is_recording());
-  fly_->setText(runs_.empty() ? tr("Run") : tr("Run again"));
+  fly_->setText(runs_.empty() ? tr("Run") : tr("Re-run"));
   cancel_->setVisible(flying);
   save_test_->setEnabled(!runs_.empty() && !flying);
   save_path_->setEnabled(path_.has_value());
@@ -144,7 +144,7 @@ void TimelinePanel::fit_buttons() {
   record_->setText(is_recording() ? tr("Stop") : tr("Record"));
 }
 
-void TimelinePanel::fit_legend() {
+void TimelinePanel::update_legend() {
   QStringList words;
   for (std::size_t i = 0; i < runs_.size(); ++i)
     words.push_back(QString("<font color=%1>■</font> %2")
@@ -165,34 +165,34 @@ void TimelinePanel::set_recording(bool on) {
   if (on) {
     poses_.clear();
     recording_.start();
-    state_->setText(tr("Recording: fly through the view."));
+    state_->setText(tr("Recording. Fly the camera through the view."));
   } else {
     recording_.invalidate();
     if (poses_.size() < 2 || poses_.back().time_s - poses_.front().time_s < kMinFlightS) {
-      state_->setText(tr("Nothing was recorded: the flight was too short."));
+      state_->setText(tr("The recording was too short."));
     } else {
       const QString name = QDateTime::currentDateTime().toString("yyyy-MM-dd HH.mm.ss");
       show_path(world::recorded_path(name.toStdString(), poses_, host_.world()));
       fly();
     }
   }
-  fit_buttons();
+  update_buttons();
   Q_EMIT recording_changed(on);
 }
 
-void TimelinePanel::tell_progress() {
-  state_->setText(tr("Flying %1 s in the background, for %2 s now …")
+void TimelinePanel::show_progress() {
+  state_->setText(tr("Rendering flight (%1 s long) … %2 s elapsed")
                       .arg(path_->duration_seconds(), 0, 'f', 1)
                       .arg(flying_.elapsed() / 1000));
 }
 
-void TimelinePanel::picture_drawn() {
-  if (process_.is_flying() && path_) tell_progress();
+void TimelinePanel::on_frame_drawn() {
+  if (process_.is_flying() && path_) show_progress();
   if (is_recording()) {
     const double now_s = static_cast<double>(recording_.nsecsElapsed()) * 1e-9;
     if (!poses_.empty() && now_s < poses_.back().time_s + kSampleS) return;
     poses_.push_back({now_s, host_.pose()});
-    state_->setText(tr("Recording: %1 s. Ctrl+Shift+R ends it.").arg(now_s, 0, 'f', 1));
+    state_->setText(tr("Recording: %1 s. Press Ctrl+Shift+R to stop.").arg(now_s, 0, 'f', 1));
     if (poses_.size() == world::kMaxRecordedPoses) set_recording(false);
   }
   if (playing_.isValid() && path_) {
@@ -213,7 +213,7 @@ void TimelinePanel::play(bool on) {
     playing_.invalidate();
   }
   play_->setText(on ? tr("Stop playing") : tr("Play"));
-  fit_buttons();
+  update_buttons();
 }
 
 void TimelinePanel::scrub(double time_s) {
@@ -221,7 +221,7 @@ void TimelinePanel::scrub(double time_s) {
   host_.set_pose(path_->pose_at(time_s, host_.world()));
   if (!process_.is_flying() && !is_recording())
     state_->setText(
-        tr("At %1 s of %2 s").arg(time_s, 0, 'f', 2).arg(path_->duration_seconds(), 0, 'f', 1));
+        tr("%1 s of %2 s").arg(time_s, 0, 'f', 2).arg(path_->duration_seconds(), 0, 'f', 1));
 }
 
 void TimelinePanel::show_path(world::CameraPath path) {
@@ -230,8 +230,8 @@ void TimelinePanel::show_path(world::CameraPath path) {
   plot_->set_runs({});
   plot_->set_path(path_->duration_seconds(), speeds_of(*path_, host_.world()));
   plot_->set_cursor(0);
-  fit_legend();
-  fit_buttons();
+  update_legend();
+  update_buttons();
 }
 
 FlightSettings TimelinePanel::settings() const {
@@ -259,14 +259,14 @@ void TimelinePanel::fly() {
   auto written = core::replace_file(path_file, world::write_camera_path(*path_));
   const auto world_file = write_world(folder);
   if (written && !world_file) written = tl::unexpected(world_file.error());
-  if (!written) return Q_EMIT told(QString::fromStdString(written.error().message));
+  if (!written) return Q_EMIT message_posted(QString::fromStdString(written.error().message));
   path_file_ = path_file;
   world_file_ = *world_file;
   run_world_ = host_.world_text();
   process_.fly(settings(), world_file_, path_file_, folder / "run");
   flying_.start();
-  tell_progress();
-  fit_buttons();
+  show_progress();
+  update_buttons();
 }
 
 void TimelinePanel::show_run(const FlightRun& run) {
@@ -275,9 +275,9 @@ void TimelinePanel::show_run(const FlightRun& run) {
   plot_->set_runs(runs_);
   const double p50 = run.summary["frame_ms"].toObject()["p50"].toDouble();
   state_->setText(
-      tr("%1 frames, half of them within %2 ms").arg(run.time_s.size()).arg(p50, 0, 'f', 2));
-  fit_legend();
-  fit_buttons();
+      tr("%1 frames, median frame time %2 ms").arg(run.time_s.size()).arg(p50, 0, 'f', 2));
+  update_legend();
+  update_buttons();
 }
 
 }  // namespace psygen::editor

@@ -1,5 +1,5 @@
-// Records flights of the view's camera, flies them again, and shows what they cost over their time.
-// Moves the camera of the view; changes no document. Main thread.
+// The panel "Timeline": records flights of the view's camera, renders them again, and shows their
+// costs over time. Moves the camera of the view; changes no document. Main thread.
 #pragma once
 
 #include <QElapsedTimer>
@@ -24,11 +24,11 @@ namespace psygen::editor {
 
 class TimelinePlot;
 
-// What the panel needs of the rest of the editor.
+// Functions that give the panel access to the rest of the editor.
 struct TimelineHost {
   std::function<const world::World&()> world;
   std::function<std::string()> world_text;
-  // The file of the world if it has just that text, else empty.
+  // The file of the world if it has the same text, else empty.
   std::function<std::filesystem::path()> saved_world;
   std::function<core::CameraPose()> pose;
   std::function<void(const core::CameraPose&)> set_pose;
@@ -37,10 +37,12 @@ struct TimelineHost {
   std::filesystem::path folder;  // for recordings and runs
 };
 
+// One path, and at most two runs of it.
 class TimelinePanel final : public QWidget {
   Q_OBJECT
 
  public:
+  // The objects behind the host's functions outlive the panel.
   explicit TimelinePanel(TimelineHost host, QWidget* parent = nullptr);
   ~TimelinePanel() override;
 
@@ -51,24 +53,24 @@ class TimelinePanel final : public QWidget {
   void save_test();
   void save_path();
   void open_path();
-  // Takes a path file, or tells why not.
+  // Opens a path file; posts a message on failure.
   void open_path_file(const std::filesystem::path& file);
-  // To be called after every picture of the view: samples the camera, or moves it on.
-  void picture_drawn();
+  // To be called after every frame of the view: records the camera, or moves it along the path.
+  void on_frame_drawn();
 
  Q_SIGNALS:
-  void told(const QString& sentence);
+  void message_posted(const QString& message);
   void recording_changed(bool on);
-  // A flight in the background needs the processors, and nothing moves in the view.
+  // A flight in the background starts or stops to need the processors while the view is still.
   void needs_processors(bool on);
 
  private:
   void show_path(world::CameraPath path);
   void show_run(const FlightRun& run);
   void scrub(double time_s);
-  void fit_buttons();
-  void fit_legend();
-  void tell_progress();
+  void update_buttons();
+  void update_legend();
+  void show_progress();
   FlightSettings settings() const;
   core::Result<std::filesystem::path> write_world(const std::filesystem::path& folder) const;
 
@@ -76,7 +78,7 @@ class TimelinePanel final : public QWidget {
   FlightProcess process_;
   std::optional<world::CameraPath> path_;
   std::filesystem::path path_file_, world_file_;  // of the runs
-  std::string run_world_;                         // the text of the world of the runs
+  std::string run_world_;                         // world text of the runs
   std::vector<FlightRun> runs_;
   QElapsedTimer recording_, playing_, flying_;
   std::vector<world::TimedPose> poses_;

@@ -21,7 +21,7 @@ double max_of(const std::vector<double>& values) {
   return most;
 }
 
-// The frame at a time: the last one that began before.
+// Index of the last frame that began before a time.
 std::size_t frame_at(const std::vector<double>& time_s, double t) {
   const auto after = std::ranges::upper_bound(time_s, t);
   return after == time_s.begin() ? 0 : static_cast<std::size_t>(after - time_s.begin()) - 1;
@@ -34,7 +34,7 @@ QString short_number(double value) {
                          std::abs(value) < 100 ? 3 : 0);
 }
 
-// A step of the axis: 1, 2 or 5 times a power of ten, some 8 in the width.
+// Step of the axis: 1, 2 or 5 times a power of ten, at most ten steps.
 double axis_step(double duration_s) {
   const double unit = std::pow(10.0, std::floor(std::log10(std::max(duration_s, 1e-3) / 4)));
   for (const double times : {1.0, 2.0, 5.0}) {
@@ -98,7 +98,7 @@ void TimelinePlot::draw_names(QPainter& painter, const QRectF& place, const QStr
   painter.setPen(palette().color(QPalette::PlaceholderText));
   if (place.height() > 2 * line)
     painter.drawText(QRectF(4, place.top() + line, kLeftPx - 8, line), Qt::AlignLeft,
-                     tr("up to %1").arg(short_number(most)));
+                     tr("max %1").arg(short_number(most)));
   double y = place.top();
   for (int i = 0; i < now.size(); ++i) {
     painter.setPen(run_colour(static_cast<std::size_t>(i)));
@@ -206,9 +206,9 @@ void TimelinePlot::mouseMoveEvent(QMouseEvent* event) {
 }
 
 void TimelinePlot::keyPressEvent(QKeyEvent* event) {
-  const int way = event->key() == Qt::Key_Right ? 1 : event->key() == Qt::Key_Left ? -1 : 0;
-  if (way == 0 || duration_s_ <= 0) return QWidget::keyPressEvent(event);
-  set_cursor(cursor_s_ + way * kKeyStepS * (event->modifiers() & Qt::ShiftModifier ? 10 : 1));
+  const int direction = event->key() == Qt::Key_Right ? 1 : event->key() == Qt::Key_Left ? -1 : 0;
+  if (direction == 0 || duration_s_ <= 0) return QWidget::keyPressEvent(event);
+  set_cursor(cursor_s_ + direction * kKeyStepS * (event->modifiers() & Qt::ShiftModifier ? 10 : 1));
   Q_EMIT dragged(cursor_s_);
 }
 

@@ -1,5 +1,5 @@
-// Curves over the time of a flight, one row each over one axis, with a cursor that is dragged. A
-// second run lies over the first. Main thread.
+// Curves over the time of a flight: one row per curve, one time axis, and a cursor that the user
+// drags. Draws a second run over the first. Main thread.
 #pragma once
 
 #include <QWidget>
@@ -10,20 +10,22 @@
 
 namespace psygen::editor {
 
+// Draws the speed of the path, and below it the curves of the runs.
 class TimelinePlot final : public QWidget {
   Q_OBJECT
 
  public:
   explicit TimelinePlot(QWidget* parent = nullptr);
-  // The length of the flight in seconds, and its speed in m/s at even steps from 0 to the end.
+  // The duration of the flight in seconds, and its speed in m/s at even steps from 0 to the end.
   void set_path(double duration_s, std::vector<double> speed_m_s);
-  // The runs that are drawn over each other: the first, and the last one.
+  // The runs to draw over each other: the first, and the last one.
   void set_runs(std::vector<FlightRun> runs);
   void set_cursor(double time_s);
   double cursor() const { return cursor_s_; }
   QSize sizeHint() const override { return {600, 260}; }
 
  Q_SIGNALS:
+  // The user moved the cursor.
   void dragged(double time_s);
 
  protected:
@@ -51,7 +53,7 @@ class TimelinePlot final : public QWidget {
   double duration_s_ = 0, cursor_s_ = 0;
 };
 
-// The colours of the first run and of the one that lies over it.
+// The colours of the first and the second run.
 QColor run_colour(std::size_t run);
 
 }  // namespace psygen::editor

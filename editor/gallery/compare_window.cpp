@@ -11,7 +11,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kLookMs = 300;  // the camera rests if it has not moved since the last look
+constexpr int kCheckMs = 300;  // the camera rests if it has not moved since the last check
 constexpr double kLineStep = 0.02;
 constexpr const char* kCompareGeometryKey = "compare/geometry";
 
@@ -42,7 +42,7 @@ void CompareWindow::showEvent(QShowEvent* event) {
   QWidget::showEvent(event);
   drawn_.reset();
   follow();
-  timer_.start(kLookMs);
+  timer_.start(kCheckMs);
 }
 
 void CompareWindow::hideEvent(QHideEvent* event) {
@@ -56,7 +56,7 @@ void CompareWindow::follow() {
   auto view = ask_view_();
   const auto states = ask_states_();
   if (!view || !states) return update();
-  // The picture of the view, as large as it is shown here.
+  // The aspect ratio of the view, in the size of this window.
   const QSize size = QSize(static_cast<int>(view->size.width), static_cast<int>(view->size.height))
                          .scaled(this->size() * devicePixelRatioF(), Qt::KeepAspectRatio);
   view->size = {static_cast<std::uint32_t>(std::max(size.width(), 16)),
@@ -65,18 +65,19 @@ void CompareWindow::follow() {
   seen_ = view;
   if (!rests) return;
   const bool moved = !drawn_ || !same_view(*drawn_, *view);
-  const ComparedState* const wanted[] = {&states->first, &states->second};
+  const ComparedState* const present[] = {&states->first, &states->second};
   bool changed = moved;
   for (int i = 0; i < 2; ++i) {
-    changed = changed || halves_[i].state.text != wanted[i]->text;
-    halves_[i].state.name = wanted[i]->name;
+    changed = changed || halves_[i].state.text != present[i]->text;
+    halves_[i].state.name = present[i]->name;
   }
   if (!changed) return;
   service_.cancel(this);
   const int batch = service_.new_batch();
   for (int i = 0; i < 2; ++i) {
-    const bool stays = !moved && halves_[i].state.text == wanted[i]->text && !halves_[i].awaited;
-    halves_[i].state = *wanted[i];
+    const bool stays =
+        !moved && halves_[i].state.text == present[i]->text && !halves_[i].is_awaited;
+    halves_[i].state = *present[i];
     if (!stays) ask(halves_[i], *view, batch);
   }
   drawn_ = view;
@@ -90,11 +91,11 @@ void CompareWindow::ask(Half& half, const ViewState& view, int batch) {
   request.size = view.size;
   request.place = view.place;
   request.now_s = view.now_s;
-  half.awaited = true;
+  half.is_awaited = true;
   service_.ask(std::move(request), batch, &half == halves_ ? 0 : 1, this,
                [this, &half](const PictureReply& reply) {
-                 half.awaited = false;
-                 half.failure = QString::fromStdString(reply.error);
+                 half.is_awaited = false;
+                 half.error = QString::fromStdString(reply.error);
                  if (reply.error.empty()) half.image = reply.image;
                  update();
                });
@@ -117,8 +118,8 @@ void CompareWindow::paintEvent(QPaintEvent*) {
           half.image);
     }
     QString text = half.state.name;
-    if (half.awaited) text += tr("  …");
-    if (!half.failure.isEmpty()) text += "  " + half.failure;
+    if (half.is_awaited) text += tr("  …");
+    if (!half.error.isEmpty()) text += "  " + half.error;
     const QRect words = painter.fontMetrics().boundingRect(text).adjusted(-8, -4, 8, 4);
     const QRect at(i == 0 ? 8 : width() - words.width() - 8, 8, words.width(), words.height());
     painter.fillRect(at, QColor(0, 0, 0, 140));

@@ -1,6 +1,6 @@
-// Two states of the world in one picture, from where the view's camera stands: left of a line A,
-// right of it B. The line is dragged with the mouse. Pictures follow the camera when it rests, and
-// the text when it changes. Main thread.
+// Compares two states of the world in one image, from the view's camera: A left of a line, B right
+// of it. The user drags the line. Renders new images when the camera rests at another pose and when
+// a text changes. Main thread.
 #pragma once
 
 #include <QImage>
@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "editor/gallery/view_state.hpp"
+#include "editor/pictures/picture_request.hpp"
 
 namespace psygen::editor {
 
@@ -21,13 +21,15 @@ struct ComparedState {
   std::string text, file;
   QString name;  // "A, 14:02"
 };
-// A and B as they are now; nothing while there is no A.
+// Returns the present A and B; nullopt while there is no A.
 using AskStates = std::function<std::optional<std::pair<ComparedState, ComparedState>>()>;
 
+// The window "A and B".
 class CompareWindow final : public QWidget {
   Q_OBJECT
 
  public:
+  // The service outlives the window.
   CompareWindow(PictureService& service, AskView ask_view, AskStates ask_states,
                 QWidget* parent = nullptr);
 
@@ -43,8 +45,8 @@ class CompareWindow final : public QWidget {
   struct Half {
     ComparedState state;
     QImage image;
-    QString failure;
-    bool awaited = false;
+    QString error;
+    bool is_awaited = false;
   };
   void follow();
   void ask(Half& half, const ViewState& view, int batch);
@@ -54,7 +56,7 @@ class CompareWindow final : public QWidget {
   AskView ask_view_;
   AskStates ask_states_;
   QTimer timer_;
-  std::optional<ViewState> seen_, drawn_;  // the camera at the last look, and of the pictures
+  std::optional<ViewState> seen_, drawn_;  // at the last check, and of the images
   Half halves_[2];
   double line_ = 0.5;
 };

@@ -18,9 +18,9 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kMaxSide = 8;  // cells along a side
+constexpr int kMaxSide = 8;  // cells per side
 constexpr std::uint32_t kSheetWidth = 320;
-constexpr double kMaxSmaller = 5;  // a model is drawn than the largest of its sheet
+constexpr double kMaxSmaller = 5;  // maximum ratio of a model's size to its size in the image
 constexpr const char* kGeometryKey = "contact_sheet/geometry";
 
 QString cost_text(const BlockCost& cost) {
@@ -33,7 +33,7 @@ QString shown_value(const std::string& toml) {
   return text;
 }
 
-// The item of species or scatters that a path leads into.
+// True for paths inside a species or a scatter.
 bool is_of_model(const world::TextPath& path) {
   return path.size() > 2 && path.steps[1].is_index &&
          (path.steps[0].key == "species" || path.steps[0].key == "scatter");
@@ -63,10 +63,10 @@ ContactSheet::ContactSheet(Document& document, PictureService& service, AskView 
   };
   first_ = add_box(tr("Field along the columns"));
   second_ = add_box(tr("Field along the rows"));
-  what_ = new QComboBox;
-  what_->setAccessibleName(tr("What the pictures show"));
-  what_->addItems({tr("From the view"), tr("The model alone")});
-  connect(what_, &QComboBox::activated, this, &ContactSheet::fill);
+  subject_ = new QComboBox;
+  subject_->setAccessibleName(tr("Subject of the images"));
+  subject_->addItems({tr("View of the world"), tr("Model alone")});
+  connect(subject_, &QComboBox::activated, this, &ContactSheet::fill);
   const auto add_spin = [this](const QString& name) {
     auto* spin = new QSpinBox;
     spin->setAccessibleName(name);
@@ -79,7 +79,7 @@ ContactSheet::ContactSheet(Document& document, PictureService& service, AskView 
   columns_ = add_spin(tr("Columns"));
   rows_ = add_spin(tr("Rows"));
   more_ = new QPushButton(tr("&Other seeds"));
-  again_ = new QPushButton(tr("&Draw again"));
+  again_ = new QPushButton(tr("&Render again"));
   connect(more_, &QPushButton::clicked, this, [this] {
     ++page_;
     fill();
@@ -91,15 +91,15 @@ ContactSheet::ContactSheet(Document& document, PictureService& service, AskView 
   line->addWidget(first_, 2);
   line->addWidget(new QLabel(tr("and")));
   line->addWidget(second_, 2);
-  line->addWidget(what_);
+  line->addWidget(subject_);
   line->addWidget(columns_);
   line->addWidget(new QLabel("×"));
   line->addWidget(rows_);
   grid_ = new QGridLayout;
   grid_->setSpacing(2);
-  told_ = new QLabel;
+  status_ = new QLabel;
   auto* below = new QHBoxLayout;
-  below->addWidget(told_, 1);
+  below->addWidget(status_, 1);
   below->addWidget(more_);
   below->addWidget(again_);
   auto* layout = new QVBoxLayout(this);
@@ -131,13 +131,13 @@ void ContactSheet::hideEvent(QHideEvent* event) {
   QDialog::hideEvent(event);
 }
 
-// The fields of the present world, the choice kept.
+// Lists the fields of the present world and keeps the choice.
 void ContactSheet::list_fields() {
   const QVariant chosen[] = {first_->currentData(), second_->currentData()};
   QComboBox* const boxes[] = {first_, second_};
   for (std::size_t i = 0; i < 2; ++i) {
     boxes[i]->clear();
-    if (i == 1) boxes[i]->addItem(tr("nothing else"), QString());
+    if (i == 1) boxes[i]->addItem(tr("(no second field)"), QString());
   }
   const auto list = [&](auto& self, const std::vector<world::WorldSection>& sections,
                         const QString& before) -> void {
@@ -161,7 +161,7 @@ void ContactSheet::choose(const world::TextPath& first) {
   const int index = first_->findData(QString::fromStdString(first.text()));
   if (index >= 0) first_->setCurrentIndex(index);
   second_->setCurrentIndex(0);
-  what_->setCurrentIndex(is_of_model(first) ? 1 : 0);
+  subject_->setCurrentIndex(is_of_model(first) ? 1 : 0);
 }
 
 const world::WorldField* ContactSheet::field_of(const QComboBox& box) const {
@@ -183,8 +183,8 @@ void ContactSheet::fill() {
   service_.cancel(this);
   swept_ = fields();
   const bool of_model = !swept_.empty() && is_of_model(swept_[0].path);
-  what_->setEnabled(of_model);
-  if (!of_model) what_->setCurrentIndex(0);
+  subject_->setEnabled(of_model);
+  if (!of_model) subject_->setCurrentIndex(0);
   more_->setVisible(std::ranges::any_of(
       swept_, [](const auto& field) { return field.kind == world::FieldKind::kSeed; }));
   const auto columns = static_cast<std::size_t>(columns_->value());
@@ -193,8 +193,8 @@ void ContactSheet::fill() {
   for (const Shown& shown : shown_)
     delete shown.widget;
   shown_.clear();
-  if (!cells) return told_->setText(QString::fromStdString(cells.error().message));
-  // Of two fields the first may have fewer values than there are columns.
+  if (!cells) return status_->setText(QString::fromStdString(cells.error().message));
+  // The first of two fields may have fewer values than there are columns.
   const std::size_t wide =
       swept_.size() == 2 ? sweep_values(swept_[0], columns, page_).size() : columns;
   for (std::size_t i = 0; i < cells->size(); ++i) {
@@ -203,9 +203,9 @@ void ContactSheet::fill() {
     for (const std::string& value : (*cells)[i].values)
       values += shown_value(value);
     widget->set_caption(values.join(" · "), {});
-    connect(widget, &PictureCell::clicked, this, [this, i] { adopt(i); });
+    connect(widget, &PictureCell::clicked, this, [this, i] { apply(i); });
     grid_->addWidget(widget, static_cast<int>(i / wide), static_cast<int>(i % wide));
-    shown_.push_back({std::move((*cells)[i]), widget, std::nullopt, 0, false});
+    shown_.push_back({.cell = std::move((*cells)[i]), .widget = widget, .seconds = {}});
   }
   mark_present();
   ask_costs();
@@ -221,7 +221,7 @@ core::Result<PictureRequest> ContactSheet::request_of(const SweepCell& cell) con
                   std::clamp(kSheetWidth * static_cast<std::uint32_t>(std::max(place.height(), 1)) /
                                  static_cast<std::uint32_t>(std::max(place.width(), 1)),
                              kSheetWidth / 4, kSheetWidth * 2)};
-  if (what_->currentIndex() == 1 && is_of_model(swept_[0].path)) {
+  if (subject_->currentIndex() == 1 && is_of_model(swept_[0].path)) {
     const std::size_t index = swept_[0].path.steps[1].index;
     auto text = swept_[0].path.steps[0].key == "species" ? species_portrait(cell.text, index)
                                                          : scatter_portrait(cell.text, index);
@@ -230,7 +230,7 @@ core::Result<PictureRequest> ContactSheet::request_of(const SweepCell& cell) con
     request.text = *std::move(text);
   } else if (view) {
     request.place = view->place;
-    // Other ground is seen from the same height over it.
+    // The same height above other ground.
     request.place->at_m.y = view->above_m;
     request.place->above_ground = true;
     request.now_s = view->now_s;
@@ -238,7 +238,7 @@ core::Result<PictureRequest> ContactSheet::request_of(const SweepCell& cell) con
   return request;
 }
 
-// First what each cell costs, then pictures in this order.
+// Requests the costs of all cells; then images follow, cheapest first.
 void ContactSheet::ask_costs() {
   batch_ = service_.new_batch();
   drawn_ = 0;
@@ -253,7 +253,7 @@ void ContactSheet::ask_costs() {
     service_.ask(std::move(request), batch_, static_cast<double>(i), this,
                  [this, i](const PictureReply& reply) { note_cost(i, reply); });
   }
-  tell();
+  update_status();
 }
 
 void ContactSheet::note_cost(std::size_t i, const PictureReply& reply) {
@@ -266,12 +266,12 @@ void ContactSheet::note_cost(std::size_t i, const PictureReply& reply) {
     shown.widget->set_caption(values.join(" · "), cost_text(*reply.cost));
   } else {
     shown.failed = true;
-    shown.widget->set_failure(QString::fromStdString(reply.error));
+    shown.widget->set_error(QString::fromStdString(reply.error));
   }
   if (--costs_left_ == 0) ask_distances();
 }
 
-// Models of one sheet are seen from one distance, so that their sizes compare.
+// All models of a sheet have the same distance, so that their sizes are comparable.
 void ContactSheet::ask_distances() {
   distances_left_ = 0;
   for (std::size_t i = 0; i < shown_.size(); ++i) {
@@ -284,7 +284,7 @@ void ContactSheet::ask_distances() {
                    shown_[i].distance_m = reply.distance_m;
                    if (!reply.error.empty()) {
                      shown_[i].failed = true;
-                     shown_[i].widget->set_failure(QString::fromStdString(reply.error));
+                     shown_[i].widget->set_error(QString::fromStdString(reply.error));
                    }
                    if (--distances_left_ == 0) ask_pictures();
                  });
@@ -304,14 +304,14 @@ void ContactSheet::ask_pictures() {
     auto request = request_of(shown_[i].cell);
     if (!request) {
       shown_[i].failed = true;
-      shown_[i].widget->set_failure(QString::fromStdString(request.error().message));
+      shown_[i].widget->set_error(QString::fromStdString(request.error().message));
       continue;
     }
     request->distance_m = std::min(farthest_m, kMaxSmaller * shown_[i].distance_m);
     service_.ask(*std::move(request), batch_, rank++, this,
                  [this, i](const PictureReply& reply) { note_picture(i, reply); });
   }
-  tell();
+  update_status();
 }
 
 void ContactSheet::note_picture(std::size_t i, const PictureReply& reply) {
@@ -319,36 +319,36 @@ void ContactSheet::note_picture(std::size_t i, const PictureReply& reply) {
     shown_[i].widget->set_image(reply.image);
   } else {
     shown_[i].failed = true;
-    shown_[i].widget->set_failure(reply.error.empty() ? tr("there is no picture")
-                                                      : QString::fromStdString(reply.error));
+    shown_[i].widget->set_error(reply.error.empty() ? tr("no image")
+                                                    : QString::fromStdString(reply.error));
   }
   ++drawn_;
-  tell();
+  update_status();
 }
 
-void ContactSheet::adopt(std::size_t i) {
+void ContactSheet::apply(std::size_t i) {
   if (i >= shown_.size()) return;
   const std::vector<std::string> values = shown_[i].cell.values;
   const auto view = ask_view_();
-  const auto done = document_.edit(tr("Take over %1").arg(QString::fromStdString(swept_[0].label)),
+  const auto done = document_.edit(tr("Apply %1").arg(QString::fromStdString(swept_[0].label)),
                                    [&](std::string_view before) {
                                      core::Result<std::string> text{std::string(before)};
                                      for (std::size_t f = 0; text && f < swept_.size(); ++f)
                                        text = world::with_value(*text, swept_[f].path, values[f]);
                                      return text;
                                    });
-  if (!done) return Q_EMIT refused(QString::fromStdString(done.error().message));
-  if (view && what_->currentIndex() == 0) Q_EMIT adopted(view->above_m);
+  if (!done) return Q_EMIT edit_rejected(QString::fromStdString(done.error().message));
+  if (view && subject_->currentIndex() == 0) Q_EMIT value_applied(view->above_m);
 }
 
-// By text: undoing an adopted value marks the one before.
+// Compares texts, so that undo marks the previous image.
 void ContactSheet::mark_present() {
   for (const Shown& shown : shown_)
     shown.widget->set_present(shown.cell.text == document_.text());
-  tell();
+  update_status();
 }
 
-void ContactSheet::tell() {
+void ContactSheet::update_status() {
   const auto is_present = [this](const Shown& shown) {
     return shown.cell.text == document_.text();
   };
@@ -358,14 +358,14 @@ void ContactSheet::tell() {
   if (costs_left_ > 0) {
     text = tr("Predicting costs …");
   } else if (drawn_ + failed < shown_.size()) {
-    text = tr("%1 of %2 drawn").arg(drawn_).arg(shown_.size());
+    text = tr("%1 of %2 images ready").arg(drawn_).arg(shown_.size());
   } else {
-    text = tr("Click on a picture to take over its value. Costs are of one block.");
+    text = tr("Click a picture to use its value. Costs are per block.");
   }
   if (costs_left_ == 0 && std::ranges::none_of(shown_, is_present) && page_ == 0 &&
       document_.undo_stack().canUndo())
-    text += tr("  The world has other values now.");
-  told_->setText(text);
+    text += tr("  The world no longer matches this sheet.");
+  status_->setText(text);
 }
 
 }  // namespace psygen::editor

@@ -1,13 +1,13 @@
-// A sheet of small pictures of the world with other values: of one field, or of two, the first
-// along the columns. What is cheap comes first. A click takes the values over as one undo step. It
-// is a window of its own; pictures come from the drawing process. Main thread.
+// A window with small images of the world for other values of one or two fields, the first along
+// the columns. Cheap worlds come first. A click applies the values as one undo step. The rendering
+// process makes the images. Main thread.
 #pragma once
 
 #include <QDialog>
 #include <vector>
 
 #include "editor/document/document.hpp"
-#include "editor/gallery/view_state.hpp"
+#include "editor/pictures/picture_request.hpp"
 #include "editor/pictures/sweep.hpp"
 
 class QComboBox;
@@ -21,21 +21,23 @@ namespace psygen::editor {
 class PictureCell;
 class PictureService;
 
+// The window "Contact sheet".
 class ContactSheet final : public QDialog {
   Q_OBJECT
 
  public:
+  // Document and service outlive the window.
   ContactSheet(Document& document, PictureService& service, AskView ask_view,
                QWidget* parent = nullptr);
 
-  // The field that is offered when the sheet is opened next.
+  // The field that the sheet shows when it opens next.
   void suggest(const world::TextPath& field) { suggested_ = field; }
 
  Q_SIGNALS:
-  // Values were taken over from a picture whose camera was so high over the ground or water.
-  void adopted(double above_m);
-  // Values that the document refused.
-  void refused(const QString& sentence);
+  // The user applied the values of an image. `above_m`: height of its camera above ground or water.
+  void value_applied(double above_m);
+  // The document rejected the values.
+  void edit_rejected(const QString& error);
 
  protected:
   void showEvent(QShowEvent* event) override;
@@ -46,7 +48,7 @@ class ContactSheet final : public QDialog {
     SweepCell cell;
     PictureCell* widget = nullptr;
     std::optional<double> seconds;
-    double distance_m = 0;  // at which a portrait shows the model whole
+    double distance_m = 0;  // at which a portrait shows the whole model
     bool failed = false;
   };
   void list_fields();
@@ -60,18 +62,18 @@ class ContactSheet final : public QDialog {
   void ask_pictures();
   void note_picture(std::size_t i, const PictureReply& reply);
   core::Result<PictureRequest> request_of(const SweepCell& cell) const;
-  void adopt(std::size_t i);
+  void apply(std::size_t i);
   void mark_present();
-  void tell();
+  void update_status();
 
   Document& document_;
   PictureService& service_;
   AskView ask_view_;
   std::optional<world::TextPath> suggested_;
-  QComboBox *first_, *second_, *what_;
+  QComboBox *first_, *second_, *subject_;
   QSpinBox *rows_, *columns_;
   QPushButton *more_, *again_;
-  QLabel* told_;
+  QLabel* status_;
   QGridLayout* grid_;
   std::vector<Shown> shown_;
   std::vector<world::WorldField> swept_;

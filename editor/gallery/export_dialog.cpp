@@ -28,7 +28,7 @@ QString quoted(const QString& word) {
   return word.contains(' ') ? "'" + word + "'" : word;
 }
 
-// The parameters that are the user's, as --set takes them.
+// The parameters of a model as options --set.
 QString settings_of(const models::ModelType& type, const models::Parameters& p) {
   QString text;
   const auto specs = type.parameters();
@@ -73,10 +73,10 @@ std::optional<PictureRequest> ask_export(QWidget* parent, const Document& docume
 
   QDialog dialog(parent);
   dialog.setWindowTitle(QObject::tr("Export"));
-  auto* model = new QRadioButton(has_model ? QObject::tr("The selected model, %1").arg(name)
-                                           : QObject::tr("A model (none is selected)"));
+  auto* model = new QRadioButton(has_model ? QObject::tr("Selected model: %1").arg(name)
+                                           : QObject::tr("Selected model (none)"));
   auto* whole =
-      new QRadioButton(QObject::tr("Block %1, %2 with everything on it").arg(block.x).arg(block.z));
+      new QRadioButton(QObject::tr("Block %1, %2 with all models").arg(block.x).arg(block.z));
   model->setEnabled(has_model);
   (has_model ? model : whole)->setChecked(true);
   auto* level = new QSpinBox;
@@ -100,7 +100,7 @@ std::optional<PictureRequest> ask_export(QWidget* parent, const Document& docume
   };
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Save | QDialogButtonBox::Cancel);
   auto* form = new QFormLayout;
-  form->addRow(QObject::tr("What"), model);
+  form->addRow(QObject::tr("Object"), model);
   form->addRow(QString(), whole);
   form->addRow(QObject::tr("Level of detail"), level);
   form->addRow(QObject::tr("File"), line_of(file, browse));
@@ -110,31 +110,32 @@ std::optional<PictureRequest> ask_export(QWidget* parent, const Document& docume
   layout->addWidget(buttons);
   dialog.resize(560, 0);
 
-  const auto request = [&] {
-    PictureRequest wanted;
-    wanted.kind = model->isChecked() ? PictureKind::kExportModel : PictureKind::kExportBlock;
-    wanted.text = document.text();
-    wanted.file = document.file().string();
-    wanted.out = file->text().toStdString();
-    wanted.block_x = block.x;
-    wanted.block_z = block.z;
-    wanted.index = has_model ? selection->index : 0;
-    wanted.level = level->value();
-    return wanted;
+  const auto make_request = [&] {
+    PictureRequest request;
+    request.kind = model->isChecked() ? PictureKind::kExportModel : PictureKind::kExportBlock;
+    request.text = document.text();
+    request.file = document.file().string();
+    request.out = file->text().toStdString();
+    request.block_x = block.x;
+    request.block_z = block.z;
+    request.index = has_model ? selection->index : 0;
+    request.level = level->value();
+    return request;
   };
-  const auto fit = [&] {
-    command->setText(export_command(document.file(), request(), parsed->registry, selection));
+  const auto update = [&] {
+    command->setText(export_command(document.file(), make_request(), parsed->registry, selection));
     command->setCursorPosition(0);
-    command->setToolTip(document.is_modified()
-                            ? QObject::tr("Changes that are not saved are not in it.")
-                            : QString());
+    command->setToolTip(
+        document.is_modified()
+            ? QObject::tr("The command exports the saved file, without unsaved changes.")
+            : QString());
     const bool known = file->text().endsWith(".glb") || file->text().endsWith(".obj");
     buttons->button(QDialogButtonBox::Save)->setEnabled(known);
     file->setToolTip(known ? QString() : QObject::tr("The name must end in .glb or .obj."));
   };
-  QObject::connect(model, &QRadioButton::toggled, &dialog, fit);
-  QObject::connect(level, &QSpinBox::valueChanged, &dialog, fit);
-  QObject::connect(file, &QLineEdit::textChanged, &dialog, fit);
+  QObject::connect(model, &QRadioButton::toggled, &dialog, update);
+  QObject::connect(level, &QSpinBox::valueChanged, &dialog, update);
+  QObject::connect(file, &QLineEdit::textChanged, &dialog, update);
   QObject::connect(copy, &QPushButton::clicked, &dialog,
                    [&] { QApplication::clipboard()->setText(command->text()); });
   QObject::connect(browse, &QPushButton::clicked, &dialog, [&] {
@@ -145,10 +146,10 @@ std::optional<PictureRequest> ask_export(QWidget* parent, const Document& docume
   });
   QObject::connect(buttons, &QDialogButtonBox::accepted, &dialog, &QDialog::accept);
   QObject::connect(buttons, &QDialogButtonBox::rejected, &dialog, &QDialog::reject);
-  fit();
+  update();
   if (dialog.exec() != QDialog::Accepted) return std::nullopt;
   QSettings().setValue(kFolderKey, QFileInfo(file->text()).absolutePath());
-  return request();
+  return make_request();
 }
 
 }  // namespace psygen::editor

@@ -1,5 +1,5 @@
-// Asks what of the world is to be exported: the selected model or a block, at which level of
-// detail, into which file; and shows the command that does the same. Main thread.
+// The dialog "Export": exports the selected model or a block, at a level of detail, to a file.
+// Shows the equivalent command. Main thread.
 #pragma once
 
 #include <QString>
@@ -13,13 +13,13 @@ class QWidget;
 
 namespace psygen::editor {
 
-// A request of kind kExportModel or kExportBlock; nothing if the person does not want it after all.
-// `selection` may be empty; `block` is offered then.
+// Returns a request of kind kExportModel or kExportBlock; nullopt if the user cancels. `selection`
+// may be empty; the dialog then offers `block`.
 std::optional<PictureRequest> ask_export(QWidget* parent, const Document& document,
                                          const std::optional<Selection>& selection,
                                          core::BlockCoord block);
 
-// The command for a block or a model, as a person types it. Unsaved changes are not in it.
+// Returns the command line that exports a block or a model from the saved file.
 QString export_command(const std::filesystem::path& world_file, const PictureRequest& request,
                        const models::Registry& registry, const std::optional<Selection>& selection);
 

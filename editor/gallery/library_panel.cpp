@@ -20,9 +20,9 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kIconWidth = 104, kIconHeight = 78;  // three fit beside each other
+constexpr int kIconWidth = 104, kIconHeight = 78;  // three in a row
 constexpr int kPictureWidth = 240, kPictureHeight = 180;
-constexpr int kPictureVersion = 1;  // higher: pictures of before are not used
+constexpr int kPictureVersion = 1;  // images of other versions are rendered again
 
 QString picture_file(const std::string& world_text) {
   QCryptographicHash hash(QCryptographicHash::Sha1);
@@ -38,7 +38,7 @@ QIcon icon_of(const QImage& image, qreal ratio) {
                                       Qt::KeepAspectRatioByExpanding, Qt::SmoothTransformation));
   pixmap.setDevicePixelRatio(ratio);
   QIcon icon;
-  // The same when it is chosen: a tinted picture is not what the world will look like.
+  // Not tinted when selected, so that the colours stay true.
   icon.addPixmap(pixmap, QIcon::Normal);
   icon.addPixmap(pixmap, QIcon::Selected);
   return icon;
@@ -95,7 +95,7 @@ void LibraryPanel::reload() {
   std::vector<std::string> problems;
   presets_ = load_library(library_folders(), &problems);
   for (const std::string& problem : problems)
-    Q_EMIT told(QString::fromStdString(problem));
+    Q_EMIT message_posted(QString::fromStdString(problem));
   const QString chosen = heading_->currentText();
   heading_->clear();
   heading_->addItem(tr("All"));
@@ -129,7 +129,7 @@ const Preset& LibraryPanel::preset_of(const QListWidgetItem& item) const {
   return presets_[item.data(Qt::UserRole).toULongLong()];
 }
 
-// From the cache, or one after the other: what is listed first comes first.
+// Loads images from the cache and requests the others, in the order of the list.
 void LibraryPanel::ask_pictures() {
   service_.cancel(this);
   const int batch = service_.new_batch();
@@ -149,7 +149,7 @@ void LibraryPanel::ask_pictures() {
     request.text = *text;
     request.file = preset.file.string();
     request.size = {kPictureWidth, kPictureHeight};
-    if (request.kind == PictureKind::kPicture) request.place = country_place(preset.snippet);
+    if (request.kind == PictureKind::kPicture) request.place = landscape_viewpoint(preset.snippet);
     ++awaited_;
     service_.ask(std::move(request), batch, row, this,
                  [this, row, kept](const PictureReply& reply) {
@@ -175,9 +175,9 @@ void LibraryPanel::apply(const QListWidgetItem& item) {
   const auto done =
       document_.edit(adds ? tr("Add %1").arg(name) : tr("Apply %1").arg(name),
                      [&](std::string_view text) { return with_preset(text, preset); });
-  Q_EMIT told(!done  ? QString::fromStdString(done.error().message)
-              : adds ? tr("Added %1. Undo takes it back.").arg(name)
-                     : tr("Applied %1. Undo takes it back.").arg(name));
+  Q_EMIT message_posted(!done  ? QString::fromStdString(done.error().message)
+                        : adds ? tr("Added %1. Undo removes it.").arg(name)
+                               : tr("Applied %1. Undo reverts it.").arg(name));
 }
 
 void LibraryPanel::show_menu(const QPoint& at) {
@@ -187,13 +187,13 @@ void LibraryPanel::show_menu(const QPoint& at) {
     const bool adds = preset.table == "species" || preset.table == "scatter";
     menu.addAction(adds ? tr("Add to the world") : tr("Apply to the world"), this,
                    [this, item] { apply(*item); });
-    menu.addAction(tr("Open its folder"), this, [&preset] {
+    menu.addAction(tr("Open folder"), this, [&preset] {
       QDesktopServices::openUrl(
           QUrl::fromLocalFile(QString::fromStdString(preset.file.parent_path().string())));
     });
     menu.addSeparator();
   }
-  menu.addAction(tr("Read the library again"), this, &LibraryPanel::reload);
+  menu.addAction(tr("Reload the library"), this, &LibraryPanel::reload);
   menu.exec(list_->viewport()->mapToGlobal(at));
 }
 

@@ -1,6 +1,6 @@
-// The presets of the library with a picture of each. A double click adds a species, rocks or grass,
-// or gives the world another terrain or sky, as one undo step. Pictures come from the drawing
-// process once and are kept in the person's cache folder. Main thread.
+// The panel "Library": the presets with an image of each. A double click adds a species, rocks or
+// grass, or applies a terrain or a sky, as one undo step. The rendering process makes each image
+// once; the user's cache folder keeps them. Main thread.
 #pragma once
 
 #include <QWidget>
@@ -19,20 +19,22 @@ namespace psygen::editor {
 class PictureService;
 struct PictureReply;
 
+// Loads the library when the panel first becomes visible.
 class LibraryPanel final : public QWidget {
   Q_OBJECT
 
  public:
+  // Document and service outlive the panel.
   LibraryPanel(Document& document, PictureService& service, QWidget* parent = nullptr);
 
   // Reads the folders again.
   void reload();
-  // Pictures that are listed and not there yet.
+  // Number of images that the rendering process has not finished yet.
   int awaited() const { return awaited_; }
 
  Q_SIGNALS:
-  // What was done or refused, as a sentence.
-  void told(const QString& sentence);
+  // The result of a command, or an error.
+  void message_posted(const QString& message);
 
  protected:
   void showEvent(QShowEvent* event) override;

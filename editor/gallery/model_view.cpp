@@ -14,7 +14,7 @@
 namespace psygen::editor {
 namespace {
 
-// The species or scatter that a path is in.
+// The path of the species or scatter that contains a path; nullopt for other paths.
 std::optional<world::TextPath> subject_of(const world::TextPath& path) {
   if (path.size() < 2 || !path.steps[1].is_index) return std::nullopt;
   const std::string& table = path.steps[0].key;
@@ -22,27 +22,27 @@ std::optional<world::TextPath> subject_of(const world::TextPath& path) {
   return path.first(2);
 }
 
-// In front of the model of a portrait world. With `before` the camera keeps its direction and
-// distance.
-std::optional<WorldView::Stand> stand_of(const scene::Scene& scene,
-                                         const std::optional<WorldView::Stand>& before) {
+// A placement in front of the model of a portrait world. With `before`, the camera keeps its
+// direction and distance.
+std::optional<WorldView::CameraPlacement> placement_of(
+    const scene::Scene& scene, const std::optional<WorldView::CameraPlacement>& before) {
   const scene::WorldFacts& facts = scene.facts();
-  const auto model = lonely_model(facts.world, facts.registry);
+  const auto model = isolated_model(facts.world, facts.registry);
   if (!model) return std::nullopt;
-  // What its type usually fills of its box.
+  // The typical part of its conservative bounds.
   const core::Bounds whole = facts.registry[model->model].bounds(model->parameters);
   const core::Bounds& part = facts.typical_bounds[model->model];
   const core::Bounds box{whole.centre() + part.min * whole.half_extent(),
                          whole.centre() + part.max * whole.half_extent()};
   const double block_m = facts.world.block_size_m();
-  const PortraitPose front = pose_before(model->foot, box, block_m, scene.camera().projection);
-  if (!before || !before->pivot) return WorldView::Stand{front.pose, front.middle};
+  const PortraitPose front = framing_pose(model->base, box, block_m, scene.camera().projection);
+  if (!before || !before->pivot) return WorldView::CameraPlacement{front.pose, front.middle};
   core::CameraPose pose = before->pose;
   const glm::dvec3 to =
       core::offset_m(before->pivot->block, pose.position, block_m) + before->pivot->local;
   pose.position = front.middle;
   pose.position.local -= glm::dvec3(core::forward_of(pose)) * glm::length(to);
-  return WorldView::Stand{pose, front.middle};
+  return WorldView::CameraPlacement{pose, front.middle};
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ core::Result<std::string> ModelView::portrait() const {
   auto text = subject_->steps[0].key == "species" ? species_portrait(document_.text(), index)
                                                   : scatter_portrait(document_.text(), index);
   if (text) text = world::with_value(*text, {"world", "seed"}, world::toml_seed(seed_));
-  // The renderer takes pictures of the ground only when it is made.
+  // The renderer loads images of the ground only when it is created.
   const auto& images = document_.world().palette.images;
   for (std::size_t i = 0; i < images.size() && text; ++i) {
     if (!images[i].empty())
@@ -65,31 +65,30 @@ core::Result<std::string> ModelView::portrait() const {
   return text;
 }
 
-void ModelView::show(bool anew) {
+void ModelView::show(bool new_session) {
   const std::string file = document_.file().empty() ? "new.toml" : document_.file().string();
-  if (subject_ && !anew) {
+  if (subject_ && !new_session) {
     if (auto text = portrait())
       return view_.show_world(*std::move(text), file, false, document_.pictures());
   }
-  close();  // another file, or the model is gone
-  view_.show_world(document_.text(), file, anew, document_.pictures());
+  close();  // another file, or the model no longer exists
+  view_.show_world(document_.text(), file, new_session, document_.pictures());
 }
 
 void ModelView::open(const world::TextPath& section) {
   const auto subject = subject_of(section);
-  if (!subject)
-    return Q_EMIT told(tr("Choose a species or something scattered first: it is shown alone."));
+  if (!subject) return Q_EMIT message_posted(tr("Choose a species or a scatter layer first."));
   if (subject_ == subject) return;
   const std::optional<world::TextPath> before = std::exchange(subject_, subject);
   if (const auto text = portrait(); !text) {
     subject_ = before;
-    return Q_EMIT told(QString::fromStdString(text.error().message));
+    return Q_EMIT message_posted(QString::fromStdString(text.error().message));
   }
   if (!world_pose_) world_pose_ = view_.camera().pose();
   view_.select(std::nullopt);
   view_.camera().set_turntable(true);
   show(false);
-  stand_before(false);
+  frame_model(false);
   Q_EMIT switched();
 }
 
@@ -102,13 +101,14 @@ void ModelView::close() {
   view_.camera().set_turntable(false);
   view_.select(std::nullopt);
   show(false);
-  view_.stand_with_text([pose = *std::exchange(world_pose_, std::nullopt)](const scene::Scene&) {
-    return WorldView::Stand{pose, std::nullopt};
-  });
+  view_.place_camera_on_load(
+      [pose = *std::exchange(world_pose_, std::nullopt)](const scene::Scene&) {
+        return WorldView::CameraPlacement{pose, std::nullopt};
+      });
   Q_EMIT switched();
 }
 
-void ModelView::stand_in_world(const core::CameraPose& pose) {
+void ModelView::go_to_world(const core::CameraPose& pose) {
   if (!is_on()) return view_.camera().set_pose(pose);
   world_pose_ = pose;
   close();
@@ -117,13 +117,14 @@ void ModelView::stand_in_world(const core::CameraPose& pose) {
 void ModelView::set_seed(std::uint64_t seed) {
   if (std::exchange(seed_, seed) == seed || !is_on()) return;
   show(false);
-  stand_before(true);
+  frame_model(true);
 }
 
-void ModelView::stand_before(bool keep_direction) {
-  std::optional<WorldView::Stand> before;
+void ModelView::frame_model(bool keep_direction) {
+  std::optional<WorldView::CameraPlacement> before;
   if (keep_direction) before = {view_.camera().pose(), view_.camera().pivot()};
-  view_.stand_with_text([before](const scene::Scene& scene) { return stand_of(scene, before); });
+  view_.place_camera_on_load(
+      [before](const scene::Scene& scene) { return placement_of(scene, before); });
 }
 
 core::CameraPose ModelView::world_pose() const {

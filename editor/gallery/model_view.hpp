@@ -1,6 +1,6 @@
-// Shows one model of the document alone in the view, on plain ground, and lets the camera turn
-// around it. Edits of the document change it as they change the world. Its seed is its own. The
-// camera comes back to the world where it left it. Main thread.
+// Shows one model of the document alone in the view, on plain ground, with a camera that orbits it.
+// It follows edits of the document, and has its own seed. The camera returns to its pose in the
+// world afterwards. Main thread.
 #pragma once
 
 #include <QObject>
@@ -12,39 +12,42 @@
 
 namespace psygen::editor {
 
+// Switches a view between the world and one model.
 class ModelView final : public QObject {
   Q_OBJECT
 
  public:
+  // Document and view outlive this object.
   ModelView(Document& document, WorldView& view, QObject* parent = nullptr);
 
-  // Gives the view the text of the document, or of its model alone. `anew`: as
+  // Gives the view the text of the document, or of its model alone. `new_session` as in
   // WorldView::show_world().
-  void show(bool anew);
+  void show(bool new_session);
   bool is_on() const { return subject_.has_value(); }
-  // Shows the species or scatter that a section belongs to; tells where there is none.
+  // Shows the species or scatter of a section; posts a message if it has none.
   void open(const world::TextPath& section);
-  // As open(), but only if a model is shown, and of other sections the model stays.
+  // Shows the model of another section, but only if a model is shown already and the section has
+  // one.
   void follow(const world::TextPath& section);
-  // Back to the world, and to where its camera stood.
+  // Shows the world again, with the previous pose of the camera.
   void close();
-  // The camera stands in the world, here, whatever was shown.
-  void stand_in_world(const core::CameraPose& pose);
+  // Shows the world from this pose.
+  void go_to_world(const core::CameraPose& pose);
   std::uint64_t seed() const { return seed_; }
   void set_seed(std::uint64_t seed);
-  // Where the camera stands in the world, also while a model is shown.
+  // The camera's pose in the world, also while a model is shown.
   core::CameraPose world_pose() const;
-  // "Model oak" of what is shown.
+  // Name of the shown model.
   QString title() const;
 
  Q_SIGNALS:
-  void told(const QString& sentence);
-  // A model is shown, another one, or none.
+  void message_posted(const QString& message);
+  // The shown model changed: another one, or none.
   void switched();
 
  private:
   core::Result<std::string> portrait() const;
-  void stand_before(bool keep_direction);
+  void frame_model(bool keep_direction);
 
   Document& document_;
   WorldView& view_;

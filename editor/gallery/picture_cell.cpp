@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kCellMargin = 4;
 
-// The largest rectangle of this shape in the middle of another.
+// The largest centred rectangle with this aspect ratio in another rectangle.
 QRect fitted(QSize size, const QRect& into) {
   const QSize scaled = size.scaled(into.size(), Qt::KeepAspectRatio);
   return {into.center() - QPoint(scaled.width() / 2, scaled.height() / 2), scaled};
@@ -32,14 +32,14 @@ void PictureCell::set_caption(const QString& value, const QString& cost) {
 
 void PictureCell::set_image(const QImage& image) {
   image_ = image;
-  failure_.clear();
+  error_.clear();
   setToolTip({});
   update();
 }
 
-void PictureCell::set_failure(const QString& sentence) {
-  failure_ = sentence;
-  setToolTip(value_ + ": " + sentence);
+void PictureCell::set_error(const QString& error) {
+  error_ = error;
+  setToolTip(value_ + ": " + error);
   update();
 }
 
@@ -67,7 +67,7 @@ void PictureCell::paintEvent(QPaintEvent*) {
     painter.fillRect(area, colours.color(QPalette::AlternateBase));
     painter.setPen(colours.color(QPalette::PlaceholderText));
     painter.drawText(area.adjusted(6, 4, -6, -4), Qt::AlignCenter | Qt::TextWordWrap,
-                     failure_.isEmpty() ? tr("…") : failure_);
+                     error_.isEmpty() ? tr("…") : error_);
   } else {
     painter.drawImage(fitted(image_.size(), area), image_);
   }

@@ -1,5 +1,5 @@
-// One small picture with a caption, which can be clicked: waiting, drawn, or failed with a
-// sentence. Main thread.
+// One small image with a caption, which the user can click. Shows a placeholder, the image or an
+// error. Main thread.
 #pragma once
 
 #include <QImage>
@@ -7,25 +7,28 @@
 
 namespace psygen::editor {
 
+// The image keeps its aspect ratio.
 class PictureCell final : public QWidget {
   Q_OBJECT
 
  public:
+  // Empty at first.
   explicit PictureCell(QWidget* parent = nullptr);
 
-  // What is under the picture: the value, and what it costs.
+  // The caption below the image: the value and its cost.
   void set_caption(const QString& value, const QString& cost);
   void set_image(const QImage& image);
-  void set_failure(const QString& sentence);
-  // A frame: this is how the world is now.
+  void set_error(const QString& error);
+  // Highlights the cell with the values of the present world.
   void set_present(bool present);
   const QImage& image() const { return image_; }
-  // Of the place for a picture.
+  // Size of the image area.
   QSize picture_size() const { return picture_area().size(); }
   QSize sizeHint() const override { return {192, 150}; }
   QSize minimumSizeHint() const override { return {96, 84}; }
 
  Q_SIGNALS:
+  // The user clicked the cell, or pressed Return or Space.
   void clicked();
 
  protected:
@@ -39,7 +42,7 @@ class PictureCell final : public QWidget {
   QRect picture_area() const;
 
   QImage image_;
-  QString value_, cost_, failure_;
+  QString value_, cost_, error_;
   bool present_ = false, hovered_ = false;
 };
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint32_t kLargeWidth = 3840;
 constexpr double kMinEyeOverGroundM = 1;
-constexpr int kAttentionMs = 400;  // a mouse that passes over a field on its way is no attention
+constexpr int kFocusDelayMs = 400;  // ignores fields that the pointer only passes
 
 QStringList server_arguments(const QString& device) {
   QStringList arguments{kPicturesOption};
@@ -41,19 +41,19 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
       view_(view),
       service_(QCoreApplication::applicationFilePath(), server_arguments(device)),
       library_(new LibraryPanel(document, service_)),
-      shown_(new QLabel) {
-  attention_.setSingleShot(true);
-  connect(&attention_, &QTimer::timeout, this, [this] {
-    attended_ = passed_;
-    if (sheet_ != nullptr) sheet_->suggest(attended_);
+      label_(new QLabel) {
+  focus_delay_.setSingleShot(true);
+  connect(&focus_delay_, &QTimer::timeout, this, [this] {
+    focused_field_ = field_under_pointer_;
+    if (sheet_ != nullptr) sheet_->suggest(focused_field_);
   });
-  shown_->setVisible(false);
-  window_.statusBar()->addPermanentWidget(shown_);
+  label_->setVisible(false);
+  window_.statusBar()->addPermanentWidget(label_);
   service_.set_pictures([this] { return document_.pictures(); });
-  connect(library_, &LibraryPanel::told, this, &PictureTools::told);
+  connect(library_, &LibraryPanel::message_posted, this, &PictureTools::message_posted);
   connect(&view_, &WorldView::drawn, this, [this] {
     const scene::Scene& scene = view_.session()->scene();
-    view_.set_yielding(Beside::kPictures, service_.waiting() > 0);
+    view_.set_background_work(BackgroundWork::kPictures, service_.waiting() > 0);
     service_.set_busy(scene.statistics().awaited > 0 || scene.meshes().outstanding() > 0);
   });
   connect(&document_, &Document::changed, this, [this](Changes what) {
@@ -63,29 +63,29 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
       marked_.reset();
       if (compare_ != nullptr) compare_->hide();
     }
-    // Another ground may have risen over the camera.
+    // The new ground may be above the camera.
     if (what.testAnyFlags(Change::kTerrain | Change::kWorld | Change::kWater) &&
         !what.testFlag(Change::kFile) && on_world_) {
       const core::WorldPosition& at = view_.camera().pose().position;
       if (at.local.y < world::surface_height_m(document_.world(), at) + kMinEyeOverGroundM)
-        stand(kMinEyeOverGroundM);
+        set_camera_height(kMinEyeOverGroundM);
     }
-    show_shown();
+    update_label();
   });
 }
 
-void PictureTools::attend(const world::TextPath& field) {
-  passed_ = field;
-  attention_.start(kAttentionMs);
+void PictureTools::set_focused_field(const world::TextPath& field) {
+  field_under_pointer_ = field;
+  focus_delay_.start(kFocusDelayMs);
 }
 
 void PictureTools::set_on_world(bool on) {
   on_world_ = on;
   if (!on) shows_marked_ = false;
-  show_shown();
+  update_label();
 }
 
-void PictureTools::stand(double above_m) {
+void PictureTools::set_camera_height(double above_m) {
   if (!on_world_) return;
   core::CameraPose pose = view_.camera().pose();
   pose.position.local.y = world::surface_height_m(document_.world(), pose.position) + above_m;
@@ -105,22 +105,21 @@ std::optional<ViewState> PictureTools::view_state() const {
   state.place.yaw = pose.yaw;
   state.place.pitch = pose.pitch;
   state.above_m = std::max(at.local.y - surface_m, 1.0);
-  // A clock that runs would make every picture an old one.
+  // Without a day the time has no effect; a running clock would make every image outdated.
   state.now_s = world.sky.day_length_s > 0 ? view_.session()->now_s() : 0;
   state.size = view_.session()->picture_size();
   return state;
 }
 
 // --- The contact sheet
-// ----------------------------------------------------------------------------
 
 void PictureTools::open_sheet() {
   if (sheet_ == nullptr) {
     sheet_ = new ContactSheet(
         document_, service_, [this] { return view_state(); }, &window_);
-    connect(sheet_, &ContactSheet::refused, this, &PictureTools::told);
-    connect(sheet_, &ContactSheet::adopted, this, &PictureTools::stand);
-    if (!attended_.empty()) sheet_->suggest(attended_);
+    connect(sheet_, &ContactSheet::edit_rejected, this, &PictureTools::message_posted);
+    connect(sheet_, &ContactSheet::value_applied, this, &PictureTools::set_camera_height);
+    if (!focused_field_.empty()) sheet_->suggest(focused_field_);
   }
   sheet_->show();
   sheet_->raise();
@@ -132,12 +131,11 @@ void PictureTools::add_to_world_menu(QMenu& menu) {
 }
 
 // --- Files
-// ------------------------------------------------------------------------------------------
 
 void PictureTools::add_to_file_menu(QMenu& menu) {
   menu.addAction(tr("&Export a model or block …"), tr("Ctrl+E"), this,
                  &PictureTools::export_selection);
-  menu.addAction(tr("Save a &large picture …"), tr("Shift+F12"), this,
+  menu.addAction(tr("Save a &large image …"), tr("Shift+F12"), this,
                  &PictureTools::save_large_picture);
 }
 
@@ -146,19 +144,19 @@ void PictureTools::export_selection() {
       ask_export(&window_, document_, view_.selection(), view_.camera().pose().position.block);
   if (!request) return;
   const QString file = QString::fromStdString(request->out);
-  Q_EMIT told(tr("Exporting %1 …").arg(file));
+  Q_EMIT message_posted(tr("Exporting %1 …").arg(file));
   service_.ask(*request, service_.new_batch(), 0, this, [this, file](const PictureReply& reply) {
-    Q_EMIT told(reply.error.empty()
-                    ? tr("Wrote %1: %2.").arg(file, QString::fromStdString(reply.note))
-                    : tr("Not exported: %1").arg(QString::fromStdString(reply.error)));
+    Q_EMIT message_posted(reply.error.empty()
+                              ? tr("Exported %1: %2.").arg(file, QString::fromStdString(reply.note))
+                              : tr("Export failed: %1").arg(QString::fromStdString(reply.error)));
   });
 }
 
 void PictureTools::save_large_picture() {
   const auto view = view_state();
-  if (!view || view->size.width == 0) return Q_EMIT told(tr("There is no picture."));
-  const QString file = QFileDialog::getSaveFileName(&window_, tr("Save a large picture as"),
-                                                    "picture.png", tr("Pictures (*.png)"));
+  if (!view || view->size.width == 0) return Q_EMIT message_posted(tr("The view has no image."));
+  const QString file = QFileDialog::getSaveFileName(&window_, tr("Save a large image as"),
+                                                    "image.png", tr("Images (*.png)"));
   if (file.isEmpty()) return;
   PictureRequest request;
   request.text = document_.text();
@@ -167,17 +165,16 @@ void PictureTools::save_large_picture() {
   request.place = view->place;
   request.now_s = view->now_s;
   request.size = {kLargeWidth, kLargeWidth * view->size.height / view->size.width};
-  Q_EMIT told(tr("Drawing %1 …").arg(file));
-  service_.ask(std::move(request), service_.new_batch(), 0, this,
-               [this, file](const PictureReply& reply) {
-                 Q_EMIT told(reply.error.empty()
-                                 ? tr("Saved %1.").arg(file)
-                                 : tr("Not saved: %1").arg(QString::fromStdString(reply.error)));
-               });
+  Q_EMIT message_posted(tr("Rendering %1 …").arg(file));
+  service_.ask(
+      std::move(request), service_.new_batch(), 0, this, [this, file](const PictureReply& reply) {
+        Q_EMIT message_posted(
+            reply.error.empty() ? tr("Saved %1.").arg(file)
+                                : tr("Saving failed: %1").arg(QString::fromStdString(reply.error)));
+      });
 }
 
 // --- A and B
-// ----------------------------------------------------------------------------------------
 
 void PictureTools::add_to_view_menu(QMenu& menu) {
   menu.addSeparator();
@@ -193,8 +190,8 @@ void PictureTools::add_to_view_menu(QMenu& menu) {
                                  compare_->show();
                                  compare_->raise();
                                }),
-                menu.addAction(tr("&Take over A"), this, &PictureTools::take_marked)};
-  show_shown();
+                menu.addAction(tr("&Use A"), this, &PictureTools::use_marked)};
+  update_label();
 }
 
 std::optional<std::pair<ComparedState, ComparedState>> PictureTools::states() const {
@@ -208,8 +205,9 @@ void PictureTools::mark() {
   marked_ = document_.text();
   marked_pictures_ = document_.pictures();
   marked_at_ = QTime::currentTime();
-  Q_EMIT told(tr("This is A. Change the world, then F8 swaps between A and what you have made."));
-  show_shown();
+  Q_EMIT message_posted(
+      tr("Marked this state as A. Change the world, then press F8 to swap A and B."));
+  update_label();
 }
 
 void PictureTools::swap() {
@@ -218,25 +216,25 @@ void PictureTools::swap() {
   view_.show_world(shows_marked_ ? *marked_ : document_.text(),
                    document_.file().empty() ? "new.toml" : document_.file().string(), false,
                    shows_marked_ ? marked_pictures_ : document_.pictures());
-  show_shown();
+  update_label();
 }
 
-void PictureTools::show_shown() {
+void PictureTools::update_label() {
   for (QAction* action : need_mark_)
     action->setEnabled(marked_.has_value() && on_world_);
-  shown_->setVisible(marked_.has_value());
+  label_->setVisible(marked_.has_value());
   if (!marked_) return;
   const QString colours =
       shows_marked_ ? "background: palette(highlight); color: palette(highlighted-text);" : "";
-  shown_->setStyleSheet(colours + " padding: 0 8px;");
-  shown_->setText(shows_marked_ ? tr("A, %1").arg(marked_at_.toString("HH:mm")) : tr("B, now"));
-  shown_->setToolTip(tr("F8 swaps between A, the marked state, and B, the present one."));
+  label_->setStyleSheet(colours + " padding: 0 8px;");
+  label_->setText(shows_marked_ ? tr("A, %1").arg(marked_at_.toString("HH:mm")) : tr("B, now"));
+  label_->setToolTip(tr("F8 swaps A (the marked state) and B (the present state)."));
 }
 
-void PictureTools::take_marked() {
+void PictureTools::use_marked() {
   if (!marked_) return;
-  const auto done = document_.set_text(*marked_, tr("Take over A"));
-  if (!done) Q_EMIT told(QString::fromStdString(done.error().message));
+  const auto done = document_.set_text(*marked_, tr("Use A"));
+  if (!done) Q_EMIT message_posted(QString::fromStdString(done.error().message));
 }
 
 }  // namespace psygen::editor

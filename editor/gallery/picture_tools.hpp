@@ -1,6 +1,6 @@
-// What works with pictures beside the view: the contact sheet, the library, exports, and the
-// comparison of two states A and B. It owns the service that draws and adds docks and commands to
-// the window. Main thread.
+// Tools that render images outside of the view: the contact sheet, the library, exports, and the
+// comparison of two states A and B. Owns the picture service and adds commands to the window. Main
+// thread.
 #pragma once
 
 #include <QObject>
@@ -12,7 +12,7 @@
 
 #include "editor/document/document.hpp"
 #include "editor/gallery/compare_window.hpp"
-#include "editor/gallery/view_state.hpp"
+#include "editor/pictures/picture_request.hpp"
 #include "editor/pictures/picture_service.hpp"
 #include "editor/view/world_view.hpp"
 
@@ -27,6 +27,7 @@ namespace psygen::editor {
 class ContactSheet;
 class LibraryPanel;
 
+// One per window.
 class PictureTools final : public QObject {
   Q_OBJECT
 
@@ -34,31 +35,32 @@ class PictureTools final : public QObject {
   // `device`: part of the name of the Vulkan device, or empty.
   PictureTools(QMainWindow& window, Document& document, WorldView& view, const QString& device);
 
-  // The dock, for the window to place.
+  // The panel "Library".
   LibraryPanel& library() { return *library_; }
-  // The field that the person was at last: what the contact sheet offers.
-  void attend(const world::TextPath& field);
-  // Whether the view shows the world, and its camera stands there.
+  // Records the field under the pointer or with the focus, for the contact sheet.
+  void set_focused_field(const world::TextPath& field);
+  // True while the view shows the world, not a model alone.
   void set_on_world(bool on);
   void add_to_file_menu(QMenu& menu);
   void add_to_view_menu(QMenu& menu);
   void add_to_world_menu(QMenu& menu);
 
  Q_SIGNALS:
-  void told(const QString& sentence);
+  // The result of a command, or an error.
+  void message_posted(const QString& message);
 
  private:
   std::optional<ViewState> view_state() const;
   std::optional<std::pair<ComparedState, ComparedState>> states() const;
-  // Puts the camera so high over the ground or water of the present text.
-  void stand(double above_m);
+  // Sets the camera's height above the ground or water of the present text.
+  void set_camera_height(double above_m);
   void open_sheet();
   void export_selection();
   void save_large_picture();
   void mark();
   void swap();
-  void show_shown();
-  void take_marked();
+  void update_label();
+  void use_marked();
 
   QMainWindow& window_;
   Document& document_;
@@ -67,10 +69,10 @@ class PictureTools final : public QObject {
   LibraryPanel* library_;
   ContactSheet* sheet_ = nullptr;
   CompareWindow* compare_ = nullptr;
-  QLabel* shown_;  // in the status bar, while A is shown
+  QLabel* label_;  // in the status bar, while there is an A
   std::vector<QAction*> need_mark_;
-  world::TextPath attended_, passed_;
-  QTimer attention_;
+  world::TextPath focused_field_, field_under_pointer_;
+  QTimer focus_delay_;
   std::optional<std::string> marked_;  // the text A
   handmade::MemoryPicturesPtr marked_pictures_;
   std::filesystem::path marked_file_;

@@ -12,9 +12,9 @@
 namespace psygen::editor {
 namespace {
 
-constexpr std::size_t kSampled = 256;  // entities of each column, for predicted times
+constexpr std::size_t kSampled = 256;  // entities per table whose synthesis time is predicted
 
-// Mean predicted seconds of meshes that are drawn, by model type; 0 where none was sampled.
+// Mean predicted seconds of the drawn meshes, by model type; 0 without a sample.
 std::vector<double> mean_seconds(const scene::Scene& scene) {
   std::vector<double> sums(scene.registry().size());
   std::vector<double> counts(sums.size());
@@ -37,11 +37,11 @@ std::vector<double> mean_seconds(const scene::Scene& scene) {
 
 }  // namespace
 
-std::vector<HeldOfType> held_by_type(const scene::Scene& scene) {
-  std::vector<HeldOfType> held(scene.registry().size());
+std::vector<TypeContents> contents_by_type(const scene::Scene& scene) {
+  std::vector<TypeContents> held(scene.registry().size());
   for (const synthesis::MeshRecord& record : scene.meshes().records()) {
     if (record.state != synthesis::MeshState::kReady || record.key.model >= held.size()) continue;
-    HeldOfType& of = held[record.key.model];
+    TypeContents& of = held[record.key.model];
     ++of.meshes;
     of.triangles += record.size.triangle_count();
     of.vertices += record.size.vertex_count;
@@ -57,7 +57,7 @@ CacheContents contents_of(const scene::Scene& scene) {
   contents.modelers =
       std::max(static_cast<unsigned>(scene.meshes().modeler_stats().modelers.size()), 1U);
   const scene::WorldFacts& facts = scene.facts();
-  const std::vector<HeldOfType> of_type = held_by_type(scene);
+  const std::vector<TypeContents> of_type = contents_by_type(scene);
   const std::vector<double> seconds = mean_seconds(scene);
   for (models::ModelIndex i = 0; i < of_type.size(); ++i) {
     if (of_type[i].meshes == 0) continue;

@@ -21,9 +21,9 @@ namespace psygen::editor {
 namespace {
 
 constexpr double kMinRadiusM = 100, kMaxRadiusM = 30'000;
-constexpr double kOldestPower = 3;  // of 10 seconds: all older ones are blue
-const QColor kNothing(90, 90, 96), kFailed(190, 60, 190), kStale(230, 150, 40),
-    kWaiting(225, 205, 70), kSeen(86, 176, 92), kUnseen(70, 110, 150);
+constexpr double kOldestPower = 3;  // log10 of seconds: older meshes are blue
+const QColor kNotLoaded(90, 90, 96), kFailed(190, 60, 190), kOutdated(230, 150, 40),
+    kQueued(225, 205, 70), kInView(86, 176, 92), kOutOfView(70, 110, 150);
 
 // From blue over green and yellow to red, for 0 … 1.
 QColor heat(double share) {
@@ -48,9 +48,9 @@ QString legend_text(MapColour colour) {
   };
   switch (colour) {
     case MapColour::kState:
-      return swatch(kSeen, words("in view")) + swatch(kUnseen, words("out of view")) +
-             swatch(kWaiting, words("waits")) + swatch(kStale, words("old mesh")) +
-             swatch(kNothing, words("nothing")) + swatch(kFailed, words("failed"));
+      return swatch(kInView, words("in view")) + swatch(kOutOfView, words("out of view")) +
+             swatch(kQueued, words("queued")) + swatch(kOutdated, words("outdated mesh")) +
+             swatch(kNotLoaded, words("not loaded")) + swatch(kFailed, words("failed"));
     case MapColour::kLevel:
       return scale_text(words("level 8"), words("4"), words("0, finest"));
     case MapColour::kLayer:
@@ -59,7 +59,7 @@ QString legend_text(MapColour colour) {
       return scale_text(words("1 µs"), words("30 µs"), words("1 ms"));
     case MapColour::kAge:
       return scale_text(words("1000 s"), words("30 s"), words("new")) +
-             swatch(kNothing, words("none"));
+             swatch(kNotLoaded, words("no mesh"));
   }
   return {};
 }
@@ -67,7 +67,7 @@ QString legend_text(MapColour colour) {
 CacheMap::CacheMap(QWidget* parent) : QWidget(parent) {
   setMinimumSize(160, 160);
   setAccessibleName(tr("Map of the cache around the camera"));
-  setToolTip(" ");  // words() says it
+  setToolTip(" ");  // replaced by tool_tip_of() in event()
 }
 
 void CacheMap::set_colour(MapColour colour) {
@@ -76,7 +76,7 @@ void CacheMap::set_colour(MapColour colour) {
 }
 
 void CacheMap::note(const scene::Scene& scene) {
-  std::unordered_map<std::uint64_t, Known> known;
+  std::unordered_map<std::uint64_t, KnownMesh> known;
   scene.entities().each<const scene::QuadtreeNode, const scene::Mesh, const scene::MeshDemand>(
       [&](std::span<const ecs::Entity> entities, std::span<const scene::QuadtreeNode>,
           std::span<const scene::Mesh> meshes, std::span<const scene::MeshDemand> demands) {
@@ -85,7 +85,7 @@ void CacheMap::note(const scene::Scene& scene) {
           const std::uint64_t owner = scene::owner_of(entities[i]);
           const auto before = known_.find(owner);
           const bool same = before != known_.end() && before->second.mesh == meshes[i].handle;
-          known[owner] = same ? before->second : Known{meshes[i].handle, scene.clock().real_s};
+          known[owner] = same ? before->second : KnownMesh{meshes[i].handle, scene.clock().real_s};
         }
       });
   known_ = std::move(known);
@@ -98,7 +98,6 @@ void CacheMap::show(const scene::Scene& scene) {
   yaw_ = scene.camera().pose.yaw;
   fov_ = 2 * std::atan(std::tan(double{scene.camera().projection.vertical_fov} / 2) *
                        double{scene.camera().projection.aspect});
-  std::vector<bool> chosen;
   scene.entities()
       .each<const scene::QuadtreeNode, const scene::Visibility, const scene::MissingMeshes,
             const scene::MeshSource, const scene::MeshDemand>(
@@ -156,23 +155,23 @@ QColor CacheMap::colour_of(const Cell& cell) const {
     case MapColour::kCost:
       return heat(std::log10(std::max(cell.cost_s * 1e6, 1.0)) / 3);
     case MapColour::kAge:
-      if (cell.age_s < 0) return kNothing;
+      if (cell.age_s < 0) return kNotLoaded;
       return heat(1 - std::log10(1 + cell.age_s) / kOldestPower);
     case MapColour::kState:
       break;
   }
   if (cell.failed) return kFailed;
-  if (cell.stale) return kStale;
-  if (cell.requested || (cell.in_view && cell.lacking > 0)) return kWaiting;
-  if (!cell.drawn) return kNothing;
-  return cell.in_view ? kSeen : kUnseen;
+  if (cell.stale) return kOutdated;
+  if (cell.requested || (cell.in_view && cell.lacking > 0)) return kQueued;
+  if (!cell.drawn) return kNotLoaded;
+  return cell.in_view ? kInView : kOutOfView;
 }
 
 void CacheMap::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.fillRect(rect(), palette().color(QPalette::Base));
   if (cells_.empty()) {
-    painter.drawText(rect(), Qt::AlignCenter, tr("Nothing is loaded."));
+    painter.drawText(rect(), Qt::AlignCenter, tr("No nodes are loaded."));
     return;
   }
   const double scale = pixels_per_m();
@@ -202,7 +201,7 @@ void CacheMap::paintEvent(QPaintEvent*) {
 const CacheMap::Cell* CacheMap::cell_at(QPointF place) const {
   const double x = (place.x() - width() / 2.0) / pixels_per_m();
   const double z = (place.y() - height() / 2.0) / pixels_per_m();
-  const Cell* found = nullptr;  // the finest
+  const Cell* found = nullptr;  // the finest one, which is the last
   for (const Cell& cell : cells_) {
     if (x >= cell.x_m && x < cell.x_m + cell.size_m && z >= cell.z_m && z < cell.z_m + cell.size_m)
       found = &cell;
@@ -210,26 +209,26 @@ const CacheMap::Cell* CacheMap::cell_at(QPointF place) const {
   return found;
 }
 
-QString CacheMap::words(const Cell& cell) const {
+QString CacheMap::tool_tip_of(const Cell& cell) const {
   QString text = tr("Node of level %1 at (%2, %3), %4 m wide.\n")
                      .arg(cell.at.level)
                      .arg(cell.at.coord.x)
                      .arg(cell.at.coord.z)
                      .arg(cell.size_m, 0, 'f', 0);
-  if (cell.failed) text += tr("A mesh of it cannot be made.\n");
-  if (!cell.drawn)
-    text += tr("No mesh of its ground is there: nobody has asked for it yet, or it waits.\n");
-  if (cell.drawn && cell.stale) text += tr("Its old mesh is drawn until the new one is there.\n");
-  if (cell.drawn && !cell.stale) text += tr("Its ground is there.\n");
-  if (cell.requested) text += tr("A mesh of it is being made.\n");
+  if (cell.failed) text += tr("Synthesis of a mesh failed.\n");
+  if (!cell.drawn) text += tr("Terrain not loaded.\n");
+  if (cell.drawn && cell.stale) text += tr("Outdated terrain, until the new mesh is ready.\n");
+  if (cell.drawn && !cell.stale) text += tr("Terrain loaded.\n");
+  if (cell.requested) text += tr("A mesh is queued or in synthesis.\n");
   if (cell.lacking != UINT32_MAX && cell.lacking > 0)
-    text += tr("%1 meshes are missing on it.\n").arg(cell.lacking);
-  text += cell.in_view ? tr("It is in view; PLP layer %1.\n").arg(cell.layer)
+    text += tr("%1 meshes are missing.\n").arg(cell.lacking);
+  text += cell.in_view ? tr("In view, PLP layer %1.\n").arg(cell.layer)
           : std::isfinite(cell.deadline_s)
-              ? tr("It is expected in view in %1 s.\n").arg(cell.deadline_s, 0, 'f', 1)
-              : tr("It is out of view; PLP layer %1.\n").arg(cell.layer);
-  if (cell.age_s >= 0) text += tr("Its mesh came %1 s ago.\n").arg(cell.age_s, 0, 'f', 1);
-  return text + tr("Making its ground takes %1 µs.").arg(cell.cost_s * 1e6, 0, 'f', 0);
+              ? tr("Out of view, expected in view in %1 s.\n").arg(cell.deadline_s, 0, 'f', 1)
+              : tr("Out of view, PLP layer %1.\n").arg(cell.layer);
+  if (cell.age_s >= 0) text += tr("Mesh built %1 s ago.\n").arg(cell.age_s, 0, 'f', 1);
+  return text +
+         tr("Predicted synthesis time of the terrain: %1 µs.").arg(cell.cost_s * 1e6, 0, 'f', 0);
 }
 
 bool CacheMap::event(QEvent* event) {
@@ -238,8 +237,8 @@ bool CacheMap::event(QEvent* event) {
   const Cell* cell = cell_at(help->pos());
   QToolTip::showText(help->globalPos(),
                      cell != nullptr
-                         ? words(*cell)
-                         : tr("No node is here: it is too far away, or the world ends."),
+                         ? tool_tip_of(*cell)
+                         : tr("No node: too far from the camera, or outside the world."),
                      this);
   return true;
 }

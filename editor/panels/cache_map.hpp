@@ -1,6 +1,5 @@
-// The world around the camera from above: each node of the quadtree that exists, coloured by what
-// is asked for. The mouse says why a node is there or not. Reads the scene, changes nothing. Main
-// thread.
+// A map of the world around the camera: each node of the quadtree as a coloured square. A tool tip
+// explains the state of a node. Reads the scene, changes nothing. Main thread.
 #pragma once
 
 #include <QWidget>
@@ -18,12 +17,13 @@ class Scene;
 
 namespace psygen::editor {
 
-// What colours mean.
+// The quantity that the colours show.
 enum class MapColour { kState, kLevel, kLayer, kCost, kAge };
 
-// What the colours are, as rich text.
+// The legend of a colouring, as rich text.
 QString legend_text(MapColour colour);
 
+// North (−z) is up.
 class CacheMap final : public QWidget {
   Q_OBJECT
 
@@ -36,15 +36,15 @@ class CacheMap final : public QWidget {
     int level_drawn = 0, layer = 0;
     std::uint32_t lacking = 0;
     double cost_s = 0, deadline_s = 0;
-    double age_s = -1;    // since the mesh of its ground came; below 0: unknown
-    bool chosen = false;  // it is drawn in this picture
+    double age_s = -1;  // of the mesh of its ground; below 0: unknown
   };
   explicit CacheMap(QWidget* parent = nullptr);
-  // Notes which meshes are new, for their ages; some times a second, also while nobody looks.
+  // Records new meshes, for their ages. To be called a few times a second, also while the map is
+  // hidden.
   void note(const scene::Scene& scene);
-  // Takes over what there is now, after note().
+  // Shows the nodes of the scene; after note().
   void show(const scene::Scene& scene);
-  // The same of nodes from elsewhere, coarse ones first; yaw and field of view in radians.
+  // Shows given nodes, coarse ones first; yaw and field of view in radians.
   void show_cells(std::vector<Cell> cells, double yaw, double horizontal_fov);
   void set_colour(MapColour colour);
   QSize sizeHint() const override { return {280, 280}; }
@@ -56,16 +56,16 @@ class CacheMap final : public QWidget {
 
  private:
   QColor colour_of(const Cell& cell) const;
-  QString words(const Cell& cell) const;
+  QString tool_tip_of(const Cell& cell) const;
   const Cell* cell_at(QPointF place) const;
   double pixels_per_m() const;
 
-  struct Known {
+  struct KnownMesh {
     synthesis::MeshHandle mesh;
     double since_s = 0;  // the real clock of the scene
   };
-  std::vector<Cell> cells_;                         // coarse ones first
-  std::unordered_map<std::uint64_t, Known> known_;  // by entity of a node
+  std::vector<Cell> cells_;                             // coarse ones first
+  std::unordered_map<std::uint64_t, KnownMesh> known_;  // by entity of a node
   double radius_m_ = 1500, yaw_ = 0, fov_ = 0.9;
   MapColour colour_ = MapColour::kState;
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kHeight = 22;
 constexpr double kSideMargin = 7;  // half of a slider's handle
-const QColor kRefused(200, 60, 50, 70);
+const QColor kRejected(200, 60, 50, 70);
 const QColor kMeasured(230, 150, 40);
 
 }  // namespace
@@ -22,7 +22,7 @@ QString cost_text(const BlockCost& cost) {
   const QLocale locale(QLocale::English);
   const QString time = locale.toString(cost.seconds * 1e3, 'g', 3);
   QString text =
-      QObject::tr("%1 models, %2 triangles, %3, %4 ms a block")
+      QObject::tr("%1 models, %2 triangles, %3, %4 ms per block")
           .arg(locale.toString(cost.models, 'f', 0), locale.toString(std::llround(cost.triangles)),
                locale.formattedDataSize(std::llround(cost.bytes)), time);
   if (cost.measured_seconds)
@@ -33,7 +33,7 @@ QString cost_text(const BlockCost& cost) {
 
 CostStrip::CostStrip(QWidget* parent) : QWidget(parent) {
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-  setAccessibleName(tr("Cost of each value"));
+  setAccessibleName(tr("Predicted cost of each value"));
 }
 
 QSize CostStrip::sizeHint() const {
@@ -82,7 +82,7 @@ void CostStrip::paintEvent(QPaintEvent*) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const CostPoint& point = points_[i];
     if (!point.cost) {
-      painter.fillRect(QRectF(x_of(i) - step / 2, 0, step, height()), kRefused);
+      painter.fillRect(QRectF(x_of(i) - step / 2, 0, step, height()), kRejected);
       drawing = false;
       continue;
     }
@@ -111,7 +111,7 @@ bool CostStrip::event(QEvent* event) {
       std::lround(std::clamp(share, 0.0, 1.0) * static_cast<double>(points_.size() - 1)));
   const CostPoint& point = points_[at];
   const QString value = QLocale::c().toString(point.value, 'g', 4);
-  const QString text = point.cost ? cost_text(*point.cost) : QString::fromStdString(point.refusal);
+  const QString text = point.cost ? cost_text(*point.cost) : QString::fromStdString(point.error);
   QToolTip::showText(help->globalPos(), value + ": " + text, this);
   return true;
 }

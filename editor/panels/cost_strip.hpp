@@ -1,5 +1,5 @@
-// What each value of a slider would cost, as a small curve under it: predicted time per block, with
-// measured points. Values that are refused are shaded red; the mouse says the numbers. Main thread.
+// A small curve under a slider: the predicted time per block for each of its values, with measured
+// points. Invalid values are shaded red; a tool tip shows the numbers. Main thread.
 #pragma once
 
 #include <QWidget>
@@ -9,13 +9,15 @@
 
 namespace psygen::editor {
 
+// Points and value are independent: both may change at any time.
 class CostStrip final : public QWidget {
   Q_OBJECT
 
  public:
   explicit CostStrip(QWidget* parent = nullptr);
-  // Points by growing value, of the slider's range; and the present value.
+  // Points of the slider's range, sorted by value.
   void set_points(std::vector<CostPoint> points);
+  // The present value of the slider.
   void set_value(double value);
   QSize sizeHint() const override;
 
@@ -33,7 +35,7 @@ class CostStrip final : public QWidget {
   double value_ = 0;
 };
 
-// "23 models, 118,000 triangles, 1.9 MB, 0.84 ms a block".
+// Returns a text such as "23 models, 118,000 triangles, 1.9 MB, 0.84 ms per block".
 QString cost_text(const BlockCost& cost);
 
 }  // namespace psygen::editor

@@ -38,7 +38,7 @@ std::size_t count_of(FieldKind kind) {
   }
 }
 
-// Linear components as the colour that a screen shows, and back. Brighter than white is white.
+// Linear components as a display colour (sRGB), and back. Components above 1 become 1.
 QColor shown(const std::vector<double>& linear) {
   const auto part = [&](std::size_t i) {
     const double v = std::clamp(i < linear.size() ? linear[i] : 0.0, 0.0, 1.0);
@@ -78,7 +78,7 @@ FieldRow::FieldRow(const world::WorldField& field, QWidget* parent)
   layout->addWidget(label_);
   build(*layout);
   layout->addWidget(reset_);
-  connect(reset_, &QToolButton::clicked, this, [this] { Q_EMIT reset_wanted(field_.path); });
+  connect(reset_, &QToolButton::clicked, this, [this] { Q_EMIT reset_requested(field_.path); });
   show(field);
 }
 
@@ -106,7 +106,7 @@ void FieldRow::build(QHBoxLayout& layout) {
   for (std::size_t i = 0; i < count; ++i) {
     const bool pair = field_.kind == FieldKind::kIntegerPair;
     const QString part =
-        i == 0 ? (pair ? tr("along x") : tr("lowest")) : (pair ? tr("along z") : tr("highest"));
+        i == 0 ? (pair ? tr("along x") : tr("minimum")) : (pair ? tr("along z") : tr("maximum"));
     auto* line = new QHBoxLayout;
     add_number(*line, count == 1 ? name : name + ", " + part);
     column_->addLayout(line);
@@ -123,12 +123,12 @@ void FieldRow::add_number(QHBoxLayout& layout, const QString& name) {
   numbers_.push_back(edit);
   layout.addWidget(edit, 1);
   setFocusProxy(numbers_.front());
-  connect(edit, &NumberEdit::wanted, this, [this, at] { want_numbers(at); });
+  connect(edit, &NumberEdit::change_requested, this, [this, at] { want_numbers(at); });
   connect(edit, &NumberEdit::drag_began, this, &FieldRow::drag_began);
   connect(edit, &NumberEdit::drag_ended, this, &FieldRow::drag_ended);
 }
 
-// The ends of a range push each other.
+// Moving one end of a range past the other moves both.
 void FieldRow::want_numbers(std::size_t changed) {
   std::vector<double> values;
   for (const NumberEdit* edit : numbers_)
@@ -168,7 +168,7 @@ void FieldRow::add_text(QHBoxLayout& layout) {
   });
   refresh_ = [line, shown_text] {
     line->setText(QString::fromStdString(shown_text()));
-    if (!line->hasFocus()) line->setCursorPosition(0);  // its beginning is shown
+    if (!line->hasFocus()) line->setCursorPosition(0);  // shows the beginning of the text
   };
 }
 
@@ -203,7 +203,7 @@ void FieldRow::add_colour(QHBoxLayout& layout) {
 void FieldRow::choose_colour() {
   QColorDialog dialog(shown(field_.numbers), this);
   dialog.setWindowTitle(label_->text());
-  // Radiance may be brighter than a screen: the dialog chooses its hue, the strength stays.
+  // Radiance may be brighter than the display: the dialog sets the hue, the strength stays.
   double strength = 1;
   for (const double part : field_.numbers)
     strength = std::max(strength, part);
@@ -221,15 +221,15 @@ void FieldRow::choose_colour() {
 void FieldRow::add_seed(QHBoxLayout& layout) {
   auto* line = new QLineEdit;
   line->setAccessibleName(label_->text());
-  auto* less = small_button("−", tr("The seed before"));
-  auto* more = small_button("+", tr("The next seed"));
-  auto* dice = small_button("⚄", tr("Another seed at random"));
+  auto* less = small_button("−", tr("Previous seed"));
+  auto* more = small_button("+", tr("Next seed"));
+  auto* dice = small_button("⚄", tr("Random seed"));
   for (QWidget* widget : std::initializer_list<QWidget*>{line, less, more, dice})
     layout.addWidget(widget, widget == line ? 1 : 0);
   setFocusProxy(line);
-  connect(less, &QToolButton::clicked, this, [this] { Q_EMIT step_wanted(field_.path, -1); });
-  connect(more, &QToolButton::clicked, this, [this] { Q_EMIT step_wanted(field_.path, 1); });
-  connect(dice, &QToolButton::clicked, this, [this] { Q_EMIT dice_wanted(field_.path); });
+  connect(less, &QToolButton::clicked, this, [this] { Q_EMIT step_requested(field_.path, -1); });
+  connect(more, &QToolButton::clicked, this, [this] { Q_EMIT step_requested(field_.path, 1); });
+  connect(dice, &QToolButton::clicked, this, [this] { Q_EMIT randomise_requested(field_.path); });
   connect(line, &QLineEdit::editingFinished, this, [this, line] {
     bool ok = false;
     const std::uint64_t seed = line->text().toULongLong(&ok);
@@ -246,23 +246,23 @@ void FieldRow::set_locked(bool locked) {
   label_->setFont(font);
 }
 
-// What every field can do, whatever its control is.
+// Commands of every field.
 void FieldRow::contextMenuEvent(QContextMenuEvent* event) {
   QMenu menu;
-  QAction* lock = menu.addAction(tr("Lock against dice"), this, [this](bool on) {
+  QAction* lock = menu.addAction(tr("Exclude from Randomise"), this, [this](bool on) {
     set_locked(on);
-    Q_EMIT lock_wanted(field_.path, on);
+    Q_EMIT lock_requested(field_.path, on);
   });
   lock->setCheckable(true);
   lock->setChecked(locked_);
-  menu.addAction(tr("Random value"), this, [this] { Q_EMIT dice_wanted(field_.path); });
-  menu.addAction(tr("Reset to the default"), this, [this] { Q_EMIT reset_wanted(field_.path); })
+  menu.addAction(tr("Random value"), this, [this] { Q_EMIT randomise_requested(field_.path); });
+  menu.addAction(tr("Reset to default"), this, [this] { Q_EMIT reset_requested(field_.path); })
       ->setEnabled(reset_->isEnabled());
   menu.addSeparator();
-  menu.addAction(tr("Copy the value"), this, [this] {
+  menu.addAction(tr("Copy value"), this, [this] {
     QApplication::clipboard()->setText(QString::fromStdString(field_.value));
   });
-  menu.addAction(tr("Paste a value"), this,
+  menu.addAction(tr("Paste value"), this,
                  [this] { want(QApplication::clipboard()->text().trimmed().toStdString()); });
   menu.exec(event->globalPos());
 }
@@ -273,14 +273,15 @@ void FieldRow::show(const world::WorldField& field) {
     numbers_[i]->set_value(field_.numbers[std::min(i, field_.numbers.size() - 1)]);
   if (refresh_) refresh_();
   if (cost_ != nullptr && !field_.numbers.empty()) cost_->set_value(field_.numbers.back());
-  // What the text sets is bold, and can be taken back.
+  // A field that the text sets is bold and can be reset.
   QFont font = label_->font();
   font.setBold(field_.is_set);
   label_->setFont(font);
   reset_->setEnabled(field_.is_set && !field_.required);
 }
 
-// As wide as the slider above it, and there from the start: nothing jumps when it is known.
+// The strip is as wide as the slider above it. It exists before its costs are known, so that rows
+// keep their place.
 void FieldRow::add_cost() {
   auto* line = new QHBoxLayout;
   cost_ = new CostStrip;
@@ -294,7 +295,7 @@ void FieldRow::show_cost(std::vector<CostPoint> points) {
 }
 
 void FieldRow::enterEvent(QEnterEvent* event) {
-  Q_EMIT attended(field_.path);
+  Q_EMIT field_focused(field_.path);
   QWidget::enterEvent(event);
 }
 

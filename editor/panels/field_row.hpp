@@ -1,6 +1,6 @@
-// The control of one field of a world: made from what the schema says of it, so that a type of a
-// program's own needs no code here. It shows a value and tells what the person wants; the document
-// decides. Main thread.
+// The control of one field of a world, made from its schema, so that model types of a program need
+// no code here. It shows a value and emits requests, which the document accepts or rejects. Main
+// thread.
 #pragma once
 
 #include <QWidget>
@@ -21,33 +21,35 @@ namespace psygen::editor {
 class CostStrip;
 class NumberEdit;
 
+// A label, a control that fits the kind of the field, and a reset button.
 class FieldRow final : public QWidget {
   Q_OBJECT
 
  public:
+  // Makes the control and shows the value of the field.
   explicit FieldRow(const world::WorldField& field, QWidget* parent = nullptr);
 
   const world::WorldField& field() const { return field_; }
-  // Shows another value of the same field. Tells nobody.
+  // Shows another value of the same field; emits nothing.
   void show(const world::WorldField& field);
-  // What its values would cost.
+  // Shows the costs of the slider's values.
   void show_cost(std::vector<CostPoint> points);
-  // Whether dice leave the field alone; its name is slanted then.
+  // A locked field is excluded from Randomise; its label is italic.
   void set_locked(bool locked);
   bool is_locked() const { return locked_; }
 
  Q_SIGNALS:
-  // A value as TOML.
-  void wanted(const world::TextPath& path, const std::string& toml);
-  void reset_wanted(const world::TextPath& path);
-  // So many steps further, and any value.
-  void step_wanted(const world::TextPath& path, int steps);
-  void dice_wanted(const world::TextPath& path);
+  // The user sets a value, as TOML.
+  void change_requested(const world::TextPath& path, const std::string& toml);
+  void reset_requested(const world::TextPath& path);
+  // The user asks for a value some steps further, or for a random one.
+  void step_requested(const world::TextPath& path, int steps);
+  void randomise_requested(const world::TextPath& path);
   void drag_began();
   void drag_ended();
-  void lock_wanted(const world::TextPath& path, bool locked);
-  // The mouse or the keyboard came to this field.
-  void attended(const world::TextPath& path);
+  void lock_requested(const world::TextPath& path, bool locked);
+  // The pointer or the keyboard focus enters the field.
+  void field_focused(const world::TextPath& path);
 
  protected:
   void enterEvent(QEnterEvent* event) override;
@@ -64,13 +66,13 @@ class FieldRow final : public QWidget {
   void add_cost();
   void want_numbers(std::size_t changed);
   void choose_colour();
-  void want(const std::string& toml) { Q_EMIT wanted(field_.path, toml); }
+  void want(const std::string& toml) { Q_EMIT change_requested(field_.path, toml); }
 
   world::WorldField field_;
   QLabel* label_;
   QToolButton* reset_;
   bool locked_ = false;
-  CostStrip* cost_ = nullptr;  // null: costs do not depend on it
+  CostStrip* cost_ = nullptr;  // null: costs do not depend on the field
   QVBoxLayout* column_ = nullptr;
   std::vector<NumberEdit*> numbers_;
   std::function<void()> refresh_;  // of the other kinds of controls

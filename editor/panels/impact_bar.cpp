@@ -11,8 +11,8 @@ namespace psygen::editor {
 ImpactBar::ImpactBar(QWidget* parent)
     : QFrame(parent),
       text_(new QLabel),
-      apply_(new QPushButton(tr("&Apply it"))),
-      keep_(new QPushButton(tr("&Keep the old value"))) {
+      apply_(new QPushButton(tr("&Apply anyway"))),
+      discard_(new QPushButton(tr("&Keep the old value"))) {
   setObjectName("impact");
   text_->setWordWrap(true);
   text_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
@@ -20,9 +20,9 @@ ImpactBar::ImpactBar(QWidget* parent)
   text_->setMinimumHeight(2 * text_->fontMetrics().lineSpacing());
   auto* buttons = new QHBoxLayout;
   buttons->addWidget(apply_);
-  buttons->addWidget(keep_);
+  buttons->addWidget(discard_);
   buttons->addStretch(1);
-  for (QPushButton* button : {apply_, keep_}) {
+  for (QPushButton* button : {apply_, discard_}) {
     QSizePolicy policy = button->sizePolicy();
     policy.setRetainSizeWhenHidden(true);
     button->setSizePolicy(policy);
@@ -32,30 +32,30 @@ ImpactBar::ImpactBar(QWidget* parent)
   layout->setSpacing(2);
   layout->addWidget(text_);
   layout->addLayout(buttons);
-  connect(apply_, &QPushButton::clicked, this, &ImpactBar::apply_wanted);
-  connect(keep_, &QPushButton::clicked, this, &ImpactBar::keep_wanted);
-  impact_ = tr("What a change costs the world is shown here.");
-  fit();
+  connect(apply_, &QPushButton::clicked, this, &ImpactBar::apply_requested);
+  connect(discard_, &QPushButton::clicked, this, &ImpactBar::discard_requested);
+  impact_ = tr("The cost of your last change appears here.");
+  update_widgets();
 }
 
-void ImpactBar::show_impact(const QString& sentence) {
-  impact_ = sentence;
-  fit();
+void ImpactBar::show_impact(const QString& impact) {
+  impact_ = impact;
+  update_widgets();
 }
 
-void ImpactBar::ask(const QString& sentence) {
-  question_ = sentence;
-  asks_ = !sentence.isEmpty();
-  fit();
+void ImpactBar::ask(const QString& question) {
+  question_ = question;
+  asks_ = !question.isEmpty();
+  update_widgets();
   if (!asks_) return;
   QAccessibleEvent alert(text_, QAccessible::Alert);
   QAccessible::updateAccessibility(&alert);
 }
 
-void ImpactBar::fit() {
+void ImpactBar::update_widgets() {
   text_->setText(asks_ ? question_ : impact_);
   apply_->setVisible(asks_);
-  keep_->setVisible(asks_);
+  discard_->setVisible(asks_);
   setStyleSheet(
       QString("#impact { border: 2px solid palette(%1); }").arg(asks_ ? "highlight" : "midlight"));
 }

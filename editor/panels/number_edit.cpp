@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kSteps = 1000;
 
-// A box that shows as many decimals as its value needs, and leaves undo, wheel and the like to
-// the window: only the arrows and typed digits are its own.
+// A box that shows as many decimals as its value needs. It handles arrow keys and typed digits;
+// undo, redo and the wheel go to the window.
 class NumberBox final : public QDoubleSpinBox {
  public:
   using QDoubleSpinBox::QDoubleSpinBox;
@@ -54,7 +54,7 @@ class NumberBox final : public QDoubleSpinBox {
   }
 };
 
-// A step of the box: about a hundredth of the soft range, as one digit.
+// The step of the box: about a hundredth of the soft range, rounded to a power of ten.
 double step_of(const NumberEdit::Range& range) {
   if (range.scale.whole) return 1;
   const double span = std::max(range.scale.high - range.scale.low, 1e-9);
@@ -74,7 +74,7 @@ NumberEdit::NumberEdit(const Range& range, const QString& name, QWidget* parent)
   box_->setSingleStep(step_of(range));
   box_->setKeyboardTracking(false);
   box_->setAccessibleName(name);
-  // As wide for all short units, so that rows stand below each other.
+  // Equally wide for all short units, so that rows are aligned.
   const QString unit = range.unit == "degrees" ? QStringLiteral("°")
                        : range.unit.isEmpty()  ? QString()
                                                : " " + range.unit;
@@ -113,20 +113,20 @@ double NumberEdit::value_at(int position) const {
 }
 
 int NumberEdit::position_of(double value) const {
-  return static_cast<int>(std::lround(range_.scale.share_of(value) * slider_->maximum()));
+  return static_cast<int>(std::lround(range_.scale.fraction_of(value) * slider_->maximum()));
 }
 
 void NumberEdit::slide(int position) {
   const double value = value_at(position);
   const QSignalBlocker quiet(box_);
   box_->setValue(value);
-  Q_EMIT wanted(value);
+  Q_EMIT change_requested(value);
 }
 
 void NumberEdit::type(double value) {
   const QSignalBlocker quiet(slider_);
   slider_->setValue(position_of(value));
-  Q_EMIT wanted(value);
+  Q_EMIT change_requested(value);
 }
 
 }  // namespace psygen::editor

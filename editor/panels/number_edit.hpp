@@ -1,5 +1,5 @@
-// A number with a slider and a box. The slider shows a soft range, the box takes all that is
-// allowed. Knows no document: it tells what the person wants. Main thread.
+// A number with a slider for the soft range and a box for the hard range. It emits requests and
+// changes no document. Main thread.
 #pragma once
 
 #include <QWidget>
@@ -11,6 +11,7 @@ class QSlider;
 
 namespace psygen::editor {
 
+// Slider and box always show the same value.
 class NumberEdit final : public QWidget {
   Q_OBJECT
 
@@ -23,15 +24,15 @@ class NumberEdit final : public QWidget {
   explicit NumberEdit(const Range& range, const QString& name, QWidget* parent = nullptr);
 
   double value() const;
-  // Pixels of the box, right of the slider.
+  // Width of the box right of the slider, in pixels.
   int box_width() const;
-  // Tells nobody.
+  // Shows a value; emits nothing.
   void set_value(double value);
 
  Q_SIGNALS:
-  // What the person wants now; many times while the slider is dragged.
-  void wanted(double value);
-  // The slider is taken, and let go.
+  // The user sets a value; many times during a drag of the slider.
+  void change_requested(double value);
+  // The user presses and releases the slider.
   void drag_began();
   void drag_ended();
 

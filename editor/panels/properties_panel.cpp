@@ -48,9 +48,9 @@ PropertiesPanel::PropertiesPanel(QWidget* parent)
       section_bar_(new SectionBar),
       scroll_(new QScrollArea),
       impact_(new ImpactBar) {
-  search_->setPlaceholderText(tr("Search in all fields"));
+  search_->setPlaceholderText(tr("Search all fields"));
   search_->setClearButtonEnabled(true);
-  search_->setAccessibleName(tr("Search in all fields"));
+  search_->setAccessibleName(tr("Search all fields"));
   tree_->setHeaderHidden(true);
   tree_->setAccessibleName(tr("Sections of the world"));
   tree_->setContextMenuPolicy(Qt::CustomContextMenu);
@@ -73,10 +73,14 @@ PropertiesPanel::PropertiesPanel(QWidget* parent)
   layout->addWidget(search_);
   layout->addWidget(splitter, 1);
   layout->addWidget(impact_);
-  connect(section_bar_, &SectionBar::copy, this, [this] { Q_EMIT copy_wanted(chosen_); });
-  connect(section_bar_, &SectionBar::paste, this, [this] { Q_EMIT paste_wanted(chosen_); });
-  connect(section_bar_, &SectionBar::dice, this, [this] { Q_EMIT dice_wanted(chosen_); });
-  connect(section_bar_, &SectionBar::reset, this, [this] { Q_EMIT section_reset_wanted(chosen_); });
+  connect(section_bar_, &SectionBar::copy_requested, this,
+          [this] { Q_EMIT copy_requested(chosen_); });
+  connect(section_bar_, &SectionBar::paste_requested, this,
+          [this] { Q_EMIT paste_requested(chosen_); });
+  connect(section_bar_, &SectionBar::randomise_requested, this,
+          [this] { Q_EMIT randomise_requested(chosen_); });
+  connect(section_bar_, &SectionBar::reset_requested, this,
+          [this] { Q_EMIT section_reset_requested(chosen_); });
   connect(search_, &QLineEdit::textChanged, this, &PropertiesPanel::search);
   connect(tree_, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
     if (item == nullptr || item->data(0, kPathRole).isNull()) return;
@@ -88,7 +92,7 @@ PropertiesPanel::PropertiesPanel(QWidget* parent)
   });
   connect(tree_, &QTreeWidget::customContextMenuRequested, this, [this](const QPoint& at) {
     if (tree_->itemAt(at) != nullptr)
-      Q_EMIT section_menu(chosen_, tree_->viewport()->mapToGlobal(at));
+      Q_EMIT section_menu_requested(chosen_, tree_->viewport()->mapToGlobal(at));
   });
 }
 
@@ -125,13 +129,13 @@ void PropertiesPanel::list(const std::vector<world::WorldSection>& sections) {
     tree_->setCurrentItem(tree_->topLevelItem(0));
 }
 
-// Species and what is scattered have headings; a species and its scatter have the same name.
+// Lists of sections get headings, because a species and its scatter layer have the same name.
 QTreeWidgetItem* PropertiesPanel::group_of(world::SectionKind kind) {
   const QString title = kind == world::SectionKind::kSpecies   ? tr("Species")
                         : kind == world::SectionKind::kModel   ? tr("Models from files")
-                        : kind == world::SectionKind::kScatter ? tr("Scattered on every block")
+                        : kind == world::SectionKind::kScatter ? tr("Scatter layers")
                         : kind == world::SectionKind::kPlace   ? tr("Placed by hand")
-                        : kind == world::SectionKind::kStamp   ? tr("Stamps in the ground")
+                        : kind == world::SectionKind::kStamp   ? tr("Heightmap stamps")
                         : kind == world::SectionKind::kRoad    ? tr("Roads")
                                                                : QString();
   if (title.isEmpty()) return nullptr;
@@ -150,7 +154,7 @@ void PropertiesPanel::add_item(const world::WorldSection& section, QTreeWidgetIt
     add_item(part, item);
 }
 
-// Sections that the text has are bold.
+// Sections that the text contains are bold.
 void PropertiesPanel::mark(const std::vector<world::WorldSection>& sections) {
   std::vector<const world::WorldSection*> all;
   visit(sections, [&](const world::WorldSection& section) { all.push_back(&section); });
@@ -185,22 +189,22 @@ void PropertiesPanel::add_row(const world::WorldField& field) {
   auto* row = new FieldRow(field);
   lines_->addWidget(row);
   rows_.push_back(row);
-  connect(row, &FieldRow::wanted, this, &PropertiesPanel::wanted);
-  connect(row, &FieldRow::reset_wanted, this, &PropertiesPanel::reset_wanted);
-  connect(row, &FieldRow::step_wanted, this, &PropertiesPanel::step_wanted);
-  connect(row, &FieldRow::dice_wanted, this, &PropertiesPanel::dice_wanted);
+  connect(row, &FieldRow::change_requested, this, &PropertiesPanel::change_requested);
+  connect(row, &FieldRow::reset_requested, this, &PropertiesPanel::reset_requested);
+  connect(row, &FieldRow::step_requested, this, &PropertiesPanel::step_requested);
+  connect(row, &FieldRow::randomise_requested, this, &PropertiesPanel::randomise_requested);
   connect(row, &FieldRow::drag_began, this, &PropertiesPanel::drag_began);
   connect(row, &FieldRow::drag_ended, this, &PropertiesPanel::drag_ended);
-  Q_EMIT row_made(row);
-  connect(row, &FieldRow::lock_wanted, this, &PropertiesPanel::lock_wanted);
-  connect(row, &FieldRow::attended, this, &PropertiesPanel::attended);
+  Q_EMIT row_created(row);
+  connect(row, &FieldRow::lock_requested, this, &PropertiesPanel::lock_requested);
+  connect(row, &FieldRow::field_focused, this, &PropertiesPanel::field_focused);
 }
 
 void PropertiesPanel::show_section() {
   search(search_->text());
 }
 
-// The fields of the chosen section, or all that the text is found in.
+// Shows the fields of the chosen section, or all fields that contain the text.
 void PropertiesPanel::search(const QString& text) {
   rows_.clear();
   form_ = new QWidget;
@@ -226,10 +230,10 @@ void PropertiesPanel::search(const QString& text) {
         add_row(field);
       }
     });
-    if (rows_.empty()) lines_->addWidget(new QLabel(tr("No field is called so.")));
+    if (rows_.empty()) lines_->addWidget(new QLabel(tr("No matching fields.")));
   }
   lines_->addStretch(1);
-  scroll_->setWidget(form_);  // the one before is deleted
+  scroll_->setWidget(form_);  // deletes the previous form
 }
 
 std::vector<world::WorldField> PropertiesPanel::shown_fields() const {

@@ -1,6 +1,6 @@
-// All fields of the world: sections on top of each other, as the schema lists them, and a line to
-// search in. Makes its controls anew only when the sections change, so that a dragged slider stays
-// under the mouse. Main thread.
+// The panel "Properties": an outline of the world's sections, the fields of the chosen section, and
+// a search over all fields. It recreates its controls only when the sections change, so that a
+// dragged slider stays under the pointer. Main thread.
 #pragma once
 
 #include <QWidget>
@@ -20,43 +20,46 @@ class FieldRow;
 class ImpactBar;
 class SectionBar;
 
+// Knows no document: show() sets its sections.
 class PropertiesPanel final : public QWidget {
   Q_OBJECT
 
  public:
+  // Without sections at first.
   explicit PropertiesPanel(QWidget* parent = nullptr);
 
   void show(const std::vector<world::WorldSection>& sections);
   // Opens a section and scrolls to it.
   void go_to(const world::TextPath& section);
-  // The fields whose controls are shown.
+  // The fields with a control at present.
   std::vector<world::WorldField> shown_fields() const;
-  // The section that is chosen.
+  // The chosen section.
   const world::TextPath& section() const { return chosen_; }
-  // The control of a field, null while its section is not shown.
+  // The control of a field; null if its section is not shown.
   FieldRow* row(const world::TextPath& path) const;
-  // What a change does to the world, and what is asked before.
+  // The impact of the last change, and the question before costly edits.
   ImpactBar& impact() { return *impact_; }
 
  Q_SIGNALS:
-  void wanted(const world::TextPath& path, const std::string& toml);
-  void reset_wanted(const world::TextPath& path);
-  void step_wanted(const world::TextPath& path, int steps);
-  void dice_wanted(const world::TextPath& path);
+  // Requests of the fields (field_row.hpp).
+  void change_requested(const world::TextPath& path, const std::string& toml);
+  void reset_requested(const world::TextPath& path);
+  void step_requested(const world::TextPath& path, int steps);
+  void randomise_requested(const world::TextPath& path);
   void drag_began();
   void drag_ended();
-  void attended(const world::TextPath& path);
-  void lock_wanted(const world::TextPath& path, bool locked);
-  // A control was made.
-  void row_made(psygen::editor::FieldRow* row);
-  // The section whose fields are shown.
+  void field_focused(const world::TextPath& path);
+  void lock_requested(const world::TextPath& path, bool locked);
+  // A control was created.
+  void row_created(psygen::editor::FieldRow* row);
+  // Another section was chosen.
   void section_chosen(const world::TextPath& path);
-  // From the menu of a section.
-  void section_menu(const world::TextPath& path, const QPoint& at);
-  // What the buttons over the fields are for, with the section that is chosen.
-  void copy_wanted(const world::TextPath& path);
-  void paste_wanted(const world::TextPath& path);
-  void section_reset_wanted(const world::TextPath& path);
+  // The user asks for the context menu of a section; `at`: global position.
+  void section_menu_requested(const world::TextPath& path, const QPoint& at);
+  // Buttons above the fields, with the chosen section.
+  void copy_requested(const world::TextPath& path);
+  void paste_requested(const world::TextPath& path);
+  void section_reset_requested(const world::TextPath& path);
 
  private:
   bool same_shape(const std::vector<world::WorldSection>& sections) const;

@@ -8,7 +8,7 @@
 namespace psygen::editor {
 namespace {
 
-// Whether the text sets a field of the section or of its parts that has a default.
+// True if the text sets a field with a default, in the section or in its parts.
 bool sets_anything(const world::WorldSection& section) {
   const auto is_set = [](const world::WorldField& field) {
     return field.is_set && !field.required;
@@ -34,12 +34,13 @@ SectionBar::SectionBar(QWidget* parent)
     connect(button, &QToolButton::clicked, this, signal);
   };
   add(new QToolButton, tr("Copy"), tr("Copy all fields of this section as text"),
-      &SectionBar::copy);
-  add(new QToolButton, tr("Paste"), tr("Paste text into this section"), &SectionBar::paste);
-  add(new QToolButton, tr("⚄"), tr("Random values for all fields of this section"),
-      &SectionBar::dice);
+      &SectionBar::copy_requested);
+  add(new QToolButton, tr("Paste"), tr("Paste text into this section"),
+      &SectionBar::paste_requested);
+  add(new QToolButton, tr("⚄"), tr("Randomise all fields of this section"),
+      &SectionBar::randomise_requested);
   add(reset_, tr("↺"), tr("Reset all fields of this section to their defaults"),
-      &SectionBar::reset);
+      &SectionBar::reset_requested);
 }
 
 void SectionBar::show(const world::WorldSection* section) {

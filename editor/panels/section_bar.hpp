@@ -1,5 +1,5 @@
-// The head of a section's fields: its name, and buttons for what can be done with all of them.
-// Tells what is wanted. Main thread.
+// The heading above the fields of a section: its name, and buttons for commands that act on all
+// fields. Main thread.
 #pragma once
 
 #include <QWidget>
@@ -11,19 +11,21 @@ class QToolButton;
 
 namespace psygen::editor {
 
+// The reset button is enabled if a field has a value other than its default.
 class SectionBar final : public QWidget {
   Q_OBJECT
 
  public:
   explicit SectionBar(QWidget* parent = nullptr);
-  // Null: fields of several sections are shown, and the bar is hidden.
+  // Shows a section; null hides the bar, for a list of fields from several sections.
   void show(const world::WorldSection* section);
 
  Q_SIGNALS:
-  void copy();
-  void paste();
-  void dice();
-  void reset();
+  // The user clicked a button.
+  void copy_requested();
+  void paste_requested();
+  void randomise_requested();
+  void reset_requested();
 
  private:
   QLabel* title_;

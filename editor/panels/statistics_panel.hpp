@@ -1,15 +1,14 @@
-// Figures of the session: what the cache holds of each model and what making it took, the cost of
-// the world, and what is selected. Reads the scene, changes nothing. Main thread.
+// The panel "Statistics": cache contents and synthesis times by model type, and the predicted cost
+// of a block and of the world. Reads the scene, changes nothing. Main thread.
 #pragma once
 
+#include <QTimer>
 #include <QWidget>
 #include <map>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "editor/cost/block_cost.hpp"
-#include "editor/view/picking.hpp"
-#include "engine/telemetry/sample_set.hpp"
 
 class QLabel;
 class QTableWidget;
@@ -20,31 +19,32 @@ class Scene;
 
 namespace psygen::editor {
 
+class WorldView;
+
+// Updates the table four times a second while it is visible.
 class StatisticsPanel final : public QWidget {
   Q_OBJECT
 
  public:
-  explicit StatisticsPanel(QWidget* parent = nullptr);
+  // The view outlives the panel.
+  explicit StatisticsPanel(WorldView& view);
 
-  // Takes over what was made in the last tick; once a picture.
-  void note(const scene::Scene& scene);
-  // Shows the figures; some times a second.
-  void show(const scene::Scene& scene);
-  void show_world_cost(const BlockCost& cost, double blocks);
-  void forget();  // another world
+  // `blocks`: number of blocks of the world, 0 for endless worlds.
+  void show_block_cost(const BlockCost& cost, double blocks);
 
  private:
-  struct Made {
-    std::vector<double> ms;  // the last of them, a ring
+  void note(const scene::Scene& scene);
+  void show(const scene::Scene& scene);
+
+  struct SynthesisTimes {
+    std::vector<double> ms;  // a ring of the last ones
     std::size_t next = 0;
   };
   QLabel* world_;
   QLabel* cache_;
   QTableWidget* table_;
-  std::map<std::string, Made> made_;  // by the name of the model
+  QTimer timer_;
+  std::map<std::string, SynthesisTimes> made_;  // by name of the model type
 };
-
-// What is known of a selected model or place, as lines.
-QString describe(const Selection& selection, const scene::Scene& scene);
 
 }  // namespace psygen::editor

@@ -13,8 +13,8 @@
 namespace psygen::editor {
 namespace {
 
-tl::unexpected<core::Error> refuse_export(std::string sentence) {
-  return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
+tl::unexpected<core::Error> invalid_export(std::string message) {
+  return core::fail(core::ErrorCode::kInvalidArgument, std::move(message));
 }
 
 core::Result<std::string> written(const core::Result<exchange::Document>& document,
@@ -23,7 +23,7 @@ core::Result<std::string> written(const core::Result<exchange::Document>& docume
   const std::string ending = file.extension().string();
   const auto format = exchange::format_from(ending.empty() ? "" : ending.substr(1));
   if (!format)
-    return refuse_export(fmt::format("{}: its name must end in .glb or .obj", file.string()));
+    return invalid_export(fmt::format("{}: the name must end in .glb or .obj", file.string()));
   if (auto ok = exchange::write_document(file, *format, *document); !ok)
     return tl::unexpected(ok.error());
   const std::size_t objects = document->objects.size();
@@ -52,7 +52,7 @@ core::Result<exchange::Document> model_document(const ParsedWorld& parsed,
 core::Result<std::string> export_block(const ParsedWorld& parsed, core::BlockCoord block, int level,
                                        const std::filesystem::path& file) {
   if (!parsed.world.contains(block))
-    return refuse_export(fmt::format("there is no block {},{}", block.x, block.z));
+    return invalid_export(fmt::format("block {},{} is outside the world", block.x, block.z));
   return written(amplify::block_document(parsed.world, parsed.registry, block, level), file);
 }
 
@@ -60,12 +60,12 @@ core::Result<std::string> export_model(const ParsedWorld& parsed, core::BlockCoo
                                        std::uint32_t index, int level,
                                        const std::filesystem::path& file) {
   if (!parsed.world.contains(block))
-    return refuse_export(fmt::format("there is no block {},{}", block.x, block.z));
+    return invalid_export(fmt::format("block {},{} is outside the world", block.x, block.z));
   std::vector<world::Placement> placements;
   world::place_models(parsed.world, parsed.registry, block, placements);
   const auto placed = std::ranges::find(placements, index, &world::Placement::index);
   if (placed == placements.end())
-    return refuse_export(fmt::format("block {},{} has no model {}", block.x, block.z, index));
+    return invalid_export(fmt::format("block {},{} has no model {}", block.x, block.z, index));
   return written(model_document(parsed, *placed, level), file);
 }
 

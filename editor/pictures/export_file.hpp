@@ -1,5 +1,5 @@
-// Exports of the world that is edited: one of its models, or a block, as glTF or OBJ, as `psygen
-// export` writes them. Takes as long as their meshes; any thread.
+// Exports a model or a block of the document as glTF or OBJ, like `psygen export`. Takes as long as
+// the synthesis of the meshes; any thread.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +11,9 @@
 
 namespace psygen::editor {
 
-// Write a file (.glb or .obj) and return what is in it: "1 object, 3,201 vertices, 5,120
-// triangles". Levels beyond the coarsest are the coarsest. Fail with kInvalidArgument for other
-// names, for blocks outside the world and where a block has no model of this index; like
+// Write a file (.glb or .obj) and return a summary: "1 object, 3,201 vertices, 5,120 triangles".
+// Levels beyond the coarsest become the coarsest. Fail with kInvalidArgument for other extensions,
+// for blocks outside the world, and if the block has no model of this index; also like
 // amplify::block_document() and exchange::write_document().
 core::Result<std::string> export_block(const ParsedWorld& parsed, core::BlockCoord block, int level,
                                        const std::filesystem::path& file);

@@ -16,7 +16,7 @@
 namespace psygen::editor {
 namespace {
 
-// Blocks of four kilometres: the next model is a dot on the horizon.
+// Blocks of four kilometres, so that the next model is a dot on the horizon.
 constexpr std::string_view kStudio = R"(format = 1
 
 [world]
@@ -49,8 +49,8 @@ dry_start_m = 1000
 snow_start_m = 1000
 sand_end_m = -1000
 )";
-// The valley of the README, for skies; terrains get heights that suit their own.
-constexpr std::string_view kCountry = R"(format = 1
+// The valley of the README, for images of skies and terrains.
+constexpr std::string_view kLandscape = R"(format = 1
 
 [world]
 name = "country"
@@ -80,20 +80,20 @@ dry_blend_m = 60
 snow_start_m = 250
 snow_blend_m = 18
 )";
-constexpr double kCountryHighM = 330;  // its relief
-constexpr double kSnowyM = 300;        // lower terrains have no snow
+constexpr double kLandscapeReliefM = 330;
+constexpr double kSnowyM = 300;  // lower terrains have no snow
 
-constexpr int kTried = 4;            // blocks along a side, of which the most lonely model is taken
+constexpr int kTried = 4;            // blocks per side in the search for an isolated model
 constexpr double kPitch = -0.09;     // slightly from above
-constexpr double kAir = 1.12;        // around the model
-constexpr double kMinHeight = 0.25;  // of the eye over the ground, in heights of the model
+constexpr double kMargin = 1.12;     // factor around the model
+constexpr double kMinHeight = 0.25;  // of the camera above ground, in heights of the model
 
 tl::unexpected<core::Error> no_such(std::string_view array, std::size_t index) {
   return core::fail(core::ErrorCode::kInvalidArgument,
                     fmt::format("{}[{}]: there is no such table", array, index));
 }
 
-// The text with limits and count of its only scatter such that it stands anywhere, once.
+// The text with its only scatter without limits of the ground, and with one instance per block.
 core::Result<std::string> alone(core::Result<std::string> text) {
   for (const char* limit : {"min_height_m", "max_height_m", "max_slope_deg", "on_ground",
                             "mask_image", "mask_area_m", "mask_noise_m"})
@@ -124,15 +124,15 @@ std::optional<std::string> table_named(std::string_view text, const char* array,
 }
 
 double relief_of(std::string_view terrain) {
-  double relief_m = kCountryHighM;
+  double relief_m = kLandscapeReliefM;
   const auto value = world::value_text(terrain, {"terrain", "relief_m"});
   if (value) std::from_chars(value->data(), value->data() + value->size(), relief_m);
   return relief_m;
 }
 
-// The country with a terrain: heights of trees, heath and snow go with its relief.
-core::Result<std::string> country_with(std::string_view terrain) {
-  auto text = world::with_snippet(kCountry, {"terrain"}, terrain);
+// The landscape with a terrain: the heights of trees, heath and snow scale with its height range.
+core::Result<std::string> landscape_with(std::string_view terrain) {
+  auto text = world::with_snippet(kLandscape, {"terrain"}, terrain);
   const double relief_m = relief_of(terrain);
   const std::pair<world::TextPath, double> heights[] = {
       {{"scatter", 0, "max_height_m"}, 0.45 * relief_m},
@@ -172,7 +172,7 @@ core::Result<std::string> species_portrait(std::string_view text, std::size_t sp
                   named_scatter(*name));
 }
 
-PicturePlace country_place(std::string_view snippet) {
+PicturePlace landscape_viewpoint(std::string_view snippet) {
   PicturePlace place{{-1257, 24, 3978}, 1.92, -0.1, true};
   if (name_of_table(snippet) != "terrain") return place;
   place.at_m.y = std::max(40.0, 0.3 * relief_of(snippet));
@@ -192,55 +192,56 @@ core::Result<std::string> snippet_world(std::string_view snippet) {
         .and_then([](const std::string& text) { return species_portrait(text, 0); });
   if (table == "scatter")
     return alone(appended(std::string(kStudio), "scatter", std::string(snippet)));
-  if (table == "terrain") return country_with(snippet);
-  if (table == "sky") return world::with_snippet(kCountry, {table}, snippet);
+  if (table == "terrain") return landscape_with(snippet);
+  if (table == "sky") return world::with_snippet(kLandscape, {table}, snippet);
   return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("there are no pictures of [{}]", table));
+                    fmt::format("presets of [{}] have no image", table));
 }
 
-std::optional<LonelyModel> lonely_model(const world::World& world,
-                                        const models::Registry& registry) {
+std::optional<IsolatedModel> isolated_model(const world::World& world,
+                                            const models::Registry& registry) {
   const double block_m = world.block_size_m();
-  std::optional<LonelyModel> found;
-  double max_lonely_m = -1;
+  std::optional<IsolatedModel> found;
+  double best_m = -1;
   std::vector<world::Placement> placements;
   for (int i = 0; i < kTried * kTried; ++i) {
     const core::BlockCoord block{i % kTried, i / kTried};
     world::place_models(world, registry, block, placements);
     if (placements.empty()) continue;
     const glm::dvec3 at(placements[0].position);
-    const double lonely_m = std::min({at.x, at.z, block_m - at.x, block_m - at.z});
-    if (lonely_m <= max_lonely_m) continue;
-    max_lonely_m = lonely_m;
-    found = LonelyModel{{block, at}, placements[0].model, placements[0].parameters};
+    const double space_m = std::min({at.x, at.z, block_m - at.x, block_m - at.z});
+    if (space_m <= best_m) continue;
+    best_m = space_m;
+    found = IsolatedModel{{block, at}, placements[0].model, placements[0].parameters};
   }
   return found;
 }
 
-PortraitPose pose_before(const core::WorldPosition& foot, const core::Bounds& box, double block_m,
-                         const core::Projection& projection, double distance_m) {
+PortraitPose framing_pose(const core::WorldPosition& base, const core::Bounds& box, double block_m,
+                          const core::Projection& projection, double distance_m) {
   const glm::dvec3 half(box.half_extent()), middle(box.centre());
   const double half_fov = static_cast<double>(projection.vertical_fov) / 2;
   const double up = std::tan(half_fov);
   const double across = up * static_cast<double>(projection.aspect);
-  const double radius_m = std::hypot(half.x, half.z) * 0.85;  // boxes have corners, crowns few
+  const double radius_m = std::hypot(half.x, half.z) * 0.85;  // crowns do not fill the corners
   if (distance_m <= 0)
-    distance_m = std::max({kAir * half.y / up, kAir * radius_m / across, 0.2}) + radius_m * 0.7;
+    distance_m =
+        std::max({kMargin * half.y / up, kMargin * radius_m / across, 0.2}) + radius_m * 0.7;
   core::CameraPose pose;
   pose.pitch = kPitch;
-  pose.position = foot;
+  pose.position = base;
   pose.position.local += middle - glm::dvec3(core::forward_of(pose)) * distance_m;
   pose.position.local.y =
-      std::max(pose.position.local.y, foot.local.y + std::max(kMinHeight * 2 * half.y, 0.05));
-  // Looks at the middle from wherever it is.
-  pose.pitch = std::atan2(foot.local.y + middle.y - pose.position.local.y, distance_m);
+      std::max(pose.position.local.y, base.local.y + std::max(kMinHeight * 2 * half.y, 0.05));
+  // Looks at the middle.
+  pose.pitch = std::atan2(base.local.y + middle.y - pose.position.local.y, distance_m);
   pose.position = core::normalised(pose.position, block_m);
-  return {pose, {foot.block, foot.local + middle}, distance_m};
+  return {pose, {base.block, base.local + middle}, distance_m};
 }
 
 std::optional<PortraitPose> portrait_pose(const ParsedWorld& parsed,
                                           const core::Projection& projection, double distance_m) {
-  const auto model = lonely_model(parsed.world, parsed.registry);
+  const auto model = isolated_model(parsed.world, parsed.registry);
   if (!model) return std::nullopt;
   const models::ModelType& type = parsed.registry[model->model];
   core::Bounds box = type.bounds(model->parameters);
@@ -249,7 +250,7 @@ std::optional<PortraitPose> portrait_pose(const ParsedWorld& parsed,
     const auto made = synthesis::synthesise_guarded(type, model->parameters, level, memory->view());
     if (made.ok) box = made.tight;
   }
-  return pose_before(model->foot, box, parsed.world.block_size_m(), projection, distance_m);
+  return framing_pose(model->base, box, parsed.world.block_size_m(), projection, distance_m);
 }
 
 }  // namespace psygen::editor

@@ -9,7 +9,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kMaxPixels = 8192;  // along a side
+constexpr int kMaxPixels = 8192;  // per side
 constexpr int kKinds = static_cast<int>(PictureKind::kExportBlock) + 1;
 
 QString json_text(const std::string& text) {
@@ -83,10 +83,10 @@ std::optional<PictureRequest> request_from(const QByteArray& line) {
     r.pictures[it.key().toStdString()] = it.value().toString().toStdString();
   if (const QJsonObject p = (*o)["place"].toObject(); !p.isEmpty()) {
     const QJsonArray at = p["at_m"].toArray();
-    r.place = PicturePlace{{at.at(0).toDouble(), at.at(1).toDouble(), at.at(2).toDouble()},
-                           p["yaw"].toDouble(),
-                           p["pitch"].toDouble(),
-                           p["above_ground"].toBool()};
+    r.place = PicturePlace{.at_m = {at.at(0).toDouble(), at.at(1).toDouble(), at.at(2).toDouble()},
+                           .yaw = p["yaw"].toDouble(),
+                           .pitch = p["pitch"].toDouble(),
+                           .above_ground = p["above_ground"].toBool()};
   }
   return r;
 }
@@ -116,8 +116,10 @@ std::optional<PictureReply> reply_from(const QByteArray& line) {
   r.distance_m = (*o)["distance_m"].toDouble();
   r.note = (*o)["note"].toString().toStdString();
   if (const QJsonObject c = (*o)["cost"].toObject(); !c.isEmpty()) {
-    r.cost = BlockCost{c["models"].toDouble(), c["triangles"].toDouble(), c["bytes"].toDouble(),
-                       c["seconds"].toDouble(), std::nullopt};
+    r.cost = BlockCost{.models = c["models"].toDouble(),
+                       .triangles = c["triangles"].toDouble(),
+                       .bytes = c["bytes"].toDouble(),
+                       .seconds = c["seconds"].toDouble()};
   }
   return r;
 }

@@ -1,11 +1,12 @@
-// What the editor asks of its drawing process, and what comes back, as values and as lines of JSON:
-// pictures of worlds and models, costs, exports. It draws nothing (picture_server.hpp) and starts
-// no process (picture_service.hpp). Pure functions, any thread.
+// Requests to the rendering process and its replies, as values and as lines of JSON: images of
+// worlds and models, costs, exports. Renders nothing (picture_server.hpp) and starts no process
+// (picture_service.hpp). Pure functions; any thread.
 #pragma once
 
 #include <QByteArray>
 #include <QImage>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <map>
 #include <optional>
@@ -16,38 +17,47 @@
 
 namespace psygen::editor {
 
-// What is asked for.
 enum class PictureKind : std::uint8_t {
-  kPicture,      // of the world at a place
-  kPortrait,     // of the first scatter's model, near and alone (model_world.hpp)
-  kCost,         // of a block, without a picture
-  kMeasure,      // how far away a portrait would be taken
-  kExportModel,  // a file with one model of a block
-  kExportBlock,  // a file with everything on a block
+  kPicture,      // image of the world
+  kPortrait,     // image of the first scatter's model, near and alone (model_world.hpp)
+  kCost,         // cost of a block, without an image
+  kMeasure,      // camera distance of a portrait
+  kExportModel,  // file with one model of a block
+  kExportBlock,  // file with a block and its models
 };
 
-// Where a picture is taken: metres of the world and radians, as core::CameraPose.
+// The camera of an image: metres of the world and radians, as core::CameraPose.
 struct PicturePlace {
   glm::dvec3 at_m{0};
   double yaw = 0, pitch = 0;
-  bool above_ground = false;  // at_m.y counts from the ground, or the water on it
+  bool above_ground = false;  // at_m.y counts from the ground, or from the water above it
 };
 
-// One request. The world is always a text: what is drawn is what is edited, saved or not.
+// The state of the view that other images copy: its camera, clock and size.
+struct ViewState {
+  PicturePlace place;
+  double above_m = 0;   // height of the camera above ground or water
+  double now_s = 0;     // time of the clock
+  core::Extent size{};  // device pixels
+};
+// Returns nullopt while there is no view.
+using AskView = std::function<std::optional<ViewState>()>;
+
+// One request. The world is a text, so that unsaved changes are rendered too.
 struct PictureRequest {
   std::uint64_t id = 0;
   PictureKind kind = PictureKind::kPicture;
   std::string text;
-  std::string file;  // of the world: for messages, and the folder of its pictures
-  std::string out;   // to be written: .png, or .glb and .obj
+  std::string file;  // of the world: for messages, and for the folder of its images
+  std::string out;   // output file: .png, or .glb and .obj
   core::Extent size{};
-  double distance_m = 0;              // of a portrait; 0: what shows it whole
-  std::optional<PicturePlace> place;  // none: where the camera stands in a new world
-  double now_s = 0;                   // of the clock, for worlds with a day
+  double distance_m = 0;              // of a portrait; 0: frames the whole model
+  std::optional<PicturePlace> place;  // none: home of the world
+  double now_s = 0;                   // time of the clock, for worlds with a day
   std::int32_t block_x = 0, block_z = 0;
   std::uint32_t index = 0;  // of the model within the block
-  int level = 0;            // of detail
-  // Pictures beside the world that are not written there yet: files that hold them, by name.
+  int level = 0;            // level of detail
+  // Unsaved images of the world: temporary files by image name.
   std::map<std::string, std::string> pictures = {};
 };
 
@@ -57,15 +67,15 @@ struct PictureReply {
   std::string error;
   bool dropped = false;  // another request was more urgent
   std::optional<BlockCost> cost;
-  double distance_m = 0;  // of kMeasure
-  std::string note;       // of an export: what was written
-  QImage image;           // read from the file by the service; not in the JSON
+  double distance_m = 0;  // for kMeasure
+  std::string note;       // for exports: summary of the file
+  QImage image;           // loaded from the file by the service; not in the JSON
 };
 
-// One line each, with its end.
+// Returns one line, with its line break.
 QByteArray to_line(const PictureRequest& request);
 QByteArray to_line(const PictureReply& reply);
-// Nothing for lines that are none of these. Values are what the line says: nothing trusts them.
+// Parses a line; nullopt for other lines. The values are not validated.
 std::optional<PictureRequest> request_from(const QByteArray& line);
 std::optional<PictureReply> reply_from(const QByteArray& line);
 

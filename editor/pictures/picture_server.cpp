@@ -38,21 +38,21 @@ namespace {
 
 constexpr double kServerWatchdogS = 12;
 constexpr double kErrorPixels = 1.5, kSmallErrorPixels = 3;
-constexpr std::uint32_t kSmallWidth = 1000;  // of pictures that need not be so fine
+constexpr std::uint32_t kSmallWidth = 1000;  // narrower images allow more error
 constexpr std::uint64_t kServerBudgetBytes = 384ULL << 20;
-constexpr double kMinEyeM = 0.6;  // over the ground, wherever the camera was
+constexpr double kMinEyeM = 0.6;  // minimum height of the camera above the ground
 constexpr int kHungExit = 3;
-constexpr const char* kNowhere = "the model stands nowhere";
+constexpr const char* kNoInstance = "the model has no instance";
 constexpr std::size_t kChunk = 1 << 16;
 
-core::Error failed(std::string sentence) {
-  return {core::ErrorCode::kSynthesisFailed, std::move(sentence)};
+core::Error failed(std::string message) {
+  return {core::ErrorCode::kSynthesisFailed, std::move(message)};
 }
 
-// Lines of a pipe.
+// Reads lines from the standard input.
 class LineInput {
  public:
-  // The next line; nothing at the end of the input.
+  // The next line; nullopt at the end of the input.
   std::optional<QByteArray> next() {
     while (true) {
       if (const qsizetype end = buffer_.indexOf('\n'); end >= 0) {
@@ -63,7 +63,7 @@ class LineInput {
       if (!read()) return std::nullopt;
     }
   }
-  // Whether there is more already. Ends the process where the other end is gone.
+  // True if another line is complete. Ends the process if the other end has closed the pipe.
   bool waiting() {
     if (buffer_.contains('\n')) return true;
     pollfd poll{STDIN_FILENO, POLLIN, 0};
@@ -100,7 +100,7 @@ class PictureServer {
     }
     return 0;
   }
-  // Takes the standard output for answers: what others print goes to the errors.
+  // Reserves the standard output for answers; other output goes to the standard error.
   bool take_output() {
     out_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
     return out_ >= 0 && ::dup2(STDERR_FILENO, STDOUT_FILENO) >= 0;
@@ -121,7 +121,7 @@ class PictureServer {
       reply.cost = block_cost(**parsed, block_of(request, (*parsed)->world), learnt(), false);
     } else if (request.kind == PictureKind::kMeasure) {
       const auto portrait = portrait_pose(**parsed, projection_of(request));
-      if (!portrait) done = tl::unexpected(failed(kNowhere));
+      if (!portrait) done = tl::unexpected(failed(kNoInstance));
       if (portrait) reply.distance_m = portrait->distance_m;
     } else if (request.kind == PictureKind::kExportModel ||
                request.kind == PictureKind::kExportBlock) {
@@ -142,8 +142,7 @@ class PictureServer {
     return reply;
   }
 
-  // Those beside the world, with what is painted and not written there. What cannot be read is told
-  // by whoever reads the world.
+  // The resources of the world with its unsaved images. Parsing the world reports unreadable files.
   static handmade::FilesPtr files_of(const PictureRequest& request) {
     auto pictures = std::make_shared<handmade::MemoryPictures>();
     for (const auto& [name, file] : request.pictures) {
@@ -165,12 +164,12 @@ class PictureServer {
     core::CameraPose pose = session_->home();
     if (request.kind == PictureKind::kPortrait) {
       const auto portrait = portrait_pose(parsed, projection, request.distance_m);
-      if (!portrait) return tl::unexpected(failed(kNowhere));
+      if (!portrait) return tl::unexpected(failed(kNoInstance));
       pose = portrait->pose;
     } else if (request.place) {
       pose = pose_of(*request.place, parsed.world);
     }
-    if (!core::is_valid(pose)) return tl::unexpected(failed("there is no such place"));
+    if (!core::is_valid(pose)) return tl::unexpected(failed("the camera pose is not valid"));
     session_->set_now(request.now_s);
     const bool small = request.kind == PictureKind::kPicture && request.size.width <= kSmallWidth;
     scene.set_max_error(small ? kSmallErrorPixels : kErrorPixels);
@@ -226,7 +225,7 @@ class PictureServer {
     options.scene.budget_bytes = kServerBudgetBytes;
     options.scene.max_error_pixels = kErrorPixels;
     options.scene.fade_seconds = 0;
-    // While they work, the main thread waits.
+    // All processors, because the main thread waits meanwhile.
     options.scene.modelers = std::max(std::thread::hardware_concurrency(), 1U);
     options.scene.watchdog_seconds = kServerWatchdogS;
     auto session = app::Session::create(std::move(options));
@@ -241,7 +240,7 @@ class PictureServer {
     return world.palette.images == decltype(world.palette.images){};
   }
 
-  // Around which costs are meant.
+  // The block around which costs are predicted.
   static core::BlockCoord block_of(const PictureRequest& request, const world::World& world) {
     if (request.place) return pose_of(*request.place, world).position.block;
     return {static_cast<std::int32_t>(world.blocks_x / 2),
@@ -254,8 +253,8 @@ class PictureServer {
     const core::WorldPosition& at = pose.position;
     double surface_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
     if (world.water.exists()) surface_m = std::max(surface_m, world.water.level_m);
-    const double wanted_m = place.at_m.y + (place.above_ground ? surface_m : 0);
-    pose.position.local.y = std::max(wanted_m, surface_m + kMinEyeM);
+    const double height_m = place.at_m.y + (place.above_ground ? surface_m : 0);
+    pose.position.local.y = std::max(height_m, surface_m + kMinEyeM);
     return pose;
   }
 
@@ -272,7 +271,7 @@ class PictureServer {
 }  // namespace
 
 int render_pictures(std::vector<app::Plugin> plugins, std::string device_name) {
-  // Before there are threads, which inherit it.
+  // Before the first thread starts, because threads inherit the priority.
   (void)::setpriority(PRIO_PROCESS, 0, 19);
   std::ofstream("/proc/self/oom_score_adj") << 1000;
   const rlimit no_core{0, 0};

@@ -1,7 +1,7 @@
-// The drawing process: reads requests as lines of JSON from the standard input, draws, writes
-// files, and answers each with a line on the standard output. It has one headless session that
-// follows the worlds of the requests, so that what they have in common is made once. Whatever a
-// world does to this process, the editor stays.
+// The rendering process: reads requests as lines of JSON from the standard input, renders, writes
+// files, and answers each request with a line on the standard output. One headless session follows
+// the worlds of the requests, so that common meshes are synthesised once. A world that crashes this
+// process does not affect the editor.
 #pragma once
 
 #include <string>
@@ -11,12 +11,13 @@
 
 namespace psygen::editor {
 
-// The hidden option of the editor that runs this.
+// The hidden option of the editor that starts this process.
 inline constexpr const char* kPicturesOption = "--render-pictures";
 
-// Serves until the input ends; the exit code. At the lowest priority of the operating system, and
-// the first to go where memory is short. Ends after a request whose model hangs: its thread cannot
-// be ended alone. `device_name`: part of a Vulkan device's name; empty: the best one.
+// Serves requests until the input ends, and returns the exit code. Runs at the lowest priority, and
+// is the first process that the system kills when memory is short. Ends the process after a request
+// whose model hangs, because a single thread cannot be ended. `device_name`: part of a Vulkan
+// device's name; empty: the best one.
 int render_pictures(std::vector<app::Plugin> plugins, std::string device_name = {});
 
 }  // namespace psygen::editor

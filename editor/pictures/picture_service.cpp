@@ -5,19 +5,19 @@
 #include <QFile>
 #include <algorithm>
 
-#include "editor/document/picture_file.hpp"
+#include "editor/document/paint_change.hpp"
 
 namespace psygen::editor {
 namespace {
 
-constexpr const char* kChild = "PSYGEN_EDITOR_PICTURES";  // set in what it starts
+constexpr const char* kChild = "PSYGEN_EDITOR_PICTURES";  // environment variable of the process
 
 constexpr int kPatienceMs = 1000;
-constexpr int kExportTimes = 10;  // as long as a picture
-constexpr int kMaxOverdue = 10;   // limits: a process that sleeps is ended too
-constexpr int kEndMs = 200;       // to end by itself
+constexpr int kExportTimes = 10;  // limit of an export, in limits of an image
+constexpr int kMaxOverdue = 10;   // limits until a sleeping process is ended too
+constexpr int kEndMs = 200;       // for a normal exit
 
-// What a process has used of processors, in all its threads.
+// Processor time of all threads of a process.
 double processor_ms(qint64 process) {
   QFile file(QString("/proc/%1/stat").arg(process));
   if (process <= 0 || !file.open(QIODevice::ReadOnly)) return 0;
@@ -41,10 +41,10 @@ PictureService::PictureService(QString program, QStringList arguments, QObject* 
   patience_.setSingleShot(true);
   connect(&limit_, &QTimer::timeout, this, [this] {
     if (!process_) return;
-    // Where others take the processors it gets little of them and does nothing wrong.
+    // On a busy machine the process gets little processor time, which is no fault.
     const double worked_ms = processor_ms(process_->processId()) - worked_before_ms_;
     if (++overdue_ < kMaxOverdue && worked_ms < limit_ms_) return limit_.start(limit_ms_);
-    process_->kill();  // ended() does the rest
+    process_->kill();  // ended() follows
   });
   connect(&patience_, &QTimer::timeout, this, &PictureService::send_next);
 }
@@ -63,7 +63,7 @@ bool PictureService::is_picture(const PictureRequest& request) {
   return request.kind == PictureKind::kPicture || request.kind == PictureKind::kPortrait;
 }
 
-// As files of the service's own, which stay until it ends.
+// Writes unsaved images to temporary files, which the service keeps until its end.
 void PictureService::attach_pictures(PictureRequest& request) {
   const handmade::MemoryPicturesPtr pictures = ask_pictures_ ? ask_pictures_() : nullptr;
   if (!pictures) return;
@@ -101,7 +101,7 @@ void PictureService::set_busy(bool busy) {
 void PictureService::send_next() {
   std::erase_if(queue_, [](const Job& job) { return !job.owner; });
   if (queue_.empty()) return;
-  // One at a time; of a picture that nobody wants any more the process lets go for the next one.
+  // One at a time, but the process drops a cancelled image for the next request.
   const bool replaces = current_ && current_->cancelled && is_picture(current_->request);
   if (current_ && !replaces) return;
   const auto next = std::ranges::min_element(queue_, [](const Job& a, const Job& b) {
@@ -128,7 +128,7 @@ void PictureService::send_next() {
 }
 
 void PictureService::start() {
-  // A program that does not know the option would start itself again and again.
+  // Prevents a program without the option from starting itself recursively.
   if (qEnvironmentVariableIsSet(kChild)) return;
   process_ = std::make_unique<QProcess>();
   process_->setProcessChannelMode(QProcess::SeparateChannels);
@@ -162,32 +162,32 @@ void PictureService::read() {
 }
 
 void PictureService::take(const PictureReply& reply) {
-  // Answers to requests that were replaced find nobody.
+  // Ignores replies to replaced requests.
   if (!current_ || current_->request.id != reply.id) return;
   Job job = std::move(*current_);
   current_.reset();
   limit_.stop();
-  PictureReply told = reply;
+  PictureReply result = reply;
   if (is_picture(job.request)) {
     const QString file = QString::fromStdString(job.request.out);
-    if (told.error.empty() && !told.dropped && !job.cancelled) told.image.load(file);
+    if (result.error.empty() && !result.dropped && !job.cancelled) result.image.load(file);
     if (file.startsWith(folder_.path())) QFile::remove(file);
   }
-  if (!job.cancelled && job.owner && !told.dropped) job.done(told);
+  if (!job.cancelled && job.owner && !result.dropped) job.done(result);
   send_next();
 }
 
-void PictureService::fail(const QString& why) {
+void PictureService::fail(const QString& error) {
   if (!current_) return;
   PictureReply reply;
   reply.id = current_->request.id;
-  reply.error = why.toStdString();
+  reply.error = error.toStdString();
   take(reply);
 }
 
 void PictureService::ended() {
   if (!process_) return;
-  read();  // what it said before
+  read();  // replies from before the end
   const bool killed = !limit_.isActive() && current_.has_value();
   const bool started = process_->error() != QProcess::FailedToStart;
   const QString how = process_->exitStatus() == QProcess::CrashExit
@@ -196,14 +196,14 @@ void PictureService::ended() {
   process_->disconnect(this);
   process_.release()->deleteLater();
   if (started) ++restarts_;
-  // One that was replaced may have ended it; the present one gets another chance.
+  // The replaced request may have crashed it, so the present one is queued again.
   if (current_ && unanswered_ > 1) queue_.push_back(*std::exchange(current_, std::nullopt));
   unanswered_ = 0;
   limit_.stop();
   if (!current_) return send_next();
-  fail(!started ? tr("the drawing process cannot be started")
-       : killed ? tr("drawing this took more than %1 s").arg(limit_ms_ / 1000)
-                : tr("this has ended the drawing process (%1)").arg(how));
+  fail(!started ? tr("the rendering process cannot be started")
+       : killed ? tr("rendering took more than %1 s").arg(limit_ms_ / 1000)
+                : tr("the rendering process crashed (%1)").arg(how));
 }
 
 }  // namespace psygen::editor

@@ -1,6 +1,6 @@
-// The editor's side of the drawing process: starts it when there is something to draw, gives it one
-// request at a time, and starts it anew when a world has ended it. The newest batch of requests is
-// served first, within it the lowest rank. Main thread; it never waits.
+// The editor's side of the rendering process: starts it for the first request, sends it one request
+// at a time, and restarts it after a crash. Serves the newest batch of requests first, and within
+// it the lowest rank. Main thread; never blocks.
 #pragma once
 
 #include <QObject>
@@ -18,35 +18,37 @@
 
 namespace psygen::editor {
 
+// One process at a time.
 class PictureService final : public QObject {
   Q_OBJECT
 
  public:
+  // Receives the reply of a request.
   using Done = std::function<void(const PictureReply&)>;
 
-  // `program` with `arguments` is a process that calls render_pictures(). `limit_ms`: one that
-  // works longer than that on a picture is ended; exports may take ten times as long.
+  // `program` with `arguments` starts a process that calls render_pictures(). The service ends a
+  // process that works on an image for longer than `limit_ms`; exports may take ten times as long.
   PictureService(QString program, QStringList arguments, QObject* parent = nullptr,
                  int limit_ms = 30'000);
   ~PictureService() override;
 
-  // A number for requests that belong together; larger than all before.
+  // A number for requests that belong together; larger than all previous ones.
   int new_batch() { return ++last_batch_; }
-  // Asks for something. `done` is called once, later, unless its owner is gone or the request was
-  // cancelled. Pictures get a file of their own where `out` is empty, and come as an image.
+  // Queues a request. Calls `done` once, later, unless the owner was destroyed or the request
+  // cancelled. Images with an empty `out` get a temporary file; the reply contains the image.
   void ask(PictureRequest request, int batch, double rank, QObject* owner, Done done);
-  // Forgets what an owner has asked for.
+  // Cancels the requests of an owner.
   void cancel(const QObject* owner);
-  // What is painted and not written, asked for with each request; its answer may be null.
+  // Sets a function that returns the unsaved images for each request; it may return null.
   void set_pictures(std::function<handmade::MemoryPicturesPtr()> ask) {
     ask_pictures_ = std::move(ask);
   }
-  // The view waits for meshes: pictures wait too, but for no longer than a second. Costs and
-  // exports do not.
+  // Delays images, for at most a second each, while the view waits for meshes. Costs and exports
+  // are not delayed.
   void set_busy(bool busy);
-  // Requests that are not answered.
+  // Number of requests without a reply.
   std::size_t waiting() const { return queue_.size() + (current_ ? 1 : 0); }
-  // How often the process has ended by itself or had to be ended.
+  // Number of times that the process crashed or was ended.
   int restarts() const { return restarts_; }
 
  private:
@@ -64,7 +66,7 @@ class PictureService final : public QObject {
   void start();
   void read();
   void take(const PictureReply& reply);
-  void fail(const QString& why);
+  void fail(const QString& error);
   void ended();
 
   QString program_;
@@ -75,11 +77,11 @@ class PictureService final : public QObject {
   std::function<handmade::MemoryPicturesPtr()> ask_pictures_;
   std::deque<Job> queue_;
   std::optional<Job> current_;
-  int unanswered_ = 0;  // requests that the process has; more than one: current_ has replaced one
+  int unanswered_ = 0;  // requests in the process; more than one if current_ has replaced one
   QByteArray input_;
   QTimer limit_, patience_;
-  int overdue_ = 0;              // limits that have passed
-  double worked_before_ms_ = 0;  // by the process, when it got the request
+  int overdue_ = 0;              // number of limits that have passed
+  double worked_before_ms_ = 0;  // processor time of the process at the start of the request
   bool busy_ = false, patient_ = true;
   int last_batch_ = 0;
   std::uint64_t last_id_ = 0;

@@ -24,10 +24,11 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOwn = "Mine";
 constexpr std::array kHeadings{"Species", "Rocks", "Grasses", "Terrains", "Skies"};  // in order
-constexpr double kSmaller = 0.8, kLarger = 1.2;  // the sizes of a new species, over its own
-constexpr double kDryM = 1;                      // above the water
+constexpr double kSmaller = 0.8,
+                 kLarger = 1.2;  // size range of a new scatter, of the species' size
+constexpr double kDryM = 1;      // height above water
 
-// "silver_birch" is "Silver birch".
+// Returns "Silver birch" for "silver_birch".
 std::string title_of(std::string word) {
   std::ranges::replace(word, '_', ' ');
   if (!word.empty()) word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
@@ -57,10 +58,13 @@ core::Result<Preset> read_preset_file(const fs::path& file, std::string heading)
   if (!table) return tl::unexpected(table.error());
   if (table->size() != 1)
     return core::fail(core::ErrorCode::kParse,
-                      fmt::format("{}: a preset of a library is one whole table", file.string()));
-  return Preset{std::move(heading),   title_of(file.stem().string()),
-                first_comment(*text), table->back().key,
-                *std::move(snippet),  file};
+                      fmt::format("{}: a preset must be one whole table", file.string()));
+  return Preset{.heading = std::move(heading),
+                .name = title_of(file.stem().string()),
+                .doc = first_comment(*text),
+                .table = table->back().key,
+                .snippet = *std::move(snippet),
+                .file = file};
 }
 
 std::optional<double> number_in(std::string_view text, const world::TextPath& path) {
@@ -117,7 +121,7 @@ std::vector<fs::path> library_folders() {
 
 std::vector<Preset> load_library(const std::vector<fs::path>& folders,
                                  std::vector<std::string>* problems) {
-  // The first folder that has a file of this name wins, as for worlds.
+  // The first folder with a file of this name wins, as for worlds.
   std::map<std::tuple<bool, std::ptrdiff_t, std::string, std::string>, Preset> presets;
   for (const fs::path& folder : folders) {
     const bool own = folder == own_library_folder();

@@ -1,4 +1,4 @@
-// The presets in files: those that come with psygen (share/psygen/library) and a person's own. A
+// The library of preset files: those of psygen (share/psygen/library) and the user's own ones. Each
 // folder of the library is a heading. Reads files; draws nothing and edits no document. Main
 // thread.
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace psygen::editor {
 
-// One preset that can be read.
+// One preset.
 struct Preset {
   std::string heading;  // "Species"
   std::string name;     // "Silver birch"
@@ -22,20 +22,20 @@ struct Preset {
   std::filesystem::path file;
 };
 
-// The folders "library" of the data folders and, last, that of the person.
+// The folders "library" of the data folders and, last, the user's own one.
 std::vector<std::filesystem::path> library_folders();
-// The person's own presets; the folder need not exist.
+// The folder of the user's own presets, which need not exist.
 std::filesystem::path own_library_folder();
 
-// All presets of these folders: species, rocks, grasses, terrains, skies, others, each by name, own
-// ones ("Mine") last. Files that are no
-// presets are left out and named in `problems` (may be null).
+// All presets of these folders: species, rocks, grasses, terrains, skies and others, each sorted by
+// name; own ones ("Mine") are last. Skips invalid files and appends their errors to `problems`,
+// which may be null.
 std::vector<Preset> load_library(const std::vector<std::filesystem::path>& folders,
                                  std::vector<std::string>* problems = nullptr);
 
-// The world text with a preset: a species is added, under a free name, together with a scatter of
-// it, so that it is seen; a scatter is added; other tables take the preset's values. Fails like the
-// functions of text_edit.hpp.
+// Returns the world text with a preset: adds a species under a free name together with a scatter of
+// it, adds a scatter, or sets the preset's values in other tables. Fails like the functions of
+// text_edit.hpp.
 core::Result<std::string> with_preset(std::string_view text, const Preset& preset);
 
 }  // namespace psygen::editor

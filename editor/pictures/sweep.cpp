@@ -14,11 +14,11 @@ namespace {
 
 using world::FieldKind;
 
-constexpr std::uint64_t kSeeds = 100'000;  // short ones, which people can say
+constexpr std::uint64_t kSeeds = 100'000;  // short numbers are easy to write down
 
-// The value at a share of the soft range.
-double value_at(const world::WorldField& field, double share) {
-  return std::clamp(scale_of(field).at(share), field.hard_min, field.hard_max);
+// The value at a fraction of the soft range.
+double value_at(const world::WorldField& field, double fraction) {
+  return std::clamp(scale_of(field).at(fraction), field.hard_min, field.hard_max);
 }
 
 std::string number_toml(const world::WorldField& field, double v) {
@@ -74,9 +74,9 @@ std::vector<std::string> sweep_values(const world::WorldField& field, std::size_
       values.push_back(world::toml_string(choice));
   } else {
     for (std::size_t i = 0; i < count; ++i) {
-      const double share =
+      const double fraction =
           count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0.5;
-      std::string value = number_toml(field, value_at(field, share));
+      std::string value = number_toml(field, value_at(field, fraction));
       if (std::ranges::find(values, value) == values.end()) values.push_back(std::move(value));
     }
   }
@@ -90,7 +90,7 @@ core::Result<std::vector<SweepCell>> sweep_cells(const std::string& text,
                                                  std::uint64_t page) {
   std::vector<SweepCell> cells;
   const auto add = [&](std::vector<std::string> values) -> core::Result<void> {
-    SweepCell cell{std::move(values), text, true};
+    SweepCell cell{.values = std::move(values), .text = text, .is_present = true};
     for (std::size_t i = 0; i < fields.size(); ++i) {
       auto changed = world::with_value(cell.text, fields[i].path, cell.values[i]);
       if (!changed) return tl::unexpected(changed.error());

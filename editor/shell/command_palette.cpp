@@ -1,17 +1,36 @@
 #include "editor/shell/command_palette.hpp"
 
+#include <QAction>
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QMenu>
 #include <QVBoxLayout>
 #include <algorithm>
 
 namespace psygen::editor {
+namespace {
 
-bool is_found(const QString& name, const QString& text) {
+// True if all words of `text` occur in `name`, in upper or lower case.
+bool has_words(const QString& name, const QString& text) {
   const QStringList words = text.split(' ', Qt::SkipEmptyParts);
   return std::ranges::all_of(
       words, [&](const QString& word) { return name.contains(word, Qt::CaseInsensitive); });
+}
+
+}  // namespace
+
+std::vector<CommandPalette::Command> commands_of(const QWidget& window) {
+  std::vector<CommandPalette::Command> commands;
+  for (QAction* action : window.findChildren<QAction*>()) {
+    if (action->text().isEmpty() || action->menu() != nullptr || !action->isEnabled() ||
+        !action->isVisible())
+      continue;
+    commands.push_back({.name = action->text().remove('&'),
+                        .hint = action->shortcut().toString(),
+                        .run = [action] { action->trigger(); }});
+  }
+  return commands;
 }
 
 CommandPalette::CommandPalette(QWidget* parent)
@@ -43,7 +62,7 @@ void CommandPalette::list(const QString& text) {
   list_->clear();
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const Command& command = commands_[i];
-    if (!is_found(command.name, text)) continue;
+    if (!has_words(command.name, text)) continue;
     auto* item = new QListWidgetItem(
         command.hint.isEmpty() ? command.name : command.name + "    " + command.hint, list_);
     item->setData(Qt::UserRole, static_cast<int>(i));

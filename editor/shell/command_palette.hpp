@@ -11,16 +11,18 @@ class QListWidget;
 
 namespace psygen::editor {
 
+// The dialog "Commands". Modal.
 class CommandPalette final : public QDialog {
   Q_OBJECT
 
  public:
   struct Command {
-    QString name, hint;  // hint: the shortcut, or what a field does
+    QString name;
+    QString hint;  // the shortcut of a command, or the description of a field
     std::function<void()> run;
   };
   explicit CommandPalette(QWidget* parent);
-  // Opens with these commands.
+  // Opens the dialog with these commands.
   void ask(std::vector<Command> commands);
 
  protected:
@@ -35,7 +37,7 @@ class CommandPalette final : public QDialog {
   QListWidget* list_;
 };
 
-// Whether all words of `text` occur in `name`, in any case.
-bool is_found(const QString& name, const QString& text);
+// The enabled actions of a window as commands.
+std::vector<CommandPalette::Command> commands_of(const QWidget& window);
 
 }  // namespace psygen::editor

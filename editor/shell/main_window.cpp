@@ -1,54 +1,35 @@
 #include "editor/shell/main_window.hpp"
 
 #include <QCloseEvent>
-#include <QComboBox>
-#include <QDateTime>
-#include <QDockWidget>
 #include <QDragEnterEvent>
-#include <QLabel>
-#include <QMenu>
 #include <QMenuBar>
 #include <QMimeData>
-#include <QPlainTextEdit>
 #include <QSettings>
 #include <QStatusBar>
 #include <QUndoView>
-#include <QVBoxLayout>
+#include <algorithm>
 
-#include "editor/cost/cost_worker.hpp"
+#include "editor/attach/remote_panel.hpp"
+#include "editor/flights/timeline_panel.hpp"
 #include "editor/gallery/library_panel.hpp"
-#include "editor/gallery/model_view.hpp"
 #include "editor/gallery/picture_tools.hpp"
-#include "editor/panels/cache_map.hpp"
-#include "editor/panels/properties_panel.hpp"
+#include "editor/panels/cache_map_panel.hpp"
+#include "editor/panels/selection_panel.hpp"
 #include "editor/panels/statistics_panel.hpp"
 #include "editor/shell/command_palette.hpp"
-#include "editor/shell/docks.hpp"
+#include "editor/shell/default_world.hpp"
+#include "editor/shell/edit_feedback.hpp"
+#include "editor/shell/file_commands.hpp"
+#include "editor/shell/flight_commands.hpp"
+#include "editor/shell/frame_status.hpp"
+#include "editor/shell/remote_commands.hpp"
+#include "editor/shell/section_commands.hpp"
+#include "editor/shell/theme.hpp"
+#include "editor/shell/view_bars.hpp"
+#include "editor/shell/view_commands.hpp"
 #include "editor/tools/view_tools.hpp"
-#include "engine/core/camera.hpp"
-#include "engine/core/log.hpp"
-#include "engine/models/registry.hpp"
-#include "engine/render/types.hpp"
-#include "engine/scene/frame/quality.hpp"
-#include "engine/scene/scene.hpp"
-#include "engine/synthesis/mesh_supply.hpp"
-#include "engine/world/world.hpp"
 
 namespace psygen::editor {
-namespace {
-
-constexpr int kFiguresMs = 250;
-constexpr double kSmoothing = 0.1;
-
-QPlainTextEdit* reading_pane(const QString& name) {
-  auto* pane = new QPlainTextEdit;
-  pane->setReadOnly(true);
-  pane->setAccessibleName(name);
-  pane->setFrameShape(QFrame::NoFrame);
-  return pane;
-}
-
-}  // namespace
 
 MainWindow::MainWindow(MainWindowOptions options)
     : options_(std::move(options)),
@@ -57,159 +38,211 @@ MainWindow::MainWindow(MainWindowOptions options)
   setObjectName("main");
   setAcceptDrops(true);
   setDockNestingEnabled(true);
+  add_view();
+  add_commands();
+  panel_commands_ = add_panels(*this, panels());
+  add_menus();
+  new FrameStatus(*statusBar(), *view_);  // owned by the status bar
+  connect_messages();
+  resize(1280, 800);
+  first_layout_ = saveState();
+  const QSettings settings;
+  restoreGeometry(settings.value("geometry").toByteArray());
+  restore_layout(settings.value("layout").toByteArray());
+  update_title();
+}
+
+// The tools must release the document and the view before either ends.
+MainWindow::~MainWindow() {
+  tools_->leave();
+}
+
+void MainWindow::add_view() {
   QWidget* container = QWidget::createWindowContainer(view_, this);
   container->setFocusPolicy(Qt::StrongFocus);
   container->setAccessibleName(tr("View of the world"));
   container->setMinimumSize(320, 240);
   setCentralWidget(container);
   view_->set_paused(options_.safe);
-  costs_ = new CostWorker(options_.document.register_models, this);
+}
+
+// Objects that follow the document are notified in the order of their construction here.
+void MainWindow::add_commands() {
+  properties_ = new PropertiesPanel;
+  messages_ = new MessageLog(*statusBar());
   model_ = new ModelView(document_, *view_, this);
   palette_ = new CommandPalette(this);
-  add_docks();
-  add_tool_docks();
-  add_toolbar();
-  add_view_tools();
-  add_menus();
-  figures_ = new QLabel;
-  statusBar()->addPermanentWidget(figures_);
-  connect_document();
-  connect_properties();
-  connect_view();
-  resize(1280, 800);
-  first_layout_ = saveState();
-  restore_layout();
-  fit_title();
-}
+  const EditorContext context{*this, document_, *view_, *model_, *properties_, *messages_};
+  const auto set_dragging = [this](bool on) { feedback_->set_dragging(on); };
 
-// The document goes before the view.
-MainWindow::~MainWindow() {
-  tools_->leave();
-}
-
-void MainWindow::add_docks() {
-  properties_ = new PropertiesPanel;
-  statistics_ = new StatisticsPanel;
-  map_ = new CacheMap;
-  selection_text_ = reading_pane(tr("What is selected"));
-  selection_text_->setPlaceholderText(tr("Click on a tree, a rock or the ground."));
-  log_ = reading_pane(tr("Messages"));
-  log_->setPlaceholderText(tr("What was refused, saved or copied is listed here."));
-  auto* history = new QUndoView(&document_.undo_stack());
-  history->setEmptyLabel(tr("As opened"));
-  history->setAccessibleName(tr("History of edits"));
-  auto* colours = new QComboBox;
-  colours->addItems({tr("State"), tr("Level"), tr("PLP layer"), tr("Cost"), tr("Age")});
-  colours->setAccessibleName(tr("What colours of the map mean"));
-  auto* legend = new QLabel(legend_text(MapColour::kState));
-  legend->setWordWrap(true);
-  legend->setMinimumHeight(2 * legend->fontMetrics().lineSpacing());
-  legend->setAlignment(Qt::AlignTop);
-  connect(colours, &QComboBox::activated, map_, [this, legend](int index) {
-    map_->set_colour(static_cast<MapColour>(index));
-    legend->setText(legend_text(static_cast<MapColour>(index)));
-  });
-  auto* map_box = new QWidget;
-  auto* map_layout = new QVBoxLayout(map_box);
-  map_layout->setContentsMargins(4, 4, 4, 4);
-  map_layout->addWidget(colours);
-  map_layout->addWidget(map_, 1);
-  map_layout->addWidget(legend);
-  add_dock(*this, "properties", tr("Properties"), properties_, Qt::LeftDockWidgetArea);
-  auto* selection =
-      add_dock(*this, "selection", tr("Selection"), selection_text_, Qt::RightDockWidgetArea);
-  auto* steps = add_dock(*this, "history", tr("History"), history, Qt::RightDockWidgetArea);
-  add_dock(*this, "map", tr("Cache map"), map_box, Qt::RightDockWidgetArea);
   pictures_ = new PictureTools(*this, document_, *view_,
                                QString::fromStdString(options_.session.device_name));
-  connect(pictures_, &PictureTools::told, this, &MainWindow::say);
-  connect(properties_, &PropertiesPanel::attended, pictures_, &PictureTools::attend);
-  auto* library =
-      add_dock(*this, "library", tr("Library"), &pictures_->library(), Qt::LeftDockWidgetArea);
-  auto* figures =
-      add_dock(*this, "statistics", tr("Statistics"), statistics_, Qt::BottomDockWidgetArea);
-  auto* messages = add_dock(*this, "messages", tr("Messages"), log_, Qt::BottomDockWidgetArea);
-  tabifyDockWidget(selection, steps);
-  tabifyDockWidget(findChild<QDockWidget*>("properties"), library);
-  findChild<QDockWidget*>("properties")->raise();
-  tabifyDockWidget(figures, messages);
-  selection->raise();
-  figures->raise();
-}
+  files_ = new FileCommands(context);
+  const auto& state_folder = options_.document.state_folder;
+  flights_ = new FlightCommands(
+      context, (state_folder.empty() ? default_state_folder() : state_folder) / "flights");
+  remote_ = new RemoteCommands(context, *files_);
+  bars_ = new ViewBars(context, set_dragging);
+  tools_ = new ViewTools(*this, document_, *view_, set_dragging);
+  view_commands_ = new ViewCommands(context);
+  sections_ = new SectionCommands(context, pictures_->library());
+  camera_ = new CameraMemory(context);
+  CostLimits limits = options_.limits;
+  limits.cache_bytes =
+      std::min(limits.cache_bytes, static_cast<double>(options_.session.scene.budget_bytes));
+  feedback_ = new EditFeedback(context, options_.document.register_models, limits);
 
-void MainWindow::connect_view() {
-  connect(view_, &WorldView::opened, this, [this](const QString& error) {
-    if (!error.isEmpty()) return say(error);
-    statistics_->forget();
-    restore_place();
-    ask_costs();
-  });
-  connect(view_, &WorldView::lost, this, [this] {
-    say(tr("The graphics device was lost. The view is opened again; the document is as it was."));
-  });
-  connect(view_, &WorldView::refused, this, &MainWindow::say);
-  connect(view_, &WorldView::refused, costs_, &CostWorker::go_on);
-  connect(view_, &WorldView::answered, this, [this](double ms) {
-    answered_ms_ = ms;
-    costs_->go_on();
-  });
-  connect(view_, &WorldView::settled, this, [this](double ms) {
-    statusBar()->showMessage(
-        tr("The first picture came %1 ms after the change, the last mesh after %2 ms.")
-            .arg(answered_ms_, 0, 'f', 0)
-            .arg(ms, 0, 'f', 0),
-        4000);
-  });
-  connect(view_, &WorldView::drawn, this, [this](double ms) {
-    frame_ms_ += (ms - frame_ms_) * (frame_ms_ == 0 ? 1 : kSmoothing);
-    statistics_->note(view_->session()->scene());
-  });
-  connect(view_, &WorldView::selected, this, [this] {
-    const auto& selection = view_->selection();
-    if (!selection) return selection_text_->clear();
-    const scene::Scene& scene = view_->session()->scene();
-    selection_text_->setPlainText(describe(*selection, scene));
-    const std::string name(scene.registry()[selection->model].name());
-    for (const world::WorldSection& section : document_.sections()) {
-      if (section.title == name || (section.kind == world::SectionKind::kTerrain &&
-                                    selection->kind == query::HitKind::kGround))
-        return properties_->go_to(section.path);
-    }
-  });
-  connect(model_, &ModelView::told, this, &MainWindow::say);
-  connect(model_, &ModelView::switched, this,
-          [this] { pictures_->set_on_world(!model_->is_on()); });
+  connect(properties_, &PropertiesPanel::field_focused, pictures_,
+          &PictureTools::set_focused_field);
   connect(properties_, &PropertiesPanel::section_chosen, model_, &ModelView::follow);
-  connect(&figures_timer_, &QTimer::timeout, this, &MainWindow::show_figures);
-  figures_timer_.start(kFiguresMs);
+  connect(model_, &ModelView::switched, this, [this] {
+    if (model_->is_on()) tools_->leave();
+    pictures_->set_on_world(!model_->is_on());
+  });
+  connect(tools_, &ViewTools::started, model_, &ModelView::close);
+  connect(tools_, &ViewTools::chosen, properties_, &PropertiesPanel::go_to);
 }
 
-void MainWindow::show_figures() {
-  if (view_->session() == nullptr) return figures_->setText(tr("No picture"));
-  const scene::Scene& scene = view_->session()->scene();
-  figures_->setText(
-      tr("%1 ms  ·  %2 triangles  ·  error %3 px  ·  %4 waiting  ·  %5 m/s")
-          .arg(frame_ms_, 0, 'f', 1)
-          .arg(QLocale(QLocale::English).toString(static_cast<qulonglong>(scene.drawn().triangles)))
-          .arg(scene.quality().error_pixels, 0, 'f', 1)
-          .arg(scene.meshes().outstanding())
-          .arg(view_->camera().speed_m_s(), 0, 'f', 0));
-  if (statistics_->isVisible()) statistics_->show(scene);
-  map_->note(scene);
-  if (map_->isVisible()) map_->show(scene);
+// The panels. A new panel is one entry here; its widget is a class in editor/panels.
+std::vector<Panel> MainWindow::panels() {
+  return {
+      {.name = "properties",
+       .title = tr("Properties"),
+       .place = PanelPlace::kLeft,
+       .shortcut = tr("Alt+1"),
+       .make = [this] { return properties_; }},
+      {.name = "library",
+       .title = tr("Library"),
+       .place = PanelPlace::kLeft,
+       .shortcut = tr("Alt+2"),
+       .make = [this] { return &pictures_->library(); }},
+      {.name = "selection",
+       .title = tr("Selection"),
+       .place = PanelPlace::kTopRight,
+       .shortcut = tr("Alt+3"),
+       .make = [this] { return new SelectionPanel(*view_); }},
+      {.name = "history",
+       .title = tr("History"),
+       .place = PanelPlace::kTopRight,
+       .shortcut = tr("Alt+4"),
+       .make =
+           [this] {
+             auto* history = new QUndoView(&document_.undo_stack());
+             history->setEmptyLabel(tr("As opened"));
+             history->setAccessibleName(tr("History of edits"));
+             return history;
+           }},
+      {.name = "map",
+       .title = tr("Cache map"),
+       .place = PanelPlace::kBottomRight,
+       .shortcut = tr("Alt+5"),
+       .make = [this] { return new CacheMapPanel(*view_); }},
+      {.name = "attached",
+       .title = tr("Attached"),
+       .place = PanelPlace::kBottomRight,
+       .shortcut = tr("Alt+6"),
+       .is_open = false,
+       .make = [this] { return &remote_->panel(); }},
+      {.name = "statistics",
+       .title = tr("Statistics"),
+       .place = PanelPlace::kBottom,
+       .shortcut = tr("Alt+7"),
+       .make =
+           [this] {
+             auto* statistics = new StatisticsPanel(*view_);
+             connect(feedback_, &EditFeedback::block_cost_changed, statistics,
+                     &StatisticsPanel::show_block_cost);
+             return statistics;
+           }},
+      {.name = "messages",
+       .title = tr("Messages"),
+       .place = PanelPlace::kBottom,
+       .shortcut = tr("Alt+8"),
+       .make = [this] { return messages_; }},
+      {.name = "timeline",
+       .title = tr("Timeline"),
+       .place = PanelPlace::kBottom,
+       .shortcut = tr("Alt+9"),
+       .is_open = false,
+       .make = [this] { return &flights_->panel(); }},
+  };
 }
 
-bool MainWindow::tell(const core::Result<void>& result) {
-  if (!result) say(QString::fromStdString(result.error().message));
-  return result.has_value();
+void MainWindow::add_menus() {
+  QMenu* file = menuBar()->addMenu(tr("&File"));
+  files_->add_to_menu(*file);
+  file->addSeparator();
+  view_commands_->add_to_file_menu(*file);
+  pictures_->add_to_file_menu(*file);
+  file->addSeparator();
+  remote_->add_to_file_menu(*file);
+  file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
+  add_edit_menu();
+  add_view_menu();
+  QMenu* world = menuBar()->addMenu(tr("&World"));
+  sections_->add_to_world_menu(*world);
+  world->addSeparator();
+  pictures_->add_to_world_menu(*world);
+  view_commands_->add_to_world_menu(*world, options_.safe);
+  tools_->add_to_menu(*menuBar()->addMenu(tr("&Tools")));
+  flights_->add_to_menu(*menuBar()->addMenu(tr("F&light")));
+  view_commands_->add_to_help_menu(*menuBar()->addMenu(tr("&Help")));
 }
 
-void MainWindow::say(const QString& sentence) {
-  statusBar()->showMessage(sentence, 10'000);
-  log_->appendPlainText(QDateTime::currentDateTime().toString("HH:mm:ss  ") + sentence);
+void MainWindow::add_edit_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&Edit"));
+  QAction* undo = document_.undo_stack().createUndoAction(this, tr("&Undo"));
+  undo->setShortcut(QKeySequence::Undo);
+  QAction* redo = document_.undo_stack().createRedoAction(this, tr("&Redo"));
+  redo->setShortcut(QKeySequence::Redo);
+  menu->addActions({undo, redo});
+  menu->addSeparator();
+  sections_->add_to_edit_menu(*menu);
+  menu->addSeparator();
+  menu->addAction(tr("Find a command or field …"), tr("Ctrl+Shift+P"), this, [this] {
+    std::vector<CommandPalette::Command> commands = commands_of(*this);
+    std::ranges::move(sections_->field_commands(), std::back_inserter(commands));
+    palette_->ask(std::move(commands));
+  });
 }
 
-void MainWindow::fit_title() {
+void MainWindow::add_view_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&View"));
+  view_commands_->add_to_view_menu(*menu);
+  pictures_->add_to_view_menu(*menu);
+  menu->addSeparator();
+  QMenu* panels = menu->addMenu(tr("Pan&els"));
+  for (QAction* command : panel_commands_)
+    panels->addAction(command);
+  menu->addAction(tr("&Reset the layout"), this, [this] { restore_layout(first_layout_); });
+  add_theme_menus(*menu);
+}
+
+void MainWindow::connect_messages() {
+  connect(view_, &WorldView::opened, messages_, [this](const QString& error) {
+    if (!error.isEmpty()) messages_->show_message(error);
+  });
+  connect(view_, &WorldView::lost, messages_, [this] {
+    messages_->show_message(
+        tr("The graphics device was lost. The view opens it again; the document is unchanged."));
+  });
+  connect(view_, &WorldView::world_rejected, messages_, &MessageLog::show_message);
+  connect(model_, &ModelView::message_posted, messages_, &MessageLog::show_message);
+  connect(pictures_, &PictureTools::message_posted, messages_, &MessageLog::show_message);
+  connect(tools_, &ViewTools::message_posted, messages_, &MessageLog::show_message);
+  connect(&document_, &Document::modified_changed, this, &MainWindow::update_title);
+  connect(&document_, &Document::file_changed, this, &MainWindow::update_title);
+}
+
+core::Result<void> MainWindow::open_file(const std::filesystem::path& file) {
+  return files_->open(file);
+}
+
+void MainWindow::set_default_pose(const core::CameraPose& pose, double height_m) {
+  camera_->set_default_pose(pose, height_m);
+}
+
+void MainWindow::update_title() {
   const QString name = document_.file().empty()
                            ? tr("new world")
                            : QString::fromStdString(document_.file().filename().string());
@@ -218,46 +251,9 @@ void MainWindow::fit_title() {
   setWindowModified(document_.is_modified());
 }
 
-void MainWindow::restore_layout() {
-  const QSettings settings;
-  restoreGeometry(settings.value("geometry").toByteArray());
-  restoreState(settings.value("layout").toByteArray());
-  Q_EMIT model_->switched();  // its bar is shown with it only
-}
-
-void MainWindow::set_first_place(const core::CameraPose& pose, double height_m) {
-  first_place_ = pose;
-  first_place_->position.local.y = height_m;
-}
-
-// Where the person was in this world before, else the first place, else the world's usual one.
-void MainWindow::restore_place() {
-  const QSettings settings;
-  const QVariantList kept = settings.value("places/" + file_key(document_.file())).toList();
-  if (kept.size() == 7) {
-    core::CameraPose pose;
-    pose.position.block = {kept[0].toInt(), kept[1].toInt()};
-    pose.position.local = {kept[2].toDouble(), kept[3].toDouble(), kept[4].toDouble()};
-    pose.yaw = kept[5].toDouble();
-    pose.pitch = kept[6].toDouble();
-    return view_->camera().set_pose(pose);
-  }
-  view_->focus();
-  if (!first_place_) return;
-  core::CameraPose pose = *std::exchange(first_place_, std::nullopt);
-  const world::World& world = document_.world();
-  pose.position = core::normalised(pose.position, world.block_size_m());
-  pose.position.local.y += world::surface_height_m(world, pose.position);
-  view_->camera().set_pose(pose);
-}
-
-void MainWindow::keep_place() {
-  if (view_->session() == nullptr || document_.file().empty()) return;
-  const core::CameraPose pose = model_->world_pose();
-  QSettings().setValue(
-      "places/" + file_key(document_.file()),
-      QVariantList{pose.position.block.x, pose.position.block.z, pose.position.local.x,
-                   pose.position.local.y, pose.position.local.z, pose.yaw, pose.pitch});
+void MainWindow::restore_layout(const QByteArray& layout) {
+  restoreState(layout);
+  bars_->update_model_bar();
 }
 
 void MainWindow::changeEvent(QEvent* event) {
@@ -271,15 +267,15 @@ void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
 }
 
 void MainWindow::dropEvent(QDropEvent* event) {
-  if (may_discard()) open_file(event->mimeData()->urls()[0].toLocalFile().toStdString());
+  if (files_->may_discard()) open_file(event->mimeData()->urls()[0].toLocalFile().toStdString());
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-  if (!may_discard()) return event->ignore();
+  if (!files_->may_discard()) return event->ignore();
   QSettings settings;
   settings.setValue("geometry", saveGeometry());
   settings.setValue("layout", saveState());
-  keep_place();
+  camera_->save();
   event->accept();
 }
 

@@ -2,12 +2,16 @@
 
 #include <QApplication>
 #include <QFont>
+#include <QMenu>
 #include <QPalette>
+#include <QSettings>
 #include <QStyleFactory>
 #include <algorithm>
 
 namespace psygen::editor {
 namespace {
+
+constexpr int kScales[] = {80, 100, 125, 150, 200};  // percent
 
 QPalette dark() {
   const QColor window(43, 45, 49), base(30, 31, 34), text(220, 221, 224), dim(126, 128, 134);
@@ -46,10 +50,34 @@ void apply_theme(const QString& name) {
 }
 
 void apply_scale(int percent) {
-  static const QFont usual = QApplication::font();
-  QFont font = usual;
-  font.setPointSizeF(usual.pointSizeF() * std::clamp(percent, 50, 300) / 100);
+  static const QFont system_font = QApplication::font();
+  QFont font = system_font;
+  font.setPointSizeF(system_font.pointSizeF() * std::clamp(percent, 50, 300) / 100);
   QApplication::setFont(font);
+}
+
+void apply_saved_look() {
+  const QSettings settings;
+  apply_theme(settings.value("theme", "dark").toString());
+  apply_scale(settings.value("scale", 100).toInt());
+}
+
+void add_theme_menus(QMenu& menu) {
+  const auto set_theme = [](const QString& name) {
+    return [name] {
+      apply_theme(name);
+      QSettings().setValue("theme", name);
+    };
+  };
+  QMenu* themes = menu.addMenu(QMenu::tr("&Theme"));
+  themes->addAction(QMenu::tr("&Dark"), set_theme("dark"));
+  themes->addAction(QMenu::tr("&Light"), set_theme("light"));
+  QMenu* scales = menu.addMenu(QMenu::tr("Text si&ze"));
+  for (const int percent : kScales)
+    scales->addAction(QString("%1 %").arg(percent), [percent] {
+      apply_scale(percent);
+      QSettings().setValue("scale", percent);
+    });
 }
 
 }  // namespace psygen::editor

@@ -25,12 +25,12 @@ std::uint64_t hash_of_rows(const world::GreyPicture& picture, const PixelRect& r
 
 }  // namespace
 
-// Shared with the states that are held, which come back to it from any thread.
+// Shared with the states in use, whose memory any thread returns here.
 struct ChangingPicture::Spares {
   std::mutex mutex;
   std::vector<Spare> all;
 
-  // The one that is nearest to now.
+  // Takes the memory of the newest released state.
   std::optional<Spare> take() {
     const std::lock_guard lock(mutex);
     const auto newest = std::ranges::max_element(all, {}, &Spare::state);
@@ -64,12 +64,12 @@ void ChangingPicture::change(const PixelRect& rect,
   write(*next);
   next->hash += hash_of_rows(*next, rect);
   changes_.push_back(rect);
-  const auto come_back = [home = std::weak_ptr(spares_),
-                          state = changes_.size()](const world::GreyPicture* picture) {
+  const auto give_memory_back = [home = std::weak_ptr(spares_),
+                                 state = changes_.size()](const world::GreyPicture* picture) {
     std::unique_ptr<world::GreyPicture> memory(const_cast<world::GreyPicture*>(picture));
     if (const auto spares = home.lock()) spares->give({std::move(memory), state});
   };
-  now_ = PicturePtr(next.release(), come_back);
+  now_ = PicturePtr(next.release(), give_memory_back);
 }
 
 }  // namespace psygen::editor

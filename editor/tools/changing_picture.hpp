@@ -1,7 +1,7 @@
-// A picture that changes a rectangle at a time while others still read older states of it. Each
-// state is immutable for as long as anybody holds it; after that its memory becomes a later state,
-// into which only what has changed meanwhile is copied. So a change costs what its rectangle costs,
-// unless many states are held. States may be released by any thread; all else is one thread's.
+// An image that changes rectangle by rectangle while other threads read its older states. A state
+// that is in use is immutable. A released state's memory is reused for a later state, into which
+// only the changed pixels are copied. A change therefore costs as much as its rectangle, unless
+// many states are in use. Any thread may release a state; all other calls come from one thread.
 #pragma once
 
 #include <cstdint>
@@ -13,26 +13,27 @@
 
 namespace psygen::editor {
 
+// The newest state of an image, and the memory of released states.
 class ChangingPicture {
  public:
   explicit ChangingPicture(PicturePtr first) : now_(std::move(first)) {}
 
   // The newest state.
   const PicturePtr& now() const { return now_; }
-  // The next state: `write` changes pixels of the rectangle, and no others. Their hash follows.
+  // Makes the next state: `write` changes pixels of the rectangle only. Updates the hash.
   void change(const PixelRect& rect, const std::function<void(world::GreyPicture&)>& write);
 
  private:
-  // Memory of a state that nobody holds any more.
+  // Memory of a released state.
   struct Spare {
     std::unique_ptr<world::GreyPicture> picture;
-    std::size_t state = 0;  // which one it was
+    std::size_t state = 0;  // its number
   };
   struct Spares;
   std::unique_ptr<world::GreyPicture> memory_of_now();
 
   PicturePtr now_;
-  std::vector<PixelRect> changes_;  // of each state but the first
+  std::vector<PixelRect> changes_;  // of each state except the first
   std::shared_ptr<Spares> spares_;
 };
 

@@ -4,18 +4,18 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "editor/view/segment.hpp"
+#include "editor/view/tool_overlay.hpp"
 
 namespace psygen::editor {
 namespace {
 
-constexpr double kHardShare = 0.5;     // of the radius, that is covered as a whole
-constexpr double kMinRadiusPx = 0.75;  // so that the smallest brush meets a pixel
+constexpr double kHardFraction = 0.5;  // of the radius: full coverage
+constexpr double kMinRadiusPx = 0.75;  // so that the smallest brush touches a pixel
 
 }  // namespace
 
-double brush_cover(double share) {
-  const double t = std::clamp((1 - share) / (1 - kHardShare), 0.0, 1.0);
+double brush_cover(double fraction) {
+  const double t = std::clamp((1 - fraction) / (1 - kHardFraction), 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
 
@@ -43,7 +43,7 @@ bool MaskStroke::go_to(glm::dvec2 at_m) {
   return met;
 }
 
-// All pixels that the brush can meet on its way.
+// The pixels that the brush can touch on its way.
 PixelRect MaskStroke::around(glm::dvec2 from_m, glm::dvec2 to_m) const {
   const glm::dvec2 corner_m(area_m_[0], area_m_[1]);
   const glm::dvec2 low = (glm::min(from_m, to_m) - brush_.radius_m - corner_m) / pixel_m_;
@@ -71,8 +71,8 @@ bool MaskStroke::cover(glm::dvec2 from_m, glm::dvec2 to_m, const PixelRect& rect
       if (cover <= covered_[i]) continue;
       covered_[i] = static_cast<std::uint8_t>(std::ceil(cover));
       const double was = before_->pixels[i];
-      const double share = brush_.strength * covered_[i] / 255;
-      picture.pixels[i] = static_cast<std::uint16_t>(std::lround(was + (target - was) * share));
+      const double blend = brush_.strength * covered_[i] / 255;
+      picture.pixels[i] = static_cast<std::uint16_t>(std::lround(was + (target - was) * blend));
     }
   }
   return met;

@@ -1,6 +1,6 @@
-// A brush stroke over a mask: how far each pixel was covered, and the picture that comes of it.
-// Soft towards its rim; going twice over a place in one stroke does no more. A move costs what the
-// pixels under it cost (changing_picture.hpp). Knows no document.
+// A brush stroke over a mask: the coverage of each pixel, and the resulting image. The brush is
+// soft towards its rim; a second pass over a pixel in one stroke has no effect. A move costs as
+// much as the pixels under it (changing_picture.hpp). Knows no document.
 #pragma once
 
 #include <array>
@@ -13,24 +13,25 @@
 namespace psygen::editor {
 
 struct Brush {
-  double radius_m = 20;  // beyond it nothing changes
-  double strength = 1;   // share of the way to the colour, 0 … 1
-  bool erases = false;   // black, else white
+  double radius_m = 20;
+  double strength = 1;  // 0 … 1: fraction of the way to the colour
+  bool erases = false;  // black, else white
 };
 
 class MaskStroke {
  public:
-  // Over a picture that lies on an area (ScatterMask::area_m).
+  // A stroke over an image that covers an area (ScatterMask::area_m).
   MaskStroke(PicturePtr before, const std::array<double, 4>& area_m, const Brush& brush);
 
-  // The brush moves on in a straight line; the first point is the begin. False: it met no pixel.
+  // Moves the brush in a straight line; the first call starts the stroke. Returns false if the
+  // brush touched no pixel.
   bool go_to(glm::dvec2 at_m);
   const PicturePtr& before() const { return before_; }
-  // The picture with the stroke so far.
+  // The image with the stroke so far.
   const PicturePtr& now() const { return picture_.now(); }
-  // Whether it met any pixel so far.
+  // True if the stroke has touched a pixel.
   bool has_met() const { return has_met_; }
-  // Where it may differ from before.
+  // The rectangle that may differ from before().
   const PixelRect& touched() const { return touched_; }
 
  private:
@@ -49,7 +50,7 @@ class MaskStroke {
   glm::dvec2 last_m_{0.0};
 };
 
-// How far the brush covers a place at a share of its radius: 1 in the middle, 0 at the rim.
-double brush_cover(double share);
+// Coverage of a point at a fraction of the brush's radius: 1 in the middle, 0 at the rim.
+double brush_cover(double fraction);
 
 }  // namespace psygen::editor

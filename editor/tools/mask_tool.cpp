@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "editor/tools/circle_mark.hpp"
+#include "editor/tools/tool_host.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
 
@@ -23,7 +23,7 @@ QString mask_words(const char* text) {
   return QCoreApplication::translate("MaskTool", text);
 }
 
-// Pieces of its own, because the view follows the ground only so far between two points.
+// Divides the sides, because the view limits the pieces between two points of a line.
 ToolMarks::Line border(const std::array<double, 4>& area, const glm::vec3& colour) {
   const glm::dvec2 corners[] = {{area[0], area[1]},
                                 {area[2], area[1]},
@@ -52,10 +52,10 @@ void add_ticks(const world::GreyPicture& picture, const std::array<double, 4>& a
       const double u = (at.x - area[0]) / (area[2] - area[0]);
       const double v = (at.y - area[1]) / (area[3] - area[1]);
       if (u < 0 || u > 1 || v < 0 || v > 1) continue;
-      const auto share = static_cast<float>(picture.at(u, v));
+      const auto value = static_cast<float>(picture.at(u, v));
       const glm::dvec2 half(step_m * 0.2, 0);
       lines.push_back(
-          {{at - half, at + half}, kEmptyColour + (kFullColour - kEmptyColour) * share});
+          {{at - half, at + half}, kEmptyColour + (kFullColour - kEmptyColour) * value});
     }
   }
 }
@@ -91,7 +91,7 @@ QString MaskTool::model_name() const {
   return QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size()));
 }
 
-// Beside the world file, unlike the pictures that are there or that the world names.
+// A file name beside the world file that neither the folder nor the world has yet.
 std::string MaskTool::free_name() const {
   const std::filesystem::path& file = host_.document.file();
   const std::string start =
@@ -111,11 +111,13 @@ NewMask MaskTool::new_mask() const {
 
 void MaskTool::make_mask() {
   cancel();
-  if (!scatter()) return host_.say(mask_words("Choose first whose mask it shall be."));
-  if (has_picture()) return host_.say(mask_words("It has a mask: paint on the ground."));
+  if (!scatter())
+    return host_.show_message(mask_words("Choose a scatter layer for the mask first."));
+  if (has_picture())
+    return host_.show_message(mask_words("This layer has a mask. Paint on the ground."));
   const world::World& world = host_.document.world();
   const auto plan = plan_of(new_mask(), world, host_.around(new_mask().side_m));
-  if (!plan) return host_.say(QString::fromStdString(plan.error().message));
+  if (!plan) return host_.show_message(QString::fromStdString(plan.error().message));
   auto picture = std::make_shared<world::GreyPicture>();
   picture->width = plan->width, picture->height = plan->height;
   picture->pixels.assign(std::size_t{plan->width} * plan->height, 65535);
@@ -128,13 +130,14 @@ void MaskTool::make_mask() {
             return world::with_value(with_image, path.with("mask_area_m"),
                                      world::toml_vector(plan->area_m));
           });
-  if (!text) return host_.say(QString::fromStdString(text.error().message));
+  if (!text) return host_.show_message(QString::fromStdString(text.error().message));
   const auto done = host_.document.paint(mask_words("New mask of %1").arg(model_name()),
                                          {PaintChange(name, nullptr, picture)}, *text);
-  if (!host_.tell(done)) return;
-  host_.say(mask_words("%1 stands everywhere in the blue border until you erase, and nowhere else. "
-                       "The mask is written to %2 when the world is saved.")
-                .arg(model_name(), QString::fromStdString(name)));
+  if (!host_.check(done)) return;
+  host_.show_message(
+      mask_words("%1 now grows only inside the blue border. Erase to remove it there. Saving the "
+                 "world writes the mask to %2.")
+          .arg(model_name(), QString::fromStdString(name)));
 }
 
 void MaskTool::set_radius_m(double radius_m) {
@@ -143,30 +146,31 @@ void MaskTool::set_radius_m(double radius_m) {
 
 void MaskTool::press(const ToolPoint& at) {
   hover_m_ = at.ground_m;
-  if (!scatter()) return host_.say(mask_words("Choose first whose mask to paint."));
+  if (!scatter()) return host_.show_message(mask_words("Choose the mask to paint first."));
   if (!has_picture())
-    return host_.say(mask_words("%1 has no mask yet: \"New mask\" makes one.").arg(model_name()));
+    return host_.show_message(
+        mask_words("%1 has no mask yet. Click \"New mask\".").arg(model_name()));
   if (!at.ground_m)
-    return host_.say(mask_words("There is no ground under the mouse: paint on the ground."));
+    return host_.show_message(mask_words("There is no ground here. Paint on the ground."));
   Brush brush = brush_;
   if (at.fine) brush.erases = !brush.erases;
   stroke_.emplace(mask().picture, mask().area_m, brush);
   host_.set_dragging(true);
   drag(at);
   if (stroke_ && !stroke_->has_met())
-    host_.say(mask_words("The brush is outside of the mask's area: it ends at the blue border."));
+    host_.show_message(mask_words("The brush is outside the mask. Paint inside the blue border."));
 }
 
 void MaskTool::drag(const ToolPoint& at) {
   hover_m_ = at.ground_m;
   if (!stroke_ || !at.ground_m) return;
-  // Undone meanwhile, or the mask is another one.
+  // The mask was undone or replaced during the stroke.
   if (!has_picture() || mask().picture->hash != stroke_->now()->hash) {
     stroke_.reset();
     return host_.set_dragging(false);
   }
   if (stroke_->go_to(*at.ground_m) &&
-      !host_.tell(host_.document.preview_picture(mask().image, stroke_->now())))
+      !host_.check(host_.document.preview_picture(mask().image, stroke_->now())))
     cancel();
 }
 
@@ -174,28 +178,29 @@ void MaskTool::release() {
   if (!stroke_) return;
   const MaskStroke stroke = std::move(*stroke_);
   stroke_.reset();
-  if (has_picture() && mask().picture->hash == stroke.now()->hash) keep(mask().image, stroke);
+  if (has_picture() && mask().picture->hash == stroke.now()->hash)
+    save_stroke(mask().image, stroke);
   host_.set_dragging(false);
 }
 
-void MaskTool::keep(std::string name, const MaskStroke& stroke) {
+void MaskTool::save_stroke(std::string name, const MaskStroke& stroke) {
   if (stroke.now()->hash == stroke.before()->hash) return;
   const QString step = mask_words("Paint the mask of %1").arg(model_name());
   if (is_png(name)) {
-    host_.tell(host_.document.paint(
+    host_.check(host_.document.paint(
         step, {PaintChange::between(name, *stroke.before(), *stroke.now(), stroke.touched())},
         host_.document.text()));
     return;
   }
-  // Other formats are read, not written: the picture becomes a new one.
+  // Other formats are read-only, so the stroke goes to a new image.
   const std::string png = free_name();
   const auto text = world::with_value(host_.document.text(), {"scatter", *scatter_, "mask_image"},
                                       world::toml_string(png));
-  host_.tell(host_.document.preview_picture(name, stroke.before()));
-  if (!text) return host_.say(QString::fromStdString(text.error().message));
-  if (host_.tell(host_.document.paint(step, {PaintChange(png, nullptr, stroke.now())}, *text)))
-    host_.say(mask_words("%1 stays as it is: masks are written as PNG, to %2.")
-                  .arg(QString::fromStdString(name), QString::fromStdString(png)));
+  host_.check(host_.document.preview_picture(name, stroke.before()));
+  if (!text) return host_.show_message(QString::fromStdString(text.error().message));
+  if (host_.check(host_.document.paint(step, {PaintChange(png, nullptr, stroke.now())}, *text)))
+    host_.show_message(mask_words("%1 is unchanged. The mask is saved as PNG, in %2.")
+                           .arg(QString::fromStdString(name), QString::fromStdString(png)));
 }
 
 bool MaskTool::cancel() {
@@ -204,7 +209,7 @@ bool MaskTool::cancel() {
   stroke_.reset();
   host_.set_dragging(false);
   if (has_picture() && mask().picture->hash == stroke.now()->hash)
-    host_.tell(host_.document.preview_picture(mask().image, stroke.before()));
+    host_.check(host_.document.preview_picture(mask().image, stroke.before()));
   return true;
 }
 

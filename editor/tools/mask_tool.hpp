@@ -1,6 +1,6 @@
-// Masks of what is scattered, painted on the ground: white lets instances stand, black none. A
-// stroke is one undo step. The picture is held by the document until the world is saved. Which
-// kinds of ground and patches allow instances are fields of the scatter. Main thread.
+// Paints the masks of scatters on the ground: instances grow where a mask is white, none where it
+// is black. A stroke is one undo step. The document keeps the image in memory until the world is
+// saved. Ground kinds and patches of a scatter are fields of its section. Main thread.
 #pragma once
 
 #include <optional>
@@ -14,29 +14,33 @@
 
 namespace psygen::editor {
 
+// At most one scatter is chosen, and at most one stroke is active.
 class MaskTool final : public ViewTool {
  public:
   static constexpr double kMinRadiusM = 0.5, kMaxRadiusM = 500;
 
+  // The document of the host outlives the tool.
   explicit MaskTool(ToolHost host) : host_(std::move(host)) {}
 
-  // The [[scatter]] whose mask is painted; nothing where it is gone.
+  // The [[scatter]] whose mask is painted; nullopt also if it no longer exists.
   void choose(std::optional<std::size_t> scatter);
   std::optional<std::size_t> scatter() const;
-  // Whether it has a picture to paint on.
+  // True if the scatter has a mask image.
   bool has_picture() const;
-  // Area and resolution of the next new mask: those that were set, else the world's default.
+  // Area and resolution of the next new mask: as set, else the world's default.
   NewMask new_mask() const;
   void set_new_mask(std::optional<NewMask> mask) { new_mask_ = mask; }
-  // Gives the chosen scatter a white picture like that, around what the view shows. One undo step.
+  // Gives the chosen scatter a white mask of this area and resolution, around the view's middle.
+  // One undo step.
   void make_mask();
 
+  // The brush of the next stroke.
   const Brush& brush() const { return brush_; }
   void set_radius_m(double radius_m);
   void set_strength(double strength) { brush_.strength = strength; }
   void set_erases(bool erases) { brush_.erases = erases; }
 
-  // Shift turns painting into erasing, and the other way round.
+  // Shift swaps painting and erasing.
   void press(const ToolPoint& at) override;
   void drag(const ToolPoint& at) override;
   void release() override;
@@ -44,19 +48,19 @@ class MaskTool final : public ViewTool {
   void leave() override { hover_m_.reset(); }
   void click_right(const ToolPoint&) override {}
   bool cancel() override;
-  // The brush, what the mask has around it (green to red), and the border of its area, or of the
-  // one that a new mask would have.
+  // The brush, the mask's values around it (green to red), and the border of its area, or of the
+  // area of a new mask.
   const ToolMarks& marks() override;
 
  private:
   const world::ScatterMask& mask() const;
   QString model_name() const;
   std::string free_name() const;
-  void keep(std::string name, const MaskStroke& stroke);
+  void save_stroke(std::string name, const MaskStroke& stroke);
 
   ToolHost host_;
   std::optional<std::size_t> scatter_;
-  std::optional<NewMask> new_mask_;  // as the person has set it
+  std::optional<NewMask> new_mask_;  // as set by the user
   Brush brush_;
   std::optional<MaskStroke> stroke_;
   std::optional<glm::dvec2> hover_m_;

@@ -10,36 +10,36 @@
 namespace psygen::editor {
 namespace {
 
-enum Where { kAroundView, kWholeWorld };
+enum Area { kAroundView, kWholeWorld };
 
 }  // namespace
 
 NewMaskBar::NewMaskBar(QWidget* parent)
-    : QWidget(parent), where_(new QComboBox), pixels_(new QLabel) {
+    : QWidget(parent), area_(new QComboBox), pixels_(new QLabel) {
   auto* layout = new QHBoxLayout(this);
   layout->setContentsMargins(6, 0, 6, 0);
-  where_->setAccessibleName(tr("Area of the new mask"));
-  where_->setToolTip(tr("Where the new mask lies: the blue border in the view"));
-  where_->addItem(tr("Around the view"));
-  layout->addWidget(where_);
-  side_ = add_metres(tr("Side"), tr("Side of the new mask in metres"), NewMask::kMinSideM,
-                     NewMask::kMaxSideM, 0);
-  pixel_ = add_metres(tr("Pixel"), tr("Side of a pixel of the new mask in metres"),
-                      NewMask::kMinPixelM, NewMask::kMaxPixelM, 1);
+  area_->setAccessibleName(tr("Area of the new mask"));
+  area_->setToolTip(tr("Area of the new mask: the blue border in the view"));
+  area_->addItem(tr("Around the view"));
+  layout->addWidget(area_);
+  side_ = add_metres(tr("Side"), tr("Side of the new mask in metres"));
+  side_->setRange(NewMask::kMinSideM, NewMask::kMaxSideM);
+  side_->setDecimals(0);
+  pixel_ = add_metres(tr("Pixel"), tr("Size of a pixel of the new mask in metres"));
+  pixel_->setRange(NewMask::kMinPixelM, NewMask::kMaxPixelM);
+  pixel_->setDecimals(1);
   layout->addWidget(pixels_);
   const auto changed = [this] { Q_EMIT edited(shown()); };
-  connect(where_, &QComboBox::activated, this, changed);
+  connect(area_, &QComboBox::activated, this, changed);
   connect(side_, &QDoubleSpinBox::valueChanged, this, changed);
   connect(pixel_, &QDoubleSpinBox::valueChanged, this, changed);
 }
 
-QDoubleSpinBox* NewMaskBar::add_metres(const QString& label, const QString& name, double least,
-                                       double most, int decimals) {
+QDoubleSpinBox* NewMaskBar::add_metres(const QString& label, const QString& name) {
   auto* edit = new QDoubleSpinBox;
   edit->setAccessibleName(name);
   edit->setToolTip(name);
-  edit->setRange(least, most);
-  edit->setDecimals(decimals);
+
   edit->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
   edit->setGroupSeparatorShown(true);
   edit->setSuffix(tr(" m"));
@@ -49,18 +49,20 @@ QDoubleSpinBox* NewMaskBar::add_metres(const QString& label, const QString& name
 }
 
 NewMask NewMaskBar::shown() const {
-  return {where_->currentIndex() == kWholeWorld, side_->value(), pixel_->value()};
+  return {.whole_world = area_->currentIndex() == kWholeWorld,
+          .side_m = side_->value(),
+          .pixel_m = pixel_->value()};
 }
 
 void NewMaskBar::show_plan(const NewMask& mask, const world::World& world) {
-  const QSignalBlocker quiet[] = {QSignalBlocker(where_), QSignalBlocker(side_),
+  const QSignalBlocker quiet[] = {QSignalBlocker(area_), QSignalBlocker(side_),
                                   QSignalBlocker(pixel_)};
-  if (world.is_endless() && where_->count() > kWholeWorld) where_->removeItem(kWholeWorld);
-  if (!world.is_endless() && where_->count() == kWholeWorld) where_->addItem(tr("The whole world"));
+  if (world.is_endless() && area_->count() > kWholeWorld) area_->removeItem(kWholeWorld);
+  if (!world.is_endless() && area_->count() == kWholeWorld) area_->addItem(tr("The whole world"));
   const bool whole = mask.whole_world && !world.is_endless();
-  where_->setCurrentIndex(whole ? kWholeWorld : kAroundView);
+  area_->setCurrentIndex(whole ? kWholeWorld : kAroundView);
   side_->setEnabled(!whole);
-  // A value that is typed stays as it is typed.
+  // Does not replace a value while the user types it.
   if (side_->value() != mask.side_m) side_->setValue(mask.side_m);
   if (pixel_->value() != mask.pixel_m) pixel_->setValue(mask.pixel_m);
   const auto plan = plan_of(mask, world, {0, 0});

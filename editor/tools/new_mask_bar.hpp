@@ -1,5 +1,5 @@
-// Where a new mask shall lie and how fine it shall be: a row of controls for a toolbar. It shows
-// how many pixels come of it, or why it cannot be made. It makes nothing. Main thread.
+// The controls of a toolbar for the area and the resolution of a new mask. Shows the resulting
+// image size, or the error. It makes no mask. Main thread.
 #pragma once
 
 #include <QWidget>
@@ -12,23 +12,24 @@ class QLabel;
 
 namespace psygen::editor {
 
+// Disables the side of a mask of the whole world.
 class NewMaskBar final : public QWidget {
   Q_OBJECT
 
  public:
   explicit NewMaskBar(QWidget* parent = nullptr);
+  // Shows the values of a mask, and its image size in the world.
   void show_plan(const NewMask& mask, const world::World& world);
 
  Q_SIGNALS:
-  // The person changed a value.
+  // The user changed a value.
   void edited(const psygen::editor::NewMask& mask);
 
  private:
-  QDoubleSpinBox* add_metres(const QString& label, const QString& name, double least, double most,
-                             int decimals);
+  QDoubleSpinBox* add_metres(const QString& label, const QString& name);
   NewMask shown() const;
 
-  QComboBox* where_;
+  QComboBox* area_;
   QDoubleSpinBox* side_;
   QDoubleSpinBox* pixel_;
   QLabel* pixels_;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "editor/tools/circle_mark.hpp"
+#include "editor/tools/tool_host.hpp"
 #include "engine/synthesis/synthesise.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
@@ -14,7 +14,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr double kMinOutlineM = 0.3;
+constexpr double kMinExtentM = 0.3;
 const glm::vec3 kPlacedColour{1.0F, 0.62F, 0.1F}, kNextColour{0.85F, 0.88F, 0.95F};
 
 QString place_words(const char* text) {
@@ -25,17 +25,17 @@ std::string toml_point(glm::dvec2 at_m) {
   return world::toml_vector(std::array{at_m.x, at_m.y});
 }
 
-// Ground is not placed, nor is a type whose sizes fail.
+// False for the ground, and for types that fail to give a size.
 bool is_placeable(const models::ModelType& type) {
   const auto size = synthesis::mesh_size_guarded(type, models::default_parameters(type), 0);
   return size && size->layout == core::VertexLayout::kModel;
 }
 
-// How far a model reaches from its foot.
+// Horizontal extent of a model from its base point.
 double reach_m(const models::ModelType& type, const models::Parameters& parameters) {
   const core::Bounds box = type.bounds(parameters);
   return std::max(
-      {double{-box.min.x}, double{-box.min.z}, double{box.max.x}, double{box.max.z}, kMinOutlineM});
+      {double{-box.min.x}, double{-box.min.z}, double{box.max.x}, double{box.max.z}, kMinExtentM});
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ void PlaceTool::press(const ToolPoint& at) {
     return drag_.begin();
   }
   if (!at.ground_m)
-    return host_.say(place_words("There is no ground under the mouse: click on the ground."));
+    return host_.show_message(place_words("There is no ground here. Click on the ground."));
   drag_.begin();
   add(to_decimetres(*at.ground_m));
 }
@@ -88,8 +88,8 @@ void PlaceTool::add(glm::dvec2 at_m) {
   const auto change = [&](std::string_view text) {
     return world::with_table_appended(text, {"place"}, table);
   };
-  if (!host_.tell(host_.document.edit(step, change))) {
-    drag_.take_back();
+  if (!host_.check(host_.document.edit(step, change))) {
+    drag_.cancel();
     return;
   }
   place_ = count;
@@ -100,7 +100,7 @@ void PlaceTool::drag(const ToolPoint& at) {
   hover_m_.reset();
   if (!drag_.active() || !place() || !at.ground_m) return;
   drag_.note(host_.document.edit(
-      place_words("Move place %1").arg(*place_ + 1), [&](std::string_view text) {
+      place_words("Move model %1").arg(*place_ + 1), [&](std::string_view text) {
         return world::with_value(text, {"place", *place_, "at_m"},
                                  toml_point(to_decimetres(*at.ground_m)));
       }));
@@ -118,8 +118,8 @@ void PlaceTool::click_right(const ToolPoint& at) {
 
 void PlaceTool::remove() {
   if (drag_.active()) return;
-  if (!place()) return host_.say(place_words("Click on a placed model first."));
-  if (host_.tell(host_.document.remove_table({"place", *place_}))) choose(std::nullopt);
+  if (!place()) return host_.show_message(place_words("Click on a placed model first."));
+  if (host_.check(host_.document.remove_table({"place", *place_}))) choose(std::nullopt);
 }
 
 bool PlaceTool::wheel(const ToolPoint& at, double steps) {
@@ -130,27 +130,27 @@ bool PlaceTool::wheel(const ToolPoint& at, double steps) {
 }
 
 void PlaceTool::turn(double degrees) {
-  if (!place()) return host_.say(place_words("Click on a placed model first."));
+  if (!place()) return host_.show_message(place_words("Click on a placed model first."));
   Document& document = host_.document;
   const world::Place& turned = document.world().places.all[*place_];
   const models::ModelType& type = document.parsed()->registry[turned.model];
   const int parameter = models::parameter_index(type, "turn_deg");
   if (parameter < 0)
-    return host_.say(
-        place_words("A %1 has no turn_deg, so it cannot be turned; models from files can.")
+    return host_.show_message(
+        place_words("%1 cannot be turned: it has no parameter turn_deg, as models from files have.")
             .arg(QString::fromUtf8(type.name().data(), static_cast<int>(type.name().size()))));
   double now =
       std::fmod(turned.parameters.real(static_cast<std::size_t>(parameter)) + degrees, 360);
   if (now < 0) now += 360;
-  // Turns in a row are one step.
+  // Consecutive turns are one step.
   if (!drag_.active()) {
     if (turned_ == place_ && turn_drag_ != 0)
       document.resume_drag(turn_drag_);
     else
       turn_drag_ = document.begin_drag();
   }
-  host_.tell(
-      document.edit(place_words("Turn place %1").arg(*place_ + 1), [&](std::string_view text) {
+  host_.check(
+      document.edit(place_words("Turn model %1").arg(*place_ + 1), [&](std::string_view text) {
         return world::with_value(text, {"place", *place_, "turn_deg"}, world::toml_number(now));
       }));
   if (!drag_.active()) document.end_drag();

@@ -1,5 +1,5 @@
-// Single models, put on the ground by hand: a click places one of the chosen type, dragging moves
-// one, and the wheel over it turns it. Each click, drag and run of turns is one undo step. Other
+// Places single models on the ground: a click places a model of the chosen type, a drag moves one,
+// and the wheel turns it. Each click, each drag and each series of turns is one undo step. Other
 // parameters are fields of the model's section. Main thread.
 #pragma once
 
@@ -17,18 +17,19 @@ class PlaceTool final : public ViewTool {
  public:
   static constexpr double kTurnDeg = 15, kFineTurnDeg = 1;  // per step of the wheel
 
+  // The document of the host outlives the tool.
   explicit PlaceTool(ToolHost host) : host_(std::move(host)) {}
 
-  // What can be placed: models of the file first, then its species, then the others.
+  // Model types that can be placed: models from files first, then species, then the others.
   const std::vector<std::string>& types() const;
-  // Of what is placed next. Where the world has lost it, the first one.
+  // The type that a click places. The first one if the world no longer has the chosen type.
   std::string type() const;
   void set_type(std::string name) { type_ = std::move(name); }
 
-  // The [[place]] that keys work on; nothing too where it is gone.
+  // The chosen [[place]], on which keys act; nullopt also if it no longer exists.
   void choose(std::optional<std::size_t> place);
   std::optional<std::size_t> place() const;
-  // Removes the chosen one, or turns it about +Y, to the left.
+  // Removes the chosen model, or turns it to the left (about +Y).
   void remove();
   void turn(double degrees);
 
@@ -37,12 +38,12 @@ class PlaceTool final : public ViewTool {
   void release() override { drag_.end(); }
   void hover(const ToolPoint& at) override;
   void leave() override { hover_m_.reset(); }
-  // Removes the one under the mouse.
+  // Removes the model under the pointer.
   void click_right(const ToolPoint& at) override;
-  // Turns the one under the mouse.
+  // Turns the model under the pointer.
   bool wheel(const ToolPoint& at, double steps) override;
-  bool cancel() override { return drag_.take_back(); }
-  // Handles of all, the outline and front of the chosen one, and the outline of the next one.
+  bool cancel() override { return drag_.cancel(); }
+  // Handles of all models, the extent and front of the chosen one, and the extent of the next one.
   const ToolMarks& marks() override;
 
  private:
@@ -53,11 +54,11 @@ class PlaceTool final : public ViewTool {
   std::optional<std::size_t> place_;
   ToolDrag drag_{host_};
   int turn_drag_ = 0;                  // of the last turn; 0: none
-  std::optional<std::size_t> turned_;  // what it turned
-  std::optional<glm::dvec2> hover_m_;  // where a click would place one
+  std::optional<std::size_t> turned_;  // the model that was turned last
+  std::optional<glm::dvec2> hover_m_;  // where a click places a model
   ToolMarks marks_;
   mutable std::vector<std::string> types_;
-  mutable ParsedWorldPtr listed_;  // what they were listed of
+  mutable ParsedWorldPtr listed_;  // the world of types_
 };
 
 }  // namespace psygen::editor

@@ -11,10 +11,10 @@
 namespace psygen::editor {
 namespace {
 
-constexpr double kMinStepM = 2, kStepShare = 1.0 / 2000;  // of a road, for its line
+constexpr double kMinStepM = 2, kStepFraction = 1.0 / 2000;  // of a road's length, for its line
 const glm::vec3 kRoadColour{0.75F, 0.78F, 0.85F}, kChosenRoadColour{1.0F, 0.62F, 0.1F};
 
-QString words(const char* text) {
+QString road_words(const char* text) {
   return QCoreApplication::translate("RoadTool", text);
 }
 
@@ -60,13 +60,13 @@ core::Result<void> RoadTool::set_points(const Points& points, const QString& ste
 
 void RoadTool::press(const ToolPoint& at) {
   if (at.handle) {
-    if (!road()) return;  // the begin of a new road
+    if (!road()) return;  // the first point of a new road
     point_ = *at.handle;
     return drag_.begin();
   }
   if (at.line && !road() && !begun_) return choose(at.line->line);
   if (!at.ground_m)
-    return host_.say(words("There is no ground under the mouse: click on the ground."));
+    return host_.show_message(road_words("There is no ground here. Click on the ground."));
   const glm::dvec2 at_m = to_decimetres(*at.ground_m);
   if (road()) {
     drag_.begin();
@@ -74,7 +74,7 @@ void RoadTool::press(const ToolPoint& at) {
   }
   if (!begun_) {
     begun_ = at_m;
-    return host_.say(words("Click where the road goes on."));
+    return host_.show_message(road_words("Click the next point of the road."));
   }
   drag_.begin();
   add_road(*begun_, at_m);
@@ -82,25 +82,25 @@ void RoadTool::press(const ToolPoint& at) {
 
 void RoadTool::add_point(glm::dvec2 at_m, const std::optional<ToolPoint::OnLine>& on_line) {
   Points now = points();
-  // Between two points, before the first where that is the chosen one, or behind the last.
+  // Between two points, before the first point if that is chosen, else after the last one.
   std::size_t place = chosen_point() == std::size_t{0} ? 0 : now.size();
   if (on_line) place = parts_[on_line->line][on_line->part] + 1;
   now.insert(now.begin() + static_cast<std::ptrdiff_t>(place), at_m);
-  if (host_.tell(set_points(now, words("Add a point to road %1"))))
+  if (host_.check(set_points(now, road_words("Add a point to road %1"))))
     point_ = place;
   else
-    drag_.take_back();
+    drag_.cancel();
 }
 
 void RoadTool::add_road(glm::dvec2 from_m, glm::dvec2 to_m) {
   const std::size_t count = host_.document.world().shaped.roads.size();
-  const QString step = words("Add road %1").arg(count + 1);
-  const bool added = host_.tell(host_.document.edit(step, [&](std::string_view text) {
+  const QString step = road_words("Add road %1").arg(count + 1);
+  const bool added = host_.check(host_.document.edit(step, [&](std::string_view text) {
     return world::with_table_appended(text, {"road"},
                                       "points_m = " + toml_points_of({from_m, to_m}) + "\n");
   }));
   if (!added) {
-    drag_.take_back();
+    drag_.cancel();
     return;
   }
   begun_.reset();
@@ -113,7 +113,7 @@ void RoadTool::drag(const ToolPoint& at) {
   if (!drag_.active() || !chosen_point() || !at.ground_m) return;
   Points now = points();
   now[*point_] = to_decimetres(*at.ground_m);
-  drag_.note(set_points(now, words("Move a point of road %1")));
+  drag_.note(set_points(now, road_words("Move a point of road %1")));
 }
 
 void RoadTool::release() {
@@ -122,7 +122,7 @@ void RoadTool::release() {
 
 bool RoadTool::cancel() {
   const bool begun = std::exchange(begun_, std::nullopt).has_value();
-  return drag_.take_back() || begun;
+  return drag_.cancel() || begun;
 }
 
 void RoadTool::click_right(const ToolPoint& at) {
@@ -134,16 +134,18 @@ void RoadTool::click_right(const ToolPoint& at) {
 void RoadTool::remove() {
   if (drag_.active()) return;
   if (begun_) return begun_.reset();
-  if (!chosen_point()) return host_.say(words("Click on a point of a road first."));
+  if (!chosen_point()) return host_.show_message(road_words("Click on a point of a road first."));
   if (points().size() > 2) {
     Points now = points();
     now.erase(now.begin() + static_cast<std::ptrdiff_t>(*point_));
-    if (host_.tell(set_points(now, words("Remove a point of road %1"))) && *point_ > 0) --*point_;
+    if (host_.check(set_points(now, road_words("Remove a point of road %1"))) && *point_ > 0)
+      --*point_;
     return;
   }
-  if (!host_.tell(host_.document.remove_table({"road", *road_}))) return;
+  if (!host_.check(host_.document.remove_table({"road", *road_}))) return;
   choose(std::nullopt);
-  host_.say(words("A road has two points or more, so this one is gone. Undo brings it back."));
+  host_.show_message(
+      road_words("Removed the road, because a road needs two points. Undo restores it."));
 }
 
 const ToolMarks& RoadTool::marks() {
@@ -157,7 +159,7 @@ const ToolMarks& RoadTool::marks() {
     ToolMarks::Line& line = marks_.lines.emplace_back();
     std::vector<std::size_t>& parts = parts_.emplace_back();
     line.colour = shown_.road == i ? kChosenRoadColour : kRoadColour;
-    const double step_m = std::max(kMinStepM, world::chords_m(roads[i]) * kStepShare);
+    const double step_m = std::max(kMinStepM, world::chords_m(roads[i]) * kStepFraction);
     for (const world::RoadPoint& point :
          world::road_line(roads[i], step_m, [](glm::dvec2) { return 0.0; })) {
       line.points_m.push_back(point.at_m);

@@ -1,6 +1,6 @@
-// Roads, drawn on the ground: a click adds a point to the chosen road, dragging moves one, and a
-// click on the road itself puts one between. Each click and each drag is one undo step. It changes
-// points only: width and borders are fields of the road's section. Main thread.
+// Draws roads on the ground: a click adds a point to the chosen road, a drag moves a point, and a
+// click on the road inserts one. Each click and each drag is one undo step. It changes only points:
+// width and borders are fields of the road's section. Main thread.
 #pragma once
 
 #include <optional>
@@ -12,25 +12,26 @@
 
 namespace psygen::editor {
 
+// At most one road and one of its points are chosen.
 class RoadTool final : public ViewTool {
  public:
   explicit RoadTool(ToolHost host) : host_(std::move(host)) {}
 
-  // The road that clicks go on with; nothing: the next two clicks make a new one.
+  // The road that clicks extend; nullopt: the next two clicks make a new road.
   void choose(std::optional<std::size_t> road);
-  // Nothing too where the road is gone, by undo for example.
+  // nullopt also if the road no longer exists, for example after undo.
   std::optional<std::size_t> road() const;
   std::optional<std::size_t> chosen_point() const;
-  // Removes the chosen point, and the road with it where only one would be left.
+  // Removes the chosen point, or the whole road if only one point would remain.
   void remove();
 
   void press(const ToolPoint& at) override;
   void drag(const ToolPoint& at) override;
   void release() override;
-  // Removes the point under the mouse.
+  // Removes the point under the pointer.
   void click_right(const ToolPoint& at) override;
   bool cancel() override;
-  // The lines of all roads, and handles of the chosen one.
+  // The lines of all roads, and the handles of the chosen one.
   const ToolMarks& marks() override;
 
  private:
@@ -44,7 +45,7 @@ class RoadTool final : public ViewTool {
   std::optional<std::size_t> road_, point_;
   std::optional<glm::dvec2> begun_;  // the first point of a new road
   ToolDrag drag_{host_};
-  // What the marks were made of.
+  // The inputs of marks_.
   struct Shown {
     ParsedWorldPtr world;
     std::optional<std::size_t> road, point;
@@ -52,7 +53,7 @@ class RoadTool final : public ViewTool {
     friend bool operator==(const Shown&, const Shown&) = default;
   } shown_;
   ToolMarks marks_;
-  std::vector<std::vector<std::size_t>> parts_;  // of each line: the point of its road before
+  std::vector<std::vector<std::size_t>> parts_;  // per line and part: the preceding road point
 };
 
 }  // namespace psygen::editor

@@ -1,5 +1,6 @@
-// A held button of a tool: all edits meanwhile are one undo step, which can be taken back. What is
-// refused on the way is told once, at the end: on its way the mouse may be anywhere. Main thread.
+// The drag of a tool: all edits while the button is held are one undo step, which can be cancelled.
+// Errors during the drag become one message at its end, because the pointer may pass over invalid
+// places. Main thread.
 #pragma once
 
 #include <string>
@@ -9,6 +10,7 @@
 
 namespace psygen::editor {
 
+// The host outlives the drag.
 class ToolDrag {
  public:
   explicit ToolDrag(const ToolHost& host) : host_(host) {}
@@ -16,23 +18,23 @@ class ToolDrag {
 
   void begin() {
     active_ = true;
-    refused_.clear();
+    error_.clear();
     before_ = host_.document.text();
     host_.set_dragging(true);
   }
-  // One of its edits went well or did not.
+  // Records the result of an edit during the drag.
   void note(const core::Result<void>& edit) {
-    refused_ = edit ? QString() : QString::fromStdString(edit.error().message);
+    error_ = edit ? QString() : QString::fromStdString(edit.error().message);
   }
   void end() {
     if (!std::exchange(active_, false)) return;
     host_.set_dragging(false);
-    if (!refused_.isEmpty()) host_.say(refused_);
+    if (!error_.isEmpty()) host_.show_message(error_);
   }
-  // Ends it with the text that it began with. False: there was none.
-  bool take_back() {
+  // Ends the drag and restores the text of its start. Returns false if no drag was active.
+  bool cancel() {
     if (!std::exchange(active_, false)) return false;
-    host_.tell(host_.document.set_text(before_, QString()));
+    host_.check(host_.document.set_text(before_, QString()));
     host_.set_dragging(false);
     return true;
   }
@@ -41,7 +43,7 @@ class ToolDrag {
   const ToolHost& host_;
   bool active_ = false;
   std::string before_;
-  QString refused_;
+  QString error_;
 };
 
 }  // namespace psygen::editor

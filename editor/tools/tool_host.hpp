@@ -1,13 +1,15 @@
-// What the tools of the view work on, and what they tell. One document for all; the window, or a
-// test, fills in the rest. Main thread.
+// The environment of the tools: the document that they edit, and functions of the window or of a
+// test. Main thread.
 #pragma once
 
 #include <QString>
 #include <cmath>
 #include <functional>
 #include <glm/vec2.hpp>
+#include <numbers>
 
 #include "editor/document/document.hpp"
+#include "editor/view/view_tool.hpp"
 
 namespace psygen::editor {
 
@@ -15,23 +17,37 @@ struct ToolHost {
   Document& document;
   // Edits between true and false are one undo step.
   std::function<void(bool)> set_dragging;
-  // A sentence for the person.
-  std::function<void(const QString&)> say;
-  // Another thing was chosen: the table of the file that it is; empty: nothing.
+  // Shows a message to the user.
+  std::function<void(const QString&)> show_message;
+  // The tool has chosen a table of the file; empty: none.
   std::function<void(const world::TextPath&)> chosen;
-  // A place amid what the view shows (x and z in the world), for a thing of so many metres.
+  // Returns a point in the middle of the view (x and z in metres of the world), for an area with a
+  // side of `size_m`.
   std::function<glm::dvec2(double size_m)> around;
 
-  // Whether it went well; if not, the person is told why.
-  bool tell(const core::Result<void>& result) const {
-    if (!result) say(QString::fromStdString(result.error().message));
+  // Shows the error message of a failed call. Returns true if the call succeeded.
+  bool check(const core::Result<void>& result) const {
+    if (!result) show_message(QString::fromStdString(result.error().message));
     return result.has_value();
   }
 };
 
-// Points that the mouse puts are written to the decimetre.
+// Rounds a point of the pointer to decimetres, for the file.
 inline glm::dvec2 to_decimetres(glm::dvec2 at_m) {
   return {std::round(at_m.x * 10) / 10, std::round(at_m.y * 10) / 10};
+}
+
+// Returns a circle on the ground as a mark: a brush, or the extent of a model. `middle_m`: x and z
+// in metres of the world.
+inline ToolMarks::Line circle_mark(glm::dvec2 middle_m, double radius_m, const glm::vec3& colour) {
+  constexpr int kPoints = 48;
+  ToolMarks::Line line;
+  line.colour = colour;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kPoints;
+    line.points_m.push_back(middle_m + radius_m * glm::dvec2(std::sin(angle), std::cos(angle)));
+  }
+  return line;
 }
 
 }  // namespace psygen::editor

@@ -18,10 +18,10 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kStrengthSteps = 20, kStrengthPx = 90;
-constexpr double kGrowth = 1.25;       // of the brush, per key
-constexpr double kAheadShare = 0.375;  // of a new mask, before the camera at most
+constexpr double kGrowth = 1.25;          // of the brush, per key
+constexpr double kAheadFraction = 0.375;  // of a new mask's side: maximum distance of its middle
 
-// Changes only what differs, so that an open list stays open.
+// Changes only entries that differ, so that an open list stays open.
 void fill(QComboBox& box, const QStringList& names, int current) {
   const QSignalBlocker quiet(&box);
   while (box.count() > names.size())
@@ -74,15 +74,19 @@ ViewTools::ViewTools(QMainWindow& window, Document& document, WorldView& view,
 }
 
 ToolHost ViewTools::host() {
-  return {document_, [this](bool on) { set_dragging_(on); },
-          [this](const QString& sentence) { Q_EMIT told(sentence); },
-          [this](const world::TextPath& table) {
-            fill_lists();
-            if (!table.empty()) Q_EMIT chosen(table);
-          },
-          [this](double size_m) {
-            return middle_of_view(view_.camera().pose(), document_.world(), size_m * kAheadShare);
-          }};
+  return {.document = document_,
+          .set_dragging = [this](bool on) { set_dragging_(on); },
+          .show_message = [this](const QString& message) { Q_EMIT message_posted(message); },
+          .chosen =
+              [this](const world::TextPath& table) {
+                fill_lists();
+                if (!table.empty()) Q_EMIT chosen(table);
+              },
+          .around =
+              [this](double size_m) {
+                return middle_of_view(view_.camera().pose(), document_.world(),
+                                      size_m * kAheadFraction);
+              }};
 }
 
 void ViewTools::add_tool(ViewTool& tool, const QString& name, const QString& key,
@@ -103,41 +107,40 @@ QAction* ViewTools::add_of_tool(QWidget* widget) {
 void ViewTools::add_roads() {
   add_tool(road_, tr("Draw roads"), "F2", tr("Draw roads on the ground"));
   roads_ = new QComboBox;
-  roads_->setAccessibleName(tr("The road to draw"));
+  roads_->setAccessibleName(tr("Road to draw"));
   roads_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   connect(roads_, &QComboBox::activated, this, [this](int index) {
     road_.choose(index > 0 ? std::optional(static_cast<std::size_t>(index - 1)) : std::nullopt);
   });
   add_of_tool(roads_);
   add_of_tool(new QLabel(
-      tr("  A click adds a point, dragging moves one, Del or the right button removes it.  ")));
+      tr("  Click to add a point, drag to move it, right-click or Del to remove it.  ")));
 }
 
 void ViewTools::add_places() {
-  add_tool(place_, tr("Place models"), "F3", tr("Place single models on the ground"));
+  add_tool(place_, tr("Place models"), "F3", tr("Place models on the ground"));
   types_ = new QComboBox;
-  types_->setAccessibleName(tr("The model to place"));
+  types_->setAccessibleName(tr("Model to place"));
   types_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   connect(types_, &QComboBox::textActivated, this,
           [this](const QString& name) { place_.set_type(name.toStdString()); });
   add_of_tool(types_);
   add_of_tool(
-      new QLabel(tr("  A click places it, dragging moves it, the wheel over it turns it, Del "
-                    "or the right button removes it.  ")));
+      new QLabel(tr("  Click to place, drag to move, scroll over it to turn, right-click or Del to "
+                    "remove.  ")));
 }
 
 void ViewTools::add_masks() {
-  add_tool(mask_, tr("Paint masks"), "F4", tr("Paint where scattered models stand"));
+  add_tool(mask_, tr("Paint masks"), "F4", tr("Paint where a scatter layer grows"));
   masks_ = new QComboBox;
-  masks_->setAccessibleName(tr("What is scattered, whose mask is painted"));
+  masks_->setAccessibleName(tr("Scatter layer of the mask"));
   masks_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   connect(masks_, &QComboBox::activated, this,
           [this](int index) { mask_.choose(static_cast<std::size_t>(index)); });
   add_of_tool(masks_);
   add_new_mask();
   add_brush();
-  brush_parts_.push_back(
-      add_of_tool(new QLabel(tr("  The mouse paints; Shift turns painting into erasing.  "))));
+  brush_parts_.push_back(add_of_tool(new QLabel(tr("  Drag to paint, Shift+drag to erase.  "))));
 }
 
 void ViewTools::add_new_mask() {
@@ -148,7 +151,7 @@ void ViewTools::add_new_mask() {
   });
   QAction* const controls = add_of_tool(new_mask_bar_);
   new_mask_ = bar_->addAction(tr("New mask"), this, [this] { mask_.make_mask(); });
-  new_mask_->setToolTip(tr("Makes a mask of this area for what has none"));
+  new_mask_->setToolTip(tr("Create a mask of this area"));
   of_tools_.push_back({&mask_, new_mask_});
   new_mask_parts_ = {controls, new_mask_};
 }
@@ -156,19 +159,19 @@ void ViewTools::add_new_mask() {
 void ViewTools::add_brush() {
   QAction* const radius_label = add_of_tool(new QLabel(tr("  Radius ")));
   radius_ = new QDoubleSpinBox;
-  radius_->setAccessibleName(tr("Radius of the brush in metres"));
+  radius_->setAccessibleName(tr("Brush radius in metres"));
   radius_->setRange(MaskTool::kMinRadiusM, MaskTool::kMaxRadiusM);
   radius_->setDecimals(1);
   radius_->setSuffix(tr(" m"));
   radius_->setValue(mask_.brush().radius_m);
-  radius_->setToolTip(tr("Radius of the brush, [ and ]"));
+  radius_->setToolTip(tr("Brush radius ([ and ])"));
   connect(radius_, &QDoubleSpinBox::valueChanged, this,
           [this](double radius_m) { mask_.set_radius_m(radius_m); });
   QAction* const radius = add_of_tool(radius_);
   QAction* const strength_label = add_of_tool(new QLabel(tr("  Strength ")));
   auto* strength = new QSlider(Qt::Horizontal);
-  strength->setAccessibleName(tr("Strength of the brush"));
-  strength->setToolTip(tr("How far one stroke goes towards white or black"));
+  strength->setAccessibleName(tr("Brush strength"));
+  strength->setToolTip(tr("Brush strength: how much one stroke changes the mask"));
   strength->setRange(1, kStrengthSteps);
   strength->setValue(kStrengthSteps);
   strength->setMaximumWidth(kStrengthPx);
@@ -178,7 +181,7 @@ void ViewTools::add_brush() {
   erase_ = bar_->addAction(tr("Erase"));
   erase_->setCheckable(true);
   erase_->setShortcut(Qt::Key_X);
-  erase_->setToolTip(tr("The brush takes away (X)"));
+  erase_->setToolTip(tr("Erase with the brush (X)"));
   connect(erase_, &QAction::toggled, this, [this](bool on) { mask_.set_erases(on); });
   of_tools_.push_back({&mask_, erase_});
   brush_parts_ = {radius_label, radius, strength_label, strength_part, erase_};
@@ -199,15 +202,14 @@ void ViewTools::add_commands(QMainWindow& window) {
   };
   const double degrees = PlaceTool::kTurnDeg;
   commands_ = {
-      {&place_, add_command(window, tr("Turn to the left"), Qt::Key_Comma, turn(degrees))},
-      {&place_, add_command(window, tr("Turn to the right"), Qt::Key_Period, turn(-degrees))},
+      {&place_, add_command(window, tr("Turn left"), Qt::Key_Comma, turn(degrees))},
+      {&place_, add_command(window, tr("Turn right"), Qt::Key_Period, turn(-degrees))},
       {&mask_, add_command(window, tr("Smaller brush"), Qt::Key_BracketLeft, scale(1 / kGrowth))},
       {&mask_, add_command(window, tr("Larger brush"), Qt::Key_BracketRight, scale(kGrowth))},
       {&mask_, erase_},
       {&mask_, new_mask_}};
-  remove_ = add_command(window, tr("Remove what the tool has chosen"), QKeySequence::Delete,
-                        [this] { remove(); });
-  leave_ = add_command(window, tr("Leave the tool"), Qt::Key_Escape, [this] { escape(); });
+  remove_ = add_command(window, tr("Delete"), QKeySequence::Delete, [this] { remove(); });
+  leave_ = add_command(window, tr("Exit tool"), Qt::Key_Escape, [this] { escape(); });
 }
 
 void ViewTools::add_to_menu(QMenu& menu) {
@@ -248,7 +250,7 @@ void ViewTools::remove() {
   if (view_.tool() == &place_) place_.remove();
 }
 
-// Those of a tool that is off are filled when it is turned on.
+// Lists of an inactive tool are filled when it becomes active.
 void ViewTools::fill_lists() {
   if (view_.tool() == &road_) fill_roads();
   if (view_.tool() == &place_) fill_types();
@@ -283,7 +285,7 @@ void ViewTools::fill_masks() {
   show_new_mask();
 }
 
-// What makes a mask where there is none, else the brush.
+// Shows the controls of a new mask if the scatter has none, else those of the brush.
 void ViewTools::show_new_mask() {
   const bool none = mask_.scatter() && !mask_.has_picture();
   for (QAction* part : new_mask_parts_)

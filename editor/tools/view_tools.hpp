@@ -1,7 +1,5 @@
-// The tools of the view and the way to them: a bar with buttons and what the chosen tool needs, a
-// menu, shortcuts. One tool at most is on; Esc leaves it. What a tool does is its own (road_tool,
-// place_tool, mask_tool).
-// Main thread.
+// The toolbar "Tools", the Tools menu and the shortcuts of the tools (road_tool, place_tool,
+// mask_tool). At most one tool is active; Esc exits it. Main thread.
 #pragma once
 
 #include <QObject>
@@ -29,6 +27,7 @@ namespace psygen::editor {
 
 class NewMaskBar;
 
+// One per window.
 class ViewTools final : public QObject {
   Q_OBJECT
 
@@ -38,22 +37,22 @@ class ViewTools final : public QObject {
             std::function<void(bool)> set_dragging);
 
   void add_to_menu(QMenu& menu);
-  // The left button selects again. Call it before view or document end.
+  // Exits the active tool. To be called before the view or the document is destroyed.
   void leave();
   RoadTool& road() { return road_; }
   PlaceTool& place() { return place_; }
   MaskTool& mask() { return mask_; }
 
  Q_SIGNALS:
-  void told(const QString& sentence);
-  // A tool is on: the view must show the world.
+  void message_posted(const QString& message);
+  // A tool became active: the view must show the world.
   void started();
-  // What a tool has chosen, to be shown.
+  // A tool has chosen a table, whose section should be shown.
   void chosen(const psygen::world::TextPath& table);
 
  private:
   ToolHost host();
-  // A button and command for a tool; what is added to the bar until the next one is its own.
+  // Adds the button and command of a tool. Widgets added before the next call belong to this tool.
   void add_tool(ViewTool& tool, const QString& name, const QString& key, const QString& help);
   QAction* add_of_tool(QWidget* widget);
   void add_roads();
@@ -95,10 +94,10 @@ class ViewTools final : public QObject {
   QComboBox* masks_ = nullptr;
   QAction* new_mask_ = nullptr;
   NewMaskBar* new_mask_bar_ = nullptr;
-  std::vector<QAction*> new_mask_parts_, brush_parts_;  // of the bar, one or the other
+  std::vector<QAction*> new_mask_parts_, brush_parts_;  // of the bar; only one group is visible
   QDoubleSpinBox* radius_ = nullptr;
   QAction* erase_ = nullptr;
-  std::vector<OfTool> commands_;  // that are enabled with their tool
+  std::vector<OfTool> commands_;  // enabled while their tool is active
 };
 
 }  // namespace psygen::editor

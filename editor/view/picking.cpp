@@ -15,9 +15,9 @@ namespace psygen::editor {
 namespace {
 
 constexpr double kFarM = 20'000;
-constexpr double kCrownShare = 0.7;  // of the sphere around a model, that a click must meet
+constexpr double kCrownFraction = 0.7;  // radius of the clickable sphere, of the bounding sphere
 
-// Around its vertices where it is drawn, else around all that its parameters could lead to.
+// Tight bounds of a drawn model, else its conservative bounds.
 core::Bounds box_of(const Selection& model, const scene::Scene& scene) {
   std::optional<core::Bounds> tight;
   scene.entities()
@@ -35,14 +35,14 @@ core::Bounds box_of(const Selection& model, const scene::Scene& scene) {
   return tight ? *tight : scene.registry()[model.model].bounds(model.parameters);
 }
 
-// A model that a ray passes through the middle of.
+// A model whose clickable sphere is hit by a ray.
 struct Crown {
   core::BlockCoord block;
   std::uint32_t index = 0;
   double distance_m = 0;
 };
 
-// The one in front, nearer than `longest_m`, of those that are drawn.
+// The nearest drawn model that is hit, nearer than `longest_m`.
 std::optional<Crown> crown_on(const query::Ray& ray, double longest_m, const scene::Scene& scene) {
   std::optional<Crown> found;
   const double block_m = scene.world().block_size_m();
@@ -61,7 +61,7 @@ std::optional<Crown> crown_on(const query::Ray& ray, double longest_m, const sce
               const double along = glm::dot(middle, ray.direction);
               const double aside = glm::length(middle - along * ray.direction);
               const double nearest = found ? found->distance_m : longest_m;
-              if (along <= 0 || along >= nearest || aside > kCrownShare * double{at.radius_m})
+              if (along <= 0 || along >= nearest || aside > kCrownFraction * double{at.radius_m})
                 continue;
               found = {at.block, sources[i].index, along};
             }
@@ -101,14 +101,14 @@ std::optional<Selection> pick(const scene::Scene& scene, const core::CameraPose&
     selection.block = crown ? crown->block : hit->block;
     selection.index = crown ? crown->index : hit->index;
     selection.distance_m = crown ? crown->distance_m : hit->distance_m;
-    return found_again(selection, scene);
+    return relocate_selection(selection, scene);
   }
   Selection selection;
   selection.kind = query::HitKind::kGround;
   selection.block = hit->block;
   selection.at = hit->position;
   selection.distance_m = hit->distance_m;
-  return found_again(selection, scene);
+  return relocate_selection(selection, scene);
 }
 
 GroundRays::Ground::Ground(const scene::Scene& scene)
@@ -138,7 +138,7 @@ std::optional<glm::dvec2> GroundRays::at(const scene::Scene& scene, const core::
   return glm::dvec2(at.block.x * block_m + at.local.x, at.block.z * block_m + at.local.z);
 }
 
-std::optional<Selection> found_again(const Selection& before, const scene::Scene& scene) {
+std::optional<Selection> relocate_selection(const Selection& before, const scene::Scene& scene) {
   const world::World& world = scene.world();
   Selection selection = before;
   if (before.kind == query::HitKind::kGround) {

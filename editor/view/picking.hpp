@@ -1,5 +1,5 @@
-// What is under a pixel of the view: an exact ray against ground and models, whatever is drawn.
-// Pure but for the cache of the queries. Main thread.
+// Picks the model or the ground under a pixel with an exact ray, independent of the drawn levels of
+// detail. Pure except for the cache of the queries. Main thread.
 #pragma once
 
 #include <QPointF>
@@ -17,15 +17,15 @@ class Scene;
 
 namespace psygen::editor {
 
-// What a click selected.
+// A selected model or point of the ground.
 struct Selection {
   query::HitKind kind = query::HitKind::kNothing;  // kGround or kModel
   core::BlockCoord block;
   std::uint32_t index = 0;  // of the model within the block
   models::ModelIndex model = 0;
-  models::Parameters parameters;  // of the model, or of the ground of its block
-  core::WorldPosition at;         // of the model's foot, or of the ground that was hit
-  core::Bounds box;               // of a model, from its foot
+  models::Parameters parameters;  // of the model, or of the block's ground
+  core::WorldPosition at;         // base point of the model, or the point on the ground
+  core::Bounds box;               // of a model, from its base point
   double distance_m = 0;
 };
 
@@ -33,25 +33,25 @@ struct Selection {
 glm::dvec3 direction_of(QPointF pixel, core::Extent size, const core::CameraPose& pose,
                         const core::Projection& projection);
 
-// The first thing from the camera in a direction, within 20 km; nothing: the sky.
+// The first model or ground from the camera in a direction, within 20 km; nullopt: the sky.
 std::optional<Selection> pick(const scene::Scene& scene, const core::CameraPose& pose,
                               const glm::dvec3& direction);
 
-// Rays against the ground of the worlds that a view shows one after the other. What is known of the
-// ground stays while it is the same. Costs some milliseconds for the first ray on other ground.
+// Rays against the ground of the view's world. Cached heights stay while the ground is unchanged.
+// The first ray on other ground takes some milliseconds.
 class GroundRays {
  public:
-  // The ground from the camera in a direction, as x and z in metres of the world; nothing: the sky,
-  // or more than 20 km away. Models are in nobody's way.
+  // The point of the ground from the camera in a direction, as x and z in metres of the world;
+  // nullopt: the sky, or farther than 20 km. The ray ignores models.
   std::optional<glm::dvec2> at(const scene::Scene& scene, const core::CameraPose& pose,
                                const glm::dvec3& direction);
-  // The state has another world.
+  // To be called after a change of the world.
   void note_world() { world_is_new_ = true; }
-  // The state ends.
+  // To be called before the state is destroyed.
   void clear() { ground_.reset(); }
 
  private:
-  // Without models, so that only the ground matters.
+  // A world without models.
   struct Ground {
     explicit Ground(const scene::Scene& scene);
     SurfaceShape shape;
@@ -62,7 +62,7 @@ class GroundRays {
   bool world_is_new_ = false;
 };
 
-// The same model, or the same place of the ground, in the present world; nothing if it is gone.
-std::optional<Selection> found_again(const Selection& selection, const scene::Scene& scene);
+// The same model, or the same point of the ground, in the present world; nullopt if it is gone.
+std::optional<Selection> relocate_selection(const Selection& selection, const scene::Scene& scene);
 
 }  // namespace psygen::editor

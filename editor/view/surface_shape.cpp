@@ -5,7 +5,7 @@
 namespace psygen::editor {
 namespace {
 
-// Cells at the border of a block belong to it and to its neighbours.
+// Cells at the border of a block belong to the block and to its neighbours.
 constexpr double kMarginBlocks = 1.0 / 16;
 
 }  // namespace

@@ -1,6 +1,6 @@
-// What the surface of a world depends on: its ground and its water, and nothing else. Tells where
-// two worlds have the same one, so that heights that are known need not be looked up again. A value
-// of some hundred bytes that keeps the shape of the ground alive; any thread.
+// The inputs of a world's surface: its ground and its water. Compares two worlds by block, so that
+// known heights stay valid where the surface is unchanged. A value of some hundred bytes that keeps
+// the edit layer of the ground alive; any thread.
 #pragma once
 
 #include <memory>
@@ -11,17 +11,18 @@
 
 namespace psygen::editor {
 
+// Comparable inputs of a surface.
 class SurfaceShape {
  public:
   explicit SurfaceShape(const world::World& world);
 
-  // The same everywhere. It may say no although it is.
+  // True only if the surfaces are equal everywhere; false negatives are possible.
   friend bool operator==(const SurfaceShape& a, const SurfaceShape& b) {
     return a.has_base_of(b) && a.shape_ == b.shape_ && a.edits_ == b.edits_;
   }
-  // The same but for stamps, roads and edits.
+  // True if the surfaces are equal except for stamps, roads and edits.
   bool has_base_of(const SurfaceShape& other) const;
-  // Of all that shapes the ground of a block by hand; 0: nothing does.
+  // A hash of the stamps, roads and edits of a block; 0: none.
   std::uint64_t shape_of(core::BlockCoord block) const;
 
  private:
@@ -32,11 +33,12 @@ class SurfaceShape {
   std::shared_ptr<const models::EditLayer> layer_, edits_;
 };
 
-// Where two surfaces differ, asked block after block: the last answer is kept.
+// Compares two surfaces block by block and caches the last answer.
 class SurfaceDifference {
  public:
   SurfaceDifference(const SurfaceShape& before, const SurfaceShape& after)
       : before_(before), after_(after), same_base_(before.has_base_of(after)) {}
+  // True if the surfaces differ in the block.
   bool at(core::BlockCoord block);
 
  private:

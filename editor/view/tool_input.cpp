@@ -7,7 +7,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr double kRightClickPx = 4;      // moved less than this, it was a click
+constexpr double kRightClickPx = 4;      // a click moves less than this
 constexpr double kToolWheelUnits = 120;  // of Qt, per step
 
 }  // namespace
@@ -25,7 +25,7 @@ bool ToolInput::take(const QEvent& event, double pixel_ratio) {
       last_ = mouse.position() * pixel_ratio;
       if (event.type() == QEvent::MouseMove) {
         add({Kind::kMove, last_, held_, fine});
-        return held_;  // the camera looks around with it
+        return held_;  // else the camera turns
       }
       if (mouse.button() == Qt::LeftButton) {
         held_ = down;
@@ -41,7 +41,7 @@ bool ToolInput::take(const QEvent& event, double pixel_ratio) {
     case QEvent::Wheel: {
       const auto& wheel = static_cast<const QWheelEvent&>(event);
       const bool fine = (wheel.modifiers() & Qt::ShiftModifier) != 0;
-      // With Shift some systems turn the wheel sideways.
+      // Some systems make Shift+wheel a horizontal scroll.
       const QPoint turned = wheel.angleDelta();
       const double units = turned.y() != 0 ? turned.y() : turned.x();
       last_ = wheel.position() * pixel_ratio;

@@ -1,6 +1,6 @@
-// Mouse events of the view for a tool, kept until the next picture: they mean points of the world
-// that is drawn. The camera keeps keys, the middle button, and the right one while it is dragged.
-// Main thread.
+// Mouse events of the view for a tool, queued until the next frame, because they refer to points of
+// the drawn world. The camera gets the keys, the middle button, and drags of the right button. Main
+// thread.
 #pragma once
 
 #include <QEvent>
@@ -21,11 +21,11 @@ struct ToolEvent {
 
 class ToolInput {
  public:
-  // Takes an event. True: it is the tool's alone.
+  // Queues an event. Returns true if only the tool gets it.
   bool take(const QEvent& event, double pixel_ratio);
-  // What came since the last call; of moves in a row the last one.
+  // The events since the last call; of consecutive moves only the last one.
   std::vector<ToolEvent> take_all();
-  // Nothing is held and nothing has come.
+  // Drops all events and releases the button.
   void forget();
   bool held() const { return held_; }
 

@@ -6,24 +6,21 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
-#include "editor/view/segment.hpp"
-#include "engine/world/world.hpp"
-
 namespace psygen::editor {
 namespace {
 
-constexpr double kPieceM = 3;   // of a line, so that it follows the ground
+constexpr double kPieceM = 3;   // length of a piece of a line that follows the ground
 constexpr int kMaxPieces = 64;  // between two points
 constexpr float kHandlePx = 9, kChosenPx = 13, kBorderPx = 2;
-constexpr float kReachHandlePx = 12, kReachLinePx = 7;  // of the mouse
-// Above the ground, so that it does not cover them: more of it where it is seen from afar.
-constexpr double kMarkLiftM = 0.06, kMarkLiftShare = 0.005;
+constexpr float kReachHandlePx = 12, kReachLinePx = 7;  // of the pointer
+// Height of marks above the ground, so that it does not cover them; it grows with the distance.
+constexpr double kMarkLiftM = 0.06, kMarkLiftPerM = 0.005;
 const glm::vec4 kHandleColour{0.95F, 0.96F, 1.0F, 1.0F}, kChosenColour{1.0F, 0.62F, 0.1F, 1.0F},
     kBorderColour{0.05F, 0.06F, 0.08F, 0.9F};
 
 glm::vec3 lifted(const core::WorldPosition& at, const core::WorldPosition& eye, double block_m) {
   glm::dvec3 from_eye = core::offset_m(at.block, eye, block_m) + at.local;
-  from_eye.y += kMarkLiftM + kMarkLiftShare * glm::length(from_eye);
+  from_eye.y += kMarkLiftM + kMarkLiftPerM * glm::length(from_eye);
   return from_eye;
 }
 
@@ -35,22 +32,22 @@ core::WorldPosition on_surface(glm::dvec2 at_m, const world::World& world) {
   return at;
 }
 
-Lens::Lens(const core::CameraPose& from, const core::Projection& by, core::Extent picture,
-           double block_size_m)
+ViewProjection::ViewProjection(const core::CameraPose& from, const core::Projection& by,
+                               core::Extent pixels, double block_size_m)
     : pose(from),
       projection(by),
-      size(picture),
+      size(pixels),
       block_m(block_size_m),
       to_clip_(core::projection_matrix(by) * core::view_rotation(from)) {}
 
-std::optional<glm::vec2> Lens::pixel_of(const glm::vec3& from_eye) const {
+std::optional<glm::vec2> ViewProjection::pixel_of(const glm::vec3& from_eye) const {
   const glm::vec4 clip = to_clip_ * glm::vec4(from_eye, 1);
   if (clip.w <= projection.near_m) return std::nullopt;
   return glm::vec2{(clip.x / clip.w + 1) * 0.5F * static_cast<float>(size.width),
                    (clip.y / clip.w + 1) * 0.5F * static_cast<float>(size.height)};
 }
 
-std::optional<glm::vec2> Lens::pixel_of(const core::WorldPosition& at) const {
+std::optional<glm::vec2> ViewProjection::pixel_of(const core::WorldPosition& at) const {
   return pixel_of(lifted(at, pose.position, block_m));
 }
 
@@ -72,13 +69,13 @@ void ToolOverlay::set(const ToolMarks& marks, const world::World& world) {
   }
 }
 
-// Looks up heights where the ground has changed.
+// Recomputes heights where the ground has changed.
 void ToolOverlay::take_ground(const world::World& world) {
   const SurfaceShape now(world);
   const auto before = std::exchange(ground_, now);
   if (before == now) return;
   const double block_m = world.block_size_m();
-  if (!before || marks_block_m_ != block_m) {  // places are counted in blocks
+  if (!before || marks_block_m_ != block_m) {  // world positions count in blocks
     marks_block_m_ = block_m;
     marks_ = {}, handles_.clear(), lines_.clear();
     return;
@@ -121,15 +118,15 @@ void ToolOverlay::add_lines(const core::WorldPosition& eye, double block_m,
   }
 }
 
-void ToolOverlay::add_handles(const Lens& lens, render::HudDrawing& hud) const {
+void ToolOverlay::add_handles(const ViewProjection& view, render::HudDrawing& hud) const {
   const auto square = [&](glm::vec2 middle, float side, const glm::vec4& colour) {
     hud.areas.push_back({{{}, middle - side / 2}, {{}, {side, side}}, colour});
   };
-  // What is chosen lies over the others.
+  // The chosen handle covers the others.
   for (const bool chosen : {false, true}) {
     for (std::size_t i = 0; i < handles_.size(); ++i) {
       if (marks_.handles[i].chosen != chosen) continue;
-      const auto pixel = lens.pixel_of(handles_[i]);
+      const auto pixel = view.pixel_of(handles_[i]);
       if (!pixel) continue;
       const float side = chosen ? kChosenPx : kHandlePx;
       square(*pixel, side + 2 * kBorderPx, kBorderColour);
@@ -138,11 +135,11 @@ void ToolOverlay::add_handles(const Lens& lens, render::HudDrawing& hud) const {
   }
 }
 
-void ToolOverlay::hit(QPointF pixel, const Lens& lens, ToolPoint& point) const {
+void ToolOverlay::hit(QPointF pixel, const ViewProjection& view, ToolPoint& point) const {
   const glm::vec2 mouse(pixel.x(), pixel.y());
   float nearest = kReachHandlePx;
   for (std::size_t i = 0; i < handles_.size(); ++i) {
-    const auto at = lens.pixel_of(handles_[i]);
+    const auto at = view.pixel_of(handles_[i]);
     const float away = at ? glm::length(*at - mouse) : nearest;
     if (away < nearest) nearest = away, point.handle = i;
   }
@@ -151,7 +148,7 @@ void ToolOverlay::hit(QPointF pixel, const Lens& lens, ToolPoint& point) const {
   for (std::size_t l = 0; l < lines_.size(); ++l) {
     std::optional<glm::vec2> before;
     for (std::size_t i = 0; i < lines_[l].size(); ++i) {
-      const auto at = lens.pixel_of(lines_[l][i].at);
+      const auto at = view.pixel_of(lines_[l][i].at);
       const float away = before && at ? distance_to_segment(mouse, *before, *at) : nearest;
       if (away < nearest) nearest = away, point.line = {l, lines_[l][i - 1].part};
       before = at;

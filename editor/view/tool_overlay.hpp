@@ -1,9 +1,11 @@
-// A tool's marks in a picture: lines that follow the ground and handles of constant size, and which
-// of them is under the mouse. Looks up heights only where marks or ground change. Knows no
-// renderer: lines and areas are values. Main thread.
+// A tool's marks in the view: lines that follow the ground, and handles of constant size. Finds the
+// mark under the pointer. Computes heights only where marks or ground change. Knows no renderer:
+// lines and areas are values. Main thread.
 #pragma once
 
 #include <QPointF>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <span>
 #include <vector>
 
@@ -17,47 +19,58 @@
 
 namespace psygen::editor {
 
-// Through what a picture is seen. Its values stay as they were given.
-struct Lens {
-  Lens(const core::CameraPose& from, const core::Projection& by, core::Extent picture,
-       double block_size_m);
+// The camera of a frame: projects points of the world to pixels. Immutable.
+struct ViewProjection {
+  ViewProjection(const core::CameraPose& from, const core::Projection& by, core::Extent pixels,
+                 double block_size_m);
 
   core::CameraPose pose;
   core::Projection projection;
   core::Extent size;  // pixels
   double block_m = 1;
 
-  // The pixel of a place; nothing behind the camera.
+  // The pixel of a world position; nullopt behind the camera.
   std::optional<glm::vec2> pixel_of(const core::WorldPosition& at) const;
-  // The same for a place relative to the camera.
+  // The pixel of a point relative to the camera; nullopt behind it.
   std::optional<glm::vec2> pixel_of(const glm::vec3& from_eye) const;
 
  private:
-  glm::mat4 to_clip_;  // of places relative to the camera; for thousands of points of lines
+  glm::mat4 to_clip_;  // from points relative to the camera
 };
 
-// A place of the world (x and z in metres) on the ground, or on the water over it.
+// The point (x and z in metres of the world) on the ground, or on the water above it.
 core::WorldPosition on_surface(glm::dvec2 at_m, const world::World& world);
+
+// The distance of a point from a line between two points. Vec is glm::vec2 or glm::dvec2. Both ends
+// may be the same point.
+template <class Vec>
+typename Vec::value_type distance_to_segment(const Vec& p, const Vec& a, const Vec& b) {
+  using T = typename Vec::value_type;
+  const Vec along = b - a;
+  const T length2 = glm::dot(along, along);
+  const T t = length2 > 0 ? glm::clamp(glm::dot(p - a, along) / length2, T(0), T(1)) : T(0);
+  return glm::length(p - (a + t * along));
+}
 
 class ToolOverlay {
  public:
-  // What is drawn from now on, on the ground of this world.
+  // Sets the marks, on the ground of this world.
   void set(const ToolMarks& marks, const world::World& world);
-  // The world is another one. Heights where its ground is the same stay.
+  // To be called after a change of the world. Heights on unchanged ground stay.
   void note_world() { world_is_new_ = true; }
-  // How many heights were looked up so far.
+  // Number of computed heights so far, for tests.
   std::size_t lookups() const { return lookups_; }
 
-  // The lines from a camera, at the end of `lines`.
+  // Appends the lines relative to a camera.
   void add_lines(const core::WorldPosition& eye, double block_m,
                  std::vector<render::Line>& lines) const;
-  // The handles.
-  void add_handles(const Lens& lens, render::HudDrawing& hud) const;
-  // Completes a point: what is under a pixel.
-  void hit(QPointF pixel, const Lens& lens, ToolPoint& point) const;
+  // Appends the handles.
+  void add_handles(const ViewProjection& view, render::HudDrawing& hud) const;
+  // Sets the handle or the line under a pixel in `point`.
+  void hit(QPointF pixel, const ViewProjection& view, ToolPoint& point) const;
 
  private:
-  // A point of a line as it is drawn, and the point of the tool's line that it lies behind.
+  // A drawn point of a line, and the preceding point of the tool's line.
   struct OnGround {
     core::WorldPosition at;
     std::size_t part = 0;
@@ -69,7 +82,7 @@ class ToolOverlay {
 
   ToolMarks marks_;
   bool world_is_new_ = true;
-  std::optional<SurfaceShape> ground_;  // on which they lie
+  std::optional<SurfaceShape> ground_;  // under the marks
   double marks_block_m_ = 0;
   std::size_t lookups_ = 0;
   std::vector<core::WorldPosition> handles_;  // of marks_.handles

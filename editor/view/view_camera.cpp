@@ -8,8 +8,8 @@ namespace psygen::editor {
 namespace {
 
 constexpr double kTurnRadPx = 0.005;       // around the pivot
-constexpr double kMaxPitch = 1.55;         // just less than straight up and down
-constexpr double kApproachPerStep = 0.85;  // of the distance that is left
+constexpr double kMaxPitch = 1.55;         // slightly less than vertical
+constexpr double kApproachPerStep = 0.85;  // factor of the distance
 constexpr double kNearestM = 0.5;
 constexpr double kWheelM = 4;  // per step without a pivot
 
@@ -25,7 +25,7 @@ void ViewCamera::set_pose(const core::CameraPose& pose) {
 bool ViewCamera::update(const platform::InputState& input, double dt_s) {
   const core::CameraPose before = pose_;
   platform::InputState flown = input;
-  flown.wheel = input.held.any() ? input.wheel : 0;  // the speed, while it flies
+  flown.wheel = input.held.any() ? input.wheel : 0;  // changes the speed while flying
   pose_ = fly_.update(pose_, flown, dt_s);
   if (input.is_held(platform::MouseButton::kMiddle) ||
       (turntable_ && input.is_held(platform::MouseButton::kLeft)))

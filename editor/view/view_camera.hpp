@@ -1,5 +1,5 @@
-// The camera of the view: flies with keys and the right button, and turns around a point with the
-// middle one. Knows no window: input is a value. Main thread.
+// The camera of the view: flies with keys and the right button, and orbits a pivot with the middle
+// button. Knows no window: input is a value. Main thread.
 #pragma once
 
 #include <optional>
@@ -14,19 +14,20 @@ class ViewCamera {
   const core::CameraPose& pose() const { return pose_; }
   // The side of a block in metres, above 0.
   void set_block_size(double block_m) { block_m_ = block_m; }
-  // A leap. Poses that are not valid are ignored.
+  // Jumps to a pose. Ignores invalid poses.
   void set_pose(const core::CameraPose& pose);
-  // Moves on by `dt_s` seconds. The right button turns the view, the middle one turns it around
-  // the pivot (or in place without one), the wheel goes towards the pivot or changes the speed of
-  // flying while a key is held. True if the pose changed.
+  // Advances by `dt_s` seconds. The right button turns the view, the middle one orbits the pivot
+  // (or turns in place without one), the wheel moves towards the pivot, or changes the speed while
+  // a key is held. Returns true if the pose changed.
   bool update(const platform::InputState& input, double dt_s);
 
-  // What the middle button turns around; nothing: it turns in place.
+  // The point that the middle button orbits; nullopt: the camera turns in place.
   void set_pivot(std::optional<core::WorldPosition> pivot) { pivot_ = pivot; }
   const std::optional<core::WorldPosition>& pivot() const { return pivot_; }
-  // Looks at the pivot from this distance in metres, keeping the direction. Without one, nothing.
+  // Looks at the pivot from this distance in metres, in the present direction. Does nothing without
+  // a pivot.
   void focus(double distance_m);
-  // Whether the left button turns around the pivot too.
+  // Lets the left button orbit the pivot too.
   void set_turntable(bool on) { turntable_ = on; }
   double speed_m_s() const { return fly_.speed_m_s(); }
 

@@ -11,7 +11,7 @@ namespace {
 using platform::Key;
 using platform::MouseButton;
 
-constexpr double kClickPx = 4;       // moved less than this, it was a click
+constexpr double kClickPx = 4;       // a click moves less than this
 constexpr double kWheelUnits = 120;  // of Qt, per step
 
 std::optional<Key> key_of(int key) {
@@ -75,7 +75,7 @@ void ViewInput::key(const QEvent& event) {
   if (!known || key.isAutoRepeat()) return;
   const auto at = static_cast<std::size_t>(*known);
   const bool down = event.type() == QEvent::KeyPress;
-  // Shortcuts are not flown.
+  // Shortcuts do not move the camera.
   if (down && (key.modifiers() & (Qt::ControlModifier | Qt::AltModifier)) != 0) return;
   input_.held.set(at, down);
   (down ? input_.went_down : input_.went_up).set(at);

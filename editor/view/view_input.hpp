@@ -1,4 +1,4 @@
-// Events of a Qt window as the engine's input of a frame. Main thread.
+// Converts events of a Qt window to the engine's input of a frame. Main thread.
 #pragma once
 
 #include <QEvent>
@@ -11,18 +11,18 @@ namespace psygen::editor {
 
 class ViewInput {
  public:
-  // Takes a key, mouse or wheel event; false for others. A click with the left button that did not
-  // move is kept until take_click().
+  // Takes a key, mouse or wheel event; returns false for others. Keeps a click of the left button
+  // without motion until take_click().
   bool take(const QEvent& event, double pixel_ratio);
-  // A wheel event that was somebody else's at first.
+  // Adds a wheel event that a tool did not use.
   void turn_wheel(double steps) { input_.wheel += steps; }
   // The input since the last call.
   platform::InputState take_frame();
-  // Where the left button was clicked, in device pixels; nothing if it was not.
+  // Position of a click of the left button in device pixels; nullopt: no click.
   std::optional<QPointF> take_click();
-  // Whether the person does anything with keys or buttons now.
+  // True while a key or a button is held.
   bool busy() const { return input_.held.any() || input_.buttons_held.any(); }
-  // Everything is let go, as when the window loses the keyboard.
+  // Releases all keys and buttons, as when the window loses the keyboard.
   void release_all();
 
  private:

@@ -1,6 +1,6 @@
-// What a tool of the view is asked and shows: it gets the mouse as points of the ground and returns
-// marks that lie over the picture. It knows no window and no pixels, so tests drive it with plain
-// values. The tools themselves are in editor/tools. Main thread.
+// The interface of the tools of the view: a tool gets the pointer as points of the ground and
+// returns marks. It knows no window and no pixels, so tests drive it with plain values. The tools
+// are in editor/tools. Main thread.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace psygen::editor {
 
-// What a tool draws over the view. Points are x and z in metres of the world; they lie on the
-// ground, or on the water over it.
+// The marks of a tool. Points are x and z in metres of the world, on the ground or on the water
+// above it.
 struct ToolMarks {
-  // A square of constant size, which the mouse can take.
+  // A square of constant size that the user can drag.
   struct Handle {
     glm::dvec2 at_m{0.0};
     bool chosen = false;
@@ -31,15 +31,15 @@ struct ToolMarks {
   friend bool operator==(const ToolMarks&, const ToolMarks&) = default;
 };
 
-// Where the mouse is.
+// The pointer.
 struct ToolPoint {
-  // A part of a line: that behind its point number `part`.
+  // A part of a line: the one that follows point number `part`.
   struct OnLine {
     std::size_t line = 0, part = 0;
   };
-  std::optional<glm::dvec2> ground_m;  // x and z in the world; nothing: the sky
-  std::optional<std::size_t> handle;   // the one under the mouse
-  std::optional<OnLine> line;          // the one under the mouse, where no handle is
+  std::optional<glm::dvec2> ground_m;  // x and z in the world; nullopt: the sky
+  std::optional<std::size_t> handle;   // under the pointer
+  std::optional<OnLine> line;          // under the pointer, if there is no handle
   bool fine = false;                   // Shift is held
 };
 
@@ -49,20 +49,21 @@ class ViewTool {
   ViewTool(const ViewTool&) = delete;
   ViewTool& operator=(const ViewTool&) = delete;
   virtual ~ViewTool() = default;
-  // The left button goes down, the mouse moves while it is held, and it goes up.
+  // The left button is pressed, moved while held, and released.
   virtual void press(const ToolPoint& at) = 0;
   virtual void drag(const ToolPoint& at) = 0;
   virtual void release() = 0;
-  // The mouse moves without a button, or leaves the view.
+  // The pointer moves without a button, or leaves the view.
   virtual void hover(const ToolPoint&) {}
   virtual void leave() {}
   // The right button was clicked.
   virtual void click_right(const ToolPoint& at) = 0;
-  // The wheel turned by so many steps. False: it is the camera's.
+  // The wheel turned by some steps. Returns false to leave it to the camera.
   virtual bool wheel(const ToolPoint&, double) { return false; }
-  // Takes back what the held button has done, or what is only begun. False: there is nothing.
+  // Undoes the action of the held button, or cancels an unfinished action. Returns false if there
+  // is none.
   virtual bool cancel() = 0;
-  // What is drawn now. Valid until the next call of any function.
+  // The present marks. Valid until the next call of any function.
   virtual const ToolMarks& marks() = 0;
 };
 

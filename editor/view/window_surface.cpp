@@ -19,7 +19,7 @@ core::Result<std::uint64_t> WindowSurface::create_surface(void* instance) {
   const auto* x11 = qGuiApp->nativeInterface<QNativeInterface::QX11Application>();
   if (x11 == nullptr)
     return core::fail(core::ErrorCode::kNoDevice,
-                      "the editor draws through X11; start it with -platform xcb");
+                      "the editor needs X11; start it with -platform xcb");
   const auto vulkan = static_cast<VkInstance>(instance);
   const auto create = reinterpret_cast<PFN_vkCreateXcbSurfaceKHR>(
       vkGetInstanceProcAddr(vulkan, "vkCreateXcbSurfaceKHR"));
@@ -29,7 +29,8 @@ core::Result<std::uint64_t> WindowSurface::create_surface(void* instance) {
   info.window = static_cast<xcb_window_t>(window_.winId());
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   if (create == nullptr || create(vulkan, &info, nullptr, &surface) != VK_SUCCESS)
-    return core::fail(core::ErrorCode::kNoDevice, "the driver makes no surface for X11 windows");
+    return core::fail(core::ErrorCode::kNoDevice,
+                      "the driver cannot create a surface for X11 windows");
   return std::bit_cast<std::uint64_t>(surface);
 }
 

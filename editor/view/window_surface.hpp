@@ -1,5 +1,5 @@
-// The surface of a Qt window, for the engine's renderer: Vulkan over X11. Draws nothing and holds
-// no Vulkan objects. Main thread.
+// The Vulkan surface of a Qt window for the engine's renderer, on X11. Draws nothing and owns no
+// Vulkan objects. Main thread.
 #pragma once
 
 #include <string>
@@ -17,9 +17,9 @@ class WindowSurface final : public core::SurfaceProvider {
   explicit WindowSurface(QWindow& window) : window_(window) {}
 
   std::vector<std::string> required_instance_extensions() const override;
-  // Fails with kNoDevice where Qt does not draw through X11, or the driver makes no surface.
+  // Fails with kNoDevice if Qt does not run on X11 or the driver cannot create the surface.
   core::Result<std::uint64_t> create_surface(void* instance) override;
-  // In device pixels; 0 × 0 while nobody can see the window.
+  // In device pixels; 0 × 0 while the window is hidden.
   core::Extent framebuffer_size() const override;
 
  private:

@@ -21,11 +21,11 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kBusyMs = 0, kIdleMs = 100;  // between pictures; idle: another program is in front
-constexpr int kYieldMs = 150;
-constexpr int kPreparedMs = 10;  // a picture waits for another world
+// Times between frames. Idle: another program is in front.
+constexpr int kBusyMs = 0, kIdleMs = 100, kBackgroundWorkMs = 150;
+constexpr int kPreparedMs = 10;  // a frame waits for the next world at most this long
 constexpr double kMaxStepS = 0.1;
-constexpr int kLostAgainMs = 60'000;  // a device that is lost within that is not opened again
+constexpr int kLostAgainMs = 60'000;  // a device lost again within this time stays closed
 
 }  // namespace
 
@@ -38,7 +38,7 @@ WorldView::~WorldView() {
   close();
 }
 
-void WorldView::show_world(std::string text, std::string file, bool anew,
+void WorldView::show_world(std::string text, std::string file, bool new_session,
                            handmade::MemoryPicturesPtr pictures) {
   text_ = std::move(text);
   file_ = std::move(file);
@@ -46,8 +46,8 @@ void WorldView::show_world(std::string text, std::string file, bool anew,
   text_is_new_ = true;
   failed_ = false;
   since_text_.start();
-  if (timer_.isActive()) timer_.start(kBusyMs);  // the next picture is not waited for
-  if (anew) close();
+  if (timer_.isActive()) timer_.start(kBusyMs);  // draws the next frame at once
+  if (new_session) close();
   if (!session_ && isExposed()) open();
 }
 
@@ -67,7 +67,7 @@ void WorldView::open() {
   }
   session_ = std::move(*session);
   select(std::nullopt);
-  take_stand();
+  apply_camera_placement();
   Q_EMIT opened({});
   since_tick_.start();
   timer_.start(kBusyMs);
@@ -75,7 +75,7 @@ void WorldView::open() {
 
 void WorldView::close() {
   timer_.stop();
-  if (prepared_.valid()) prepared_.wait();  // it uses the session
+  if (prepared_.valid()) prepared_.wait();  // the preparation uses the session
   prepared_ = {};
   ground_.clear();
   has_hung_ = has_hung();
@@ -88,7 +88,7 @@ bool WorldView::event(QEvent* event) {
   if (input_.take(*event, devicePixelRatio())) return true;
   switch (event->type()) {
     case QEvent::Expose:
-      // Not within the event: opening takes its time.
+      // After the event, because opening a session is slow.
       if (isExposed() && !session_ && !failed_ && !text_.empty())
         QTimer::singleShot(0, this, [this] {
           if (!session_ && isExposed()) open();
@@ -108,21 +108,21 @@ bool WorldView::event(QEvent* event) {
   return QWindow::event(event);
 }
 
-// After the device was lost, on a new one, with the camera where it is. False: it was lost a short
-// while ago too, and would be lost again.
-bool WorldView::open_again() {
+// Opens a new device after the device was lost; the camera keeps its pose. Returns false if the
+// device was lost a short time ago too, because it would be lost again.
+bool WorldView::reopen() {
   if (since_lost_.isValid() && since_lost_.elapsed() < kLostAgainMs) return false;
   since_lost_.start();
   close();
-  const Stand stand{camera_.pose(), camera_.pivot()};
+  const CameraPlacement kept{camera_.pose(), camera_.pivot()};
   Q_EMIT lost();
   open();
-  camera_.set_pose(stand.pose);
-  camera_.set_pivot(stand.pivot);
+  camera_.set_pose(kept.pose);
+  camera_.set_pivot(kept.pivot);
   return true;
 }
 
-// The newest text, once what is prepared of the one before has been taken.
+// Starts to prepare the newest text, unless the previous one is still in preparation.
 void WorldView::take_text() {
   if (prepared_.valid() || !std::exchange(text_is_new_, false)) return;
   since_prepared_ = since_text_;
@@ -133,7 +133,7 @@ void WorldView::take_text() {
   auto thread = core::start_thread([task] { (*task)(); });
   if (!thread) return (*task)();
   thread->detach();
-  // Most are ready sooner than a picture of the world before would be.
+  // Most worlds are ready before a frame of the previous world would be.
   prepared_.wait_for(std::chrono::milliseconds(kPreparedMs));
   take_prepared();
 }
@@ -147,13 +147,13 @@ void WorldView::take_prepared() {
                            : core::Result<void>(tl::unexpected(prepared.error()));
   if (!ok) {
     since_text_.invalidate();
-    Q_EMIT refused(QString::fromStdString(ok.error().message));
+    Q_EMIT world_rejected(QString::fromStdString(ok.error().message));
     return;
   }
   since_taken_ = since_prepared_;
-  has_landed_ = false;
-  take_stand();
-  if (selection_) select(found_again(*selection_, session_->scene()));
+  has_new_mesh_ = false;
+  apply_camera_placement();
+  if (selection_) select(relocate_selection(*selection_, session_->scene()));
 }
 
 void WorldView::tick() {
@@ -171,9 +171,9 @@ void WorldView::tick() {
         direction_of(*click, session_->picture_size(), camera_.pose(), scene.camera().projection)));
   }
   serve_tool();
-  write_over_picture();
+  write_overlays();
   scene::Scene& scene = session_->scene();
-  // The first picture of a change is coarse, so that it comes soon.
+  // The first frame after a change is coarse, so that it comes soon.
   scene.input().draft = draft_ || since_taken_.isValid();
   scene.input().lines = lines_;
   QElapsedTimer spent;
@@ -182,10 +182,10 @@ void WorldView::tick() {
   const auto ok = over ? core::Result<void>{} : session_->tick(camera_.pose(), dt_s);
   if (over || !ok) {
     const bool is_lost = !ok && ok.error().code == core::ErrorCode::kDeviceLost;
-    if (is_lost && open_again()) return;
+    if (is_lost && reopen()) return;
     close();
     failed_ = true;
-    Q_EMIT opened(QString::fromStdString(ok ? "the view was closed" : ok.error().message));
+    Q_EMIT opened(QString::fromStdString(ok ? "The view was closed." : ok.error().message));
     return;
   }
   Q_EMIT drawn(static_cast<double>(spent.nsecsElapsed()) * 1e-6);
@@ -193,32 +193,32 @@ void WorldView::tick() {
   note_settled();
   const bool in_front = QGuiApplication::applicationState() == Qt::ApplicationActive;
   const bool busy = input_.busy() || tool_input_.held();
-  const bool yields = beside_.any() && !moved && !busy && !since_text_.isValid();
-  timer_.setInterval(yields                                      ? kYieldMs
+  const bool yields = background_work_.any() && !moved && !busy && !since_text_.isValid();
+  timer_.setInterval(yields                                      ? kBackgroundWorkMs
                      : in_front || busy || since_text_.isValid() ? kBusyMs
                                                                  : kIdleMs);
 }
 
-// In the world that is shown from now on.
-void WorldView::take_stand() {
+// Places the camera in the world that the view shows from now on.
+void WorldView::apply_camera_placement() {
   grid_.note_world();
   overlay_.note_world();
   ground_.note_world();
   const scene::Scene& scene = session_->scene();
   camera_.set_block_size(scene.world().block_size_m());
-  const FindStand find = std::exchange(find_stand_, nullptr);
-  const auto stand = find ? find(scene) : std::nullopt;
-  if (!stand) return;
-  camera_.set_pose(stand->pose);
-  camera_.set_pivot(stand->pivot);
+  const PlaceCamera place_camera = std::exchange(place_camera_, nullptr);
+  const auto placement = place_camera ? place_camera(scene) : std::nullopt;
+  if (!placement) return;
+  camera_.set_pose(placement->pose);
+  camera_.set_pivot(placement->pivot);
 }
 
-// Looks alone change at once. Where nothing near changes, the first mesh that lands is the answer.
+// Colours change at once. If nothing near changes, the first finished mesh is the answer.
 void WorldView::note_answered() {
   if (!since_taken_.isValid()) return;
   const scene::Scene& scene = session_->scene();
-  has_landed_ = has_landed_ || scene.statistics().completed > 0;
-  if ((!has_landed_ && scene.meshes().outstanding() > 0) || scene.shows_replaced_world()) return;
+  has_new_mesh_ = has_new_mesh_ || scene.statistics().completed > 0;
+  if ((!has_new_mesh_ && scene.meshes().outstanding() > 0) || scene.shows_replaced_world()) return;
   Q_EMIT answered(static_cast<double>(since_taken_.nsecsElapsed()) * 1e-6);
   since_taken_.invalidate();
 }
@@ -233,24 +233,24 @@ void WorldView::note_settled() {
   since_text_.invalidate();
 }
 
-void WorldView::write_over_picture() {
+void WorldView::write_overlays() {
   render::HudDrawing& hud = session_->hud();
   hud = {};
   const scene::Scene& scene = session_->scene();
   const auto grid = grid_.lines(scene.world(), camera_.pose().position);
   lines_.assign(grid.begin(), grid.end());
-  const Lens seen = lens();
-  write_frame(seen);
+  const ViewProjection seen = view_projection();
+  write_selection_box(seen);
   if (tool_ == nullptr) return;
   overlay_.set(tool_->marks(), scene.world());
   overlay_.add_lines(seen.pose.position, seen.block_m, lines_);
   overlay_.add_handles(seen, hud);
 }
 
-// A frame around what is selected.
-void WorldView::write_frame(const Lens& seen) {
+// Draws a rectangle around the selected model.
+void WorldView::write_selection_box(const ViewProjection& seen) {
   if (!selection_ || selection_->kind != query::HitKind::kModel) return;
-  const glm::dvec3 foot =
+  const glm::dvec3 base =
       core::offset_m(selection_->at.block, seen.pose.position, seen.block_m) + selection_->at.local;
   glm::vec2 low{1e9F}, high{-1e9F};
   for (int corner = 0; corner < 8; ++corner) {
@@ -258,7 +258,7 @@ void WorldView::write_frame(const Lens& seen) {
     const glm::vec3 at{(corner & 1) != 0 ? box.max.x : box.min.x,
                        (corner & 2) != 0 ? box.max.y : box.min.y,
                        (corner & 4) != 0 ? box.max.z : box.min.z};
-    const auto px = seen.pixel_of(glm::vec3(foot) + at);
+    const auto px = seen.pixel_of(glm::vec3(base) + at);
     if (!px) return;
     low = glm::min(low, *px);
     high = glm::max(high, *px);

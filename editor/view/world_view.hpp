@@ -1,8 +1,7 @@
-// The engine's own picture of the world, in a window that is embedded in the editor's. Owns the
-// session: opens it when the window can first be seen, draws while it can be seen, and follows the
-// text of the world: another thread prepares the newest one, and what is drawn stays until the new
-// meshes are there.
-// It changes no document. Main thread.
+// The view of the world: a window embedded in the editor's window, rendered by the engine. It owns
+// the session, opens it when the window first becomes visible, and renders while it is visible. It
+// follows the world's text: another thread prepares the newest text, and old meshes stay until the
+// new ones are ready. It changes no document. Main thread.
 #pragma once
 
 #include <QElapsedTimer>
@@ -16,7 +15,7 @@
 #include <optional>
 #include <string>
 
-#include "editor/view/ground_grid.hpp"
+#include "editor/view/grid_overlay.hpp"
 #include "editor/view/picking.hpp"
 #include "editor/view/tool_input.hpp"
 #include "editor/view/tool_overlay.hpp"
@@ -32,76 +31,81 @@
 
 namespace psygen::editor {
 
-// What may work beside the view.
-enum class Beside : std::uint8_t { kPictures, kFlight };
+// Work in the background that needs the processors too.
+enum class BackgroundWork : std::uint8_t { kPictures, kFlight };
 
+// At most one session at a time.
 class WorldView final : public QWindow {
   Q_OBJECT
 
  public:
-  // `options` say everything but the world, the size and the surface.
+  // `options`: everything except the world, the size and the surface.
   explicit WorldView(app::SessionOptions options);
   ~WorldView() override;
 
-  // Shows the world of a text from the next picture on. `file` is for messages and the folder of
-  // its pictures, of which `pictures` are in memory. `anew`: opens another session, as for another
-  // file.
-  void show_world(std::string text, std::string file, bool anew,
+  // Shows the world of a text from the next frame on. `file`: for messages and for the folder of
+  // its images, of which `pictures` are in memory. `new_session`: opens another session, as for
+  // another file.
+  void show_world(std::string text, std::string file, bool new_session,
                   handmade::MemoryPicturesPtr pictures = {});
-  // Null until the window was seen, and while there is no world that can be drawn.
+  // Null until the window is visible, and while there is no valid world.
   app::Session* session() { return session_.get(); }
   ViewCamera& camera() { return camera_; }
-  // A model hung in some session: its modeler still writes into memory that must not be torn down.
+  // True if a modeler of any session hangs: it may still write into memory, which must stay
+  // allocated.
   bool has_hung() const { return has_hung_ || (session_ && session_->has_hung_modelers()); }
 
   const std::optional<Selection>& selection() const { return selection_; }
   void select(std::optional<Selection> selection);
-  // Looks at what is selected from nearby; without a selection, from the world's usual place.
+  // Moves the camera close to the selection; without one, to the world's home.
   void focus();
-  // While values are tried out, new meshes are coarse; they get fine when it ends.
+  // In draft mode, during a drag, new meshes are coarse; afterwards they become fine.
   void set_draft(bool draft) { draft_ = draft; }
-  // The lines on the ground.
-  GroundGrid& grid() { return grid_; }
-  // What the left button is for from now on, and draws its marks; null: selecting. The tool before
-  // takes back what is only begun. A tool must live as long as it is here.
+  // The grid on the ground.
+  GridOverlay& grid() { return grid_; }
+  // Gives the left mouse button to a tool and draws its marks; null: the button selects. The
+  // previous tool cancels its unfinished action. The caller keeps the tool alive until it is
+  // replaced.
   void set_tool(ViewTool* tool);
   ViewTool* tool() { return tool_; }
-  // The pixel of a place on the ground (x and z in the world), in units of the window; nothing
-  // behind the camera, or without a picture.
+  // The pixel of a point on the ground (x and z in metres of the world), in units of the window.
+  // nullopt behind the camera, or without a session.
   std::optional<QPointF> pixel_of(glm::dvec2 at_m) const;
-  // Where the camera stands, turning around the pivot.
-  struct Stand {
+  // A pose of the camera, and the pivot that it orbits.
+  struct CameraPlacement {
     core::CameraPose pose;
     std::optional<core::WorldPosition> pivot;
   };
-  // Asked for with the scene of the text that was given last, when that is taken over; nothing: the
-  // camera stays.
-  using FindStand = std::function<std::optional<Stand>(const scene::Scene&)>;
-  void stand_with_text(FindStand find) { find_stand_ = std::move(find); }
-  // Whether something of the text that was given last is still to be made; a draft, which waits for
-  // more, counts as made.
+  // Called once with the scene of the newest text, when the view starts to show it. Returns nullopt
+  // to keep the camera.
+  using PlaceCamera = std::function<std::optional<CameraPlacement>(const scene::Scene&)>;
+  void place_camera_on_load(PlaceCamera find) { place_camera_ = std::move(find); }
+  // True if meshes of the newest text are missing. In draft mode, false.
   bool awaits_meshes() const { return since_text_.isValid() && !draft_ && !paused_; }
-  // Synthesis rests: what is there is drawn.
+  // Pauses synthesis; the view draws the present meshes.
   void set_paused(bool paused) { paused_ = paused; }
-  // Something else works on the same processors: while any of it does, nobody moves here and
-  // everything is shown, a few pictures a second do.
-  void set_yielding(Beside work, bool on) { beside_.set(static_cast<std::size_t>(work), on); }
+  // Limits the view to a few frames a second while background work runs, the camera rests and all
+  // meshes are ready.
+  void set_background_work(BackgroundWork work, bool on) {
+    background_work_.set(static_cast<std::size_t>(work), on);
+  }
 
  Q_SIGNALS:
-  // A session was opened, or could not be: `error` says why.
+  // A session was opened, or failed to open with this error message.
   void opened(const QString& error);
-  // The device was lost; another one is opened now, once. If that fails, or if it is lost again
-  // soon, opened() tells it.
+  // The device was lost; the view now opens another one, once. opened() reports a failure, also of
+  // a device that is soon lost again.
   void lost();
-  // The present text could not be shown; the world before stays.
-  void refused(const QString& error);
+  // The newest text cannot be shown; the previous world stays.
+  void world_rejected(const QString& error);
+  // The selection changed.
   void selected();
-  // After every picture, with what it took.
+  // A frame was rendered, in this time.
   void drawn(double frame_ms);
-  // The first picture in which all that is near, and seen, is that of another text, be it coarse;
-  // milliseconds since it came.
+  // The first frame in which everything near and visible belongs to the newest text, at any level
+  // of detail; `ms`: since the text was set.
   void answered(double ms);
-  // The text that was shown last is in the picture with all its meshes; milliseconds since it came.
+  // The first frame with all meshes of the newest text; `ms`: since the text was set.
   void settled(double ms);
 
  protected:
@@ -110,14 +114,14 @@ class WorldView final : public QWindow {
  private:
   void open();
   void close();
-  bool open_again();
+  bool reopen();
   void tick();
   void take_text();
   void take_prepared();
-  void take_stand();
-  void write_over_picture();
-  void write_frame(const Lens& lens);
-  Lens lens() const;
+  void apply_camera_placement();
+  void write_overlays();
+  void write_selection_box(const ViewProjection& view);
+  ViewProjection view_projection() const;
   void serve_tool();
   ToolPoint point_at(const ToolEvent& event);
   void note_answered();
@@ -128,25 +132,26 @@ class WorldView final : public QWindow {
   std::unique_ptr<app::Session> session_;
   std::string text_, file_;
   handmade::MemoryPicturesPtr pictures_;
-  bool has_landed_ = false;  // a mesh, since a text was taken over
+  bool has_new_mesh_ = false;  // since the view shows the text
   bool text_is_new_ = false, paused_ = false, failed_ = false, has_hung_ = false, draft_ = false;
-  std::bitset<2> beside_;  // by Beside
+  std::bitset<2> background_work_;  // by BackgroundWork
   ViewCamera camera_;
   ViewInput input_;
   ViewTool* tool_ = nullptr;
   ToolInput tool_input_;
   ToolOverlay overlay_;
   GroundRays ground_;
-  std::vector<render::Line> lines_;  // over the picture
+  std::vector<render::Line> lines_;  // drawn over the image
   std::optional<Selection> selection_;
-  // What another thread makes of the newest text that it has got; invalid: it rests.
+  // The world that another thread prepares; invalid: none.
   std::future<core::Result<scene::PreparedWorld>> prepared_;
   QTimer timer_;
   QElapsedTimer since_tick_, since_lost_;
-  QElapsedTimer since_text_;                    // invalid: everything of the text is drawn
-  QElapsedTimer since_prepared_, since_taken_;  // the text that is prepared, and drawn, came
-  GroundGrid grid_;
-  FindStand find_stand_;
+  QElapsedTimer since_text_;  // since the newest text; invalid: all its meshes are drawn
+  // Since the text of the prepared world, and of the drawn world, was set.
+  QElapsedTimer since_prepared_, since_taken_;
+  GridOverlay grid_;
+  PlaceCamera place_camera_;
 };
 
 }  // namespace psygen::editor

@@ -1,4 +1,4 @@
-// The tool of a view: the mouse as points of the ground.
+// The tool of a view: converts the pointer to points of the ground.
 #include "editor/view/world_view.hpp"
 #include "engine/scene/frame/camera.hpp"
 #include "engine/scene/scene.hpp"
@@ -17,7 +17,7 @@ void WorldView::set_tool(ViewTool* tool) {
   if (tool_ != nullptr) select(std::nullopt);
 }
 
-Lens WorldView::lens() const {
+ViewProjection WorldView::view_projection() const {
   const scene::Scene& scene = session_->scene();
   return {camera_.pose(), scene.camera().projection, session_->picture_size(),
           scene.world().block_size_m()};
@@ -25,14 +25,14 @@ Lens WorldView::lens() const {
 
 std::optional<QPointF> WorldView::pixel_of(glm::dvec2 at_m) const {
   if (!session_) return std::nullopt;
-  const auto pixel = lens().pixel_of(on_surface(at_m, session_->scene().world()));
+  const auto pixel = view_projection().pixel_of(on_surface(at_m, session_->scene().world()));
   if (!pixel) return std::nullopt;
   return QPointF(static_cast<double>(pixel->x), static_cast<double>(pixel->y)) / devicePixelRatio();
 }
 
 ToolPoint WorldView::point_at(const ToolEvent& event) {
   const scene::Scene& scene = session_->scene();
-  const Lens seen = lens();
+  const ViewProjection seen = view_projection();
   ToolPoint point;
   point.fine = event.fine;
   point.ground_m =
@@ -42,12 +42,12 @@ ToolPoint WorldView::point_at(const ToolEvent& event) {
   return point;
 }
 
-// What the mouse has done since the last picture.
+// Sends the events since the last frame to the tool.
 void WorldView::serve_tool() {
   if (tool_ == nullptr) return;
   using Kind = ToolEvent::Kind;
   for (const ToolEvent& event : tool_input_.take_all()) {
-    if (tool_ == nullptr) return;  // it has left
+    if (tool_ == nullptr) return;  // an event may exit the tool
     switch (event.kind) {
       case Kind::kPress:
         tool_->press(point_at(event));

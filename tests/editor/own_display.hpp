@@ -1,5 +1,5 @@
-// For programs that open the editor's window: a display of their own, with settings and state of
-// their own, and waiting for what is to come. Main thread.
+// Gives programs that open the editor's window their own display, settings and state, and lets them
+// wait for conditions. Main thread.
 #pragma once
 
 #include <unistd.h>
@@ -18,10 +18,10 @@
 
 namespace psygen::editor {
 
-// Before the QApplication. Its folders are removed when it ends.
+// To be created before the QApplication. The destructor removes its folders.
 class OwnDisplay {
  public:
-  // `size` in pixels. Null, with a sentence on stderr, if there is none.
+  // `size` in pixels. Null, with a message on stderr, if no display can be started.
   static std::unique_ptr<OwnDisplay> start(const std::string& size = "1280x1024") {
     std::unique_ptr<OwnDisplay> own(new OwnDisplay());
     own->display_ = platform::VirtualDisplay::start(size);
@@ -54,7 +54,7 @@ class OwnDisplay {
   std::unique_ptr<platform::VirtualDisplay> display_;
 };
 
-// Lets everything go on until something is so. False: it did not come.
+// Processes events until a condition is true. Returns false after a timeout.
 inline bool wait_until(const std::function<bool()>& is_so, int longest_ms) {
   const QDeadlineTimer end(longest_ms);
   while (!is_so()) {

@@ -11,7 +11,7 @@
 
 #include "editor/panels/properties_panel.hpp"
 #include "editor/pictures/picture_server.hpp"
-#include "editor/shell/first_world.hpp"
+#include "editor/shell/default_world.hpp"
 #include "editor/shell/main_window.hpp"
 #include "engine/scene/scene.hpp"
 #include "tests/editor/own_display.hpp"
@@ -47,8 +47,8 @@ std::unique_ptr<MainWindow> open_window(const std::filesystem::path& state, Answ
   QObject::connect(&window->view(), &WorldView::settled, window.get(),
                    [&answer](double ms) { answer.last_ms = ms; });
   window->show();
-  window->set_first_place(first_pose(), kFirstHeightM);
-  window->open_file(source_file(std::string("game/worlds/") + kFirstWorld + ".toml"));
+  window->set_default_pose(default_pose(), kDefaultEyeHeightM);
+  window->open_file(source_file(std::string("game/worlds/") + kDefaultWorld + ".toml"));
   wait_until([&] { return answer.last_ms >= 0; }, kLongestMs);
   return window;
 }
@@ -66,7 +66,7 @@ void steps(benchmark::State& state, bool held, const world::TextPath& path, cons
     answer = {};
     const double start_ms = cpu_ms(), main_start_ms = cpu_ms(RUSAGE_THREAD);
     if (held) Q_EMIT properties.drag_began();
-    Q_EMIT properties.wanted(path, std::exchange(first, !first) ? high : low);
+    Q_EMIT properties.change_requested(path, std::exchange(first, !first) ? high : low);
     if (!wait_until([&] { return answer.first_ms >= 0; }, kLongestMs))
       state.SkipWithError("no answer");
     first_cpu_ms += cpu_ms() - start_ms;

@@ -36,8 +36,9 @@ class RemoteSessionTest : public ::testing::Test {
     QObject::connect(&remote_, &RemoteSession::attached,
                      [this](const QJsonObject&, const std::string& text) { text_ = text; });
     QObject::connect(&remote_, &RemoteSession::ended, [this](const QString& s) { end_ = s; });
-    QObject::connect(&remote_, &RemoteSession::told, [this](const QString& s) { told_ = s; });
-    QObject::connect(&remote_, &RemoteSession::world_taken, [this] { ++taken_; });
+    QObject::connect(&remote_, &RemoteSession::message_posted,
+                     [this](const QString& s) { told_ = s; });
+    QObject::connect(&remote_, &RemoteSession::world_applied, [this] { ++taken_; });
     QObject::connect(&remote_, &RemoteSession::entities, [this](const QJsonObject&) { ++maps_; });
     QObject::connect(&remote_, &RemoteSession::systems, [this](const QJsonObject&) { ++systems_; });
     const auto found = inspect::endpoints(folder_.path());
@@ -52,7 +53,7 @@ class RemoteSessionTest : public ::testing::Test {
     if (!session_) return;
     ASSERT_TRUE(session_->tick(session_->home(), 1.0 / 60));
   }
-  // Both go on until it is so.
+  // Runs both sessions until a condition is true.
   bool until(const std::function<bool()>& so) {
     for (int i = 0; i < 100'000 && !so(); ++i) {
       tick();
@@ -78,13 +79,13 @@ class RemoteSessionTest : public ::testing::Test {
   int taken_ = 0, maps_ = 0, systems_ = 0;
 };
 
-TEST_F(RemoteSessionTest, HearsWhatTheSessionDoes) {
+TEST_F(RemoteSessionTest, ReceivesTheStatisticsOfTheSession) {
   EXPECT_TRUE(until([this] { return maps_ > 1 && systems_ > 1; }));
   ASSERT_TRUE(remote_.pose());
   EXPECT_EQ(remote_.pose()->yaw, session_->home().yaw);
 }
 
-TEST_F(RemoteSessionTest, SendsTheNewestWorldAndPutsTheOldOneBack) {
+TEST_F(RemoteSessionTest, SendsTheNewestWorldAndRestoresTheOldOne) {
   const std::string before = written();
   for (const char* digits : {"1", "2", "3", "4"})
     remote_.set_world(with_seed(digits));
@@ -100,7 +101,7 @@ TEST_F(RemoteSessionTest, SendsTheNewestWorldAndPutsTheOldOneBack) {
   EXPECT_TRUE(until([&] { return written() == before; }));
 }
 
-TEST_F(RemoteSessionTest, LeavesChangesThatAreKeptEvenIfTheyWereJustSent) {
+TEST_F(RemoteSessionTest, KeepsChangesEvenIfTheyWereJustSent) {
   remote_.set_world(with_seed("1"));
   remote_.set_world(with_seed("5"));
   remote_.detach(true);

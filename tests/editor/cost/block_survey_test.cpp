@@ -18,7 +18,7 @@ void expect_same(const BlockCost& a, const BlockCost& b) {
   EXPECT_NEAR(a.seconds, b.seconds, 1e-9 * b.seconds);
 }
 
-TEST(BlockSurvey, CostsOfWorldsInARowAreThoseOfEachAlone) {
+TEST(BlockSurvey, CostsOfASeriesOfWorldsEqualThoseOfEachAlone) {
   BlockSurvey survey(kAround, nullptr);
   for (const auto& parsed : {
            costed(),
@@ -36,17 +36,21 @@ TEST(BlockSurvey, ACurveHasTheCostsOfItsValues) {
   const auto parsed = costed();
   const auto sections = world::world_schema(kCostedWorld, parsed->world, parsed->registry).value();
   const world::WorldField& count = *world::find_field(sections, {"scatter", 0, "count"});
-  const auto curve =
-      cost_curve(kCostedWorld, "costed.toml", {}, count, kAround, nullptr, [] { return true; });
+  const auto curve = cost_curve({.text = kCostedWorld,
+                                 .file = "costed.toml",
+                                 .register_models = {},
+                                 .field = count,
+                                 .around = kAround},
+                                [] { return true; });
   ASSERT_GT(curve.size(), 5u);
   for (const CostPoint& point : {curve[0], curve[3], curve.back()}) {
     const auto toml = std::to_string(std::llround(point.value));
-    ASSERT_TRUE(point.cost) << point.refusal;
+    ASSERT_TRUE(point.cost) << point.error;
     expect_same(*point.cost, block_cost(*costed_with(count.path, toml), kAround, nullptr, false));
   }
 }
 
-TEST(BlockNear, BlocksLieAroundTheirMiddleAndApart) {
+TEST(BlockNear, BlocksAreApartAndAroundTheirMiddle) {
   world::World world;
   world.blocks_x = world.blocks_z = 0;
   for (const int count : {4, 8, 16}) {
@@ -65,7 +69,7 @@ TEST(BlockNear, BlocksLieAroundTheirMiddleAndApart) {
     EXPECT_TRUE(world.contains(block_near(world, kAround, i)));
 }
 
-TEST(BlockSurvey, AScatterCostsMoreWithMoreOfIt) {
+TEST(BlockSurvey, AScatterCostsMoreWithMoreInstances) {
   BlockSurvey survey(kAround, nullptr);
   const BlockCost few = survey.cost(*costed(), false);
   const BlockCost more = survey.cost(*costed_with({"scatter", 0, "count"}, "12"), false);
@@ -75,7 +79,7 @@ TEST(BlockSurvey, AScatterCostsMoreWithMoreOfIt) {
   EXPECT_GT(more.seconds, few.seconds);
 }
 
-TEST(BlockSurvey, MeasuresABlockWhereThatIsAskedFor) {
+TEST(BlockSurvey, MeasuresABlockOnRequest) {
   BlockSurvey survey(kAround, nullptr);
   EXPECT_FALSE(survey.cost(*costed(), false).measured_seconds);
   const auto measured = survey.cost(*costed(), true).measured_seconds;

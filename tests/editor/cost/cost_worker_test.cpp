@@ -26,11 +26,15 @@ class CostWorkerTest : public ::testing::Test {
     }
     return so();
   }
-  void ask() {
-    worker_.ask(kCostedWorld, "costed.toml", {}, {20, 20}, nullptr,
-                handmade::files_with({}, nullptr));
+  void request_curves() {
+    worker_.request_curves({.text = kCostedWorld,
+                            .file = "costed.toml",
+                            .around = {20, 20},
+                            .files = handmade::files_with({}, nullptr)});
   }
-  void ask_impact() { worker_.ask_impact(costed(), costed(), {20, 20}, {}, nullptr); }
+  void request_impact() {
+    worker_.request_impact({.before = costed(), .after = costed(), .around = {20, 20}});
+  }
 
   int argc_ = 0;
   QCoreApplication application_{argc_, nullptr};
@@ -38,28 +42,28 @@ class CostWorkerTest : public ::testing::Test {
   int costs_ = 0, impacts_ = 0;
 };
 
-TEST_F(CostWorkerTest, AnswersWhatItIsAsked) {
-  ask();
-  ask_impact();
+TEST_F(CostWorkerTest, AnswersRequestsForCurvesAndImpacts) {
+  request_curves();
+  request_impact();
   EXPECT_TRUE(until([this] { return costs_ == 1 && impacts_ == 1; }));
 }
 
-TEST_F(CostWorkerTest, RestsUntilItMayGoOn) {
+TEST_F(CostWorkerTest, RestsUntilItIsResumed) {
   worker_.rest(kLong);
-  ask();
-  ask_impact();
+  request_curves();
+  request_impact();
   for (int i = 0; i < 1000; ++i) {
     QCoreApplication::processEvents();
     QThread::yieldCurrentThread();
   }
   EXPECT_EQ(costs_ + impacts_, 0);
-  worker_.go_on();
+  worker_.resume();
   EXPECT_TRUE(until([this] { return costs_ == 1 && impacts_ == 1; }));
 }
 
-TEST_F(CostWorkerTest, EndsWhileItRests) {
+TEST_F(CostWorkerTest, EndsDuringARest) {
   worker_.rest(kLong);
-  ask();
+  request_curves();
 }
 
 }  // namespace

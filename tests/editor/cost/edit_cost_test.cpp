@@ -15,24 +15,24 @@ TEST(EditCost, MoreModelsMakeABlockMoreExpensiveAndNoModel) {
   EXPECT_EQ(many.model, few.model);
 }
 
-TEST(EditCost, ModelsThatAreNotThereCostNothing) {
+TEST(EditCost, ModelsWithoutInstancesCostNothing) {
   const EditCost some = edit_cost(*costed(), nullptr);
   const EditCost none = edit_cost(*costed_with({"scatter", 0, "count"}, "0"), nullptr);
   EXPECT_LT(none.block_seconds, some.block_seconds);
   EXPECT_EQ(none.model, "rock");
 }
 
-TEST(EditCost, IsAskedAboutBeyondALimitAndOnlyWhereItGrows) {
+TEST(EditCost, NeedsConfirmationBeyondALimitAndOnlyIfItGrows) {
   const CostLimits limits{1, 10, 4000, 4};
   const EditCost cheap{"tree", 0.5, 5, 500};
-  EXPECT_TRUE(cost_question({}, cheap, limits).isEmpty());
+  EXPECT_TRUE(confirmation_for({}, cheap, limits).isEmpty());
   const EditCost slow_model{"tree", 1.5, 5, 500};
-  EXPECT_TRUE(cost_question(cheap, slow_model, limits).contains("“tree” would take 1.5 s"));
-  EXPECT_TRUE(cost_question(slow_model, slow_model, limits).isEmpty()) << "it was so before";
+  EXPECT_TRUE(confirmation_for(cheap, slow_model, limits).contains("“tree” takes 1.5 s"));
+  EXPECT_TRUE(confirmation_for(slow_model, slow_model, limits).isEmpty()) << "it was so before";
   const EditCost large{"tree", 0.5, 5, 2000};
-  EXPECT_TRUE(cost_question(cheap, large, limits).contains("The cache holds 2 of them."));
-  EXPECT_TRUE(cost_question({"tree", 0.5, 5, 3000}, large, limits).isEmpty()) << "it shrinks";
-  EXPECT_FALSE(cost_question(cheap, {"tree", 0.5, 20, 500}, limits).isEmpty());
+  EXPECT_TRUE(confirmation_for(cheap, large, limits).contains("The cache holds 2 such blocks."));
+  EXPECT_TRUE(confirmation_for({"tree", 0.5, 5, 3000}, large, limits).isEmpty()) << "it shrinks";
+  EXPECT_FALSE(confirmation_for(cheap, {"tree", 0.5, 20, 500}, limits).isEmpty());
 }
 
 }  // namespace

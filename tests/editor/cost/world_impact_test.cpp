@@ -23,17 +23,17 @@ WorldImpact impact_of_value(const world::TextPath& path, const std::string& toml
   return impact_of(*costed(), *costed_with(path, toml), kMiddle, contents(), nullptr);
 }
 
-TEST(WorldImpact, LooksChangeNoMesh) {
+TEST(WorldImpact, ColoursChangeNoMesh) {
   const WorldImpact impact = impact_of_value({"sky", "exposure"}, "2");
   EXPECT_EQ(impact.changed, 0);
   EXPECT_EQ(impact.seconds, 0);
   EXPECT_EQ(impact.held, 1250);
   EXPECT_DOUBLE_EQ(impact.bytes, 7e5);
-  EXPECT_EQ(impact_text(impact), "No mesh changes.");
+  EXPECT_EQ(impact_text(impact), "Nothing to rebuild.");
 }
 
-// What lies far from where it is looked is not called nothing.
-TEST(WorldImpact, ARoadFarAwayChangesFewMeshesAndNotNone) {
+// Changes outside of the sample blocks are reported as such.
+TEST(WorldImpact, ARoadFarAwayChangesFewMeshes) {
   const auto with_road =
       parse_world_text(std::string(kCostedWorld) + "\n[[road]]\npoints_m = [[10, 10], [60, 20]]\n",
                        "costed.toml", {});
@@ -41,16 +41,16 @@ TEST(WorldImpact, ARoadFarAwayChangesFewMeshesAndNotNone) {
   const WorldImpact impact = impact_of(*costed(), **with_road, kMiddle, contents(), nullptr);
   EXPECT_EQ(impact.changed, 0);
   EXPECT_TRUE(impact.is_elsewhere);
-  EXPECT_EQ(impact_text(impact), "Few meshes change, and none of those around the camera.");
+  EXPECT_EQ(impact_text(impact), "Nothing near the camera needs rebuilding.");
 }
 
-TEST(WorldImpact, AnotherModelChangesItsMeshesAndWhatStandsForMany) {
+TEST(WorldImpact, AnotherModelChangesItsMeshesAndMergedOnes) {
   const WorldImpact impact = impact_of_value({"scatter", 1, "subdivisions"}, "1");
   EXPECT_DOUBLE_EQ(impact.changed, 550);
   EXPECT_GT(impact.seconds, 0.2);
 }
 
-TEST(WorldImpact, AnotherGroundChangesEverythingThatStandsOnIt) {
+TEST(WorldImpact, AnotherGroundChangesAllModelsOnIt) {
   const WorldImpact impact = impact_of_value({"terrain", "relief_m"}, "77");
   EXPECT_GE(impact.changed, 150);
   const WorldImpact seed = impact_of_value({"world", "seed"}, "6");
@@ -58,16 +58,16 @@ TEST(WorldImpact, AnotherGroundChangesEverythingThatStandsOnIt) {
   EXPECT_NEAR(seed.seconds, 1.1, 0.6) << "of two modelers";
 }
 
-TEST(WorldImpact, MoreOfTheLastModelKeepsWhatIsThere) {
+TEST(WorldImpact, MoreInstancesOfTheLastScatterKeepTheOthers) {
   const WorldImpact impact = impact_of_value({"scatter", 1, "count"}, "10");
   EXPECT_DOUBLE_EQ(impact.changed, 550) << "as many rocks again, and the merged ones";
   EXPECT_NEAR(impact.bytes, 9e5, 5e4);
 }
 
-TEST(WorldImpact, AModelThatTheCacheDoesNotKnowIsEstimatedByTheOthers) {
+TEST(WorldImpact, AModelWithoutCachedMeshesIsEstimatedFromTheOthers) {
   const WorldImpact impact = impact_of_value({"scatter", 1, "model"}, "\"grass\"");
   EXPECT_GT(impact.changed, 50);
-  EXPECT_TRUE(impact_text(impact).contains("to make them"));
+  EXPECT_TRUE(impact_text(impact).contains("Memory afterwards"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A small world whose costs are asked for.
+// A small world for tests of costs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ model = "rock"
 count = 5
 )";
 
-// The world with another value.
+// The world with one other value.
 inline ParsedWorldPtr costed_with(const world::TextPath& path, const std::string& toml) {
   const auto text = world::with_value(kCostedWorld, path, toml);
   EXPECT_TRUE(text.has_value());

@@ -1,4 +1,4 @@
-// The file of a document: opening, saving, and what others do to it meanwhile.
+// The file of a document: opening, saving, and changes by other programs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -22,7 +22,7 @@ using testing::kWorld;
 using testing::Place;
 using testing::replaced;
 
-TEST(DocumentFile, IsSavedAsTheTextIs) {
+TEST(DocumentFile, IsSavedByteForByte) {
   const Place place;
   Document document(place.options());
   QSignalSpy modified(&document, &Document::modified_changed);
@@ -44,7 +44,7 @@ TEST(DocumentFile, IsSavedAsTheTextIs) {
   EXPECT_EQ(testing::read(place.folder / "other.toml"), document.text());
 }
 
-TEST(DocumentFile, ThatIsNotAWorldIsRefusedAndTheOpenOneStays) {
+TEST(DocumentFile, ThatIsNotAWorldIsRejectedAndTheOpenOneStays) {
   const Place place;
   Document document(place.options());
   EXPECT_TRUE(good(document.open(place.file)));
@@ -77,7 +77,7 @@ TEST(DocumentFile, AFullDiskOrAMissingFolderLosesNothing) {
     const FullDisk full(place.folder.path(), calls);
     const auto saved = document.save();
     if (!full.was_met()) break;
-    if (saved) continue;  // only the recovery met it
+    if (saved) continue;  // only writing the recovery failed
     EXPECT_EQ(saved.error().code, core::ErrorCode::kIo);
     EXPECT_THAT(saved.error().message, HasSubstr("No space left"));
     EXPECT_EQ(testing::read(place.file), kWorld);
@@ -101,7 +101,7 @@ TEST(DocumentFile, ALinkStaysALinkAndPermissionsStay) {
   EXPECT_EQ(std::filesystem::status(place.file).permissions(), std::filesystem::perms(0640));
 }
 
-TEST(DocumentFile, ChangesByOthersAreToldAndReloadedAsAStep) {
+TEST(DocumentFile, ChangesByOthersAreReportedAndReloadedAsAStep) {
   const Place place;
   Document document(place.options());
   EXPECT_TRUE(good(document.open(place.file)));
@@ -118,7 +118,7 @@ TEST(DocumentFile, ChangesByOthersAreToldAndReloadedAsAStep) {
   EXPECT_TRUE(document.is_modified());
 }
 
-TEST(DocumentFile, AConflictIsToldAndNeitherTextIsLost) {
+TEST(DocumentFile, AConflictIsReportedAndNeitherTextIsLost) {
   const Place place;
   Document document(place.options());
   EXPECT_TRUE(good(document.open(place.file)));
@@ -130,9 +130,9 @@ TEST(DocumentFile, AConflictIsToldAndNeitherTextIsLost) {
   EXPECT_EQ(document.check_disk(), DiskState::kChanged);
   ASSERT_EQ(told.count(), 1);
   EXPECT_EQ(told.at(0).at(1).toBool(), true);
-  EXPECT_THAT(document.save().error().message, HasSubstr("changed by others"));
+  EXPECT_THAT(document.save().error().message, HasSubstr("another program changed"));
   EXPECT_EQ(testing::read(place.file), theirs);
-  document.keep_mine();
+  document.keep_editor_version();
   EXPECT_THAT(document.unsaved_diff(), HasSubstr("-seed = 7\n+seed = 6\n"));
   EXPECT_TRUE(good(document.save()));
   EXPECT_EQ(testing::read(place.file), document.text());
@@ -155,7 +155,7 @@ TEST(DocumentFile, AConflictIsToldAndNeitherTextIsLost) {
   }
 }
 
-TEST(DocumentFile, KilledWhileItSavesItIsTheOldOrTheNewOne) {
+TEST(DocumentFile, AfterAKillDuringSavingItIsTheOldOrTheNewOne) {
   const Place place;
   const std::string one = replaced(kWorld, "seed = 5", "seed = 8");
   const std::string two = replaced(kWorld, "seed = 5", "seed = 9");
@@ -183,7 +183,7 @@ TEST(DocumentFile, KilledWhileItSavesItIsTheOldOrTheNewOne) {
   }
 }
 
-TEST(RecentFiles, AreNewestFirstAndOnlyOnce) {
+TEST(RecentFiles, AreUniqueAndNewestFirst) {
   const TemporaryFolder folder;
   QSettings settings(QString::fromStdString((folder / "settings.ini").string()),
                      QSettings::IniFormat);
@@ -191,8 +191,6 @@ TEST(RecentFiles, AreNewestFirstAndOnlyOnce) {
   note_recent_file(settings, "/a/two.toml");
   note_recent_file(settings, "/a/../a/one.toml");
   EXPECT_THAT(recent_files(settings), ElementsAre("/a/one.toml", "/a/two.toml"));
-  forget_recent_file(settings, "/a/one.toml");
-  EXPECT_THAT(recent_files(settings), ElementsAre("/a/two.toml"));
   for (int i = 0; i < 30; ++i)
     note_recent_file(settings, "/" + std::to_string(i));
   EXPECT_EQ(recent_files(settings).size(), kMaxRecentFiles);

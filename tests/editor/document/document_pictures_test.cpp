@@ -1,4 +1,4 @@
-// Pictures that a document paints: masks held in memory until the world is saved.
+// Painted images of a document: masks in memory until the world is saved.
 #include <gmock/gmock.h>
 
 #include "editor/document/document.hpp"
@@ -60,8 +60,8 @@ struct Painted {
   }
 };
 
-// A file beside the world that is gone does not take the steps with it.
-TEST(DocumentPictures, StepsAreTakenBackThoughAFileOfTheirsIsGone) {
+// A missing file does not affect the undo steps.
+TEST(DocumentPictures, StepsAreUndoneAlthoughAFileIsMissing) {
   Place place;
   Document document(place.options());
   ASSERT_TRUE(good(document.open(place.file)));
@@ -94,7 +94,7 @@ TEST(DocumentPictures, AreWrittenWithTheWorldAndNotBefore) {
   EXPECT_EQ(painted.on_disk(), 500) << "16 bits";
   EXPECT_TRUE(good(painted.paint(700)));
   EXPECT_TRUE(document.is_modified()) << "though the text is the same";
-  EXPECT_EQ(document.unsaved_diff(), "Binary files trees.png and trees.png (not saved) differ\n");
+  EXPECT_EQ(document.unsaved_diff(), "Binary files trees.png and trees.png (unsaved) differ\n");
   EXPECT_EQ(painted.on_disk(), 500);
   document.undo_stack().undo();
   EXPECT_EQ(painted.shown(), 500);
@@ -124,7 +124,7 @@ TEST(DocumentPictures, APreviewIsNoStep) {
   EXPECT_FALSE(painted.document->is_modified());
 }
 
-TEST(DocumentPictures, ThatOthersHaveChangedAreReplacedOnlyWhenAskedTwice) {
+TEST(DocumentPictures, ChangedByOthersAreReplacedOnlyWhenSavedTwice) {
   Painted painted;
   Document& document = *painted.document;
   EXPECT_TRUE(good(document.save()));
@@ -132,7 +132,7 @@ TEST(DocumentPictures, ThatOthersHaveChangedAreReplacedOnlyWhenAskedTwice) {
   write_grey(painted.picture, grey_picture(4444));
   const auto refused = document.save();
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("trees.png: the picture there is not the one"));
+  EXPECT_THAT(refused.error().message, HasSubstr("trees.png: another program replaced this image"));
   EXPECT_EQ(painted.on_disk(), 4444);
   EXPECT_TRUE(document.is_modified());
   write_grey(painted.picture, grey_picture(5555));
@@ -141,7 +141,7 @@ TEST(DocumentPictures, ThatOthersHaveChangedAreReplacedOnlyWhenAskedTwice) {
   EXPECT_EQ(painted.on_disk(), 500);
 }
 
-TEST(DocumentPictures, ThatCannotBeWrittenLoseNothing) {
+TEST(DocumentPictures, LoseNothingIfTheyCannotBeWritten) {
   Painted painted;
   Document& document = *painted.document;
   std::filesystem::create_directory(painted.picture);
@@ -153,7 +153,7 @@ TEST(DocumentPictures, ThatCannotBeWrittenLoseNothing) {
   std::filesystem::remove(painted.picture);
   EXPECT_TRUE(good(document.save()));
   EXPECT_EQ(painted.on_disk(), 9);
-  // A file that is gone is written again, and steps do not need it.
+  // A missing file is written again, and steps do not need it.
   EXPECT_TRUE(good(painted.paint(500)));
   std::filesystem::remove(painted.picture);
   document.undo_stack().undo();
@@ -173,7 +173,7 @@ TEST(DocumentPictures, OfAWorldWithoutAFileAreWrittenBesideItsFirst) {
   std::filesystem::create_directory(folder);
   EXPECT_TRUE(good(document.save_as(folder / "new.toml")));
   EXPECT_TRUE(std::filesystem::exists(folder / kName));
-  // In another folder they come along.
+  // Saving in another folder writes them there.
   const auto next = painted.place.folder.path() / "next";
   std::filesystem::create_directory(next);
   EXPECT_TRUE(good(document.save_as(next / "new.toml")));
@@ -194,7 +194,7 @@ TEST(DocumentPictures, AreRevertedWithTheText) {
   EXPECT_EQ(painted.shown(), 500);
 }
 
-TEST(DocumentPictures, ComeBackAfterACrash) {
+TEST(DocumentPictures, ReturnAfterACrash) {
   for (const bool has_file : {true, false}) {
     Painted painted;
     if (!has_file) {
@@ -203,7 +203,7 @@ TEST(DocumentPictures, ComeBackAfterACrash) {
     }
     EXPECT_TRUE(good(painted.paint(500)));
     EXPECT_TRUE(good(painted.document->write_recovery()));
-    // What a killed editor leaves: its files, without locks.
+    // The files of a killed editor, without locks.
     const auto left_state = painted.place.folder.path() / "left";
     std::filesystem::copy(painted.place.state, left_state);
     painted.document.reset();

@@ -18,7 +18,7 @@ using testing::kWorld;
 using testing::Place;
 using testing::replaced;
 
-// A document with the world of the tests, and what it told.
+// A document with the world of the tests, and the changes that it has reported.
 struct Opened {
   Place place;
   Document document;
@@ -33,7 +33,7 @@ struct Opened {
   }
 };
 
-TEST(Document, ANewOneIsAWorldWithoutAFile) {
+TEST(Document, ANewOneIsAValidWorldWithoutAFile) {
   const Place place;
   Document document(place.options());
   EXPECT_TRUE(document.file().empty());
@@ -42,7 +42,7 @@ TEST(Document, ANewOneIsAWorldWithoutAFile) {
   EXPECT_EQ(document.save().error().message, "this world has no file yet");
 }
 
-TEST(Document, AnEditChangesTheTextAndTellsWhichSection) {
+TEST(Document, AnEditChangesTheTextAndReportsItsSection) {
   Opened opened;
   Document& document = opened.document;
   EXPECT_TRUE(good(document.set_value({"sky", "exposure"}, "2")));
@@ -87,7 +87,7 @@ TEST(Document, EveryEditIsANamedStepThatIsUndoneToTheByte) {
   }
 }
 
-TEST(Document, ADragIsOneStepAndNoneWhereItEndsAtItsBegin) {
+TEST(Document, ADragIsOneStepAndNoneIfItEndsAtItsStart) {
   Opened opened;
   Document& document = opened.document;
   document.begin_drag();
@@ -105,7 +105,7 @@ TEST(Document, ADragIsOneStepAndNoneWhereItEndsAtItsBegin) {
   EXPECT_EQ(document.text(), kWorld);
 }
 
-TEST(Document, ARefusedEditNamesTheFieldAndChangesNothing) {
+TEST(Document, ARejectedEditNamesTheFieldAndChangesNothing) {
   Opened opened;
   Document& document = opened.document;
   const auto refused = document.set_value({"sky", "exposure"}, "1000");
@@ -122,7 +122,7 @@ TEST(Document, ARefusedEditNamesTheFieldAndChangesNothing) {
   EXPECT_EQ(opened.times, 0);
   EXPECT_EQ(document.text(), kWorld);
   EXPECT_EQ(document.undo_stack().count(), 0);
-  EXPECT_TRUE(good(document.set_value({"world", "seed"}, "5")));  // as it is
+  EXPECT_TRUE(good(document.set_value({"world", "seed"}, "5")));  // the present value
   EXPECT_EQ(document.undo_stack().count(), 0);
 }
 
@@ -147,7 +147,7 @@ TEST(Document, ModelTypesOfTheProgramAreKnown) {
   EXPECT_NE(document.field({"scatter", 2, "leaf_scale"}), nullptr);
 }
 
-TEST(Document, ASpeciesIsRenamedAndDuplicatedWithItsName) {
+TEST(Document, ARenamedSpeciesIsRenamedInItsScattersAndADuplicateGetsAFreeName) {
   Opened opened(testing::read(source_file("game/worlds/five_species.toml")));
   Document& document = opened.document;
   const std::size_t count = document.world().species.size();
@@ -155,21 +155,23 @@ TEST(Document, ASpeciesIsRenamedAndDuplicatedWithItsName) {
   EXPECT_EQ(document.world().species.size(), count + 1);
   EXPECT_EQ(document.world().species[1].name, document.world().species[0].name + "_2");
   const std::string old = document.world().species[0].name;
-  EXPECT_TRUE(good(document.rename_species(0, "elder")));
+  EXPECT_TRUE(good(document.append_table({"place"}, "model = \"" + old + "\"\nat_m = [12, 20]\n")));
+  EXPECT_TRUE(good(document.set_value({"species", 0, "name"}, "\"elder\"")));
   EXPECT_EQ(document.text().find("model = \"" + old + "\""), std::string::npos);
   EXPECT_NE(document.text().find("model = \"elder\""), std::string::npos);
-  EXPECT_FALSE(document.rename_species(0, document.world().species[2].name));
+  EXPECT_FALSE(
+      document.set_value({"species", 0, "name"}, "\"" + document.world().species[2].name + "\""));
   EXPECT_FALSE(document.remove_table({"species", 0})) << "it is scattered";
   EXPECT_TRUE(good(document.remove_table({"species", 1})));
 }
 
-TEST(Document, AScatterGetsAnotherModelWithoutTheParametersOfTheOld) {
+TEST(Document, AScatterWithAnotherModelLosesTheParametersOfTheOldOne) {
   Opened opened;
   Document& document = opened.document;
-  EXPECT_TRUE(good(document.set_scatter_model(0, "rock")));
+  EXPECT_TRUE(good(document.set_value({"scatter", 0, "model"}, "\"rock\"")));
   EXPECT_EQ(document.text(),
             replaced(replaced(kWorld, "\"tree\"", "\"rock\""), "size_m = [1.5, 2.5]\n", ""));
-  EXPECT_FALSE(document.set_scatter_model(0, "nothing"));
+  EXPECT_FALSE(document.set_value({"scatter", 0, "model"}, "\"nothing\""));
 }
 
 TEST(Document, SectionsAreKeptAsPresets) {
@@ -208,7 +210,7 @@ TEST(Document, RandomisingIsOneStepAndLeavesLockedFieldsAlone) {
   EXPECT_FALSE(document.step_value({"world", "name"}, 1));
 }
 
-TEST(Document, LocksGoWithTheirTablesAndComeBackWithUndo) {
+TEST(Document, LocksMoveWithTheirTablesAndReturnWithUndo) {
   Opened opened;
   Document& document = opened.document;
   document.locks().set_locked({"scatter", 1, "count"}, true);

@@ -1,4 +1,4 @@
-// Edits that wait until a person agrees.
+// Edits that need the user's confirmation.
 #include <gmock/gmock.h>
 
 #include "engine/world/files/text_edit.hpp"
@@ -13,7 +13,7 @@ using testing::replaced;
 
 const world::TextPath kStones{"scatter", 1, "count"};
 
-// A document that asks where there are more than 100 stones, and what it asked.
+// A document that asks for confirmation of more than 100 stones, and its questions.
 struct Guarded {
   testing::Place place;
   Document document{place.options()};
@@ -25,7 +25,7 @@ struct Guarded {
       const auto count = after.world.scatter[1].count;
       return count > 100 ? QString("%1 stones?").arg(count) : QString();
     });
-    QObject::connect(&document, &Document::asked, &document,
+    QObject::connect(&document, &Document::edit_proposed, &document,
                      [this](const QString& sentence) { asked.push_back(sentence.toStdString()); });
     QObject::connect(&document, &Document::changed, &document, [this] { ++changes; });
   }
@@ -38,44 +38,44 @@ TEST(DocumentGuard, ACostlyValueChangesNothingUntilItIsApplied) {
   EXPECT_EQ(document.text(), kWorld);
   EXPECT_EQ(guarded.changes, 0);
   EXPECT_EQ(document.undo_stack().count(), 0);
-  EXPECT_EQ(document.question(), "900 stones?");
-  EXPECT_TRUE(good(document.apply_asked()));
+  EXPECT_EQ(document.confirmation(), "900 stones?");
+  EXPECT_TRUE(good(document.apply_proposed_edit()));
   EXPECT_EQ(document.text(), replaced(kWorld, "count = 5", "count = 900"));
-  EXPECT_TRUE(document.question().isEmpty());
+  EXPECT_TRUE(document.confirmation().isEmpty());
   EXPECT_THAT(guarded.asked, ::testing::ElementsAre("900 stones?", ""));
   document.undo_stack().undo();
   EXPECT_EQ(document.text(), kWorld);
 }
 
-TEST(DocumentGuard, AnEditThatIsDroppedIsGone) {
+TEST(DocumentGuard, ADiscardedEditIsGone) {
   Guarded guarded;
   Document& document = guarded.document;
   EXPECT_TRUE(good(document.set_value(kStones, "900")));
-  document.drop_asked();
-  EXPECT_TRUE(document.question().isEmpty());
-  EXPECT_TRUE(good(document.apply_asked()));
+  document.discard_proposed_edit();
+  EXPECT_TRUE(document.confirmation().isEmpty());
+  EXPECT_TRUE(good(document.apply_proposed_edit()));
   EXPECT_EQ(document.text(), kWorld);
   EXPECT_EQ(guarded.changes, 0);
 }
 
-TEST(DocumentGuard, AnyOtherEditTakesTheQuestionBack) {
+TEST(DocumentGuard, AnyOtherEditDiscardsTheProposedOne) {
   Guarded guarded;
   Document& document = guarded.document;
   EXPECT_TRUE(good(document.set_value(kStones, "900")));
   EXPECT_TRUE(good(document.set_value(kStones, "901")));
-  EXPECT_EQ(document.question(), "901 stones?") << "the newest one waits";
+  EXPECT_EQ(document.confirmation(), "901 stones?") << "the newest edit replaces the others";
   EXPECT_TRUE(good(document.set_value({"world", "seed"}, "6")));
-  EXPECT_TRUE(document.question().isEmpty());
+  EXPECT_TRUE(document.confirmation().isEmpty());
   EXPECT_TRUE(good(document.set_value(kStones, "900")));
   document.undo_stack().undo();
-  EXPECT_TRUE(document.question().isEmpty());
+  EXPECT_TRUE(document.confirmation().isEmpty());
   EXPECT_TRUE(good(document.set_value(kStones, "900")));
   EXPECT_TRUE(good(document.set_value(kStones, "5"))) << "back to what is";
-  EXPECT_TRUE(document.question().isEmpty());
+  EXPECT_TRUE(document.confirmation().isEmpty());
   EXPECT_EQ(document.text(), kWorld);
 }
 
-TEST(DocumentGuard, ADragIntoCostlyValuesIsOneStepWithWhatIsAppliedOfIt) {
+TEST(DocumentGuard, ADragIntoCostlyValuesIsOneStepWithItsAppliedEdits) {
   Guarded guarded;
   Document& document = guarded.document;
   document.begin_drag();
@@ -84,25 +84,25 @@ TEST(DocumentGuard, ADragIntoCostlyValuesIsOneStepWithWhatIsAppliedOfIt) {
   document.end_drag();
   EXPECT_EQ(document.world().scatter[1].count, 90U);
   EXPECT_EQ(guarded.changes, 2) << "the world never sees costly values";
-  EXPECT_TRUE(good(document.apply_asked()));
+  EXPECT_TRUE(good(document.apply_proposed_edit()));
   EXPECT_EQ(document.world().scatter[1].count, 900U);
   EXPECT_EQ(document.undo_stack().count(), 1);
   document.undo_stack().undo();
   EXPECT_EQ(document.text(), kWorld);
 }
 
-TEST(DocumentGuard, FilesAndRefusedValuesAreNotAskedAbout) {
+TEST(DocumentGuard, FilesAndInvalidValuesNeedNoConfirmation) {
   Guarded guarded;
   Document& document = guarded.document;
   EXPECT_FALSE(document.set_value(kStones, "\"many\""));
-  EXPECT_TRUE(document.question().isEmpty());
+  EXPECT_TRUE(document.confirmation().isEmpty());
   testing::write(guarded.place.file, replaced(kWorld, "count = 5", "count = 900"));
   EXPECT_TRUE(good(document.reload()));
   EXPECT_EQ(document.world().scatter[1].count, 900U);
   EXPECT_TRUE(guarded.asked.empty());
 }
 
-TEST(Document, ASectionIsResetInOneStepAndKeepsWhatHasNoDefault) {
+TEST(Document, ASectionIsResetInOneStepAndKeepsFieldsWithoutDefault) {
   testing::Place place;
   Document document(place.options());
   EXPECT_TRUE(good(document.open(place.file)));

@@ -17,7 +17,7 @@ TEST(LineDiff, ShowsHunksWithTheirLines) {
             "--- x\n+++ y\n@@ -1,2 +1,3 @@\n+0\n 1\n 2\n@@ -6,3 +7,2 @@\n 6\n 7\n-8\n");
 }
 
-// Applies what a diff says.
+// Applies a diff.
 std::string applied(const std::vector<DiffLine>& lines, DiffLine::Kind without) {
   std::string text;
   for (const DiffLine& line : lines)
@@ -25,7 +25,7 @@ std::string applied(const std::vector<DiffLine>& lines, DiffLine::Kind without) 
   return text;
 }
 
-TEST(LineDiff, LeadsFromOneTextToTheOther) {
+TEST(LineDiff, TransformsOneTextIntoTheOther) {
   std::mt19937_64 random(1);
   for (int round = 0; round < 500; ++round) {
     std::string before, after;

@@ -1,4 +1,4 @@
-// Tests of what uses Qt run inside an application without a window.
+// Runs tests that need Qt in an application without a window.
 #include <gtest/gtest.h>
 
 #include <QCoreApplication>

@@ -34,7 +34,7 @@ void killed_after(const Place& place, const Work& work) {
   EXPECT_EQ(WTERMSIG(status), SIGKILL);
 }
 
-TEST(Recovery, WhatAKilledEditorHadNotSavedComesBackAsAStep) {
+TEST(Recovery, UnsavedChangesOfAKilledEditorReturnAsAStep) {
   const Place place;
   killed_after(place, [&](Document& document) {
     return document.open(place.file) && document.set_value({"world", "seed"}, "6") &&
@@ -54,7 +54,7 @@ TEST(Recovery, WhatAKilledEditorHadNotSavedComesBackAsAStep) {
   EXPECT_EQ(document.text(), kWorld);
 }
 
-TEST(Recovery, AWorldWithoutAFileComesBackToo) {
+TEST(Recovery, AWorldWithoutAFileReturnsToo) {
   const Place place;
   std::string text;
   {
@@ -72,7 +72,7 @@ TEST(Recovery, AWorldWithoutAFileComesBackToo) {
   EXPECT_TRUE(document.file().empty() && document.is_modified());
 }
 
-TEST(Recovery, IsWrittenByItselfAndRemovedWhenNothingIsUnsaved) {
+TEST(Recovery, IsWrittenAutomaticallyAndRemovedWhenNothingIsUnsaved) {
   const Place place;
   DocumentOptions options = place.options();
   options.autosave_ms = 1;
@@ -95,7 +95,7 @@ TEST(Recovery, IsWrittenByItselfAndRemovedWhenNothingIsUnsaved) {
   EXPECT_FALSE(written());
 }
 
-TEST(Recovery, TwoEditorsOfOneFileAreTold) {
+TEST(Recovery, ASecondEditorOfAFileIsRejected) {
   const Place place;
   Document first(place.options()), second(place.options());
   EXPECT_TRUE(good(first.open(place.file)));
@@ -113,7 +113,7 @@ TEST(Recovery, TwoEditorsOfOneFileAreTold) {
   EXPECT_TRUE(good(first.save_as(place.folder / "other.toml"))) << "a killed editor holds nothing";
 }
 
-TEST(Recovery, DamagedFilesAndAFolderThatCannotBeWrittenLoseNothing) {
+TEST(Recovery, DamagedFilesAndAReadOnlyFolderLoseNothing) {
   const Place place;
   {
     Document document(place.options());

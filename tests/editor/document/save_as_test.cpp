@@ -1,4 +1,4 @@
-// Saving a world in another folder: what it names beside itself comes along, or nothing does.
+// Saving a world in another folder: all referenced files are copied, or none.
 #include <gmock/gmock.h>
 
 #include <set>
@@ -42,7 +42,7 @@ size_m = 60
 height_m = 5
 )";
 
-// A folder with a world and all that it names, and another one.
+// A folder with a world and all referenced files, and another folder.
 struct WithFiles {
   Place place{kNamingWorld};
   std::filesystem::path from = place.folder.path(), to = place.folder.path() / "other";
@@ -64,7 +64,7 @@ struct WithFiles {
     EXPECT_TRUE(good(image::write_png(
         from / name, image::GreyImage{4, 4, std::vector<std::uint16_t>(16, value)})));
   }
-  // One value all over.
+  // One value everywhere.
   void paint(const std::string& name, std::uint16_t value) {
     auto painted = std::make_shared<world::GreyPicture>(*document->picture(name));
     painted->pixels.assign(painted->pixels.size(), value);
@@ -90,7 +90,7 @@ const std::set<std::string> kAll{"new.toml",         "balls.png",        "hill.p
                                  "ground",           "ground/grass.png", "things",
                                  "things/ball.gltf", "things/parts",     "things/parts/a ball.bin"};
 
-TEST(SaveAs, InAnotherFolderTakesAllAlongThatTheWorldNames) {
+TEST(SaveAs, InAnotherFolderCopiesAllReferencedFiles) {
   WithFiles bench;
   const auto copied = bench.document->save_as(bench.to / "new.toml");
   ASSERT_TRUE(good(copied));
@@ -107,18 +107,19 @@ TEST(SaveAs, InAnotherFolderTakesAllAlongThatTheWorldNames) {
   EXPECT_TRUE(again->empty());
 }
 
-TEST(SaveAs, AnotherFileOfTheSameNameIsReplacedOnlyWhenAskedTwice) {
+TEST(SaveAs, AnotherFileOfTheSameNameIsReplacedOnlyWhenSavedTwice) {
   WithFiles bench;
   std::filesystem::create_directory(bench.to / "things");
   testing::write(bench.to / "things/ball.gltf", "of somebody");
   testing::write(bench.to / "hill.png", "of somebody else");
   std::filesystem::copy(bench.from / "balls.png", bench.to / "balls.png");
   const auto before = bench.in_other();
-  EXPECT_THAT(bench.refusal(), AllOf(HasSubstr("things/ball.gltf: another file of this name"),
-                                     HasSubstr("hill.png"), HasSubstr("save again to replace it")));
+  EXPECT_THAT(bench.refusal(),
+              AllOf(HasSubstr("things/ball.gltf: another file of this name exists"),
+                    HasSubstr("hill.png"), HasSubstr("save again to replace it")));
   EXPECT_EQ(bench.in_other(), before);
   testing::write(bench.to / "hill.png", "of yet another");
-  EXPECT_THAT(bench.refusal(), HasSubstr("hill.png")) << "it is another one by now";
+  EXPECT_THAT(bench.refusal(), HasSubstr("hill.png")) << "the file has changed again";
   EXPECT_EQ(read(bench.to / "things/ball.gltf"), "of somebody");
   const auto copied = bench.document->save_as(bench.to / "new.toml");
   ASSERT_TRUE(good(copied));
@@ -127,7 +128,7 @@ TEST(SaveAs, AnotherFileOfTheSameNameIsReplacedOnlyWhenAskedTwice) {
   EXPECT_EQ(read(bench.to / "hill.png"), read(bench.from / "hill.png"));
 }
 
-TEST(SaveAs, AMissingFileIsNamedAndNothingIsLeftBehind) {
+TEST(SaveAs, AMissingFileIsNamedAndNoNewFilesAreLeft) {
   for (const char* name : {"balls.png", "hill.png", "ground/grass.png", "things/ball.gltf",
                            "things/parts/a ball.bin"}) {
     WithFiles bench;
@@ -139,8 +140,8 @@ TEST(SaveAs, AMissingFileIsNamedAndNothingIsLeftBehind) {
   }
 }
 
-// Also of what was painted and is written after the copies.
-TEST(SaveAs, AFullDiskLeavesNothingNew) {
+// Also for painted images, which are written after the copies.
+TEST(SaveAs, AFullDiskLeavesNoNewFiles) {
   for (const bool painted : {false, true}) {
     WithFiles bench;
     if (painted) bench.paint("balls.png", 4000);
@@ -149,7 +150,7 @@ TEST(SaveAs, AFullDiskLeavesNothingNew) {
       const FullDisk full(bench.to, calls);
       const auto saved = bench.document->save_as(bench.to / "new.toml");
       if (!full.was_met()) break;
-      if (saved) break;  // only what comes after the text met it
+      if (saved) break;  // only writes after the text failed
       ++failures;
       EXPECT_THAT(saved.error().message, HasSubstr("No space left"));
       EXPECT_EQ(saved.error().code, core::ErrorCode::kIo);

@@ -29,11 +29,11 @@ TEST(Scale, RisesFromOneEndToTheOtherAndBack) {
        {Scale{0.123456, 1.5}, Scale{0.02, 30.1234, true}, Scale{1, 12, false, true}}) {
     EXPECT_EQ(scale.at(0), scale.low);
     EXPECT_EQ(scale.at(1), scale.high);
-    EXPECT_EQ(scale.share_of(scale.low - 5), 0);
-    EXPECT_EQ(scale.share_of(scale.high + 5), 1);
+    EXPECT_EQ(scale.fraction_of(scale.low - 5), 0);
+    EXPECT_EQ(scale.fraction_of(scale.high + 5), 1);
     for (int i = 1; i <= 100; ++i) {
       EXPECT_GE(scale.at(i / 100.0), scale.at((i - 1) / 100.0));
-      EXPECT_NEAR(scale.share_of(scale.at(i / 100.0)), i / 100.0, 0.05);
+      EXPECT_NEAR(scale.fraction_of(scale.at(i / 100.0)), i / 100.0, 0.05);
     }
   }
 }

@@ -52,7 +52,7 @@ inline std::string replaced(std::string text, std::string_view from, std::string
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// A folder with world.toml and a state folder of its own.
+// A folder with world.toml and its own state folder.
 struct Place {
   TemporaryFolder folder;
   std::filesystem::path file = folder / "world.toml";
@@ -65,7 +65,7 @@ struct Place {
   }
 };
 
-// Expects that something went well, and shows its sentence if not.
+// Expects success, and shows the error message otherwise.
 template <class T>
 bool good(const core::Result<T>& result) {
   if (!result) ADD_FAILURE() << result.error().message;

@@ -20,12 +20,12 @@ void each_field(const std::vector<world::WorldSection>& sections,
   }
 }
 
-TEST(Variation, RandomAndSteppedValuesAreOneValueOfTheRightKind) {
+TEST(Variation, RandomAndSteppedValuesHaveTheKindOfTheirField) {
   const testing::Place place(testing::read(source_file("game/worlds/five_species.toml")));
   Document document(place.options());
   ASSERT_TRUE(good(document.open(place.file)));
   std::mt19937_64 random(3);
-  constexpr std::size_t kEach = 4;  // of the fields; each has to be read as a world
+  constexpr std::size_t kEach = 4;  // tests every fourth field, because each needs a parsed world
   std::size_t fields = 0, values = 0, taken = 0;
   each_field(document.sections(), [&](const world::WorldField& field) {
     const auto value = fields++ % kEach == 0 ? random_value(field, random) : std::nullopt;
@@ -71,7 +71,7 @@ TEST(Variation, StepsGoUpAndDownWithinTheHardRange) {
   EXPECT_FALSE(stepped_value(field, 1));
 }
 
-TEST(FieldLocks, AreKeptBesideTheFileAndGoWithTheirItems) {
+TEST(FieldLocks, AreKeptInTheStateFolderAndMoveWithTheirItems) {
   const testing::Place place;
   std::filesystem::create_directories(place.state);
   FieldLocks locks;

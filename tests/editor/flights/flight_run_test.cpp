@@ -28,7 +28,7 @@ constexpr const char* kSummary = R"({"schema": "psygen.summary/1", "run": {"mode
   "frame_ms": {"p50": 3.14159, "p99": null}, "cache": {"peak_bytes": 1048577},
   "missing": {"frames": 0, "pixels_max_percent": 0.0}, "hash": {"world": "0123456789abcdef"}})";
 
-// frames.csv as flights write it.
+// A frames.csv as written by flights.
 std::string frames_csv(const TemporaryFolder& folder, int frames) {
   telemetry::FrameLog log({"cache", "render"});
   for (int i = 0; i < frames; ++i) {
@@ -61,7 +61,7 @@ TEST(FlightRun, HasTheCurvesOfItsFrames) {
   EXPECT_NEAR(run->busy_percent[15], 50, 15);
 }
 
-TEST(FlightRun, RefusesWhatNoFlightWrites) {
+TEST(FlightRun, RejectsInvalidFiles) {
   const TemporaryFolder folder;
   const std::string whole = frames_csv(folder, 3);
   const auto error = [](const std::string& csv, const std::string& summary = kSummary) {
@@ -97,14 +97,14 @@ TEST(FlightRun, MakesAFrameTestThatItPasses) {
   EXPECT_EQ(test->flight.session.scene.modelers, 3U);
   EXPECT_TRUE(test->flight.session.scene.virtual_time);
   EXPECT_THAT(text, HasSubstr("frame_ms.p50 = 3.15"));
-  EXPECT_THAT(text, ::testing::Not(HasSubstr("frame_ms.p99")));  // it was not measured
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("frame_ms.p99")));  // not measured
   EXPECT_THAT(text, HasSubstr("hash.world = \"0123456789abcdef\""));
   run->settings.virtual_clock = false;
   EXPECT_THAT(frame_test_text(*run, "a", "w", "p"), HasSubstr("frame_ms.p50 = 4.7"));
 }
 
-// From a recording to `psygen test`, as a person does it.
-TEST(FlightProcess, FliesARecordingWhoseFrameTestPasses) {
+// From a recording to `psygen test`, like a user.
+TEST(FlightProcess, RendersARecordingWhoseFrameTestPasses) {
   const TemporaryFolder folder;
   const auto world_file = source_file("game/worlds/paper.toml");
   models::Registry registry = models::make_standard_registry();
@@ -144,7 +144,7 @@ TEST(FlightProcess, FliesARecordingWhoseFrameTestPasses) {
   EXPECT_EQ(test.exitCode(), 0) << test.readAll().toStdString();
 }
 
-TEST(FlightProcess, SaysWhyAFlightFailed) {
+TEST(FlightProcess, ReportsTheErrorOfAFlight) {
   const TemporaryFolder folder;
   FlightProcess process;
   QEventLoop loop;

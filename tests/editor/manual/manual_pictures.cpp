@@ -1,8 +1,8 @@
-// Takes the pictures of the manual (docs/editor.md): goes through the panels of a window as a
-// person would and saves each as NAME-THEME-WIDTH.jpg. Run by tools/editor_pictures.sh. Minutes.
+// Takes the images of the manual (docs/editor.md): uses the panels of a window and saves each as
+// NAME-THEME-WIDTH.jpg. Run by tools/editor_pictures.sh; takes minutes.
 //   psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools|others]
-// `window`: that alone; `tools`: those of the view; `others`: export, comparison, attached flight.
-// It edits the document and saves nothing of it.
+// `window`: only the window; `tools`: the tools of the view; `others`: export, comparison, attached
+// flight. It edits the document without saving.
 #include <QAction>
 #include <QApplication>
 #include <QComboBox>
@@ -37,7 +37,7 @@
 #include "editor/panels/properties_panel.hpp"
 #include "editor/pictures/picture_server.hpp"
 #include "editor/shell/command_palette.hpp"
-#include "editor/shell/first_world.hpp"
+#include "editor/shell/default_world.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
 #include "editor/tools/view_tools.hpp"
@@ -54,7 +54,7 @@ struct Arguments {
   QString theme;
   std::string size;                 // of the display
   std::string only;                 // "window", "tools", "others"; empty: all pictures
-  std::filesystem::path home = {};  // for files that nobody keeps
+  std::filesystem::path home = {};  // for temporary files
 };
 
 constexpr int kLongestMs = 400'000, kRestMs = 700, kQuality = 78;
@@ -86,7 +86,7 @@ class Photographer {
     }
     fail("there is no command " + name);
   }
-  // Until a change is in the picture with all its meshes.
+  // Makes a change and waits until the view shows it with all meshes.
   void settle(const std::function<void()>& change) {
     const int before = settled_;
     change();
@@ -116,7 +116,7 @@ class Photographer {
     rest();
     save(name, dock->widget()->grab());
   }
-  // The whole window; the view is not Qt's to grab.
+  // The whole window. Qt cannot grab the Vulkan view, so its image is drawn over.
   void window(const QString& name) {
     rest();
     QPixmap picture = window_.grab();
@@ -149,7 +149,7 @@ world::TextPath section_called(const Document& document, const std::string& tabl
   return {};
 }
 
-// A scatter with its costs, and what a change of it does.
+// A scatter with its costs, and the impact of a change.
 void take_window(Photographer& take) {
   const world::TextPath oaks = section_called(take.document(), "scatter", "oak");
   take.properties().go_to(oaks);
@@ -157,7 +157,7 @@ void take_window(Photographer& take) {
   const world::TextPath size = oaks.with("size_m");
   take.settle([&] { take.set(size, "[2.4, 3.9]"); });
   ImpactBar& impact = take.properties().impact();
-  if (!wait_until([&] { return impact.findChild<QLabel*>()->text().contains("meshes change"); },
+  if (!wait_until([&] { return impact.findChild<QLabel*>()->text().contains("Rebuilds"); },
                   kLongestMs))
     take.fail("the impact of a change does not come");
   rest(6000);
@@ -171,7 +171,7 @@ void take_fields(Photographer& take) {
   take.set(oaks.with("count"), "400");
   if (!impact.asks()) take.fail("a costly value does not ask");
   take.widget("question", impact);
-  take.document().drop_asked();
+  take.document().discard_proposed_edit();
   take.properties().show(take.document().sections());
 }
 
@@ -186,7 +186,7 @@ void take_panels(Photographer& take, MainWindow& window) {
   colours->setCurrentText("Age");
   Q_EMIT colours->activated(colours->currentIndex());
   take.panel("map", "map-age");
-  Q_EMIT take.properties().wanted({"sky", "cloud_cover"}, "7");  // is refused
+  Q_EMIT take.properties().change_requested({"sky", "cloud_cover"}, "7");  // invalid
   take.panel("messages", "messages");
   take.panel("statistics", "statistics");
   colours->setCurrentIndex(0);
@@ -212,7 +212,7 @@ void take_model(Photographer& take) {
   take.settle([&] { take.command("Model alone"); });
 }
 
-// Points of the ground, east and south of what the camera looks at from above.
+// Points of the ground around the point that the camera looks at from above.
 class Ground {
  public:
   explicit Ground(MainWindow& window) : before_(window.view().camera().pose()), window_(window) {
@@ -227,7 +227,7 @@ class Ground {
     window.view().camera().set_pose(pose);
   }
   ~Ground() { window_.view().camera().set_pose(before_); }
-  // Right of and beyond the middle, as the camera sees it.
+  // A point right of and beyond the middle, from the camera's view.
   ToolPoint at(double right_m, double beyond_m) const {
     const double c = std::cos(before_.yaw), s = std::sin(before_.yaw);
     ToolPoint point;
@@ -247,7 +247,7 @@ void click(ViewTool& tool, const ToolPoint& at) {
   tool.release();
 }
 
-// Takes a picture of one tool; what it does is taken back.
+// Takes an image of one tool and undoes its edits.
 void take_tool(Photographer& take, const QString& command, const QString& name,
                const std::function<void()>& use) {
   const std::string before = take.document().text();
@@ -255,8 +255,8 @@ void take_tool(Photographer& take, const QString& command, const QString& name,
   take.settle(use);
   rest(3000);
   take.window(name);
-  take.command("Leave the tool");
-  take.settle([&] { (void)take.document().set_text(before, "Take back"); });
+  take.command("Exit tool");
+  take.settle([&] { (void)take.document().set_text(before, "Undo"); });
 }
 
 void take_tools(Photographer& take, MainWindow& window) {
@@ -280,7 +280,7 @@ void take_tools(Photographer& take, MainWindow& window) {
   mask.choose(section_called(take.document(), "scatter", "spruce").steps[1].index);
   rest(3000);
   take.window("new-mask");
-  take.command("Leave the tool");
+  take.command("Exit tool");
   take_tool(take, "Paint masks", "mask", [&] {
     mask.set_new_mask(std::nullopt);
     mask.choose(section_called(take.document(), "scatter", "spruce").steps[1].index);
@@ -295,7 +295,7 @@ void take_tools(Photographer& take, MainWindow& window) {
   });
 }
 
-// A few seconds straight ahead are recorded and flown.
+// Records and renders a few seconds straight ahead.
 void take_timeline(Photographer& take, MainWindow& window) {
   auto* timeline = window.findChild<TimelinePanel*>();
   timeline->set_recording(true);
@@ -317,7 +317,7 @@ void take_timeline(Photographer& take, MainWindow& window) {
     }
     return false;
   };
-  if (!wait_until([&] { return tells("frames, half of them"); }, kLongestMs))
+  if (!wait_until([&] { return tells("median frame time"); }, kLongestMs))
     take.fail("the flight does not end");
   take.panel("timeline", "timeline");
   window.view().camera().set_pose(start);
@@ -326,8 +326,8 @@ void take_timeline(Photographer& take, MainWindow& window) {
 void take_sheet(Photographer& take, MainWindow& window) {
   const world::TextPath oak = section_called(take.document(), "species", "oak");
   take.properties().go_to(oak);
-  Q_EMIT take.properties().attended(oak.with("spread"));
-  rest(3000);  // only then the sheet takes it for meant
+  Q_EMIT take.properties().field_focused(oak.with("spread"));
+  rest(3000);  // the sheet ignores shorter focus
   take.command("Contact sheet …");
   auto* sheet = window.findChild<ContactSheet*>();
   if (sheet == nullptr) return take.fail("there is no contact sheet");
@@ -335,7 +335,7 @@ void take_sheet(Photographer& take, MainWindow& window) {
     spin->setValue(3);
   const auto is_filled = [&] {
     for (QLabel* label : sheet->findChildren<QLabel*>()) {
-      if (label->text().startsWith("Click on a picture")) return true;
+      if (label->text().startsWith("Click a picture")) return true;
     }
     return false;
   };
@@ -350,8 +350,8 @@ void take_sheet(Photographer& take, MainWindow& window) {
   palette->reject();
 }
 
-// The selected oak and how it is exported. The dialog waits for an answer: the picture is taken
-// from within, with names as they are in the folder of the sources.
+// The export of the selected oak. The dialog blocks, so a timer takes the image, with file names
+// relative to the folder of the sources.
 void take_export(Photographer& take, MainWindow& window) {
   const scene::Scene& scene = window.view().session()->scene();
   const core::CameraPose pose = window.view().camera().pose();
@@ -382,7 +382,7 @@ void take_export(Photographer& take, MainWindow& window) {
   window.view().select(std::nullopt);
 }
 
-// Left of the line the land as it is, right of it in the evening.
+// The landscape left of the line, and in the evening right of it.
 void take_compare(Photographer& take, MainWindow& window) {
   take.command("Mark this state as A");
   take.settle([&] { take.set({"sky", "sun_elevation_deg"}, "12"); });
@@ -401,7 +401,7 @@ void take_compare(Photographer& take, MainWindow& window) {
   take.settle([&] { take.document().undo_stack().undo(); });
 }
 
-// A flight in another process. The document becomes its world, so this is the last picture.
+// A flight in another process. The document becomes its world, so this is the last image.
 void take_attached(Photographer& take, MainWindow& window, const std::filesystem::path& home) {
   const std::filesystem::path sockets = home / "sockets";
   std::filesystem::create_directory(sockets);
@@ -416,7 +416,7 @@ void take_attached(Photographer& take, MainWindow& window, const std::filesystem
   bool answers = false;
   QObject::connect(remote, &RemoteSession::entities, &window,
                    [&answers](const QJsonObject&) { answers = true; });
-  // A flight that has just begun may not answer yet.
+  // A new flight may not answer yet.
   const auto is_attached = [&] {
     const auto found = inspect::endpoints(sockets);
     if (!remote->is_attached() && found && !found->empty()) (void)remote->attach(found->front());
@@ -426,7 +426,7 @@ void take_attached(Photographer& take, MainWindow& window, const std::filesystem
   rest(6000);
   auto* area = window.findChild<QDockWidget*>("attached")->findChild<QScrollArea*>();
   if (area == nullptr) return take.fail("there is no panel of an attached program");
-  take.widget("attached", *area->widget());  // all of it, however much is seen
+  take.widget("attached", *area->widget());  // the whole panel, also its invisible part
   remote->detach(false);
   flight.terminate();
   flight.waitForFinished();
@@ -465,14 +465,14 @@ int run(int argc, char** argv, Arguments arguments) {
   apply_theme(arguments.theme);
   MainWindowOptions options;
   options.session.preset = render::Preset::kMedium;
-  options.session.target_hz = 0;  // as fine as it gets, however long it takes
+  options.session.target_hz = 0;  // full detail, however long a frame takes
   options.document.state_folder = arguments.home = display->home();
   MainWindow window(std::move(options));
   window.showFullScreen();
-  window.set_first_place(first_pose(), kFirstHeightM);
-  // From the sources' folder, so that messages name the same file everywhere.
-  window.open_file(
-      std::filesystem::proximate(source_file(std::string("game/worlds/") + kFirstWorld + ".toml")));
+  window.set_default_pose(default_pose(), kDefaultEyeHeightM);
+  // A relative path, so that messages name the same file on every machine.
+  window.open_file(std::filesystem::proximate(
+      source_file(std::string("game/worlds/") + kDefaultWorld + ".toml")));
   return take_all(window, arguments) ? 0 : 1;
 }
 

@@ -28,7 +28,7 @@ TEST(ExportFile, AModelAndABlockAreWritten) {
     EXPECT_TRUE(std::filesystem::is_regular_file(folder / file)) << file;
 }
 
-TEST(ExportFile, WhatIsNotThereIsRefused) {
+TEST(ExportFile, MissingBlocksAndModelsAreErrors) {
   const TemporaryFolder folder;
   const ParsedWorldPtr parsed = endless_world();
   EXPECT_FALSE(export_model(*parsed, {0, 0}, 999'999, 0, folder / "a.glb").has_value());

@@ -1,4 +1,4 @@
-// A rock that ends its process when it has six subdivisions, as a faulty model of a program does.
+// A rock that ends its process when it has six subdivisions, like a faulty model of a program.
 #pragma once
 
 #include <cstdlib>

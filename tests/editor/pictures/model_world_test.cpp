@@ -33,7 +33,7 @@ TEST(ModelWorld, EveryModelOfTheShippedWorldsCanBePortrayed) {
   }
 }
 
-TEST(ModelWorld, TheModelIsWhollyInThePicture) {
+TEST(ModelWorld, TheImageShowsTheWholeModel) {
   const std::string text = testing::world_text("silver_combe");
   for (std::size_t i = 0; i < 4; ++i) {
     const auto parsed = parse_world_text(*scatter_portrait(text, i), "", {});
@@ -52,7 +52,7 @@ TEST(ModelWorld, TheModelIsWhollyInThePicture) {
   }
 }
 
-TEST(ModelWorld, WhatIsNotThereCannotBePortrayed) {
+TEST(ModelWorld, MissingScattersAndSpeciesAreErrors) {
   EXPECT_FALSE(scatter_portrait(testing::world_text("silver_combe"), 99).has_value());
   EXPECT_FALSE(species_portrait(testing::world_text("endless"), 0).has_value());
   EXPECT_FALSE(snippet_world("[palette]\ngrass = [0, 0, 0]\n").has_value());

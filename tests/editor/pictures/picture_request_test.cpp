@@ -5,7 +5,7 @@
 namespace psygen::editor {
 namespace {
 
-TEST(PictureRequest, ALineBringsARequestAcrossUnchanged) {
+TEST(PictureRequest, ALineTransfersARequestUnchanged) {
   PictureRequest request;
   request.id = 17;
   request.kind = PictureKind::kExportModel;
@@ -42,7 +42,7 @@ TEST(PictureRequest, ALineBringsARequestAcrossUnchanged) {
   EXPECT_EQ(read->level, 3);
 }
 
-TEST(PictureRequest, AReplyKeepsItsCostAndItsSentence) {
+TEST(PictureRequest, AReplyKeepsItsCostAndItsError) {
   PictureReply reply;
   reply.id = 4;
   reply.error = "world.toml:3: \"no\"";
@@ -56,7 +56,7 @@ TEST(PictureRequest, AReplyKeepsItsCostAndItsSentence) {
   EXPECT_FALSE(read->dropped);
 }
 
-TEST(PictureRequest, LinesThatAreNoRequestsAreIgnored) {
+TEST(PictureRequest, InvalidLinesAreIgnored) {
   for (const char* line : {"", "{}", "[]", "{\"id\":1", "{\"id\":1,\"kind\":99}", "\xff\xfe", "7"})
     EXPECT_FALSE(request_from(line).has_value()) << line;
   EXPECT_FALSE(reply_from("hello").has_value());

@@ -1,4 +1,4 @@
-// The drawing process from end to end: this program, started with the hidden option.
+// The rendering process from end to end: this program, started with the hidden option.
 #include "editor/pictures/picture_service.hpp"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ bool has_colours(const QImage& image) {
   return false;
 }
 
-TEST(PictureService, SeesWhatIsPaintedAndNotWritten) {
+TEST(PictureService, SeesUnsavedPaintedImages) {
   Serving s;
   PictureRequest request = picture_of(
       "format = 1\n[world]\nname = \"painted\"\nseed = 1\nblocks = [4, 4]\n[[scatter]]\n"
@@ -77,7 +77,7 @@ TEST(PictureService, SeesWhatIsPaintedAndNotWritten) {
   }
 }
 
-TEST(PictureService, DrawsWorldsAndModelsAndSaysWhatTheyCost) {
+TEST(PictureService, RendersWorldsAndModelsWithTheirCosts) {
   Serving s;
   const PictureReply world = s.answer(picture_of(testing::world_text("endless")));
   EXPECT_EQ(world.error, "");
@@ -100,7 +100,7 @@ TEST(PictureService, DrawsWorldsAndModelsAndSaysWhatTheyCost) {
   EXPECT_EQ(s.service.restarts(), 0);
 }
 
-TEST(PictureService, AWorldThatEndsTheProcessFailsAloneAndTheNextOneIsDrawn) {
+TEST(PictureService, AWorldThatCrashesTheProcessFailsAloneAndTheNextOneIsRendered) {
   Serving s;
   EXPECT_EQ(s.answer(picture_of(faulty_world(2))).error, "");
   const PictureReply hostile = s.answer(picture_of(faulty_world(6)));
@@ -112,7 +112,7 @@ TEST(PictureService, AWorldThatEndsTheProcessFailsAloneAndTheNextOneIsDrawn) {
   EXPECT_EQ(after.image.size(), QSize(96, 64));
 }
 
-TEST(PictureService, ATextThatIsNoWorldIsRefusedWithTheSentenceOfItsReader) {
+TEST(PictureService, AnInvalidTextIsRejectedWithTheErrorOfItsParser) {
   Serving s;
   const PictureReply reply = s.answer(picture_of(
       "format = 1\n[world]\nname = \"x\"\nseed = 1\nblocks = [0, 0]\n[sky]\nexposure = -4\n"));
@@ -136,13 +136,13 @@ TEST(PictureService, TheNewestBatchIsAnsweredFirstAndWithinItTheLowestRank) {
   EXPECT_EQ(order, "abcd");
 }
 
-TEST(PictureService, WhatIsCancelledIsNotAnswered) {
+TEST(PictureService, CancelledRequestsGetNoReply) {
   Serving s;
   bool told = false;
   QObject other;
   s.service.ask(picture_of(testing::world_text("endless")), s.service.new_batch(), 0, &other,
                 [&](const PictureReply&) { told = true; });
-  QCoreApplication::processEvents();  // it is on its way
+  QCoreApplication::processEvents();  // sends the request
   s.service.cancel(&other);
   EXPECT_EQ(s.answer(picture_of(faulty_world(1))).error, "");
   EXPECT_FALSE(told);

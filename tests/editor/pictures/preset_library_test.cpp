@@ -21,7 +21,7 @@ std::vector<Preset> shipped_library() {
   return presets;
 }
 
-TEST(PresetLibrary, TheShippedLibraryHasSomeOfEverything) {
+TEST(PresetLibrary, TheShippedLibraryHasPresetsOfEveryKind) {
   std::map<std::string, int> headings;
   for (const Preset& preset : shipped_library()) {
     ++headings[preset.heading];
@@ -43,7 +43,7 @@ TEST(PresetLibrary, EveryPresetAppliesToEveryShippedWorld) {
   }
 }
 
-TEST(PresetLibrary, EveryPresetHasAWorldForItsPicture) {
+TEST(PresetLibrary, EveryPresetHasAWorldForItsImage) {
   for (const Preset& preset : shipped_library()) {
     const auto text = snippet_world(preset.snippet);
     ASSERT_TRUE(text.has_value()) << preset.file << ": " << text.error().message;
@@ -55,7 +55,7 @@ TEST(PresetLibrary, EveryPresetHasAWorldForItsPicture) {
   }
 }
 
-TEST(PresetLibrary, ASpeciesIsAddedUnderAFreeNameAndStandsInTheWorld) {
+TEST(PresetLibrary, ASpeciesIsAddedUnderAFreeNameAndScattered) {
   const auto presets = shipped_library();
   const auto oak = std::ranges::find(presets, "Oak", &Preset::name);
   ASSERT_NE(oak, presets.end());
@@ -72,7 +72,7 @@ TEST(PresetLibrary, ASpeciesIsAddedUnderAFreeNameAndStandsInTheWorld) {
     EXPECT_TRUE(names.insert(species.name).second) << species.name;
 }
 
-TEST(PresetLibrary, FilesThatAreNoPresetsAreNamed) {
+TEST(PresetLibrary, InvalidPresetFilesAreReported) {
   const TemporaryFolder folder;
   std::ofstream(folder / "good.toml") << "partial = 1\n\n[sky]\nexposure = 2\n";
   std::ofstream(folder / "world.toml") << testing::world_text("endless");

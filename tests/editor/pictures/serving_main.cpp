@@ -1,5 +1,5 @@
-// The tests, and with the hidden option the drawing process that they talk to. It has a model that
-// ends its process, as a faulty one of a program could.
+// The tests, and with the hidden option the rendering process that they talk to. It has a model
+// that ends its process, like a faulty model of a program.
 #include <gtest/gtest.h>
 
 #include <QGuiApplication>

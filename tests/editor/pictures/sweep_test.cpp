@@ -40,7 +40,7 @@ TEST(Sweep, IntegersComeOnceEach) {
               ElementsAre("1", "2", "3"));
 }
 
-TEST(Sweep, RangesMoveAsAWholeAndStayWithinTheHardRange) {
+TEST(Sweep, BothEndsOfARangeMoveWithinTheHardRange) {
   WorldField field = number_field(FieldKind::kRealRange, 0, 10);
   field.numbers = {4, 6};
   EXPECT_THAT(sweep_values(field, 3), ElementsAre("[0, 1]", "[4, 6]", "[9, 10]"));
@@ -58,7 +58,7 @@ TEST(Sweep, SeedsBeginWithThePresentOneAndEveryPageHasOthers) {
   EXPECT_EQ(first, sweep_values(field, 16));
 }
 
-TEST(Sweep, ChoicesAndSwitchesShowAllTheyHave) {
+TEST(Sweep, ChoicesAndBooleansShowAllValues) {
   WorldField choice;
   choice.kind = FieldKind::kChoice;
   choice.choices = {"all", "none"};
@@ -68,7 +68,7 @@ TEST(Sweep, ChoicesAndSwitchesShowAllTheyHave) {
   EXPECT_THAT(sweep_values(boolean, 9), ElementsAre("false", "true"));
 }
 
-TEST(Sweep, TextsColoursAndPicturesAreNotSwept) {
+TEST(Sweep, TextsColoursAndImagesAreNotSwept) {
   for (const FieldKind kind : {FieldKind::kText, FieldKind::kColour, FieldKind::kImage}) {
     WorldField field = number_field(kind, 0, 1);
     EXPECT_FALSE(can_sweep(field));
@@ -76,7 +76,7 @@ TEST(Sweep, TextsColoursAndPicturesAreNotSwept) {
   }
 }
 
-TEST(Sweep, EveryFieldOfEveryShippedWorldGivesWorlds) {
+TEST(Sweep, EverySweptFieldOfEveryShippedWorldGivesValidWorlds) {
   for (const std::string& name : testing::shipped_worlds()) {
     const std::string text = testing::world_text(name);
     const auto parsed = parse_world_text(text, name, {});
@@ -110,7 +110,7 @@ TEST(Sweep, TheCellWithThePresentValuesIsMarked) {
   EXPECT_FALSE((*cells)[1].is_present);
 }
 
-TEST(Sweep, TheCheapestCellIsDrawnFirstAndUnknownOnesLast) {
+TEST(Sweep, TheCheapestCellIsRenderedFirstAndUnknownOnesLast) {
   EXPECT_THAT(cheapest_first({3.0, std::nullopt, 1.0, 3.0, 2.0}), ElementsAre(2, 4, 0, 3, 1));
 }
 

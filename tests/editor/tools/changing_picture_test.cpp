@@ -32,7 +32,7 @@ void fill(world::GreyPicture& picture, const PixelRect& rect, std::uint16_t valu
       picture.pixels[std::size_t{y} * kWidth + x] = value;
 }
 
-TEST(ChangingPicture, EachStateIsWhatAllChangesMakeAndStaysWhileItIsHeld) {
+TEST(ChangingPicture, EachStateContainsAllChangesAndStaysWhileItIsInUse) {
   std::mt19937 random(7);
   world::GreyPicture plain = *white();
   ChangingPicture changing(white());
@@ -51,7 +51,7 @@ TEST(ChangingPicture, EachStateIsWhatAllChangesMakeAndStaysWhileItIsHeld) {
   }
 }
 
-TEST(ChangingPicture, MemoryOfStatesThatNobodyHoldsIsUsedAgain) {
+TEST(ChangingPicture, MemoryOfReleasedStatesIsReused) {
   ChangingPicture changing(white());
   std::set<const world::GreyPicture*> memory;
   PicturePtr shown, prepared;
@@ -77,7 +77,7 @@ TEST(ChangingPicture, OtherThreadsReadAndReleaseStates) {
     });
   }
   const PicturePtr last = changing->now();
-  changing.reset();  // before its states
+  changing.reset();  // ends before its states
   EXPECT_EQ(last->pixels.front(), 39);
   for (std::thread& reader : readers)
     reader.join();

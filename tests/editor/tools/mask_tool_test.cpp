@@ -32,11 +32,11 @@ TEST(MaskTool, ANewMaskChangesNothingUntilItIsPaintedOn) {
   Toolbench bench;
   MaskTool tool(bench.host());
   tool.make_mask();
-  EXPECT_EQ(bench.said.back(), "Choose first whose mask it shall be.");
+  EXPECT_EQ(bench.messages.back(), "Choose a scatter layer for the mask first.");
   tool.choose(0);
   EXPECT_EQ(bench.chosen, "scatter[0]");
   click(tool, ground(50, 50));
-  EXPECT_EQ(bench.said.back(), "tree has no mask yet: \"New mask\" makes one.");
+  EXPECT_EQ(bench.messages.back(), "tree has no mask yet. Click \"New mask\".");
   EXPECT_EQ(bench.steps(), 0);
   tool.make_mask();
   ASSERT_TRUE(tool.has_picture());
@@ -50,7 +50,7 @@ TEST(MaskTool, ANewMaskChangesNothingUntilItIsPaintedOn) {
   EXPECT_EQ(bench.document.text(), kWorld);
 }
 
-TEST(MaskTool, OfALargeWorldLiesAroundTheViewAndIsShownBefore) {
+TEST(MaskTool, OfALargeWorldIsAroundTheViewAndItsAreaIsShownBefore) {
   Toolbench bench;
   EXPECT_TRUE(good(bench.document.set_value({"world", "blocks"}, "[0, 0]")));
   bench.around_m = {-5000.4, 7000};
@@ -71,10 +71,10 @@ TEST(MaskTool, ANewMaskHasTheAreaAndTheResolutionThatWereSet) {
   tool.choose(0);
   tool.set_new_mask(NewMask{false, 64, 0.01});
   tool.make_mask();
-  EXPECT_EQ(bench.said.back(), "A new mask's pixel is 0.01 m (allowed: 0.1 to 256 m).");
+  EXPECT_EQ(bench.messages.back(), "A new mask's pixel is 0.01 m (allowed: 0.1 to 256 m).");
   tool.set_new_mask(NewMask{false, 2000, 0.1});
   tool.make_mask();
-  EXPECT_THAT(bench.said.back(), HasSubstr("20000 pixels a side (allowed: 4096)"));
+  EXPECT_THAT(bench.messages.back(), HasSubstr("20000 pixels a side (allowed: 4096)"));
   EXPECT_EQ(bench.steps(), 0);
   EXPECT_EQ(bench.document.text(), kWorld);
   tool.set_new_mask(NewMask{false, 64, 0.5});
@@ -113,7 +113,7 @@ TEST(MaskTool, AStrokeIsOneStepAndIsWrittenOnSave) {
   EXPECT_EQ(bench.share(100, 125), 1);
 }
 
-TEST(MaskTool, StrengthAndShiftAreOfTheBrush) {
+TEST(MaskTool, StrengthAndShiftChangeTheBrush) {
   Masks bench;
   bench.tool.set_strength(0.5);
   ToolPoint at = ground(100, 100);
@@ -134,7 +134,7 @@ TEST(MaskTool, StrengthAndShiftAreOfTheBrush) {
   EXPECT_EQ(bench.steps(), 5) << "the smallest brush meets a pixel";
 }
 
-TEST(MaskTool, EscapeTakesTheStrokeBackAndWhatIsNothingIsNoStep) {
+TEST(MaskTool, EscapeCancelsTheStrokeAndAnEmptyStrokeIsNoStep) {
   Masks bench;
   EXPECT_TRUE(good(bench.document.save()));
   bench.tool.set_erases(true);
@@ -149,11 +149,11 @@ TEST(MaskTool, EscapeTakesTheStrokeBackAndWhatIsNothingIsNoStep) {
   click(bench.tool, ground(100, 100));
   EXPECT_EQ(bench.steps(), 1) << "white on white";
   click(bench.tool, sky());
-  EXPECT_EQ(bench.said.back(), "There is no ground under the mouse: paint on the ground.");
+  EXPECT_EQ(bench.messages.back(), "There is no ground here. Paint on the ground.");
   click(bench.tool, ground(2000, 100));
-  EXPECT_EQ(bench.said.back(),
+  EXPECT_EQ(bench.messages.back(),
             "The brush is outside of the mask's area: it ends at the blue border.");
-  // Undo while the button is held ends the stroke.
+  // Undo during a stroke ends the stroke.
   bench.tool.set_erases(true);
   bench.tool.press(ground(100, 100));
   bench.document.undo_stack().undo();
@@ -162,8 +162,8 @@ TEST(MaskTool, EscapeTakesTheStrokeBackAndWhatIsNothingIsNoStep) {
   EXPECT_EQ(bench.document.text(), kWorld);
 }
 
-// Undo while the button is held leaves nothing of what was only shown.
-TEST(MaskTool, WhatWasShownOfAStrokeGoesWithTheStepThatIsTakenBack) {
+// Undo during a stroke also removes its preview.
+TEST(MaskTool, UndoDuringAStrokeRemovesItsPreview) {
   Masks bench;
   const auto share = [&](double x) { return bench.share(x, 100); };
   bench.tool.set_radius_m(10);
@@ -183,10 +183,11 @@ TEST(MaskTool, WhatWasShownOfAStrokeGoesWithTheStepThatIsTakenBack) {
   EXPECT_GT(share(200), 0.99);
 }
 
-TEST(MaskTool, APictureOfAnotherFormatStaysAndBecomesAPng) {
+TEST(MaskTool, AnImageOfAnotherFormatStaysAndItsMaskBecomesAPng) {
   Toolbench bench;
   image::Image grey = image::make_image(16, 16, 255, 255, 255, 255);
-  ASSERT_TRUE(good(image::write_png(bench.place.folder / "trees.jpg", grey)));  // by its bytes
+  ASSERT_TRUE(
+      good(image::write_png(bench.place.folder / "trees.jpg", grey)));  // a PNG despite its name
   ASSERT_TRUE(good(bench.document.set_value({"scatter", 0, "mask_image"}, "\"trees.jpg\"")));
   MaskTool tool(bench.host());
   tool.choose(0);
@@ -194,7 +195,7 @@ TEST(MaskTool, APictureOfAnotherFormatStaysAndBecomesAPng) {
   tool.set_erases(true);
   click(tool, ground(100, 100));
   EXPECT_EQ(bench.document.world().scatter[0].mask.image, "world_tree_mask.png");
-  EXPECT_THAT(bench.said.back(), HasSubstr("trees.jpg stays as it is"));
+  EXPECT_THAT(bench.messages.back(), HasSubstr("trees.jpg is unchanged"));
   EXPECT_LT(world::mask_share(bench.document.world().scatter[0].mask, 0, {100, 100}), 0.01);
   EXPECT_TRUE(good(bench.document.save()));
   EXPECT_EQ(image::read_grey(bench.place.folder / "trees.jpg")->grey[0], 65535);

@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 
 constexpr glm::dvec2 kPlace{1000, -200};
 
-// Its blocks are 63 m.
+// A world with blocks of 63 m.
 world::World world_of(std::int64_t blocks) {
   const std::string text =
       testing::replaced(testing::kWorld, "[8, 4]", fmt::format("[{}, {}]", blocks, blocks / 2));
@@ -42,11 +42,11 @@ TEST(NewMask, OfTheWholeWorldHasItsShape) {
   EXPECT_EQ(plan->area_m, (std::array<double, 4>{0, 0, 504, 252}));
   EXPECT_EQ(plan->width, 168U);
   EXPECT_EQ(plan->height, 84U);
-  // An endless one has no whole.
+  // An endless world has no whole.
   EXPECT_EQ(area_of({true, 64, 2}, world_of(0), {0, 0}), (std::array<double, 4>{-32, -32, 32, 32}));
 }
 
-TEST(NewMask, ASquareContainsItsPlaceAndRestsWhileThatMovesALittle) {
+TEST(NewMask, ASquareContainsItsPointAndStaysWhileThePointMovesALittle) {
   for (const double side_m : {16.0, 100.0, 1024.0, 65'536.0}) {
     const NewMask mask{false, side_m, 64};
     const auto area = area_of(mask, world_of(0), kPlace);
@@ -63,7 +63,7 @@ TEST(NewMask, ASquareContainsItsPlaceAndRestsWhileThatMovesALittle) {
   }
 }
 
-TEST(NewMask, BeyondItsLimitsIsRefusedWithASentence) {
+TEST(NewMask, BeyondItsLimitsIsRejectedWithAMessage) {
   const auto refused = [](NewMask mask, std::int64_t blocks = 0) {
     const auto plan = plan_of(mask, world_of(blocks), kPlace);
     return plan ? std::string() : plan.error().message;
@@ -75,14 +75,14 @@ TEST(NewMask, BeyondItsLimitsIsRefusedWithASentence) {
   EXPECT_THAT(refused({false, 64, 0}), HasSubstr("pixel is 0 m"));
   EXPECT_THAT(refused({false, 64, none}), HasSubstr("pixel is nan m"));
   EXPECT_THAT(refused({false, 4097, 1}), HasSubstr("4097 pixels a side (allowed: 4096)"));
-  EXPECT_THAT(refused({true, 64, 1}, 1 << 20), HasSubstr("make the area smaller"));
+  EXPECT_THAT(refused({true, 64, 1}, 1 << 20), HasSubstr("Make the area smaller"));
   EXPECT_EQ(refused({false, 4096, 1}), "");
   const auto tiny = plan_of({false, 16, 256}, world_of(0), kPlace);
   ASSERT_TRUE(tiny);
   EXPECT_EQ(tiny->width, NewMask::kMinPixels);
 }
 
-TEST(NewMask, TheMiddleOfAViewIsTheGroundBeforeTheCamera) {
+TEST(NewMask, TheMiddleOfAViewIsTheGroundInFrontOfTheCamera) {
   const world::World world = world_of(0);
   core::CameraPose pose;
   pose.position = core::normalised({{0, 0}, {kPlace.x, 0, kPlace.y}}, world.block_size_m());

@@ -41,7 +41,7 @@ struct Windmills : Placed {
   }
 };
 
-TEST(PlaceTool, AClickPlacesOneAndTheHeldButtonMovesItInOneStep) {
+TEST(PlaceTool, AClickPlacesAModelAndADragMovesItInOneStep) {
   Placed bench;
   EXPECT_THAT(bench.tool.types(), Contains("rock"));
   EXPECT_THAT(bench.tool.types(), Not(Contains("terrain")));
@@ -59,7 +59,7 @@ TEST(PlaceTool, AClickPlacesOneAndTheHeldButtonMovesItInOneStep) {
   EXPECT_EQ(bench.document.text(), kWorld);
 }
 
-TEST(PlaceTool, OneIsTakenByItsHandleMovedAndRemoved) {
+TEST(PlaceTool, AModelIsMovedByItsHandleAndRemoved) {
   Placed bench;
   bench.tool.set_type("tree");
   click(bench.tool, ground(40, 50));
@@ -81,10 +81,10 @@ TEST(PlaceTool, OneIsTakenByItsHandleMovedAndRemoved) {
   bench.tool.click_right(handle(bench.tool, 60, 50));
   EXPECT_TRUE(bench.places().empty());
   bench.tool.remove();
-  EXPECT_EQ(bench.said.back(), "Click on a placed model first.");
+  EXPECT_EQ(bench.messages.back(), "Click on a placed model first.");
 }
 
-TEST(PlaceTool, TurnsInARowAreOneStep) {
+TEST(PlaceTool, ConsecutiveTurnsAreOneStep) {
   Windmills bench;
   EXPECT_EQ(bench.tool.type(), "windmill") << "models of the file come first";
   click(bench.tool, ground(40, 50));
@@ -93,7 +93,7 @@ TEST(PlaceTool, TurnsInARowAreOneStep) {
   EXPECT_TRUE(bench.tool.wheel(on, -2));
   EXPECT_EQ(bench.turn_deg(0), 345) << "all the way round";
   EXPECT_EQ(bench.steps(), 2);
-  EXPECT_EQ(bench.last_step(), "Turn place 1");
+  EXPECT_EQ(bench.last_step(), "Turn model 1");
   ToolPoint fine = on;
   fine.fine = true;
   EXPECT_TRUE(bench.tool.wheel(fine, 2));
@@ -111,7 +111,7 @@ TEST(PlaceTool, TurnsInARowAreOneStep) {
   EXPECT_EQ(bench.turn_deg(0), 347);
 }
 
-// A turn is a step of its own after anything else, also where the history is as long as before.
+// A turn after any other edit is a new step, even if the history has the same length as before.
 TEST(PlaceTool, ATurnDoesNotBecomePartOfAnotherDrag) {
   Windmills bench;
   click(bench.tool, ground(40, 50));
@@ -127,23 +127,23 @@ TEST(PlaceTool, ATurnDoesNotBecomePartOfAnotherDrag) {
   EXPECT_EQ(bench.document.world().sky.exposure, 2) << "of " << steps << " steps";
 }
 
-TEST(PlaceTool, WhatCannotBeIsRefusedWithASentence) {
+TEST(PlaceTool, InvalidPlacesAreRejectedWithAMessage) {
   Placed bench;
   bench.tool.set_type("tree");
   click(bench.tool, sky());
-  EXPECT_EQ(bench.said.back(), "There is no ground under the mouse: click on the ground.");
+  EXPECT_EQ(bench.messages.back(), "There is no ground here. Click on the ground.");
   click(bench.tool, ground(-1e6, 0));
-  EXPECT_THAT(bench.said.back(), HasSubstr("outside the world"));
+  EXPECT_THAT(bench.messages.back(), HasSubstr("outside the world"));
   EXPECT_EQ(bench.document.text(), kWorld);
   EXPECT_EQ(bench.steps(), 0);
   click(bench.tool, ground(40, 50));
   bench.tool.turn(15);
-  EXPECT_EQ(bench.said.back(),
+  EXPECT_EQ(bench.messages.back(),
             "A tree has no turn_deg, so it cannot be turned; models from files can.");
   EXPECT_EQ(bench.steps(), 1);
 }
 
-TEST(PlaceTool, MarksShowAllTheChosenOneAndTheNext) {
+TEST(PlaceTool, MarksShowAllModelsTheChosenOneAndTheNext) {
   Windmills bench;
   click(bench.tool, ground(40, 50));
   click(bench.tool, ground(90, 50));
@@ -154,7 +154,7 @@ TEST(PlaceTool, MarksShowAllTheChosenOneAndTheNext) {
   EXPECT_EQ(bench.tool.marks().lines.size(), 3U);
   bench.tool.leave();
   EXPECT_EQ(bench.tool.marks().lines.size(), 2U);
-  // What is gone is not chosen.
+  // A removed model is not chosen.
   bench.document.undo_stack().undo();
   EXPECT_FALSE(bench.tool.place().has_value());
 }

@@ -22,7 +22,7 @@ struct Roads : Toolbench {
   std::size_t count() { return document.world().shaped.roads.size(); }
 };
 
-TEST(RoadTool, TwoClicksMakeARoadAndMoreClicksGoOn) {
+TEST(RoadTool, TwoClicksMakeARoadAndMoreClicksExtendIt) {
   Roads bench;
   click(bench.tool, ground(40, 50));
   EXPECT_EQ(bench.steps(), 0) << "one point is no road";
@@ -43,7 +43,7 @@ TEST(RoadTool, TwoClicksMakeARoadAndMoreClicksGoOn) {
   EXPECT_TRUE(bench.tool.marks().lines.empty());
 }
 
-TEST(RoadTool, ADragIsOneStepAndEndsWhereTheMouseWas) {
+TEST(RoadTool, ADragIsOneStepAndEndsAtThePointer) {
   Roads bench;
   click(bench.tool, ground(40, 50));
   click(bench.tool, ground(80, 60));
@@ -59,7 +59,7 @@ TEST(RoadTool, ADragIsOneStepAndEndsWhereTheMouseWas) {
   EXPECT_EQ(bench.points().front(), glm::dvec2(49, 55)) << "it was let go";
 }
 
-TEST(RoadTool, EscapeTakesBackTheDrag) {
+TEST(RoadTool, EscapeCancelsTheDrag) {
   Roads bench;
   click(bench.tool, ground(40, 50));
   EXPECT_TRUE(bench.tool.cancel()) << "the road that was begun";
@@ -74,7 +74,7 @@ TEST(RoadTool, EscapeTakesBackTheDrag) {
   EXPECT_EQ(bench.steps(), 1);
 }
 
-TEST(RoadTool, AClickOnTheRoadPutsAPointBetweenAndAnotherRoadIsPicked) {
+TEST(RoadTool, AClickOnTheRoadInsertsAPointAndAnotherRoadCanBeChosen) {
   Roads bench;
   click(bench.tool, ground(40, 50));
   click(bench.tool, ground(80, 60));
@@ -93,7 +93,7 @@ TEST(RoadTool, AClickOnTheRoadPutsAPointBetweenAndAnotherRoadIsPicked) {
   EXPECT_EQ(bench.points().size(), 4U) << "it was picked only";
 }
 
-TEST(RoadTool, WhereTheFirstPointIsChosenTheRoadGrowsAtItsBegin) {
+TEST(RoadTool, AChosenFirstPointExtendsTheRoadAtItsStart) {
   Roads bench;
   click(bench.tool, ground(40, 50));
   click(bench.tool, ground(80, 60));
@@ -103,7 +103,7 @@ TEST(RoadTool, WhereTheFirstPointIsChosenTheRoadGrowsAtItsBegin) {
   EXPECT_EQ(bench.points(), (Points{{20, 40}, {40, 50}, {80, 60}}));
 }
 
-TEST(RoadTool, PointsAreRemovedAndTheLastTwoTakeTheRoadWithThem) {
+TEST(RoadTool, PointsAreRemovedAndTheLastTwoRemoveTheRoad) {
   Roads bench;
   click(bench.tool, ground(40, 50));
   click(bench.tool, ground(80, 60));
@@ -112,33 +112,33 @@ TEST(RoadTool, PointsAreRemovedAndTheLastTwoTakeTheRoadWithThem) {
   EXPECT_EQ(bench.points(), (Points{{40, 50}, {120, 60}}));
   bench.tool.remove();
   EXPECT_EQ(bench.count(), 0U);
-  EXPECT_EQ(bench.said.back(),
+  EXPECT_EQ(bench.messages.back(),
             "A road has two points or more, so this one is gone. Undo brings it back.");
   bench.document.undo_stack().undo();
   EXPECT_EQ(bench.count(), 1U);
   bench.tool.choose(0);
   bench.tool.remove();
-  EXPECT_EQ(bench.said.back(), "Click on a point of a road first.");
+  EXPECT_EQ(bench.messages.back(), "Click on a point of a road first.");
 }
 
-TEST(RoadTool, WhatIsNoRoadIsRefusedWithASentence) {
+TEST(RoadTool, AnInvalidRoadIsRejectedWithAMessage) {
   Roads bench;
   click(bench.tool, sky());
-  EXPECT_EQ(bench.said.back(), "There is no ground under the mouse: click on the ground.");
+  EXPECT_EQ(bench.messages.back(), "There is no ground here. Click on the ground.");
   click(bench.tool, ground(40, 50));
   click(bench.tool, ground(40.2, 50));
-  EXPECT_NE(bench.said.back().find("1 m or more"), std::string::npos) << bench.said.back();
+  EXPECT_NE(bench.messages.back().find("1 m or more"), std::string::npos) << bench.messages.back();
   EXPECT_EQ(bench.document.text(), kWorld);
   click(bench.tool, ground(-1e6, 50));
-  EXPECT_NE(bench.said.back().find("outside the world"), std::string::npos);
+  EXPECT_NE(bench.messages.back().find("outside the world"), std::string::npos);
   click(bench.tool, ground(80, 60));
   ASSERT_EQ(bench.count(), 1U) << "the first point was kept";
-  const std::size_t told = bench.said.size();
+  const std::size_t told = bench.messages.size();
   bench.tool.press(handle(bench.tool, 80, 60));
   bench.tool.drag(ground(-1e6, 0));
   bench.tool.drag(ground(-1e7, 0));
   bench.tool.release();
-  EXPECT_EQ(bench.said.size(), told + 1) << "told once";
+  EXPECT_EQ(bench.messages.size(), told + 1) << "told once";
   EXPECT_EQ(bench.points().back(), glm::dvec2(80, 60));
 }
 

@@ -1,4 +1,4 @@
-// A document with a world of the tests, a host for tools, and mice that point where they are told.
+// A document with a world of the tests, a host for tools, and points for the pointer.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,18 +16,20 @@ namespace psygen::editor::testing {
 struct Toolbench {
   Place place;
   Document document;
-  std::vector<std::string> said;
+  std::vector<std::string> messages;
   std::string chosen;             // table of the file
-  glm::dvec2 around_m{100, 100};  // amid the view
+  glm::dvec2 around_m{100, 100};  // middle of the view
 
   explicit Toolbench(const std::string& text = kWorld) : place(text), document(place.options()) {
     EXPECT_TRUE(good(document.open(place.file)));
   }
   ToolHost host() {
-    return {document, [this](bool on) { on ? void(document.begin_drag()) : document.end_drag(); },
-            [this](const QString& sentence) { said.push_back(sentence.toStdString()); },
-            [this](const world::TextPath& table) { chosen = table.text(); },
-            [this](double) { return around_m; }};
+    return {
+        .document = document,
+        .set_dragging = [this](bool on) { on ? void(document.begin_drag()) : document.end_drag(); },
+        .show_message = [this](const QString& text) { messages.push_back(text.toStdString()); },
+        .chosen = [this](const world::TextPath& table) { chosen = table.text(); },
+        .around = [this](double) { return around_m; }};
   }
   int steps() { return document.undo_stack().count(); }
   std::string last_step() { return document.undo_stack().undoText().toStdString(); }
@@ -41,7 +43,7 @@ inline ToolPoint ground(double x, double z) {
 inline ToolPoint sky() {
   return {};
 }
-// The handle that a tool shows at a place.
+// The handle of a tool at a point.
 inline ToolPoint handle(ViewTool& tool, double x, double z) {
   ToolPoint point = ground(x, z);
   const auto& handles = tool.marks().handles;

@@ -1,11 +1,10 @@
-// What the view keeps of the ground when another world comes: heights under marks and grid, and
-// where rays meet it.
+// Heights that the view keeps when the world changes: under marks and grid, and for rays.
 #include "editor/view/surface_shape.hpp"
 
 #include <gtest/gtest.h>
 
 #include "editor/document/parsed_world.hpp"
-#include "editor/view/ground_grid.hpp"
+#include "editor/view/grid_overlay.hpp"
 #include "editor/view/tool_overlay.hpp"
 #include "engine/world/world.hpp"
 #include "tests/editor/document/support.hpp"
@@ -29,7 +28,7 @@ std::string with_terrain(const std::string& line) {
   return replaced(kWorld, "octaves = 4", "octaves = 4\n" + line);
 }
 
-TEST(SurfaceShape, IsThatOfGroundAndWaterAlone) {
+TEST(SurfaceShape, DependsOnlyOnGroundAndWater) {
   const SurfaceShape shape(world_of(kWorld));
   EXPECT_EQ(shape, SurfaceShape(world_of(kWorld)));
   EXPECT_EQ(shape, SurfaceShape(world_of(replaced(kWorld, "count = 3", "count = 30"))));
@@ -40,7 +39,7 @@ TEST(SurfaceShape, IsThatOfGroundAndWaterAlone) {
   EXPECT_FALSE(shape == SurfaceShape(world_of(std::string(kWorld) + "[water]\nlevel_m = 3\n")));
 }
 
-TEST(SurfaceShape, DiffersOnlyWhereARoadReaches) {
+TEST(SurfaceShape, DiffersOnlyUnderARoad) {
   const SurfaceShape before(world_of(kWorld)), after(world_of(with_road(20)));
   SurfaceDifference difference(before, after);
   EXPECT_TRUE(difference.at({0, 0}));
@@ -59,7 +58,7 @@ ToolMarks marks() {
   return marks;
 }
 
-// The same as an overlay that is made for this world.
+// Expects the marks of a new overlay of this world.
 void expect_as_new(const ToolOverlay& overlay, const world::World& world) {
   ToolOverlay anew;
   anew.set(marks(), world);
@@ -73,7 +72,7 @@ void expect_as_new(const ToolOverlay& overlay, const world::World& world) {
   }
 }
 
-TEST(ToolOverlay, LooksUpHeightsOnlyWhereTheGroundIsAnotherOne) {
+TEST(ToolOverlay, ComputesHeightsOnlyWhereTheGroundHasChanged) {
   ToolOverlay overlay;
   overlay.set(marks(), world_of(kWorld));
   const std::size_t all = overlay.lookups();
@@ -97,9 +96,9 @@ TEST(ToolOverlay, LooksUpHeightsOnlyWhereTheGroundIsAnotherOne) {
       << "places are counted in blocks";
 }
 
-TEST(GroundGrid, IsMadeAnewOnlyWhereTheGroundUnderItChanges) {
-  GroundGrid grid;
-  grid.set_spacing(2);  // 40 m to each side
+TEST(GridOverlay, IsRecomputedOnlyWhereTheGroundUnderItChanges) {
+  GridOverlay grid;
+  grid.set_spacing(2);  // 40 m on each side
   const core::WorldPosition eye{{6, 3}, {20, 10, 20}};
   const auto made_for = [&](const std::string& text) {
     const std::size_t before = grid.times_made();

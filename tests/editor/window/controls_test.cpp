@@ -1,4 +1,4 @@
-// Every control of the window can be reached by keyboard and has a name that a screen reader says.
+// Every control of the window is reachable by keyboard and has a name for screen readers.
 #include <QAbstractButton>
 #include <QAbstractItemView>
 #include <QAbstractSpinBox>
@@ -20,8 +20,8 @@
 namespace psygen::editor {
 namespace {
 
-// Parts of Qt's own widgets, which they name themselves. Buttons of toolbars are commands, which
-// menus have too.
+// True for parts of Qt's own widgets, which Qt names, and for toolbar buttons, which are also in
+// menus.
 bool is_inner(const QWidget& widget) {
   return widget.objectName().startsWith("qt_") || widget.inherits("QTableCornerButton") ||
          widget.inherits("QHeaderView") || widget.inherits("QComboBoxListView") ||
@@ -44,7 +44,7 @@ std::string place_of(const QWidget& widget) {
          widget.parent()->objectName().toStdString();
 }
 
-// All objects that an assistive program finds below one.
+// Collects all accessible objects below one.
 void collect(QAccessibleInterface* at, std::set<const QObject*>& found) {
   if (at == nullptr) return;
   if (at->object() != nullptr) found.insert(at->object());
@@ -58,7 +58,7 @@ QString name_of(const QWidget& widget) {
   return button != nullptr ? button->text() : QString();
 }
 
-TEST_F(EditorWindow, EveryControlHasANameAndTakesTheKeyboard) {
+TEST_F(EditorWindow, EveryControlHasANameAndTakesTheFocus) {
   for (const world::WorldSection& section : document().sections()) {
     properties().go_to(section.path);
     for (QWidget* widget : window_->findChildren<QWidget*>()) {
@@ -75,7 +75,7 @@ TEST_F(EditorWindow, EveryControlIsFoundThroughTheAccessibilityTree) {
   for (QDockWidget* dock : window_->findChildren<QDockWidget*>())
     dock->show();
   for (const char* command_name :
-       {"Draw roads", "Place models", "Paint masks", "Leave the tool", "Model alone"}) {
+       {"Draw roads", "Place models", "Paint masks", "Exit tool", "Model alone"}) {
     properties().go_to({"scatter", 0});
     command(command_name);
     std::set<const QObject*> found;
@@ -95,14 +95,14 @@ TEST_F(EditorWindow, EveryControlIsFoundThroughTheAccessibilityTree) {
   command("Model alone");
 }
 
-// A command that only a button of a toolbar has could not be reached.
+// A command with only a toolbar button is not reachable by keyboard.
 TEST_F(EditorWindow, EveryButtonOfAToolbarIsACommandOfAMenuToo) {
   std::set<const QAction*> in_menus;
   for (const QMenu* menu : window_->findChildren<QMenu*>())
     for (const QAction* action : menu->actions())
       in_menus.insert(action);
   for (const QToolBar* bar : window_->findChildren<QToolBar*>()) {
-    if (bar->objectName() == "model") continue;  // its button is "Model alone" once more
+    if (bar->objectName() == "model") continue;  // its button repeats "Model alone"
     for (const QAction* action : bar->actions()) {
       const bool is_button =
           !action->isSeparator() &&
@@ -124,7 +124,7 @@ TEST_F(EditorWindow, NoShortcutIsGivenTwice) {
   EXPECT_GE(seen.size(), 15u);
 }
 
-TEST_F(EditorWindow, PanelsCanBeHiddenAndTheLayoutComesBack) {
+TEST_F(EditorWindow, PanelsCanBeClosedAndTheLayoutCanBeRestored) {
   const auto docks = window_->findChildren<QDockWidget*>();
   ASSERT_GE(docks.size(), 6);
   std::set<const QDockWidget*> shown;
@@ -138,6 +138,20 @@ TEST_F(EditorWindow, PanelsCanBeHiddenAndTheLayoutComesBack) {
   }
   for (const QDockWidget* dock : docks)
     EXPECT_EQ(!dock->isHidden(), shown.contains(dock)) << dock->objectName().toStdString();
+}
+
+TEST_F(EditorWindow, TheCommandOfAPanelBringsItToTheFrontOrClosesIt) {
+  auto* properties = window_->findChild<QDockWidget*>("properties");
+  auto* library = window_->findChild<QDockWidget*>("library");
+  EXPECT_TRUE(library->visibleRegion().isEmpty()) << "behind the properties";
+  command("Library");
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !library->visibleRegion().isEmpty(); }, kMaxMs));
+  EXPECT_TRUE(properties->visibleRegion().isEmpty());
+  command("Library");
+  EXPECT_TRUE(library->isHidden());
+  command("Properties");
+  command("Library");
+  EXPECT_FALSE(library->isHidden());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a change costs is shown beside it, and costly values ask first.
+// The cost of a change is shown, and costly edits need confirmation.
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>
@@ -16,13 +16,16 @@ namespace {
 const world::TextPath kScattered{"scatter", 0}, kScatteredCount{"scatter", 0, "count"};
 constexpr double kMaxCount = 30;
 
-// More than 30 trees on a block are too many bytes, whatever this machine needs for them.
+// More than 30 trees on a block need too many bytes, independent of the speed of the machine.
 class CostQuestion : public EditorWindow {
  protected:
   void adjust(MainWindowOptions& options) override {
     const auto text = world::with_value(kSmallWorld, kScatteredCount, "30");
     const auto parsed = parse_world_text(*text, "small.toml", {});
-    options.limits = {1e9, 1e9, 4 * edit_cost(**parsed, nullptr).block_bytes, 4};
+    options.limits = {.model_seconds = 1e9,
+                      .block_seconds = 1e9,
+                      .cache_bytes = 4 * edit_cost(**parsed, nullptr).block_bytes,
+                      .blocks = 4};
   }
   ImpactBar& bar() { return properties().impact(); }
   QString said() { return bar().findChild<QLabel*>()->text(); }
@@ -40,34 +43,34 @@ class CostQuestion : public EditorWindow {
   }
 };
 
-TEST_F(CostQuestion, TheImpactOfAChangeIsShownBesideIt) {
+TEST_F(CostQuestion, TheImpactOfAChangeIsShown) {
   properties().go_to(kScattered);
   auto* slider = properties().row(kScatteredCount)->findChild<QSlider*>();
   slider->setSliderDown(true);
   slider->setValue(slider->value() + 4);
   slider->setSliderDown(false);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return said().contains("meshes change"); }, kMaxMs))
+  ASSERT_TRUE(QTest::qWaitFor([&] { return said().contains("Rebuilds"); }, kMaxMs))
       << said().toStdString();
   EXPECT_FALSE(bar().asks());
   ASSERT_TRUE(document().set_value({"sky", "exposure"}, "1.5"));
-  ASSERT_TRUE(QTest::qWaitFor([&] { return said() == "No mesh changes."; }, kMaxMs))
+  ASSERT_TRUE(QTest::qWaitFor([&] { return said() == "Nothing to rebuild."; }, kMaxMs))
       << said().toStdString();
 }
 
-TEST_F(CostQuestion, ACostlyValueAsksAndChangesNothingUntilItIsApplied) {
+TEST_F(CostQuestion, ACostlyEditNeedsConfirmation) {
   properties().go_to(kScattered);
   const int height = bar().height();
-  Q_EMIT properties().wanted(kScatteredCount, "200");
+  Q_EMIT properties().change_requested(kScatteredCount, "200");
   EXPECT_TRUE(bar().asks());
-  EXPECT_TRUE(said().contains("A block at full detail would take")) << said().toStdString();
+  EXPECT_TRUE(said().contains("A block at full detail takes")) << said().toStdString();
   EXPECT_EQ(document().text(), kSmallWorld);
   QTest::qWait(20);
-  EXPECT_EQ(bar().height(), height) << "nothing jumps";
+  EXPECT_EQ(bar().height(), height) << "the fields keep their place";
   click("Keep the old value");
   EXPECT_FALSE(bar().asks());
   EXPECT_EQ(in_box(), 6);
-  Q_EMIT properties().wanted(kScatteredCount, "200");
-  click("Apply it");
+  Q_EMIT properties().change_requested(kScatteredCount, "200");
+  click("Apply anyway");
   EXPECT_FALSE(bar().asks());
   settle();
   EXPECT_EQ(shown().scatter[0].count, 200U);
@@ -76,7 +79,7 @@ TEST_F(CostQuestion, ACostlyValueAsksAndChangesNothingUntilItIsApplied) {
   EXPECT_EQ(document().text(), kSmallWorld);
 }
 
-TEST_F(CostQuestion, ADragOverCostlyValuesMakesNothingOfThem) {
+TEST_F(CostQuestion, ADragOverCostlyValuesSynthesisesNothingForThem) {
   properties().go_to(kScattered);
   std::uint32_t most = 0;
   QObject::connect(&window_->view(), &WorldView::drawn, window_.get(),
@@ -92,8 +95,8 @@ TEST_F(CostQuestion, ADragOverCostlyValuesMakesNothingOfThem) {
   EXPECT_EQ(in_box(), document().world().scatter[0].count);
 }
 
-// The slider is held: meshes are coarse. It is let go: they get fine.
-TEST_F(CostQuestion, PicturesAreCoarseWhileASliderIsHeld) {
+// Meshes are coarse while the slider is held, and become fine after its release.
+TEST_F(CostQuestion, MeshesAreCoarseDuringADrag) {
   const world::TextPath size{"scatter", 0, "size_m"};
   properties().go_to(kScattered);
   QSlider& slider = *properties().row(size)->findChild<QSlider*>();

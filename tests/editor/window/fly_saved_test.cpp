@@ -1,4 +1,4 @@
-// A species is edited in the window and saved; the game flies the result.
+// Edits a species in the window and saves it; the game renders the result.
 #include <QFile>
 #include <QJsonDocument>
 #include <QJsonObject>
@@ -42,7 +42,7 @@ class FlySaved : public EditorWindow {
   }
 };
 
-TEST_F(FlySaved, TheGameFliesTheSpeciesThatWasEditedInTheWindow) {
+TEST_F(FlySaved, TheGameRendersTheSpeciesThatWasEdited) {
   const world::TextPath species{"species", 0}, size{"species", 0, "size_m"};
   const QJsonObject before = flown(file_, folder_.path() / "before");
   properties().go_to(species);
@@ -60,12 +60,12 @@ TEST_F(FlySaved, TheGameFliesTheSpeciesThatWasEditedInTheWindow) {
   };
   EXPECT_FALSE(hash(before).isEmpty());
   EXPECT_NE(hash(after), hash(before)) << "other trees stand in the world that was flown";
-  // What was edited is what the game read, and the window shows the same.
+  // The game has read the edited world, and the window shows the same world.
   const auto saved = parse_world_text(document().text(), file_.string(), {});
   ASSERT_TRUE(saved.has_value());
   EXPECT_DOUBLE_EQ((*saved)->world.species[0].size_m, large_m);
   EXPECT_EQ(shown(), (*saved)->world);
-  // The same file gives the same world again.
+  // The file gives the same world again.
   EXPECT_EQ(hash(flown(file_, folder_.path() / "again")), hash(after));
 }
 

@@ -38,7 +38,7 @@ TEST_F(MaskInView, IsPaintedUndoneSavedAndOpenedAgain) {
   EXPECT_EQ(steps(), 2) << "the mask, and the stroke";
   EXPECT_LT(share(place(0, 0)), 0.05);
   EXPECT_EQ(share(place(0, 40)), 1);
-  // The view shows the world of the stroke, though nothing is written.
+  // The view shows the world with the stroke, although no file is written.
   ASSERT_TRUE(QTest::qWaitFor([&] { return share(shown(), place(0, 0)) < 0.05; }, kMaxMs));
   const auto file = file_.parent_path() / document().world().scatter[0].mask.image;
   EXPECT_FALSE(std::filesystem::exists(file));
@@ -53,7 +53,7 @@ TEST_F(MaskInView, IsPaintedUndoneSavedAndOpenedAgain) {
 }
 
 TEST_F(MaskInView, ANewMaskHasTheAreaAndPixelsOfTheBar) {
-  window_->resize(1280, 800);  // all of the bar is seen
+  window_->resize(1280, 800);  // the whole toolbar is visible
   command("Paint masks");
   mask().choose(1);
   auto* bar = window_->findChild<NewMaskBar*>();
@@ -61,7 +61,7 @@ TEST_F(MaskInView, ANewMaskHasTheAreaAndPixelsOfTheBar) {
   draw();
   ASSERT_TRUE(bar->isVisible());
   const image::Image whole = picture();
-  // By keyboard alone: around the view instead of the whole world, 32 m, 0.5 m a pixel.
+  // With the keyboard only: around the view instead of the whole world, 32 m, 0.5 m per pixel.
   QTest::keyClick(bar->findChild<QComboBox*>(), Qt::Key_Up);
   const auto numbers = bar->findChildren<QDoubleSpinBox*>();
   ASSERT_EQ(numbers.size(), 2);
@@ -104,7 +104,7 @@ TEST_F(MaskInView, TheBrushIsShownAndItsKeysChangeIt) {
   press_key(Qt::Key_BracketLeft);
   press_key(Qt::Key_BracketLeft);
   EXPECT_LT(mask().brush().radius_m, 5);
-  // Esc takes the stroke back, and then leaves the tool.
+  // Esc cancels the stroke, then exits the tool.
   QTest::mousePress(&view(), Qt::LeftButton, Qt::ShiftModifier, pixel(place(0, 0)));
   draw();
   EXPECT_LT(share(place(0, 0)), 0.05);

@@ -67,7 +67,7 @@ TEST_F(PlaceInView, IsPlacedDraggedTurnedSavedAndOpenedAgain) {
   EXPECT_EQ(turn_deg(), 15);
 }
 
-TEST_F(PlaceInView, DeleteRemovesItAndUndoBringsItBack) {
+TEST_F(PlaceInView, DeleteRemovesItAndUndoRestoresIt) {
   command("Place models");
   click(place(-4, 0));
   click(place(4, 0));

@@ -38,7 +38,7 @@ TEST_F(RoadInView, IsDrawnDraggedUndoneSavedAndOpenedAgain) {
   EXPECT_NE(document().text(), before);
 }
 
-TEST_F(RoadInView, EscapeLeavesTheToolAndDeleteRemovesThePoint) {
+TEST_F(RoadInView, EscapeExitsTheToolAndDeleteRemovesThePoint) {
   command("Draw roads");
   const image::Image plain = picture();
   click(place(-8, 0));
@@ -54,7 +54,7 @@ TEST_F(RoadInView, EscapeLeavesTheToolAndDeleteRemovesThePoint) {
   EXPECT_TRUE(view().selection().has_value()) << "the button selects again";
 }
 
-TEST_F(RoadInView, AModelAloneAndAToolLeaveEachOther) {
+TEST_F(RoadInView, AModelAloneAndAToolExcludeEachOther) {
   command("Draw roads");
   properties().go_to({"scatter", 1});
   command("Model alone");

@@ -1,4 +1,4 @@
-// An editor's window with the camera over the ground, and a mouse that points at places of it.
+// An editor's window with the camera above the ground, and a mouse for points of the ground.
 #pragma once
 
 #include <QToolBar>
@@ -10,7 +10,7 @@ namespace psygen::editor {
 
 class ToolInView : public EditorWindow {
  protected:
-  static constexpr glm::dvec2 kMiddleM{1000, 1000};  // before the camera
+  static constexpr glm::dvec2 kMiddleM{1000, 1000};  // in front of the camera
 
   void SetUp() override {
     EditorWindow::SetUp();
@@ -23,7 +23,7 @@ class ToolInView : public EditorWindow {
     draw();
   }
   WorldView& view() { return window_->view(); }
-  // Lets what was done reach the picture.
+  // Waits until the view has rendered the last action.
   void draw(int pictures = 3) {
     int drawn = 0;
     const auto count =
@@ -31,7 +31,7 @@ class ToolInView : public EditorWindow {
     ASSERT_TRUE(QTest::qWaitFor([&] { return drawn >= pictures; }, kMaxMs));
     QObject::disconnect(count);
   }
-  // East and south of the middle.
+  // A point east and south of the middle.
   static glm::dvec2 place(double east_m, double south_m) {
     return kMiddleM + glm::dvec2(east_m, south_m);
   }
@@ -60,9 +60,9 @@ class ToolInView : public EditorWindow {
     draw();
   }
   int steps() { return document().undo_stack().count(); }
-  // Whether a place is where it was pointed at: a pixel, or the ground that a tool has moved, off.
+  // True if two points are equal up to the size of a pixel, or the height that a tool has changed.
   static bool near(glm::dvec2 a, glm::dvec2 b) { return glm::length(a - b) < 2; }
-  // Saves, and opens the file again.
+  // Saves and reopens the file.
   void save_and_reopen() {
     const std::string text = document().text();
     command("Save");

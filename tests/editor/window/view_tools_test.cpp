@@ -1,4 +1,4 @@
-// Tools around the view: a model alone, a grid, weather, ages in the map, a flight that is played.
+// Features around the view: a model alone, the grid, weather, ages in the map, playing a flight.
 #include <QApplication>
 #include <QClipboard>
 #include <QComboBox>
@@ -26,14 +26,14 @@ bool same_place(const core::CameraPose& a, const core::CameraPose& b) {
          a.pitch == b.pitch;
 }
 
-TEST_F(EditorWindow, AModelStandsAloneAndFollowsEditsAndSeeds) {
+TEST_F(EditorWindow, AModelAloneFollowsEditsAndSeeds) {
   const core::CameraPose before = window_->view().camera().pose();
   auto* bar = window_->findChild<QToolBar*>("model");
   ASSERT_NE(bar, nullptr);
   EXPECT_FALSE(bar->isVisible());
   properties().go_to({"sky"});
   command("Model alone");
-  EXPECT_FALSE(bar->isVisible()) << "the sky is no model";
+  EXPECT_FALSE(bar->isVisible()) << "the sky has no model";
   properties().go_to(kRocks);
   command("Model alone");
   settle();
@@ -51,7 +51,7 @@ TEST_F(EditorWindow, AModelStandsAloneAndFollowsEditsAndSeeds) {
   ASSERT_TRUE(document().set_value(kRocks.with("moss"), "1"));
   settle();
   EXPECT_EQ(shown().name, "portrait");
-  // The left button turns around it.
+  // The left button orbits the model.
   const double yaw = window_->view().camera().pose().yaw;
   QTest::mousePress(&window_->view(), Qt::LeftButton, {}, {200, 200});
   QTest::mouseMove(&window_->view(), {260, 200});
@@ -75,7 +75,7 @@ TEST_F(EditorWindow, AGridLiesOnTheGround) {
   EXPECT_TRUE(QTest::qWaitFor([&] { return difference(picture(), plain) == 0; }, kMaxMs));
 }
 
-TEST_F(EditorWindow, WeatherBesideTheHourIsAFieldOfTheSky) {
+TEST_F(EditorWindow, TheWeatherSlidersAreFieldsOfTheSky) {
   const world::TextPath cover{"sky", "cloud_cover"};
   QSlider* clouds = nullptr;
   for (QSlider* slider : window_->findChild<QToolBar*>("picture")->findChildren<QSlider*>()) {
@@ -99,7 +99,7 @@ TEST_F(EditorWindow, ASectionIsCopiedAndResetWithItsButtons) {
     }
     return static_cast<QToolButton*>(nullptr);
   };
-  EXPECT_FALSE(button("↺")->isEnabled()) << "nothing is set that has a default";
+  EXPECT_FALSE(button("↺")->isEnabled()) << "all fields have their defaults";
   ASSERT_TRUE(document().set_value(kRocks.with("moss"), "1"));
   EXPECT_TRUE(button("↺")->isEnabled());
   button("Copy")->click();
@@ -110,13 +110,13 @@ TEST_F(EditorWindow, ASectionIsCopiedAndResetWithItsButtons) {
   EXPECT_TRUE(document().field(kRocks.with("moss"))->is_set);
 }
 
-TEST_F(EditorWindow, TheMapKnowsHowOldMeshesAre) {
+TEST_F(EditorWindow, TheMapShowsTheAgesOfMeshes) {
   auto* dock = window_->findChild<QDockWidget*>("map");
   auto* map = dock->findChild<CacheMap*>();
   auto* colours = dock->findChild<QComboBox*>();
   colours->setCurrentText("Age");
   Q_EMIT colours->activated(colours->currentIndex());
-  // The strongest colour of the map behind the camera: nodes have dark borders.
+  // The most saturated colour behind the camera, because nodes have dark borders.
   const auto middle = [&] {
     const QImage image = map->grab().toImage();
     QColor found;
@@ -133,7 +133,7 @@ TEST_F(EditorWindow, TheMapKnowsHowOldMeshesAre) {
       << map->isVisible();
   const float hue = middle().hueF();
   EXPECT_TRUE(QTest::qWaitFor([&] { return middle().hueF() > hue + 0.02F; }, kMaxMs))
-      << "they get older, from red to blue";
+      << "older meshes go from red to blue";
 }
 
 TEST_F(EditorWindow, AFlightIsPlayedByAClick) {
@@ -150,7 +150,7 @@ TEST_F(EditorWindow, AFlightIsPlayedByAClick) {
     if (button->text() == "Play") play = button;
   }
   ASSERT_NE(play, nullptr);
-  EXPECT_FALSE(play->isEnabled()) << "there is no path";
+  EXPECT_FALSE(play->isEnabled()) << "no path";
   timeline->open_path_file(file);
   ASSERT_TRUE(play->isEnabled());
   const core::CameraPose start = window_->view().camera().pose();
@@ -160,7 +160,8 @@ TEST_F(EditorWindow, AFlightIsPlayedByAClick) {
   ASSERT_TRUE(QTest::qWaitFor([&] { return play->isVisible(); }, kMaxMs));
   QTest::mouseClick(play, Qt::LeftButton);
   EXPECT_TRUE(play->isChecked());
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !play->isChecked(); }, kMaxMs)) << "it ends by itself";
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !play->isChecked(); }, kMaxMs))
+      << "playing ends at the end of the path";
   EXPECT_GT(moved, 0);
   EXPECT_EQ(play->text(), "Play");
 }

@@ -1,4 +1,4 @@
-// An editor's window with a small world, and what waits for it.
+// An editor's window with a small world, and functions that wait for it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ model = "rock"
 count = 5
 )";
 
-// The share of pixels that differ by more than an eye could see.
+// The fraction of pixels with a visible difference.
 inline double difference(const image::Image& a, const image::Image& b) {
   EXPECT_EQ(a.rgba.size(), b.rgba.size());
   std::size_t differing = 0;
@@ -52,7 +52,7 @@ inline double difference(const image::Image& a, const image::Image& b) {
   return static_cast<double>(differing) / (static_cast<double>(a.rgba.size()) / 4);
 }
 
-// Takes the handle of a slider and lets it go further right.
+// Drags the handle of a slider to the right.
 inline void drag(QSlider& slider, int by_px) {
   QPoint at(slider.width() * slider.value() / std::max(slider.maximum(), 1), slider.height() / 2);
   at.setX(std::clamp(at.x(), 6, slider.width() - 8));
@@ -87,7 +87,7 @@ class EditorWindow : public testing::Test {
                      [this](const QString& error) {
                        EXPECT_TRUE(error.isEmpty()) << error.toStdString();
                        ++opened_;
-                       // The same moment for every picture.
+                       // Stops the clock, so that images are comparable.
                        if (window_->view().session() != nullptr)
                          window_->view().session()->set_paused(true);
                      });
@@ -115,7 +115,7 @@ class EditorWindow : public testing::Test {
 
   Document& document() { return window_->document(); }
   PropertiesPanel& properties() { return *window_->findChild<PropertiesPanel*>(); }
-  // Waits until a change that was made is in the picture.
+  // Waits until the view shows a change with all its meshes.
   void settle() {
     const int before = settled_;
     ASSERT_TRUE(QTest::qWaitFor([&] { return settled_ > before; }, kMaxMs));

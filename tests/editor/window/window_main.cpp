@@ -1,4 +1,4 @@
-// Tests of the editor's window run on a display of their own, with settings of their own.
+// Runs the tests of the editor's window on their own display, with their own settings.
 #include <gtest/gtest.h>
 
 #include <cstring>

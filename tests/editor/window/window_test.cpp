@@ -1,5 +1,6 @@
-// The editor's window, used as a person uses it.
+// The editor's window, used like by a user.
 #include <QAbstractButton>
+#include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QLineEdit>
 #include <QSlider>
@@ -18,7 +19,7 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST_F(EditorWindow, ADraggedSliderChangesThePictureInOneUndoStep) {
+TEST_F(EditorWindow, ADraggedSliderChangesTheImageInOneUndoStep) {
   const image::Image before = picture();
   properties().go_to(kTrees);
   FieldRow* row = properties().row(kCount);
@@ -31,13 +32,13 @@ TEST_F(EditorWindow, ADraggedSliderChangesThePictureInOneUndoStep) {
   EXPECT_GT(changed, 0);
   document().undo_stack().undo();
   settle();
-  // Levels of detail remember what was drawn before: a few pixels differ.
+  // Levels of detail depend on the previous ones, so a few pixels differ.
   EXPECT_LT(difference(picture(), before), changed / 4);
   EXPECT_EQ(document().text(), kSmallWorld);
   EXPECT_EQ(row->findChild<QDoubleSpinBox*>()->value(), 6);
 }
 
-TEST_F(EditorWindow, WhatIsSavedOpensAsTheSameWorld) {
+TEST_F(EditorWindow, ASavedWorldOpensAsTheSameWorld) {
   ASSERT_TRUE(document().set_value(kCount, "9"));
   EXPECT_TRUE(window_->isWindowModified());
   ASSERT_TRUE(document().save());
@@ -55,9 +56,9 @@ TEST_F(EditorWindow, WhatIsSavedOpensAsTheSameWorld) {
   EXPECT_FALSE(window_->isWindowModified());
 }
 
-TEST_F(EditorWindow, AValueThatIsRefusedChangesNothing) {
+TEST_F(EditorWindow, AnInvalidValueChangesNothing) {
   properties().go_to(kTrees);
-  Q_EMIT properties().wanted(kCount, "100000");
+  Q_EMIT properties().change_requested(kCount, "100000");
   EXPECT_EQ(document().text(), kSmallWorld);
   EXPECT_EQ(document().undo_stack().count(), 0);
   EXPECT_EQ(properties().row(kCount)->findChild<QDoubleSpinBox*>()->value(), 6);
@@ -78,20 +79,47 @@ TEST_F(EditorWindow, ASeedCanBeSteppedAndLocked) {
   EXPECT_EQ(document().field(seed)->plain, "6");
   click("−");
   EXPECT_EQ(document().field(seed)->plain, "5");
-  Q_EMIT properties().lock_wanted(seed, true);
+  Q_EMIT properties().lock_requested(seed, true);
   EXPECT_TRUE(document().locks().is_locked(seed));
   click("⚄");
   EXPECT_EQ(document().field(seed)->plain, "5");
-  // Controls that are made anew know it.
+  // New controls show the lock.
   properties().go_to(kTrees);
   properties().go_to({"world"});
   EXPECT_TRUE(properties().row(seed)->is_locked());
-  Q_EMIT properties().lock_wanted(seed, false);
-  Q_EMIT properties().dice_wanted(seed);
+  Q_EMIT properties().lock_requested(seed, false);
+  Q_EMIT properties().randomise_requested(seed);
   EXPECT_NE(document().field(seed)->plain, "5");
 }
 
-// Keys that the view has no use for are the window's, also while it has the keyboard.
+TEST_F(EditorWindow, ASectionIsMovedInItsListAndStaysChosen) {
+  properties().go_to(kTrees);
+  command("Move this section up");
+  EXPECT_EQ(document().undo_stack().count(), 0) << "already the first";
+  command("Move this section down");
+  EXPECT_EQ(document().undo_stack().count(), 1);
+  EXPECT_EQ(document().field({"scatter", 1, "count"})->numbers[0], 6);
+  EXPECT_EQ(properties().section(), (world::TextPath{"scatter", 1}));
+  command("Move this section down");
+  EXPECT_EQ(document().undo_stack().count(), 1) << "already the last";
+  document().undo_stack().undo();
+  EXPECT_EQ(document().text(), kSmallWorld);
+}
+
+// The choice of a scatter's model, which may lack parameters of the previous one.
+TEST_F(EditorWindow, AScatterGetsAnotherModel) {
+  properties().go_to(kTrees);
+  FieldRow* row = properties().row(kTrees.with("model"));
+  ASSERT_NE(row, nullptr);
+  auto* models = row->findChild<QComboBox*>();
+  models->setCurrentText("rock");
+  Q_EMIT models->textActivated("rock");
+  EXPECT_EQ(document().undo_stack().count(), 1);
+  EXPECT_EQ(document().field(kTrees.with("model"))->plain, "rock");
+  EXPECT_EQ(document().text().find("size_m"), std::string::npos);
+}
+
+// The view passes unused keys to the window while it has the focus.
 TEST_F(EditorWindow, ShortcutsWorkWhileTheViewHasTheKeyboard) {
   ASSERT_TRUE(document().set_value(kCount, "9"));
   window_->view().requestActivate();
@@ -100,7 +128,7 @@ TEST_F(EditorWindow, ShortcutsWorkWhileTheViewHasTheKeyboard) {
   EXPECT_TRUE(QTest::qWaitFor([&] { return document().text() == kSmallWorld; }, kMaxMs / 10));
 }
 
-TEST_F(EditorWindow, AClickSelectsWhatIsUnderIt) {
+TEST_F(EditorWindow, AClickSelectsTheObjectUnderThePointer) {
   const QSize size = window_->view().size();
   QTest::mouseClick(&window_->view(), Qt::LeftButton, {},
                     QPoint(size.width() / 2, size.height() - 5));
@@ -117,7 +145,7 @@ TEST_F(EditorWindow, KeysFlyTheCamera) {
   QTest::keyRelease(&window_->view(), Qt::Key_W);
 }
 
-TEST_F(EditorWindow, ResizingHidingAndChangingAtOnceHarmsNothing) {
+TEST_F(EditorWindow, ResizingHidingAndEditingAtTheSameTimeHarmsNothing) {
   for (int i = 0; i < 12; ++i) {
     window_->resize(700 + 30 * (i % 5), 500 + 20 * (i % 3));
     ASSERT_TRUE(document().set_value(kCount, std::to_string(4 + i)));
@@ -131,7 +159,7 @@ TEST_F(EditorWindow, ResizingHidingAndChangingAtOnceHarmsNothing) {
   ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().isExposed(); }, kMaxMs));
   ASSERT_TRUE(document().set_value(kCount, "6"));
   ASSERT_TRUE(QTest::qWaitFor([&] { return shown().scatter[0].count == 6; }, kMaxMs));
-  // Closed while it makes something.
+  // Closes the window during synthesis.
   ASSERT_TRUE(document().set_value(kCount, "40"));
   QTest::qWait(5);
   window_.reset();

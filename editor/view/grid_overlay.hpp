@@ -1,7 +1,6 @@
-// A grid of lines on the ground around the camera, for judging sizes and distances. Every tenth
-// line has another colour; the borders of blocks are a grid too. Knows no renderer: lines are
-// values. Made anew when the camera has moved some cells or the ground under it has changed, which
-// takes some milliseconds.
+// A grid of lines on the ground around the camera, to judge sizes and distances. Every tenth line
+// has another colour; the borders of blocks are a grid too. Knows no renderer: lines are values.
+// Recomputed, in some milliseconds, when the camera has moved some cells or the ground has changed.
 #pragma once
 
 #include <optional>
@@ -14,17 +13,17 @@
 
 namespace psygen::editor {
 
-class GroundGrid {
+class GridOverlay {
  public:
-  // Cells are so many metres wide; 0: no grid. Lines are at multiples of it in the world.
-  static constexpr double kBlocks = -1;  // as wide as blocks
+  // Width of a cell in metres; 0: no grid. Lines are at multiples of the width in the world.
+  static constexpr double kBlocks = -1;  // the width of a block
   void set_spacing(double spacing_m);
   double spacing_m() const { return spacing_m_; }
-  // The world is another one. Where its ground is the same, the lines stay.
+  // To be called after a change of the world. Lines on unchanged ground stay.
   void note_world() { world_is_new_ = true; }
-  // How often they were made.
+  // Number of recomputations, for tests.
   std::size_t times_made() const { return times_made_; }
-  // The lines from a camera. Valid until the next call.
+  // The lines relative to a camera. Valid until the next call.
   std::span<const render::Line> lines(const world::World& world, const core::WorldPosition& eye);
 
  private:
@@ -35,7 +34,7 @@ class GroundGrid {
 
   bool stale_ = true, world_is_new_ = true;
   std::size_t times_made_ = 0;
-  std::optional<SurfaceShape> ground_;  // on which they lie
+  std::optional<SurfaceShape> ground_;  // under the lines
   core::WorldPosition anchor_;          // lines are kept relative to it
   std::vector<render::Line> kept_, shown_;
 };

@@ -1,4 +1,4 @@
-#include "editor/view/ground_grid.hpp"
+#include "editor/view/grid_overlay.hpp"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -10,22 +10,22 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kCells = 20;  // on each side of the camera
-constexpr int kPieces = 2;  // of a line within a cell, so that it follows the ground
-constexpr int kMoved = 5;   // cells, after which lines are made anew
+constexpr int kPieces = 2;  // per line and cell, so that lines follow the ground
+constexpr int kMoved = 5;   // cells from the anchor until lines are recomputed
 constexpr int kMajorEvery = 10;
-// Above the ground, so that it does not cover them: more of it where it is seen from afar.
+// Height of lines above the ground, so that it does not cover them; it grows with the distance.
 constexpr double kLiftM = 0.03, kLiftShare = 0.004;
 const glm::vec3 kMinor{0.85F, 0.88F, 0.95F}, kMajor{1.0F, 0.72F, 0.25F};
 
 }  // namespace
 
-void GroundGrid::set_spacing(double spacing_m) {
+void GridOverlay::set_spacing(double spacing_m) {
   spacing_m_ = spacing_m;
   stale_ = true;
 }
 
-std::span<const render::Line> GroundGrid::lines(const world::World& world,
-                                                const core::WorldPosition& eye) {
+std::span<const render::Line> GridOverlay::lines(const world::World& world,
+                                                 const core::WorldPosition& eye) {
   if (spacing_m_ == 0) return {};
   const double block_m = world.block_size_m();
   const double cell_m = spacing_m_ < 0 ? block_m : spacing_m_;
@@ -45,8 +45,8 @@ std::span<const render::Line> GroundGrid::lines(const world::World& world,
   return shown_;
 }
 
-// Whether the ground under the grid is another one.
-bool GroundGrid::differs_from(const world::World& world, double cell_m) {
+// True if the ground under the grid has changed.
+bool GridOverlay::differs_from(const world::World& world, double cell_m) {
   const SurfaceShape now(world);
   const auto before = std::exchange(ground_, now);
   if (!before || !before->has_base_of(now)) return true;
@@ -66,12 +66,12 @@ bool GroundGrid::differs_from(const world::World& world, double cell_m) {
   return false;
 }
 
-void GroundGrid::make(const world::World& world, const core::WorldPosition& eye, double cell_m) {
+void GridOverlay::make(const world::World& world, const core::WorldPosition& eye, double cell_m) {
   stale_ = false;
   ++times_made_;
   kept_.clear();
   const double block_m = world.block_size_m();
-  // The crossing of lines next to the camera, in cells from the world's origin.
+  // The crossing of lines nearest to the camera, in cells from the world's origin.
   const auto nearest = [&](std::int32_t block, double local) {
     return std::round((block * block_m + local) / cell_m);
   };

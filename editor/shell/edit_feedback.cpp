@@ -1,0 +1,141 @@
+#include "editor/shell/edit_feedback.hpp"
+
+#include <chrono>
+
+#include "editor/cost/cost_worker.hpp"
+#include "editor/panels/cache_contents.hpp"
+#include "editor/panels/field_row.hpp"
+#include "editor/panels/impact_bar.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kDelayMs = 300;          // after the last change
+constexpr int kMaxSceneAgeMs = 1'000;  // of the contents and the cost model read from the scene
+// The view synthesises meshes of a change first; costs wait at most this long.
+constexpr std::chrono::milliseconds kMaxRest{2'000};
+constexpr int kMaxDelays = 10;  // of kDelayMs each
+
+}  // namespace
+
+EditFeedback::EditFeedback(const EditorContext& context, RegisterModels register_models,
+                           CostLimits limits)
+    : QObject(&context.window),
+      document_(context.document),
+      view_(context.view),
+      model_(context.model),
+      properties_(context.properties),
+      limits_(limits),
+      worker_(new CostWorker(std::move(register_models), this)) {
+  document_.set_guard([this](const ParsedWorld& before, const ParsedWorld& after) {
+    return confirmation_for(before, after);
+  });
+  connect(&document_, &Document::changed, this, &EditFeedback::on_document_changed);
+  ImpactBar& impact = properties_.impact();
+  connect(&document_, &Document::edit_proposed, &impact, &ImpactBar::ask);
+  connect(&impact, &ImpactBar::apply_requested, this, [this, &messages = context.messages] {
+    messages.check(document_.apply_proposed_edit());
+  });
+  connect(&impact, &ImpactBar::discard_requested, this, [this] {
+    document_.discard_proposed_edit();
+    properties_.show(document_.sections());
+  });
+  connect(&properties_, &PropertiesPanel::drag_began, this, [this] { set_dragging(true); });
+  connect(&properties_, &PropertiesPanel::drag_ended, this, [this] { set_dragging(false); });
+  connect(&properties_, &PropertiesPanel::section_chosen, this, &EditFeedback::request_costs);
+  connect_costs();
+}
+
+void EditFeedback::connect_costs() {
+  connect(worker_, &CostWorker::curve, this,
+          [this](const std::string& path, const std::vector<CostPoint>& points) {
+            const auto at = world::parse_text_path(path);
+            FieldRow* row = at ? properties_.row(*at) : nullptr;
+            if (row != nullptr) row->show_cost(points);
+          });
+  connect(worker_, &CostWorker::world_cost, this, [this](const BlockCost& cost) {
+    const world::World& world = document_.world();
+    Q_EMIT block_cost_changed(
+        cost, static_cast<double>(world.blocks_x) * static_cast<double>(world.blocks_z));
+  });
+  connect(worker_, &CostWorker::impact, this, [this](const WorldImpact& impact) {
+    properties_.impact().show_impact(impact_text(impact));
+  });
+  delay_.setSingleShot(true);
+  connect(&delay_, &QTimer::timeout, this, &EditFeedback::request_costs);
+  connect(&view_, &WorldView::opened, this, [this](const QString& error) {
+    if (error.isEmpty()) request_costs();
+  });
+  connect(&view_, &WorldView::world_rejected, worker_, &CostWorker::resume);
+  connect(&view_, &WorldView::answered, worker_, &CostWorker::resume);
+}
+
+// The question before an edit; empty for nearly all edits, which need no confirmation.
+QString EditFeedback::confirmation_for(const ParsedWorld& before, const ParsedWorld& after) {
+  read_scene();
+  const EditCost cost = edit_cost(after, learnt_.get());
+  if (editor::confirmation_for({}, cost, limits_).isEmpty()) return {};
+  return editor::confirmation_for(edit_cost(before, learnt_.get()), cost, limits_);
+}
+
+void EditFeedback::set_dragging(bool on) {
+  view_.set_draft(on);
+  if (on) {
+    document_.begin_drag();
+    drag_start_ = document_.parsed();
+  } else {
+    document_.end_drag();
+    drag_start_ = nullptr;
+  }
+}
+
+void EditFeedback::on_document_changed(Changes what) {
+  // The dragged slider may no longer exist.
+  if (drag_start_ && what.testAnyFlags(Change::kTables | Change::kFile)) set_dragging(false);
+  properties_.show(document_.sections());
+  // The renderer loads images of the ground only when it is created.
+  const auto& images = document_.world().palette.images;
+  model_.show(what.testFlag(Change::kFile) || images != shown_images_);
+  shown_images_ = images;
+  delay_.start(kDelayMs);
+  delay_count_ = 0;
+  const ParsedWorldPtr before = drag_start_ ? drag_start_ : last_parsed_;
+  last_parsed_ = document_.parsed();
+  if (what.testFlag(Change::kFile) || view_.session() == nullptr || !before) return;
+  read_scene();
+  worker_->rest(kMaxRest);
+  worker_->request_impact({.before = before,
+                           .after = last_parsed_,
+                           .around = view_.camera().pose().position.block,
+                           .contents = contents_,
+                           .learnt = learnt_});
+}
+
+// Reads the cache contents and the cost model of the scene. During a drag they stay as they were.
+void EditFeedback::read_scene() {
+  if (view_.session() == nullptr || (learnt_ && drag_start_) ||
+      (since_read_.isValid() && since_read_.elapsed() < kMaxSceneAgeMs))
+    return;
+  const scene::Scene& scene = view_.session()->scene();
+  learnt_ = std::make_shared<synthesis::CostModel>(scene.meshes().costs());
+  contents_ = contents_of(scene);
+  since_read_.start();
+}
+
+// Requests the costs of the fields in the properties, once the view has its meshes.
+void EditFeedback::request_costs() {
+  if (view_.session() != nullptr && view_.awaits_meshes() && delay_count_++ < kMaxDelays)
+    return delay_.start(kDelayMs);
+  delay_count_ = 0;
+  read_scene();
+  worker_->request_curves({.text = document_.text(),
+                           .file = document_.file().string(),
+                           .fields = properties_.shown_fields(),
+                           .around = view_.camera().pose().position.block,
+                           .learnt = learnt_,
+                           .files = handmade::files_with(document_.file(), document_.pictures())});
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,87 @@
+#include "editor/shell/remote_commands.hpp"
+
+#include <QDockWidget>
+#include <QMenu>
+
+#include "editor/attach/attach_dialog.hpp"
+#include "editor/attach/remote_panel.hpp"
+#include "editor/attach/remote_session.hpp"
+#include "editor/shell/file_commands.hpp"
+#include "editor/shell/panel.hpp"
+#include "engine/core/camera.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr int kPropertiesPx = 380, kAttachedPx = 330;  // while a program is attached
+
+}  // namespace
+
+RemoteCommands::RemoteCommands(const EditorContext& context, FileCommands& files)
+    : QObject(&context.window),
+      window_(context.window),
+      document_(context.document),
+      view_(context.view),
+      model_(context.model),
+      properties_(context.properties),
+      messages_(context.messages),
+      files_(files),
+      remote_(new RemoteSession(&context.window)),
+      panel_(new RemotePanel(*remote_)) {
+  connect_panel();
+  connect(remote_, &RemoteSession::attached, this,
+          [this](const QJsonObject&, const std::string& text) { on_attached(text); });
+  connect(remote_, &RemoteSession::message_posted, this, [this](const QString& message) {
+    messages_.show_message(tr("Attached program: %1").arg(message));
+  });
+  connect(remote_, &RemoteSession::ended, this, [this](const QString& reason) {
+    follows_ = false;
+    messages_.show_message(reason.isEmpty() ? tr("Detached.") : reason);
+  });
+  connect(&document_, &Document::changed, this, &RemoteCommands::send_world);
+  connect(&view_, &WorldView::drawn, this, [this] {
+    if (follows_) remote_->set_pose(model_.world_pose());
+  });
+}
+
+void RemoteCommands::connect_panel() {
+  connect(panel_, &RemotePanel::go_to_requested, this,
+          [this](const core::CameraPose& pose) { model_.go_to_world(pose); });
+  connect(panel_, &RemotePanel::sync_camera_requested, this, [this](bool on) {
+    follows_ = on && remote_->is_attached();
+    if (!on && remote_->is_attached()) remote_->set_pose(std::nullopt);
+  });
+}
+
+void RemoteCommands::on_attached(const std::string& world_text) {
+  show_panel(*panel_);
+  window_.resizeDocks({&dock_of(properties_), &dock_of(*panel_)}, {kPropertiesPx, kAttachedPx},
+                      Qt::Horizontal);
+  if (world_text != document_.text()) {
+    if (!files_.may_discard()) return remote_->detach(false);
+    messages_.check(document_.make_new(world_text));
+  }
+  sent_world_ = document_.text();
+  messages_.show_message(
+      tr("Attached to process %1. It gets your changes at once.").arg(remote_->endpoint().pid));
+}
+
+void RemoteCommands::add_to_file_menu(QMenu& menu) {
+  menu.addAction(tr("A&ttach …"), this, &RemoteCommands::attach);
+}
+
+void RemoteCommands::attach() {
+  if (remote_->is_attached())
+    return messages_.show_message(tr("Detach the attached program first, in its panel."));
+  AttachDialog dialog(&window_);
+  if (dialog.exec() != QDialog::Accepted) return;
+  if (const auto endpoint = dialog.chosen()) messages_.check(remote_->attach(*endpoint));
+}
+
+void RemoteCommands::send_world() {
+  if (!remote_->is_attached() || document_.text() == sent_world_) return;
+  sent_world_ = document_.text();
+  remote_->set_world(sent_world_);
+}
+
+}  // namespace psygen::editor

@@ -1,0 +1,49 @@
+// Attaches to a running program: the panel "Attached", the command of the File menu, and the world
+// and camera that the program gets from the editor. Main thread.
+#pragma once
+
+#include <QObject>
+#include <string>
+
+#include "editor/shell/editor_context.hpp"
+
+class QMenu;
+
+namespace psygen::editor {
+
+class FileCommands;
+class RemotePanel;
+class RemoteSession;
+
+// Owns no panel: the window puts it into a dock.
+class RemoteCommands final : public QObject {
+  Q_OBJECT
+
+ public:
+  // Attaching replaces the document, so `files` offers to save it first.
+  RemoteCommands(const EditorContext& context, FileCommands& files);
+
+  // The panel "Attached".
+  RemotePanel& panel() { return *panel_; }
+  void add_to_file_menu(QMenu& menu);
+
+ private:
+  void connect_panel();
+  void on_attached(const std::string& world_text);
+  void attach();
+  void send_world();
+
+  QMainWindow& window_;
+  Document& document_;
+  WorldView& view_;
+  ModelView& model_;
+  PropertiesPanel& properties_;
+  MessageLog& messages_;
+  FileCommands& files_;
+  RemoteSession* remote_;
+  RemotePanel* panel_;
+  std::string sent_world_;  // the world of the attached program
+  bool follows_ = false;    // the program's camera follows the view
+};
+
+}  // namespace psygen::editor

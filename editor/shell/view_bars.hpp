@@ -1,0 +1,43 @@
+// The toolbars "Image" (quality, time of day, weather) and "Model" (a model alone). Main thread.
+#pragma once
+
+#include <QObject>
+#include <functional>
+
+#include "editor/shell/editor_context.hpp"
+
+class QToolBar;
+
+namespace psygen::editor {
+
+// One per window.
+class ViewBars final : public QObject {
+  Q_OBJECT
+
+ public:
+  // Adds both toolbars to the window. Edits between set_dragging(true) and set_dragging(false) are
+  // one undo step.
+  ViewBars(const EditorContext& context, std::function<void(bool)> set_dragging);
+
+  // The bar "Model" is visible only while a model is alone, even if a saved layout shows it.
+  void update_model_bar();
+
+ private:
+  // Label and tool tip of a slider.
+  struct SliderText {
+    QString label, help;
+  };
+  void add_quality(QToolBar& bar);
+  void add_hour(QToolBar& bar);
+  void add_weather(QToolBar& bar, const SliderText& text, const world::TextPath& path);
+  void add_model_bar(QMainWindow& window);
+
+  Document& document_;
+  WorldView& view_;
+  ModelView& model_;
+  MessageLog& messages_;
+  std::function<void(bool)> set_dragging_;
+  QToolBar* model_bar_ = nullptr;
+};
+
+}  // namespace psygen::editor
