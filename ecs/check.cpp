@@ -10,7 +10,8 @@ void give_up(std::string_view sentence) {
   std::abort();
 }
 
-void contract_broken(const char* file, int line, const char* condition, std::string_view sentence) {
+void assertion_failed(const char* file, int line, const char* condition,
+                      std::string_view sentence) {
   std::fprintf(stderr, "%s:%d: contract broken: %s (%.*s)\n", file, line, condition,
                static_cast<int>(sentence.size()), sentence.data());
   std::abort();

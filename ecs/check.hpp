@@ -11,8 +11,8 @@ namespace psygen::ecs::detail {
 // Prints "ecs: " and the message on stderr and aborts.
 [[noreturn]] void give_up(std::string_view sentence);
 // Prints file, line, condition and message on stderr and aborts. Called by PSYGEN_ECS_ASSERT only.
-[[noreturn]] void contract_broken(const char* file, int line, const char* condition,
-                                  std::string_view sentence);
+[[noreturn]] void assertion_failed(const char* file, int line, const char* condition,
+                                   std::string_view sentence);
 
 }  // namespace psygen::ecs::detail
 
@@ -20,6 +20,7 @@ namespace psygen::ecs::detail {
 #define PSYGEN_ECS_ASSERT(condition, sentence) ((void)sizeof(condition))
 #else
 #define PSYGEN_ECS_ASSERT(condition, sentence) \
-  ((condition) ? (void)0                       \
-               : ::psygen::ecs::detail::contract_broken(__FILE__, __LINE__, #condition, sentence))
+  ((condition)                                 \
+       ? (void)0                               \
+       : ::psygen::ecs::detail::assertion_failed(__FILE__, __LINE__, #condition, sentence))
 #endif

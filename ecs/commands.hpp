@@ -157,7 +157,7 @@ void Commands::AddList<C>::apply(World& world) {
   for (const Landing<C>& result : results)
     entities.push_back(result.entity);
   world.add<C>(entities);
-  world.land_moved<C>(results);
+  world.move_values<C>(results);
 }
 
 }  // namespace psygen::ecs

@@ -307,8 +307,8 @@ std::size_t Storage::destroy(std::span<const Entity> entities) {
   return died;
 }
 
-std::size_t Storage::change_kind(std::span<const Entity> entities, const Signature& added,
-                                 const Signature& removed) {
+std::size_t Storage::change_archetype(std::span<const Entity> entities, const Signature& added,
+                                      const Signature& removed) {
   expect_no_iteration("add or remove");
   const Table* last = nullptr;
   bool last_changes = false;

@@ -157,10 +157,10 @@ class Storage {
   Batch create(const Signature& kind, std::size_t count);
   // World::destroy. Returns the number of entities that died.
   std::size_t destroy(std::span<const Entity> entities);
-  // World::change_kind for components in tables. Returns the number of entities that moved. If a
-  // constructor throws, entities that have not moved yet are unchanged.
-  std::size_t change_kind(std::span<const Entity> entities, const Signature& added,
-                          const Signature& removed);
+  // World::change_archetype for components in tables. Returns the number of entities that moved. If
+  // a constructor throws, entities that have not moved yet are unchanged.
+  std::size_t change_archetype(std::span<const Entity> entities, const Signature& added,
+                               const Signature& removed);
   // World::add and World::remove for one sparse component. Return the number of changed entities.
   std::size_t add_sparse(ComponentId id, std::span<const Entity> entities);
   std::size_t remove_sparse(ComponentId id, std::span<const Entity> entities);

@@ -75,16 +75,16 @@ class Query {
     return world_->children(list);
   }
 
-  // World::land, World::land_moved and World::mark_changed, for components that the query writes.
+  // World::land, World::move_values and World::mark_changed, for components that the query writes.
   template <Component C>
-  LandReport land(std::span<const Landing<C>> results) const {
+  WriteReport land(std::span<const Landing<C>> results) const {
     static_assert(kWrites<C>, "the query does not write this component");
     return world_->land<C>(results);
   }
   template <Component C>
-  LandReport land_moved(std::span<Landing<C>> results) const {
+  WriteReport move_values(std::span<Landing<C>> results) const {
     static_assert(kWrites<C>, "the query does not write this component");
-    return world_->land_moved<C>(results);
+    return world_->move_values<C>(results);
   }
   template <Component C>
   void mark_changed(std::span<const Entity> entities) const {

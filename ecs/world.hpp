@@ -34,7 +34,7 @@ struct Created {
   }
 };
 
-// The components that World::change_kind adds and removes.
+// The components that World::change_archetype adds and removes.
 template <Component... Cs>
 struct Add {};
 template <Component... Cs>
@@ -48,10 +48,10 @@ struct Landing {
 };
 
 // Counts of values written, and of values dropped because their entity is stale.
-struct LandReport {
+struct WriteReport {
   std::size_t landed = 0;
   std::size_t stale = 0;  // the entity is dead, or lacks the component
-  friend bool operator==(const LandReport&, const LandReport&) = default;
+  friend bool operator==(const WriteReport&, const WriteReport&) = default;
 };
 
 namespace detail {
@@ -88,7 +88,7 @@ class World {
     if constexpr (one_sparse<Cs...>()) {
       return storage_.add_sparse(id_of<Cs...>(), entities);
     } else {
-      return storage_.change_kind(entities, signature<Cs...>(), {});
+      return storage_.change_archetype(entities, signature<Cs...>(), {});
     }
   }
   template <Component... Cs>
@@ -96,15 +96,15 @@ class World {
     if constexpr (one_sparse<Cs...>()) {
       return storage_.remove_sparse(id_of<Cs...>(), entities);
     } else {
-      return storage_.change_kind(entities, {}, signature<Cs...>());
+      return storage_.change_archetype(entities, {}, signature<Cs...>());
     }
   }
 
   // Adds and removes in one move between archetypes. Returns the number of entities that moved.
-  //   world.change_kind(entities, Add<Asleep>{}, Remove<Awake>{})
+  //   world.change_archetype(entities, Add<Asleep>{}, Remove<Awake>{})
   template <Component... As, Component... Rs>
-  std::size_t change_kind(std::span<const Entity> entities, Add<As...>, Remove<Rs...>) {
-    return storage_.change_kind(entities, signature<As...>(), signature<Rs...>());
+  std::size_t change_archetype(std::span<const Entity> entities, Add<As...>, Remove<Rs...>) {
+    return storage_.change_archetype(entities, signature<As...>(), signature<Rs...>());
   }
 
   // Commits memory for `count` more entities with exactly these components.
@@ -118,12 +118,12 @@ class World {
   // Writes each value in place and marks it changed; of several values for one entity the last
   // wins. Drops stale handles. O(results).
   template <Component C>
-  LandReport land(std::span<const Landing<C>> results) {
+  WriteReport land(std::span<const Landing<C>> results) {
     return land_from<C>(results);
   }
   // Like land, but moves the values out of `results`.
   template <Component C>
-  LandReport land_moved(std::span<Landing<C>> results) {
+  WriteReport move_values(std::span<Landing<C>> results) {
     return land_from<C>(results);
   }
 
@@ -279,7 +279,7 @@ class World {
   template <class C>
   C* find(Entity entity) const;
   template <class C, class L>
-  LandReport land_from(std::span<L> results);
+  WriteReport land_from(std::span<L> results);
   template <class... Cs, class S, class F, class... Filters>
   static void each_in(S& storage, F& f, Filters... filters);
   template <class... Cs, class S, class F>
@@ -304,10 +304,10 @@ C* World::find(Entity entity) const {
 }
 
 template <class C, class L>
-LandReport World::land_from(std::span<L> results) {
+WriteReport World::land_from(std::span<L> results) {
   detail::ComponentRecord& target = record<C>();
   const Accessor<C> rows(storage_, target);
-  LandReport report;
+  WriteReport report;
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (i + detail::kPrefetchAhead < results.size()) {
       rows.prefetch(results[i + detail::kPrefetchAhead].entity);
@@ -321,7 +321,7 @@ LandReport World::land_from(std::span<L> results) {
     if constexpr (std::is_const_v<L> && std::is_copy_assignable_v<C>) {
       *found.value = result.value;
     } else {
-      static_assert(!std::is_const_v<L>, "values of this type cannot be copied: use land_moved");
+      static_assert(!std::is_const_v<L>, "values of this type cannot be copied: use move_values");
       *found.value = std::move(result.value);
     }
     if constexpr (is_tracked<C>()) storage_.mark(target, found.at);

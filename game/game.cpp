@@ -198,7 +198,7 @@ void Game::step(app::Session& session, double dt) {
 }
 
 // After the steps of a frame: presents the events, and hands edits to the scene.
-void Game::keep_up(app::Session& session, double dt_s) {
+void Game::sync_presentation(app::Session& session, double dt_s) {
   Play& play = *lands_->play;
   for (const Happening& happening : play.take_happenings()) {
     hud_.tell(happening);
@@ -303,14 +303,14 @@ core::CameraPose Game::title_camera(app::Session& session, double dt_s) {
   const world::World& world = facts.world;
   if (!title_query_) title_query_.emplace(world, facts.registry);
   core::CameraPose pose;
-  pose.position =
-      at_end_of(title_place_, kTitleRadiusM * glm::dvec3(std::sin(angle), 0, -std::cos(angle)),
-                world.block_size_m());
+  pose.position = position_at_offset(
+      title_place_, kTitleRadiusM * glm::dvec3(std::sin(angle), 0, -std::cos(angle)),
+      world.block_size_m());
   double height_m = world.water.level_m;
   for (double ahead = -40; ahead <= 80; ahead += 20) {
     const glm::dvec3 way(std::cos(angle) * ahead, 0, std::sin(angle) * ahead);
     if (const auto ground =
-            title_query_->ground(at_end_of(pose.position, way, world.block_size_m())))
+            title_query_->ground(position_at_offset(pose.position, way, world.block_size_m())))
       height_m = std::max(height_m, ground->height_m);
   }
   const double wanted = height_m + kTitleHeightM;
@@ -362,7 +362,7 @@ core::CameraPose Game::frame(app::Session& session, double dt_s) {
 core::CameraPose Game::playing(app::Session& session, double dt_s) {
   Play& play = *lands_->play;
   take_keys(session);
-  keep_up(session, dt_s);
+  sync_presentation(session, dt_s);
   scene::Scene& scene = session.scene();
   const bool photo = menu_.page == Page::kPhoto;
   const double share = scene.step().share;

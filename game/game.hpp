@@ -60,7 +60,7 @@ class Game {
   void load_later(std::uint64_t seed, int tries);
   core::Result<void> begin(app::Session& session, Loaded loaded);
   void step(app::Session& session, double dt);
-  void keep_up(app::Session& session, double dt_s);
+  void sync_presentation(app::Session& session, double dt_s);
   void choose(app::Session& session, Choice choice);
   void open_page(app::Session& session, Page page);
   void take_keys(app::Session& session);

@@ -88,7 +88,7 @@ using glm::vec4;
 #define PSYGEN_BILLBOARD_BIT 2u
 #define PSYGEN_BILLBOARD_REACH_M 256.0
 
-// Vertices of pictures (core::kPictureBit), and the views around a model that a picture has. Layer
+// Vertices of pictures (core::kImpostorBit), and the views around a model that a picture has. Layer
 // 0 of the texture is white; from there on, the views follow each other.
 #define PSYGEN_PICTURE_BIT 4u
 #define PSYGEN_PICTURE_VIEWS 8

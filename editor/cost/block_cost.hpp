@@ -63,7 +63,7 @@ struct CurveInput {
   const world::WorldField& field;
   core::BlockCoord around;
   const synthesis::CostModel* learnt = nullptr;
-  const world::FilesBeside* files = nullptr;
+  const world::ResourceLoader* files = nullptr;
 };
 std::vector<CostPoint> cost_curve(const CurveInput& input, const std::function<bool()>& go_on);
 

@@ -325,8 +325,8 @@ void Document::save_locks() const {
 }
 
 core::Result<void> Document::recover(const Recovery& recovery) {
-  const auto pictures = std::make_shared<const handmade::MemoryPictures>(
-      handmade::MemoryPictures{recovery.pictures, recovery.pictures});
+  const auto pictures = std::make_shared<const handmade::InMemoryImages>(
+      handmade::InMemoryImages{recovery.pictures, recovery.pictures});
   const auto parsed =
       parse_world_text(recovery.text, recovery.world_file.string(), options_.register_models,
                        handmade::files_with(recovery.world_file, pictures).get());

@@ -53,15 +53,15 @@ std::vector<std::string> Document::unsaved_pictures() const {
 // An image that equals its file is dropped from memory, so that the file is read again.
 handmade::MemoryPicturesPtr Document::with_picture(const std::string& name,
                                                    const PicturePtr& picture) const {
-  auto next = pictures_ ? std::make_shared<handmade::MemoryPictures>(*pictures_)
-                        : std::make_shared<handmade::MemoryPictures>();
+  auto next = pictures_ ? std::make_shared<handmade::InMemoryImages>(*pictures_)
+                        : std::make_shared<handmade::InMemoryImages>();
   const auto disk = disk_pictures_.find(name);
   const bool is_on_disk = picture && disk != disk_pictures_.end() && disk->second == picture->hash;
   if (picture && !is_on_disk)
     next->in_place[name] = picture;
   else
     next->in_place.erase(name);
-  if (picture) next->where_missing[name] = picture;
+  if (picture) next->fallbacks[name] = picture;
   return next;
 }
 
@@ -194,7 +194,7 @@ core::Result<void> Document::write_pictures(const std::filesystem::path& file) c
 void Document::note_pictures_written() {
   refused_files_.clear();
   if (!pictures_) return;
-  auto written = std::make_shared<handmade::MemoryPictures>(*pictures_);
+  auto written = std::make_shared<handmade::InMemoryImages>(*pictures_);
   for (const auto& [name, painted] : pictures_->in_place) {
     if (picture_of(world(), name) == nullptr) continue;
     disk_pictures_[name] = painted->hash;

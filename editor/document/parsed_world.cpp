@@ -25,7 +25,7 @@ bool same_tables(const ParsedWorld& a, const ParsedWorld& b) {
 
 core::Result<ParsedWorldPtr> parse_world_text(const std::string& text, const std::string& file_name,
                                               const RegisterModels& register_models,
-                                              const world::FilesBeside* files) {
+                                              const world::ResourceLoader* files) {
   auto parsed = std::make_shared<ParsedWorld>();
   parsed->registry = models::make_standard_registry();
   if (register_models) {

@@ -10,7 +10,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/world/files/files_beside.hpp"
+#include "engine/world/files/resource_loader.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::editor {
@@ -30,7 +30,7 @@ using ParsedWorldPtr = std::shared_ptr<const ParsedWorld>;
 // handmade::files().
 core::Result<ParsedWorldPtr> parse_world_text(const std::string& text, const std::string& file_name,
                                               const RegisterModels& register_models,
-                                              const world::FilesBeside* files = nullptr);
+                                              const world::ResourceLoader* files = nullptr);
 
 // Parts in which two texts and their worlds differ.
 enum class Change : unsigned {

@@ -24,7 +24,7 @@ core::Result<std::string> written(const core::Result<exchange::Document>& docume
   const auto format = exchange::format_from(ending.empty() ? "" : ending.substr(1));
   if (!format)
     return invalid_export(fmt::format("{}: the name must end in .glb or .obj", file.string()));
-  if (auto ok = exchange::write_document(file, *format, *document); !ok)
+  if (auto ok = exchange::write_scene(file, *format, *document); !ok)
     return tl::unexpected(ok.error());
   const std::size_t objects = document->objects.size();
   return fmt::format("{} object{}, {} vertices, {} triangles", objects, objects == 1 ? "" : "s",

@@ -144,7 +144,7 @@ class PictureServer {
 
   // The resources of the world with its unsaved images. Parsing the world reports unreadable files.
   static handmade::FilesPtr files_of(const PictureRequest& request) {
-    auto pictures = std::make_shared<handmade::MemoryPictures>();
+    auto pictures = std::make_shared<handmade::InMemoryImages>();
     for (const auto& [name, file] : request.pictures) {
       if (auto picture = handmade::files().read_grey(file))
         pictures->in_place[name] = *std::move(picture);

@@ -27,7 +27,7 @@ bool SurfaceShape::has_base_of(const SurfaceShape& other) const {
 }
 
 std::uint64_t SurfaceShape::shape_of(core::BlockCoord block) const {
-  return layer_ ? layer_->ground.hash_of(models::QuadPlace::of(block), kMarginBlocks, block_m_) : 0;
+  return layer_ ? layer_->ground.hash_of(models::QuadCoord::of(block), kMarginBlocks, block_m_) : 0;
 }
 
 bool SurfaceDifference::at(core::BlockCoord block) {

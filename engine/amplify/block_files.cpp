@@ -128,8 +128,7 @@ class BlockFolder::Sink final : public BlockSink {
   core::Result<void> finish(core::BlockCoord block) override {
     if (error_) return tl::unexpected(*error_);
     document_.name = name_of(block);
-    const auto written =
-        exchange::write_document(folder_.file_of(block), folder_.format_, document_);
+    const auto written = exchange::write_scene(folder_.file_of(block), folder_.format_, document_);
     document_.objects.clear();
     if (written) folder_.written_.fetch_add(1, std::memory_order_relaxed);
     return written;

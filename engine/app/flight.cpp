@@ -66,7 +66,7 @@ void forget_real_times(telemetry::FrameRecord& record) {
 core::Result<std::unique_ptr<Flight>> Flight::create(FlightOptions options) {
   std::unique_ptr<Flight> flight(new Flight(std::move(options)));
   const auto opened =
-      core::within_memory("starting the flight", [&flight] { return flight->open(); });
+      core::catch_out_of_memory("starting the flight", [&flight] { return flight->open(); });
   if (!opened) return tl::unexpected(opened.error());
   return flight;
 }
@@ -260,7 +260,7 @@ FlightReport Flight::land(bool whole) {
   recorded_ = false;
   FlightReport report;
   const auto written =
-      core::within_memory("the outputs of the flight", [&]() -> core::Result<void> {
+      core::catch_out_of_memory("the outputs of the flight", [&]() -> core::Result<void> {
         report.summary = telemetry::summarise(*log_, run_facts(whole), options_.warmup_seconds);
         write_outputs(report.summary);
         return {};
@@ -276,12 +276,12 @@ FlightReport Flight::land(bool whole) {
 core::Result<FlightReport> Flight::run() {
   const world::World& world = session_->scene().world();
   pose_ = path_ ? path_->pose_at(0, world) : session_->home();
-  const auto prepared =
-      core::within_memory("preparing the first view", [this] { return session_->prepare(pose_); });
+  const auto prepared = core::catch_out_of_memory("preparing the first view",
+                                                  [this] { return session_->prepare(pose_); });
   if (!prepared) return tl::unexpected(prepared.error());
   session_->set_now(0);
   recorded_ = true;
-  const auto flown = core::within_memory("the flight", [this] { return loop(); });
+  const auto flown = core::catch_out_of_memory("the flight", [this] { return loop(); });
   FlightReport report = land(flown.has_value());
   if (!flown) {
     for (const core::Error& failure : failures_)
@@ -296,7 +296,7 @@ core::Result<FlightReport> Flight::run() {
   if (!stays_open()) return report;
   tell_end(report);
   user_flies_ = true;
-  const auto flown_on = core::within_memory("the flight", [this] { return loop(); });
+  const auto flown_on = core::catch_out_of_memory("the flight", [this] { return loop(); });
   if (!flown_on) return tl::unexpected(flown_on.error());
   report.validation_messages = session_->renderer().validation_messages();
   return report;

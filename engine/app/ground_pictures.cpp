@@ -4,7 +4,7 @@
 
 #include "engine/image/image_io.hpp"
 #include "engine/render/textures/ground_texture_override.hpp"
-#include "engine/world/files/files_beside.hpp"
+#include "engine/world/files/resource_loader.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::app {

@@ -25,7 +25,7 @@ class RemoteModelers;
 }
 
 namespace psygen::world {
-class FilesBeside;
+class ResourceLoader;
 }
 
 namespace psygen::app {
@@ -65,7 +65,7 @@ struct SessionOptions {
   // and locates the folder of its images.
   std::optional<std::string> world_text;
   // Loads the external resources of the world; null: handmade::files().
-  std::shared_ptr<const world::FilesBeside> files;
+  std::shared_ptr<const world::ResourceLoader> files;
   core::Extent size{1280, 720};
   bool headless = false;
   // Draws into the program's own window, such as an editor's. It outlives the session, which then

@@ -85,7 +85,7 @@ Session::~Session() = default;
 core::Result<std::unique_ptr<Session>> Session::create(SessionOptions options) {
   std::unique_ptr<Session> session(new Session(std::move(options)));
   const auto opened =
-      core::within_memory("starting the session", [&session] { return session->open(); });
+      core::catch_out_of_memory("starting the session", [&session] { return session->open(); });
   if (!opened) return tl::unexpected(opened.error());
   return session;
 }
@@ -108,7 +108,7 @@ core::Result<void> Session::open() {
 
 core::Result<world::World> Session::read_world(std::optional<std::string_view> text,
                                                models::Registry& registry,
-                                               const world::FilesBeside* files) const {
+                                               const world::ResourceLoader* files) const {
   if (files == nullptr) files = &handmade::files();
   auto world = text ? world::parse_world(*text, options_.world_file.string(), registry, files)
                     : world::load_world(options_.world_file, registry, files);

@@ -36,7 +36,7 @@ namespace psygen::telemetry {
 class TraceLog;
 }
 namespace psygen::world {
-class FilesBeside;
+class ResourceLoader;
 struct World;
 }  // namespace psygen::world
 
@@ -115,7 +115,7 @@ class Session {
   // with its result.
   std::function<core::Result<scene::PreparedWorld>()> prepare_world(std::string text) const;
   // Sets the loader of external resources for later worlds (SessionOptions::files).
-  void set_files(std::shared_ptr<const world::FilesBeside> files) {
+  void set_files(std::shared_ptr<const world::ResourceLoader> files) {
     options_.files = std::move(files);
   }
   core::Result<void> show_world(scene::PreparedWorld prepared);
@@ -145,7 +145,7 @@ class Session {
   core::Result<void> open();
   core::Result<world::World> read_world(std::optional<std::string_view> text,
                                         models::Registry& registry,
-                                        const world::FilesBeside* files) const;
+                                        const world::ResourceLoader* files) const;
   core::Result<void> open_window(const std::string& title);
   core::Result<void> open_renderer(GroundPictures ground, Loading& loading);
   core::Result<void> open_scene(world::World world, models::Registry registry, Loading& loading);

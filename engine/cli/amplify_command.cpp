@@ -8,7 +8,7 @@
 
 #include "engine/amplify/block_files.hpp"
 #include "engine/amplify/shard.hpp"
-#include "engine/cli/amplify_figures.hpp"
+#include "engine/cli/amplify_stats.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/places.hpp"
@@ -151,7 +151,7 @@ core::Result<amplify::Report> AmplifyCommand::make_shard(amplify::Job job,
 }
 
 int AmplifyCommand::print_report(const amplify::Report& report) const {
-  AmplifyFigures figures{report.totals, report.complete, {}, {}, {}, 0, 0, 0};
+  AmplifyStats figures{report.totals, report.complete, {}, {}, {}, 0, 0, 0};
   figures.times = {report.seconds, report.cpu_seconds, report.threads};
   const bool with_files = !out_.empty() && format_ != amplify::kNoFiles;
   if (with_files) figures.files = {written_, skipped_};
@@ -159,7 +159,7 @@ int AmplifyCommand::print_report(const amplify::Report& report) const {
   return print_figures(figures, report.stopped);
 }
 
-int AmplifyCommand::print_figures(const AmplifyFigures& figures, bool stopped) const {
+int AmplifyCommand::print_figures(const AmplifyStats& figures, bool stopped) const {
   const int printed = print(json_ ? json_of(figures) : text_of(figures));
   const amplify::Totals& totals = figures.totals;
   if (totals.failed > 0) {

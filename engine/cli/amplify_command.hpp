@@ -8,7 +8,7 @@
 
 #include "engine/amplify/amplify.hpp"
 #include "engine/amplify/shard.hpp"
-#include "engine/cli/amplify_figures.hpp"
+#include "engine/cli/amplify_stats.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cluster/peers.hpp"
@@ -32,7 +32,7 @@ class AmplifyCommand final : public Command {
                                            amplify::JobFormat format,
                                            const amplify::Options& options) const;
   int print_report(const amplify::Report& report) const;
-  int print_figures(const AmplifyFigures& figures, bool stopped) const;
+  int print_figures(const AmplifyStats& figures, bool stopped) const;
 
   std::string world_ = kDefaultWorld;
   std::optional<amplify::Region> region_;

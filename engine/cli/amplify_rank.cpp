@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include "engine/cli/amplify_command.hpp"
-#include "engine/cli/amplify_figures.hpp"
+#include "engine/cli/amplify_stats.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/shipped_files.hpp"
+#include "engine/cluster/agreement.hpp"
 #include "engine/cluster/job.hpp"
-#include "engine/cluster/one_mind.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 #include "engine/telemetry/progress_bar.hpp"
@@ -24,7 +24,7 @@ int end_with(const core::Error& error, cluster::Peers& peers) {
 }  // namespace
 
 int AmplifyCommand::run_rank() {
-  const auto peers = cluster::join_peers();
+  const auto peers = cluster::join_communicator();
   if (!peers) {
     core::log_error(peers.error().message);
     return exit_code_of(peers.error());
@@ -71,7 +71,7 @@ int AmplifyCommand::run_rank(cluster::Peers& peers) {
   }
   peers.finish();
   if (peers.rank() != 0) return job->report.complete ? kOk : kFailed;
-  AmplifyFigures figures{job->report.totals, job->report.complete, {}, {}, {}, 0, 0, 0};
+  AmplifyStats figures{job->report.totals, job->report.complete, {}, {}, {}, 0, 0, 0};
   figures.times = {job->report.seconds, job->report.cpu_seconds, job->report.threads};
   if (format) figures.files = {job->written, job->skipped};
   figures.ranks = peers.count();

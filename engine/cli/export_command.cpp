@@ -188,7 +188,7 @@ int ExportCommand::run() {
     const bool usage = !block_ && document.error().code == core::ErrorCode::kInvalidArgument;
     return usage ? kUsage : exit_code_of(document.error());
   }
-  if (auto ok = exchange::write_document(out_, *format_of(out_), *document); !ok) {
+  if (auto ok = exchange::write_scene(out_, *format_of(out_), *document); !ok) {
     core::log_error(ok.error().message);
     return exit_code_of(ok.error());
   }

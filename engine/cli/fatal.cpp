@@ -44,14 +44,14 @@ bool say_want() {
 
 }  // namespace
 
-void say_why_at_terminate() {
+void install_terminate_handler() {
   terminate_before = std::set_terminate([] {
     if (std::current_exception() != nullptr && say_want()) std::_Exit(kFailed);
     terminate_before();
   });
 }
 
-int say_what_was_thrown() {
+int report_current_exception() {
   if (say_want()) return kFailed;
   try {
     throw;
@@ -72,7 +72,7 @@ namespace {
 
 void* noted(void* memory, std::size_t bytes) {
   if (memory != nullptr) return memory;
-  psygen::core::note_refused_bytes(bytes);
+  psygen::core::record_failed_allocation(bytes);
   throw std::bad_alloc();
 }
 

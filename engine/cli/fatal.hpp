@@ -5,9 +5,9 @@
 namespace psygen::cli {
 
 // Handles exceptions that end in std::terminate, from threads and libraries. Call first in main.
-void say_why_at_terminate();
+void install_terminate_handler();
 
 // Reports the exception that is being handled, without allocating. Returns kFailed.
-int say_what_was_thrown();
+int report_current_exception();
 
 }  // namespace psygen::cli

@@ -142,12 +142,12 @@ std::string FlyCommand::objection() const {
     return "--clock virtual needs --headless: a window follows the wall clock";
   if (is_virtual && in_cluster_)
     return "--cluster needs --clock wall: the times of other ranks are not fixed";
-  return cluster_objection();
+  return validate_cluster_options();
 }
 
 int FlyCommand::run() {
   if (const std::string reason = objection(); !reason.empty()) {
-    if (!is_heard()) return kOk;  // mpirun ends all ranks when the first one fails
+    if (!prints_messages()) return kOk;  // mpirun ends all ranks when the first one fails
     core::log_error(reason);
     return kUsage;
   }
@@ -189,16 +189,17 @@ int FlyCommand::run_here() {
     told_ = tell(report);
   };
   options_.session.plugins.push_back(std::move(reporter));
-  auto flight = load_what_pictures_take()
-                    .and_then(render::fit_software_rendering_to_threads)
-                    .and_then([this] { return app::Flight::create(options_); });
+  auto flight =
+      load_image_codec().and_then(render::fit_software_rendering_to_threads).and_then([this] {
+        return app::Flight::create(options_);
+      });
   if (!flight) return code_of(flight.error());
   flight_ = std::move(*flight);
   return fly();
 }
 
 // Before the driver and the modelers use up the available threads.
-core::Result<void> FlyCommand::load_what_pictures_take() const {
+core::Result<void> FlyCommand::load_image_codec() const {
   return options_.images_every > 0 ? image::load_picture_libraries() : core::Result<void>{};
 }
 

@@ -8,7 +8,7 @@
 #include "engine/app/flight.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/request_recorder.hpp"
-#include "engine/cluster/remote_models.hpp"
+#include "engine/cluster/remote_modeler_pool.hpp"
 
 namespace psygen::cli {
 
@@ -24,18 +24,18 @@ class FlyCommand final : public Command {
   void add_picture_options();
   void add_cluster_options();
   std::string objection() const;
-  std::string cluster_objection() const;
-  static bool is_heard();
+  std::string validate_cluster_options() const;
+  static bool prints_messages();
   core::Result<void> find_files();
   int run_alone();
   int run_here();
   int run_rank();
   int run_rank(cluster::Peers& peers);
-  int run_first_rank(cluster::FlightKey key, const std::vector<unsigned>& threads,
+  int run_first_rank(cluster::CompatibilityKey key, const std::vector<unsigned>& threads,
                      cluster::Peers& peers);
   void print_cluster() const;
   static int code_of(const core::Error& error);
-  core::Result<void> load_what_pictures_take() const;
+  core::Result<void> load_image_codec() const;
   int fly();
   int tell(const app::FlightReport& report) const;
   core::Result<void> write_requests() const;
@@ -48,7 +48,7 @@ class FlyCommand final : public Command {
   bool inspect_ = false, json_ = false;
   bool in_cluster_ = false;
   cluster::RemoteOptions remote_options_;
-  std::unique_ptr<cluster::RemoteModels> remote_;  // only on rank 0
+  std::unique_ptr<cluster::RemoteModelerPool> remote_;  // only on rank 0
 };
 
 }  // namespace psygen::cli

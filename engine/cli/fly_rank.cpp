@@ -7,8 +7,8 @@
 #include "engine/cli/fly_command.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/standard_streams.hpp"
-#include "engine/cluster/one_mind.hpp"
-#include "engine/cluster/serve_models.hpp"
+#include "engine/cluster/agreement.hpp"
+#include "engine/cluster/model_server.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 
@@ -22,7 +22,7 @@ bool was_started_as_rank() {
 
 }  // namespace
 
-std::string FlyCommand::cluster_objection() const {
+std::string FlyCommand::validate_cluster_options() const {
   const char* const ranks = std::getenv("OMPI_COMM_WORLD_SIZE");
   if (!in_cluster_ && ranks != nullptr && std::atoi(ranks) > 1)
     return fmt::format(
@@ -35,14 +35,14 @@ std::string FlyCommand::cluster_objection() const {
 }
 
 // Only rank 0 prints messages common to all ranks.
-bool FlyCommand::is_heard() {
+bool FlyCommand::prints_messages() {
   const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
   if (rank == nullptr) rank = std::getenv("PMIX_RANK");
   return rank == nullptr || std::atoi(rank) == 0;
 }
 
 int FlyCommand::run_rank() {
-  const auto peers = cluster::join_peers();
+  const auto peers = cluster::join_communicator();
   if (!peers) {
     core::log_error(peers.error().message);
     return exit_code_of(peers.error());
@@ -58,7 +58,7 @@ int FlyCommand::run_rank(cluster::Peers& peers) {
       (peers.rank() == 0 ? find_files() : find_world(options_.session))
           .and_then([&] { return load_world(options_.session.world_file.string(), registry); })
           .map([&](const world::World& world) {
-            return cluster::flight_key(world, registry, core::version());
+            return cluster::compatibility_key(world, registry, core::version());
           });
   const std::uint32_t asked = options_.session.scene.modelers;
   const unsigned threads = asked > 0 ? asked : cluster::threads_for_rank(peers);
@@ -69,7 +69,7 @@ int FlyCommand::run_rank(cluster::Peers& peers) {
     return exit_code_of(all.error());
   }
   if (peers.rank() == 0) return run_first_rank(*key, *all, peers);
-  const auto served = cluster::serve_models(registry, threads, peers);
+  const auto served = cluster::run_model_server(registry, threads, peers);
   if (!served) {
     core::log_error(fmt::format("rank {}: {}", peers.rank(), served.error().message));
     peers.abort();
@@ -81,11 +81,11 @@ int FlyCommand::run_rank(cluster::Peers& peers) {
 }
 
 // The flight reserves a processor for its frames. It ends before the other ranks are told to.
-int FlyCommand::run_first_rank(cluster::FlightKey key, const std::vector<unsigned>& threads,
+int FlyCommand::run_first_rank(cluster::CompatibilityKey key, const std::vector<unsigned>& threads,
                                cluster::Peers& peers) {
   std::uint32_t& modelers = options_.session.scene.modelers;
   if (modelers == 0) modelers = std::max(cluster::threads_for_rank(peers), 2U) - 1;
-  auto remote = cluster::RemoteModels::start(std::move(key), threads, peers, remote_options_);
+  auto remote = cluster::RemoteModelerPool::start(std::move(key), threads, peers, remote_options_);
   if (!remote) {
     core::log_error(remote.error().message);
     peers.abort();
@@ -105,7 +105,7 @@ int FlyCommand::run_first_rank(cluster::FlightKey key, const std::vector<unsigne
 
 // Printed below the table of the flight; with --json, logged as messages.
 void FlyCommand::print_cluster() const {
-  const cluster::RemoteFigures figures = remote_->figures();
+  const cluster::RemoteStats figures = remote_->figures();
   std::string_view title = "cluster";
   const auto row = [&](std::string_view label, const std::string& value) {
     const std::string line = fmt::format("{:<10} {:<18} {}", title, label, value);

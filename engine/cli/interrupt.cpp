@@ -36,7 +36,7 @@ const std::atomic<bool>& stop_at_interrupt() {
   return interrupted;
 }
 
-void ignore_what_write_errors_say() {
+void ignore_write_signals() {
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
 }

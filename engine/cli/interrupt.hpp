@@ -12,6 +12,6 @@ const std::atomic<bool>& stop_at_interrupt();
 
 // A pipe without a reader (SIGPIPE) and a file beyond `ulimit -f` (SIGXFSZ) fail the write instead
 // of ending the program. Call first in main.
-void ignore_what_write_errors_say();
+void ignore_write_signals();
 
 }  // namespace psygen::cli

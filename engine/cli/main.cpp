@@ -13,10 +13,10 @@
 #include "engine/render/device/software_tuning.hpp"
 
 int main(int argc, char** argv) {
-  psygen::cli::hold_standard_streams();
+  psygen::cli::reserve_standard_streams();
   psygen::render::tune_allocator_for_software_rendering();  // before the first large allocation
-  psygen::cli::say_why_at_terminate();
-  psygen::cli::ignore_what_write_errors_say();
+  psygen::cli::install_terminate_handler();
+  psygen::cli::ignore_write_signals();
 
   CLI::App cli("psygen: fly through procedural worlds larger than memory", "psygen");
   cli.set_version_flag("--version", "psygen " + std::string(psygen::core::version()));
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
     for (const auto& command : commands)
       if (command->chosen()) return command->run();
   } catch (...) {
-    return psygen::cli::say_what_was_thrown();
+    return psygen::cli::report_current_exception();
   }
   return psygen::cli::kUsage;
 }

@@ -1,7 +1,7 @@
 #include "engine/cli/merge_command.hpp"
 
 #include "engine/amplify/merge.hpp"
-#include "engine/cli/amplify_figures.hpp"
+#include "engine/cli/amplify_stats.hpp"
 #include "engine/cli/standard_streams.hpp"
 #include "engine/core/log.hpp"
 
@@ -25,7 +25,7 @@ int MergeCommand::run() {
     core::log_error(totals.error().message);
     return exit_code_of(totals.error());
   }
-  AmplifyFigures figures;
+  AmplifyStats figures;
   figures.totals = *totals;
   figures.complete = true;
   figures.parts = ledgers->size();

@@ -32,7 +32,7 @@ constexpr const char* kColumns =
     "deadline, the default, minimises the maximum lateness. If not all requests can be in time,\n"
     "shortest may be late less often and less on average, but delays some requests much longer.";
 
-std::string table_of(std::span<const synthesis::PolicyFigures> rows,
+std::string table_of(std::span<const synthesis::PolicyStats> rows,
                      const synthesis::StreamLoad& load, unsigned modelers) {
   std::string text = fmt::format(
       "{} requests in {:.2f} s, {:.3g} s of work: {:.3g} % of the capacity of {} modeler{}\n",
@@ -42,7 +42,7 @@ std::string table_of(std::span<const synthesis::PolicyFigures> rows,
   text +=
       "           fill    idle   visible p50       p99       max    late  lateness       max\n"
       "             ms       %            ms        ms        ms       %        ms        ms\n";
-  for (const synthesis::PolicyFigures& row : rows) {
+  for (const synthesis::PolicyStats& row : rows) {
     fmt::format_to(
         std::back_inserter(text),
         "{:<8} {:>6.1f} {:>7.2f} {:>13.3f} {:>9.3f} {:>9.3f} {:>7.2f} {:>9.3f} {:>9.3f}\n",
@@ -53,9 +53,9 @@ std::string table_of(std::span<const synthesis::PolicyFigures> rows,
   return text + "\n" + kColumns + "\n";
 }
 
-std::string json_of(std::span<const synthesis::PolicyFigures> rows) {
+std::string json_of(std::span<const synthesis::PolicyStats> rows) {
   auto list = nlohmann::ordered_json::array();
-  for (const synthesis::PolicyFigures& row : rows) {
+  for (const synthesis::PolicyStats& row : rows) {
     list.push_back(
         {{"policy", synthesis::name_of(row.policy)},
          {"fill_seconds", row.fill_s},

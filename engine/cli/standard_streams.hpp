@@ -7,7 +7,7 @@ namespace psygen::cli {
 
 // Reserves the descriptors of closed streams (`>&-`), so that a file opened later does not receive
 // their output. Writing to such a stdout fails, as it should.
-void hold_standard_streams();
+void reserve_standard_streams();
 
 // Writes data to stdout. Returns kFailed if it cannot be written, with a message unless the reader
 // has closed the pipe.

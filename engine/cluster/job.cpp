@@ -10,8 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include "engine/cluster/agreement.hpp"
 #include "engine/cluster/claim_source.hpp"
-#include "engine/cluster/one_mind.hpp"
 #include "engine/cluster/take_over.hpp"
 
 namespace psygen::cluster {
@@ -190,7 +190,7 @@ tl::expected<JobReport, JobError> amplify_together(const world::World& world,
                                                    const core::Result<amplify::JobKey>& key,
                                                    const std::filesystem::path& folder,
                                                    const amplify::Options& options, Peers& peers) {
-  if (auto ok = check_keys(key, !folder.empty(), peers); !ok) return common(ok.error());
+  if (auto ok = check_same_job(key, !folder.empty(), peers); !ok) return common(ok.error());
   Start start{world, registry, folder, peers, *key};
   if (!folder.empty())
     if (auto ok = start.open(); !ok) return common(ok.error());

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <utility>
 
-#include "engine/cluster/one_mind.hpp"
+#include "engine/cluster/agreement.hpp"
 #include "engine/core/bytes.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/synthesis/synthesise.hpp"
@@ -14,8 +14,8 @@
 namespace psygen::cluster {
 namespace {
 
-KnownType known_type(const models::ModelType& type) {
-  KnownType known{std::string(type.name()), type.identity(), type.level_count(), 0};
+TypeFingerprint known_type(const models::ModelType& type) {
+  TypeFingerprint known{std::string(type.name()), type.identity(), type.level_count(), 0};
   const models::Parameters p = models::default_parameters(type);
   const int level = type.level_count() - 1;
   const auto mesh = synthesis::HeapDestination::make(type, p, level);
@@ -38,7 +38,7 @@ std::string text_from(core::ByteReader& in) {
 
 // The version and the host come first, so that a rank of any version can read them.
 struct Introduction {
-  FlightKey key;
+  CompatibilityKey key;
   std::string host;
   unsigned threads = 0;
 };
@@ -51,7 +51,7 @@ std::string bytes_of(const Introduction& mine) {
   put_text(out, mine.key.world);
   core::put(out, mine.key.world_hash);
   core::put(out, static_cast<std::uint32_t>(mine.key.types.size()));
-  for (const KnownType& type : mine.key.types) {
+  for (const TypeFingerprint& type : mine.key.types) {
     put_text(out, type.name);
     core::put(out, type.identity);
     core::put(out, static_cast<std::uint32_t>(type.levels));
@@ -70,7 +70,7 @@ Introduction introduction_from(const std::string& bytes) {
   other.key.world_hash = in.get<std::uint64_t>();
   const std::size_t types = in.get_count(1);
   for (std::size_t i = 0; i < types; ++i) {
-    KnownType& type = other.key.types.emplace_back();
+    TypeFingerprint& type = other.key.types.emplace_back();
     type.name = text_from(in);
     type.identity = in.get<std::uint64_t>();
     type.levels = static_cast<int>(in.get<std::uint32_t>());
@@ -80,7 +80,7 @@ Introduction introduction_from(const std::string& bytes) {
 }
 
 // Describes the first difference; empty if the keys are equal.
-std::string difference(const FlightKey& mine, const FlightKey& theirs) {
+std::string difference(const CompatibilityKey& mine, const CompatibilityKey& theirs) {
   if (theirs.version != mine.version)
     return fmt::format("psygen {} instead of {}", theirs.version, mine.version);
   if (theirs.world_hash != mine.world_hash)
@@ -102,16 +102,16 @@ std::string difference(const FlightKey& mine, const FlightKey& theirs) {
 
 }  // namespace
 
-FlightKey flight_key(const world::World& world, const models::Registry& registry,
-                     std::string_view version) {
-  FlightKey key{std::string(version), world.name, world::world_hash(world, registry), {}};
+CompatibilityKey compatibility_key(const world::World& world, const models::Registry& registry,
+                                   std::string_view version) {
+  CompatibilityKey key{std::string(version), world.name, world::world_hash(world, registry), {}};
   for (models::ModelIndex i = 0; i < registry.size(); ++i)
     key.types.push_back(known_type(registry[i]));
   return key;
 }
 
-core::Result<std::vector<unsigned>> meet(const core::Result<FlightKey>& mine, unsigned threads,
-                                         Peers& peers) {
+core::Result<std::vector<unsigned>> meet(const core::Result<CompatibilityKey>& mine,
+                                         unsigned threads, Peers& peers) {
   core::Result<void> made{};
   if (!mine) made = tl::unexpected(mine.error());
   if (auto ok = agree(made, peers); !ok) return tl::unexpected(ok.error());

@@ -10,9 +10,9 @@
 #include <thread>
 #include <utility>
 
-#include "engine/cluster/coming_parcels.hpp"
-#include "engine/cluster/nap.hpp"
+#include "engine/cluster/incoming_messages.hpp"
 #include "engine/cluster/peers.hpp"
+#include "engine/cluster/poll_backoff.hpp"
 
 namespace psygen::cluster {
 namespace {
@@ -153,7 +153,7 @@ class MpiPeers final : public Peers {
     return is != 0;
   }
 
-  ComingParcels<MPI_Request> coming_;
+  IncomingMessages<MPI_Request> coming_;
   int rank_ = 0, count_ = 1, count_here_ = 1;
   MPI_Win window_ = MPI_WIN_NULL;
   std::mutex mutex_;  // MPI_THREAD_SERIALIZED

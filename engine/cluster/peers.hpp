@@ -61,7 +61,7 @@ bool is_rank();
 
 // Loads MPI and joins the other ranks. Fails with kInternal if psygen was built without MPI or its
 // libraries are missing.
-core::Result<std::unique_ptr<Peers>> join_peers();
+core::Result<std::unique_ptr<Peers>> join_communicator();
 
 // Signature of psygen_join_mpi, which the MPI library exports: returns a new object, or null and an
 // error message.

@@ -8,8 +8,8 @@
 
 namespace psygen::core {
 // Prints file, line, message and condition on stderr and aborts. For the macros below.
-[[noreturn]] inline void contract_broken(const char* file, int line, const char* condition,
-                                         const char* sentence) {
+[[noreturn]] inline void assertion_failed(const char* file, int line, const char* condition,
+                                          const char* sentence) {
   std::fprintf(stderr, "%s:%d: contract broken: %s (%s)\n", file, line, sentence, condition);
   std::abort();
 }
@@ -17,7 +17,7 @@ namespace psygen::core {
 
 #define PSYGEN_CHECK(condition, sentence) \
   ((condition) ? (void)0                  \
-               : ::psygen::core::contract_broken(__FILE__, __LINE__, #condition, sentence))
+               : ::psygen::core::assertion_failed(__FILE__, __LINE__, #condition, sentence))
 #ifdef NDEBUG
 #define PSYGEN_ASSERT(condition, sentence) ((void)sizeof(condition))
 #else

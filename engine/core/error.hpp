@@ -15,7 +15,7 @@ enum class ErrorCode : std::uint8_t {
   kIo,               // a file could not be read or written
   kOverBudget,       // legal, but beyond a configured limit
   kOutOfMemory,      // host or device memory
-  kNotYet,           // the result is not ready; try again later
+  kNotReady,         // the result is not ready; try again later
   kNoDevice,         // no usable Vulkan device or no display
   kDeviceLost,
   kSynthesisFailed,  // a model's synthesis threw or was abandoned

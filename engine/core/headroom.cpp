@@ -15,7 +15,7 @@ namespace {
 bool can_map(std::uint64_t bytes, int protection) {
   void* memory = mmap(nullptr, bytes, protection, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {
-    note_refused_bytes(bytes);
+    record_failed_allocation(bytes);
     return false;
   }
   munmap(memory, bytes);

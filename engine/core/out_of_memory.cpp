@@ -51,7 +51,7 @@ void add_limit(Text& text, decltype(RLIMIT_DATA) resource, const char* name) {
 
 }  // namespace
 
-void note_refused_bytes(std::size_t bytes) {
+void record_failed_allocation(std::size_t bytes) {
   refused_bytes = bytes;
 }
 

@@ -14,7 +14,7 @@ namespace psygen::core {
 
 // Records that an allocation of `bytes` bytes has failed in this thread; 0 clears the record. Code
 // that allocates calls it, and so does a program's operator new.
-void note_refused_bytes(std::size_t bytes);
+void record_failed_allocation(std::size_t bytes);
 
 // Returns "<what>: memory ran out (N bytes more were wanted; M MiB are in use, ulimit -d allows
 // L MiB)". N is the size last recorded in this thread, in MiB from 10 MiB on. The message omits N
@@ -26,7 +26,7 @@ std::string_view out_of_memory(std::string_view what, std::span<char> buffer);
 
 // Returns f()'s Result<void>, or kOutOfMemory if f() throws std::bad_alloc.
 template <class F>
-Result<void> within_memory(std::string_view what, const F& f) {
+Result<void> catch_out_of_memory(std::string_view what, const F& f) {
   try {
     return f();
   } catch (const std::bad_alloc&) {

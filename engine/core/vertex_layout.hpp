@@ -65,9 +65,9 @@ static_assert(sizeof(ObjectVertex) == 24);
 inline constexpr std::uint8_t kBillboardBit = 2;
 inline constexpr float kBillboardReachM = 256;
 // A bit that only occurs together with kBillboardBit: the vertex is a corner of an impostor
-// (model_picture.hpp). `colour` then holds kPictureViews · impostor index + number of views by
+// (model_picture.hpp). `colour` then holds kImpostorViews · impostor index + number of views by
 // which the model is turned, and the texture coordinates u and v.
-inline constexpr std::uint8_t kPictureBit = 4;
+inline constexpr std::uint8_t kImpostorBit = 4;
 // Upper bound of the distance by which billboard rotation moves the vertex from `position`, in
 // metres.
 constexpr float billboard_reach_m(const ModelVertex& v) {

@@ -42,7 +42,7 @@ bool is_missing_or_empty(const std::filesystem::path& path) {
   return error ? error == std::errc::no_such_file_or_directory : size == 0;
 }
 
-// Text after the last line of write_document() is allowed.
+// Text after the last line of write_scene() is allowed.
 bool obj_is_cut_short(const std::filesystem::path& path, std::string_view document_name) {
   const std::string first = obj_first_line(document_name);
   const auto head = first_bytes(path, first.size());

@@ -1,4 +1,4 @@
-// Detects files from write_document() that are truncated, for example because a disk was full while
+// Detects files from write_scene() that are truncated, for example because a disk was full while
 // they were copied. It does not detect damage within a file. Any thread; reads a whole .obj, but
 // only the head of a .glb.
 #pragma once

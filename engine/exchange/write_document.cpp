@@ -47,8 +47,8 @@ std::string_view name_of(Format format) {
   return format == Format::kGlb ? "glb" : "obj";
 }
 
-core::Result<void> write_document(const std::filesystem::path& path, Format format,
-                                  const Document& document) {
+core::Result<void> write_scene(const std::filesystem::path& path, Format format,
+                               const Document& document) {
   if (format == Format::kGlb) {
     const auto bytes = glb_bytes(document);
     if (!bytes) return tl::unexpected(bytes.error());

@@ -37,7 +37,7 @@ std::string obj_first_line(std::string_view document_name);
 
 // Writes `path`. For kObj it first replaces the .mtl of the same stem; if the disk has no room for
 // both, both files stay unchanged. Fails with kIo, and like glb_bytes().
-core::Result<void> write_document(const std::filesystem::path& path, Format format,
-                                  const Document& document);
+core::Result<void> write_scene(const std::filesystem::path& path, Format format,
+                               const Document& document);
 
 }  // namespace psygen::exchange

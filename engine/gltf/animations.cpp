@@ -17,7 +17,7 @@ core::Result<std::vector<float>> read_times(Reading& reading, int accessor,
   const auto elements = elements_of(reading.file, accessor, what);
   if (!elements) return tl::unexpected(elements.error());
   if (elements->width != 1 || elements->count == 0) return wrong(what + " has no times");
-  if (auto ok = count_up(reading.keys, elements->count, reading.limits.keys, "keys"); !ok)
+  if (auto ok = add_within_limit(reading.keys, elements->count, reading.limits.keys, "keys"); !ok)
     return tl::unexpected(ok.error());
   std::vector<float> times(elements->count);
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -38,7 +38,7 @@ core::Result<std::vector<glm::vec4>> read_values(Reading& reading, int accessor,
   if (elements->width != width || elements->count != count)
     return wrong(fmt::format("{} has {} values of {} numbers; {} of {} are needed", what,
                              elements->count, elements->width, count, width));
-  if (auto ok = count_up(reading.keys, count, reading.limits.keys, "keys"); !ok)
+  if (auto ok = add_within_limit(reading.keys, count, reading.limits.keys, "keys"); !ok)
     return tl::unexpected(ok.error());
   std::vector<glm::vec4> values(count);
   for (std::size_t i = 0; i < count; ++i) {

@@ -38,8 +38,8 @@ core::Result<std::uint32_t> picture_of(Reading& reading, Pictures& pictures, int
   if (!is_new) return at->second;
   auto picture = decode(reading, *number);
   if (!picture) return tl::unexpected(picture.error());
-  if (auto ok = count_up(reading.pixel_bytes, picture->rgba.size(), reading.limits.pixel_bytes,
-                         "bytes of pixels");
+  if (auto ok = add_within_limit(reading.pixel_bytes, picture->rgba.size(),
+                                 reading.limits.pixel_bytes, "bytes of pixels");
       !ok)
     return tl::unexpected(ok.error());
   reading.out.images.push_back(std::move(*picture));

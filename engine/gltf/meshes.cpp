@@ -50,7 +50,7 @@ core::Result<void> read_vertices(const Part& part, MeshData& mesh) {
   if (!positions) return tl::unexpected(positions.error());
   if (positions->first == nullptr) return wrong(part.name + " has no POSITION");
   const std::size_t count = positions->count;
-  if (auto ok = count_up(reading.vertices, count, reading.limits.vertices, "vertices"); !ok)
+  if (auto ok = add_within_limit(reading.vertices, count, reading.limits.vertices, "vertices"); !ok)
     return ok;
   const int material = part.described.material;
   const int set = material < 0 ? 0 : reading.uv_sets[static_cast<std::size_t>(material)];
@@ -77,7 +77,8 @@ core::Result<std::vector<std::uint32_t>> read_corners(const Part& part, std::siz
   }
   const std::size_t count = accessor >= 0 ? elements.count : vertices;
   const std::size_t each = part.described.mode == TINYGLTF_MODE_TRIANGLES ? 1 : 3;
-  if (auto ok = count_up(reading.indices, each * count, reading.limits.indices, "indices"); !ok)
+  if (auto ok = add_within_limit(reading.indices, each * count, reading.limits.indices, "indices");
+      !ok)
     return tl::unexpected(ok.error());
   std::vector<std::uint32_t> corners(count);
   for (std::size_t i = 0; i < count; ++i)
@@ -128,8 +129,8 @@ core::Result<MeshData> read_mesh(const Part& part) {
     return wrong(fmt::format("{}: {}", part.name, ok.error().message));
   if (!mesh.normals.empty()) return mesh;
   Reading& reading = part.reading;
-  if (auto ok =
-          count_up(reading.vertices, mesh.indices.size(), reading.limits.vertices, "vertices");
+  if (auto ok = add_within_limit(reading.vertices, mesh.indices.size(), reading.limits.vertices,
+                                 "vertices");
       !ok)
     return tl::unexpected(ok.error());
   return flat(mesh);

@@ -150,7 +150,8 @@ core::Result<void> add_node(Reading& reading, std::uint32_t number, std::uint32_
 core::Result<void> read_nodes(Reading& reading) {
   const tinygltf::Model& file = reading.file;
   std::uint64_t count = 0;
-  if (auto ok = count_up(count, file.nodes.size(), reading.limits.nodes, "nodes"); !ok) return ok;
+  if (auto ok = add_within_limit(count, file.nodes.size(), reading.limits.nodes, "nodes"); !ok)
+    return ok;
   const auto parents = parents_of(file);
   if (!parents) return tl::unexpected(parents.error());
   auto open = roots_of(file, *parents);

@@ -51,8 +51,8 @@ core::Result<std::uint32_t> index_in(int index, std::size_t count, std::string_v
   return wrong(fmt::format("{} is {}, but there are {}", what, index, count));
 }
 
-core::Result<void> count_up(std::uint64_t& sum, std::uint64_t more, std::uint64_t most,
-                            std::string_view what) {
+core::Result<void> add_within_limit(std::uint64_t& sum, std::uint64_t more, std::uint64_t most,
+                                    std::string_view what) {
   if (more > most || sum > most - more) {
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("has more than {} {}, the limit", most, what));

@@ -31,8 +31,8 @@ tl::unexpected<core::Error> wrong(std::string sentence);
 // Fails unless 0 <= index < count. `what`: "meshes[3].primitives[0].material".
 core::Result<std::uint32_t> index_in(int index, std::size_t count, std::string_view what);
 // Adds `more` to `sum`. Fails with kOverBudget if the result exceeds `most`.
-core::Result<void> count_up(std::uint64_t& sum, std::uint64_t more, std::uint64_t most,
-                            std::string_view what);
+core::Result<void> add_within_limit(std::uint64_t& sum, std::uint64_t more, std::uint64_t most,
+                                    std::string_view what);
 
 // The bytes of a view. Fails if they are not within its buffer.
 core::Result<std::span<const std::uint8_t>> bytes_of_view(const tinygltf::Model& file, int view,

@@ -111,7 +111,7 @@ class InUse {
   std::map<Key, Entry> made_;
 };
 
-class Files final : public world::FilesBeside {
+class Files final : public world::ResourceLoader {
  public:
   core::Result<std::unique_ptr<models::ModelType>> read_model(
       const fs::path& file, const world::HandmadeModel& model) const override {
@@ -142,7 +142,7 @@ class Files final : public world::FilesBeside {
   mutable InUse<FileState, world::GreyPicture> pictures_;
 };
 
-class FilesWithPictures final : public world::FilesBeside {
+class FilesWithPictures final : public world::ResourceLoader {
  public:
   FilesWithPictures(const fs::path& world_file, MemoryPicturesPtr pictures)
       : folder_(world_file.parent_path()), pictures_(std::move(pictures)) {}
@@ -155,7 +155,7 @@ class FilesWithPictures final : public world::FilesBeside {
     if (auto found = find(pictures_->in_place, file)) return found;
     auto read = files().read_grey(file);
     if (read) return read;
-    if (auto found = find(pictures_->where_missing, file)) return found;
+    if (auto found = find(pictures_->fallbacks, file)) return found;
     return read;
   }
 
@@ -173,13 +173,13 @@ class FilesWithPictures final : public world::FilesBeside {
 
 }  // namespace
 
-const world::FilesBeside& files() {
+const world::ResourceLoader& files() {
   static const Files reader;
   return reader;
 }
 
 FilesPtr files_with(const fs::path& world_file, MemoryPicturesPtr pictures) {
-  if (!pictures) return {&files(), [](const world::FilesBeside*) {}};
+  if (!pictures) return {&files(), [](const world::ResourceLoader*) {}};
   return std::make_shared<FilesWithPictures>(world_file, std::move(pictures));
 }
 

@@ -9,23 +9,23 @@
 #include <string>
 #include <vector>
 
-#include "engine/world/files/files_beside.hpp"
+#include "engine/world/files/resource_loader.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::handmade {
 
 // The reader of this program. Models that a registry still has, and images in use, are not read
 // again unless their file, or a file that it names, has changed in size or time.
-const world::FilesBeside& files();
+const world::ResourceLoader& files();
 
 // Images in memory, by their names in a world file.
 using NamedPictures = std::map<std::string, std::shared_ptr<const world::GreyPicture>>;
-struct MemoryPictures {
-  NamedPictures in_place;       // replace the files, existing or missing
-  NamedPictures where_missing;  // used only if a file cannot be read
+struct InMemoryImages {
+  NamedPictures in_place;   // replace the files, existing or missing
+  NamedPictures fallbacks;  // used only if a file cannot be read
 };
-using MemoryPicturesPtr = std::shared_ptr<const MemoryPictures>;
-using FilesPtr = std::shared_ptr<const world::FilesBeside>;
+using MemoryPicturesPtr = std::shared_ptr<const InMemoryImages>;
+using FilesPtr = std::shared_ptr<const world::ResourceLoader>;
 
 // files() with images that an editor has not written yet; null: files() alone.
 FilesPtr files_with(const std::filesystem::path& world_file, MemoryPicturesPtr pictures);

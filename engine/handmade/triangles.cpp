@@ -11,7 +11,7 @@
 #include <glm/matrix.hpp>
 #include <map>
 
-#include "engine/handmade/cut_out.hpp"
+#include "engine/handmade/alpha_cutout.hpp"
 #include "engine/handmade/texture_colours.hpp"
 #include "engine/models/kit/packing.hpp"
 
@@ -59,8 +59,8 @@ Drawn drawn_of(const gltf::Model& model, const gltf::Primitive& primitive, int d
   Drawn drawn{primitive.mesh, {}};
   if (is_cut(model, primitive)) {
     const gltf::Material& material = model.materials[primitive.material];
-    drawn.mesh = cut_out(primitive.mesh, model.images[material.base_texture], material.opacity,
-                         material.min_opacity, depth);
+    drawn.mesh = alpha_cutout(primitive.mesh, model.images[material.base_texture], material.opacity,
+                              material.min_opacity, depth);
   }
   drawn.colours = colours_of(model, primitive, drawn.mesh);
   return drawn;

@@ -25,9 +25,9 @@ constexpr std::array kPadNames{"Gamepad Left Stick Up"sv,    "Gamepad Left Stick
                                "Gamepad Right Stick Up"sv,   "Gamepad Right Stick Down"sv,
                                "Gamepad Right Stick Left"sv, "Gamepad Right Stick Right"sv,
                                "Gamepad Left Trigger"sv,     "Gamepad Right Trigger"sv};
-static_assert(kWheelNames.size() == static_cast<std::size_t>(WheelWay::kCount));
-static_assert(kMouseNames.size() == static_cast<std::size_t>(MouseWay::kCount));
-static_assert(kPadNames.size() == static_cast<std::size_t>(PadWay::kCount));
+static_assert(kWheelNames.size() == static_cast<std::size_t>(WheelDirection::kCount));
+static_assert(kMouseNames.size() == static_cast<std::size_t>(MouseDirection::kCount));
+static_assert(kPadNames.size() == static_cast<std::size_t>(PadAxisDirection::kCount));
 
 // Half an axis.
 struct Half {
@@ -65,26 +65,26 @@ Reading read_pads(Control control, const InputState& input, std::optional<std::s
   return strongest;
 }
 
-double wheel_of(WheelWay way, const InputState& input) {
+double wheel_of(WheelDirection way, const InputState& input) {
   switch (way) {
-    case WheelWay::kUp:
+    case WheelDirection::kUp:
       return input.wheel;
-    case WheelWay::kDown:
+    case WheelDirection::kDown:
       return -input.wheel;
-    case WheelWay::kLeft:
+    case WheelDirection::kLeft:
       return input.wheel_x;
     default:
       return -input.wheel_x;
   }
 }
 
-double moved(MouseWay way, const InputState& input) {
+double moved(MouseDirection way, const InputState& input) {
   switch (way) {
-    case MouseWay::kUp:
+    case MouseDirection::kUp:
       return -input.move_px.y;
-    case MouseWay::kDown:
+    case MouseDirection::kDown:
       return input.move_px.y;
-    case MouseWay::kLeft:
+    case MouseDirection::kLeft:
       return -input.move_px.x;
     default:
       return input.move_px.x;
@@ -101,10 +101,10 @@ std::vector<Control> list_controls() {
   std::vector<Control> all;
   add_all<platform::Key>(all);
   add_all<platform::MouseButton>(all);
-  add_all<WheelWay>(all);
-  add_all<MouseWay>(all);
+  add_all<WheelDirection>(all);
+  add_all<MouseDirection>(all);
   add_all<platform::PadButton>(all);
-  add_all<PadWay>(all);
+  add_all<PadAxisDirection>(all);
   return all;
 }
 
@@ -165,9 +165,9 @@ Reading read(Control control, const InputState& input, std::optional<std::size_t
       return {input.buttons_held[control.code] ? 1.0 : 0.0, input.buttons_went_down[control.code],
               input.buttons_went_up[control.code]};
     case Device::kWheel:
-      return {forward(wheel_of(static_cast<WheelWay>(control.code), input))};
+      return {forward(wheel_of(static_cast<WheelDirection>(control.code), input))};
     case Device::kMouse:
-      return {forward(moved(static_cast<MouseWay>(control.code), input))};
+      return {forward(moved(static_cast<MouseDirection>(control.code), input))};
     case Device::kPadButton:
     case Device::kPadAxis:
       return read_pads(control, input, pad_slot);

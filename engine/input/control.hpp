@@ -13,7 +13,8 @@
 
 namespace psygen::input {
 
-// The enum of `code`: Key, MouseButton, WheelWay, MouseWay, PadButton, PadWay.
+// The enum of `code`: Key, MouseButton, WheelDirection, MouseDirection, PadButton,
+// PadAxisDirection.
 enum class Device : std::uint8_t { kKey, kMouseButton, kWheel, kMouse, kPadButton, kPadAxis };
 
 // True for controls of a gamepad.
@@ -22,9 +23,9 @@ constexpr bool is_of_pad(Device device) {
 }
 
 // Directions of the wheel and the mouse, and half axes of gamepads.
-enum class WheelWay : std::uint8_t { kUp, kDown, kLeft, kRight, kCount };
-enum class MouseWay : std::uint8_t { kUp, kDown, kLeft, kRight, kCount };
-enum class PadWay : std::uint8_t {
+enum class WheelDirection : std::uint8_t { kUp, kDown, kLeft, kRight, kCount };
+enum class MouseDirection : std::uint8_t { kUp, kDown, kLeft, kRight, kCount };
+enum class PadAxisDirection : std::uint8_t {
   kLeftStickUp,
   kLeftStickDown,
   kLeftStickLeft,
@@ -48,11 +49,11 @@ struct Control {
   Control(platform::Key key) : code(static_cast<std::uint8_t>(key)) {}
   Control(platform::MouseButton button)
       : device(Device::kMouseButton), code(static_cast<std::uint8_t>(button)) {}
-  Control(WheelWay way) : device(Device::kWheel), code(static_cast<std::uint8_t>(way)) {}
-  Control(MouseWay way) : device(Device::kMouse), code(static_cast<std::uint8_t>(way)) {}
+  Control(WheelDirection way) : device(Device::kWheel), code(static_cast<std::uint8_t>(way)) {}
+  Control(MouseDirection way) : device(Device::kMouse), code(static_cast<std::uint8_t>(way)) {}
   Control(platform::PadButton button)
       : device(Device::kPadButton), code(static_cast<std::uint8_t>(button)) {}
-  Control(PadWay way) : device(Device::kPadAxis), code(static_cast<std::uint8_t>(way)) {}
+  Control(PadAxisDirection way) : device(Device::kPadAxis), code(static_cast<std::uint8_t>(way)) {}
 
   friend bool operator==(const Control&, const Control&) = default;
 };

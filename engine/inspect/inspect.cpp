@@ -34,7 +34,7 @@ struct Desk {
     }
     visit.note_frame(session.scene());
     server->receive();
-    if (const auto late = visit.late_answer(session)) server->send(*late);
+    if (const auto late = visit.deferred_reply(session)) server->send(*late);
     for (int i = 0; i < kMaxRequestsAFrame && !visit.over() && !visit.is_busy(); ++i) {
       const auto line = server->take_line();
       if (!line) break;

@@ -51,7 +51,7 @@ std::optional<std::string> Visit::answer(app::Session& session, std::string_view
   if (greeted_ && json.value("do", Json()) == "set_world") {
     change_id_ = id;
     if (auto begun = set_world(session, json); !begun) return refusal(id, begun.error().message);
-    return late_answer(session);
+    return deferred_reply(session);
   }
   Reply found = reply(session, json);
   return found ? reply_line(id, *found) : refusal(id, found.error().message);
@@ -103,7 +103,7 @@ core::Result<void> Visit::set_world(app::Session& session, const Json& request) 
   return {};
 }
 
-std::optional<std::string> Visit::late_answer(app::Session& session) {
+std::optional<std::string> Visit::deferred_reply(app::Session& session) {
   const auto done = change_.finish(session);
   if (!done) return std::nullopt;
   if (!*done) return refusal(change_id_, done->error().message);

@@ -32,7 +32,7 @@ class Visit {
   // Returns nullopt if the reply comes later; no other request may be made until then.
   std::optional<std::string> answer(app::Session& session, std::string_view request);
   // Returns the deferred reply once it is ready. Call once a frame.
-  std::optional<std::string> late_answer(app::Session& session);
+  std::optional<std::string> deferred_reply(app::Session& session);
   bool is_busy() const { return change_.is_under_way(); }
   bool has_greeted() const { return greeted_; }
   // The client announced that it leaves.

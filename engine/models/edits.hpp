@@ -75,7 +75,7 @@ struct EditLayer {
   std::uint32_t next_id = 1;   // of placed models and edits of the ground
 
   // Returns the edits of one block, or null. O(log n).
-  const BlockEdits* block(core::BlockCoord at) const { return blocks.find(QuadPlace::of(at)); }
+  const BlockEdits* block(core::BlockCoord at) const { return blocks.find(QuadCoord::of(at)); }
 };
 
 }  // namespace psygen::models

@@ -34,7 +34,7 @@ Character::Character(btDynamicsWorld& bullet, Terrain& terrain, const CharacterS
     : bullet_(bullet),
       terrain_(terrain),
       settings_(settings),
-      min_up_(std::cos(glm::radians(settings.steepest_deg))),
+      min_up_(std::cos(glm::radians(settings.max_slope_deg))),
       feet_(feet),
       capsule_(settings.radius_m, settings.height_m - 2 * settings.radius_m),
       body_(std::make_unique<btRigidBody>(0, &motion_, &capsule_)),

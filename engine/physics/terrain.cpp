@@ -139,7 +139,7 @@ void Terrain::remove(core::BlockCoord at) {
   if (const auto block = blocks_.find(at); block != blocks_.end()) erase(block);
 }
 
-Terrain::Changes Terrain::follow_edits() {
+Terrain::Changes Terrain::sync_edits() {
   Changes changes;
   if (query_.world().edits == edits_) return changes;
   edits_ = query_.world().edits;

@@ -46,7 +46,7 @@ class Terrain {
     double reach_m = 0;
   };
   // Removes the blocks that have changed since the last call, and returns them.
-  Changes follow_edits();
+  Changes sync_edits();
   // True if the changes extend into the square from `low` to `high`.
   bool is_near(const Changes& changes, const glm::dvec2& low, const glm::dvec2& high) const;
   void clear();

@@ -61,8 +61,8 @@ struct CharacterSettings {
   double walk_speed = 1.6, run_speed = 5;
   double jump_speed = 4.5;  // upwards, at the start of a jump
   double step_height_m = 0.4;
-  double steepest_deg = 50;  // 0 … 89: steepest ground that it climbs and stands on
-  double mass_kg = 80;       // lighter bodies are pushed aside, heavier ones stop it
+  double max_slope_deg = 50;  // 0 … 89: steepest ground that it climbs and stands on
+  double mass_kg = 80;        // lighter bodies are pushed aside, heavier ones stop it
 };
 
 // Commands to a character for the following steps.

@@ -28,7 +28,7 @@ core::Result<void> check(const CharacterSettings& s) {
     return core::invalid_argument("the speeds of a character must be 0 … 100 m/s");
   if (!is_in(s.step_height_m, 0, s.height_m))
     return core::invalid_argument("the steps of a character must not be higher than itself");
-  if (!is_in(s.steepest_deg, 0, 89))
+  if (!is_in(s.max_slope_deg, 0, 89))
     return core::invalid_argument("the steepest slope must be 0 … 89 degrees");
   if (!is_in(s.mass_kg, 1e-3, 1e9))
     return core::invalid_argument("the mass of a character must be 0.001 … 10^9 kg");

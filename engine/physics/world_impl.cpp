@@ -117,7 +117,7 @@ void World::Impl::make_surroundings(double dt) {
 void World::Impl::step(double dt) {
   ++steps;
   shift_origin();
-  follow_edits();
+  sync_edits();
   objects.follow(dt);
   make_surroundings(dt);
   for (auto& [number, character] : characters)
@@ -135,7 +135,7 @@ void World::Impl::step(double dt) {
   }
   bullet.stepSimulation(dt, 0);
   for (auto& [number, body] : bodies)
-    if (body.kind == Motion::kDynamic) put_back(body);
+    if (body.kind == Motion::kDynamic) lift_above_ground(body);
   terrain.drop_idle(steps, settings.keep_steps, settings.max_idle_blocks);
   objects.drop_idle(steps, settings.keep_steps);
 }
@@ -161,8 +161,8 @@ void World::Impl::wake_touching(const btCollisionObject& object) {
   }
 }
 
-void World::Impl::follow_edits() {
-  const Terrain::Changes changes = terrain.follow_edits();
+void World::Impl::sync_edits() {
+  const Terrain::Changes changes = terrain.sync_edits();
   if (changes.blocks.empty()) return;
   for (auto& [number, body] : bodies) {
     const btVector3& at = body.rigid->getCenterOfMassPosition();
@@ -175,7 +175,7 @@ void World::Impl::follow_edits() {
 
 // Bullet finds contacts only at the end of a step, so fast bodies may be below the ground by then.
 // Checks the path of the centre against the exact ground.
-void World::Impl::put_back(Body& body) {
+void World::Impl::lift_above_ground(Body& body) {
   btRigidBody& rigid = *body.rigid;
   if (!rigid.isActive()) return;
   btTransform transform = rigid.getWorldTransform();

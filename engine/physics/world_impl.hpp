@@ -45,11 +45,11 @@ struct World::Impl {
   void make_surroundings(double dt);
   // Fails with kOverBudget if the settings allow no more bodies and characters.
   core::Result<void> check_room() const;
-  void put_back(Body& body);
+  void lift_above_ground(Body& body);
   // Wakes the dynamic bodies that touch an object, which will be removed.
   void wake_touching(const btCollisionObject& object);
   // Removes terrain that edits changed, and wakes the bodies that may be on it or in it.
-  void follow_edits();
+  void sync_edits();
 
   query::World& query;
   Settings settings;

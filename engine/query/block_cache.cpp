@@ -23,7 +23,7 @@ BlockCache::BlockCache(const world::World& world, const models::Registry& regist
     : world_(world), registry_(registry), max_bytes_(max_bytes), edits_(world.edits) {}
 
 // Drops the blocks that edits have changed since the last call.
-void BlockCache::follow_edits() {
+void BlockCache::sync_edits() {
   if (world_.edits == edits_) return;
   edits_ = world_.edits;
   for (auto block = blocks_.begin(); block != blocks_.end();) {
@@ -35,7 +35,7 @@ void BlockCache::follow_edits() {
 }
 
 BlockCache::Block& BlockCache::touch(core::BlockCoord block) {
-  follow_edits();
+  sync_edits();
   if (!blocks_.empty() && blocks_.front().at == block) return blocks_.front();
   if (const auto found = index_.find(block); found != index_.end()) {
     blocks_.splice(blocks_.begin(), blocks_, found->second);

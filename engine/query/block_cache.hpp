@@ -63,7 +63,7 @@ class BlockCache {
 
   Block& touch(core::BlockCoord block);
   void forget(core::BlockCoord block);
-  void follow_edits();
+  void sync_edits();
   void charge(Block& block, std::size_t bytes);
 
   const world::World& world_;

@@ -135,7 +135,7 @@ WideBox Objects::box_of(const PlacedObject& object) const {
   return {centre - reach, centre + reach};
 }
 
-core::Result<ObjectId> Objects::add(ObjectName name, const ObjectShape& shape,
+core::Result<ObjectId> Objects::add(ObjectTag name, const ObjectShape& shape,
                                     const ObjectPose& pose) {
   if (world_ == nullptr || shape == nullptr || name == 0)
     return core::invalid_argument("an object needs a world, a shape and a name above 0");
@@ -201,7 +201,7 @@ bool Objects::remove(ObjectId id) {
   return true;
 }
 
-std::size_t Objects::remove_untold() {
+std::size_t Objects::remove_stale() {
   std::size_t removed = 0;
   for (std::uint32_t i = 0; i < slots_.size(); ++i) {
     if (slots_[i].lives && !std::exchange(slots_[i].told, false))

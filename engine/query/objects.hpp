@@ -18,7 +18,7 @@
 namespace psygen::query {
 
 // The caller's number for an object. 0: none.
-using ObjectName = std::uint64_t;
+using ObjectTag = std::uint64_t;
 
 // Identifies an object of one Objects. Ids of removed objects are recognised as stale.
 struct ObjectId {
@@ -40,7 +40,7 @@ using ObjectShape = std::shared_ptr<Solid>;
 
 // An object as physics uses it.
 struct PlacedObject {
-  ObjectName name = 0;
+  ObjectTag name = 0;
   ObjectPose pose;                  // as given
   core::WorldPosition position;     // normalised
   glm::dquat rotation{1, 0, 0, 0};  // of unit length
@@ -51,7 +51,7 @@ struct PlacedObject {
 // Intersection of a ray with an object.
 struct ObjectHit {
   ObjectId object;
-  ObjectName name = 0;
+  ObjectTag name = 0;
   SolidHit hit;
 };
 
@@ -76,7 +76,7 @@ class Objects {
   // Adds an object. Fails with kInvalidArgument for a name of 0, poses that are not finite or
   // without a rotation, positions outside a bounded world, and sizes out of their range after
   // scaling; with kOverBudget beyond kMaxObjects.
-  core::Result<ObjectId> add(ObjectName name, const ObjectShape& shape, const ObjectPose& pose);
+  core::Result<ObjectId> add(ObjectTag name, const ObjectShape& shape, const ObjectPose& pose);
   // Changes the pose of an object. Fails like add(), and for unknown objects; the object then
   // stays. O(1) if the pose is equal.
   core::Result<void> move(ObjectId object, const ObjectPose& pose);
@@ -84,7 +84,7 @@ class Objects {
   bool remove(ObjectId object);
   // Removes the objects that were neither added nor moved (an equal pose counts) since the last
   // call, for callers that set all objects repeatedly. Returns their number. O(objects).
-  std::size_t remove_untold();
+  std::size_t remove_stale();
 
   // The object, or null. Valid until the next call of a function that is not const.
   const PlacedObject* find(ObjectId object) const;

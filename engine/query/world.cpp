@@ -25,7 +25,7 @@ BlockRange blocks_around(glm::dvec2 low_m, glm::dvec2 high_m, double block_m) {
   return {glm::floor(low_m / block_m), glm::floor(high_m / block_m)};
 }
 
-auto rank(const NearModel& m) {
+auto rank(const NearbyModel& m) {
   return std::tuple(m.distance_m, m.block, m.index);
 }
 
@@ -251,12 +251,12 @@ void World::each_model(const BlockAround& b, const core::WorldPosition& at,
   for (const world::Placement& p : cache_.models(b.block)) {
     if (!only.empty() && std::ranges::find(only, p.model) == only.end()) continue;
     const glm::dvec3 foot(p.position), away = b.corner_m + foot - at.local;
-    visit(NearModel{b.block, p.index, p.model, {b.block, foot}, std::sqrt(glm::dot(away, away))});
+    visit(NearbyModel{b.block, p.index, p.model, {b.block, foot}, std::sqrt(glm::dot(away, away))});
   }
 }
 
 core::Result<void> World::models_within(const core::WorldPosition& position, double radius_m,
-                                        std::vector<NearModel>& out,
+                                        std::vector<NearbyModel>& out,
                                         std::span<const models::ModelIndex> only) {
   out.clear();
   const auto at = checked(position, block_m_);
@@ -264,26 +264,26 @@ core::Result<void> World::models_within(const core::WorldPosition& position, dou
   const auto blocks = blocks_within(*at, radius_m);
   if (!blocks) return tl::unexpected(blocks.error());
   for (const BlockAround& b : *blocks)
-    each_model(b, *at, only, [&](const NearModel& found) {
+    each_model(b, *at, only, [&](const NearbyModel& found) {
       if (found.distance_m <= radius_m) out.push_back(found);
     });
   std::ranges::sort(out, {}, rank);
   return {};
 }
 
-core::Result<std::optional<NearModel>> World::nearest(const core::WorldPosition& position,
-                                                      double radius_m,
-                                                      std::span<const models::ModelIndex> only) {
+core::Result<std::optional<NearbyModel>> World::nearest(const core::WorldPosition& position,
+                                                        double radius_m,
+                                                        std::span<const models::ModelIndex> only) {
   const auto at = checked(position, block_m_);
   if (!at) return tl::unexpected(at.error());
   auto blocks = blocks_within(*at, radius_m);
   if (!blocks) return tl::unexpected(blocks.error());
   std::ranges::sort(*blocks, {},
                     [](const BlockAround& b) { return std::tuple(b.distance_m, b.block); });
-  std::optional<NearModel> best;
+  std::optional<NearbyModel> best;
   for (const BlockAround& b : *blocks) {
     if (best && b.distance_m > best->distance_m) break;
-    each_model(b, *at, only, [&](const NearModel& found) {
+    each_model(b, *at, only, [&](const NearbyModel& found) {
       if (found.distance_m <= radius_m && (!best || rank(found) < rank(*best))) best = found;
     });
   }

@@ -51,11 +51,11 @@ struct Hit {
   core::BlockCoord block;                      // of the ground or the model
   std::uint32_t index = world::kTerrainIndex;  // of the model within the block
   models::ModelIndex model = 0;                // its type, or that of the terrain
-  ObjectName object = 0;                       // of kObject (scene::entity_of() in a scene)
+  ObjectTag object = 0;                        // of kObject (scene::entity_of() in a scene)
 };
 
 // A model with its position.
-struct NearModel {
+struct NearbyModel {
   core::BlockCoord block;
   std::uint32_t index = 0;       // within the block
   models::ModelIndex model = 0;  // its type
@@ -106,11 +106,11 @@ class World {
   // radius that is negative or not finite, with kOverBudget for one that covers more than
   // kMaxBlocks.
   core::Result<void> models_within(const core::WorldPosition& at, double radius_m,
-                                   std::vector<NearModel>& out,
+                                   std::vector<NearbyModel>& out,
                                    std::span<const models::ModelIndex> only = {});
   // Returns the nearest model of these types within a radius, or nothing. Errors as above.
-  core::Result<std::optional<NearModel>> nearest(const core::WorldPosition& at, double radius_m,
-                                                 std::span<const models::ModelIndex> only = {});
+  core::Result<std::optional<NearbyModel>> nearest(const core::WorldPosition& at, double radius_m,
+                                                   std::span<const models::ModelIndex> only = {});
   // Returns the placement of a model: its parameters, for example for ModelType::collider().
   // Nothing if the block has no model of this index. Logarithmic in the block's models.
   std::optional<world::Placement> placement(core::BlockCoord block, std::uint32_t index);

@@ -38,11 +38,11 @@ Result<std::uint32_t> Renderer::upload_shared_indices(std::span<const std::uint1
 Result<TextureId> Renderer::add_texture(const TexturePixels& pixels) {
   return impl_->add_texture(pixels);
 }
-Result<void> Renderer::set_model_pictures(std::span<const core::ModelPicture> pictures) {
+Result<void> Renderer::set_model_pictures(std::span<const core::ImpostorTexture> pictures) {
   return impl_->set_pictures(pictures);
 }
 
-Result<void> Renderer::set_model_picture(std::size_t number, const core::ModelPicture& picture) {
+Result<void> Renderer::set_model_picture(std::size_t number, const core::ImpostorTexture& picture) {
   return impl_->set_picture(number, picture);
 }
 

@@ -12,7 +12,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/geometry_memory.hpp"
-#include "engine/core/model_picture.hpp"
+#include "engine/core/impostor_texture.hpp"
 #include "engine/render/types.hpp"
 
 struct ImFontAtlas;
@@ -53,11 +53,11 @@ class Renderer {
   core::Result<void> prepare(Feature feature);
   // The pictures of models (MeshDraw::pictured), by number, for the scene that is drawn. Replaces
   // all. Waits for the device. Fails, and changes nothing, with kOverBudget for more than
-  // core::kMaxPictures or beyond the budget of textures; kInvalidArgument for other sizes than
-  // core::picture_bytes(); kOutOfMemory, kDeviceLost.
-  core::Result<void> set_model_pictures(std::span<const core::ModelPicture> pictures);
+  // core::kMaxImpostors or beyond the budget of textures; kInvalidArgument for other sizes than
+  // core::impostor_bytes(); kOutOfMemory, kDeviceLost.
+  core::Result<void> set_model_pictures(std::span<const core::ImpostorTexture> pictures);
   // Replaces one of them. kInvalidArgument for one that does not exist.
-  core::Result<void> set_model_picture(std::size_t number, const core::ModelPicture& picture);
+  core::Result<void> set_model_picture(std::size_t number, const core::ImpostorTexture& picture);
   // Bytes of all textures of materials and pictures.
   std::uint64_t texture_bytes() const;
 

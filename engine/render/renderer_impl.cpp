@@ -144,18 +144,20 @@ Result<void> RendererImpl::prepare_for(const FrameInput& input) {
   });
 }
 
-Result<void> RendererImpl::set_pictures(std::span<const core::ModelPicture> pictures) {
+Result<void> RendererImpl::set_pictures(std::span<const core::ImpostorTexture> pictures) {
   if (lost_) return core::fail(ErrorCode::kDeviceLost, "the device was lost before");
-  if (pictures.size() > core::kMaxPictures ||
-      materials_.texture_bytes() + pictures.size() * core::picture_bytes() >
+  if (pictures.size() > core::kMaxImpostors ||
+      materials_.texture_bytes() + pictures.size() * core::impostor_bytes() >
           options_.texture_budget_bytes) {
     return core::fail(
         ErrorCode::kOverBudget,
         fmt::format("{} pictures of models do not fit: at most {}, and {} bytes of all "
                     "textures",
-                    pictures.size(), core::kMaxPictures, options_.texture_budget_bytes));
+                    pictures.size(), core::kMaxImpostors, options_.texture_budget_bytes));
   }
-  const auto whole = [](const core::ModelPicture& p) { return p.size() == core::picture_bytes(); };
+  const auto whole = [](const core::ImpostorTexture& p) {
+    return p.size() == core::impostor_bytes();
+  };
   if (!std::ranges::all_of(pictures, whole))
     return core::fail(ErrorCode::kInvalidArgument, "a picture of a model is of another size");
   wait_idle();
@@ -166,9 +168,9 @@ Result<void> RendererImpl::set_pictures(std::span<const core::ModelPicture> pict
   return {};
 }
 
-Result<void> RendererImpl::set_picture(std::size_t number, const core::ModelPicture& picture) {
+Result<void> RendererImpl::set_picture(std::size_t number, const core::ImpostorTexture& picture) {
   if (lost_) return core::fail(ErrorCode::kDeviceLost, "the device was lost before");
-  if (number >= pictures_.count() || picture.size() != core::picture_bytes())
+  if (number >= pictures_.count() || picture.size() != core::impostor_bytes())
     return core::fail(ErrorCode::kInvalidArgument, "a picture of a model that does not exist");
   wait_idle();
   return noted(pictures_.set(*device_, number, picture));

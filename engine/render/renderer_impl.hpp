@@ -66,8 +66,8 @@ class RendererImpl {
     return materials_.add(*device_, material);
   }
   core::Result<void> prepare(Feature feature);
-  core::Result<void> set_pictures(std::span<const core::ModelPicture> pictures);
-  core::Result<void> set_picture(std::size_t number, const core::ModelPicture& picture);
+  core::Result<void> set_pictures(std::span<const core::ImpostorTexture> pictures);
+  core::Result<void> set_picture(std::size_t number, const core::ImpostorTexture& picture);
   std::uint64_t texture_bytes() const { return materials_.texture_bytes() + pictures_.bytes(); }
   core::Result<FrameResult> render(const FrameInput& input);
   core::Result<void> show(std::span<const TextPanel> panels, float text_scale,
@@ -158,7 +158,7 @@ class RendererImpl {
   std::unique_ptr<StagedGeometry> staged_;  // null if the CPU writes the blocks directly
   SharedIndexLists shared_;
   MaterialTable materials_;
-  ModelPictures pictures_;
+  ImpostorTextures pictures_;
   Looks looks_;
   std::array<FrameSlot, kFramesInFlight> slots_;
   std::unique_ptr<GpuCulling> culling_;  // null on the CPU path

@@ -177,7 +177,7 @@ struct MeshDraw {
   glm::vec3 box_half_extent{1.0F};
   core::IndexPart part;   // of its indices; empty: all
   float fade = 1.0F;      // 1: all of its pixels
-  bool pictured = false;  // vertices may have core::kPictureBit
+  bool pictured = false;  // vertices may have core::kImpostorBit
   bool near = false;      // nearer than kNearModelsM: with more detail if the preset has it
   core::SurfaceKind surface = core::SurfaceKind::kPlain;  // of all but leaves
   float sun = 1.0F;                       // share of the sun that no terrain hides, 0 … 1

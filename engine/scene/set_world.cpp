@@ -15,7 +15,7 @@
 #include "engine/scene/meshes/tree_impostors.hpp"
 #include "engine/scene/nodes/entities.hpp"
 #include "engine/scene/state.hpp"
-#include "engine/world/far/tree_pictures.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 #include "engine/world/ground_blends.hpp"
 
 namespace psygen::scene {
@@ -230,7 +230,7 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
     prepared.models.clear();  // without pictures other things stay
     prepared.before = nullptr;
   }
-  const bool rested = s.supply.come_to_rest();
+  const bool rested = s.supply.quiesce();
   forget_pictures(s.facts, s.supply);
   // Nothing fails from here on: the same types were added before.
   if (auto ok = s.assets.follow(next.registry); !ok) return ok;
@@ -244,7 +244,7 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
   const auto kept = same_ground ? std::optional(kept_models(s.facts, next)) : std::nullopt;
   std::swap(s.facts, next);
   if (!rested || s.assets.mesh_count() > 0) s.retired_types.push_back(std::move(next.registry));
-  s.supply.take_over_types(mesh_annotations(s.facts));
+  s.supply.adopt_types(mesh_annotations(s.facts));
   s.supply.set_edits(s.facts.world.layer());
   on_preset_changed();
   name_types(s.facts.registry, s.trace);

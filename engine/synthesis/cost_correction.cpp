@@ -19,7 +19,7 @@ double rate_of(std::uint32_t count) {
 }
 }  // namespace
 
-void LearnedSeconds::observe(double seconds, double beside_s) {
+void RunningEstimate::observe(double seconds, double beside_s) {
   ++count_;
   const double limit =
       std::max(count_ < kFirst ? kFirstStep_s : kMinStep_s, 0.5 * (beside_s + value_));
@@ -40,8 +40,8 @@ void CostCorrection::observe(double curve_s, Warmth warmth, double seconds, Cold
   // Cold caches only add time. Some levels are never requested warm, so without this a curve that
   // is too high would stay so.
   if (seconds < warm_s) follow(warm_s, seconds);
-  LearnedSeconds& own = cold_.of(warmth);
-  LearnedSeconds& all = shared.of(warmth);
+  RunningEstimate& own = cold_.of(warmth);
+  RunningEstimate& all = shared.of(warmth);
   if (own.count() == 0) own.guess(all.value());
   own.observe(seconds - warm_s, warm_s);
   all.observe(seconds - warm_s, warm_s);
@@ -50,7 +50,7 @@ void CostCorrection::observe(double curve_s, Warmth warmth, double seconds, Cold
 double CostCorrection::seconds(double curve_s, Warmth warmth, const ColdSeconds& shared) const {
   const double warm_s = factor_ * curve_s;
   if (warmth == Warmth::kWarm) return warm_s;
-  const LearnedSeconds& own = cold_.of(warmth);
+  const RunningEstimate& own = cold_.of(warmth);
   return warm_s + (own.count() >= ColdSeconds::kEnough ? own.value() : shared.of(warmth).value());
 }
 

@@ -13,9 +13,9 @@ namespace psygen::synthesis {
 
 // State of a modeler's caches when it claims a request.
 enum class Warmth : std::uint8_t {
-  kWarm,   // has run the same code since it slept
-  kCold,   // has run other code
-  kWoken,  // has just slept
+  kWarm,        // has run the same code since it slept
+  kCold,        // has run other code
+  kAfterSleep,  // has just slept
 };
 inline constexpr std::size_t kWarmths = 3;
 
@@ -29,7 +29,7 @@ struct RequestCost {
 };
 
 // Estimate of a duration that follows the median of its observations in steps of bounded size.
-class LearnedSeconds {
+class RunningEstimate {
  public:
   // `beside_s`: the known part of the total that this estimate is added to. A step is at most half
   // of the total.
@@ -49,11 +49,13 @@ class ColdSeconds {
  public:
   static constexpr std::uint32_t kEnough = 3;  // observations after which the estimate is trusted
   // Time that a request of this warmth adds to a warm one.
-  const LearnedSeconds& of(Warmth warmth) const { return added_[static_cast<std::size_t>(warmth)]; }
-  LearnedSeconds& of(Warmth warmth) { return added_[static_cast<std::size_t>(warmth)]; }
+  const RunningEstimate& of(Warmth warmth) const {
+    return added_[static_cast<std::size_t>(warmth)];
+  }
+  RunningEstimate& of(Warmth warmth) { return added_[static_cast<std::size_t>(warmth)]; }
 
  private:
-  std::array<LearnedSeconds, kWarmths> added_;  // unused for kWarm
+  std::array<RunningEstimate, kWarmths> added_;  // unused for kWarm
 };
 
 // Correction learned from the finished requests of one level of a type.

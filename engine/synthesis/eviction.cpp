@@ -20,10 +20,10 @@ void GeometryCache::begin_batch() {
   limit_bytes_ =
       std::min({budget_bytes_, memory_.capacity_bytes(), limit_bytes_ + budget_bytes_ / 64 + 1});
   enforce_budget();
-  keep_room_free();
+  keep_headroom();
 }
 
-void GeometryCache::keep_room_free() {
+void GeometryCache::keep_headroom() {
   observe_memory();
   const auto lacks = [this](std::uint64_t free_bytes) {
     return last_used_bytes_ + free_bytes > limit_bytes_ + returning_bytes_;
@@ -106,7 +106,7 @@ core::Result<core::GeometryReservation> GeometryCache::reserve_memory(const mode
   const auto refuse = [this](Room room) {
     stats_.refusals += room == Room::kNone ? 1 : 0;
     return room == Room::kLater
-               ? core::fail(core::ErrorCode::kNotYet, "the memory for a mesh is not free yet")
+               ? core::fail(core::ErrorCode::kNotReady, "the memory for a mesh is not free yet")
                : core::fail(core::ErrorCode::kOverBudget,
                             "the geometry budget has no room for a mesh");
   };

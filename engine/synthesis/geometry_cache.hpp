@@ -128,7 +128,7 @@ class GeometryCache {
   // Reserves memory for the mesh `key`, exactly as large as its type says, and evicts ready meshes
   // that may_evict() allows. Returns the existing mesh if it is requested or ready. Errors:
   // kOverBudget       no memory: nothing worse to evict
-  // kNotYet           the GPU still reads the meshes evicted for this one
+  // kNotReady           the GPU still reads the meshes evicted for this one
   // kOutOfMemory      the allocation failed within the budget; the limit is lowered
   // kSynthesisFailed  this key failed before (the message has the reason), or its size is
   // unknown; not retried while it is remembered (kMaxFailures)
@@ -186,7 +186,7 @@ class GeometryCache {
   void give_back(MeshRecord& r);
   void give_back(const core::GeometryRange& range);
   void count_bytes(const MeshRecord& r, std::int64_t sign);
-  void keep_room_free();
+  void keep_headroom();
   bool evict_unwanted();
   Slot take_slot(const MeshKey& key, std::uint64_t owner, Rank rank);
   void free_slot(Slot slot);

@@ -20,7 +20,7 @@ struct MeshKey {
   models::ModelIndex model = 0;       // type, in the registry's order
   std::uint16_t level = 0;            // LOD, 0 is full detail
   std::uint64_t parameters_hash = 0;  // models::Parameters::hash(): an edit gives another key
-  bool spare = false;                 // a second copy of the mesh, see spare_of()
+  bool spare = false;                 // a second copy of the mesh, see duplicate_of()
   friend bool operator==(const MeshKey&, const MeshKey&) = default;
 };
 
@@ -35,7 +35,7 @@ constexpr std::uint64_t hash_of(const MeshKey& key) {
 }
 
 // Key of a duplicate of a mesh, for when a modeler holds the first and waiting for it is too slow.
-constexpr MeshKey spare_of(MeshKey key) {
+constexpr MeshKey duplicate_of(MeshKey key) {
   key.spare = true;
   return key;
 }

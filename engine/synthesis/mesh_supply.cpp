@@ -61,17 +61,17 @@ MeshSupply::Landed MeshSupply::land(std::uint64_t max_bytes) {
   return landed;
 }
 
-bool MeshSupply::come_to_rest() {
+bool MeshSupply::quiesce() {
   begin_wants();
   plan({}, Policy::kDeadline);
-  for (const Request& unmade : manager_->come_to_rest())
+  for (const Request& unmade : manager_->quiesce())
     cache_->cancel(unmade.handle);
   collect();
   land(UINT64_MAX);
-  return manager_->is_at_rest();
+  return manager_->is_idle();
 }
 
-void MeshSupply::take_over_types(std::vector<Annotate> annotate) {
+void MeshSupply::adopt_types(std::vector<Annotate> annotate) {
   auto cost = std::make_unique<CostModel>(cache_->registry());
   cost->learn_from(*cost_);
   cost_ = std::move(cost);

@@ -92,10 +92,10 @@ class MeshSupply {
   // Call before types of the registry change. Drops unclaimed requests, waits for the others and
   // makes them ready. Dropped meshes must be requested again. Returns false if a modeler hangs: the
   // types that it uses must then stay alive.
-  bool come_to_rest();
+  bool quiesce();
   // Call after the types have changed, before any other function. Learned costs are kept for types
   // with the same name. `annotate` as in SynthesisOptions.
-  void take_over_types(std::vector<Annotate> annotate);
+  void adopt_types(std::vector<Annotate> annotate);
 
   // Cached meshes -------------------------------------------------------------------------------
   // Sets the rank of a mesh. This function and those below ignore stale handles.

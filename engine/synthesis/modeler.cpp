@@ -102,7 +102,7 @@ Warmth Modeler::warmth_at(double now_s) {
   if (now_s - finished_s_ > kForgotten_s) warm_.clear();
   if (std::ranges::find(warm_, current_.cost.code) != warm_.end()) return Warmth::kWarm;
   warm_.push_back(current_.cost.code);
-  return warm_.size() == 1 ? Warmth::kWoken : Warmth::kCold;
+  return warm_.size() == 1 ? Warmth::kAfterSleep : Warmth::kCold;
 }
 
 void Modeler::begin(double now_s) {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "engine/synthesis/completion_queue.hpp"
-#include "engine/synthesis/plan_board.hpp"
+#include "engine/synthesis/plan_queue.hpp"
 #include "engine/synthesis/remote_modelers.hpp"
 
 namespace psygen::synthesis {
@@ -32,7 +32,7 @@ struct Workshop {
   std::function<double()> clock;  // called from all threads
   bool hash_content = false;
   std::vector<Annotate> annotate;  // by model; see SynthesisOptions
-  PlanBoard board;
+  PlanQueue board;
   std::atomic<bool> stop{false};
   // Modelers lower their priority before the next request; a thread cannot raise it again.
   std::atomic<bool> lowest_priority{false};
@@ -47,7 +47,7 @@ struct Workshop {
 };
 
 // Slot of a remote modeler; null for local ones.
-struct RemotePlace {
+struct RemoteSlot {
   RemoteModelers* modelers = nullptr;
   unsigned number = 0;
 };
@@ -64,7 +64,7 @@ struct ModelerCounters {
 // One modeler. Its functions are for its own thread unless stated otherwise.
 class Modeler {
  public:
-  Modeler(std::uint32_t number, std::shared_ptr<PlanBoard::Reader> reader, RemotePlace place = {})
+  Modeler(std::uint32_t number, std::shared_ptr<PlanQueue::Reader> reader, RemoteSlot place = {})
       : number_(number), reader_(std::move(reader)), place_(place) {}
 
   // Thread function: works until workshop.stop, or until it is abandoned.
@@ -91,8 +91,8 @@ class Modeler {
   // Its number, slot, plan reader, completions and counters.
   std::uint32_t number() const { return number_; }
   bool is_remote() const { return place_.modelers != nullptr; }
-  const RemotePlace& place() const { return place_; }
-  const std::shared_ptr<PlanBoard::Reader>& reader() const { return reader_; }
+  const RemoteSlot& place() const { return place_; }
+  const std::shared_ptr<PlanQueue::Reader>& reader() const { return reader_; }
   CompletionQueue& queue() { return queue_; }
   const ModelerCounters& counters() const { return counters_; }
   // Number of queued completions, without late ones.
@@ -128,8 +128,8 @@ class Modeler {
   void count(const Completion& completion);
 
   const std::uint32_t number_;
-  const std::shared_ptr<PlanBoard::Reader> reader_;
-  const RemotePlace place_;
+  const std::shared_ptr<PlanQueue::Reader> reader_;
+  const RemoteSlot place_;
   Request current_;  // written while idle only
   std::uint64_t serial_ = 0;
   std::vector<std::size_t> warm_;  // codes run since it last slept

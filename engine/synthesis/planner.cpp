@@ -48,7 +48,7 @@ void Planner::note_arrived(const SynthesisManager& manager) {
 
 // Returns true if a modeler has claimed an urgent mesh and not finished it. Modelers get only the
 // processor time that other threads leave, so it may take long; this thread then makes a duplicate.
-bool Planner::is_held_up(const Want& want, MeshHandle handle, const GeometryCache& cache) const {
+bool Planner::is_blocked(const Want& want, MeshHandle handle, const GeometryCache& cache) const {
   return handle && is_urgent(want, cache) && cache.get(handle)->state == MeshState::kRequested &&
          reclaimed_position(handle) == kNone && !std::ranges::binary_search(arrived_, handle.slot);
 }
@@ -71,10 +71,10 @@ void Planner::sort_out(std::span<const Want> wants, GeometryCache& cache, const 
     // First come, first served: earlier requests precede new ones.
     Item item{{want.rank, want.deadline_s, 0.0, reclaimed_.size() + i}, i, want.key, {}, {}, {}};
     MeshHandle handle = cache.find(item.key);
-    if (is_held_up(want, handle, cache)) {
+    if (is_blocked(want, handle, cache)) {
       ++report.in_flight;
       cache.adopt(handle, want.owner, want.rank);
-      item.key = spare_of(item.key);
+      item.key = duplicate_of(item.key);
       handle = cache.find(item.key);
     }
     if (handle) {
@@ -164,7 +164,7 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
   const bool hole = want.rank.group() == RankGroup::kVisibleHole;
   const auto gives_way = [&] {  // the memory of a reservation is free at once
     return handle.error().code == core::ErrorCode::kOverBudget ||
-           (hole && handle.error().code == core::ErrorCode::kNotYet);
+           (hole && handle.error().code == core::ErrorCode::kNotReady);
   };
   while (!handle && gives_way() && give_back_last(cache, report)) {
     handle = cache.reserve(item.key, *want.parameters, want.owner, want.rank, item.size);
@@ -172,12 +172,12 @@ void Planner::add(const Item& item, const Want& want, GeometryCache& cache, Plan
   if (!handle) {
     const core::ErrorCode code = handle.error().code;
     ++(code == core::ErrorCode::kSynthesisFailed ? report.failed
-       : code == core::ErrorCode::kNotYet        ? report.waiting
+       : code == core::ErrorCode::kNotReady      ? report.waiting
                                                  : report.refused);
     const bool refused =
         code == core::ErrorCode::kOverBudget || code == core::ErrorCode::kOutOfMemory;
     if (refused && is_visible(want.rank.group())) ++report.refused_visible;
-    if (code == core::ErrorCode::kNotYet) waiting_seconds_ += item.order.predicted_seconds;
+    if (code == core::ErrorCode::kNotReady) waiting_seconds_ += item.order.predicted_seconds;
     return;
   }
   const MeshRecord& record = *cache.get(*handle);
@@ -196,7 +196,7 @@ void Planner::execute_here(SynthesisManager& manager, double seconds, PlanReport
   double left_s = seconds;
   for (const Here& here : here_) {
     Request& request = plan_[here.at];
-    const double predicted_s = request.cost.of(Warmth::kWoken);
+    const double predicted_s = request.cost.of(Warmth::kAfterSleep);
     if (predicted_s >= left_s && !here.at_once) continue;
     manager.execute_here(request);
     left_s -= predicted_s;
@@ -235,7 +235,7 @@ PlanReport Planner::plan(std::span<const Want> wants, GeometryCache& cache, cons
     }
     const std::size_t before = plan_.size();
     add(items_[next], wants[items_[next].want], cache, report);
-    if (enough_remote > 0 && plan_.size() > before && manager.may_go(plan_.back()))
+    if (enough_remote > 0 && plan_.size() > before && manager.is_offered_remotely(plan_.back()))
       offered_seconds += items_[next].order.predicted_seconds;
   }
   report.deferred += static_cast<std::uint32_t>(items_.size() - next);

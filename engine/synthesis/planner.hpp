@@ -38,7 +38,7 @@ struct PlanLimits {
   std::uint32_t max_refusals = 16;  // reservations rejected by the budget before planning stops
   // Seconds that this thread may spend before plan() returns. It executes wanted meshes of the
   // groups up to `here_up_to` whose types may run on the main thread, in order, as far as time
-  // allows. It makes a duplicate, under another key (spare_of), of a mesh that a modeler holds.
+  // allows. It makes a duplicate, under another key (duplicate_of), of a mesh that a modeler holds.
   double seconds_here = 0;
   RankGroup here_up_to = RankGroup::kVisibleHole;
   // New reservations in one plan. If the policy orders by rank, no further ones are considered:
@@ -91,7 +91,7 @@ class Planner {
   void sort_out(std::span<const Want> wants, GeometryCache& cache, const CostModel& cost,
                 const PlanLimits& limits, Policy policy, PlanReport& report);
   void note_arrived(const SynthesisManager& manager);
-  bool is_held_up(const Want& want, MeshHandle handle, const GeometryCache& cache) const;
+  bool is_blocked(const Want& want, MeshHandle handle, const GeometryCache& cache) const;
   // Returns true if this thread may make the mesh itself.
   bool is_urgent(const Want& want, const GeometryCache& cache) const {
     return here_up_to_ && want.rank.group() <= *here_up_to_ &&

@@ -1,7 +1,7 @@
 // Interface to modelers outside this process: slots in which a mesh can be made, whose bytes are
-// then sent here. The implementation (engine/cluster/remote_models.hpp) knows the other processes
-// and the transport. For meshes that take longer than their round trip. Serves one session, whose
-// manager cancels the slots at its end. Outlives that session.
+// then sent here. The implementation (engine/cluster/remote_modeler_pool.hpp) knows the other
+// processes and the transport. For meshes that take longer than their round trip. Serves one
+// session, whose manager cancels the slots at its end. Outlives that session.
 #pragma once
 
 #include <cstdint>

@@ -62,8 +62,8 @@ bool is_due_later(const SimulatedJob& job) {
   return job.deadline_s < kNoDeadline && job.deadline_s > job.arrival_s + kMinNoticeSeconds;
 }
 
-PolicyFigures figures_of(std::span<const SimulatedJob> jobs, unsigned modelers, Policy policy) {
-  PolicyFigures figures;
+PolicyStats figures_of(std::span<const SimulatedJob> jobs, unsigned modelers, Policy policy) {
+  PolicyStats figures;
   figures.policy = policy;
   const SimulationResult fill = simulate(initial_fill(jobs), modelers, policy);
   figures.fill_s = fill.makespan_s;
@@ -144,8 +144,8 @@ StreamLoad load_of(std::span<const SimulatedJob> jobs, unsigned modelers) {
   return load;
 }
 
-std::vector<PolicyFigures> compare_policies(std::span<const SimulatedJob> jobs, unsigned modelers) {
-  std::vector<PolicyFigures> rows;
+std::vector<PolicyStats> compare_policies(std::span<const SimulatedJob> jobs, unsigned modelers) {
+  std::vector<PolicyStats> rows;
   for (const Policy policy : kAllPolicies)
     rows.push_back(figures_of(jobs, modelers, policy));
   return rows;

@@ -25,7 +25,7 @@ std::string stream_text(std::vector<SimulatedJob> jobs);
 core::Result<std::vector<SimulatedJob>> parse_stream(std::string_view text, std::string_view file);
 
 // Results of one policy on the recorded requests.
-struct PolicyFigures {
+struct PolicyStats {
   Policy policy = Policy::kFifo;
   // Initial fill: makespan of the requests that arrive first, served alone, and the fraction of it
   // in which modelers are idle.
@@ -48,6 +48,6 @@ struct StreamLoad {
 StreamLoad load_of(std::span<const SimulatedJob> jobs, unsigned modelers);
 
 // One row for each policy. Deterministic. Requires modelers >= 1.
-std::vector<PolicyFigures> compare_policies(std::span<const SimulatedJob> jobs, unsigned modelers);
+std::vector<PolicyStats> compare_policies(std::span<const SimulatedJob> jobs, unsigned modelers);
 
 }  // namespace psygen::synthesis

@@ -69,7 +69,7 @@ SynthesisManager::~SynthesisManager() {
 }
 
 void SynthesisManager::leave(Worker& worker) {
-  const RemotePlace& place = worker.modeler->place();
+  const RemoteSlot& place = worker.modeler->place();
   if (place.modelers != nullptr) {  // it no longer waits for an answer
     place.modelers->cancel(place.number, false);
     worker.thread.join();
@@ -88,7 +88,7 @@ void SynthesisManager::leave(Worker& worker) {
 }
 
 // Requires space for one more in active_.
-core::Result<void> SynthesisManager::start_modeler(RemotePlace place) {
+core::Result<void> SynthesisManager::start_modeler(RemoteSlot place) {
   Worker worker;
   worker.modeler = std::make_shared<Modeler>(next_number_, workshop_->board.add_reader(), place);
   auto thread = core::start_thread(
@@ -129,7 +129,7 @@ unsigned SynthesisManager::local_count() const {
       std::ranges::count_if(active_, [](const Worker& w) { return !w.modeler->is_remote(); }));
 }
 
-bool SynthesisManager::may_go(const Request& request) const {
+bool SynthesisManager::is_offered_remotely(const Request& request) const {
   return remote_ != nullptr && !request.stays_here &&
          remote_->takes((*workshop_->registry)[request.key.model], request);
 }
@@ -148,7 +148,7 @@ void SynthesisManager::publish_to_threads(std::vector<Request>&& plan) {
   std::vector<std::uint32_t> offered;
   if (remote_count() > 0) {
     for (std::uint32_t i = 0; i < plan.size(); ++i) {
-      if (may_go(plan[i])) offered.push_back(i);
+      if (is_offered_remotely(plan[i])) offered.push_back(i);
     }
   }
   workshop_->board.publish(std::move(plan), std::move(offered));
@@ -290,7 +290,7 @@ bool SynthesisManager::await_finished() {
   return true;
 }
 
-std::vector<Request> SynthesisManager::come_to_rest() {
+std::vector<Request> SynthesisManager::quiesce() {
   if (virtual_) {
     wait_all();
     return {};

@@ -3,7 +3,7 @@
 // unclaimed requests. The watchdog abandons requests that never end and replaces hung modelers.
 // Remote modelers (remote_modelers.hpp) take only meshes that outweigh their round trip; a request
 // that one returns is made here. Main thread only. The planner (planner.hpp) decides the requests;
-// landing.hpp updates the cache. wait_all(), come_to_rest() and the destructor block.
+// landing.hpp updates the cache. wait_all(), quiesce() and the destructor block.
 #pragma once
 
 #include <cstdint>
@@ -117,7 +117,7 @@ class SynthesisManager {
   bool wait_all(const std::function<bool()>& go_on = {});
   // Requires an empty plan. Blocks until all claimed requests are finished or abandoned, remote
   // ones included. Returns requests that remote modelers returned; no modeler makes them any more.
-  std::vector<Request> come_to_rest();
+  std::vector<Request> quiesce();
 
   // Number of published requests that are neither reclaimed nor finished.
   std::uint64_t outstanding() const;
@@ -127,12 +127,12 @@ class SynthesisManager {
   }
   unsigned remote_count() const { return static_cast<unsigned>(active_.size()) - local_count(); }
   // Returns true if a request is also offered to remote modelers.
-  bool may_go(const Request& request) const;
+  bool is_offered_remotely(const Request& request) const;
   // Reason why fewer modelers than requested started; empty otherwise.
   const std::string& shortage() const { return shortage_; }
   const std::vector<HungRequest>& hung() const { return hung_; }
   // True if no abandoned modeler accesses anything any more, as of the last collect().
-  bool is_at_rest() const { return retired_.empty(); }
+  bool is_idle() const { return retired_.empty(); }
   SynthesisStats stats() const;
 
  private:
@@ -150,7 +150,7 @@ class SynthesisManager {
   bool await_finished();
   std::uint64_t outstanding_in_threads() const;
   bool execute_jobs(const std::vector<VirtualModelers::Job>& jobs);
-  core::Result<void> start_modeler(RemotePlace place = {});
+  core::Result<void> start_modeler(RemoteSlot place = {});
   void start_remote(RemoteModelers& remote);
   unsigned local_count() const;
   void take_returned();

@@ -71,7 +71,7 @@ FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames)
     frames_.reserve(max_frames_);
     system_ms_.reserve(max_frames_ * systems_.size());
   } else {
-    core::note_refused_bytes(0);  // the log continues with fewer rows
+    core::record_failed_allocation(0);  // the log continues with fewer rows
   }
 }
 

@@ -115,7 +115,7 @@ std::string world_card(const Summary& s) {
 }  // namespace
 
 std::string report_cards(const Summary& s) {
-  const Verdict verdict = picture_verdict(s);
+  const Verdict verdict = judge_quality(s);
   const bool over = s.cache.peak_bytes.has_value() && *s.cache.peak_bytes > s.cache.budget_bytes;
   std::string html = verdict_html(verdict) + "<div class=\"cards\">\n";
   html += speed_cards(s) + picture_cards(s, verdict.grade);

@@ -157,7 +157,7 @@ Plot coarse_plot(const FrameLog& log, const Summary& s) {
   if (s.run.measured_frames > 0) {
     plot.note =
         fmt::format("More than {:g} % in {} of {} frames after the warm-up.", kCoarsePercent,
-                    or_dash(s.missing.coarse_frames, whole), s.run.measured_frames);
+                    value_or_dash(s.missing.coarse_frames, whole), s.run.measured_frames);
   }
   return plot;
 }

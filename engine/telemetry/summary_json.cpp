@@ -67,7 +67,7 @@ Json spread_json(const std::string& path, const Spread& spread, Writer& w) {
 }
 
 Json picture_json(const Summary& s) {
-  const Verdict verdict = picture_verdict(s);
+  const Verdict verdict = judge_quality(s);
   return {{"grade", name_of(verdict.grade)},
           {"headline", verdict.headline},
           {"reasons", verdict.reasons},

@@ -51,10 +51,10 @@ void add_world(Table& table, const WorldFacts& world) {
   table.section("world");
   table.row("name", fmt::format("{}, seed {}, {}", world.name, world.seed, blocks_text(world)));
   if (world.triangles.has_value() || world.block_m <= 0) {
-    table.row("if generated",
-              fmt::format("{} triangles, {} ({} in the paper's format)",
-                          or_dash(world.triangles, count_text), or_dash(world.bytes, size_text),
-                          or_dash(world.bytes_paper, size_text)));
+    table.row("if generated", fmt::format("{} triangles, {} ({} in the paper's format)",
+                                          value_or_dash(world.triangles, count_text),
+                                          value_or_dash(world.bytes, size_text),
+                                          value_or_dash(world.bytes_paper, size_text)));
   } else {
     const double triangles = world.per_km2(world.block_triangles);
     table.row("if generated",
@@ -78,7 +78,7 @@ void add_run(Table& table, const Summary& s) {
 }
 
 void add_picture(Table& table, const Summary& s) {
-  const Verdict verdict = picture_verdict(s);
+  const Verdict verdict = judge_quality(s);
   table.section("picture");
   table.row("verdict", verdict.headline);
   for (const std::string& reason : verdict.reasons)
@@ -90,27 +90,28 @@ void add_picture(Table& table, const Summary& s) {
 void add_frames(Table& table, const Summary& s) {
   const auto fps = [](double ms) { return ms > 0 ? three_digits(1000.0 / ms) : std::string("–"); };
   table.section("frame");
-  table.row("median", fmt::format("{} ({} frames/s)", or_dash(s.frame_ms.p50, ms_text),
-                                  or_dash(s.frame_ms.p50, fps)));
-  table.row("p95, p99, max",
-            fmt::format("{}, {}, {}", or_dash(s.frame_ms.p95, ms_text),
-                        or_dash(s.frame_ms.p99, ms_text), or_dash(s.frame_ms.max, ms_text)));
-  table.row("lowest 1 %", or_dash(s.low1_fps, three_digits) + " frames/s");
-  table.row("hitches", fmt::format("{}, {} of the time in stutter", or_dash(s.hitches, whole),
-                                   or_dash(s.stutter_percent, percent_text)));
+  table.row("median", fmt::format("{} ({} frames/s)", value_or_dash(s.frame_ms.p50, ms_text),
+                                  value_or_dash(s.frame_ms.p50, fps)));
+  table.row("p95, p99, max", fmt::format("{}, {}, {}", value_or_dash(s.frame_ms.p95, ms_text),
+                                         value_or_dash(s.frame_ms.p99, ms_text),
+                                         value_or_dash(s.frame_ms.max, ms_text)));
+  table.row("lowest 1 %", value_or_dash(s.low1_fps, three_digits) + " frames/s");
+  table.row("hitches", fmt::format("{}, {} of the time in stutter", value_or_dash(s.hitches, whole),
+                                   value_or_dash(s.stutter_percent, percent_text)));
   table.row("drawn (median)",
-            fmt::format("{} triangles in {} draws", or_dash(s.draw.triangles_p50, count_text),
-                        or_dash(s.draw.draws_p50, whole)));
+            fmt::format("{} triangles in {} draws", value_or_dash(s.draw.triangles_p50, count_text),
+                        value_or_dash(s.draw.draws_p50, whole)));
   const auto spread = [](const Spread& of) {
-    return fmt::format("p50 {}, p99 {}", or_dash(of.p50, ms_text), or_dash(of.p99, ms_text));
+    return fmt::format("p50 {}, p99 {}", value_or_dash(of.p50, ms_text),
+                       value_or_dash(of.p99, ms_text));
   };
   table.row("waiting", spread(s.wait_ms.all));
-  table.row("GPU time", fmt::format("p50 {}, p99 {}", or_dash(s.gpu_ms.p50, ms_text),
-                                    or_dash(s.gpu_ms.p99, ms_text)));
+  table.row("GPU time", fmt::format("p50 {}, p99 {}", value_or_dash(s.gpu_ms.p50, ms_text),
+                                    value_or_dash(s.gpu_ms.p99, ms_text)));
   table.section("systems");
   for (const SystemTimes& system : s.system_ms) {
-    table.row(system.name, fmt::format("p50 {}, p99 {}", or_dash(system.p50, ms_text),
-                                       or_dash(system.p99, ms_text)));
+    table.row(system.name, fmt::format("p50 {}, p99 {}", value_or_dash(system.p50, ms_text),
+                                       value_or_dash(system.p99, ms_text)));
   }
 }
 
@@ -118,36 +119,38 @@ void add_streaming(Table& table, const Summary& s) {
   const auto& wait = s.missing.time_to_visible_ms;
   add_picture(table, s);
   table.section("missing");
-  table.row("frames with holes", or_dash(s.missing.frames, whole));
-  table.row("pixels",
-            fmt::format("p99 {}, worst {}", or_dash(s.missing.pixels_p99_percent, percent_text),
-                        or_dash(s.missing.pixels_max_percent, percent_text)));
+  table.row("frames with holes", value_or_dash(s.missing.frames, whole));
+  table.row("pixels", fmt::format("p99 {}, worst {}",
+                                  value_or_dash(s.missing.pixels_p99_percent, percent_text),
+                                  value_or_dash(s.missing.pixels_max_percent, percent_text)));
   table.row("too coarse", fmt::format("p99 {}, worst {} of the image",
-                                      or_dash(s.missing.coarse_p99_percent, percent_text),
-                                      or_dash(s.missing.coarse_max_percent, percent_text)));
-  table.row("time to visible",
-            fmt::format("p50 {}, p99 {}", or_dash(wait.p50, ms_text), or_dash(wait.p99, ms_text)));
+                                      value_or_dash(s.missing.coarse_p99_percent, percent_text),
+                                      value_or_dash(s.missing.coarse_max_percent, percent_text)));
+  table.row("time to visible", fmt::format("p50 {}, p99 {}", value_or_dash(wait.p50, ms_text),
+                                           value_or_dash(wait.p99, ms_text)));
   table.section("cache");
-  table.row("peak", fmt::format("{} of {}", or_dash(s.cache.peak_bytes, bytes_text),
+  table.row("peak", fmt::format("{} of {}", value_or_dash(s.cache.peak_bytes, bytes_text),
                                 bytes_text(static_cast<double>(s.cache.budget_bytes))));
-  table.row("hits, misses",
-            fmt::format("{}, {}; {} evictions, {} regenerations", or_dash(s.cache.hits, count_text),
-                        or_dash(s.cache.misses, count_text), or_dash(s.cache.evictions, count_text),
-                        or_dash(s.cache.regenerations, count_text)));
+  table.row("hits, misses", fmt::format("{}, {}; {} evictions, {} regenerations",
+                                        value_or_dash(s.cache.hits, count_text),
+                                        value_or_dash(s.cache.misses, count_text),
+                                        value_or_dash(s.cache.evictions, count_text),
+                                        value_or_dash(s.cache.regenerations, count_text)));
   table.section("synthesis");
-  table.row("made",
-            fmt::format("{} models, {} triangles, {}", or_dash(s.synthesis.models, count_text),
-                        or_dash(s.synthesis.triangles, count_text),
-                        or_dash(s.synthesis.bytes, bytes_text)));
-  table.row("ever drawn", or_dash(s.synthesis.share_drawn, share) + " of all triangles");
-  table.row("speed",
-            or_dash(s.synthesis.triangles_per_second, count_text) + " triangles per busy second");
-  table.row("modelers busy", or_dash(s.synthesis.busy_percent, percent_text));
-  table.row("cost error",
-            fmt::format("p50 {}, p95 {}", or_dash(s.synthesis.cost_error_percent.p50, percent_text),
-                        or_dash(s.synthesis.cost_error_percent.p95, percent_text)));
+  table.row("made", fmt::format("{} models, {} triangles, {}",
+                                value_or_dash(s.synthesis.models, count_text),
+                                value_or_dash(s.synthesis.triangles, count_text),
+                                value_or_dash(s.synthesis.bytes, bytes_text)));
+  table.row("ever drawn", value_or_dash(s.synthesis.share_drawn, share) + " of all triangles");
+  table.row("speed", value_or_dash(s.synthesis.triangles_per_second, count_text) +
+                         " triangles per busy second");
+  table.row("modelers busy", value_or_dash(s.synthesis.busy_percent, percent_text));
+  table.row(
+      "cost error",
+      fmt::format("p50 {}, p95 {}", value_or_dash(s.synthesis.cost_error_percent.p50, percent_text),
+                  value_or_dash(s.synthesis.cost_error_percent.p95, percent_text)));
   table.section("memory");
-  table.row("resident, peak", or_dash(s.memory.peak_rss_bytes, bytes_text));
+  table.row("resident, peak", value_or_dash(s.memory.peak_rss_bytes, bytes_text));
 }
 
 }  // namespace

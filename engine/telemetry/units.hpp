@@ -61,7 +61,7 @@ inline std::string count_text(double count) {
 
 // The value formatted by `text`, or a dash.
 template <class T, class Text>
-std::string or_dash(const Measured<T>& measured, const Text& text) {
+std::string value_or_dash(const Measured<T>& measured, const Text& text) {
   return measured.has_value() ? text(static_cast<double>(*measured)) : std::string("–");
 }
 

@@ -85,9 +85,9 @@ class Judge {
           fmt::format("In {} ({} s of {} s of flight) more than {:g} % of the image was missing "
                       "or too coarse, at worst {} %.",
                       frames_text(s_, s_.missing.coarse_frames),
-                      or_dash(s_.missing.coarse_seconds, three_digits),
+                      value_or_dash(s_.missing.coarse_seconds, three_digits),
                       three_digits(s_.run.measured_seconds), kCoarsePercent,
-                      or_dash(s_.missing.coarse_max_percent, three_digits)));
+                      value_or_dash(s_.missing.coarse_max_percent, three_digits)));
     advise_on_time();
   }
 
@@ -121,8 +121,8 @@ class Judge {
   std::string error_text() const {
     std::string text =
         fmt::format("the allowed error was {} pixels in the median and {} at most, instead of {:g}",
-                    or_dash(s_.detail.p50_pixels, three_digits),
-                    or_dash(s_.detail.max_pixels, three_digits), s_.run.error_pixels);
+                    value_or_dash(s_.detail.p50_pixels, three_digits),
+                    value_or_dash(s_.detail.max_pixels, three_digits), s_.run.error_pixels);
     const Figure& least = s_.detail.resolution_min;
     if (least.has_value() && *least < 1)
       text += fmt::format("; the render scale was {} % in the median and {} % at worst",
@@ -193,7 +193,7 @@ std::string left_out_text(const Summary& summary) {
                      left_out == 1 ? "is" : "are", text);
 }
 
-Verdict picture_verdict(const Summary& summary) {
+Verdict judge_quality(const Summary& summary) {
   return Judge(summary).verdict();
 }
 

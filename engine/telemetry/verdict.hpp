@@ -36,7 +36,7 @@ struct Verdict {
 };
 
 // Judges the image of a run. The worst finding decides the grade.
-Verdict picture_verdict(const Summary& summary);
+Verdict judge_quality(const Summary& summary);
 
 // Sentence about frames that timing statistics exclude; empty if there are none.
 std::string left_out_text(const Summary& summary);

@@ -44,7 +44,7 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
   if (scatter.mask.ground != 0) palette_ = drawn_palette(world);
   if (!world.shaped.roads.empty() && world.shaped.layer)
     roads_ =
-        world.shaped.layer->ground.roads_in(models::QuadPlace::of(block), world.block_size_m());
+        world.shaped.layer->ground.roads_in(models::QuadCoord::of(block), world.block_size_m());
 }
 
 // True if the limits allow this ground.
@@ -131,7 +131,7 @@ models::Parameters terrain_parameters(const World& world, core::BlockCoord node,
   p.set_edits(nullptr, 0);
   const models::EditLayer* const layer = world.layer().get();
   if (layer == nullptr) return p;
-  const auto at = models::QuadPlace::of(node, static_cast<std::uint32_t>(node_level));
+  const auto at = models::QuadCoord::of(node, static_cast<std::uint32_t>(node_level));
   const std::uint64_t hash =
       layer->ground.hash_of(at, ground_margin(world, node_level), world.block_size_m());
   if (hash != 0) p.set_edits(layer, hash);
@@ -156,7 +156,7 @@ namespace {
 // True if edits may change heights in a block.
 bool has_edited_ground(const World& world, core::BlockCoord block) {
   return world.edits &&
-         world.edits->ground.own().reaches(models::QuadPlace::of(block), world.block_size_m());
+         world.edits->ground.own().reaches(models::QuadCoord::of(block), world.block_size_m());
 }
 
 // The ground on which instances find their positions, and the ground on which they stand.
@@ -254,7 +254,7 @@ float road_at(const World& world, core::BlockCoord block, glm::dvec2 local_m) {
   const double block_m = world.block_size_m();
   double share = 0;
   for (const models::GroundEdit* edit :
-       world.shaped.layer->ground.roads_in(models::QuadPlace::of(block), block_m))
+       world.shaped.layer->ground.roads_in(models::QuadCoord::of(block), block_m))
     share = std::max(share,
                      road_share(*edit->road, from_origin_m(*edit->road, block, local_m, block_m)));
   return static_cast<float>(share);

@@ -44,7 +44,7 @@ void sort_places(World& world, const models::Registry& registry) {
   }
   auto layer = std::make_shared<models::EditLayer>();
   for (auto& [block, edits] : blocks)
-    layer->blocks.set(models::QuadPlace::of(block), std::move(edits));
+    layer->blocks.set(models::QuadCoord::of(block), std::move(edits));
   world.places.by_block = std::move(layer);
 }
 

@@ -298,7 +298,7 @@ tl::expected<void, ShapeError> shape_ground(World& world) {
 
 std::uint64_t shape_hash(const World& world) {
   if (!world.shaped.layer) return 0;
-  return world.shaped.layer->ground.hash_of({models::QuadPlace::kMaxLevel, 0, 0}, 0,
+  return world.shaped.layer->ground.hash_of({models::QuadCoord::kMaxLevel, 0, 0}, 0,
                                             world.block_size_m());
 }
 

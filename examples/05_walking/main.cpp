@@ -44,7 +44,7 @@ core::Result<void> add_actions(input::Actions& actions, Game& game) {
     if (added) id = *added;
     return added.has_value();
   };
-  using Way = input::MouseWay;
+  using Way = input::MouseDirection;
   const bool ok = add(game.ahead, "ahead", {{Key::kW}, {Key::kS, -1}}) &&
                   add(game.aside, "aside", {{Key::kD}, {Key::kA, -1}}) &&
                   add(game.run, "run", {{Key::kLeftShift}}) &&

@@ -49,7 +49,7 @@ core::Result<void> Game::start(app::Session& session) {
 
 core::Result<void> Game::add_actions(input::Actions& actions) {
   using platform::Key;
-  using Way = input::MouseWay;
+  using Way = input::MouseDirection;
   const std::pair<input::ActionId*, std::pair<const char*, std::vector<input::Binding>>> all[] = {
       {&ahead_, {"ahead", {{Key::kW}, {Key::kS, -1}}}},
       {&aside_, {"aside", {{Key::kD}, {Key::kA, -1}}}},

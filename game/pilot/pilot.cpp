@@ -41,7 +41,7 @@ void Pilot::look_for_path() {
 // Returns true if the ground drops away ahead.
 bool Pilot::is_over_drop() const {
   const Walker& walker = play_->walker();
-  const core::WorldPosition ahead = at_end_of(
+  const core::WorldPosition ahead = position_at_offset(
       walker.feet(), kDropAheadM * glm::dvec3(std::sin(walker.yaw()), 0, -std::cos(walker.yaw())),
       play_->block_m());
   const auto ground = play_->query().ground(ahead);

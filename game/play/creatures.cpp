@@ -124,7 +124,7 @@ void Creatures::add_group(Kind kind, int count, const core::WorldPosition& home,
 template <class MayBe>
 bool Creatures::advance(Creature& c, double dt, const MayBe& may_be) {
   const glm::dvec3 step = c.pace * dt * glm::dvec3(std::sin(c.yaw), 0, -std::cos(c.yaw));
-  const core::WorldPosition there = at_end_of(c.at, step, query_->world().block_size_m());
+  const core::WorldPosition there = position_at_offset(c.at, step, query_->world().block_size_m());
   const auto ground = query_->ground(there);
   if (!ground || !may_be(*ground)) return false;
   const double y = c.at.local.y;

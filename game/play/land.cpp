@@ -80,8 +80,8 @@ double distance_m(const core::WorldPosition& from, const core::WorldPosition& to
   return std::hypot(way.x, way.z);
 }
 
-core::WorldPosition at_end_of(const core::WorldPosition& from, const glm::dvec3& way,
-                              double block_m) {
+core::WorldPosition position_at_offset(const core::WorldPosition& from, const glm::dvec3& way,
+                                       double block_m) {
   return core::normalised({from.block, from.local + way}, block_m);
 }
 

@@ -47,7 +47,7 @@ glm::dvec3 way_m(const core::WorldPosition& from, const core::WorldPosition& to,
 // Returns the horizontal distance of two positions in metres.
 double distance_m(const core::WorldPosition& from, const core::WorldPosition& to, double block_m);
 // Returns the position at an offset in metres, normalised.
-core::WorldPosition at_end_of(const core::WorldPosition& from, const glm::dvec3& way,
-                              double block_m);
+core::WorldPosition position_at_offset(const core::WorldPosition& from, const glm::dvec3& way,
+                                       double block_m);
 
 }  // namespace cairns

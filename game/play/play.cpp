@@ -135,12 +135,12 @@ const Fire* Play::fire_near(double reach_m) const {
 
 // Finds the nearest usable stone or tree in front of the player.
 void Play::look_for_target() {
-  std::vector<query::NearModel> near;
-  const query::NearModel before = target_.model;
+  std::vector<query::NearbyModel> near;
+  const query::NearbyModel before = target_.model;
   target_ = {};
   if (!query_.models_within(progress_.feet, kReachM, near)) return;
   const int rock = registry_->find("rock");
-  for (const query::NearModel& model : near) {
+  for (const query::NearbyModel& model : near) {
     const glm::dvec3 way = way_m(progress_.feet, model.position, block_m());
     if (way.x * std::sin(walker_->yaw()) - way.z * std::cos(walker_->yaw()) < -0.3) continue;
     const models::ModelType& type = (*registry_)[model.model];
@@ -208,8 +208,8 @@ void Play::fell(double dt) {
 
 std::optional<core::WorldPosition> Play::dry_place_ahead() {
   const double yaw = walker_->yaw();
-  core::WorldPosition at =
-      at_end_of(progress_.feet, kAheadM * glm::dvec3(std::sin(yaw), 0, -std::cos(yaw)), block_m());
+  core::WorldPosition at = position_at_offset(
+      progress_.feet, kAheadM * glm::dvec3(std::sin(yaw), 0, -std::cos(yaw)), block_m());
   const auto ground = query_.ground(at);
   if (!ground || ground->water_depth_m > 0 || ground->normal.y < 0.7) return std::nullopt;
   if (std::abs(ground->height_m - progress_.feet.local.y) > 2) return std::nullopt;

@@ -35,7 +35,7 @@ struct Fire {
 struct Target {
   enum class Kind : std::uint8_t { kNothing, kStone, kTree };
   Kind kind = Kind::kNothing;
-  query::NearModel model;  // the stone or tree
+  query::NearbyModel model;  // the stone or tree
 };
 
 // An event of a step, for sounds, particles and messages.

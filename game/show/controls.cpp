@@ -8,8 +8,8 @@ namespace {
 
 using platform::Key;
 using platform::PadButton;
-using Way = input::MouseWay;
-using Pad = input::PadWay;
+using Way = input::MouseDirection;
+using Pad = input::PadAxisDirection;
 
 constexpr float kMouseTurn = 0.0022F;  // radians per mouse count
 constexpr double kStickTurn = 2.6;     // rad/s

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
+#include "ecs/ecs.hpp"
+#include "engine/scene/objects/assets.hpp"
 #include "engine/scene/objects/effects.hpp"
 #include "engine/scene/objects/particle_kinds.hpp"
-#include "engine/scene/objects/assets.hpp"
 #include "engine/world/world.hpp"
-#include "ecs/ecs.hpp"
 
 namespace cairns {
 namespace {
@@ -83,7 +83,7 @@ void Scenery::update(app::Session& session, const Play& play, double share, doub
   update_weather(session, play, hour);
   const core::CameraPose eyes = play.walker().eyes(share);
   scene.entities().get<scene::Transform>(lantern_)->position =
-      at_end_of(eyes.position, 0.6 * glm::dvec3(core::forward_of(eyes)), play.block_m());
+      position_at_offset(eyes.position, 0.6 * glm::dvec3(core::forward_of(eyes)), play.block_m());
   scene.entities().get<scene::PointLight>(lantern_)->visible = play.progress().lantern;
 }
 
@@ -94,7 +94,7 @@ void Scenery::update_creatures(scene::Scene& scene, const Play& play, double sha
     Shown& shown = shown_[c.seed];
     const bool is_new = std::exchange(shown.frame, frame_) == 0;
     const core::WorldPosition at =
-        at_end_of(c.before, way_m(c.before, c.at, play.block_m()) * share, play.block_m());
+        position_at_offset(c.before, way_m(c.before, c.at, play.block_m()) * share, play.block_m());
     const glm::quat whole = turned(c.yaw, c.pitch);
     for (std::size_t i = 0; i < kParts; ++i) {
       const Part& part = shapes_[kind][i];
@@ -103,8 +103,8 @@ void Scenery::update_creatures(scene::Scene& scene, const Play& play, double sha
       const float side = i == 1 ? 1.0F : -1.0F;
       const float angle = calm * part.swing * side * std::sin(static_cast<float>(c.beat));
       const glm::quat swung = whole * glm::angleAxis(angle, part.axis);
-      scene::Transform place{at_end_of(at, glm::dvec3(whole * part.joint), play.block_m()), swung,
-                             glm::vec3(1.0F)};
+      scene::Transform place{position_at_offset(at, glm::dvec3(whole * part.joint), play.block_m()),
+                             swung, glm::vec3(1.0F)};
       if (is_new) {
         shown.parts[i] = scene::spawn(world, {.mesh = meshes_[kind][i]}, place);
       } else if (auto* there = world.get<scene::Transform>(shown.parts[i])) {

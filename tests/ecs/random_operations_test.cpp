@@ -253,7 +253,7 @@ class Machine {
   }
   void land_edited() {
     std::vector<Landing<Edited>> results;
-    LandReport expected;
+    WriteReport expected;
     for (const Entity entity : some()) {
       results.push_back({entity, {pick(1000)}});
       const auto found = model_.find(pack(entity));
@@ -267,7 +267,7 @@ class Machine {
   }
   void land() {
     std::vector<Landing<Mesh>> results;
-    LandReport expected;
+    WriteReport expected;
     for (const Entity entity : some()) {
       results.push_back({entity, {pick(1000)}});
       const auto found = model_.find(pack(entity));

@@ -68,7 +68,7 @@ TEST(SparseSet, TracksChangesLikeColumns) {
   EXPECT_EQ(reader.drain([](auto, auto) {}), 1000U);
   world.mark_changed<Edited>(std::vector{all[3], all[700]});
   const std::vector<Landing<Edited>> results{{all[5], {9}}, {Entity{}, {9}}};
-  EXPECT_EQ(world.land<Edited>(results), (LandReport{1, 1}));
+  EXPECT_EQ(world.land<Edited>(results), (WriteReport{1, 1}));
   world.remove<Edited>(std::span(all).first(4));  // moves rows, one of them marked
   std::vector<Entity> seen;
   reader.drain([&](std::span<const Entity> entities, std::span<const Edited>) {

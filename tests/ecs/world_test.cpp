@@ -110,7 +110,7 @@ TEST(World, WritingValuesHappensInPlaceAndDropsStaleHandles) {
   const std::vector<Landing<Mesh>> results{{entities[0], {10}}, {entities[1], {11}},
                                            {meshless, {12}},    {kNullEntity, {13}},
                                            {entities[3], {14}}, {entities[3], {15}}};
-  EXPECT_EQ(world.land<Mesh>(results), (LandReport{3, 3}));
+  EXPECT_EQ(world.land<Mesh>(results), (WriteReport{3, 3}));
   EXPECT_EQ(world.get<Mesh>(entities[1])->id, 11U);
   EXPECT_EQ(world.get<Mesh>(entities[2])->id, 0U);
   EXPECT_EQ(world.get<Mesh>(entities[3])->id, 15U);
@@ -120,7 +120,7 @@ TEST(World, WritingValuesOfAnAbsentComponentDropsAll) {
   World world;
   const Entity entity = world.create<Position>(1).entities[0];
   const std::vector<Landing<Mesh>> results{{entity, {1}}};
-  EXPECT_EQ(world.land<Mesh>(results), (LandReport{0, 1}));
+  EXPECT_EQ(world.land<Mesh>(results), (WriteReport{0, 1}));
 }
 
 TEST(World, MoveOnlyComponentsAreWrittenAndSurviveEveryVerb) {
@@ -130,7 +130,7 @@ TEST(World, MoveOnlyComponentsAreWrittenAndSurviveEveryVerb) {
   for (int i = 0; i < 100; ++i) {
     results.push_back({entities[static_cast<std::size_t>(i)], {std::make_unique<int>(i)}});
   }
-  EXPECT_EQ(world.land_moved<Owner>(results), (LandReport{100, 0}));
+  EXPECT_EQ(world.move_values<Owner>(results), (WriteReport{100, 0}));
   EXPECT_EQ(world.destroy(std::span(entities).first(30)), 30U);
   EXPECT_EQ(world.add<Velocity>(std::span(entities).subspan(20, 30)), 20U);
   for (std::size_t i = 30; i < 100; ++i) {
@@ -231,9 +231,9 @@ TEST(World, ChangingTheArchetypeAddsAndRemovesInOneMove) {
   const auto created = world.create<Mesh, Position>(5);
   created.column<Mesh>()[3].id = 7;
   const std::vector<Entity> all(created.entities.begin(), created.entities.end());
-  EXPECT_EQ(
-      world.change_kind(std::span(all).subspan(2), Add<Velocity, Health>{}, Remove<Position>{}),
-      3U);
+  EXPECT_EQ(world.change_archetype(std::span(all).subspan(2), Add<Velocity, Health>{},
+                                   Remove<Position>{}),
+            3U);
   EXPECT_EQ(world.get<Mesh>(all[3])->id, 7U);
   EXPECT_EQ(world.get<Health>(all[3])->points, 100);
   EXPECT_EQ(world.get<Position>(all[3]), nullptr);

@@ -49,7 +49,7 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 }
 
 // Resolves every file that a world names to the example.
-class ExampleBeside final : public world::FilesBeside {
+class ExampleBeside final : public world::ResourceLoader {
  public:
   ExampleBeside() { file_.write(example_gltf()); }
   core::Result<std::unique_ptr<models::ModelType>> read_model(
@@ -144,7 +144,7 @@ input::Actions make_actions() {
   using platform::Key;
   input::Actions actions;
   (void)actions.add("jump", {{Key::kSpace}, {platform::PadButton::kA}});
-  (void)actions.add("move_x", {{Key::kD}, {input::PadWay::kLeftStickLeft, -1, 0.3F}});
+  (void)actions.add("move_x", {{Key::kD}, {input::PadAxisDirection::kLeftStickLeft, -1, 0.3F}});
   return actions;
 }
 

@@ -42,9 +42,9 @@ struct Begun {
   core::WorldPosition water(double depth_m) {
     for (int i = 0; i < 400'000; ++i) {
       const double angle = i * 0.13, far_m = 0.05 * i;
-      core::WorldPosition at =
-          at_end_of(play->route().start, far_m * glm::dvec3(std::cos(angle), 0, std::sin(angle)),
-                    play->block_m());
+      core::WorldPosition at = position_at_offset(
+          play->route().start, far_m * glm::dvec3(std::cos(angle), 0, std::sin(angle)),
+          play->block_m());
       const auto ground = play->query().ground(at);
       if (!ground || ground->water_depth_m < depth_m) continue;
       at.local.y = land->world.water.level_m;

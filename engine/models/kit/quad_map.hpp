@@ -19,14 +19,14 @@
 namespace psygen::models {
 
 // A square of 2^level × 2^level blocks, in squares of its level counted from block −2^31.
-struct QuadPlace {
+struct QuadCoord {
   static constexpr std::uint32_t kMaxLevel = 32;
   std::uint32_t level = 0;
   std::uint64_t x = 0, z = 0;
 
   // Returns the square of `level` < kMaxLevel, counted in squares of that level from block 0. Wraps
   // like blocks do.
-  static constexpr QuadPlace of(core::BlockCoord at, std::uint32_t level = 0) {
+  static constexpr QuadCoord of(core::BlockCoord at, std::uint32_t level = 0) {
     const auto from_origin = [level](std::int32_t index) {
       const std::uint32_t block = static_cast<std::uint32_t>(index) << level;
       return std::uint64_t{block ^ 0x80000000U} >> level;
@@ -41,20 +41,20 @@ struct QuadPlace {
     return {block(x), block(z)};
   }
   // True if `other` is this square or inside it.
-  constexpr bool covers(const QuadPlace& other) const {
+  constexpr bool covers(const QuadCoord& other) const {
     return other.level <= level && other.x >> (level - other.level) == x &&
            other.z >> (level - other.level) == z;
   }
   // The quarter of this square that contains the smaller square `other`: x in bit 0, z in bit 1.
-  constexpr std::size_t quarter_of(const QuadPlace& other) const {
+  constexpr std::size_t quarter_of(const QuadCoord& other) const {
     const std::uint32_t down = level - 1 - other.level;
     return static_cast<std::size_t>(((other.x >> down) & 1) | (((other.z >> down) & 1) << 1));
   }
-  constexpr QuadPlace quarter(std::size_t q) const {
+  constexpr QuadCoord quarter(std::size_t q) const {
     return {level - 1, 2 * x + (q & 1), 2 * z + (q >> 1)};
   }
-  constexpr QuadPlace parent() const { return {level + 1, x >> 1, z >> 1}; }
-  friend bool operator==(const QuadPlace&, const QuadPlace&) = default;
+  constexpr QuadCoord parent() const { return {level + 1, x >> 1, z >> 1}; }
+  friend bool operator==(const QuadCoord&, const QuadCoord&) = default;
 };
 
 // V has bool empty() const, std::uint64_t hash() const (not 0 unless empty), and a type Summary,
@@ -66,7 +66,7 @@ class QuadMap {
 
   // A square that has a value or at least two quarters that are not empty.
   struct Cell {
-    QuadPlace place;
+    QuadCoord place;
     std::shared_ptr<const V> value;  // null: none
     std::array<std::shared_ptr<const Cell>, 4> quarters;
     std::uint64_t hash = 0;  // of all values in the square, and of their positions; never 0
@@ -78,13 +78,13 @@ class QuadMap {
   const Cell* root() const { return root_.get(); }
 
   // Returns the value of a square; null if it has none. O(path).
-  const V* find(const QuadPlace& place) const {
+  const V* find(const QuadCoord& place) const {
     const Cell* cell = at_or_below(place);
     return cell != nullptr && cell->place == place ? cell->value.get() : nullptr;
   }
   // Returns the largest cell in the square, with the hash and summary of its content; null if the
   // square is empty.
-  const Cell* at_or_below(const QuadPlace& place) const {
+  const Cell* at_or_below(const QuadCoord& place) const {
     const Cell* cell = root_.get();
     while (cell != nullptr && !place.covers(cell->place)) {
       if (!cell->place.covers(place)) return nullptr;
@@ -94,7 +94,7 @@ class QuadMap {
   }
 
   // Sets the value of a square; an empty value removes it. O(path).
-  void set(const QuadPlace& place, V value) {
+  void set(const QuadCoord& place, V value) {
     root_ =
         with(root_, place, value.empty() ? nullptr : std::make_shared<const V>(std::move(value)));
   }
@@ -110,7 +110,7 @@ class QuadMap {
   using CellPtr = std::shared_ptr<const Cell>;
   using ValuePtr = std::shared_ptr<const V>;
 
-  static CellPtr make(const QuadPlace& place, ValuePtr value, std::array<CellPtr, 4> quarters) {
+  static CellPtr make(const QuadCoord& place, ValuePtr value, std::array<CellPtr, 4> quarters) {
     auto cell = std::make_shared<Cell>();
     // The hash includes the position, because equal values at other positions must differ.
     std::uint64_t hash = core::combine(core::combine(core::mix64(place.level), place.x), place.z);
@@ -131,7 +131,7 @@ class QuadMap {
   }
 
   // Makes a cell, or returns the only quarter if the cell is not needed.
-  static CellPtr tidy(const QuadPlace& place, ValuePtr value, std::array<CellPtr, 4> quarters) {
+  static CellPtr tidy(const QuadCoord& place, ValuePtr value, std::array<CellPtr, 4> quarters) {
     if (value) return make(place, std::move(value), std::move(quarters));
     const CellPtr* only = nullptr;
     std::size_t count = 0;
@@ -144,7 +144,7 @@ class QuadMap {
     return count == 1 ? *only : make(place, nullptr, std::move(quarters));
   }
 
-  static CellPtr with(const CellPtr& cell, const QuadPlace& target, ValuePtr value) {
+  static CellPtr with(const CellPtr& cell, const QuadCoord& target, ValuePtr value) {
     if (!cell) return value ? make(target, std::move(value), {}) : nullptr;
     if (cell->place == target) return tidy(target, std::move(value), cell->quarters);
     if (cell->place.covers(target)) {
@@ -161,7 +161,7 @@ class QuadMap {
       quarters[target.quarter_of(cell->place)] = cell;
       return make(target, std::move(value), std::move(quarters));
     }
-    QuadPlace both = cell->place.parent();
+    QuadCoord both = cell->place.parent();
     while (!both.covers(target))
       both = both.parent();
     std::array<CellPtr, 4> quarters;
@@ -183,8 +183,8 @@ class QuadMap {
     if (before == after) return;
     if (before == nullptr || after == nullptr ||
         (!before->place.covers(after->place) && !after->place.covers(before->place))) {
-      each_in(before, [&](const QuadPlace& at, const V& v) { visit(at, &v, nullptr); });
-      each_in(after, [&](const QuadPlace& at, const V& v) { visit(at, nullptr, &v); });
+      each_in(before, [&](const QuadCoord& at, const V& v) { visit(at, &v, nullptr); });
+      each_in(after, [&](const QuadCoord& at, const V& v) { visit(at, nullptr, &v); });
       return;
     }
     if (before->place == after->place) {

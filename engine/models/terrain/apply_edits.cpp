@@ -99,7 +99,7 @@ class Application {
               double narrowest_m)
       : scale_(scale), x_(x), z_(z), values_(values), stride_(stride), narrowest_m_(narrowest_m) {}
 
-  void walk(const Cell* cell, QuadPlace region, Range columns, Range rows) {
+  void walk(const Cell* cell, QuadCoord region, Range columns, Range rows) {
     if (cell != nullptr && active_.empty() && cell->place != region) {
       region = cell->place;
       columns = narrowed(x_, columns, region.x, region.level);
@@ -118,7 +118,7 @@ class Application {
       act(columns, rows);
     } else {
       for (std::size_t q = 0; q < 4; ++q) {
-        const QuadPlace quarter = region.quarter(q);
+        const QuadCoord quarter = region.quarter(q);
         const Cell* below = itself ? cell->quarters[q].get()
                                    : (region.quarter_of(cell->place) == q ? cell : nullptr);
         walk(below, quarter, narrowed(x_, columns, quarter.x, quarter.level),
@@ -254,7 +254,7 @@ void GroundEdits::apply(const GroundScale& scale, std::span<const std::int64_t> 
   for (const auto* cells : {&below_, &cells_}) {
     if (cells->empty()) continue;
     Application(scale, x, z, values, stride, narrowest_m)
-        .walk(cells->root(), {QuadPlace::kMaxLevel, 0, 0}, {0, x.size()}, {0, z.size()});
+        .walk(cells->root(), {QuadCoord::kMaxLevel, 0, 0}, {0, x.size()}, {0, z.size()});
   }
 }
 

@@ -13,7 +13,7 @@ using EditPtr = std::shared_ptr<const GroundEdit>;
 // The steepest slope of the curve by which edits fade out.
 constexpr double kSteepest = 1.5;
 // Cells of this level and below count as a whole if they touch a node's margin.
-int whole_level(const QuadPlace& node) {
+int whole_level(const QuadCoord& node) {
   constexpr int kMarginLevels = 4;
   return static_cast<int>(node.level) - kMarginLevels;
 }
@@ -29,14 +29,14 @@ struct Area {
   double size() const { return std::max(x1 - x0, 0.0) * std::max(z1 - z0, 0.0); }  // in blocks²
 };
 
-Area area_of(const QuadPlace& place, double margin = 0) {
+Area area_of(const QuadCoord& place, double margin = 0) {
   const double side = std::ldexp(1.0, static_cast<int>(place.level));
   const double x = static_cast<double>(place.x) * side, z = static_cast<double>(place.z) * side;
   return {x - margin, z - margin, x + side + margin, z + side + margin};
 }
 
 Area area_of(const GroundEdit& edit, double reach_m, double block_m) {
-  const QuadPlace block = QuadPlace::of(edit.centre.block);
+  const QuadCoord block = QuadCoord::of(edit.centre.block);
   const double x = static_cast<double>(block.x) + edit.centre.local.x / block_m;
   const double z = static_cast<double>(block.z) + edit.centre.local.z / block_m;
   const double reach = reach_m / block_m;
@@ -50,7 +50,7 @@ std::uint64_t content_hash(const GroundEdit& edit) {
   };
   hash = core::combine(hash, static_cast<std::uint64_t>(edit.change) * 2 + (edit.square ? 1 : 0));
   hash = core::combine(
-      hash, QuadPlace::of(edit.centre.block).x << 32 | QuadPlace::of(edit.centre.block).z);
+      hash, QuadCoord::of(edit.centre.block).x << 32 | QuadCoord::of(edit.centre.block).z);
   for (const double v :
        {edit.centre.local.x, edit.centre.local.z, edit.radius_m, edit.falloff, edit.height_m})
     add(v);
@@ -64,7 +64,7 @@ std::uint64_t content_hash(const GroundEdit& edit) {
   }
   if (!edit.road) return hash;
   const RoadPiece& road = *edit.road;
-  const QuadPlace origin = QuadPlace::of(road.origin.block);
+  const QuadCoord origin = QuadCoord::of(road.origin.block);
   hash = core::combine(hash, origin.x << 32 | origin.z);
   hash = core::combine(hash, road.first << 32 | road.end);
   for (const double v :
@@ -91,7 +91,7 @@ void each_place(const GroundEdit& edit, double block_m, const Visit& visit) {
   const double reach_m = GroundEdits::kInfluence * edit.reach_m() + 1e-3 * block_m;
   const Area area = area_of(edit, reach_m, block_m);
   std::uint32_t level = 0;
-  while (level < QuadPlace::kMaxLevel &&
+  while (level < QuadCoord::kMaxLevel &&
          std::ldexp(1.0, static_cast<int>(level)) < area.x1 - area.x0)
     ++level;
   const auto square = [level](double block) {
@@ -100,7 +100,7 @@ void each_place(const GroundEdit& edit, double block_m, const Visit& visit) {
   };
   for (std::uint64_t z = square(area.z0); z <= square(area.z1); ++z) {
     for (std::uint64_t x = square(area.x0); x <= square(area.x1); ++x)
-      visit(QuadPlace{level, x, z});
+      visit(QuadCoord{level, x, z});
   }
 }
 
@@ -253,12 +253,12 @@ GroundCell::Summary GroundCell::summary() const {
 
 bool GroundEdits::add(const EditPtr& edit, double block_m) {
   bool full = false;
-  each_place(*edit, block_m, [&](const QuadPlace& place) {
+  each_place(*edit, block_m, [&](const QuadCoord& place) {
     const GroundCell* cell = cells_.find(place);
     full = full || (cell != nullptr && cell->edits.size() >= kMaxTogether);
   });
   if (full) return false;
-  each_place(*edit, block_m, [&](const QuadPlace& place) {
+  each_place(*edit, block_m, [&](const QuadCoord& place) {
     const GroundCell* before = cells_.find(place);
     GroundCell cell = before != nullptr ? *before : GroundCell{};
     const auto at = std::ranges::upper_bound(cell.edits, edit->order(), {}, &GroundEdit::order);
@@ -269,7 +269,7 @@ bool GroundEdits::add(const EditPtr& edit, double block_m) {
 }
 
 void GroundEdits::remove(const GroundEdit& edit, double block_m) {
-  each_place(edit, block_m, [&](const QuadPlace& place) {
+  each_place(edit, block_m, [&](const QuadCoord& place) {
     const GroundCell* before = cells_.find(place);
     if (before == nullptr) return;
     GroundCell cell = *before;
@@ -278,14 +278,14 @@ void GroundEdits::remove(const GroundEdit& edit, double block_m) {
   });
 }
 
-std::uint64_t GroundEdits::hash_of(const QuadPlace& node, double margin, double block_m) const {
+std::uint64_t GroundEdits::hash_of(const QuadCoord& node, double margin, double block_m) const {
   std::uint64_t hash = 0;
   for (const auto* cells : {&below_, &cells_})
     add_hashes(cells->root(), area_of(node, margin), whole_level(node), block_m, hash);
   return hash;
 }
 
-bool GroundEdits::same_in(const GroundEdits& a, const GroundEdits& b, const QuadPlace& node,
+bool GroundEdits::same_in(const GroundEdits& a, const GroundEdits& b, const QuadCoord& node,
                           double margin) {
   const Area area = area_of(node, margin);
   const int whole = whole_level(node);
@@ -293,12 +293,12 @@ bool GroundEdits::same_in(const GroundEdits& a, const GroundEdits& b, const Quad
          same(a.below_.root(), b.below_.root(), area, whole);
 }
 
-bool GroundEdits::reaches(const QuadPlace& node, double block_m) const {
+bool GroundEdits::reaches(const QuadCoord& node, double block_m) const {
   const Area area = area_of(node);
   return any_reaches(cells_.root(), area, block_m) || any_reaches(below_.root(), area, block_m);
 }
 
-std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadPlace& node, double block_m) const {
+std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadCoord& node, double block_m) const {
   std::vector<const GroundEdit*> roads;
   for (const auto* cells : {&below_, &cells_})
     add_roads(cells->root(), area_of(node), block_m, roads);
@@ -307,7 +307,7 @@ std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadPlace& node, doub
   return roads;
 }
 
-double GroundEdits::error_m(const QuadPlace& node, double spacing_m, double block_m) const {
+double GroundEdits::error_m(const QuadCoord& node, double spacing_m, double block_m) const {
   double change_m = 0, steepness = 0;
   for (const auto* cells : {&below_, &cells_}) {
     const GroundCell::Summary most = max_in(cells->root(), area_of(node), block_m);

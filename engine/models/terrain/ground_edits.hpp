@@ -157,19 +157,19 @@ class GroundEdits {
 
   // Hash of all edits that can change the ground mesh of a node that needs heights `margin` blocks
   // beyond its border; 0: none. O(log n), and O(margin) for large nodes.
-  std::uint64_t hash_of(const QuadPlace& node, double margin, double block_m) const;
+  std::uint64_t hash_of(const QuadCoord& node, double margin, double block_m) const;
   // True if both have the same edits there. May be false although they do; O(log n) after small
   // changes.
-  static bool same_in(const GroundEdits& a, const GroundEdits& b, const QuadPlace& node,
+  static bool same_in(const GroundEdits& a, const GroundEdits& b, const QuadCoord& node,
                       double margin);
   // True if any edit may change heights within a node. May be true although none does.
-  bool reaches(const QuadPlace& node, double block_m) const;
+  bool reaches(const QuadCoord& node, double block_m) const;
   // Returns the pieces of roads that may reach a node, each once. O(log n + p log p) for p pieces,
   // independent of all other edits.
-  std::vector<const GroundEdit*> roads_in(const QuadPlace& node, double block_m) const;
+  std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
   // Largest distance between the ground and a mesh of the node with vertices `spacing_m` apart,
   // because of edits between them. An upper bound in metres; 0: no edits.
-  double error_m(const QuadPlace& node, double spacing_m, double block_m) const;
+  double error_m(const QuadCoord& node, double spacing_m, double block_m) const;
 
   // Estimate of the edits that apply() makes on a height, as a mean over the rectangle, in units of
   // the time for a simple edit; a stamp counts as three. Up to four times too high if edits are

@@ -40,7 +40,7 @@ void mark_roads(const TerrainShape& shape, const TerrainGrid& grid, core::BlockC
   if (shape.edits == nullptr) return;
   const double block_m = (shape.size - 1) * std::ldexp(shape.cell_m, -shape.node_level);
   const auto roads = shape.edits->roads_in(
-      QuadPlace::of(node, static_cast<std::uint32_t>(shape.node_level)), block_m);
+      QuadCoord::of(node, static_cast<std::uint32_t>(shape.node_level)), block_m);
   if (roads.empty()) return;
   std::vector<std::uint8_t> marks(grid.surface_vertices());
   for (const GroundEdit* edit : roads) {

@@ -24,7 +24,7 @@ struct SlotBuffers {
 struct FrameSetsInput {
   const PresetTraits& traits;
   const MaterialTable& materials;
-  const ModelPictures& pictures;
+  const ImpostorTextures& pictures;
   std::span<const GroundPicture> ground;  // RendererOptions::ground
 };
 
@@ -62,7 +62,7 @@ class FrameSets {
   core::Result<void> create_sets(const Device& device, std::uint32_t count);
 
   const MaterialTable* materials_ = nullptr;
-  const ModelPictures* pictures_ = nullptr;
+  const ImpostorTextures* pictures_ = nullptr;
   UniqueSampler cloud_sampler_, smooth_sampler_, nearest_sampler_;
   ShadowMaps shadows_;
   Image clouds_;

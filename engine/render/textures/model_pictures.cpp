@@ -8,8 +8,8 @@
 #include "engine/core/vertex_layout.hpp"
 #include "shaders/shared.h"
 
-static_assert(PSYGEN_PICTURE_BIT == psygen::core::kPictureBit);
-static_assert(PSYGEN_PICTURE_VIEWS == psygen::core::kPictureViews);
+static_assert(PSYGEN_PICTURE_BIT == psygen::core::kImpostorBit);
+static_assert(PSYGEN_PICTURE_VIEWS == psygen::core::kImpostorViews);
 
 namespace psygen::render {
 
@@ -17,7 +17,7 @@ using core::Result;
 
 namespace {
 
-constexpr core::Extent kLayerSize{core::kPictureSide, core::kPictureSide};
+constexpr core::Extent kLayerSize{core::kImpostorSide, core::kImpostorSide};
 
 Result<UniqueSampler> make_picture_sampler(const Device& device) {
   VkSamplerCreateInfo info{};
@@ -33,23 +33,23 @@ Result<UniqueSampler> make_picture_sampler(const Device& device) {
 
 }  // namespace
 
-Result<void> ModelPictures::create(const Device& device,
-                                   std::span<const core::ModelPicture> pictures) {
-  PSYGEN_CHECK(pictures.size() <= core::kMaxPictures, "a byte names the picture");
+Result<void> ImpostorTextures::create(const Device& device,
+                                      std::span<const core::ImpostorTexture> pictures) {
+  PSYGEN_CHECK(pictures.size() <= core::kMaxImpostors, "a byte names the picture");
   if (sampler_.get() == VK_NULL_HANDLE) {
     Result<UniqueSampler> sampler = make_picture_sampler(device);
     if (!sampler) return tl::unexpected(sampler.error());
     sampler_ = std::move(*sampler);
   }
-  const auto layers = static_cast<std::uint32_t>(1 + pictures.size() * core::kPictureViews);
-  Result<Image> image = make_image(device, kLayerSize, VK_FORMAT_R8G8B8A8_UNORM,
-                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                   VK_IMAGE_ASPECT_COLOR_BIT,
-                                   {.array = true, .layers = layers, .mips = core::kPictureLevels});
+  const auto layers = static_cast<std::uint32_t>(1 + pictures.size() * core::kImpostorViews);
+  Result<Image> image = make_image(
+      device, kLayerSize, VK_FORMAT_R8G8B8A8_UNORM,
+      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, VK_IMAGE_ASPECT_COLOR_BIT,
+      {.array = true, .layers = layers, .mips = core::kImpostorLevels});
   if (!image) return tl::unexpected(image.error());
   std::swap(image_, *image);
   const std::size_t count_before = std::exchange(count_, pictures.size());
-  const std::vector<std::uint8_t> white(core::picture_bytes() / core::kPictureViews, 255);
+  const std::vector<std::uint8_t> white(core::impostor_bytes() / core::kImpostorViews, 255);
   Result<void> filled = fill(device, 0, 1, white);
   for (std::size_t i = 0; filled && i < pictures.size(); ++i)
     filled = set(device, i, pictures[i]);
@@ -60,20 +60,20 @@ Result<void> ModelPictures::create(const Device& device,
   return filled;
 }
 
-Result<void> ModelPictures::set(const Device& device, std::size_t number,
-                                const core::ModelPicture& picture) {
-  PSYGEN_CHECK(number < count_ && picture.size() == core::picture_bytes(),
+Result<void> ImpostorTextures::set(const Device& device, std::size_t number,
+                                   const core::ImpostorTexture& picture) {
+  PSYGEN_CHECK(number < count_ && picture.size() == core::impostor_bytes(),
                "a picture that exists, of its size");
-  return fill(device, static_cast<std::uint32_t>(1 + number * core::kPictureViews),
-              core::kPictureViews, picture);
+  return fill(device, static_cast<std::uint32_t>(1 + number * core::kImpostorViews),
+              core::kImpostorViews, picture);
 }
 
-Result<void> ModelPictures::fill(const Device& device, std::uint32_t layer, std::uint32_t layers,
-                                 std::span<const std::uint8_t> texels) {
-  std::array<std::span<const std::byte>, core::kPictureLevels> levels;
+Result<void> ImpostorTextures::fill(const Device& device, std::uint32_t layer, std::uint32_t layers,
+                                    std::span<const std::uint8_t> texels) {
+  std::array<std::span<const std::byte>, core::kImpostorLevels> levels;
   std::size_t at = 0;
-  for (std::uint32_t level = 0; level < core::kPictureLevels; ++level) {
-    const std::size_t bytes = core::picture_level_bytes(level) / core::kPictureViews * layers;
+  for (std::uint32_t level = 0; level < core::kImpostorLevels; ++level) {
+    const std::size_t bytes = core::impostor_level_bytes(level) / core::kImpostorViews * layers;
     levels[level] = std::as_bytes(texels.subspan(at, bytes));
     at += bytes;
   }

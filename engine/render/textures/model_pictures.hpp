@@ -5,25 +5,25 @@
 
 #include <span>
 
-#include "engine/core/model_picture.hpp"
+#include "engine/core/impostor_texture.hpp"
 #include "engine/render/memory/memory.hpp"
 
 namespace psygen::render {
 
 // Empty until create(). The device must outlive it.
-class ModelPictures {
+class ImpostorTextures {
  public:
   // Stores these pictures in place of all that there were. The view is another one then. After a
   // failure everything is as it was.
-  core::Result<void> create(const Device& device, std::span<const core::ModelPicture> pictures);
+  core::Result<void> create(const Device& device, std::span<const core::ImpostorTexture> pictures);
   // Replaces a picture that no unfinished commands read.
   core::Result<void> set(const Device& device, std::size_t number,
-                         const core::ModelPicture& picture);
+                         const core::ImpostorTexture& picture);
 
   std::size_t count() const { return count_; }
   VkImageView view() const { return image_.view.get(); }
   const VkSampler* sampler() const { return sampler_.address(); }
-  std::uint64_t bytes() const { return count_ * core::picture_bytes(); }
+  std::uint64_t bytes() const { return count_ * core::impostor_bytes(); }
 
  private:
   core::Result<void> fill(const Device& device, std::uint32_t layer, std::uint32_t layers,

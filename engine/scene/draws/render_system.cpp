@@ -18,7 +18,7 @@
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/view/debug_colours.hpp"
 #include "engine/scene/view/visibility.hpp"
-#include "engine/world/far/tree_pictures.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -66,7 +66,7 @@ ModelGround ground_of(const DrawTick& tick, const WorldFacts& facts, const Rende
   ground.step = tick.step;
   ground.shadows = facts.shadows;
   ground.near_detail = facts.near_detail;
-  ground.pictures = facts.pictures && node.level > 0 && node.level <= world::kMaxPicturedLevel;
+  ground.pictures = facts.pictures && node.level > 0 && node.level <= world::kMaxImpostorLevel;
   return ground;
 }
 

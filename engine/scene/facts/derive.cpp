@@ -133,7 +133,7 @@ core::Result<void> derive(const SceneSettings& settings, bool pictures, WorldFac
   facts.models_reach_m = facts.scattered_reach_m;
   facts.standing = obstacles_on_block(world, facts.registry);
   if (pictures) {
-    const world::PictureSet* known = before != nullptr ? before->pictures.get() : nullptr;
+    const world::ImpostorSet* known = before != nullptr ? before->pictures.get() : nullptr;
     if (auto ok = find_pictures(settings, facts, known); !ok) return ok;
   }
   if (auto ok = find_levels(settings, facts, before); !ok) return ok;

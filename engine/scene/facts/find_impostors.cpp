@@ -3,17 +3,17 @@
 #include <memory>
 #include <utility>
 
-#include "engine/world/far/tree_pictures.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 
 namespace psygen::scene {
 
 core::Result<void> find_pictures(const SceneSettings& settings, WorldFacts& facts,
-                                 const world::PictureSet* before) {
+                                 const world::ImpostorSet* before) {
   if (settings.paradigm == Paradigm::kDataAmplification || !settings.levels_of_detail) return {};
-  auto pictures = std::make_shared<const world::PictureSet>(facts.world, facts.registry, before);
+  auto pictures = std::make_shared<const world::ImpostorSet>(facts.world, facts.registry, before);
   if (pictures->count() == 0) return {};
   const std::size_t types = facts.registry.size();
-  const auto baked = facts.registry.add(world::make_picture_type());
+  const auto baked = facts.registry.add(world::make_impostor_type());
   if (!baked) return tl::unexpected(baked.error());
   facts.picture_model = *baked;
   facts.quad_models.assign(types, 0);

@@ -10,6 +10,6 @@ namespace psygen::scene {
 // levels of detail, and none with data amplification, which makes all levels of all meshes once.
 // Reuses the measurements of `before` (may be null). Fails as Registry::add().
 core::Result<void> find_pictures(const SceneSettings& settings, WorldFacts& facts,
-                                 const world::PictureSet* before);
+                                 const world::ImpostorSet* before);
 
 }  // namespace psygen::scene

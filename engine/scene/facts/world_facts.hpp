@@ -18,7 +18,7 @@
 
 namespace psygen::world {
 class FarScatters;
-class PictureSet;
+class ImpostorSet;
 }  // namespace psygen::world
 
 namespace psygen::scene {
@@ -31,7 +31,8 @@ struct DerivedWorldData {
   std::shared_ptr<const world::FarScatters> scatters;  // their types may no longer exist
   std::vector<double> placed;                          // world::placed_per_block()
   std::vector<NodeLevel> levels;
-  std::shared_ptr<const world::PictureSet> pictures;  // null: none; their types may no longer exist
+  std::shared_ptr<const world::ImpostorSet>
+      pictures;  // null: none; their types may no longer exist
 };
 
 // Only edits change during ticks, and with them how far models reach (edits_system). All other
@@ -55,7 +56,7 @@ struct WorldFacts {
   std::vector<core::Bounds> typical_bounds;
   // Tree impostors: null if there are none. The type that bakes them, the parameters of each, and
   // for each model type its quad type, or 0 if it has no impostors.
-  std::shared_ptr<const world::PictureSet> pictures;
+  std::shared_ptr<const world::ImpostorSet> pictures;
   models::ModelIndex picture_model = 0;
   std::vector<models::Parameters> picture_parameters;
   std::vector<models::ModelIndex> quad_models;

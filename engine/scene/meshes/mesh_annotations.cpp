@@ -8,7 +8,7 @@
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/meshes/mesh_parts.hpp"
-#include "engine/world/far/tree_pictures.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -23,7 +23,7 @@ float edits_error_m(const WorldFacts& facts, const synthesis::Request& request) 
   const double spacing_m =
       std::ldexp(static_cast<double>(facts.cell_m) * facts.grids[request.key.level].stride, level);
   const double error_m =
-      p.edits()->ground.error_m(models::QuadPlace::of(node, static_cast<std::uint32_t>(level)),
+      p.edits()->ground.error_m(models::QuadCoord::of(node, static_cast<std::uint32_t>(level)),
                                 spacing_m, facts.levels[0].size_m);
   return static_cast<float>(std::min(error_m, p.real(models::kTerrainReliefM)));
 }
@@ -73,7 +73,7 @@ std::vector<synthesis::Annotate> mesh_annotations(const WorldFacts& facts) {
     notes[picture] = [pictures = facts.pictures](const synthesis::Request& request,
                                                  const models::MeshView&) {
       const std::size_t number = world::picture_number(request.parameters);
-      return std::any(std::make_shared<const core::ModelPicture>(pictures->bake(number)));
+      return std::any(std::make_shared<const core::ImpostorTexture>(pictures->bake(number)));
     };
   }
   return notes;

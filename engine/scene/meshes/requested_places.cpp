@@ -149,7 +149,7 @@ synthesis::Want want_of(const RequestedMesh& mesh) {
 
 // Marks a place whose nodes an edit has changed since it was listed. Otherwise its parameters refer
 // to the present edit layer from now on.
-void follow_edits(const WorldFacts& facts, RequestedPlace& place) {
+void sync_edits(const WorldFacts& facts, RequestedPlace& place) {
   if (place.layer == facts.world.layer()) return;
   const LayerChange change(facts.world, place.layer, facts.world.layer());
   place.stale =
@@ -209,7 +209,7 @@ void release_place(PlaceId id, RequestedPlaces& requested, synthesis::MeshSupply
 void update_requested_places(const StreamingContext& context, RequestedPlaces& requested,
                              synthesis::MeshSupply& supply, ecs::EventQueue<PlaceReady>& ready) {
   for (RequestedPlace& place : requested.places) {
-    follow_edits(context.facts, place);
+    sync_edits(context.facts, place);
     if (place.stale || place.pixels_per_radian != context.camera.pixels_per_radian)
       list(context, place);
     light(context, place);

@@ -11,7 +11,7 @@
 #include "engine/core/log.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/facts/world_facts.hpp"
-#include "engine/world/far/tree_pictures.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -39,19 +39,19 @@ void forget_pictures(const WorldFacts& facts, synthesis::MeshSupply& supply) {
     supply.forget(supply.find(key_of_picture(facts, i)));
 }
 
-bool show_stand_ins(const WorldFacts& facts, const world::PictureSet* before, SceneMeshes& meshes,
+bool show_stand_ins(const WorldFacts& facts, const world::ImpostorSet* before, SceneMeshes& meshes,
                     Output& output) {
   if (output.renderer == nullptr) return true;
   const std::size_t count = facts.pictures ? facts.pictures->count() : 0;
   if (meshes.pictures_shown == count) {
     for (std::size_t i = 0; i < count; ++i) {
       const bool same = before != nullptr &&
-                        before->identity_of_picture(i) == facts.pictures->identity_of_picture(i);
+                        before->identity_of_impostor(i) == facts.pictures->identity_of_impostor(i);
       if (!same) meshes.pictures_lacking |= 1U << i;
     }
     return true;
   }
-  std::vector<core::ModelPicture> stand_ins;
+  std::vector<core::ImpostorTexture> stand_ins;
   for (std::size_t i = 0; i < count; ++i)
     stand_ins.push_back(facts.pictures->stand_in(i));
   meshes.pictures_lacking = 0;
@@ -84,7 +84,7 @@ bool take_picture(const synthesis::Completion& job, const WorldFacts& facts,
     core::log_warning(fmt::format("a picture of a tree could not be made: {}", job.error));
     return true;
   }
-  const auto* picture = std::any_cast<std::shared_ptr<const core::ModelPicture>>(&record->note);
+  const auto* picture = std::any_cast<std::shared_ptr<const core::ImpostorTexture>>(&record->note);
   PSYGEN_CHECK(picture != nullptr, "a picture is what is noted of its request");
   if (const auto set = work.output.renderer->set_model_picture(number, **picture); !set) {
     core::log_warning(fmt::format("a picture of a tree: {}", set.error().message));

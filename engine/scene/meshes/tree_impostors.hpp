@@ -7,7 +7,7 @@
 #include "engine/scene/meshes/scene_meshes.hpp"
 
 namespace psygen::world {
-class PictureSet;
+class ImpostorSet;
 }
 
 namespace psygen::scene {
@@ -15,7 +15,7 @@ namespace psygen::scene {
 // Gives the renderer a rough stand-in for each impostor. If it has as many of this scene already,
 // they stay until the new ones are baked, and for good if they equal those of `before` (may be
 // null). Returns false if the renderer has no room, and logs it.
-bool show_stand_ins(const WorldFacts& facts, const world::PictureSet* before, SceneMeshes& meshes,
+bool show_stand_ins(const WorldFacts& facts, const world::ImpostorSet* before, SceneMeshes& meshes,
                     Output& output);
 
 // Wants the impostors that the renderer lacks. Part of the cache system.

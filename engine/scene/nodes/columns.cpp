@@ -4,7 +4,7 @@
 
 #include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/world/far/merged_models.hpp"
-#include "engine/world/far/tree_pictures.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 
 namespace psygen::scene {
 namespace {

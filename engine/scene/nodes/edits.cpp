@@ -16,7 +16,7 @@ std::shared_ptr<const models::EditLayer> or_empty(std::shared_ptr<const models::
   return layer != nullptr ? std::move(layer) : std::make_shared<const models::EditLayer>();
 }
 
-std::uint64_t hash_in(const Blocks& blocks, const models::QuadPlace& at) {
+std::uint64_t hash_in(const Blocks& blocks, const models::QuadCoord& at) {
   const Blocks::Cell* cell = blocks.at_or_below(at);
   return cell != nullptr ? cell->hash : 0;
 }
@@ -28,7 +28,7 @@ LayerChange::LayerChange(const world::World& world, std::shared_ptr<const models
     : world_(world), before_(or_empty(std::move(before))), after_(or_empty(std::move(after))) {}
 
 NodeChange LayerChange::of(const visibility::NodeCoord& node) const {
-  const auto at = models::QuadPlace::of(node.coord, node.level);
+  const auto at = models::QuadCoord::of(node.coord, node.level);
   const double margin = world::ground_margin(world_, node.level);
   const models::GroundEdits &before = before_->ground, &after = after_->ground;
   const bool ground = !models::GroundEdits::same_in(before, after, at, margin);

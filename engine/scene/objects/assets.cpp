@@ -161,7 +161,7 @@ void Assets::want_all(synthesis::MeshSupply& meshes) const {
 void Assets::forget_removed(synthesis::MeshSupply& meshes) {
   for (const synthesis::MeshKey& key : removed_) {
     meshes.forget(meshes.find(key));
-    meshes.forget(meshes.find(synthesis::spare_of(key)));
+    meshes.forget(meshes.find(synthesis::duplicate_of(key)));
   }
   removed_.clear();
 }

@@ -60,7 +60,7 @@ void Colliders::update(const WorldFacts& facts, Entities entities) {
     for (std::size_t i = 0; i < rows.size(); ++i)
       follow(rows[i], transforms[i], colliders[i]);
   });
-  objects_.remove_untold();
+  objects_.remove_stale();
 }
 
 core::Result<void> Colliders::add_systems(Systems& systems) {

@@ -17,7 +17,7 @@ using models::BlockEdits;
 using models::EditLayer;
 using models::GroundEdit;
 using models::PlacedModel;
-using models::QuadPlace;
+using models::QuadCoord;
 using models::RemovedModel;
 
 // A coordinate in a block as a float, which must not round up to the next block.
@@ -62,7 +62,7 @@ BlockEdits Edits::edits_of(core::BlockCoord block) const {
 }
 
 void Edits::commit(EditLayer layer, core::BlockCoord block, BlockEdits edits) {
-  layer.blocks.set(QuadPlace::of(block), std::move(edits));
+  layer.blocks.set(QuadCoord::of(block), std::move(edits));
   layer_ = layer.blocks.empty() ? nullptr : std::make_shared<const EditLayer>(std::move(layer));
 }
 
@@ -236,7 +236,7 @@ std::vector<core::BlockCoord> changed_blocks(const Edits& before, const Edits& a
   const EditLayer& b = after.layer() ? *after.layer() : none;
   std::vector<core::BlockCoord> blocks;
   models::QuadMap<BlockEdits>::each_difference(
-      a.blocks, b.blocks, [&](const QuadPlace& at, const BlockEdits*, const BlockEdits*) {
+      a.blocks, b.blocks, [&](const QuadCoord& at, const BlockEdits*, const BlockEdits*) {
         blocks.push_back(at.corner());
       });
   return blocks;

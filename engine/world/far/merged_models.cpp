@@ -9,11 +9,11 @@
 #include "engine/core/assert.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/world/far/form_writer.hpp"
 #include "engine/world/far/merged_identity.hpp"
 #include "engine/world/far/merged_plan.hpp"
 #include "engine/world/far/node_walk.hpp"
-#include "engine/world/far/placed_forms.hpp"
+#include "engine/world/far/placed_proxies.hpp"
+#include "engine/world/far/proxy_writer.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::world {
@@ -37,7 +37,7 @@ int level_of(const Parameters& p) {
 class MergedType final : public models::ModelType {
  public:
   MergedType(std::shared_ptr<const World> world, const models::Registry& registry,
-             std::shared_ptr<const PictureSet> pictures,
+             std::shared_ptr<const ImpostorSet> pictures,
              std::shared_ptr<const FarScatters> scatters)
       : world_(without_edits(std::move(world))),
         pictures_(std::move(pictures)),
@@ -109,7 +109,7 @@ class MergedType final : public models::ModelType {
   models::BlockEdits::Summary placed_on(const Parameters& p) const {
     const core::BlockCoord node{static_cast<std::int32_t>(p.integer(kMergedBlockX)),
                                 static_cast<std::int32_t>(p.integer(kMergedBlockZ))};
-    const auto at = models::QuadPlace::of(node, static_cast<std::uint32_t>(level_of(p)));
+    const auto at = models::QuadCoord::of(node, static_cast<std::uint32_t>(level_of(p)));
     models::BlockEdits::Summary sum;
     for (const models::EditLayer* layer : {p.edits(), world_->places.by_block.get()}) {
       const auto* cell = layer != nullptr ? layer->blocks.at_or_below(at) : nullptr;
@@ -129,7 +129,7 @@ class MergedType final : public models::ModelType {
   void add_instance(Instance& instance, const Scattering& scattering, Making& making) const;
 
   std::shared_ptr<const World> world_;
-  std::shared_ptr<const PictureSet> pictures_;  // null: none
+  std::shared_ptr<const ImpostorSet> pictures_;  // null: none
   std::uint64_t identity_;
   std::vector<const models::ModelType*> types_;  // the registry's types, for placed models
   std::shared_ptr<const FarScatters> held_scatters_;
@@ -143,12 +143,12 @@ class MergedType final : public models::ModelType {
 struct MergedType::Making {
   const LevelPlan& plan;
   std::uint64_t key;  // key of the node's random numbers
-  FormWriter writer;
+  ProxyWriter writer;
   models::BlockGround node_ground;            // ground of the whole node
   int drawn_stride;                           // stride of the drawn ground
   std::optional<models::BlockGround> ground;  // ground of the current tile, for slopes and heights
   SampleMesh mesh;
-  FormMesh form;
+  ProxyMesh form;
   PlacedPlan placed;
   std::uint64_t placed_count = 0;             // number of placed models so far
   const models::BlockEdits* edits = nullptr;  // edits of the current block; may be null
@@ -193,7 +193,7 @@ void MergedType::make_from_like(const Instance& instance, const Parameters& p,
   const Likeness like = far.like(box.max.x - box.min.x, box.max.y - box.min.y, instance.hash >> 8);
   const Outline outline = like.model->outline.scaled(like.across, like.up);
   if (!is_billboard(form))
-    return make_form(form, outline, far.width_of(form), direction_of(instance.hash), making.form);
+    return make_proxy(form, outline, far.width_of(form), direction_of(instance.hash), making.form);
   const Silhouette area = like.model->silhouette.scaled(like.across, like.up);
   make_billboard(form, outline,
                  billboard_of(form, outline, area, static_cast<float>(instance.together)),
@@ -216,7 +216,8 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
     making.mesh.make(far.type(), p);
     const auto outline = making.mesh.outline();
     if (!outline) return;
-    make_form(how.form, *outline, far.width_of(how.form), direction_of(instance.hash), making.form);
+    make_proxy(how.form, *outline, far.width_of(how.form), direction_of(instance.hash),
+               making.form);
   } else {
     make_from_like(instance, p, making);
   }
@@ -255,8 +256,8 @@ void MergedType::add_placed(const models::BlockEdits& edits, const NodeBlock& bl
     if (making.placed_count++ % making.placed.together != 0) continue;
     const models::ModelType* type = model.model < types_.size() ? types_[model.model] : nullptr;
     if (type == nullptr || !type->may_run_on_main_thread() || !type->is_seen_from_far()) continue;
-    const auto form = make_placed_form(*type, model.parameters, making.placed, making.mesh,
-                                       direction_of(core::mix64(model.id)), making.form);
+    const auto form = make_placed_proxy(*type, model.parameters, making.placed, making.mesh,
+                                        direction_of(core::mix64(model.id)), making.form);
     if (!form) continue;
     const glm::dvec2 in_node = block.in_node_m + glm::dvec2(model.local_m);
     const double ground_m = making.node_ground.at(in_node, making.drawn_stride).height_m;
@@ -281,7 +282,7 @@ core::Bounds MergedType::synthesise(const Parameters& p, int level, const MeshVi
   node.set_edits(nullptr, 0);
   Making making{made,
                 core::combine(world_->seed, node.hash()),
-                FormWriter(bounds(p), out),
+                ProxyWriter(bounds(p), out),
                 walk.whole_ground(p.edits()),
                 walk.drawn_stride(),
                 std::nullopt,
@@ -308,7 +309,7 @@ core::Bounds MergedType::synthesise(const Parameters& p, int level, const MeshVi
 
 std::unique_ptr<models::ModelType> make_merged_type(std::shared_ptr<const World> world,
                                                     const models::Registry& registry,
-                                                    std::shared_ptr<const PictureSet> pictures,
+                                                    std::shared_ptr<const ImpostorSet> pictures,
                                                     std::shared_ptr<const FarScatters> scatters) {
   return std::make_unique<MergedType>(std::move(world), registry, std::move(pictures),
                                       std::move(scatters));
@@ -325,7 +326,7 @@ models::Parameters merged_parameters(core::BlockCoord node, int node_level) {
 models::Parameters merged_parameters(const World& world, core::BlockCoord node, int node_level) {
   models::Parameters p = merged_parameters(node, node_level);
   if (!world.edits) return p;
-  const auto at = models::QuadPlace::of(node, static_cast<std::uint32_t>(node_level));
+  const auto at = models::QuadCoord::of(node, static_cast<std::uint32_t>(node_level));
   std::uint64_t hash =
       world.edits->ground.own().hash_of(at, ground_margin(world, node_level), world.block_size_m());
   if (const auto* cell = world.edits->blocks.at_or_below(at); cell != nullptr)

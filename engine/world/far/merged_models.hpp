@@ -26,7 +26,7 @@ enum MergedParameter : std::size_t {
 // Maximum level of a node with a merged mesh; the minimum is 1.
 inline constexpr int kMaxMergedLevel = 5;
 
-class PictureSet;
+class ImpostorSet;
 
 // The distant representation of each scatter (scatter.hpp). Synthesises 32 instances of every
 // scatter, some milliseconds in all. The model types of `registry` must outlive the result; `world`
@@ -47,7 +47,7 @@ std::shared_ptr<const FarScatters> far_scatters(std::shared_ptr<const World> wor
 // without `pictures` there are no impostors, without `scatters` they are made here.
 std::unique_ptr<models::ModelType> make_merged_type(
     std::shared_ptr<const World> world, const models::Registry& registry,
-    std::shared_ptr<const PictureSet> pictures = nullptr,
+    std::shared_ptr<const ImpostorSet> pictures = nullptr,
     std::shared_ptr<const FarScatters> scatters = nullptr);
 
 // The parameters of one node without edits. `node` is in nodes of its level, 1 … kMaxMergedLevel.

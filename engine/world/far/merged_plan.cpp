@@ -23,7 +23,7 @@ std::uint32_t min_together(double pixels) {
   return static_cast<std::uint32_t>(std::ceil(std::min(ratio * ratio, 1e6)));
 }
 
-void plan_scatters(std::span<const FarScatter> scatters, const PictureSet* pictures, double side,
+void plan_scatters(std::span<const FarScatter> scatters, const ImpostorSet* pictures, double side,
                    std::uint32_t thinning, LevelPlan& plan) {
   plan.scatters.clear();
   plan.vertices = plan.triangles = 0;
@@ -35,7 +35,7 @@ void plan_scatters(std::span<const FarScatter> scatters, const PictureSet* pictu
     how.together = std::max(thinning, far.is_leafy() ? least : 1);
     const std::uint32_t most = far.is_leafy() ? std::max(2 * thinning, kMaxTogether) : thinning;
     if (!far.empty() && least <= most) {
-      const bool pictured = pictures != nullptr && plan.form_level <= kMaxPicturedLevel &&
+      const bool pictured = pictures != nullptr && plan.form_level <= kMaxImpostorLevel &&
                             pictures->has(far.scatter().model);
       how.form = how.together > 1 ? Form::kTent
                  : pictured       ? Form::kPicture
@@ -74,7 +74,7 @@ core::Bounds box_of(const World& world, std::span<const FarScatter> scatters, do
 }  // namespace
 
 LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters,
-                     const PictureSet* pictures, int level, int form_level) {
+                     const ImpostorSet* pictures, int level, int form_level) {
   const double side = std::ldexp(world.block_size_m(), form_level);
   LevelPlan plan;
   plan.level = level;

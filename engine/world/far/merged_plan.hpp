@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/world/far/scatter.hpp"
-#include "engine/world/far/tree_pictures.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 
 namespace psygen::world {
 
@@ -30,9 +30,9 @@ struct LevelPlan {
 };
 
 // The plan for nodes of `level` with the forms of `form_level`. At most 65,536 vertices: if needed,
-// more models share a form. Up to kMaxPicturedLevel, models in `pictures` are impostors.
+// more models share a form. Up to kMaxImpostorLevel, models in `pictures` are impostors.
 LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters,
-                     const PictureSet* pictures, int level, int form_level);
+                     const ImpostorSet* pictures, int level, int form_level);
 
 // Relative time for making the mesh. The unit is close to a nanosecond; use only ratios.
 double work_of(const World& world, std::span<const FarScatter> scatters, const LevelPlan& plan);

@@ -30,15 +30,15 @@ FarScatter::Reach larger(const FarScatter::Reach& a, const FarScatter::Reach& b)
 
 // Displacement of a billboard's corner along x; 0 for corners of solids. For the silhouette, the
 // trunk faces one fixed direction.
-float aside_of(Form form, const FormMesh& mesh, std::size_t corner) {
+float aside_of(Form form, const ProxyMesh& mesh, std::size_t corner) {
   return corner < size_of(form).solid_vertices ? 0 : mesh.aside[corner].x;
 }
 
 Silhouette silhouette_of_form(Form form, const Outline& outline) {
-  FormMesh mesh;
-  make_form(form, outline, 1, {0.8F, 0.6F}, mesh);
+  ProxyMesh mesh;
+  make_proxy(form, outline, 1, {0.8F, 0.6F}, mesh);
   std::array<glm::vec3, 9> places;
-  const FormSize size = size_of(form);
+  const ProxySize size = size_of(form);
   for (std::size_t i = 0; i < size.vertices; ++i)
     places[i] = mesh.corners[i].position + glm::vec3(aside_of(form, mesh, i), 0, 0);
   return silhouette_of(std::span(places).first(size.vertices),
@@ -151,7 +151,7 @@ void FarScatter::measure_shape() {
 }
 
 void FarScatter::fit_forms() {
-  for (std::size_t f = 0; f < kFormCount; ++f) {
+  for (std::size_t f = 0; f < kProxyCount; ++f) {
     const auto form = static_cast<Form>(f);
     if (is_billboard(form)) continue;
     float sum = 0;

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/world/far/forms.hpp"
+#include "engine/world/far/proxy_shapes.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
@@ -98,7 +98,7 @@ class FarScatter {
   Silhouette mean_;
   Reach reach_;         // extent of the type's bounds
   float extent_m_ = 0;  // mean of the larger of width and height
-  std::array<float, kFormCount> widths_{};
+  std::array<float, kProxyCount> widths_{};
   bool leafy_ = false, conical_ = false, trunk_ = false, slender_ = false, cheap_ = false;
 };
 

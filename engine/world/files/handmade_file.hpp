@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/models/registry.hpp"
-#include "engine/world/files/files_beside.hpp"
+#include "engine/world/files/resource_loader.hpp"
 #include "engine/world/files/table_reader.hpp"
 
 namespace psygen::world {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "engine/world/files/files_beside.hpp"
+#include "engine/world/files/resource_loader.hpp"
 #include "engine/world/files/table_reader.hpp"
 #include "engine/world/world.hpp"
 

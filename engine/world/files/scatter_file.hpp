@@ -2,7 +2,7 @@
 // Writing is in write_world.cpp. Format: docs/world-files.md.
 #pragma once
 
-#include "engine/world/files/files_beside.hpp"
+#include "engine/world/files/resource_loader.hpp"
 #include "engine/world/files/table_reader.hpp"
 #include "engine/world/world.hpp"
 

@@ -127,8 +127,8 @@ Sky usual_sky(TableReader& root) {
   const Member* member = root.table("sky");
   if (member == nullptr) return usual;
   SunPlace sun{usual.sun_azimuth_deg, usual.sun_elevation_deg};
-  Problems told_later("");
-  TableReader reader(member->value, "sky", member->line, told_later);
+  Problems deferred_problems("");
+  TableReader reader(member->value, "sky", member->line, deferred_problems);
   reader.read("sun_elevation_deg", sun.elevation_deg, {-90, 90});
   return with_sun(usual, sun);
 }
@@ -159,7 +159,7 @@ void register_species(TableReader& root, const World& world, const models::Regis
 
 core::Result<World> read_world(std::string_view text, std::string_view file_name,
                                const models::Registry& registry, models::Registry* grown,
-                               const FilesBeside* beside) {
+                               const ResourceLoader* beside) {
   const int terrain_model = registry.find("terrain");
   if (terrain_model < 0)
     return core::fail(core::ErrorCode::kInvalidArgument, "there is no model type named terrain");
@@ -202,7 +202,7 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
 }  // namespace
 
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
-                                models::Registry& registry, const FilesBeside* beside) {
+                                models::Registry& registry, const ResourceLoader* beside) {
   const std::size_t before = registry.size();
   auto world = read_world(text, file_name, registry, &registry, beside);
   if (!world) registry.shrink(before);
@@ -210,19 +210,19 @@ core::Result<World> parse_world(std::string_view text, std::string_view file_nam
 }
 
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
-                                const models::Registry& registry, const FilesBeside* beside) {
+                                const models::Registry& registry, const ResourceLoader* beside) {
   return read_world(text, file_name, registry, nullptr, beside);
 }
 
 core::Result<World> load_world(const std::filesystem::path& file, models::Registry& registry,
-                               const FilesBeside* beside) {
+                               const ResourceLoader* beside) {
   const core::Result<std::string> text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
   return parse_world(*text, file.string(), registry, beside);
 }
 
 core::Result<World> load_world(const std::filesystem::path& file, const models::Registry& registry,
-                               const FilesBeside* beside) {
+                               const ResourceLoader* beside) {
   const core::Result<std::string> text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
   return parse_world(*text, file.string(), registry, beside);

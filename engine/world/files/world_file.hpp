@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "engine/core/error.hpp"
-#include "engine/world/files/files_beside.hpp"
+#include "engine/world/files/resource_loader.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
@@ -20,18 +20,18 @@ namespace psygen::world {
 // has equal ones, and also the handmade models, which `beside` reads. Without `beside`, worlds with
 // such models are rejected. After an error the registry is unchanged.
 core::Result<World> load_world(const std::filesystem::path& file, models::Registry& registry,
-                               const FilesBeside* beside = nullptr);
+                               const ResourceLoader* beside = nullptr);
 
 // The same for a text in memory. `file_name` is for messages; its folder has the files that it
 // names.
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
-                                models::Registry& registry, const FilesBeside* beside = nullptr);
+                                models::Registry& registry, const ResourceLoader* beside = nullptr);
 // The same with a registry that cannot grow: worlds with models that it lacks are rejected.
 core::Result<World> load_world(const std::filesystem::path& file, const models::Registry& registry,
-                               const FilesBeside* beside = nullptr);
+                               const ResourceLoader* beside = nullptr);
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
                                 const models::Registry& registry,
-                                const FilesBeside* beside = nullptr);
+                                const ResourceLoader* beside = nullptr);
 
 // The text of a world file that parse_world() reads back as an equal world.
 std::string write_world(const World& world, const models::Registry& registry);

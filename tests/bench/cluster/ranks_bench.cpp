@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "engine/cluster/meeting.hpp"
-#include "engine/cluster/remote_models.hpp"
-#include "engine/cluster/serve_models.hpp"
+#include "engine/cluster/model_server.hpp"
+#include "engine/cluster/remote_modeler_pool.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/scene/frame/clock.hpp"
@@ -90,7 +90,7 @@ Filled fill(scene::Scene& scene) {
   }
 }
 
-int fly(world::World world, models::Registry registry, cluster::RemoteModels* remote) {
+int fly(world::World world, models::Registry registry, cluster::RemoteModelerPool* remote) {
   scene::SceneSettings settings;
   settings.modelers = 1;
   settings.view_distance_m = kView_m;
@@ -102,7 +102,7 @@ int fly(world::World world, models::Registry registry, cluster::RemoteModels* re
   }
   const Filled filled = fill(**scene);
   scene->reset();
-  const cluster::RemoteFigures figures = remote ? remote->figures() : cluster::RemoteFigures{};
+  const cluster::RemoteStats figures = remote ? remote->figures() : cluster::RemoteStats{};
   fmt::print(
       "{} ranks: {} meshes are there after {:.2f} s; other ranks made {} ({:.1f} MB); there and "
       "back {:.0f} µs, with 100 KB {:.0f} µs\n",
@@ -113,21 +113,21 @@ int fly(world::World world, models::Registry registry, cluster::RemoteModels* re
 }
 
 int run(bool waits, double seconds) {
-  const auto peers = cluster::is_rank() ? cluster::join_peers().value() : nullptr;
+  const auto peers = cluster::is_rank() ? cluster::join_communicator().value() : nullptr;
   models::Registry registry = models::make_standard_registry();
   const bool is_first = !peers || peers->rank() == 0;
   (void)registry.add(std::make_unique<SlowType>(seconds, waits && !is_first));
   world::World world = world::parse_world(kWorld, "slow.toml", registry).value();
   if (!peers) return fly(std::move(world), std::move(registry), nullptr);
-  const cluster::FlightKey key = cluster::flight_key(world, registry, "bench");
+  const cluster::CompatibilityKey key = cluster::compatibility_key(world, registry, "bench");
   const auto threads = cluster::meet(key, 1, *peers).value();
   int code = EXIT_SUCCESS;
   if (is_first) {
-    const auto remote = cluster::RemoteModels::start(key, threads, *peers).value();
+    const auto remote = cluster::RemoteModelerPool::start(key, threads, *peers).value();
     code = fly(std::move(world), std::move(registry), remote.get());
     if (!remote->end()) peers->abort();
   } else {
-    (void)cluster::serve_models(registry, 1, *peers);
+    (void)cluster::run_model_server(registry, 1, *peers);
   }
   peers->finish();
   return code;

@@ -84,7 +84,7 @@ BENCHMARK(ray_over_a_kilometre<true>)
 void models_within_30_metres(benchmark::State& state) {
   const Loaded loaded(state.range(0));
   World query(loaded.world, loaded.registry);
-  std::vector<NearModel> found;
+  std::vector<NearbyModel> found;
   double count = 0;
   std::vector<core::WorldPosition> places;
   for (std::int64_t i = 0; i < kPlaces; ++i)
@@ -128,7 +128,7 @@ struct Crowd {
                                     std::fmod(i * 0.754878, 1.0) * side_m}}};
       pose.position.local.y = query.ground(pose.position)->height_m + 1 + i % 3;
       poses.push_back(pose);
-      ids.push_back(*objects.add(static_cast<ObjectName>(i + 1), shape, pose));
+      ids.push_back(*objects.add(static_cast<ObjectTag>(i + 1), shape, pose));
     }
     query.meet(&objects);
   }
@@ -169,7 +169,7 @@ void objects_move(benchmark::State& state) {
       if (way_m != 0) pose.rotation.y += 0.01;
       benchmark::DoNotOptimize(crowd.objects.move(crowd.ids[i], pose));
     }
-    crowd.objects.remove_untold();
+    crowd.objects.remove_stale();
   }
 }
 BENCHMARK(objects_move)->ArgName("moving")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);

@@ -139,13 +139,13 @@ void BM_sheets(benchmark::State& state) {
 }
 
 // A crown of leaves: two thirds of a disc over a trunk.
-core::ModelPicture leafy_picture() {
-  core::ModelPicture picture(core::picture_bytes());
+core::ImpostorTexture leafy_picture() {
+  core::ImpostorTexture picture(core::impostor_bytes());
   std::uint32_t random = 1;
   std::size_t at = 0;
-  for (std::uint32_t level = 0; level < core::kPictureLevels; ++level) {
-    const std::size_t side = core::kPictureSide >> level;
-    for (std::size_t i = 0; i < core::kPictureViews * side * side; ++i, at += 4) {
+  for (std::uint32_t level = 0; level < core::kImpostorLevels; ++level) {
+    const std::size_t side = core::kImpostorSide >> level;
+    for (std::size_t i = 0; i < core::kImpostorViews * side * side; ++i, at += 4) {
       random = random * 1664525 + 1013904223;
       const double x = (static_cast<double>(i % side) + 0.5) / static_cast<double>(side) - 0.5;
       const double y =
@@ -177,7 +177,7 @@ core::Result<core::GeometryRange> make_row(core::GeometryMemory& memory, std::ui
     v.colour[1] = right ? 255 : 0;
     v.colour[2] = top ? 0 : 255;
     v.material =
-        static_cast<std::uint8_t>(core::kBillboardBit | 1 | (pictured ? core::kPictureBit : 0));
+        static_cast<std::uint8_t>(core::kBillboardBit | 1 | (pictured ? core::kImpostorBit : 0));
   }
   for (std::size_t i = 0; i < std::size_t{6} * trees; ++i)
     reserved->indices[i] = static_cast<std::uint16_t>(4 * (i / 6) + kQuad[i % 6]);
@@ -191,7 +191,7 @@ core::Result<core::GeometryRange> make_row(core::GeometryMemory& memory, std::ui
 // is CPU time beyond a frame without trees, a median over pairs of frames.
 void BM_trees(benchmark::State& state) {
   const auto renderer = make_renderer(submission_of(state));
-  const core::ModelPicture picture = leafy_picture();
+  const core::ImpostorTexture picture = leafy_picture();
   if (!renderer->set_model_pictures({&picture, 1})) return state.SkipWithError("no pictures");
   constexpr std::uint32_t kRow = 64, kRows = 60;
   constexpr float kNear_m = 60, kPixelsPerRadian = 623;

@@ -7,7 +7,7 @@
 
 #include "engine/models/model_type.hpp"
 #include "engine/world/far/merged_models.hpp"
-#include "engine/world/far/tree_pictures.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "tests/bench/synthesis/per_target.hpp"
 #include "tests/source_file.hpp"
@@ -25,7 +25,7 @@ void vegetation(benchmark::State& state) {
   if (!loaded) return state.SkipWithError(loaded.error().message.c_str());
   const auto world = std::make_shared<const World>(*std::move(loaded));
   const auto type =
-      make_merged_type(world, registry, std::make_shared<const PictureSet>(*world, registry));
+      make_merged_type(world, registry, std::make_shared<const ImpostorSet>(*world, registry));
   const int level = static_cast<int>(state.range(1));
   const int detail = static_cast<int>(state.range(2));
   const models::MeshSize size = type->mesh_size(merged_parameters({0, 0}, level), detail);
@@ -56,14 +56,14 @@ void pictures(benchmark::State& state) {
   const std::string file = source_file("game/worlds/") + kFiles[state.range(0)] + ".toml";
   const auto world = load_world(file, registry);
   if (!world) return state.SkipWithError(world.error().message.c_str());
-  const PictureSet set(*world, registry);
+  const ImpostorSet set(*world, registry);
   for (auto _ : state) {
     for (std::size_t i = 0; i < set.count(); ++i)
       benchmark::DoNotOptimize(state.range(1) == 0 ? set.bake(i) : set.stand_in(i));
   }
   state.SetLabel(kFiles[state.range(0)]);
   state.counters["pictures"] = static_cast<double>(set.count());
-  state.counters["MiB"] = static_cast<double>(set.count() * core::picture_bytes()) / (1 << 20);
+  state.counters["MiB"] = static_cast<double>(set.count() * core::impostor_bytes()) / (1 << 20);
 }
 BENCHMARK(pictures)
     ->ArgsProduct({{0, 1, 2}, {0, 1}})

@@ -68,7 +68,7 @@ TEST(PictureService, SeesUnsavedPaintedImages) {
     mask->width = mask->height = 4;
     mask->pixels.assign(16, grey);
     mask->hash = world::content_hash(*mask);
-    auto pictures = std::make_shared<handmade::MemoryPictures>();
+    auto pictures = std::make_shared<handmade::InMemoryImages>();
     pictures->in_place["not_written.png"] = mask;
     s.service.set_pictures([pictures] { return pictures; });
     const PictureReply reply = s.answer(request);

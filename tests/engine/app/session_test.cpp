@@ -158,7 +158,7 @@ TEST(Session, BeginsEveryFixedStepWithItsActionsAndReplaysThem) {
     auto session = Session::create(options);
     EXPECT_TRUE(session) << session.error().message;
     input::Actions& actions = (*session)->actions();
-    EXPECT_TRUE(actions.add("look", {{input::MouseWay::kRight, 0.5F}}));
+    EXPECT_TRUE(actions.add("look", {{input::MouseDirection::kRight, 0.5F}}));
     if (recorded != nullptr) {
       auto replay = input::Replay::create(*recorded, actions, 1.0 / 60);
       EXPECT_TRUE(replay) << replay.error().message;
@@ -198,7 +198,7 @@ TEST(Session, TakesItsActionsFromTheUserAgainOneStepAfterTheEndOfAReplay) {
   ASSERT_TRUE(session) << session.error().message;
   EXPECT_FALSE((*session)->replays());
   input::Actions& actions = (*session)->actions();
-  ASSERT_TRUE(actions.add("look", {{input::MouseWay::kRight}}));
+  ASSERT_TRUE(actions.add("look", {{input::MouseDirection::kRight}}));
   input::Recording recording(actions, 1.0 / 60);
   for (const float value : {0.25F, 0.5F})
     ASSERT_TRUE(recording.add(std::vector<input::ActionState>{{value}}));

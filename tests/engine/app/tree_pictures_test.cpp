@@ -1,10 +1,9 @@
 // The renderer receives the impostors of trees before the first frame, and draws without them if it
 // lacks memory for them.
-#include "engine/world/far/tree_pictures.hpp"
-
 #include <algorithm>
 
 #include "engine/scene/state.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {
@@ -36,7 +35,7 @@ TEST(PicturesOfTrees, AreUploadedBeforeTheFirstFrame) {
   const State& s = scene::state_of(*scene);
   ASSERT_TRUE(s.facts.pictures);
   EXPECT_EQ(s.meshes.pictures_lacking, (1U << s.facts.pictures->count()) - 1);
-  EXPECT_EQ(renderer->texture_bytes(), s.facts.pictures->count() * core::picture_bytes());
+  EXPECT_EQ(renderer->texture_bytes(), s.facts.pictures->count() * core::impostor_bytes());
   scene->settle(pose_at(256, 256));
   EXPECT_EQ(s.meshes.pictures_lacking, 0U);
   EXPECT_FALSE(s.output.error);

@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "engine/cluster/remote_models.hpp"
-#include "engine/cluster/serve_models.hpp"
+#include "engine/cluster/model_server.hpp"
+#include "engine/cluster/remote_modeler_pool.hpp"
 #include "engine/synthesis/content_hash.hpp"
 #include "engine/synthesis/synthesis_manager.hpp"
 #include "engine/synthesis/synthesise.hpp"
@@ -35,8 +35,8 @@ inline constexpr models::ModelIndex kBlocker = 0, kCheap = 1, kCostly = 2;
 inline constexpr unsigned kAnswerer = 1;  // a rank
 inline constexpr double kSendAbove_s = 1e-3;
 
-inline FlightKey key_of(const models::Registry& registry) {
-  FlightKey key{"0.1.0", "fake", 1, {}};
+inline CompatibilityKey key_of(const models::Registry& registry) {
+  CompatibilityKey key{"0.1.0", "fake", 1, {}};
   for (models::ModelIndex i = 0; i < registry.size(); ++i)
     key.types.push_back({std::string(registry[i].name()), 0, registry[i].level_count(), 1});
   return key;
@@ -82,7 +82,7 @@ struct Ranks {
 // Runs `fly` on rank 0 with its communicator; the others serve. Returns the statistics of the
 // others.
 inline std::vector<ServeReport> run(const Ranks& ranks,
-                                    const std::function<void(RemoteModels&)>& fly) {
+                                    const std::function<void(RemoteModelerPool&)>& fly) {
   std::vector<ServeReport> reports(ranks.count);
   ThreadsAsRanks all(ranks.count);
   all.on_send = ranks.on_send;
@@ -90,15 +90,15 @@ inline std::vector<ServeReport> run(const Ranks& ranks,
   const models::Registry there =
       registry_of([](const models::Parameters&, int) {}, ranks.costly_there);
   all.run([&](Peers& peers) {
-    const FlightKey key = key_of(here);
+    const CompatibilityKey key = key_of(here);
     const auto threads = meet(key, ranks.threads, peers);
     ASSERT_TRUE(threads.has_value());
     if (peers.rank() > 0) {
-      reports[peers.rank()] = serve_models(there, ranks.threads, peers).value();
+      reports[peers.rank()] = run_model_server(there, ranks.threads, peers).value();
       return;
     }
     const auto remote =
-        RemoteModels::start(key, *threads, peers, {.send_above_s = kSendAbove_s}).value();
+        RemoteModelerPool::start(key, *threads, peers, {.send_above_s = kSendAbove_s}).value();
     fly(*remote);
     EXPECT_TRUE(remote->end());
   });
@@ -107,7 +107,7 @@ inline std::vector<ServeReport> run(const Ranks& ranks,
   return reports;
 }
 
-inline SynthesisOptions options_with(RemoteModels& remote) {
+inline SynthesisOptions options_with(RemoteModelerPool& remote) {
   SynthesisOptions options;
   options.modelers = 1;
   options.hash_content = true;

@@ -14,7 +14,7 @@ const char* const kName = "rock";
 
 class CutShort : public ::testing::TestWithParam<Format> {
  protected:
-  CutShort() { EXPECT_TRUE(write_document(file(), GetParam(), {kName, {synthesised("rock", 0)}})); }
+  CutShort() { EXPECT_TRUE(write_scene(file(), GetParam(), {kName, {synthesised("rock", 0)}})); }
   std::filesystem::path file() const { return folder_ / "rock.file"; }
   bool is_short() const { return is_cut_short(file(), GetParam(), kName); }
 
@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, CutShort, ::testing::Values(Format::kGlb, Form
 TEST(CutShortObj, NeedsItsMaterials) {
   const TemporaryFolder folder;
   const auto obj = folder / "rock.obj", mtl = folder / "rock.mtl";
-  ASSERT_TRUE(write_document(obj, Format::kObj, {kName, {synthesised("rock", 0)}}));
+  ASSERT_TRUE(write_scene(obj, Format::kObj, {kName, {synthesised("rock", 0)}}));
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, kName));
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, "another"));
   std::ofstream(mtl, std::ios::app) << "Kd 1 0 0\n";  // an addition by the user
@@ -70,7 +70,7 @@ TEST(CutShortFile, UnreadableFilesAreNotCutShort) {
 TEST(CutShortGlb, AFileWithExtraBytesIsWhole) {
   const TemporaryFolder folder;
   const auto glb = folder / "rock.glb";
-  ASSERT_TRUE(write_document(glb, Format::kGlb, {kName, {synthesised("rock", 0)}}));
+  ASSERT_TRUE(write_scene(glb, Format::kGlb, {kName, {synthesised("rock", 0)}}));
   std::ofstream(glb, std::ios::binary | std::ios::app) << "more";
   EXPECT_FALSE(is_cut_short(glb, Format::kGlb, kName));
 }

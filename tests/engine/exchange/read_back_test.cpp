@@ -26,7 +26,7 @@ Document levels_of(const models::ModelType& type) {
 
 void expect_read_back(const Document& document, const TemporaryFolder& folder, Format format) {
   const auto file = folder / ("model." + std::string(name_of(format)));
-  ASSERT_TRUE(write_document(file, format, document));
+  ASSERT_TRUE(write_scene(file, format, document));
   const ReadBack back(file);
   ASSERT_NE(back.scene(), nullptr) << back.error();
   const Counts counts = counts_of(*back.scene());

@@ -21,7 +21,7 @@ Document grove() {
 TEST(WriteDocument, AGlbReadByAnotherLibraryHasTheSameCounts) {
   const TemporaryFolder folder;
   const Document document = grove();
-  ASSERT_TRUE(write_document(folder / "grove.glb", Format::kGlb, document));
+  ASSERT_TRUE(write_scene(folder / "grove.glb", Format::kGlb, document));
   EXPECT_EQ(folder.file_count(), 1u);
   const ReadBack back(folder / "grove.glb");
   ASSERT_NE(back.scene(), nullptr) << back.error();
@@ -37,7 +37,7 @@ TEST(WriteDocument, AGlbReadByAnotherLibraryHasTheSameCounts) {
 TEST(WriteDocument, AGlbKeepsPlacesNormalsAndColours) {
   const TemporaryFolder folder;
   const Document document{"rock", {synthesised("rock", 0)}};
-  ASSERT_TRUE(write_document(folder / "rock.glb", Format::kGlb, document));
+  ASSERT_TRUE(write_scene(folder / "rock.glb", Format::kGlb, document));
   const ReadBack back(folder / "rock.glb");
   ASSERT_NE(back.scene(), nullptr) << back.error();
   const aiMesh& mesh = *back.scene()->mMeshes[0];
@@ -59,7 +59,7 @@ TEST(WriteDocument, AGlbKeepsPlacesNormalsAndColours) {
 TEST(WriteDocument, AnObjReadByAnotherLibraryHasTheSameTrianglesPlacesAndMaterials) {
   const TemporaryFolder folder;
   const Document document = grove();
-  ASSERT_TRUE(write_document(folder / "grove.obj", Format::kObj, document));
+  ASSERT_TRUE(write_scene(folder / "grove.obj", Format::kObj, document));
   EXPECT_EQ(folder.file_count(), 2u);
   const ReadBack back(folder / "grove.obj");
   ASSERT_NE(back.scene(), nullptr) << back.error();
@@ -125,7 +125,7 @@ TEST(WriteDocument, MeshesBeyond16BitIndicesAreWrittenWhole) {
   for (std::uint32_t i = 0; i + 2 < 70'000; ++i)
     part.indices.insert(part.indices.end(), {i, i + 1, i + 2});
   const TemporaryFolder folder;
-  ASSERT_TRUE(write_document(folder / "a.glb", Format::kGlb, {"long", {{"long", {}, {part}}}}));
+  ASSERT_TRUE(write_scene(folder / "a.glb", Format::kGlb, {"long", {{"long", {}, {part}}}}));
   const ReadBack back(folder / "a.glb");
   ASSERT_NE(back.scene(), nullptr) << back.error();
   EXPECT_EQ(counts_of(*back.scene()).triangles, 69'998u);
@@ -134,7 +134,7 @@ TEST(WriteDocument, MeshesBeyond16BitIndicesAreWrittenWhole) {
 }
 
 TEST(WriteDocument, AFolderThatDoesNotExistIsNamed) {
-  const auto written = write_document("/nonexistent/a.glb", Format::kGlb, grove());
+  const auto written = write_scene("/nonexistent/a.glb", Format::kGlb, grove());
   ASSERT_FALSE(written);
   EXPECT_NE(written.error().message.find("/nonexistent/a.glb"), std::string::npos);
 }
@@ -143,19 +143,18 @@ TEST(WriteDocument, OnAFullDiskEachFileIsWholeOrMissing) {
   const Document document{"rock", {synthesised("rock", 0)}};
   for (const Format format : {Format::kGlb, Format::kObj}) {
     expect_whole_files([&](const auto& folder) {
-      return write_document(folder / (format == Format::kGlb ? "a.glb" : "a.obj"), format,
-                            document);
+      return write_scene(folder / (format == Format::kGlb ? "a.glb" : "a.obj"), format, document);
     });
   }
 }
 
 TEST(WriteDocument, AnObjThatDoesNotFitKeepsTheOldMaterials) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(write_document(folder / "a.obj", Format::kObj, {"rock", {synthesised("rock", 0)}}));
+  ASSERT_TRUE(write_scene(folder / "a.obj", Format::kObj, {"rock", {synthesised("rock", 0)}}));
   const FileContents before = contents_of(folder.path());
   constexpr std::size_t kFirstFile = 5;  // two files are made, one is written, flushed and closed
   const FullDisk full(folder.path(), kFirstFile);
-  EXPECT_FALSE(write_document(folder / "a.obj", Format::kObj, {"tree", {synthesised("tree", 0)}}));
+  EXPECT_FALSE(write_scene(folder / "a.obj", Format::kObj, {"tree", {synthesised("tree", 0)}}));
   EXPECT_EQ(contents_of(folder.path()), before);
 }
 

@@ -8,7 +8,7 @@
 
 #include "engine/core/read_file.hpp"
 #include "engine/image/image_io.hpp"
-#include "engine/world/far/tree_pictures.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/files/world_schema.hpp"
 #include "engine/world/placement.hpp"
@@ -270,14 +270,14 @@ TEST(HandmadeFiles, ShareOneImpostor) {
   World w;
   const auto world = w.read(std::string(kHead) + kBall + kScatter);
   ASSERT_TRUE(world.has_value());
-  const world::PictureSet pictures(*world, w.registry);
+  const world::ImpostorSet pictures(*world, w.registry);
   ASSERT_EQ(pictures.count(), 1U);
   const models::ModelIndex ball = 4;
   EXPECT_TRUE(pictures.has(ball));
   models::Parameters p = pictures.models()[0].parameters;
   const auto view_of = [&](double turn_deg) {
     p.set_real(1, turn_deg);
-    world::FormMesh quad;
+    world::ProxyMesh quad;
     pictures.make_quad(ball, p, nullptr, quad);
     EXPECT_EQ(quad.corners[2].sway, 0);
     return static_cast<int>(std::lround(quad.corners[0].colour.x * 255));

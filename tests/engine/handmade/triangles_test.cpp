@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/gltf/read_file.hpp"
-#include "engine/handmade/cut_out.hpp"
+#include "engine/handmade/alpha_cutout.hpp"
 #include "engine/handmade/texture_colours.hpp"
 #include "tests/engine/handmade/shapes.hpp"
 #include "tests/temporary_folder.hpp"
@@ -73,7 +73,7 @@ core::MeshData card() {
 
 TEST(CutOut, KeepsAreaAndFrontOfTheDrawnParts) {
   const image::Image leaves = leaf_picture();
-  const core::MeshData cut = cut_out(card(), leaves, 1, 0.5F, kMaxCutDepth);
+  const core::MeshData cut = alpha_cutout(card(), leaves, 1, 0.5F, kMaxCutDepth);
   EXPECT_NEAR(area_of(cut), share_drawn(leaves), 0.15 * share_drawn(leaves));
   ASSERT_TRUE(core::check(cut));
   double outside = 0;
@@ -98,16 +98,17 @@ TEST(CutOut, KeepsTheAreaOfDetailsFinerThanTheCuts) {
         needles.pixel(x, y)[3] = 255;
   const double drawn = share_drawn(needles);
   for (int depth = 1; depth <= kMaxCutDepth; ++depth)
-    EXPECT_NEAR(area_of(cut_out(card(), needles, 1, 0.5F, depth)), drawn, 0.35 * drawn) << depth;
+    EXPECT_NEAR(area_of(alpha_cutout(card(), needles, 1, 0.5F, depth)), drawn, 0.35 * drawn)
+        << depth;
 }
 
 TEST(CutOut, OfAUniformImageKeepsAllOrNothing) {
   const core::MeshData whole =
-      cut_out(card(), image::make_image(8, 8, 1, 2, 3, 255), 1, 0.5F, kMaxCutDepth);
+      alpha_cutout(card(), image::make_image(8, 8, 1, 2, 3, 255), 1, 0.5F, kMaxCutDepth);
   EXPECT_EQ(whole.indices.size(), 6U) << "no more triangles than it had";
   EXPECT_EQ(whole.positions.size(), 4U);
   const image::Image half = image::make_image(8, 8, 1, 2, 3, 128);
-  EXPECT_TRUE(cut_out(card(), half, 0.5F, 0.5F, kMaxCutDepth).indices.empty())
+  EXPECT_TRUE(alpha_cutout(card(), half, 0.5F, 0.5F, kMaxCutDepth).indices.empty())
       << "the material is half as opaque";
   EXPECT_EQ(cut_depth(100), kMaxCutDepth);
   EXPECT_EQ(cut_depth(1 << 20), 0);

@@ -75,7 +75,7 @@ TEST_F(ActionsOfAPerson, GetAnotherKeyAndKeepTheGamepadButton) {
 
 TEST_F(ActionsOfAPerson, KnowWhetherAGamepadWasUsedLast) {
   add("jump", {{Key::kSpace}, {PadButton::kA}});
-  add("look", {{MouseWay::kRight}, {PadWay::kRightStickRight}});
+  add("look", {{MouseDirection::kRight}, {PadAxisDirection::kRightStickRight}});
   EXPECT_FALSE(actions_.uses_pad());
   person_.set_button(PadButton::kA, true);
   frame();
@@ -169,8 +169,8 @@ TEST_F(ActionsOfAPerson, AreHeldByAnyOfTheirControls) {
 TEST_F(ActionsOfAPerson, AddUpControlsOfOppositeSignWithinOne) {
   const ActionId move = add("move_x", {{Key::kD, 1},
                                        {Key::kA, -1},
-                                       {PadWay::kLeftStickRight, 1, 0.2F},
-                                       {PadWay::kLeftStickLeft, -1, 0.2F}});
+                                       {PadAxisDirection::kLeftStickRight, 1, 0.2F},
+                                       {PadAxisDirection::kLeftStickLeft, -1, 0.2F}});
   person_.press(Key::kD);
   frame();
   EXPECT_EQ(step(move).value, 1);
@@ -186,7 +186,7 @@ TEST_F(ActionsOfAPerson, AddUpControlsOfOppositeSignWithinOne) {
 }
 
 TEST_F(ActionsOfAPerson, IgnoreADeadZoneAndReachOneAtTheEnd) {
-  const ActionId move = add("move", {{PadWay::kLeftStickUp, 1, 0.25F}});
+  const ActionId move = add("move", {{PadAxisDirection::kLeftStickUp, 1, 0.25F}});
   for (const auto& [axis, value] :
        {std::pair{0.0F, 0.0F}, {0.25F, 0.0F}, {0.625F, 0.5F}, {1.0F, 1.0F}, {-1.0F, 0.0F}}) {
     person_.set_axis(PadAxis::kLeftY, axis);
@@ -196,7 +196,7 @@ TEST_F(ActionsOfAPerson, IgnoreADeadZoneAndReachOneAtTheEnd) {
 }
 
 TEST_F(ActionsOfAPerson, PressAnAxisWithoutFlutterAtItsThreshold) {
-  const ActionId fire = add("fire", {{PadWay::kRightTrigger, 1, 0}});
+  const ActionId fire = add("fire", {{PadAxisDirection::kRightTrigger, 1, 0}});
   int pressed = 0;
   for (int i = 0; i < 100; ++i) {
     person_.set_axis(PadAxis::kRightTrigger, i % 2 == 0 ? 0.51F : 0.46F);
@@ -210,7 +210,8 @@ TEST_F(ActionsOfAPerson, PressAnAxisWithoutFlutterAtItsThreshold) {
 }
 
 TEST_F(ActionsOfAPerson, GetEveryBitOfMovementInExactlyOneStep) {
-  const ActionId look = add("look_x", {{MouseWay::kRight, 0.5F}, {MouseWay::kLeft, -0.5F}});
+  const ActionId look =
+      add("look_x", {{MouseDirection::kRight, 0.5F}, {MouseDirection::kLeft, -0.5F}});
   person_.move(10, 0);
   frame();
   person_.move(-4, 0);
@@ -221,7 +222,7 @@ TEST_F(ActionsOfAPerson, GetEveryBitOfMovementInExactlyOneStep) {
 }
 
 TEST_F(ActionsOfAPerson, ArePressedOnceForEachStepOfTheWheel) {
-  const ActionId next = add("next", {{WheelWay::kUp}});
+  const ActionId next = add("next", {{WheelDirection::kUp}});
   person_.roll(3);
   frame();
   EXPECT_EQ(step(next).value, 3);
@@ -251,7 +252,7 @@ TEST_F(ActionsOfAPerson, AreReleasedWhenTheirGamepadIsUnplugged) {
 }
 
 TEST_F(ActionsOfAPerson, ReadTheSelectedGamepadEvenIfAnotherIsMovedMore) {
-  const ActionId move = add("move", {{PadWay::kLeftStickRight, 1, 0}});
+  const ActionId move = add("move", {{PadAxisDirection::kLeftStickRight, 1, 0}});
   const ActionId jump = add("jump", {{PadButton::kA}});
   person_.set_axis(PadAxis::kLeftX, 1);
   person_.set_button(PadButton::kA, true);

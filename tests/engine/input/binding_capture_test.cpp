@@ -21,11 +21,11 @@ TEST(BindingCapture, TakesTheNextControlOfEveryKind) {
   EXPECT_EQ(captured([](Person& p) { p.tap(Key::kF5); }), Control(Key::kF5));
   EXPECT_EQ(captured([](Person& p) { p.press(platform::MouseButton::k5); }),
             Control(platform::MouseButton::k5));
-  EXPECT_EQ(captured([](Person& p) { p.roll(-1); }), Control(WheelWay::kDown));
+  EXPECT_EQ(captured([](Person& p) { p.roll(-1); }), Control(WheelDirection::kDown));
   EXPECT_EQ(captured([](Person& p) { p.set_button(platform::PadButton::kStart, true); }),
             Control(platform::PadButton::kStart));
   EXPECT_EQ(captured([](Person& p) { p.set_axis(platform::PadAxis::kRightY, -0.9F); }),
-            Control(PadWay::kRightStickDown));
+            Control(PadAxisDirection::kRightStickDown));
 }
 
 TEST(BindingCapture, DistinguishesShiftsAndIgnoresMouseMovement) {
@@ -46,7 +46,7 @@ TEST(BindingCapture, WaitsUntilHeldControlsAreReleased) {
   person.set_axis(platform::PadAxis::kLeftTrigger, 0.0F);
   EXPECT_EQ(capture.update(person.frame()), std::nullopt);
   person.set_axis(platform::PadAxis::kLeftTrigger, 0.9F);
-  EXPECT_EQ(capture.update(person.frame()), Control(PadWay::kLeftTrigger));
+  EXPECT_EQ(capture.update(person.frame()), Control(PadAxisDirection::kLeftTrigger));
 }
 
 }  // namespace

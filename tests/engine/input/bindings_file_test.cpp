@@ -19,9 +19,9 @@ Actions game() {
   EXPECT_TRUE(actions.add("jump", {{Key::kSpace}, {platform::PadButton::kA}}));
   EXPECT_TRUE(actions.add("move_x", {{Key::kD},
                                      {Key::kA, -1},
-                                     {PadWay::kLeftStickRight, 1, 0.25F},
-                                     {PadWay::kLeftStickLeft, -1, 0.25F}}));
-  EXPECT_TRUE(actions.add("look_x", {{MouseWay::kRight, 0.1F}}));
+                                     {PadAxisDirection::kLeftStickRight, 1, 0.25F},
+                                     {PadAxisDirection::kLeftStickLeft, -1, 0.25F}}));
+  EXPECT_TRUE(actions.add("look_x", {{MouseDirection::kRight, 0.1F}}));
   return actions;
 }
 
@@ -36,7 +36,7 @@ TEST(BindingsFile, SavedBindingsLoadEqual) {
   const TemporaryFolder folder;
   Actions saved = game();
   ASSERT_TRUE(saved.set_bindings(0, {}));
-  ASSERT_TRUE(saved.set_bindings(2, {{WheelWay::kUp, -0.3F}}));
+  ASSERT_TRUE(saved.set_bindings(2, {{WheelDirection::kUp, -0.3F}}));
   const auto file = folder.path() / "bindings.toml";
   ASSERT_TRUE(save_bindings(saved, file));
   Actions loaded = game();

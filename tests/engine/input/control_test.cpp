@@ -39,9 +39,9 @@ TEST(Control, HalvesOfAnAxisAreSeparateControls) {
   person.set_axis(PadAxis::kLeftY, -0.75F);
   person.set_axis(PadAxis::kRightTrigger, 0.5F);
   const platform::InputState input = person.frame();
-  EXPECT_EQ(read(PadWay::kLeftStickDown, input).value, 0.75);
-  EXPECT_EQ(read(PadWay::kLeftStickUp, input).value, 0);
-  EXPECT_EQ(read(PadWay::kRightTrigger, input).value, 0.5);
+  EXPECT_EQ(read(PadAxisDirection::kLeftStickDown, input).value, 0.75);
+  EXPECT_EQ(read(PadAxisDirection::kLeftStickUp, input).value, 0);
+  EXPECT_EQ(read(PadAxisDirection::kRightTrigger, input).value, 0.5);
 }
 
 TEST(Control, WheelAndMouseMoveInOneDirectionAtATime) {
@@ -49,10 +49,10 @@ TEST(Control, WheelAndMouseMoveInOneDirectionAtATime) {
   person.roll(-2);
   person.move(5, -3);
   const platform::InputState input = person.frame();
-  EXPECT_EQ(read(WheelWay::kDown, input).value, 2);
-  EXPECT_EQ(read(WheelWay::kUp, input).value, 0);
-  EXPECT_EQ(read(MouseWay::kRight, input).value, 5);
-  EXPECT_EQ(read(MouseWay::kUp, input).value, 3);
+  EXPECT_EQ(read(WheelDirection::kDown, input).value, 2);
+  EXPECT_EQ(read(WheelDirection::kUp, input).value, 0);
+  EXPECT_EQ(read(MouseDirection::kRight, input).value, 5);
+  EXPECT_EQ(read(MouseDirection::kUp, input).value, 3);
 }
 
 TEST(Control, TheStrongestGamepadCountsUnlessOneIsChosen) {
@@ -60,8 +60,8 @@ TEST(Control, TheStrongestGamepadCountsUnlessOneIsChosen) {
   input.pads[0].axes[0] = 0.25F;
   input.pads[5].axes[0] = 0.75F;
   input.pads[5].held.set(0);
-  EXPECT_EQ(read(PadWay::kLeftStickRight, input).value, 0.75);
-  EXPECT_EQ(read(PadWay::kLeftStickRight, input, 0).value, 0.25);
+  EXPECT_EQ(read(PadAxisDirection::kLeftStickRight, input).value, 0.75);
+  EXPECT_EQ(read(PadAxisDirection::kLeftStickRight, input, 0).value, 0.25);
   EXPECT_EQ(read(PadButton::kA, input).value, 1);
   EXPECT_EQ(read(PadButton::kA, input, 0).value, 0);
 }
@@ -71,10 +71,10 @@ TEST(Control, IsNeverNotANumber) {
   input.wheel = std::numeric_limits<double>::quiet_NaN();
   input.move_px = {std::numeric_limits<double>::infinity(), 1e300};
   input.pads[0].axes[0] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(read(WheelWay::kUp, input).value, 0);
-  EXPECT_EQ(read(MouseWay::kRight, input).value, 0);
-  EXPECT_EQ(read(MouseWay::kDown, input).value, 1e6);
-  EXPECT_EQ(read(PadWay::kLeftStickRight, input).value, 0);
+  EXPECT_EQ(read(WheelDirection::kUp, input).value, 0);
+  EXPECT_EQ(read(MouseDirection::kRight, input).value, 0);
+  EXPECT_EQ(read(MouseDirection::kDown, input).value, 1e6);
+  EXPECT_EQ(read(PadAxisDirection::kLeftStickRight, input).value, 0);
 }
 
 }  // namespace

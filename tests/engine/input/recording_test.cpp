@@ -23,8 +23,9 @@ constexpr double kStepS = 1.0 / 60;
 Actions recording_actions() {
   Actions actions;
   EXPECT_TRUE(actions.add("jump", {{Key::kSpace}}));
-  EXPECT_TRUE(actions.add("move_x", {{Key::kD}, {PadWay::kLeftStickLeft, -1}}));
-  EXPECT_TRUE(actions.add("look_x", {{MouseWay::kRight, 0.3F}, {MouseWay::kLeft, -0.3F}}));
+  EXPECT_TRUE(actions.add("move_x", {{Key::kD}, {PadAxisDirection::kLeftStickLeft, -1}}));
+  EXPECT_TRUE(
+      actions.add("look_x", {{MouseDirection::kRight, 0.3F}, {MouseDirection::kLeft, -0.3F}}));
   return actions;
 }
 

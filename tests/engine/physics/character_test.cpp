@@ -290,7 +290,7 @@ TEST(Character, RejectsIllegalValues) {
   EXPECT_TRUE(refused([](CharacterSettings& s) { s.walk_speed = kNan; }));
   EXPECT_TRUE(refused([](CharacterSettings& s) { s.jump_speed = -1; }));
   EXPECT_TRUE(refused([](CharacterSettings& s) { s.step_height_m = 99; }));
-  EXPECT_TRUE(refused([](CharacterSettings& s) { s.steepest_deg = 90; }));
+  EXPECT_TRUE(refused([](CharacterSettings& s) { s.max_slope_deg = 90; }));
   EXPECT_TRUE(refused([](CharacterSettings& s) { s.mass_kg = 0; }));
   const auto id = scene.physics.add(sound);
   ASSERT_TRUE(id);

@@ -14,7 +14,7 @@ using testing::Scene;
 // A world with objects, and platforms whose top is at a given height above the ground.
 struct Platforms : Scene {
   query::Objects objects;
-  query::ObjectName last_name = 0;
+  query::ObjectTag last_name = 0;
 
   Platforms() : Scene(Loaded::shipped("paper")), objects(loaded.world) { query.meet(&objects); }
   core::WorldPosition place(double height_m, double x = 30, double z = 30) {

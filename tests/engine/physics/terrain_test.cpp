@@ -57,10 +57,10 @@ TEST(PhysicsTerrain, ModelsAreThoseThatRaysHit) {
   Terrain terrain(bare.bullet, query);
   terrain.set_origin({7, 9});
   terrain.need({0, 0}, {63, 63}, 1);
-  std::vector<query::NearModel> near;
+  std::vector<query::NearbyModel> near;
   ASSERT_TRUE(query.models_within({{7, 9}, {31, 100, 31}}, 130, near));
   int hits = 0;
-  for (const query::NearModel& m : near) {
+  for (const query::NearbyModel& m : near) {
     if (!(m.block == core::BlockCoord{7, 9})) continue;
     const btVector3 foot = terrain.coordinates(m.position), up(0, 20, 0);
     const double hit = bare.cast(foot + up, foot, kModels);

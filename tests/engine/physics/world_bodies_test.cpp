@@ -93,7 +93,7 @@ TEST(PhysicsBodies, AreStoppedByTrunks) {
   Scene scene(Loaded::shipped("paper"));
   const models::ModelIndex tree[] = {
       static_cast<models::ModelIndex>(scene.loaded.registry.find("tree"))};
-  std::vector<query::NearModel> trees;
+  std::vector<query::NearbyModel> trees;
   ASSERT_TRUE(scene.query.models_within(scene.above({50, 50}, 30, 30, 0), 150, trees, tree));
   ASSERT_GE(trees.size(), 20U);
   int stopped = 0, thrown = 0;

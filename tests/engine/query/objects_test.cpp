@@ -44,7 +44,7 @@ struct Scene {
   Loaded loaded;
   World query;
   Objects objects;
-  ObjectName last_name = 0;
+  ObjectTag last_name = 0;
 
   explicit Scene(Loaded from = Loaded::shipped("paper"))
       : loaded(std::move(from)), query(loaded.world, loaded.registry), objects(loaded.world) {
@@ -226,9 +226,9 @@ TEST(Objects, ThatAreNotSetAgainAreRemoved) {
   const ObjectPose pose{.position = scene.sky(20)};
   const ObjectId kept = scene.put(box({1, 1, 1}), pose);
   scene.put(box({1, 1, 1}), pose);
-  EXPECT_EQ(scene.objects.remove_untold(), 0u);
+  EXPECT_EQ(scene.objects.remove_stale(), 0u);
   ASSERT_TRUE(scene.objects.move(kept, pose));
-  EXPECT_EQ(scene.objects.remove_untold(), 1u);
+  EXPECT_EQ(scene.objects.remove_stale(), 1u);
   EXPECT_NE(scene.objects.find(kept), nullptr);
   EXPECT_EQ(scene.objects.size(), 1u);
 }

@@ -136,7 +136,7 @@ TEST(QueryWorld, RejectsPositionsDirectionsAndSizesThatAreNotFinite) {
   const Loaded loaded = Loaded::parsed(kBounded);
   World query(loaded.world, loaded.registry);
   const core::WorldPosition sound{{1, 1}, {5, 80, 5}};
-  std::vector<NearModel> out;
+  std::vector<NearbyModel> out;
   for (const double bad : {kNoNumber, kInfinity, -kInfinity, 1e300}) {
     for (int axis = 0; axis < 3; ++axis) {
       core::WorldPosition at = sound;
@@ -387,13 +387,13 @@ TEST(QueryWorld, RaysHitTheFirstOfAllModels) {
 TEST(QueryWorld, ARayHitsTheNearestOfGroundAndModels) {
   const Loaded loaded = Loaded::shipped("paper");
   World query(loaded.world, loaded.registry);
-  std::vector<NearModel> rocks;
+  std::vector<NearbyModel> rocks;
   const models::ModelIndex rock[] = {static_cast<models::ModelIndex>(loaded.registry.find("rock"))};
   ASSERT_TRUE(query.models_within({{100, 100}, {30, 100, 30}}, 300, rocks, rock));
   ASSERT_GT(rocks.size(), 20U);
   const double long_m = 400;
   int ground_before_model = 0, model_before_ground = 0;
-  for (const NearModel& m : rocks) {
+  for (const NearbyModel& m : rocks) {
     for (const glm::dvec3 from : {glm::dvec3{0, 50, 0}, {0, -50, 0}, {200, 10, 0}, {0, 10, 200}}) {
       Ray ray{.origin = m.position, .direction = -from, .longest_m = long_m};
       ray.origin.local += from;
@@ -421,7 +421,7 @@ TEST(QueryWorld, ModelsWithinARadiusAreCompleteAndNearestFirst) {
     World query(loaded.world, loaded.registry);
     const core::BlockCoord block = some_block(loaded.world);
     const core::WorldPosition at{block, {2, 100, 60}};
-    std::vector<NearModel> found;
+    std::vector<NearbyModel> found;
     ASSERT_TRUE(query.models_within(at, 90, found));
     std::size_t expected = 0;
     const double size = loaded.world.block_size_m();
@@ -438,7 +438,7 @@ TEST(QueryWorld, ModelsWithinARadiusAreCompleteAndNearestFirst) {
     EXPECT_EQ(found.size(), expected) << name;
     for (std::size_t i = 1; i < found.size(); ++i)
       ASSERT_LE(found[i - 1].distance_m, found[i].distance_m);
-    for (const NearModel& m : found) {
+    for (const NearbyModel& m : found) {
       const auto placement = query.placement(m.block, m.index);
       ASSERT_TRUE(placement);
       ASSERT_EQ(glm::dvec3(placement->position), m.position.local);
@@ -448,7 +448,7 @@ TEST(QueryWorld, ModelsWithinARadiusAreCompleteAndNearestFirst) {
       const models::ModelIndex only[] = {model};
       const auto nearest = query.nearest(at, 90, only);
       ASSERT_TRUE(nearest);
-      const auto first = std::ranges::find(found, model, &NearModel::model);
+      const auto first = std::ranges::find(found, model, &NearbyModel::model);
       ASSERT_EQ(nearest->has_value(), first != found.end());
       if (*nearest) {
         EXPECT_EQ((*nearest)->block, first->block);
@@ -463,7 +463,7 @@ TEST(QueryWorld, ARadiusOfZeroFindsModelsAtExactlyThisPoint) {
   World query(loaded.world, loaded.registry);
   const auto any = query.nearest({{3, 2}, {30, 30, 30}}, 500);
   ASSERT_TRUE(any && *any);
-  std::vector<NearModel> found;
+  std::vector<NearbyModel> found;
   ASSERT_TRUE(query.models_within((*any)->position, 0, found));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].index, (*any)->index);

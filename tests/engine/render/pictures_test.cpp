@@ -19,12 +19,12 @@ constexpr std::array<std::array<std::uint8_t, 3>, 3> kColours{
     {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}}};
 
 // The upper half is transparent. View k has the colour k % 3 of kColours.
-core::ModelPicture striped_picture() {
-  core::ModelPicture picture(core::picture_bytes());
+core::ImpostorTexture striped_picture() {
+  core::ImpostorTexture picture(core::impostor_bytes());
   std::size_t at = 0;
-  for (std::uint32_t level = 0; level < core::kPictureLevels; ++level) {
-    const std::size_t side = core::kPictureSide >> level;
-    for (std::uint32_t view = 0; view < core::kPictureViews; ++view) {
+  for (std::uint32_t level = 0; level < core::kImpostorLevels; ++level) {
+    const std::size_t side = core::kImpostorSide >> level;
+    for (std::uint32_t view = 0; view < core::kImpostorViews; ++view) {
       for (std::size_t texel = 0; texel < side * side; ++texel, at += 4) {
         for (std::size_t c = 0; c < 3; ++c)
           picture[at + c] = kColours[view % 3][c];
@@ -50,7 +50,7 @@ core::Result<core::GeometryRange> make_quad(core::GeometryMemory& memory, int nu
     v.colour[0] = static_cast<std::uint8_t>(number * 8 + turn);
     v.colour[1] = right ? 255 : 0;
     v.colour[2] = top ? 0 : 255;
-    v.material = core::kBillboardBit | core::kPictureBit | 1;
+    v.material = core::kBillboardBit | core::kImpostorBit | 1;
   }
   const std::array<std::uint16_t, 6> indices{0, 1, 2, 0, 2, 3};
   std::memcpy(reserved->vertices.data(), vertices.data(), sizeof vertices);
@@ -73,7 +73,7 @@ class Pictures : public OnAPath {
   void SetUp() override {
     OnAPath::SetUp();
     if (!renderer_) return;
-    const std::array all{core::ModelPicture(core::picture_bytes()), striped_picture()};
+    const std::array all{core::ImpostorTexture(core::impostor_bytes()), striped_picture()};
     ASSERT_TRUE(renderer_->set_model_pictures(all));
   }
   MeshDraw quad(int number, int turn) {
@@ -171,7 +171,7 @@ TEST_P(Pictures, LeaveOutTransparentPixels) {
 }
 
 TEST_P(Pictures, CanBeReplaced) {
-  core::ModelPicture blue(core::picture_bytes());
+  core::ImpostorTexture blue(core::impostor_bytes());
   for (std::size_t i = 0; i < blue.size(); i += 4)
     blue[i + 2] = blue[i + 3] = 255;
   ASSERT_TRUE(renderer_->set_model_picture(0, blue));
@@ -209,9 +209,9 @@ TEST_P(Pictures, FadeLikeOtherMeshes) {
 
 TEST_P(Pictures, AreAllReplacedByOthersMoreOrFewer) {
   for (const std::size_t count : {5U, 1U, 0U, 2U}) {
-    const std::vector<core::ModelPicture> all(count, striped_picture());
+    const std::vector<core::ImpostorTexture> all(count, striped_picture());
     ASSERT_TRUE(renderer_->set_model_pictures(all));
-    EXPECT_EQ(renderer_->texture_bytes(), count * core::picture_bytes());
+    EXPECT_EQ(renderer_->texture_bytes(), count * core::impostor_bytes());
     if (count == 0) continue;
     EXPECT_GT(seen(quad(static_cast<int>(count) - 1, 0), 0).sum(), 250);
   }
@@ -224,15 +224,15 @@ TEST_P(Pictures, StayWithAnotherPreset) {
 }
 
 TEST_P(Pictures, RefusedOnesLeaveTheOthers) {
-  const std::vector<core::ModelPicture> many(core::kMaxPictures + 1,
-                                             core::ModelPicture(core::picture_bytes()));
+  const std::vector<core::ImpostorTexture> many(core::kMaxImpostors + 1,
+                                                core::ImpostorTexture(core::impostor_bytes()));
   const auto refused = renderer_->set_model_pictures(many);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, core::ErrorCode::kOverBudget);
-  const std::vector<core::ModelPicture> cut(1, core::ModelPicture(7));
+  const std::vector<core::ImpostorTexture> cut(1, core::ImpostorTexture(7));
   EXPECT_FALSE(renderer_->set_model_pictures(cut));
   EXPECT_FALSE(renderer_->set_model_picture(2, striped_picture()));
-  EXPECT_FALSE(renderer_->set_model_picture(0, core::ModelPicture(7)));
+  EXPECT_FALSE(renderer_->set_model_picture(0, core::ImpostorTexture(7)));
   EXPECT_GT(seen(quad(1, 0), 0).sum(), 250);
 }
 

@@ -32,11 +32,11 @@ TEST(CostCorrection, ColdCachesAddTimeWithoutChangingWarmPredictions) {
   for (int i = 0; i < 200; ++i) {
     correction.observe(2e-6, Warmth::kWarm, 2e-6, shared);
     correction.observe(2e-6, Warmth::kCold, 6e-6, shared);
-    correction.observe(2e-6, Warmth::kWoken, 20e-6, shared);
+    correction.observe(2e-6, Warmth::kAfterSleep, 20e-6, shared);
   }
   EXPECT_NEAR(correction.seconds(2e-6, Warmth::kWarm, shared), 2e-6, 1e-9);
   EXPECT_NEAR(correction.seconds(2e-6, Warmth::kCold, shared), 6e-6, 0.5e-6);
-  EXPECT_NEAR(correction.seconds(2e-6, Warmth::kWoken, shared), 20e-6, 1e-6);
+  EXPECT_NEAR(correction.seconds(2e-6, Warmth::kAfterSleep, shared), 20e-6, 1e-6);
   EXPECT_NEAR(correction.seconds(9e-6, Warmth::kCold, shared), 13e-6, 0.5e-6) << "added";
 }
 
@@ -46,21 +46,21 @@ TEST(CostCorrection, AGuessThatIsFarTooHighIsCorrectedWithoutWarmRequests) {
   CostCorrection correction;
   ColdSeconds shared;
   for (int i = 0; i < 10; ++i)
-    correction.observe(100e-3, Warmth::kWoken, 90e-6, shared);
-  EXPECT_LT(correction.seconds(100e-3, Warmth::kWoken, shared), 300e-6);
+    correction.observe(100e-3, Warmth::kAfterSleep, 90e-6, shared);
+  EXPECT_LT(correction.seconds(100e-3, Warmth::kAfterSleep, shared), 300e-6);
   for (int i = 0; i < 100; ++i)
-    correction.observe(100e-3, Warmth::kWoken, 90e-6, shared);
-  EXPECT_NEAR(correction.seconds(100e-3, Warmth::kWoken, shared), 90e-6, 9e-6);
+    correction.observe(100e-3, Warmth::kAfterSleep, 90e-6, shared);
+  EXPECT_NEAR(correction.seconds(100e-3, Warmth::kAfterSleep, shared), 90e-6, 9e-6);
 }
 
 TEST(CostCorrection, TheSlowFirstRequestOfAThreadIsSoonForgotten) {
   CostCorrection correction;
   ColdSeconds shared;
-  correction.observe(2e-6, Warmth::kWoken, 5e-3, shared);
-  EXPECT_LT(correction.seconds(2e-6, Warmth::kWoken, shared), 25e-6);
+  correction.observe(2e-6, Warmth::kAfterSleep, 5e-3, shared);
+  EXPECT_LT(correction.seconds(2e-6, Warmth::kAfterSleep, shared), 25e-6);
   for (int i = 0; i < 10; ++i)
-    correction.observe(2e-6, Warmth::kWoken, 8e-6, shared);
-  EXPECT_NEAR(correction.seconds(2e-6, Warmth::kWoken, shared), 8e-6, 4e-6);
+    correction.observe(2e-6, Warmth::kAfterSleep, 8e-6, shared);
+  EXPECT_NEAR(correction.seconds(2e-6, Warmth::kAfterSleep, shared), 8e-6, 4e-6);
 }
 
 TEST(CostCorrection, ALevelWithoutColdRequestsBorrowsFromOthersWithTheSameCode) {
@@ -69,7 +69,7 @@ TEST(CostCorrection, ALevelWithoutColdRequestsBorrowsFromOthersWithTheSameCode) 
   for (int i = 0; i < 50; ++i)
     known.observe(2e-6, Warmth::kCold, 7e-6, shared);
   EXPECT_NEAR(unknown.seconds(1e-6, Warmth::kCold, shared), 6e-6, 0.5e-6);
-  EXPECT_EQ(unknown.seconds(1e-6, Warmth::kWoken, shared), 1e-6) << "no observation yet";
+  EXPECT_EQ(unknown.seconds(1e-6, Warmth::kAfterSleep, shared), 1e-6) << "no observation yet";
   for (int i = 0; i < 50; ++i)
     unknown.observe(1e-6, Warmth::kCold, 2e-6, shared);
   EXPECT_NEAR(unknown.seconds(1e-6, Warmth::kCold, shared), 2e-6, 0.5e-6) << "its own estimate";
@@ -77,9 +77,9 @@ TEST(CostCorrection, ALevelWithoutColdRequestsBorrowsFromOthersWithTheSameCode) 
 
 // The estimate follows the median of the observations although one of ten is far off: half of the
 // errors are positive.
-TEST(LearnedSeconds, StayNearTheMedianOfNoisyObservations) {
+TEST(RunningEstimate, StayNearTheMedianOfNoisyObservations) {
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kParameters);
-  LearnedSeconds learned;
+  RunningEstimate learned;
   for (int i = 0; i < 2000; ++i) {
     const double usual = random.next_real(8e-6, 12e-6);
     learned.observe(i % 10 == 0 ? 20 * usual : usual, 3e-6);

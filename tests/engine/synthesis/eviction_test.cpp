@@ -176,7 +176,7 @@ TEST_F(PressureTest, ARequestWhoseMemoryIsBeingFreedIsToldToWait) {
   const auto error_of = [&](std::uint32_t index, Rank rank) {
     return cache.reserve(key_of(index, p), p, index, rank).error().code;
   };
-  EXPECT_EQ(error_of(100, prefetch(0)), core::ErrorCode::kNotYet);
+  EXPECT_EQ(error_of(100, prefetch(0)), core::ErrorCode::kNotReady);
   EXPECT_EQ(error_of(101, prefetch(1e6F)), core::ErrorCode::kOverBudget);
 }
 
@@ -259,7 +259,7 @@ TEST_F(PressureTest, ARequestWaitsForPiecesThatAreBeingFreed) {
     other.begin_batch();
     const auto waits = other.reserve(key_of(50, p), p, 50, prefetch(0));
     ASSERT_FALSE(waits);
-    EXPECT_EQ(waits.error().code, core::ErrorCode::kNotYet) << tick;
+    EXPECT_EQ(waits.error().code, core::ErrorCode::kNotReady) << tick;
     EXPECT_LE(other.stats().evictions, 7u) << tick;  // an eighth, and the growth of the limit
   }
   for (int frame = 0; frame < 2; ++frame)

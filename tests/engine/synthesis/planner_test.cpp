@@ -331,7 +331,7 @@ TEST_F(PlannerTest, AHoleThatTookLongerThanPredictedDoesNotDelayTheNext) {
   gate.open();
   const std::vector<Want> wants{want(888, hole(10)), want(2, hole(20))};
   limits.seconds_here =
-      3 * cost.predict_request(0, 0, cost.work(0, *wants[0].parameters, 0)).of(Warmth::kWoken);
+      3 * cost.predict_request(0, 0, cost.work(0, *wants[0].parameters, 0)).of(Warmth::kAfterSleep);
   burned_seconds = 2 * limits.seconds_here;
   EXPECT_EQ(plan(wants).executed, 2u);
 }

@@ -69,10 +69,10 @@ Request request_of(std::uint32_t index, double cost_s) {
   return request;
 }
 
-TEST(PlanBoard, EveryRequestIsClaimedOnceFromEitherSideOrReturned) {
+TEST(PlanQueue, EveryRequestIsClaimedOnceFromEitherSideOrReturned) {
   constexpr std::uint32_t kRequests = 64;
   constexpr int kRounds = 400;
-  PlanBoard board;
+  PlanQueue board;
   std::atomic<bool> stop{false};
   std::vector<std::vector<std::uint32_t>> claimed(4);
   std::vector<std::jthread> claimers;
@@ -121,8 +121,8 @@ TEST(PlanBoard, EveryRequestIsClaimedOnceFromEitherSideOrReturned) {
     ASSERT_EQ(times, 1) << slot;
 }
 
-TEST(PlanBoard, RemoteModelersAreWokenOnlyIfSomethingIsOffered) {
-  PlanBoard board;
+TEST(PlanQueue, RemoteModelersAreWokenOnlyIfSomethingIsOffered) {
+  PlanQueue board;
   std::vector<Request> unclaimed;
   const std::uint32_t before = board.offer_epoch(), plans = board.epoch();
   board.publish({request_of(0, 0)});
@@ -136,8 +136,8 @@ TEST(PlanBoard, RemoteModelersAreWokenOnlyIfSomethingIsOffered) {
   EXPECT_NE(board.offer_epoch(), offered) << "as at the end of the manager";
 }
 
-TEST(PlanBoard, ARemotelyClaimedRequestIsNotReturned) {
-  PlanBoard board;
+TEST(PlanQueue, ARemotelyClaimedRequestIsNotReturned) {
+  PlanQueue board;
   const auto here = board.add_reader(), there = board.add_reader();
   board.publish({request_of(0, 0), request_of(1, 0), request_of(2, 0), request_of(3, 0)}, {1, 3});
   Request request;

@@ -64,7 +64,7 @@ class RemoteRest : public ::testing::Test {
   }
   ~RemoteRest() override {
     near_.open();
-    while (!meshes_.come_to_rest())
+    while (!meshes_.quiesce())
       std::this_thread::yield();
   }
 
@@ -79,9 +79,9 @@ class RemoteRest : public ::testing::Test {
   MeshKey key_of(models::ModelIndex model) const {
     return testing::key_of(model, parameters_, model);
   }
-  bool come_to_rest() {
+  bool quiesce() {
     is_resting_ = true;
-    return meshes_.come_to_rest();
+    return meshes_.quiesce();
   }
 
   std::atomic<double> now_s_{0};
@@ -102,7 +102,7 @@ TEST_F(RemoteRest, WithoutALocalModelerItWaitsForRemoteOnes) {
   meshes_.collect();  // the only local modeler is abandoned
   want({kFar});
   remote_.gate.await(1);
-  EXPECT_FALSE(come_to_rest()) << "one modeler hangs";
+  EXPECT_FALSE(quiesce()) << "one modeler hangs";
   EXPECT_EQ(meshes_.outstanding(), 0u);
   EXPECT_NE(meshes_.ready(meshes_.find(key_of(kFar))), nullptr);
 }
@@ -113,7 +113,7 @@ TEST_F(RemoteRest, AReturnedRequestIsNotMade) {
   near_.await(1);
   remote_.gate.await(1);
   near_.open();
-  EXPECT_TRUE(come_to_rest());
+  EXPECT_TRUE(quiesce());
   EXPECT_EQ(meshes_.outstanding(), 0u);
   EXPECT_EQ(made_far_, 0);
   EXPECT_FALSE(meshes_.find(key_of(kFar)));

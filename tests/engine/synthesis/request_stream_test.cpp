@@ -34,7 +34,7 @@ std::vector<SimulatedJob> recorded(const std::string& name) {
   return *jobs;
 }
 
-const PolicyFigures& row_of(const std::vector<PolicyFigures>& rows, Policy policy) {
+const PolicyStats& row_of(const std::vector<PolicyStats>& rows, Policy policy) {
   return rows[static_cast<std::size_t>(policy)];
 }
 
@@ -79,12 +79,12 @@ TEST(RequestStream, StatisticsMatchTheSchedule) {
                                        job(0.2, 0.2, 0.3, RankGroup::kPredicted)};
   const auto rows = compare_policies(jobs, 1);
   ASSERT_EQ(rows.size(), 5u);
-  const PolicyFigures& fifo = row_of(rows, Policy::kFifo);
+  const PolicyStats& fifo = row_of(rows, Policy::kFifo);
   EXPECT_NEAR(fifo.fill_s, 0.5, 1e-12);
   EXPECT_NEAR(fifo.visible_max_s, 0.5, 1e-12);
   EXPECT_NEAR(fifo.lateness_max_s, 0.4, 1e-12);
   EXPECT_NEAR(fifo.late_percent, 100, 1e-12);
-  const PolicyFigures& deadline = row_of(rows, Policy::kDeadline);
+  const PolicyStats& deadline = row_of(rows, Policy::kDeadline);
   EXPECT_NEAR(deadline.visible_max_s, 0.1, 1e-12);
   EXPECT_NEAR(deadline.fill_idle_percent, 0, 1e-9);
 }
@@ -94,13 +94,13 @@ TEST(RequestStream, OnlyRequestsThatCouldBeInTimeCountAsLate) {
   const std::vector<SimulatedJob> jobs{job(0, 0.1, 0, RankGroup::kPredicted),
                                        job(0, 0.1, 0.15, RankGroup::kPredicted),
                                        job(0, 0.1, 0.25, RankGroup::kPredicted)};
-  for (const PolicyFigures& row : compare_policies(jobs, 3)) {
+  for (const PolicyStats& row : compare_policies(jobs, 3)) {
     EXPECT_EQ(row.late_percent, 0) << name_of(row.policy);
     EXPECT_EQ(row.lateness_mean_s, 0);
     EXPECT_EQ(row.lateness_max_s, 0);
   }
   const auto rows = compare_policies(jobs, 1);
-  const PolicyFigures& due = row_of(rows, Policy::kDeadline);
+  const PolicyStats& due = row_of(rows, Policy::kDeadline);
   EXPECT_EQ(due.late_percent, 100);
   EXPECT_NEAR(due.lateness_mean_s, 0.05, 1e-9);
   EXPECT_NEAR(due.lateness_max_s, 0.05, 1e-9);
@@ -132,12 +132,12 @@ TEST(RequestStream, EarliestDeadlineFirstIsInTimeIfAnyOrderIsUnlikeShortestFirst
 class RecordedFlight : public ::testing::TestWithParam<std::string> {
  protected:
   const std::vector<SimulatedJob> jobs_ = recorded(GetParam());
-  const std::vector<PolicyFigures> rows_ = compare_policies(jobs_, 2);
+  const std::vector<PolicyStats> rows_ = compare_policies(jobs_, 2);
 };
 
 TEST_P(RecordedFlight, TheDeadlinePolicyFillsHolesSoonerThanPoliciesThatIgnoreTheView) {
   ASSERT_GT(jobs_.size(), 1000u);
-  const PolicyFigures& due = row_of(rows_, Policy::kDeadline);
+  const PolicyStats& due = row_of(rows_, Policy::kDeadline);
   for (const Policy other : {Policy::kFifo, Policy::kShortest, Policy::kLongest}) {
     EXPECT_LT(due.visible_p99_s, 0.5 * row_of(rows_, other).visible_p99_s) << name_of(other);
     EXPECT_LT(due.visible_max_s, 0.5 * row_of(rows_, other).visible_max_s) << name_of(other);
@@ -147,7 +147,7 @@ TEST_P(RecordedFlight, TheDeadlinePolicyFillsHolesSoonerThanPoliciesThatIgnoreTh
 // One modeler has to choose; two finish the walk and the dash in time in any order.
 TEST_P(RecordedFlight, TheDeadlinePolicyIsNeverLaterThanTheOthers) {
   const auto rows = compare_policies(jobs_, 1);
-  const PolicyFigures& due = row_of(rows, Policy::kDeadline);
+  const PolicyStats& due = row_of(rows, Policy::kDeadline);
   EXPECT_LE(due.lateness_max_s, row_of(rows, Policy::kPlp).lateness_max_s);
   for (const Policy other : {Policy::kFifo, Policy::kShortest, Policy::kLongest})
     EXPECT_LT(due.lateness_max_s, row_of(rows, other).lateness_max_s) << name_of(other);
@@ -157,7 +157,7 @@ TEST_P(RecordedFlight, TheDeadlinePolicyIsNeverLaterThanTheOthers) {
 class RecordedStart : public RecordedFlight {};
 
 TEST_P(RecordedStart, ModelersAreRarelyIdleDuringTheFillAndLongestFirstEndsSooner) {
-  for (const PolicyFigures& row : rows_) {
+  for (const PolicyStats& row : rows_) {
     EXPECT_GE(row.visible_p50_s, 0);
     EXPECT_GT(row.fill_s, 0.05);
     EXPECT_LT(row.fill_idle_percent, 5);

@@ -190,7 +190,7 @@ TEST(SynthesisManager, ACompletionHoldsTheWarmthOfTheCaches) {
   for (const Completion& c : done)
     warmths.push_back(c.warmth);
   using enum Warmth;
-  EXPECT_EQ(warmths, (std::vector{kWoken, kWarm, kCold, kWarm, kWarm, kWoken}));
+  EXPECT_EQ(warmths, (std::vector{kAfterSleep, kWarm, kCold, kWarm, kWarm, kAfterSleep}));
 }
 
 TEST(SynthesisManager, OnAVirtualClockPredictionsAloneDetermineTheSchedule) {

@@ -32,14 +32,14 @@ std::string text_of(const std::vector<std::string>& sentences) {
 }
 
 TEST(Verdict, IsGoodOnlyWithoutAnyFault) {
-  const Verdict verdict = picture_verdict(flight([](FrameRecord&) {}));
+  const Verdict verdict = judge_quality(flight([](FrameRecord&) {}));
   EXPECT_EQ(verdict.grade, Grade::kGood);
   EXPECT_EQ(verdict.headline, "as requested");
   EXPECT_TRUE(verdict.advice.empty());
   // All frames may be slightly too coarse, and one of a hundred much too coarse.
-  EXPECT_EQ(picture_verdict(flight([](FrameRecord& r) { r.missing_pixels_percent = 0.9; })).grade,
+  EXPECT_EQ(judge_quality(flight([](FrameRecord& r) { r.missing_pixels_percent = 0.9; })).grade,
             Grade::kGood);
-  EXPECT_EQ(picture_verdict(flight([](FrameRecord& r) {
+  EXPECT_EQ(judge_quality(flight([](FrameRecord& r) {
               if (r.index == 7) r.too_coarse_percent = 100;
             })).grade,
             Grade::kGood);
@@ -47,7 +47,7 @@ TEST(Verdict, IsGoodOnlyWithoutAnyFault) {
 
 TEST(Verdict, OneHoleIsPoor) {
   const Verdict verdict =
-      picture_verdict(flight([](FrameRecord& r) { r.holes = r.index == 50 ? 1 : 0; }));
+      judge_quality(flight([](FrameRecord& r) { r.holes = r.index == 50 ? 1 : 0; }));
   EXPECT_EQ(verdict.grade, Grade::kPoor);
   EXPECT_EQ(verdict.headline, "incomplete");
   EXPECT_NE(text_of(verdict.reasons).find("1 of 200 frames had a hole"), std::string::npos);
@@ -56,7 +56,7 @@ TEST(Verdict, OneHoleIsPoor) {
 
 TEST(Verdict, ACoarseImageWithoutHolesIsNotGood) {
   const auto coarse = [](double percent) {
-    return picture_verdict(flight([percent](FrameRecord& r) {
+    return judge_quality(flight([percent](FrameRecord& r) {
       if (r.index < 100) r.missing_pixels_percent = percent;
     }));
   };
@@ -77,7 +77,7 @@ TEST(Verdict, TheWorstOfFewFramesDecides) {
   r.frame_ms = 50;
   r.too_coarse_percent = 60;
   log.add(r);
-  const Verdict verdict = picture_verdict(summarise(log, synthetic_facts(), 0.0));
+  const Verdict verdict = judge_quality(summarise(log, synthetic_facts(), 0.0));
   EXPECT_EQ(verdict.grade, Grade::kPoor);
   EXPECT_EQ(verdict.headline, "much too coarse");
 }
@@ -90,18 +90,18 @@ TEST(Verdict, ReportsThatAFixedStepOutranTheModelers) {
     r.too_coarse_percent = 50;
     r.synthesis_seconds = 0.019;
   };
-  const std::string advice = text_of(picture_verdict(flight(all_coarse, facts)).advice);
+  const std::string advice = text_of(judge_quality(flight(all_coarse, facts)).advice);
   EXPECT_NE(advice.find("the flight ran 4.98 times as fast as real time"), std::string::npos)
       << advice;
   EXPECT_NE(advice.find("--fixed-step above 10 Hz"), std::string::npos) << advice;
   EXPECT_EQ(advice.find("processor"), std::string::npos) << "modelers were busy";
   facts.run.fixed_step = Figure::missing("none");
-  EXPECT_EQ(text_of(picture_verdict(flight(all_coarse, facts)).advice).find("real time"),
+  EXPECT_EQ(text_of(judge_quality(flight(all_coarse, facts)).advice).find("real time"),
             std::string::npos);
 }
 
 TEST(Verdict, ReportsThatModelersGotNoProcessor) {
-  const std::string advice = text_of(picture_verdict(flight([](FrameRecord& r) {
+  const std::string advice = text_of(judge_quality(flight([](FrameRecord& r) {
                                        r.too_coarse_percent = 50;
                                        r.synthesis_seconds = 0.001;
                                      })).advice);
@@ -110,7 +110,7 @@ TEST(Verdict, ReportsThatModelersGotNoProcessor) {
 }
 
 TEST(Verdict, DoesNotBlameTheProcessorIfMemoryIsShort) {
-  const Verdict verdict = picture_verdict(flight([](FrameRecord& r) {
+  const Verdict verdict = judge_quality(flight([](FrameRecord& r) {
     r.too_coarse_percent = 50;
     r.synthesis_seconds = 0.001;
     r.requests_refused = 3;
@@ -120,7 +120,7 @@ TEST(Verdict, DoesNotBlameTheProcessorIfMemoryIsShort) {
 }
 
 TEST(Verdict, ErrorsRaisedForMemoryOrTimeAreNotAsRequested) {
-  const Verdict memory = picture_verdict(flight([](FrameRecord& r) {
+  const Verdict memory = judge_quality(flight([](FrameRecord& r) {
     r.error_pixels = 12;
     r.memory_factor = 3;
     r.requests_refused = 5;
@@ -133,15 +133,14 @@ TEST(Verdict, ErrorsRaisedForMemoryOrTimeAreNotAsRequested) {
   EXPECT_NE(text_of(memory.advice).find("--budget above 512 MiB"), std::string::npos);
   RunFacts facts = synthetic_facts();
   facts.run.target_fps = 60;
-  const Verdict target =
-      picture_verdict(flight([](FrameRecord& r) { r.error_pixels = 16; }, facts));
+  const Verdict target = judge_quality(flight([](FrameRecord& r) { r.error_pixels = 16; }, facts));
   EXPECT_EQ(target.grade, Grade::kFair);
   EXPECT_NE(
       text_of(target.reasons).find("To hold 60 frames/s, detail was reduced in 200 of 200 frames"),
       std::string::npos)
       << text_of(target.reasons);
-  const Verdict pixels = picture_verdict(
-      flight([](FrameRecord& r) { r.resolution = r.index < 50 ? 0.6 : 0.8; }, facts));
+  const Verdict pixels =
+      judge_quality(flight([](FrameRecord& r) { r.resolution = r.index < 50 ? 0.6 : 0.8; }, facts));
   EXPECT_EQ(pixels.grade, Grade::kFair);
   EXPECT_NE(
       text_of(pixels.reasons).find("the render scale was 80.0 % in the median and 60.0 % at worst"),
@@ -149,20 +148,20 @@ TEST(Verdict, ErrorsRaisedForMemoryOrTimeAreNotAsRequested) {
       << text_of(pixels.reasons);
   // While it still refines, in the first frames, the image counts as requested.
   EXPECT_EQ(
-      picture_verdict(flight([](FrameRecord& r) { r.error_pixels = r.index < 2 ? 16 : 4; }, facts))
+      judge_quality(flight([](FrameRecord& r) { r.error_pixels = r.index < 2 ? 16 : 4; }, facts))
           .grade,
       Grade::kGood);
 }
 
 TEST(Verdict, FailedModelsArePoor) {
   const Verdict verdict =
-      picture_verdict(flight([](FrameRecord& r) { r.models_failed = r.index == 3 ? 2 : 0; }));
+      judge_quality(flight([](FrameRecord& r) { r.models_failed = r.index == 3 ? 2 : 0; }));
   EXPECT_EQ(verdict.grade, Grade::kPoor);
   EXPECT_NE(text_of(verdict.reasons).find("2 models could not be synthesised"), std::string::npos);
 }
 
 TEST(Verdict, TheWorstGradeCountsAndAllReasonsAreGiven) {
-  const Verdict verdict = picture_verdict(flight([](FrameRecord& r) {
+  const Verdict verdict = judge_quality(flight([](FrameRecord& r) {
     r.holes = 1;
     r.too_coarse_percent = 5;
     r.error_pixels = 8;
@@ -174,12 +173,12 @@ TEST(Verdict, TheWorstGradeCountsAndAllReasonsAreGiven) {
 }
 
 TEST(Verdict, IsUnknownWithoutMeasuredFrames) {
-  const Verdict none = picture_verdict(summarise(FrameLog({}), {}, 1.0));
+  const Verdict none = judge_quality(summarise(FrameLog({}), {}, 1.0));
   EXPECT_EQ(none.grade, Grade::kUnknown);
   EXPECT_TRUE(none.advice.empty());
   FrameLog log({});
   log.add({});
-  const Verdict warm_up = picture_verdict(summarise(log, {}, 1.0));
+  const Verdict warm_up = judge_quality(summarise(log, {}, 1.0));
   EXPECT_EQ(warm_up.grade, Grade::kUnknown);
   EXPECT_NE(text_of(warm_up.advice).find("--warmup"), std::string::npos);
 }

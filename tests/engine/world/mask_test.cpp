@@ -30,7 +30,7 @@ class HalfPictures final : public testing::PicturesAlone {
   }
 };
 
-core::Result<World> read_masked(const std::string& keys, const FilesBeside* beside = nullptr) {
+core::Result<World> read_masked(const std::string& keys, const ResourceLoader* beside = nullptr) {
   static const HalfPictures pictures;
   const std::string text = replaced(kSmallWorld, "count = 5", "count = 40\n" + keys);
   return parse_world(text, "maps/w.toml", registry(), beside != nullptr ? beside : &pictures);

@@ -16,7 +16,7 @@
 namespace psygen::world::testing {
 
 // Reads only images, no models.
-class PicturesAlone : public FilesBeside {
+class PicturesAlone : public ResourceLoader {
  public:
   core::Result<std::unique_ptr<models::ModelType>> read_model(const std::filesystem::path& file,
                                                               const HandmadeModel&) const final {

@@ -22,12 +22,12 @@ struct Number {
 };
 using Map = QuadMap<Number>;
 
-QuadPlace any_place(std::mt19937& random) {
+QuadCoord any_place(std::mt19937& random) {
   // Dense around the origin, where signs change, and a few positions at the ends of the world.
   std::uniform_int_distribution<std::int32_t> near(-6, 6), all(INT32_MIN, INT32_MAX);
   const bool far = random() % 8 == 0;
   const core::BlockCoord block{far ? all(random) : near(random), far ? all(random) : near(random)};
-  QuadPlace place = QuadPlace::of(block);
+  QuadCoord place = QuadCoord::of(block);
   for (std::uint32_t up = random() % 4; up > 0; --up)
     place = place.parent();
   return place;
@@ -35,12 +35,12 @@ QuadPlace any_place(std::mt19937& random) {
 
 using Expected = std::map<std::tuple<std::uint32_t, std::uint64_t, std::uint64_t>, std::uint64_t>;
 
-TEST(QuadPlace, BlocksAndCornersAreInverse) {
+TEST(QuadCoord, BlocksAndCornersAreInverse) {
   for (const core::BlockCoord block :
        {core::BlockCoord{0, 0}, core::BlockCoord{-1, 5}, core::BlockCoord{INT32_MIN, INT32_MAX}})
-    EXPECT_EQ(QuadPlace::of(block).corner(), block);
-  EXPECT_TRUE(QuadPlace::of({-1, -1}, 3).covers(QuadPlace::of({-8, -1})));
-  EXPECT_FALSE(QuadPlace::of({-1, -1}, 3).covers(QuadPlace::of({0, -1})));
+    EXPECT_EQ(QuadCoord::of(block).corner(), block);
+  EXPECT_TRUE(QuadCoord::of({-1, -1}, 3).covers(QuadCoord::of({-8, -1})));
+  EXPECT_FALSE(QuadCoord::of({-1, -1}, 3).covers(QuadCoord::of({0, -1})));
 }
 
 TEST(QuadMap, BehavesLikeAMapAndCopiesStayAsTheyWere) {
@@ -49,7 +49,7 @@ TEST(QuadMap, BehavesLikeAMapAndCopiesStayAsTheyWere) {
   Expected expected;
   std::vector<std::pair<Map, Expected>> copies;
   for (int i = 0; i < 4000; ++i) {
-    const QuadPlace place = any_place(random);
+    const QuadCoord place = any_place(random);
     const std::uint64_t value = random() % 3 == 0 ? 0 : 1 + random() % 1000;
     map.set(place, {value});
     if (value == 0) expected.erase({place.level, place.x, place.z});
@@ -68,7 +68,7 @@ TEST(QuadMap, BehavesLikeAMapAndCopiesStayAsTheyWere) {
     }
     std::size_t count = 0;
     Map::each_difference(Map(), copy,
-                         [&](const QuadPlace&, const Number*, const Number*) { ++count; });
+                         [&](const QuadCoord&, const Number*, const Number*) { ++count; });
     EXPECT_EQ(count, content.size());
     ASSERT_NE(copy.root(), nullptr);
     EXPECT_EQ(copy.root()->summary.sum, sum);
@@ -77,10 +77,10 @@ TEST(QuadMap, BehavesLikeAMapAndCopiesStayAsTheyWere) {
 
 TEST(QuadMap, EqualContentHasEqualHashesWithAnyHistory) {
   std::mt19937 random(3);
-  std::vector<std::pair<QuadPlace, std::uint64_t>> content;
+  std::vector<std::pair<QuadCoord, std::uint64_t>> content;
   for (int i = 0; i < 200; ++i) {
-    const QuadPlace place = any_place(random);
-    if (std::ranges::find(content, place, &std::pair<QuadPlace, std::uint64_t>::first) ==
+    const QuadCoord place = any_place(random);
+    if (std::ranges::find(content, place, &std::pair<QuadCoord, std::uint64_t>::first) ==
         content.end())
       content.emplace_back(place, 1 + random() % 1000);
   }
@@ -91,7 +91,7 @@ TEST(QuadMap, EqualContentHasEqualHashesWithAnyHistory) {
     std::ranges::shuffle(content, random);
     Map map;
     for (const auto& [place, value] : content) {
-      const QuadPlace detour = any_place(random);
+      const QuadCoord detour = any_place(random);
       const Number* before = map.find(detour);
       const Number kept = before != nullptr ? *before : Number{};
       map.set(detour, {value + 77});
@@ -116,10 +116,10 @@ TEST(QuadMap, EqualContentHasEqualHashesWithAnyHistory) {
 
 TEST(QuadMap, AValueAtAnotherPositionChangesTheHashOfEverySquareAroundIt) {
   Map here, beside;
-  here.set(QuadPlace::of({12, 7}), {5});
-  beside.set(QuadPlace::of({13, 7}), {5});
-  for (std::uint32_t level = 1; level <= QuadPlace::kMaxLevel; ++level) {
-    QuadPlace around = QuadPlace::of({12, 7});
+  here.set(QuadCoord::of({12, 7}), {5});
+  beside.set(QuadCoord::of({13, 7}), {5});
+  for (std::uint32_t level = 1; level <= QuadCoord::kMaxLevel; ++level) {
+    QuadCoord around = QuadCoord::of({12, 7});
     while (around.level < level)
       around = around.parent();
     ASSERT_NE(here.at_or_below(around), nullptr);
@@ -127,8 +127,8 @@ TEST(QuadMap, AValueAtAnotherPositionChangesTheHashOfEverySquareAroundIt) {
     EXPECT_NE(here.at_or_below(around)->hash, beside.at_or_below(around)->hash) << level;
   }
   // The same pair of values, moved together.
-  here.set(QuadPlace::of({14, 7}), {6});
-  beside.set(QuadPlace::of({15, 7}), {6});
+  here.set(QuadCoord::of({14, 7}), {6});
+  beside.set(QuadCoord::of({15, 7}), {6});
   EXPECT_NE(here.root()->hash, beside.root()->hash);
 }
 
@@ -142,13 +142,13 @@ TEST(QuadMap, DifferencesAreTheSquaresWhoseValuesDiffer) {
     for (int i = 0; i < static_cast<int>(random() % 8); ++i)
       after.set(any_place(random), {random() % 3});
     std::map<std::tuple<std::uint32_t, std::uint64_t, std::uint64_t>, int> reported;
-    Map::each_difference(before, after, [&](const QuadPlace& p, const Number* a, const Number* b) {
+    Map::each_difference(before, after, [&](const QuadCoord& p, const Number* a, const Number* b) {
       EXPECT_EQ(before.find(p), a);
       EXPECT_EQ(after.find(p), b);
       ++reported[{p.level, p.x, p.z}];
     });
     const auto expect_reported = [&](const Map& one, const Map& two) {
-      Map::each_difference(Map(), one, [&](const QuadPlace& p, const Number*, const Number* value) {
+      Map::each_difference(Map(), one, [&](const QuadCoord& p, const Number*, const Number* value) {
         const bool differs = two.find(p) != value;
         EXPECT_EQ((reported[{p.level, p.x, p.z}]), differs ? 1 : 0);
       });

@@ -80,11 +80,11 @@ class EditedTerrain : public ::testing::Test {
   }
   std::uint64_t hash_of(std::int64_t x, std::int64_t z, int level) const {
     const core::BlockCoord at{static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
-    return layer.ground.hash_of(QuadPlace::of(at, static_cast<std::uint32_t>(level)),
+    return layer.ground.hash_of(QuadCoord::of(at, static_cast<std::uint32_t>(level)),
                                 std::ldexp(4 / 63.0, level), kBlockM);
   }
   std::uint64_t hash_of_all() const {
-    return layer.ground.hash_of({QuadPlace::kMaxLevel, 0, 0}, 0, kBlockM);
+    return layer.ground.hash_of({QuadCoord::kMaxLevel, 0, 0}, 0, kBlockM);
   }
   std::vector<TerrainVertex> vertices(const Parameters& p, int mesh_level) const {
     return synthesise(*type, p, mesh_level).vertices<TerrainVertex>();
@@ -227,7 +227,7 @@ TEST_F(EditedTerrain, UndoingAnEditRestoresEveryHash) {
   EXPECT_EQ(hash_of_all(), all);
   for (int level = 0; level < 6; ++level)
     EXPECT_EQ(hash_of(-1, 0, level), hashes[static_cast<std::size_t>(level)]);
-  EXPECT_TRUE(GroundEdits::same_in(before.ground, before.ground, QuadPlace::of({0, 0}, 3), 0.5));
+  EXPECT_TRUE(GroundEdits::same_in(before.ground, before.ground, QuadCoord::of({0, 0}, 3), 0.5));
 }
 
 // Wide enough that the nodes of all levels have edits at their margins.
@@ -252,7 +252,7 @@ TEST_F(EditedTerrain, SameInNeverMissesAChangeOfTheHash) {
     add_anywhere();
     const core::BlockCoord at{static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
     const bool says_same = GroundEdits::same_in(
-        before.ground, layer.ground, QuadPlace::of(at, static_cast<std::uint32_t>(level)),
+        before.ground, layer.ground, QuadCoord::of(at, static_cast<std::uint32_t>(level)),
         std::ldexp(4 / 63.0, level));
     if (says_same) {
       EXPECT_EQ(hash_of(x, z, level), hash) << "level " << level;
@@ -351,7 +351,7 @@ TEST_F(EditedTerrain, NoMeshDeviatesFromTheGroundByMoreThanItsError) {
     }
     const BlockGround base(node(0, 0, 0, false), {0, 0}, 100000);
     const BlockGround edited(node(0, 0, 0), {0, 0}, 100000);
-    const double limit_m = layer.ground.error_m(QuadPlace::of({0, 0}), 9, kBlockM);
+    const double limit_m = layer.ground.error_m(QuadCoord::of({0, 0}), 9, kBlockM);
     for (int z = 0; z < 63; ++z) {
       for (int x = 0; x < 63; ++x) {
         const auto change = [&](int stride) {

@@ -1,8 +1,9 @@
 // Individual trees that are small in the frame, and all trees of coarse nodes, are impostors.
+#include "engine/world/far/tree_impostors.hpp"
+
 #include <algorithm>
 
 #include "engine/scene/meshes/mesh_choice.hpp"
-#include "engine/world/far/tree_pictures.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {

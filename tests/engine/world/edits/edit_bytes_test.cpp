@@ -50,7 +50,7 @@ TEST_F(EditBytes, LoadingTheBlocksInAnyOrderGivesTheSameEdits) {
   }
   for (const Edits& loaded : {forward, backward}) {
     EXPECT_EQ(hash_of(loaded), hash_of(edits));
-    const models::QuadPlace all{models::QuadPlace::kMaxLevel, 0, 0};
+    const models::QuadCoord all{models::QuadCoord::kMaxLevel, 0, 0};
     EXPECT_EQ(loaded.layer()->ground.hash_of(all, 0, world.block_size_m()),
               edits.layer()->ground.hash_of(all, 0, world.block_size_m()));
     EXPECT_EQ(loaded.layer()->next_id, edits.layer()->next_id);

@@ -1,0 +1,42 @@
+// Reads the files that a world file names but world itself cannot read: glTF models and images.
+// engine/handmade implements it; callers of parse_world() pass it. One virtual seam; any thread.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "engine/core/error.hpp"
+#include "engine/models/model_type.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::world {
+
+class ResourceLoader {
+ public:
+  virtual ~ResourceLoader() = default;
+  // The model type of a [[model]] with this file. Equal files and settings give types of equal
+  // identity(). Error messages name the file; error codes are those of gltf::read_file().
+  virtual core::Result<std::unique_ptr<models::ModelType>> read_model(
+      const std::filesystem::path& file, const HandmadeModel& model) const = 0;
+  // An image of at most 4096 × 4096 pixels as grey values. Same errors.
+  virtual core::Result<std::shared_ptr<const GreyPicture>> read_grey(
+      const std::filesystem::path& file) const = 0;
+};
+
+// The files that one world file names.
+struct Beside {
+  std::string_view world_file;  // names are relative to its folder
+  const ResourceLoader* files;  // null: this program cannot read any
+
+  // The path of a name. Fails with kInvalidArgument if links lead out of the folder.
+  core::Result<std::filesystem::path> path_of(std::string_view name) const;
+  // The image with this name. Also fails with kInvalidArgument if `files` is null.
+  core::Result<std::shared_ptr<const GreyPicture>> read_grey(std::string_view name) const;
+};
+
+// True if a file, after following all links, is in the folder or below. Also true for files that do
+// not exist; reading them fails later.
+bool is_below(const std::filesystem::path& folder, const std::filesystem::path& file);
+
+}  // namespace psygen::world
