@@ -139,7 +139,7 @@ TEST(PlaceTool, InvalidPlacesAreRejectedWithAMessage) {
   click(bench.tool, ground(40, 50));
   bench.tool.turn(15);
   EXPECT_EQ(bench.messages.back(),
-            "A tree has no turn_deg, so it cannot be turned; models from files can.");
+            "tree cannot be turned: it has no parameter turn_deg, as models from files have.");
   EXPECT_EQ(bench.steps(), 1);
 }
 

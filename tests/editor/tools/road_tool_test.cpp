@@ -113,7 +113,7 @@ TEST(RoadTool, PointsAreRemovedAndTheLastTwoRemoveTheRoad) {
   bench.tool.remove();
   EXPECT_EQ(bench.count(), 0U);
   EXPECT_EQ(bench.messages.back(),
-            "A road has two points or more, so this one is gone. Undo brings it back.");
+            "Removed the road, because a road needs two points. Undo restores it.");
   bench.document.undo_stack().undo();
   EXPECT_EQ(bench.count(), 1U);
   bench.tool.choose(0);
@@ -127,7 +127,7 @@ TEST(RoadTool, AnInvalidRoadIsRejectedWithAMessage) {
   EXPECT_EQ(bench.messages.back(), "There is no ground here. Click on the ground.");
   click(bench.tool, ground(40, 50));
   click(bench.tool, ground(40.2, 50));
-  EXPECT_NE(bench.messages.back().find("1 m or more"), std::string::npos) << bench.messages.back();
+  EXPECT_NE(bench.messages.back().find("at least 1 m"), std::string::npos) << bench.messages.back();
   EXPECT_EQ(bench.document.text(), kWorld);
   click(bench.tool, ground(-1e6, 50));
   EXPECT_NE(bench.messages.back().find("outside the world"), std::string::npos);

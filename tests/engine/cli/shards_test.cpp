@@ -70,7 +70,7 @@ TEST_F(Shards, ShardsOfOtherWorldsAndRegionsAreNotMixed) {
   ASSERT_EQ(amplify("--shard 1/2 --out s --format none").code, 0);
   const Outcome other = amplify("--shard 1/2 --out s --format none --region 0,0,2,2");
   EXPECT_EQ(other.code, 1);
-  EXPECT_TRUE(mentions(other.err, "s/shard_1_of_2.ledger: is of the region")) << other.err;
+  EXPECT_TRUE(mentions(other.err, "s/shard_1_of_2.ledger: belongs to the region")) << other.err;
   ASSERT_EQ(run("amplify --world paper --region 0,0,2,2 --shard 2/2 --out p --format none").code,
             0);
   const Outcome mixed = run("merge s p");

@@ -137,7 +137,7 @@ TEST_F(NoteTest, AHookThatThrowsFailsItsRequestOnly) {
   std::vector<Completion> done = run({request(1), request(2)});
   ASSERT_EQ(done.size(), 2u);
   EXPECT_FALSE(done[0].ok);
-  EXPECT_NE(done[0].error.find("noted"), std::string::npos);
+  EXPECT_NE(done[0].error.find("annotation"), std::string::npos);
   EXPECT_FALSE(done[0].note.has_value());
   EXPECT_TRUE(done[1].ok);
   EXPECT_EQ(land(done, cache, nullptr).failed, 1u);
