@@ -32,7 +32,7 @@ TEST(Convert, ReportsUnreadableUnwritableAndUnknownArguments) {
   const std::string run = (folder / "run").string();
   const Outcome none = run_psygen("convert /nowhere --to mangohud --out log.csv");
   EXPECT_EQ(none.code, 1);
-  EXPECT_TRUE(mentions(none.err, "/nowhere/frames.csv: cannot be read")) << none.err;
+  EXPECT_TRUE(mentions(none.err, "/nowhere/frames.csv: cannot read the file")) << none.err;
   const Outcome unwritable = run_psygen("convert " + run + " --to mangohud --out /nowhere/log.csv");
   EXPECT_EQ(unwritable.code, 1);
   EXPECT_TRUE(mentions(unwritable.err, "/nowhere/log.csv")) << unwritable.err;

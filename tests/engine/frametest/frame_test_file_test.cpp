@@ -100,7 +100,7 @@ TEST(FrameTestFile, ReportsErrorsWithFileLineFieldAndSuggestion) {
   EXPECT_THAT(refusal("format = 1\n"), HasSubstr("needs a budget"));
   EXPECT_THAT(refusal("format = 2\n"), HasSubstr("newer than this program"));
   EXPECT_THAT(refusal("format = 1\nname = \"a/b\"\n[at_most]\nhitches = 0\n"),
-              HasSubstr("without /"));
+              HasSubstr("must not contain /"));
 }
 
 TEST(FrameTestFile, FindsFilesInItsFolderThenShippedOnes) {
