@@ -25,7 +25,7 @@ double now_s() {
 }
 
 // Ends the program if the parameters name a resource twice: one of the two would be superfluous, or
-// would write what the other takes as constant.
+// would write a resource that the other takes as constant.
 void expect_each_once(const SystemInfo& system) {
   const auto source = [](const Access& access) {
     return access.bundle.empty() ? std::string("by itself") : "in " + access.bundle;
@@ -90,7 +90,7 @@ struct Schedule::Parts {
   std::size_t unfinished = 0;
   bool stopping = false;
   bool running = false;
-  std::exception_ptr exception;  // of this run: nothing more is started
+  std::exception_ptr exception;  // of this run; no further step starts
   std::string threw;
   std::vector<std::thread> workers;
 
@@ -109,7 +109,7 @@ struct Schedule::Parts {
     if (running) detail::give_up("schedule: " + std::string(verb) + " from inside a system");
   }
 
-  // Brings the systems into this order and makes their steps.
+  // Sorts the systems into this order and makes their steps.
   void reorder(std::span<const std::size_t> order) {
     std::vector<System> sorted;
     std::vector<SystemInfo> sorted_infos;
@@ -147,7 +147,7 @@ struct Schedule::Parts {
     return all;
   }
 
-  // Also what a step throws is its end.
+  // An exception also ends the step.
   void run_step(std::size_t index) {
     try {
       try_step(index);
@@ -173,7 +173,7 @@ struct Schedule::Parts {
     }
   }
 
-  // The first ready step that this thread may run; steps.size() when there is none.
+  // Returns the first ready step that this thread may run; steps.size() if there is none.
   std::size_t take(bool calling_thread) {
     std::size_t best = steps.size();
     for (const std::size_t step : ready) {
@@ -220,7 +220,7 @@ Schedule::Schedule(World& world, std::size_t threads)
         parts->work(lock, false, [parts] { return parts->stopping; });
       });
     }
-  } catch (const std::exception&) {  // the system gives no more threads: run on these
+  } catch (const std::exception&) {  // the operating system grants no more threads: run on these
   }
 }
 

@@ -9,9 +9,10 @@
 //   Commands&             structural changes, applied right after the system
 //   World& / const World& everything: alone / beside others that only read
 //   a bundle, by value    a struct of references, or of other bundles: stands for its members
-// Systems run in the order of add(), or where their Place says. On several threads, systems that do
-// not conflict run at the same time, and the result equals that of one thread. Not a job system: a
-// system that wants to split its own work does so itself. One thread owns the schedule.
+// Systems run in the order of add(), or where their constraints put them. On several threads,
+// systems that do not conflict run at the same time, and the result equals that of one thread. Not
+// a job system: a system that wants to split its own work does so itself. One thread owns the
+// schedule.
 #pragma once
 
 #include <cstddef>
@@ -33,13 +34,13 @@
 
 namespace psygen::ecs {
 
-// Where a system may run.
+// Threads that may run a system.
 enum class RunsOn : std::uint8_t {
   kAnyThread,
   kCallingThread,  // the one that calls run(): windows, graphics interfaces
 };
 
-// How much of the world a system touches beyond the components that it lists.
+// Access of a system to the world beyond the components that it lists.
 enum class WorldAccess : std::uint8_t { kNone, kReads, kWrites };
 
 // One component or resource that a system uses.
@@ -58,20 +59,20 @@ struct SystemInfo {
   WorldAccess world = WorldAccess::kNone;
   bool records_commands = false;
   RunsOn runs_on = RunsOn::kAnyThread;
-  double last_start_s = 0;  // when its last run began, on std::chrono::steady_clock
+  double last_start_s = 0;  // start of its last run, on std::chrono::steady_clock
   double last_seconds = 0;  // wall time of the last run, including its commands
 };
 
-// Whether the order of two systems matters. Symmetric. O(accesses of a * accesses of b).
+// True if the order of two systems matters. Symmetric. O(accesses of a * accesses of b).
 bool conflict(const SystemInfo& a, const SystemInfo& b);
 
 // Owns its systems and its worker threads; the world and the resources must outlive it.
 class Schedule {
  public:
-  // `threads` (at most 64) includes the calling one: 1 runs everything there, in order. When the
-  // system grants fewer, threads() returns how many there are.
+  // `threads` (at most 64) includes the calling one: 1 runs everything there, in order. If the
+  // operating system grants fewer, threads() returns their number.
   explicit Schedule(World& world, std::size_t threads = 1);
-  // Stops and joins the worker threads. Not while run() is under way.
+  // Stops and joins the worker threads. Not during run().
   ~Schedule();
   Schedule(const Schedule&) = delete;
   Schedule& operator=(const Schedule&) = delete;
@@ -85,7 +86,7 @@ class Schedule {
     (provide_one(&kIdentity<Rs>, type_label<Rs>(), &resources), ...);
   }
 
-  // As provide(), with an object that the schedule makes and owns.
+  // Like provide(), with an object that the schedule makes and owns.
   template <class R, class... Args>
   R& emplace(Args&&... args) {
     std::shared_ptr<R> owned(new R{std::forward<Args>(args)...});
@@ -101,16 +102,17 @@ class Schedule {
   void add(std::string_view name, F system, RunsOn runs_on = RunsOn::kAnyThread) {
     add(name, std::move(system), Place{}, runs_on);
   }
-  // The same at a place among the others, which may be added later. Names must be unique.
+  // Adds a system with constraints, which may name systems that are added later. Names must be
+  // unique.
   template <class F>
   void add(std::string_view name, F system, Place place, RunsOn runs_on = RunsOn::kAnyThread);
 
-  // Puts all systems into the order of their places. Returns an empty string, or a sentence that
-  // says why there is no such order: a name twice, an unknown name, a cycle. The order is then
-  // unchanged. O(systems²), and O(1) if nothing was added since.
+  // Sorts all systems by their constraints. Returns an empty string, or a message if no such order
+  // exists: a repeated name, an unknown name, a cycle. The order is then unchanged. O(systems²),
+  // and O(1) if nothing was added since.
   std::string arrange();
 
-  // Runs every system once, commands included, and returns when all are done. Arranges them before,
+  // Runs every system once, commands included, and returns when all are done. Arranges them first,
   // and ends the program if that is impossible. Not from inside a system. An exception of a system
   // ends the run: no other system starts, commands that were not applied are dropped, and run()
   // throws the exception on. threw() names the system then.
@@ -118,10 +120,10 @@ class Schedule {
   // The system whose exception ended the last run; empty if none did.
   const std::string& threw() const;
 
-  // The systems in the order in which they run, once arranged. Valid until the next add() or
-  // arrange(); times change during run().
+  // The systems in the order of execution, once arranged. Valid until the next add() or arrange();
+  // times change during run().
   std::span<const SystemInfo> systems() const;
-  // How many threads run systems, the calling one included: 1 to 64.
+  // Number of threads that run systems, the calling one included: 1 to 64.
   std::size_t threads() const;
 
  private:
@@ -138,7 +140,7 @@ class Schedule {
   };
   template <class F, class... Ps>
   class RunnerOf;
-  // A system with its parameters bound; `commands` is null when it records none.
+  // A system with its parameters bound; `commands` is null if it records none.
   struct System {
     SystemInfo info;
     Place place;
@@ -147,14 +149,14 @@ class Schedule {
   };
   struct Parts;
 
-  // What one parameter stands for: its accesses, and how to get its value when the system runs.
+  // A parameter of a system: records its accesses, and gets its value when the system runs.
   template <class P>
   struct Parameter;
   template <class F, class... Ps>
   void add_with(System system, F f, std::type_identity<std::tuple<Ps...>>);
 
-  // The untyped parts of provide and add. resource() ends the program when `asker` wants a type
-  // that was not provided.
+  // The untyped parts of provide and add. resource() ends the program if `asker` needs a type that
+  // was not provided.
   void provide_one(const void* type, std::string label, void* resource);
   void own(std::shared_ptr<void> resource);
   void* resource(const System& asker, const void* type, const std::string& label) const;
@@ -185,7 +187,7 @@ struct ParametersOf<R (F::*)(Ps...) noexcept> : std::type_identity<std::tuple<Ps
 template <class R, class F, class... Ps>
 struct ParametersOf<R (F::*)(Ps...) const noexcept> : std::type_identity<std::tuple<Ps...>> {};
 
-// Whether T is a Query.
+// True if T is a Query.
 template <class T>
 inline constexpr bool kIsQuery = false;
 template <class... Cs>
@@ -203,12 +205,12 @@ struct EventOf : std::type_identity<void> {};
 template <class T>
 struct EventOf<EventQueue<T>> : std::type_identity<T> {};
 
-// The name without its namespaces; template arguments keep theirs.
+// Returns the name without its namespaces; template arguments keep theirs.
 std::string without_namespace(std::string_view name);
 
 }  // namespace detail
 
-// A queue is called like its events.
+// A queue has the label of its events.
 template <class T>
 std::string Schedule::type_label() {
   using Event = typename detail::EventOf<T>::type;
@@ -216,7 +218,7 @@ std::string Schedule::type_label() {
   return detail::without_namespace(detail::type_name<T>());
 }
 
-// const R& or R&: a resource. As for all of these, the constructor records the accesses in
+// const R& or R&: a resource. In all specialisations, the constructor records the accesses in
 // `system`, and get() makes the argument of one run.
 template <class P>
 struct Schedule::Parameter {
@@ -341,7 +343,7 @@ struct Schedule::Parameter<B> {
   }
 };
 
-// The world, to change it or only to read it.
+// The world, to change it.
 template <>
 struct Schedule::Parameter<World&> {
   World& world;

@@ -70,7 +70,7 @@ TEST(FlightRun, RejectsInvalidFiles) {
   };
   EXPECT_EQ(error(whole), "accepted");
   EXPECT_THAT(error(""), HasSubstr("frames.csv"));
-  EXPECT_THAT(error(whole.substr(0, whole.size() - 4)), HasSubstr("cut"));
+  EXPECT_THAT(error(whole.substr(0, whole.size() - 4)), HasSubstr("truncated"));
   EXPECT_THAT(error(whole.substr(0, whole.find('\n') + 1)), HasSubstr("no frame"));
   EXPECT_THAT(error("time_s,frame_ms\n0,1\n"), HasSubstr("missing"));
   EXPECT_THAT(error(whole, "{}"), HasSubstr("summary.json"));

@@ -68,7 +68,7 @@ TEST(ComparePage, OverlaysTheShortestTimesOfBothSidesWithoutExcludedFrames) {
   EXPECT_THAT(page, HasSubstr(R"("name":"A","colour":1,"v":[10,11,12,13,null,10,)"));
   EXPECT_THAT(page, HasSubstr(R"("name":"B","colour":2,"v":[11,12.1,13.2,14.3,null,11,)"));
   EXPECT_THAT(page, HasSubstr(R"("name":"B / A","colour":5,"v":[1.1,1.1,)"));
-  EXPECT_THAT(page, HasSubstr(R"("apart":{"4":"left out of all runs"})"));
+  EXPECT_THAT(page, HasSubstr(R"("apart":{"4":"excluded from all runs"})"));
 }
 
 TEST(ComparePage, UsesTheNearestFrameForOtherTimes) {
