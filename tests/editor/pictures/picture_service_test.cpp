@@ -104,7 +104,7 @@ TEST(PictureService, AWorldThatCrashesTheProcessFailsAloneAndTheNextOneIsRendere
   Serving s;
   EXPECT_EQ(s.answer(picture_of(faulty_world(2))).error, "");
   const PictureReply hostile = s.answer(picture_of(faulty_world(6)));
-  EXPECT_NE(hostile.error.find("ended the drawing process (signal 6)"), std::string::npos)
+  EXPECT_NE(hostile.error.find("the rendering process crashed (signal 6)"), std::string::npos)
       << hostile.error;
   EXPECT_EQ(s.service.restarts(), 1);
   const PictureReply after = s.answer(picture_of(faulty_world(3)));
