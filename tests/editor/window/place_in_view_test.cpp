@@ -39,7 +39,7 @@ TEST_F(PlaceInView, IsPlacedDraggedTurnedSavedAndOpenedAgain) {
   auto* bar = window_->findChild<QToolBar*>("tools");
   QComboBox* types = nullptr;
   for (QComboBox* box : bar->findChildren<QComboBox*>())
-    if (box->accessibleName() == "The model to place") types = box;
+    if (box->accessibleName() == "Model to place") types = box;
   ASSERT_NE(types, nullptr);
   ASSERT_TRUE(QTest::qWaitFor([&] { return types->isVisible(); }, kMaxMs));
   EXPECT_EQ(types->currentText(), "windmill");
