@@ -151,8 +151,7 @@ TEST(MaskTool, EscapeCancelsTheStrokeAndAnEmptyStrokeIsNoStep) {
   click(bench.tool, sky());
   EXPECT_EQ(bench.messages.back(), "There is no ground here. Paint on the ground.");
   click(bench.tool, ground(2000, 100));
-  EXPECT_EQ(bench.messages.back(),
-            "The brush is outside the mask. Paint inside the blue border.");
+  EXPECT_EQ(bench.messages.back(), "The brush is outside the mask. Paint inside the blue border.");
   // Undo during a stroke ends the stroke.
   bench.tool.set_erases(true);
   bench.tool.press(ground(100, 100));

@@ -195,8 +195,7 @@ TEST(CommandLine, TheHourOfAPictureNeedsAWorldWithADay) {
                                      std::string("fly --headless --frames 1 --hour 12")}) {
     const Outcome outcome = run_psygen(command);
     EXPECT_EQ(outcome.code, 1) << command;
-    EXPECT_TRUE(mentions(outcome.err, "/worlds/paper.toml: this world has no day"))
-        << outcome.err;
+    EXPECT_TRUE(mentions(outcome.err, "/worlds/paper.toml: this world has no day")) << outcome.err;
   }
 }
 
