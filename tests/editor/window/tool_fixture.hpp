@@ -23,14 +23,6 @@ class ToolInView : public EditorWindow {
     draw();
   }
   WorldView& view() { return window_->view(); }
-  // Waits until the view has rendered the last action.
-  void draw(int pictures = 3) {
-    int drawn = 0;
-    const auto count =
-        QObject::connect(&view(), &WorldView::drawn, window_.get(), [&] { ++drawn; });
-    ASSERT_TRUE(QTest::qWaitFor([&] { return drawn >= pictures; }, kMaxMs));
-    QObject::disconnect(count);
-  }
   // A point east and south of the middle.
   static glm::dvec2 place(double east_m, double south_m) {
     return kMiddleM + glm::dvec2(east_m, south_m);

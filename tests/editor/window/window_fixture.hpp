@@ -52,14 +52,14 @@ inline double difference(const image::Image& a, const image::Image& b) {
   return static_cast<double>(differing) / (static_cast<double>(a.rgba.size()) / 4);
 }
 
-// Drags the handle of a slider to the right.
+// Drags the handle of a slider to the right, and delivers each move.
 inline void drag(QSlider& slider, int by_px) {
   QPoint at(slider.width() * slider.value() / std::max(slider.maximum(), 1), slider.height() / 2);
   at.setX(std::clamp(at.x(), 6, slider.width() - 8));
   QTest::mousePress(&slider, Qt::LeftButton, {}, at);
   for (int i = 1; i <= 8; ++i) {
     QTest::mouseMove(&slider, at + QPoint(by_px * i / 8, 0));
-    QTest::qWait(1);
+    QCoreApplication::processEvents();
   }
   QTest::mouseRelease(&slider, Qt::LeftButton, {}, at + QPoint(by_px, 0));
 }
@@ -119,6 +119,13 @@ class EditorWindow : public testing::Test {
   void settle() {
     const int before = settled_;
     ASSERT_TRUE(QTest::qWaitFor([&] { return settled_ > before; }, kMaxMs));
+  }
+  // Waits until the view has drawn this many more frames: the last action is in them.
+  void draw(int frames = 3) {
+    int drawn = 0;
+    QObject counter;  // ends the connection
+    QObject::connect(&window_->view(), &WorldView::drawn, &counter, [&] { ++drawn; });
+    ASSERT_TRUE(QTest::qWaitFor([&] { return drawn >= frames; }, kMaxMs));
   }
   image::Image picture() { return window_->view().session()->picture().value(); }
 

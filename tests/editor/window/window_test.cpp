@@ -134,6 +134,8 @@ TEST_F(EditorWindow, AClickSelectsTheObjectUnderThePointer) {
                     QPoint(size.width() / 2, size.height() - 5));
   ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().selection().has_value(); }, kMaxMs));
   EXPECT_LT(window_->view().selection()->distance_m, 300);
+  const bool is_ground = window_->view().selection()->kind == query::HitKind::kGround;
+  EXPECT_EQ(properties().section().steps[0].key, is_ground ? "terrain" : "scatter");
 }
 
 TEST_F(EditorWindow, KeysFlyTheCamera) {
@@ -149,19 +151,25 @@ TEST_F(EditorWindow, ResizingHidingAndEditingAtTheSameTimeHarmsNothing) {
   for (int i = 0; i < 12; ++i) {
     window_->resize(700 + 30 * (i % 5), 500 + 20 * (i % 3));
     ASSERT_TRUE(document().set_value(kCount, std::to_string(4 + i)));
-    QTest::qWait(5);
+    draw(1);
     if (i % 4 == 3) {
       window_->hide();
-      QTest::qWait(5);
+      ASSERT_TRUE(QTest::qWaitFor([&] { return !window_->view().isExposed(); }, kMaxMs));
       window_->show();
     }
   }
   ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().isExposed(); }, kMaxMs));
   ASSERT_TRUE(document().set_value(kCount, "6"));
   ASSERT_TRUE(QTest::qWaitFor([&] { return shown().scatter[0].count == 6; }, kMaxMs));
-  // Closes the window during synthesis.
+  // Deletes the window during synthesis.
   ASSERT_TRUE(document().set_value(kCount, "40"));
-  QTest::qWait(5);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return shown().scatter[0].count == 40; }, kMaxMs));
+  window_.reset();
+}
+
+TEST_F(EditorWindow, DeletingTheWindowWhileAThreadPreparesAWorldHarmsNothing) {
+  ASSERT_TRUE(document().set_value(kCount, "30"));
+  QCoreApplication::processEvents();  // starts the thread
   window_.reset();
 }
 

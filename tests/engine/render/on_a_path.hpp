@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <string>
 #include <tuple>
 
 #include "engine/render/preset.hpp"
@@ -20,6 +21,7 @@ class OnAPath : public testing::TestWithParam<How> {
   void SetUp() override {
     RendererOptions options;
     options.validation = true;
+    options.device_name = device_name();
     options.size = kSize;
     options.geometry_budget_bytes = 8 << 20;
     std::tie(options.path, options.submission, options.preset) = GetParam();
@@ -27,6 +29,8 @@ class OnAPath : public testing::TestWithParam<How> {
     ASSERT_TRUE(made) << made.error().message;
     renderer_ = std::move(*made);
   }
+  // Part of the device's name; empty: the best device.
+  virtual std::string device_name() const { return {}; }
   void TearDown() override {
     if (!renderer_) return;
     renderer_->wait_idle();

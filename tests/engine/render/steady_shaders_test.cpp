@@ -14,10 +14,11 @@ namespace {
 
 class SteadyShaders : public OneOfEach {
  protected:
+  // Only lavapipe compiles shaders anew, so it draws also where there is a GPU.
+  std::string device_name() const override { return "llvmpipe"; }
   void SetUp() override {
     OneOfEach::SetUp();
     if (!renderer_) return;
-    if (!renderer_->device().software) GTEST_SKIP() << "only software devices do";
     input_.water = WaterSurface{};
     input_.block_size_m = 64;
     emitter_.kind.half_extent_m = {2, 2, 0.5F};
@@ -26,7 +27,7 @@ class SteadyShaders : public OneOfEach {
     emitter_.cycle_s = 3;
     emitter_.cycle = 0.3F;
   }
-  // Draws the frame and says how many shaders that needed.
+  // Draws a frame and returns the number of shaders that it compiled.
   std::uint64_t compiled_for(const FrameInput& input) {
     draw(input);
     renderer_->wait_idle();
@@ -57,13 +58,16 @@ TEST_P(SteadyShaders, AreTheSameForAnyNumberOfLights) {
     lights.push_back({{0, static_cast<float>(i), -8}, 30, glm::vec3(5.0F)});
     input_.point_lights = lights;
     const std::uint64_t compiled = compiled_for(input_);
-    // With the first, shaders that know lights come in.
-    EXPECT_EQ(i == 1 ? 0U : compiled, 0U) << i << " lights";
+    if (i == 1) {
+      EXPECT_GT(compiled, 0U) << "compilations are not counted";
+    } else {
+      EXPECT_EQ(compiled, 0U) << i << " lights";
+    }
   }
 }
 
 TEST_P(SteadyShaders, AreTheSameWhereverTheCameraTheSunAndTheGroundAre) {
-  compiled_for(input_);
+  EXPECT_GT(compiled_for(input_), 0U) << "compilations are not counted";
   for (int i = 1; i <= 6; ++i) {
     const auto number = static_cast<float>(i);
     input_.water->level_m = (i & 1) != 0 ? number : -number;
