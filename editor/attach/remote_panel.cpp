@@ -137,7 +137,7 @@ void RemotePanel::show_statistics(const QJsonObject& f) {
   };
   statistics_->setText(
       tr("Running for %1 s%2. Frame time %3 ms (max %4). %5 triangles in %6 draws, error %7 px, "
-         "%8 % of pixels missing.<br>%9 queued; %10 modelers, %11 % busy. "
+         "%8 % of pixels missing.<br>%9 queued; %10 worker threads, %11 % busy. "
          "Cache: %14 meshes, %12 of %13.")
           .arg(f["time_s"].toDouble(), 0, 'f', 1)
           .arg(f["paused"].toBool() ? tr(", paused") : QString())

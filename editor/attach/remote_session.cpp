@@ -116,7 +116,8 @@ void RemoteSession::poll() {
   }
   if (detaching_.isValid()) {
     if (detaching_.hasExpired(kMaxDetachMs))
-      end(tr("The program did not answer. It keeps its original state."));
+      end(tr(
+          "The program did not answer. It returns to its original state, without your changes."));
     return;
   }
   if (!greeted_) return;

@@ -68,17 +68,17 @@ QString confirmation_for(const EditCost& before, const EditCost& after, const Co
   };
   const QLocale english(QLocale::English);
   if (is_beyond(&EditCost::model_seconds, limits.model_seconds))
-    return QObject::tr("One model “%1” takes %2 to synthesise.")
+    return QObject::tr("One model “%1” would take %2 to synthesise.")
         .arg(QString::fromStdString(after.model), seconds_text(after.model_seconds));
   if (!is_beyond(&EditCost::block_seconds, limits.block_seconds) &&
       !is_beyond(&EditCost::block_bytes, limits.cache_bytes / limits.blocks))
     return {};
-  return QObject::
-      tr("A block at full detail takes %1 to synthesise and %2 of memory. The cache holds %3 such "
-         "blocks.")
-          .arg(seconds_text(after.block_seconds),
-               english.formattedDataSize(std::llround(after.block_bytes), 1),
-               english.toString(std::floor(limits.cache_bytes / std::max(after.block_bytes, 1.0))));
+  return QObject::tr(
+             "A block at full detail would take %1 to synthesise and %2 of memory. The cache would "
+             "hold %3 such blocks.")
+      .arg(seconds_text(after.block_seconds),
+           english.formattedDataSize(std::llround(after.block_bytes), 1),
+           english.toString(std::floor(limits.cache_bytes / std::max(after.block_bytes, 1.0))));
 }
 
 }  // namespace psygen::editor

@@ -191,7 +191,7 @@ QString impact_text(const WorldImpact& impact) {
                                : QObject::tr("Nothing to rebuild.");
   }
   const auto whole = [&](double count) { return english.toString(std::llround(count)); };
-  return QObject::tr("Rebuilds %1 of %2 meshes (%3). Memory afterwards: %4 of %5.")
+  return QObject::tr("Rebuilds about %1 of %2 meshes (%3). Memory afterwards: %4 of %5.")
       .arg(whole(impact.changed), whole(impact.held), seconds_text(impact.seconds),
            english.formattedDataSize(std::llround(impact.bytes), 1),
            english.formattedDataSize(std::llround(impact.budget_bytes), 0));

@@ -42,7 +42,7 @@ struct WorldImpact {
 WorldImpact impact_of(const ParsedWorld& before, const ParsedWorld& after, core::BlockCoord around,
                       const CacheContents& contents, const synthesis::CostModel* learnt);
 
-// Returns a text such as "Rebuilds 3,412 of 8,120 meshes (0.7 s). Memory afterwards: …".
+// Returns a text such as "Rebuilds about 3,412 of 8,120 meshes (0.7 s). Memory afterwards: …".
 QString impact_text(const WorldImpact& impact);
 
 }  // namespace psygen::editor

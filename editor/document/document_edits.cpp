@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "editor/document/document.hpp"
+#include "editor/document/field_value.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/text_file.hpp"
@@ -34,71 +35,6 @@ std::vector<const world::WorldField*> fields_below(
     fields.insert(fields.end(), parts.begin(), parts.end());
   }
   return fields;
-}
-
-// The name in a TOML string; names of model types need no escapes.
-std::string_view unquoted(std::string_view toml) {
-  return toml.size() >= 2 ? toml.substr(1, toml.size() - 2) : std::string_view();
-}
-
-// True for paths such as species[2].name, of a table in an array of the root.
-bool is_key_of_item(const world::TextPath& path, std::string_view key) {
-  return path.size() == 3 && path.steps[1].is_index && path.back().key == key;
-}
-
-// Model types of the scatter layers and of the models placed by hand, with the paths of their
-// tables.
-std::vector<std::pair<world::TextPath, models::ModelIndex>> models_in_use(
-    const world::World& world) {
-  std::vector<std::pair<world::TextPath, models::ModelIndex>> models;
-  for (std::size_t i = 0; i < world.scatter.size(); ++i)
-    models.emplace_back(world::TextPath{"scatter", i}, world.scatter[i].model);
-  for (std::size_t i = 0; i < world.places.all.size(); ++i)
-    models.emplace_back(world::TextPath{"place", i}, world.places.all[i].model);
-  return models;
-}
-
-// The text after a new name at `path`, with the new name in all tables that use the model type.
-// `before` is the world of the old name.
-Text with_model_renamed(std::string text, const world::TextPath& path, const ParsedWorld& before) {
-  const world::World& world = before.world;
-  const std::size_t item = path.steps[1].index;
-  std::string old_name;
-  if (path.steps[0].key == "species" && item < world.species.size())
-    old_name = world.species[item].name;
-  if (path.steps[0].key == "model" && item < world.models.size())
-    old_name = world.models[item].name;
-  const auto name = world::value_text(text, path);
-  if (old_name.empty() || !name) return text;
-  for (const auto& [table, model] : models_in_use(world)) {
-    if (before.registry[model].name() != old_name) continue;
-    Text renamed = world::with_value(text, table.with("model"), *name);
-    if (!renamed) return renamed;
-    text = *std::move(renamed);
-  }
-  return text;
-}
-
-// The text after another model type at `path`, without parameters that this type does not have.
-// `before` is the world of the old type.
-Text without_unknown_parameters(std::string text, const world::TextPath& path,
-                                const ParsedWorld& before) {
-  const auto is_same_table = [&](const auto& used) { return used.first == path.parent(); };
-  const auto models = models_in_use(before.world);
-  const auto used = std::ranges::find_if(models, is_same_table);
-  const int now = before.registry.find(unquoted(world::value_text(text, path).value_or("")));
-  if (used == models.end() || now < 0) return text;
-  const models::ModelType& type = before.registry[static_cast<models::ModelIndex>(now)];
-  for (const models::ParameterSpec& spec : before.registry[used->second].parameters()) {
-    const int i = models::parameter_index(type, spec.name);
-    if (i >= 0 &&
-        type.parameters()[static_cast<std::size_t>(i)].source == models::ParameterSource::kUser)
-      continue;
-    Text fewer = world::without_value(text, path.parent().with(spec.name));
-    if (!fewer) return fewer;
-    text = *std::move(fewer);
-  }
-  return text;
 }
 
 }  // namespace
@@ -170,12 +106,7 @@ int Document::begin_drag() {
 
 core::Result<void> Document::set_value(const world::TextPath& path, std::string_view toml_value) {
   return edit(tr("Set %1").arg(shown(path)), [&](std::string_view text) -> Text {
-    const Text changed = world::with_value(text, path, toml_value);
-    if (changed && is_key_of_item(path, "name"))
-      return with_model_renamed(*changed, path, *parsed_);
-    if (changed && is_key_of_item(path, "model"))
-      return without_unknown_parameters(*changed, path, *parsed_);
-    return changed;
+    return with_field_value(text, *parsed_, path, toml_value);
   });
 }
 

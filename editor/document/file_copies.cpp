@@ -49,7 +49,7 @@ core::Result<void> FileCopies::add(const fs::path& from, const fs::path& to) {
   std::array<char, kChunkBytes> bytes;
   for (auto chunk = next_chunk(source, bytes); !chunk.empty(); chunk = next_chunk(source, bytes))
     file->write(chunk);
-  if (source.bad()) return cannot_copy(from, to, "reading failed before its end");
+  if (source.bad()) return cannot_copy(from, to, "reading stopped before the end of the file");
   if (auto flushed = file->flush(); !flushed) return flushed;
   files_.push_back(std::move(file));
   targets_.push_back(to);

@@ -1,12 +1,12 @@
 // The scale of a number's slider: converts a fraction of the soft range to a value and back, on a
-// linear or logarithmic scale. Values have at most three digits. Pure.
+// linear or logarithmic scale. Values have at most three significant digits. Pure.
 #pragma once
 
 #include "engine/world/files/world_schema.hpp"
 
 namespace psygen::editor {
 
-// Rounds to three decimal digits, so that files contain 0.7 and not 0.7000000000000001.
+// Rounds to three significant digits, so that files contain 0.7 and not 0.7000000000000001.
 double with_digits(double value);
 
 struct Scale {

@@ -10,6 +10,7 @@
 #include <QSpinBox>
 #include <algorithm>
 
+#include "editor/document/field_value.hpp"
 #include "editor/gallery/picture_cell.hpp"
 #include "editor/pictures/model_world.hpp"
 #include "editor/pictures/picture_service.hpp"
@@ -188,8 +189,8 @@ void ContactSheet::fill() {
   more_->setVisible(std::ranges::any_of(
       swept_, [](const auto& field) { return field.kind == world::FieldKind::kSeed; }));
   const auto columns = static_cast<std::size_t>(columns_->value());
-  auto cells = sweep_cells(document_.text(), swept_, static_cast<std::size_t>(rows_->value()),
-                           columns, page_);
+  auto cells = sweep_cells(document_.text(), *document_.parsed(), swept_,
+                           static_cast<std::size_t>(rows_->value()), columns, page_);
   for (const Shown& shown : shown_)
     delete shown.widget;
   shown_.clear();
@@ -330,13 +331,13 @@ void ContactSheet::apply(std::size_t i) {
   if (i >= shown_.size()) return;
   const std::vector<std::string> values = shown_[i].cell.values;
   const auto view = ask_view_();
-  const auto done = document_.edit(tr("Apply %1").arg(QString::fromStdString(swept_[0].label)),
-                                   [&](std::string_view before) {
-                                     core::Result<std::string> text{std::string(before)};
-                                     for (std::size_t f = 0; text && f < swept_.size(); ++f)
-                                       text = world::with_value(*text, swept_[f].path, values[f]);
-                                     return text;
-                                   });
+  const auto done = document_.edit(
+      tr("Apply %1").arg(QString::fromStdString(swept_[0].label)), [&](std::string_view before) {
+        core::Result<std::string> text{std::string(before)};
+        for (std::size_t f = 0; text && f < swept_.size(); ++f)
+          text = with_field_value(*text, *document_.parsed(), swept_[f].path, values[f]);
+        return text;
+      });
   if (!done) return Q_EMIT edit_rejected(QString::fromStdString(done.error().message));
   if (view && subject_->currentIndex() == 0) Q_EMIT value_applied(view->above_m);
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr int kSteps = 1000;
 
 // A box that shows as many decimals as its value needs. It handles arrow keys and typed digits;
-// undo, redo and the wheel go to the window.
+// undo and redo go to the window, and so does the wheel unless the box has the focus.
 class NumberBox final : public QDoubleSpinBox {
  public:
   using QDoubleSpinBox::QDoubleSpinBox;

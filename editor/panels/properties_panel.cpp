@@ -233,7 +233,9 @@ void PropertiesPanel::search(const QString& text) {
     if (rows_.empty()) lines_->addWidget(new QLabel(tr("No matching fields.")));
   }
   lines_->addStretch(1);
-  scroll_->setWidget(form_);  // deletes the previous form
+  // A row of the previous form may be in the middle of its signal.
+  if (QWidget* previous = scroll_->takeWidget()) previous->deleteLater();
+  scroll_->setWidget(form_);
 }
 
 std::vector<world::WorldField> PropertiesPanel::shown_fields() const {

@@ -11,7 +11,7 @@ class QToolButton;
 
 namespace psygen::editor {
 
-// The reset button is enabled if a field has a value other than its default.
+// The reset button is enabled if the text sets a field, even to its default.
 class SectionBar final : public QWidget {
   Q_OBJECT
 

@@ -60,8 +60,8 @@ StatisticsPanel::StatisticsPanel(WorldView& view)
     : world_(new QLabel), cache_(new QLabel), table_(new QTableWidget) {
   world_->setWordWrap(true);
   cache_->setWordWrap(true);
-  const QStringList columns{tr("Model"),  tr("Meshes"),   tr("Triangles"), tr("Vertices"),
-                            tr("Memory"), tr("Of cache"), tr("p50 ms"),    tr("p99 ms")};
+  const QStringList columns{tr("Model"),  tr("Meshes"),         tr("Triangles"), tr("Vertices"),
+                            tr("Memory"), tr("Share of cache"), tr("p50 ms"),    tr("p99 ms")};
   table_->setColumnCount(static_cast<int>(columns.size()));
   table_->setHorizontalHeaderLabels(columns);
   table_->verticalHeader()->hide();

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "editor/document/field_value.hpp"
 #include "editor/document/scale.hpp"
 #include "engine/core/hash.hpp"
-#include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
 
 namespace psygen::editor {
@@ -84,7 +84,7 @@ std::vector<std::string> sweep_values(const world::WorldField& field, std::size_
   return values;
 }
 
-core::Result<std::vector<SweepCell>> sweep_cells(const std::string& text,
+core::Result<std::vector<SweepCell>> sweep_cells(const std::string& text, const ParsedWorld& world,
                                                  const std::vector<world::WorldField>& fields,
                                                  std::size_t rows, std::size_t columns,
                                                  std::uint64_t page) {
@@ -92,7 +92,7 @@ core::Result<std::vector<SweepCell>> sweep_cells(const std::string& text,
   const auto add = [&](std::vector<std::string> values) -> core::Result<void> {
     SweepCell cell{.values = std::move(values), .text = text, .is_present = true};
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      auto changed = world::with_value(cell.text, fields[i].path, cell.values[i]);
+      auto changed = with_field_value(cell.text, world, fields[i].path, cell.values[i]);
       if (!changed) return tl::unexpected(changed.error());
       cell.text = *std::move(changed);
       cell.is_present = cell.is_present && cell.values[i] == fields[i].value;

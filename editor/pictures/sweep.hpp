@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "editor/document/parsed_world.hpp"
 #include "engine/core/error.hpp"
 #include "engine/world/files/world_schema.hpp"
 
@@ -28,9 +29,9 @@ struct SweepCell {
   bool is_present = false;          // the values are those of the present world
 };
 
-// The sheet of a world text. One field fills it row by row; of two fields, the first varies along
-// the columns and the second along the rows. Fails like world::with_value().
-core::Result<std::vector<SweepCell>> sweep_cells(const std::string& text,
+// The sheet of a world text; `world` is its world. One field fills it row by row; of two fields,
+// the first varies along the columns and the second along the rows. Fails like with_field_value().
+core::Result<std::vector<SweepCell>> sweep_cells(const std::string& text, const ParsedWorld& world,
                                                  const std::vector<world::WorldField>& fields,
                                                  std::size_t rows, std::size_t columns,
                                                  std::uint64_t page = 0);

@@ -56,7 +56,7 @@ void FlightCommands::add_to_menu(QMenu& menu) {
   record->setCheckable(true);
   connect(panel_, &TimelinePanel::recording_changed, record, &QAction::setChecked);
   menu.addAction(tr("&Play from here"), panel_, [this] { panel_->play(true); });
-  menu.addAction(tr("Re-run with these &settings"), panel_, &TimelinePanel::fly);
+  menu.addAction(tr("Re-run with the timeline's &settings"), panel_, &TimelinePanel::fly);
   menu.addSeparator();
   menu.addAction(tr("&Open a path …"), panel_, [this] {
     show_panel(*panel_);

@@ -71,7 +71,7 @@ class MainWindow final : public QMainWindow {
   MainWindowOptions options_;
   Document document_;
   WorldView* view_;
-  // Children of the window, made by add_view() and add_commands().
+  // Children of the window.
   PropertiesPanel* properties_ = nullptr;
   MessageLog* messages_ = nullptr;
   ModelView* model_ = nullptr;

@@ -10,7 +10,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kLeftPx = 380, kRightPx = 240, kBottomPx = 150;  // of the first layout
+constexpr int kRightPx = 240, kBottomPx = 150;  // of the first layout
 
 Qt::DockWidgetArea area_of(PanelPlace place) {
   switch (place) {
@@ -62,8 +62,8 @@ std::vector<QAction*> add_panels(QMainWindow& window, const std::vector<Panel>& 
   }
   for (const auto& [place, dock] : front)
     dock->raise();
-  window.resizeDocks({front[PanelPlace::kLeft], front[PanelPlace::kTopRight]}, {kLeftPx, kRightPx},
-                     Qt::Horizontal);
+  window.resizeDocks({front[PanelPlace::kLeft], front[PanelPlace::kTopRight]},
+                     {kLeftPanelsPx, kRightPx}, Qt::Horizontal);
   window.resizeDocks({front[PanelPlace::kBottom]}, {kBottomPx}, Qt::Vertical);
   return commands;
 }

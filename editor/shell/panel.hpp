@@ -26,6 +26,8 @@ struct Panel {
   std::function<QWidget*()> make;
 };
 
+inline constexpr int kLeftPanelsPx = 380;  // width of the panels on the left, at first
+
 // Makes a dock of each panel, in their order. Returns the commands that show and close the panels,
 // in the same order.
 std::vector<QAction*> add_panels(QMainWindow& window, const std::vector<Panel>& panels);

@@ -13,7 +13,7 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kPropertiesPx = 380, kAttachedPx = 330;  // while a program is attached
+constexpr int kAttachedPx = 330;  // width of the panel while a program is attached
 
 }  // namespace
 
@@ -55,7 +55,7 @@ void RemoteCommands::connect_panel() {
 
 void RemoteCommands::on_attached(const std::string& world_text) {
   show_panel(*panel_);
-  window_.resizeDocks({&dock_of(properties_), &dock_of(*panel_)}, {kPropertiesPx, kAttachedPx},
+  window_.resizeDocks({&dock_of(properties_), &dock_of(*panel_)}, {kLeftPanelsPx, kAttachedPx},
                       Qt::Horizontal);
   if (world_text != document_.text()) {
     if (!files_.may_discard()) return remote_->detach(false);

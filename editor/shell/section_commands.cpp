@@ -28,10 +28,12 @@ SectionCommands::SectionCommands(const EditorContext& context, LibraryPanel& lib
     : QObject(&context.window),
       window_(context.window),
       document_(context.document),
+      view_(context.view),
       properties_(context.properties),
       messages_(context.messages),
       library_(library) {
   connect_properties();
+  connect(&view_, &WorldView::picked, this, &SectionCommands::open_section_of_selection);
 }
 
 void SectionCommands::connect_properties() {
@@ -60,6 +62,17 @@ void SectionCommands::connect_properties() {
           [this](const world::TextPath& path, bool locked) {
             document_.locks().set_locked(path, locked);
           });
+}
+
+// The section of the model type, or of the terrain for the ground.
+void SectionCommands::open_section_of_selection() {
+  const Selection& selection = *view_.selection();
+  const std::string_view name = view_.session()->scene().registry()[selection.model].name();
+  const bool is_ground = selection.kind == query::HitKind::kGround;
+  for (const world::WorldSection& section : document_.sections()) {
+    if (section.title == name || (is_ground && section.kind == world::SectionKind::kTerrain))
+      return properties_.go_to(section.path);
+  }
 }
 
 void SectionCommands::add_to_edit_menu(QMenu& menu) {
@@ -142,7 +155,10 @@ void SectionCommands::move(const world::TextPath& path, int by) {
   const std::size_t count = world::item_count(document_.text(), path.parent());
   if (by < 0 ? from == 0 : from + 1 >= count) return;
   const std::size_t to = by < 0 ? from - 1 : from + 1;
-  if (messages_.check(document_.move_table(path, to))) properties_.go_to(path.parent().with(to));
+  const std::string before = document_.text();
+  // An edit that awaits confirmation has not moved the section yet.
+  if (messages_.check(document_.move_table(path, to)) && document_.text() != before)
+    properties_.go_to(path.parent().with(to));
 }
 
 void SectionCommands::save_preset() {

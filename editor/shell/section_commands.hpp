@@ -31,6 +31,7 @@ class SectionCommands final : public QObject {
 
  private:
   void connect_properties();
+  void open_section_of_selection();
   void randomise(const world::TextPath& path);
   void copy(const world::TextPath& path);
   void paste(const world::TextPath& path);
@@ -44,6 +45,7 @@ class SectionCommands final : public QObject {
 
   QMainWindow& window_;
   Document& document_;
+  WorldView& view_;
   PropertiesPanel& properties_;
   MessageLog& messages_;
   LibraryPanel& library_;

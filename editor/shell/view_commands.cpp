@@ -97,7 +97,7 @@ void ViewCommands::add_debug_views(QMenu& menu) {
     render::View view;
   };
   const Entry entries[] = {
-      {tr("&Normal"), render::View::kNormal},       {tr("&Levels"), render::View::kLevels},
+      {tr("N&ormal"), render::View::kNormal},       {tr("&Levels"), render::View::kLevels},
       {tr("PLP l&ayers"), render::View::kLayers},   {tr("&Bounds"), render::View::kBounds},
       {tr("&Wireframe"), render::View::kWireframe}, {tr("&Missing"), render::View::kMissing},
       {tr("&Cache"), render::View::kCache}};

@@ -10,7 +10,7 @@ class QMenu;
 
 namespace psygen::editor {
 
-// Commands do nothing without a session of the view.
+// Without a session of the view, commands that need its scene do nothing or show a message.
 class ViewCommands final : public QObject {
   Q_OBJECT
 

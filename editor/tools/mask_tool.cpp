@@ -135,7 +135,7 @@ void MaskTool::make_mask() {
                                          {PaintChange(name, nullptr, picture)}, *text);
   if (!host_.check(done)) return;
   host_.show_message(
-      mask_words("%1 now grows only inside the blue border. Erase to remove it there. Saving the "
+      mask_words("%1 now appears only inside the blue border. Erase to remove it there. Saving the "
                  "world writes the mask to %2.")
           .arg(model_name(), QString::fromStdString(name)));
 }

@@ -24,8 +24,7 @@ core::Result<std::uint32_t> pixels_of(double side_m, double pixel_m) {
   if (pixels <= NewMask::kMaxPixels) return static_cast<std::uint32_t>(pixels);
   return core::fail(core::ErrorCode::kOverBudget,
                     fmt::format("A mask of {:.0f} m with {:g} m per pixel has {:.0f} pixels a side "
-                                "(allowed: {}). Make the "
-                                "area smaller or the pixels larger.",
+                                "(allowed: {}). Make the area smaller or the pixels larger.",
                                 side_m, pixel_m, pixels, NewMask::kMaxPixels));
 }
 

@@ -39,7 +39,6 @@ QDoubleSpinBox* NewMaskBar::add_metres(const QString& label, const QString& name
   auto* edit = new QDoubleSpinBox;
   edit->setAccessibleName(name);
   edit->setToolTip(name);
-
   edit->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
   edit->setGroupSeparatorShown(true);
   edit->setSuffix(tr(" m"));

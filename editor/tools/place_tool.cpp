@@ -137,7 +137,9 @@ void PlaceTool::turn(double degrees) {
   const int parameter = models::parameter_index(type, "turn_deg");
   if (parameter < 0)
     return host_.show_message(
-        place_words("%1 cannot be turned: it has no parameter turn_deg, as models from files have.")
+        place_words(
+            "%1 cannot be turned. Only models with the parameter turn_deg can, such as those "
+            "from files.")
             .arg(QString::fromUtf8(type.name().data(), static_cast<int>(type.name().size()))));
   double now =
       std::fmod(turned.parameters.real(static_cast<std::size_t>(parameter)) + degrees, 360);

@@ -131,7 +131,7 @@ void ViewTools::add_places() {
 }
 
 void ViewTools::add_masks() {
-  add_tool(mask_, tr("Paint masks"), "F4", tr("Paint where a scatter layer grows"));
+  add_tool(mask_, tr("Paint masks"), "F4", tr("Paint where a scatter layer appears"));
   masks_ = new QComboBox;
   masks_->setAccessibleName(tr("Scatter layer of the mask"));
   masks_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
@@ -208,7 +208,8 @@ void ViewTools::add_commands(QMainWindow& window) {
       {&mask_, add_command(window, tr("Larger brush"), Qt::Key_BracketRight, scale(kGrowth))},
       {&mask_, erase_},
       {&mask_, new_mask_}};
-  remove_ = add_command(window, tr("Delete"), QKeySequence::Delete, [this] { remove(); });
+  remove_ = add_command(window, tr("Delete the chosen point or model"), QKeySequence::Delete,
+                        [this] { remove(); });
   leave_ = add_command(window, tr("Exit tool"), Qt::Key_Escape, [this] { escape(); });
 }
 

@@ -47,7 +47,7 @@ class GroundRays {
                                const glm::dvec3& direction);
   // To be called after a change of the world.
   void note_world() { world_is_new_ = true; }
-  // To be called before the state is destroyed.
+  // To be called before the scene is destroyed.
   void clear() { ground_.reset(); }
 
  private:

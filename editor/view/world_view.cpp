@@ -169,6 +169,7 @@ void WorldView::tick() {
     select(pick(
         scene, camera_.pose(),
         direction_of(*click, session_->picture_size(), camera_.pose(), scene.camera().projection)));
+    if (selection_) Q_EMIT picked();
   }
   serve_tool();
   write_overlays();
@@ -226,8 +227,9 @@ void WorldView::note_answered() {
 void WorldView::note_settled() {
   if (!since_text_.isValid() || text_is_new_ || prepared_.valid() || draft_) return;
   const scene::Scene& scene = session_->scene();
-  if (scene.statistics().awaited > 0 || scene.meshes().outstanding() > 0 || scene.quality().draft ||
-      scene.statistics().impostors_missing)
+  const scene::Statistics statistics = scene.statistics();
+  if (statistics.awaited > 0 || scene.meshes().outstanding() > 0 || scene.quality().draft ||
+      statistics.impostors_missing)
     return;
   Q_EMIT settled(static_cast<double>(since_text_.nsecsElapsed()) * 1e-6);
   since_text_.invalidate();

@@ -100,6 +100,8 @@ class WorldView final : public QWindow {
   void world_rejected(const QString& error);
   // The selection changed.
   void selected();
+  // A click in the view has selected a model or the ground.
+  void picked();
   // A frame was rendered, in this time.
   void drawn(double frame_ms);
   // The first frame in which everything near and visible belongs to the newest text, at any level

@@ -181,6 +181,27 @@ core::Result<std::string> with_value(std::string_view text, const TextPath& path
   return changed;
 }
 
+core::Result<std::string> with_each_value(std::string_view text,
+                                          const std::function<bool(const TextPath&)>& which,
+                                          std::string_view toml_value) {
+  if (auto checked = check_value({}, toml_value); !checked)
+    return tl::unexpected(std::move(checked.error()));
+  const auto layout = lay_out_edited(text);
+  if (!layout) return tl::unexpected(layout.error());
+  std::string out;
+  std::size_t copied = 0;
+  TextPath last;
+  for (const TextPlace& place : layout->places) {
+    if (place.is_header() || place.value.begin < copied || !which(place.path)) continue;
+    out += text.substr(copied, place.value.begin - copied);
+    out += toml_value;
+    copied = place.value.end;
+    last = place.path;
+  }
+  out += text.substr(copied);
+  return checked_edit(std::move(out), last);
+}
+
 core::Result<std::string> without_value(std::string_view text, const TextPath& path) {
   const auto layout = lay_out_edited(text);
   if (!layout) return tl::unexpected(layout.error());

@@ -4,6 +4,7 @@
 // thread; linear in the text.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,6 +22,11 @@ namespace psygen::world {
 // value stays. Tables with headers are not values.
 core::Result<std::string> with_value(std::string_view text, const TextPath& path,
                                      std::string_view toml_value);
+// The text with this value at every path that `which` accepts and that has a value. Reads the text
+// once, however many paths there are.
+core::Result<std::string> with_each_value(std::string_view text,
+                                          const std::function<bool(const TextPath&)>& which,
+                                          std::string_view toml_value);
 // The text without a value: removes its lines and the comment behind it, or its entry in an array
 // or inline table. Returns the text unchanged if there is no value at `path`.
 core::Result<std::string> without_value(std::string_view text, const TextPath& path);

@@ -86,7 +86,7 @@ TEST(Sweep, EverySweptFieldOfEveryShippedWorldGivesValidWorlds) {
     const world::WorldField* seed = world::find_field(*sections, {"world", "seed"});
     const world::WorldField* relief = world::find_field(*sections, {"terrain", "relief_m"});
     ASSERT_TRUE(seed != nullptr && relief != nullptr);
-    const auto cells = sweep_cells(text, {*relief, *seed}, 2, 3);
+    const auto cells = sweep_cells(text, **parsed, {*relief, *seed}, 2, 3);
     ASSERT_TRUE(cells.has_value()) << cells.error().message;
     ASSERT_EQ(cells->size(), 6U);
     EXPECT_EQ((*cells)[0].values[1], (*cells)[2].values[1]) << "the second field fills columns";
@@ -102,7 +102,8 @@ TEST(Sweep, TheCellWithThePresentValuesIsMarked) {
   ASSERT_TRUE(parsed.has_value());
   const auto sections = world::world_schema(text, (*parsed)->world, (*parsed)->registry);
   ASSERT_TRUE(sections.has_value());
-  const auto cells = sweep_cells(text, {*world::find_field(*sections, {"world", "seed"})}, 2, 2);
+  const auto cells =
+      sweep_cells(text, **parsed, {*world::find_field(*sections, {"world", "seed"})}, 2, 2);
   ASSERT_TRUE(cells.has_value());
   ASSERT_EQ(cells->size(), 4U);
   EXPECT_TRUE((*cells)[0].is_present);

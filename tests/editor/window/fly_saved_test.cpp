@@ -3,13 +3,10 @@
 #include <QJsonDocument>
 #include <QJsonObject>
 #include <QProcess>
-#include <iterator>
 
 #include "editor/flights/flight_process.hpp"
 #include "editor/panels/field_row.hpp"
-#include "engine/world/files/text_snippet.hpp"
-#include "tests/editor/window/window_fixture.hpp"
-#include "tests/source_file.hpp"
+#include "tests/editor/window/oak_fixture.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -29,18 +26,7 @@ QJsonObject flown(const std::filesystem::path& world, const std::filesystem::pat
   return QJsonDocument::fromJson(summary.readAll()).object();
 }
 
-// The small world with the oak of the library.
-class FlySaved : public EditorWindow {
- protected:
-  std::string world_text() override {
-    std::ifstream in(source_file("editor/library/species/oak.toml"));
-    const std::string preset{std::istreambuf_iterator<char>(in), {}};
-    const auto species = world::read_preset(preset, "oak.toml");
-    EXPECT_TRUE(species.has_value());
-    return std::string(kSmallWorld) + "\n" + *species +
-           "\n[[scatter]]\nmodel = \"oak\"\ncount = 8\n";
-  }
-};
+using FlySaved = OakInWindow;
 
 TEST_F(FlySaved, TheGameRendersTheSpeciesThatWasEdited) {
   const world::TextPath species{"species", 0}, size{"species", 0, "size_m"};

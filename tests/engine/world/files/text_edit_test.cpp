@@ -42,6 +42,21 @@ std::string replaced(std::string_view from, std::string_view to) {
   return testing::replaced(kText, from, to);
 }
 
+TEST(TextEdit, SetsOneValueAtEveryPathThatIsAccepted) {
+  const auto is_model = [](const TextPath& path) {
+    return path.size() == 3 && path.back().key == "model";
+  };
+  const auto changed = with_each_value(kText, is_model, "\"birch\"");
+  ASSERT_TRUE(changed) << changed.error().message;
+  EXPECT_EQ(*changed, set(set(kText, {"scatter", 0, "model"}, "\"birch\""), {"scatter", 1, "model"},
+                          "\"birch\""));
+  EXPECT_EQ(with_each_value(
+                kText, [](const TextPath&) { return false; }, "1"),
+            kText);
+  EXPECT_FALSE(with_each_value(kText, is_model, "1 # more"));
+  EXPECT_FALSE(with_each_value("a = ", is_model, "1"));
+}
+
 TEST(TextEdit, ReplacesAValueAndKeepsTheCommentBehindIt) {
   EXPECT_EQ(set(kText, {"world", "name"}, "\"Täler\""),
             replaced("\"Hügel # 7\"   # the name", "\"Täler\"   # the name"));
