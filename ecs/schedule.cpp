@@ -25,7 +25,8 @@ double now_s() {
 }
 
 // Ends the program if the parameters name a resource twice: one of the two would be superfluous, or
-// would write a resource that the other takes as constant.
+// would write a resource that the other takes as constant. Readers are no resources: a system may
+// read a queue and emit into it.
 void expect_each_once(const SystemInfo& system) {
   const auto source = [](const Access& access) {
     return access.bundle.empty() ? std::string("by itself") : "in " + access.bundle;
@@ -34,6 +35,7 @@ void expect_each_once(const SystemInfo& system) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (all[i].type != all[k].type || all[i].is_component) continue;
+      if (all[i].is_reader || all[k].is_reader) continue;
       detail::give_up("schedule: the system '" + system.name + "' takes " + all[i].name +
                       " twice, " + source(all[k]) + " and " + source(all[i]));
     }

@@ -50,6 +50,7 @@ struct Access {
   bool writes;
   bool is_component;
   std::string bundle = {};  // outermost bundle that names it, without its namespace; or empty
+  bool is_reader = false;   // the system's own EventReader, beside which it may take the queue
 };
 
 // A system's accesses and times. Times are in seconds; they are 0 before the first run.
@@ -261,7 +262,11 @@ struct Schedule::Parameter<EventReader<T>&> {
     auto* queue =
         static_cast<Queue*>(schedule.resource(system, &kIdentity<Queue>, type_label<Queue>()));
     reader = std::make_unique<EventReader<T>>(queue->reader());
-    system.info.accesses.push_back({type_label<Queue>(), &kIdentity<Queue>, true, false});
+    system.info.accesses.push_back({.name = type_label<Queue>(),
+                                    .type = &kIdentity<Queue>,
+                                    .writes = true,
+                                    .is_component = false,
+                                    .is_reader = true});
   }
   EventReader<T>& get() const { return *reader; }
 };

@@ -153,7 +153,8 @@ core::Result<void> Game::begin(app::Session& session, Loaded loaded) {
   const core::CameraPose eyes = frame(session, 0);
   if (auto ok = session.prepare(eyes); !ok) return ok;
   if (lands_->play->progress().time_s < 1)
-    hud_.say("Twelve cairns stand in this land.", "The needle points to the next one.", 8);
+    hud_.say("Twelve cairns stand in this land.", "The mark on the compass points to the next one.",
+             8);
   return {};
 }
 

@@ -67,7 +67,6 @@ void Flight::write_over_picture() {
   facts.preset = session_->renderer().preset();
   facts.key_speed_m_s = fly_camera_.speed_m_s();
   facts.record = record_;
-  facts.gpu = scene.drawn().gpu;
   scene.input().panels = photograph_ ? hud_.lasting_panels(scene, facts)
                                      : hud_.panels(scene, facts, core::monotonic_seconds());
   if (session_->paused() && !photograph_)

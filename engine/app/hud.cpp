@@ -72,7 +72,7 @@ std::vector<render::TextLine> Hud::figures(const scene::Scene& scene, const HudF
   std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
   const double median_ms = sorted[count / 2], worst_ms = sorted[count - 1];
   const telemetry::FrameRecord& record = facts.record;
-  const std::optional<render::GpuTime>& gpu = facts.gpu;
+  const std::optional<render::GpuTime>& gpu = scene.drawn().gpu;
   const core::WorldPosition& at = scene.camera().pose.position;
   const double speed_m_s = glm::length(scene.camera().predictor.velocity_m_s());
   return {

@@ -19,9 +19,8 @@ namespace psygen::app {
 struct HudFacts {
   render::DeviceInfo device;
   render::Preset preset = render::Preset::kLow;
-  double key_speed_m_s = 0;            // speed at which the keys move the camera
-  telemetry::FrameRecord record;       // of the last frame
-  std::optional<render::GpuTime> gpu;  // of the latest frame whose GPU time is known
+  double key_speed_m_s = 0;       // speed at which the keys move the camera
+  telemetry::FrameRecord record;  // of the last frame
 };
 
 // Shows statistics at first.

@@ -35,9 +35,9 @@ class Loading {
   // `title` is the name of the world. `window` and `stop` may be null, and outlive this.
   Loading(std::string title, platform::Window* window, const std::atomic<bool>* stop);
 
-  // Shows progress as a fraction in [0, 1]; it never decreases. `renderer` draws the image and is
-  // null until it exists. Returns false, to cancel the task, once the window was closed or `stop`
-  // was set.
+  // Shows progress as a fraction in [0, 1], which never decreases under one label. `renderer` draws
+  // the image and is null until it exists. Returns false, to cancel the task, once the window was
+  // closed or `stop` was set.
   bool update(std::string_view label, double fraction, render::Renderer* renderer);
   double fraction() const { return fraction_; }  // as shown
   // True once the user has closed the window.

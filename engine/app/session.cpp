@@ -425,7 +425,7 @@ core::Result<void> Session::write_picture(const std::filesystem::path& file,
                                           const image::Image& image) {
   const double start_s = core::monotonic_seconds();
   auto written = image::write_png(file, image);
-  scene_->trace_span("write an image", start_s, core::monotonic_seconds());
+  scene_->trace_span("write a picture", start_s, core::monotonic_seconds());
   return written;
 }
 

@@ -1,5 +1,5 @@
 // The texture format of impostors, which stand in for distant models: views from around the model,
-// one after the other in one texture. Synthesis makes them (world/far/tree_pictures.hpp), and the
+// one after the other in one texture. Synthesis makes them (world/far/tree_impostors.hpp), and the
 // renderer draws them (core::kImpostorBit). Byte layout only. Any thread.
 #pragma once
 

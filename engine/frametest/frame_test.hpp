@@ -30,7 +30,7 @@ struct Budget {
 struct FrameTest {
   std::string name;
   // Headless; world and path are unresolved names until load_frame_test().
-  app::FlightOptions flight;    //
+  app::FlightOptions flight;
   std::vector<Budget> budgets;  // in the order of the file, at least one
 };
 

@@ -93,10 +93,10 @@ Json kind_counts(const scene::Scene& scene) {
   const auto add = [&](const char* name, std::uint64_t count, std::uint64_t drawn) {
     if (count > 0) kinds[name] = {count, drawn};
   };
-  add("objects", scene.entities().count<scene::Object>(), scene.statistics().objects_drawn);
-  add("lights", scene.entities().count<scene::PointLight>(), scene.statistics().lights_lit);
-  add("emitters", scene.entities().count<scene::ParticleEmitter>(),
-      scene.statistics().emitters_drawn);
+  const scene::Statistics drawn = scene.statistics();
+  add("objects", scene.entities().count<scene::Object>(), drawn.objects_drawn);
+  add("lights", scene.entities().count<scene::PointLight>(), drawn.lights_lit);
+  add("emitters", scene.entities().count<scene::ParticleEmitter>(), drawn.emitters_drawn);
   Json list = Json::object();
   for (const auto& [name, kind] : kinds)
     list[name] = {{"entities", kind.entities}, {"drawn", kind.drawn}};

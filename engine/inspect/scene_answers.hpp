@@ -35,7 +35,8 @@ struct FrameNotes {
 
 Json figures(const app::Session& session, FrameNotes& notes);
 Json systems(const scene::Scene& scene, FrameNotes& notes);
-// Counts of entities by archetype, and the nodes for a map, coarse ones first.
+// Counts of entities by model type, and of objects, lights and emitters, and the nodes for a map,
+// coarse ones first.
 Json entities(const scene::Scene& scene);
 
 // Conversion of poses; pose_from() fails with kInvalidArgument for invalid members.

@@ -221,7 +221,7 @@ class ModelType {
   // (engine/query/).
   virtual Collider collider(const Parameters&) const { return {}; }
   // For types whose instances all have one shape, scaled and turned about +Y: the turn of this
-  // instance in degrees. Such types need only one impostor each (world/far/tree_pictures.hpp), and
+  // instance in degrees. Such types need only one impostor each (world/far/tree_impostors.hpp), and
   // a second one without leaves. Nothing for all others.
   virtual std::optional<double> turn_deg(const Parameters&) const { return std::nullopt; }
   // True only if synthesis always ends, in about the predicted time, for all parameters. Then the

@@ -68,7 +68,7 @@ struct LodErrors {
   std::array<float, kMaxLevels> error_m{};
   std::uint16_t level_count = 0;
   std::uint16_t picture_level = kNoLevel;  // the last level if it is an impostor, else kNoLevel
-  float seen_size_m = 0;                   // when it came into view without a mesh; −1: it is not
+  float seen_size_m = 0;                   // ModelType::seen_size_m(); 0: the size of its mesh
   bool leaves = false;                     // a tree: leaf textures hide coarse meshes
 };
 
@@ -119,7 +119,7 @@ struct Fading {
   core::GeometryRange old_range;
   std::uint32_t old_shared_indices = 0;
   std::uint8_t old_level = kNoLevel;
-  bool old_pictured = false;  // Mesh is an impostor quad
+  bool old_pictured = false;  // old_mesh is an impostor quad
 };
 static_assert(sizeof(Fading) == 56);
 
@@ -132,7 +132,7 @@ struct MeshDemand {
   std::uint8_t wanted_level = kNoLevel;     // kNoLevel: too small on screen to be drawn
   std::uint8_t requested_level = kNoLevel;
   std::uint8_t failed_levels = 0;  // bit l: the synthesis of level l failed; no request repeats it
-  bool pictured = false;           // Mesh is the quad of a picture
+  bool pictured = false;           // Mesh is an impostor quad
   bool stale =
       false;  // Mesh has other parameters than MeshSource; drawn until the new mesh is ready
   std::uint8_t ranked = kNotRanked;  // group of the rank that the cache has for Mesh

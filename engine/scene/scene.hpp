@@ -118,7 +118,7 @@ class Scene {
   // tick on.
   const Camera& camera() const;
   void set_field_of_view(float radians);
-  // Fixed steps of the simulation (frame/fixed_step.hpp).
+  // Fixed steps of the simulation (frame/clock.hpp).
   const FixedStep& step() const;
 
   // The settings (settings.hpp), and the allowed screen-space error from the next tick on.
@@ -126,7 +126,7 @@ class Scene {
   void set_max_error(double pixels);
   // Resolution and errors of the last tick (frame/quality.hpp).
   const Quality& quality() const;
-  // Holds the error and resolution of the settings from now on, and switches fades off: frames
+  // Holds the error of the settings at full resolution from now on, and switches fades off: frames
   // depend on neither time nor history.
   void stop_adapting();
 

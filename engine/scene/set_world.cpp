@@ -60,7 +60,9 @@ std::vector<ecs::Entity> nodes_of(const ecs::World& entities) {
 // Destroys all nodes; the next tick creates new ones.
 void destroy_all_nodes(const WorldFacts& facts, State& s) {
   destroy_nodes(nodes_of(s.entities), s.node_work());
+  const auto counts = s.streaming.counts;
   s.streaming = {};
+  s.streaming.counts = counts;
   s.streaming.grids = node_grids(s.settings, facts);
   s.draws.cross_fade = {};
 }

@@ -1,6 +1,5 @@
 // Objects: windmills with meshes from code, a texture with holes, and sails that turn in fixed
-// steps. With the name of a PNG file, it saves an image instead of opening a window.
-//   example_objects [picture.png]
+// steps. Saves an image to a file instead of opening a window: example_objects [picture.png]
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -40,9 +39,9 @@ void pose_sails(const scene::FixedStep& step, ecs::Query<const Sails, scene::Tra
 }
 
 void add_quad(core::MeshData& mesh, std::initializer_list<glm::vec3> corners) {
+  const auto n = static_cast<std::uint32_t>(mesh.positions.size());
   mesh.positions.insert(mesh.positions.end(), corners);
-  for (const std::uint32_t i : {4U, 3U, 2U, 4U, 2U, 1U})
-    mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()) - i);
+  mesh.indices.insert(mesh.indices.end(), {n, n + 1, n + 2, n, n + 2, n + 3});
 }
 
 // An eight-sided tower with its roof, in metres. Front faces are counter-clockwise.
@@ -92,7 +91,8 @@ core::Result<void> build(app::Session& session, const core::CameraPose& pose) {
   const auto walls = scene.assets().add_mesh(tower(), "tower");
   const auto sails = scene.assets().add_mesh(cross(), "sails");
   if (!wood) return tl::unexpected(wood.error());
-  if (!walls || !sails) return tl::unexpected((walls ? sails : walls).error());
+  if (!walls) return tl::unexpected(walls.error());
+  if (!sails) return tl::unexpected(sails.error());
   query::World query(scene.world(), scene.registry());
   for (int i = 0; i < 3; ++i) {
     core::WorldPosition at = pose.position;

@@ -43,7 +43,7 @@ inline constexpr std::array<Chapter, kCairns> kChapters{{
     {"the lantern", "Someone had kept a light here, long after anyone came.",
      "Use the lantern key to light your way."},
     {"the spring", "Goats taught her where the rock would hold.", "You jump higher."},
-    {"the raft", "The lake remembered every face that had crossed it.", "You swim faster."},
+    {"the raft", "The lake remembered every face that had crossed it.", "You cross water faster."},
     {"the grip", "She wrote her name on the cliff in chalk. Rain read it.",
      "Hold jump at a steep face to climb; you climb longer now."},
     {"the wide wing", "From the ridge the land was one slow breath.", "You glide farther."},

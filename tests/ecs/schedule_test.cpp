@@ -498,6 +498,32 @@ TEST(ScheduleBundlesDeathTest, AMissingMemberIsNamed) {
                "the system 'work' wants a Tally, which was not provided");
 }
 
+TEST(Schedule, ASystemMayReadAQueueAndEmitIntoIt) {
+  struct Fall {
+    int height_m;
+  };
+  World world;
+  EventQueue<Fall> queue;
+  Schedule schedule(world);
+  schedule.provide(queue);
+  schedule.add("bounce", [](EventReader<Fall>& falls, EventQueue<Fall>& bounces) {
+    std::vector<Fall> seen;
+    falls.drain(
+        [&](std::span<const Fall> batch) { seen.insert(seen.end(), batch.begin(), batch.end()); });
+    for (const Fall& fall : seen)
+      bounces.emit(Fall{fall.height_m - 1});
+  });
+  EventReader<Fall> reader = queue.reader();
+  queue.emit(Fall{7});
+  schedule.run();
+  std::vector<int> heights;
+  reader.drain([&](std::span<const Fall> batch) {
+    for (const Fall& fall : batch)
+      heights.push_back(fall.height_m);
+  });
+  EXPECT_EQ(heights, (std::vector<int>{7, 6}));
+}
+
 struct Mixed {
   const Wind& wind;
   Tally tally;

@@ -25,7 +25,6 @@ struct Simulation {
   std::vector<float> step_ms;  // of each system in this frame, summed over its steps
 };
 
-struct Clock;
 struct Tracing;
 
 // System: runs the fixed steps that are due. Their systems may change all entities.

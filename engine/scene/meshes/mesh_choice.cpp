@@ -83,7 +83,7 @@ ChoiceRules choice_of_picture(const StreamingContext& context) {
   rules.error_pixels = static_cast<float>(context.quality.error_pixels);
   rules.model_error_pixels = static_cast<float>(context.quality.model_error_pixels);
   rules.levels_of_detail = settings.levels_of_detail;
-  // Gaps between leaves are closed at half of that distance.
+  // Gaps between leaves are whole up to half of that distance (shaders/model.vert).
   rules.near_leaves_m = context.facts.near_detail ? 0.5F * render::kNearModelsM : 0.0F;
   return rules;
 }

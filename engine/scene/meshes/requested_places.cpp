@@ -150,13 +150,12 @@ synthesis::Want want_of(const RequestedMesh& mesh) {
 // Marks a place whose nodes an edit has changed since it was listed. Otherwise its parameters refer
 // to the present edit layer from now on.
 void sync_edits(const WorldFacts& facts, RequestedPlace& place) {
-  if (place.layer == facts.world.layer()) return;
+  if (place.stale || place.layer == facts.world.layer()) return;
   const LayerChange change(facts.world, place.layer, facts.world.layer());
-  place.stale =
-      place.stale || std::ranges::any_of(place.nodes, [&](const visibility::NodeCoord& node) {
-        const NodeChange of = change.of(node);
-        return of.ground || of.models;
-      });
+  place.stale = std::ranges::any_of(place.nodes, [&](const visibility::NodeCoord& node) {
+    const NodeChange of = change.of(node);
+    return of.ground || of.models;
+  });
   if (place.stale) return;
   place.layer = facts.world.layer();
   for (RequestedMesh& mesh : place.meshes) {

@@ -21,7 +21,6 @@
 namespace psygen::scene {
 
 class Assets;
-struct Tracing;
 
 // Counts of one tick.
 struct MeshCounts {

@@ -1,4 +1,4 @@
-// The impostors of a scene's trees (world/far/tree_pictures.hpp): requests those that the renderer
+// The impostors of a scene's trees (world/far/tree_impostors.hpp): requests those that the renderer
 // lacks, and gives them to it. Modelers bake them as annotations of requests
 // (mesh_annotations.hpp). Trees that show them have quads as meshes (nodes/columns.hpp). Main
 // thread.

@@ -109,11 +109,13 @@ class BlockReader {
       const auto type = read_type();
       if (!type) return tl::unexpected(type.error());
       p.model = *type;
-      // An older version of the type may have had fewer parameters; the others have their defaults.
+      // An older version of the type may have had fewer parameters. The others have their defaults,
+      // as in world files and their identity (save/world_identity.hpp).
       const std::size_t known = registry_[p.model].parameters().size();
       const std::size_t values = in_.get<std::uint8_t>();
       if (values > known)
-        return wrong(fmt::format("{} has {} parameters", registry_[p.model].name(), known));
+        return wrong(fmt::format("{} has {} parameters, but these edits store {}",
+                                 registry_[p.model].name(), known, values));
       p.parameters = models::default_parameters(registry_[p.model]);
       for (std::size_t k = 0; k < values; ++k)
         p.parameters.set_integer(k, in_.get<std::int64_t>());

@@ -19,7 +19,7 @@ enum class Form : std::uint8_t {
   kKiteTrunk,     // a kite, and the same trunk
   kKite,          // the crown as a billboard of two triangles, widest in the middle
   kTent,          // a billboard of one triangle, widest at its base, for one or several models
-  kPicture,       // an impostor: a billboard of two triangles (tree_pictures.hpp)
+  kPicture,       // an impostor: a billboard of two triangles (tree_impostors.hpp)
 };
 inline constexpr std::size_t kProxyCount = 7;
 // Sizes of a form. The first `solid_vertices` belong to a solid, the others to billboards, which

@@ -311,6 +311,8 @@ TEST(Flight, APathThatNeverComesNearTheWorldIsRejected) {
   EXPECT_EQ(flight.error().code, core::ErrorCode::kInvalidArgument);
   EXPECT_NE(flight.error().message.find("far.toml: the world"), std::string::npos)
       << flight.error().message;
+  EXPECT_NE(flight.error().message.find("is never in view"), std::string::npos)
+      << flight.error().message;
 }
 
 TEST(Flight, AStopFlagEndsTheFlightWhichStillWritesItsOutputs) {

@@ -69,7 +69,7 @@ TEST_F(HudTest, ShowsWaitingAndGpuTimesIfKnown) {
   facts_.record.device_wait_ms = 12;
   facts_.record.present_ms = 0.5;
   EXPECT_THAT(figures(), HasSubstr("waits 12.5 ms\n"));
-  facts_.gpu = render::GpuTime{1, 0, 17.25, 0};
+  scene::state_of(*scene_).draws.frame.gpu = render::GpuTime{1, 0, 17.25, 0};
   EXPECT_THAT(figures(), HasSubstr("waits 12.5 ms   device 17.2 ms"));
 }
 

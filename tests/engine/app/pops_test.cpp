@@ -46,7 +46,7 @@ Difference difference(const image::Image& a, const image::Image& b) {
 struct Pops {
   Difference ground, models;
   // Median over the frames of the mean difference that the camera's movement makes.
-  double motion = 0;         // medi
+  double motion = 0;
   std::size_t switches = 0;  // frames in which nodes were split or merged
   std::set<int> levels;      // of drawn nodes
 };

@@ -109,7 +109,7 @@ TEST_F(EditBytes, MoreParametersThanTheTypeHasAreRejected) {
   Edits loaded;
   const auto ok = load_block(loaded, world, registry, {2, 3}, bytes);
   ASSERT_FALSE(ok);
-  EXPECT_THAT(ok.error().message, HasSubstr("parameters"));
+  EXPECT_THAT(ok.error().message, HasSubstr(" parameters, but these edits store "));
 }
 
 TEST_F(EditBytes, ANewerVersionIsRejectedByItsNumber) {
