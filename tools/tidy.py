@@ -87,7 +87,14 @@ def tidy(source, line_filter, config, until):
                               f"--line-filter={line_filter}", source], cwd=ROOT, capture_output=True, text=True, timeout=left)
     except subprocess.TimeoutExpired:
         return source, None
-    return source, findings(run.stdout)
+    return source, findings(run.stdout) or failure(source, run)
+
+
+def failure(source, run):
+    """A run that failed without a finding: no compile command, a wrong option, a crash."""
+    if run.returncode == 0:
+        return []
+    return [f"{source}: clang-tidy failed with code {run.returncode}\n{run.stderr.strip() or run.stdout.strip()}"]
 
 
 def self_test():
@@ -98,6 +105,9 @@ def self_test():
     two = "a.cpp:1:1: warning: 2 adjacent parameters of 'f' of similar type ('{}') are easily swapped by mistake [x]\n  int f"
     assert findings(two.format("int")) == [] and len(findings(two.format("bool"))) == 1
     assert len(findings(two.replace("2 adjacent", "3 adjacent").format("int"))) == 1
+    broken = subprocess.CompletedProcess([], 1, "", "error: no such file")
+    assert failure("a.cpp", broken) == ["a.cpp: clang-tidy failed with code 1\nerror: no such file"]
+    assert failure("a.cpp", subprocess.CompletedProcess([], 0, "", "12 warnings generated.")) == []
     print("tidy: findings and lines are read as they should be")
 
 
