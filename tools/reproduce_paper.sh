@@ -53,7 +53,7 @@ fly() { # FOLDER PROCESSORS THREADS options...: THREADS are those of a software 
 for priority in lowest normal; do
   fly "one_core_$priority" "$first" "" "${far[@]}" --modeler-priority "$priority"
   fly "two_cores_$priority" "$first,$second" "" "${far[@]}" --modeler-priority "$priority"
-  # Checked for two processors before, but only one is available.
+  # The paper's "two cores, one of them off": the driver has threads for two, and one processor runs them.
   fly "one_of_two_$priority" "$first" 2 "${far[@]}" --modeler-priority "$priority"
 done
 for paradigm in amplify lazy pla; do

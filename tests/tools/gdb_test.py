@@ -15,6 +15,7 @@ EXPECTED = {
     "position": "block (3, -4) + (1.5, 2, 0.25) m",
     "position.block": "block (3, -4)",
     "key": "block (-7, 8), index 5, type 2, LOD 1, parameters 0x00000000000000ab",
+    "duplicate": "block (-7, 8), index 5, type 2, LOD 1, parameters 0x00000000000000ab (duplicate)",
     "found": "result = {value = 42}",
     "lost": "error kIo: a.toml: cannot be read",
     "done": "result without a value",

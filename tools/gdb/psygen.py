@@ -111,8 +111,7 @@ class MeshKeyPrinter:
 
     def to_string(self):
         v = self.value
-        flag = plain(v.type.target() if v.type.code == gdb.TYPE_CODE_REF else v.type).fields()[-1]  # a duplicate request
-        again = " (duplicate)" if bool(v[flag]) else ""
+        again = " (duplicate)" if bool(v["spare"]) else ""
         return (f"{BlockPrinter(v['block']).to_string()}, index {number(v['index'])}, type {number(v['model'])}, "
                 f"LOD {number(v['level'])}, parameters {number(v['parameters_hash']):#018x}{again}")
 

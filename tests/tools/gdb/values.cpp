@@ -31,6 +31,7 @@ int main() {
   const core::WorldPosition position{{3, -4}, {1.5, 2, 0.25}};
   const synthesis::MeshKey key{
       .block = {-7, 8}, .index = 5, .model = 2, .level = 1, .parameters_hash = 0xAB};
+  const synthesis::MeshKey duplicate = synthesis::duplicate_of(key);
   const core::Result<int> found = 42;
   const core::Result<int> lost = core::fail(core::ErrorCode::kIo, "a.toml: cannot be read");
   const core::Result<void> done;
@@ -39,7 +40,7 @@ int main() {
   const std::span<const int, 3> three(numbers);
   world.each<Speed>(
       [&](ecs::TableRows<Speed> rows, std::span<const ecs::Entity> handles, std::span<Speed>) {
-        stop(rows, handles, nothing, position, key, found, lost, done, some, three);
+        stop(rows, handles, nothing, position, key, duplicate, found, lost, done, some, three);
       });
   return 0;
 }
