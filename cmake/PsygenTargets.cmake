@@ -2,9 +2,10 @@
 #   psygen_library(NAME ...)                        the library of a folder: target, headers, component
 #   psygen_executable(NAME SOURCES ... PRIVATE ...) a program in bin/ of the build folder
 # All presets but dev use CMAKE_UNITY_BUILD: the files of a target are compiled together, in a third of the
-# time. SKIP_UNITY_BUILD_INCLUSION excludes files whose private names clash with others. All settings
+# time. Files that repeat private names of others are compiled alone (cmake/PsygenUnity.cmake). All settings
 # apply to this project's targets only. Projects that use or contain this one keep theirs.
 include(GNUInstallDirs)
+include(PsygenUnity)
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -81,6 +82,7 @@ function(psygen_library name)
   target_link_libraries(${target}
     PUBLIC $<BUILD_INTERFACE:psygen_sanitizers> ${ARG_PUBLIC}
     PRIVATE $<BUILD_INTERFACE:psygen_settings> $<BUILD_INTERFACE:psygen_warnings> ${ARG_PRIVATE})
+  psygen_separate_repeated_names(${target})
   psygen_note_component(${name} "${ARG_PUBLIC};${ARG_PRIVATE}" "${ARG_PUBLIC_PACKAGES}" "${ARG_PACKAGES}")
   if(PSYGEN_INSTALL)
     install(TARGETS ${target} EXPORT psygen_${name} COMPONENT psygen_${name}
@@ -133,4 +135,5 @@ function(psygen_executable name)
     BUILD_RPATH ${PROJECT_BINARY_DIR}/engine/image
     INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR};$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/psygen")
   target_link_options(${name} PRIVATE LINKER:--disable-new-dtags)
+  psygen_separate_repeated_names(${name})
 endfunction()

@@ -1,0 +1,81 @@
+# Lets names in anonymous namespaces repeat within a target, in unity builds too.
+#
+# psygen_separate_repeated_names(TARGET) reads the sources of a target. A source that repeats a name of an
+# earlier one gets SKIP_UNITY_BUILD_INCLUSION: it is compiled alone. Functions of one name repeat only with equal
+# types of parameters, aliases only with other meanings. The function reads texts, not a compiler's tree, and
+# relies on the format of tools/format.sh: declarations of a namespace begin in the first column. It runs when cmake
+# runs: if a new name clashes, run cmake again.
+
+# Sets OUT to the declarations of a file's anonymous namespaces, and to its static functions. Each is KEY@TEXT. Two
+# sources can be compiled together if each key that both have stands for the same text.
+function(psygen_private_names file out)
+  file(READ ${file} text)
+  string(REGEX REPLACE "\n[}]  // namespace\n" "\n@\n" text "${text}")
+  string(REGEX REPLACE "//[^\n]*" "" text "${text}")
+  string(REGEX REPLACE "[][;\\]" "~" text "${text}")  # lists of CMake give them a meaning
+  string(REGEX REPLACE "\n +" " " text "${text}")  # one line for each declaration and its body
+  set(names "")
+  string(REGEX MATCHALL "\nstatic [^\n(){}=]*[(][^()]*[)]" functions "${text}")
+  string(REPLACE "\nnamespace {\n" "\n;" regions "${text}")
+  list(POP_FRONT regions)
+  foreach(region IN LISTS regions)
+    string(REGEX REPLACE "\n@\n.*" "\n" region "\n${region}")
+    string(REGEX MATCHALL "\n[A-Za-z_][^\n(){}=]*[(][^()]*[()]" more "${region}")
+    list(APPEND functions ${more})
+    string(REGEX MATCHALL "\n(class|struct|union|enum|concept) [^\n(){}=:~]*[{:=]" types "${region}")
+    string(REGEX MATCHALL "\n(inline |static |const |constexpr |thread_local )[^\n(){}=]*[{=]" variables "${region}")
+    foreach(name IN LISTS types variables)
+      string(REGEX REPLACE "( final| |~[^ ~]*~)*[{:=]$" "" name "${name}")
+      string(REGEX REPLACE "^.*[^A-Za-z0-9_]" "" name "${name}")
+      list(APPEND names "${name}@${file}")
+    endforeach()
+    string(REGEX MATCHALL "\nusing [A-Za-z0-9_]+ = [^~]*" aliases "${region}")
+    foreach(alias IN LISTS aliases)
+      string(REGEX REPLACE "^\nusing ([A-Za-z0-9_]+) = (.*)$" "\\1@\\2" alias "${alias}")
+      list(APPEND names "${alias}")
+    endforeach()
+  endforeach()
+  foreach(function IN LISTS functions)
+    string(REGEX REPLACE " [a-z_][a-z0-9_]*( = [^,)]*)?([,)])" "\\2" function "${function}")  # names of parameters
+    # Not macros such as TEST, nor members that are defined outside of their class.
+    if(function MATCHES "^[^(]*[^A-Za-z0-9_:(]([a-z][A-Za-z0-9_]*)([(].*)$" AND NOT CMAKE_MATCH_1 STREQUAL "static_assert")
+      list(APPEND names "${CMAKE_MATCH_1}${CMAKE_MATCH_2}@${file}")
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES names)
+  set(${out} "${names}" PARENT_SCOPE)
+endfunction()
+
+function(psygen_separate_repeated_names target)
+  if(NOT CMAKE_UNITY_BUILD)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  set(taken "")
+  set(taken_keys "")
+  foreach(source IN LISTS sources)
+    get_filename_component(file "${source}" ABSOLUTE)
+    get_source_file_property(alone ${file} SKIP_UNITY_BUILD_INCLUSION)
+    if(alone OR NOT file MATCHES "[.]cpp$" OR NOT EXISTS ${file})
+      continue()
+    endif()
+    psygen_private_names(${file} names)
+    set(repeated "")
+    set(keys "")
+    foreach(name IN LISTS names)
+      string(REGEX REPLACE "@.*" "" key "${name}")
+      list(APPEND keys "${key}")
+      if(key IN_LIST taken_keys AND NOT name IN_LIST taken)
+        list(APPEND repeated "${key}")
+      endif()
+    endforeach()
+    if(repeated)
+      list(JOIN repeated ", " repeated)
+      message(VERBOSE "${target}: ${source} is compiled alone, because it repeats ${repeated}")
+      set_source_files_properties(${file} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    else()
+      list(APPEND taken ${names})
+      list(APPEND taken_keys ${keys})
+    endif()
+  endforeach()
+endfunction()
