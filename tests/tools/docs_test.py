@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Compares README.md and docs/ with the tree. Links have targets, and no gap is left. Options of the command line are
-described; commands in the text have options, worlds, paths and scripts that exist. Files and folders that pages name
-exist. New names of the changelog exist, and old headers do not. Labels of tests name tests. Versions agree. The
+described; commands in the text have options, worlds, paths and scripts that exist. Files, folders and members that pages
+name exist. New names of the changelog exist, and old headers do not. Labels of tests name tests. Versions agree. The
 README's program is the tutorial test. Two pages have a limit of lines.
 
 usage: docs_test.py SOURCE_DIR
 """
+import collections
 import fnmatch
 import functools
 import pathlib
@@ -90,6 +91,25 @@ def renamed_names(root):
             for word in re.findall(r"\w+", name.split("(")[0])[-2 if "::" in name else -1:]:
                 if not re.search(rf"\b{word}\b", code):
                     yield f"CHANGELOG.md: {word} of {name} is not in {' or '.join(headers)}"
+
+
+def missing_names(root):
+    """Names such as Scene::tick in code spans: a file that declares the scope has the member."""
+    members = collections.defaultdict(set)  # scope -> words of the files that declare it
+    for file in files_of(root):
+        if file.endswith((".hpp", ".cpp")) and file.split("/")[0] in ("ecs", "engine", "editor", "game", "examples"):
+            text = code_of(root, file)
+            scopes = re.findall(r"\b(?:enum class|class|struct|enum)\s+(?:alignas\([^)]*\)\s*)?(\w+)|\bnamespace\s+([\w:]+)|\busing\s+(\w+)\s*=", text)
+            for scope in {part for names in scopes for name in names for part in name.split("::") if part}:
+                members[scope].update(re.findall(r"\w+", text))
+    assert len(members) > 1000, "the scan found too few types"
+    for page in pages(root):
+        prose = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
+        for name in set(re.findall(r"`((?:\w+::)+\w+)", prose)) if page.name != "CHANGELOG.md" else ():
+            *_, scope, last = name.split("::")
+            # Names of other libraries, and of targets of CMake.
+            if not name.startswith(("std::", "ImGui::", "Vulkan::")) and scope != "psygen" and last not in members[scope]:
+                yield f"{page.relative_to(root)}: there is no {name}"
 
 
 def long_pages(root):
@@ -209,7 +229,7 @@ def other_versions(root):
 def main():
     root = pathlib.Path(sys.argv[1])
     found = [*dead_links(root), *missing_files(root), *renamed_names(root), *long_pages(root), *gaps(root),
-             *program_differences(root), *undescribed_options(root), *wrong_commands(root), *stray_labels(root),
+             *missing_names(root), *program_differences(root), *undescribed_options(root), *wrong_commands(root), *stray_labels(root),
              *other_versions(root)]
     print("\n".join(found) or "docs: nothing missing")
     return 1 if found else 0

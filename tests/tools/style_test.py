@@ -666,6 +666,12 @@ def is_unique(name):
     return re.fullmatch(r"\w+", name) and (len(re.findall(r"[A-Z]?[a-z]+", name.removeprefix("k"))) > 1 or len(name) > 9)
 
 
+def code_of_page(text):
+    """A page with all but code spans and blocks made empty."""
+    return "".join(piece if k % 2 else re.sub(r"[^\n]", " ", piece) for k, piece in
+                   enumerate(re.split(r"(^```.*?^```|`[^`\n]+`)", text, flags=re.S | re.M)))
+
+
 extra_names = set()  # of --names
 
 
@@ -673,8 +679,9 @@ def old_names(tree, names):
     """Uses of names that have a successor, and of names with most and least instead of max and min."""
     names = sorted(n for n in names if re.fullmatch(r"\w+(?:::\w+)+", n) or is_unique(n) or n in extra_names)
     old = re.compile(r"(?<!\w)(?:" + "|".join(map(re.escape, names)) + r")\b") if names else None
-    for name, text in tree.select((*CODE, "tests", "examples", "shaders"), CXX + SHADERS):
-        blank = tree.blank(name)
+    sources = [(name, tree.blank(name)) for name, _ in tree.select((*CODE, "tests", "examples", "shaders"), CXX + SHADERS)]
+    pages = [(name, code_of_page(text)) for name, text in tree.files.items() if name.endswith(".md") and name != "CHANGELOG.md"]
+    for name, blank in sources + pages:
         found = [(m.start(), m[0]) for m in MOST.finditer(blank)]
         found += [(m.start(), m[0]) for m in old.finditer(blank)] if old else []
         yield name, places(blank, sorted(found))
