@@ -121,6 +121,14 @@ def long_pages(root):
             yield f"{what}: {text.count(chr(10))} lines, and the limit is {limit}"
 
 
+def repeated_headings(root):
+    for page in pages(root):
+        text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
+        headings = collections.Counter(re.findall(r"^#+ .*$", text, re.M))
+        yield from (f"{page.relative_to(root)}: '{line}' occurs {count} times"
+                    for line, count in headings.items() if count > 1)
+
+
 def gaps(root):
     for page in pages(root):
         for gap in re.findall(r"@[A-Z_]+@|TODO|TBD", page.read_text(encoding="utf-8")):
@@ -229,7 +237,7 @@ def other_versions(root):
 def main():
     root = pathlib.Path(sys.argv[1])
     found = [*dead_links(root), *missing_files(root), *renamed_names(root), *long_pages(root), *gaps(root),
-             *missing_names(root), *program_differences(root), *undescribed_options(root), *wrong_commands(root), *stray_labels(root),
+             *missing_names(root), *repeated_headings(root), *program_differences(root), *undescribed_options(root), *wrong_commands(root), *stray_labels(root),
              *other_versions(root)]
     print("\n".join(found) or "docs: nothing missing")
     return 1 if found else 0

@@ -645,6 +645,9 @@ def odd_test_names(tree):
 MOST = re.compile(r"\b(?:k(?:Most|Least)[A-Z]\w*|(?:most|least)_(?!recently|significant)\w+)\b")
 
 
+STATE = re.compile(r"\bstate(?:\(\))?\.(?:facts|entities|assets|simulation|meshes|counters|totals)\b")  # private to the scene
+
+
 def renamed_names(tree):
     """Old names of the table of the changelog (| `old` | `new` | …), and those without their scope that are unique."""
     text = tree.files.get("CHANGELOG.md", "")
@@ -684,6 +687,7 @@ def old_names(tree, names):
     for name, blank in sources + pages:
         found = [(m.start(), m[0]) for m in MOST.finditer(blank)]
         found += [(m.start(), m[0]) for m in old.finditer(blank)] if old else []
+        found += [(m.start(), m[0]) for m in STATE.finditer(blank)] if name.endswith(".md") else []
         yield name, places(blank, sorted(found))
 
 
