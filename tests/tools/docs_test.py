@@ -112,6 +112,16 @@ def missing_names(root):
                 yield f"{page.relative_to(root)}: there is no {name}"
 
 
+def missing_tests(root):
+    """Names of tests such as Suite.IsASentence in pages, also by their beginning with … or *."""
+    text = "".join(file.read_text(encoding="utf-8") for suffix in ("*.cpp", "*.hpp") for file in (root / "tests").rglob(suffix))
+    tests = [".".join(name) for name in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)", text, re.M)]
+    for page in pages(root):
+        for name in set(re.findall(r"\b([A-Z]\w+\.[A-Z]\w*[a-z]\w*)(?=[…*`'])", page.read_text(encoding="utf-8"))):
+            if not any(test.startswith(name) for test in tests):
+                yield f"{page.relative_to(root)}: there is no test {name}"
+
+
 def long_pages(root):
     notes = (root / "CHANGELOG.md").read_text(encoding="utf-8").split("\n## Names\n")[0]
     performance = (root / "docs/performance.md").read_text(encoding="utf-8")
@@ -236,9 +246,9 @@ def other_versions(root):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    found = [*dead_links(root), *missing_files(root), *renamed_names(root), *long_pages(root), *gaps(root),
-             *missing_names(root), *repeated_headings(root), *program_differences(root), *undescribed_options(root), *wrong_commands(root), *stray_labels(root),
-             *other_versions(root)]
+    found = [*dead_links(root), *missing_files(root), *missing_names(root), *missing_tests(root), *renamed_names(root),
+             *repeated_headings(root), *long_pages(root), *gaps(root), *program_differences(root),
+             *undescribed_options(root), *wrong_commands(root), *stray_labels(root), *other_versions(root)]
     print("\n".join(found) or "docs: nothing missing")
     return 1 if found else 0
 
