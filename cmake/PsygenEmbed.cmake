@@ -1,6 +1,6 @@
 # Writes a C++ source with functions that return the texts of files. The build runs it:
 #
-# cmake -DOUTPUT=out.cpp -DHEADER=engine/telemetry/page_files.hpp -DNAMESPACE=psygen::telemetry
+# cmake -DOUTPUT=out.cpp -DHEADER=engine/telemetry/page.hpp -DNAMESPACE=psygen::telemetry
 #       "-DTEXTS=page_style=page_style.css;page_script=page_script.js" -P PsygenEmbed.cmake
 set(source "#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n")
 foreach(text IN LISTS TEXTS)

@@ -175,18 +175,12 @@ template <class F>
 struct ParametersOf {
   using type = typename ParametersOf<decltype(&F::operator())>::type;
 };
-template <class R, class... Ps>
-struct ParametersOf<R (*)(Ps...)> : std::type_identity<std::tuple<Ps...>> {};
-template <class R, class F, class... Ps>
-struct ParametersOf<R (F::*)(Ps...)> : std::type_identity<std::tuple<Ps...>> {};
-template <class R, class F, class... Ps>
-struct ParametersOf<R (F::*)(Ps...) const> : std::type_identity<std::tuple<Ps...>> {};
-template <class R, class... Ps>
-struct ParametersOf<R (*)(Ps...) noexcept> : std::type_identity<std::tuple<Ps...>> {};
-template <class R, class F, class... Ps>
-struct ParametersOf<R (F::*)(Ps...) noexcept> : std::type_identity<std::tuple<Ps...>> {};
-template <class R, class F, class... Ps>
-struct ParametersOf<R (F::*)(Ps...) const noexcept> : std::type_identity<std::tuple<Ps...>> {};
+template <class R, bool N, class... Ps>
+struct ParametersOf<R (*)(Ps...) noexcept(N)> : std::type_identity<std::tuple<Ps...>> {};
+template <class R, class F, bool N, class... Ps>
+struct ParametersOf<R (F::*)(Ps...) noexcept(N)> : std::type_identity<std::tuple<Ps...>> {};
+template <class R, class F, bool N, class... Ps>
+struct ParametersOf<R (F::*)(Ps...) const noexcept(N)> : std::type_identity<std::tuple<Ps...>> {};
 
 // True if T is a Query.
 template <class T>

@@ -1,7 +1,6 @@
 #include "ecs/sparse_set.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "ecs/check.hpp"
 

@@ -13,7 +13,6 @@
 #include <string_view>
 #include <vector>
 
-#include "ecs/check.hpp"
 #include "ecs/children.hpp"
 #include "ecs/component.hpp"
 #include "ecs/entity.hpp"

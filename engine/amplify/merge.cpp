@@ -9,10 +9,6 @@
 namespace psygen::amplify {
 namespace {
 
-tl::unexpected<core::Error> cannot_join(std::string sentence) {
-  return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
-}
-
 core::Result<std::vector<std::filesystem::path>> ledger_files(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_directory(path, error)) return std::vector{path};
@@ -24,7 +20,7 @@ core::Result<std::vector<std::filesystem::path>> ledger_files(const std::filesys
     return core::fail(core::ErrorCode::kIo,
                       fmt::format("{}: cannot be read: {}", path.string(), error.message()));
   if (files.empty())
-    return cannot_join(
+    return core::invalid_argument(
         fmt::format("{}: has no ledger of a shard (shard_I_of_N.ledger)", path.string()));
   return files;
 }
@@ -58,7 +54,7 @@ core::Result<void> check_files(const NamedLedger& named) {
     for (std::uint64_t i = finished.run.first; i < finished.run.end; ++i) {
       const core::BlockCoord block = key.region.block(i);
       if (has_block_file(folder, block, *key.format)) continue;
-      return cannot_join(
+      return core::invalid_argument(
           fmt::format("{}: the file of block {},{} is missing or truncated; "
                       "run {} again",
                       folder.string(), block.x, block.z, named.ledger.part));
@@ -85,14 +81,15 @@ core::Result<std::vector<NamedLedger>> read_ledgers(std::span<const std::filesys
 }
 
 core::Result<Totals> merge(std::span<const NamedLedger> ledgers) {
-  if (ledgers.empty()) return cannot_join("there is no ledger to merge");
+  if (ledgers.empty()) return core::invalid_argument("there is no ledger to merge");
   const JobKey& key = ledgers.front().ledger.key;
   std::vector<Entry> entries;
   for (const NamedLedger& named : ledgers) {
     const std::string other = difference(key, named.ledger.key);
     if (!other.empty())
-      return cannot_join(fmt::format("{}: belongs to another job than {}: {}", named.file.string(),
-                                     ledgers.front().file.string(), other));
+      return core::invalid_argument(fmt::format("{}: belongs to another job than {}: {}",
+                                                named.file.string(), ledgers.front().file.string(),
+                                                other));
     for (const Finished& finished : named.ledger.finished)
       entries.push_back({&finished, &named});
   }
@@ -103,9 +100,9 @@ core::Result<Totals> merge(std::span<const NamedLedger> ledgers) {
   for (const Entry& entry : entries) {
     const BlockRun& run = entry.finished->run;
     if (run.first < next)
-      return cannot_join(fmt::format("{} in both {} and {}",
-                                     blocks_text(key.region, {run.first, std::min(run.end, next)}),
-                                     before->file.string(), entry.from->file.string()));
+      return core::invalid_argument(fmt::format(
+          "{} in both {} and {}", blocks_text(key.region, {run.first, std::min(run.end, next)}),
+          before->file.string(), entry.from->file.string()));
     if (run.first > next) break;
     totals.add(entry.finished->totals);
     next = run.end;
@@ -115,8 +112,8 @@ core::Result<Totals> merge(std::span<const NamedLedger> ledgers) {
     const auto after = std::ranges::find_if(
         entries, [next](const Entry& e) { return e.finished->run.first > next; });
     const std::uint64_t end = after == entries.end() ? all : after->finished->run.first;
-    return cannot_join(fmt::format("{} missing: {}", blocks_text(key.region, {next, end}),
-                                   owner_of(ledgers, next)));
+    return core::invalid_argument(fmt::format(
+        "{} missing: {}", blocks_text(key.region, {next, end}), owner_of(ledgers, next)));
   }
   for (const NamedLedger& named : ledgers)
     if (auto ok = check_files(named); !ok) return tl::unexpected(ok.error());

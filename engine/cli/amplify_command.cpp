@@ -1,28 +1,74 @@
 // psygen amplify: synthesises a region or the whole world and prints its hash.
-#include "engine/cli/amplify_command.hpp"
-
 #include <fmt/format.h>
 
+#include <glm/vec2.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
+#include "engine/amplify/amplify.hpp"
 #include "engine/amplify/block_files.hpp"
 #include "engine/amplify/shard.hpp"
 #include "engine/cli/amplify_stats.hpp"
+#include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/places.hpp"
-#include "engine/cli/standard_streams.hpp"
+#include "engine/cli/shipped_files.hpp"
 #include "engine/cli/text_values.hpp"
+#include "engine/cluster/agreement.hpp"
+#include "engine/cluster/job.hpp"
+#include "engine/cluster/peers.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 #include "engine/models/kit/simd_targets.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
-#include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
+namespace {
+
+class AmplifyCommand final : public Command {
+ public:
+  explicit AmplifyCommand(CLI::App& cli);
+  int run() override;
+
+ private:
+  int print_heights(const world::World& world) const;
+  core::Result<amplify::Region> region_of(const world::World& world) const;
+  int run_rank();
+  core::Result<amplify::Report> amplify(const world::World& world,
+                                        const models::Registry& registry);
+  core::Result<amplify::Report> make_shard(amplify::Job job, const amplify::Region& region,
+                                           amplify::JobFormat format,
+                                           const amplify::Options& options) const;
+  int print_report(const amplify::Report& report) const;
+  int print_figures(const AmplifyStats& figures, bool stopped) const;
+
+  std::string world_ = kDefaultWorld;
+  std::optional<amplify::Region> region_;
+  unsigned threads_ = 0;
+  std::vector<glm::dvec2> samples_;  // x and z in metres
+  std::string out_;                  // empty: write no files
+  std::string format_ = "glb";
+  std::optional<amplify::Shard> shard_;
+  std::string simd_;                         // empty: the best
+  std::uint64_t written_ = 0, skipped_ = 0;  // files
+  bool mpi_ = false, json_ = false;
+};
+
+// Only rank 0 prints errors common to all ranks.
+int end_with(const core::Error& error, cluster::Peers& peers) {
+  if (peers.rank() == 0) core::log_error(error.message);
+  peers.finish();
+  return exit_code_of(error);
+}
+
+}  // namespace
+
 AmplifyCommand::AmplifyCommand(CLI::App& cli)
     : Command(cli, "amplify", "Synthesise a region or the whole world") {
   CLI::App& c = *command_;
@@ -74,16 +120,10 @@ int AmplifyCommand::run() {
   if (mpi_ || (cluster::is_rank() && !shard_ && samples_.empty())) return run_rank();
   models::Registry registry = models::make_standard_registry();
   const auto world = load_world_and_files(world_, registry);
-  if (!world) {
-    core::log_error(world.error().message);
-    return exit_code_of(world.error());
-  }
+  if (!world) return fail_with(world.error());
   if (!samples_.empty()) return print_heights(*world);
   const auto report = amplify(*world, registry);
-  if (!report) {
-    core::log_error(report.error().message);
-    return exit_code_of(report.error());
-  }
+  if (!report) return fail_with(report.error());
   return print_report(*report);
 }
 
@@ -92,10 +132,7 @@ int AmplifyCommand::print_heights(const world::World& world) const {
   std::string text;
   for (const glm::dvec2& place : samples_) {
     const auto at = position_at(world, place);
-    if (!at) {
-      core::log_error(at.error().message);
-      return exit_code_of(at.error());
-    }
+    if (!at) return fail_with(at.error());
     const double height_m =
         models::ground_height_m(world.terrain, at->block, at->local.x, at->local.z);
     text += fmt::format("{}\n", height_m);  // the shortest text that reads back as the same number
@@ -169,6 +206,58 @@ int AmplifyCommand::print_figures(const AmplifyStats& figures, bool stopped) con
   }
   if (stopped) core::log_error(fmt::format("interrupted after {} blocks", totals.blocks));
   return figures.complete ? printed : kFailed;
+}
+
+// Runs as one rank of a cluster.
+int AmplifyCommand::run_rank() {
+  const auto joined = cluster::join_communicator();
+  if (!joined) return fail_with(joined.error());
+  cluster::Peers& peers = **joined;
+  models::Registry registry = models::make_standard_registry();
+  const auto world = load_world_and_files(world_, registry);
+  if (auto ok = cluster::agree(world, peers); !ok) return end_with(ok.error(), peers);
+  const auto region = region_of(*world);
+  if (auto ok = cluster::agree(region, peers); !ok) return end_with(ok.error(), peers);
+  amplify::Options options;
+  options.threads =
+      threads_ > 0 ? threads_ : amplify::threads_for(cluster::threads_for_rank(peers));
+  options.stop = &stop_at_interrupt();
+  std::optional<telemetry::ProgressBar> bar;
+  if (peers.rank() == 0) {
+    bar.emplace(telemetry::stderr_terminal(), "amplifying " + world->name,
+                static_cast<double>(region->block_count()) / peers.count());
+    options.progress = [&bar](std::uint64_t blocks) { bar->update(static_cast<double>(blocks)); };
+  }
+  const amplify::JobFormat format = out_.empty() ? std::nullopt : exchange::format_from(format_);
+  const auto key = amplify::job_key(*world, registry, *region, format, core::version());
+  const auto job = cluster::amplify_together(*world, registry, key, out_, options, peers);
+  if (!job && job.error().common) return end_with(job.error().error, peers);
+  if (!job) {
+    core::log_error(
+        fmt::format("rank {} ({}): {}", peers.rank(), peers.host(), job.error().error.message));
+    peers.abort();
+    return kFailed;
+  }
+  if (job->report.stopped) {  // ranks 0 and 1 report it: one of them may have died
+    if (peers.rank() < 2)
+      core::log_error(
+          fmt::format("rank {}: stopped after {} blocks, because a rank died or the job "
+                      "was ended; run the same command to resume",
+                      peers.rank(), job->report.totals.blocks));
+    return kFailed;
+  }
+  peers.finish();
+  if (peers.rank() != 0) return job->report.complete ? kOk : kFailed;
+  AmplifyStats figures{job->report.totals, job->report.complete, {}, {}, {}, 0, 0, 0};
+  figures.times = {job->report.seconds, job->report.cpu_seconds, job->report.threads};
+  if (format) figures.files = {job->written, job->skipped};
+  figures.ranks = peers.count();
+  figures.messages = job->messages;
+  return print_figures(figures, false);
+}
+
+std::unique_ptr<Command> make_amplify_command(CLI::App& cli) {
+  return std::make_unique<AmplifyCommand>(cli);
 }
 
 }  // namespace psygen::cli

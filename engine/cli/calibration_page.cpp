@@ -11,7 +11,7 @@
 
 #include "engine/models/tree/species.hpp"
 #include "engine/telemetry/curve_plot.hpp"
-#include "engine/telemetry/page_files.hpp"
+#include "engine/telemetry/page.hpp"
 #include "engine/telemetry/report_plot.hpp"
 
 namespace psygen::cli {

@@ -1,8 +1,9 @@
-// The subcommands of psygen. Each has a header and a source, NAME_command. Main thread.
+// The subcommands of psygen. Each has a source, NAME_command.cpp. Main thread.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "engine/core/error.hpp"
@@ -16,6 +17,11 @@ enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDevice = 4 };
 inline int exit_code_of(const core::Error& error) {
   return error.code == core::ErrorCode::kNoDevice ? kNoDevice : kFailed;
 }
+// Logs the error and returns its exit code.
+int fail_with(const core::Error& error);
+// Writes data to stdout. Returns kFailed if it cannot be written, with a message unless the reader
+// has closed the pipe.
+int print(const std::string& text);
 
 // A subcommand. The constructor of its class declares its options.
 class Command {
@@ -33,7 +39,19 @@ class Command {
   CLI::App* command_;
 };
 
-// The subcommands of `cli`, in the order of the help.
+// Each adds one subcommand to `cli`.
+std::unique_ptr<Command> make_amplify_command(CLI::App& cli);
+std::unique_ptr<Command> make_calibrate_command(CLI::App& cli);
+std::unique_ptr<Command> make_compare_command(CLI::App& cli);
+std::unique_ptr<Command> make_convert_command(CLI::App& cli);
+std::unique_ptr<Command> make_export_command(CLI::App& cli);
+std::unique_ptr<Command> make_fly_command(CLI::App& cli);
+std::unique_ptr<Command> make_merge_command(CLI::App& cli);
+std::unique_ptr<Command> make_models_command(CLI::App& cli);
+std::unique_ptr<Command> make_picture_command(CLI::App& cli);
+std::unique_ptr<Command> make_schedule_command(CLI::App& cli);
+std::unique_ptr<Command> make_test_command(CLI::App& cli);
+// Adds all subcommands, in the order of the help.
 std::vector<std::unique_ptr<Command>> make_commands(CLI::App& cli);
 
 }  // namespace psygen::cli

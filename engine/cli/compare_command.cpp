@@ -1,13 +1,31 @@
-#include "engine/cli/compare_command.hpp"
-
+// `psygen compare`: compares two builds, or two recorded sets of runs (docs/frame-tests.md).
+#include <dlfcn.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <link.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <random>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
 
-#include "engine/cli/child_process.hpp"
+#include "engine/cli/commands.hpp"
 #include "engine/cli/option_checks.hpp"
-#include "engine/cli/standard_streams.hpp"
+#include "engine/compare/compare.hpp"
 #include "engine/compare/compare_page.hpp"
+#include "engine/compare/instructions.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/frametest/run.hpp"
@@ -16,9 +34,152 @@
 namespace psygen::cli {
 namespace {
 
+class CompareCommand final : public Command {
+ public:
+  explicit CompareCommand(CLI::App& cli);
+  int run() override;
+
+ private:
+  std::string misuse() const;
+  core::Result<void> collect();
+  core::Result<void> record_batch(int batch);
+  core::Result<compare::RecordedRun> record(const std::string& command,
+                                            const std::filesystem::path& folder) const;
+  core::Result<compare::Instructions> count_instructions() const;
+  int compare_instructions() const;
+
+  std::string a_, b_, test_;  // commands or folders; a bare program may count instructions
+  std::filesystem::path out_;
+  std::size_t pairs_ = 8, aa_ = 0;
+  bool json_ = false, instructions_ = false;
+  std::vector<compare::RecordedRun> runs_a_, runs_b_;
+};
+
+// Null-terminated, as the system requires.
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts)
+    pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+// Returns the environment of this process; `environment` replaces variables of the same name.
+std::vector<std::string> with_ours(std::vector<std::string> environment) {
+  const auto is_added = [&](std::string_view variable) {
+    const std::string_view name = variable.substr(0, variable.find('=') + 1);
+    return std::ranges::any_of(environment, [&](const auto& e) { return e.starts_with(name); });
+  };
+  std::vector<std::string> ours;
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (!is_added(*variable)) ours.emplace_back(*variable);
+  ours.insert(ours.end(), environment.begin(), environment.end());
+  return ours;
+}
+
+// The words of a command line, separated by blanks; quotes are not supported.
+std::vector<std::string> words_of(const std::string& command) {
+  std::vector<std::string> words;
+  std::istringstream text(command);
+  for (std::string word; text >> word;)
+    words.push_back(word);
+  return words;
+}
+
+// Runs a program to its end and writes its output to a file; `environment` ("NAME=VALUE") is added
+// to that of this process. Returns its exit code, or 128 plus the number of the signal that ended
+// it. Fails with kIo if it cannot be started.
+core::Result<int> run_program(std::vector<std::string> words, const std::filesystem::path& log,
+                              std::vector<std::string> environment = {}) {
+  if (words.empty()) return core::invalid_argument("an empty command");
+  std::vector<std::string> variables = with_ours(std::move(environment));
+  const std::vector<char*> arguments = pointers_to(words), values = pointers_to(variables);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
+                                   O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  pid_t child = 0;
+  const int failed =
+      posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(), values.data());
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) {
+    return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot run: {}", words.front(),
+                                                        std::generic_category().message(failed)));
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 bool is_folder(const std::string& name) {
   std::error_code error;
   return std::filesystem::is_directory(name, error);
+}
+
+constexpr const char* kNoValgrind =
+    "it counts instructions (package valgrind); nothing was compared";
+
+// Default work: generators of the paper's world in one thread, without a GPU.
+std::vector<std::string> work_of(const std::string& command) {
+  const bool is_program = words_of(command).size() == 1;
+  return words_of(is_program ? command + " amplify --region 0,0,3,3 --threads 1" : command);
+}
+
+// Path of the library that replaces an instruction valgrind cannot run (countable.cpp). Empty if it
+// is not installed, which is harmless on processors that do not need it.
+std::string stand_in() {
+  void* library = dlopen("libpsygen_countable.so", RTLD_LAZY | RTLD_LOCAL);
+  link_map* map = nullptr;
+  if (library == nullptr || dlinfo(library, RTLD_DI_LINKMAP, &map) != 0) return {};
+  return map->l_name;
+}
+
+std::vector<std::string> environment() {
+  const std::string library = stand_in();
+  const char* others = std::getenv("LD_PRELOAD");
+  if (library.empty()) return {};
+  return {fmt::format("LD_PRELOAD={}{}{}", library, others != nullptr ? ":" : "",
+                      others != nullptr ? others : "")};
+}
+
+std::string whole_text(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+struct Counted {
+  std::uint64_t instructions = 0;
+  std::string hash;
+};
+
+// Fails with kNoDevice if valgrind cannot count here.
+core::Result<Counted> count(const std::string& command, const std::filesystem::path& out,
+                            const char* name) {
+  const auto profile = out / fmt::format("{}.callgrind", name),
+             log = out / fmt::format("{}.txt", name);
+  std::vector<std::string> words{"valgrind", "--tool=callgrind",
+                                 "--callgrind-out-file=" + profile.string()};
+  const std::vector<std::string> work = work_of(command);
+  words.insert(words.end(), work.begin(), work.end());
+  const auto code = run_program(words, log, environment());
+  if (!code)
+    return core::fail(core::ErrorCode::kNoDevice,
+                      fmt::format("{}; {}", code.error().message, kNoValgrind));
+  if (*code == 128 + SIGILL)
+    return core::fail(
+        core::ErrorCode::kNoDevice,
+        fmt::format("{}: valgrind does not support an instruction that it executes on "
+                    "this processor; see {}",
+                    command, log.string()));
+  if (*code != 0)
+    return core::fail(core::ErrorCode::kInternal,
+                      fmt::format("{}: exit code {} under valgrind; its output is in {}", command,
+                                  *code, log.string()));
+  const auto instructions = compare::instructions_in(whole_text(profile), profile.string());
+  if (!instructions) return tl::unexpected(instructions.error());
+  return Counted{*instructions, std::string(compare::hash_in(whole_text(log)))};
 }
 
 }  // namespace
@@ -120,8 +281,7 @@ int CompareCommand::run() {
   if (result && aa_ > 0) alarms = compare::measure_false_alarms(runs_a_, aa_, 1);
   if (!result || !alarms) {
     const core::Error& error = result ? alarms.error() : result.error();
-    core::log_error(error.message);
-    return exit_code_of(error);
+    return fail_with(error);
   }
   const compare::FalseAlarms* measured = aa_ > 0 ? &*alarms : nullptr;
   const std::string json = compare::to_json(*result, measured);
@@ -140,6 +300,44 @@ int CompareCommand::run() {
   return printed != kOk                                ? printed
          : result->verdict == compare::Verdict::kWorse ? int{frametest::kMissed}
                                                        : kOk;
+}
+
+core::Result<compare::Instructions> CompareCommand::count_instructions() const {
+  if (out_.empty()) return core::invalid_argument("--instructions needs --out");
+  if (auto ok = telemetry::create_output_folder(out_); !ok) return tl::unexpected(ok.error());
+  const auto a = count(a_, out_, "a");
+  if (!a) return tl::unexpected(a.error());
+  const auto b = count(b_, out_, "b");
+  if (!b) return tl::unexpected(b.error());
+  if (a->hash != b->hash)
+    return core::invalid_argument(
+        fmt::format("the outputs differ (hashes '{}' and '{}'), so the "
+                    "instruction counts are not comparable",
+                    a->hash, b->hash));
+  return compare::Instructions{a->instructions, b->instructions};
+}
+
+// Returns 0; 3 if B executes over 1 % more instructions; 77 if valgrind is missing or cannot run a
+// command; otherwise 1.
+int CompareCommand::compare_instructions() const {
+  const auto counted = count_instructions();
+  if (!counted) {
+    core::log_error(counted.error().message);
+    return counted.error().code == core::ErrorCode::kNoDevice ? int{frametest::kSkipped}
+                                                              : exit_code_of(counted.error());
+  }
+  const std::string json = compare::to_json(*counted);
+  if (auto ok = core::replace_file(out_ / "compare.json", json); !ok) {
+    core::log_error(ok.error().message);
+    return kFailed;
+  }
+  const int printed = print(json_ ? json : compare::to_text(*counted));
+  if (printed != kOk) return printed;
+  return counted->verdict() == compare::Verdict::kWorse ? int{frametest::kMissed} : kOk;
+}
+
+std::unique_ptr<Command> make_compare_command(CLI::App& cli) {
+  return std::make_unique<CompareCommand>(cli);
 }
 
 }  // namespace psygen::cli

@@ -1,34 +1,46 @@
-#include "engine/cli/convert_command.hpp"
-
+// `psygen convert`: converts the frames of a recorded run for other viewers.
 #include <fmt/format.h>
 
+#include <string>
+
+#include "engine/cli/commands.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/compare/viewer_csv.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 
 namespace psygen::cli {
+namespace {
 
-ConvertCommand::ConvertCommand(CLI::App& cli)
-    : Command(cli, "convert", "Convert the frames of a run for other viewers") {
-  CLI::App& c = *command_;
-  c.add_option("RUN", run_, "Folder of a run, with frames.csv and summary.json")->required();
-  c.add_option("--to", viewer_, "Format: mangohud, or capframex (PresentMon 1.x)")
-      ->required()
-      ->check(one_of({"mangohud", "capframex"}));
-  c.add_option("--out", out_, "Output file: .csv")->required();
-}
-
-int ConvertCommand::run() {
-  const auto written =
-      compare::viewer_csv(*compare::viewer_from(viewer_), std::filesystem::path(run_))
-          .and_then([this](const std::string& text) { return core::replace_file(out_, text); });
-  if (!written) {
-    core::log_error(written.error().message);
-    return exit_code_of(written.error());
+class ConvertCommand final : public Command {
+ public:
+  explicit ConvertCommand(CLI::App& cli)
+      : Command(cli, "convert", "Convert the frames of a run for other viewers") {
+    CLI::App& c = *command_;
+    c.add_option("RUN", run_, "Folder of a run, with frames.csv and summary.json")->required();
+    c.add_option("--to", viewer_, "Format: mangohud, or capframex (PresentMon 1.x)")
+        ->required()
+        ->check(one_of({"mangohud", "capframex"}));
+    c.add_option("--out", out_, "Output file: .csv")->required();
   }
-  core::log_info(fmt::format("wrote {}", out_));
-  return kOk;
+
+  int run() override {
+    const auto written =
+        compare::viewer_csv(*compare::viewer_from(viewer_), std::filesystem::path(run_))
+            .and_then([this](const std::string& text) { return core::replace_file(out_, text); });
+    if (!written) return fail_with(written.error());
+    core::log_info(fmt::format("wrote {}", out_));
+    return kOk;
+  }
+
+ private:
+  std::string run_, viewer_, out_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_convert_command(CLI::App& cli) {
+  return std::make_unique<ConvertCommand>(cli);
 }
 
 }  // namespace psygen::cli

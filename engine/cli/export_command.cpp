@@ -1,37 +1,69 @@
 // psygen export: writes a model, a block or a region.
-#include "engine/cli/export_command.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <bit>
 #include <charconv>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <string>
+#include <thread>
+#include <vector>
 
+#include "engine/amplify/amplify.hpp"
 #include "engine/amplify/block_files.hpp"
+#include "engine/cli/commands.hpp"
+#include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
+#include "engine/cli/shipped_files.hpp"
 #include "engine/cli/text_values.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/nearest_word.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/exchange/unpack.hpp"
+#include "engine/exchange/write_document.hpp"
 #include "engine/synthesis/synthesise.hpp"
+#include "engine/telemetry/progress_bar.hpp"
+#include "engine/telemetry/units.hpp"
+#include "engine/tiles/heightmap.hpp"
+#include "engine/tiles/tile_tree.hpp"
+#include "engine/tiles/tileset.hpp"
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
 namespace {
 
-constexpr std::size_t kMaxShownBytes = 60;  // of a value
+class ExportCommand final : public Command {
+ public:
+  explicit ExportCommand(CLI::App& cli);
+  int run() override;
 
-tl::unexpected<core::Error> refuse(std::string sentence) {
-  return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
-}
+ private:
+  core::Result<exchange::Document> model_document(const models::Registry& registry,
+                                                  const world::Palette& palette) const;
+  core::Result<exchange::Document> block_document(const world::World& world,
+                                                  const models::Registry& registry) const;
+  int export_region(const world::World& world, const models::Registry& registry) const;
+  int export_heightmap(const world::World& world, unsigned threads) const;
+
+  std::string model_, world_ = kDefaultWorld, out_;
+  std::vector<std::string> settings_;  // name=value
+  std::optional<core::BlockCoord> block_;
+  int level_ = 0;
+  std::optional<amplify::Region> region_;
+  std::string format_ = "3dtiles";  // of a region
+  std::optional<tiles::NodeLevels> levels_;
+  unsigned threads_ = 0;
+};
+
+constexpr std::size_t kMaxShownBytes = 60;  // of a value
 
 core::Result<exchange::Format> format_of(const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension().string();
   const auto format = exchange::format_from(extension.empty() ? "" : extension.substr(1));
-  if (!format) return refuse(fmt::format("{}: the name must end in .glb or .obj", file));
+  if (!format)
+    return core::invalid_argument(fmt::format("{}: the name must end in .glb or .obj", file));
   return *format;
 }
 
@@ -92,18 +124,19 @@ core::Result<void> set(const models::ModelType& type, models::Parameters& p,
   const auto shown = [](std::string_view text) { return core::shown(text, kMaxShownBytes); };
   const std::size_t equals = setting.find('=');
   if (equals == std::string::npos)
-    return refuse(fmt::format("'{}' is not name=value", shown(setting)));
+    return core::invalid_argument(fmt::format("'{}' is not name=value", shown(setting)));
   const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
   const int index = models::parameter_index(type, name);
   if (index < 0) {
     const std::vector<std::string_view> names = parameter_names(type);
-    return refuse(fmt::format("{} has no parameter '{}'; its parameters are {}{}", type.name(),
-                              shown(name), fmt::join(names, ", "), core::suggestion(name, names)));
+    return core::invalid_argument(fmt::format("{} has no parameter '{}'; its parameters are {}{}",
+                                              type.name(), shown(name), fmt::join(names, ", "),
+                                              core::suggestion(name, names)));
   }
   const auto i = static_cast<std::size_t>(index);
   const models::ParameterSpec& spec = type.parameters()[i];
   if (set_value(spec, text, p, i)) return {};
-  return refuse(
+  return core::invalid_argument(
       fmt::format("{}: {} must be {}, not '{}'", type.name(), name, wanted_by(spec), shown(text)));
 }
 
@@ -114,14 +147,27 @@ core::Result<void> set_all(const models::ModelType& type, models::Parameters& p,
     if (auto ok = set(type, p, setting); !ok) return ok;
     const std::string name = setting.substr(0, setting.find('='));
     if (!names.insert(name).second)
-      return refuse(fmt::format("{}: {} is set twice", type.name(), name));
+      return core::invalid_argument(fmt::format("{}: {} is set twice", type.name(), name));
   }
   return models::validate(type, p);
 }
 
 core::Result<void> check_level(const models::ModelType& type, int level) {
   if (level < type.level_count()) return {};
-  return refuse(fmt::format("the levels of {} are 0 to {}", type.name(), type.level_count() - 1));
+  return core::invalid_argument(
+      fmt::format("the levels of {} are 0 to {}", type.name(), type.level_count() - 1));
+}
+
+// Levels from single blocks to one tile for the region.
+tiles::NodeLevels all_levels(const amplify::Region& region) {
+  tiles::NodeLevels levels;
+  const auto is_one_tile = [&] {
+    return region.x0 >> levels.coarsest == (region.x1 - 1) >> levels.coarsest &&
+           region.z0 >> levels.coarsest == (region.z1 - 1) >> levels.coarsest;
+  };
+  while (levels.coarsest < tiles::kMaxNodeLevel && !is_one_tile())
+    ++levels.coarsest;
+  return levels;
 }
 
 }  // namespace
@@ -173,10 +219,7 @@ int ExportCommand::run() {
   std::optional<world::World> world;
   if (block_ || region_ || command_->count("--world") > 0) {
     auto loaded = load_world(world_, registry);
-    if (!loaded) {
-      core::log_error(loaded.error().message);
-      return exit_code_of(loaded.error());
-    }
+    if (!loaded) return fail_with(loaded.error());
     world = std::move(*loaded);
   }
   if (region_) return export_region(*world, registry);
@@ -188,10 +231,8 @@ int ExportCommand::run() {
     const bool usage = !block_ && document.error().code == core::ErrorCode::kInvalidArgument;
     return usage ? kUsage : exit_code_of(document.error());
   }
-  if (auto ok = exchange::write_scene(out_, *format_of(out_), *document); !ok) {
-    core::log_error(ok.error().message);
-    return exit_code_of(ok.error());
-  }
+  if (auto ok = exchange::write_scene(out_, *format_of(out_), *document); !ok)
+    return fail_with(ok.error());
   const std::size_t objects = document->objects.size();
   core::log_info(fmt::format("wrote {}: {} object{}, {} vertices, {} triangles", out_, objects,
                              objects == 1 ? "" : "s", document->vertex_count(),
@@ -204,9 +245,9 @@ core::Result<exchange::Document> ExportCommand::model_document(
   const int found = registry.find(model_);
   if (found < 0) {
     const std::vector<std::string_view> names = model_names(registry);
-    return refuse(fmt::format("unknown model '{}'; the models are {}{}",
-                              core::shown(model_, kMaxShownBytes), fmt::join(names, ", "),
-                              core::suggestion(model_, names)));
+    return core::invalid_argument(
+        fmt::format("unknown model '{}'; the models are {}{}", core::shown(model_, kMaxShownBytes),
+                    fmt::join(names, ", "), core::suggestion(model_, names)));
   }
   const models::ModelType& type = registry[static_cast<models::ModelIndex>(found)];
   models::Parameters p = models::default_parameters(type);
@@ -230,6 +271,39 @@ core::Result<exchange::Document> ExportCommand::block_document(
     return core::fail(ok.error().code,
                       fmt::format("the world has no block {},{}: {}", x, z, ok.error().message));
   return amplify::block_document(world, registry, *block_, level_);
+}
+
+int ExportCommand::export_region(const world::World& world,
+                                 const models::Registry& registry) const {
+  if (auto ok = amplify::check_region(world, *region_); !ok) return fail_with(ok.error());
+  const unsigned threads =
+      threads_ > 0 ? threads_ : amplify::threads_for(std::thread::hardware_concurrency());
+  if (format_ == "heightmap") return export_heightmap(world, threads);
+  const auto tree = tiles::TileTree::over(*region_, levels_.value_or(all_levels(*region_)));
+  if (!tree) return fail_with(tree.error());
+  tiles::TilesetOptions options;
+  options.threads = threads;
+  options.stop = &stop_at_interrupt();
+  telemetry::ProgressBar bar(telemetry::stderr_terminal(), "tiling " + world.name, 1);
+  options.progress = [&bar](double done) { bar.update(done); };
+  const auto report = tiles::write_tileset(world, registry, *tree, out_, options);
+  if (!report) return fail_with(report.error());
+  core::log_info(fmt::format("wrote {}: {} tiles in {} levels, {} triangles, {}", out_,
+                             report->contents, tree->level_count(), report->triangles,
+                             telemetry::size_text(static_cast<double>(report->bytes))));
+  return kOk;
+}
+
+int ExportCommand::export_heightmap(const world::World& world, unsigned threads) const {
+  const auto report = tiles::write_heightmap(world, *region_, out_, threads, &stop_at_interrupt());
+  if (!report) return fail_with(report.error());
+  core::log_info(fmt::format("wrote {}: {} x {} heights from {:.1f} to {:.1f} m", out_,
+                             report->width, report->height, report->min_m, report->max_m));
+  return kOk;
+}
+
+std::unique_ptr<Command> make_export_command(CLI::App& cli) {
+  return std::make_unique<ExportCommand>(cli);
 }
 
 }  // namespace psygen::cli

@@ -1,28 +1,117 @@
 // psygen fly: a flight through a world, in a window or headless, and its measurements.
-#include "engine/cli/fly_command.hpp"
-
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <string>
+#include <unordered_set>
+#include <vector>
 
 #include "engine/app/flight.hpp"
+#include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/scene_options.hpp"
 #include "engine/cli/shipped_files.hpp"
-#include "engine/cli/standard_streams.hpp"
+#include "engine/cluster/agreement.hpp"
+#include "engine/cluster/model_server.hpp"
+#include "engine/cluster/remote_modeler_pool.hpp"
+#include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/inspect/inspect.hpp"
 #include "engine/render/device/software_tuning.hpp"
-#include "engine/render/renderer.hpp"
+#include "engine/scene/frame/clock.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/scene/settings.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
+#include "engine/synthesis/request_stream.hpp"
 #include "engine/telemetry/output_file.hpp"
 
 namespace psygen::cli {
+namespace {
+
+// Records each mesh of a flight when it is first wanted, for `psygen schedule`.
+class RequestRecorder {
+ public:
+  // Call after each tick: records its wanted meshes. Times are those of the flight.
+  void observe(const scene::Scene& scene) {
+    const double now_s = std::max(scene.clock().now_s, 0.0);
+    for (const synthesis::Want& want : scene.meshes().wants()) {
+      if (!seen_.insert(want.key).second) continue;
+      const bool visible = synthesis::is_visible(want.rank.group());
+      const double ahead_s = visible ? 0.0 : double{want.deadline_s};
+      const bool due = visible || std::isfinite(want.deadline_s);
+      jobs_.push_back({now_s, scene.meshes().predict(want),
+                       due ? now_s + ahead_s : synthesis::kNoDeadline, want.rank});
+    }
+  }
+  const std::vector<synthesis::SimulatedJob>& jobs() const { return jobs_; }
+
+ private:
+  std::unordered_set<synthesis::MeshKey> seen_;
+  std::vector<synthesis::SimulatedJob> jobs_;
+};
+
+class FlyCommand final : public Command {
+ public:
+  explicit FlyCommand(CLI::App& cli);
+  int run() override;
+
+ private:
+  void add_flight_options();
+  void add_synthesis_options();
+  void add_picture_options();
+  void add_cluster_options();
+  std::string objection() const;
+  std::string validate_cluster_options() const;
+  core::Result<void> find_files();
+  int run_alone();
+  int run_here();
+  int run_rank();
+  int run_first_rank(cluster::CompatibilityKey key, const std::vector<unsigned>& threads,
+                     cluster::Peers& peers);
+  void print_cluster() const;
+  int fly();
+  int tell(const app::FlightReport& report) const;
+  core::Result<void> write_requests() const;
+
+  app::FlightOptions options_;
+  std::unique_ptr<app::Flight> flight_;
+  int told_ = 0;          // exit code of writing the flight's outputs
+  std::string requests_;  // file; empty: requests are not recorded
+  RequestRecorder recorder_;
+  bool inspect_ = false, json_ = false;
+  bool in_cluster_ = false;
+  cluster::RemoteOptions remote_options_;
+  std::unique_ptr<cluster::RemoteModelerPool> remote_;  // only on rank 0
+};
+
+// Returns true if mpirun, or srun --mpi=pmix and similar launchers, started this process as a rank.
+bool was_started_as_rank() {
+  return cluster::is_rank() || std::getenv("PMIX_RANK") != nullptr;
+}
+
+// Only rank 0 prints messages common to all ranks.
+bool prints_messages() {
+  const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
+  if (rank == nullptr) rank = std::getenv("PMIX_RANK");
+  return rank == nullptr || std::atoi(rank) == 0;
+}
+
+// Closing the window before the flight begins is not a failure.
+int code_of(const core::Error& error) {
+  if (error.code == core::ErrorCode::kInterrupted) {
+    core::log_info(error.message);
+    return kOk;
+  }
+  return fail_with(error);
+}
+
+}  // namespace
 
 FlyCommand::FlyCommand(CLI::App& cli)
     : Command(cli, "fly", "Fly through a world, in a window or headless") {
@@ -110,7 +199,8 @@ void FlyCommand::add_picture_options() {
       ->default_str("60 in a window, 0 headless")
       ->check(zero_or_between(0.1, 1000));
   c.add_option("--min-resolution", scene.min_resolution,
-               "Lowest render scale of the landscape used to hold the frame rate")
+               "Lowest render scale of the landscape used to hold the frame rate, as a fraction of "
+               "width and height; 1: always full resolution")
       ->capture_default_str()
       ->check(number_between(0.25, 1));
   c.add_option("--fade", scene.fade_seconds, "Seconds for models to fade in and out; 0: no fade")
@@ -163,10 +253,7 @@ core::Result<void> FlyCommand::find_files() {
 }
 
 int FlyCommand::run_alone() {
-  if (auto ok = find_files(); !ok) {
-    core::log_error(ok.error().message);
-    return exit_code_of(ok.error());
-  }
+  if (auto ok = find_files(); !ok) return fail_with(ok.error());
   return run_here();
 }
 
@@ -189,28 +276,15 @@ int FlyCommand::run_here() {
     told_ = tell(report);
   };
   options_.session.plugins.push_back(std::move(reporter));
-  auto flight =
-      load_image_codec().and_then(render::fit_software_rendering_to_threads).and_then([this] {
-        return app::Flight::create(options_);
-      });
+  // Before the driver and the modelers use up the available threads.
+  const auto codec =
+      options_.images_every > 0 ? image::load_picture_libraries() : core::Result<void>{};
+  auto flight = codec.and_then(render::fit_software_rendering_to_threads).and_then([this] {
+    return app::Flight::create(options_);
+  });
   if (!flight) return code_of(flight.error());
   flight_ = std::move(*flight);
   return fly();
-}
-
-// Before the driver and the modelers use up the available threads.
-core::Result<void> FlyCommand::load_image_codec() const {
-  return options_.images_every > 0 ? image::load_picture_libraries() : core::Result<void>{};
-}
-
-// Closing the window before the flight begins is not a failure.
-int FlyCommand::code_of(const core::Error& error) {
-  if (error.code == core::ErrorCode::kInterrupted) {
-    core::log_info(error.message);
-    return kOk;
-  }
-  core::log_error(error.message);
-  return exit_code_of(error);
 }
 
 int FlyCommand::fly() {
@@ -245,6 +319,96 @@ core::Result<void> FlyCommand::write_requests() const {
   auto written = core::replace_file(requests_, synthesis::stream_text(recorder_.jobs()));
   if (written) core::log_info(fmt::format("wrote {}", requests_));
   return written;
+}
+
+std::string FlyCommand::validate_cluster_options() const {
+  const char* const ranks = std::getenv("OMPI_COMM_WORLD_SIZE");
+  if (!in_cluster_ && ranks != nullptr && std::atoi(ranks) > 1)
+    return fmt::format(
+        "each of the {} MPI ranks would start its own flight; with --cluster, rank 0 flies and "
+        "the others make its meshes",
+        ranks);
+  if (in_cluster_ && !was_started_as_rank())
+    return "--cluster needs other ranks: mpirun -n 4 psygen fly --cluster";
+  return {};
+}
+
+// Errors of a rank are reported after the handshake, so that no rank waits. Only rank 0 needs a
+// path.
+int FlyCommand::run_rank() {
+  const auto joined = cluster::join_communicator();
+  if (!joined) return fail_with(joined.error());
+  cluster::Peers& peers = **joined;
+  models::Registry registry = models::make_standard_registry();
+  const auto key =
+      (peers.rank() == 0 ? find_files() : find_world(options_.session))
+          .and_then([&] { return load_world(options_.session.world_file.string(), registry); })
+          .map([&](const world::World& world) {
+            return cluster::compatibility_key(world, registry, core::version());
+          });
+  const std::uint32_t asked = options_.session.scene.modelers;
+  const unsigned threads = asked > 0 ? asked : cluster::threads_for_rank(peers);
+  const auto all = cluster::meet(key, threads, peers);
+  if (!all) {
+    if (peers.rank() == 0) core::log_error(all.error().message);
+    peers.finish();
+    return exit_code_of(all.error());
+  }
+  if (peers.rank() == 0) return run_first_rank(*key, *all, peers);
+  const auto served = cluster::run_model_server(registry, threads, peers);
+  if (!served) {
+    core::log_error(fmt::format("rank {}: {}", peers.rank(), served.error().message));
+    peers.abort();
+    return kFailed;
+  }
+  peers.finish();
+  if (served->hangs) std::_Exit(kOk);
+  return kOk;
+}
+
+// The flight reserves a processor for its frames. It ends before the other ranks are told to.
+int FlyCommand::run_first_rank(cluster::CompatibilityKey key, const std::vector<unsigned>& threads,
+                               cluster::Peers& peers) {
+  std::uint32_t& modelers = options_.session.scene.modelers;
+  if (modelers == 0) modelers = std::max(cluster::threads_for_rank(peers), 2U) - 1;
+  auto remote = cluster::RemoteModelerPool::start(std::move(key), threads, peers, remote_options_);
+  if (!remote) {
+    core::log_error(remote.error().message);
+    peers.abort();
+    return kFailed;
+  }
+  remote_ = std::move(*remote);
+  options_.session.remote = remote_.get();
+  const int code = run_here();
+  if (flight_ && !flight_->session().has_hung_modelers()) flight_.reset();
+  if (remote_->end()) {
+    peers.finish();
+  } else {
+    peers.abort();
+  }
+  return code;
+}
+
+// Printed below the table of the flight; with --json, logged as messages.
+void FlyCommand::print_cluster() const {
+  const cluster::RemoteStats figures = remote_->figures();
+  std::string_view title = "cluster";
+  const auto row = [&](std::string_view label, const std::string& value) {
+    const std::string line = fmt::format("{:<10} {:<18} {}", title, label, value);
+    title = "";
+    json_ ? core::log_info(line) : static_cast<void>(print(line + "\n"));
+  };
+  row("other ranks", figures.lost == 0
+                         ? fmt::format("{}", figures.ranks)
+                         : fmt::format("{}, {} of them lost", figures.ranks, figures.lost));
+  row("remote meshes", fmt::format("{} meshes, {:.1f} MB", figures.meshes,
+                                   static_cast<double>(figures.bytes) * 1e-6));
+  if (figures.given_back > 0) row("returned", fmt::format("{} requests", figures.given_back));
+  row("round trip", fmt::format("{:.0f} µs for a mesh of 100 KB", figures.way.seconds(1e5) * 1e6));
+}
+
+std::unique_ptr<Command> make_fly_command(CLI::App& cli) {
+  return std::make_unique<FlyCommand>(cli);
 }
 
 }  // namespace psygen::cli

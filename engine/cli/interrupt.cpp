@@ -36,9 +36,4 @@ const std::atomic<bool>& stop_at_interrupt() {
   return interrupted;
 }
 
-void ignore_write_signals() {
-  signal(SIGPIPE, SIG_IGN);
-  signal(SIGXFSZ, SIG_IGN);
-}
-
 }  // namespace psygen::cli

@@ -1,16 +1,12 @@
 // psygen models: lists every model type and every parameter, from the schemas.
-#include "engine/cli/models_command.hpp"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <string>
 
+#include "engine/cli/commands.hpp"
 #include "engine/cli/shipped_files.hpp"
-#include "engine/cli/standard_streams.hpp"
-#include "engine/core/log.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/world/files/world_file.hpp"
-#include "engine/world/world.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -69,23 +65,31 @@ std::string table_of(const models::Registry& registry) {
   return text;
 }
 
+class ModelsCommand final : public Command {
+ public:
+  explicit ModelsCommand(CLI::App& cli)
+      : Command(cli, "models", "List every model type and its parameters") {
+    command_->add_flag("--json", json_, "Print the list as JSON");
+    command_->add_option("--world", world_, "Include the species of this world");
+  }
+
+  int run() override {
+    models::Registry registry = models::make_standard_registry();
+    if (!world_.empty()) {
+      if (const auto world = load_world(world_, registry); !world) return fail_with(world.error());
+    }
+    return print(json_ ? json_of(registry) : table_of(registry));
+  }
+
+ private:
+  std::string world_;
+  bool json_ = false;
+};
+
 }  // namespace
 
-ModelsCommand::ModelsCommand(CLI::App& cli)
-    : Command(cli, "models", "List every model type and its parameters") {
-  command_->add_flag("--json", json_, "Print the list as JSON");
-  command_->add_option("--world", world_, "Include the species of this world");
-}
-
-int ModelsCommand::run() {
-  models::Registry registry = models::make_standard_registry();
-  if (!world_.empty()) {
-    if (const auto world = load_world(world_, registry); !world) {
-      core::log_error(world.error().message);
-      return exit_code_of(world.error());
-    }
-  }
-  return print(json_ ? json_of(registry) : table_of(registry));
+std::unique_ptr<Command> make_models_command(CLI::App& cli) {
+  return std::make_unique<ModelsCommand>(cli);
 }
 
 }  // namespace psygen::cli

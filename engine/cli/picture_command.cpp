@@ -1,29 +1,27 @@
 // psygen picture: renders one still image of a world, with all its meshes complete.
-#include "engine/cli/picture_command.hpp"
-
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <glm/trigonometric.hpp>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <string>
 
 #include "engine/app/session.hpp"
+#include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/places.hpp"
 #include "engine/cli/scene_options.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/text_values.hpp"
-#include "engine/core/camera.hpp"
 #include "engine/core/log.hpp"
 #include "engine/image/image_io.hpp"
-#include "engine/models/terrain/terrain.hpp"
 #include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/frame/quality.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/scene/settings.hpp"
 #include "engine/scene/statistics.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/telemetry/output_file.hpp"
@@ -39,8 +37,7 @@ constexpr render::Preset kStillPreset = render::Preset::kHigh;
 
 core::Result<std::string> png_name(const std::string& file) {
   if (std::filesystem::path(file).extension() == ".png") return file;
-  return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("{}: the name must end in .png", file));
+  return core::invalid_argument(fmt::format("{}: the name must end in .png", file));
 }
 
 // An incomplete image would depend on the order of requests: coarser levels replace meshes without
@@ -61,76 +58,85 @@ core::Result<void> check_complete(const scene::Scene& scene) {
   return {};
 }
 
+class PictureCommand final : public Command {
+ public:
+  explicit PictureCommand(CLI::App& cli)
+      : Command(cli, "picture", "Render one still image of a world as PNG") {
+    using world::CameraPath;
+    CLI::App& c = *command_;
+    options_.scene.max_error_pixels = kStillErrorPixels;
+    options_.preset = kStillPreset;
+    c.add_option("--out", out_, "Output file: .png")->required()->check(valid_if(png_name, "FILE"));
+    c.add_option_function<std::string>(
+         "--at", [this](const std::string& text) { at_ = *parse_place(text); },
+         "Camera position X,Z in metres of the world; default: the centre")
+        ->check(valid_if(parse_place, "X,Z"));
+    c.add_option("--height", height_m_, "Height above ground or water, in metres")
+        ->capture_default_str()
+        ->check(number_between(CameraPath::kMinHeightM, CameraPath::kMaxHeightM));
+    c.add_option("--yaw", yaw_deg_, "Direction of view in degrees: 0 north, 90 east")
+        ->capture_default_str()
+        ->check(number_between(-36'000, 36'000));
+    c.add_option("--pitch", pitch_deg_, "Pitch in degrees; -90 is straight down")
+        ->capture_default_str()
+        ->check(number_between(-90, 90));
+    add_scene_options(c, options_);
+  }
+
+  int run() override {
+    if (auto ok = find_world(options_); !ok) return fail_with(ok.error());
+    options_.headless = true;
+    options_.stop = &stop_at_interrupt();
+    const auto folder = std::filesystem::path(out_).parent_path();
+    // Checks the folder before the work begins.
+    const auto writable = telemetry::create_output_folder(folder.empty() ? "." : folder);
+    auto session = writable.and_then(image::load_picture_libraries)
+                       .and_then(render::fit_software_rendering_to_threads)
+                       .and_then([this] { return app::Session::create(options_); });
+    const auto taken = session.and_then([this](const auto& made) { return take(*made); });
+    if (taken) {
+      core::log_info(fmt::format("wrote {}", out_));
+    } else {
+      core::log_error(taken.error().message);
+    }
+    const int code = taken ? kOk : exit_code_of(taken.error());
+    // The hung modeler still uses the session's memory, so the destructors must not run.
+    if (session && (*session)->has_hung_modelers()) std::_Exit(code);
+    return code;
+  }
+
+ private:
+  core::Result<void> take(app::Session& session) const {
+    const world::World& world = session.scene().world();
+    core::CameraPose pose = session.home();
+    if (at_) {
+      const auto at = position_at(world, *at_);
+      if (!at) return tl::unexpected(at.error());
+      pose.position = *at;
+    }
+    pose.position.local.y = world::surface_height_m(world, pose.position) + height_m_;
+    pose.yaw = glm::radians(yaw_deg_);
+    pose.pitch = glm::radians(pitch_deg_);
+    if (auto ok = session.prepare(pose); !ok) return ok;
+    if (options_.stop->load()) return core::fail(core::ErrorCode::kInterrupted, "interrupted");
+    if (auto ok = session.tick(pose, 0); !ok) return ok;
+    if (auto ok = check_complete(session.scene()); !ok) return ok;
+    if (auto ok = session.save_picture(out_); !ok) return ok;
+    const auto messages = session.renderer().validation_messages();
+    if (messages.empty()) return {};
+    return core::fail(core::ErrorCode::kInternal, fmt::format("{}", fmt::join(messages, "\n")));
+  }
+
+  app::SessionOptions options_;
+  std::string out_;
+  std::optional<glm::dvec2> at_;  // metres; none: the centre of the world
+  double height_m_ = 1.7, yaw_deg_ = 0, pitch_deg_ = 0;
+};
+
 }  // namespace
 
-PictureCommand::PictureCommand(CLI::App& cli)
-    : Command(cli, "picture", "Render one still image of a world as PNG") {
-  using world::CameraPath;
-  CLI::App& c = *command_;
-  options_.scene.max_error_pixels = kStillErrorPixels;
-  options_.preset = kStillPreset;
-  c.add_option("--out", out_, "Output file: .png")->required()->check(valid_if(png_name, "FILE"));
-  c.add_option_function<std::string>(
-       "--at", [this](const std::string& text) { at_ = *parse_place(text); },
-       "Camera position X,Z in metres of the world; default: the centre")
-      ->check(valid_if(parse_place, "X,Z"));
-  c.add_option("--height", height_m_, "Height above ground or water, in metres")
-      ->capture_default_str()
-      ->check(number_between(CameraPath::kMinHeightM, CameraPath::kMaxHeightM));
-  c.add_option("--yaw", yaw_deg_, "Direction of view in degrees: 0 north, 90 east")
-      ->capture_default_str()
-      ->check(number_between(-36'000, 36'000));
-  c.add_option("--pitch", pitch_deg_, "Pitch in degrees; -90 is straight down")
-      ->capture_default_str()
-      ->check(number_between(-90, 90));
-  add_scene_options(c, options_);
-}
-
-int PictureCommand::run() {
-  if (auto ok = find_world(options_); !ok) {
-    core::log_error(ok.error().message);
-    return exit_code_of(ok.error());
-  }
-  options_.headless = true;
-  options_.stop = &stop_at_interrupt();
-  const auto folder = std::filesystem::path(out_).parent_path();
-  // Checks the folder before the work begins.
-  const auto writable = telemetry::create_output_folder(folder.empty() ? "." : folder);
-  auto session = writable.and_then(image::load_picture_libraries)
-                     .and_then(render::fit_software_rendering_to_threads)
-                     .and_then([this] { return app::Session::create(options_); });
-  const auto taken =
-      session ? take(**session) : core::Result<void>(tl::unexpected(session.error()));
-  if (taken) {
-    core::log_info(fmt::format("wrote {}", out_));
-  } else {
-    core::log_error(taken.error().message);
-  }
-  const int code = taken ? kOk : exit_code_of(taken.error());
-  // The hung modeler still uses the session's memory, so the destructors must not run.
-  if (session && (*session)->has_hung_modelers()) std::_Exit(code);
-  return code;
-}
-
-core::Result<void> PictureCommand::take(app::Session& session) const {
-  const world::World& world = session.scene().world();
-  core::CameraPose pose = session.home();
-  if (at_) {
-    const auto at = position_at(world, *at_);
-    if (!at) return tl::unexpected(at.error());
-    pose.position = *at;
-  }
-  pose.position.local.y = world::surface_height_m(world, pose.position) + height_m_;
-  pose.yaw = glm::radians(yaw_deg_);
-  pose.pitch = glm::radians(pitch_deg_);
-  if (auto ok = session.prepare(pose); !ok) return ok;
-  if (options_.stop->load()) return core::fail(core::ErrorCode::kInterrupted, "interrupted");
-  if (auto ok = session.tick(pose, 0); !ok) return ok;
-  if (auto ok = check_complete(session.scene()); !ok) return ok;
-  if (auto ok = session.save_picture(out_); !ok) return ok;
-  const auto messages = session.renderer().validation_messages();
-  if (messages.empty()) return {};
-  return core::fail(core::ErrorCode::kInternal, fmt::format("{}", fmt::join(messages, "\n")));
+std::unique_ptr<Command> make_picture_command(CLI::App& cli) {
+  return std::make_unique<PictureCommand>(cli);
 }
 
 }  // namespace psygen::cli

@@ -23,10 +23,9 @@ core::Result<core::WorldPosition> position_at(const world::World& world, glm::dv
   core::WorldPosition at;
   if (some) at.block = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
   if (!some || !world.contains(at.block)) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{},{} is outside the world {}: X is {} m, Z is {} m", place.x,
-                                  place.y, world.name, range_of(world.blocks_x, size_m),
-                                  range_of(world.blocks_z, size_m)));
+    return core::invalid_argument(fmt::format(
+        "{},{} is outside the world {}: X is {} m, Z is {} m", place.x, place.y, world.name,
+        range_of(world.blocks_x, size_m), range_of(world.blocks_z, size_m)));
   }
   at.local = {place.x - x * size_m, 0.0, place.y - z * size_m};
   return at;

@@ -46,7 +46,8 @@ void add_detail(CLI::App& c, scene::SceneSettings& scene) {
        "Levels of detail: on, or off for full detail everywhere")
       ->check(one_of({"on", "off"}))
       ->default_str("on");
-  c.add_option("--view-distance", scene.view_distance_m, "View distance in metres")
+  c.add_option("--view-distance", scene.view_distance_m,
+               "View distance in metres; nothing beyond it is drawn")
       ->capture_default_str()
       ->check(number_between(32, 65536));
   c.add_option("--error", scene.max_error_pixels, "Allowed screen-space error in pixels")

@@ -102,18 +102,16 @@ core::Result<world::World> load_world_and_files(const std::string& name,
 }
 
 core::Result<void> find_world(app::SessionOptions& options) {
-  auto file = find_file(Shipped::kWorld, options.world_file.string());
-  if (!file) return tl::unexpected(file.error());
-  options.world_file = std::move(*file);
-  return {};
+  return find_file(Shipped::kWorld, options.world_file.string()).map([&](fs::path file) {
+    options.world_file = std::move(file);
+  });
 }
 
 core::Result<void> find_path(app::FlightOptions& options) {
   if (options.path_file.empty()) return {};
-  auto file = find_file(Shipped::kPath, options.path_file.string());
-  if (!file) return tl::unexpected(file.error());
-  options.path_file = std::move(*file);
-  return {};
+  return find_file(Shipped::kPath, options.path_file.string()).map([&](fs::path file) {
+    options.path_file = std::move(file);
+  });
 }
 
 }  // namespace psygen::cli

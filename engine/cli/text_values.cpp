@@ -19,12 +19,22 @@ std::optional<std::uint64_t> leading_number(std::string_view& text) {
   return value;
 }
 
+// Reads "X,Z". Returns false unless both are numbers and span the text.
+template <class Number>
+bool read_pair(std::string_view text, Number& x, Number& z) {
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, x);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ',') return false;
+  const auto second = std::from_chars(first.ptr + 1, end, z);
+  return second.ec == std::errc() && second.ptr == end;
+}
+
 }  // namespace
 
 core::Result<std::uint64_t> parse_bytes(const std::string& text) {
   const auto refuse = [&text] {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("'{}' is not a number of bytes such as 512M or 2G", text));
+    return core::invalid_argument(
+        fmt::format("'{}' is not a number of bytes such as 512M or 2G", text));
   };
   std::string_view rest = text;
   const auto value = leading_number(rest);
@@ -49,37 +59,23 @@ core::Result<core::Extent> parse_size(const std::string& text) {
   if (separated) rest.remove_prefix(1);
   const std::uint64_t height = separated ? leading_number(rest).value_or(0) : 0;
   if (!rest.empty() || width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("'{}' is not a size such as 1280x720 (1 to 16384 each)", text));
+    return core::invalid_argument(
+        fmt::format("'{}' is not a size such as 1280x720 (1 to 16384 each)", text));
   }
   return core::Extent{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
 core::Result<glm::dvec2> parse_place(const std::string& text) {
-  const char* const end = text.data() + text.size();
   glm::dvec2 place{0.0};
-  const auto x = std::from_chars(text.data(), end, place.x);
-  const bool separated = x.ec == std::errc() && x.ptr != end && *x.ptr == ',';
-  const auto z = separated ? std::from_chars(x.ptr + 1, end, place.y) : x;
-  if (!separated || z.ec != std::errc() || z.ptr != end || !std::isfinite(place.x) ||
-      !std::isfinite(place.y)) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("'{}' is not a position X,Z in metres", text));
-  }
-  return place;
+  if (read_pair(text, place.x, place.y) && std::isfinite(place.x) && std::isfinite(place.y))
+    return place;
+  return core::invalid_argument(fmt::format("'{}' is not a position X,Z in metres", text));
 }
 
 core::Result<core::BlockCoord> parse_block(const std::string& text) {
-  const char* const end = text.data() + text.size();
   core::BlockCoord block;
-  const auto x = std::from_chars(text.data(), end, block.x);
-  const bool separated = x.ec == std::errc() && x.ptr != end && *x.ptr == ',';
-  const auto z = separated ? std::from_chars(x.ptr + 1, end, block.z) : x;
-  if (!separated || z.ec != std::errc() || z.ptr != end) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("'{}' is not a block X,Z", text));
-  }
-  return block;
+  if (read_pair(text, block.x, block.z)) return block;
+  return core::invalid_argument(fmt::format("'{}' is not a block X,Z", text));
 }
 
 }  // namespace psygen::cli

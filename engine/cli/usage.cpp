@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "engine/cli/commands.hpp"
-#include "engine/cli/standard_streams.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/nearest_word.hpp"
 #include "engine/core/utf8.hpp"

@@ -23,10 +23,6 @@ std::string place_of(Peers& peers) {
                      models::simd_targets().front());
 }
 
-tl::unexpected<core::Error> refuse(std::string sentence) {
-  return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
-}
-
 // A network file system may cache for some seconds that a file does not exist.
 constexpr int kLooks = 50;
 constexpr std::chrono::milliseconds kBetweenLooks{100};
@@ -70,28 +66,28 @@ core::Result<void> agree(const core::Result<void>& mine, Peers& peers) {
 
 core::Result<void> check_same_job(const core::Result<amplify::JobKey>& mine, bool with_folder,
                                   Peers& peers) {
-  core::Result<void> made{};
-  if (!mine) made = tl::unexpected(mine.error());
-  if (auto ok = agree(made, peers); !ok) return ok;
+  if (auto ok = agree(mine, peers); !ok) return ok;
   const std::string place = place_of(peers);
   const std::vector<std::string> keys =
       peers.exchange(amplify::ledger_text({*mine, place, {}, {}, 0}));
   const auto first = amplify::parse_ledger(keys.front(), "rank 0");
-  if (!first) return refuse("rank 0 runs a different version of psygen");
+  if (!first) return core::invalid_argument("rank 0 runs a different version of psygen");
   for (std::size_t rank = 1; rank < keys.size(); ++rank) {
     const auto other = amplify::parse_ledger(keys[rank], "rank");
     if (!other)
-      return refuse(fmt::format("rank {} runs a different version of psygen than rank 0", rank));
+      return core::invalid_argument(
+          fmt::format("rank {} runs a different version of psygen than rank 0", rank));
     const std::string different = amplify::difference(first->key, other->key);
     if (!different.empty())
-      return refuse(
+      return core::invalid_argument(
           fmt::format("{} does not match {}: it has {}", other->part, first->part, different));
   }
   const std::vector<std::string> folders = peers.exchange(with_folder ? "1" : "0");
   for (std::size_t rank = 1; rank < folders.size(); ++rank) {
     if (folders[rank] != folders.front())
-      return refuse(fmt::format("rank {} has --out and rank {} has none",
-                                folders[rank] == "1" ? rank : 0, folders[rank] == "1" ? 0 : rank));
+      return core::invalid_argument(fmt::format("rank {} has --out and rank {} has none",
+                                                folders[rank] == "1" ? rank : 0,
+                                                folders[rank] == "1" ? 0 : rank));
   }
   return {};
 }
@@ -109,7 +105,7 @@ core::Result<void> check_folder(const std::filesystem::path& folder, Peers& peer
   if (auto ok = agree(made, peers); !ok) return ok;
   token = peers.exchange(token).front();
   if (peers.rank() != 0 && !sees(file, token))
-    made = refuse(fmt::format(
+    made = core::invalid_argument(fmt::format(
         "{}: files that rank 0 writes there are not visible on {}; --out must be a folder "
         "that all ranks share",
         folder.string(), peers.host()));

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "engine/amplify/job_key.hpp"
 #include "engine/cluster/peers.hpp"
@@ -23,5 +21,9 @@ core::Result<void> check_folder(const std::filesystem::path& folder, Peers& peer
 
 // Returns the first error of any rank to all ranks; `mine` is the result of this rank.
 core::Result<void> agree(const core::Result<void>& mine, Peers& peers);
+template <class T>
+core::Result<void> agree(const core::Result<T>& mine, Peers& peers) {
+  return agree(mine ? core::Result<void>{} : tl::unexpected(mine.error()), peers);
+}
 
 }  // namespace psygen::cluster

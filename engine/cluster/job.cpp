@@ -6,19 +6,21 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <mutex>
 #include <sstream>
 #include <thread>
 #include <utility>
 
 #include "engine/cluster/agreement.hpp"
-#include "engine/cluster/claim_source.hpp"
-#include "engine/cluster/take_over.hpp"
+#include "engine/cluster/plan.hpp"
+#include "engine/core/replace_file.hpp"
 
 namespace psygen::cluster {
 namespace {
 
 using amplify::BlockRanges;
 using amplify::BlockRun;
+using amplify::Finished;
 using amplify::Totals;
 
 constexpr unsigned kProgressMs = 1, kShownMs = 100;
@@ -93,6 +95,135 @@ void add_from(const std::string& text, JobReport& sum) {
   sum.messages += messages;
 }
 
+// Source of the blocks of one rank: first its fixed share, then chunks that it claims one at a
+// time. Threads take runs of blocks. The thread that finds none left claims the next chunk while
+// the others wait some microseconds. Records finished runs in the rank's ledger. Any thread.
+class ClaimSource final : public amplify::RunSource {
+ public:
+  // All arguments must outlive the source. A null `ledger` records nothing.
+  ClaimSource(const Plan& plan, Peers& peers, unsigned threads, amplify::Ledger* ledger)
+      : plan_(plan),
+        peers_(peers),
+        threads_(threads),
+        ledger_(ledger),
+        blocks_(plan.own(peers.rank())) {}
+
+  core::Result<std::optional<BlockRun>> next() override {
+    const std::lock_guard lock(mutex_);
+    while (position_ == blocks_.count()) {
+      if (is_over_ || plan_.chunk_count() == 0) return std::nullopt;
+      const std::uint64_t chunk = peers_.claim();
+      is_over_ = chunk >= plan_.chunk_count();
+      if (is_over_) return std::nullopt;
+      blocks_ = plan_.chunk(chunk);
+      position_ = 0;
+    }
+    const BlockRun run = amplify::next_run(blocks_, position_, threads_);
+    position_ += run.count();
+    return run;
+  }
+  core::Result<void> finished(const BlockRun& run, const Totals& totals) override {
+    return ledger_ == nullptr ? core::Result<void>{} : ledger_->add({run, totals});
+  }
+
+ private:
+  const Plan& plan_;
+  Peers& peers_;
+  const unsigned threads_;
+  amplify::Ledger* ledger_;
+  std::mutex mutex_;
+  BlockRanges blocks_;
+  std::uint64_t position_ = 0;
+  bool is_over_ = false;
+};
+
+constexpr const char* kWhole = "all blocks";
+
+bool is_rank_ledger(const std::string& name) {
+  return name.starts_with("rank_") && name.ends_with(amplify::kLedgerExtension);
+}
+
+std::vector<std::filesystem::path> rank_ledgers(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    if (is_rank_ledger(it->path().filename().string())) files.push_back(it->path());
+  }
+  return files;
+}
+
+bool holds(const std::vector<Finished>& all, const BlockRun& run) {
+  return std::ranges::any_of(
+      all, [&](const Finished& f) { return f.run.first <= run.first && run.end <= f.run.end; });
+}
+
+// Adds the finished blocks of the ranks' ledgers. An entry that a killed job had already merged is
+// in both ledgers; it counts once.
+core::Result<void> add_finished_from(const std::vector<std::filesystem::path>& files,
+                                     const amplify::JobKey& key, std::vector<Finished>& all) {
+  const std::vector<Finished> before = all;
+  for (const std::filesystem::path& file : files) {
+    auto ledger = amplify::read_ledger(file);
+    if (!ledger) return tl::unexpected(ledger.error());
+    const std::string other = amplify::difference(key, ledger->key);
+    if (!other.empty())
+      return core::invalid_argument(
+          fmt::format("{}: belongs to {}; choose another folder", file.string(), other));
+    for (Finished& finished : ledger->finished)
+      if (!holds(before, finished.run)) all.push_back(std::move(finished));
+  }
+  return {};
+}
+
+// Path of a rank's ledger in a folder; the ledger of the whole job is "job.ledger".
+std::filesystem::path rank_ledger(const std::filesystem::path& folder, unsigned rank) {
+  return folder / fmt::format("rank_{}{}", rank, amplify::kLedgerExtension);
+}
+
+// kFiles checks that every finished block of an earlier job still has its files.
+enum class Check : std::uint8_t { kNothing, kFiles };
+
+// Merges the ledgers of all ranks into the ledger of the job, and removes them. With Check::kFiles,
+// drops entries that lost a file. For one rank, while no other writes into the folder. Fails with
+// kIo, with kParse, and with kInvalidArgument if the ledgers belong to another job.
+core::Result<void> gather_ledgers(const std::filesystem::path& folder, amplify::Ledger& job,
+                                  Check check) {
+  const std::vector<std::filesystem::path> files = rank_ledgers(folder);
+  std::vector<Finished> all = job.finished();
+  if (auto ok = add_finished_from(files, job.key(), all); !ok) return ok;
+  if (auto once = amplify::blocks_of(all); !once)
+    return core::invalid_argument(
+        fmt::format("{}: its ledgers contradict each other: {}; remove them (existing "
+                    "blocks are not written again)",
+                    folder.string(), once.error().message));
+  if (check == Check::kFiles) all = amplify::with_files(std::move(all), job.key(), folder);
+  if (auto ok = job.rewrite(amplify::compacted(std::move(all))); !ok) return ok;
+  for (const std::filesystem::path& file : files) {
+    std::error_code error;
+    std::filesystem::remove(file, error);
+    if (error)
+      return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot remove the file: {}",
+                                                          file.string(), error.message()));
+  }
+  return {};
+}
+
+// Opens the ledger of the whole job, locked for this process; removes half-written blocks and
+// merges the ledgers of an earlier job. Fails like Ledger::open() and gather_ledgers().
+core::Result<std::unique_ptr<amplify::Ledger>> take_over(const std::filesystem::path& folder,
+                                                         const amplify::JobKey& key) {
+  const BlockRun all{0, key.region.block_count()};
+  auto job = amplify::Ledger::open(folder / fmt::format("job{}", amplify::kLedgerExtension),
+                                   {key, kWhole, all, {}, 0});
+  if (!job) return job;
+  amplify::remove_partial_blocks(folder, [](core::BlockCoord) { return true; });
+  core::remove_partials_of(folder, is_rank_ledger);
+  if (auto ok = gather_ledgers(folder, **job, Check::kFiles); !ok)
+    return tl::unexpected(ok.error());
+  return job;
+}
+
 // State of a job during set-up: the steps of amplify_together(), in order.
 struct Start {
   const world::World& world;
@@ -106,13 +237,10 @@ struct Start {
 
   // Rank 0 opens the ledger of the job and sends the finished blocks to the other ranks.
   core::Result<void> take_over_folder() {
-    core::Result<void> taken{};
-    if (peers.rank() == 0) {
-      auto opened = take_over(folder, key);
-      if (opened) job = std::move(*opened);
-      if (!opened) taken = tl::unexpected(opened.error());
-    }
-    if (auto ok = agree(taken, peers); !ok) return ok;
+    core::Result<std::unique_ptr<amplify::Ledger>> opened;
+    if (peers.rank() == 0) opened = take_over(folder, key);
+    if (auto ok = agree(opened, peers); !ok) return ok;
+    job = std::move(*opened);
     const std::string text = job ? text_of(*amplify::blocks_of(job->finished())) : "";
     done = ranges_from(peers.exchange(text).front());
     return {};
@@ -120,22 +248,17 @@ struct Start {
 
   // Rank 0 opens first, so that it alone claims the folder.
   core::Result<void> open_files(bool now) {
-    core::Result<void> opened{};
-    if (now && key.format) {
-      auto made = amplify::BlockFolder::open(folder, world, registry, *key.format);
-      if (made) files = std::move(*made);
-      if (!made) opened = tl::unexpected(made.error());
-    }
+    if (!now || !key.format) return agree({}, peers);
+    auto opened = amplify::BlockFolder::open(folder, world, registry, *key.format);
+    if (opened) files = std::move(*opened);
     return agree(opened, peers);
   }
 
   core::Result<void> open_ledger() {
-    core::Result<void> opened{};
-    auto made = amplify::Ledger::open(
+    auto opened = amplify::Ledger::open(
         rank_ledger(folder, peers.rank()),
         {key, fmt::format("rank {}", peers.rank()), {0, key.region.block_count()}, {}, 0});
-    if (made) mine = std::move(*made);
-    if (!made) opened = tl::unexpected(made.error());
+    if (opened) mine = std::move(*opened);
     return agree(opened, peers);
   }
 

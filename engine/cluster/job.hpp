@@ -4,8 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
-#include <string>
 
 #include "engine/amplify/block_files.hpp"
 #include "engine/amplify/shard.hpp"

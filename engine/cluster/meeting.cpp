@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <sstream>
-#include <utility>
-
 #include "engine/cluster/agreement.hpp"
 #include "engine/core/bytes.hpp"
 #include "engine/core/hash.hpp"
@@ -112,9 +109,7 @@ CompatibilityKey compatibility_key(const world::World& world, const models::Regi
 
 core::Result<std::vector<unsigned>> meet(const core::Result<CompatibilityKey>& mine,
                                          unsigned threads, Peers& peers) {
-  core::Result<void> made{};
-  if (!mine) made = tl::unexpected(mine.error());
-  if (auto ok = agree(made, peers); !ok) return tl::unexpected(ok.error());
+  if (auto ok = agree(mine, peers); !ok) return tl::unexpected(ok.error());
   const std::vector<std::string> all = peers.exchange(bytes_of({*mine, peers.host(), threads}));
   const Introduction first = introduction_from(all.front());
   std::vector<unsigned> threads_of;
@@ -122,9 +117,9 @@ core::Result<std::vector<unsigned>> meet(const core::Result<CompatibilityKey>& m
     const Introduction other = introduction_from(all[rank]);
     const std::string different = difference(first.key, other.key);
     if (!different.empty())
-      return core::fail(core::ErrorCode::kInvalidArgument,
-                        fmt::format("rank {} ({}) does not match rank 0 ({}): it has {}", rank,
-                                    other.host, first.host, different));
+      return core::invalid_argument(
+          fmt::format("rank {} ({}) does not match rank 0 ({}): it has {}", rank, other.host,
+                      first.host, different));
     threads_of.push_back(other.threads);
   }
   return threads_of;

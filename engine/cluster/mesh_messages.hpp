@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "engine/cluster/peers.hpp"
 #include "engine/models/model_type.hpp"

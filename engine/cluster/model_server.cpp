@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "engine/cluster/mesh_messages.hpp"
-#include "engine/cluster/poll_backoff.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/start_thread.hpp"
 #include "engine/synthesis/synthesise.hpp"

@@ -1,5 +1,5 @@
-// Serves meshes to the flight of rank 0 (remote_models.hpp). Knows model types, but no worlds and
-// no visibility. Worker threads make the meshes; the calling thread receives requests.
+// Serves meshes to the flight of rank 0 (remote_modeler_pool.hpp). Knows model types, but no worlds
+// and no visibility. Worker threads make the meshes; the calling thread receives requests.
 #pragma once
 
 #include <cstdint>

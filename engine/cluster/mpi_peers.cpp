@@ -8,11 +8,9 @@
 #include <cstddef>
 #include <mutex>
 #include <thread>
-#include <utility>
 
 #include "engine/cluster/incoming_messages.hpp"
 #include "engine/cluster/peers.hpp"
-#include "engine/cluster/poll_backoff.hpp"
 
 namespace psygen::cluster {
 namespace {

@@ -1,6 +1,6 @@
 // Distribution of blocks over ranks. Most blocks are assigned at the start by predicted cost. The
 // rest forms chunks that idle ranks claim. All ranks compute the same plan from the same arguments,
-// so a number identifies a chunk. Pure; any thread. Sends nothing (claim_source.hpp does).
+// so a number identifies a chunk. Pure; any thread. Sends nothing (job.cpp does).
 #pragma once
 
 #include <cstdint>

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <random>
 
@@ -15,10 +14,6 @@ namespace psygen::compare {
 namespace {
 
 using Runs = std::span<const RecordedRun>;
-
-tl::unexpected<core::Error> refuse(std::string sentence) {
-  return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
-}
 
 // Returns the reason why two runs cannot be compared; empty if they can.
 std::string difference(const RecordedRun& first, const RecordedRun& other) {
@@ -50,24 +45,26 @@ std::string difference(const RecordedRun& first, const RecordedRun& other) {
 
 core::Result<void> check(Runs a, Runs b) {
   if (a.empty() || a.size() != b.size())
-    return refuse(
+    return core::invalid_argument(
         fmt::format("a comparison needs pairs of runs; A has {} and B has {}", a.size(), b.size()));
   const RecordedRun& first = a.front();
   for (const Runs runs : {a, b}) {
     for (const RecordedRun& run : runs)
-      if (std::string why = difference(first, run); !why.empty()) return refuse(std::move(why));
+      if (std::string why = difference(first, run); !why.empty())
+        return core::invalid_argument(std::move(why));
   }
   if (first.frame_ms.size() < kFewestFrames)
-    return refuse(fmt::format("{} has {} frames after the warm-up; a comparison needs {}",
-                              first.folder, first.frame_ms.size(), kFewestFrames));
+    return core::invalid_argument(
+        fmt::format("{} has {} frames after the warm-up; a comparison needs {}", first.folder,
+                    first.frame_ms.size(), kFewestFrames));
   if (first.virtual_clock) return {};
   if (!first.fixed_step)
-    return refuse(
+    return core::invalid_argument(
         fmt::format("{} followed the wall clock, so its frame k does not match frame k of "
                     "another run; it needs fixed_step",
                     first.folder));
   if (a.size() < kFewestPairs)
-    return refuse(
+    return core::invalid_argument(
         fmt::format("{} pairs of runs are too few; with fewer than {}, chance cannot be "
                     "ruled out",
                     a.size(), kFewestPairs));
@@ -94,15 +91,6 @@ std::optional<MinimaTest> cpu_test(Runs a, Runs b, const std::vector<bool>& left
       if (run.cpu_ms.size() != left_out.size()) return std::nullopt;
   return minima_test(times_of(a, left_out, &RecordedRun::cpu_ms),
                      times_of(b, left_out, &RecordedRun::cpu_ms));
-}
-
-std::vector<bool> left_out_of(Runs a, Runs b) {
-  std::vector<bool> left_out(a.front().left_out.size(), false);
-  for (const Runs runs : {a, b})
-    for (const RecordedRun& run : runs)
-      for (std::size_t k = 0; k < left_out.size(); ++k)
-        left_out[k] = left_out[k] || run.left_out[k];
-  return left_out;
 }
 
 template <class Field>
@@ -149,8 +137,9 @@ core::Result<Batch> judge_batch(Runs a, Runs b) {
   batch.pairs = a.size();
   batch.frames = times_a.front().size();
   if (batch.frames < kFewestFrames)
-    return refuse(fmt::format("only {} frames are valid in all runs; a comparison needs {}",
-                              batch.frames, kFewestFrames));
+    return core::invalid_argument(
+        fmt::format("only {} frames are valid in all runs; a comparison needs {}", batch.frames,
+                    kFewestFrames));
   batch.minima = minima_test(times_a, times_b);
   batch.cpu = cpu_test(a, b, left_out);
   batch.hitchy_a = hitchy(times_a);
@@ -306,8 +295,9 @@ core::Result<Comparison> compare_exactly(Runs a, Runs b) {
   for (const Runs runs : {a, b}) {
     for (const RecordedRun& run : runs)
       if (run.frame_ms != runs.front().frame_ms || run.time_s != runs.front().time_s)
-        return refuse(fmt::format("{} and {} belong to one set on the virtual clock, but differ",
-                                  runs.front().folder, run.folder));
+        return core::invalid_argument(
+            fmt::format("{} and {} belong to one set on the virtual clock, but differ",
+                        runs.front().folder, run.folder));
   }
   Comparison comparison;
   comparison.exact = true;
@@ -390,7 +380,7 @@ core::Result<Comparison> compare(Runs a, Runs b) {
 core::Result<FalseAlarms> measure_false_alarms(Runs runs, std::size_t count, std::uint64_t seed) {
   constexpr std::size_t kPairs = kFewestPairs + 1;
   if (runs.size() < 2 * kPairs)
-    return refuse(
+    return core::invalid_argument(
         fmt::format("measuring false alarms needs {1} runs, not {0}", runs.size(), 2 * kPairs));
   std::mt19937_64 random(seed);
   std::vector<std::size_t> order(runs.size());

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 
-#include "engine/telemetry/page_files.hpp"
-#include "engine/telemetry/page_rows.hpp"
+#include "engine/telemetry/page.hpp"
 #include "engine/telemetry/units.hpp"
 
 namespace psygen::compare {
@@ -61,28 +60,17 @@ std::vector<double> means(Runs runs, const std::vector<double>& times,
   return sums;
 }
 
-std::vector<bool> left_out_of_any(Runs a, Runs b, std::size_t count) {
-  std::vector<bool> left_out(count, false);
-  for (const Runs runs : {a, b})
-    for (const RecordedRun& run : runs)
-      for (std::size_t k = 0; k < std::min(count, run.left_out.size()); ++k)
-        left_out[k] = left_out[k] || run.left_out[k];
-  return left_out;
-}
-
 Plot overlay(const char* title, const char* unit, std::vector<double> a, std::vector<double> b,
              const char* note) {
-  Plot plot;
-  plot.title = title;
-  plot.unit = unit;
-  plot.note = note;
-  plot.series = {{"A", kColourA, std::move(a)}, {"B", kColourB, std::move(b)}};
-  return plot;
+  return {.title = title,
+          .unit = unit,
+          .note = note,
+          .series = {{"A", kColourA, std::move(a)}, {"B", kColourB, std::move(b)}}};
 }
 
 std::string plots(Runs a, Runs b) {
   const std::vector<double>& times = a.front().time_s;
-  const std::vector<bool> left_out = left_out_of_any(a, b, times.size());
+  const std::vector<bool> left_out = left_out_of(a, b);
   const std::vector<double> a_ms = min_times(a, times, left_out);
   const std::vector<double> b_ms = min_times(b, times, left_out);
   telemetry::PageRows rows;
@@ -92,14 +80,12 @@ std::string plots(Runs a, Runs b) {
     rows.numbers.push_back(static_cast<double>(k));
     if (left_out[k]) rows.apart[k] = "excluded from all runs";
   }
-  Plot ratio;
-  ratio.title = "Frame time of B divided by frame time of A";
-  ratio.unit = "B / A";
-  ratio.series = {{"B / A", 5, {}}};
-  for (std::size_t k = 0; k < times.size(); ++k)
-    ratio.series[0].values.push_back(b_ms[k] / a_ms[k]);
-  ratio.levels = {{"the same", 1, true}};
-  ratio.small = true;
+  Plot ratio{.title = "Frame time of B divided by frame time of A",
+             .unit = "B / A",
+             .series = {{"B / A", 5, std::vector<double>(times.size())}},
+             .levels = {{"the same", 1, true}},
+             .small = true};
+  std::ranges::transform(b_ms, a_ms, ratio.series[0].values.begin(), std::divides{});
   Plot lacking =
       overlay("Missing or too coarse part of the image", "% of the image",
               means(a, times, &RecordedRun::lacking), means(b, times, &RecordedRun::lacking),

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "engine/compare/csv_rows.hpp"
 
@@ -212,6 +211,15 @@ core::Result<std::vector<RecordedRun>> read_runs(const std::filesystem::path& fo
     runs.push_back(std::move(*run));
   }
   return runs;
+}
+
+std::vector<bool> left_out_of(std::span<const RecordedRun> a, std::span<const RecordedRun> b) {
+  std::vector<bool> left_out(a.front().left_out.size(), false);
+  for (const auto runs : {a, b})
+    for (const RecordedRun& run : runs)
+      for (std::size_t k = 0; k < std::min(left_out.size(), run.left_out.size()); ++k)
+        left_out[k] = left_out[k] || run.left_out[k];
+  return left_out;
 }
 
 }  // namespace psygen::compare

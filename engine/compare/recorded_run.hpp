@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,5 +54,8 @@ core::Result<RecordedRun> parse_run(std::string_view frames_csv, std::string_vie
 // The runs in a folder: itself, or its subfolders at any depth that have a frames.csv, by name.
 // Fails with kIo if there are none.
 core::Result<std::vector<RecordedRun>> read_runs(const std::filesystem::path& folder);
+
+// For each frame of the first run of `a`: true if some run of `a` or `b` excludes it.
+std::vector<bool> left_out_of(std::span<const RecordedRun> a, std::span<const RecordedRun> b);
 
 }  // namespace psygen::compare

@@ -4,17 +4,15 @@
 
 #include <optional>
 
+#include "engine/app/flight.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/replace_file.hpp"
-#include "engine/frametest/escaped.hpp"
-#include "engine/frametest/start_flight.hpp"
 #include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/frame/quality.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/scene/settings.hpp"
-#include "engine/telemetry/page_files.hpp"
+#include "engine/telemetry/page.hpp"
 
 namespace psygen::frametest {
 namespace {

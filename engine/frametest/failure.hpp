@@ -7,7 +7,6 @@
 
 #include <filesystem>
 #include <span>
-#include <vector>
 
 #include "engine/frametest/worst_frames.hpp"
 

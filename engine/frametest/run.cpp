@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <string_view>
 
+#include "engine/app/flight.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/core/utf8.hpp"
 #include "engine/frametest/failure.hpp"
-#include "engine/frametest/start_flight.hpp"
+#include "engine/telemetry/report_plot.hpp"
 #include "engine/telemetry/summary_fields.hpp"
 
 namespace psygen::frametest {
@@ -78,6 +80,34 @@ bool read_worst_count(std::string_view text, int& count) {
          count <= kMaxWorstFrames;
 }
 
+std::string suite_of(const TestResult& result) {
+  const bool skipped = result.error && result.error->code == core::ErrorCode::kNoDevice;
+  const auto missed = std::ranges::count(result.budgets, false, &BudgetResult::holds);
+  const std::string name = escaped(result.name);
+  std::string text = fmt::format(
+      "<testsuite name=\"{}\" file=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
+      "skipped=\"{}\" time=\"{:.3f}\">\n",
+      name, escaped(result.file.string()), result.error ? 1 : result.budgets.size(), missed,
+      result.error && !skipped ? 1 : 0, skipped ? 1 : 0, result.seconds);
+  if (result.error) {
+    const std::string message = escaped(result.error->message);
+    text += fmt::format("<testcase classname=\"{}\" name=\"run\"><{} message=\"{}\"/></testcase>\n",
+                        name, skipped ? "skipped" : "error", message);
+  }
+  for (const BudgetResult& r : result.budgets) {
+    const std::string_view relation = name_of(r.budget.relation);
+    text += fmt::format("<testcase classname=\"{}\" name=\"{} {} {}\"", name,
+                        escaped(r.budget.field), relation, escaped(limit_of(r.budget)));
+    text += r.holds ? fmt::format("><system-out>{}</system-out></testcase>\n", escaped(r.value))
+                    : fmt::format("><failure message=\"{}\"/></testcase>\n", escaped(r.value));
+  }
+  // Several CI servers show this line as an attachment of the suite.
+  if (!result.page.empty())
+    text += fmt::format("<system-out>[[ATTACHMENT|{}]]</system-out>\n",
+                        escaped(std::filesystem::absolute(result.page).string()));
+  return text + "</testsuite>\n";
+}
+
 }  // namespace
 
 std::string_view sign_of(Relation relation) {
@@ -87,6 +117,27 @@ std::string_view sign_of(Relation relation) {
 std::string limit_of(const Budget& budget) {
   const double* number = std::get_if<double>(&budget.limit);
   return number != nullptr ? fmt::format("{:g}", *number) : std::get<std::string>(budget.limit);
+}
+
+std::string escaped(std::string_view text) {
+  return telemetry::escaped(core::shown(text));
+}
+
+core::Result<std::unique_ptr<app::Flight>> start_flight(app::FlightOptions flight,
+                                                        const RunOptions& options,
+                                                        const Hooks& hooks, app::Plugin last) {
+  flight.session.device_name = options.device;
+  flight.session.stop = options.stop;
+  if (hooks.prepare) {
+    if (auto ok = hooks.prepare(flight.session); !ok) return tl::unexpected(ok.error());
+  }
+  flight.camera = hooks.camera;
+  if (!last.name.empty()) flight.session.plugins.push_back(std::move(last));
+  auto made = app::Flight::create(std::move(flight));
+  if (made && hooks.start) {
+    if (auto ok = hooks.start((*made)->session()); !ok) return tl::unexpected(ok.error());
+  }
+  return made;
 }
 
 bool TestResult::holds() const {
@@ -140,6 +191,13 @@ std::string to_text(const TestResult& result) {
   if (!result.page.empty())
     text += fmt::format("{}: images in {}\n", result.name, result.page.string());
   return text;
+}
+
+std::string to_junit(std::span<const TestResult> results) {
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
+  for (const TestResult& result : results)
+    text += suite_of(result);
+  return text + "</testsuites>\n";
 }
 
 int run_frame_tests(const RunOptions& options, const Hooks& hooks) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,10 @@
 #include "engine/app/session.hpp"
 #include "engine/frametest/frame_test.hpp"
 #include "engine/telemetry/summary.hpp"
+
+namespace psygen::app {
+class Flight;
+}
 
 namespace psygen::frametest {
 
@@ -69,6 +74,14 @@ std::vector<BudgetResult> judge(std::span<const Budget> budgets, const telemetry
 // Text of a limit: "<=" and "25".
 std::string_view sign_of(Relation relation);
 std::string limit_of(const Budget& budget);
+// Escapes a text for HTML and XML. No control characters remain, which XML cannot represent.
+std::string escaped(std::string_view text);
+
+// Creates the flight of a test: adds device, stop flag and hooks to `flight`. `last` (may be empty)
+// follows the game's plugins. Fails like app::Flight::create() and the hooks.
+core::Result<std::unique_ptr<app::Flight>> start_flight(app::FlightOptions flight,
+                                                        const RunOptions& options,
+                                                        const Hooks& hooks, app::Plugin last = {});
 
 // Runs one file.
 TestResult run_frame_test(const std::filesystem::path& file, const RunOptions& options,

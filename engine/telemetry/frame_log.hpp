@@ -3,7 +3,6 @@
 // trace_log.hpp. Adding is O(1) and allocates only when memory is limited. Main thread only.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -39,8 +38,8 @@ std::string picture_name(std::uint64_t index);
 struct FrameRecord {
   std::uint64_t index = 0;
   double time_s = 0;  // start of the frame on the flight's clock; 0 is the flight's start
-  // Wall time of pose, tick and plugins; for written images also the GPU's time.
-  double frame_ms = 0;           // wal
+  // Wall time of pose, tick and plugins. For written images it includes the GPU's time.
+  double frame_ms = 0;
   double main_cpu_ms = 0;        // CPU time of the main thread in this frame
   double device_wait_ms = 0;     // part of frame_ms: waiting for the frame before the last
   double acquire_ms = 0;         // part of frame_ms: waiting for an image of the window

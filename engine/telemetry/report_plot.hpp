@@ -33,12 +33,12 @@ struct PlotLevel {
 
 // A plot.
 struct Plot {
-  std::string title;
-  std::string unit;  // at the axis and after values
-  std::string note;  // text below the plot; may be empty
+  std::string title = {};
+  std::string unit = {};  // at the axis and after values
+  std::string note = {};  // text below the plot; may be empty
   PlotKind kind = PlotKind::kLine;
-  std::vector<PlotSeries> series;
-  std::vector<PlotLevel> levels;
+  std::vector<PlotSeries> series = {};
+  std::vector<PlotLevel> levels = {};
   double top = 0;      // upper end of the axis, higher values are cut off; 0: from the data
   bool zooms = true;   // the axis follows the zoomed range; otherwise `top` stays
   bool small = false;  // half the height of other plots

@@ -1,4 +1,5 @@
-// Plots of report.html.
+#include "engine/telemetry/report_plots.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include <limits>
 #include <numeric>
 
-#include "engine/telemetry/report_parts.hpp"
+#include "engine/telemetry/units.hpp"
 #include "engine/telemetry/verdict.hpp"
 
 namespace psygen::telemetry {
@@ -44,9 +45,7 @@ void tell_apart(const FrameLog& log, const Summary& s, Plot& plot) {
 }
 
 Plot frame_time_plot(const FrameLog& log, const Summary& s) {
-  Plot plot;
-  plot.title = "Frame time";
-  plot.unit = "ms";
+  Plot plot{.title = "Frame time", .unit = "ms"};
   plot.series = {{"frame", 1, timed_column(log, [](const auto& r) { return r.frame_ms; })}};
   if (s.gpu_ms.p50.has_value()) {
     plot.series.push_back(
@@ -112,11 +111,10 @@ std::vector<PlotSeries> system_series(const FrameLog& log) {
 }
 
 Plot systems_plot(const FrameLog& log, const Summary& s) {
-  Plot plot;
-  plot.title = "Parts of a frame: systems of the tick, and waiting";
-  plot.unit = "ms";
-  plot.kind = PlotKind::kStacked;
-  plot.series = system_series(log);
+  Plot plot{.title = "Parts of a frame: systems of the tick, and waiting",
+            .unit = "ms",
+            .kind = PlotKind::kStacked,
+            .series = system_series(log)};
   std::vector<double> rest =
       timed_column(log, [](const auto& r) { return r.frame_ms - r.wait_ms(); });
   for (const PlotSeries& series : plot.series) {
@@ -139,21 +137,26 @@ Plot systems_plot(const FrameLog& log, const Summary& s) {
   return plot;
 }
 
+// Raises the axis of small values to `top`. Returns the largest value.
+double keep_axis_above(double top, Plot& plot) {
+  double largest = 0;
+  for (const PlotSeries& series : plot.series)
+    for (const double value : series.values)
+      largest = std::max(largest, value);
+  if (largest < top) plot.top = top;
+  return largest;
+}
+
 Plot coarse_plot(const FrameLog& log, const Summary& s) {
-  Plot plot;
-  plot.title = "Missing or too coarse part of the image";
-  plot.unit = "% of the image";
-  plot.kind = PlotKind::kPeaks;
+  Plot plot{.title = "Missing or too coarse part of the image",
+            .unit = "% of the image",
+            .kind = PlotKind::kPeaks};
   plot.series = {
       {"drawn too coarse", 4, column(log, [](const auto& r) { return r.too_coarse_percent; })},
       {"missing, or more than one level too coarse (estimate)", 6,
        column(log, [](const auto& r) { return r.missing_pixels_percent; })}};
   plot.levels = {{fmt::format("{:g} %", kCoarsePercent), kCoarsePercent, false}};
-  double largest = 0;
-  for (const PlotSeries& series : plot.series)
-    for (const double value : series.values)
-      largest = std::max(largest, value);
-  if (largest < 2) plot.top = 2;
+  keep_axis_above(2, plot);
   if (s.run.measured_frames > 0) {
     plot.note =
         fmt::format("More than {:g} % in {} of {} frames after the warm-up.", kCoarsePercent,
@@ -163,52 +166,40 @@ Plot coarse_plot(const FrameLog& log, const Summary& s) {
 }
 
 Plot missing_plot(const FrameLog& log) {
-  Plot plot;
-  plot.title = "Missing geometry: nodes in view without the wanted mesh";
-  plot.unit = "nodes";
-  plot.kind = PlotKind::kPeaks;
+  Plot plot{.title = "Missing geometry: nodes in view without the wanted mesh",
+            .unit = "nodes",
+            .kind = PlotKind::kPeaks};
   plot.series = {{"too coarse", 4, column(log, [](const auto& r) { return r.coarse_nodes; })},
                  {"holes", 6, column(log, [](const auto& r) { return r.holes; })}};
-  double largest = 0;
-  for (const PlotSeries& series : plot.series) {
-    for (const double value : series.values)
-      largest = std::max(largest, value);
-  }
-  if (largest < 5) plot.top = 5;
-  if (largest == 0) plot.note = "No frame had missing geometry.";
+  if (keep_axis_above(5, plot) == 0) plot.note = "No frame had missing geometry.";
   return plot;
 }
 
 // Allowed error of LODs, which trades quality for frame time.
 Plot error_plot(const FrameLog& log, const Summary& s) {
-  Plot plot;
-  plot.title = "Allowed screen-space error";
-  plot.unit = "pixels";
-  plot.small = true;
-  plot.series = {{"error", 5, column(log, [](const auto& r) { return r.error_pixels; })}};
+  Plot plot{.title = "Allowed screen-space error",
+            .unit = "pixels",
+            .note = "Allowed error of LODs. A larger error makes frames faster.",
+            .series = {{"error", 5, column(log, [](const auto& r) { return r.error_pixels; })}},
+            .small = true};
   if (s.run.error_pixels > 0)
     plot.levels = {{fmt::format("requested {:g}", s.run.error_pixels), s.run.error_pixels, true}};
-  plot.note = "Allowed error of LODs. A larger error makes frames faster.";
   return plot;
 }
 
 // Render scale of the landscape.
 Plot resolution_plot(const FrameLog& log) {
-  Plot plot;
-  plot.title = "Render scale of the landscape";
-  plot.unit = "%";
-  plot.small = true;
-  plot.series = {{"resolution", 5, column(log, [](const auto& r) { return 100 * r.resolution; })}};
-  plot.note =
-      "Lowered before geometric detail if frames take too long; the image is then upscaled.";
-  return plot;
+  return {
+      .title = "Render scale of the landscape",
+      .unit = "%",
+      .note =
+          "Lowered before geometric detail if frames take too long; the image is then upscaled.",
+      .series = {{"resolution", 5, column(log, [](const auto& r) { return 100 * r.resolution; })}},
+      .small = true};
 }
 
 Plot cache_plot(const FrameLog& log, const Summary& s) {
-  Plot plot;
-  plot.title = "Geometry cache";
-  plot.unit = "MiB";
-  plot.kind = PlotKind::kPeaks;
+  Plot plot{.title = "Geometry cache", .unit = "MiB", .kind = PlotKind::kPeaks};
   plot.series = {{"cache", 3, column(log, [](const auto& r) {
                     return static_cast<double>(r.cache_bytes) / kMebibyte;
                   })}};
@@ -246,45 +237,142 @@ std::vector<double> by_window(const FrameLog& log, const Value& value) {
 
 // In virtual time there is one modeler, which works by the flight's clock.
 Plot modelers_plot(const FrameLog& log, const Summary& s) {
-  Plot plot;
-  plot.title = "Modelers: load";
-  plot.unit = "% of their time";
-  plot.kind = PlotKind::kPeaks;
-  plot.small = true;
-  plot.series = {
-      {"busy", 7, by_window(log, [&](std::span<const FrameRecord> frames, double window_s) {
-         const bool is_virtual = std::isnan(frames.front().main_cpu_ms);
-         double busy_s = 0, real_s = 0;
-         for (const FrameRecord& r : frames) {
-           busy_s += r.synthesis_seconds;
-           real_s += r.frame_ms * 1e-3;
-         }
-         const double all_s = is_virtual ? window_s : real_s * s.run.modelers;
-         return all_s > 0 ? std::min(100 * busy_s / all_s, 100.0) : 0;
-       })}};
-  plot.top = 105;
-  plot.zooms = false;
-  plot.note =
-      "Processor time of synthesis, relative to the capacity of all modelers. Far below 100 % "
-      "while "
-      "geometry is missing: modelers got no processor.";
-  return plot;
+  const auto percent = [&](std::span<const FrameRecord> frames, double window_s) {
+    const bool is_virtual = std::isnan(frames.front().main_cpu_ms);
+    double busy_s = 0, real_s = 0;
+    for (const FrameRecord& r : frames) {
+      busy_s += r.synthesis_seconds;
+      real_s += r.frame_ms * 1e-3;
+    }
+    const double all_s = is_virtual ? window_s : real_s * s.run.modelers;
+    return all_s > 0 ? std::min(100 * busy_s / all_s, 100.0) : 0;
+  };
+  return {.title = "Modelers: load",
+          .unit = "% of their time",
+          .note =
+              "Processor time of synthesis, relative to the capacity of all modelers. Far below "
+              "100 % while geometry is missing: modelers got no processor.",
+          .kind = PlotKind::kPeaks,
+          .series = {{"busy", 7, by_window(log, percent)}},
+          .top = 105,
+          .zooms = false,
+          .small = true};
 }
 
 Plot synthesis_plot(const FrameLog& log) {
-  Plot plot;
-  plot.title = "Synthesis: triangles per second of the flight, all modelers";
-  plot.unit = "million/s";
-  plot.kind = PlotKind::kPeaks;
-  plot.small = true;
-  plot.series = {
-      {"synthesis", 3, by_window(log, [](std::span<const FrameRecord> frames, double window_s) {
-         double triangles = 0;
-         for (const FrameRecord& r : frames)
-           triangles += static_cast<double>(r.triangles_synthesised);
-         return triangles / window_s * 1e-6;
-       })}};
-  return plot;
+  const auto millions = [](std::span<const FrameRecord> frames, double window_s) {
+    double triangles = 0;
+    for (const FrameRecord& r : frames)
+      triangles += static_cast<double>(r.triangles_synthesised);
+    return triangles / window_s * 1e-6;
+  };
+  return {.title = "Synthesis: triangles per second of the flight, all modelers",
+          .unit = "million/s",
+          .kind = PlotKind::kPeaks,
+          .series = {{"synthesis", 3, by_window(log, millions)}},
+          .small = true};
+}
+
+// Frames that the rows of the plots represent. If there are too many, each is the slowest of
+// `every`.
+struct ShownFrames {
+  std::size_t every = 1;
+  std::vector<std::size_t> frames;  // positions in the log, ascending
+};
+
+constexpr std::size_t kMaxRows = 20'000;
+
+// Excluded frames come last.
+double slowness(const FrameRecord& record) {
+  return record.apart == Apart::kNo ? record.frame_ms : -1;
+}
+
+// The field of each row's frame.
+template <class Field>
+std::vector<double> column(const FrameLog& log, const ShownFrames& shown, const Field& field) {
+  std::vector<double> values;
+  for (const std::size_t frame : shown.frames)
+    values.push_back(static_cast<double>(field(log.frames()[frame])));
+  return values;
+}
+
+std::vector<RowFigure> figures(const FrameLog& log, const ShownFrames& shown) {
+  std::vector<RowFigure> list;
+  const auto add = [&](const char* name, const char* unit, const auto& field) {
+    list.push_back({name, unit, column(log, shown, field)});
+  };
+  add("processor time of the main thread", "ms", [](const auto& r) { return r.main_cpu_ms; });
+  add("shadows on the GPU", "ms",
+      [](const auto& r) { return r.gpu_shadows_ms.value_or(kNothing); });
+  add("triangles", "", [](const auto& r) { return r.triangles; });
+  add("draws", "", [](const auto& r) { return r.draws; });
+  add("nodes in view", "", [](const auto& r) { return r.nodes_in_view; });
+  add("models synthesised", "", [](const auto& r) { return r.models_synthesised; });
+  add("requests queued", "", [](const auto& r) { return r.requests_queued; });
+  add("requests rejected for lack of memory", "", [](const auto& r) { return r.requests_refused; });
+  add("evicted from the cache", "", [](const auto& r) { return r.cache_evictions; });
+  return list;
+}
+
+std::vector<RowFigure> parts(const FrameLog& log, const ShownFrames& shown) {
+  std::vector<RowFigure> list;
+  for (std::size_t i = 0; i < log.systems().size(); ++i) {
+    std::vector<double> ms;
+    for (const std::size_t frame : shown.frames)
+      ms.push_back(double{log.system_ms(frame)[i]});
+    list.push_back({log.systems()[i], "ms", std::move(ms)});
+  }
+  list.push_back({"waiting for the GPU", "ms",
+                  column(log, shown, [](const auto& r) { return r.device_wait_ms; })});
+  list.push_back({"presenting, waiting for the window", "ms",
+                  column(log, shown, [](const auto& r) { return r.acquire_ms + r.present_ms; })});
+  return list;
+}
+
+ShownFrames shown_frames(const FrameLog& log) {
+  const auto frames = log.frames();
+  ShownFrames shown;
+  shown.every = (frames.size() + kMaxRows - 1) / kMaxRows;
+  for (std::size_t first = 0; first < frames.size(); first += shown.every) {
+    const auto group = frames.subspan(first, std::min(shown.every, frames.size() - first));
+    shown.frames.push_back(
+        first +
+        static_cast<std::size_t>(std::ranges::max_element(group, {}, slowness) - group.begin()));
+  }
+  return shown;
+}
+
+// Reduces a plot's values of all frames to those of the rows; a row of peaks has the largest value.
+void thin(Plot& plot, const ShownFrames& shown) {
+  if (shown.every <= 1) return;
+  for (PlotSeries& series : plot.series) {
+    std::vector<double> values;
+    for (std::size_t row = 0; row < shown.frames.size(); ++row) {
+      double value = series.values[shown.frames[row]];
+      const std::size_t end = std::min((row + 1) * shown.every, series.values.size());
+      for (std::size_t k = row * shown.every; k < end && plot.kind == PlotKind::kPeaks; ++k)
+        value = std::fmax(value, series.values[k]);
+      values.push_back(value);
+    }
+    series.values = std::move(values);
+  }
+}
+
+// Data of the rows besides the plots.
+PageRows page_rows(const FrameLog& log, const Summary& summary, const ShownFrames& shown) {
+  PageRows rows;
+  rows.every = std::max<std::size_t>(shown.every, 1);
+  rows.times_s = column(log, shown, [](const auto& r) { return r.time_s; });
+  rows.numbers = column(log, shown, [](const auto& r) { return r.index; });
+  rows.warmup_s = summary.run.warmup_seconds;
+  rows.figures = figures(log, shown);
+  rows.parts = parts(log, shown);
+  for (std::size_t row = 0; row < shown.frames.size(); ++row) {
+    const FrameRecord& record = log.frames()[shown.frames[row]];
+    if (record.apart != Apart::kNo) rows.apart[row] = name_of(record.apart);
+    if (record.has_picture) rows.pictures[row] = picture_name(record.index);
+  }
+  return rows;
 }
 
 }  // namespace

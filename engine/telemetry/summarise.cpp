@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "engine/telemetry/statistics.hpp"
 #include "engine/telemetry/summary.hpp"
@@ -32,10 +31,6 @@ Count total(Frames frames, const Field& field) {
   return sum;
 }
 
-Figure percentile_of_samples(const SampleSet& samples, double warmup_s, double p) {
-  return percentile(samples.values_since(warmup_s), p);
-}
-
 // Values of the frames that have one.
 std::vector<double> known(Frames frames, std::optional<double> FrameRecord::*field) {
   std::vector<double> values;
@@ -44,14 +39,17 @@ std::vector<double> known(Frames frames, std::optional<double> FrameRecord::*fie
   return values;
 }
 
-template <class Field>
-Spread spread(Frames frames, const Field& field) {
+Spread spread_of(std::span<const double> values) {
   constexpr std::array kTwo{0.5, 0.99};
-  const std::vector<double> values = column(frames, field);
-  if (std::ranges::any_of(values, [](double value) { return std::isnan(value); }))
-    return {Figure::missing(kVirtual), Figure::missing(kVirtual)};
   const std::vector<Figure> p = percentiles(values, kTwo);
   return {p[0], p[1]};
+}
+
+template <class Field>
+Spread spread(Frames frames, const Field& field) {
+  const std::vector<double> values = column(frames, field);
+  const bool known = std::ranges::none_of(values, [](double value) { return std::isnan(value); });
+  return known ? spread_of(values) : Spread{Figure::missing(kVirtual), Figure::missing(kVirtual)};
 }
 
 // True if these frames have no measurements of a real clock.
@@ -61,9 +59,8 @@ bool are_virtual(Frames frames) {
 
 // Frames that timing statistics include.
 std::vector<FrameRecord> timed(Frames frames) {
-  std::vector<FrameRecord> kept;
-  std::copy_if(frames.begin(), frames.end(), std::back_inserter(kept),
-               [](const FrameRecord& r) { return r.apart == Apart::kNo; });
+  std::vector<FrameRecord> kept(frames.begin(), frames.end());
+  std::erase_if(kept, [](const FrameRecord& r) { return r.apart != Apart::kNo; });
   return kept;
 }
 
@@ -98,13 +95,9 @@ void summarise_run(Summary& s, Frames frames, const FrameLog& log) {
 
 void summarise_device(Summary& s, Frames frames) {
   const std::vector<double> ms = known(frames, &FrameRecord::gpu_ms);
-  if (are_virtual(frames)) {
-    const Figure none = Figure::missing(kVirtual);
-    s.gpu_ms = {none, none, none, none};
-    return;
-  }
-  if (ms.empty() && !s.device.timestamps) {
-    const Figure none = Figure::missing("the GPU has no timestamps");
+  const bool is_virtual = are_virtual(frames);
+  if (is_virtual || (ms.empty() && !s.device.timestamps)) {
+    const Figure none = Figure::missing(is_virtual ? kVirtual : "the GPU has no timestamps");
     s.gpu_ms = {none, none, none, none};
     return;
   }
@@ -115,20 +108,15 @@ void summarise_device(Summary& s, Frames frames) {
 // Uses the timed frames among the last `measured` frames of the log.
 void summarise_systems(Summary& s, const FrameLog& log, std::size_t measured) {
   const Frames frames = log.frames();
-  if (are_virtual(frames)) {
-    for (const std::string& system : log.systems())
-      s.system_ms.push_back({system, Figure::missing(kVirtual), Figure::missing(kVirtual)});
-    return;
-  }
   for (std::size_t system = 0; system < log.systems().size(); ++system) {
     std::vector<double> ms;
     for (std::size_t i = frames.size() - measured; i < frames.size(); ++i) {
       const float value = log.system_ms(i)[system];
       if (frames[i].apart == Apart::kNo && !std::isnan(value)) ms.push_back(double{value});
     }
-    constexpr std::array kTwo{0.5, 0.99};
-    const std::vector<Figure> p = percentiles(ms, kTwo);
-    s.system_ms.push_back({log.systems()[system], p[0], p[1]});
+    const Figure none = Figure::missing(kVirtual);
+    const Spread p = are_virtual(frames) ? Spread{none, none} : spread_of(ms);
+    s.system_ms.push_back({log.systems()[system], p.p50, p.p99});
   }
 }
 
@@ -190,9 +178,8 @@ void summarise_missing(Summary& s, Frames frames, const FrameLog& log, double wa
     seconds += coarse[i] > kCoarsePercent ? length_s(frames, i) : 0.0;
   s.missing.coarse_seconds = frames.empty() ? Figure::missing(kNoFrames) : Figure(seconds);
   const std::vector<double> waits = log.time_to_visible_ms().values_since(warmup_s);
-  constexpr std::array kTwo{0.5, 0.99};
-  const std::vector<Figure> p = percentiles(waits, kTwo);
-  s.missing.time_to_visible_ms = {p[0], p[1], largest(waits)};
+  const Spread wait = spread_of(waits);
+  s.missing.time_to_visible_ms = {wait.p50, wait.p99, largest(waits)};
 }
 
 void summarise_cache(Summary& s, Frames frames, const FrameLog& log, const RunFacts& facts) {
@@ -245,8 +232,8 @@ void summarise_synthesis(Summary& s, Frames frames, const FrameLog& log, double 
   synthesis.triangles_per_second =
       seconds > 0 ? Figure(static_cast<double>(*synthesis.triangles) / seconds)
                   : Figure::missing("nothing was synthesised after the warm-up");
-  synthesis.cost_error_percent = {percentile_of_samples(log.cost_error_percent(), warmup_s, 0.5),
-                                  percentile_of_samples(log.cost_error_percent(), warmup_s, 0.95)};
+  const std::vector<double> errors = log.cost_error_percent().values_since(warmup_s);
+  synthesis.cost_error_percent = {percentile(errors, 0.5), percentile(errors, 0.95)};
 }
 
 }  // namespace

@@ -42,6 +42,13 @@ class Table {
   std::string_view title_;
 };
 
+// "p50 1.2 ms, p99 3.4 ms"; the second percentile has another name on request.
+template <class Text>
+std::string spread_text(const Figure& p50, const Figure& high, const Text& text,
+                        std::string_view name = "p99") {
+  return fmt::format("p50 {}, {} {}", value_or_dash(p50, text), name, value_or_dash(high, text));
+}
+
 std::string blocks_text(const WorldFacts& world) {
   if (world.endless()) return "endless";
   return fmt::format("{} x {} blocks", world.blocks[0], world.blocks[1]);
@@ -101,18 +108,11 @@ void add_frames(Table& table, const Summary& s) {
   table.row("drawn (median)",
             fmt::format("{} triangles in {} draws", value_or_dash(s.draw.triangles_p50, count_text),
                         value_or_dash(s.draw.draws_p50, whole)));
-  const auto spread = [](const Spread& of) {
-    return fmt::format("p50 {}, p99 {}", value_or_dash(of.p50, ms_text),
-                       value_or_dash(of.p99, ms_text));
-  };
-  table.row("waiting", spread(s.wait_ms.all));
-  table.row("GPU time", fmt::format("p50 {}, p99 {}", value_or_dash(s.gpu_ms.p50, ms_text),
-                                    value_or_dash(s.gpu_ms.p99, ms_text)));
+  table.row("waiting", spread_text(s.wait_ms.all.p50, s.wait_ms.all.p99, ms_text));
+  table.row("GPU time", spread_text(s.gpu_ms.p50, s.gpu_ms.p99, ms_text));
   table.section("systems");
-  for (const SystemTimes& system : s.system_ms) {
-    table.row(system.name, fmt::format("p50 {}, p99 {}", value_or_dash(system.p50, ms_text),
-                                       value_or_dash(system.p99, ms_text)));
-  }
+  for (const SystemTimes& system : s.system_ms)
+    table.row(system.name, spread_text(system.p50, system.p99, ms_text));
 }
 
 void add_streaming(Table& table, const Summary& s) {
@@ -126,8 +126,7 @@ void add_streaming(Table& table, const Summary& s) {
   table.row("too coarse", fmt::format("p99 {}, worst {} of the image",
                                       value_or_dash(s.missing.coarse_p99_percent, percent_text),
                                       value_or_dash(s.missing.coarse_max_percent, percent_text)));
-  table.row("time to visible", fmt::format("p50 {}, p99 {}", value_or_dash(wait.p50, ms_text),
-                                           value_or_dash(wait.p99, ms_text)));
+  table.row("time to visible", spread_text(wait.p50, wait.p99, ms_text));
   table.section("cache");
   table.row("peak", fmt::format("{} of {}", value_or_dash(s.cache.peak_bytes, bytes_text),
                                 bytes_text(static_cast<double>(s.cache.budget_bytes))));
@@ -145,10 +144,8 @@ void add_streaming(Table& table, const Summary& s) {
   table.row("speed", value_or_dash(s.synthesis.triangles_per_second, count_text) +
                          " triangles per busy second");
   table.row("modelers busy", value_or_dash(s.synthesis.busy_percent, percent_text));
-  table.row(
-      "cost error",
-      fmt::format("p50 {}, p95 {}", value_or_dash(s.synthesis.cost_error_percent.p50, percent_text),
-                  value_or_dash(s.synthesis.cost_error_percent.p95, percent_text)));
+  const auto& error = s.synthesis.cost_error_percent;
+  table.row("cost error", spread_text(error.p50, error.p95, percent_text, "p95"));
   table.section("memory");
   table.row("resident, peak", value_or_dash(s.memory.peak_rss_bytes, bytes_text));
 }

@@ -10,8 +10,8 @@
 namespace psygen::telemetry {
 namespace {
 
-// Of the modelers' processors: above it, they had enough processor time.
-constexpr double kBusyPercent = 60;      // o
+// Modelers that used at least this percentage of their processors had enough processor time.
+constexpr double kBusyPercent = 60;
 constexpr double kFasterThanReal = 1.1;  // flight time over real time
 
 // Missing or too coarse part of the image, as the grade counts it.

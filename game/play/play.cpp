@@ -101,12 +101,9 @@ void Play::step(const Intent& intent, double dt) {
 }
 
 void Play::tell_of_walker() {
-  if (walker_->stepped())
-    happenings_.push_back({.kind = Happening::Kind::kStepped, .at = progress_.feet});
-  if (walker_->landed())
-    happenings_.push_back({.kind = Happening::Kind::kLanded, .at = progress_.feet});
-  if (walker_->splashed())
-    happenings_.push_back({.kind = Happening::Kind::kSplashed, .at = progress_.feet});
+  if (walker_->stepped()) happen(Happening::Kind::kStepped, progress_.feet);
+  if (walker_->landed()) happen(Happening::Kind::kLanded, progress_.feet);
+  if (walker_->splashed()) happen(Happening::Kind::kSplashed, progress_.feet);
 }
 
 double Play::hour() const {
@@ -184,7 +181,7 @@ void Play::gather() {
   if (!next.remove(world_, {target_.model.block, target_.model.index})) return;
   take_edits(std::move(next));
   ++progress_.stock.stones;
-  happenings_.push_back({.kind = Happening::Kind::kGathered, .at = target_.model.position});
+  happen(Happening::Kind::kGathered, target_.model.position);
   target_ = {};
 }
 
@@ -193,7 +190,7 @@ void Play::fell(double dt) {
   const double whole_s = has(abilities(), Ability::kAxe) ? kAxeS : kFellS;
   const double before = std::exchange(felling_, felling_ + dt / whole_s);
   if (std::floor(before * whole_s / kChopS) != std::floor(felling_ * whole_s / kChopS))
-    happenings_.push_back({.kind = Happening::Kind::kChopped, .at = target_.model.position});
+    happen(Happening::Kind::kChopped, target_.model.position);
   if (felling_ < 1) return;
   felling_ = 0;
   const auto tree = query_.placement(target_.model.block, target_.model.index);
@@ -224,7 +221,7 @@ void Play::build() {
   if (!place_cairn(*at, kStonesOfCairn + 1, kBuiltWidthM)) return refuse("There is no room here.");
   progress_.stock.stones -= kStonesOfCairn;
   progress_.waymarks.push_back(*at);
-  happenings_.push_back({.kind = Happening::Kind::kBuilt, .at = *at});
+  happen(Happening::Kind::kBuilt, *at);
 }
 
 void Play::light_fire() {
@@ -236,7 +233,7 @@ void Play::light_fire() {
   if (!free) progress_.stock.wood -= kWoodOfFire;
   std::erase_if(progress_.fires, [&](const Fire& f) { return f.until_s < progress_.time_s; });
   progress_.fires.push_back({*at, progress_.time_s + kFireS});
-  happenings_.push_back({.kind = Happening::Kind::kLit, .at = *at});
+  happen(Happening::Kind::kLit, *at);
 }
 
 void Play::sleep() {
@@ -244,7 +241,7 @@ void Play::sleep() {
   if (!is_night()) return refuse("You can sleep only at night.");
   const double hours = std::fmod(kMorningHour - hour() + 24, 24.0);
   progress_.time_s += hours / 24 * world_.sky.day_length_s;
-  happenings_.push_back({.kind = Happening::Kind::kSlept, .at = progress_.feet});
+  happen(Happening::Kind::kSlept, progress_.feet);
 }
 
 void Play::find_cairns() {

@@ -133,6 +133,9 @@ class Play {
   void see(std::int32_t x, std::int32_t z);
   void tell_of_walker();
   void refuse(const char* why);
+  void happen(Happening::Kind kind, const core::WorldPosition& at) {
+    happenings_.push_back({.kind = kind, .at = at});
+  }
   std::optional<core::WorldPosition> dry_place_ahead();
 
   world::World world_;

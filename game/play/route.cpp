@@ -93,8 +93,7 @@ const Candidate* first_reached(query::PathFinder& finder, const core::WorldPosit
 
 core::Result<Route> find_route(query::World& query) {
   const auto fail = [] {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      "this land has no route for twelve cairns; choose another seed");
+    return core::invalid_argument("this land has no route for twelve cairns; choose another seed");
   };
   const auto start = find_start(query);
   if (!start) return fail();

@@ -48,27 +48,22 @@ class Reader {
   template <class T>
   T get(const char* name) {
     const auto value = save_.value(name);
-    if (!value) {
-      note(value.error());
-    } else if (const T* found = std::get_if<T>(&*value)) {
-      return *found;
-    } else {
-      note({core::ErrorCode::kParse,
-            save_.file().string() + ": the value \"" + name + "\" is missing"});
-    }
+    if (!value && !error_) error_ = value.error();
+    if (!value) return {};
+    if (const T* found = std::get_if<T>(&*value)) return *found;
+    refuse(std::string("the value \"") + name + "\" is missing");
     return {};
   }
   template <class T>
   std::vector<T> list(const char* name) {
     const auto bytes = get<save::Bytes>(name);
-    if (bytes.size() % sizeof(T) != 0)
-      note({core::ErrorCode::kParse, save_.file().string() + ": \"" + name + "\" is truncated"});
+    if (bytes.size() % sizeof(T) != 0) refuse(std::string("\"") + name + "\" is truncated");
     std::vector<T> values(bytes.size() / sizeof(T));
     if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
     return values;
   }
-  void note(core::Error error) {
-    if (!error_) error_ = std::move(error);
+  void refuse(const std::string& sentence) {
+    if (!error_) error_ = {core::ErrorCode::kParse, save_.file().string() + ": " + sentence};
   }
   const std::optional<core::Error>& error() const { return error_; }
 
@@ -77,16 +72,13 @@ class Reader {
   std::optional<core::Error> error_;
 };
 
-Progress read_progress(Reader& in, const save::SaveGame& save) {
+Progress read_progress(Reader& in) {
   Progress p;
   if (in.get<std::int64_t>("format") > kFormat)
-    in.note({core::ErrorCode::kParse,
-             save.file().string() + ": a newer version of the game wrote this save"});
+    in.refuse("a newer version of the game wrote this save");
   const auto feet = in.list<Place>("feet"), fires = in.list<Place>("fires"),
              waymarks = in.list<Place>("waymarks");
-  if (feet.size() != 1)
-    in.note({core::ErrorCode::kParse,
-             save.file().string() + ": the position of the player is missing"});
+  if (feet.size() != 1) in.refuse("the position of the player is missing");
   if (!feet.empty()) p.feet = position(feet[0]);
   p.yaw = in.get<double>("yaw");
   p.time_s = in.get<double>("time_s");
@@ -102,9 +94,7 @@ Progress read_progress(Reader& in, const save::SaveGame& save) {
     p.seen[seen.cell] = static_cast<std::uint8_t>(std::min<std::uint64_t>(seen.kind, kMapWater));
   const bool usable = std::isfinite(p.yaw) && std::isfinite(p.time_s) && p.time_s >= 0 &&
                       p.time_s < 1e9 && p.stock.stones >= 0 && p.stock.wood >= 0;
-  if (!usable)
-    in.note(
-        {core::ErrorCode::kParse, save.file().string() + ": the save contains invalid numbers"});
+  if (!usable) in.refuse("the save contains invalid numbers");
   return p;
 }
 
@@ -166,7 +156,7 @@ core::Result<Saved> Saved::open(const std::filesystem::path& file, Play& play) {
 
 core::Result<void> Saved::resume(Play& play) {
   Reader in(*save_);
-  Progress progress = read_progress(in, *save_);
+  Progress progress = read_progress(in);
   if (in.error()) return tl::unexpected(*in.error());
   world::Edits edits;
   core::Result<void> loaded;

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <future>
-#include <string>
 
 #include "engine/save/save_game.hpp"
 #include "game/play/play.hpp"

@@ -1,7 +1,6 @@
 #include "game/show/controls.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace cairns {
 namespace {

@@ -16,26 +16,6 @@ Sounds::Sounds(double block_m, audio::Destination destination)
     : audio_({.destination = destination, .block_size_m = block_m}),
       coming_(std::async(std::launch::async, make_clips)) {}
 
-Sounds::Clips Sounds::make_clips() {
-  Clips made{wind_sound(),
-             rain_sound(),
-             water_sound(),
-             fire_sound(),
-             music_sound(1),
-             splash_sound(),
-             chop_sound(),
-             fall_sound(),
-             stone_sound(),
-             chime_sound(),
-             {},
-             {}};
-  for (int i = 0; i < 3; ++i) {
-    made.steps[static_cast<std::size_t>(i)] = step_sound(0.5F * static_cast<float>(i));
-    made.birds[static_cast<std::size_t>(i)] = bird_sound(i);
-  }
-  return made;
-}
-
 void Sounds::set_volumes(double effects, double music) {
   audio_.set_volume(audio::Bus::kEffects, effects);
   audio_.set_volume(audio::Bus::kMusic, music);

@@ -2,7 +2,6 @@
 // hour, and music. Without an audio device it stays silent and does not fail. Main thread only.
 #pragma once
 
-#include <array>
 #include <future>
 #include <optional>
 
@@ -23,12 +22,6 @@ class Sounds {
   void tell(const Happening& happening, Play& play);
 
  private:
-  // All clips, generated on a worker thread, because the music takes about 0.1 s.
-  struct Clips {
-    ClipPtr wind, rain, water, fire, music, splash, chop, fall, stone, chime;
-    std::array<ClipPtr, 3> steps, birds;
-  };
-  static Clips make_clips();
   struct Loop {
     audio::SoundId sound = audio::SoundId::kNone;
     double gain = 0;
@@ -40,7 +33,7 @@ class Sounds {
 
   audio::Audio audio_;
   Loop wind_, rain_, water_, fire_;
-  std::future<Clips> coming_;
+  std::future<Clips> coming_;   // from a worker thread
   std::optional<Clips> clips_;  // empty until generated
   double until_song_s_ = 4;
   std::uint64_t songs_ = 0;

@@ -19,8 +19,6 @@ ClipPtr clip(std::span<const float> left, std::span<const float> right = {}) {
   return std::make_shared<const audio::Clip>(audio::clip_of(left, right));
 }
 
-}  // namespace
-
 ClipPtr wind_sound() {
   Samples out = noise(11, 60, 480, 1);
   shape(out, [](float t) { return 2.2F + 0.9F * std::sin(0.9F * t) * std::sin(0.57F * t + 1); });
@@ -79,6 +77,7 @@ ClipPtr music_sound(std::uint64_t seed) {
   return clip(sides[0], sides[1]);
 }
 
+// `hardness` is 0 (snow) to 1 (rock).
 ClipPtr step_sound(float hardness) {
   Samples out = noise(0.16, 120 + 500 * hardness, 900 + 3500 * hardness, 7);
   shape(out, [&](float t) { return 2.2F * std::exp(-t * (22 + 30 * hardness)); });
@@ -98,6 +97,7 @@ ClipPtr chop_sound() {
   return clip(out);
 }
 
+// A falling tree.
 ClipPtr fall_sound() {
   Samples out = noise(2.2, 70, 1600, 10);
   shape(out, [](float t) {
@@ -132,12 +132,35 @@ ClipPtr bird_sound(int which) {
   return clip(out);
 }
 
+// A discovered cairn.
 ClipPtr chime_sound() {
   Samples out(samples_of(4));
   int i = 0;
   for (const double ratio : {1.0, 1.25, 1.5, 2.0, 2.5})
     add_tone(out, 0.16 * i++, 392 * ratio, 0.16F, 0.9, {0.3F, 0.12F});
   return clip(out);
+}
+
+}  // namespace
+
+Clips make_clips() {
+  Clips made{wind_sound(),
+             rain_sound(),
+             water_sound(),
+             fire_sound(),
+             music_sound(1),
+             splash_sound(),
+             chop_sound(),
+             fall_sound(),
+             stone_sound(),
+             chime_sound(),
+             {},
+             {}};
+  for (int i = 0; i < 3; ++i) {
+    made.steps[static_cast<std::size_t>(i)] = step_sound(0.5F * static_cast<float>(i));
+    made.birds[static_cast<std::size_t>(i)] = bird_sound(i);
+  }
+  return made;
 }
 
 }  // namespace cairns

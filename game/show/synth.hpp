@@ -1,8 +1,8 @@
-// Synthesises the sounds of the game; no file is read. Pure functions of a few milliseconds each;
-// the music takes about 0.1 s.
+// Synthesises the sounds of the game; no file is read. Pure. Each takes a few milliseconds, and the
+// music about 0.1 s.
 #pragma once
 
-#include <cstdint>
+#include <array>
 #include <memory>
 
 #include "engine/audio/clip.hpp"
@@ -12,17 +12,11 @@ namespace cairns {
 using namespace psygen;
 using ClipPtr = std::shared_ptr<const audio::Clip>;
 
-ClipPtr wind_sound();  // this one and the next four are loops
-ClipPtr rain_sound();
-ClipPtr water_sound();
-ClipPtr fire_sound();
-ClipPtr music_sound(std::uint64_t seed);  // a minute of slow chords
-ClipPtr step_sound(float hardness);       // 0 (snow) to 1 (rock)
-ClipPtr splash_sound();
-ClipPtr chop_sound();
-ClipPtr fall_sound();  // a falling tree
-ClipPtr stone_sound();
-ClipPtr bird_sound(int which);
-ClipPtr chime_sound();  // a discovered cairn
+// All clips of the game. The first four are loops; the music is a minute of slow chords.
+struct Clips {
+  ClipPtr wind, rain, water, fire, music, splash, chop, fall, stone, chime;
+  std::array<ClipPtr, 3> steps, birds;  // steps from snow to rock
+};
+Clips make_clips();
 
 }  // namespace cairns

@@ -1,4 +1,4 @@
-#include "engine/telemetry/process_command.hpp"
+#include "engine/telemetry/process.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -42,6 +42,18 @@ std::string process_command() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   const std::string words((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   return shell_text(words);
+}
+
+Measured<std::uint64_t> peak_rss_bytes() {
+  const std::string name = "VmHWM:";
+  std::ifstream status("/proc/self/status");
+  std::string key;
+  while (status >> key) {
+    std::uint64_t kibibytes = 0;
+    if (key == name && status >> kibibytes) return kibibytes * 1024;
+    std::getline(status, key);
+  }
+  return Measured<std::uint64_t>::missing("/proc/self/status has no field " + name);
 }
 
 }  // namespace psygen::telemetry

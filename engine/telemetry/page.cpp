@@ -1,8 +1,6 @@
-#include "engine/telemetry/page_rows.hpp"
+#include "engine/telemetry/page.hpp"
 
 #include <fmt/format.h>
-
-#include <string_view>
 
 namespace psygen::telemetry {
 namespace {

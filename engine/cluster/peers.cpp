@@ -1,9 +1,9 @@
+#include "engine/cluster/peers.hpp"
+
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <cstdlib>
-
-#include "engine/cluster/peers.hpp"
 
 namespace psygen::cluster {
 

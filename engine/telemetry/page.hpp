@@ -1,15 +1,27 @@
-// Data of the rows behind a page's plots: frames of a flight or of a comparison. The page's script
-// zooms over the rows, shows their values, and one row in detail. Pure; linear in rows.
+// Pages with plots: style and script as texts to embed, and the data of the rows behind the plots,
+// which are frames of a flight or of a comparison. The script zooms over the rows, shows their
+// values, and one row in detail. Pure; linear in rows.
 #pragma once
 
 #include <cstddef>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/telemetry/report_plot.hpp"
 
 namespace psygen::telemetry {
+
+// page_style.css: a palette of eight colours and two greys (fill0 … fill9, stroke0 …, swatch0 …),
+// for light and dark themes.
+std::string_view page_style();
+
+// page_script.js, for pages with plots over time; put it at the end of the page. Draws the figures
+// of report_plot.hpp over the rows of PageRows, all with one zoom. Shows the values under the
+// pointer, the distribution of the visible frames, and one frame in detail. Plain JavaScript and
+// SVG without external resources.
+std::string_view page_script();
 
 // A value of every row that no plot shows.
 struct RowFigure {
