@@ -6,7 +6,7 @@
 #include "editor/pictures/model_world.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/scene/facts/world_facts.hpp"
-#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"

@@ -11,8 +11,8 @@
 
 #include "ecs/ecs.hpp"
 #include "engine/scene/components.hpp"
-#include "engine/scene/frame/camera.hpp"
 #include "engine/scene/frame/clock.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/world/world.hpp"

@@ -26,7 +26,7 @@
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer.hpp"
-#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/settings.hpp"

@@ -7,7 +7,7 @@
 #include "editor/shell/panel.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/render/renderer.hpp"
-#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 
 namespace psygen::editor {
 namespace {

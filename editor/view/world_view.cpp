@@ -9,8 +9,7 @@
 
 #include "engine/core/start_thread.hpp"
 #include "engine/render/hud_drawing.hpp"
-#include "engine/scene/facts/prepared_world.hpp"
-#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/frame/quality.hpp"
 #include "engine/scene/scene.hpp"

@@ -26,7 +26,7 @@
 #include "engine/app/session.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/handmade/files.hpp"
-#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace psygen::editor {

@@ -1,6 +1,6 @@
 // The tool of a view: converts the pointer to points of the ground.
 #include "editor/view/world_view.hpp"
-#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/world.hpp"
 

@@ -1,4 +1,4 @@
-// Handles the keys of a flight's window (keys.hpp) and lays out the text over the image.
+// Handles the keys of a flight's window (kKeyHelp) and lays out the text over the image.
 #include <fmt/format.h>
 
 #include <utility>

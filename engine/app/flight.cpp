@@ -10,7 +10,6 @@
 #include <numbers>
 #include <utility>
 
-#include "engine/app/gap.hpp"
 #include "engine/app/plugin_call.hpp"
 #include "engine/app/virtual_frame.hpp"
 #include "engine/core/camera.hpp"

@@ -1,5 +1,5 @@
 // A flight through a world along a path or under user control, with its log and its outputs. In a
-// window it responds to the keys of keys.hpp. `psygen fly` runs one. Games drive a Session
+// window it responds to the keys of kKeyHelp. `psygen fly` runs one. Games drive a Session
 // themselves. Main thread only.
 #pragma once
 

@@ -7,12 +7,10 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "engine/app/keys.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/types.hpp"
 #include "engine/scene/facts/world_facts.hpp"
-#include "engine/scene/frame/camera.hpp"
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/settings.hpp"
 #include "engine/scene/view/debug_colours.hpp"

@@ -1,5 +1,5 @@
 // Progress of long tasks before the first frame: a bar on the terminal, none if stderr is not a
-// terminal, and an image in a window (loading_picture.hpp). Keeps the window responsive and detects
+// terminal, and an image in a window (loading_picture). Keeps the window responsive and detects
 // when it is closed. Main thread.
 #pragma once
 
@@ -9,7 +9,9 @@
 #include <string>
 #include <string_view>
 
+#include "engine/core/surface_provider.hpp"
 #include "engine/platform/window.hpp"
+#include "engine/render/hud_drawing.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 
@@ -60,5 +62,11 @@ class Loading {
 
 // Scale of text for readability: that of the display, or by the image's size, whichever is larger.
 float text_scale(float content_scale, core::Extent picture);
+
+// The image of a window while its world loads: hills in the evening, the name of the world, a bar
+// and the current task. `fraction` in [0, 1]. The name determines the hills; sizes scale with the
+// image's height. Pure; any thread.
+render::HudDrawing loading_picture(std::string_view world, std::string_view label, double fraction,
+                                   core::Extent picture);
 
 }  // namespace psygen::app

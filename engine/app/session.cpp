@@ -21,7 +21,7 @@
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/render/types.hpp"
-#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"

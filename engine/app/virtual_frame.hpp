@@ -27,4 +27,14 @@ inline bool has_virtual_frames(const SessionOptions& options) {
 double virtual_frame_ms(std::uint64_t triangles, std::uint32_t draws, core::Extent size,
                         double resolution = 1);
 
+inline constexpr double kGapMs = 5000, kGapRatio = 20, kSuspendedSeconds = 0.05;
+
+// Detects a stalled machine: suspended, stopped, or its clock went back. Such a time says nothing
+// about a frame. `usual_ms`: time of the previous frame, 0: unknown. `suspended_s`: suspension
+// during this frame.
+inline bool is_gap(double frame_ms, double usual_ms, double suspended_s) {
+  const bool stopped = usual_ms > 0 && frame_ms > kGapMs && frame_ms > kGapRatio * usual_ms;
+  return stopped || frame_ms < 0 || suspended_s > kSuspendedSeconds;
+}
+
 }  // namespace psygen::app

@@ -12,7 +12,7 @@
 #include "engine/render/types.hpp"
 #include "engine/scene/components.hpp"
 #include "engine/scene/facts/world_facts.hpp"
-#include "engine/scene/frame/camera.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "engine/scene/frame/quality.hpp"
 #include "engine/scene/objects/components.hpp"
 #include "engine/scene/objects/effects.hpp"

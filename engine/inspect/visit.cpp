@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <memory>
+#include <utility>
+
 #include "engine/app/session.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/start_thread.hpp"
 #include "engine/inspect/inspect.hpp"
-#include "engine/inspect/json_screen.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/scene.hpp"
@@ -39,6 +43,9 @@ std::string written_world(const app::Session& session) {
   const scene::WorldFacts& facts = session.scene().facts();
   return world::write_world(facts.world, facts.registry);
 }
+
+constexpr int kMaxMarks = 64, kMaxDepth = 4;
+constexpr std::size_t kMaxOutside = 4096;  // bytes outside strings: numbers, blanks
 
 }  // namespace
 
@@ -154,6 +161,60 @@ bool Visit::end(app::Session& session) {
   if (const auto done = change_.finish(session); done && !*done)
     core::log_warning(fmt::format("cannot restore the original world: {}", done->error().message));
   return !change_.is_under_way();
+}
+
+bool is_small_json(std::string_view text) {
+  int depth = 0, marks = 0;
+  std::size_t outside = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+      continue;
+    }
+    if (++outside > kMaxOutside) return false;
+    if (c == '"') in_string = true;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (c == '[' || c == '{' || c == ',' || c == ':') ++marks;
+    if (depth > kMaxDepth || marks > kMaxMarks) return false;
+  }
+  return true;
+}
+
+WorldChange& WorldChange::operator=(WorldChange&& other) noexcept {
+  wait();
+  prepared_ = std::move(other.prepared_);
+  return *this;
+}
+
+void WorldChange::start(app::Session& session, std::string text) {
+  using Task = std::packaged_task<core::Result<scene::PreparedWorld>()>;
+  const auto task = std::make_shared<Task>(session.prepare_world(std::move(text)));
+  prepared_ = task->get_future();
+  auto thread = core::start_thread([task] { (*task)(); });
+  if (!thread) return (*task)();
+  thread->detach();
+  if (session.scene().settings().virtual_time) wait();
+}
+
+bool WorldChange::is_ready() const {
+  return prepared_.valid() &&
+         prepared_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+std::optional<core::Result<void>> WorldChange::finish(app::Session& session) {
+  if (!is_ready()) return std::nullopt;
+  auto prepared = prepared_.get();
+  if (!prepared) return tl::make_unexpected(std::move(prepared.error()));
+  return session.show_world(std::move(*prepared));
+}
+
+bool WorldChange::drop() {
+  if (is_ready()) prepared_ = {};
+  return !is_under_way();
 }
 
 }  // namespace psygen::inspect

@@ -68,7 +68,7 @@ struct Instance {
 
 }  // namespace psygen::prefab
 
-// For snapshots (engine/scene/objects/described.hpp), as the traits below.
+// For snapshots (engine/scene/objects/components.hpp), as the traits below.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::gltf::Pose> {
   static constexpr auto fields =

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <list>
 #include <memory>
 #include <optional>
@@ -11,9 +12,11 @@
 #include <unordered_map>
 #include <vector>
 
-#include "engine/query/block_source.hpp"
+#include "engine/models/registry.hpp"
 #include "engine/query/ground_grid.hpp"
 #include "engine/query/solid.hpp"
+#include "engine/world/placement.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::query {
 
@@ -73,5 +76,22 @@ class BlockCache {
   Order blocks_;
   std::unordered_map<core::BlockCoord, Order::iterator, core::BlockCoordHash> index_;
 };
+
+// The source of ground and models, for queries and physics, which use no other one. Pure; any
+// thread.
+
+// Returns the quantised heights of the vertices of a block's finest mesh, row by row. About 15 µs
+// for 64 x 64 vertices. Needs 350 KiB of stack.
+std::vector<std::uint16_t> ground_of_block(const world::World& world, core::BlockCoord block);
+
+// Returns the models of a block by growing index. Takes as long, plus 0.1 µs for each model. Needs
+// 350 KiB of stack.
+std::vector<world::Placement> models_of_block(const world::World& world,
+                                              const models::Registry& registry,
+                                              core::BlockCoord block);
+
+// Returns a hash of the edits that change a block; 0 if none do. Equal hashes: equal ground and
+// models. Logarithmic in the edits.
+std::uint64_t edits_of_block(const world::World& world, core::BlockCoord block);
 
 }  // namespace psygen::query

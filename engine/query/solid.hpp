@@ -9,9 +9,19 @@
 #include <vector>
 
 #include "engine/models/collider.hpp"
-#include "engine/query/hull.hpp"
 
 namespace psygen::query {
+
+// All p with dot(normal, p) <= distance. The normal has unit length and points outwards.
+struct HalfSpace {
+  glm::vec3 normal{0, 1, 0};
+  float distance = 0;
+};
+
+// Returns the half-spaces whose intersection is the convex hull of the points, up to 1e-5 of its
+// extent. Empty for points in one plane, for fewer than four points, and for values that are not
+// finite. Built one point at a time, for the few points of a collider: quadratic time. Pure.
+std::vector<HalfSpace> hull_faces(std::span<const glm::vec3> points);
 
 // Intersection of a ray with a solid.
 struct SolidHit {

@@ -10,7 +10,6 @@
 #include "engine/core/heap_geometry_memory.hpp"
 #include "engine/core/log.hpp"
 #include "engine/render/renderer.hpp"
-#include "engine/scene/facts/cost_samples.hpp"
 #include "engine/scene/facts/derive.hpp"
 #include "engine/scene/facts/typical_bounds.hpp"
 #include "engine/scene/meshes/mesh_annotations.hpp"
@@ -91,16 +90,6 @@ std::uint64_t bytes_of(const State& s, std::span<const RequestedMesh> meshes) {
   return bytes;
 }
 
-// The accesses of engine systems to one value; null: no engine system uses it.
-const ecs::Access* engine_access(const State& s, const void* type) {
-  for (const ecs::SystemInfo& system : s.tick.systems()) {
-    if (std::ranges::find(s.engine_systems, system.name) == s.engine_systems.end()) continue;
-    const auto found = std::ranges::find(system.accesses, type, &ecs::Access::type);
-    if (found != system.accesses.end()) return &*found;
-  }
-  return nullptr;
-}
-
 // Fails if a system of a game uses a value of the engine that is not for games (systems.hpp).
 core::Result<void> check_accesses(const State& s, const ecs::SystemInfo& system) {
   constexpr std::array<std::string_view, 7> kReadable = {
@@ -109,7 +98,7 @@ core::Result<void> check_accesses(const State& s, const ecs::SystemInfo& system)
                                                        "ModelRemoved", "MeshReady",  "MeshEvicted",
                                                        "PlaceReady"};
   for (const ecs::Access& access : system.accesses) {
-    if (access.is_component || engine_access(s, access.type) == nullptr) continue;
+    if (access.is_component || !s.engine_values.contains(access.type)) continue;
     const bool readable = std::ranges::find(kReadable, access.name) != kReadable.end();
     const bool event = std::ranges::find(kEvents, access.name) != kEvents.end();
     if (event || access.name == "Input" || (readable && !access.writes)) continue;
@@ -246,9 +235,7 @@ core::Result<void> Scene::arrange() {
     if (std::string error = schedule->arrange(); !error.empty())
       return core::fail(core::ErrorCode::kInvalidArgument, std::move(error));
     for (const ecs::SystemInfo& system : schedule->systems()) {
-      const bool own =
-          schedule == &state_->tick &&
-          std::ranges::find(state_->engine_systems, system.name) != state_->engine_systems.end();
+      const bool own = schedule == &state_->tick && state_->engine_systems.contains(system.name);
       if (own) continue;
       if (auto ok = check_accesses(*state_, system); !ok) return ok;
     }

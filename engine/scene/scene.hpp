@@ -68,7 +68,7 @@ struct WorldFacts;
 // stopped.
 using Progress = std::function<bool(std::string_view, double)>;
 
-// Does the slow part of Scene::set_world() (facts/prepared_world.hpp). Any thread. Fails as
+// Does the slow part of Scene::set_world() (facts/world_facts.hpp). Any thread. Fails as
 // Scene::create(). Takes about 10 ms, and 0.2 ms for each block; less if only some scatters differ.
 core::Result<PreparedWorld> prepare_world(world::World world, models::Registry registry,
                                           const SceneSnapshot& snapshot);
@@ -114,7 +114,7 @@ class Scene {
   // The clock (frame/clock.hpp), and the time of the next tick in seconds.
   const Clock& clock() const;
   void set_now(double now_s);
-  // The camera of the last tick (frame/camera.hpp), and its vertical field of view from the next
+  // The camera of the last tick (frame/input.hpp), and its vertical field of view from the next
   // tick on.
   const Camera& camera() const;
   void set_field_of_view(float radians);
@@ -192,7 +192,7 @@ class Scene {
   // meshes are drawn until the new ones are ready. An edit taken back restores the same meshes.
   void edit(world::Edits edits);
 
-  // Replaces the world and its types from the next tick on (facts/prepared_world.hpp): for editors,
+  // Replaces the world and its types from the next tick on (facts/world_facts.hpp): for editors,
   // and for games whose world changes. Equal meshes stay, others are drawn until the new ones are
   // ready; worlds with another block size or other levels are built from nothing. Edits are kept.
   // Waits for requests that modelers work on. Ends queries of the old world (query::World). After

@@ -6,11 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "engine/scene/facts/cost_samples.hpp"
 #include "engine/scene/facts/derive.hpp"
 #include "engine/scene/facts/lighting.hpp"
-#include "engine/scene/facts/prepared_world.hpp"
 #include "engine/scene/facts/typical_bounds.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/meshes/mesh_annotations.hpp"
 #include "engine/scene/meshes/tree_impostors.hpp"
 #include "engine/scene/nodes/entities.hpp"

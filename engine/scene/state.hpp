@@ -4,14 +4,15 @@
 
 #include <memory>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "engine/core/geometry_memory.hpp"
 #include "engine/scene/draws/shown_nodes.hpp"
 #include "engine/scene/facts/world_facts.hpp"
+#include "engine/scene/frame/clock.hpp"
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/frame/output.hpp"
-#include "engine/scene/frame/simulation.hpp"
 #include "engine/scene/meshes/scene_meshes.hpp"
 #include "engine/scene/nodes/edits.hpp"
 #include "engine/scene/objects/assets.hpp"
@@ -28,8 +29,10 @@ struct State {
   Events events;
   Simulation simulation{entities};
   FixedStep step;
-  ecs::Schedule tick{entities};             // filled by build_tick
-  std::vector<std::string> engine_systems;  // names of the systems that build_tick added
+  ecs::Schedule tick{entities};  // filled by build_tick
+  // The names of the systems that build_tick added, and the types of the values that they use.
+  std::unordered_set<std::string> engine_systems;
+  std::unordered_set<const void*> engine_values;
   Input input;
   Clock clock;
   Camera camera;

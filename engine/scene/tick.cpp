@@ -38,8 +38,11 @@ void build_tick(State& s) {
   s.tick.add(kRenderSystem, render_system, ecs::RunsOn::kCallingThread);
   s.tick.add("events", events_system);
   s.tick.add("telemetry", telemetry_system);
-  for (const ecs::SystemInfo& system : s.tick.systems())
-    s.engine_systems.push_back(system.name);
+  for (const ecs::SystemInfo& system : s.tick.systems()) {
+    s.engine_systems.insert(system.name);
+    for (const ecs::Access& access : system.accesses)
+      s.engine_values.insert(access.type);
+  }
   s.simulation.systems.provide(s.facts, s.step, events.shown, events.hidden, events.created,
                                events.removed, events.ready, events.evicted, events.places_ready);
 }

@@ -11,7 +11,6 @@
 #include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/scene/events.hpp"
-#include "engine/scene/frame/camera.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"

@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "engine/scene/draws/parts.hpp"
+#include "engine/scene/draws/models.hpp"
 #include "engine/scene/view/visibility.hpp"
 
 namespace psygen::scene {

@@ -1,10 +1,10 @@
 #include "engine/scene/draws/models.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
-#include "engine/scene/draws/missing_coverage.hpp"
-#include "engine/scene/draws/parts.hpp"
+#include "engine/scene/draws/draw_lists.hpp"
 #include "engine/scene/view/visibility.hpp"
 
 namespace psygen::scene {
@@ -113,6 +113,16 @@ bool add_going(const ModelGround& ground, const View& view, const ModelRow& mode
   return share > 0 && add_present(ground, view, model, share - 1.0F, draws);
 }
 
+glm::vec2 flat(glm::vec3 v) {
+  return {v.x, v.z};
+}
+
+// Rounds in steps so large that neighbours can often share a draw.
+float in_steps(float share) {
+  constexpr float kSteps = 6;
+  return std::round(share * kSteps) / kSteps;
+}
+
 }  // namespace
 
 void add_models(const ModelGround& ground, NodeEntry entry, bool twice,
@@ -148,6 +158,21 @@ bool add_going_models(const ModelGround& ground, const View& view, const RenderQ
   each_model(entities, children, ground.node.level > 0, [&](const ModelRow& model) {
     if (add_going(ground, view, model, draws)) any = true;
   });
+  return any;
+}
+
+bool add_parts(const MeshParts& parts, const View* view, const GroundSunlight& sun, float side_m,
+               const render::MeshDraw& draw, std::vector<render::MeshDraw>& draws) {
+  bool any = false;
+  DrawParts run(draw, draws);
+  for (std::uint32_t i = 0; i < parts.count; ++i) {
+    if (view != nullptr && !mesh_may_be_visible(parts.boxes[i], draw.origin, *view)) continue;
+    run.set_sun(in_steps(
+        sun_over(sun, flat(parts.boxes[i].min) / side_m, flat(parts.boxes[i].max) / side_m)));
+    const std::uint32_t first = i * parts.indices_each;
+    run.add({first, std::min(parts.indices_each, parts.index_count - first)});
+    any = true;
+  }
   return any;
 }
 

@@ -11,11 +11,11 @@
 
 #include "engine/core/hash.hpp"
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/scene/facts/find_impostors.hpp"
 #include "engine/scene/facts/lighting.hpp"
 #include "engine/scene/facts/solidity.hpp"
 #include "engine/scene/facts/typical_bounds.hpp"
 #include "engine/world/far/merged_models.hpp"
+#include "engine/world/far/tree_impostors.hpp"
 #include "engine/world/models_reach.hpp"
 #include "engine/world/placement.hpp"
 
@@ -110,6 +110,32 @@ core::Result<void> find_levels(const SceneSettings& settings, WorldFacts& facts,
   derived.types = hash_of_names(facts.registry);
   derived.levels = facts.levels;
   facts.derived = std::make_shared<const DerivedWorldData>(std::move(derived));
+  return {};
+}
+
+// Finds the impostors of trees and adds the types that bake and show them to the registry. A world
+// has none without levels of detail, and none with data amplification, which makes all levels of
+// all meshes once. Reuses the measurements of `before` (may be null). Fails as Registry::add().
+core::Result<void> find_pictures(const SceneSettings& settings, WorldFacts& facts,
+                                 const world::ImpostorSet* before) {
+  if (settings.paradigm == Paradigm::kDataAmplification || !settings.levels_of_detail) return {};
+  auto pictures = std::make_shared<const world::ImpostorSet>(facts.world, facts.registry, before);
+  if (pictures->count() == 0) return {};
+  const std::size_t types = facts.registry.size();
+  const auto baked = facts.registry.add(world::make_impostor_type());
+  if (!baked) return tl::unexpected(baked.error());
+  facts.picture_model = *baked;
+  facts.quad_models.assign(types, 0);
+  for (std::size_t i = 0; i < types; ++i) {
+    const auto model = static_cast<models::ModelIndex>(i);
+    if (!pictures->has(model)) continue;
+    const auto quads = facts.registry.add(world::make_quad_type(pictures, facts.registry, model));
+    if (!quads) return tl::unexpected(quads.error());
+    facts.quad_models[i] = *quads;
+  }
+  for (std::size_t i = 0; i < pictures->count(); ++i)
+    facts.picture_parameters.push_back(world::picture_parameters(i));
+  facts.pictures = std::move(pictures);
   return {};
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
+#include "engine/core/assert.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/placement.hpp"
 
@@ -41,11 +43,32 @@ double relief_m(const world::World& world, const visibility::NodeCoord& node) {
   return kReliefFactor * (high - low);
 }
 
+// Mean over heights h in [0, band] of the fraction of the ground that is higher than h.
+float ground_share(float relief_m, float band_m) {
+  if (relief_m <= 0) return 0;
+  return band_m <= relief_m ? 1 - band_m / (2 * relief_m) : relief_m / (2 * band_m);
+}
+
+float standing_share(const Standing& kind, float side_m, float band_m) {
+  const float met = std::numbers::pi_v<float> / 4 * kind.count * kind.width_m / side_m;
+  return (1 - std::exp(-met * std::min(kind.density, 1.0F))) *
+         std::min(kind.height_m / band_m, 1.0F);
+}
+
 }  // namespace
 
-std::vector<visibility::Standing> obstacles_on_block(const world::World& world,
-                                                     const models::Registry& registry) {
-  std::vector<visibility::Standing> standing;
+float estimate_solidity(float side_m, float relief_m, std::span<const Standing> standing,
+                        float band_m) {
+  PSYGEN_ASSERT(side_m > 0 && band_m > 0, "side and band must be positive");
+  float passes = 1 - ground_share(relief_m, band_m);
+  for (const Standing& kind : standing)
+    passes *= 1 - standing_share(kind, side_m, band_m);
+  return std::clamp(1 - passes, 0.0F, 1.0F);
+}
+
+std::vector<Standing> obstacles_on_block(const world::World& world,
+                                         const models::Registry& registry) {
+  std::vector<Standing> standing;
   for (const world::Scatter& scatter : world.scatter) {
     const core::Bounds box = registry[scatter.model].bounds(middle_parameters(registry, scatter));
     const glm::vec3 size = box.max - box.min;
@@ -55,14 +78,13 @@ std::vector<visibility::Standing> obstacles_on_block(const world::World& world,
   return standing;
 }
 
-float node_solidity(const world::World& world, std::span<const visibility::Standing> on_block,
+float node_solidity(const world::World& world, std::span<const Standing> on_block,
                     const visibility::NodeCoord& node) {
-  std::vector<visibility::Standing> standing(on_block.begin(), on_block.end());
-  for (visibility::Standing& kind : standing)
+  std::vector<Standing> standing(on_block.begin(), on_block.end());
+  for (Standing& kind : standing)
     kind.count = std::ldexp(kind.count, 2 * node.level);
-  return visibility::estimate_solidity(
-      static_cast<float>(std::ldexp(world.block_size_m(), node.level)),
-      static_cast<float>(relief_m(world, node)), standing, kBandM);
+  return estimate_solidity(static_cast<float>(std::ldexp(world.block_size_m(), node.level)),
+                           static_cast<float>(relief_m(world, node)), standing, kBandM);
 }
 
 }  // namespace psygen::scene

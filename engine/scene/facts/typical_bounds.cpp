@@ -4,7 +4,11 @@
 #include <glm/common.hpp>
 #include <optional>
 
+#include "engine/core/hash.hpp"
+#include "engine/scene/facts/levels.hpp"
 #include "engine/synthesis/synthesise.hpp"
+#include "engine/world/far/merged_models.hpp"
+#include "engine/world/placement.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -23,6 +27,34 @@ std::optional<core::Bounds> tight_box(const models::ModelType& type,
   if (!outcome.ok) return std::nullopt;
   return outcome.tight;
 }
+
+constexpr std::size_t kNodesPerLevel = 2, kPerType = 24;
+constexpr int kMaxBlocks = 48;
+
+// Takes models block by block until there are enough of each type.
+class ModelSamples {
+ public:
+  explicit ModelSamples(const WorldFacts& facts)
+      : facts_(facts), taken_(facts.registry.size(), 0) {}
+
+  void take(core::BlockCoord block, std::vector<synthesis::CostSample>& samples) {
+    world::place_models(facts_.world, facts_.registry, block, placements_);
+    for (const world::Placement& placement : placements_) {
+      if (taken_[placement.model]++ < kPerType)
+        samples.push_back({placement.model, placement.parameters});
+    }
+  }
+  bool complete() const {
+    return std::ranges::all_of(facts_.world.scatter, [this](const world::Scatter& scatter) {
+      return scatter.count == 0 || taken_[scatter.model] >= kPerType;
+    });
+  }
+
+ private:
+  const WorldFacts& facts_;
+  std::vector<std::size_t> taken_;
+  std::vector<world::Placement> placements_;
+};
 
 }  // namespace
 
@@ -45,6 +77,30 @@ std::vector<core::Bounds> typical_bounds(const models::Registry& registry,
   for (const std::optional<core::Bounds>& box : found)
     boxes.push_back(box.value_or(kWhole));
   return boxes;
+}
+
+std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
+  core::RandomStream random(0, 0, 0, 0, core::Purpose::kParameters);
+  std::vector<synthesis::CostSample> samples;
+  for (std::size_t k = 0; k < facts.levels.size(); ++k) {
+    for (std::size_t i = 0; i < kNodesPerLevel; ++i) {
+      const auto level = static_cast<std::uint8_t>(k);
+      const visibility::NodeCoord node = visibility::node_of(any_block(facts.world, random), level);
+      samples.push_back({facts.world.terrain_model, node_terrain(facts.world, node)});
+      if (facts.levels[k].merged)
+        samples.push_back({facts.merged_model, world::merged_parameters(node.coord, level)});
+    }
+  }
+  ModelSamples models(facts);
+  for (int i = 0; i < kMaxBlocks && !models.complete(); ++i)
+    models.take(any_block(facts.world, random), samples);
+  return samples;
+}
+
+std::vector<synthesis::CostSample> models_on(const WorldFacts& facts, core::BlockCoord block) {
+  std::vector<synthesis::CostSample> samples;
+  ModelSamples(facts).take(block, samples);
+  return samples;
 }
 
 }  // namespace psygen::scene

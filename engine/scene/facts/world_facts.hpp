@@ -6,13 +6,16 @@
 #include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "engine/models/registry.hpp"
 #include "engine/models/terrain/tiles.hpp"
 #include "engine/render/types.hpp"
 #include "engine/scene/facts/levels.hpp"
-#include "engine/visibility/solidity.hpp"
+#include "engine/scene/facts/solidity.hpp"
+#include "engine/scene/settings.hpp"
+#include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
 #include "engine/world/world_parts.hpp"
 
@@ -43,13 +46,13 @@ struct WorldFacts {
   std::size_t given_types = 0;  // types in the registry before the scene added its own
   render::Light light;
   render::TerrainPalette palette;
-  render::Canopy canopy;                       // forests too far away to be drawn as models
-  float cover_share = 0;                       // fraction of the ground that these forests hide
-  std::vector<visibility::Standing> standing;  // obstacles on a block
-  std::vector<NodeLevel> levels;               // of the quadtree, finest first
-  models::ModelIndex merged_model = 0;         // type of merged meshes; 0: none
-  std::vector<models::TerrainGrid> grids;      // one for each level of the terrain type
-  std::optional<models::TerrainTiles> tiles;   // of blocks' finest meshes; none without levels
+  render::Canopy canopy;                      // forests too far away to be drawn as models
+  float cover_share = 0;                      // fraction of the ground that these forests hide
+  std::vector<Standing> standing;             // obstacles on a block
+  std::vector<NodeLevel> levels;              // of the quadtree, finest first
+  models::ModelIndex merged_model = 0;        // type of merged meshes; 0: none
+  std::vector<models::TerrainGrid> grids;     // one for each level of the terrain type
+  std::optional<models::TerrainTiles> tiles;  // of blocks' finest meshes; none without levels
   // Typical bounds of each model type: the part of its conservative bounds that its meshes usually
   // fill, in −1 … 1 along each axis. Conservative bounds cover all parameters and may be far
   // larger.
@@ -67,6 +70,25 @@ struct WorldFacts {
   glm::vec2 scattered_reach_m{0.0F};  // the same without models placed by hand
   bool shadows = false;               // models out of view may cast shadows into the frame
   bool near_detail = false;  // near models have textures: gaps between leaves hide polygons
+};
+
+// The values of a scene that prepare_world() needs. A copy, for another thread.
+struct SceneSnapshot {
+  SceneSettings settings;
+  world::World world;                               // without edits
+  std::vector<core::BlockCoord> blocks;             // whose models exist
+  std::shared_ptr<const DerivedWorldData> derived;  // of the world; null: nothing can be reused
+};
+
+// A world that is ready to replace a scene's world (Scene::set_world). Any thread.
+struct PreparedWorld {
+  WorldFacts facts;  // the renderer does not have their tree impostors yet
+  // True if only sky, water, palette or name differ; then `facts` hold only world and registry.
+  bool looks_only = false;
+  // The instances on the blocks of the snapshot, without those of scatters that are equal in the
+  // replaced world; null: none.
+  std::unordered_map<core::BlockCoord, std::vector<world::Placement>, core::BlockCoordHash> models;
+  std::shared_ptr<const DerivedWorldData> before;
 };
 
 }  // namespace psygen::scene

@@ -1,10 +1,16 @@
-// The times of a tick, and the state of the fixed-step simulation. Values.
+// The times of a tick, and the fixed-step simulation. Main thread only.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <vector>
+
+#include "ecs/ecs.hpp"
 
 namespace psygen::scene {
+
+struct SceneSettings;
+struct Tracing;
 
 struct Clock {
   double now_s = 0;   // of the flight: real, or frame / rate with a fixed step
@@ -23,5 +29,50 @@ struct FixedStep {
   // Simulated seconds at the end of the last step that has begun.
   double now_s() const { return static_cast<double>(index) * step_s; }
 };
+
+// The fixed-step simulation of a game. Its systems run once for each step by which the clock has
+// advanced, whatever the frame rate is. Results depend only on the number of steps and on their
+// input, so they are the same on every machine. Draws nothing.
+struct Simulation {
+  // Has no systems yet. `entities` must outlive it.
+  explicit Simulation(ecs::World& entities) : systems(entities) {}
+
+  ecs::Schedule systems;  // of one step
+  // Maximum steps of one frame. A program that cannot keep up slows its simulation down instead of
+  // stopping.
+  std::uint32_t max_steps = 8;
+  double behind_s = 0;         // clock time that no step has simulated yet
+  double clock_s = 0;          // the clock at the last frame
+  double lost_s = 0;           // time dropped by frames with too many steps
+  std::vector<float> step_ms;  // of each system in this frame, summed over its steps
+};
+
+// System: runs the fixed steps that are due. Their systems may change all entities.
+void simulation_system(const Clock& clock, ecs::World& entities, Simulation& simulation,
+                       FixedStep& step, Tracing& trace);
+
+// Rules of a tick that follow from the paradigm (SceneSettings::paradigm).
+struct Rules {
+  bool request = true;       // missing meshes are synthesised
+  bool wait = false;         // the frame waits for all of them
+  bool keep = true;          // the next frame may draw meshes of this one
+  bool look_ahead = true;    // nodes out of view get meshes too
+  bool coarse_first = true;  // the first mesh of a hole is the coarsest level
+  bool settle =
+      false;  // before the first frame: levels follow from the pose alone, not from history
+};
+// The rules before the first frame if `settling`.
+Rules rules_of(const SceneSettings& settings, bool settling);
+
+// Bundle (ecs/README.md): the values that no system writes.
+struct FrameContext {
+  const SceneSettings& settings;
+  const Rules& rules;
+  const Clock& clock;
+};
+
+// Fraction of a whole fade by which fades advance in this tick, in (0, 1]. `last_s`: the clock at
+// the last tick. A clock that stands still advances them by 1/240 s.
+float fade_fraction(const FrameContext& frame, double last_s);
 
 }  // namespace psygen::scene

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "engine/scene/facts/world_facts.hpp"
-#include "engine/visibility/level_choice.hpp"
+#include "engine/visibility/quadtree.hpp"
 
 namespace psygen::scene {
 namespace {

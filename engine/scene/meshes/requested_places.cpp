@@ -7,7 +7,6 @@
 
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/meshes/mesh_choice.hpp"
-#include "engine/scene/nodes/columns.hpp"
 #include "engine/scene/nodes/edits.hpp"
 #include "engine/scene/nodes/mesh_entity.hpp"
 

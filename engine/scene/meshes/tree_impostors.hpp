@@ -1,6 +1,6 @@
 // The impostors of a scene's trees (world/far/tree_impostors.hpp): requests those that the renderer
 // lacks, and gives them to it. Modelers bake them as annotations of requests
-// (mesh_annotations.hpp). Trees that show them have quads as meshes (nodes/columns.hpp). Main
+// (mesh_annotations.hpp). Trees that show them have quads as meshes (nodes/mesh_entity.hpp). Main
 // thread.
 #pragma once
 

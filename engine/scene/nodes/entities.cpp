@@ -6,7 +6,6 @@
 #include "engine/scene/facts/levels.hpp"
 #include "engine/scene/facts/solidity.hpp"
 #include "engine/scene/facts/world_facts.hpp"
-#include "engine/scene/nodes/columns.hpp"
 #include "engine/scene/nodes/daylight.hpp"
 #include "engine/scene/nodes/ground_occluder.hpp"
 #include "engine/scene/nodes/ground_sunlight.hpp"

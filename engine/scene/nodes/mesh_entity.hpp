@@ -5,6 +5,8 @@
 #include <climits>
 
 #include "engine/scene/components.hpp"
+#include "engine/scene/facts/world_facts.hpp"
+#include "engine/world/placement.hpp"
 
 namespace psygen::scene {
 
@@ -34,5 +36,20 @@ float distance_to(const MeshPlacement& placed, const glm::vec3& foot, float min_
 // Maximum size in pixels of an entity at this distance, along any axis.
 float size_pixels(const MeshPlacement& placed, const LodErrors& detail, float distance_m,
                   float pixels_per_radian, float min_m);
+
+// The column values of a model, or of the ground of a node: for entities, and for requested places
+// without entities (meshes/requested_places.hpp).
+struct MeshColumns {
+  MeshPlacement placed;
+  LodErrors detail;
+  MeshSource source;
+};
+// Uses only these levels of the type, and none beyond an impostor.
+MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
+                       const world::Placement& placement, int first_level = 0,
+                       int last_level = INT_MAX);
+
+// The merged mesh of a node of level 1 or above.
+world::Placement merged_placement(const WorldFacts& facts, const visibility::NodeCoord& at);
 
 }  // namespace psygen::scene

@@ -30,7 +30,7 @@ struct PointLight {
 
 }  // namespace psygen::scene
 
-// Described for snapshots (described.hpp), without the draw state.
+// Saved without the draw state.
 template <>
 struct psygen::ecs::ComponentTraits<psygen::scene::PointLight> {
   static constexpr std::string_view name = "PointLight";

@@ -6,7 +6,6 @@
 
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/objects/scene_draws.hpp"
-#include "engine/scene/objects/transforms.hpp"
 #include "engine/scene/view/visibility.hpp"
 
 namespace psygen::scene {

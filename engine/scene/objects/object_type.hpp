@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "engine/models/registry.hpp"
-#include "engine/scene/objects/object_levels.hpp"
+#include "engine/scene/objects/packed_mesh.hpp"
 
 namespace psygen::scene {
 

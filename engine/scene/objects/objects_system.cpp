@@ -8,7 +8,6 @@
 #include "engine/scene/nodes/streaming.hpp"
 #include "engine/scene/objects/assets.hpp"
 #include "engine/scene/objects/scene_draws.hpp"
-#include "engine/scene/objects/transforms.hpp"
 #include "engine/scene/view/debug_colours.hpp"
 #include "engine/scene/view/visibility.hpp"
 #include "engine/synthesis/mesh_supply.hpp"

@@ -1,5 +1,5 @@
 // A mesh in the vertex format that is drawn (core::ObjectVertex), kept by the host and copied again
-// after an eviction. Pure; any thread.
+// after an eviction, and its LODs. Pure; any thread.
 #pragma once
 
 #include <vector>
@@ -20,5 +20,19 @@ struct PackedMesh {
 // (core::split). Missing normals are the means of the adjacent triangles' normals, weighted by
 // area. O(n).
 core::Result<PackedMesh> pack(const core::MeshData& mesh);
+
+// One LOD of an object's mesh.
+struct ObjectLevel {
+  PackedMesh mesh;
+  double error_m = 0;  // accumulated error of the simplifier; 0 at level 0, and grows
+};
+
+// Makes one to `most` levels (>= 1), simplified by meshoptimizer: fewer triangles between some of
+// the same vertices. Deterministic for one version of meshoptimizer. Each has at most half the
+// triangles of the one before, about a quarter if the shape allows it, and at least half its
+// surface. The first is `finest`, packed from `mesh`. Small meshes have one level. O(n log n) for n
+// triangles.
+std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh finest,
+                                       std::size_t most);
 
 }  // namespace psygen::scene

@@ -83,4 +83,16 @@ using ParticleQuery = ecs::Query<const Transform, const ParticleEmitter, const G
 void particles_system(FrameContext frame, const Camera& camera, const WorldFacts& facts,
                       VisibleNodes nodes, ParticleQuery entities, ParticleDraws& draws);
 
+// True for a position within 10⁹ m of its block. NaN is not.
+bool is_place(const core::WorldPosition& position);
+// True if the position is valid, the rotation is not zero, and the scale is 10⁻⁴ … 10⁴ along each
+// axis.
+bool is_valid(const Transform& transform);
+
+// A position relative to the camera, in metres.
+inline glm::vec3 offset_of(const core::WorldPosition& position, const core::WorldPosition& camera,
+                           double block_size_m) {
+  return glm::vec3(core::offset_m(position.block, camera, block_size_m) + position.local);
+}
+
 }  // namespace psygen::scene

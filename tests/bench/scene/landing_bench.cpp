@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "engine/scene/meshes/mesh_annotations.hpp"
-#include "engine/scene/meshes/mesh_parts.hpp"
 #include "engine/scene/nodes/ground_occluder.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/files/world_file.hpp"

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "engine/core/log.hpp"
-#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/state.hpp"
 #include "engine/world/files/text_edit.hpp"

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "engine/visibility/horizon.hpp"
-#include "engine/visibility/level_choice.hpp"
 #include "engine/visibility/plp.hpp"
 #include "engine/visibility/quadtree.hpp"
 #include "tests/engine/visibility/scenes.hpp"

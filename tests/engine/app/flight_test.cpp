@@ -4,7 +4,7 @@
 #include <optional>
 #include <sstream>
 
-#include "engine/app/gap.hpp"
+#include "engine/app/virtual_frame.hpp"
 #include "engine/scene/frame/input.hpp"
 #include "tests/engine/app/fixture.hpp"
 #include "tests/faults.hpp"

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "engine/app/keys.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/types.hpp"
 #include "engine/scene/frame/input.hpp"

@@ -1,11 +1,11 @@
-#include "engine/app/loading_picture.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include "engine/app/loading.hpp"
 
 namespace psygen::app {
 namespace {

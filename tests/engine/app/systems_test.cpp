@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "ecs/ecs.hpp"
-#include "engine/scene/frame/camera.hpp"
 #include "engine/scene/frame/clock.hpp"
+#include "engine/scene/frame/input.hpp"
 #include "tests/engine/app/fixture.hpp"
 
 namespace psygen::app {

@@ -1,8 +1,8 @@
-#include "engine/inspect/json_screen.hpp"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "engine/inspect/visit.hpp"
 
 namespace psygen::inspect {
 namespace {

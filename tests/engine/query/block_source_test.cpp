@@ -1,5 +1,4 @@
-#include "engine/query/block_source.hpp"
-
+#include "engine/query/block_cache.hpp"
 #include "engine/world/edits/edits.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/query/worlds.hpp"

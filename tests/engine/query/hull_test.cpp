@@ -1,5 +1,3 @@
-#include "engine/query/hull.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/hash.hpp"
+#include "engine/query/solid.hpp"
 
 namespace psygen::query {
 namespace {

@@ -1,11 +1,10 @@
-#include "engine/query/march.hpp"
-
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
 #include <vector>
 
 #include "engine/core/hash.hpp"
+#include "engine/query/ground_grid.hpp"
 
 namespace psygen::query {
 namespace {

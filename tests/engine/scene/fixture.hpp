@@ -7,7 +7,7 @@
 #include <set>
 
 #include "engine/core/clock.hpp"
-#include "engine/scene/facts/prepared_world.hpp"
+#include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/state.hpp"
 #include "engine/scene/systems.hpp"

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "engine/scene/meshes/mesh_parts.hpp"
+#include "engine/scene/meshes/mesh_annotations.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/synthesis/content_hash.hpp"
 #include "tests/engine/scene/fixture.hpp"

@@ -43,9 +43,14 @@ bool has_bundle(const ecs::SystemInfo& system, std::string_view bundle) {
   return std::ranges::find(system.accesses, bundle, &ecs::Access::bundle) != system.accesses.end();
 }
 
-// The world itself is no access. A system gets it from NodeWork or as a parameter.
+// The bundle that holds the world.
+std::string world_bundle() {
+  return ecs::detail::without_namespace(ecs::detail::type_name<NodeWork>());
+}
+
+// The world itself is no access. A system gets it from that bundle or as a parameter.
 bool takes_world(const ecs::SystemInfo& system) {
-  return system.world != ecs::WorldAccess::kNone && !has_bundle(system, "NodeWork");
+  return system.world != ecs::WorldAccess::kNone && !has_bundle(system, world_bundle());
 }
 
 // Bundles and values that the system names, those that it reads or those that it writes.
@@ -100,7 +105,7 @@ TEST_F(Tick, TheBundlesTableIsTheOneOfTheArchitecturePage) {
       if (access.bundle.empty()) continue;
       auto known = std::ranges::find(bundles, access.bundle, &std::pair<std::string, Names>::first);
       if (known == bundles.end()) known = bundles.insert(bundles.end(), {access.bundle, {}});
-      if (access.bundle == "NodeWork") add_once("World", known->second);
+      if (access.bundle == world_bundle()) add_once("World", known->second);
       add_once(access.name, known->second);
     }
   }

@@ -1,10 +1,10 @@
-#include "engine/visibility/level_choice.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "engine/visibility/quadtree.hpp"
 
 namespace psygen::visibility {
 namespace {

@@ -1,9 +1,9 @@
-#include "engine/scene/draws/missing_coverage.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "engine/scene/draws/draw_lists.hpp"
 
 namespace psygen::scene {
 namespace {

@@ -1,4 +1,3 @@
-#include "engine/scene/facts/ground_error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "engine/scene/frame/frame_time_fit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "engine/scene/frame/quality.hpp"
 
 namespace psygen::scene {
 namespace {

@@ -1,5 +1,3 @@
-#include "engine/scene/frame/governor.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,8 @@
 #include <deque>
 #include <functional>
 #include <limits>
+
+#include "engine/scene/frame/quality.hpp"
 
 namespace psygen::scene {
 namespace {

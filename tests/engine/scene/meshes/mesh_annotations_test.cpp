@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/scene/meshes/mesh_parts.hpp"
 #include "tests/engine/scene/fixture.hpp"
 
 namespace psygen::scene {

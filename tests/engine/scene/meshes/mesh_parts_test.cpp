@@ -1,12 +1,11 @@
-#include "engine/scene/meshes/mesh_parts.hpp"
-
 #include <gtest/gtest.h>
 
 #include <glm/ext/matrix_transform.hpp>
 #include <set>
 
 #include "engine/core/camera.hpp"
-#include "engine/scene/draws/parts.hpp"
+#include "engine/scene/draws/models.hpp"
+#include "engine/scene/meshes/mesh_annotations.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/scene/fixture.hpp"

@@ -1,9 +1,9 @@
-#include "engine/scene/nodes/grid.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <set>
+
+#include "engine/scene/nodes/streaming.hpp"
 
 namespace psygen::scene {
 namespace {

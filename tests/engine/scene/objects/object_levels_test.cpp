@@ -1,11 +1,11 @@
-#include "engine/scene/objects/object_levels.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
+
+#include "engine/scene/objects/packed_mesh.hpp"
 
 namespace psygen::scene {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/visibility/solidity.hpp"
+#include "engine/scene/facts/solidity.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 
 #include "tests/engine/visibility/scenes.hpp"
 
-namespace psygen::visibility {
+namespace psygen::scene {
 namespace {
 
-using testing::stream;
+using visibility::testing::stream;
 
 TEST(EstimateSolidity, AnEmptyCellBlocksNoLight) {
   EXPECT_EQ(estimate_solidity(64, 0, {}, 10), 0);
@@ -95,4 +95,4 @@ TEST(EstimateSolidity, StaysInRangeAndNeverShrinksAsTheCellFills) {
 }
 
 }  // namespace
-}  // namespace psygen::visibility
+}  // namespace psygen::scene

@@ -1,10 +1,10 @@
-#include "engine/scene/frame/camera.hpp"
+
+#include "engine/scene/frame/input.hpp"
 
 #include <array>
 
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/frame/clock.hpp"
-#include "engine/scene/frame/input.hpp"
 
 namespace psygen::scene {
 namespace {

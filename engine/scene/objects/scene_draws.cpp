@@ -1,4 +1,4 @@
-#include "engine/scene/objects/transforms.hpp"
+#include "engine/scene/objects/scene_draws.hpp"
 
 #include <cmath>
 
