@@ -54,7 +54,7 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
   connect(&view_, &WorldView::drawn, this, [this] {
     const scene::Scene& scene = view_.session()->scene();
     view_.set_background_work(BackgroundWork::kPictures, service_.waiting() > 0);
-    service_.set_busy(scene.statistics().awaited > 0 || scene.meshes().outstanding() > 0);
+    service_.set_busy(scene.statistics().drawn.awaited > 0 || scene.meshes().outstanding() > 0);
   });
   connect(&document_, &Document::changed, this, [this](Changes what) {
     // The view shows the document's text again.

@@ -82,7 +82,7 @@ StatisticsPanel::StatisticsPanel(WorldView& view)
 }
 
 void StatisticsPanel::note(const scene::Scene& scene) {
-  for (const auto& cost : scene.statistics().costs) {
+  for (const auto& cost : scene.statistics().meshes.costs) {
     if (cost.model >= scene.registry().size()) continue;
     SynthesisTimes& made = made_[std::string(scene.registry()[cost.model].name())];
     if (made.ms.size() < kSamples) made.ms.push_back(0);

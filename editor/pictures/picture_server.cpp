@@ -181,7 +181,7 @@ class PictureServer {
     });
     if (reply.dropped) return {};
     if (auto ok = session_->tick(pose, 0); !ok) return ok;
-    if (scene.statistics().failed_in_all > failed_before || scene.statistics().holes > 0)
+    if (scene.statistics().failed_in_all > failed_before || scene.statistics().drawn.holes > 0)
       return tl::unexpected(failed(what_failed(scene)));
     reply.cost = block_cost(parsed, block_of(request, parsed.world), learnt(), false);
     return session_->save_picture(request.out);

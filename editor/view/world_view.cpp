@@ -217,7 +217,7 @@ void WorldView::apply_camera_placement() {
 void WorldView::note_answered() {
   if (!since_taken_.isValid()) return;
   const scene::Scene& scene = session_->scene();
-  has_new_mesh_ = has_new_mesh_ || scene.statistics().completed > 0;
+  has_new_mesh_ = has_new_mesh_ || scene.statistics().meshes.completed > 0;
   if ((!has_new_mesh_ && scene.meshes().outstanding() > 0) || scene.shows_replaced_world()) return;
   Q_EMIT answered(static_cast<double>(since_taken_.nsecsElapsed()) * 1e-6);
   since_taken_.invalidate();
@@ -227,7 +227,7 @@ void WorldView::note_settled() {
   if (!since_text_.isValid() || text_is_new_ || prepared_.valid() || draft_) return;
   const scene::Scene& scene = session_->scene();
   const scene::Statistics statistics = scene.statistics();
-  if (statistics.awaited > 0 || scene.meshes().outstanding() > 0 || scene.quality().draft ||
+  if (statistics.drawn.awaited > 0 || scene.meshes().outstanding() > 0 || scene.quality().draft ||
       statistics.impostors_missing)
     return;
   Q_EMIT settled(static_cast<double>(since_text_.nsecsElapsed()) * 1e-6);

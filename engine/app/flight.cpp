@@ -42,9 +42,9 @@ constexpr double kEyeHeightM = 1.7;       // the user flies at least this high a
 core::Result<void> fit_virtual_clock(SessionOptions& options) {
   if (!has_virtual_frames(options)) return {};
   if (options.render_path == render::RenderPath::kGpu) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      "the virtual clock needs the render path cpu: results of the path gpu "
-                      "arrive some frames late");
+    return core::invalid_argument(
+        "the virtual clock needs the render path cpu: results of the path gpu "
+        "arrive some frames late");
   }
   options.render_path = render::RenderPath::kCpu;
   if (!options.preset) options.preset = render::Preset::kLow;
@@ -87,10 +87,10 @@ core::Result<void> Flight::open() {
   const double view_m = options_.session.scene.view_distance_m;
   const world::World& world = session_->scene().world();
   if (path_ && !path_->comes_within(view_m, world))
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: the world {} is never in view: every point is "
-                                  "more than the view distance, {:g} m, outside the world",
-                                  options_.path_file.string(), world.name, view_m));
+    return core::invalid_argument(
+        fmt::format("{}: the world {} is never in view: every point is "
+                    "more than the view distance, {:g} m, outside the world",
+                    options_.path_file.string(), world.name, view_m));
   log_ = std::make_unique<telemetry::FrameLog>(session_->scene().system_names());
   return {};
 }
@@ -247,9 +247,9 @@ void Flight::log_frame() {
   if (const auto& gpu = scene.drawn().gpu; gpu && !has_virtual_frames(options_.session))
     log_->set_gpu_ms(gpu->frame, gpu->ms, gpu->shadows_ms);
   const scene::Statistics statistics = scene.statistics();
-  for (const float ms : statistics.time_to_visible_ms)
+  for (const float ms : statistics.meshes.time_to_visible_ms)
     log_->add_time_to_visible(record_.time_s, ms);
-  for (const auto& cost : statistics.costs) {
+  for (const auto& cost : statistics.meshes.costs) {
     log_->add_cost_error(record_.time_s, cost.predicted_s, cost.actual_s);
   }
 }
@@ -287,11 +287,9 @@ core::Result<FlightReport> Flight::run() {
       core::log_error(failure.message);
     return tl::unexpected(flown.error());
   }
-  for (const Plugin& plugin : options_.session.plugins) {
-    if (!plugin.on_end) continue;
-    const auto ok = call_plugin(plugin, "on_end", [&] { plugin.on_end(*session_, report); });
-    if (!ok) return tl::unexpected(ok.error());
-  }
+  const auto told =
+      call_plugins(options_.session.plugins, &Plugin::on_end, "on_end", *session_, report);
+  if (!told) return tl::unexpected(told.error());
   if (!stays_open()) return report;
   tell_end(report);
   user_flies_ = true;

@@ -15,8 +15,7 @@ core::Result<render::GroundPicture> read_picture(const std::filesystem::path& fo
                                                  const std::string& name) {
   const std::filesystem::path file = folder / name;
   if (!world::is_below(folder, file))
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      file.string() + " leads out of the folder of the world file");
+    return core::invalid_argument(file.string() + " leads out of the folder of the world file");
   constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20;
   const image::ImageLimits limits{render::kLargestGroundPicture, render::kLargestGroundPicture,
                                   kMaxBytes, kMaxBytes};

@@ -37,4 +37,16 @@ core::Result<void> call_plugin(const Plugin& plugin, std::string_view hook, cons
   }
 }
 
+// Calls a hook of all plugins that have it, in order, up to the first error.
+template <class Hook, class... Args>
+core::Result<void> call_plugins(const std::vector<Plugin>& plugins, Hook Plugin::*hook,
+                                std::string_view name, Args&&... args) {
+  for (const Plugin& plugin : plugins) {
+    if (!(plugin.*hook)) continue;
+    if (auto ok = call_plugin(plugin, name, [&] { return (plugin.*hook)(args...); }); !ok)
+      return ok;
+  }
+  return {};
+}
+
 }  // namespace psygen::app

@@ -48,13 +48,12 @@ tl::unexpected<core::Error> closed_early() {
 core::Result<void> set_hour(const SessionOptions& options, world::World& world) {
   if (!options.start_hour) return {};
   if (!(*options.start_hour >= 0 && *options.start_hour <= 24))
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      "the hour of the day must be between 0 and 24");
+    return core::invalid_argument("the hour of the day must be between 0 and 24");
   if (!(world.sky.day_length_s > 0)) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: this world has no day: sky.day_length_s is 0, so the sun "
-                                  "does not move",
-                                  options.world_file.string()));
+    return core::invalid_argument(
+        fmt::format("{}: this world has no day: sky.day_length_s is 0, so the sun "
+                    "does not move",
+                    options.world_file.string()));
   }
   world.sky.start_hour = *options.start_hour;
   return {};
@@ -69,13 +68,7 @@ core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins)
 }  // namespace
 
 core::Result<void> register_models(const std::vector<Plugin>& plugins, models::Registry& registry) {
-  for (const Plugin& plugin : plugins) {
-    if (!plugin.register_models) continue;
-    const auto ok =
-        call_plugin(plugin, "register_models", [&] { return plugin.register_models(registry); });
-    if (!ok) return ok;
-  }
-  return {};
+  return call_plugins(plugins, &Plugin::register_models, "register_models", registry);
 }
 
 Session::Session(SessionOptions options) : options_(std::move(options)) {}
@@ -135,8 +128,7 @@ std::function<core::Result<scene::PreparedWorld>()> Session::prepare_world(std::
 
 core::Result<void> Session::show_world(scene::PreparedWorld prepared) {
   if (prepared.facts.world.palette.images != scene_->world().palette.images) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      "changed ground textures take effect when the world is reopened");
+    return core::invalid_argument("changed ground textures take effect when the world is reopened");
   }
   return scene_->set_world(std::move(prepared));
 }
@@ -184,9 +176,8 @@ core::Result<void> Session::open_scene(world::World world, models::Registry regi
                                        Loading& loading) {
   const double target_hz = options_.target_hz.value_or(options_.headless ? 0 : kWindowHz);
   if (!(target_hz >= 0 && target_hz <= kMaxTargetHz))
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the target must be 0 to {:.0f} frames per second, not {:g}",
-                                  kMaxTargetHz, target_hz));
+    return core::invalid_argument(fmt::format(
+        "the target must be 0 to {:.0f} frames per second, not {:g}", kMaxTargetHz, target_hz));
   options_.scene.target_frame_ms = target_hz > 0 ? 1000 / target_hz : 0;
   if (options_.trace) trace_ = std::make_unique<telemetry::TraceLog>();
   auto scene = scene::Scene::create(
@@ -224,8 +215,7 @@ core::CameraPose Session::home() const {
 }
 
 core::Result<void> Session::prepare(const core::CameraPose& first) {
-  if (!core::is_valid(first))
-    return core::fail(core::ErrorCode::kInvalidArgument, "the first pose is not finite");
+  if (!core::is_valid(first)) return core::invalid_argument("the first pose is not finite");
   Loading loading(scene_->world().name, window_.get(), options_.stop);
   const auto progress = [&](std::string_view label, double fraction) {
     return loading.update(label, fraction, renderer_.get());
@@ -338,11 +328,7 @@ void Session::step_actions(input::Actions& actions) {
 
 core::Result<void> Session::start() {
   if (std::exchange(started_, true)) return {};
-  for (const Plugin& plugin : options_.plugins) {
-    if (!plugin.on_start) continue;
-    if (auto ok = call_plugin(plugin, "on_start", [&] { plugin.on_start(*this); }); !ok) return ok;
-  }
-  return {};
+  return call_plugins(options_.plugins, &Plugin::on_start, "on_start", *this);
 }
 
 render::HudDrawing& Session::hud() {
@@ -359,11 +345,7 @@ core::Result<void> Session::draw_gui(double dt_s) {
   if (std::ranges::none_of(options_.plugins, draws)) return {};
   const core::Extent size = picture_size();
   gui().begin(all_input_, size, text_scale(window_ ? window_->content_scale() : 1.0F, size), dt_s);
-  core::Result<void> drawn;
-  for (const Plugin& plugin : options_.plugins) {
-    if (drawn && plugin.on_gui)
-      drawn = call_plugin(plugin, "on_gui", [&] { plugin.on_gui(*this); });
-  }
+  const auto drawn = call_plugins(options_.plugins, &Plugin::on_gui, "on_gui", *this);
   scene_->input().gui = gui_->end();
   return drawn;
 }
@@ -393,8 +375,7 @@ core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
   const double start_s = core::monotonic_seconds();
   const std::size_t pictures = saved_.size();
   if (!(std::isfinite(dt_s) && dt_s >= 0)) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{} is not a valid frame time in seconds", dt_s));
+    return core::invalid_argument(fmt::format("{} is not a valid frame time in seconds", dt_s));
   }
   if (auto ok = start(); !ok) return ok;
   scene::Scene& scene = *scene_;
@@ -406,11 +387,8 @@ core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
   scene.input().gui = nullptr;
   scene.set_now(scene.clock().now_s + dt_s);
   if (!ticked) return ticked;
-  for (const Plugin& plugin : options_.plugins) {
-    if (!plugin.on_frame) continue;
-    if (auto ok = call_plugin(plugin, "on_frame", [&] { plugin.on_frame(*this, dt_s); }); !ok)
-      return ok;
-  }
+  if (auto ok = call_plugins(options_.plugins, &Plugin::on_frame, "on_frame", *this, dt_s); !ok)
+    return ok;
   tell_governor((core::monotonic_seconds() - start_s) * 1000.0, saved_.size() > pictures);
   return {};
 }
@@ -431,8 +409,8 @@ core::Result<void> Session::write_picture(const std::filesystem::path& file,
 
 core::Result<void> Session::save_picture(const std::filesystem::path& file) {
   if (file.extension() != ".png")
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: the name of an image must end in .png", file.string()));
+    return core::invalid_argument(
+        fmt::format("{}: the name of an image must end in .png", file.string()));
   const auto image = picture();
   if (!image) return tl::unexpected(image.error());
   if (auto ok = write_picture(file, *image); !ok) return ok;

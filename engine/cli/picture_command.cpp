@@ -43,7 +43,7 @@ core::Result<std::string> png_name(const std::string& file) {
 // An incomplete image would depend on the order of requests: coarser levels replace meshes without
 // memory.
 core::Result<void> check_complete(const scene::Scene& scene) {
-  if (scene.quality().coarsening > 1 || scene.statistics().refused > 0) {
+  if (scene.quality().coarsening > 1 || scene.statistics().meshes.refused > 0) {
     constexpr double kMiB = 1 << 20;
     return core::fail(
         core::ErrorCode::kOverBudget,
@@ -52,7 +52,7 @@ core::Result<void> check_complete(const scene::Scene& scene) {
                     static_cast<double>(scene.meshes().stats().budget_bytes) / kMiB,
                     scene.settings().max_error_pixels));
   }
-  if (scene.statistics().failed_in_all > 0 || scene.statistics().holes > 0)
+  if (scene.statistics().failed_in_all > 0 || scene.statistics().drawn.holes > 0)
     return core::fail(core::ErrorCode::kSynthesisFailed,
                       "some visible meshes could not be synthesised");
   return {};

@@ -60,8 +60,8 @@ core::Result<void> LineServer::listen(const std::filesystem::path& folder) {
         folder / fmt::format("{}{}{}{}", kSocketPrefix, ::getpid(), number, kSocketSuffix);
     const auto address = address_of(path);
     if (!address)
-      return core::fail(core::ErrorCode::kInvalidArgument,
-                        fmt::format("{}: too long for a socket address", path.string()));
+      return core::invalid_argument(
+          fmt::format("{}: too long for a socket address", path.string()));
     if (::bind(fd.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof(*address)) != 0) {
       if (errno == EADDRINUSE && i < kMaxSockets) continue;
       return no_socket(path);

@@ -59,11 +59,7 @@ Json node_list(const scene::Scene& scene) {
   scene.entities()
       .each<const scene::QuadtreeNode, const scene::Visibility, const scene::MissingMeshes,
             const scene::MeshSource, const scene::MeshDemand>(
-          [&](std::span<const ecs::Entity>, std::span<const scene::QuadtreeNode> at,
-              std::span<const scene::Visibility> seen,
-              std::span<const scene::MissingMeshes> lacking,
-              std::span<const scene::MeshSource> sources,
-              std::span<const scene::MeshDemand> demands) {
+          [&](auto, auto at, auto seen, auto lacking, auto sources, auto demands) {
             for (std::size_t i = 0; i < at.size() && nodes.size() < kMaxNodes; ++i)
               nodes.emplace_back(at[i].at.level, node_json(scene, at[i], seen[i], lacking[i],
                                                            sources[i], demands[i]));
@@ -82,8 +78,7 @@ struct KindCount {
 Json kind_counts(const scene::Scene& scene) {
   std::map<std::string, KindCount> kinds;
   scene.entities().each<const scene::MeshSource, const scene::MeshDemand>(
-      [&](std::span<const ecs::Entity>, std::span<const scene::MeshSource> sources,
-          std::span<const scene::MeshDemand> demands) {
+      [&](auto, auto sources, auto demands) {
         for (std::size_t i = 0; i < sources.size(); ++i) {
           KindCount& kind = kinds[name_of(scene, sources[i].model)];
           ++kind.entities;
@@ -94,9 +89,9 @@ Json kind_counts(const scene::Scene& scene) {
     if (count > 0) kinds[name] = {count, drawn};
   };
   const scene::Statistics drawn = scene.statistics();
-  add("objects", scene.entities().count<scene::Object>(), drawn.objects_drawn);
-  add("lights", scene.entities().count<scene::PointLight>(), drawn.lights_lit);
-  add("emitters", scene.entities().count<scene::ParticleEmitter>(), drawn.emitters_drawn);
+  add("objects", scene.entities().count<scene::Object>(), drawn.objects.drawn);
+  add("lights", scene.entities().count<scene::PointLight>(), drawn.lights.lit);
+  add("emitters", scene.entities().count<scene::ParticleEmitter>(), drawn.particles.emitters_drawn);
   Json list = Json::object();
   for (const auto& [name, kind] : kinds)
     list[name] = {{"entities", kind.entities}, {"drawn", kind.drawn}};
@@ -127,7 +122,7 @@ Json access_json(const ecs::SystemInfo& info, bool writes) {
 void FrameNotes::note(const scene::Scene& scene) {
   const double now_s = core::monotonic_seconds();
   ++frames;
-  synthesis_s += scene.statistics().synthesis_seconds;
+  synthesis_s += scene.statistics().meshes.synthesis_seconds;
   if (last_frame_s > 0) {
     const double ms = (now_s - last_frame_s) * 1e3;
     ++figures;
@@ -163,13 +158,13 @@ Json figures(const app::Session& session, FrameNotes& notes) {
       {"longest_ms", notes.longest_ms},
       {"triangles", scene.drawn().triangles},
       {"draws", scene.drawn().draws},
-      {"nodes_in_view", statistics.nodes_in_view},
-      {"holes", statistics.holes},
-      {"coarse_nodes", statistics.coarse},
-      {"missing_pixels_percent", statistics.missing_pixels_percent},
+      {"nodes_in_view", statistics.drawn.nodes_in_view},
+      {"holes", statistics.drawn.holes},
+      {"coarse_nodes", statistics.drawn.coarse},
+      {"missing_pixels_percent", statistics.drawn.missing_pixels_percent},
       {"error_pixels", scene.quality().error_pixels},
       {"resolution", scene.quality().resolution},
-      {"queued", statistics.requests},
+      {"queued", statistics.meshes.requests},
       {"outstanding", scene.meshes().outstanding()},
       {"modelers", modelers},
       {"busy_percent", std::min(100.0, 100 * notes.synthesis_s / (passed_s * modelers))},
@@ -222,9 +217,9 @@ Json pose_json(const core::CameraPose& pose) {
 }
 
 core::Result<core::CameraPose> pose_from(const Json& json, double block_m) {
-  const auto wrong = core::fail(core::ErrorCode::kInvalidArgument,
-                                "a pose has block [x, z], local_m [x, y, z], yaw and pitch, all "
-                                "finite numbers");
+  const auto wrong = core::invalid_argument(
+      "a pose has block [x, z], local_m [x, y, z], yaw and pitch, all "
+      "finite numbers");
   const auto numbers = [&](const char* key, std::size_t count) {
     const auto found = json.find(key);
     return found != json.end() && found->is_array() && found->size() == count &&

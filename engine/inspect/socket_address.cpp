@@ -20,19 +20,18 @@ core::Result<std::filesystem::path> socket_folder(const std::filesystem::path& f
   if (found.empty()) {
     const char* runtime = std::getenv("XDG_RUNTIME_DIR");
     if (runtime == nullptr || *runtime != '/')
-      return core::fail(core::ErrorCode::kInvalidArgument,
-                        "inspection needs XDG_RUNTIME_DIR, a folder that only this user may enter");
+      return core::invalid_argument(
+          "inspection needs XDG_RUNTIME_DIR, a folder that only this user may enter");
     found = runtime;
   }
   struct stat is {};
   if (::lstat(found.c_str(), &is) != 0)
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: {}", found.string(), std::strerror(errno)));
+    return core::invalid_argument(fmt::format("{}: {}", found.string(), std::strerror(errno)));
   if (!S_ISDIR(is.st_mode) || is.st_uid != ::geteuid() || (is.st_mode & 077) != 0) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{}: the socket must be in a folder of this user that no other "
-                                  "user may enter (mode 0700)",
-                                  found.string()));
+    return core::invalid_argument(
+        fmt::format("{}: the socket must be in a folder of this user that no other "
+                    "user may enter (mode 0700)",
+                    found.string()));
   }
   return found;
 }

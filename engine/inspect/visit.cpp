@@ -21,9 +21,7 @@
 namespace psygen::inspect {
 namespace {
 
-tl::unexpected<core::Error> refuse(std::string sentence) {
-  return core::fail(core::ErrorCode::kInvalidArgument, std::move(sentence));
-}
+using core::invalid_argument;
 
 std::string line_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -67,10 +65,10 @@ std::optional<std::string> Visit::answer(app::Session& session, std::string_view
 Visit::Reply Visit::reply(app::Session& session, const Json& request) {
   const auto found = request.find("do");
   if (found == request.end() || !found->is_string())
-    return refuse("a request needs \"do\", a text");
+    return invalid_argument("a request needs \"do\", a text");
   const auto& what = found->get_ref<const std::string&>();
   if (what == "hello") return hello(session, request);
-  if (!greeted_) return refuse("the first request must be hello");
+  if (!greeted_) return invalid_argument("the first request must be hello");
   const scene::Scene& scene = session.scene();
   if (what == "figures") return figures(session, frames_);
   if (what == "systems") return systems(scene, frames_);
@@ -79,7 +77,7 @@ Visit::Reply Visit::reply(app::Session& session, const Json& request) {
   if (what == "pause") return pause(session, request);
   if (what == "pose") return place(session, request);
   if (what == "detach") return detach(request);
-  return refuse(
+  return invalid_argument(
       "the requests are hello, figures, systems, entities, parameters, set_world, pause, pose and "
       "detach");
 }
@@ -87,7 +85,7 @@ Visit::Reply Visit::reply(app::Session& session, const Json& request) {
 Visit::Reply Visit::hello(app::Session& session, const Json& request) {
   const auto protocol = request.find("protocol");
   if (protocol == request.end() || *protocol != kProtocol)
-    return refuse(
+    return invalid_argument(
         fmt::format("hello needs \"protocol\": \"{}\", the only supported one", kProtocol));
   greeted_ = true;
   const scene::Scene& scene = session.scene();
@@ -104,7 +102,7 @@ Visit::Reply Visit::hello(app::Session& session, const Json& request) {
 core::Result<void> Visit::set_world(app::Session& session, const Json& request) {
   const auto text = request.find("text");
   if (text == request.end() || !text->is_string())
-    return refuse("set_world needs \"text\", a text");
+    return invalid_argument("set_world needs \"text\", a text");
   before_change_ = world_before_ ? std::string() : world_text(session);
   change_.start(session, text->get<std::string>());
   return {};
@@ -121,7 +119,8 @@ std::optional<std::string> Visit::deferred_reply(app::Session& session) {
 
 Visit::Reply Visit::pause(app::Session& session, const Json& request) {
   const auto on = request.find("on");
-  if (on == request.end() || !on->is_boolean()) return refuse("pause needs \"on\", true or false");
+  if (on == request.end() || !on->is_boolean())
+    return invalid_argument("pause needs \"on\", true or false");
   if (!paused_before_) paused_before_ = session.paused();
   paused_set_ = on->get<bool>();
   session.set_paused(paused_set_);
@@ -131,7 +130,7 @@ Visit::Reply Visit::pause(app::Session& session, const Json& request) {
 Visit::Reply Visit::place(app::Session& session, const Json& request) {
   const auto wanted = request.find("pose");
   if (wanted == request.end())
-    return refuse("pose needs \"pose\", an object, or null to release the camera");
+    return invalid_argument("pose needs \"pose\", an object, or null to release the camera");
   if (wanted->is_null()) {
     pose_.reset();
     return Json::object();

@@ -179,9 +179,7 @@ class Composer {
 // first. Accepts entities in any order and at any depth; O(Attached + keys found).
 void poses_system(const Library& library, const FixedStep& step, const scene::Clock& clock,
                   PoseQuery entities) {
-  entities.each<Instance, const ecs::Children>([&](std::span<const ecs::Entity>,
-                                                   std::span<Instance> instances,
-                                                   std::span<const ecs::Children> children) {
+  entities.each<Instance, const ecs::Children>([&](auto, auto instances, auto children) {
     for (std::size_t i = 0; i < instances.size(); ++i) {
       Instance& instance = instances[i];
       if (!library.exists(instance.prefab)) continue;
@@ -192,7 +190,7 @@ void poses_system(const Library& library, const FixedStep& step, const scene::Cl
     }
   });
   Composer composer(entities, clock.tick);
-  entities.each<const Attached>([&](std::span<const ecs::Entity> rows, std::span<const Attached>) {
+  entities.each<const Attached>([&](auto rows, auto) {
     for (const ecs::Entity entity : rows)
       composer.place(entity);
   });
@@ -267,9 +265,9 @@ core::Result<void> Library::play(Instance& instance, std::string_view animation,
     std::string names;
     for (const gltf::Animation& one : prefab.animations)
       names += (names.empty() ? "" : ", ") + one.name;
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("{} has no animation \"{}\"; its animations are {}", prefab.name,
-                                  animation, names.empty() ? "none" : names));
+    return core::invalid_argument(fmt::format("{} has no animation \"{}\"; its animations are {}",
+                                              prefab.name, animation,
+                                              names.empty() ? "none" : names));
   }
   instance.animation = static_cast<std::uint32_t>(found - prefab.animations.begin());
   instance.speed = how.speed;

@@ -17,10 +17,6 @@ constexpr int kQuietTicks = 9;
 // request found no memory.
 constexpr int kIdleTicks = 40, kRefusedTicks = 300;
 
-struct RegionSize {
-  std::uint64_t meshes = 0, bytes = 0;
-};
-
 // Makes the pipelines of lights and particles, so that the first frame does not wait for them. The
 // first frame reports failures.
 void prepare_effects(const ecs::World& entities, render::Renderer& renderer) {
@@ -30,38 +26,14 @@ void prepare_effects(const ecs::World& entities, render::Renderer& renderer) {
     static_cast<void>(renderer.prepare(render::Feature::kParticles));
 }
 
-// Number of levels of a mesh entity that amplification makes, finest first.
-int levels_needed(const SceneSettings& settings, const LodErrors& detail) {
-  return settings.levels_of_detail ? static_cast<int>(detail.level_count) : 1;
-}
-
-// The size of all meshes of the existing entities.
-RegionSize region_size(const State& s) {
-  RegionSize size;
-  s.entities.each<const MeshSource, const LodErrors>([&](std::span<const ecs::Entity>,
-                                                         std::span<const MeshSource> sources,
-                                                         std::span<const LodErrors> details) {
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-      for (int level = 0; level < levels_needed(s.settings, details[i]); ++level) {
-        const models::MeshSize mesh = s.facts.registry[sources[i].model].mesh_size(
-            sources[i].parameters, sources[i].first_level + level);
-        size.bytes +=
-            s.memory->charged_bytes(mesh.layout, mesh.vertex_count, mesh.own_index_count());
-        ++size.meshes;
-      }
-    }
-  });
-  return size;
-}
-
-// Wants for all meshes of the existing entities.
+// Wants for all meshes of the existing entities, finest levels first.
 std::vector<synthesis::Want> want_everything(const State& s) {
   std::vector<synthesis::Want> wants;
   s.entities.each<const MeshPlacement, const MeshSource, const LodErrors>(
-      [&](std::span<const ecs::Entity> entities, std::span<const MeshPlacement> placed,
-          std::span<const MeshSource> sources, std::span<const LodErrors> details) {
+      [&](auto entities, auto placed, auto sources, auto details) {
         for (std::size_t i = 0; i < entities.size(); ++i) {
-          for (int level = 0; level < levels_needed(s.settings, details[i]); ++level) {
+          const int levels = s.settings.levels_of_detail ? details[i].level_count : 1;
+          for (int level = 0; level < levels; ++level) {
             const synthesis::MeshKey key =
                 key_of(placed[i], details[i], sources[i], static_cast<std::uint8_t>(level));
             wants.push_back({key, &sources[i].parameters, owner_of(entities[i]),
@@ -116,18 +88,20 @@ void tick_without_drawing(State& s, const core::CameraPose& pose,
   ++s.clock.tick;
 }
 
-// Fails if the meshes of all entities do not fit into the budget.
-core::Result<void> check_region(const State& s) {
-  const RegionSize size = region_size(s);
+// Fails if all these meshes do not fit into the budget.
+core::Result<void> check_region(const State& s, std::span<const synthesis::Want> meshes) {
+  std::uint64_t bytes = 0;
+  for (const synthesis::Want& mesh : meshes)
+    bytes += bytes_of(mesh.key, *mesh.parameters, s);
   const std::uint64_t budget_bytes = s.supply.stats().budget_bytes;
-  if (size.bytes <= budget_bytes) return {};
+  if (bytes <= budget_bytes) return {};
   constexpr double kMiB = 1 << 20;
   return core::fail(
       core::ErrorCode::kOverBudget,
       fmt::format("amplifying the {} nodes around the camera takes {:.0f} MiB for {} meshes, more "
                   "than the budget of {:.0f} MiB; lower the view distance or raise the budget",
-                  s.entities.count<QuadtreeNode>(), static_cast<double>(size.bytes) / kMiB,
-                  size.meshes, static_cast<double>(budget_bytes) / kMiB));
+                  s.entities.count<QuadtreeNode>(), static_cast<double>(bytes) / kMiB,
+                  meshes.size(), static_cast<double>(budget_bytes) / kMiB));
 }
 
 }  // namespace
@@ -172,8 +146,8 @@ core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const P
   double fraction = 0;
   const auto go_on = [&] { return !progress || progress("amplifying", fraction); };
   if (!create_all_nodes(s, go_on)) return 0;
-  if (auto fits = check_region(s); !fits) return tl::unexpected(fits.error());
   const std::vector<synthesis::Want> all = want_everything(s);
+  if (auto fits = check_region(s, all); !fits) return tl::unexpected(fits.error());
   constexpr std::size_t kBatch = 2048;
   std::uint64_t done = 0, failed = 0;
   for (std::size_t first = 0; first < all.size(); first += kBatch) {

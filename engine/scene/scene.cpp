@@ -11,7 +11,6 @@
 #include "engine/core/log.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/facts/derive.hpp"
-#include "engine/scene/facts/typical_bounds.hpp"
 #include "engine/scene/meshes/mesh_annotations.hpp"
 #include "engine/scene/meshes/tree_impostors.hpp"
 #include "engine/scene/state.hpp"
@@ -37,27 +36,6 @@ core::Result<void> start_modelers(const synthesis::SynthesisOptions& options,
   return {};
 }
 
-Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
-                   const models::Registry& registry) {
-  Tracing tracing;
-  if (log == nullptr) return tracing;
-  tracing.log = log;
-  tracing.main = log->add_track("main thread");
-  tracing.cache_bytes = log->add_counter("cache bytes");
-  tracing.requests = log->add_counter("requests");
-  tracing.gpu_ms = log->add_counter("device ms");
-  tracing.device_wait = log->intern("wait for the device");
-  tracing.acquire = log->intern("wait for the window");
-  tracing.present = log->intern("present");
-  for (std::uint32_t i = 0; i < modelers; ++i) {
-    tracing.modelers.push_back(log->add_track(fmt::format("modeler {}", i)));
-  }
-  for (models::ModelIndex i = 0; i < registry.size(); ++i) {
-    tracing.models.push_back(log->intern(registry[i].name()));
-  }
-  return tracing;
-}
-
 // Hardware GPUs start at full resolution. Software devices start reduced: a lower resolution acts
 // at once and changes no shapes.
 double start_reduction(const render::Renderer* renderer, double resolution_reduction) {
@@ -80,16 +58,6 @@ core::Result<void> check_bytes(const State& state, const RequestedPlace& place) 
                   static_cast<double>(all) / kMiB, most / kMiB));
 }
 
-std::uint64_t bytes_of(const State& s, std::span<const RequestedMesh> meshes) {
-  std::uint64_t bytes = 0;
-  for (const RequestedMesh& mesh : meshes) {
-    const models::MeshSize size =
-        s.facts.registry[mesh.key.model].mesh_size(mesh.parameters, mesh.key.level);
-    bytes += s.memory->charged_bytes(size.layout, size.vertex_count, size.own_index_count());
-  }
-  return bytes;
-}
-
 // Fails if a system of a game uses a value of the engine that is not for games (systems.hpp).
 core::Result<void> check_accesses(const State& s, const ecs::SystemInfo& system) {
   constexpr std::array<std::string_view, 7> kReadable = {
@@ -102,8 +70,7 @@ core::Result<void> check_accesses(const State& s, const ecs::SystemInfo& system)
     const bool readable = std::ranges::find(kReadable, access.name) != kReadable.end();
     const bool event = std::ranges::find(kEvents, access.name) != kEvents.end();
     if (event || access.name == "Input" || (readable && !access.writes)) continue;
-    return core::fail(
-        core::ErrorCode::kInvalidArgument,
+    return core::invalid_argument(
         readable ? fmt::format("the system '{}' writes {}; systems of a game may "
                                "write Input only",
                                system.name, access.name)
@@ -114,6 +81,12 @@ core::Result<void> check_accesses(const State& s, const ecs::SystemInfo& system)
 }
 
 }  // namespace
+
+std::uint64_t bytes_of(const synthesis::MeshKey& key, const models::Parameters& parameters,
+                       const State& s) {
+  const models::MeshSize size = s.facts.registry[key.model].mesh_size(parameters, key.level);
+  return s.memory->charged_bytes(size.layout, size.vertex_count, size.own_index_count());
+}
 
 State& state_of(Scene& scene) {
   return *scene.state_;
@@ -141,9 +114,6 @@ const ecs::World& Scene::entities() const {
   return state_->entities;
 }
 Assets& Scene::assets() {
-  return state_->assets;
-}
-const Assets& Scene::assets() const {
   return state_->assets;
 }
 Input& Scene::input() {
@@ -190,7 +160,17 @@ const synthesis::CalibrationReport& Scene::calibration() const {
   return state_->calibration;
 }
 Statistics Scene::statistics() const {
-  return statistics_of(*state_);
+  const State& s = *state_;
+  return {.nodes = s.streaming.counts,
+          .drawn = s.draws.counts,
+          .objects = s.object_draws.counts,
+          .lights = s.light_draws.counts,
+          .particles = s.particle_draws.counts,
+          .meshes = s.meshes.counts,
+          .nodes_hidden = s.view.hidden,
+          .models_drawn = static_cast<std::uint32_t>(s.draws.models.size()),
+          .failed_in_all = s.meshes.failed,
+          .impostors_missing = s.meshes.pictures_lacking != 0};
 }
 const render::FrameResult& Scene::drawn() const {
   return state_->draws.frame;
@@ -212,7 +192,7 @@ bool Scene::shows_replaced_world() const {
   const State& s = *state_;
   const std::uint32_t tick = s.clock.tick - 1;  // the last one
   bool any = false;
-  const auto look = [&](std::span<const ecs::Entity>, std::span<const MeshDemand> demands) {
+  const auto look = [&](auto, auto demands) {
     any = any || std::ranges::any_of(demands, [tick](const MeshDemand& demand) {
             return demand.stale && demand.in_view_tick == tick && demand.drawn_level != kNoLevel &&
                    demand.wanted_level != kNoLevel;
@@ -233,7 +213,7 @@ Systems Scene::systems() {
 core::Result<void> Scene::arrange() {
   for (ecs::Schedule* schedule : {&state_->tick, &state_->simulation.systems}) {
     if (std::string error = schedule->arrange(); !error.empty())
-      return core::fail(core::ErrorCode::kInvalidArgument, std::move(error));
+      return core::invalid_argument(std::move(error));
     for (const ecs::SystemInfo& system : schedule->systems()) {
       const bool own = schedule == &state_->tick && state_->engine_systems.contains(system.name);
       if (own) continue;
@@ -253,7 +233,8 @@ core::Result<PlaceId> Scene::request_place(const core::WorldPosition& at, double
   State& s = *state_;
   auto place = place_at(s.streaming_context(), at, radius_m);
   if (!place) return tl::unexpected(place.error());
-  place->bytes = bytes_of(s, place->meshes);
+  for (const RequestedMesh& mesh : place->meshes)
+    place->bytes += bytes_of(mesh.key, mesh.parameters, s);
   if (const auto fits = check_bytes(s, *place); !fits) return tl::unexpected(fits.error());
   RequestedPlaces& requested = s.meshes.places;
   place->id = ++requested.last_id;
@@ -277,34 +258,25 @@ void Scene::release_place(PlaceId id) {
 }
 
 core::Result<void> Scene::check(const SceneSettings& settings) {
-  const auto invalid = [](std::string message) {
-    return core::fail(core::ErrorCode::kInvalidArgument, std::move(message));
-  };
-  if (!(settings.view_distance_m >= 32 && settings.view_distance_m <= 65536)) {
-    return invalid("view distance must be between 32 and 65536 m");
-  }
-  if (!(settings.max_error_pixels > 0 && settings.max_error_pixels <= 1000)) {
-    return invalid("the error of levels of detail must be above 0 and at most 1000 pixels");
-  }
-  if (!(settings.target_frame_ms >= 0 && settings.target_frame_ms <= 10'000)) {
-    return invalid("the target of the frame time must be between 0 and 10000 ms");
-  }
-  if (!(settings.min_resolution >= double{render::kMinResolution} &&
-        settings.min_resolution <= 1)) {
-    return invalid("the minimum resolution must be a fraction between 0.25 and 1");
-  }
-  if (!(settings.max_error_factor >= 1 && settings.max_error_factor <= 100)) {
-    return invalid("the maximum error factor must be between 1 and 100");
-  }
-  if (!(settings.fade_seconds >= 0 && settings.fade_seconds <= 60)) {
-    return invalid("fades must take between 0 and 60 seconds");
-  }
-  if (!(settings.step_hz >= 1 && settings.step_hz <= 10'000)) {
-    return invalid("the simulation must have between 1 and 10000 steps a second");
-  }
+  const auto within = [](double v, double low, double high) { return v >= low && v <= high; };
+  if (!within(settings.view_distance_m, 32, 65536))
+    return core::invalid_argument("view distance must be between 32 and 65536 m");
+  if (!(settings.max_error_pixels > 0 && settings.max_error_pixels <= 1000))
+    return core::invalid_argument(
+        "the error of levels of detail must be above 0 and at most 1000 pixels");
+  if (!within(settings.target_frame_ms, 0, 10'000))
+    return core::invalid_argument("the target of the frame time must be between 0 and 10000 ms");
+  if (!within(settings.min_resolution, double{render::kMinResolution}, 1))
+    return core::invalid_argument("the minimum resolution must be a fraction between 0.25 and 1");
+  if (!within(settings.max_error_factor, 1, 100))
+    return core::invalid_argument("the maximum error factor must be between 1 and 100");
+  if (!within(settings.fade_seconds, 0, 60))
+    return core::invalid_argument("fades must take between 0 and 60 seconds");
+  if (!within(settings.step_hz, 1, 10'000))
+    return core::invalid_argument("the simulation must have between 1 and 10000 steps a second");
   if (settings.streaming_ticks < 1)
-    return invalid("new nodes must be spread over at least one tick");
-  if (settings.modelers > 256) return invalid("there may be at most 256 modelers");
+    return core::invalid_argument("new nodes must be spread over at least one tick");
+  if (settings.modelers > 256) return core::invalid_argument("there may be at most 256 modelers");
   if (settings.budget_bytes < kMinBudgetBytes || settings.budget_bytes > kMaxBudgetBytes) {
     return core::fail(core::ErrorCode::kOverBudget,
                       fmt::format("a budget of {} bytes is not allowed: it must be {} to {} bytes",

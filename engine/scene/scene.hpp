@@ -106,7 +106,6 @@ class Scene {
   const ecs::World& entities() const;
   // Meshes, textures and materials of objects (objects/assets.hpp).
   Assets& assets();
-  const Assets& assets() const;
 
   // Requests for the next tick (frame/input.hpp).
   Input& input();

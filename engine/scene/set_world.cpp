@@ -8,7 +8,6 @@
 
 #include "engine/scene/facts/derive.hpp"
 #include "engine/scene/facts/lighting.hpp"
-#include "engine/scene/facts/typical_bounds.hpp"
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/meshes/mesh_annotations.hpp"
 #include "engine/scene/meshes/tree_impostors.hpp"
@@ -45,15 +44,6 @@ bool same_types(const models::Registry& a, const models::Registry& b) {
     if (a[i].name() != b[i].name()) return false;
   }
   return true;
-}
-
-std::vector<ecs::Entity> nodes_of(const ecs::World& entities) {
-  std::vector<ecs::Entity> nodes;
-  entities.each<const QuadtreeNode>(
-      [&](std::span<const ecs::Entity> rows, std::span<const QuadtreeNode>) {
-        nodes.insert(nodes.end(), rows.begin(), rows.end());
-      });
-  return nodes;
 }
 
 // Destroys all nodes; the next tick creates new ones.
@@ -163,13 +153,6 @@ bool is_usable(const world::Sky& sky) {
          std::ranges::all_of(colours, [](const glm::vec3& c) { return core::is_finite(c); });
 }
 
-void name_types(const models::Registry& registry, Tracing& trace) {
-  if (trace.log == nullptr) return;
-  trace.models.clear();
-  for (models::ModelIndex i = 0; i < registry.size(); ++i)
-    trace.models.push_back(trace.log->intern(registry[i].name()));
-}
-
 }  // namespace
 
 core::Result<PreparedWorld> prepare_world(world::World world, models::Registry registry,
@@ -198,12 +181,11 @@ SceneSnapshot Scene::snapshot() const {
   SceneSnapshot snapshot{
       state_->settings, facts.world, {}, facts.world.edits ? nullptr : facts.derived};
   world::set_edits(snapshot.world, nullptr);
-  state_->entities.each<const QuadtreeNode>(
-      [&](std::span<const ecs::Entity>, std::span<const QuadtreeNode> nodes) {
-        for (const QuadtreeNode& node : nodes) {
-          if (node.at.level == 0) snapshot.blocks.push_back(node.at.coord);
-        }
-      });
+  state_->entities.each<const QuadtreeNode>([&](auto, auto nodes) {
+    for (const QuadtreeNode& node : nodes) {
+      if (node.at.level == 0) snapshot.blocks.push_back(node.at.coord);
+    }
+  });
   return snapshot;
 }
 
@@ -258,8 +240,8 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
 
 core::Result<void> Scene::set_sky(const world::Sky& sky) {
   if (!is_usable(sky))
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      "a sky has finite numbers, and visibility, haze height and exposure above 0");
+    return core::invalid_argument(
+        "a sky has finite numbers, and visibility, haze height and exposure above 0");
   replace_sky(sky, *state_);
   return {};
 }

@@ -20,8 +20,8 @@ core::Result<Paradigm> paradigm_from(std::string_view name) {
   if (name == "pla") return Paradigm::kParallelLazyAmplification;
   if (name == "amplify") return Paradigm::kDataAmplification;
   if (name == "lazy") return Paradigm::kLazyEvaluation;
-  return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("paradigm '{}' is unknown; allowed are pla, amplify, lazy", name));
+  return core::invalid_argument(
+      fmt::format("paradigm '{}' is unknown; allowed are pla, amplify, lazy", name));
 }
 
 std::string_view to_string(visibility::PlpMode mode) {
@@ -31,8 +31,8 @@ std::string_view to_string(visibility::PlpMode mode) {
 core::Result<visibility::PlpMode> plp_mode_from(std::string_view name) {
   if (name == "layers") return visibility::PlpMode::kLayers;
   if (name == "solidity") return visibility::PlpMode::kSolidity;
-  return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("PLP mode '{}' is unknown; allowed are layers, solidity", name));
+  return core::invalid_argument(
+      fmt::format("PLP mode '{}' is unknown; allowed are layers, solidity", name));
 }
 
 }  // namespace psygen::scene

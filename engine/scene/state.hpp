@@ -75,9 +75,12 @@ struct State {
 State& state_of(Scene& scene);
 const State& state_of(const Scene& scene);
 
+// The bytes that a mesh takes of the budget.
+std::uint64_t bytes_of(const synthesis::MeshKey& key, const models::Parameters& parameters,
+                       const State& state);
+
 // Sets all counts of a tick to 0.
 void reset_counts(State& state);
-Statistics statistics_of(const State& state);
 
 // Provides the values of `state` to its schedule and adds the systems in their order. Once per
 // state.

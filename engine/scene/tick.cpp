@@ -47,6 +47,17 @@ void build_tick(State& s) {
                                events.removed, events.ready, events.evicted, events.places_ready);
 }
 
+void reset_counts(State& s) {
+  s.streaming.counts = {};
+  s.view.hidden = 0;
+  s.meshes.counts = {};
+  s.object_draws.counts = {};
+  s.light_draws.counts = {};
+  s.particle_draws.counts = {};
+  s.draws.counts = {};
+  s.draws.frame = {};
+}
+
 std::vector<std::string> system_names(const State& state) {
   std::vector<std::string> names;
   for (const ecs::SystemInfo& system : state.tick.systems())
@@ -75,17 +86,7 @@ void trace_frame(const render::FrameResult& frame, Tracing& trace) {
 
 void trace_tick(State& state) {
   telemetry::TraceLog& log = *state.trace.log;
-  const auto systems = state.tick.systems();
-  if (state.trace.systems.size() != systems.size()) {
-    state.trace.systems.clear();
-    for (const ecs::SystemInfo& system : systems)
-      state.trace.systems.push_back(log.intern(system.name));
-  }
-  for (std::size_t i = 0; i < systems.size(); ++i) {
-    const double start_s = systems[i].last_start_s;
-    log.add_span(state.trace.main, state.trace.systems[i], start_s,
-                 start_s + systems[i].last_seconds, state.clock.tick);
-  }
+  trace_systems(state.tick.systems(), state.clock.tick, &Tracing::systems, state.trace);
   trace_frame(state.draws.frame, state.trace);
   const double now_s = core::monotonic_seconds();
   log.add_value(state.trace.cache_bytes, now_s,

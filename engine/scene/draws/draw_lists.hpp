@@ -5,28 +5,48 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "engine/render/types.hpp"
 #include "engine/scene/components.hpp"
-#include "engine/scene/draws/node_cross_fade.hpp"
 #include "engine/scene/frame/output.hpp"
 #include "engine/scene/frame/quality.hpp"
 #include "engine/scene/nodes/ground_occluder.hpp"
 #include "engine/scene/nodes/ground_sunlight.hpp"
 #include "engine/scene/objects/scene_draws.hpp"
+#include "engine/scene/statistics.hpp"
 #include "engine/scene/view/visibility.hpp"
+#include "engine/visibility/quadtree.hpp"
 
 namespace psygen::scene {
 
-// Counts of one tick (count_visible).
-struct DrawCounts {
-  std::uint32_t nodes_in_view = 0;
-  std::uint32_t holes = 0;    // nodes in view that are drawn at no level
-  std::uint32_t coarse = 0;   // nodes in view coarser than wanted by more than one level
-  std::uint32_t awaited = 0;  // Statistics::awaited
-  double missing_pixels_percent = 0;
-  double seen_area = 0, too_coarse_area = 0;  // of visible pieces, in percent of the frame
+// Tells which nodes replace others, so that their models can cross-fade.
+class NodeCrossFade {
+ public:
+  // `drawn`: the nodes of this tick, in any order. `continues`: this is the tick after the last
+  // call's. Otherwise the nodes drawn before are unknown, and no node fades out.
+  void update(std::span<const visibility::NodeCoord> drawn, bool continues);
+
+  // Calls draw(node) once for each node that is no longer drawn: those that update() found, and
+  // those of earlier ticks that still fade out. `draw` returns true if any of its models is left.
+  template <class Draw>
+  void for_each_going(const Draw& draw) {
+    std::erase_if(going_, [&](const visibility::NodeCoord& node) { return !draw(node); });
+    find_replaced();
+  }
+
+  // True if a drawn node was not drawn in the last tick.
+  bool is_new_node(const visibility::NodeCoord& node) const;
+  // True if such a node replaces nodes that still fade out: an ancestor, or nodes below it.
+  bool replaces(const visibility::NodeCoord& node) const;
+
+ private:
+  void find_replaced();
+
+  // All sorted.
+  std::vector<visibility::NodeCoord> drawn_, drawn_before_, fresh_, going_, above_going_, scratch_;
+  std::uint8_t top_level_ = 0;  // of drawn and going nodes
 };
 
 // The lists of this tick, and working memory.
@@ -42,9 +62,8 @@ struct DrawLists {
   std::vector<render::GroundSpot> spots;      // contact shadows of models near the camera
   std::vector<render::Line> lines;            // bounds of drawn nodes, in the debug view of bounds
   NodeCrossFade cross_fade;
-  std::uint32_t tick = 0;  // of these lists
-  double now_s = 0;        // the clock in that tick
-  float fade_phase = 0;    // of the pattern of fades (next_phase)
+  DrawnTick last;
+  float fade_phase = 0;  // of the pattern of fades (next_phase)
   DrawCounts counts;
   render::FrameResult frame;
 };

@@ -86,7 +86,7 @@ std::uint8_t sides_with_skirts(const NodeTiles& tiles, std::uint32_t in_view) {
 
 template <class Grid>
 void add_skirts(const Grid& grid, std::uint8_t sides, Parts& parts) {
-  parts.set_near(false);
+  parts.set(&render::TerrainDraw::near, false);
   for (int i = 0; i < 4; ++i)
     if ((sides >> i & 1) != 0) parts.add(grid.skirt(i));
 }
@@ -122,7 +122,7 @@ void add_tiles(const NodeTiles& tiles, std::uint32_t in_view, const models::Terr
     Parts parts(draw, draws);
     for (int i = 0; i < count; ++i) {
       if ((in_view & bit(i)) == 0) continue;
-      parts.set_near(is_near(tiles.box(i % side, i / side)));
+      parts.set(&render::TerrainDraw::near, is_near(tiles.box(i % side, i / side)));
       parts.add(tiles.grid.tile(i % side, i / side));
     }
     return add_skirts(tiles.grid, skirts, parts);
@@ -148,7 +148,7 @@ void add_tiles(const NodeTiles& tiles, std::uint32_t in_view, const models::Terr
             [](const Chosen& a, const Chosen& b) { return a.part.first < b.part.first; });
   Parts parts(draw, draws);
   for (auto tile = chosen.begin(); tile != end; ++tile) {
-    parts.set_near(tile->near);
+    parts.set(&render::TerrainDraw::near, tile->near);
     parts.add(tile->part);
   }
   add_skirts(*fine, skirts, parts);

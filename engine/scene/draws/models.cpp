@@ -167,8 +167,8 @@ bool add_parts(const MeshParts& parts, const View* view, const GroundSunlight& s
   DrawParts run(draw, draws);
   for (std::uint32_t i = 0; i < parts.count; ++i) {
     if (view != nullptr && !mesh_may_be_visible(parts.boxes[i], draw.origin, *view)) continue;
-    run.set_sun(in_steps(
-        sun_over(sun, flat(parts.boxes[i].min) / side_m, flat(parts.boxes[i].max) / side_m)));
+    run.set(&render::MeshDraw::sun, in_steps(sun_over(sun, flat(parts.boxes[i].min) / side_m,
+                                                      flat(parts.boxes[i].max) / side_m)));
     const std::uint32_t first = i * parts.indices_each;
     run.add({first, std::min(parts.indices_each, parts.index_count - first)});
     any = true;

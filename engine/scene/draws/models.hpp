@@ -36,19 +36,13 @@ class DrawParts {
     }
     draw_.part.count += part.count;
   }
-  // For render::MeshDraw: the fraction of sunlight on the parts that follow.
-  void set_sun(float sun) {
-    if (sun == draw_.sun) return;
+  // Sets a value of the parts that follow: the sunlight on models, or whether ground is near.
+  template <class Value>
+  void set(Value Draw::*member, Value value) {
+    if (draw_.*member == value) return;
     flush();
     draw_.part = {};
-    draw_.sun = sun;
-  }
-  // For render::TerrainDraw: true if the parts that follow are near.
-  void set_near(bool near) {
-    if (near == draw_.near) return;
-    flush();
-    draw_.part = {};
-    draw_.near = near;
+    draw_.*member = value;
   }
 
  private:

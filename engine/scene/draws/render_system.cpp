@@ -33,8 +33,7 @@ struct DrawTick {
 // Bytes per square metre of the meshes that the node and its models draw.
 float bytes_per_m2(const RenderQuery& entities, ecs::Entity node, float side_m) {
   std::uint64_t bytes = 0;
-  const auto add = [&](std::span<const ecs::Entity>, std::span<const MeshDemand> demands,
-                       std::span<const Mesh> meshes) {
+  const auto add = [&](auto, auto demands, auto meshes) {
     for (std::size_t i = 0; i < meshes.size(); ++i)
       bytes += demands[i].drawn_level != kNoLevel ? meshes[i].range.bytes : 0;
   };
@@ -181,7 +180,6 @@ void draw_node(const DrawTick& tick, const RenderContext& context, const RenderQ
 // Fills the lists of ground and models, and counts what they lack.
 void fill_lists(const RenderContext& context, const render::Morph& morph,
                 const RenderQuery& entities, DrawLists& draws) {
-  const Clock& clock = context.frame.clock;
   const View& view = context.view;
   draws.terrain.clear();
   draws.models.clear();
@@ -190,19 +188,16 @@ void fill_lists(const RenderContext& context, const render::Morph& morph,
   draws.entities.clear();
   for (const visibility::CutNode& node : view.cut.nodes)
     draws.entities.push_back(context.streaming.grids[node.node.level].entity_of(node.node.coord));
-  const DrawTick tick{
-      context.input.view, {clock.tick, fade_fraction(context.frame, draws.now_s)}, morph.to_m};
+  const DrawTick tick{context.input.view, next_fade_step(context.frame, draws.last), morph.to_m};
   find_ready(view, entities, draws);
   visibility::drawn_nodes(view.cut, draws.ready, draws.scratch, draws.nodes);
   list_shown(view, draws);
-  draws.cross_fade.update(draws.shown_nodes, draws.tick + 1 == clock.tick);
+  draws.cross_fade.update(draws.shown_nodes, tick.step.continues);
   draws.cross_fade.for_each_going([&](const visibility::NodeCoord& node) {
     return draw_going(tick, context, entities, node, draws);
   });
   for (const std::uint32_t i : draws.shown)
     draw_node(tick, context, entities, i, draws);
-  draws.tick = clock.tick;
-  draws.now_s = clock.now_s;
   draws.fade_phase = next_phase(draws.fade_phase, tick.step);
   draws.counts.missing_pixels_percent = std::min(draws.counts.missing_pixels_percent, 100.0);
 }

@@ -9,14 +9,14 @@ namespace psygen::scene {
 namespace {
 
 template <class Event>
-void emit_difference(std::span<const ShownNode> those, std::span<const ShownNode> others,
+void emit_difference(std::span<const NodeShown> those, std::span<const NodeShown> others,
                      ecs::EventQueue<Event>& queue) {
   if (!queue.has_readers()) return;
-  std::vector<ShownNode> gone;
-  std::ranges::set_difference(those, others, std::back_inserter(gone), {}, &ShownNode::at,
-                              &ShownNode::at);
-  for (const ShownNode& node : gone)
-    queue.emit(Event{node.entity, node.at});
+  std::vector<NodeShown> gone;
+  std::ranges::set_difference(those, others, std::back_inserter(gone), {}, &NodeShown::at,
+                              &NodeShown::at);
+  for (const NodeShown& node : gone)
+    queue.emit(Event{node.node, node.at});
 }
 
 }  // namespace
@@ -78,10 +78,10 @@ void events_system(const View& view, const DrawLists& draws, ShownNodes& shown,
                    ecs::EventQueue<NodeShown>& nodes_shown,
                    ecs::EventQueue<NodeHidden>& nodes_hidden) {
   if (!nodes_shown.has_readers() && !nodes_hidden.has_readers()) return shown.nodes.clear();
-  std::vector<ShownNode> now;
+  std::vector<NodeShown> now;
   for (const std::uint32_t i : draws.shown)
     now.push_back({draws.entities[i], view.cut.nodes[i].node});
-  std::ranges::sort(now, {}, &ShownNode::at);
+  std::ranges::sort(now, {}, &NodeShown::at);
   emit_difference(now, shown.nodes, nodes_shown);
   emit_difference(shown.nodes, now, nodes_hidden);
   shown.nodes = std::move(now);

@@ -30,12 +30,8 @@ float min_distance_m(const visibility::CutNode& node, std::uint8_t drawn_level, 
 float nearest_m(const View& view, std::uint32_t index, float highest_m);
 
 // The nodes drawn in the last frame, sorted. Empty if no system reads the events.
-struct ShownNode {
-  ecs::Entity entity;
-  visibility::NodeCoord at;
-};
 struct ShownNodes {
-  std::vector<ShownNode> nodes;
+  std::vector<NodeShown> nodes;
 };
 
 // System: emits the nodes that appeared in the frame and those that left it.

@@ -161,6 +161,23 @@ void split_distances(std::span<const NodeLevel> levels, const SceneSettings& set
   distances[0] = {fine_m, fine_m * kMergeFactor, fine_m * split.morph_share};
 }
 
+visibility::CutInput cut_input(const world::World& world, std::span<const NodeLevel> levels,
+                               const core::WorldPosition& camera,
+                               std::span<const visibility::LevelDistances> distances,
+                               double view_distance_m, std::vector<visibility::NodeCoord>& roots) {
+  visibility::CutInput input;
+  input.camera = camera;
+  input.block_size_m = world.block_size_m();
+  input.levels = distances;
+  input.view_distance_m = view_distance_m;
+  input.world = {
+      {}, static_cast<std::uint32_t>(world.blocks_x), static_cast<std::uint32_t>(world.blocks_z)};
+  visibility::roots_around(camera, input.block_size_m, view_distance_m,
+                           static_cast<std::uint8_t>(levels.size() - 1), roots, input.world);
+  input.roots = roots;
+  return input;
+}
+
 double existing_distance_m(std::span<const NodeLevel> levels, const SceneSettings& settings,
                            std::size_t level,
                            std::span<const visibility::LevelDistances> distances) {

@@ -63,6 +63,13 @@ void split_distances(std::span<const NodeLevel> levels, const SceneSettings& set
                      double pixels_per_radian, double error_pixels,
                      std::vector<visibility::LevelDistances>& distances);
 
+// The input of a cut around a position up to this distance. Sets `roots`, which must outlive it, as
+// must `distances`.
+visibility::CutInput cut_input(const world::World& world, std::span<const NodeLevel> levels,
+                               const core::WorldPosition& camera,
+                               std::span<const visibility::LevelDistances> distances,
+                               double view_distance_m, std::vector<visibility::NodeCoord>& roots);
+
 // The distance within which nodes of a level exist as entities, measured from the middle of the
 // camera's block to their parent. It exceeds every split distance, so that nodes are ready when
 // they are needed. Nodes of the coarsest level exist up to this distance themselves, which exceeds

@@ -13,21 +13,6 @@ namespace {
 // A step is due this fraction of a step early: sums of frame times are not exact.
 constexpr double kEarly = 1e-6;
 
-void trace_step(const Simulation& simulation, std::uint64_t step, Tracing& trace) {
-  if (trace.log == nullptr) return;
-  const auto systems = simulation.systems.systems();
-  if (trace.steps.size() != systems.size()) {
-    trace.steps.clear();
-    for (const ecs::SystemInfo& system : systems)
-      trace.steps.push_back(trace.log->intern(system.name));
-  }
-  for (std::size_t i = 0; i < systems.size(); ++i) {
-    const double start_s = systems[i].last_start_s;
-    trace.log->add_span(trace.main, trace.steps[i], start_s, start_s + systems[i].last_seconds,
-                        step);
-  }
-}
-
 }  // namespace
 
 void simulation_system(const Clock& clock, ecs::World&, Simulation& simulation, FixedStep& step,
@@ -50,7 +35,7 @@ void simulation_system(const Clock& clock, ecs::World&, Simulation& simulation, 
     const auto systems = simulation.systems.systems();
     for (std::size_t i = 0; i < systems.size(); ++i)
       simulation.step_ms[i] += static_cast<float>(systems[i].last_seconds * 1000.0);
-    trace_step(simulation, step.index, trace);
+    trace_systems(systems, step.index, &Tracing::steps, trace);
   }
   step.share = std::min(simulation.behind_s / step.step_s, 1.0);
 }
@@ -66,11 +51,16 @@ Rules rules_of(const SceneSettings& settings, bool settling) {
           .settle = settling};
 }
 
-float fade_fraction(const FrameContext& frame, double last_s) {
+FadeStep next_fade_step(const FrameContext& frame, DrawnTick& last) {
   constexpr double kMinSeconds = 1.0 / 240.0;
-  const double passed_s = std::max(frame.clock.now_s - last_s, kMinSeconds);
+  const Clock& clock = frame.clock;
+  const double passed_s = std::max(clock.now_s - last.now_s, kMinSeconds);
   const double whole_s = frame.settings.fade_seconds;
-  return whole_s <= passed_s ? 1.0F : static_cast<float>(passed_s / whole_s);
+  const FadeStep step{clock.tick,
+                      whole_s <= passed_s ? 1.0F : static_cast<float>(passed_s / whole_s),
+                      last.tick + 1 == clock.tick};
+  last = {clock.tick, clock.now_s};
+  return step;
 }
 
 }  // namespace psygen::scene

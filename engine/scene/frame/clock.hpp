@@ -71,8 +71,21 @@ struct FrameContext {
   const Clock& clock;
 };
 
-// Fraction of a whole fade by which fades advance in this tick, in (0, 1]. `last_s`: the clock at
-// the last tick. A clock that stands still advances them by 1/240 s.
-float fade_fraction(const FrameContext& frame, double last_s);
+// The last tick that filled a draw list.
+struct DrawnTick {
+  std::uint32_t tick = 0;
+  double now_s = 0;  // the clock in that tick
+};
+
+// The step by which one tick advances all fades of a draw list.
+struct FadeStep {
+  std::uint32_t tick = 0;
+  float share = 1;        // fraction of a whole fade, in (0, 1]; 1: no fades
+  bool continues = true;  // the tick before filled the list too
+};
+
+// Returns the step of this tick, and records the tick in `last`. A clock that stands still advances
+// fades by 1/240 s.
+FadeStep next_fade_step(const FrameContext& frame, DrawnTick& last);
 
 }  // namespace psygen::scene

@@ -4,11 +4,18 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/core/error.hpp"
 #include "engine/telemetry/trace_log.hpp"
 
+namespace psygen::ecs {
+struct SystemInfo;
+}
+namespace psygen::models {
+class Registry;
+}
 namespace psygen::render {
 class Renderer;
 }
@@ -31,5 +38,17 @@ struct Tracing {
   std::vector<telemetry::TraceLog::Track> modelers;                     // by number
   std::vector<telemetry::TraceLog::Name> models;                        // by index in the registry
 };
+
+// Begins a trace; none if `log` is null.
+Tracing tracing_of(telemetry::TraceLog* log, std::uint32_t modelers,
+                   const models::Registry& registry);
+// Names the model types after the registry was replaced.
+void name_types(const models::Registry& registry, Tracing& trace);
+// Adds a track for one more modeler.
+void add_modeler(Tracing& trace);
+// Adds a span for the last run of each system, with the number of its tick or step. `names`:
+// Tracing::systems or Tracing::steps. Does nothing without a trace.
+void trace_systems(std::span<const ecs::SystemInfo> systems, std::uint64_t number,
+                   std::vector<telemetry::TraceLog::Name> Tracing::*names, Tracing& trace);
 
 }  // namespace psygen::scene

@@ -284,9 +284,7 @@ std::uint32_t count_false(const CacheQuery& entities, std::span<const ecs::Entit
                           const Visit& visit) {
   std::uint32_t count = 0;
   entities.each_of<const MeshPlacement, const LodErrors, const MeshSource, const Mesh, MeshDemand>(
-      which, [&](std::span<const ecs::Entity> rows, std::span<const MeshPlacement> placed,
-                 std::span<const LodErrors> detail, std::span<const MeshSource> source,
-                 std::span<const Mesh> mesh, std::span<MeshDemand> demand) {
+      which, [&](auto rows, auto placed, auto detail, auto source, auto mesh, auto demand) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
           const MeshEntity row{rows[i], placed[i], detail[i], source[i], mesh[i], demand[i]};
           count += visit(row) ? 0 : 1;
@@ -302,9 +300,7 @@ void visit_nodes(const CacheQuery& entities, std::span<const ecs::Entity> nodes,
                  const core::WorldPosition& eye, double block_size_m, NodeView common,
                  const Visit& visit) {
   entities.each_of<const QuadtreeNode, const ecs::Children, const Visibility, MissingMeshes>(
-      nodes, [&](std::span<const ecs::Entity> rows, std::span<const QuadtreeNode> node,
-                 std::span<const ecs::Children> models, std::span<const Visibility> visibility,
-                 std::span<MissingMeshes> lacking) {
+      nodes, [&](auto rows, auto node, auto models, auto visibility, auto lacking) {
         NodeView view = common;
         for (std::size_t i = 0; i < rows.size(); ++i) {
           const core::BlockCoord corner = visibility::corner_block(node[i].at);
@@ -330,9 +326,7 @@ std::vector<ecs::Entity> every_nth(std::span<const ecs::Entity> nodes, std::size
 
 // Lazy evaluation keeps nothing: frees the meshes of the last frame.
 void forget_last_frame(const CacheQuery& entities, synthesis::MeshSupply& supply) {
-  entities.each<MeshDemand, const Mesh>([&supply](std::span<const ecs::Entity>,
-                                                  std::span<MeshDemand> demands,
-                                                  std::span<const Mesh> meshes) {
+  entities.each<MeshDemand, const Mesh>([&supply](auto, auto demands, auto meshes) {
     for (std::size_t i = 0; i < demands.size(); ++i) {
       if (demands[i].drawn_level == kNoLevel) continue;
       supply.forget(meshes[i].handle);

@@ -7,14 +7,9 @@
 #include <cstdint>
 
 #include "engine/scene/components.hpp"
+#include "engine/scene/frame/clock.hpp"
 
 namespace psygen::scene {
-
-// The step by which one tick advances all fades.
-struct FadeStep {
-  std::uint32_t tick = 0;
-  float share = 1;  // fraction of a whole fade, in (0, 1]; 1: no fades
-};
 
 // The phase of the pattern in which meshes share pixels (render::FrameInput::fade_phase), 0 to 1.
 // It advances by half of a fade's step: with a whole step, pixels would change back.

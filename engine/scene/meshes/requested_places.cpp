@@ -20,23 +20,13 @@ constexpr float kDeadlineSeconds = 1;
 visibility::Cut cut_at(const StreamingContext& s, const core::WorldPosition& position,
                        double radius_m) {
   const WorldFacts& facts = s.facts;
-  const auto top = static_cast<std::uint8_t>(facts.levels.size() - 1);
   std::vector<visibility::LevelDistances> distances;
   split_distances(facts.levels, s.frame.settings, s.camera.pixels_per_radian,
                   s.quality.error_pixels, distances);
-  visibility::CutInput input;
-  input.camera = position;
-  input.block_size_m = facts.world.block_size_m();
-  input.levels = distances;
-  input.view_distance_m = radius_m;
-  input.world = {{},
-                 static_cast<std::uint32_t>(facts.world.blocks_x),
-                 static_cast<std::uint32_t>(facts.world.blocks_z)};
   std::vector<visibility::NodeCoord> roots;
-  visibility::roots_around(position, input.block_size_m, radius_m, top, roots, input.world);
-  input.roots = roots;
   visibility::Cut cut;
-  visibility::select_cut(input, cut);
+  visibility::select_cut(cut_input(facts.world, facts.levels, position, distances, radius_m, roots),
+                         cut);
   return cut;
 }
 
@@ -91,10 +81,9 @@ struct Collector {
 core::Result<void> check(const core::WorldPosition& position, double radius_m) {
   const glm::dvec3& local = position.local;
   if (!core::is_finite(local))
-    return core::fail(core::ErrorCode::kInvalidArgument, "the position of a place is not finite");
+    return core::invalid_argument("the position of a place is not finite");
   if (radius_m > 0 && radius_m <= kMaxReadyRadiusM) return {};
-  return core::fail(
-      core::ErrorCode::kInvalidArgument,
+  return core::invalid_argument(
       fmt::format("the radius of a place must be above 0 and at most {} m", kMaxReadyRadiusM));
 }
 
@@ -102,8 +91,7 @@ core::Result<void> check(const core::WorldPosition& position, double radius_m) {
 void list(const StreamingContext& context, RequestedPlace& place) {
   place.nodes.clear();
   place.meshes.clear();
-  place.sun_azimuth_deg = context.daylight.azimuth_deg;
-  place.sun_elevation_deg = context.daylight.elevation_deg;
+  place.sun = context.daylight;
   place.pixels_per_radian = context.camera.pixels_per_radian;
   place.stale = false;
   place.layer = context.facts.world.layer();
@@ -122,10 +110,7 @@ void list(const StreamingContext& context, RequestedPlace& place) {
 // Updates the ground of a place to the present sun.
 void light(const StreamingContext& context, RequestedPlace& place) {
   const Daylight& sun = context.daylight;
-  if (place.sun_azimuth_deg == sun.azimuth_deg && place.sun_elevation_deg == sun.elevation_deg)
-    return;
-  place.sun_azimuth_deg = sun.azimuth_deg;
-  place.sun_elevation_deg = sun.elevation_deg;
+  if (std::exchange(place.sun, sun) == sun) return;
   const models::ModelType& terrain = context.facts.registry[context.facts.world.terrain_model];
   for (RequestedMesh& mesh : place.meshes) {
     if (mesh.key.model != context.facts.world.terrain_model) continue;

@@ -30,9 +30,9 @@ struct RequestedPlace {
   double radius_m = 0;
   std::vector<visibility::NodeCoord> nodes;  // whose ground and models it shows
   std::vector<RequestedMesh> meshes;
-  std::shared_ptr<const models::EditLayer> layer;     // that the parameters of `meshes` refer to
-  double sun_azimuth_deg = 0, sun_elevation_deg = 0;  // of the light on its ground
-  float pixels_per_radian = 0;                        // of the frame it is for
+  std::shared_ptr<const models::EditLayer> layer;  // that the parameters of `meshes` refer to
+  Daylight sun;                                    // of the light on its ground
+  float pixels_per_radian = 0;                     // of the frame it is for
   std::uint64_t bytes = 0;
   Readiness readiness;
   bool told = false;   // PlaceReady was emitted

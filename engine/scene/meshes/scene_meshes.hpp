@@ -22,19 +22,6 @@ namespace psygen::scene {
 
 class Assets;
 
-// Counts of one tick.
-struct MeshCounts {
-  std::uint32_t requests = 0;         // wanted meshes that are not ready
-  std::uint32_t refused = 0;          // of these, requests that found no memory
-  std::uint32_t refused_visible = 0;  // of these, requests for meshes in view
-  std::uint32_t completed = 0, failed = 0;
-  std::uint32_t models_synthesised = 0;
-  std::uint64_t triangles_synthesised = 0, bytes_synthesised = 0;
-  double synthesis_seconds = 0;
-  std::vector<float> time_to_visible_ms;  // of mesh entities that came into view and are drawn
-  std::vector<MeshCost> costs;
-};
-
 // (model type, list) → the renderer's name of a shared index list.
 using SharedIndices = std::unordered_map<std::uint64_t, std::uint32_t>;
 

@@ -174,10 +174,8 @@ void hand_over(const Offer& offer, const WorldFacts& facts, double now_s,
 // clock.
 void trace_job(const synthesis::Completion& job, Tracing& trace) {
   if (job.modeler == synthesis::kMainThreadModeler) return;
-  while (trace.modelers.size() <= job.modeler) {
-    trace.modelers.push_back(
-        trace.log->add_track(fmt::format("modeler {}", trace.modelers.size())));
-  }
+  while (trace.modelers.size() <= job.modeler)
+    add_modeler(trace);
   trace.log->add_span(trace.modelers[job.modeler], trace.models[job.key.model], job.started_s,
                       job.finished_s);
 }

@@ -24,8 +24,7 @@ void daylight_system(const Clock& clock, const WorldFacts& facts, DaylightQuery 
   daylight = now;
   const models::ModelType& terrain = facts.registry[facts.world.terrain_model];
   nodes.each<const QuadtreeNode, MeshSource, MeshDemand>(
-      [&](std::span<const ecs::Entity>, std::span<const QuadtreeNode>,
-          std::span<MeshSource> sources, std::span<MeshDemand> demands) {
+      [&](auto, auto, auto sources, auto demands) {
         for (std::size_t i = 0; i < sources.size(); ++i) {
           models::Parameters lit = sources[i].parameters;
           world::set_sun(lit, daylight.azimuth_deg, daylight.elevation_deg);

@@ -14,6 +14,7 @@ struct WorldFacts;
 // The direction that world::set_sun() has set.
 struct Daylight {
   double azimuth_deg = 0, elevation_deg = 90;
+  friend bool operator==(const Daylight&, const Daylight&) = default;
 };
 
 // System: moves the sun. O(nodes) if the shadows moved by a step.

@@ -47,13 +47,8 @@ void edits_system(const Daylight& daylight, PendingEdits& pending, WorldFacts& f
   work.supply.set_edits(facts.world.layer());
   facts.models_reach_m = world::with_placed_models(facts.scattered_reach_m, facts.world);
   const LayerChange change(facts.world, before, facts.world.layer());
-  std::vector<ecs::Entity> nodes;
-  work.entities.each<const QuadtreeNode>(
-      [&](std::span<const ecs::Entity> rows, std::span<const QuadtreeNode>) {
-        nodes.insert(nodes.end(), rows.begin(), rows.end());
-      });
   std::vector<world::Placement> scratch;
-  for (const ecs::Entity node : nodes) {
+  for (const ecs::Entity node : nodes_of(work.entities)) {
     const visibility::NodeCoord at = work.entities.get<QuadtreeNode>(node)->at;
     update_node(facts, daylight, node, change.of(at), scratch, work);
   }

@@ -243,9 +243,7 @@ void tell_removed(std::span<const ecs::Entity> nodes, const ecs::World& entities
   for (const ecs::Entity node : nodes) {
     if (entities.get<QuadtreeNode>(node)->at.level != 0) continue;
     entities.each_of<const MeshPlacement, const MeshSource>(
-        entities.children(node),
-        [&events](std::span<const ecs::Entity> rows, std::span<const MeshPlacement> placed,
-                  std::span<const MeshSource> sources) {
+        entities.children(node), [&events](auto rows, auto placed, auto sources) {
           for (std::size_t i = 0; i < rows.size(); ++i)
             events.push_back({rows[i], placed[i].block, sources[i].index, sources[i].model});
         });
@@ -280,10 +278,16 @@ ecs::Entity create_node(const SceneSettings& settings, const WorldFacts& facts,
   return node;
 }
 
+std::vector<ecs::Entity> nodes_of(const ecs::World& entities) {
+  std::vector<ecs::Entity> nodes;
+  entities.each<const QuadtreeNode>(
+      [&](auto rows, auto) { nodes.insert(nodes.end(), rows.begin(), rows.end()); });
+  return nodes;
+}
+
 void destroy_nodes(std::span<const ecs::Entity> nodes, const NodeWork& work) {
   ecs::World& entities = work.entities;
-  const auto release = [&](std::span<const ecs::Entity>, std::span<const MeshDemand> demands,
-                           std::span<const Mesh> drawn) {
+  const auto release = [&](auto, auto demands, auto drawn) {
     for (std::size_t i = 0; i < demands.size(); ++i) {
       if (demands[i].drawn_level == kNoLevel) continue;
       work.supply.rank(drawn[i].handle, synthesis::Rank::unwanted());

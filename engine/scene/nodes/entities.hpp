@@ -57,6 +57,9 @@ void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity 
                  const NodeChange& change, std::vector<world::Placement>& scratch,
                  const NodeWork& work);
 
+// All nodes.
+std::vector<ecs::Entity> nodes_of(const ecs::World& entities);
+
 // Destroys nodes with their models. Their meshes stay in the cache while it has room, because the
 // camera may come back.
 void destroy_nodes(std::span<const ecs::Entity> nodes, const NodeWork& work);

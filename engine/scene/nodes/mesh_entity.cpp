@@ -18,8 +18,7 @@ int picture_level_of(const WorldFacts& facts, const world::Placement& placement)
   return level < std::min(count, static_cast<int>(kMaxLevels)) ? level : 0;
 }
 
-}  // namespace
-
+// `typical`: the part of the bounds that its mesh usually fills (WorldFacts::typical_bounds).
 MeshPlacement placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box,
                         const core::Bounds& typical) {
   MeshPlacement placed;
@@ -32,6 +31,7 @@ MeshPlacement placed_at(core::BlockCoord block, glm::vec3 position, const core::
   return placed;
 }
 
+// Levels `first` … `last` of a model type, without repeated ones.
 LodErrors detail_of(const models::ModelType& type, const models::Parameters& parameters, int first,
                     int last) {
   LodErrors detail;
@@ -44,6 +44,8 @@ LodErrors detail_of(const models::ModelType& type, const models::Parameters& par
   }
   return detail;
 }
+
+}  // namespace
 
 synthesis::MeshKey key_of(const MeshPlacement& placed, const LodErrors& detail,
                           const MeshSource& source, std::uint8_t level) {

@@ -10,14 +10,6 @@
 
 namespace psygen::scene {
 
-// `typical`: the part of the bounds that its mesh usually fills (WorldFacts::typical_bounds).
-MeshPlacement placed_at(core::BlockCoord block, glm::vec3 position, const core::Bounds& box,
-                        const core::Bounds& typical);
-
-// Levels `first` … `last` of a model type, without repeated ones.
-LodErrors detail_of(const models::ModelType& type, const models::Parameters& parameters,
-                    int first = 0, int last = INT_MAX);
-
 // MeshKey::parameters_hash of an entity's meshes; for quads it includes the identity of their
 // impostors.
 std::uint64_t hash_of(const MeshSource& source, bool picture);

@@ -68,14 +68,13 @@ class Window {
 
 void destroy_leaving_nodes(const Window& window, Streaming& streaming, const NodeWork& work) {
   std::vector<ecs::Entity> leaving;
-  work.entities.each<const QuadtreeNode>(
-      [&](std::span<const ecs::Entity> rows, std::span<const QuadtreeNode> nodes) {
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-          const visibility::NodeCoord& at = nodes[i].at;
-          if (!streaming.grids[at.level].contains(at.coord) || !window.holds(at))
-            leaving.push_back(rows[i]);
-        }
-      });
+  work.entities.each<const QuadtreeNode>([&](auto rows, auto nodes) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const visibility::NodeCoord& at = nodes[i].at;
+      if (!streaming.grids[at.level].contains(at.coord) || !window.holds(at))
+        leaving.push_back(rows[i]);
+    }
+  });
   streaming.counts.destroyed += static_cast<std::uint32_t>(leaving.size());
   destroy_nodes(leaving, work);
 }

@@ -13,6 +13,7 @@
 #include "engine/scene/nodes/daylight.hpp"
 #include "engine/scene/nodes/entities.hpp"
 #include "engine/scene/nodes/ground_sunlight.hpp"
+#include "engine/scene/statistics.hpp"
 #include "engine/visibility/quadtree.hpp"
 
 namespace psygen::scene {
@@ -59,11 +60,6 @@ class NodeGrid {
 
 // The windows of a world, one for each level, at their largest.
 std::vector<NodeGrid> node_grids(const SceneSettings& settings, const WorldFacts& facts);
-
-// Counts of one tick.
-struct NodeCounts {
-  std::uint32_t created = 0, destroyed = 0;
-};
 
 struct Streaming {
   std::vector<NodeGrid> grids;                        // one for each level

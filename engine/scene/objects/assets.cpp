@@ -103,8 +103,7 @@ core::Result<MeshId> Assets::add_model(std::string_view type, const models::Para
                                        int first_level, int level_count) {
   const int found = registry_->find(type);
   if (found < 0 || found == copied_ || found == synthesised_) {
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("there is no model type \"{}\" for objects", type));
+    return core::invalid_argument(fmt::format("there is no model type \"{}\" for objects", type));
   }
   const models::ModelType& model = (*registry_)[static_cast<models::ModelIndex>(found)];
   if (auto ok = models::validate(model, parameters); !ok) {
@@ -112,14 +111,12 @@ core::Result<MeshId> Assets::add_model(std::string_view type, const models::Para
   }
   const int there_are = model.level_count_of(parameters);
   if (first_level < 0 || level_count < 0 || first_level + std::max(level_count, 1) > there_are) {
-    return core::fail(
-        ErrorCode::kInvalidArgument,
+    return core::invalid_argument(
         fmt::format("{}: levels {} to {} are not among its {} levels", type, first_level,
                     first_level + std::max(level_count, 1) - 1, there_are));
   }
   if (model.mesh_size(parameters, first_level).layout != core::VertexLayout::kModel) {
-    return core::fail(ErrorCode::kInvalidArgument,
-                      fmt::format("{} is ground, which is no mesh of an object", type));
+    return core::invalid_argument(fmt::format("{} is ground, which is no mesh of an object", type));
   }
   ObjectSource source;
   source.name = std::string(type);

@@ -20,8 +20,7 @@ core::Result<ColliderId> Colliders::add(models::Collider collider, std::string_v
 
 core::Result<ColliderId> Colliders::box_of(const Assets& assets, MeshId mesh) {
   if (!assets.exists(mesh))
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("there is no mesh {} to take a box of", mesh.index));
+    return core::invalid_argument(fmt::format("there is no mesh {} to take a box of", mesh.index));
   if (const auto known = boxes_.find(mesh.index); known != boxes_.end()) return known->second;
   const core::Bounds& box = assets.box(mesh);
   // Slightly above the minimum, because floats round.
@@ -55,8 +54,7 @@ void Colliders::follow(ecs::Entity entity, const Transform& transform, ObjectCol
 void Colliders::update(const WorldFacts& facts, Entities entities) {
   if (!std::exchange(opened_, true)) objects_ = query::Objects(facts.world);
   invalid_ = 0;
-  entities.each([&](std::span<const ecs::Entity> rows, std::span<const Transform> transforms,
-                    std::span<ObjectCollider> colliders) {
+  entities.each([&](auto rows, auto transforms, auto colliders) {
     for (std::size_t i = 0; i < rows.size(); ++i)
       follow(rows[i], transforms[i], colliders[i]);
   });
@@ -73,8 +71,7 @@ core::Result<void> Colliders::make_solid(ecs::World& entities, const Assets& ass
                                          ecs::Entity entity) {
   const Object* object = entities.get<Object>(entity);
   if (object == nullptr || entities.get<Transform>(entity) == nullptr)
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      "an entity needs an Object and a Transform to become solid");
+    return core::invalid_argument("an entity needs an Object and a Transform to become solid");
   const auto box = box_of(assets, object->mesh);
   if (!box) return tl::unexpected(box.error());
   if (entities.get<ObjectCollider>(entity) == nullptr)

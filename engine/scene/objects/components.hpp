@@ -61,7 +61,7 @@ struct MeshId {
 };
 
 // The place of an entity. An object with numbers that are not finite, without a rotation, or with a
-// scale outside of 10⁻⁴ … 10⁴ is not drawn (Statistics::objects_invalid).
+// scale outside of 10⁻⁴ … 10⁴ is not drawn (ObjectCounts::invalid).
 struct Transform {
   core::WorldPosition position;                // need not be normalised
   glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};  // w, x, y, z; need not be unit

@@ -18,7 +18,7 @@ struct PointLightState {
 };
 
 // A light that shines in all directions and casts no shadows. Stays dark with values outside these
-// ranges (Statistics::lights_invalid).
+// ranges (LightCounts::invalid).
 struct PointLight {
   glm::vec3 colour{1.0F, 0.72F, 0.42F};  // linear, each 0 … 1000
   // Light on a surface that faces it from 1 m away, 0 … 10⁶; the sun at noon gives about 2.
@@ -43,7 +43,7 @@ struct psygen::ecs::ComponentTraits<psygen::scene::PointLight> {
 namespace psygen::scene {
 
 // An emitter of particles. Draws nothing with values outside of ParticleKind's ranges
-// (Statistics::emitters_invalid).
+// (ParticleCounts::emitters_invalid).
 struct ParticleEmitter {
   render::ParticleKind kind;
   std::uint32_t seed = 0;  // emitters of one kind with different seeds differ

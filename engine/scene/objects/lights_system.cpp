@@ -18,14 +18,6 @@ constexpr float kSlack = 1.25F;
 // Lights whose range covers fewer pixels stay dark.
 constexpr float kMinPixels = 3;
 
-struct LightTick {
-  std::uint32_t tick = 0;
-  float step = 1;         // fraction of a whole fade
-  bool continues = true;  // the last tick was drawn too
-  float pixels_per_radian = 1, view_distance_m = 0;
-  double block_size_m = 64;
-};
-
 struct LightCandidate {
   PointLight* light = nullptr;
   glm::vec3 place{0.0F};
@@ -50,8 +42,14 @@ float importance_of(const PointLight& light, float distance_m) {
 
 class LightChoice {
  public:
-  LightChoice(const LightTick& tick, const Camera& camera, const View& view, LightCounts& counts)
-      : tick_(tick), camera_(camera), view_(view), counts_(counts) {}
+  LightChoice(const FrameContext& frame, const Camera& camera, double block_size_m,
+              const View& view, LightDraws& draws)
+      : step_(next_fade_step(frame, draws.last)),
+        view_distance_m_(static_cast<float>(frame.settings.view_distance_m)),
+        camera_(camera),
+        block_size_m_(block_size_m),
+        view_(view),
+        counts_(draws.counts) {}
 
   void visit(const Transform& transform, PointLight& light) {
     if (!is_place(transform.position) || !is_valid(light)) {
@@ -60,20 +58,21 @@ class LightChoice {
       return;
     }
     LightCandidate found{&light,
-                         offset_of(transform.position, camera_.pose.position, tick_.block_size_m)};
+                         offset_of(transform.position, camera_.pose.position, block_size_m_)};
     PointLightState& state = light.state;
     const float distance_m = glm::length(found.place);
-    if (distance_m - light.range_m > tick_.view_distance_m ||
+    if (distance_m - light.range_m > view_distance_m_ ||
         !may_be_visible(core::Bounds::around(found.place, glm::vec3(light.range_m)), view_)) {
       state.share = 0;
       return;
     }
-    const bool was_in_view = state.in_view_tick + 1 == tick_.tick;
-    found.at_once = !tick_.continues || (!state.fresh && !was_in_view);
-    state.in_view_tick = tick_.tick;
+    const bool was_in_view = state.in_view_tick + 1 == step_.tick;
+    found.at_once = !step_.continues || (!state.fresh && !was_in_view);
+    state.in_view_tick = step_.tick;
     state.fresh = false;
     found.importance = importance_of(light, distance_m);
-    const float pixels = 2 * light.range_m * tick_.pixels_per_radian / std::max(distance_m, 1e-3F);
+    const float pixels =
+        2 * light.range_m * camera_.pixels_per_radian / std::max(distance_m, 1e-3F);
     if (!light.visible || found.importance <= 0 || pixels < kMinPixels) return go(found);
     propose(found);
   }
@@ -81,12 +80,12 @@ class LightChoice {
   void take(LightDraws& draws) {
     for (const LightCandidate& lit : std::span(best_).first(lit_)) {
       float& share = lit.light->state.share;
-      share = lit.at_once ? 1.0F : std::min(share + tick_.step, 1.0F);
+      share = lit.at_once ? 1.0F : std::min(share + step_.share, 1.0F);
       add(lit, draws);
     }
     for (const LightCandidate& going : std::span(going_).first(going_count_)) {
       float& share = going.light->state.share;
-      share = std::max(share - tick_.step, 0.0F);
+      share = std::max(share - step_.share, 0.0F);
       if (share > 0) add(going, draws);
     }
     counts_.lit += static_cast<std::uint32_t>(draws.lights.size());
@@ -126,8 +125,10 @@ class LightChoice {
         {found.place, light.range_m, light.colour * (light.intensity * light.state.share)});
   }
 
-  const LightTick& tick_;
+  FadeStep step_;
+  float view_distance_m_;
   const Camera& camera_;
+  double block_size_m_;
   const View& view_;
   LightCounts& counts_;
   std::array<LightCandidate, kMaxLit> best_;
@@ -139,21 +140,9 @@ class LightChoice {
 
 void lights_system(FrameContext frame, const Camera& camera, const WorldFacts& facts,
                    const View& view, LightQuery entities, LightDraws& draws) {
-  const Clock& clock = frame.clock;
-  LightTick tick;
-  tick.tick = clock.tick;
-  tick.step = fade_fraction(frame, draws.now_s);
-  tick.continues = draws.tick + 1 == clock.tick;
-  tick.pixels_per_radian = camera.pixels_per_radian;
-  tick.view_distance_m = static_cast<float>(frame.settings.view_distance_m);
-  tick.block_size_m = facts.world.block_size_m();
-  draws.tick = clock.tick;
-  draws.now_s = clock.now_s;
   draws.lights.clear();
-  LightChoice choice(tick, camera, view, draws.counts);
-  entities.each<const Transform, PointLight>([&](std::span<const ecs::Entity>,
-                                                 std::span<const Transform> transforms,
-                                                 std::span<PointLight> lights) {
+  LightChoice choice(frame, camera, facts.world.block_size_m(), view, draws);
+  entities.each<const Transform, PointLight>([&](auto, auto transforms, auto lights) {
     for (std::size_t i = 0; i < lights.size(); ++i)
       choice.visit(transforms[i], lights[i]);
   });

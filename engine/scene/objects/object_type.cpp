@@ -23,22 +23,20 @@ class ObjectType final : public models::ModelType {
   int level_count() const override { return kObjectLevels; }
   int level_count_of(const models::Parameters& p) const override { return of(p)->level_count; }
   double level_error_m(const models::Parameters& p, int level) const override {
-    const auto held = of(p);
-    const ObjectSource& source = *held;
-    return source.type == nullptr
-               ? copied(source, level).error_m
-               : source.type->level_error_m(source.parameters, source.first_level + level);
+    const auto source = of(p);
+    return source->type == nullptr
+               ? copied(*source, level).error_m
+               : source->type->level_error_m(source->parameters, source->first_level + level);
   }
   core::Bounds bounds(const models::Parameters& p) const override { return of(p)->box; }
 
   models::MeshSize mesh_size(const models::Parameters& p, int level) const override {
-    const auto held = of(p);
-    const ObjectSource& source = *held;
+    const auto source = of(p);
     models::MeshSize size;
-    if (source.type != nullptr) {
-      size = source.type->mesh_size(source.parameters, source.first_level + level);
+    if (source->type != nullptr) {
+      size = source->type->mesh_size(source->parameters, source->first_level + level);
     } else {
-      const PackedMesh& mesh = copied(source, level).mesh;
+      const PackedMesh& mesh = copied(*source, level).mesh;
       size.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
       size.index_count = static_cast<std::uint32_t>(mesh.indices.size());
     }
@@ -48,18 +46,16 @@ class ObjectType final : public models::ModelType {
   }
 
   double complexity(const models::Parameters& p, int level) const override {
-    const auto held = of(p);
-    const ObjectSource& source = *held;
-    return source.type == nullptr
-               ? static_cast<double>(copied(source, level).mesh.vertices.size())
-               : source.type->complexity(source.parameters, source.first_level + level);
+    const auto source = of(p);
+    return source->type == nullptr
+               ? vertices(*source, level)
+               : source->type->complexity(source->parameters, source->first_level + level);
   }
   double steps(const models::Parameters& p, int level) const override {
-    const auto held = of(p);
-    const ObjectSource& source = *held;
-    return source.type == nullptr
-               ? static_cast<double>(copied(source, level).mesh.vertices.size())
-               : source.type->steps(source.parameters, source.first_level + level);
+    const auto source = of(p);
+    return source->type == nullptr
+               ? vertices(*source, level)
+               : source->type->steps(source->parameters, source->first_level + level);
   }
   double step_seconds() const override { return copied_ ? 5e-9 : 20e-9; }
   double log2_cost(const models::Parameters&) const override { return 0; }
@@ -69,15 +65,14 @@ class ObjectType final : public models::ModelType {
 
   core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {
-    const auto held = of(p);
-    const ObjectSource& source = *held;
-    if (source.type != nullptr) return widen(source, source.first_level + level, out);
-    const PackedMesh& mesh = copied(source, level).mesh;
+    const auto source = of(p);
+    if (source->type != nullptr) return widen(*source, source->first_level + level, out);
+    const PackedMesh& mesh = copied(*source, level).mesh;
     const std::size_t bytes = mesh.vertices.size() * sizeof(core::ObjectVertex);
     if (bytes == 0 || bytes != out.vertices.size()) return nothing(out);
     std::memcpy(out.vertices.data(), mesh.vertices.data(), bytes);
     std::ranges::copy(mesh.indices, out.indices.begin());
-    return source.box;
+    return source->box;
   }
 
  private:
@@ -85,6 +80,10 @@ class ObjectType final : public models::ModelType {
     static const ObjectLevel none;
     const auto number = static_cast<std::size_t>(level);
     return number < source.copied.size() ? source.copied[number] : none;
+  }
+
+  static double vertices(const ObjectSource& source, int level) {
+    return static_cast<double>(copied(source, level).mesh.vertices.size());
   }
 
   // A mesh that was removed after its request. The cache keeps it under a name that is not used any

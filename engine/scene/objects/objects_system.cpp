@@ -23,18 +23,6 @@ constexpr float kLevelSlack = 1.25F;
 // Ticks between look-ups of the ground's shadow on an object.
 constexpr std::uint32_t kSunTurns = 8;
 
-// The tick's values for all objects.
-struct ObjectTick {
-  std::uint32_t tick = 0;
-  float step = 1;         // fraction of a whole fade
-  bool continues = true;  // the last tick was drawn too
-  float pixels_per_radian = 1, error_pixels = 1, min_pixels = 1, near_m = 0.1F;
-  float view_distance_m = 0;
-  double block_size_m = 64;
-  bool levels = true;
-  render::View shown = render::View::kNormal;
-};
-
 // An object relative to the camera.
 struct Place {
   glm::vec3 foot{0.0F}, centre{0.0F};
@@ -80,15 +68,15 @@ ObjectMeshLevel& refresh(Assets& assets, MeshId id, std::uint32_t number, std::u
 
 // The coarsest LOD whose error is not visible.
 std::uint32_t wanted_level(const ObjectMesh& mesh, const Place& place, std::uint8_t drawn,
-                           const ObjectTick& tick) {
-  if (!tick.levels) return 0;
-  const float away = std::max(place.distance_m - place.radius_m, tick.near_m);
+                           const RenderContext& context) {
+  if (!context.frame.settings.levels_of_detail) return 0;
+  const float away = std::max(place.distance_m - place.radius_m, context.camera.projection.near_m);
   std::uint32_t level = 0;
   while (level + 1 < mesh.level_count) {
     const float slack = drawn != kNone && level + 1 > drawn ? kLevelSlack : 1.0F;
     const float pixels =
-        mesh.levels[level + 1].error_m * place.scale * tick.pixels_per_radian / away;
-    if (pixels * slack > tick.error_pixels) break;
+        mesh.levels[level + 1].error_m * place.scale * context.camera.pixels_per_radian / away;
+    if (pixels * slack > static_cast<float>(context.quality.model_error_pixels)) break;
     ++level;
   }
   return level;
@@ -114,9 +102,8 @@ std::uint8_t available_level(Assets& assets, MeshId id, std::uint32_t wanted, st
 }
 
 // Advances the fade of an object that is drawn at `level`.
-void advance_fade_in(ObjectState& state, std::uint8_t level, bool fades_in,
-                     const ObjectTick& tick) {
-  if (state.drawn_tick + 1 != tick.tick) {
+void advance_fade_in(ObjectState& state, std::uint8_t level, bool fades_in, FadeStep step) {
+  if (state.drawn_tick + 1 != step.tick) {
     state.share = fades_in ? 0.0F : 1.0F;
     state.level = level;
     state.old_level = kNone;
@@ -126,17 +113,17 @@ void advance_fade_in(ObjectState& state, std::uint8_t level, bool fades_in,
     if (whole) state.share = 0.0F;
     state.level = level;
   }
-  state.drawn_tick = tick.tick;
-  state.share = std::min(state.share + tick.step, 1.0F);
+  state.drawn_tick = step.tick;
+  state.share = std::min(state.share + step.share, 1.0F);
   if (state.share >= 1.0F) state.old_level = kNone;
 }
 
 // Advances the fade of an object that is no longer drawn. Returns false once it has faded out.
-bool advance_fade_out(ObjectState& state, const ObjectTick& tick) {
-  if (state.drawn_tick + 1 != tick.tick || state.level == kNone) return false;
+bool advance_fade_out(ObjectState& state, FadeStep step) {
+  if (state.drawn_tick + 1 != step.tick || state.level == kNone) return false;
   state.old_level = kNone;
-  state.share = std::max(state.share - tick.step, 0.0F);
-  if (state.share > 0) state.drawn_tick = tick.tick;
+  state.share = std::max(state.share - step.share, 0.0F);
+  if (state.share > 0) state.drawn_tick = step.tick;
   return state.share > 0;
 }
 
@@ -149,16 +136,20 @@ void forget_other_levels(ObjectState& state, std::uint32_t level_count) {
 
 class ObjectWalk {
  public:
-  ObjectWalk(const ObjectTick& tick, const RenderContext& context, const ObjectQuery& entities,
+  ObjectWalk(FadeStep step, const RenderContext& context, const ObjectQuery& entities,
              const ObjectWork& work)
-      : tick_(tick), context_(context), entities_(entities), work_(work) {}
+      : step_(step),
+        context_(context),
+        entities_(entities),
+        work_(work),
+        block_size_m_(context.facts.world.block_size_m()) {}
 
   void visit(ecs::Entity entity, const Transform& transform, Object& object) {
     level_ = kNone;
     if (!work_.assets.exists(object.mesh)) return;
     const ObjectMesh& mesh = work_.assets.mesh(object.mesh);
     Place place;
-    if (!place_of(transform, mesh.box, context_.camera.pose.position, tick_.block_size_m, place)) {
+    if (!place_of(transform, mesh.box, context_.camera.pose.position, block_size_m_, place)) {
       ++work_.draws.counts.invalid;
       return;
     }
@@ -167,27 +158,29 @@ class ObjectWalk {
     const core::Bounds box = core::Bounds::around(place.centre, glm::vec3(place.radius_m));
     place.in_view = may_be_visible(box, context_.view);
     place.near = place.in_view || (context_.facts.shadows && away < kShadowReachM);
-    const float pixels =
-        2 * place.radius_m * tick_.pixels_per_radian / std::max(place.distance_m, tick_.near_m);
-    place.wanted = object.visible && pixels >= tick_.min_pixels && away <= tick_.view_distance_m;
+    const SceneSettings& settings = context_.frame.settings;
+    const float pixels = 2 * place.radius_m * context_.camera.pixels_per_radian /
+                         std::max(place.distance_m, context_.camera.projection.near_m);
+    place.wanted = object.visible && pixels >= static_cast<float>(settings.min_size_pixels) &&
+                   away <= static_cast<float>(settings.view_distance_m);
     if (place.wanted) use(object, place, mesh);
     if (place.near) draw(entity, transform, object, place);
     if (!place.in_view) return;
-    object.state.in_view_tick = tick_.tick;
+    object.state.in_view_tick = step_.tick;
     object.state.fresh = false;
   }
 
  private:
   // Records the LOD that the object needs; finds the LOD to draw.
   void use(Object& object, const Place& place, const ObjectMesh& mesh) {
-    const std::uint32_t wanted = wanted_level(mesh, place, object.state.level, tick_);
-    ObjectMeshLevel& level = refresh(work_.assets, object.mesh, wanted, tick_.tick, work_.supply);
+    const std::uint32_t wanted = wanted_level(mesh, place, object.state.level, context_);
+    ObjectMeshLevel& level = refresh(work_.assets, object.mesh, wanted, step_.tick, work_.supply);
     level.nearest_m = std::min(level.nearest_m, place.distance_m);
     level.seen = level.seen || place.in_view;
     if (!place.near) return;
     level_ = level.ready
                  ? static_cast<std::uint8_t>(wanted)
-                 : available_level(work_.assets, object.mesh, wanted, tick_.tick, work_.supply);
+                 : available_level(work_.assets, object.mesh, wanted, step_.tick, work_.supply);
     if (level_ != kNone) {
       ObjectMeshLevel& drawn = work_.assets.mesh(object.mesh).levels[level_];
       drawn.seen = drawn.seen || place.in_view;
@@ -205,22 +198,21 @@ class ObjectWalk {
     if (place.wanted && level_ == kNone) return;
     float fade = 1.0F;
     if (place.wanted) {
-      const bool was_in_view = state.in_view_tick + 1 == tick_.tick;
+      const bool was_in_view = state.in_view_tick + 1 == step_.tick;
       advance_fade_in(state, level_,
-                      tick_.continues && place.in_view && (state.fresh || was_in_view), tick_);
+                      step_.continues && place.in_view && (state.fresh || was_in_view), step_);
       fade = state.share;
     } else {
-      if (!place.in_view || !advance_fade_out(state, tick_)) return;
-      if (!refresh(work_.assets, object.mesh, state.level, tick_.tick, work_.supply).ready) return;
+      if (!place.in_view || !advance_fade_out(state, step_)) return;
+      if (!refresh(work_.assets, object.mesh, state.level, step_.tick, work_.supply).ready) return;
       fade = state.share - 1.0F;
     }
-    if (state.fresh || (tick_.tick + entity.index) % kSunTurns == 0)
-      state.sun =
-          ground_sun_at(transform.position, tick_.block_size_m, context_.streaming, entities_);
+    if (state.fresh || (step_.tick + entity.index) % kSunTurns == 0)
+      state.sun = ground_sun_at(transform.position, block_size_m_, context_.streaming, entities_);
     work_.draws.counts.drawn += place.in_view ? 1 : 0;
     add(entity, transform, object, place, state.level, fade);
     if (!place.wanted || state.old_level == kNone) return;
-    if (refresh(work_.assets, object.mesh, state.old_level, tick_.tick, work_.supply).ready)
+    if (refresh(work_.assets, object.mesh, state.old_level, step_.tick, work_.supply).ready)
       add(entity, transform, object, place, state.old_level, -state.share);
   }
 
@@ -239,14 +231,15 @@ class ObjectWalk {
     draw.sun = object.state.sun;
     draw.phase = static_cast<float>(entity.index % 64) * (1.0F / 64.0F);
     draw.name = entity.index;
-    if (tick_.shown != render::View::kNormal)
-      draw.debug_colour = colour_of(tick_.shown, {.level = level});
+    if (context_.input.view != render::View::kNormal)
+      draw.debug_colour = colour_of(context_.input.view, {.level = level});
   }
 
-  const ObjectTick& tick_;
+  FadeStep step_;
   const RenderContext& context_;
   const ObjectQuery& entities_;
   const ObjectWork& work_;
+  double block_size_m_;
   std::uint8_t level_ = kNone;  // LOD to draw of the visited object
 };
 
@@ -275,35 +268,19 @@ void rank_meshes(std::uint32_t tick, double block_size_m, const ObjectWork& work
 }  // namespace
 
 void objects_system(RenderContext context, ObjectQuery entities, ObjectWork work) {
-  const SceneSettings& settings = context.frame.settings;
-  const Clock& clock = context.frame.clock;
   ObjectDraws& draws = work.draws;
-  ObjectTick tick;
-  tick.tick = clock.tick;
-  tick.step = context.frame.rules.settle ? 1.0F : fade_fraction(context.frame, draws.now_s);
-  tick.continues = draws.tick + 1 == clock.tick;
-  tick.pixels_per_radian = context.camera.pixels_per_radian;
-  tick.error_pixels = static_cast<float>(context.quality.model_error_pixels);
-  tick.min_pixels = static_cast<float>(settings.min_size_pixels);
-  tick.near_m = context.camera.projection.near_m;
-  tick.view_distance_m = static_cast<float>(settings.view_distance_m);
-  tick.block_size_m = context.facts.world.block_size_m();
-  tick.levels = settings.levels_of_detail;
-  tick.shown = context.input.view;
-  draws.tick = clock.tick;
-  draws.now_s = clock.now_s;
+  FadeStep step = next_fade_step(context.frame, draws.last);
+  if (context.frame.rules.settle) step.share = 1.0F;
   draws.objects.clear();
   work.assets.forget_removed(work.supply);
   work.assets.used_before.swap(work.assets.used);
   work.assets.used.clear();
-  ObjectWalk walk(tick, context, entities, work);
-  entities.each<const Transform, Object>([&](std::span<const ecs::Entity> rows,
-                                             std::span<const Transform> transforms,
-                                             std::span<Object> objects) {
+  ObjectWalk walk(step, context, entities, work);
+  entities.each<const Transform, Object>([&](auto rows, auto transforms, auto objects) {
     for (std::size_t i = 0; i < rows.size(); ++i)
       walk.visit(rows[i], transforms[i], objects[i]);
   });
-  rank_meshes(clock.tick, tick.block_size_m, work);
+  rank_meshes(step.tick, context.facts.world.block_size_m(), work);
 }
 
 }  // namespace psygen::scene

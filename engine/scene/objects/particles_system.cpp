@@ -169,12 +169,10 @@ void particles_system(FrameContext frame, const Camera& camera, const WorldFacts
                           static_cast<float>(frame.settings.view_distance_m)};
   draws.emitters.clear();
   EmitterChoice choice(tick, camera, nodes.view, draws.counts);
-  entities.each<const Transform, const ParticleEmitter>(
-      [&](std::span<const ecs::Entity>, std::span<const Transform> transforms,
-          std::span<const ParticleEmitter> emitters) {
-        for (std::size_t i = 0; i < emitters.size(); ++i)
-          choice.visit(transforms[i], emitters[i]);
-      });
+  entities.each<const Transform, const ParticleEmitter>([&](auto, auto transforms, auto emitters) {
+    for (std::size_t i = 0; i < emitters.size(); ++i)
+      choice.visit(transforms[i], emitters[i]);
+  });
   std::uint64_t left = render::kMaxParticles;
   for (const EmitterCandidate& found : choice.chosen()) {
     render::ParticleDraw draw = draw_of(found, tick, camera, nodes.streaming, entities);

@@ -10,6 +10,7 @@
 #include "engine/scene/nodes/ground_sunlight.hpp"
 #include "engine/scene/objects/components.hpp"
 #include "engine/scene/objects/effects.hpp"
+#include "engine/scene/statistics.hpp"
 #include "engine/scene/view/visibility.hpp"
 #include "engine/synthesis/mesh_key.hpp"
 
@@ -17,34 +18,16 @@ namespace psygen::scene {
 
 class Assets;
 
-// Counts of one tick: objects in view that are drawn; in view without a drawable mesh; with an
-// invalid Transform.
-struct ObjectCounts {
-  std::uint32_t drawn = 0, missing = 0, invalid = 0;
-};
-// Counts of one tick: lights that light the frame; in view but beyond the maximum; with invalid
-// values.
-struct LightCounts {
-  std::uint32_t lit = 0, left_out = 0, invalid = 0;
-};
-// Counts of one tick, as LightCounts, of emitters and of their particles.
-struct ParticleCounts {
-  std::uint32_t emitters_drawn = 0, emitters_left_out = 0, emitters_invalid = 0;
-  std::uint64_t particles_drawn = 0, particles_left_out = 0;
-};
-
 struct ObjectDraws {
   std::vector<render::ObjectDraw> objects;
   std::vector<synthesis::MeshHandle> meshes;  // of objects in view
-  std::uint32_t tick = 0;                     // of these lists
-  double now_s = 0;                           // the clock in that tick
+  DrawnTick last;
   ObjectCounts counts;
 };
 
 struct LightDraws {
   std::vector<render::PointLight> lights;
-  std::uint32_t tick = 0;  // of this list
-  double now_s = 0;        // the clock in that tick
+  DrawnTick last;
   LightCounts counts;
 };
 

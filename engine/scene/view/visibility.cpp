@@ -58,16 +58,15 @@ void find_bounds(const SceneSettings& settings, const Camera& camera, const Worl
       }
     }
   }
-  nodes.each<const QuadtreeNode>(
-      [&](std::span<const ecs::Entity>, std::span<const QuadtreeNode> rows) {
-        for (const QuadtreeNode& node : rows) {
-          const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
-          if (solid) view.levels[node.at.level].solidity[cell] = node.solidity;
-          view.levels[node.at.level].bounds[cell] =
-              node_bounds(facts, corner_of(node.at, camera, facts),
-                          facts.levels[node.at.level].size_m, node.low_m, node.high_m);
-        }
-      });
+  nodes.each<const QuadtreeNode>([&](auto, auto rows) {
+    for (const QuadtreeNode& node : rows) {
+      const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
+      if (solid) view.levels[node.at.level].solidity[cell] = node.solidity;
+      view.levels[node.at.level].bounds[cell] =
+          node_bounds(facts, corner_of(node.at, camera, facts), facts.levels[node.at.level].size_m,
+                      node.low_m, node.high_m);
+    }
+  });
 }
 
 void project_layers(const SceneSettings& settings, const NodeGrid& grid,
@@ -114,33 +113,22 @@ void expect(const Camera& camera, const WorldFacts& facts, const Streaming& stre
     reaches_m.push_back(
         static_cast<float>(streaming.distances[k + 1].merge_m + 2 * facts.levels[k].size_m));
   reaches_m.push_back(std::numeric_limits<float>::infinity());
-  query.each<const QuadtreeNode>(
-      [&](std::span<const ecs::Entity>, std::span<const QuadtreeNode> nodes) {
-        for (const QuadtreeNode& node : nodes) {
-          LevelView& level = view.levels[node.at.level];
-          const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
-          level.deadlines[cell] =
-              deadline_of(level.bounds[cell], reaches_m[node.at.level], view.outlooks);
-        }
-      });
+  query.each<const QuadtreeNode>([&](auto, auto nodes) {
+    for (const QuadtreeNode& node : nodes) {
+      LevelView& level = view.levels[node.at.level];
+      const std::size_t cell = streaming.grids[node.at.level].window_index(node.at.coord);
+      level.deadlines[cell] =
+          deadline_of(level.bounds[cell], reaches_m[node.at.level], view.outlooks);
+    }
+  });
 }
 
 void choose_cut(const SceneSettings& settings, const Camera& camera, const WorldFacts& facts,
                 const Streaming& streaming, bool settling, View& view) {
-  const auto top = static_cast<std::uint8_t>(facts.levels.size() - 1);
-  visibility::CutInput input;
-  input.camera = camera.pose.position;
-  input.block_size_m = facts.world.block_size_m();
-  input.levels = streaming.distances;
-  input.view_distance_m = settings.view_distance_m;
-  input.world = {{},
-                 static_cast<std::uint32_t>(facts.world.blocks_x),
-                 static_cast<std::uint32_t>(facts.world.blocks_z)};
-  visibility::roots_around(camera.pose.position, facts.world.block_size_m(),
-                           settings.view_distance_m, top, view.roots, input.world);
-  input.roots = view.roots;
   if (settling) view.cut.split.clear();  // no hysteresis
-  visibility::select_cut(input, view.cut);
+  visibility::select_cut(cut_input(facts.world, facts.levels, camera.pose.position,
+                                   streaming.distances, settings.view_distance_m, view.roots),
+                         view.cut);
 }
 
 // Finds the nodes of the cut that are ready, and those of them that are drawn in this tick unless a
@@ -237,9 +225,7 @@ void list_chosen(const Streaming& streaming, const VisibilityQuery& nodes, View&
 }
 
 void write_visibility(const View& view, const Streaming& streaming, const VisibilityQuery& query) {
-  query.each<const QuadtreeNode, Visibility>([&](std::span<const ecs::Entity>,
-                                                 std::span<const QuadtreeNode> nodes,
-                                                 std::span<Visibility> visibilities) {
+  query.each<const QuadtreeNode, Visibility>([&](auto, auto nodes, auto visibilities) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const visibility::NodeCoord& at = nodes[i].at;
       const LevelView& level = view.levels[at.level];

@@ -85,7 +85,7 @@ void make_meshes(benchmark::State& state, bool draft, const world::TextPath& pat
     for (int quiet = 0; quiet < 16;) {
       tick(state_of(*scene));
       state_of(*scene).supply.wait();
-      quiet = scene->statistics().requests == 0 ? quiet + 1 : 0;
+      quiet = scene->statistics().meshes.requests == 0 ? quiet + 1 : 0;
     }
     state.SetIterationTime(state_of(*scene).supply.modeler_stats().cpu_seconds - before_s);
   }

@@ -72,7 +72,7 @@ TEST(AddAModel, TheTypeFliesIsCostModelledAndListed) {
   const core::CameraPose pose = (*session)->home();
   (*session)->scene().settle(pose);
   ASSERT_TRUE((*session)->tick(pose, 1.0 / 60.0));
-  EXPECT_EQ((*session)->scene().statistics().holes, 0u);
+  EXPECT_EQ((*session)->scene().statistics().drawn.holes, 0u);
   EXPECT_GT((*session)->scene().statistics().models_drawn, 5u);
   EXPECT_EQ((*session)->scene().statistics().failed_in_all, 0u);
 }

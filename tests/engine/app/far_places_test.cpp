@@ -17,7 +17,7 @@ TEST(FarPlaces, AMillimetreChangesTheImageNoMoreThanAtTheOrigin) {
     core::CameraPose pose = studio.above(block, 62.9995, 0.0005, 0, 0.8, -0.3);
     pose.position.local.y = 130;  // higher than any ground: at the seam there is a cliff
     studio.settle(pose);
-    EXPECT_EQ(studio.scene().statistics().holes, 0u);
+    EXPECT_EQ(studio.scene().statistics().drawn.holes, 0u);
     EXPECT_EQ(studio.holes(), 0u);
     const image::Image before = studio.picture();
     pose.position.local += glm::dvec3(0.001, 0, -0.001);  // into the next block
@@ -42,8 +42,8 @@ TEST(FarPlaces, SettlingAfterALeapWithAFullCacheEqualsAFreshStart) {
     const core::CameraPose pose = studio.above(block, 20, 30, 6, 0.5, -0.2);
     for (Studio* at : {&studio, &fresh}) {
       at->settle(pose);
-      EXPECT_EQ(at->scene().statistics().requests, 0u) << block.x;
-      EXPECT_EQ(at->scene().statistics().refused, 0u) << block.x;
+      EXPECT_EQ(at->scene().statistics().meshes.requests, 0u) << block.x;
+      EXPECT_EQ(at->scene().statistics().meshes.refused, 0u) << block.x;
     }
     EXPECT_EQ(studio.state().quality.coarsening, fresh.state().quality.coarsening);
     EXPECT_EQ(image::compare(studio.picture(), fresh.picture(), 0).pixels_over, 0u) << block.x;
@@ -91,7 +91,7 @@ TEST(FarPlaces, LazyEvaluationMissesLittleIfOnlyOneImageFits) {
   EXPECT_GT(studio.state().quality.coarsening, 1.0F);
   for (int i = 0; i < 8; ++i) {
     studio.draw(pose);
-    EXPECT_EQ(studio.scene().statistics().holes, 0u) << i;
+    EXPECT_EQ(studio.scene().statistics().drawn.holes, 0u) << i;
   }
 }
 

@@ -30,7 +30,7 @@ TEST(Holes, LookingForwardAndDownFromAnyHeightTheGroundIsClosed) {
         Place{{256, 256}, 32, 32, 2000, 4.2, -1.5}}) {
     studio.settle(
         studio.above(place.block, place.x, place.z, place.height_m, place.yaw, place.pitch));
-    EXPECT_EQ(studio.scene().statistics().holes, 0u);
+    EXPECT_EQ(studio.scene().statistics().drawn.holes, 0u);
     EXPECT_EQ(studio.holes(), 0u) << "at " << place.height_m << " m";
   }
 }
@@ -48,7 +48,7 @@ TEST(Holes, In16KilometresOfGroundNotASinglePixelIsOpen) {
           Place{{256, 256}, 40, 20, 3000, 1.1, -0.5}}) {
       studio.settle(
           studio.above(place.block, place.x, place.z, place.height_m, place.yaw, place.pitch));
-      EXPECT_EQ(studio.scene().statistics().holes, 0u);
+      EXPECT_EQ(studio.scene().statistics().drawn.holes, 0u);
       EXPECT_EQ(studio.holes(), 0u) << world << " at " << place.height_m << " m";
       for (const std::uint32_t node : studio.state().draws.shown)
         levels.insert(studio.state().view.cut.nodes[node].node.level);

@@ -143,7 +143,7 @@ TEST_P(ObjectPictures, AreTheSameOnBothPathsAndMatchTheStoredImages) {
     session->scene().settle(pose);
     for (int frame = 0; frame < 3; ++frame)
       ASSERT_TRUE(session->tick(pose, 1.0 / 60.0));
-    EXPECT_EQ(session->scene().statistics().objects_drawn, 8u);
+    EXPECT_EQ(session->scene().statistics().objects.drawn, 8u);
     images[i] = captured(*session);
     EXPECT_THAT(session->renderer().validation_messages(), testing::IsEmpty());
   }

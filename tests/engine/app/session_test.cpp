@@ -21,7 +21,7 @@ TEST(Session, IsDrivenByTheProgramsLoopUntilItIsClosed) {
   while ((*session)->poll()) {
     EXPECT_DOUBLE_EQ((*session)->now_s(), 0.25 * ticks);
     ASSERT_TRUE((*session)->tick(pose, 0.25));
-    EXPECT_EQ((*session)->scene().statistics().holes, 0u);
+    EXPECT_EQ((*session)->scene().statistics().drawn.holes, 0u);
     if (++ticks == 3) (*session)->close();
   }
   EXPECT_EQ(ticks, 3);

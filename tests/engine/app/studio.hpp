@@ -64,7 +64,7 @@ class Studio {
     for (int i = 0; i < 40; ++i) {
       draw(pose);
       state().supply.wait();
-      if (scene().statistics().requests == 0 && !state().supply.has_arrived()) break;
+      if (scene().statistics().meshes.requests == 0 && !state().supply.has_arrived()) break;
     }
     draw(pose);
   }

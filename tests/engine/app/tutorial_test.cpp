@@ -25,7 +25,7 @@ TEST(Tutorial, AProgramTurnsAroundOnceAndSavesAnImage) {
     pose.yaw += 0.52;
     const auto drawn = (*session)->tick(pose, 1.0 / 60.0);
     ASSERT_TRUE(drawn) << drawn.error().message;
-    EXPECT_EQ((*session)->scene().statistics().holes, 0u);
+    EXPECT_EQ((*session)->scene().statistics().drawn.holes, 0u);
   }
   const auto file = std::filesystem::path(testing::TempDir()) / "tutorial.png";
   ASSERT_TRUE((*session)->save_picture(file));

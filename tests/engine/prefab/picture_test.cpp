@@ -48,7 +48,7 @@ TEST(PrefabPicture, IsTheSameOnBothPathsAndMatchesTheStoredImage) {
     ASSERT_TRUE(prefabs.play(*instance, "turn", scene.step(), {.from_s = 1}));
     for (int frame = 0; frame < 30; ++frame)
       ASSERT_TRUE((*session)->tick(pose, 1.0 / 60.0));
-    EXPECT_GT(scene.statistics().objects_drawn, 10u);
+    EXPECT_GT(scene.statistics().objects.drawn, 10u);
     images[i] = captured(**session);
     EXPECT_THAT((*session)->renderer().validation_messages(), testing::IsEmpty());
   }

@@ -70,7 +70,7 @@ class Prefabs : public testing::Test {
 
 TEST_F(Prefabs, AreDrawnAndFollowTheirRoot) {
   tick(3);
-  EXPECT_EQ(scene_->statistics().objects_drawn, 4u) << "two nodes with two materials each";
+  EXPECT_EQ(scene_->statistics().objects.drawn, 4u) << "two nodes with two materials each";
   EXPECT_EQ(place_of("hand"), glm::dvec3(2, 0, 0));
   Transform& root = *scene_->entities().get<Transform>(root_);
   root.rotation = glm::angleAxis(1.5707964F, glm::vec3(0, 0, 1));
@@ -123,11 +123,11 @@ TEST_F(Prefabs, DisappearWithTheirRootAndMayLoseSingleParts) {
   scene_->entities().destroy(std::span(&arm, 1));
   ASSERT_TRUE(library_.play(*scene_->entities().get<Instance>(root_), "lift", {}));
   tick(3);
-  EXPECT_EQ(scene_->statistics().objects_drawn, 3u) << "attached entities keep their positions";
+  EXPECT_EQ(scene_->statistics().objects.drawn, 3u) << "attached entities keep their positions";
   scene_->entities().destroy_with_children(std::span(&root_, 1));
   EXPECT_EQ(scene_->entities().count<Attached>(), 0u);
   tick();
-  EXPECT_EQ(scene_->statistics().objects_drawn, 0u);
+  EXPECT_EQ(scene_->statistics().objects.drawn, 0u);
 }
 
 TEST_F(Prefabs, AttachToEachOtherInAnyOrderAndInCycles) {

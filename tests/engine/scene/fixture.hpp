@@ -80,7 +80,7 @@ inline void expect_within_budget(const Scene& scene) {
 // Expects that the cache holds everything that the last tick drew.
 inline void expect_drawn_alive(const Scene& scene) {
   const State& s = state_of(scene);
-  if (s.draws.tick + 1 != s.clock.tick) return;  // the last tick drew nothing
+  if (s.draws.last.tick + 1 != s.clock.tick) return;  // the last tick drew nothing
   std::set<std::uint32_t> alive;
   std::size_t wrong = 0;
   for (const synthesis::MeshHandle handle : s.draws.meshes) {

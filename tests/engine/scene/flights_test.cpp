@@ -27,12 +27,12 @@ TEST(Flights, OneModelerLeavesNoHolesOnThePapersWalk) {
   for (int tick = 0; tick / 60.0 < path->duration_seconds(); ++tick) {
     tick_at(*gated.scene, path->pose_at(tick / 60.0, s.facts.world));
     if (tick >= kWarmupTicks) {
-      EXPECT_EQ(statistics_of(s).holes, 0u) << "tick " << tick;
+      EXPECT_EQ(s.draws.counts.holes, 0u) << "tick " << tick;
     } else {
-      holes_before += statistics_of(s).holes;
+      holes_before += s.draws.counts.holes;
     }
-    made += statistics_of(s).models_synthesised;
-    max_in_view = std::max<std::size_t>(max_in_view, statistics_of(s).nodes_in_view);
+    made += s.meshes.counts.models_synthesised;
+    max_in_view = std::max<std::size_t>(max_in_view, s.draws.counts.nodes_in_view);
     gated.make(kMeshesPerTick);
   }
   EXPECT_GT(holes_before, 0u);
@@ -111,7 +111,7 @@ Size size_at(double view_distance_m) {
   scene->settle(pose);
   tick_at(*scene, pose);
   const State& s = state_of(*scene);
-  EXPECT_EQ(statistics_of(s).holes, 0u);
+  EXPECT_EQ(s.draws.counts.holes, 0u);
   const auto number = [](std::size_t count) { return static_cast<double>(count); };
   return {number(s.entities.size()),       number(s.entities.count<QuadtreeNode>()),
           number(s.view.cut.nodes.size()), number(s.draws.terrain.size()),

@@ -35,9 +35,9 @@ TEST(Paradigms, AnAmplifiedRegionNeedsNoSynthesisAfterwards) {
   for (int i = 0; i < 4; ++i) {
     tick_at(*scene, pose_at(256, 256, 1.6 * i));
     tick_at(*scene, pose_at(256, 256, 1.6 * i));
-    EXPECT_EQ(scene->statistics().completed, 0u);
-    EXPECT_EQ(scene->statistics().holes, 0u);
-    EXPECT_EQ(scene->statistics().coarse, 0u);
+    EXPECT_EQ(scene->statistics().meshes.completed, 0u);
+    EXPECT_EQ(scene->statistics().drawn.holes, 0u);
+    EXPECT_EQ(scene->statistics().drawn.coarse, 0u);
   }
   expect_within_budget(*scene);
 }
@@ -49,18 +49,18 @@ TEST(Paradigms, LazyEvaluationDrawsEverythingAndKeepsNothing) {
   settings.streaming_budget_ms = 0;
   const auto scene = make_scene(settings);
   tick_at(*scene, pose_at(256, 256));
-  const std::uint32_t first = scene->statistics().models_synthesised;
+  const std::uint32_t first = scene->statistics().meshes.models_synthesised;
   EXPECT_GT(first, 50u);
-  EXPECT_EQ(scene->statistics().holes, 0u);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
   tick_at(*scene, pose_at(256, 256));  // the heights of the ground are known after it
-  const std::uint32_t second = scene->statistics().models_synthesised;
+  const std::uint32_t second = scene->statistics().meshes.models_synthesised;
   EXPECT_GT(second, 50u);
   EXPECT_LE(second, first);
   tick_at(*scene, pose_at(256, 256));
-  EXPECT_EQ(scene->statistics().models_synthesised, second);
+  EXPECT_EQ(scene->statistics().meshes.models_synthesised, second);
   tick_at(*scene, pose_at(256, 256, 3.14));
   const synthesis::CacheStats stats = state_of(*scene).supply.stats();
-  EXPECT_EQ(stats.ready, scene->statistics().models_synthesised);
+  EXPECT_EQ(stats.ready, scene->statistics().meshes.models_synthesised);
 }
 
 // Although each frame would fit, and no frame is in flight here.
@@ -98,7 +98,7 @@ TEST(Paradigms, LazyEvaluationReservesMemoryForTwoFramesInFlight) {
   EXPECT_GT(state_of(*scene).quality.coarsening, 1.0F);
   EXPECT_LE(3 * visible(*scene), settings.budget_bytes);
   EXPECT_GT(8 * visible(*scene), settings.budget_bytes) << "but no coarser than that";
-  EXPECT_EQ(scene->statistics().holes, 0u);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
 }
 
 TEST(Paradigms, FullDetailEverywhereDrawsLevelZeroOnly) {
@@ -109,7 +109,7 @@ TEST(Paradigms, FullDetailEverywhereDrawsLevelZeroOnly) {
   const auto scene = make_scene(settings);
   scene->settle(pose_at(256, 256));
   tick_at(*scene, pose_at(256, 256));
-  EXPECT_EQ(scene->statistics().holes, 0u);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
   std::size_t other_levels = 0, drawn = 0;
   std::as_const(state_of(*scene).entities)
       .each<const MeshDemand>(
@@ -183,10 +183,10 @@ TEST(Paradigms, AFailingModelIsAHoleAndOthersAreDrawn) {
   const std::uint64_t failures = scene->statistics().failed_in_all;
   EXPECT_GT(failures, 0u);
   tick_at(*scene, pose_at(256, 256));
-  EXPECT_GT(scene->statistics().holes, 0u);              // the rocks
+  EXPECT_GT(scene->statistics().drawn.holes, 0u);        // the rocks
   EXPECT_GT(state_of(*scene).draws.models.size(), 10u);  // the trees
   EXPECT_GT(state_of(*scene).draws.terrain.size(), 1u);
-  EXPECT_EQ(scene->statistics().requests, 0u);  // no request is repeated forever
+  EXPECT_EQ(scene->statistics().meshes.requests, 0u);  // no request is repeated forever
   for (int i = 0; i < 20; ++i) {
     tick_at(*scene, pose_at(256, 256));
   }
@@ -206,7 +206,7 @@ TEST(Paradigms, AHangingModelIsReplacedByAnotherLevel) {
   EXPECT_EQ(state_of(*scene).supply.hung().size(), 1u);
   EXPECT_EQ(scene->statistics().failed_in_all, 1u);
   tick_at(*scene, pose_at(256, 256));
-  EXPECT_EQ(scene->statistics().holes, 0u);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
   release = true;
   release.notify_all();
   while (!state_of(*scene).supply.hung().empty()) {

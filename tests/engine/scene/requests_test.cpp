@@ -99,7 +99,7 @@ TEST(Requests, TheMainThreadFillsAHoleThatAModelerHoldsAndTheLateMeshIsDropped) 
   s.settings.plan_seconds_ahead = 1e6;
   for (int i = 0; i < 3; ++i)
     tick_at(scene, pose);
-  EXPECT_EQ(statistics_of(s).holes, 0u);
+  EXPECT_EQ(s.draws.counts.holes, 0u);
   const std::vector<ecs::Entity> spares = drawn_spares(s);
   ASSERT_EQ(spares.size(), 1u) << "one modeler holds one mesh";
   const synthesis::MeshHandle drawn = s.entities.get<Mesh>(spares[0])->handle;

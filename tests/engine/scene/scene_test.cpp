@@ -37,7 +37,7 @@ TEST(Scene, SettlingLeavesNoHoleAndNothingCoarse) {
   EXPECT_GT(counters.nodes_in_view, 50u);
   EXPECT_EQ(counters.holes, 0u);
   EXPECT_EQ(counters.coarse, 0u);
-  EXPECT_EQ(scene->statistics().requests, 0u);
+  EXPECT_EQ(scene->statistics().meshes.requests, 0u);
   expect_within_budget(*scene);
 }
 
@@ -141,12 +141,12 @@ TEST(Scene, NewGroundIsSpreadOverTicksAndBecomesComplete) {
   scene->settle(pose_at(256, 256));
   const State& state = state_of(*scene);
   tick_at(*scene, pose_at(300, 256));
-  const std::size_t per_tick = statistics_of(state).nodes_created;
+  const std::size_t per_tick = state.streaming.counts.created;
   EXPECT_GT(state.streaming.missing.size(), 2 * per_tick);
   EXPECT_LE(state.streaming.missing.size(), 3 * per_tick);
   for (int tick = 1; tick < 4; ++tick) {
     tick_at(*scene, pose_at(300, 256));
-    EXPECT_LE(statistics_of(state).nodes_created, per_tick);
+    EXPECT_LE(state.streaming.counts.created, per_tick);
   }
   EXPECT_TRUE(state.streaming.missing.empty());
 }
@@ -155,7 +155,7 @@ TEST(Scene, NoNodesExistBeyondTheEdgeOfTheWorld) {
   const auto scene = make_scene(small_settings());
   scene->settle(pose_at(0, 0));
   tick_at(*scene, pose_at(0, 0));
-  EXPECT_EQ(scene->statistics().holes, 0u);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
   std::size_t outside = 0;
   for (const visibility::NodeCoord& at : nodes_of(*scene))
     outside += at.coord.x < 0 || at.coord.z < 0;
@@ -190,7 +190,7 @@ TEST(Scene, TeleportsAndSpinsKeepTheQueueBoundedAndRecover) {
   }
   scene->settle(pose_at(60, 60, 1.0));
   tick_at(*scene, pose_at(60, 60, 1.0));
-  EXPECT_EQ(scene->statistics().holes, 0u);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
 }
 
 TEST(Scene, ATooSmallBudgetGivesCoarserLevelsWithoutThrashing) {
@@ -205,7 +205,7 @@ TEST(Scene, ATooSmallBudgetGivesCoarserLevelsWithoutThrashing) {
   }
   EXPECT_GT(state_of(*scene).quality.coarsening, 1.0F);
   EXPECT_TRUE(state_of(*scene).quality.warned_budget);
-  EXPECT_EQ(scene->statistics().holes, 0u);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
   const std::uint64_t evictions = state_of(*scene).supply.stats().evictions;
   for (int i = 0; i < 50; ++i) {
     tick_at(*scene, pose_at(256, 256));
@@ -278,8 +278,8 @@ TEST(Scene, UnwantedDetailIsEvictedForWantedMeshes) {
     state_of(*scene).supply.wait();
     EXPECT_LE(state_of(*scene).memory->used_bytes(), room);
   }
-  EXPECT_EQ(scene->statistics().holes, 0u);
-  EXPECT_EQ(scene->statistics().refused, 0u);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
+  EXPECT_EQ(scene->statistics().meshes.refused, 0u);
   EXPECT_EQ(too_fine(*scene), 0u);
 }
 
@@ -307,7 +307,7 @@ TEST(Scene, SettlingEndsEvenIfTheBudgetCannotHoldTheView) {
   const auto scene = make_scene(settings);
   scene->settle(pose_at(256, 256));
   tick_at(*scene, pose_at(256, 256));
-  EXPECT_GT(scene->statistics().holes, 0u);
+  EXPECT_GT(scene->statistics().drawn.holes, 0u);
   expect_consistent(*scene);
 }
 
@@ -406,7 +406,7 @@ TEST(Scene, StartsAsManyModelersAsThereAreThreadsAndFailsWithoutAny) {
     const auto scene = make_scene(settings);
     EXPECT_EQ(state_of(*scene).settings.modelers, 2u);
     scene->settle(pose_at(100, 100));
-    EXPECT_EQ(scene->statistics().holes, 0u);
+    EXPECT_EQ(scene->statistics().drawn.holes, 0u);
   }
   const FewThreads none(0);
   models::Registry registry = models::make_standard_registry();

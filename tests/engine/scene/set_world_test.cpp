@@ -304,7 +304,7 @@ TEST_F(SetWorld, OldMeshesAreDrawnUntilTheNewOnesAreReady) {
   EXPECT_EQ(drawn_in(*scene), drawn);
   tick_at(*scene, pose_);
   EXPECT_EQ(drawn_in(*scene), drawn);
-  EXPECT_EQ(scene->statistics().holes, 0u);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
 }
 
 // Ticks until there are no requests.
@@ -312,7 +312,9 @@ void tick_until_quiet(Scene& scene, const core::CameraPose& pose) {
   for (int quiet = 0; quiet < 16;) {
     tick_at(scene, pose);
     state_of(scene).supply.wait();
-    quiet = scene.statistics().requests == 0 && scene.statistics().completed == 0 ? quiet + 1 : 0;
+    quiet = scene.statistics().meshes.requests == 0 && scene.statistics().meshes.completed == 0
+                ? quiet + 1
+                : 0;
   }
 }
 
@@ -440,7 +442,7 @@ TEST_F(SetWorld, ChangesInEveryTickEndWithTheLastOne) {
     ASSERT_TRUE(set(*scene, replaced(paper_, "branches = [2, 4]",
                                      i % 2 == 0 ? "branches = [2, 2]" : "branches = [2, 3]")));
     tick_at(*scene, pose_);
-    EXPECT_EQ(scene->statistics().holes, 0u);
+    EXPECT_EQ(scene->statistics().drawn.holes, 0u);
     expect_consistent(*scene);
   }
   ASSERT_TRUE(set(*scene, paper_));

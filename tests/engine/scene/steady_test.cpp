@@ -242,7 +242,7 @@ TEST(Steady, AJumpShowsNoHoleWhereverItLeads) {
   for (const core::CameraPose& pose : {home, away, home, pose_at(160, 350, 4.0), away}) {
     for (int i = 0; i < 60; ++i) {
       tick_at(*scene, pose);
-      EXPECT_EQ(scene->statistics().holes, 0u) << "tick " << i;
+      EXPECT_EQ(scene->statistics().drawn.holes, 0u) << "tick " << i;
     }
   }
   expect_consistent(*scene);
@@ -271,7 +271,7 @@ TEST(Steady, AfterAJumpNoNodeIsDrawnWithoutItsModels) {
   s.settings.plan_seconds_ahead = 0;  // so that nobody synthesises them again
   for (int i = 0; i < 10; ++i) {
     tick_at(*scene, home);
-    EXPECT_EQ(statistics_of(s).holes, 0u) << "tick " << i;
+    EXPECT_EQ(s.draws.counts.holes, 0u) << "tick " << i;
   }
 }
 

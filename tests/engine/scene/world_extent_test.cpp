@@ -48,7 +48,7 @@ TEST(Extent, EveryPlaceInAnEndlessWorldHasAsManyNodesAndDraws) {
     scene->settle(endless_pose(aligned));
     tick_at(*scene, endless_pose(aligned));
     const State& s = state_of(*scene);
-    EXPECT_EQ(statistics_of(s).holes, 0u);
+    EXPECT_EQ(s.draws.counts.holes, 0u);
     if (nodes == 0) {
       nodes = s.view.cut.nodes.size();
       entities = s.entities.size();

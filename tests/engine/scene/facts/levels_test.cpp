@@ -240,8 +240,8 @@ TEST(NodeLevels, WorldsOfAnySizeAndShapeAreDrawnWithoutHoles) {
       pose.pitch = -0.5;
       scene->settle(pose);
       tick_at(*scene, pose);
-      EXPECT_EQ(scene->statistics().holes, 0u);
-      EXPECT_EQ(scene->statistics().requests, 0u);
+      EXPECT_EQ(scene->statistics().drawn.holes, 0u);
+      EXPECT_EQ(scene->statistics().meshes.requests, 0u);
     }
     EXPECT_GT(state_of(*scene).entities.count<QuadtreeNode>(), 0u);
   }

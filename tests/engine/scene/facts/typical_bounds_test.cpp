@@ -1,10 +1,9 @@
-#include "engine/scene/facts/typical_bounds.hpp"
-
 #include <gtest/gtest.h>
 
 #include <glm/vector_relational.hpp>
 #include <vector>
 
+#include "engine/scene/facts/derive.hpp"
 #include "engine/world/placement.hpp"
 #include "tests/engine/scene/fixture.hpp"
 

@@ -63,12 +63,12 @@ TEST(RequestedPlaces, ARequestedPlaceBecomesReadyAndAJumpThereIsComplete) {
   ASSERT_TRUE(again);
   EXPECT_EQ(again->missing, 0U);
   tick_at(*scene, kHere);
-  EXPECT_EQ(statistics_of(state).requests, 0U) << "nothing is asked for any more";
+  EXPECT_EQ(state.meshes.counts.requests, 0U) << "nothing is asked for any more";
   EXPECT_TRUE(drain(ready).empty()) << "told once";
   // Near meshes are drawn as wanted at once, from the cache.
   tick_at(*scene, kThere);
   tick_at(*scene, kThere);
-  EXPECT_EQ(statistics_of(state).holes, 0U);
+  EXPECT_EQ(state.draws.counts.holes, 0U);
   std::size_t near = 0;
   state.entities.each<const MeshPlacement, const MeshDemand, const MeshSource>(
       [&](auto, std::span<const MeshPlacement> placed, std::span<const MeshDemand> demands,

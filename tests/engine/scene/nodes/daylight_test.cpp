@@ -50,7 +50,7 @@ TEST(Daylight, ASunThatMovesByAStepRenewsTheGroundWithoutAHole) {
   EXPECT_EQ(noon.elevations.size(), 1u);
   EXPECT_GT(*noon.elevations.begin(), *morning.elevations.begin());
   EXPECT_GT(noon.stale, 0u);
-  EXPECT_EQ(scene.statistics().holes, 0u);
+  EXPECT_EQ(scene.statistics().drawn.holes, 0u);
 
   const synthesis::CacheStats before = state_of(scene).supply.stats();
   const double then_s = state_of(scene).clock.now_s;
@@ -58,7 +58,7 @@ TEST(Daylight, ASunThatMovesByAStepRenewsTheGroundWithoutAHole) {
     state_of(scene).supply.wait();
     tick_at(scene, pose_at(256, 256));
     state_of(scene).clock.now_s = then_s;
-    EXPECT_EQ(scene.statistics().holes, 0u);
+    EXPECT_EQ(scene.statistics().drawn.holes, 0u);
   }
   EXPECT_EQ(ground_of(scene).stale, 0u);
   // Ground in view was not prefetched.

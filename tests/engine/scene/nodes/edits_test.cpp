@@ -57,7 +57,7 @@ void tick_until_fresh(Scene& scene, const core::CameraPose& pose, int most = 60)
   for (int i = 0; i < most; ++i) {
     state_of(scene).supply.wait();
     tick_at(scene, pose);
-    EXPECT_EQ(scene.statistics().holes, 0u) << "tick " << i;
+    EXPECT_EQ(scene.statistics().drawn.holes, 0u) << "tick " << i;
   }
   EXPECT_EQ(count_stale(scene), 0u);
   expect_consistent(scene);
@@ -87,7 +87,7 @@ TEST(Edits, AFelledTreeIsGoneInTheNextTickAndNothingElseOfTheBlockChanges) {
   expect_ok(edits.remove(state_of(*scene).facts.world, {kEditedBlock, 3}));
   scene->edit(edits);
   tick_at(*scene, pose_at(256, 256));
-  EXPECT_EQ(scene->statistics().holes, 0u);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
   const auto after = shown_in(*scene);
   EXPECT_EQ(after.size() + 1, before.size());
   EXPECT_FALSE(after.contains({kEditedBlock.x, kEditedBlock.z, 0, 3}));
@@ -191,7 +191,7 @@ TEST(Edits, LieOverRoadsOfTheWorldWhileACameraFollowsOne) {
     if (tick == 30 || tick == 60) scene->edit(edits);
     state_of(*scene).supply.wait();
     tick_at(*scene, pose);
-    EXPECT_EQ(scene->statistics().holes, 0u) << "tick " << tick;
+    EXPECT_EQ(scene->statistics().drawn.holes, 0u) << "tick " << tick;
   }
   tick_until_fresh(*scene, pose_at(254, 256));
   const auto again = shown_in(*scene);
@@ -295,7 +295,7 @@ TEST(Edits, ARaisedRidgeHidesTheGroundBehindIt) {
   scene->edit(edits);
   scene->settle(pose);
   tick_at(*scene, pose);
-  const std::uint32_t seen = scene->statistics().nodes_in_view;
+  const std::uint32_t seen = scene->statistics().drawn.nodes_in_view;
   const std::uint32_t hidden = scene->statistics().nodes_hidden;
   models::GroundEdit wall;
   wall.square = true;
@@ -310,8 +310,8 @@ TEST(Edits, ARaisedRidgeHidesTheGroundBehindIt) {
   scene->settle(pose);
   tick_at(*scene, pose);
   EXPECT_GT(scene->statistics().nodes_hidden, hidden);
-  EXPECT_LT(scene->statistics().nodes_in_view, seen);
-  EXPECT_EQ(scene->statistics().holes, 0u);
+  EXPECT_LT(scene->statistics().drawn.nodes_in_view, seen);
+  EXPECT_EQ(scene->statistics().drawn.holes, 0u);
 }
 
 TEST(Edits, ManyEditsWhileFlyingLeaveTheSceneConsistent) {

@@ -18,7 +18,7 @@ class Lights : public testing::Test {
   }
   State& state() { return state_of(*scene_); }
   const std::vector<render::PointLight>& lit() { return state().light_draws.lights; }
-  Statistics counters() { return statistics_of(state()); }
+  Statistics counters() { return scene_->statistics(); }
   void tick(int count = 1) {
     for (int i = 0; i < count; ++i)
       tick_at(*scene_, pose_);
@@ -44,7 +44,7 @@ TEST_F(Lights, AreAtTheirTransformWithTheirLight) {
   EXPECT_NEAR(lit()[0].position.x, 1, 1e-3);
   EXPECT_EQ(lit()[0].range_m, 9);
   EXPECT_EQ(lit()[0].light, glm::vec3(4, 2, 1));
-  EXPECT_EQ(counters().lights_lit, 1u);
+  EXPECT_EQ(counters().lights.lit, 1u);
   state().entities.destroy(std::span(&entity, 1));
   tick();
   EXPECT_TRUE(lit().empty());
@@ -98,7 +98,7 @@ TEST_F(Lights, BeyondThirtyTwoTheLeastImportantStayDark) {
     put(10 + i);
   tick(20);
   ASSERT_EQ(lit().size(), 32u);
-  EXPECT_EQ(counters().lights_left_out, 68u);
+  EXPECT_EQ(counters().lights.left_out, 68u);
   for (const render::PointLight& one : lit())
     EXPECT_GT(one.position.z, -42.5F);
 }
@@ -137,7 +137,7 @@ TEST_F(Lights, WithInvalidValuesStayDarkAndAreCounted) {
   put(20);
   tick(20);
   EXPECT_EQ(lit().size(), 1u);
-  EXPECT_EQ(counters().lights_invalid, bad.size() + 1);
+  EXPECT_EQ(counters().lights.invalid, bad.size() + 1);
 }
 
 TEST_F(Lights, ByTheHundredThousandAreBounded) {
@@ -148,7 +148,7 @@ TEST_F(Lights, ByTheHundredThousandAreBounded) {
   }
   tick(3);
   EXPECT_EQ(lit().size(), 32u);
-  EXPECT_EQ(counters().lights_left_out, 100000u - 32u);
+  EXPECT_EQ(counters().lights.left_out, 100000u - 32u);
 }
 
 }  // namespace

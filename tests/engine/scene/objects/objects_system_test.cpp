@@ -75,7 +75,7 @@ TEST_F(Objects, AreDrawnAtTheirPlaceUntilTheyAreDestroyed) {
   EXPECT_FLOAT_EQ(draw.rotation[1], transform.rotation.y);
   EXPECT_EQ(draw.fade, 1.0F);
   EXPECT_EQ(draw.range.layout, core::VertexLayout::kObject);
-  EXPECT_EQ(statistics_of(state()).objects_drawn, 1u);
+  EXPECT_EQ(scene_->statistics().objects.drawn, 1u);
   state().entities.destroy(std::span(&entity, 1));
   tick();
   EXPECT_TRUE(drawn().empty());
@@ -173,7 +173,7 @@ TEST_F(Objects, WithAMeshOfFewerLevelsRequestOnlyThose) {
   tick(20);
   ASSERT_EQ(drawn().size(), 1u);
   EXPECT_EQ(drawn()[0].range.index_count, 6u);
-  EXPECT_EQ(statistics_of(state()).failed, 0u);
+  EXPECT_EQ(scene_->statistics().meshes.failed, 0u);
 }
 
 TEST_F(Objects, WithInvalidTransformsAreCountedAndNotDrawn) {
@@ -190,7 +190,7 @@ TEST_F(Objects, WithInvalidTransformsAreCountedAndNotDrawn) {
   put(ahead(20));
   tick(10);
   EXPECT_EQ(drawn().size(), 1u);
-  EXPECT_EQ(statistics_of(state()).objects_invalid, 6u);
+  EXPECT_EQ(scene_->statistics().objects.invalid, 6u);
 }
 
 TEST_F(Objects, WithoutAMeshAreNotDrawn) {
@@ -246,7 +246,7 @@ TEST_F(Objects, TenThousandThatMoveShareOneMesh) {
   }
   ASSERT_EQ(drawn().size(), 10'000u);
   EXPECT_NEAR(drawn()[0].origin.x, -5 + 4 * 0.25, 1e-3);
-  EXPECT_EQ(statistics_of(state()).objects_missing, 0u);
+  EXPECT_EQ(scene_->statistics().objects.missing, 0u);
   EXPECT_LT(state().supply.stats().bytes - before, 1024u) << "one mesh is charged";
 }
 
@@ -418,9 +418,9 @@ TEST(ObjectsInASmallBudget, CountAgainstItAndTheLeastImportantAreEvicted) {
   const std::size_t drawn = state.object_draws.objects.size();
   EXPECT_GT(drawn, 4u);
   EXPECT_LT(drawn, 40u);
-  EXPECT_GT(statistics_of(state).refused, 0u);
-  EXPECT_GT(statistics_of(state).objects_missing, 0u);
-  EXPECT_EQ(statistics_of(state).objects_drawn + statistics_of(state).objects_missing, 40u);
+  EXPECT_GT(state.meshes.counts.refused, 0u);
+  EXPECT_GT(state.object_draws.counts.missing, 0u);
+  EXPECT_EQ(state.object_draws.counts.drawn + state.object_draws.counts.missing, 40u);
   std::set<float> distances;
   for (const render::ObjectDraw& draw : state.object_draws.objects)
     distances.insert(-draw.origin.z);

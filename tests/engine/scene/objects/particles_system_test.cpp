@@ -18,7 +18,7 @@ class Emitters : public testing::Test {
   }
   State& state() { return state_of(*scene_); }
   const std::vector<render::ParticleDraw>& drawn() { return state().particle_draws.emitters; }
-  Statistics counters() { return statistics_of(state()); }
+  Statistics counters() { return scene_->statistics(); }
   void tick(int count = 1) {
     for (int i = 0; i < count; ++i)
       tick_at(*scene_, pose_);
@@ -50,8 +50,8 @@ TEST_F(Emitters, AreDrawnBackToFrontAtTheirPlaces) {
   EXPECT_NEAR(drawn()[0].origin.z, -60, 1e-3);
   EXPECT_NEAR(drawn()[1].origin.z, -40, 1e-3);
   EXPECT_NEAR(drawn()[2].origin.z, -20, 1e-3);
-  EXPECT_EQ(counters().emitters_drawn, 3u);
-  EXPECT_EQ(counters().particles_drawn, 180u);
+  EXPECT_EQ(counters().particles.emitters_drawn, 3u);
+  EXPECT_EQ(counters().particles.particles_drawn, 180u);
 }
 
 TEST_F(Emitters, AreCulledOutsideTheFrustum) {
@@ -130,7 +130,7 @@ TEST_F(Emitters, WithInvalidValuesAreCountedAndNotDrawn) {
   state().entities.get<Transform>(flat)->scale.y = 0;
   tick();
   EXPECT_TRUE(drawn().empty());
-  EXPECT_EQ(counters().emitters_invalid, 6u);
+  EXPECT_EQ(counters().particles.emitters_invalid, 6u);
 }
 
 TEST_F(Emitters, OfAbsurdRatesAndNumbersAreBounded) {
@@ -138,7 +138,7 @@ TEST_F(Emitters, OfAbsurdRatesAndNumbersAreBounded) {
   tick();
   ASSERT_EQ(drawn().size(), 1u);
   EXPECT_EQ(drawn()[0].count, render::kMaxParticlesPerEmitter);
-  EXPECT_GT(counters().particles_left_out, std::uint64_t{1} << 39);
+  EXPECT_GT(counters().particles.particles_left_out, std::uint64_t{1} << 39);
   const auto made = state().entities.create<Transform, ParticleEmitter>(100000);
   for (Transform& transform : made.column<Transform>()) {
     transform.position = pose_.position;
@@ -146,8 +146,8 @@ TEST_F(Emitters, OfAbsurdRatesAndNumbersAreBounded) {
   }
   tick(2);
   EXPECT_EQ(drawn().size(), render::kMaxEmitters);
-  EXPECT_LE(counters().particles_drawn, render::kMaxParticles);
-  EXPECT_EQ(counters().emitters_left_out, 100001u - render::kMaxEmitters);
+  EXPECT_LE(counters().particles.particles_drawn, render::kMaxParticles);
+  EXPECT_EQ(counters().particles.emitters_left_out, 100001u - render::kMaxEmitters);
 }
 
 TEST_F(Emitters, FadeOutTowardsTheViewDistance) {

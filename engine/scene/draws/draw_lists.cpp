@@ -1,4 +1,4 @@
-#include "engine/scene/draws/node_cross_fade.hpp"
+#include "engine/scene/draws/draw_lists.hpp"
 
 #include <algorithm>
 #include <iterator>
