@@ -203,8 +203,8 @@ core::Result<Report> amplify(const world::World& world, const models::Registry& 
                              const Region& region, const Options& options) {
   if (auto ok = check_region(world, region); !ok) return tl::unexpected(ok.error());
   if (options.threads < 1 || options.threads > kMaxThreads) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the number of threads must be 1 to {}", kMaxThreads));
+    return core::invalid_argument(
+        fmt::format("the number of threads must be 1 to {}", kMaxThreads));
   }
   EveryBlock every_block(region.block_count());
   RunSource& source = options.source != nullptr ? *options.source : every_block;

@@ -173,8 +173,7 @@ core::Result<void> BlockFolder::claim(const char* file, const std::string& text,
   }
   if (theirs == text) return {};
   const auto refuse = [&](std::string_view why) {
-    return core::fail(
-        core::ErrorCode::kInvalidArgument,
+    return core::invalid_argument(
         fmt::format("{}: {} ({}); choose another folder", folder_.string(), why, path.string()));
   };
   if (theirs.empty() && has_blocks()) return refuse("has blocks of unknown origin");

@@ -6,13 +6,6 @@
 #include "engine/world/files/world_file.hpp"
 
 namespace psygen::amplify {
-namespace {
-
-std::string text_of(const Region& region) {
-  return fmt::format("{},{},{},{}", region.x0, region.z0, region.x1, region.z1);
-}
-
-}  // namespace
 
 std::string_view name_of(const JobFormat& format) {
   return format ? exchange::name_of(*format) : kNoFiles;
@@ -29,12 +22,12 @@ core::Result<JobKey> job_key(const world::World& world, const models::Registry& 
                                   "{},{} fails",
                                   world.name, middle.x, middle.z));
   }
-  return JobKey{std::string(version),
-                world.name,
-                world::world_hash(world, registry),
-                *sample,
-                region,
-                format};
+  return JobKey{.version = std::string(version),
+                .world = world.name,
+                .world_hash = world::world_hash(world, registry),
+                .sample_hash = *sample,
+                .region = region,
+                .format = format};
 }
 
 std::string difference(const JobKey& mine, const JobKey& theirs) {

@@ -34,8 +34,8 @@ std::optional<std::uint64_t> Region::number_of(core::BlockCoord block) const {
 
 core::Result<Region> parse_region(std::string_view text) {
   const auto refuse = [text](std::string_view why) {
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("'{}' is not a region X0,Z0,X1,Z1 in blocks: {}", text, why));
+    return core::invalid_argument(
+        fmt::format("'{}' is not a region X0,Z0,X1,Z1 in blocks: {}", text, why));
   };
   std::array<std::int64_t, 4> values{};
   const char* at = text.data();
@@ -56,12 +56,14 @@ core::Result<Region> parse_region(std::string_view text) {
   return region;
 }
 
+std::string text_of(const Region& region) {
+  return fmt::format("{},{},{},{}", region.x0, region.z0, region.x1, region.z1);
+}
+
 core::Result<Region> whole(const world::World& world) {
   if (world.is_endless()) {
-    return core::fail(
-        core::ErrorCode::kInvalidArgument,
-        fmt::format("the world {} is endless: choose a region, such as --region 0,0,16,16",
-                    world.name));
+    return core::invalid_argument(fmt::format(
+        "the world {} is endless: choose a region, such as --region 0,0,16,16", world.name));
   }
   return Region{0, 0, world.blocks_x, world.blocks_z};
 }
@@ -76,11 +78,9 @@ core::Result<void> check_region(const world::World& world, const Region& region)
   const auto range = [](std::int64_t blocks) {
     return blocks == 0 ? std::string("all") : fmt::format("0 to {}", blocks - 1);
   };
-  return core::fail(
-      core::ErrorCode::kInvalidArgument,
-      fmt::format("the region {},{},{},{} extends beyond the world {}, whose blocks are x {}, z {}",
-                  region.x0, region.z0, region.x1, region.z1, world.name, range(world.blocks_x),
-                  range(world.blocks_z)));
+  return core::invalid_argument(
+      fmt::format("the region {} extends beyond the world {}, whose blocks are x {}, z {}",
+                  text_of(region), world.name, range(world.blocks_x), range(world.blocks_z)));
 }
 
 }  // namespace psygen::amplify

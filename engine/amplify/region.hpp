@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "engine/core/coordinates.hpp"
@@ -28,6 +29,9 @@ struct Region {
 // Parses "X0,Z0,X1,Z1". Fails with kInvalidArgument for anything else, for empty regions, and for
 // blocks outside −2^31 … 2^31 − 1.
 core::Result<Region> parse_region(std::string_view text);
+
+// Such a text.
+std::string text_of(const Region& region);
 
 // The region of a whole world. Fails with kInvalidArgument for endless worlds.
 core::Result<Region> whole(const world::World& world);

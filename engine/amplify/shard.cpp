@@ -20,8 +20,7 @@ core::Result<Shard> parse_shard(std::string_view text) {
   if (slash && count.ec == std::errc() && count.ptr == end && shard.index >= 1 &&
       shard.index <= shard.count && shard.count <= kMaxShards)
     return shard;
-  return core::fail(
-      core::ErrorCode::kInvalidArgument,
+  return core::invalid_argument(
       fmt::format("'{}' is not a shard I/N with I from 1 to N and N up to {}", text, kMaxShards));
 }
 

@@ -46,21 +46,19 @@ core::Result<std::uint32_t> picture_of(Reading& reading, Pictures& pictures, int
   return at->second;
 }
 
-core::Result<float> number_in(double value, double most, const std::string& what) {
-  if (value >= 0 && value <= most) return static_cast<float>(value);
-  return wrong(fmt::format("{} is {}; it must be 0 to {}", what, value, most));
+core::Result<void> read_number(double value, double most, const std::string& what, float& out) {
+  if (!(value >= 0 && value <= most))
+    return wrong(fmt::format("{} is {}; it must be 0 to {}", what, value, most));
+  out = static_cast<float>(value);
+  return {};
 }
 
-core::Result<glm::vec3> colour_of(const std::vector<double>& from, double most,
-                                  const std::string& what) {
-  glm::vec3 colour(0.0F);
+core::Result<void> read_colour(const std::vector<double>& from, const std::string& what,
+                               glm::vec3& out) {
   if (from.size() < 3) return wrong(what + " has fewer than three numbers");
-  for (int i = 0; i < 3; ++i) {
-    const auto channel = number_in(from[static_cast<std::size_t>(i)], most, what);
-    if (!channel) return tl::unexpected(channel.error());
-    colour[i] = *channel;
-  }
-  return colour;
+  for (int i = 0; i < 3; ++i)
+    if (auto ok = read_number(from[static_cast<std::size_t>(i)], 1, what, out[i]); !ok) return ok;
+  return {};
 }
 
 double emissive_strength(const tinygltf::Material& described) {
@@ -73,32 +71,38 @@ double emissive_strength(const tinygltf::Material& described) {
 core::Result<void> read_numbers(const tinygltf::Material& described, const std::string& name,
                                 Reading& reading, Material& out) {
   const std::vector<double>& base = described.pbrMetallicRoughness.baseColorFactor;
-  const auto colour = colour_of(base, 1, name + ".baseColorFactor");
-  if (!colour) return tl::unexpected(colour.error());
-  out.base_colour = *colour;
-  const auto opacity = number_in(base.size() > 3 ? base[3] : 1, 1, name + ".baseColorFactor");
-  if (!opacity) return tl::unexpected(opacity.error());
-  const auto light = colour_of(described.emissiveFactor, 1, name + ".emissiveFactor");
-  if (!light) return tl::unexpected(light.error());
-  const auto strength =
-      number_in(emissive_strength(described), kMaxLight, name + ".emissiveStrength");
-  if (!strength) return tl::unexpected(strength.error());
-  out.emissive = *light * *strength;
-  const auto normals =
-      number_in(std::abs(described.normalTexture.scale), kMaxLight, name + ".normalTexture.scale");
-  if (!normals) return tl::unexpected(normals.error());
-  out.normal_strength = static_cast<float>(described.normalTexture.scale);
+  const double normals = described.normalTexture.scale;
+  float opacity = 1, strength = 1;
+  const auto ok =
+      read_colour(base, name + ".baseColorFactor", out.base_colour)
+          .and_then([&] {
+            const double last = base.size() > 3 ? base[3] : 1;
+            return read_number(last, 1, name + ".baseColorFactor", opacity);
+          })
+          .and_then([&] {
+            return read_colour(described.emissiveFactor, name + ".emissiveFactor", out.emissive);
+          })
+          .and_then([&] {
+            return read_number(emissive_strength(described), kMaxLight, name + ".emissiveStrength",
+                               strength);
+          })
+          .and_then([&] {
+            return read_number(std::abs(normals), kMaxLight, name + ".normalTexture.scale",
+                               out.normal_strength);
+          });
+  if (!ok) return ok;
+  out.emissive *= strength;
+  out.normal_strength = static_cast<float>(normals);
   out.two_sided = described.doubleSided;
   if (described.alphaMode == "MASK") {
-    const auto cutoff = number_in(described.alphaCutoff, kMaxLight, name + ".alphaCutoff");
-    if (!cutoff) return tl::unexpected(cutoff.error());
-    out.min_opacity = *cutoff;
-    out.opacity = *opacity;
-  } else if (described.alphaMode == "BLEND") {
+    out.opacity = opacity;
+    return read_number(described.alphaCutoff, kMaxLight, name + ".alphaCutoff", out.min_opacity);
+  }
+  if (described.alphaMode == "BLEND") {
     reading.note(
         "has blended materials, which are drawn opaque where their opacity is at least one half");
     out.min_opacity = 0.5F;
-    out.opacity = *opacity;
+    out.opacity = opacity;
   } else if (described.alphaMode != "OPAQUE") {
     return wrong(fmt::format("{}.alphaMode must be OPAQUE, MASK or BLEND", name));
   }
@@ -132,14 +136,16 @@ core::Result<void> read_materials(Reading& reading) {
       if (set < 0) set = coordinates;
       return {};
     };
-    if (auto ok = use(base.index, base.texCoord, ".baseColorTexture", material.base_texture); !ok)
-      return ok;
-    if (auto ok = use(normal.index, normal.texCoord, ".normalTexture", material.normal_texture);
-        !ok)
-      return ok;
-    if (auto ok = use(light.index, light.texCoord, ".emissiveTexture", material.emissive_texture);
-        !ok)
-      return ok;
+    const auto ok =
+        use(base.index, base.texCoord, ".baseColorTexture", material.base_texture)
+            .and_then([&] {
+              return use(normal.index, normal.texCoord, ".normalTexture", material.normal_texture);
+            })
+            .and_then([&] {
+              return use(light.index, light.texCoord, ".emissiveTexture",
+                         material.emissive_texture);
+            });
+    if (!ok) return ok;
     reading.uv_sets.push_back(std::max(set, 0));
     reading.out.materials.push_back(std::move(material));
   }

@@ -85,8 +85,7 @@ core::Result<Elements> elements_of(const tinygltf::Model& file, int accessor,
   const tinygltf::Accessor& described = file.accessors[*index];
   const std::string name = fmt::format("accessors[{}] ({})", accessor, what);
   if (described.sparse.isSparse) {
-    return core::fail(ErrorCode::kInvalidArgument,
-                      name + " is sparse; sparse accessors are not supported");
+    return core::invalid_argument(name + " is sparse; sparse accessors are not supported");
   }
   const auto bytes = bytes_of_view(file, described.bufferView, name);
   if (!bytes) return tl::unexpected(bytes.error());

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/core/hash.hpp"
+#include "engine/handmade/texture_colours.hpp"
 
 namespace psygen::handmade {
 namespace {
@@ -36,13 +37,7 @@ struct Lattice {
 };
 
 bool is_drawn(const image::Image& image, glm::vec2 uv, float opacity, float min_opacity) {
-  const auto along = [](float v, std::uint32_t size) {
-    const float part = v - std::floor(v);
-    const auto at = static_cast<std::uint32_t>(part * static_cast<float>(size));
-    return std::isfinite(part) ? std::min(at, size - 1) : 0U;
-  };
-  const auto pixel = image.pixel(along(uv.x, image.width), along(uv.y, image.height));
-  return opacity * static_cast<float>(pixel[3]) / 255 >= min_opacity;
+  return opacity * static_cast<float>(pixel_of(image, uv)[3]) / 255 >= min_opacity;
 }
 
 // The fraction of the way from a drawn point to a cut one at which the border lies.

@@ -17,19 +17,11 @@ using models::Parameters;
 enum HandmadeParameter : std::size_t { kScale, kTurn };
 
 constexpr models::ParameterSpec kHandmadeSchema[] = {
-    {.name = "scale",
-     .unit = "1",
-     .default_value = 1,
-     .hard_min = 0.01,
-     .hard_max = 100,
-     .soft_min = 0.5,
-     .soft_max = 2,
-     .doc = "factor on the model's size"},
-    {.name = "turn_deg",
-     .unit = "degrees",
-     .hard_max = 360,
-     .soft_max = 360,
-     .doc = "rotation about the vertical axis; [0, 360]: all directions"},
+    models::real_parameter("scale", "1", 1, models::HardRange{0.01, 100}, models::SoftRange{0.5, 2},
+                           "factor on the model's size"),
+    models::real_parameter("turn_deg", "degrees", 0, models::HardRange{0, 360},
+                           models::SoftRange{0, 360},
+                           "rotation about the vertical axis; [0, 360]: all directions"),
 };
 
 // A rotation from +Z towards +X, like a positive rotation about +Y.
@@ -92,9 +84,6 @@ class HandmadeType final : public models::ModelType {
   }
   bool may_run_on_main_thread() const override { return true; }
   std::optional<double> turn_deg(const Parameters& p) const override { return p.real(kTurn); }
-  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
-    PSYGEN_CHECK(false, "handmade models share no indices");
-  }
 
  private:
   const Level& at(int level) const { return shape_->levels[static_cast<std::size_t>(level)]; }

@@ -4,10 +4,11 @@
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <span>
+#include <string_view>
 
 #include "engine/core/hash.hpp"
-#include "engine/handmade/solid.hpp"
 #include "engine/handmade/triangles.hpp"
 
 namespace psygen::handmade {
@@ -32,6 +33,62 @@ std::uint64_t identity_of(const Triangles& triangles, const world::HandmadeModel
 
 float radius_of(const glm::vec3& p) {
   return std::sqrt(p.x * p.x + p.z * p.z);
+}
+
+constexpr float kFlat = 1e-3F;  // relative to the extent
+
+template <class Far>
+glm::vec3 farthest(const std::vector<glm::vec3>& points, const Far& far) {
+  return *std::ranges::max_element(points, {}, far);
+}
+
+// True if all points are near one plane.
+bool is_flat(const std::vector<glm::vec3>& points) {
+  const glm::vec3 a = points.front();
+  const glm::vec3 b = farthest(points, [&](const glm::vec3& p) { return glm::dot(p - a, p - a); });
+  const float extent = glm::length(b - a);
+  const auto off_line = [&](const glm::vec3& p) { return glm::length(glm::cross(p - a, b - a)); };
+  const glm::vec3 c = farthest(points, off_line);
+  if (!(off_line(c) > kFlat * extent * extent)) return true;
+  const glm::vec3 normal = glm::normalize(glm::cross(b - a, c - a));
+  const auto off_plane = [&](const glm::vec3& p) { return std::abs(glm::dot(p - a, normal)); };
+  return !(off_plane(farthest(points, off_plane)) > kFlat * extent);
+}
+
+std::vector<glm::vec3> corners_of(const core::Bounds& box) {
+  std::vector<glm::vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back(glm::mix(box.min, box.max, glm::vec3(i & 1, i >> 1 & 1, i >> 2)));
+  return corners;
+}
+
+// The extreme points in the directions of the surface of a lattice of 5 x 5 x 5 points. Of equal
+// points the first in the mesh, so that the result does not depend on a sort.
+std::vector<glm::vec3> extremes_of(const Triangles& triangles) {
+  std::vector<glm::vec3> points;
+  for (int i = 0; i < 125; ++i) {
+    const glm::ivec3 at = glm::ivec3(i % 5, i / 5 % 5, i / 25) - 2;
+    if (std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) < 2) continue;
+    const glm::vec3 direction(at);
+    glm::vec3 best = triangles.vertices[triangles.indices.front()].position;
+    for (const std::uint32_t k : triangles.indices) {
+      const glm::vec3& p = triangles.vertices[k].position;
+      if (glm::dot(p, direction) > glm::dot(best, direction)) best = p;
+    }
+    if (std::ranges::find(points, best) == points.end()) points.push_back(best);
+  }
+  return points;
+}
+
+// The collider: a few points that span a convex hull. `kind` is one of world::kHandmadeColliders:
+// the extreme points in 98 directions, the corners of the box, or none. Also none if all points lie
+// in one plane, up to a thousandth of their extent.
+std::vector<glm::vec3> solid_points(const Triangles& triangles, std::string_view kind) {
+  std::vector<glm::vec3> points;
+  if (kind == "box") points = corners_of(triangles.box);
+  if (kind == "hull") points = extremes_of(triangles);
+  if (points.size() < 4 || is_flat(points)) return {};
+  return points;
 }
 
 }  // namespace

@@ -27,14 +27,9 @@ const std::array<float, 256>& linear_light() {
   return table;
 }
 
-// The pixel at a point of the texture, which repeats: linear colour, opacity.
+// The pixel at a point of the texture: linear colour, opacity.
 glm::vec4 pixel_at(const image::Image& image, glm::vec2 uv) {
-  const auto along = [](float v, std::uint32_t size) {
-    const float part = v - std::floor(v);
-    const auto at = static_cast<std::uint32_t>(part * static_cast<float>(size));
-    return std::isfinite(part) ? std::min(at, size - 1) : 0U;
-  };
-  const auto p = image.pixel(along(uv.x, image.width), along(uv.y, image.height));
+  const auto p = pixel_of(image, uv);
   const std::array<float, 256>& light = linear_light();
   return {light[p[0]], light[p[1]], light[p[2]], static_cast<float>(p[3]) / 255};
 }
@@ -73,6 +68,15 @@ struct Sum {
 };
 
 }  // namespace
+
+std::span<const std::uint8_t, 4> pixel_of(const image::Image& image, glm::vec2 uv) {
+  const auto along = [](float v, std::uint32_t size) {
+    const float part = v - std::floor(v);
+    const auto at = static_cast<std::uint32_t>(part * static_cast<float>(size));
+    return std::isfinite(part) ? std::min(at, size - 1) : 0U;
+  };
+  return image.pixel(along(uv.x, image.width), along(uv.y, image.height));
+}
 
 std::vector<glm::vec3> texture_colours(const core::MeshData& mesh, const image::Image& image,
                                        float min_opacity) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace psygen::models {
@@ -49,10 +50,8 @@ double parameter_number(const ModelType& type, const Parameters& p, std::size_t 
 
 int parameter_index(const ModelType& type, std::string_view name) {
   const std::span<const ParameterSpec> specs = type.parameters();
-  for (std::size_t i = 0; i < specs.size(); ++i) {
-    if (specs[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
+  const auto found = std::ranges::find(specs, name, &ParameterSpec::name);
+  return found == specs.end() ? -1 : static_cast<int>(found - specs.begin());
 }
 
 core::Result<void> validate(const ModelType& type, const Parameters& p, double max_log2_cost) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/core/assert.hpp"
 #include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/hash.hpp"
@@ -117,7 +118,7 @@ class Parameters {
     }
     return edits_hash_ == 0 ? h : core::combine(h, edits_hash_);
   }
-  // Equal layers may differ in edits that do not change the mesh.
+  // Compares the hash of the edits, so the layers may differ where that changes no mesh.
   friend bool operator==(const Parameters& a, const Parameters& b) {
     return a.bits_ == b.bits_ && a.edits_hash_ == b.edits_hash_;
   }
@@ -229,7 +230,10 @@ class ModelType {
   // hang must return false: a watchdog observes the modelers, but not the main thread.
   virtual bool may_run_on_main_thread() const { return false; }
   // Writes the shared index list `id` of a MeshSize; `out` has that size's index_count entries.
-  virtual void write_shared_indices(std::uint32_t id, std::span<std::uint16_t> out) const = 0;
+  // Only for types whose meshes share lists; for others an assertion fails, also in release.
+  virtual void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const {
+    PSYGEN_CHECK(false, "the type has shared index lists");
+  }
 };
 
 // Part of a mesh's key, together with its position and level: its parameters and the type's

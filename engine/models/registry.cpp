@@ -79,10 +79,8 @@ core::Result<ModelIndex> Registry::add(std::unique_ptr<ModelType> type) {
 }
 
 int Registry::find(std::string_view name) const {
-  for (std::size_t i = 0; i < types_.size(); ++i) {
-    if (types_[i]->name() == name) return static_cast<int>(i);
-  }
-  return -1;
+  const auto found = std::ranges::find(types_, name, [](const auto& type) { return type->name(); });
+  return found == types_.end() ? -1 : static_cast<int>(found - types_.begin());
 }
 
 Registry make_standard_registry() {

@@ -1,5 +1,6 @@
 #include "engine/physics/capsule_mover.hpp"
 
+#include "engine/physics/shapes.hpp"
 #include "engine/physics/terrain.hpp"
 
 namespace psygen::physics {
@@ -7,20 +8,23 @@ namespace {
 
 constexpr int kObstacles = kModels | kObjects | kBodies | kCharacters;
 
-btTransform at(const btVector3& place) {
-  return btTransform(btQuaternion::getIdentity(), place);
-}
-
-struct SweepCallback : btCollisionWorld::ConvexResultCallback {
-  SweepCallback(const CapsuleMover& capsule_mover, const btVector3& towards)
-      : mover(capsule_mover), direction(towards) {
-    m_collisionFilterGroup = kCharacters;
-    m_collisionFilterMask = kObstacles;
+// A callback of Bullet for objects that stop the capsule.
+template <class Callback>
+struct ObstacleCallback : Callback {
+  explicit ObstacleCallback(const CapsuleMover& capsule_mover) : mover(capsule_mover) {
+    this->m_collisionFilterGroup = kCharacters;
+    this->m_collisionFilterMask = kObstacles;
   }
   bool needsCollision(btBroadphaseProxy* proxy) const override {
-    return ConvexResultCallback::needsCollision(proxy) &&
+    return Callback::needsCollision(proxy) &&
            mover.stops(*static_cast<const btCollisionObject*>(proxy->m_clientObject));
   }
+  const CapsuleMover& mover;
+};
+
+struct SweepCallback : ObstacleCallback<btCollisionWorld::ConvexResultCallback> {
+  SweepCallback(const CapsuleMover& capsule_mover, const btVector3& towards)
+      : ObstacleCallback(capsule_mover), direction(towards) {}
   btScalar addSingleResult(btCollisionWorld::LocalConvexResult& result,
                            bool normal_in_world) override {
     const btVector3 n =
@@ -32,21 +36,13 @@ struct SweepCallback : btCollisionWorld::ConvexResultCallback {
     found = {result.m_hitFraction, n, true, result.m_hitCollisionObject};
     return result.m_hitFraction;
   }
-  const CapsuleMover& mover;
   btVector3 direction;
   Sweep found;
 };
 
-struct DeepestContact : btCollisionWorld::ContactResultCallback {
-  explicit DeepestContact(const CapsuleMover& capsule_mover, const btCollisionObject& object)
-      : mover(capsule_mover), probe(object) {
-    m_collisionFilterGroup = kCharacters;
-    m_collisionFilterMask = kObstacles;
-  }
-  bool needsCollision(btBroadphaseProxy* proxy) const override {
-    return ContactResultCallback::needsCollision(proxy) &&
-           mover.stops(*static_cast<const btCollisionObject*>(proxy->m_clientObject));
-  }
+struct DeepestContact : ObstacleCallback<btCollisionWorld::ContactResultCallback> {
+  DeepestContact(const CapsuleMover& capsule_mover, const btCollisionObject& object)
+      : ObstacleCallback(capsule_mover), probe(object) {}
   btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
                            const btCollisionObjectWrapper*, int, int) override {
     if (point.getDistance() >= depth) return 0;
@@ -54,7 +50,6 @@ struct DeepestContact : btCollisionWorld::ContactResultCallback {
     normal = a->getCollisionObject() == &probe ? point.m_normalWorldOnB : -point.m_normalWorldOnB;
     return 0;
   }
-  const CapsuleMover& mover;
   const btCollisionObject& probe;
   btScalar depth = 0;
   btVector3 normal{0, 0, 0};
@@ -71,7 +66,7 @@ bool CapsuleMover::stops(const btCollisionObject& other) const {
 Sweep CapsuleMover::sweep(const btVector3& from, const btVector3& to) const {
   if ((to - from).length2() < 1e-18) return {};
   SweepCallback callback(*this, (to - from).normalized());
-  world_.convexSweepTest(&capsule_, at(from), at(to), callback, 0);
+  world_.convexSweepTest(&capsule_, upright(from), upright(to), callback, 0);
   return callback.found;
 }
 
@@ -80,7 +75,7 @@ btVector3 CapsuleMover::pushed_out(const btVector3& place) const {
   btCollisionObject probe;
   probe.setCollisionShape(const_cast<btConvexShape*>(&capsule_));  // contactTest() only reads it
   for (int i = 0; i < 4; ++i) {
-    probe.setWorldTransform(at(free));
+    probe.setWorldTransform(upright(free));
     DeepestContact contact(*this, probe);
     const_cast<btCollisionWorld&>(world_).contactTest(&probe, contact);
     if (contact.depth > -kSkinM) break;

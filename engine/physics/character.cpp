@@ -53,12 +53,9 @@ Character::~Character() {
 
 // `jumped_there`: without pushing bodies in between.
 void Character::publish(bool jumped_there) {
-  const btTransform place(btQuaternion::getIdentity(), centre(feet_));
+  const btTransform place = upright(centre(feet_));
   motion_.setWorldTransform(place);
-  if (!jumped_there) return;
-  body_->setWorldTransform(place);
-  body_->setInterpolationWorldTransform(place);
-  if (body_->getBroadphaseHandle() != nullptr) bullet_.updateSingleAabb(body_.get());
+  if (jumped_there) put(bullet_, *body_, place);
 }
 
 void Character::teleport(const btVector3& feet) {
@@ -77,16 +74,14 @@ void Character::shift(const btVector3& by) {
 // Returns the displacement without its component up ground that is too steep.
 btVector3 Character::climb_limited(const btVector3& way) {
   btVector3 left = way;
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0;; ++i) {
     const models::GroundPoint ahead = terrain_.ground(feet_ + left);
     const btVector3 normal = to_bt(ahead.normal);
     if (is_walkable(normal) || ahead.height_m <= feet_.y() + 1e-3) return left;
+    if (i == 2) return {0, 0, 0};
     left = along_plane(left, wall(normal));
     stop_at(wall(normal));
   }
-  const models::GroundPoint ahead = terrain_.ground(feet_ + left);
-  if (is_walkable(to_bt(ahead.normal)) || ahead.height_m <= feet_.y() + 1e-3) return left;
-  return {0, 0, 0};
 }
 
 void Character::stop_at(const btVector3& normal) {

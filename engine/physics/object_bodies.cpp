@@ -112,15 +112,10 @@ void ObjectBodies::drop_idle(std::uint64_t step, std::uint32_t keep_steps) {
 
 void ObjectBodies::shift(const btVector3& by) {
   for (const auto& [id, body] : bodies_) {
-    btRigidBody& rigid = *body->rigid;
-    const auto shifted = [&](btTransform pose) {
-      pose.setOrigin(pose.getOrigin() - by);
-      return pose;
-    };
-    rigid.setWorldTransform(shifted(rigid.getWorldTransform()));
-    rigid.setInterpolationWorldTransform(rigid.getWorldTransform());
-    body->motion.setWorldTransform(rigid.getWorldTransform());
-    bullet_.updateSingleAabb(&rigid);
+    btTransform pose = body->rigid->getWorldTransform();
+    pose.setOrigin(pose.getOrigin() - by);
+    put(bullet_, *body->rigid, pose);
+    body->motion.setWorldTransform(pose);
   }
 }
 

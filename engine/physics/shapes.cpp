@@ -12,12 +12,8 @@ namespace {
 
 using models::Collider;
 
-btTransform at(const btVector3& place) {
-  return btTransform(btQuaternion::getIdentity(), place);
-}
-
 PlacedShape make(const Collider::Sphere& s) {
-  return {std::make_unique<btSphereShape>(s.radius), at(to_bt(s.centre))};
+  return {std::make_unique<btSphereShape>(s.radius), upright(to_bt(s.centre))};
 }
 
 // Bullet's capsules are upright.
@@ -30,7 +26,7 @@ PlacedShape make(const Collider::Capsule& c) {
 }
 
 PlacedShape make(const Collider::Box& b) {
-  return {std::make_unique<btBoxShape>(to_bt(b.half_extent())), at(to_bt(b.centre()))};
+  return {std::make_unique<btBoxShape>(to_bt(b.half_extent())), upright(to_bt(b.centre()))};
 }
 
 PlacedShape make(const Collider::Hull& h) {
@@ -38,7 +34,7 @@ PlacedShape make(const Collider::Hull& h) {
   for (const glm::vec3& p : h.points)
     hull->addPoint(to_bt(p), false);
   hull->recalcLocalAabb();
-  return {std::move(hull), at({0, 0, 0})};
+  return {std::move(hull), upright({0, 0, 0})};
 }
 
 bool is_legal(const Collider::Shape& shape) {

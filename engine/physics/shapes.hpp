@@ -1,5 +1,5 @@
-// Conversions of vectors, rotations and colliders into Bullet's types. Internal to physics. One
-// thread.
+// Conversions of vectors, rotations and colliders into Bullet's types, and poses. Internal to
+// physics. One thread.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -29,6 +29,17 @@ inline glm::dvec3 to_glm(const btVector3& v) {
 }
 inline glm::dquat to_glm(const btQuaternion& q) {
   return {q.w(), q.x(), q.y(), q.z()};
+}
+
+// An upright pose at a point.
+inline btTransform upright(const btVector3& place) {
+  return btTransform(btQuaternion::getIdentity(), place);
+}
+// Moves a body to a pose at once, without a velocity.
+inline void put(btCollisionWorld& bullet, btCollisionObject& body, const btTransform& pose) {
+  body.setWorldTransform(pose);
+  body.setInterpolationWorldTransform(pose);
+  if (body.getBroadphaseHandle() != nullptr) bullet.updateSingleAabb(&body);
 }
 
 // A shape with the parts that it points to.

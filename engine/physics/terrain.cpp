@@ -34,9 +34,9 @@ void Terrain::set_origin(core::BlockCoord origin) {
   for (auto& [at, block] : blocks_) {
     const btVector3 corner = to_bt(corner_of(at));
     for (const Part& part : block.parts) {
-      part.object->getWorldTransform().setOrigin(corner + part.from_corner);
-      part.object->setInterpolationWorldTransform(part.object->getWorldTransform());
-      bullet_.updateSingleAabb(part.object.get());
+      btTransform pose = part.object->getWorldTransform();
+      pose.setOrigin(corner + part.from_corner);
+      put(bullet_, *part.object, pose);
     }
   }
 }
@@ -82,7 +82,7 @@ void Terrain::make(core::BlockCoord at, Block& block) {
   // Bullet's heightfields have their origin in the middle of their box.
   const double half = 0.5 * query_.world().block_size_m();
   const btVector3 middle(half, 0.5 * (grid.lowest_m() + grid.highest_m()), half);
-  add(at, block, std::move(ground), btTransform(btQuaternion::getIdentity(), middle), kGround);
+  add(at, block, std::move(ground), upright(middle), kGround);
   for (const query::StandingSolid& s : query_.solids(at).solids) {
     for (const models::Collider::Shape& shape : s.solid.collider().shapes) {
       PlacedShape part = make_part(shape);

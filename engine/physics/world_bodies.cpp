@@ -119,10 +119,8 @@ core::Result<void> World::set_pose(BodyId id, const core::WorldPosition& positio
   body->is_moved = true;
   const double way_m = (*at - rigid.getCenterOfMassPosition()).length();
   if (body->kind == Motion::kKinematic && way_m <= impl_->query.world().block_size_m()) return {};
-  rigid.setWorldTransform(pose);
-  rigid.setInterpolationWorldTransform(pose);
+  put(impl_->bullet, rigid, pose);
   rigid.activate(true);
-  impl_->bullet.updateSingleAabb(&rigid);
   return {};
 }
 

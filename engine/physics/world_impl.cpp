@@ -26,8 +26,8 @@ btVector3 limited(const btVector3& v, double most) {
 }  // namespace
 
 bool is_within(const glm::dvec3& v, double most) {
-  return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;  // rejects NaN
-                                                                                   // too
+  // False for NaN.
+  return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
 }
 
 World::Impl::Impl(query::World& queries, const Settings& wanted)
@@ -85,13 +85,11 @@ void World::Impl::move_origin(core::BlockCoord to) {
   for (auto& [number, body] : bodies) {
     btTransform transform = body.rigid->getWorldTransform();
     transform.setOrigin(transform.getOrigin() - by);
-    body.rigid->setWorldTransform(transform);
-    body.rigid->setInterpolationWorldTransform(transform);
+    put(bullet, *body.rigid, transform);
     btTransform target;
     body.motion.getWorldTransform(target);
     target.setOrigin(target.getOrigin() - by);
     body.motion.setWorldTransform(target);
-    bullet.updateSingleAabb(body.rigid.get());
   }
   broadphase.m_deferedcollide = false;
 }
@@ -126,11 +124,9 @@ void World::Impl::step(double dt) {
     body.before = body.rigid->getCenterOfMassPosition();
     if (body.kind != Motion::kKinematic) continue;
     // Bodies that rest on a kinematic one sleep only if it does.
-    if (body.is_moved || body.rigid->getLinearVelocity().length2() > 0 ||
-        body.rigid->getAngularVelocity().length2() > 0)
-      body.rigid->forceActivationState(ACTIVE_TAG);
-    else
-      body.rigid->forceActivationState(ISLAND_SLEEPING);
+    const bool moves = body.is_moved || body.rigid->getLinearVelocity().length2() > 0 ||
+                       body.rigid->getAngularVelocity().length2() > 0;
+    body.rigid->forceActivationState(moves ? ACTIVE_TAG : ISLAND_SLEEPING);
     body.is_moved = false;
   }
   bullet.stepSimulation(dt, 0);
@@ -221,12 +217,10 @@ void World::Impl::lift_above_ground(Body& body) {
   }
   if (!changed) return;
   transform.setOrigin(at);
-  rigid.setWorldTransform(transform);
-  rigid.setInterpolationWorldTransform(transform);
+  put(bullet, rigid, transform);
   rigid.setLinearVelocity(velocity);
   rigid.setInterpolationLinearVelocity(velocity);
   rigid.setAngularVelocity(limited(rigid.getAngularVelocity(), kMaxSpeed));
-  bullet.updateSingleAabb(&rigid);
 }
 
 }  // namespace psygen::physics

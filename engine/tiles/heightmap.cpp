@@ -152,8 +152,7 @@ core::Result<HeightmapReport> write_heightmap(const world::World& world,
   };
   const std::uint64_t width = side(region.x1 - region.x0), height = side(region.z1 - region.z0);
   if (width > kMaxHeightmapSide || height > kMaxHeightmapSide)
-    return core::fail(
-        core::ErrorCode::kInvalidArgument,
+    return core::invalid_argument(
         fmt::format("a heightmap of {} x {} pixels is too large: at most {} per "
                     "side are allowed ({} blocks of this world)",
                     width, height, kMaxHeightmapSide, (kMaxHeightmapSide - 1) / cells));

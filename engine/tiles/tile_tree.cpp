@@ -23,8 +23,7 @@ core::Result<NodeLevels> parse_levels(std::string_view text) {
   if (parsed.ec == std::errc() && parsed.ptr == end && levels.finest >= 0 &&
       levels.finest <= levels.coarsest && levels.coarsest <= kMaxNodeLevel)
     return levels;
-  return core::fail(
-      core::ErrorCode::kInvalidArgument,
+  return core::invalid_argument(
       fmt::format("'{}' is not FINEST-COARSEST, two levels from 0 to {}", text, kMaxNodeLevel));
 }
 
@@ -43,10 +42,10 @@ core::Result<TileTree> TileTree::over(const amplify::Region& region, NodeLevels 
     ++tree.depth_;
   const std::int64_t side = std::int64_t{1} << tree.depth_;
   if (tree.depth_ > kMaxNodeLevel || x + side - 1 > INT32_MAX || z + side - 1 > INT32_MAX)
-    return core::fail(core::ErrorCode::kInvalidArgument,
-                      fmt::format("the region is too large for one tileset (at most {} blocks per "
-                                  "side), or too near the limit of block coordinates",
-                                  std::uint64_t{1} << kMaxNodeLevel));
+    return core::invalid_argument(
+        fmt::format("the region is too large for one tileset (at most {} blocks per "
+                    "side), or too near the limit of block coordinates",
+                    std::uint64_t{1} << kMaxNodeLevel));
   tree.corner_ = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
   return tree;
 }

@@ -10,11 +10,6 @@
 namespace psygen::models {
 namespace {
 
-struct Target {
-  std::int64_t bit;
-  std::string_view name;
-};
-
 std::string_view name_of(std::int64_t bit) {
   switch (bit) {
     case HWY_AVX3:
@@ -33,14 +28,12 @@ std::string_view name_of(std::int64_t bit) {
 
 // Returns the sets that the CPU supports, determined before any pinning. Highway lists the best
 // first. Its list of supported sets lacks the fallback, which runs on any CPU.
-const std::vector<Target>& available() {
-  static const std::vector<Target> targets = [] {
+const std::vector<std::int64_t>& available() {
+  static const std::vector<std::int64_t> targets = [] {
     constexpr std::int64_t kFallback = HWY_TARGETS & (HWY_SCALAR | HWY_EMU128);
-    std::vector<Target> found;
-    for (const std::int64_t bit : hwy::SupportedAndGeneratedTargets()) {
-      if (bit != kFallback) found.push_back({bit, name_of(bit)});
-    }
-    if (kFallback != 0) found.push_back({kFallback, name_of(kFallback)});
+    std::vector<std::int64_t> found = hwy::SupportedAndGeneratedTargets();
+    std::erase(found, kFallback);
+    if (kFallback != 0) found.push_back(kFallback);
     return found;
   }();
   return targets;
@@ -50,17 +43,15 @@ const std::vector<Target>& available() {
 
 std::vector<std::string_view> simd_targets() {
   std::vector<std::string_view> names;
-  for (const Target& target : available())
-    names.push_back(target.name);
+  for (const std::int64_t target : available())
+    names.push_back(name_of(target));
   return names;
 }
 
 void pin_simd_target(std::string_view name) {
-  const std::vector<Target>& targets = available();
-  const auto found = std::find_if(targets.begin(), targets.end(),
-                                  [&](const Target& target) { return target.name == name; });
-  PSYGEN_CHECK(found != targets.end(), "the instruction set is one of simd_targets()");
-  hwy::SetSupportedTargetsForTest(found->bit);
+  const auto found = std::ranges::find(available(), name, name_of);
+  PSYGEN_CHECK(found != available().end(), "the instruction set is one of simd_targets()");
+  hwy::SetSupportedTargetsForTest(*found);
 }
 
 void unpin_simd_target() {

@@ -11,13 +11,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "engine/models/kit/mix32-inl.hpp"
 #include "engine/models/rock/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kPad = RockTopology::kPad;
 using Wide = hn::CappedTag<float, kPad>;

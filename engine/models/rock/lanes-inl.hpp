@@ -13,12 +13,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/models/kit/packing-inl.hpp"
+#include "engine/models/kit/mix32-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 // As many unsigned words as D has floats.
 template <class D>

@@ -114,26 +114,21 @@ float steepness_of(const GroundEdit& edit) {
   return std::min(edit.max_m, 1e6F) * static_cast<float>(slope);
 }
 
-void add_hashes(const Cell* cell, const Area& area, int whole, double block_m,
-                std::uint64_t& hash) {
+// Visits the edits of the cells that touch an area, from the largest cell down: visit(edit). A cell
+// for which `takes_whole`(cell, its area) is true is left out with everything below it.
+template <class TakesWhole, class Visit>
+void each_edit(const Cell* cell, const Area& area, const TakesWhole& takes_whole,
+               const Visit& visit) {
   if (cell == nullptr) return;
   const Area own = area_of(cell->place);
-  if (!own.touches(area)) return;
-  if (static_cast<int>(cell->place.level) <= whole || area.holds(own)) {
-    hash = core::combine(hash, cell->hash);
-    return;
-  }
-  if (cell->value) {
-    for (const EditPtr& edit : cell->value->edits) {
-      const Area reach = area_of(*edit, GroundEdits::kInfluence * edit->reach_m(), block_m);
-      if (reach.touches(area)) hash = core::combine(hash, edit->content);
-    }
-  }
+  if (!own.touches(area) || takes_whole(*cell, own)) return;
+  for (std::size_t i = 0; cell->value && i < cell->value->edits.size(); ++i)
+    visit(*cell->value->edits[i]);
   for (const auto& quarter : cell->quarters)
-    add_hashes(quarter.get(), area, whole, block_m, hash);
+    each_edit(quarter.get(), area, takes_whole, visit);
 }
 
-// Cells that add_hashes() counts as a whole are compared as a whole.
+// Cells that hash_of() counts as a whole are compared as a whole.
 bool same(const Cell* a, const Cell* b, const Area& area, int whole) {
   if (a == b) return true;
   const auto outside = [&](const Cell* c) {
@@ -147,20 +142,6 @@ bool same(const Cell* a, const Cell* b, const Area& area, int whole) {
     if (!same(a->quarters[q].get(), b->quarters[q].get(), area, whole)) return false;
   }
   return true;
-}
-
-bool any_reaches(const Cell* cell, const Area& area, double block_m) {
-  if (cell == nullptr) return false;
-  const Area own = area_of(cell->place);
-  if (!own.touches(area)) return false;
-  if (area.holds(own)) return true;
-  const auto reaches = [&](const EditPtr& edit) {
-    return area_of(*edit, edit->reach_m(), block_m).touches(area);
-  };
-  if (cell->value && std::ranges::any_of(cell->value->edits, reaches)) return true;
-  return std::ranges::any_of(cell->quarters, [&](const auto& quarter) {
-    return any_reaches(quarter.get(), area, block_m);
-  });
 }
 
 // Returns the largest sum of successive edits on a path from `cell` down, within an area.
@@ -203,20 +184,6 @@ double work_in(const Cell* cell, const Area& area, double block_m) {
   for (const auto& quarter : cell->quarters)
     sum += work_in(quarter.get(), area, block_m);
   return sum;
-}
-
-// A piece is listed in several cells, and is added for each.
-void add_roads(const Cell* cell, const Area& area, double block_m,
-               std::vector<const GroundEdit*>& roads) {
-  if (cell == nullptr || !cell->summary.has_roads || !area_of(cell->place).touches(area)) return;
-  if (cell->value) {
-    for (const EditPtr& edit : cell->value->edits) {
-      if (edit->road && area_of(*edit, edit->reach_m(), block_m).touches(area))
-        roads.push_back(edit.get());
-    }
-  }
-  for (const auto& quarter : cell->quarters)
-    add_roads(quarter.get(), area, block_m, roads);
 }
 
 }  // namespace
@@ -280,8 +247,17 @@ void GroundEdits::remove(const GroundEdit& edit, double block_m) {
 
 std::uint64_t GroundEdits::hash_of(const QuadCoord& node, double margin, double block_m) const {
   std::uint64_t hash = 0;
+  const Area area = area_of(node, margin);
+  const auto takes_whole = [&](const Cell& cell, const Area& own) {
+    const bool whole = static_cast<int>(cell.place.level) <= whole_level(node) || area.holds(own);
+    if (whole) hash = core::combine(hash, cell.hash);
+    return whole;
+  };
   for (const auto* cells : {&below_, &cells_})
-    add_hashes(cells->root(), area_of(node, margin), whole_level(node), block_m, hash);
+    each_edit(cells->root(), area, takes_whole, [&](const GroundEdit& edit) {
+      if (area_of(edit, kInfluence * edit.reach_m(), block_m).touches(area))
+        hash = core::combine(hash, edit.content);
+    });
   return hash;
 }
 
@@ -295,14 +271,27 @@ bool GroundEdits::same_in(const GroundEdits& a, const GroundEdits& b, const Quad
 
 bool GroundEdits::reaches(const QuadCoord& node, double block_m) const {
   const Area area = area_of(node);
-  return any_reaches(cells_.root(), area, block_m) || any_reaches(below_.root(), area, block_m);
+  bool any = false;
+  const auto takes_whole = [&](const Cell&, const Area& own) {
+    any = any || area.holds(own);
+    return any;
+  };
+  for (const auto* cells : {&cells_, &below_})
+    each_edit(cells->root(), area, takes_whole, [&](const GroundEdit& edit) {
+      any = any || area_of(edit, edit.reach_m(), block_m).touches(area);
+    });
+  return any;
 }
 
 std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadCoord& node, double block_m) const {
+  const Area area = area_of(node);
   std::vector<const GroundEdit*> roads;
+  const auto lacks_roads = [](const Cell& cell, const Area&) { return !cell.summary.has_roads; };
   for (const auto* cells : {&below_, &cells_})
-    add_roads(cells->root(), area_of(node), block_m, roads);
-  std::ranges::sort(roads);
+    each_edit(cells->root(), area, lacks_roads, [&](const GroundEdit& edit) {
+      if (edit.road && area_of(edit, edit.reach_m(), block_m).touches(area)) roads.push_back(&edit);
+    });
+  std::ranges::sort(roads);  // a piece is listed in several cells
   roads.erase(std::unique(roads.begin(), roads.end()), roads.end());
   return roads;
 }

@@ -16,15 +16,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using FloatTag = hn::CappedTag<float, 16>;
-using Float = hn::Vec<FloatTag>;
-
-HWY_INLINE Float set(float value) {
-  return hn::Set(FloatTag(), value);
-}
-
 constexpr std::size_t kDirections = 8;
 constexpr std::size_t kFields = kDirections + 2;  // slopes of the horizon, then the two shadows
 constexpr float kNoShadow = -1e30F;               // a height

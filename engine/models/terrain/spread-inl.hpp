@@ -1,5 +1,6 @@
-// Interpolates a row of coarse samples linearly at finer samples between them. Only kernels of the
-// terrain include it, once per instruction set; hence the unusual include guard.
+// The vectors of the terrain's kernels, and the linear interpolation of a row of coarse samples at
+// finer samples between them. Only kernels of the terrain include it, once per instruction set;
+// hence the unusual include guard.
 #if defined(PSYGEN_MODELS_TERRAIN_SPREAD_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_TERRAIN_SPREAD_INL
 #undef PSYGEN_MODELS_TERRAIN_SPREAD_INL
@@ -17,15 +18,22 @@ namespace psygen::models::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Vectors of at most 16 numbers.
+using FloatTag = hn::CappedTag<float, 16>;
+using IntTag = hn::RebindToSigned<FloatTag>;
+using UintTag = hn::RebindToUnsigned<FloatTag>;
+using Float = hn::Vec<FloatTag>;
+
+// `value` in every lane.
+HWY_INLINE Float set(float value) {
+  return hn::Set(FloatTag(), value);
+}
+
 // Fine sample i lies at `phase` + i · `step`, coarse sample k at k · `spacing`. A weight depends
 // only on the remainder of its place by `spacing`, so rows with another start give the same bits.
 template <std::size_t kLongest>
 class Spread {
  public:
-  // Vectors of at most 16 numbers.
-  using FloatTag = hn::CappedTag<float, 16>;
-  using IntTag = hn::RebindToSigned<FloatTag>;
-  using Float = hn::Vec<FloatTag>;
   static constexpr std::size_t kRow = kLongest + 16;
 
   // Prepares `count` fine samples, at most kLongest.
@@ -33,18 +41,18 @@ class Spread {
       : dense_(step <= spacing) {
     const FloatTag d;
     const IntTag di;
-    const auto set = [](auto value) { return hn::Set(FloatTag(), static_cast<float>(value)); };
+    const auto real = [](std::size_t value) { return set(static_cast<float>(value)); };
     const float scale = 1.0F / static_cast<float>(spacing);
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
       // The padding repeats the last sample.
-      const Float fine = hn::Min(hn::Add(hn::Iota(d, 0), set(i)), set(count - 1));
-      const Float place = hn::Add(set(phase), hn::Mul(fine, set(step)));
+      const Float fine = hn::Min(hn::Add(hn::Iota(d, 0), real(i)), real(count - 1));
+      const Float place = hn::Add(real(phase), hn::Mul(fine, real(step)));
       const Float at = hn::Floor(hn::Mul(hn::Add(place, set(0.5F)), set(scale)));
       const auto number = hn::ConvertTo(di, at);
       const std::int32_t first = hn::GetLane(number);
       first_[i / hn::Lanes(d)] = static_cast<std::size_t>(first);
       hn::Store(hn::Sub(number, hn::Set(di, first)), di, slot_ + i);
-      hn::Store(hn::Mul(hn::Sub(place, hn::Mul(at, set(spacing))), set(scale)), d, weight_ + i);
+      hn::Store(hn::Mul(hn::Sub(place, hn::Mul(at, real(spacing))), set(scale)), d, weight_ + i);
     }
   }
 

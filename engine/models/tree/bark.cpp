@@ -1,6 +1,5 @@
 // Trunk and branches: tapering tubes around the skeleton's curves. The lanes are the branches of
 // one kind and depth; where a depth has few branches, the lanes are the rings of all of them.
-#include "engine/models/tree/indices.hpp"
 #include "engine/models/tree/mesh.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -55,8 +54,7 @@ struct BarkJob {
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace psygen::models {
-namespace HWY_NAMESPACE {
+namespace psygen::models::HWY_NAMESPACE {
 
 struct Branches {
   Vec3 base, direction, bend, u, v;
@@ -266,8 +264,7 @@ void fill_up(bool rings, BarkLanes& out) {
   hn::StoreU(hn::Set(du, out.ring[n - 1]), du, &out.ring[n]);
 }
 
-// Writes `total` indices: `pattern`, the indices of sixteen tubes, repeated with growing first
-// vertices.
+// append_pattern(), to reserved memory.
 void repeat_pattern(const std::uint16_t* pattern, std::size_t length, std::uint32_t first,
                     std::uint32_t step, std::size_t total, std::uint16_t* to) {
   const HWY_CAPPED(std::uint16_t, 32) wide;
@@ -285,8 +282,7 @@ void repeat_pattern(const std::uint16_t* pattern, std::size_t length, std::uint3
   }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace psygen::models
+}  // namespace psygen::models::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -326,9 +322,8 @@ void write_indices(const TubePlan& tube, std::uint32_t count, std::uint32_t bloc
                    std::uint32_t first, MeshWriter& out) {
   const auto repeat = [&](std::uint32_t tubes, std::uint32_t start, bool in_blocks) {
     const std::uint32_t size = tube.triangles() * 3;
-    HWY_DYNAMIC_DISPATCH(repeat_pattern)
-    (tube_pattern(tube, in_blocks), kTreeLanes * size, start, kTreeLanes * tube.vertices(),
-     std::size_t{tubes} * size, out.append_indices(tubes * size));
+    append_pattern(tube_pattern(tube, in_blocks), kTreeLanes * size, start,
+                   kTreeLanes * tube.vertices(), std::size_t{tubes} * size, out);
   };
   if (blocked > 0) repeat(blocked, first, true);
   if (count > blocked) repeat(count - blocked, first + blocked * tube.vertices(), false);
@@ -349,10 +344,6 @@ void write_cone(const TreePlan& plan, const glm::vec3& from, float radius, std::
   for (std::uint32_t side = 0; side < 3; ++side)
     out.triangle(first + side, first + 3, first + (side + 1) % 3);
 }
-
-}  // namespace
-
-namespace {
 
 // Indexed by leafy or bare tree, level, depth, and inner branch or tip.
 using TubePlans = std::array<std::array<std::array<TubePlan, 2>, 4>, kTreeLevels>;
@@ -376,15 +367,6 @@ constexpr std::array<TubePlans, 2> kTubePlans = [] {
   }
   return plans;
 }();
-
-}  // namespace
-
-const TubePlan& tube_plan(const TreePlan& plan, int level, int depth, bool tip) {
-  const TubePlans& plans = kTubePlans[plan.foliage.near != nullptr ? 0 : 1];
-  return plans[static_cast<std::size_t>(level)][static_cast<std::size_t>(std::min(depth, 3))][tip];
-}
-
-namespace {
 
 using Colours = std::array<std::uint32_t, 16>;
 
@@ -454,6 +436,17 @@ void mesh_depth(const BarkJob& job, const TreeSkeleton& s, std::size_t first, st
 
 }  // namespace
 
+const TubePlan& tube_plan(const TreePlan& plan, int level, int depth, bool tip) {
+  const TubePlans& plans = kTubePlans[plan.foliage.near != nullptr ? 0 : 1];
+  return plans[static_cast<std::size_t>(level)][static_cast<std::size_t>(std::min(depth, 3))][tip];
+}
+
+void append_pattern(const std::uint16_t* pattern, std::size_t length, std::uint32_t first,
+                    std::uint32_t step, std::size_t total, MeshWriter& out) {
+  std::uint16_t* const to = out.append_indices(static_cast<std::uint32_t>(total));
+  HWY_DYNAMIC_DISPATCH(repeat_pattern)(pattern, length, first, step, total, to);
+}
+
 void mesh_bark(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
                const TreeCrown& crown, MeshWriter& out) {
   const Colours colours = bark_colours(plan);
@@ -465,15 +458,15 @@ void mesh_bark(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
     for (const bool tip : {false, true}) {
       const TubePlan& tube = tube_plan(plan, level, depth, tip);
       if (tube.sides == 0) continue;
-      const BarkJob job{plan,
-                        crown,
-                        tube,
-                        circle(tube.sides),
-                        colours.data(),
-                        depth == 0 ? 0.0F : sway_at(depth - 1, skeleton.depth),
-                        sway_at(depth, skeleton.depth),
-                        depth == 0,
-                        tip};
+      const BarkJob job{.plan = plan,
+                        .crown = crown,
+                        .tube = tube,
+                        .circle = circle(tube.sides),
+                        .colours = colours.data(),
+                        .sway_start = depth == 0 ? 0.0F : sway_at(depth - 1, skeleton.depth),
+                        .sway_end = sway_at(depth, skeleton.depth),
+                        .trunk = depth == 0,
+                        .tip = tip};
       mesh_depth(job, skeleton, first, last, lanes, out);
     }
   }

@@ -26,18 +26,12 @@ class Counter {
     ChildTotals totals{};
     for (std::size_t kind = 0; kind < plan_.grammar->kinds; ++kind) {
       const std::uint32_t count = parents.count(kind), first = parents.first[kind];
-      if (count == 0) continue;
-      const GrammarRule* const only = only_rule(*plan_.grammar, kind);
-      if (limited_ || only == nullptr) {
-        for (std::uint32_t p = first; p < first + count; ++p)
-          count_children(parents, kind, p, remaining, totals);
-        continue;
-      }
-      for (std::size_t c = 0; c < plan_.grammar->kinds; ++c)
-        totals[c] += only->count[c] * count;
-      if (only->star != kNoKind)
-        totals[only->star] +=
-            count_stars(plan_, *only, &parents.draw[first], count, &parents.stars[first]);
+      if (!limited_ && count > 0)
+        count_children(plan_, kind, &parents.draw[first], count, &parents.stars[first], totals);
+      for (std::uint32_t p = first; limited_ && p < first + count; ++p)
+        for_children(
+            plan_, kind, parents.draw[p], parents.budget[p], remaining,
+            [&](std::size_t c, std::uint32_t, std::uint32_t, std::uint32_t) { ++totals[c]; });
     }
     return totals;
   }
@@ -52,19 +46,6 @@ class Counter {
   }
 
  private:
-  void count_children(const Generation& parents, std::size_t kind, std::uint32_t p, int remaining,
-                      ChildTotals& totals) const {
-    if (limited_) {
-      for_children(
-          plan_, kind, parents.draw[p], parents.budget[p], remaining,
-          [&](std::size_t c, std::uint32_t, std::uint32_t, std::uint32_t) { ++totals[c]; });
-      return;
-    }
-    const Children children = children_of(plan_, kind, parents.draw[p]);
-    for (std::size_t c = 0; c < plan_.grammar->kinds; ++c)
-      totals[c] += children.of_kind(c);
-  }
-
   void follow_paths(const Generation& parents, int remaining, Generation& out) const {
     std::array<std::uint32_t, kMaxKinds> to;
     std::copy_n(out.first.begin(), kMaxKinds, to.begin());

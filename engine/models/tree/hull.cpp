@@ -12,29 +12,6 @@ std::array<std::uint8_t, 3> packed(const std::array<float, 3>& c, float brightne
           pack_unorm8(c[2] * brightness)};
 }
 
-}  // namespace
-
-std::array<float, 3> leaf_colour(const TreePlan& plan, float hue) {
-  float x = hue * 4.0F;
-  if (plan.cyclic) x -= 4.0F * std::floor(hue);
-  x = std::min(std::max(x, 0.0F), 4.0F);
-  const int i = std::min(static_cast<int>(x), 3);
-  const float f = x - static_cast<float>(i);
-  const auto at = static_cast<std::size_t>(i);
-  std::array<float, 3> c;
-  for (std::size_t k = 0; k < 3; ++k)
-    c[k] = plan.ramp[at][k] + f * (plan.ramp[at + 1][k] - plan.ramp[at][k]);
-  return c;
-}
-
-LeafTint leaf_tint(const TreePlan& plan) {
-  const std::uint32_t h = number_of(plan.key, plan.salt, kTintNumber);
-  return {plan.hue + plan.colour_variation * 0.12F * (low_fraction(h) - 0.5F),
-          1.0F + plan.colour_variation * 0.24F * (high_fraction(h) - 0.5F)};
-}
-
-namespace {
-
 // Corners of a unit sphere: top, rings, bottom.
 constexpr float kA = 0.894427191F, kB = 0.447213595F;  // of an icosahedron
 constexpr float kC1 = 0.309016994F, kS1 = 0.951056516F, kC2 = 0.809016994F, kS2 = 0.587785252F;
@@ -76,6 +53,25 @@ glm::vec3 stretched(const float (&corner)[3], bool ball, const CrownOutline& o) 
 }
 
 }  // namespace
+
+std::array<float, 3> leaf_colour(const TreePlan& plan, float hue) {
+  float x = hue * 4.0F;
+  if (plan.cyclic) x -= 4.0F * std::floor(hue);
+  x = std::min(std::max(x, 0.0F), 4.0F);
+  const int i = std::min(static_cast<int>(x), 3);
+  const float f = x - static_cast<float>(i);
+  const auto at = static_cast<std::size_t>(i);
+  std::array<float, 3> c;
+  for (std::size_t k = 0; k < 3; ++k)
+    c[k] = plan.ramp[at][k] + f * (plan.ramp[at + 1][k] - plan.ramp[at][k]);
+  return c;
+}
+
+LeafTint leaf_tint(const TreePlan& plan) {
+  const std::uint32_t h = number_of(plan.key, plan.salt, kTintNumber);
+  return {plan.hue + plan.colour_variation * 0.12F * (low_fraction(h) - 0.5F),
+          1.0F + plan.colour_variation * 0.24F * (high_fraction(h) - 0.5F)};
+}
 
 void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, const CrownOutline& outline,
                MeshWriter& out) {

@@ -1,6 +1,7 @@
-#include "engine/models/tree/indices.hpp"
-
+// The index lists of sixteen tubes or sprays, built at compile time. A mesh repeats them and adds
+// the numbers of its first vertices.
 #include "engine/core/assert.hpp"
+#include "engine/models/tree/mesh.hpp"
 #include "engine/models/tree/spray_forms.hpp"
 
 namespace psygen::models {

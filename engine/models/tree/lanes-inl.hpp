@@ -13,14 +13,10 @@
 #include <cstring>
 
 #include "engine/models/kit/mix32-inl.hpp"
-#include "engine/models/kit/packing-inl.hpp"
 #include "engine/models/tree/random.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace psygen::models {
-namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
+namespace psygen::models::HWY_NAMESPACE {
 
 // 4, 8 or 16 lanes; 1 without SIMD.
 using DF = HWY_CAPPED(float, 16);
@@ -351,8 +347,7 @@ struct Extent {
 
 #endif
 
-}  // namespace HWY_NAMESPACE
-}  // namespace psygen::models
+}  // namespace psygen::models::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -4,6 +4,24 @@
 #include "engine/models/tree/paths.hpp"
 
 namespace psygen::models {
+namespace {
+
+void mesh_tree(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
+               const TreeCrown& crown, MeshWriter& out) {
+  mesh_bark(plan, level, skeleton, crown, out);
+  if (plan.foliage.near == nullptr) return;
+  if (level >= 2) mesh_core(plan, skeleton, crown, out);
+  const bool by_leaves = has_bearers(plan, skeleton);
+  std::uint32_t bearers = 0;
+  for (std::size_t g = 0; g < skeleton.group_count; ++g) {
+    const TreeGroup& group = skeleton.groups[g];
+    if (by_leaves ? bears_leaves(plan, group) : group.tip) bearers += group.count;
+  }
+  mesh_sprays(plan, level, skeleton, crown, spray_count(plan, level, bearers, out.vertex_count()),
+              out);
+}
+
+}  // namespace
 
 MeshWriter::MeshWriter(const core::Bounds& box, const MeshView& out)
     : half_(box.half_extent()), vertices_(out.vertices.data()), indices_(out.indices.data()) {
@@ -110,25 +128,6 @@ double tree_steps(const TreePlan& plan, int level) {
   return steps;
 }
 
-namespace {
-
-void mesh_tree(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
-               const TreeCrown& crown, MeshWriter& out) {
-  mesh_bark(plan, level, skeleton, crown, out);
-  if (plan.foliage.near == nullptr) return;
-  if (level >= 2) mesh_core(plan, skeleton, crown, out);
-  const bool by_leaves = has_bearers(plan, skeleton);
-  std::uint32_t bearers = 0;
-  for (std::size_t g = 0; g < skeleton.group_count; ++g) {
-    const TreeGroup& group = skeleton.groups[g];
-    if (by_leaves ? bears_leaves(plan, group) : group.tip) bearers += group.count;
-  }
-  mesh_sprays(plan, level, skeleton, crown, spray_count(plan, level, bearers, out.vertex_count()),
-              out);
-}
-
-}  // namespace
-
 core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& out) {
   MeshWriter writer(plan.bounds, out);
   const bool leafy = plan.foliage.near != nullptr;
@@ -149,6 +148,25 @@ core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& ou
                     writer.vertex_count() * sizeof(core::ModelVertex) == out.vertices.size(),
                 "the spans have the sizes of mesh_size()");
   return writer.written();
+}
+
+Collider trunk_collider(const TreePlan& plan) {
+  constexpr std::array kEnds{0.0F, 0.15F, 0.5F, 1.0F};
+  TreeSkeleton trunk;
+  grow_tree(plan, 0, 1, trunk);
+  const float end = plan.grammar->grows(plan.axiom) ? plan.taper : 0.0F;
+  Collider collider;
+  for (std::size_t i = 0; i + 1 < kEnds.size(); ++i) {
+    const float middle = 0.5F * (kEnds[i] + kEnds[i + 1]);
+    // As places_of_rings() in bark.cpp.
+    const float near_foot = std::max(1.0F - 3.0F * middle, 0.0F);
+    const float radius = trunk.rows[kRadius][0] * (1.0F - middle * (1.0F - end)) *
+                         (1.0F + plan.flare * near_foot * near_foot);
+    glm::vec3 from = trunk.point(0, kEnds[i]);
+    if (i == 0) from.y -= sink_m(plan);
+    collider.shapes.emplace_back(Collider::Capsule{from, trunk.point(0, kEnds[i + 1]), radius});
+  }
+  return collider;
 }
 
 }  // namespace psygen::models

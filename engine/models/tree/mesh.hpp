@@ -137,6 +137,18 @@ struct LeafTint {
 // The tint of the tree with the plan's key.
 LeafTint leaf_tint(const TreePlan& plan);
 
+// The indices of sixteen tubes: 16 · 3 · tube.triangles(), aligned to 64 bytes. `tube` must be one
+// of tube_plan(). With `in_block`, vertex v of tube i has the number 16 v + 4 (i mod 4) + ⌊i / 4⌋;
+// otherwise the tubes follow each other.
+const std::uint16_t* tube_pattern(const TubePlan& tube, bool in_block);
+// The indices of sixteen sprays in a block, with the same order of vertices. `form` must be one of
+// the objects in spray_forms.hpp.
+const std::uint16_t* spray_pattern(const SprayForm& form);
+// Appends `total` indices: `pattern`, of `length` indices, repeated with `first` added, then
+// `first` + `step` and so on.
+void append_pattern(const std::uint16_t* pattern, std::size_t length, std::uint32_t first,
+                    std::uint32_t step, std::size_t total, MeshWriter& out);
+
 // The parts of a mesh, each appended to `out`: the tubes of all drawn branches, the cone from the
 // trunk's end, the cone from the base, `sprays` sprays of leaves, and the hull.
 void mesh_bark(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
@@ -156,9 +168,44 @@ core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& ou
 MeshSize tree_mesh_size(const TreePlan& plan, int level);
 double tree_steps(const TreePlan& plan, int level);
 
+// Capsules from the trunk's sunk base to its end, along its bends; each has the trunk's width at
+// its middle. The drawn trunk differs from them by at most 0.1 of its length, its radius and the
+// widening at its base together (mesh_test.cpp measures it). Branches have no collider. Constant
+// time; needs 500 KiB of stack.
+Collider trunk_collider(const TreePlan& plan);
+
 // Metres by which the trunk extends below the base point, to meet sloping ground.
 inline float sink_m(const TreePlan& plan) {
   return 2.0F * plan.radius_m;
 }
+
+// A model type that is a tree: one plan per set of parameters, from which bounds, sizes, errors and
+// meshes follow. Derived types make the plan and predict its cost (tree.cpp, species_type.cpp).
+// Immutable, any thread. Has no parameters of its own.
+class PlannedTree : public ModelType {
+ public:
+  // The plan of one tree. Requires legal parameters. The plan may point into this type.
+  virtual TreePlan plan(const Parameters& p) const = 0;
+
+  // ModelType, from the plan.
+  int level_count() const final { return kTreeLevels; }
+  bool may_run_on_main_thread() const final { return true; }
+  double level_error_m(const Parameters& p, int level) const final {
+    const TreePlan tree = plan(p);
+    return kLevelErrors[level] * static_cast<double>(2 * tree.envelope_across + tree.envelope_up) /
+           3;
+  }
+  core::Bounds bounds(const Parameters& p) const final { return plan(p).bounds; }
+  MeshSize mesh_size(const Parameters& p, int level) const final {
+    return tree_mesh_size(plan(p), level);
+  }
+  double steps(const Parameters& p, int level) const final { return tree_steps(plan(p), level); }
+  double step_seconds() const final { return 18e-9; }
+  core::SurfaceKind surface() const final { return core::SurfaceKind::kBark; }
+  Collider collider(const Parameters& p) const final { return trunk_collider(plan(p)); }
+  core::Bounds synthesise(const Parameters& p, int level, const MeshView& out) const final {
+    return synthesise_tree(plan(p), level, out);
+  }
+};
 
 }  // namespace psygen::models

@@ -8,9 +8,6 @@
 
 namespace psygen::models {
 
-// Numbers of children by kind.
-using ChildTotals = std::array<std::uint32_t, kMaxKinds>;
-
 // True if the grammar puts leaves on the branches of a group.
 inline bool bears_leaves(const TreePlan& plan, const TreeGroup& group) {
   const LeavesOn on = plan.kinds[group.kind].leaves;

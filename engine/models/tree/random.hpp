@@ -33,6 +33,9 @@ constexpr float high_fraction(std::uint32_t h) {
   return static_cast<float>(static_cast<std::int32_t>(h >> 16)) * (1.0F / 65536.0F);
 }
 
+// Numbers of children by kind.
+using ChildTotals = std::array<std::uint32_t, kMaxKinds>;
+
 // The children of a node: a rule, and the number of its starred kind. The grammar owns the rule.
 struct Children {
   const GrammarRule* rule;
@@ -50,10 +53,11 @@ inline std::uint32_t star_count(const TreePlan& plan, const GrammarRule& rule, s
   const int drawn = plan.branches - spread + static_cast<int>(((draw >> 16) * range) >> 16);
   return static_cast<std::uint32_t>(std::max(std::max(drawn, 1) - static_cast<int>(rule.fixed), 0));
 }
-// Writes star_count() of `count` draws to `stars` and returns the sum. Reads and writes up to a
+// Adds the children of `count` nodes of a kind that grows, with these draws, to the totals of each
+// kind. If the kind has one rule, writes their star_count() to `stars`. Reads and writes up to a
 // vector beyond the end.
-std::uint32_t count_stars(const TreePlan& plan, const GrammarRule& rule, const std::uint32_t* draws,
-                          std::uint32_t count, std::uint32_t* stars);
+void count_children(const TreePlan& plan, std::size_t kind, const std::uint32_t* draws,
+                    std::uint32_t count, std::uint32_t* stars, ChildTotals& totals);
 // Mixes `count` keys in place and writes the draws of these branches. Reads and writes up to a
 // vector beyond the end.
 void draw_numbers(std::uint32_t salt, std::uint32_t count, std::uint32_t* keys,

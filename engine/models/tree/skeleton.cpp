@@ -21,8 +21,7 @@ inline constexpr std::array<float, kMaxChildren + 1> kInverse = [] {
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace psygen::models {
-namespace HWY_NAMESPACE {
+namespace psygen::models::HWY_NAMESPACE {
 
 // The parents of the branches in the lanes.
 struct Parents {
@@ -192,6 +191,7 @@ void fill_up_parents(const TreeGroup& group, TreeSkeleton& s) {
             last);
 }
 
+// Writes star_count() of `count` draws to `stars` and returns the sum.
 std::uint32_t count_stars(const TreePlan& plan, const GrammarRule& rule, const std::uint32_t* draws,
                           std::uint32_t count, std::uint32_t* stars) {
   const DU du;
@@ -223,8 +223,7 @@ void draw_numbers(std::uint32_t salt, std::uint32_t count, std::uint32_t* keys,
   }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace psygen::models
+}  // namespace psygen::models::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -292,24 +291,11 @@ std::uint32_t path_children(const TreePlan& plan, const TreeSkeleton& s, std::si
 ChildTotals all_children(const TreePlan& plan, TreeSkeleton& s, std::size_t first,
                          std::size_t last) {
   ChildTotals totals{};
-  const Grammar& grammar = *plan.grammar;
   for (std::size_t g = first; g < last; ++g) {
     const TreeGroup& parents = s.groups[g];
-    if (!grammar.grows(parents.kind)) continue;
-    const std::uint32_t from = parents.first, to = from + parents.count;
-    const GrammarRule* const only = only_rule(grammar, parents.kind);
-    if (only == nullptr) {
-      for (std::uint32_t p = from; p < to; ++p) {
-        const Children children = children_of(plan, parents.kind, s.draw[p]);
-        for (std::size_t c = 0; c < grammar.kinds; ++c)
-          totals[c] += children.of_kind(c);
-      }
-      continue;
-    }
-    for (std::size_t c = 0; c < grammar.kinds; ++c)
-      totals[c] += only->count[c] * parents.count;
-    if (only->star != kNoKind)
-      totals[only->star] += count_stars(plan, *only, &s.draw[from], parents.count, &s.stars[from]);
+    if (!plan.grammar->grows(parents.kind)) continue;
+    count_children(plan, parents.kind, &s.draw[parents.first], parents.count,
+                   &s.stars[parents.first], totals);
   }
   return totals;
 }
@@ -328,9 +314,18 @@ void link_paths(const PathChild* children, std::uint32_t count,
 
 }  // namespace
 
-std::uint32_t count_stars(const TreePlan& plan, const GrammarRule& rule, const std::uint32_t* draws,
-                          std::uint32_t count, std::uint32_t* stars) {
-  return HWY_DYNAMIC_DISPATCH(count_stars)(plan, rule, draws, count, stars);
+void count_children(const TreePlan& plan, std::size_t kind, const std::uint32_t* draws,
+                    std::uint32_t count, std::uint32_t* stars, ChildTotals& totals) {
+  const GrammarRule* const only = only_rule(*plan.grammar, kind);
+  for (std::size_t c = 0; only != nullptr && c < plan.grammar->kinds; ++c)
+    totals[c] += only->count[c] * count;
+  if (only != nullptr && only->star != kNoKind)
+    totals[only->star] += HWY_DYNAMIC_DISPATCH(count_stars)(plan, *only, draws, count, stars);
+  for (std::uint32_t i = 0; only == nullptr && i < count; ++i) {
+    const Children children = children_of(plan, kind, draws[i]);
+    for (std::size_t c = 0; c < plan.grammar->kinds; ++c)
+      totals[c] += children.of_kind(c);
+  }
 }
 
 void draw_numbers(std::uint32_t salt, std::uint32_t count, std::uint32_t* keys,

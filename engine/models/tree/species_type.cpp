@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "engine/core/assert.hpp"
-#include "engine/models/tree/planned_tree.hpp"
+#include "engine/models/tree/mesh.hpp"
 #include "engine/models/tree/reach.hpp"
 #include "engine/models/tree/species_grammar.hpp"
 #include "engine/models/tree/spray_forms.hpp"

@@ -6,7 +6,6 @@
 // neighbouring bearers.
 #include <utility>
 
-#include "engine/models/tree/indices.hpp"
 #include "engine/models/tree/mesh.hpp"
 #include "engine/models/tree/paths.hpp"
 #include "engine/models/tree/spray_forms.hpp"
@@ -33,25 +32,25 @@ struct Bearers {
 // Values that all sprays of one mesh share. "raw" values are factors of random integers of 16 bits.
 struct SprayJob {
   const SprayForm& form;
-  std::uint32_t key;                  // of the random numbers
-  float from, from_raw;               // position on the bearer
-  float cluster, cluster_fall;        // cluster · o = (cluster − cluster_fall · raw²) · raw
-  float inverse_half[3], outward[3];  // of the crown
-  float random_raw, out, branch, up;  // of the axis
+  std::uint32_t key;            // of the random numbers
+  float from, from_raw;         // position on the bearer
+  float cluster, cluster_fall;  // cluster · o = (cluster − cluster_fall · raw²) · raw
+  float inverse_half[3] = {}, outward[3] = {};  // of the crown
+  float random_raw, out, branch, up;            // of the axis
   float side_random_raw, side_out, side_up, normal_up;
-  float length, length_raw;        // of a spray
-  float scale[3], centre[3];       // packed = (position from the crown's centre) · scale + centre
-  float room;                      // distance to keep from the box, in lengths of the spray
-  float colour[3], colour_raw[3];  // outer corners, stored bytes
-  float bright, bright_raw;
+  float length, length_raw;  // of a spray
+  float scale[3] = {},
+        centre[3] = {};  // packed = (position from the crown's centre) · scale + centre
+  float room = 1.3F;     // distance to keep from the box, in lengths of the spray
+  float colour[3] = {}, colour_raw[3] = {};  // outer corners, stored bytes
+  float bright = 0, bright_raw = 0;
 };
 
 }  // namespace psygen::models
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace psygen::models {
-namespace HWY_NAMESPACE {
+namespace psygen::models::HWY_NAMESPACE {
 
 // A chunk of sprays goes through three steps before the corners are written. Each step is a short
 // loop, so the long dependency chains of neighbouring vectors overlap. Steps pass rows of a Chunk.
@@ -258,19 +257,7 @@ void write_sprays(const SprayJob& job, const Bearers& bearers, std::uint32_t spr
   write_blocks<kPatch>(job, bearers, sprays, box, to);
 }
 
-void repeat_block(const std::uint16_t* pattern, std::size_t length, std::uint32_t step,
-                  std::uint32_t first, std::uint32_t blocks, std::uint16_t* to) {
-  const HWY_CAPPED(std::uint16_t, 32) d;
-  for (std::uint32_t b = 0; b < blocks; ++b) {
-    const auto base = hn::Set(d, static_cast<std::uint16_t>(first + b * step));
-    for (std::size_t i = 0; i < length; i += hn::Lanes(d))
-      hn::StoreU(hn::Load(d, pattern + i) + base, d, to + i);
-    to += length;
-  }
-}
-
-}  // namespace HWY_NAMESPACE
-}  // namespace psygen::models
+}  // namespace psygen::models::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -279,7 +266,6 @@ namespace {
 
 HWY_EXPORT(collect);
 HWY_EXPORT(write_sprays);
-HWY_EXPORT(repeat_block);
 
 // Length of a spray times √count, at each level, with which `count` sprays fill a crown of radius
 // 1.
@@ -320,31 +306,22 @@ SprayJob spray_job(const TreePlan& plan, int level, const TreeCrown& crown, std:
   const FoliagePlan& f = plan.foliage;
   const float cluster = size.pull * f.cluster * crown.radius *
                         std::min(2.1F / std::sqrt(static_cast<float>(bearers)), 0.6F);
-  SprayJob job{spray_form(plan, level),
-               plan.key ^ (plan.salt + kSprayNumber),
-               f.from,
-               (1.0F - f.from) * kRaw,
-               cluster * kSigned,
-               0.2F * cluster * kSigned * kSigned * kSigned,
-               {},
-               {},
-               f.random * kSigned,
-               f.out,
-               f.branch,
-               f.up,
-               f.side_random * kSigned,
-               f.side_out,
-               f.side_up,
-               f.normal_up,
-               0.75F * size.length,
-               0.5F * size.length * kRaw,
-               {},
-               {},
-               1.3F,
-               {},
-               {},
-               0,
-               0};
+  SprayJob job{.form = spray_form(plan, level),
+               .key = plan.key ^ (plan.salt + kSprayNumber),
+               .from = f.from,
+               .from_raw = (1.0F - f.from) * kRaw,
+               .cluster = cluster * kSigned,
+               .cluster_fall = 0.2F * cluster * kSigned * kSigned * kSigned,
+               .random_raw = f.random * kSigned,
+               .out = f.out,
+               .branch = f.branch,
+               .up = f.up,
+               .side_random_raw = f.side_random * kSigned,
+               .side_out = f.side_out,
+               .side_up = f.side_up,
+               .normal_up = f.normal_up,
+               .length = 0.75F * size.length,
+               .length_raw = 0.5F * size.length * kRaw};
   for (int c = 0; c < 3; ++c) {
     job.inverse_half[c] = crown.inverse_half[c];
     job.outward[c] = crown.radius * crown.inverse_half[c] * crown.inverse_half[c];
@@ -385,9 +362,8 @@ void mesh_sprays(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
   std::byte* to = out.append_vertices(sprays * job.form.vertices);
   HWY_DYNAMIC_DISPATCH(write_sprays)(job, bearers, sprays, out, to);
   const std::size_t indices = std::size_t{3} * job.form.triangles;
-  HWY_DYNAMIC_DISPATCH(repeat_block)
-  (spray_pattern(job.form), kSprayBlock * indices, kSprayBlock * job.form.vertices, first,
-   sprays / kSprayBlock, out.append_indices(sprays * 3 * job.form.triangles));
+  append_pattern(spray_pattern(job.form), kSprayBlock * indices, first,
+                 kSprayBlock * job.form.vertices, sprays * indices, out);
 }
 
 }  // namespace psygen::models

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/models/tree/planned_tree.hpp"
+#include "engine/models/tree/mesh.hpp"
 #include "engine/models/tree/reach.hpp"
 #include "engine/models/tree/spray_forms.hpp"
 

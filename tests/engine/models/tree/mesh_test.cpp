@@ -1,4 +1,4 @@
-#include "engine/models/tree/trunk.hpp"
+#include "engine/models/tree/mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include "engine/models/kit/packing.hpp"
-#include "engine/models/tree/mesh.hpp"
 #include "engine/models/tree/tree.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 
