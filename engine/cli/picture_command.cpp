@@ -12,7 +12,6 @@
 #include "engine/cli/commands.hpp"
 #include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
-#include "engine/cli/places.hpp"
 #include "engine/cli/scene_options.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/text_values.hpp"

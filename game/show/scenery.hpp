@@ -8,12 +8,22 @@
 
 #include "ecs/ecs.hpp"
 #include "engine/app/session.hpp"
+#include "engine/core/mesh_data.hpp"
 #include "engine/scene/objects/components.hpp"
 #include "engine/scene/scene.hpp"
 #include "game/play/play.hpp"
-#include "game/show/shapes.hpp"
 
 namespace cairns {
+
+// A deer, bird or fish is a body and up to two parts that swing against each other, made of a few
+// ellipsoids and fins. Units are metres; the animals face −Z.
+inline constexpr std::size_t kParts = 3;
+struct Part {
+  core::MeshData mesh;
+  glm::vec3 joint{0.0F};  // pivot, relative to the creature's base point
+  glm::vec3 axis{1, 0, 0};
+  float swing = 0;  // amplitude in radians
+};
 
 class Scenery {
  public:

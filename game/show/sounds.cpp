@@ -1,14 +1,170 @@
 #include "game/show/sounds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <numbers>
+#include <span>
+
+#include "engine/audio/tones.hpp"
+#include "engine/core/hash.hpp"
 
 namespace cairns {
 namespace {
 
 constexpr double kFadePerS = 0.8;  // change of a loop's gain per second
 constexpr double kTitleWind = 0.15;
+
+using audio::add, audio::add_tone, audio::looped, audio::noise, audio::shape;
+using audio::Samples, audio::samples_of;
+
+ClipPtr clip(std::span<const float> left, std::span<const float> right = {}) {
+  return std::make_shared<const audio::Clip>(audio::clip_of(left, right));
+}
+
+ClipPtr wind_sound() {
+  Samples out = noise(11, 60, 480, 1);
+  shape(out, [](float t) { return 2.2F + 0.9F * std::sin(0.9F * t) * std::sin(0.57F * t + 1); });
+  return clip(looped(out, 1.5));
+}
+
+ClipPtr rain_sound() {
+  Samples out = noise(5, 900, 7000, 2);
+  shape(out, [](float) { return 0.8F; });
+  return clip(looped(out, 0.6));
+}
+
+ClipPtr water_sound() {
+  Samples out = noise(7, 150, 900, 3);
+  shape(out, [](float t) { return 1.0F + 0.8F * std::sin(1.8F * t) * std::sin(1.1F * t); });
+  return clip(looped(out, 1));
+}
+
+ClipPtr fire_sound() {
+  Samples out = noise(4, 80, 700, 4);
+  shape(out, [](float) { return 0.5F; });
+  core::RandomStream random(5, 0, 0, 0, core::Purpose::kStructure);
+  for (int i = 0; i < 60; ++i) {
+    const Samples crack = noise(0.02, 800, 6000, 100 + static_cast<std::uint64_t>(i));
+    const double at_s = random.next_real(0, 3.9);
+    add(out, at_s, crack, static_cast<float>(random.next_real(0.3, 1.4)), 0);
+  }
+  return clip(looped(out, 0.4));
+}
+
+// Slow chords of a pentatonic scale with a few notes above each, in stereo.
+ClipPtr music_sound(std::uint64_t seed) {
+  constexpr std::array<double, 5> kScale{1, 9.0 / 8, 5.0 / 4, 3.0 / 2, 5.0 / 3};
+  constexpr double kSeconds = 64, kChordS = 8;
+  core::RandomStream random(seed, 0, 0, 0, core::Purpose::kColour);
+  const double root = 98 * std::pow(2.0, static_cast<double>(random.next_integer(0, 4)) / 12);
+  std::array<Samples, 2> sides{Samples(samples_of(kSeconds)), Samples(samples_of(kSeconds))};
+  for (int chord = 0; chord < static_cast<int>(kSeconds / kChordS); ++chord) {
+    const double at = chord * kChordS;
+    const auto base = static_cast<std::size_t>(random.next_integer(0, 4));
+    for (std::size_t voice = 0; voice < 3; ++voice) {
+      const std::size_t note = base + 2 * voice;
+      const double hz = root * kScale[note % 5] * (1 + static_cast<double>(note / 5));
+      for (std::size_t side = 0; side < 2; ++side)
+        add_tone(sides[side], at + 0.35 * static_cast<double>(voice), hz * (side == 0 ? 1 : 1.003),
+                 0.05F, 2.6, {0.25F, 0.1F});
+    }
+    for (int note = 0; note < 3; ++note) {
+      if (random.next_unit() < 0.35) continue;
+      const auto step = static_cast<std::size_t>(random.next_integer(0, 9));
+      const double hz = 4 * root * kScale[step % 5] * (step > 4 ? 2 : 1);
+      const auto side = static_cast<std::size_t>(random.next_integer(0, 1));
+      add_tone(sides[side], at + random.next_real(0.5, 5), hz, 0.035F, 1.3, {0.3F});
+    }
+  }
+  return clip(sides[0], sides[1]);
+}
+
+// `hardness` is 0 (snow) to 1 (rock).
+ClipPtr step_sound(float hardness) {
+  Samples out = noise(0.16, 120 + 500 * hardness, 900 + 3500 * hardness, 7);
+  shape(out, [&](float t) { return 2.2F * std::exp(-t * (22 + 30 * hardness)); });
+  return clip(out);
+}
+
+ClipPtr splash_sound() {
+  Samples out = noise(0.9, 250, 3500, 8);
+  shape(out, [](float t) { return 1.4F * std::min(t * 40, 1.0F) * std::exp(-4 * t); });
+  return clip(out);
+}
+
+ClipPtr chop_sound() {
+  Samples out = noise(0.22, 200, 2500, 9);
+  shape(out, [](float t) { return 1.1F * std::exp(-38 * t); });
+  add_tone(out, 0, 190, 0.7F, 0.035, {0.5F, 0.3F});
+  return clip(out);
+}
+
+// A falling tree.
+ClipPtr fall_sound() {
+  Samples out = noise(2.2, 70, 1600, 10);
+  shape(out, [](float t) {
+    const float creak = t < 1.5F ? 0.3F * t * (0.6F + 0.4F * std::sin(70 * t)) : 0;
+    return creak + (t > 1.5F ? 2.6F * std::exp(-5 * (t - 1.5F)) : 0);
+  });
+  return clip(out);
+}
+
+ClipPtr stone_sound() {
+  Samples out(samples_of(0.3));
+  add_tone(out, 0, 1250, 0.5F, 0.02, {0.6F, 0.4F});
+  add_tone(out, 0.07, 980, 0.3F, 0.02, {0.6F, 0.3F});
+  return clip(out);
+}
+
+ClipPtr bird_sound(int which) {
+  Samples out(samples_of(0.9));
+  core::RandomStream random(40 + static_cast<std::uint64_t>(which), 0, 0, 0,
+                            core::Purpose::kColour);
+  float phase = 0;
+  for (int call = 0; call < 3 + which; ++call) {
+    const std::size_t from = samples_of(0.13 * call + 0.02), length = samples_of(0.08);
+    const auto hz = static_cast<float>(random.next_real(2600, 4600));
+    const auto bend = static_cast<float>(random.next_real(-900, 1200));
+    for (std::size_t i = 0; i < length && from + i < out.size(); ++i) {
+      const float t = static_cast<float>(i) / static_cast<float>(length);
+      phase += 2 * std::numbers::pi_v<float> * (hz + bend * t) / audio::kToneRateHz;
+      out[from + i] += 0.35F * std::sin(std::numbers::pi_v<float> * t) * std::sin(phase);
+    }
+  }
+  return clip(out);
+}
+
+// A discovered cairn.
+ClipPtr chime_sound() {
+  Samples out(samples_of(4));
+  int i = 0;
+  for (const double ratio : {1.0, 1.25, 1.5, 2.0, 2.5})
+    add_tone(out, 0.16 * i++, 392 * ratio, 0.16F, 0.9, {0.3F, 0.12F});
+  return clip(out);
+}
+
+// Synthesises all clips; no file is read. Each takes a few milliseconds, and the music about 0.1 s.
+Clips make_clips() {
+  Clips made{wind_sound(),
+             rain_sound(),
+             water_sound(),
+             fire_sound(),
+             music_sound(1),
+             splash_sound(),
+             chop_sound(),
+             fall_sound(),
+             stone_sound(),
+             chime_sound(),
+             {},
+             {}};
+  for (int i = 0; i < 3; ++i) {
+    made.steps[static_cast<std::size_t>(i)] = step_sound(0.5F * static_cast<float>(i));
+    made.birds[static_cast<std::size_t>(i)] = bird_sound(i);
+  }
+  return made;
+}
 
 }  // namespace
 

@@ -1,15 +1,25 @@
-// Plays the sounds of a game: wind by height, footsteps by ground, water, rain, fire, birds by the
-// hour, and music. Without an audio device it stays silent and does not fail. Main thread only.
+// Synthesises and plays the sounds of a game: wind by height, footsteps by ground, water, rain,
+// fire, birds by the hour, and music. Without an audio device it stays silent and does not fail.
+// Main thread only.
 #pragma once
 
+#include <array>
 #include <future>
+#include <memory>
 #include <optional>
 
 #include "engine/audio/audio.hpp"
 #include "game/play/play.hpp"
-#include "game/show/synth.hpp"
 
 namespace cairns {
+
+using ClipPtr = std::shared_ptr<const audio::Clip>;
+
+// All clips of the game. The first four are loops; the music is a minute of slow chords.
+struct Clips {
+  ClipPtr wind, rain, water, fire, music, splash, chop, fall, stone, chime;
+  std::array<ClipPtr, 3> steps, birds;  // steps from snow to rock
+};
 
 class Sounds {
  public:

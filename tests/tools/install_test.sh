@@ -26,7 +26,7 @@ if grep -hE 'GLM_FORCE|ffp-contract|disable-new-dtags|'"$source" "$cmake_files"/
   echo "the package has the settings above for its users"; exit 1
 fi
 # Headers that are not public stay private; documents, worlds and paths are installed.
-for private in engine/render/device/vulkan.hpp engine/core/headroom.hpp engine/cli/places.hpp engine/scene/state.hpp; do
+for private in engine/render/device/vulkan.hpp engine/core/headroom.hpp engine/cli/text_values.hpp engine/scene/state.hpp; do
   [ ! -e "$folder/psygen/include/psygen/$private" ] || { echo "$private is installed"; exit 1; }
 done
 installed_docs="$folder/psygen/share/doc/psygen"

@@ -194,7 +194,7 @@ def self_test():
         "engine/scene/a.cpp": "#include <vulkan/vulkan.h>",
         "engine/world/a.cpp": "#include <thread>",
         "ecs/a.cpp": "#include <mutex>",
-        "engine/app/a.cpp": '#include "engine/cli/places.hpp"',
+        "engine/app/a.cpp": '#include "engine/cli/usage.hpp"',
         "engine/core/a.cpp": '#include "tests/engine/core/fake.hpp"',
         "engine/models/tree/a.cpp": '#include "engine/models/rock/rock.hpp"',
         "engine/models/kit/a.cpp": '#include "engine/models/tree/tree.hpp"',
