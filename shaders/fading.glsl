@@ -2,7 +2,7 @@
 // share of pixels. The mesh that it replaces has the negative of that value and covers the other
 // pixels. So together they cover each pixel once, in any order, without blending.
 // The pattern moves over the picture, so none is seen to stand still. All that fades takes the pixels
-// from the least noise on, and noise rises with time, slower than shares do (scene/draws/fading.hpp):
+// from the least noise on, and noise rises with time, slower than shares do (scene/meshes/fading.hpp):
 // whether a share reaches the noise of a pixel or the noise starts again from 0, the pixel changes
 // once in a fade, and never back.
 #ifdef PSYGEN_FADING

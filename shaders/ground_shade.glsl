@@ -1,4 +1,4 @@
-// Soft dark spots on the ground near the camera, under what stands there (GroundShade).
+// Soft dark spots on the ground near the camera, under what stands there (render::ContactShadowMap).
 layout(set = 0, binding = PSYGEN_BINDING_SHADE, std430) readonly buffer GroundShade {
   uint shade_words[];
 };

@@ -35,7 +35,7 @@ using glm::vec4;
 #define PSYGEN_LINE_ENDS 0
 #define PSYGEN_OVERLAY_FONT 0
 #define PSYGEN_OVERLAY_VERTICES 1
-// The texture in the only set of scale_up.frag, beside PSYGEN_BINDING_FRAME.
+// The texture in the only set of scale_up.glsl, beside PSYGEN_BINDING_FRAME.
 #define PSYGEN_SCALE_UP_LANDSCAPE 1
 
 // Bits of MaterialData::options.x.
@@ -81,7 +81,7 @@ using glm::vec4;
 // Most point lights of a frame.
 #define PSYGEN_MAX_LAMPS 40
 
-// Vertices of a particle (particle.vert): two triangles.
+// Vertices of a particle (particle.glsl): two triangles.
 #define PSYGEN_PARTICLE_VERTICES 6
 
 // Vertices that turn towards the camera: core::kBillboardBit and kBillboardReachM.
@@ -176,7 +176,7 @@ struct MaterialData {
   vec4 options;   // x: bits; y: strength of the normal map
 };
 
-// An emitter of particles (particle.vert; render::ParticleKind has the meaning of the parts).
+// An emitter of particles (particle.glsl; render::ParticleKind has the meaning of the parts).
 struct EmitterData {
   vec4 origin;        // of the volume; w: share of its cycle that the first particle has passed
   vec4 axis_x;        // half axes of the volume, m; w: particles

@@ -1,5 +1,5 @@
 // Reads the images that replace the ground textures of a world, from the folder of its file.
-// Creates no textures (render/textures/ground_texture_override.hpp). Any thread; too slow for the
+// Creates no textures (render/types.hpp). Any thread; too slow for the
 // tick.
 #pragma once
 

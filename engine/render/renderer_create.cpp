@@ -49,32 +49,30 @@ std::uint32_t first_pushed_index_count(Submission wish, const Device& device) {
 }  // namespace
 
 Result<void> RendererImpl::create_device() {
-  Result<std::unique_ptr<Instance>> instance =
-      Instance::create(options_.application_name, options_.validation, options_.surface);
-  if (!instance) return tl::unexpected(instance.error());
-  instance_ = std::move(*instance);
-  if (options_.surface != nullptr) {
-    Result<UniqueSurface> surface = make_surface(*instance_, *options_.surface);
-    if (!surface) return tl::unexpected(surface.error());
-    surface_ = std::move(*surface);
-  }
-  Result<DeviceCandidate> chosen =
-      choose_device(find_devices(*instance_, surface_.get()), options_.device_name);
-  if (!chosen) return tl::unexpected(chosen.error());
-  Result<std::unique_ptr<Device>> device =
-      Device::create(*chosen, {.windowed = options_.surface != nullptr,
-                               .timestamps = options_.timestamps,
-                               .timeout_seconds = options_.device_timeout_seconds});
-  if (!device) return tl::unexpected(device.error());
-  device_ = std::move(*device);
-  if (options_.surface != nullptr) {
-    const Result<VkFormat> format = colour_format_for(*device_, surface_);
-    if (!format) return tl::unexpected(format.error());
-    colour_format_ = *format;
-  }
-  pushed_from_ = first_pushed_index_count(options_.submission, *device_);
-  scales_up_ = can_scale_up(*device_, colour_format_);
-  return {};
+  const bool windowed = options_.surface != nullptr;
+  return Instance::create(options_.application_name, options_.validation, options_.surface)
+      .map(into(instance_))
+      .and_then([&]() -> Result<void> {
+        if (!windowed) return {};
+        return make_surface(*instance_, *options_.surface).map(into(surface_));
+      })
+      .and_then([&] {
+        return choose_device(find_devices(*instance_, surface_.get()), options_.device_name);
+      })
+      .and_then([&](const DeviceCandidate& chosen) {
+        return Device::create(chosen, {.windowed = windowed,
+                                       .timestamps = options_.timestamps,
+                                       .timeout_seconds = options_.device_timeout_seconds});
+      })
+      .map(into(device_))
+      .and_then([&]() -> Result<void> {
+        if (!windowed) return {};
+        return colour_format_for(*device_, surface_).map(into(colour_format_));
+      })
+      .map([&] {
+        pushed_from_ = first_pushed_index_count(options_.submission, *device_);
+        scales_up_ = can_scale_up(*device_, colour_format_);
+      });
 }
 
 Result<void> RendererImpl::create(const Progress& progress) {
@@ -89,21 +87,20 @@ Result<void> RendererImpl::create(const Progress& progress) {
   if (!core::memory_left(kStartBytes) || !core::addresses_left(kStartAddressBytes)) {
     return core::fail(ErrorCode::kOutOfMemory, core::out_of_memory("starting the renderer"));
   }
-  if (Result<void> made = create_device(); !made) return made;
-  if (Result<void> made = create_geometry(); !made) return made;
-  Result<UniqueSemaphore> timeline = make_timeline(*device_);
-  if (!timeline) return tl::unexpected(timeline.error());
-  timeline_ = std::move(*timeline);
-  if (Result<void> made = shared_.create(*device_); !made) return made;
-  if (Result<void> made = materials_.create(*device_, options_.texture_budget_bytes); !made)
-    return made;
-  if (Result<void> made = pictures_.create(*device_, {}); !made) return made;
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (Result<void> made = slots_[i].create(*device_, i); !made) return made;
-  }
+  Result<void> made =
+      create_device()
+          .and_then([&] { return create_geometry(); })
+          .and_then([&] { return make_timeline(*device_); })
+          .map(into(timeline_))
+          .and_then([&] { return shared_.create(*device_); })
+          .and_then([&] { return materials_.create(*device_, options_.texture_budget_bytes); })
+          .and_then([&] { return pictures_.create(*device_, {}); });
+  for (std::size_t i = 0; made && i < slots_.size(); ++i)
+    made = slots_[i].create(*device_, i);
+  if (!made) return made;
   const Preset preset =
       options_.preset.value_or(device_->info.software ? Preset::kLow : Preset::kHigh);
-  if (Result<void> made = create_looks(preset, progress); !made) return made;
+  if (made = create_looks(preset, progress); !made) return made;
   idle_value_ = warm_up_value_ = frame_value_;
   if (options_.surface == nullptr) resized_ = false;
   return pool_->make_first_block();
@@ -195,7 +192,7 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
 core::Extent RendererImpl::landscape_size(float resolution) {
   const core::Extent whole = size();
   if (!(resolution < 1) || !scales_up_) return whole;
-  if (targets_.back().low_resolution.image.get() == VK_NULL_HANDLE) {
+  if (!targets_.back().low_resolution.image.exists()) {
     wait_idle();
     for (Targets& targets : targets_)
       scales_up_ = scales_up_ && add_low_resolution(*device_, colour_format_, targets).has_value();

@@ -40,16 +40,6 @@ Result<void> check_camera(const FrameInput& input) {
                              : "the projection of a frame is not one that can be drawn");
 }
 
-VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
-                                     VkPipelineStageFlags2 stage) {
-  VkSemaphoreSubmitInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
-  info.semaphore = semaphore;
-  info.value = value;
-  info.stageMask = stage;
-  return info;
-}
-
 }  // namespace
 
 RendererImpl::RendererImpl(const RendererOptions& options) : options_(options) {}
@@ -73,9 +63,6 @@ Result<void> RendererImpl::wait_for(FrameSlot& slot) {
 }
 
 Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
-  VkCommandBufferSubmitInfo commands{};
-  commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
-  commands.commandBuffer = slot.commands();
   std::vector<VkSemaphoreSubmitInfo> waits;
   if (windowed) {
     waits.push_back(semaphore_info(slot.acquired(), 0, VK_PIPELINE_STAGE_2_COPY_BIT));
@@ -90,16 +77,11 @@ Result<void> RendererImpl::submit(FrameSlot& slot, bool windowed) {
     signals.push_back(
         semaphore_info(swapchain_.finished(), 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT));
   }
-  VkSubmitInfo2 info{};
-  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-  info.waitSemaphoreInfoCount = static_cast<std::uint32_t>(waits.size());
-  info.pWaitSemaphoreInfos = waits.data();
-  info.commandBufferInfoCount = 1;
-  info.pCommandBufferInfos = &commands;
-  info.signalSemaphoreInfoCount = static_cast<std::uint32_t>(signals.size());
-  info.pSignalSemaphoreInfos = signals.data();
   const double now_s = core::monotonic_seconds();
-  if (auto ok = device_->submit(device_->queue, info, "submitting a frame"); !ok) return ok;
+  if (auto ok =
+          device_->submit(device_->queue, slot.commands(), waits, signals, "submitting a frame");
+      !ok)
+    return ok;
   slot.submitted_value = ++frame_value_;
   slot.timer().submitted(frame_value_, now_s);
   pool_->frame_submitted(frame_value_);
@@ -118,7 +100,7 @@ Result<void> RendererImpl::record(FrameSlot& slot, bool windowed) {
   // next.
   targets.in_parts =
       targets.keeps_order && (options_.surface != nullptr || targets.is_low_resolution());
-  targets.reflects = water_ && targets.reflection.exists();
+  targets.reflects = std::get<Water>(looks_.passes).visible() && targets.reflection.exists();
   Recording to = recording(slot, targets);
   to.culling = culling_.get();
   to.view = view_;
@@ -137,9 +119,9 @@ Result<void> RendererImpl::prepare_for(const FrameInput& input) {
   if (!input.objects.empty()) made = prepare(Feature::kObjects);
   if (made && !input.point_lights.empty()) made = prepare(Feature::kPointLights);
   if (!made) return made;
-  return try_each_pass(looks_.passes, [&](const auto& pass) -> Result<void> {
-    if constexpr (requires { pass.needs_feature(input); })
-      return pass.needs_feature(input) ? prepare(pass.kFeature) : Result<void>{};
+  return try_each_pass(looks_.passes, [&]<class P>(const P&) -> Result<void> {
+    if constexpr (NeedsFeature<P>)
+      if (P::needs_feature(input)) return prepare(P::kFeature);
     return {};
   });
 }
@@ -220,8 +202,8 @@ void RendererImpl::list_draws(const FrameInput& input) {
 
 void RendererImpl::list_frame(const FrameInput& input) {
   const FrameFacts facts{frame_, materials_.kinds(), overlay_, size()};
-  for_each_pass(looks_.passes, [&](auto& pass) {
-    if constexpr (requires { pass.list(input, facts); }) pass.list(input, facts);
+  for_each_pass(looks_.passes, [&]<class P>(P& pass) {
+    if constexpr (Lists<P>) pass.list(input, facts);
   });
 }
 
@@ -229,15 +211,15 @@ Result<void> RendererImpl::write_frame(FrameSlot& slot) {
   const std::size_t number = slot.number();
   Result<void> written = slot.write(*device_, looks_.sets, frame_, list_.data()).and_then([&] {
     slot.write_shade(shade_.words());
-    return try_each_pass(looks_.passes, [&](auto& pass) -> Result<void> {
-      if constexpr (requires { pass.write(*device_, number); }) return pass.write(*device_, number);
+    return try_each_pass(looks_.passes, [&]<class P>(P& pass) -> Result<void> {
+      if constexpr (Writes<P>) return pass.write(*device_, number);
       return {};
     });
   });
   if (!written || !culling_) return written;
-  written = culling_->write(*device_, number);
-  if (written) looks_.sets.write_draws(*device_, number, culling_->draw_data(number));
-  return written;
+  return culling_->write(*device_, number).map([&] {
+    slot.use_draws(*device_, looks_.sets, culling_->draw_data(number));
+  });
 }
 
 // The difference of the next frame from others, as far as it is known before drawing.
@@ -257,7 +239,6 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
 
   const double build_start = core::monotonic_seconds();
   view_ = input.view;
-  water_ = input.water.has_value();
   frame_ = frame_data(input, size(), looks_.traits);
   const glm::dvec3& at = input.pose.position.local;
   shade_.build(input.spots, {at.x, at.z});

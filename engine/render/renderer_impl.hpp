@@ -84,7 +84,7 @@ class RendererImpl {
   core::Result<std::vector<DrawnMesh>> drawn_meshes();
   RenderPath path() const { return culling_ ? RenderPath::kGpu : RenderPath::kCpu; }
   bool casts_shadows() const { return looks_.traits.cascades > 0; }
-  bool has_near_models() const { return !looks_.traits.pixel_light; }
+  bool has_near_models() const { return !looks_.traits.pixel_light; }  // meshes/models.cpp
   void wait_idle();
   bool hangs() const;
 
@@ -96,8 +96,9 @@ class RendererImpl {
   core::Result<void> create_geometry();
   core::Result<void> create_culling();
   core::Result<void> create_looks(Preset preset, const Progress& progress);
-  core::Result<void> create_text_passes();
+  core::Result<void> create_overlay();
   core::Result<void> create_passes(Features features, const Progress& progress);
+  PassSetup pass_setup(PipelineMaker& pipelines, Features features) const;
   void use_sets();
   void use_targets();
   void use_targets(const FrameSlot& slot, const Targets& targets);
@@ -184,7 +185,6 @@ class RendererImpl {
   shaders::FrameData frame_{};
   ContactShadowMap shade_;
   View view_ = View::kNormal;
-  bool water_ = false;
   std::optional<GpuTime> gpu_;
 };
 

@@ -34,7 +34,7 @@ Result<void> RendererImpl::create_looks(Preset preset, const Progress& progress)
                .materials = materials_,
                .pictures = pictures_,
                .ground = options_.ground})
-      .and_then([&] { return create_text_passes(); })
+      .and_then([&] { return create_overlay(); })
       .and_then([&] {
         use_sets();
         return create_culling();
@@ -52,38 +52,38 @@ Result<void> RendererImpl::create_looks(Preset preset, const Progress& progress)
       .and_then([&] { return warm_up(part_of(progress, kPipelinesShare, 1)); });
 }
 
-// Creates the passes of show(), which `progress` may call while all others are created.
-Result<void> RendererImpl::create_text_passes() {
+// Creates the pass of show(), which `progress` may call while all others are created.
+Result<void> RendererImpl::create_overlay() {
   PipelineMaker pipelines(*device_, {colour_format_, looks_.samples});
-  const PassSetup setup{.device = *device_,
-                        .traits = looks_.traits,
-                        .sets = looks_.sets,
-                        .pipelines = pipelines,
-                        .overlay = overlay_,
-                        .features = {}};
-  return std::get<Overlay>(looks_.passes).create(setup).and_then([&] {
-    return std::get<ScaleUp>(looks_.passes).create(setup);
-  });
+  return std::get<Overlay>(looks_.passes).create(pass_setup(pipelines, {}));
+}
+
+PassSetup RendererImpl::pass_setup(PipelineMaker& pipelines, Features features) const {
+  return {.device = *device_,
+          .traits = looks_.traits,
+          .sets = looks_.sets,
+          .pipelines = pipelines,
+          .overlay = overlay_,
+          .reflections = looks_.reflections,
+          .features = features};
 }
 
 // Creates what the vertex layouts and passes lack for these features.
 Result<void> RendererImpl::create_passes(Features features, const Progress& progress) {
   PipelineMaker pipelines(*device_, {colour_format_, looks_.samples}, progress);
-  const PassSetup setup{.device = *device_,
-                        .traits = looks_.traits,
-                        .sets = looks_.sets,
-                        .pipelines = pipelines,
-                        .overlay = overlay_,
-                        .reflections = looks_.reflections,
-                        .features = features};
-  Result<void> made = looks_.meshes.create(setup).and_then(
-      [&] { return try_each_pass(looks_.passes, [&](auto& pass) { return pass.create(setup); }); });
-  if (made) looks_.features = features;
-  return made;
+  const PassSetup setup = pass_setup(pipelines, features);
+  return looks_.meshes.create(setup)
+      .and_then([&] {
+        return try_each_pass(looks_.passes, [&]<class P>(P& pass) -> Result<void> {
+          if constexpr (Creates<P>) return pass.create(setup);
+          return {};
+        });
+      })
+      .map([&] { looks_.features = features; });
 }
 
 void RendererImpl::use_sets() {
-  for (const FrameSlot& slot : slots_)
+  for (FrameSlot& slot : slots_)
     slot.use(*device_, looks_.sets);
   use_targets();
 }
@@ -96,9 +96,8 @@ void RendererImpl::use_targets() {
 }
 
 void RendererImpl::use_targets(const FrameSlot& slot, const Targets& targets) {
-  for_each_pass(looks_.passes, [&](auto& pass) {
-    if constexpr (requires { pass.use(*device_, slot, targets); })
-      pass.use(*device_, slot, targets);
+  for_each_pass(looks_.passes, [&]<class P>(P& pass) {
+    if constexpr (UsesTargets<P>) pass.use(*device_, slot, targets);
   });
 }
 
@@ -108,7 +107,6 @@ Result<void> RendererImpl::set_preset(Preset preset, const Progress& progress) {
   wait_idle();
   if (!targets_.empty()) options_.size = size();
   Looks other_looks;
-  other_looks.preset = looks_.preset;
   std::unique_ptr<GpuCulling> other_culling;
   std::vector<Targets> other_targets;
   const auto exchange = [&] {
@@ -163,7 +161,7 @@ Result<void> RendererImpl::draw_step(FrameSlot& slot, Targets& small, const Warm
 Result<void> RendererImpl::warm_up(const Progress& progress) {
   Result<Targets> small = make_small_targets();
   if (!small) return tl::unexpected(small.error());
-  const int steps = warm_up_steps(Feature::kLandscape);
+  const int steps = warm_up_steps(looks_.passes, Feature::kLandscape);
   for (int i = 0; i < steps; ++i) {
     const WarmUpStep step{.feature = Feature::kLandscape, .number = i};
     const Result<void> drawn = draw_step(slots_[0], *small, step, VK_NULL_HANDLE).and_then([&] {
@@ -172,7 +170,6 @@ Result<void> RendererImpl::warm_up(const Progress& progress) {
     if (!drawn) return drawn;
   }
   use_targets();
-  small->drawn = small->extent;
   return culling_ ? warm_up_culling(slots_[0], *small) : Result<void>{};
 }
 
@@ -199,7 +196,7 @@ Result<void> RendererImpl::warm_up_later(Feature feature, bool lamps) {
   if (!small) return tl::unexpected(small.error());
   const Result<VkDescriptorSet> textures = materials_.blank_set(*device_);
   if (!textures) return tl::unexpected(textures.error());
-  const int steps = warm_up_steps(feature), submissions = steps + steps % 2;
+  const int steps = warm_up_steps(looks_.passes, feature), submissions = steps + steps % 2;
   Result<void> drawn;
   for (int i = 0; drawn && i < submissions; ++i) {
     const WarmUpStep step{.feature = feature, .lamps = lamps, .number = std::min(i, steps - 1)};
@@ -214,7 +211,10 @@ Result<void> RendererImpl::warm_up_later(Feature feature, bool lamps) {
 Result<void> RendererImpl::warm_up_culling(FrameSlot& slot, Targets& small) {
   return culling_->resize(*device_, small.extent, small.depth)
       .and_then([&] {
-        culling_->set_frame({}, {}, small.extent, {});
+        drawn_ = small.extent;
+        frame_ = frame_data({}, small.extent);
+        list_draws({});
+        list_frame({});  // not the text that show() drew last
         return write_frame(slot);
       })
       .and_then([&] { return slot.begin(*device_); })

@@ -55,11 +55,9 @@ Result<void> RendererImpl::recreate_surface() {
   wait_idle();
   swapchain_.destroy();
   surface_ = {};
-  Result<UniqueSurface> made = make_surface(*instance_, *options_.surface);
-  if (!made) return tl::unexpected(made.error());
-  surface_ = std::move(*made);
-  swapchain_stale_ = true;
-  return {};
+  return make_surface(*instance_, *options_.surface).map(into(surface_)).map([this] {
+    swapchain_stale_ = true;
+  });
 }
 
 // If the swapchain is stale, this frame is not shown, and the next one recreates it.

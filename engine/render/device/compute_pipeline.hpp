@@ -4,9 +4,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
-#include "engine/render/device/device.hpp"
+#include "engine/render/device/descriptors.hpp"
+#include "engine/render/device/shaders.hpp"
 
 namespace psygen::render {
 
@@ -15,16 +15,11 @@ class ComputePipeline {
  public:
   // Creates everything. Binding i of the set has the type types[i]. Push constants have
   // `push_bytes` from offset 0. The sets are numbered 0 … sets − 1. Fails as vulkan_error() says.
-  core::Result<void> create(const Device& device, std::span<const std::uint32_t> code,
+  core::Result<void> create(const Device& device, Shader shader,
                             std::span<const VkDescriptorType> types, std::uint32_t push_bytes,
-                            std::uint32_t sets);
-
-  // Bind a whole buffer or an image to a binding of a set. The device must have finished all
-  // commands that use the set.
-  void write_buffer(const Device& device, std::size_t set, std::uint32_t binding,
-                    VkBuffer buffer) const;
-  void write_image(const Device& device, std::size_t set, std::uint32_t binding, VkSampler sampler,
-                   VkImageView view, VkImageLayout layout) const;
+                            std::size_t sets);
+  // The sets, to name buffers and images in.
+  const DescriptorSets& sets() const { return sets_; }
 
   // Records the binding of the pipeline and a set.
   void bind(const Device& device, VkCommandBuffer commands, std::size_t set) const;
@@ -34,15 +29,9 @@ class ComputePipeline {
                 std::uint32_t groups_x, std::uint32_t groups_y) const;
 
  private:
-  void write(const Device& device, std::size_t set, std::uint32_t binding,
-             const VkDescriptorBufferInfo* buffer, const VkDescriptorImageInfo* image) const;
-
-  UniqueSetLayout set_layout_;
-  UniqueDescriptorPool pool_;
+  DescriptorSets sets_;
   UniquePipelineLayout layout_;
   UniquePipeline pipeline_;
-  std::vector<VkDescriptorType> types_;
-  std::vector<VkDescriptorSet> sets_;
   std::uint32_t push_bytes_ = 0;
 };
 

@@ -4,17 +4,74 @@ namespace psygen::render {
 
 using core::Result;
 
-Result<UniqueSetLayout> make_set_layout(const Device& device,
-                                        std::span<const VkDescriptorSetLayoutBinding> bindings) {
-  VkDescriptorSetLayoutCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  info.bindingCount = static_cast<std::uint32_t>(bindings.size());
-  info.pBindings = bindings.data();
-  VkDescriptorSetLayout made = VK_NULL_HANDLE;
+Result<void> DescriptorSets::create(const Device& device, std::span<const SetBinding> bindings,
+                                    std::size_t count) {
+  const auto sets = static_cast<std::uint32_t>(count);
+  std::vector<VkDescriptorSetLayoutBinding> all;
+  std::vector<VkDescriptorPoolSize> sizes;
+  for (const SetBinding& binding : bindings) {
+    all.push_back(
+        {static_cast<std::uint32_t>(all.size()), binding.type, 1, binding.stages, binding.sampler});
+    sizes.push_back({binding.type, sets});
+    types_.push_back(binding.type);
+  }
+  VkDescriptorSetLayoutCreateInfo layout{};
+  layout.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  layout.bindingCount = static_cast<std::uint32_t>(all.size());
+  layout.pBindings = all.data();
+  VkDescriptorPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  pool.maxSets = sets;
+  pool.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
+  pool.pPoolSizes = sizes.data();
+  const Result<void> made =
+      device
+          .make<UniqueSetLayout>(&VolkDeviceTable::vkCreateDescriptorSetLayout, layout,
+                                 "creating a descriptor set layout")
+          .map(into(layout_))
+          .and_then([&] {
+            return device.make<UniqueDescriptorPool>(&VolkDeviceTable::vkCreateDescriptorPool, pool,
+                                                     "creating a descriptor pool");
+          })
+          .map(into(pool_));
+  if (!made) return made;
+  const std::vector<VkDescriptorSetLayout> layouts(count, layout_.get());
+  std::vector<VkDescriptorSet> allocated(count);
+  VkDescriptorSetAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  info.descriptorPool = pool_.get();
+  info.descriptorSetCount = sets;
+  info.pSetLayouts = layouts.data();
   const VkResult result =
-      device.vk.vkCreateDescriptorSetLayout(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor set layout");
-  return UniqueSetLayout(device.vk, device.handle, made);
+      device.vk.vkAllocateDescriptorSets(device.handle, &info, allocated.data());
+  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating descriptor sets");
+  sets_ = std::move(allocated);
+  return {};
+}
+
+void DescriptorSets::write(const Device& device, std::size_t set, std::uint32_t binding,
+                           VkBuffer buffer, VkDeviceSize bytes) const {
+  const VkDescriptorBufferInfo info{buffer, 0, bytes};
+  VkWriteDescriptorSet named{};
+  named.pBufferInfo = &info;
+  write(device, set, binding, named);
+}
+
+void DescriptorSets::write(const Device& device, std::size_t set, std::uint32_t binding,
+                           const VkDescriptorImageInfo& image) const {
+  VkWriteDescriptorSet named{};
+  named.pImageInfo = &image;
+  write(device, set, binding, named);
+}
+
+void DescriptorSets::write(const Device& device, std::size_t set, std::uint32_t binding,
+                           VkWriteDescriptorSet named) const {
+  named.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+  named.dstSet = sets_[set];
+  named.dstBinding = binding;
+  named.descriptorCount = 1;
+  named.descriptorType = types_[binding];
+  device.vk.vkUpdateDescriptorSets(device.handle, 1, &named, 0, nullptr);
 }
 
 Result<UniquePipelineLayout> make_pipeline_layout(const Device& device,
@@ -26,42 +83,8 @@ Result<UniquePipelineLayout> make_pipeline_layout(const Device& device,
   info.pSetLayouts = sets.data();
   info.pushConstantRangeCount = 1;
   info.pPushConstantRanges = &push;
-  VkPipelineLayout made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreatePipelineLayout(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a pipeline layout");
-  return UniquePipelineLayout(device.vk, device.handle, made);
-}
-
-Result<UniqueDescriptorPool> make_descriptor_pool(
-    const Device& device, std::span<const VkDescriptorSetLayoutBinding> bindings,
-    std::uint32_t sets) {
-  std::vector<VkDescriptorPoolSize> sizes;
-  for (const VkDescriptorSetLayoutBinding& binding : bindings)
-    sizes.push_back({binding.descriptorType, binding.descriptorCount * sets});
-  VkDescriptorPoolCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  info.maxSets = sets;
-  info.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
-  info.pPoolSizes = sizes.data();
-  VkDescriptorPool made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateDescriptorPool(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a descriptor pool");
-  return UniqueDescriptorPool(device.vk, device.handle, made);
-}
-
-Result<std::vector<VkDescriptorSet>> allocate_sets(const Device& device, VkDescriptorPool pool,
-                                                   VkDescriptorSetLayout layout,
-                                                   std::uint32_t count) {
-  const std::vector<VkDescriptorSetLayout> layouts(count, layout);
-  std::vector<VkDescriptorSet> sets(count);
-  VkDescriptorSetAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  info.descriptorPool = pool;
-  info.descriptorSetCount = count;
-  info.pSetLayouts = layouts.data();
-  const VkResult result = device.vk.vkAllocateDescriptorSets(device.handle, &info, sets.data());
-  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating descriptor sets");
-  return sets;
+  return device.make<UniquePipelineLayout>(&VolkDeviceTable::vkCreatePipelineLayout, info,
+                                           "creating a pipeline layout");
 }
 
 }  // namespace psygen::render

@@ -13,11 +13,10 @@ using core::ErrorCode;
 namespace {
 
 bool has_extension(VkPhysicalDevice physical, const char* name) {
-  std::uint32_t count = 0;
-  vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr);
-  std::vector<VkExtensionProperties> extensions(count);
-  vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data());
-  return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& e) {
+  const auto extensions = all_of<VkExtensionProperties>([&](auto* count, auto* out) {
+    return vkEnumerateDeviceExtensionProperties(physical, nullptr, count, out);
+  });
+  return std::ranges::any_of(extensions, [&](const VkExtensionProperties& e) {
     return std::strcmp(e.extensionName, name) == 0;
   });
 }
@@ -55,12 +54,6 @@ bool offers_indirect_count(const FeatureChain& features) {
          features.base.features.drawIndirectFirstInstance;
 }
 
-bool offers_wireframe(VkPhysicalDevice physical) {
-  VkPhysicalDeviceFeatures features{};
-  vkGetPhysicalDeviceFeatures(physical, &features);
-  return features.fillModeNonSolid == VK_TRUE;
-}
-
 bool offers_multi_draw(VkPhysicalDevice physical) {
   if (!has_extension(physical, VK_EXT_MULTI_DRAW_EXTENSION_NAME)) return false;
   FeatureChain features;
@@ -69,13 +62,16 @@ bool offers_multi_draw(VkPhysicalDevice physical) {
   return features.multi_draw.multiDraw == VK_TRUE;
 }
 
+std::vector<VkQueueFamilyProperties> families_of(VkPhysicalDevice physical) {
+  return all_of<VkQueueFamilyProperties>([&](auto* count, auto* out) {
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, count, out);
+  });
+}
+
 std::optional<std::uint32_t> find_queue_family(const Instance& instance, VkPhysicalDevice physical,
                                                VkSurfaceKHR surface) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
-  for (std::uint32_t i = 0; i < count; ++i) {
+  const std::vector<VkQueueFamilyProperties> families = families_of(physical);
+  for (std::uint32_t i = 0; i < families.size(); ++i) {
     if ((families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) == 0) continue;
     VkBool32 presents = VK_TRUE;
     if (surface != VK_NULL_HANDLE) {
@@ -88,11 +84,8 @@ std::optional<std::uint32_t> find_queue_family(const Instance& instance, VkPhysi
 
 // A queue family only for transfers, or else the graphics family.
 std::uint32_t transfer_family_of(VkPhysicalDevice physical, std::uint32_t graphics) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
-  for (std::uint32_t i = 0; i < count; ++i) {
+  const std::vector<VkQueueFamilyProperties> families = families_of(physical);
+  for (std::uint32_t i = 0; i < families.size(); ++i) {
     const VkQueueFlags flags = families[i].queueFlags;
     if ((flags & VK_QUEUE_TRANSFER_BIT) != 0 &&
         (flags & (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT)) == 0)
@@ -101,21 +94,9 @@ std::uint32_t transfer_family_of(VkPhysicalDevice physical, std::uint32_t graphi
   return graphics;
 }
 
-VkQueueFamilyProperties family_properties(VkPhysicalDevice physical, std::uint32_t family) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
-  return families[family];
-}
-
-bool can_compute(VkPhysicalDevice physical, std::uint32_t family) {
-  return (family_properties(physical, family).queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
-}
-
 // The valid bits of a timestamp; 0: no timestamps.
 std::uint64_t timestamp_mask_of(VkPhysicalDevice physical, std::uint32_t family) {
-  const std::uint32_t bits = family_properties(physical, family).timestampValidBits;
+  const std::uint32_t bits = families_of(physical)[family].timestampValidBits;
   return bits == 0 ? 0 : UINT64_MAX >> (64 - std::min(bits, 64U));
 }
 
@@ -164,8 +145,9 @@ std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevic
                   VK_API_VERSION_MINOR(p.apiVersion), VK_API_VERSION_PATCH(p.apiVersion));
   candidate.info.software = p.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   candidate.info.multi_draw = offers_multi_draw(physical);
-  candidate.info.gpu_path = offers_indirect_count(features) && can_compute(physical, *family);
-  candidate.info.wireframe = offers_wireframe(physical);
+  candidate.info.gpu_path = offers_indirect_count(features) &&
+                            (families_of(physical)[*family].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
+  candidate.info.wireframe = features.base.features.fillModeNonSolid == VK_TRUE;
   return candidate;
 }
 
@@ -232,6 +214,16 @@ core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& 
                     fmt::format("no Vulkan device is called '{}'; there is {}", name, names));
 }
 
+VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
+                                     VkPipelineStageFlags2 stage) {
+  VkSemaphoreSubmitInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
+  info.semaphore = semaphore;
+  info.value = value;
+  info.stageMask = stage;
+  return info;
+}
+
 core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& candidate,
                                                      const DeviceOptions& options) {
   std::unique_ptr<Device> self(new Device());
@@ -288,7 +280,21 @@ core::Result<void> Device::wait(VkSemaphore semaphore, std::uint64_t value,
   return vulkan_failure(result, what);
 }
 
-core::Result<void> Device::submit(VkQueue to, const VkSubmitInfo2& work, const char* what) const {
+core::Result<void> Device::submit(VkQueue to, VkCommandBuffer commands,
+                                  std::span<const VkSemaphoreSubmitInfo> waits,
+                                  std::span<const VkSemaphoreSubmitInfo> signals,
+                                  const char* what) const {
+  VkCommandBufferSubmitInfo buffer{};
+  buffer.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
+  buffer.commandBuffer = commands;
+  VkSubmitInfo2 work{};
+  work.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
+  work.waitSemaphoreInfoCount = static_cast<std::uint32_t>(waits.size());
+  work.pWaitSemaphoreInfos = waits.data();
+  work.commandBufferInfoCount = 1;
+  work.pCommandBufferInfos = &buffer;
+  work.signalSemaphoreInfoCount = static_cast<std::uint32_t>(signals.size());
+  work.pSignalSemaphoreInfos = signals.data();
   const std::scoped_lock lock(queues_);
   const VkResult result = vk.vkQueueSubmit2(to, 1, &work, VK_NULL_HANDLE);
   return result == VK_SUCCESS ? core::Result<void>{} : vulkan_failure(result, what);

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,10 @@ struct DeviceOptions {
   double timeout_seconds = 60;  // longest wait for the device; after that it counts as lost
 };
 
+// A wait for a semaphore before these stages, or its signal after them. `value`: of a timeline.
+VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
+                                     VkPipelineStageFlags2 stage);
+
 // The logical device. Everything that is created with it must be destroyed before it.
 class Device {
  public:
@@ -45,6 +50,16 @@ class Device {
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
+
+  // Creates an object with a function of the table, such as &VolkDeviceTable::vkCreateImage. `what`
+  // is for the error: "creating an image". Fails like vulkan_failure().
+  template <class Owner, class Create, class Info>
+  core::Result<Owner> make(Create create, const Info& wish, const char* what) const {
+    typename Owner::Handle made{};
+    const VkResult result = (vk.*create)(handle, &wish, nullptr, &made);
+    if (result != VK_SUCCESS) return vulkan_failure(result, what);
+    return Owner(vk, handle, made);
+  }
 
   // The largest number of samples up to `wanted` (a power of two) that colour and depth can have.
   VkSampleCountFlagBits samples_for(std::uint32_t wanted) const;
@@ -71,7 +86,9 @@ class Device {
   core::Result<void> wait(VkSemaphore semaphore, std::uint64_t value, const char* what) const;
   // Queues, one call at a time: a software device's pictures are presented by a thread of their own
   // (RendererImpl::present). submit() fails like vulkan_failure(); `what` is for the error.
-  core::Result<void> submit(VkQueue to, const VkSubmitInfo2& work, const char* what) const;
+  core::Result<void> submit(VkQueue to, VkCommandBuffer commands,
+                            std::span<const VkSemaphoreSubmitInfo> waits,
+                            std::span<const VkSemaphoreSubmitInfo> signals, const char* what) const;
   VkResult present(const VkPresentInfoKHR& picture) const;
   // Waits for everything that was submitted.
   VkResult wait_idle() const;

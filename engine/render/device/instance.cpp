@@ -22,11 +22,8 @@ VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT,
 }
 
 bool has_validation_layer() {
-  std::uint32_t count = 0;
-  vkEnumerateInstanceLayerProperties(&count, nullptr);
-  std::vector<VkLayerProperties> layers(count);
-  vkEnumerateInstanceLayerProperties(&count, layers.data());
-  return std::any_of(layers.begin(), layers.end(), [](const VkLayerProperties& layer) {
+  const auto layers = all_of<VkLayerProperties>(vkEnumerateInstanceLayerProperties);
+  return std::ranges::any_of(layers, [](const VkLayerProperties& layer) {
     return std::strcmp(layer.layerName, kValidationLayer) == 0;
   });
 }
@@ -153,12 +150,8 @@ Instance::~Instance() {
 }
 
 std::vector<VkPhysicalDevice> Instance::physical_devices() const {
-  std::uint32_t count = 0;
-  if (vkEnumeratePhysicalDevices(instance_, &count, nullptr) != VK_SUCCESS) return {};
-  std::vector<VkPhysicalDevice> devices(count);
-  vkEnumeratePhysicalDevices(instance_, &count, devices.data());
-  devices.resize(count);
-  return devices;
+  return all_of<VkPhysicalDevice>(
+      [this](auto* count, auto* out) { return vkEnumeratePhysicalDevices(instance_, count, out); });
 }
 
 std::vector<std::string> Instance::messages() const {

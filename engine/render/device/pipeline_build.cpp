@@ -16,26 +16,6 @@ using core::Result;
 
 namespace {
 
-Result<UniqueShaderModule> make_module(const Device& device, std::span<const std::uint32_t> code) {
-  VkShaderModuleCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  info.codeSize = code.size_bytes();
-  info.pCode = code.data();
-  VkShaderModule made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateShaderModule(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a shader");
-  return UniqueShaderModule(device.vk, device.handle, made);
-}
-
-VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits stage, VkShaderModule shader) {
-  VkPipelineShaderStageCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-  info.stage = stage;
-  info.module = shader;
-  info.pName = "main";
-  return info;
-}
-
 VkPipelineColorBlendAttachmentState blend_of(const PipelineShape& shape) {
   VkPipelineColorBlendAttachmentState blend{};
   blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
@@ -114,10 +94,10 @@ constexpr double kMaxPipelines = 34;
 
 Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layout,
                                      const PipelineShape& shape, const PipelineTargets& targets) {
-  Result<UniqueShaderModule> vert_module = make_module(device, code_of(shape.vert));
+  Result<UniqueShaderModule> vert_module = make_module(device, shape.vert);
   if (!vert_module) return tl::unexpected(vert_module.error());
   Result<UniqueShaderModule> frag_module;
-  if (shape.frag) frag_module = make_module(device, code_of(*shape.frag));
+  if (shape.frag) frag_module = make_module(device, *shape.frag);
   if (!frag_module) return tl::unexpected(frag_module.error());
   std::array stages{stage_of(VK_SHADER_STAGE_VERTEX_BIT, vert_module->get()),
                     stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, frag_module->get())};
@@ -180,12 +160,30 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
 
 }  // namespace
 
+Result<UniqueShaderModule> make_module(const Device& device, Shader shader) {
+  const std::span<const std::uint32_t> code = code_of(shader);
+  VkShaderModuleCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  info.codeSize = code.size_bytes();
+  info.pCode = code.data();
+  return device.make<UniqueShaderModule>(&VolkDeviceTable::vkCreateShaderModule, info,
+                                         "creating a shader");
+}
+
+VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits stage, VkShaderModule shader) {
+  VkPipelineShaderStageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage = stage;
+  info.module = shader;
+  info.pName = "main";
+  return info;
+}
+
 Result<void> PipelineMaker::make(VkPipelineLayout layout, const PipelineShape& shape,
                                  UniquePipeline& out) {
-  Result<UniquePipeline> made = make_pipeline(device_, layout, shape, targets_);
-  if (!made) return tl::unexpected(made.error());
-  out = std::move(*made);
-  return go_on(progress_, std::min(++made_ / kMaxPipelines, 1.0));
+  return make_pipeline(device_, layout, shape, targets_).map(into(out)).and_then([&] {
+    return go_on(progress_, std::min(++made_ / kMaxPipelines, 1.0));
+  });
 }
 
 }  // namespace psygen::render

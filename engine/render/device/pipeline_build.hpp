@@ -70,6 +70,11 @@ class PipelineMaker {
   int made_ = 0;
 };
 
+// The module of a shader, which only has to live while pipelines are made of it, and a stage of a
+// pipeline with it. Fails as vulkan_error() says.
+core::Result<UniqueShaderModule> make_module(const Device& device, Shader shader);
+VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits stage, VkShaderModule shader);
+
 // Reports `fraction` in [0, 1]. Fails with kInterrupted if `progress` returns false; an empty one
 // never does.
 inline core::Result<void> go_on(const Progress& progress, double fraction) {

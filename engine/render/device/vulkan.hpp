@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/core/error.hpp"
 
@@ -24,6 +25,23 @@ inline tl::unexpected<core::Error> vulkan_failure(VkResult result, const char* w
   return tl::unexpected(vulkan_error(result, what));
 }
 
+// For Result::map(): moves a value to the place where it is kept, which must outlive the call.
+template <class T>
+auto into(T& place) {
+  return [&place](T made) { place = std::move(made); };
+}
+
+// All elements that a function of Vulkan lists: list(count, elements).
+template <class T, class List>
+std::vector<T> all_of(const List& list) {
+  std::uint32_t count = 0;
+  list(&count, static_cast<T*>(nullptr));
+  std::vector<T> found(count);
+  list(&count, found.data());
+  found.resize(count);
+  return found;
+}
+
 // The functions of a VkDevice.
 struct DeviceTable : VolkDeviceTable {
   // A wait for the device has timed out. It may still use its objects, and destroying them may wait
@@ -36,6 +54,8 @@ struct DeviceTable : VolkDeviceTable {
 template <class T, auto Destroy>
 class DeviceHandle {
  public:
+  using Handle = T;
+
   // Empty, or the owner of `handle`.
   DeviceHandle() = default;
   DeviceHandle(const DeviceTable& vk, VkDevice device, T handle)
@@ -51,7 +71,8 @@ class DeviceHandle {
   ~DeviceHandle() {
     if (handle_ != T{} && !vk_->hangs) (vk_->*Destroy)(device_, handle_, nullptr);
   }
-  // The handle, null if empty, and its address for Vulkan's arrays.
+  // True if it owns a handle; the handle, null if empty; and its address for Vulkan's arrays.
+  bool exists() const { return handle_ != T{}; }
   T get() const { return handle_; }
   const T* address() const { return &handle_; }
 

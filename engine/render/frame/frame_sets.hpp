@@ -1,13 +1,14 @@
-// The descriptor sets that all pipelines share. Set 0, one for each frame in flight, names the data
-// of the frame and of its draws, and the images and buffers that two or more passes read. Set 1 has
-// the textures of a material (textures/materials.hpp). A pass may add a set 2 (pass_set.hpp). Owns
-// the constant images of set 0 and the samplers. Main thread. Private to engine/render.
+// The descriptor sets that pipelines share. Set 0, one for each frame in flight, names the data of
+// the frame and of its draws, the images that belong to no pass alone, the materials and the map of
+// contact shadows. Set 1 has the textures of a material (textures/materials.hpp). A pass may add a
+// set 2, or have one set of its own instead (pass_set.hpp). Owns the constant images of set 0 and
+// the samplers. Main thread. Private to engine/render.
 #pragma once
 
 #include <array>
 #include <span>
-#include <vector>
 
+#include "engine/render/device/descriptors.hpp"
 #include "engine/render/frame/shadow_maps.hpp"
 #include "engine/render/textures/ground_texture_array.hpp"
 #include "engine/render/textures/materials.hpp"
@@ -28,6 +29,9 @@ struct FrameSetsInput {
   std::span<const GroundPicture> ground;  // RendererOptions::ground
 };
 
+// The push constants of all pipelines: shaders::DrawData and the number of a cascade.
+VkPushConstantRange push_range();
+
 // Empty until create(). The device must outlive it.
 class FrameSets {
  public:
@@ -36,9 +40,9 @@ class FrameSets {
 
   // The number of frames in flight; the layouts of sets 0 and 1; and the layout of pipelines
   // without a set of their own.
-  std::size_t slots() const { return sets_.size(); }
+  std::size_t slots() const { return sets_.count(); }
   std::array<VkDescriptorSetLayout, 2> shared() const {
-    return {set_layout_.get(), materials_->set_layout()};
+    return {sets_.layout(), materials_->set_layout()};
   }
   VkPipelineLayout layout() const { return layout_.get(); }
   const ShadowMaps& shadows() const { return shadows_; }
@@ -59,7 +63,7 @@ class FrameSets {
 
  private:
   core::Result<void> create_samplers(const Device& device);
-  core::Result<void> create_sets(const Device& device, std::uint32_t count);
+  core::Result<void> create_sets(const Device& device, std::size_t count);
 
   const MaterialTable* materials_ = nullptr;
   const ImpostorTextures* pictures_ = nullptr;
@@ -67,9 +71,7 @@ class FrameSets {
   ShadowMaps shadows_;
   Image clouds_;
   GroundTextureArray ground_;
-  UniqueSetLayout set_layout_;
-  UniqueDescriptorPool pool_;
-  std::vector<VkDescriptorSet> sets_;
+  DescriptorSets sets_;
   UniquePipelineLayout layout_;
 };
 

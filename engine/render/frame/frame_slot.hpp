@@ -19,7 +19,10 @@ class FrameSlot {
   core::Result<void> create(const Device& device, std::size_t number);
   std::size_t number() const { return number_; }
   // Names the slot's buffers in its set. Call it for new sets.
-  void use(const Device& device, const FrameSets& sets) const;
+  void use(const Device& device, const FrameSets& sets);
+
+  // Names another buffer with the data of draws, until use(); does nothing if the set names it.
+  void use_draws(const Device& device, const FrameSets& sets, const Buffer& draws);
 
   // Copies a frame's data into the slot's buffers. They grow if needed, which can fail with
   // kOutOfMemory.
@@ -33,18 +36,17 @@ class FrameSlot {
   // begin() resets the command buffer and starts recording; end() makes it ready to submit.
   core::Result<void> begin(const Device& device);
   core::Result<void> end(const Device& device);
-  VkCommandBuffer commands() const { return commands_; }
-  // The semaphore for the acquired image of the window, and the frame's timestamps.
+  VkCommandBuffer commands() const { return commands_.get(); }
+  // The semaphore for the acquired image of the window.
   VkSemaphore acquired() const { return acquired_.get(); }
-
   GpuTimer& timer() { return timer_; }  // the device's time for frames of this slot
 
   std::uint64_t submitted_value = 0;  // timeline value of the last frame; 0: none
 
  private:
-  UniqueCommandPool pool_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  Commands commands_;
   Buffer frame_, draws_, shade_;
+  VkBuffer named_draws_ = VK_NULL_HANDLE;  // in the slot's set
   std::size_t number_ = 0;
   UniqueSemaphore acquired_;
   GpuTimer timer_;

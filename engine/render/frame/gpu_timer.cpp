@@ -18,15 +18,14 @@ Result<void> GpuTimer::create(const Device& device) {
   info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
   info.queryType = VK_QUERY_TYPE_TIMESTAMP;
   info.queryCount = kMarks;
-  VkQueryPool made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateQueryPool(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a query pool");
-  queries_ = UniqueQueryPool(device.vk, device.handle, made);
-  Result<Buffer> ticks =
-      make_buffer(device, sizeof(Ticks), VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::kRead);
-  if (!ticks) return tl::unexpected(ticks.error());
-  ticks_ = std::move(*ticks);
-  return {};
+  return device
+      .make<UniqueQueryPool>(&VolkDeviceTable::vkCreateQueryPool, info, "creating a query pool")
+      .map(into(queries_))
+      .and_then([&] {
+        return make_buffer(device, sizeof(Ticks), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                           MemoryUse::kRead);
+      })
+      .map(into(ticks_));
 }
 
 void GpuTimer::begin(const Device& device, VkCommandBuffer commands) {

@@ -12,9 +12,7 @@ namespace {
 
 Result<UniqueSampler> make_comparing_sampler(const Device& device) {
   VkSamplerCreateInfo info{};
-  info.addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   info.compareEnable = VK_TRUE;
   info.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
   VkFormatProperties format{};
@@ -31,35 +29,35 @@ Result<void> ShadowMaps::create(const Device& device, const PresetTraits& traits
   cascades_ = traits.cascades;
   size_ = std::min(traits.shadow_size, device.max_image_side);
   const std::uint32_t layer_count = std::max(cascades_, 1U);
-  Result<UniqueSampler> sampler = make_comparing_sampler(device);
-  if (!sampler) return tl::unexpected(sampler.error());
-  sampler_ = std::move(*sampler);
-  Result<Image> image =
-      make_image(device, {size_, size_}, kDepthFormat,
-                 VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                 VK_IMAGE_ASPECT_DEPTH_BIT, {.array = true, .layers = layer_count});
-  if (!image) return tl::unexpected(image.error());
-  image_ = std::move(*image);
-  for (std::uint32_t i = 0; i < cascades_; ++i) {
-    Result<UniqueImageView> view =
-        make_layer_view(device, image_, kDepthFormat, VK_IMAGE_ASPECT_DEPTH_BIT, i);
-    if (!view) return tl::unexpected(view.error());
-    layers_[i] = std::move(*view);
+  Result<void> made =
+      make_comparing_sampler(device)
+          .map(into(sampler_))
+          .and_then([&] {
+            return make_image(
+                device, {size_, size_}, kDepthFormat,
+                VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                VK_IMAGE_ASPECT_DEPTH_BIT, {.array = true, .layers = layer_count});
+          })
+          .map(into(image_));
+  for (std::uint32_t i = 0; made && i < cascades_; ++i) {
+    made =
+        make_view(device, image_.image.get(), kDepthFormat, {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, i, 1})
+            .map(into(layers_[i]));
   }
+  if (!made) return made;
   return run_once(device, [&](VkCommandBuffer commands) { record(device, commands, {}); });
 }
 
 void ShadowMaps::record(const Device& device, VkCommandBuffer commands,
                         const std::function<void(std::uint32_t)>& draw) const {
-  VkImageMemoryBarrier2 barrier = barrier_of(image_.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT);
-  barrier.subresourceRange.layerCount = VK_REMAINING_ARRAY_LAYERS;
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-  barrier.dstStageMask =
-      VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
-                          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
-  barrier.newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-  image_barrier(device, commands, barrier);
+  constexpr ImageUse kForgotten{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT},
+      kRead{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+            VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL};
+  const auto change = [&](const ImageUse& from, const ImageUse& to) {
+    image_barrier(device, commands,
+                  barrier_of(image_.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT, from, to));
+  };
+  change(kForgotten, kDepthAttachment);
   const VkRect2D area{{0, 0}, {size_, size_}};
   const VkViewport viewport{0.0F, 0.0F, static_cast<float>(size_), static_cast<float>(size_),
                             0.0F, 1.0F};
@@ -82,13 +80,7 @@ void ShadowMaps::record(const Device& device, VkCommandBuffer commands,
     draw(i);
     device.vk.vkCmdEndRendering(commands);
   }
-  barrier.srcStageMask = barrier.dstStageMask;
-  barrier.srcAccessMask = barrier.dstAccessMask;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-  barrier.oldLayout = barrier.newLayout;
-  barrier.newLayout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
-  image_barrier(device, commands, barrier);
+  change(kDepthAttachment, kRead);
 }
 
 }  // namespace psygen::render

@@ -1,6 +1,6 @@
-// The depth images of the sun's shadow, one layer per cascade, and the place of each cascade.
-// Without cascades it is one texel that nothing reads. Draws no meshes itself (passes/shadows.hpp).
-// Main thread. Private to engine/render.
+// The depth image of the sun's shadow, one layer per cascade, and the renderings on it. Without
+// cascades it is one texel that nothing reads. It knows neither meshes (passes/shadows.hpp) nor the
+// places of cascades (frame_data.hpp). Main thread. Private to engine/render.
 #pragma once
 
 #include <functional>
@@ -17,10 +17,9 @@ class ShadowMaps {
   // Creates the images of a preset and makes them readable. Waits for the device.
   core::Result<void> create(const Device& device, const PresetTraits& traits);
 
-  // The comparing sampler, a view of all layers, and their number without the unused texel.
+  // The comparing sampler, and a view of all layers.
   const VkSampler* sampler() const { return sampler_.address(); }
   VkImageView all_layers() const { return image_.view.get(); }
-  std::uint32_t cascades() const { return cascades_; }
 
   // Records, outside of a rendering: clears every cascade i, calls draw(i) inside its rendering,
   // and makes all of them readable by fragment shaders.

@@ -12,23 +12,14 @@ namespace {
 
 constexpr std::uint64_t kAcquireTimeoutNs = 1'000'000'000;
 
-std::vector<VkSurfaceFormatKHR> surface_formats(const Device& device,
-                                                const UniqueSurface& surface) {
-  std::uint32_t count = 0;
-  const auto get = surface.functions().formats;
-  get(device.physical, surface.get(), &count, nullptr);
-  std::vector<VkSurfaceFormatKHR> formats(count);
-  get(device.physical, surface.get(), &count, formats.data());
-  formats.resize(count);
-  return formats;
-}
-
 // Formats of the surface that store the picture's bytes unchanged, best first.
 constexpr std::array kSurfaceFormats{VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM,
                                      VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_SRGB};
 
 Result<VkSurfaceFormatKHR> choose_format(const Device& device, const UniqueSurface& surface) {
-  const std::vector<VkSurfaceFormatKHR> offered = surface_formats(device, surface);
+  const auto offered = all_of<VkSurfaceFormatKHR>([&](auto* count, auto* out) {
+    return surface.functions().formats(device.physical, surface.get(), count, out);
+  });
   for (const VkFormat wanted : kSurfaceFormats) {
     for (const VkSurfaceFormatKHR& format : offered) {
       if (format.format == wanted) return format;
@@ -39,11 +30,9 @@ Result<VkSurfaceFormatKHR> choose_format(const Device& device, const UniqueSurfa
 
 VkPresentModeKHR choose_mode(const Device& device, const UniqueSurface& surface, bool vsync) {
   if (vsync) return VK_PRESENT_MODE_FIFO_KHR;
-  std::uint32_t count = 0;
-  const auto get = surface.functions().present_modes;
-  get(device.physical, surface.get(), &count, nullptr);
-  std::vector<VkPresentModeKHR> modes(count);
-  get(device.physical, surface.get(), &count, modes.data());
+  const auto modes = all_of<VkPresentModeKHR>([&](auto* count, auto* out) {
+    return surface.functions().present_modes(device.physical, surface.get(), count, out);
+  });
   for (const VkPresentModeKHR wanted :
        {VK_PRESENT_MODE_IMMEDIATE_KHR, VK_PRESENT_MODE_MAILBOX_KHR}) {
     if (std::find(modes.begin(), modes.end(), wanted) != modes.end()) return wanted;
@@ -82,15 +71,6 @@ core::Extent extent_of(const VkSurfaceCapabilitiesKHR& able, core::Extent wished
 }
 
 }  // namespace
-
-Result<UniqueSemaphore> make_semaphore(const Device& device) {
-  VkSemaphoreCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-  VkSemaphore made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSemaphore(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a semaphore");
-  return UniqueSemaphore(device.vk, device.handle, made);
-}
 
 Result<UniqueSurface> make_surface(const Instance& instance, core::SurfaceProvider& provider) {
   const Result<std::uint64_t> made = provider.create_surface(instance.get());
@@ -133,10 +113,9 @@ Result<SwapchainState> Swapchain::create(const Device& device, const UniqueSurfa
   swapchain_ = UniqueSwapchain(device.vk, device.handle, made);
   extent_ = extent;
 
-  std::uint32_t count = 0;
-  device.vk.vkGetSwapchainImagesKHR(device.handle, made, &count, nullptr);
-  images_.resize(count);
-  device.vk.vkGetSwapchainImagesKHR(device.handle, made, &count, images_.data());
+  images_ = all_of<VkImage>([&](auto* count, auto* out) {
+    return device.vk.vkGetSwapchainImagesKHR(device.handle, made, count, out);
+  });
   while (finished_.size() < images_.size()) {
     Result<UniqueSemaphore> semaphore = make_semaphore(device);
     if (!semaphore) return tl::unexpected(semaphore.error());

@@ -78,7 +78,4 @@ class Swapchain {
   std::uint32_t current_ = 0;
 };
 
-// Creates a binary semaphore.
-core::Result<UniqueSemaphore> make_semaphore(const Device& device);
-
 }  // namespace psygen::render

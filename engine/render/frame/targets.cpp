@@ -29,93 +29,87 @@ bool is_reflected(const Targets& targets, RenderingPart part) {
   return targets.reflects && (part == RenderingPart::kWhole || part == RenderingPart::kSecond);
 }
 
-// Makes a colour image an attachment that forgets what it had, after it was drawn to and read.
-VkImageMemoryBarrier2 to_attachment(const Image& image, VkImageLayout layout,
-                                    VkPipelineStageFlags2 read_in) {
-  VkImageMemoryBarrier2 barrier = barrier_of(image.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | read_in;
-  barrier.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-  barrier.dstAccessMask =
-      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
-  barrier.newLayout = layout;
-  return barrier;
+// Makes both images of the reflection attachments, after water has read them, or textures, after
+// the rendering that filled them. Attachments are resolved, depth too, in the stage and with the
+// access of colours.
+void change_reflection(const Device& device, VkCommandBuffer commands,
+                       const ReflectionTargets& reflection, bool to_textures) {
+  constexpr ImageUse kForgotten{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT},
+      kRead{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+            VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  const auto barrier = [&](const Image& image, VkImageAspectFlags aspect, VkImageLayout layout) {
+    const ImageUse resolved{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                            VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, layout};
+    return to_textures ? barrier_of(image.image.get(), aspect, resolved, kRead)
+                       : barrier_of(image.image.get(), aspect, kForgotten, resolved);
+  };
+  image_barriers(device, commands,
+                 std::array{barrier(reflection.colour, VK_IMAGE_ASPECT_COLOR_BIT,
+                                    VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL),
+                            barrier(reflection.depth, VK_IMAGE_ASPECT_DEPTH_BIT,
+                                    VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL)});
 }
 
-// Moves the targets to the layouts of attachments, after all previous uses.
+// Moves the targets to the layouts of attachments, after all previous uses. Parts after the first
+// one keep what was drawn.
 void to_attachments(const Device& device, VkCommandBuffer commands, Targets& targets,
                     RenderingPart part) {
   VkImageLayout& layout =
       targets.is_low_resolution() ? targets.low_resolution_layout : targets.colour_layout;
-  if (is_reflected(targets, part)) reflection_to_attachments(device, commands, targets.reflection);
-  if (part == RenderingPart::kWater) reflection_to_textures(device, commands, targets.reflection);
-  const VkImageLayout drawn_to = landscape_layout(targets);
-  if (part == RenderingPart::kWhole && targets.host_ordered && layout == drawn_to) return;
-  VkImageMemoryBarrier2 colour =
-      to_attachment(landscape_of(targets), drawn_to,
-                    targets.is_low_resolution() ? VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT
-                                                : VK_PIPELINE_STAGE_2_COPY_BIT);
-  VkImageMemoryBarrier2 depth = barrier_of(targets.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT);
-  depth.srcStageMask = VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
-  depth.srcAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
-  depth.dstStageMask =
-      VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
-  depth.dstAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
-                        VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
-  depth.newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-  if (part == RenderingPart::kSecond) {
-    colour.oldLayout = drawn_to;
-    depth.oldLayout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
-    depth.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-    depth.srcAccessMask = VK_ACCESS_2_NONE;
-  }
-  if (part == RenderingPart::kWater) {
-    colour.oldLayout = drawn_to;
-    depth.oldLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-  }
-  VkImageMemoryBarrier2 samples = colour;
-  samples.image = targets.samples.image.get();
-  samples.newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  if (colour.oldLayout != VK_IMAGE_LAYOUT_UNDEFINED) samples.oldLayout = samples.newLayout;
-  const std::array barriers{colour, depth, samples};
+  if (is_reflected(targets, part)) change_reflection(device, commands, targets.reflection, false);
+  if (part == RenderingPart::kWater) change_reflection(device, commands, targets.reflection, true);
+  ImageUse drawn = kColourAttachment;
+  drawn.layout = landscape_layout(targets);
+  if (part == RenderingPart::kWhole && targets.host_ordered && layout == drawn.layout) return;
+  const bool keeps = part == RenderingPart::kSecond || part == RenderingPart::kWater;
+  ImageUse before{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT |
+                      (targets.is_low_resolution() ? VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT
+                                                   : VK_PIPELINE_STAGE_2_COPY_BIT),
+                  VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
+  if (keeps) before.layout = drawn.layout;
+  ImageUse depth_before{VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                        VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
+  if (part == RenderingPart::kSecond)
+    depth_before = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_NONE,
+                    VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL};
+  if (part == RenderingPart::kWater) depth_before.layout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  ImageUse samples_before = before;
+  if (keeps) samples_before.layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  const std::array barriers{
+      barrier_of(landscape_of(targets).image.get(), VK_IMAGE_ASPECT_COLOR_BIT, before, drawn),
+      barrier_of(targets.depth.image.get(), VK_IMAGE_ASPECT_DEPTH_BIT, depth_before,
+                 kDepthAttachment),
+      barrier_of(targets.samples.image.get(), VK_IMAGE_ASPECT_COLOR_BIT, samples_before,
+                 kColourAttachment)};
   image_barriers(device, commands, std::span(barriers).first(targets.has_samples() ? 3 : 2));
-  layout = drawn_to;
+  layout = drawn.layout;
 }
 
 void to_copy_source(const Device& device, VkCommandBuffer commands, Targets& targets) {
   if (targets.colour_layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL) return;
-  VkImageMemoryBarrier2 barrier = barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-  barrier.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT;
-  barrier.oldLayout = targets.colour_layout;
-  barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-  image_barrier(device, commands, barrier);
-  targets.colour_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+  constexpr ImageUse kCopied{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+  const ImageUse drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, targets.colour_layout};
+  image_barrier(device, commands,
+                barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT, drawn, kCopied));
+  targets.colour_layout = kCopied.layout;
 }
 
 // After a landscape of fewer pixels: shaders can read it, and the picture can be drawn to.
 void to_scaling_up(const Device& device, VkCommandBuffer commands, Targets& targets) {
-  VkImageMemoryBarrier2 from =
-      barrier_of(targets.low_resolution.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
-  from.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-  from.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-  from.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-  from.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-  from.oldLayout = from.newLayout = kLowResolutionLayout;
-  const VkImageMemoryBarrier2 to = to_attachment(
-      targets.colour, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT);
-  image_barriers(device, commands, std::array{from, to});
-  targets.colour_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-}
-
-// The depth pyramid reads depth, if the device supports it.
-VkImageUsageFlags depth_usage(const Device& device, VkSampleCountFlagBits samples) {
-  const bool readable = (device.sampled_depth_counts & samples) != 0;
-  VkImageUsageFlags usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-  if (readable) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
-  return usage;
+  constexpr ImageUse kDrawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                            VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, kLowResolutionLayout},
+      kRead{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+            kLowResolutionLayout},
+      kForgotten{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
+                 VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
+  image_barriers(device, commands,
+                 std::array{barrier_of(targets.low_resolution.image.get(),
+                                       VK_IMAGE_ASPECT_COLOR_BIT, kDrawn, kRead),
+                            barrier_of(targets.colour.image.get(), VK_IMAGE_ASPECT_COLOR_BIT,
+                                       kForgotten, kColourAttachment)});
+  targets.colour_layout = kColourAttachment.layout;
 }
 
 VkRenderingAttachmentInfo colour_of(const Targets& targets, RenderingPart part) {
@@ -159,24 +153,21 @@ VkRenderingAttachmentInfo depth_of(const Targets& targets, RenderingPart part) {
   return info;
 }
 
-VkRenderingInfo rendering_info(const VkRect2D& area, const VkRenderingAttachmentInfo& colour) {
+// Begins a rendering on `extent` pixels in the corner of attachments. `depth` may be null.
+void begin_on(const Device& device, VkCommandBuffer commands, core::Extent extent,
+              const VkRenderingAttachmentInfo& colour, const VkRenderingAttachmentInfo* depth) {
   VkRenderingInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-  info.renderArea = area;
+  info.renderArea = {{0, 0}, {extent.width, extent.height}};
   info.layerCount = 1;
   info.colorAttachmentCount = 1;
   info.pColorAttachments = &colour;
-  return info;
-}
-
-void begin_on(const Device& device, VkCommandBuffer commands, const VkRenderingInfo& info) {
+  info.pDepthAttachment = depth;
   device.vk.vkCmdBeginRendering(commands, &info);
-  const VkRect2D& area = info.renderArea;
   const VkViewport viewport{
-      0.0F, 0.0F, static_cast<float>(area.extent.width), static_cast<float>(area.extent.height),
-      0.0F, 1.0F};
+      0.0F, 0.0F, static_cast<float>(extent.width), static_cast<float>(extent.height), 0.0F, 1.0F};
   device.vk.vkCmdSetViewport(commands, 0, 1, &viewport);
-  device.vk.vkCmdSetScissor(commands, 0, 1, &area);
+  device.vk.vkCmdSetScissor(commands, 0, 1, &info.renderArea);
 }
 
 }  // namespace
@@ -190,36 +181,42 @@ bool can_scale_up(const Device& device, VkFormat format) {
 }
 
 Result<void> add_low_resolution(const Device& device, VkFormat format, Targets& targets) {
-  Result<Image> made = make_image(device, targets.extent, format,
-                                  VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                  VK_IMAGE_ASPECT_COLOR_BIT);
-  if (!made) return tl::unexpected(made.error());
-  targets.low_resolution = std::move(*made);
-  return {};
+  return make_image(device, targets.extent, format,
+                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                    VK_IMAGE_ASPECT_COLOR_BIT)
+      .map(into(targets.low_resolution));
 }
 
 Result<Targets> make_targets(const Device& device, VkFormat format, core::Extent extent,
                              VkSampleCountFlagBits samples, bool reflections) {
   Targets targets;
   targets.extent = targets.drawn = extent;
-  Result<Image> colour = make_image(
-      device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-      VK_IMAGE_ASPECT_COLOR_BIT);
-  if (!colour) return tl::unexpected(colour.error());
-  targets.colour = std::move(*colour);
-  Result<Image> depth = make_image(device, extent, kDepthFormat, depth_usage(device, samples),
-                                   VK_IMAGE_ASPECT_DEPTH_BIT, {.samples = samples});
-  if (!depth) return tl::unexpected(depth.error());
-  targets.depth = std::move(*depth);
-  if (samples == VK_SAMPLE_COUNT_1_BIT) return targets;
-  Result<Image> drawn = make_image(device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
-                                   VK_IMAGE_ASPECT_COLOR_BIT, {.samples = samples});
-  if (!drawn) return tl::unexpected(drawn.error());
-  targets.samples = std::move(*drawn);
-  if (!reflections) return targets;
-  Result<ReflectionTargets> reflection = make_reflection_targets(device, format, extent);
-  if (!reflection) return tl::unexpected(reflection.error());
-  targets.reflection = std::move(*reflection);
+  const auto add_colour = [&](Image& image, VkImageUsageFlags use, VkSampleCountFlagBits of_pixel) {
+    return make_image(device, extent, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | use,
+                      VK_IMAGE_ASPECT_COLOR_BIT, {.samples = of_pixel})
+        .map(into(image));
+  };
+  const auto add_depth = [&](Image& image, VkImageUsageFlags use, VkSampleCountFlagBits of_pixel) {
+    return make_image(device, extent, kDepthFormat,
+                      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | use, VK_IMAGE_ASPECT_DEPTH_BIT,
+                      {.samples = of_pixel})
+        .map(into(image));
+  };
+  // The depth pyramid reads depth, if the device supports it.
+  const VkImageUsageFlags read =
+      (device.sampled_depth_counts & samples) != 0 ? VK_IMAGE_USAGE_SAMPLED_BIT : 0;
+  constexpr VkSampleCountFlagBits kOne = VK_SAMPLE_COUNT_1_BIT;
+  Result<void> made =
+      add_colour(targets.colour, VK_IMAGE_USAGE_TRANSFER_SRC_BIT, kOne).and_then([&] {
+        return add_depth(targets.depth, read, samples);
+      });
+  if (made && samples != kOne) made = add_colour(targets.samples, 0, samples);
+  if (made && samples != kOne && reflections) {
+    made = add_colour(targets.reflection.colour, VK_IMAGE_USAGE_SAMPLED_BIT, kOne).and_then([&] {
+      return add_depth(targets.reflection.depth, VK_IMAGE_USAGE_SAMPLED_BIT, kOne);
+    });
+  }
+  if (!made) return tl::unexpected(made.error());
   return targets;
 }
 
@@ -228,10 +225,7 @@ void begin_rendering(const Device& device, VkCommandBuffer commands, Targets& ta
   to_attachments(device, commands, targets, part);
   const VkRenderingAttachmentInfo colour = colour_of(targets, part);
   const VkRenderingAttachmentInfo depth = depth_of(targets, part);
-  VkRenderingInfo info =
-      rendering_info({{0, 0}, {targets.drawn.width, targets.drawn.height}}, colour);
-  info.pDepthAttachment = &depth;
-  begin_on(device, commands, info);
+  begin_on(device, commands, targets.drawn, colour, &depth);
 }
 
 void split_rendering(const Device& device, VkCommandBuffer commands, const Targets& targets) {
@@ -246,10 +240,7 @@ void split_rendering(const Device& device, VkCommandBuffer commands, const Targe
   VkRenderingAttachmentInfo colour = colour_of(targets, RenderingPart::kWhole);
   VkRenderingAttachmentInfo depth = depth_of(targets, RenderingPart::kWhole);
   colour.loadOp = depth.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-  VkRenderingInfo info =
-      rendering_info({{0, 0}, {targets.drawn.width, targets.drawn.height}}, colour);
-  info.pDepthAttachment = &depth;
-  begin_on(device, commands, info);
+  begin_on(device, commands, targets.drawn, colour, &depth);
 }
 
 void begin_upscale_rendering(const Device& device, VkCommandBuffer commands, Targets& targets) {
@@ -260,19 +251,19 @@ void begin_upscale_rendering(const Device& device, VkCommandBuffer commands, Tar
   colour.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   colour.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   colour.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  const VkRect2D area{{0, 0}, {targets.extent.width, targets.extent.height}};
-  begin_on(device, commands, rendering_info(area, colour));
+  begin_on(device, commands, targets.extent, colour, nullptr);
 }
 
 void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targets& targets,
                            VkImage window, core::Extent window_extent) {
   to_copy_source(device, commands, targets);
-  VkImageMemoryBarrier2 barrier = barrier_of(window, VK_IMAGE_ASPECT_COLOR_BIT);
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;  // the stage that waits for the image
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-  image_barrier(device, commands, barrier);
+  // The stage that waits for the image.
+  constexpr ImageUse kAcquired{VK_PIPELINE_STAGE_2_COPY_BIT},
+      kCopied{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL},
+      kShown{VK_PIPELINE_STAGE_2_NONE, VK_ACCESS_2_NONE, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR};
+  image_barrier(device, commands,
+                barrier_of(window, VK_IMAGE_ASPECT_COLOR_BIT, kAcquired, kCopied));
   VkImageCopy copy{};
   copy.srcSubresource = kColourLayer;
   copy.dstSubresource = kColourLayer;
@@ -281,12 +272,7 @@ void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targe
   device.vk.vkCmdCopyImage(commands, targets.colour.image.get(),
                            VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, window,
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-  barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_NONE;
-  barrier.dstAccessMask = VK_ACCESS_2_NONE;
-  barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-  barrier.newLayout = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
-  image_barrier(device, commands, barrier);
+  image_barrier(device, commands, barrier_of(window, VK_IMAGE_ASPECT_COLOR_BIT, kCopied, kShown));
 }
 
 void record_copy_to_buffer(const Device& device, VkCommandBuffer commands, Targets& targets,

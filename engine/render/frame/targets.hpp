@@ -2,14 +2,20 @@
 // picture out. Knows nothing of what is drawn. Main thread. Private to engine/render.
 #pragma once
 
-#include "engine/render/device/device.hpp"
-#include "engine/render/frame/reflection_targets.hpp"
 #include "engine/render/memory/memory.hpp"
 
 namespace psygen::render {
 
 // Of Targets::low_resolution, which is attachment and texture in turns.
 inline constexpr VkImageLayout kLowResolutionLayout = VK_IMAGE_LAYOUT_GENERAL;
+
+// The landscape without water, which water reflects: colour and depth with one sample per pixel, as
+// textures (shaders/mirror.glsl).
+struct ReflectionTargets {
+  Image colour, depth;
+
+  bool exists() const { return colour.image.exists(); }
+};
 
 // The images of a picture: colour, which can be copied out, and depth, which is discarded after the
 // last rendering. With several samples per pixel, `samples` is drawn to and `colour` gets their
@@ -36,7 +42,7 @@ struct Targets {
   bool in_parts = false;  // the next frame is drawn so: split_rendering() may be called
 
   bool is_low_resolution() const { return drawn != extent; }
-  bool has_samples() const { return samples.image.get() != VK_NULL_HANDLE; }
+  bool has_samples() const { return samples.image.exists(); }
 };
 // Creates targets of `extent` pixels, with `reflection` if `reflections`, which needs more than one
 // sample per pixel. Fails with kOutOfMemory.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 #include <initializer_list>
 #include <vector>
@@ -43,19 +45,16 @@ constexpr VkMemoryPropertyFlags kMapped =
 
 Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes, VkBufferUsageFlags usage,
                            MemoryUse use) {
-  Buffer made;
-  made.bytes = bytes;
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.size = bytes;
   info.usage = usage;
-  VkBuffer buffer = VK_NULL_HANDLE;
-  VkResult result = device.vk.vkCreateBuffer(device.handle, &info, nullptr, &buffer);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a buffer");
-  made.buffer = UniqueBuffer(device.vk, device.handle, buffer);
+  Result<UniqueBuffer> buffer =
+      device.make<UniqueBuffer>(&VolkDeviceTable::vkCreateBuffer, info, "creating a buffer");
+  if (!buffer) return tl::unexpected(buffer.error());
 
   VkMemoryRequirements needs{};
-  device.vk.vkGetBufferMemoryRequirements(device.handle, buffer, &needs);
+  device.vk.vkGetBufferMemoryRequirements(device.handle, buffer->get(), &needs);
   const VkMemoryPropertyFlags extra = use == MemoryUse::kWrite ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
                                                                : VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
   const bool mapped_use = use != MemoryUse::kDevice;
@@ -63,8 +62,9 @@ Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes, VkBufferUs
       mapped_use ? allocate(device, needs, {kMapped | extra, kMapped})
                  : allocate(device, needs, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
   if (!memory) return tl::unexpected(memory.error());
-  made.memory = std::move(*memory);
-  result = device.vk.vkBindBufferMemory(device.handle, buffer, made.memory.get(), 0);
+  Buffer made{std::move(*memory), std::move(*buffer), nullptr, bytes};
+  VkResult result =
+      device.vk.vkBindBufferMemory(device.handle, made.buffer.get(), made.memory.get(), 0);
   if (result != VK_SUCCESS) return vulkan_failure(result, "binding a buffer to its memory");
   if (!mapped_use) return made;
   void* mapped = nullptr;
@@ -74,20 +74,18 @@ Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes, VkBufferUs
   return made;
 }
 
-Result<UniqueMemory> bind_image_memory(const Device& device, VkImage image) {
-  VkMemoryRequirements needs{};
-  device.vk.vkGetImageMemoryRequirements(device.handle, image, &needs);
-  Result<UniqueMemory> memory = allocate(device, needs, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
-  if (!memory) return memory;
-  const VkResult result = device.vk.vkBindImageMemory(device.handle, image, memory->get(), 0);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "binding an image to its memory");
-  return memory;
+Result<bool> grow(const Device& device, Buffer& buffer, std::uint64_t bytes,
+                  VkBufferUsageFlags usage, MemoryUse use) {
+  if (bytes <= buffer.bytes) return false;
+  return make_buffer(device, std::bit_ceil(bytes), usage, use).map([&](Buffer larger) {
+    buffer = std::move(larger);
+    return true;
+  });
 }
 
 Result<Image> make_image(const Device& device, core::Extent size, VkFormat format,
                          VkImageUsageFlags usage, VkImageAspectFlags aspect,
                          const ImageShape& shape) {
-  Image made;
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.imageType = VK_IMAGE_TYPE_2D;
@@ -98,49 +96,51 @@ Result<Image> make_image(const Device& device, core::Extent size, VkFormat forma
   info.samples = shape.samples;
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
   info.usage = usage;
-  VkImage image = VK_NULL_HANDLE;
-  VkResult result = device.vk.vkCreateImage(device.handle, &info, nullptr, &image);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating an image");
-  made.image = UniqueImage(device.vk, device.handle, image);
-
-  Result<UniqueMemory> memory = bind_image_memory(device, image);
+  Result<UniqueImage> image =
+      device.make<UniqueImage>(&VolkDeviceTable::vkCreateImage, info, "creating an image");
+  if (!image) return tl::unexpected(image.error());
+  VkMemoryRequirements needs{};
+  device.vk.vkGetImageMemoryRequirements(device.handle, image->get(), &needs);
+  Result<UniqueMemory> memory = allocate(device, needs, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
   if (!memory) return tl::unexpected(memory.error());
-  made.memory = std::move(*memory);
-
-  VkImageViewCreateInfo view_info{};
-  view_info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-  view_info.image = image;
-  view_info.viewType = shape.array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
-  view_info.format = format;
-  view_info.subresourceRange = {aspect, 0, shape.mips, 0, shape.layers};
-  VkImageView view = VK_NULL_HANDLE;
-  result = device.vk.vkCreateImageView(device.handle, &view_info, nullptr, &view);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating an image view");
-  made.view = UniqueImageView(device.vk, device.handle, view);
-  return made;
+  Image made{std::move(*memory), std::move(*image), {}};
+  const VkResult result =
+      device.vk.vkBindImageMemory(device.handle, made.image.get(), made.memory.get(), 0);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "binding an image to its memory");
+  return make_view(device, made.image.get(), format, {aspect, 0, shape.mips, 0, shape.layers},
+                   shape.array)
+      .map([&](UniqueImageView view) {
+        made.view = std::move(view);
+        return std::move(made);
+      });
 }
 
-Result<UniqueImageView> make_layer_view(const Device& device, const Image& image, VkFormat format,
-                                        VkImageAspectFlags aspect, std::uint32_t layer) {
+Result<UniqueImageView> make_view(const Device& device, VkImage image, VkFormat format,
+                                  const VkImageSubresourceRange& part, bool array) {
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-  info.image = image.image.get();
-  info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  info.image = image;
+  info.viewType = array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   info.format = format;
-  info.subresourceRange = {aspect, 0, 1, layer, 1};
-  VkImageView view = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateImageView(device.handle, &info, nullptr, &view);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating an image view");
-  return UniqueImageView(device.vk, device.handle, view);
+  info.subresourceRange = part;
+  return device.make<UniqueImageView>(&VolkDeviceTable::vkCreateImageView, info,
+                                      "creating an image view");
 }
 
-VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect) {
+VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect, const ImageUse& from,
+                                 const ImageUse& to) {
   VkImageMemoryBarrier2 barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+  barrier.srcStageMask = from.stages;
+  barrier.srcAccessMask = from.access;
+  barrier.dstStageMask = to.stages;
+  barrier.dstAccessMask = to.access;
+  barrier.oldLayout = from.layout;
+  barrier.newLayout = to.layout;
   barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image;
-  barrier.subresourceRange = {aspect, 0, 1, 0, 1};
+  barrier.subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
   return barrier;
 }
 
@@ -174,81 +174,87 @@ void memory_barrier(const Device& device, VkCommandBuffer commands, VkPipelineSt
   device.vk.vkCmdPipelineBarrier2(commands, &dependency);
 }
 
-Result<UniqueSemaphore> make_timeline(const Device& device) {
+namespace {
+
+Result<UniqueSemaphore> make_semaphore(const Device& device, VkSemaphoreType kind) {
   VkSemaphoreTypeCreateInfo type{};
   type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
-  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  type.semaphoreType = kind;
   VkSemaphoreCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
   info.pNext = &type;
-  VkSemaphore made = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSemaphore(device.handle, &info, nullptr, &made);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a semaphore");
-  return UniqueSemaphore(device.vk, device.handle, made);
+  return device.make<UniqueSemaphore>(&VolkDeviceTable::vkCreateSemaphore, info,
+                                      "creating a semaphore");
 }
 
-Result<OneTimeCommands> begin_once(const Device& device) {
-  OneTimeCommands once;
-  VkCommandPoolCreateInfo pool_info{};
-  pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-  pool_info.queueFamilyIndex = device.queue_family;
-  VkCommandPool pool = VK_NULL_HANDLE;
-  VkResult result = device.vk.vkCreateCommandPool(device.handle, &pool_info, nullptr, &pool);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a command pool");
-  once.pool = UniqueCommandPool(device.vk, device.handle, pool);
+}  // namespace
+
+Result<UniqueSemaphore> make_timeline(const Device& device) {
+  return make_semaphore(device, VK_SEMAPHORE_TYPE_TIMELINE);
+}
+
+Result<UniqueSemaphore> make_semaphore(const Device& device) {
+  return make_semaphore(device, VK_SEMAPHORE_TYPE_BINARY);
+}
+
+Result<void> Commands::create(const Device& device, std::uint32_t queue_family) {
+  VkCommandPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+  pool.queueFamilyIndex = queue_family;
+  const Result<void> made = device
+                                .make<UniqueCommandPool>(&VolkDeviceTable::vkCreateCommandPool,
+                                                         pool, "creating a command pool")
+                                .map(into(pool_));
+  if (!made) return made;
   VkCommandBufferAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  info.commandPool = pool;
+  info.commandPool = pool_.get();
   info.commandBufferCount = 1;
-  result = device.vk.vkAllocateCommandBuffers(device.handle, &info, &once.commands);
+  const VkResult result = device.vk.vkAllocateCommandBuffers(device.handle, &info, &commands_);
   if (result != VK_SUCCESS) return vulkan_failure(result, "allocating a command buffer");
-  VkCommandBufferBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  result = device.vk.vkBeginCommandBuffer(once.commands, &begin);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "beginning a command buffer");
-  return once;
+  return {};
 }
 
-Result<void> finish_once(const Device& device, OneTimeCommands& once) {
-  VkResult result = device.vk.vkEndCommandBuffer(once.commands);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "ending a command buffer");
-  VkSemaphoreTypeCreateInfo type{};
-  type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
-  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
-  VkSemaphoreCreateInfo semaphore_info{};
-  semaphore_info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-  semaphore_info.pNext = &type;
-  VkSemaphore semaphore = VK_NULL_HANDLE;
-  result = device.vk.vkCreateSemaphore(device.handle, &semaphore_info, nullptr, &semaphore);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a semaphore");
-  const UniqueSemaphore owner(device.vk, device.handle, semaphore);
+Result<void> Commands::begin(const Device& device) {
+  VkResult result = device.vk.vkResetCommandPool(device.handle, pool_.get(), 0);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "resetting a command pool");
+  VkCommandBufferBeginInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  result = device.vk.vkBeginCommandBuffer(commands_, &info);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "beginning a command buffer");
+  return {};
+}
 
-  VkCommandBufferSubmitInfo commands{};
-  commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
-  commands.commandBuffer = once.commands;
-  VkSemaphoreSubmitInfo signal{};
-  signal.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
-  signal.semaphore = semaphore;
-  signal.value = 1;
-  signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  VkSubmitInfo2 submit{};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-  submit.commandBufferInfoCount = 1;
-  submit.pCommandBufferInfos = &commands;
-  submit.signalSemaphoreInfoCount = 1;
-  submit.pSignalSemaphoreInfos = &signal;
-  return device.submit(device.queue, submit, "submitting commands").and_then([&] {
-    return device.wait(semaphore, signal.value, "waiting for the device");
-  });
+Result<void> Commands::end(const Device& device) {
+  const VkResult result = device.vk.vkEndCommandBuffer(commands_);
+  if (result != VK_SUCCESS) return vulkan_failure(result, "ending a command buffer");
+  return {};
+}
+
+Result<void> run_once(const Device& device, const std::function<void(VkCommandBuffer)>& record) {
+  Commands commands;
+  UniqueSemaphore done;
+  return commands.create(device, device.queue_family)
+      .and_then([&] { return make_timeline(device); })
+      .map(into(done))
+      .and_then([&] { return commands.begin(device); })
+      .and_then([&] {
+        record(commands.get());
+        return commands.end(device);
+      })
+      .and_then([&] {
+        const std::array signals{
+            semaphore_info(done.get(), 1, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)};
+        return device.submit(device.queue, commands.get(), {}, signals, "submitting commands");
+      })
+      .and_then([&] { return device.wait(done.get(), 1, "waiting for the device"); });
 }
 
 Result<UniqueSampler> make_sampler(const Device& device, VkSamplerCreateInfo info) {
   info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-  VkSampler sampler = VK_NULL_HANDLE;
-  const VkResult result = device.vk.vkCreateSampler(device.handle, &info, nullptr, &sampler);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a sampler");
-  return UniqueSampler(device.vk, device.handle, sampler);
+  return device.make<UniqueSampler>(&VolkDeviceTable::vkCreateSampler, info, "creating a sampler");
 }
 
 Result<void> upload_image(const Device& device, const Image& image, core::Extent size,
@@ -272,24 +278,23 @@ Result<void> upload_image(const Device& device, const Image& image, core::Extent
     at += levels[i].size();
   }
   return run_once(device, [&](VkCommandBuffer commands) {
-    VkImageMemoryBarrier2 barrier = barrier_of(image.image.get(), VK_IMAGE_ASPECT_COLOR_BIT);
-    barrier.subresourceRange.levelCount = static_cast<std::uint32_t>(levels.size());
-    barrier.subresourceRange.baseArrayLayer = first_layer;
-    barrier.subresourceRange.layerCount = layers;
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-    barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-    image_barrier(device, commands, barrier);
+    constexpr ImageUse kFilled{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
+    constexpr ImageUse kRead{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                             VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    const auto change = [&](const ImageUse& from, const ImageUse& to) {
+      VkImageMemoryBarrier2 barrier =
+          barrier_of(image.image.get(), VK_IMAGE_ASPECT_COLOR_BIT, from, to);
+      barrier.subresourceRange.baseArrayLayer = first_layer;
+      barrier.subresourceRange.layerCount = layers;
+      image_barrier(device, commands, barrier);
+    };
+    change({}, kFilled);
     device.vk.vkCmdCopyBufferToImage(commands, staging->buffer.get(), image.image.get(),
                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                      static_cast<std::uint32_t>(copies.size()), copies.data());
-    barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-    barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-    barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-    barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    image_barrier(device, commands, barrier);
+    change(kFilled, kRead);
   });
 }
 

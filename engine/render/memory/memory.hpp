@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "engine/core/surface_provider.hpp"
@@ -38,8 +39,10 @@ enum class MemoryUse : std::uint8_t {
 core::Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes,
                                  VkBufferUsageFlags usage, MemoryUse use);
 
-// Allocates device-local memory for an image and binds it.
-core::Result<UniqueMemory> bind_image_memory(const Device& device, VkImage image);
+// Replaces a buffer of fewer bytes by one of the next power of two, without its content, and
+// returns true then.
+core::Result<bool> grow(const Device& device, Buffer& buffer, std::uint64_t bytes,
+                        VkBufferUsageFlags usage, MemoryUse use);
 
 // Optional properties of an image.
 struct ImageShape {
@@ -52,10 +55,9 @@ struct ImageShape {
 core::Result<Image> make_image(const Device& device, core::Extent size, VkFormat format,
                                VkImageUsageFlags usage, VkImageAspectFlags aspect,
                                const ImageShape& shape = {});
-// Creates a view of one layer of an image.
-core::Result<UniqueImageView> make_layer_view(const Device& device, const Image& image,
-                                              VkFormat format, VkImageAspectFlags aspect,
-                                              std::uint32_t layer);
+// Creates a view of a part of an image; `array`: of all its layers.
+core::Result<UniqueImageView> make_view(const Device& device, VkImage image, VkFormat format,
+                                        const VkImageSubresourceRange& part, bool array = false);
 
 // A sampler; `info` without its type. Fails with kOutOfMemory or kDeviceLost.
 core::Result<UniqueSampler> make_sampler(const Device& device, VkSamplerCreateInfo info);
@@ -67,40 +69,55 @@ core::Result<void> upload_image(const Device& device, const Image& image, core::
                                 std::span<const std::span<const std::byte>> levels,
                                 std::uint32_t layers = 1, std::uint32_t first_layer = 0);
 
+// A command pool with its one command buffer. Empty until create(). The device must outlive it.
+class Commands {
+ public:
+  core::Result<void> create(const Device& device, std::uint32_t queue_family);
+  // begin() resets the command buffer and starts recording; end() makes it ready to submit.
+  core::Result<void> begin(const Device& device);
+  core::Result<void> end(const Device& device);
+  VkCommandBuffer get() const { return commands_; }
+
+ private:
+  UniqueCommandPool pool_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+};
+
 // Calls `record(commands)`, submits the commands and waits for them.
-template <class Record>
-core::Result<void> run_once(const Device& device, Record&& record);
+core::Result<void> run_once(const Device& device,
+                            const std::function<void(VkCommandBuffer)>& record);
 
 // Records a global memory barrier between the stages `from` and `to` with these accesses.
 void memory_barrier(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 from,
                     VkAccessFlags2 from_access, VkPipelineStageFlags2 to, VkAccessFlags2 to_access);
 
-// Creates a timeline semaphore with the value 0.
+// Creates a timeline semaphore with the value 0, and a binary one.
 core::Result<UniqueSemaphore> make_timeline(const Device& device);
+core::Result<UniqueSemaphore> make_semaphore(const Device& device);
 
-// Records a barrier, which may change an image's layout. barrier_of() is a barrier of the first mip
-// level and layer, to be completed by the caller.
+// A use of an image. As the use before a barrier, an undefined layout discards the content.
+struct ImageUse {
+  VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_NONE;
+  VkAccessFlags2 access = VK_ACCESS_2_NONE;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+// Written as an attachment of colour, or tested and written as one of depth.
+inline constexpr ImageUse kColourAttachment{
+    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT,
+    VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+inline constexpr ImageUse kDepthAttachment{
+    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+    VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
+
+// A barrier between two uses of all of an image.
+VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect, const ImageUse& from,
+                                 const ImageUse& to);
+// Record such barriers.
 void image_barriers(const Device& device, VkCommandBuffer commands,
                     std::span<const VkImageMemoryBarrier2> barriers);
 void image_barrier(const Device& device, VkCommandBuffer commands,
                    const VkImageMemoryBarrier2& barrier);
-VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect);
-
-// Implementation of run_once: a command buffer in recording, and its submission with a wait.
-struct OneTimeCommands {
-  UniqueCommandPool pool;
-  VkCommandBuffer commands = VK_NULL_HANDLE;
-};
-// Starts recording; ends it, submits and waits.
-core::Result<OneTimeCommands> begin_once(const Device& device);
-core::Result<void> finish_once(const Device& device, OneTimeCommands& once);
-
-template <class Record>
-core::Result<void> run_once(const Device& device, Record&& record) {
-  core::Result<OneTimeCommands> once = begin_once(device);
-  if (!once) return tl::unexpected(once.error());
-  record(once->commands);
-  return finish_once(device, *once);
-}
 
 }  // namespace psygen::render

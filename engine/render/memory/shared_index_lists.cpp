@@ -6,13 +6,13 @@
 namespace psygen::render {
 
 core::Result<void> SharedIndexLists::create(const Device& device) {
-  core::Result<Buffer> made = make_buffer(
-      device, kBytes, VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
-      MemoryUse::kWrite);
-  if (!made) return tl::unexpected(made.error());
-  buffer_ = std::move(*made);
-  std::memset(buffer_.mapped, 0, kBlankBytes);
-  return {};
+  return make_buffer(device, kBytes,
+                     VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
+                     MemoryUse::kWrite)
+      .map([this](Buffer made) {
+        buffer_ = std::move(made);
+        std::memset(buffer_.mapped, 0, kBlankBytes);
+      });
 }
 
 core::Result<std::uint32_t> SharedIndexLists::add(std::span<const std::uint16_t> indices) {

@@ -1,8 +1,6 @@
 #include "engine/render/memory/slot_buffer.hpp"
 
-#include <bit>
 #include <cstring>
-#include <utility>
 
 namespace psygen::render {
 
@@ -24,15 +22,10 @@ Result<void> SlotBuffer::create(const Device& device, std::size_t slots, std::ui
 Result<bool> SlotBuffer::write(const Device& device, std::size_t slot,
                                std::span<const std::byte> bytes) {
   Buffer& buffer = buffers_[slot];
-  const bool grows = bytes.size() > buffer.bytes;
-  if (grows) {
-    Result<Buffer> larger =
-        make_buffer(device, std::bit_ceil(bytes.size()), usage_, MemoryUse::kWrite);
-    if (!larger) return tl::unexpected(larger.error());
-    buffer = std::move(*larger);
-  }
-  if (!bytes.empty()) std::memcpy(buffer.mapped, bytes.data(), bytes.size());
-  return grows;
+  return grow(device, buffer, bytes.size(), usage_, MemoryUse::kWrite).map([&](bool replaced) {
+    if (!bytes.empty()) std::memcpy(buffer.mapped, bytes.data(), bytes.size());
+    return replaced;
+  });
 }
 
 }  // namespace psygen::render

@@ -37,36 +37,15 @@ VkBufferMemoryBarrier2 ownership_of(const Device& device, VkBuffer buffer, std::
 
 }  // namespace
 
-Result<void> StagedGeometry::create_part(const Device& device, Part& part) {
-  Result<Buffer> staging =
-      make_buffer(device, kPartBytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::kRead);
-  if (!staging) return tl::unexpected(staging.error());
-  part.staging = std::move(*staging);
-  VkCommandPoolCreateInfo pool_info{};
-  pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-  pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
-  pool_info.queueFamilyIndex = device.transfer_family;
-  VkCommandPool pool = VK_NULL_HANDLE;
-  VkResult result = device.vk.vkCreateCommandPool(device.handle, &pool_info, nullptr, &pool);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "creating a command pool");
-  part.pool = UniqueCommandPool(device.vk, device.handle, pool);
-  VkCommandBufferAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  info.commandPool = pool;
-  info.commandBufferCount = 1;
-  result = device.vk.vkAllocateCommandBuffers(device.handle, &info, &part.commands);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "allocating a command buffer");
-  return {};
-}
-
 Result<void> StagedGeometry::create(const Device& device) {
+  Result<void> made = make_timeline(device).map(into(timeline_));
   for (Part& part : parts_) {
-    if (Result<void> made = create_part(device, part); !made) return made;
+    if (!made) return made;
+    made = make_buffer(device, kPartBytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::kRead)
+               .map(into(part.staging))
+               .and_then([&] { return part.commands.create(device, device.transfer_family); });
   }
-  Result<UniqueSemaphore> timeline = make_timeline(device);
-  if (!timeline) return tl::unexpected(timeline.error());
-  timeline_ = std::move(*timeline);
-  return {};
+  return made;
 }
 
 Result<std::byte*> StagedGeometry::add_block(std::uint64_t bytes) {
@@ -94,10 +73,6 @@ void StagedGeometry::release(const core::GeometryRange& range) {
   pool_.release(range);
 }
 
-Result<void> StagedGeometry::wait_for(const Device& device, const Part& part) const {
-  return device.wait(timeline_.get(), part.value, "waiting for copies of meshes");
-}
-
 // Fills a part with pending bytes, in order. The last mesh may be split.
 std::vector<StagedGeometry::Piece> StagedGeometry::fill(Part& part) {
   std::vector<Piece> pieces;
@@ -119,46 +94,28 @@ std::vector<StagedGeometry::Piece> StagedGeometry::fill(Part& part) {
 
 Result<void> StagedGeometry::submit(const Device& device, std::span<const Buffer> blocks,
                                     Part& part, std::span<const Piece> pieces) {
-  VkResult result = device.vk.vkResetCommandPool(device.handle, part.pool.get(), 0);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "resetting a command pool");
-  VkCommandBufferBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  result = device.vk.vkBeginCommandBuffer(part.commands, &begin);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "beginning a command buffer");
+  if (Result<void> begun = part.commands.begin(device); !begun) return begun;
+  const VkCommandBuffer commands = part.commands.get();
   std::vector<VkBufferMemoryBarrier2> given;
   std::uint64_t from = 0;
   for (const Piece& piece : pieces) {
     const VkBuffer target = blocks[piece.block].buffer.get();
     const VkBufferCopy copy{from, piece.offset, piece.bytes};
-    device.vk.vkCmdCopyBuffer(part.commands, part.staging.buffer.get(), target, 1, &copy);
+    device.vk.vkCmdCopyBuffer(commands, part.staging.buffer.get(), target, 1, &copy);
     from += piece.bytes;
     given.push_back(ownership_of(device, target, piece.offset, piece.bytes));
     given.back().srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
     given.back().srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
   }
-  if (device.transfer_family != device.queue_family) hand_over(device, part.commands, given);
-  result = device.vk.vkEndCommandBuffer(part.commands);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "ending a command buffer");
-
-  VkCommandBufferSubmitInfo commands{};
-  commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
-  commands.commandBuffer = part.commands;
-  VkSemaphoreSubmitInfo signal{};
-  signal.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
-  signal.semaphore = timeline_.get();
-  signal.value = value_ + 1;
-  signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  VkSubmitInfo2 info{};
-  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-  info.commandBufferInfoCount = 1;
-  info.pCommandBufferInfos = &commands;
-  info.signalSemaphoreInfoCount = 1;
-  info.pSignalSemaphoreInfos = &signal;
-  if (auto ok = device.submit(device.transfer_queue, info, "submitting copies of meshes"); !ok)
-    return ok;
-  part.value = ++value_;
-  return {};
+  if (device.transfer_family != device.queue_family) hand_over(device, commands, given);
+  return part.commands.end(device)
+      .and_then([&] {
+        const std::array signals{
+            semaphore_info(timeline_.get(), value_ + 1, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)};
+        return device.submit(device.transfer_queue, commands, {}, signals,
+                             "submitting copies of meshes");
+      })
+      .map([&] { part.value = ++value_; });
 }
 
 Result<void> StagedGeometry::flush(const Device& device, std::span<const Buffer> blocks,
@@ -167,7 +124,8 @@ Result<void> StagedGeometry::flush(const Device& device, std::span<const Buffer>
   while (!pending_.empty()) {
     Part& part = parts_[next_];
     next_ = (next_ + 1) % kParts;
-    if (Result<void> waited = wait_for(device, part); !waited) return waited;
+    Result<void> waited = device.wait(timeline_.get(), part.value, "waiting for copies of meshes");
+    if (!waited) return waited;
     const std::vector<Piece> pieces = fill(part);
     if (Result<void> sent = submit(device, blocks, part, pieces); !sent) return sent;
     for (const Piece& piece : pieces) {

@@ -62,8 +62,7 @@ class StagedGeometry final : public core::GeometryMemory {
  private:
   struct Part {
     Buffer staging;
-    UniqueCommandPool pool;
-    VkCommandBuffer commands = VK_NULL_HANDLE;
+    Commands commands;
     std::uint64_t value = 0;  // timeline value when its copies are done
   };
   // Bytes of a mesh that are not copied yet.
@@ -72,8 +71,6 @@ class StagedGeometry final : public core::GeometryMemory {
     std::uint64_t offset = 0, bytes = 0;
   };
 
-  core::Result<void> create_part(const Device& device, Part& part);
-  core::Result<void> wait_for(const Device& device, const Part& part) const;
   std::vector<Piece> fill(Part& part);
   core::Result<void> submit(const Device& device, std::span<const Buffer> blocks, Part& part,
                             std::span<const Piece> pieces);

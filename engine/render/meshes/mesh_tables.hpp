@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/core/vertex_layout.hpp"
-#include "engine/render/frame/setup.hpp"
+#include "engine/render/frame/pass_set.hpp"
 
 namespace psygen::render {
 
@@ -53,7 +53,7 @@ constexpr MeshUse use_in(View view) {
 // The tables and the pipelines in them. Empty until create().
 class MeshTables {
  public:
-  // Creates what setup.features lacks.
+  // Creates what setup.features lacks. After a failure everything is as it was.
   core::Result<void> create(const PassSetup& setup);
   VkPipeline find(core::VertexLayout layout, MeshUse use, MeshVariant variant) const {
     return tables_[static_cast<std::size_t>(layout)][static_cast<std::size_t>(use)]
@@ -77,6 +77,7 @@ class MeshTables {
     return tables_[static_cast<std::size_t>(layout)][static_cast<std::size_t>(use)];
   }
   core::Result<void> make(const PassSetup& setup, const PipelineShape& shape);
+  core::Result<void> create_missing(const PassSetup& setup, Features wanted);
 
   std::array<std::array<MeshTable, 4>, 3> tables_{};  // by layout and use
   std::vector<UniquePipeline> pipelines_;

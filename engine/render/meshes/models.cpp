@@ -11,10 +11,12 @@ namespace {
 static_assert(static_cast<int>(core::SurfaceKind::kStone) == PSYGEN_SURFACE_STONE);
 static_assert(static_cast<int>(core::SurfaceKind::kBark) == PSYGEN_SURFACE_BARK);
 
-// The fragment shaders of a use: of whole models, of fading ones, and of those with pictures.
+// The fragment shaders of a use: of whole models, of fading ones, of those with pictures, and of
+// near ones, which look like fading ones without.
 struct ModelShaders {
   std::optional<Shader> whole;
   Shader fading, pictured;
+  std::optional<Shader> near = {};
 };
 
 // Adds the pipelines of a look: of whole models, then of those that cover only some of their
@@ -27,18 +29,24 @@ Result<void> add_models(const PassSetup& setup, PipelineShape shape, const Model
   Result<void> made;
   for (const bool pushed : {false, true}) {
     const auto add = [&](Shader vert, std::optional<Shader> frag, auto&& covers) {
-      shape.vert = mesh_shader(vert, look, pushed);
+      shape.vert = vert;
       shape.frag = frag;
       if (!made) return;
       made = tables.add(setup, shape, use, [&](MeshVariant v) {
         return v.pushed == pushed && fits(v) && covers(v.coverage);
       });
     };
-    add(Shader::kModelVert, shaders.whole, [](Coverage c) { return c == Coverage::kWhole; });
-    add(Shader::kModelFadingVert, shaders.fading,
-        [](Coverage c) { return c == Coverage::kPart || c == Coverage::kNear; });
-    add(Shader::kModelFadingPictureVert, shaders.pictured,
+    add(mesh_shader(Shader::kModelVert, look, pushed), shaders.whole,
+        [](Coverage c) { return c == Coverage::kWhole; });
+    add(mesh_shader(Shader::kModelFadingVert, look, pushed), shaders.fading, [&](Coverage c) {
+      return c == Coverage::kPart || (c == Coverage::kNear && !shaders.near);
+    });
+    add(mesh_shader(Shader::kModelFadingPictureVert, look, pushed), shaders.pictured,
         [](Coverage c) { return c == Coverage::kPictured; });
+    if (shaders.near)
+      add(pushed ? Shader::kModelFadingModelDetailDrawPushedVert
+                 : Shader::kModelFadingModelDetailVert,
+          shaders.near, [](Coverage c) { return c == Coverage::kNear; });
   }
   return made;
 }
@@ -68,28 +76,16 @@ Result<void> add_model_pipelines(const PassSetup& setup, bool lamps, MeshTables&
   const auto fits = [&](MeshVariant v) { return v.lamps == lamps; };
   PipelineShape shape;
   shape.constants = {on(traits.fine_grain), on(traits.cascades > 0), on(lamps)};
+  // With light per vertex, near models have textures. With light per pixel, all models have.
   const ModelShaders shaders = lit ? ModelShaders{.whole = Shader::kSurfaceLitFrag,
                                                   .fading = Shader::kSurfaceLitFadingFrag,
                                                   .pictured = Shader::kSurfaceLitFadingPictureFrag}
                                    : ModelShaders{.whole = Shader::kSurfaceFrag,
                                                   .fading = Shader::kSurfaceFadingFrag,
-                                                  .pictured = Shader::kSurfaceFadingPictureFrag};
-  Result<void> made = add_models(setup, shape, shaders, lit ? MeshLook::kLit : MeshLook::kColour,
-                                 MeshUse::kLandscape, fits, tables);
-  // With light per vertex, near models have textures. With light per pixel, all models have.
-  if (lit) return made;
-  shape.vertices = core::VertexLayout::kModel;
-  shape.depth = DepthUse::kWrite;
-  shape.frag = Shader::kModelDetailFadingFrag;
-  for (const bool pushed : {false, true}) {
-    shape.vert = pushed ? Shader::kModelFadingModelDetailDrawPushedVert
-                        : Shader::kModelFadingModelDetailVert;
-    if (!made) return made;
-    made = tables.add(setup, shape, MeshUse::kLandscape, [&](MeshVariant v) {
-      return v.pushed == pushed && fits(v) && v.coverage == Coverage::kNear;
-    });
-  }
-  return made;
+                                                  .pictured = Shader::kSurfaceFadingPictureFrag,
+                                                  .near = Shader::kModelDetailFadingFrag};
+  return add_models(setup, shape, shaders, lit ? MeshLook::kLit : MeshLook::kColour,
+                    MeshUse::kLandscape, fits, tables);
 }
 
 Result<void> add_model_views(const PassSetup& setup, MeshTables& tables) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/render/device/compute_pipeline.hpp"
+#include "engine/render/memory/memory.hpp"
 
 namespace psygen::render {
 
@@ -24,7 +25,7 @@ class DepthPyramid {
   // For shaders that read the pyramid: its levels, a nearest sampler, and a view of all levels.
   std::uint32_t level_count() const { return static_cast<std::uint32_t>(views_.size()); }
   VkSampler sampler() const { return sampler_.get(); }
-  VkImageView view() const { return whole_.get(); }  // read in VK_IMAGE_LAYOUT_GENERAL
+  VkImageView view() const { return image_.view.get(); }  // read in VK_IMAGE_LAYOUT_GENERAL
 
   // Records the computation. `depth` is an attachment that was drawn to, in its corner of
   // `drawn_size`, at most the size of the pictures. Afterwards it and the pyramid are readable by
@@ -37,9 +38,7 @@ class DepthPyramid {
 
   ComputePipeline first_, next_;  // from the depth; from the previous level
   UniqueSampler sampler_;
-  UniqueMemory memory_;
-  UniqueImage image_;
-  UniqueImageView whole_;
+  Image image_;
   std::vector<UniqueImageView> views_;  // of each level
 };
 

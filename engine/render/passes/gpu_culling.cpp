@@ -4,8 +4,6 @@
 #include <bit>
 #include <cstring>
 
-#include "engine/render/device/shaders.hpp"
-
 namespace psygen::render {
 
 using core::Result;
@@ -25,16 +23,6 @@ constexpr VkBufferUsageFlags kTarget = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkAccessFlags2 kShaderRead = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
 constexpr VkAccessFlags2 kShaderWrite = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-
-// Replaces a buffer that is too small.
-Result<void> grow_to(const Device& device, Buffer& buffer, std::uint64_t bytes,
-                     VkBufferUsageFlags usage, MemoryUse use) {
-  if (bytes <= buffer.bytes) return {};
-  Result<Buffer> larger = make_buffer(device, std::bit_ceil(bytes), usage, use);
-  if (!larger) return tl::unexpected(larger.error());
-  buffer = std::move(*larger);
-  return {};
-}
 
 template <class T>
 void copy_to(const Buffer& buffer, std::span<const T> values) {
@@ -68,9 +56,7 @@ Result<void> GpuCulling::create(const Device& device, bool occlusion, VkSampleCo
   types[PSYGEN_CULL_FRAME] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   types[PSYGEN_CULL_PYRAMID] = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   slots_.resize(slots);
-  return pipeline_
-      .create(device, code_of(Shader::kCullComp), types, kWordBytes,
-              static_cast<std::uint32_t>(slots))
+  return pipeline_.create(device, Shader::kCullComp, types, kWordBytes, slots)
       .and_then([&] { return pyramid_.create(device, samples); })
       .and_then([&] { return grow_seen(device); });
 }
@@ -86,18 +72,17 @@ Result<void> GpuCulling::grow_seen(const Device& device) {
   if (bytes <= seen_[0].bytes) return {};
   std::array<Buffer, 2> made;
   for (Buffer& buffer : made) {
-    Result<Buffer> larger = make_buffer(device, bytes, kStorage | kTarget, MemoryUse::kDevice);
-    if (!larger) return tl::unexpected(larger.error());
-    buffer = std::move(*larger);
+    const Result<void> larger =
+        make_buffer(device, bytes, kStorage | kTarget, MemoryUse::kDevice).map(into(buffer));
+    if (!larger) return larger;
   }
   // This also waits for the frames in flight, which read the old bits.
-  Result<void> cleared = run_once(device, [&](VkCommandBuffer commands) {
-    for (const Buffer& buffer : made)
-      device.vk.vkCmdFillBuffer(commands, buffer.buffer.get(), 0, VK_WHOLE_SIZE, 0);
-  });
-  if (!cleared) return cleared;
-  seen_ = std::move(made);
-  return {};
+  return run_once(device,
+                  [&](VkCommandBuffer commands) {
+                    for (const Buffer& buffer : made)
+                      device.vk.vkCmdFillBuffer(commands, buffer.buffer.get(), 0, VK_WHOLE_SIZE, 0);
+                  })
+      .map([&] { seen_ = std::move(made); });
 }
 
 void GpuCulling::set_frame(const FrameInput& input, const shaders::FrameData& frame,
@@ -119,24 +104,25 @@ Result<void> GpuCulling::grow(const Device& device, std::size_t slot) {
       std::max<std::uint64_t>(list_.candidates().size(), kFirstCandidates);
   const std::uint64_t groups = std::max<std::uint64_t>(list_.groups().size(), 64);
   const VkBufferUsageFlags indirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | kSource;
-  const auto written = [&](Buffer& buffer, std::uint64_t bytes) {
-    return grow_to(device, buffer, bytes, kStorage, MemoryUse::kWrite);
+  struct Wish {
+    Buffer& buffer;
+    std::uint64_t bytes;
+    VkBufferUsageFlags usage;
+    MemoryUse use;
   };
-  const auto made = [&](Buffer& buffer, std::uint64_t bytes, VkBufferUsageFlags usage) {
-    return grow_to(device, buffer, bytes, usage, MemoryUse::kDevice);
-  };
-  return grow_to(device, s.frame, sizeof(frame_), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
-                 MemoryUse::kWrite)
-      .and_then([&] { return written(s.candidates, candidates * sizeof(shaders::CullCandidate)); })
-      .and_then([&] { return written(s.groups, groups * kWordBytes); })
-      .and_then([&] { return made(s.commands, 2 * candidates * kCommandBytes, indirect); })
-      .and_then([&] {
-        return made(s.draws, 2 * candidates * sizeof(shaders::DrawData), kStorage | kSource);
-      })
-      .and_then([&] { return made(s.counts, count_bytes(groups), indirect | kTarget); })
-      .and_then([&] {
-        return grow_to(device, s.counts_back, count_bytes(groups), kTarget, MemoryUse::kRead);
-      });
+  const Wish wishes[] = {
+      {s.frame, sizeof(frame_), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::kWrite},
+      {s.candidates, candidates * sizeof(shaders::CullCandidate), kStorage, MemoryUse::kWrite},
+      {s.groups, groups * kWordBytes, kStorage, MemoryUse::kWrite},
+      {s.commands, 2 * candidates * kCommandBytes, indirect, MemoryUse::kDevice},
+      {s.draws, 2 * candidates * sizeof(shaders::DrawData), kStorage | kSource, MemoryUse::kDevice},
+      {s.counts, count_bytes(groups), indirect | kTarget, MemoryUse::kDevice},
+      {s.counts_back, count_bytes(groups), kTarget, MemoryUse::kRead}};
+  for (const Wish& wish : wishes) {
+    const Result<bool> grown = render::grow(device, wish.buffer, wish.bytes, wish.usage, wish.use);
+    if (!grown) return tl::unexpected(grown.error());
+  }
+  return {};
 }
 
 Result<void> GpuCulling::write(const Device& device, std::size_t slot) {
@@ -163,9 +149,9 @@ void GpuCulling::write_sets(const Device& device, std::size_t slot) const {
       {PSYGEN_CULL_SEEN_BEFORE, &seen_[1 - now_]},
       {PSYGEN_CULL_SEEN_NOW, &seen_[now_]}};
   for (const auto& [binding, buffer] : buffers)
-    pipeline_.write_buffer(device, slot, binding, buffer->buffer.get());
-  pipeline_.write_image(device, slot, PSYGEN_CULL_PYRAMID, pyramid_.sampler(), pyramid_.view(),
-                        VK_IMAGE_LAYOUT_GENERAL);
+    pipeline_.sets().write(device, slot, binding, buffer->buffer.get());
+  pipeline_.sets().write(device, slot, PSYGEN_CULL_PYRAMID,
+                         {pyramid_.sampler(), pyramid_.view(), VK_IMAGE_LAYOUT_GENERAL});
 }
 
 void GpuCulling::dispatch(const Device& device, VkCommandBuffer commands, std::size_t slot,

@@ -6,18 +6,17 @@
 
 namespace psygen::render {
 
-// The one pass that begins renderings itself: the device culls between two of them, and software
-// devices split one into parts. It leaves the last one open for what follows. Its pipelines are
-// those of MeshTables.
+// It begins the renderings of the landscape itself: the device culls between two of them, and
+// software devices split one into parts. It leaves the last one open for what follows. Its
+// pipelines are those of MeshTables.
 class Landscape {
  public:
   // The functions of Pass (pass.hpp).
-  static constexpr PassInfo kInfo{.name = "landscape", .stage = Stage::kLandscape};
+  static constexpr Stage kStage = Stage::kLandscape;
   static constexpr int warm_up_steps(Feature feature) {
     const bool has_all = feature == Feature::kLandscape || feature == Feature::kPointLights;
     return has_all ? 3 : feature == Feature::kObjects ? 2 : 0;
   }
-  core::Result<void> create(const PassSetup&) { return {}; }
   void record(const Recording& to) const;
   void warm_up(const Recording& to, const WarmUpStep& step) const;
 };

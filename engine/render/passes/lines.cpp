@@ -13,19 +13,17 @@ constexpr std::size_t kFirstLines = 512;
 }  // namespace
 
 Result<void> Lines::create(const PassSetup& setup) {
-  if (pipeline_.get() != VK_NULL_HANDLE) return {};
-  const Device& device = setup.device;
+  if (pipeline_.exists()) return {};
   const std::array bindings{
-      PassBinding{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_VERTEX_BIT}};
-  return set_.create(device, setup.sets.slots(), bindings, setup.sets.shared())
+      SetBinding{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_VERTEX_BIT}};
+  return set_.create(setup, bindings, setup.sets.shared())
       .and_then([&] {
-        return ends_.create(device, setup.sets.slots(),
+        return ends_.create(setup.device, setup.sets.slots(),
                             2 * kFirstLines * sizeof(shaders::OverlayVertex),
                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
       })
       .and_then([&] {
-        for (std::size_t slot = 0; slot < setup.sets.slots(); ++slot)
-          set_.write(device, slot, PSYGEN_LINE_ENDS, ends_.at(slot));
+        set_.write(setup.device, PSYGEN_LINE_ENDS, ends_);
         const PipelineShape shape{.vert = Shader::kLineVert,
                                   .frag = Shader::kSurfaceFrag,
                                   .topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST};
@@ -42,10 +40,7 @@ void Lines::list(const FrameInput& input, const FrameFacts&) {
 }
 
 Result<void> Lines::write(const Device& device, std::size_t slot) {
-  const Result<bool> moved = ends_.write(device, slot, std::as_bytes(std::span(listed_)));
-  if (!moved) return tl::unexpected(moved.error());
-  if (*moved) set_.write(device, slot, PSYGEN_LINE_ENDS, ends_.at(slot));
-  return {};
+  return set_.fill(device, slot, PSYGEN_LINE_ENDS, ends_, std::as_bytes(std::span(listed_)));
 }
 
 void Lines::record(const Recording& to) const {

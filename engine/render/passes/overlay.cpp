@@ -5,34 +5,30 @@ namespace psygen::render {
 using core::Result;
 
 Result<void> Overlay::create(const PassSetup& setup) {
-  if (landscape_.get() != VK_NULL_HANDLE) return {};
+  if (full_size_.exists()) return {};
   const Device& device = setup.device;
-  const std::size_t slots = setup.sets.slots();
-  Result<Image> font =
-      make_texture(device, setup.overlay.atlas_size(), VK_FORMAT_R8_UNORM, setup.overlay.atlas());
-  if (!font) return tl::unexpected(font.error());
-  font_ = std::move(*font);
   const std::array bindings{
-      PassBinding{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT,
-                  setup.sets.smooth_sampler()},
-      PassBinding{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_VERTEX_BIT}};
+      SetBinding{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT,
+                 setup.sets.smooth_sampler()},
+      SetBinding{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_VERTEX_BIT}};
   static_assert(PSYGEN_OVERLAY_FONT == 0 && PSYGEN_OVERLAY_VERTICES == 1);
   PipelineShape shape{.vert = Shader::kOverlayVert,
                       .frag = Shader::kOverlayFrag,
                       .blend = Blend::kAlpha,
                       .depth = DepthUse::kNone};
-  return set_.create(device, slots, bindings, setup.sets.shared())
+  return make_texture(device, setup.overlay.atlas_size(), VK_FORMAT_R8_UNORM, setup.overlay.atlas())
+      .map(into(font_))
+      .and_then([&] { return set_.create(setup, bindings, setup.sets.shared()); })
       .and_then([&] {
-        return vertices_.create(device, slots,
+        return vertices_.create(device, setup.sets.slots(),
                                 OverlayLayout::kMaxQuads * 6 * sizeof(shaders::OverlayVertex),
                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
       })
       .and_then([&] {
-        for (std::size_t slot = 0; slot < slots; ++slot) {
+        for (std::size_t slot = 0; slot < setup.sets.slots(); ++slot)
           set_.write(device, slot, PSYGEN_OVERLAY_FONT,
                      {VK_NULL_HANDLE, font_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
-          set_.write(device, slot, PSYGEN_OVERLAY_VERTICES, vertices_.at(slot));
-        }
+        set_.write(device, PSYGEN_OVERLAY_VERTICES, vertices_);
         return setup.pipelines.make(set_.layout(), shape, landscape_);
       })
       .and_then([&] {
@@ -51,10 +47,8 @@ void Overlay::list(const FrameInput& input, const FrameFacts& facts) {
 }
 
 Result<void> Overlay::write(const Device& device, std::size_t slot) {
-  const Result<bool> moved = vertices_.write(device, slot, std::as_bytes(std::span(glyphs_)));
-  if (!moved) return tl::unexpected(moved.error());
-  if (*moved) set_.write(device, slot, PSYGEN_OVERLAY_VERTICES, vertices_.at(slot));
-  return {};
+  return set_.fill(device, slot, PSYGEN_OVERLAY_VERTICES, vertices_,
+                   std::as_bytes(std::span(glyphs_)));
 }
 
 void Overlay::bind(const Recording& to) const {

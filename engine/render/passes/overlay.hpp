@@ -3,8 +3,6 @@
 
 #include <vector>
 
-#include "engine/render/frame/pass_set.hpp"
-#include "engine/render/memory/slot_buffer.hpp"
 #include "engine/render/passes/pass.hpp"
 
 namespace psygen::render {
@@ -13,7 +11,7 @@ namespace psygen::render {
 class Overlay {
  public:
   // The functions of Pass (pass.hpp).
-  static constexpr PassInfo kInfo{.name = "overlay", .stage = Stage::kPicture};
+  static constexpr Stage kStage = Stage::kPicture;
   static constexpr int warm_up_steps(Feature feature) {
     return feature == Feature::kLandscape ? 1 : 0;
   }

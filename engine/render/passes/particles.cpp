@@ -1,6 +1,9 @@
 #include "engine/render/passes/particles.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 namespace psygen::render {
 
@@ -10,6 +13,17 @@ namespace {
 
 // Shares of a life that divide are at least this.
 constexpr float kMinShare = 1e-3F;
+
+bool within(float value, float least, float greatest) {
+  return value >= least && value <= greatest;
+}
+bool within(const glm::vec3& v, float least, float greatest) {
+  return within(v.x, least, greatest) && within(v.y, least, greatest) &&
+         within(v.z, least, greatest);
+}
+bool is_colour(const glm::vec4& c) {
+  return within(glm::vec3(c), 0, 1e6F) && within(c.w, 0, 1);
+}
 
 // An emitter as the shaders read it.
 shaders::EmitterData data_of(const ParticleDraw& draw) {
@@ -41,32 +55,62 @@ shaders::EmitterData data_of(const ParticleDraw& draw) {
 
 }  // namespace
 
+bool is_valid(const ParticleKind& k) {
+  constexpr float kFast = 1000;
+  const float min_extent = k.volume == ParticleVolume::kAroundCamera ? 1.0F : 0.0F;
+  return within(k.half_extent_m, min_extent, 1000) && within(k.rate, 1e-3F, 1e9F) &&
+         within(k.lifetime_s, 0.01F, 1000) && within(k.lifetime_variation, 0, 1) &&
+         within(k.velocity, -kFast, kFast) && within(k.spread, 0, kFast) &&
+         within(k.gravity, -kFast, kFast) && within(k.drag, 0, 100) &&
+         within(k.wind, -kFast, kFast) && within(k.turbulence_m, 0, kFast) &&
+         within(k.first_size_m, 0, 100) && within(k.last_size_m, 0, 100) &&
+         within(k.size_variation, 0, 1) && is_colour(k.first_colour) && is_colour(k.last_colour) &&
+         within(k.brightness_variation, 0, 1) && within(k.fade_in, 0, 1) &&
+         within(k.fade_out, 0, 1) && within(k.glow, 0, 1) && within(k.cover, 0, 1) &&
+         within(k.softness, 0, 1) && within(k.aspect, 0.01F, 100) && within(k.streak_s, 0, 10) &&
+         within(k.spin, 0, 100) && within(k.tumbling, 0, 100);
+}
+
+std::uint32_t particle_count(const ParticleKind& kind) {
+  const float alive = std::ceil(kind.rate * kind.lifetime_s);
+  return static_cast<std::uint32_t>(
+      std::clamp(alive, 1.0F, static_cast<float>(kMaxParticlesPerEmitter)));
+}
+
+float reach_m(const ParticleKind& kind, float scale, float half_diagonal_m) {
+  const float drag = std::max(kind.drag, kMinParticleDrag), life = kind.lifetime_s;
+  const float braked = (1 - std::exp(-drag * life)) / drag;
+  const float start = (glm::length(kind.velocity) + kind.spread * 1.7321F) * scale;
+  const float pull = glm::length(kind.wind) * drag + std::abs(kind.gravity);
+  const float size = std::max(kind.first_size_m, kind.last_size_m) * scale;
+  const float streak = kind.streak_s * (start + pull * braked);
+  return half_diagonal_m + start * braked + pull * (life - braked) / drag +
+         kind.turbulence_m * 1.7321F + size * std::max(kind.aspect, 1.0F) + streak;
+}
+
 Result<void> Particles::create(const PassSetup& setup) {
   if (!setup.features.has(kFeature) || set_.exists()) return {};
-  const Device& device = setup.device;
-  const std::size_t slots = setup.sets.slots();
   const std::array bindings{
-      PassBinding{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT}};
+      SetBinding{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT}};
   PipelineShape shape{.vert = Shader::kParticleVert, .blend = Blend::kPremultiplied};
   shape.constants[2] = VK_TRUE;
   PassSet set;
-  Result<void> made =
-      set.create(device, slots, bindings, setup.sets.shared())
-          .and_then([&] {
-            return emitters_.create(device, slots, kMaxEmitters * sizeof(shaders::EmitterData),
-                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-          })
-          .and_then([&] {
-            for (std::size_t slot = 0; slot < slots; ++slot)
-              set.write(device, slot, PSYGEN_PARTICLE_EMITTER, emitters_.at(slot),
-                        sizeof(shaders::EmitterData));
-            shape.frag = Shader::kParticleTexturedFrag;
-            return setup.pipelines.make(set.layout(), shape, textured_);
-          })
-          .and_then([&] {
-            shape.frag = Shader::kParticleFrag;
-            return setup.pipelines.make(set.layout(), shape, plain_);
-          });
+  Result<void> made = set.create(setup, bindings, setup.sets.shared())
+                          .and_then([&] {
+                            return emitters_.create(setup.device, setup.sets.slots(),
+                                                    kMaxEmitters * sizeof(shaders::EmitterData),
+                                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+                          })
+                          .and_then([&] {
+                            set.write(setup.device, PSYGEN_PARTICLE_EMITTER, emitters_,
+                                      sizeof(shaders::EmitterData));
+                            shape.frag = Shader::kParticleTexturedFrag;
+                            return setup.pipelines.make(set.layout(), shape, textured_);
+                          })
+                          .and_then([&] {
+                            shape.frag = Shader::kParticleFrag;
+                            return setup.pipelines.make(set.layout(), shape, plain_);
+                          });
   if (made) set_ = std::move(set);
   return made;
 }
@@ -89,8 +133,7 @@ void Particles::list(const FrameInput& input, const FrameFacts& facts) {
 
 Result<void> Particles::write(const Device& device, std::size_t slot) {
   if (listed_.empty()) return {};
-  const Result<bool> written = emitters_.write(device, slot, std::as_bytes(std::span(listed_)));
-  return written ? Result<void>{} : tl::unexpected(written.error());
+  return emitters_.write(device, slot, std::as_bytes(std::span(listed_))).map([](bool) {});
 }
 
 void Particles::record(const Recording& to) const {
@@ -101,9 +144,9 @@ void Particles::record(const Recording& to) const {
     const VkPipeline pipeline = run.textures != kPlainMaterial ? textured_.get() : plain_.get();
     if (pipeline != bound) to.bind_pipeline(pipeline);
     bound = pipeline;
+    textures.bind(run.textures);  // set 1, which may disturb set 2
     set_.bind(to.device, to.commands(), to.slot.number(),
               static_cast<std::uint32_t>(i * sizeof(shaders::EmitterData)));
-    textures.bind(run.textures);
     to.draw(run.count * PSYGEN_PARTICLE_VERTICES);
   }
 }

@@ -1,13 +1,9 @@
 // Particles: each emitter of a frame is one draw, back to front, over the landscape. The shader
-// computes all particles from the emitter's data (engine/render/particles.hpp). Private to
-// engine/render.
+// computes all particles from the emitter's data. Private to engine/render.
 #pragma once
 
 #include <vector>
 
-#include "engine/render/frame/pass_set.hpp"
-#include "engine/render/memory/slot_buffer.hpp"
-#include "engine/render/particles.hpp"
 #include "engine/render/passes/pass.hpp"
 
 namespace psygen::render {
@@ -16,7 +12,7 @@ namespace psygen::render {
 class Particles {
  public:
   // The functions of Pass (pass.hpp).
-  static constexpr PassInfo kInfo{.name = "particles", .stage = Stage::kSurface};
+  static constexpr Stage kStage = Stage::kSurface;
   static constexpr Feature kFeature = Feature::kParticles;
   static bool needs_feature(const FrameInput& input) { return !input.particles.empty(); }
   static constexpr int warm_up_steps(Feature feature) { return feature == kFeature ? 2 : 0; }

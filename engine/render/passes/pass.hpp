@@ -1,14 +1,14 @@
-// A pass: a part of a frame that owns its pipelines, its own descriptor set and its buffers, and
-// records its draws. Passes are plain classes with the functions of the concept `Pass`; passes.hpp
-// lists them in the order of a frame. "Rendering" is Vulkan's word for the scope in which a pass
-// draws; record.cpp begins and ends it. Private to engine/render.
+// A pass: a part of a frame that records its draws. It owns the pipelines, the descriptor set and
+// the buffers that no other part has. Passes are plain classes under the concept `Pass`; passes.hpp
+// lists them in the order of a frame. "Rendering" is Vulkan's word for the scope in which draws are
+// recorded; record.cpp begins and ends it for all passes but those that say so. Private to
+// engine/render.
 #pragma once
 
 #include <concepts>
-#include <string_view>
 
 #include "engine/render/frame/frame_slot.hpp"
-#include "engine/render/frame/setup.hpp"
+#include "engine/render/frame/pass_set.hpp"
 #include "engine/render/frame/targets.hpp"
 #include "engine/render/meshes/draw_list.hpp"
 #include "engine/render/meshes/mesh_tables.hpp"
@@ -23,11 +23,6 @@ enum class Stage : std::uint8_t {
   kLandscape,  // colour and depth of the landscape; its first pass begins the rendering
   kSurface,    // the same attachments, after reflections can be read
   kPicture,    // all pixels of the picture, after a landscape of fewer pixels was scaled up
-};
-
-struct PassInfo {
-  std::string_view name;
-  Stage stage = Stage::kLandscape;
 };
 
 // Facts about a frame that passes need for their lists. Valid during list().
@@ -82,35 +77,61 @@ class TextureBinder {
   MaterialId bound_ = kPlainMaterial;
 };
 
-// A step of the warm-up: draws of triangles that cover nothing, with some of a feature's pipelines,
-// so that the driver compiles them before the first frame. Each step is one submission. Vertex,
-// index and texture bindings are valid, and the data of a draw is pushed.
+// A step of the warm-up: draws with some of a feature's pipelines, so that the driver compiles them
+// before a frame needs them. Each step is one submission on targets that are never shown. Buffers
+// of vertices and indices are bound whose triangles cover nothing, and the data of a draw is
+// pushed; for features that are added later, a material's textures are bound as well.
 struct WarmUpStep {
   Feature feature = Feature::kLandscape;
   bool lamps = false;  // with point lights
   int number = 0;      // 0 … warm_up_steps(feature) − 1
 };
 
-// The functions of every pass.
+// The members that a pass may have. A member with one of these names has this signature.
+// Creates what setup.features lacks. Called again for further features.
 template <class P>
-concept Pass = std::movable<P> && std::default_initializable<P> &&
-    requires(P& pass, const P& made, const PassSetup& setup, const Recording& to) {
-  { P::kInfo } -> std::convertible_to<const PassInfo&>;
-  // Creates what setup.features lacks. Called again for further features.
+concept Creates = requires(P& pass, const PassSetup& setup) {
   { pass.create(setup) } -> std::same_as<core::Result<void>>;
-  // Binds and draws; begins no rendering.
-  { made.record(to) } -> std::same_as<void>;
-  // Steps that draw the pipelines of a feature; 0 if it has none.
+};
+// The feature that create() waits for, and true for frames that need it.
+template <class P>
+concept NeedsFeature = requires(const FrameInput& input) {
+  { P::kFeature } -> std::convertible_to<Feature>;
+  { P::needs_feature(input) } -> std::same_as<bool>;
+};
+// Keeps what the frame shows.
+template <class P>
+concept Lists = requires(P& pass, const FrameInput& input, const FrameFacts& facts) {
+  { pass.list(input, facts) } -> std::same_as<void>;
+};
+// Copies what is kept into the buffers of a slot.
+template <class P>
+concept Writes = requires(P& pass, const Device& device, std::size_t slot) {
+  { pass.write(device, slot) } -> std::same_as<core::Result<void>>;
+};
+// Names images of new targets in a slot's set; also called before create().
+template <class P>
+concept UsesTargets = requires(P& pass, const Device& device, const FrameSlot& slot,
+                               const Targets& targets) {
+  { pass.use(device, slot, targets) } -> std::same_as<void>;
+};
+// The number of steps that draw the pipelines of a feature, 0 if it has none, and one of them.
+template <class P>
+concept WarmsUp = requires(const P& made, const Recording& to) {
   { P::warm_up_steps(Feature{}) } -> std::same_as<int>;
   { made.warm_up(to, WarmUpStep{}) } -> std::same_as<void>;
 };
-// Optional members:
-//   static constexpr Feature kFeature; static bool needs_feature(const FrameInput&)
-//                                                     the feature that create() waits for, and true
-//                                                     for frames that need it
-//   void list(const FrameInput&, const FrameFacts&)   keeps what the frame shows
-//   Result<void> write(const Device&, std::size_t)    copies it into the buffers of a slot
-//   void use(const Device&, const FrameSlot&, const Targets&)  names images of new targets in a
-//                                                     slot's set
+
+// Every pass has a stage and record(), which binds and draws.
+template <class P>
+concept Pass = std::movable<P> && std::default_initializable<P> &&
+    requires(const P& made, const Recording& to) {
+  { P::kStage } -> std::convertible_to<Stage>;
+  { made.record(to) } -> std::same_as<void>;
+} &&(Creates<P> || !requires { &P::create; }) && (Lists<P> || !requires { &P::list; }) &&
+    (NeedsFeature<P> || !requires { &P::needs_feature; }) &&
+    (Writes<P> || !requires { &P::write; }) && (UsesTargets<P> || !requires { &P::use; }) &&
+    (WarmsUp<P> || !(
+                       requires { &P::warm_up; } || requires { &P::warm_up_steps; }));
 
 }  // namespace psygen::render

@@ -1,4 +1,5 @@
-// All passes, in the order of a frame. A new pass is one line here. Private to engine/render.
+// All passes, in the order of a frame. A new pass is its include and one line here. Private to
+// engine/render.
 #pragma once
 
 #include <tuple>
@@ -41,7 +42,7 @@ core::Result<void> try_each_pass(AnyPasses& passes, const Visit& visit) {
 static_assert(
     []<class... P>(std::type_identity<std::tuple<P...>>) {
       Stage last = Stage::kBefore;
-      return ((P::kInfo.stage >= last && (last = P::kInfo.stage, true)) && ...);
+      return ((P::kStage >= last && (last = P::kStage, true)) && ...);
     }(std::type_identity<Passes>{}),
     "passes are listed in the order of their stages");
 

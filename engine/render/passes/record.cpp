@@ -9,7 +9,7 @@ namespace {
 template <Stage kStage>
 void record_stage(const Passes& passes, const Recording& to) {
   for_each_pass(passes, [&](const auto& pass) {
-    if constexpr (std::remove_cvref_t<decltype(pass)>::kInfo.stage == kStage) pass.record(to);
+    if constexpr (std::remove_cvref_t<decltype(pass)>::kStage == kStage) pass.record(to);
   });
 }
 
@@ -17,7 +17,8 @@ void end_rendering(const Recording& to) {
   to.device.vk.vkCmdEndRendering(to.commands());
 }
 
-// Binds what the draws of a warm-up read. All vertices are the same, so triangles cover nothing.
+// Binds what the draws of a warm-up read. All vertices of the bound buffers are the same, so their
+// triangles cover nothing; passes without vertex buffers draw what they make themselves.
 void bind_blank(const Recording& to, VkDescriptorSet textures) {
   const VkDeviceSize zero = 0;
   const VkBuffer blank = to.buffers.shared_indices;
@@ -33,7 +34,7 @@ void bind_blank(const Recording& to, VkDescriptorSet textures) {
 // Records a step of a pass in each kind of rendering in which its stage may be drawn.
 template <class P>
 void record_step(const P& pass, const Recording& to, const WarmUpStep& step) {
-  constexpr Stage kStage = P::kInfo.stage;
+  constexpr Stage kStage = P::kStage;
   const bool has_low_resolution = to.targets.low_resolution.view.get() != VK_NULL_HANDLE;
   to.targets.drawn = to.targets.extent;
   to.targets.reflects = kStage == Stage::kSurface && to.targets.reflection.exists();
@@ -84,19 +85,23 @@ void record_text(const Passes& passes, const Recording& to) {
   end_rendering(to);
 }
 
-int warm_up_steps(Feature feature) {
-  return []<class... P>(std::type_identity<std::tuple<P...>>, Feature drawn) {
-    return (P::warm_up_steps(drawn) + ...);
-  }(std::type_identity<Passes>{}, feature);
+int warm_up_steps(const Passes& passes, Feature feature) {
+  int steps = 0;
+  for_each_pass(passes, [&]<class P>(const P&) {
+    if constexpr (WarmsUp<P>) steps += P::warm_up_steps(feature);
+  });
+  return steps;
 }
 
 void record_warm_up(const Passes& passes, const Recording& to, WarmUpStep step,
                     VkDescriptorSet textures) {
   bind_blank(to, textures);
-  for_each_pass(passes, [&](const auto& pass) {
-    const int steps = pass.warm_up_steps(step.feature);
-    if (step.number >= 0 && step.number < steps) record_step(pass, to, step);
-    step.number -= steps;
+  for_each_pass(passes, [&]<class P>(const P& pass) {
+    if constexpr (WarmsUp<P>) {
+      const int steps = P::warm_up_steps(step.feature);
+      if (step.number >= 0 && step.number < steps) record_step(pass, to, step);
+      step.number -= steps;
+    }
   });
 }
 

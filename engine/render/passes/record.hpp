@@ -14,8 +14,8 @@ void record_frame(const Passes& passes, const Recording& to);
 void record_text(const Passes& passes, const Recording& to);
 
 // Number of submissions that draw all pipelines of a feature once.
-int warm_up_steps(Feature feature);
-// Records submission step.number, 0 … warm_up_steps(step.feature) − 1.
+int warm_up_steps(const Passes& passes, Feature feature);
+// Records submission step.number, 0 … warm_up_steps(passes, step.feature) − 1.
 // `textures`: a set with textures of a material, or null if no shader of the feature reads one.
 void record_warm_up(const Passes& passes, const Recording& to, WarmUpStep step,
                     VkDescriptorSet textures);

@@ -5,14 +5,14 @@ namespace psygen::render {
 using core::Result;
 
 Result<void> ScaleUp::create(const PassSetup& setup) {
-  if (pipeline_.get() != VK_NULL_HANDLE) return {};
+  if (pipeline_.exists()) return {};
   any_image_ = setup.sets.any_image();
   const std::array bindings{
-      PassBinding{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_SHADER_STAGE_VERTEX_BIT},
-      PassBinding{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT,
-                  setup.sets.smooth_sampler()}};
+      SetBinding{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_SHADER_STAGE_VERTEX_BIT},
+      SetBinding{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT,
+                 setup.sets.smooth_sampler()}};
   static_assert(PSYGEN_BINDING_FRAME == 0 && PSYGEN_SCALE_UP_LANDSCAPE == 1);
-  return set_.create(setup.device, setup.sets.slots(), bindings, {}).and_then([&] {
+  return set_.create(setup, bindings, {}).and_then([&] {
     const PipelineShape shape{.vert = Shader::kScaleUpVert,
                               .frag = Shader::kScaleUpFrag,
                               .depth = DepthUse::kNone,
@@ -22,6 +22,7 @@ Result<void> ScaleUp::create(const PassSetup& setup) {
 }
 
 void ScaleUp::use(const Device& device, const FrameSlot& slot, const Targets& targets) {
+  if (!set_.exists()) return;
   const VkImageView landscape = targets.low_resolution.view.get();
   set_.write(device, slot.number(), PSYGEN_BINDING_FRAME, slot.frame_data());
   set_.write(device, slot.number(), PSYGEN_SCALE_UP_LANDSCAPE,

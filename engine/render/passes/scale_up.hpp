@@ -1,7 +1,6 @@
 // Scales a landscape of fewer pixels up to the picture. Private to engine/render.
 #pragma once
 
-#include "engine/render/frame/pass_set.hpp"
 #include "engine/render/passes/pass.hpp"
 
 namespace psygen::render {
@@ -10,7 +9,7 @@ namespace psygen::render {
 class ScaleUp {
  public:
   // The functions of Pass (pass.hpp).
-  static constexpr PassInfo kInfo{.name = "scale_up", .stage = Stage::kPicture};
+  static constexpr Stage kStage = Stage::kPicture;
   static constexpr int warm_up_steps(Feature feature) {
     return feature == Feature::kLandscape ? 1 : 0;
   }
@@ -20,7 +19,7 @@ class ScaleUp {
   void warm_up(const Recording& to, const WarmUpStep&) const { record(to); }
 
  private:
-  PassSet set_;  // instead of set 0: its texture is the first (shaders/scale_up.frag)
+  PassSet set_;  // instead of set 0: its texture is the first (shaders/scale_up.glsl)
   VkDescriptorImageInfo any_image_{};
   UniquePipeline pipeline_;
 };

@@ -5,16 +5,13 @@
 
 namespace psygen::render {
 
-// Its images are those of FrameSets::shadows(), its pipelines those of MeshTables.
+// Its images and renderings are those of FrameSets::shadows(), its pipelines those of MeshTables.
 class Shadows {
  public:
   // The functions of Pass (pass.hpp).
-  static constexpr PassInfo kInfo{.name = "shadows", .stage = Stage::kBefore};
-  static constexpr int warm_up_steps(Feature) { return 0; }
-  core::Result<void> create(const PassSetup&) { return {}; }
+  static constexpr Stage kStage = Stage::kBefore;
   void list(const FrameInput&, const FrameFacts& facts) { active_ = facts.frame.shadow.y > 0; }
   void record(const Recording& to) const;
-  void warm_up(const Recording&, const WarmUpStep&) const {}
 
  private:
   bool active_ = false;  // the preset has cascades, and the sun shines

@@ -5,7 +5,7 @@ namespace psygen::render {
 using core::Result;
 
 Result<void> Sky::create(const PassSetup& setup) {
-  if (sky_.get() != VK_NULL_HANDLE) return {};
+  if (sky_.exists()) return {};
   const bool dome = !setup.traits.pixel_light;
   const VkPipelineLayout layout = setup.sets.layout();
   PipelineShape sky{.vert = Shader::kSkyVert, .frag = Shader::kSkyFrag};
@@ -25,7 +25,7 @@ Result<void> Sky::create(const PassSetup& setup) {
 }
 
 void Sky::record(const Recording& to) const {
-  if (sun_.get() == VK_NULL_HANDLE) {
+  if (!sun_.exists()) {
     to.bind_pipeline(sky_.get());
     return to.draw(3);
   }

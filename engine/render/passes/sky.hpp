@@ -10,7 +10,7 @@ namespace psygen::render {
 class Sky {
  public:
   // The functions of Pass (pass.hpp).
-  static constexpr PassInfo kInfo{.name = "sky", .stage = Stage::kLandscape};
+  static constexpr Stage kStage = Stage::kLandscape;
   static constexpr int warm_up_steps(Feature feature) {
     return feature == Feature::kLandscape ? 1 : 0;
   }

@@ -8,13 +8,11 @@ Result<void> Water::create(const PassSetup& setup) {
   if (setup.reflections && !set_.exists()) {
     constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const std::array bindings{
-        PassBinding{kTexture, VK_SHADER_STAGE_FRAGMENT_BIT, setup.sets.smooth_sampler()},
-        PassBinding{kTexture, VK_SHADER_STAGE_FRAGMENT_BIT, setup.sets.nearest_sampler()}};
+        SetBinding{kTexture, VK_SHADER_STAGE_FRAGMENT_BIT, setup.sets.smooth_sampler()},
+        SetBinding{kTexture, VK_SHADER_STAGE_FRAGMENT_BIT, setup.sets.nearest_sampler()}};
     static_assert(PSYGEN_REFLECTION_COLOUR == 0 && PSYGEN_REFLECTION_DEPTH == 1);
     any_image_ = setup.sets.any_image();
-    Result<void> made =
-        set_.create(setup.device, setup.sets.slots(), bindings, setup.sets.shared());
-    if (!made) return made;
+    if (Result<void> made = set_.create(setup, bindings, setup.sets.shared()); !made) return made;
   }
   const bool lit = setup.traits.pixel_light;
   PipelineShape shape{.vert = lit ? Shader::kWaterPixelLightVert : Shader::kWaterVert,
@@ -27,8 +25,7 @@ Result<void> Water::create(const PassSetup& setup) {
   const VkPipelineLayout layout = set_.exists() ? set_.layout() : setup.sets.layout();
   for (const bool lamps : {false, true}) {
     UniquePipeline& pipeline = lamps ? lamplit_ : plain_;
-    if (pipeline.get() != VK_NULL_HANDLE) continue;
-    if (lamps && !setup.features.has(Feature::kPointLights)) continue;
+    if (pipeline.exists() || (lamps && !setup.features.has(Feature::kPointLights))) continue;
     shape.constants = {on(setup.traits.waves), VK_FALSE, on(lamps)};
     if (Result<void> made = setup.pipelines.make(layout, shape, pipeline); !made) return made;
   }

@@ -2,7 +2,6 @@
 // where nothing does. Private to engine/render.
 #pragma once
 
-#include "engine/render/frame/pass_set.hpp"
 #include "engine/render/passes/pass.hpp"
 
 namespace psygen::render {
@@ -11,7 +10,7 @@ namespace psygen::render {
 class Water {
  public:
   // The functions of Pass (pass.hpp).
-  static constexpr PassInfo kInfo{.name = "water", .stage = Stage::kSurface};
+  static constexpr Stage kStage = Stage::kSurface;
   static constexpr int warm_up_steps(Feature feature) {
     return feature == Feature::kLandscape || feature == Feature::kPointLights ? 1 : 0;
   }
@@ -22,6 +21,9 @@ class Water {
     if (visible_) draw(to, to.lamps);
   }
   void warm_up(const Recording& to, const WarmUpStep& step) const { draw(to, step.lamps); }
+
+  // True if the listed frame shows water.
+  bool visible() const { return visible_; }
 
  private:
   void draw(const Recording& to, bool lamps) const;

@@ -1,5 +1,5 @@
 // The font of text over the picture: letters as signed distances, baked at build time
-// (font/bake_font.cpp). Latin letters of all European languages and common signs. Immutable, any
+// (text/bake_font.cpp). Latin letters of all European languages and common signs. Immutable, any
 // thread; finding a letter is logarithmic. Private to engine/render.
 #pragma once
 

@@ -22,7 +22,7 @@ bool is_finite(const glm::vec2& v) {
   return std::isfinite(v.x) && std::isfinite(v.y);
 }
 
-// Parameters of a glyph in shaders/overlay.frag.
+// Parameters of a glyph in shaders/overlay.glsl.
 struct Look {
   float dilation_px = 0, softness_px = 1;
 };

@@ -1,6 +1,6 @@
 // The cloud texture: 256 × 256, two half floats per texel (lavapipe filters them faster than
 // bytes), repeating. Computed once at start-up. Pure; it makes no Vulkan image
-// (frame/bindings.cpp).
+// (frame/frame_sets.cpp).
 #pragma once
 
 #include <cstdint>

@@ -19,29 +19,29 @@ using core::Result;
 Result<void> GroundTextureArray::create(const Device& device, const PresetTraits& traits,
                                         std::span<const GroundPicture> pictures) {
   VkSamplerCreateInfo info{};
-  info.magFilter = VK_FILTER_LINEAR;
-  info.minFilter = VK_FILTER_LINEAR;
+  info.magFilter = info.minFilter = VK_FILTER_LINEAR;
   // Two levels at once would cost software devices twice as much.
   info.mipmapMode =
       traits.fine_grain ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
   info.maxLod = VK_LOD_CLAMP_NONE;
-  Result<UniqueSampler> sampler = make_sampler(device, info);
-  if (!sampler) return tl::unexpected(sampler.error());
-  sampler_ = std::move(*sampler);
-
   const GroundLevels levels =
       traits.pixel_light ? make_ground_layers(pictures) : make_ground_detail(pictures);
   const std::uint32_t layers = traits.pixel_light ? kGroundLayers : kDetailLayers;
-  Result<Image> image = make_image(
-      device, {kPatternSide, kPatternSide}, VK_FORMAT_R8G8B8A8_UNORM,
-      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, VK_IMAGE_ASPECT_COLOR_BIT,
-      {.array = true, .layers = layers, .mips = static_cast<std::uint32_t>(levels.size())});
-  if (!image) return tl::unexpected(image.error());
-  image_ = std::move(*image);
-  std::vector<std::span<const std::byte>> bytes;
-  for (const auto& level : levels)
-    bytes.push_back(std::as_bytes(std::span(level)));
-  return upload_image(device, image_, {kPatternSide, kPatternSide}, bytes, layers);
+  return make_sampler(device, info)
+      .map(into(sampler_))
+      .and_then([&] {
+        return make_image(
+            device, {kPatternSide, kPatternSide}, VK_FORMAT_R8G8B8A8_UNORM,
+            VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, VK_IMAGE_ASPECT_COLOR_BIT,
+            {.array = true, .layers = layers, .mips = static_cast<std::uint32_t>(levels.size())});
+      })
+      .map(into(image_))
+      .and_then([&] {
+        std::vector<std::span<const std::byte>> bytes;
+        for (const auto& level : levels)
+          bytes.push_back(std::as_bytes(std::span(level)));
+        return upload_image(device, image_, {kPatternSide, kPatternSide}, bytes, layers);
+      });
 }
 
 }  // namespace psygen::render

@@ -7,7 +7,6 @@
 
 #include "engine/render/memory/memory.hpp"
 #include "engine/render/preset.hpp"
-#include "engine/render/textures/ground_texture_override.hpp"
 
 namespace psygen::render {
 

@@ -1,5 +1,3 @@
-#include "engine/render/textures/ground_texture_override.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <cstdlib>
 
 #include "engine/render/textures/ground_patterns.hpp"
+#include "engine/render/types.hpp"
 
 namespace psygen::render {
 

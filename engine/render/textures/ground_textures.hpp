@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/render/textures/ground_patterns.hpp"
-#include "engine/render/textures/ground_texture_override.hpp"
+#include "engine/render/types.hpp"
 
 namespace psygen::render {
 

@@ -9,8 +9,6 @@
 #include <cstring>
 #include <utility>
 
-#include "engine/render/device/descriptors.hpp"
-
 namespace psygen::render {
 
 using core::ErrorCode;
@@ -52,15 +50,6 @@ std::vector<std::uint8_t> half(std::span<const std::uint8_t> from, core::Extent 
   return out;
 }
 
-Result<UniqueSampler> make_texture_sampler(const Device& device) {
-  VkSamplerCreateInfo info{};
-  info.magFilter = VK_FILTER_LINEAR;
-  info.minFilter = VK_FILTER_LINEAR;
-  info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
-  info.maxLod = VK_LOD_CLAMP_NONE;
-  return make_sampler(device, info);
-}
-
 shaders::MaterialData data_of(const Material& m) {
   std::uint32_t bits = 0;
   if (m.normal_texture != kNoTexture) bits |= PSYGEN_MATERIAL_NORMAL_MAP;
@@ -79,17 +68,6 @@ bool is_valid(const Material& m) {
   return ok(m.opacity) && ok(m.min_opacity) && std::abs(m.normal_strength) <= kMax;
 }
 
-// The maps of a material.
-std::array<VkDescriptorSetLayoutBinding, kMapsOfMaterial> bindings_of(
-    const UniqueSampler& sampler) {
-  std::array<VkDescriptorSetLayoutBinding, kMapsOfMaterial> bindings{};
-  for (std::uint32_t i = 0; i < kMapsOfMaterial; ++i) {
-    bindings[i] = {i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT,
-                   sampler.address()};
-  }
-  return bindings;
-}
-
 }  // namespace
 
 std::vector<std::vector<std::uint8_t>> mip_levels(const TexturePixels& pixels) {
@@ -106,21 +84,32 @@ std::vector<std::vector<std::uint8_t>> mip_levels(const TexturePixels& pixels) {
 
 Result<void> MaterialTable::create(const Device& device, std::uint64_t texture_budget_bytes) {
   texture_budget_bytes_ = texture_budget_bytes;
-  Result<Buffer> buffer = make_buffer(device, PSYGEN_MAX_MATERIALS * sizeof(shaders::MaterialData),
-                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::kWrite);
-  if (!buffer) return tl::unexpected(buffer.error());
-  buffer_ = std::move(*buffer);
-  Result<UniqueSampler> sampler = make_texture_sampler(device);
-  if (!sampler) return tl::unexpected(sampler.error());
-  sampler_ = std::move(*sampler);
-  Result<UniqueSetLayout> layout = make_set_layout(device, bindings_of(sampler_));
-  if (!layout) return tl::unexpected(layout.error());
-  set_layout_ = std::move(*layout);
-  // Numbers that no material has yet look like the plain one.
-  const shaders::MaterialData plain = data_of(Material{});
-  for (std::size_t i = 0; i < PSYGEN_MAX_MATERIALS; ++i)
-    std::memcpy(buffer_.mapped + i * sizeof(plain), &plain, sizeof(plain));
-  return add(device, {}).map([](MaterialId) {});
+  VkSamplerCreateInfo smooth{};
+  smooth.magFilter = smooth.minFilter = VK_FILTER_LINEAR;
+  smooth.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+  smooth.maxLod = VK_LOD_CLAMP_NONE;
+  return make_buffer(device, PSYGEN_MAX_MATERIALS * sizeof(shaders::MaterialData),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::kWrite)
+      .map(into(buffer_))
+      .and_then([&] { return make_sampler(device, smooth); })
+      .map(into(sampler_))
+      .and_then([&] { return add_sets(device); })
+      .and_then([&] {
+        // Numbers that no material has yet look like the plain one.
+        const shaders::MaterialData plain = data_of(Material{});
+        for (std::size_t i = 0; i < PSYGEN_MAX_MATERIALS; ++i)
+          std::memcpy(buffer_.mapped + i * sizeof(plain), &plain, sizeof(plain));
+        return add(device, {});
+      })
+      .map([](MaterialId) {});
+}
+
+Result<void> MaterialTable::add_sets(const Device& device) {
+  std::array<SetBinding, kMapsOfMaterial> maps{};
+  maps.fill({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT,
+             sampler_.address()});
+  DescriptorSets sets;
+  return sets.create(device, maps, kSetsInPool).map([&] { pools_.push_back(std::move(sets)); });
 }
 
 Result<TextureId> MaterialTable::add_texture(const Device& device, const TexturePixels& pixels) {
@@ -179,31 +168,18 @@ Result<TextureId> MaterialTable::store(const Device& device, const TexturePixels
 }
 
 Result<VkDescriptorSet> MaterialTable::make_set(const Device& device, const Material& material) {
+  const std::size_t set = set_count_ % kSetsInPool;
   if (pools_.size() * kSetsInPool <= set_count_) {
-    Result<UniqueDescriptorPool> pool =
-        make_descriptor_pool(device, bindings_of(sampler_), kSetsInPool);
-    if (!pool) return tl::unexpected(pool.error());
-    pools_.push_back(std::move(*pool));
+    if (Result<void> added = add_sets(device); !added) return tl::unexpected(added.error());
   }
-  const auto made = allocate_sets(device, pools_.back().get(), set_layout_.get(), 1);
-  if (!made) return tl::unexpected(made.error());
-  const VkDescriptorSet set = made->front();
   ++set_count_;
   const std::array maps{material.base_texture, material.normal_texture, material.emissive_texture};
-  std::array<VkDescriptorImageInfo, kMapsOfMaterial> images{};
-  std::array<VkWriteDescriptorSet, kMapsOfMaterial> writes{};
   for (std::uint32_t i = 0; i < kMapsOfMaterial; ++i) {
-    images[i] = {VK_NULL_HANDLE, textures_[maps[i]].view.get(),
-                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    writes[i].dstSet = set;
-    writes[i].dstBinding = i;
-    writes[i].descriptorCount = 1;
-    writes[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    writes[i].pImageInfo = &images[i];
+    pools_.back().write(
+        device, set, i,
+        {VK_NULL_HANDLE, textures_[maps[i]].view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
   }
-  device.vk.vkUpdateDescriptorSets(device.handle, kMapsOfMaterial, writes.data(), 0, nullptr);
-  return set;
+  return pools_.back()[set];
 }
 
 Result<MaterialId> MaterialTable::add(const Device& device, const Material& material) {

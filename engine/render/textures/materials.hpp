@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/render/device/descriptors.hpp"
 #include "engine/render/memory/memory.hpp"
 #include "engine/render/types.hpp"
 #include "shaders/shared.h"
@@ -48,22 +49,22 @@ class MaterialTable {
   MaterialKinds kinds() const { return kinds_; }
   // The set with a material's textures; null for plain ones.
   VkDescriptorSet set(MaterialId material) const { return sets_[material]; }
-  VkDescriptorSetLayout set_layout() const { return set_layout_.get(); }
+  VkDescriptorSetLayout set_layout() const { return pools_.front().layout(); }
   const Buffer& buffer() const { return buffer_; }  // of shaders::MaterialData
   std::uint64_t texture_bytes() const { return texture_bytes_; }
   // Sets the budget of textures. Textures that exist stay.
   void set_budget(std::uint64_t bytes) { texture_budget_bytes_ = bytes; }
 
  private:
+  core::Result<void> add_sets(const Device& device);
   core::Result<void> make_white(const Device& device);
   core::Result<TextureId> store(const Device& device, const TexturePixels& pixels);
   core::Result<VkDescriptorSet> make_set(const Device& device, const Material& material);
 
   Buffer buffer_;
   UniqueSampler sampler_;
-  UniqueSetLayout set_layout_;
-  std::vector<UniqueDescriptorPool> pools_;
-  std::vector<Image> textures_;  // the first is white
+  std::vector<DescriptorSets> pools_;  // of the same layout
+  std::vector<Image> textures_;        // the first is white
   std::vector<VkDescriptorSet> sets_;
   VkDescriptorSet blank_set_ = VK_NULL_HANDLE;
   std::size_t set_count_ = 0;  // of all pools

@@ -19,27 +19,21 @@ namespace {
 
 constexpr core::Extent kLayerSize{core::kImpostorSide, core::kImpostorSide};
 
-Result<UniqueSampler> make_picture_sampler(const Device& device) {
-  VkSamplerCreateInfo info{};
-  info.magFilter = VK_FILTER_LINEAR;
-  info.minFilter = VK_FILTER_LINEAR;
-  // Two levels at once would cost software devices twice as much.
-  info.mipmapMode =
-      device.info.software ? VK_SAMPLER_MIPMAP_MODE_NEAREST : VK_SAMPLER_MIPMAP_MODE_LINEAR;
-  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  info.maxLod = VK_LOD_CLAMP_NONE;
-  return make_sampler(device, info);
-}
-
 }  // namespace
 
 Result<void> ImpostorTextures::create(const Device& device,
                                       std::span<const core::ImpostorTexture> pictures) {
   PSYGEN_CHECK(pictures.size() <= core::kMaxImpostors, "a byte names the picture");
-  if (sampler_.get() == VK_NULL_HANDLE) {
-    Result<UniqueSampler> sampler = make_picture_sampler(device);
-    if (!sampler) return tl::unexpected(sampler.error());
-    sampler_ = std::move(*sampler);
+  if (!sampler_.exists()) {
+    VkSamplerCreateInfo info{};
+    info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+    // Two levels at once would cost software devices twice as much.
+    info.mipmapMode =
+        device.info.software ? VK_SAMPLER_MIPMAP_MODE_NEAREST : VK_SAMPLER_MIPMAP_MODE_LINEAR;
+    info.addressModeU = info.addressModeV = info.addressModeW =
+        VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    info.maxLod = VK_LOD_CLAMP_NONE;
+    if (Result<void> made = make_sampler(device, info).map(into(sampler_)); !made) return made;
   }
   const auto layers = static_cast<std::uint32_t>(1 + pictures.size() * core::kImpostorViews);
   Result<Image> image = make_image(

@@ -1,4 +1,4 @@
-// The texture with the pictures of models (core/model_picture.hpp) and its sampler. Layer 0 is
+// The texture with the pictures of models (core/impostor_texture.hpp) and its sampler. Layer 0 is
 // white, for what has no picture. It knows nothing of models. Main thread; everything waits for the
 // device. Private to engine/render.
 #pragma once

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <tuple>
 
-#include "engine/render/particles.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/render/types.hpp"
 #include "engine/scene/draws/contact_shadows.hpp"
 #include "engine/scene/draws/draw_lists.hpp"
 #include "engine/scene/draws/ground.hpp"

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "engine/render/particles.hpp"
+#include "engine/render/types.hpp"
 #include "engine/scene/objects/components.hpp"
 
 namespace psygen::scene {

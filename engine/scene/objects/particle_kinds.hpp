@@ -1,7 +1,7 @@
 // Predefined kinds of particles, which a game uses as they are or changes. Pure; any thread.
 #pragma once
 
-#include "engine/render/particles.hpp"
+#include "engine/render/types.hpp"
 
 namespace psygen::scene {
 

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/render/particles.hpp"
 #include "engine/render/types.hpp"
 #include "engine/scene/nodes/ground_sunlight.hpp"
 #include "engine/scene/objects/components.hpp"

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "engine/render/device/software_tuning.hpp"
-#include "engine/render/particles.hpp"
+#include "engine/render/types.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
 
 namespace {

@@ -1,11 +1,10 @@
 // Particles: their bounds and ranges, and what is drawn of them on every path.
-#include "engine/render/particles.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "engine/render/types.hpp"
 #include "tests/engine/render/on_a_path.hpp"
 
 namespace psygen::render {

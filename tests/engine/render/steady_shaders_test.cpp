@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "engine/render/particles.hpp"
+#include "engine/render/types.hpp"
 #include "tests/engine/render/compiled_shaders.hpp"
 #include "tests/engine/render/one_of_each.hpp"
 
@@ -26,6 +26,7 @@ class SteadyShaders : public OneOfEach {
     emitter_.count = 20;
     emitter_.cycle_s = 3;
     emitter_.cycle = 0.3F;
+    known_ = compiled_shaders();
   }
   // Draws a frame and returns the number of shaders that it compiled.
   std::uint64_t compiled_for(const FrameInput& input) {

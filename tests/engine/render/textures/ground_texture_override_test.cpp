@@ -1,9 +1,8 @@
-#include "engine/render/textures/ground_texture_override.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "engine/core/hash.hpp"
+#include "engine/render/types.hpp"
 
 namespace psygen::render {
 namespace {

@@ -1,13 +1,28 @@
-// Text and areas over the picture, with coverage from the font atlas, or from the signed distances
-// of letters there.
+// Text and areas over the picture: quads in pixels, six vertices each, read from a buffer, with
+// coverage from the font atlas, or from the signed distances of letters there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
+#include "stage.glsl"
 
+layout(location = 0) PASSED vec4 colour;
+layout(location = 1) PASSED vec2 uv;
+layout(location = 2) flat PASSED vec4 look;
+
+#ifdef PSYGEN_VERT
+layout(set = 2, binding = PSYGEN_OVERLAY_VERTICES, std430) readonly buffer Glyphs {
+  OverlayVertex vertices[];
+};
+
+void main() {
+  OverlayVertex v = vertices[gl_VertexIndex];
+  colour = v.colour;
+  uv = v.place.zw;
+  look = v.look;
+  gl_Position = vec4(v.place.xy / frame.ground_anchor.zw * 2.0 - 1.0, 0.0, 1.0);
+}
+#else
 layout(set = 2, binding = PSYGEN_OVERLAY_FONT) uniform sampler2D font;
-layout(location = 0) in vec4 colour;
-layout(location = 1) in vec2 uv;
-layout(location = 2) flat in vec4 look;
 layout(location = 0) out vec4 pixel;
 
 // `range_px`: pixels from the least to the greatest distance.
@@ -30,3 +45,4 @@ void main() {
               cover(uv - x + y, range_px) + cover(uv + x + y, range_px);
   pixel = vec4(colour.rgb, colour.a * 0.25 * sum);
 }
+#endif

@@ -1,17 +1,23 @@
-// Particles: each is a square that faces the camera, or a streak along its motion. All of it
-// follows from the emitter, the number of the particle and the time; nothing is kept between
+// Particles. Vertices: each is a square that faces the camera, or a streak along its motion. All of
+// it follows from the emitter, the number of the particle and the time; nothing is kept between
 // frames. A particle is born again when its life is over, as the next generation.
+// Pixels: a disc with a soft edge, or with PSYGEN_TEXTURED the base texture of the material. The
+// colour is multiplied by the opacity, so particles that cover nothing add their light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
+#include "stage.glsl"
+
+layout(location = 0) PASSED vec4 colour;
+layout(location = 1) PASSED vec2 place;                // −1 … 1 in the particle
+layout(location = 2) flat PASSED vec2 covers_softness;  // x: share of what is behind that it covers
+
+#ifdef PSYGEN_VERT
 #include "atmosphere.glsl"
 #include "lighting.glsl"
 #include "lamps.glsl"
 
 layout(set = 2, binding = PSYGEN_PARTICLE_EMITTER, std140) uniform Emitter { EmitterData e; };
-layout(location = 0) out vec4 colour;
-layout(location = 1) out vec2 place;                // −1 … 1 in the particle
-layout(location = 2) flat out vec2 covers_softness;  // share of what is behind that it covers
 
 // Three random numbers in [0, 1) of three numbers (Jarzynski and Olano 2020, pcg3d).
 vec3 random(uint a, uint b, uint c) {
@@ -102,3 +108,21 @@ void main() {
   p += corner.x * half_width * right + corner.y * half_height * up;
   gl_Position = there ? frame.clip_from_camera * vec4(p, 1.0) : vec4(0.0, 0.0, 2.0, 1.0);
 }
+#else
+#include "materials.glsl"
+
+layout(location = 0) out vec4 pixel;
+
+void main() {
+#ifdef PSYGEN_TEXTURED
+  vec4 texel = texture(base_map, vec2(0.5, -0.5) * place + 0.5);
+  vec3 shade = colour.rgb * texel.rgb;
+  float opacity = colour.a * texel.a;
+#else
+  vec3 shade = colour.rgb;
+  float inside = clamp((1.0 - dot(place, place)) / covers_softness.y, 0.0, 1.0);
+  float opacity = colour.a * inside * inside;
+#endif
+  pixel = vec4(shade * opacity, opacity * covers_softness.x);
+}
+#endif
