@@ -7,8 +7,9 @@
 #include <cstring>
 #include <glm/trigonometric.hpp>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/pictures/picture_server.hpp"
-#include "editor/shell/default_world.hpp"
+#include "editor/shell/camera_memory.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
 #include "engine/cli/shipped_files.hpp"
@@ -49,7 +50,7 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
   if (parser.positionalArguments().size() > 1) return usage_error("give at most one world");
   if (parser.isSet("preset")) {
     const auto preset = render::preset_from(parser.value("preset").toStdString());
-    if (!preset) return usage_error(QString::fromStdString(preset.error().message));
+    if (!preset) return usage_error(to_qstring(preset.error().message));
     arguments.session.preset = *preset;
   }
   arguments.file = parser.positionalArguments().value(0);
@@ -68,9 +69,7 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   QApplication app(argc, argv);
   QApplication::setOrganizationName("psygen");
   QApplication::setApplicationName("psygen-editor");
-  const std::string_view version = core::version();
-  QApplication::setApplicationVersion(
-      QString::fromUtf8(version.data(), static_cast<qsizetype>(version.size())));
+  QApplication::setApplicationVersion(to_qstring(core::version()));
   Arguments arguments;
   if (const auto code = read_arguments(app, arguments)) return *code;
   if (auto ok = render::fit_software_rendering_to_threads(); !ok)
@@ -86,11 +85,10 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   options.session.plugins = std::move(plugins);
   MainWindow window(std::move(options));
   window.show();
-  const auto file =
-      cli::find_file(cli::Shipped::kWorld,
-                     arguments.file.isEmpty() ? kDefaultWorld : arguments.file.toStdString());
-  if (arguments.file.isEmpty()) window.set_default_pose(default_pose(), kDefaultEyeHeightM);
-  if (!file) return usage_error(QString::fromStdString(file.error().message));
+  const auto file = cli::find_file(
+      cli::Shipped::kWorld, arguments.file.isEmpty() ? kFirstWorld : arguments.file.toStdString());
+  if (arguments.file.isEmpty()) window.use_first_pose();
+  if (!file) return usage_error(to_qstring(file.error().message));
   const core::Result<void> opened = window.open_file(*file);
   if (!opened && !arguments.file.isEmpty())
     std::fprintf(stderr, "psygen-editor: %s\n", opened.error().message.c_str());

@@ -1,11 +1,16 @@
 #include "editor/attach/attach_dialog.hpp"
 
+#include <QDialog>
 #include <QDialogButtonBox>
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
+#include <QTimer>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <vector>
+
+#include "editor/document/qt_text.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -16,10 +21,24 @@ constexpr int kListMs = 1000;
 QString command_text(const std::string& command) {
   const std::size_t end = command.find(' ');
   const std::size_t slash = command.rfind('/', end);
-  return QString::fromStdString(slash == std::string::npos ? command : command.substr(slash + 1));
+  return to_qstring(slash == std::string::npos ? command : command.substr(slash + 1));
 }
 
-}  // namespace
+class AttachDialog final : public QDialog {
+ public:
+  explicit AttachDialog(QWidget* parent);
+  // The chosen program, after the dialog was accepted.
+  std::optional<inspect::Endpoint> chosen() const;
+
+ private:
+  void list();
+
+  std::vector<inspect::Endpoint> endpoints_;
+  QListWidget* list_;
+  QLabel* hint_;
+  QPushButton* attach_;
+  QTimer timer_;
+};
 
 AttachDialog::AttachDialog(QWidget* parent)
     : QDialog(parent), list_(new QListWidget), hint_(new QLabel) {
@@ -55,13 +74,13 @@ void AttachDialog::list() {
     for (const inspect::Endpoint& endpoint : endpoints_) {
       auto* item = new QListWidgetItem(
           tr("process %1:  %2").arg(endpoint.pid).arg(command_text(endpoint.command)), list_);
-      item->setToolTip(QString::fromStdString(endpoint.command));
+      item->setToolTip(to_qstring(endpoint.command));
       if (before && before->socket == endpoint.socket) list_->setCurrentItem(item);
     }
     if (list_->currentRow() < 0) list_->setCurrentRow(0);
   }
   attach_->setEnabled(!endpoints_.empty());
-  hint_->setText(!found ? QString::fromStdString(found.error().message)
+  hint_->setText(!found ? to_qstring(found.error().message)
                  : endpoints_.empty()
                      ? tr("No program can be inspected now. Start a flight with <b>psygen fly "
                           "--inspect</b>, or a game with the plugin inspect.")
@@ -73,6 +92,13 @@ std::optional<inspect::Endpoint> AttachDialog::chosen() const {
   const int row = list_->currentRow();
   if (row < 0 || row >= static_cast<int>(endpoints_.size())) return std::nullopt;
   return endpoints_[static_cast<std::size_t>(row)];
+}
+
+}  // namespace
+
+std::optional<inspect::Endpoint> ask_endpoint(QWidget* parent) {
+  AttachDialog dialog(parent);
+  return dialog.exec() == QDialog::Accepted ? dialog.chosen() : std::nullopt;
 }
 
 }  // namespace psygen::editor

@@ -3,23 +3,23 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QHBoxLayout>
+#include <QHelpEvent>
 #include <QJsonArray>
 #include <QLabel>
-#include <QLocale>
+#include <QPainter>
 #include <QPushButton>
 #include <QScrollArea>
+#include <QToolTip>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "editor/attach/system_bars.hpp"
+#include "editor/document/qt_text.hpp"
 #include "editor/panels/cache_map.hpp"
 
 namespace psygen::editor {
 namespace {
-
-const QLocale kPanelLocale(QLocale::English);
 
 QLabel* words_label() {
   auto* label = new QLabel;
@@ -59,6 +59,81 @@ CacheMap::Cell cell_of(const QJsonArray& node, const core::WorldPosition& camera
 }
 
 }  // namespace
+
+// System times as bars: the mean, and a mark at the maximum.
+class SystemBars final : public QWidget {
+ public:
+  // Times of one system per frame.
+  struct Bar {
+    QString name;
+    double mean_ms = 0, max_ms = 0;
+    QString tool_tip = {};
+  };
+  SystemBars();
+  void show_bars(std::vector<Bar> bars);
+  QSize sizeHint() const override;
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  bool event(QEvent* event) override;
+
+ private:
+  int row_height() const;
+  std::vector<Bar> bars_;
+};
+
+SystemBars::SystemBars() {
+  setAccessibleName(tr("System times"));
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  setToolTip(" ");
+}
+
+int SystemBars::row_height() const {
+  return fontMetrics().height() + 3;
+}
+
+QSize SystemBars::sizeHint() const {
+  return {240, row_height() * std::max(1, static_cast<int>(bars_.size())) + 4};
+}
+
+void SystemBars::show_bars(std::vector<Bar> bars) {
+  const bool other = bars.size() != bars_.size();
+  bars_ = std::move(bars);
+  if (other) updateGeometry();
+  update();
+}
+
+void SystemBars::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  double max_ms = 0.1;
+  int name_width = 0;
+  for (const Bar& bar : bars_) {
+    max_ms = std::max(max_ms, bar.max_ms);
+    name_width = std::max(name_width, fontMetrics().horizontalAdvance(bar.name));
+  }
+  const int number_width = fontMetrics().horizontalAdvance("00.00 ms ");
+  const int left = name_width + 8, room = std::max(10, width() - left - number_width - 4);
+  int y = 2;
+  for (const Bar& bar : bars_) {
+    const auto length = [&](double ms) { return static_cast<int>(room * ms / max_ms); };
+    painter.setPen(palette().color(QPalette::Text));
+    painter.drawText(2, y, name_width, row_height(), Qt::AlignVCenter, bar.name);
+    painter.fillRect(left, y + 3, std::max(1, length(bar.mean_ms)), row_height() - 6,
+                     palette().color(QPalette::Highlight));
+    painter.fillRect(left + length(bar.max_ms), y + 3, 2, row_height() - 6, QColor(230, 150, 40));
+    painter.drawText(left + room, y, number_width, row_height(), Qt::AlignVCenter | Qt::AlignRight,
+                     tr("%1 ms").arg(bar.mean_ms, 0, 'f', 2));
+    y += row_height();
+  }
+}
+
+bool SystemBars::event(QEvent* event) {
+  if (event->type() != QEvent::ToolTip) return QWidget::event(event);
+  const auto* help = static_cast<QHelpEvent*>(event);
+  const auto row = static_cast<std::size_t>(std::max(0, help->pos().y() - 2) / row_height());
+  QToolTip::showText(help->globalPos(), row < bars_.size() ? bars_[row].tool_tip : QString(), this);
+  return true;
+}
 
 RemotePanel::RemotePanel(RemoteSession& remote, QWidget* parent)
     : QWidget(parent),
@@ -132,9 +207,7 @@ void RemotePanel::show_hello(const QJsonObject& hello) {
 
 void RemotePanel::show_statistics(const QJsonObject& f) {
   const QJsonObject cache = f["cache"].toObject();
-  const auto bytes = [&](const char* name) {
-    return kPanelLocale.formattedDataSize(static_cast<qint64>(cache[name].toDouble()));
-  };
+  const auto bytes = [&](const char* name) { return bytes_text(cache[name].toDouble()); };
   statistics_->setText(
       tr("Running for %1 s%2. Frame time %3 ms (max %4). %5 triangles in %6 draws, error %7 px, "
          "%8 % of pixels missing.<br>%9 queued; %10 worker threads, %11 % busy. "
@@ -143,7 +216,7 @@ void RemotePanel::show_statistics(const QJsonObject& f) {
           .arg(f["paused"].toBool() ? tr(", paused") : QString())
           .arg(f["frame_ms"].toDouble(), 0, 'f', 1)
           .arg(f["longest_ms"].toDouble(), 0, 'f', 1)
-          .arg(kPanelLocale.toString(static_cast<qint64>(f["triangles"].toDouble())))
+          .arg(count_text(f["triangles"].toDouble()))
           .arg(f["draws"].toInt())
           .arg(f["error_pixels"].toDouble(), 0, 'f', 1)
           .arg(f["missing_pixels_percent"].toDouble(), 0, 'f', 1)

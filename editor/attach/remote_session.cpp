@@ -4,6 +4,7 @@
 #include <QJsonDocument>
 #include <utility>
 
+#include "editor/document/qt_text.hpp"
 #include "engine/inspect/inspect.hpp"
 
 namespace psygen::editor {
@@ -85,7 +86,7 @@ void RemoteSession::send(const QString& command, QJsonObject request) {
 
 void RemoteSession::send_world() {
   world_is_sent_ = true;
-  send("set_world", {{"text", QString::fromStdString(*std::exchange(next_world_, std::nullopt))}});
+  send("set_world", {{"text", to_qstring(*std::exchange(next_world_, std::nullopt))}});
 }
 
 void RemoteSession::set_world(const std::string& text) {

@@ -1,7 +1,6 @@
 #include "editor/cost/block_cost.hpp"
 
 #include <QLocale>
-#include <QObject>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -126,13 +125,6 @@ std::vector<CostPoint> cost_curve(const CurveInput& input, const std::function<b
     curve.push_back(std::move(point));
   }
   return curve;
-}
-
-QString seconds_text(double seconds) {
-  const QLocale english(QLocale::English);
-  if (seconds < 0.0995) return QObject::tr("%1 ms").arg(english.toString(seconds * 1e3, 'g', 2));
-  if (seconds < 9.5) return QObject::tr("%1 s").arg(english.toString(seconds, 'g', 2));
-  return QObject::tr("%1 s").arg(english.toString(seconds, 'f', 0));
 }
 
 }  // namespace psygen::editor

@@ -3,7 +3,6 @@
 // its own parsed world and cost model.
 #pragma once
 
-#include <QString>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,8 +65,5 @@ struct CurveInput {
   const world::ResourceLoader* files = nullptr;
 };
 std::vector<CostPoint> cost_curve(const CurveInput& input, const std::function<bool()>& go_on);
-
-// Returns a duration for people: "31 ms", "0.3 s", "12 s".
-QString seconds_text(double seconds);
 
 }  // namespace psygen::editor

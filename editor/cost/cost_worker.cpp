@@ -34,7 +34,7 @@ void CostWorker::request_curves(CurveRequest request) {
   {
     const std::lock_guard lock(mutex_);
     next_ = std::move(request);
-    newest_.store(++next_number_);
+    ++newest_;
   }
   changed_.notify_all();
 }
@@ -71,6 +71,7 @@ void CostWorker::run() {
     changed_.wait(lock,
                   [this] { return next_.has_value() || next_impact_.has_value() || is_over(); });
     wait_while_resting(lock);
+    const std::uint64_t number = newest_.load();  // before the check, so that it is not the end
     if (is_over()) return;
     if (!next_) {
       lock.unlock();
@@ -78,7 +79,6 @@ void CostWorker::run() {
       continue;
     }
     const CurveRequest request = *std::exchange(next_, std::nullopt);
-    const std::uint64_t number = next_number_;
     lock.unlock();
     compute_curves(request, number);
   }

@@ -66,10 +66,9 @@ class CostWorker final : public QObject {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<CurveRequest> next_;
-  std::uint64_t next_number_ = 0;  // of the newest request
   std::optional<ImpactRequest> next_impact_;
   std::chrono::steady_clock::time_point rest_until_{};
-  std::atomic<std::uint64_t> newest_{0};  // the same, without a lock; UINT64_MAX: the end
+  std::atomic<std::uint64_t> newest_{0};  // number of the newest request; UINT64_MAX: the end
   std::thread thread_;
 };
 

@@ -1,11 +1,10 @@
 #include "editor/cost/edit_cost.hpp"
 
-#include <QLocale>
-#include <QObject>
 #include <algorithm>
 #include <cmath>
 
 #include "editor/cost/block_cost.hpp"
+#include "editor/document/qt_text.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::editor {
@@ -66,19 +65,16 @@ QString confirmation_for(const EditCost& before, const EditCost& after, const Co
   const auto is_beyond = [&](double EditCost::*of, double limit) {
     return after.*of > limit && after.*of > before.*of;
   };
-  const QLocale english(QLocale::English);
   if (is_beyond(&EditCost::model_seconds, limits.model_seconds))
-    return QObject::tr("One model “%1” would take %2 to synthesise.")
-        .arg(QString::fromStdString(after.model), seconds_text(after.model_seconds));
+    return tr("One model “%1” would take %2 to synthesise.")
+        .arg(to_qstring(after.model), seconds_text(after.model_seconds));
   if (!is_beyond(&EditCost::block_seconds, limits.block_seconds) &&
       !is_beyond(&EditCost::block_bytes, limits.cache_bytes / limits.blocks))
     return {};
-  return QObject::tr(
-             "A block at full detail would take %1 to synthesise and %2 of memory. The cache would "
-             "hold %3 such blocks.")
-      .arg(seconds_text(after.block_seconds),
-           english.formattedDataSize(std::llround(after.block_bytes), 1),
-           english.toString(std::floor(limits.cache_bytes / std::max(after.block_bytes, 1.0))));
+  return tr("A block at full detail would take %1 to synthesise and %2 of memory. The cache would "
+            "hold %3 such blocks.")
+      .arg(seconds_text(after.block_seconds), bytes_text(after.block_bytes, 1),
+           kEnglish.toString(std::floor(limits.cache_bytes / std::max(after.block_bytes, 1.0))));
 }
 
 }  // namespace psygen::editor

@@ -1,13 +1,12 @@
 #include "editor/cost/world_impact.hpp"
 
-#include <QLocale>
-#include <QObject>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <unordered_map>
 
 #include "editor/cost/block_cost.hpp"
+#include "editor/document/qt_text.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world_parts.hpp"
 
@@ -185,16 +184,13 @@ WorldImpact impact_of(const ParsedWorld& before, const ParsedWorld& after, core:
 }
 
 QString impact_text(const WorldImpact& impact) {
-  const QLocale english(QLocale::English);
   if (impact.changed < 0.5 && impact.seconds <= 0) {
-    return impact.is_elsewhere ? QObject::tr("Nothing near the camera needs rebuilding.")
-                               : QObject::tr("Nothing to rebuild.");
+    return impact.is_elsewhere ? tr("Nothing near the camera needs rebuilding.")
+                               : tr("Nothing to rebuild.");
   }
-  const auto whole = [&](double count) { return english.toString(std::llround(count)); };
-  return QObject::tr("Rebuilds about %1 of %2 meshes (%3). Memory afterwards: %4 of %5.")
-      .arg(whole(impact.changed), whole(impact.held), seconds_text(impact.seconds),
-           english.formattedDataSize(std::llround(impact.bytes), 1),
-           english.formattedDataSize(std::llround(impact.budget_bytes), 0));
+  return tr("Rebuilds about %1 of %2 meshes (%3). Memory afterwards: %4 of %5.")
+      .arg(count_text(impact.changed), count_text(impact.held), seconds_text(impact.seconds),
+           bytes_text(impact.bytes, 1), bytes_text(impact.budget_bytes, 0));
 }
 
 }  // namespace psygen::editor

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "editor/document/line_diff.hpp"
+#include "editor/document/qt_text.hpp"
 #include "engine/core/assert.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/world/files/text_file.hpp"
@@ -31,6 +32,8 @@ count = 20
 model = "rock"
 count = 20
 )";
+
+constexpr int kDiskDelayMs = 100;  // after the last change of the file
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   return !a.empty() && !b.empty() && file_key(a) == file_key(b);
@@ -59,7 +62,16 @@ Document::Document(DocumentOptions options, QObject* parent)
   autosave_timer_.setSingleShot(true);
   autosave_timer_.setInterval(options_.autosave_ms);
   connect(&autosave_timer_, &QTimer::timeout, this, &Document::autosave);
-  connect(&watch_, &DiskWatch::maybe_changed, this, [this] { check_disk(); });
+  disk_timer_.setSingleShot(true);
+  disk_timer_.setInterval(kDiskDelayMs);
+  const auto start = qOverload<>(&QTimer::start);
+  connect(&watcher_, &QFileSystemWatcher::fileChanged, &disk_timer_, start);
+  connect(&watcher_, &QFileSystemWatcher::directoryChanged, &disk_timer_, start);
+  connect(&disk_timer_, &QTimer::timeout, this, [this] {
+    const QString file = to_qstring(file_.string());
+    if (!file_.empty() && !watcher_.files().contains(file)) watcher_.addPath(file);  // replaced
+    check_disk();
+  });
   text_ = std::make_shared<const std::string>(kNewWorld);
   const auto made = make_new();
   PSYGEN_CHECK(made.has_value(), "the text of a new world must be valid");
@@ -131,10 +143,20 @@ void Document::set_document_text(const std::filesystem::path& file, std::string 
   disk_pictures_.clear();
   refused_files_.clear();
   undo_.clear();
-  watch_.watch(file_);
+  watch_disk();
   note_saved(*text_);
   Q_EMIT file_changed();
   Q_EMIT changed(Change::kAll);
+}
+
+void Document::watch_disk() {
+  disk_timer_.stop();
+  if (const QStringList all = watcher_.files() + watcher_.directories(); !all.isEmpty())
+    watcher_.removePaths(all);
+  if (file_.empty()) return;
+  const std::filesystem::path folder = file_.parent_path();
+  watcher_.addPath(folder.empty() ? "." : to_qstring(folder.string()));
+  watcher_.addPath(to_qstring(file_.string()));
 }
 
 void Document::note_saved(std::string text) {
@@ -170,7 +192,7 @@ core::Result<void> Document::save() {
   note_saved(*text_);
   autosave();
   save_locks();
-  watch_.watch(file_);
+  watch_disk();
   return {};
 }
 
@@ -208,7 +230,7 @@ core::Result<std::vector<std::string>> Document::save_as(const std::filesystem::
   note_saved(*text_);
   autosave();
   save_locks();
-  watch_.watch(file_);
+  watch_disk();
   return copied;
 }
 
@@ -315,7 +337,7 @@ core::Result<void> Document::write_recovery() {
 void Document::autosave() {
   const auto written = write_recovery();
   if (!written && !autosave_has_failed_)
-    Q_EMIT autosave_failed(QString::fromStdString(written.error().message));
+    Q_EMIT autosave_failed(to_qstring(written.error().message));
   autosave_has_failed_ = !written;
 }
 

@@ -4,6 +4,7 @@
 // crash. It has no window and draws nothing. Main thread.
 #pragma once
 
+#include <QFileSystemWatcher>
 #include <QObject>
 #include <QString>
 #include <QTimer>
@@ -18,12 +19,10 @@
 #include <string_view>
 #include <vector>
 
-#include "editor/document/disk_watch.hpp"
 #include "editor/document/file_copies.hpp"
 #include "editor/document/paint_change.hpp"
 #include "editor/document/parsed_world.hpp"
 #include "editor/document/recovery.hpp"
-#include "editor/document/text_command.hpp"
 #include "editor/document/variation.hpp"
 #include "engine/core/error.hpp"
 #include "engine/handmade/files.hpp"
@@ -43,6 +42,15 @@ using EditGuard = std::function<QString(const ParsedWorld& before, const ParsedW
 
 // State of the file on the disk, compared with the document's last read or write.
 enum class DiskState { kSame, kChanged, kRemoved };
+
+using TextPtr = std::shared_ptr<const std::string>;
+
+// A text and its world at the time of an undo step. Parsing the text again may give another world
+// if its resources have changed, or an error if they are missing.
+struct ShownText {
+  TextPtr text;
+  ParsedWorldPtr world;
+};
 
 // One open world.
 class Document : public QObject {
@@ -200,6 +208,8 @@ class Document : public QObject {
   void set_document_text(const std::filesystem::path& file, std::string text, ParsedWorldPtr parsed,
                          std::unique_ptr<RecoverySession> session,
                          handmade::MemoryPicturesPtr pictures = {});
+  // Watches the file on the disk, also for its replacement, removal and creation.
+  void watch_disk();
   void note_saved(std::string text);
   core::Result<void> require_known_disk() const;
   core::Result<ParsedWorldPtr> parse(const std::string& text) const;
@@ -257,7 +267,8 @@ class Document : public QObject {
   QString confirmation_;
   FieldLocks locks_, kept_locks_;  // kept_locks_: in the state folder
   QUndoStack undo_;
-  DiskWatch watch_;
+  QFileSystemWatcher watcher_;
+  QTimer disk_timer_;  // other programs write a file in several steps
   QTimer autosave_timer_;
   std::unique_ptr<RecoverySession> session_;
   mutable std::optional<std::vector<world::WorldSection>> sections_;

@@ -1,11 +1,13 @@
 // Edits of a document: each changes its text (engine/world/files/text_edit.hpp).
 #include <fmt/format.h>
 
+#include <QUndoCommand>
 #include <algorithm>
 #include <utility>
 
 #include "editor/document/document.hpp"
 #include "editor/document/field_value.hpp"
+#include "editor/document/qt_text.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/text_file.hpp"
@@ -16,10 +18,6 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kTries = 8;  // random values per field
-
-QString shown(const world::TextPath& path) {
-  return QString::fromStdString(path.text());
-}
 
 using Text = core::Result<std::string>;
 
@@ -36,6 +34,34 @@ std::vector<const world::WorldField*> fields_below(
   }
   return fields;
 }
+
+// An undo step. Steps of one drag merge.
+class TextCommand : public QUndoCommand {
+ public:
+  // `drag`: steps with the same number merge; 0: none. `show` sets the text of the document.
+  TextCommand(const QString& name, ShownText before, ShownText after, int drag,
+              std::function<void(const ShownText&)> show)
+      : QUndoCommand(name),
+        before_(std::move(before)),
+        after_(std::move(after)),
+        drag_(drag),
+        show_(std::move(show)) {}
+
+  void undo() override { show_(before_); }
+  void redo() override { show_(after_); }
+  int id() const override { return drag_ == 0 ? -1 : drag_; }
+  // A drag that ends at its first text is no step.
+  bool mergeWith(const QUndoCommand* next) override {
+    after_ = static_cast<const TextCommand*>(next)->after_;
+    setObsolete(*before_.text == *after_.text);
+    return true;
+  }
+
+ private:
+  ShownText before_, after_;
+  int drag_;
+  std::function<void(const ShownText&)> show_;
+};
 
 }  // namespace
 
@@ -105,18 +131,18 @@ int Document::begin_drag() {
 }
 
 core::Result<void> Document::set_value(const world::TextPath& path, std::string_view toml_value) {
-  return edit(tr("Set %1").arg(shown(path)), [&](std::string_view text) -> Text {
+  return edit(tr("Set %1").arg(to_qstring(path.text())), [&](std::string_view text) -> Text {
     return with_field_value(text, *parsed_, path, toml_value);
   });
 }
 
 core::Result<void> Document::reset_value(const world::TextPath& path) {
-  return edit(tr("Reset %1").arg(shown(path)),
+  return edit(tr("Reset %1").arg(to_qstring(path.text())),
               [&](std::string_view text) { return world::without_value(text, path); });
 }
 
 core::Result<void> Document::append_table(const world::TextPath& array, std::string_view table) {
-  return edit(tr("Add %1").arg(shown(array)), [&](std::string_view text) {
+  return edit(tr("Add %1").arg(to_qstring(array.text())), [&](std::string_view text) {
     return world::with_table_appended(text, array, table);
   });
 }
@@ -126,7 +152,7 @@ core::Result<void> Document::remove_table(const world::TextPath& path) {
   if (!text) return tl::unexpected(std::move(text.error()));
   FieldLocks locks = locks_;
   if (!path.empty() && path.back().is_index) locks.note_removed(path);
-  return push(*std::move(text), tr("Remove %1").arg(shown(path)), std::move(locks));
+  return push(*std::move(text), tr("Remove %1").arg(to_qstring(path.text())), std::move(locks));
 }
 
 core::Result<void> Document::move_table(const world::TextPath& item, std::size_t to) {
@@ -134,7 +160,7 @@ core::Result<void> Document::move_table(const world::TextPath& item, std::size_t
   if (!text) return tl::unexpected(std::move(text.error()));
   FieldLocks locks = locks_;
   locks.note_moved(item, to);
-  return push(*std::move(text), tr("Move %1").arg(shown(item)), std::move(locks));
+  return push(*std::move(text), tr("Move %1").arg(to_qstring(item.text())), std::move(locks));
 }
 
 core::Result<void> Document::duplicate_table(const world::TextPath& item) {
@@ -152,7 +178,7 @@ core::Result<void> Document::duplicate_table(const world::TextPath& item) {
   }
   FieldLocks locks = locks_;
   locks.note_inserted(copy);
-  return push(*std::move(text), tr("Duplicate %1").arg(shown(item)), std::move(locks));
+  return push(*std::move(text), tr("Duplicate %1").arg(to_qstring(item.text())), std::move(locks));
 }
 
 core::Result<std::string> Document::copy(const world::TextPath& path) const {
@@ -160,7 +186,7 @@ core::Result<std::string> Document::copy(const world::TextPath& path) const {
 }
 
 core::Result<void> Document::paste(const world::TextPath& path, std::string_view snippet) {
-  return edit(tr("Paste into %1").arg(shown(path)),
+  return edit(tr("Paste into %1").arg(to_qstring(path.text())),
               [&](std::string_view text) { return world::with_snippet(text, path, snippet); });
 }
 
@@ -177,12 +203,12 @@ core::Result<void> Document::apply_preset(const world::TextPath& path,
   if (!text) return tl::unexpected(text.error());
   const auto snippet = world::read_preset(*text, preset.string());
   if (!snippet) return tl::unexpected(snippet.error());
-  return edit(tr("Apply %1").arg(QString::fromStdString(preset.stem().string())),
+  return edit(tr("Apply %1").arg(to_qstring(preset.stem().string())),
               [&](std::string_view before) { return world::with_snippet(before, path, *snippet); });
 }
 
 core::Result<void> Document::reset_section(const world::TextPath& path) {
-  return edit(tr("Reset %1").arg(shown(path)), [&](std::string_view before) {
+  return edit(tr("Reset %1").arg(to_qstring(path.text())), [&](std::string_view before) {
     Text text{std::string(before)};
     for (const world::WorldField* field : fields_below(path, sections())) {
       if (text && field->is_set && !field->required)
@@ -206,7 +232,7 @@ core::Result<void> Document::randomise(const world::TextPath& path, std::mt19937
       break;
     }
   }
-  return push(std::move(text), tr("Randomise %1").arg(shown(path)));
+  return push(std::move(text), tr("Randomise %1").arg(to_qstring(path.text())));
 }
 
 core::Result<void> Document::step_value(const world::TextPath& path, int steps) {

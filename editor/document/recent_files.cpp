@@ -3,6 +3,8 @@
 #include <QStringList>
 #include <algorithm>
 
+#include "editor/document/qt_text.hpp"
+
 namespace psygen::editor {
 namespace {
 
@@ -13,7 +15,7 @@ QString recent_key() {
 QString whole_name(const std::filesystem::path& file) {
   std::error_code error;
   const auto whole = std::filesystem::absolute(file, error);
-  return QString::fromStdString((error ? file : whole.lexically_normal()).string());
+  return to_qstring((error ? file : whole.lexically_normal()).string());
 }
 
 }  // namespace

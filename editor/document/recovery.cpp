@@ -13,6 +13,7 @@
 #include <set>
 
 #include "editor/document/paint_change.hpp"
+#include "editor/document/qt_text.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
 
@@ -23,10 +24,6 @@ constexpr int kRecoveryFormat = 1;
 constexpr std::uint64_t kMaxBytes = std::uint64_t{16} << 20;
 constexpr const char* kEnding = ".recovery";
 constexpr const char* kPictureEnding = ".png";
-
-QString q(const std::filesystem::path& path) {
-  return QString::fromStdString(path.string());
-}
 
 // The image files of a recovery file: ID.HASH.png.
 std::filesystem::path picture_file(const std::filesystem::path& recovery_file,
@@ -64,7 +61,7 @@ handmade::NamedPictures read_pictures(const std::filesystem::path& folder,
 }
 
 QString lock_name(const std::filesystem::path& recovery_file) {
-  return q(recovery_file) + QStringLiteral(".lock");
+  return to_qstring(recovery_file.string() + ".lock");
 }
 
 std::unique_ptr<QLockFile> locked(const QString& name) {
@@ -91,16 +88,15 @@ std::optional<Recovery> read_recovery(const std::filesystem::path& file) {
       QJsonDocument::fromJson(QByteArray::fromRawData(reinterpret_cast<const char*>(bytes->data()),
                                                       static_cast<qsizetype>(bytes->size())))
           .object();
-  if (read[QStringLiteral("format")].toInt() != kRecoveryFormat) return {};
+  if (read["format"].toInt() != kRecoveryFormat) return {};
   Recovery recovery;
-  recovery.world_file = read[QStringLiteral("world_file")].toString().toStdString();
-  recovery.text = read[QStringLiteral("text")].toString().toStdString();
-  recovery.saved_text = read[QStringLiteral("saved_text")].toString().toStdString();
-  recovery.undo_index = read[QStringLiteral("undo_index")].toInt();
-  recovery.time = QDateTime::fromString(read[QStringLiteral("time")].toString(), Qt::ISODateWithMs);
+  recovery.world_file = read["world_file"].toString().toStdString();
+  recovery.text = read["text"].toString().toStdString();
+  recovery.saved_text = read["saved_text"].toString().toStdString();
+  recovery.undo_index = read["undo_index"].toInt();
+  recovery.time = QDateTime::fromString(read["time"].toString(), Qt::ISODateWithMs);
   recovery.file = file;
-  recovery.pictures =
-      read_pictures(file.parent_path(), read[QStringLiteral("pictures")].toObject());
+  recovery.pictures = read_pictures(file.parent_path(), read["pictures"].toObject());
   return recovery;
 }
 
@@ -132,7 +128,7 @@ core::Result<std::unique_ptr<RecoverySession>> RecoverySession::start(
   session->file_ = state_folder / (id.toStdString() + kEnding);
   session->running_ = locked(lock_name(session->file_));
   if (world_file.empty()) return session;
-  session->document_ = locked(q(state_folder / (file_key(world_file).toStdString() + ".lock")));
+  session->document_ = locked(lock_name(state_folder / file_key(world_file).toStdString()));
   if (session->document_->error() == QLockFile::LockFailedError && !share)
     return tl::unexpected(open_elsewhere(*session->document_, world_file));
   return session;
@@ -147,19 +143,18 @@ core::Result<void> RecoverySession::write(const Recovery& recovery) const {
   std::set<std::filesystem::path> kept;
   for (const auto& [name, picture] : recovery.pictures) {
     const std::filesystem::path file = picture_file(file_, *picture);
-    names[QString::fromStdString(name)] = q(file.filename());
+    names[to_qstring(name)] = to_qstring(file.filename().string());
     std::error_code error;
     if (!kept.insert(file).second || std::filesystem::exists(file, error)) continue;
     if (auto written = write_picture_file(file, *picture); !written) return written;
   }
-  const QJsonObject object{
-      {QStringLiteral("format"), kRecoveryFormat},
-      {QStringLiteral("world_file"), q(recovery.world_file)},
-      {QStringLiteral("text"), QString::fromStdString(recovery.text)},
-      {QStringLiteral("saved_text"), QString::fromStdString(recovery.saved_text)},
-      {QStringLiteral("undo_index"), recovery.undo_index},
-      {QStringLiteral("pictures"), names},
-      {QStringLiteral("time"), QDateTime::currentDateTimeUtc().toString(Qt::ISODateWithMs)}};
+  const QJsonObject object{{"format", kRecoveryFormat},
+                           {"world_file", to_qstring(recovery.world_file.string())},
+                           {"text", to_qstring(recovery.text)},
+                           {"saved_text", to_qstring(recovery.saved_text)},
+                           {"undo_index", recovery.undo_index},
+                           {"pictures", names},
+                           {"time", QDateTime::currentDateTimeUtc().toString(Qt::ISODateWithMs)}};
   const QByteArray bytes = QJsonDocument(object).toJson(QJsonDocument::Compact);
   auto written = core::replace_file(
       file_, std::string_view(bytes.constData(), static_cast<std::size_t>(bytes.size())));

@@ -5,6 +5,8 @@
 #include <QCoreApplication>
 #include <QFileInfo>
 
+#include "editor/document/qt_text.hpp"
+
 namespace psygen::editor {
 namespace {
 
@@ -59,7 +61,7 @@ void FlightProcess::finish(int code, QProcess::ExitStatus status) {
   }
   process_.readAllStandardError();
   const auto run = read_flight_run(out_, settings_);
-  if (!run) return Q_EMIT failed(QString::fromStdString(run.error().message));
+  if (!run) return Q_EMIT failed(to_qstring(run.error().message));
   Q_EMIT flown(*run);
 }
 

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 
+#include "editor/document/qt_text.hpp"
 #include "engine/compare/csv_rows.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/world/files/text_file.hpp"
@@ -71,30 +72,27 @@ double rounded_up(double value) {
 QString settings_text(const FlightSettings& settings) {
   const std::string_view policy = synthesis::name_of(settings.policy);
   return QString("%1, %2, %3 MiB, %4 px, %5")
-      .arg(settings.virtual_clock ? QObject::tr("virtual clock") : QObject::tr("wall clock"),
-           settings.modelers == 0 ? QObject::tr("default worker threads")
-                                  : QObject::tr("%1 worker threads").arg(settings.modelers))
+      .arg(settings.virtual_clock ? tr("virtual clock") : tr("wall clock"),
+           settings.modelers == 0 ? tr("default worker threads")
+                                  : tr("%1 worker threads").arg(settings.modelers))
       .arg(settings.budget_mib)
       .arg(settings.error_pixels)
-      .arg(QString::fromUtf8(policy.data(), static_cast<int>(policy.size())));
+      .arg(to_qstring(policy));
 }
 
 QStringList flight_arguments(const FlightSettings& settings, const std::filesystem::path& world,
                              const std::filesystem::path& path, const std::filesystem::path& out) {
-  const auto text = [](std::string_view word) {
-    return QString::fromUtf8(word.data(), static_cast<int>(word.size()));
-  };
   return {"fly",        "--headless",
-          "--world",    text(world.string()),
-          "--path",     text(path.string()),
-          "--out",      text(out.string()),
+          "--world",    to_qstring(world.string()),
+          "--path",     to_qstring(path.string()),
+          "--out",      to_qstring(out.string()),
           "--clock",    settings.virtual_clock ? "virtual" : "wall",
           "--modelers", QString::number(settings.modelers),
           "--budget",   QString("%1M").arg(settings.budget_mib),
           "--error",    QString::number(settings.error_pixels, 'g', 15),
-          "--policy",   text(synthesis::name_of(settings.policy)),
+          "--policy",   to_qstring(synthesis::name_of(settings.policy)),
           "--size",     QString("%1x%2").arg(settings.size.width).arg(settings.size.height),
-          "--preset",   text(render::to_string(settings.preset)),
+          "--preset",   to_qstring(render::to_string(settings.preset)),
           "--warmup",   QString::number(settings.warmup_s, 'g', 15)};
 }
 

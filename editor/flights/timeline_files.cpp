@@ -4,6 +4,7 @@
 #include <QFileDialog>
 #include <algorithm>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/flights/timeline_panel.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/world/files/path_file.hpp"
@@ -53,7 +54,7 @@ void TimelinePanel::save_test() {
   }
   Q_EMIT message_posted(
       ok ? tr("Saved %1 with its path and world. Run it with psygen test.").arg(file)
-         : QString::fromStdString(ok.error().message));
+         : to_qstring(ok.error().message));
 }
 
 void TimelinePanel::save_path() {
@@ -63,8 +64,7 @@ void TimelinePanel::save_path() {
   if (file.isEmpty()) return;
   if (!file.endsWith(".toml")) file += ".toml";
   const auto ok = core::replace_file(file.toStdString(), world::write_camera_path(*path_));
-  Q_EMIT message_posted(ok ? tr("Saved %1.").arg(file)
-                           : QString::fromStdString(ok.error().message));
+  Q_EMIT message_posted(ok ? tr("Saved %1.").arg(file) : to_qstring(ok.error().message));
 }
 
 void TimelinePanel::open_path() {
@@ -75,7 +75,7 @@ void TimelinePanel::open_path() {
 
 void TimelinePanel::open_path_file(const std::filesystem::path& file) {
   auto path = world::load_camera_path(file);
-  if (!path) return Q_EMIT message_posted(QString::fromStdString(path.error().message));
+  if (!path) return Q_EMIT message_posted(to_qstring(path.error().message));
   show_path(std::move(*path));
   scrub(0);
 }

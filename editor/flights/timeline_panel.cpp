@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/flights/timeline_plot.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/world/files/path_file.hpp"
@@ -70,7 +71,7 @@ TimelinePanel::TimelinePanel(TimelineHost host, QWidget* parent)
          "clock measures this machine."));
   for (const synthesis::Policy policy : synthesis::kAllPolicies) {
     const std::string_view name = synthesis::name_of(policy);
-    policy_->addItem(QString::fromUtf8(name.data(), static_cast<int>(name.size())));
+    policy_->addItem(to_qstring(name));
   }
   policy_->setCurrentText("deadline");
   policy_->setAccessibleName(tr("Order of synthesis"));
@@ -259,7 +260,7 @@ void TimelinePanel::fly() {
   auto written = core::replace_file(path_file, world::write_camera_path(*path_));
   const auto world_file = write_world(folder);
   if (written && !world_file) written = tl::unexpected(world_file.error());
-  if (!written) return Q_EMIT message_posted(QString::fromStdString(written.error().message));
+  if (!written) return Q_EMIT message_posted(to_qstring(written.error().message));
   path_file_ = path_file;
   world_file_ = *world_file;
   run_world_ = host_.world_text();

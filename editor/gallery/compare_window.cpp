@@ -6,6 +6,7 @@
 #include <QSettings>
 #include <algorithm>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/pictures/picture_service.hpp"
 
 namespace psygen::editor {
@@ -95,7 +96,7 @@ void CompareWindow::ask(Half& half, const ViewState& view, int batch) {
   service_.ask(std::move(request), batch, &half == halves_ ? 0 : 1, this,
                [this, &half](const PictureReply& reply) {
                  half.is_awaited = false;
-                 half.error = QString::fromStdString(reply.error);
+                 half.error = to_qstring(reply.error);
                  if (reply.error.empty()) half.image = reply.image;
                  update();
                });

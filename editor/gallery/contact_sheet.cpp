@@ -11,7 +11,9 @@
 #include <algorithm>
 
 #include "editor/document/field_value.hpp"
+#include "editor/document/qt_text.hpp"
 #include "editor/gallery/picture_cell.hpp"
+#include "editor/panels/message_log.hpp"
 #include "editor/pictures/model_world.hpp"
 #include "editor/pictures/picture_service.hpp"
 #include "engine/world/files/text_edit.hpp"
@@ -25,11 +27,11 @@ constexpr double kMaxSmaller = 5;  // maximum ratio of a model's size to its siz
 constexpr const char* kGeometryKey = "contact_sheet/geometry";
 
 QString cost_text(const BlockCost& cost) {
-  return QObject::tr("%1 ms").arg(cost.seconds * 1000, 0, 'g', 3);
+  return tr("%1 ms").arg(cost.seconds * 1000, 0, 'g', 3);
 }
 
 QString shown_value(const std::string& toml) {
-  QString text = QString::fromStdString(toml);
+  QString text = to_qstring(toml);
   if (text.startsWith('"') && text.endsWith('"')) text = text.mid(1, text.size() - 2);
   return text;
 }
@@ -42,9 +44,13 @@ bool is_of_model(const world::TextPath& path) {
 
 }  // namespace
 
-ContactSheet::ContactSheet(Document& document, PictureService& service, AskView ask_view,
-                           QWidget* parent)
-    : QDialog(parent), document_(document), service_(service), ask_view_(std::move(ask_view)) {
+ContactSheet::ContactSheet(Document& document, PictureService& service, MessageLog& messages,
+                           AskView ask_view, QWidget* parent)
+    : QDialog(parent),
+      document_(document),
+      service_(service),
+      messages_(messages),
+      ask_view_(std::move(ask_view)) {
   setWindowTitle(tr("Contact sheet"));
   setObjectName("contact_sheet");
   const auto add_box = [this](const QString& name) {
@@ -143,12 +149,11 @@ void ContactSheet::list_fields() {
   const auto list = [&](auto& self, const std::vector<world::WorldSection>& sections,
                         const QString& before) -> void {
     for (const world::WorldSection& section : sections) {
-      const QString title = before + QString::fromStdString(section.title);
+      const QString title = before + to_qstring(section.title);
       for (const world::WorldField& field : section.fields) {
         if (!can_sweep(field)) continue;
         for (QComboBox* box : boxes)
-          box->addItem(title + ": " + QString::fromStdString(field.label),
-                       QString::fromStdString(field.path.text()));
+          box->addItem(title + ": " + to_qstring(field.label), to_qstring(field.path.text()));
       }
       self(self, section.parts, title + ", ");
     }
@@ -159,7 +164,7 @@ void ContactSheet::list_fields() {
 }
 
 void ContactSheet::choose(const world::TextPath& first) {
-  const int index = first_->findData(QString::fromStdString(first.text()));
+  const int index = first_->findData(to_qstring(first.text()));
   if (index >= 0) first_->setCurrentIndex(index);
   second_->setCurrentIndex(0);
   subject_->setCurrentIndex(is_of_model(first) ? 1 : 0);
@@ -194,7 +199,7 @@ void ContactSheet::fill() {
   for (const Shown& shown : shown_)
     delete shown.widget;
   shown_.clear();
-  if (!cells) return status_->setText(QString::fromStdString(cells.error().message));
+  if (!cells) return status_->setText(to_qstring(cells.error().message));
   // The first of two fields may have fewer values than there are columns.
   const std::size_t wide =
       swept_.size() == 2 ? sweep_values(swept_[0], columns, page_).size() : columns;
@@ -267,7 +272,7 @@ void ContactSheet::note_cost(std::size_t i, const PictureReply& reply) {
     shown.widget->set_caption(values.join(" · "), cost_text(*reply.cost));
   } else {
     shown.failed = true;
-    shown.widget->set_error(QString::fromStdString(reply.error));
+    shown.widget->set_error(to_qstring(reply.error));
   }
   if (--costs_left_ == 0) ask_distances();
 }
@@ -285,7 +290,7 @@ void ContactSheet::ask_distances() {
                    shown_[i].distance_m = reply.distance_m;
                    if (!reply.error.empty()) {
                      shown_[i].failed = true;
-                     shown_[i].widget->set_error(QString::fromStdString(reply.error));
+                     shown_[i].widget->set_error(to_qstring(reply.error));
                    }
                    if (--distances_left_ == 0) ask_pictures();
                  });
@@ -305,7 +310,7 @@ void ContactSheet::ask_pictures() {
     auto request = request_of(shown_[i].cell);
     if (!request) {
       shown_[i].failed = true;
-      shown_[i].widget->set_error(QString::fromStdString(request.error().message));
+      shown_[i].widget->set_error(to_qstring(request.error().message));
       continue;
     }
     request->distance_m = std::min(farthest_m, kMaxSmaller * shown_[i].distance_m);
@@ -320,8 +325,7 @@ void ContactSheet::note_picture(std::size_t i, const PictureReply& reply) {
     shown_[i].widget->set_image(reply.image);
   } else {
     shown_[i].failed = true;
-    shown_[i].widget->set_error(reply.error.empty() ? tr("no image")
-                                                    : QString::fromStdString(reply.error));
+    shown_[i].widget->set_error(reply.error.empty() ? tr("no image") : to_qstring(reply.error));
   }
   ++drawn_;
   update_status();
@@ -331,15 +335,15 @@ void ContactSheet::apply(std::size_t i) {
   if (i >= shown_.size()) return;
   const std::vector<std::string> values = shown_[i].cell.values;
   const auto view = ask_view_();
-  const auto done = document_.edit(
-      tr("Apply %1").arg(QString::fromStdString(swept_[0].label)), [&](std::string_view before) {
+  const auto done =
+      document_.edit(tr("Apply %1").arg(to_qstring(swept_[0].label)), [&](std::string_view before) {
         core::Result<std::string> text{std::string(before)};
         for (std::size_t f = 0; text && f < swept_.size(); ++f)
           text = with_field_value(*text, *document_.parsed(), swept_[f].path, values[f]);
         return text;
       });
-  if (!done) return Q_EMIT edit_rejected(QString::fromStdString(done.error().message));
-  if (view && subject_->currentIndex() == 0) Q_EMIT value_applied(view->above_m);
+  if (messages_.check(done) && view && subject_->currentIndex() == 0)
+    Q_EMIT value_applied(view->above_m);
 }
 
 // Compares texts, so that undo marks the previous image.

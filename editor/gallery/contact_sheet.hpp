@@ -18,6 +18,7 @@ class QSpinBox;
 
 namespace psygen::editor {
 
+class MessageLog;
 class PictureCell;
 class PictureService;
 
@@ -26,9 +27,9 @@ class ContactSheet final : public QDialog {
   Q_OBJECT
 
  public:
-  // Document and service outlive the window.
-  ContactSheet(Document& document, PictureService& service, AskView ask_view,
-               QWidget* parent = nullptr);
+  // Document, service and messages outlive the window.
+  ContactSheet(Document& document, PictureService& service, MessageLog& messages, AskView ask_view,
+               QWidget* parent);
 
   // The field that the sheet shows when it opens next.
   void suggest(const world::TextPath& field) { suggested_ = field; }
@@ -36,8 +37,6 @@ class ContactSheet final : public QDialog {
  Q_SIGNALS:
   // The user applied the values of an image. `above_m`: height of its camera above ground or water.
   void value_applied(double above_m);
-  // The document rejected the values.
-  void edit_rejected(const QString& error);
 
  protected:
   void showEvent(QShowEvent* event) override;
@@ -68,6 +67,7 @@ class ContactSheet final : public QDialog {
 
   Document& document_;
   PictureService& service_;
+  MessageLog& messages_;
   AskView ask_view_;
   std::optional<world::TextPath> suggested_;
   QComboBox *first_, *second_, *subject_;

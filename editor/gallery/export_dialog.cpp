@@ -16,6 +16,7 @@
 #include <QStandardPaths>
 #include <QVBoxLayout>
 
+#include "editor/document/qt_text.hpp"
 #include "engine/world/files/toml_values.hpp"
 
 namespace psygen::editor {
@@ -36,10 +37,7 @@ QString settings_of(const models::ModelType& type, const models::Parameters& p) 
     const std::string value = specs[i].type == models::ParameterType::kReal
                                   ? world::toml_number(p.real(i))
                                   : std::to_string(p.integer(i));
-    text +=
-        QString(" --set %1=%2")
-            .arg(QString::fromUtf8(specs[i].name.data(), static_cast<int>(specs[i].name.size())),
-                 QString::fromStdString(value));
+    text += QString(" --set %1=%2").arg(to_qstring(specs[i].name), to_qstring(value));
   }
   return text;
 }
@@ -49,16 +47,16 @@ QString settings_of(const models::ModelType& type, const models::Parameters& p) 
 QString export_command(const std::filesystem::path& world_file, const PictureRequest& request,
                        const models::Registry& registry,
                        const std::optional<Selection>& selection) {
-  QString line = "psygen export --world " + quoted(QString::fromStdString(world_file.string()));
+  QString line = "psygen export --world " + quoted(to_qstring(world_file.string()));
   if (request.kind == PictureKind::kExportModel && selection) {
     const models::ModelType& type = registry[selection->model];
-    line += QString(" --model %1").arg(quoted(QString::fromStdString(std::string(type.name())))) +
+    line += QString(" --model %1").arg(quoted(to_qstring(type.name()))) +
             settings_of(type, selection->parameters);
   } else {
     line += QString(" --block=%1,%2").arg(request.block_x).arg(request.block_z);
   }
   if (request.level > 0) line += QString(" --level %1").arg(request.level);
-  return line + " --out " + quoted(QString::fromStdString(request.out));
+  return line + " --out " + quoted(to_qstring(request.out));
 }
 
 std::optional<PictureRequest> ask_export(QWidget* parent, const Document& document,
@@ -68,30 +66,28 @@ std::optional<PictureRequest> ask_export(QWidget* parent, const Document& docume
   if (selection) block = selection->block;
   const ParsedWorldPtr parsed = document.parsed();
   QString name = "block";
-  if (has_model)
-    name = QString::fromStdString(std::string(parsed->registry[selection->model].name()));
+  if (has_model) name = to_qstring(parsed->registry[selection->model].name());
 
   QDialog dialog(parent);
-  dialog.setWindowTitle(QObject::tr("Export"));
-  auto* model = new QRadioButton(has_model ? QObject::tr("Selected model: %1").arg(name)
-                                           : QObject::tr("Selected model (none)"));
-  auto* whole =
-      new QRadioButton(QObject::tr("Block %1, %2 with all models").arg(block.x).arg(block.z));
+  dialog.setWindowTitle(tr("Export"));
+  auto* model = new QRadioButton(has_model ? tr("Selected model: %1").arg(name)
+                                           : tr("Selected model (none)"));
+  auto* whole = new QRadioButton(tr("Block %1, %2 with all models").arg(block.x).arg(block.z));
   model->setEnabled(has_model);
   (has_model ? model : whole)->setChecked(true);
   auto* level = new QSpinBox;
   level->setRange(0, kMaxLevel);
-  level->setSpecialValueText(QObject::tr("0, full"));
+  level->setSpecialValueText(tr("0, full"));
   QString folder =
       QSettings()
           .value(kFolderKey, QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation))
           .toString();
   if (!QDir(folder).exists()) folder = QDir::homePath();
   auto* file = new QLineEdit(folder + "/" + name + ".glb");
-  auto* browse = new QPushButton(QObject::tr("…"));
+  auto* browse = new QPushButton(tr("…"));
   auto* command = new QLineEdit;
   command->setReadOnly(true);
-  auto* copy = new QPushButton(QObject::tr("Copy"));
+  auto* copy = new QPushButton(tr("Copy"));
   const auto line_of = [](QLineEdit* edit, QPushButton* button) {
     auto* line = new QHBoxLayout;
     line->addWidget(edit, 1);
@@ -100,11 +96,11 @@ std::optional<PictureRequest> ask_export(QWidget* parent, const Document& docume
   };
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Save | QDialogButtonBox::Cancel);
   auto* form = new QFormLayout;
-  form->addRow(QObject::tr("Object"), model);
+  form->addRow(tr("Object"), model);
   form->addRow(QString(), whole);
-  form->addRow(QObject::tr("Level of detail"), level);
-  form->addRow(QObject::tr("File"), line_of(file, browse));
-  form->addRow(QObject::tr("Command"), line_of(command, copy));
+  form->addRow(tr("Level of detail"), level);
+  form->addRow(tr("File"), line_of(file, browse));
+  form->addRow(tr("Command"), line_of(command, copy));
   auto* layout = new QVBoxLayout(&dialog);
   layout->addLayout(form);
   layout->addWidget(buttons);
@@ -125,13 +121,12 @@ std::optional<PictureRequest> ask_export(QWidget* parent, const Document& docume
   const auto update = [&] {
     command->setText(export_command(document.file(), make_request(), parsed->registry, selection));
     command->setCursorPosition(0);
-    command->setToolTip(
-        document.is_modified()
-            ? QObject::tr("The command exports the saved file, without unsaved changes.")
-            : QString());
+    command->setToolTip(document.is_modified()
+                            ? tr("The command exports the saved file, without unsaved changes.")
+                            : QString());
     const bool known = file->text().endsWith(".glb") || file->text().endsWith(".obj");
     buttons->button(QDialogButtonBox::Save)->setEnabled(known);
-    file->setToolTip(known ? QString() : QObject::tr("The name must end in .glb or .obj."));
+    file->setToolTip(known ? QString() : tr("The name must end in .glb or .obj."));
   };
   QObject::connect(model, &QRadioButton::toggled, &dialog, update);
   QObject::connect(level, &QSpinBox::valueChanged, &dialog, update);
@@ -139,9 +134,8 @@ std::optional<PictureRequest> ask_export(QWidget* parent, const Document& docume
   QObject::connect(copy, &QPushButton::clicked, &dialog,
                    [&] { QApplication::clipboard()->setText(command->text()); });
   QObject::connect(browse, &QPushButton::clicked, &dialog, [&] {
-    const QString chosen =
-        QFileDialog::getSaveFileName(&dialog, QObject::tr("Export as"), file->text(),
-                                     QObject::tr("Binary glTF (*.glb);;Wavefront OBJ (*.obj)"));
+    const QString chosen = QFileDialog::getSaveFileName(
+        &dialog, tr("Export as"), file->text(), tr("Binary glTF (*.glb);;Wavefront OBJ (*.obj)"));
     if (!chosen.isEmpty()) file->setText(chosen);
   });
   QObject::connect(buttons, &QDialogButtonBox::accepted, &dialog, &QDialog::accept);

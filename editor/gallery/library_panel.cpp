@@ -14,6 +14,8 @@
 #include <QUrl>
 #include <QVBoxLayout>
 
+#include "editor/document/qt_text.hpp"
+#include "editor/panels/message_log.hpp"
 #include "editor/pictures/model_world.hpp"
 #include "editor/pictures/picture_service.hpp"
 
@@ -52,8 +54,8 @@ QIcon empty_icon(const QPalette& colours) {
 
 }  // namespace
 
-LibraryPanel::LibraryPanel(Document& document, PictureService& service, QWidget* parent)
-    : QWidget(parent), document_(document), service_(service) {
+LibraryPanel::LibraryPanel(Document& document, PictureService& service, MessageLog& messages)
+    : document_(document), service_(service), messages_(messages) {
   heading_ = new QComboBox;
   heading_->setAccessibleName(tr("Kind of preset"));
   search_ = new QLineEdit;
@@ -95,12 +97,12 @@ void LibraryPanel::reload() {
   std::vector<std::string> problems;
   presets_ = load_library(library_folders(), &problems);
   for (const std::string& problem : problems)
-    Q_EMIT message_posted(QString::fromStdString(problem));
+    messages_.show_message(to_qstring(problem));
   const QString chosen = heading_->currentText();
   heading_->clear();
   heading_->addItem(tr("All"));
   for (const Preset& preset : presets_) {
-    const QString heading = QString::fromStdString(preset.heading);
+    const QString heading = to_qstring(preset.heading);
     if (heading_->findText(heading) < 0) heading_->addItem(heading);
   }
   heading_->setCurrentIndex(std::max(heading_->findText(chosen), 0));
@@ -112,9 +114,9 @@ void LibraryPanel::list() {
   const bool all = heading_->currentIndex() <= 0;
   for (std::size_t i = 0; i < presets_.size(); ++i) {
     const Preset& preset = presets_[i];
-    const QString name = QString::fromStdString(preset.name);
-    const QString doc = QString::fromStdString(preset.doc);
-    const QString heading = QString::fromStdString(preset.heading);
+    const QString name = to_qstring(preset.name);
+    const QString doc = to_qstring(preset.doc);
+    const QString heading = to_qstring(preset.heading);
     if (!all && heading != heading_->currentText()) continue;
     if (!(name + ' ' + doc + ' ' + heading).contains(search_->text(), Qt::CaseInsensitive))
       continue;
@@ -156,7 +158,7 @@ void LibraryPanel::ask_pictures() {
                    --awaited_;
                    QListWidgetItem* const of = list_->item(row);
                    if (reply.image.isNull()) {
-                     of->setToolTip(of->toolTip() + "\n" + QString::fromStdString(reply.error));
+                     of->setToolTip(of->toolTip() + "\n" + to_qstring(reply.error));
                      return;
                    }
                    of->setIcon(icon_of(reply.image, devicePixelRatioF()));
@@ -170,14 +172,14 @@ void LibraryPanel::ask_pictures() {
 
 void LibraryPanel::apply(const QListWidgetItem& item) {
   const Preset& preset = preset_of(item);
-  const QString name = QString::fromStdString(preset.name);
+  const QString name = to_qstring(preset.name);
   const bool adds = preset.table == "species" || preset.table == "scatter";
   const auto done =
       document_.edit(adds ? tr("Add %1").arg(name) : tr("Apply %1").arg(name),
                      [&](std::string_view text) { return with_preset(text, preset); });
-  Q_EMIT message_posted(!done  ? QString::fromStdString(done.error().message)
-                        : adds ? tr("Added %1. Undo removes it.").arg(name)
-                               : tr("Applied %1. Undo reverts it.").arg(name));
+  if (!messages_.check(done)) return;
+  messages_.show_message(adds ? tr("Added %1. Undo removes it.").arg(name)
+                              : tr("Applied %1. Undo reverts it.").arg(name));
 }
 
 void LibraryPanel::show_menu(const QPoint& at) {
@@ -189,7 +191,7 @@ void LibraryPanel::show_menu(const QPoint& at) {
                    [this, item] { apply(*item); });
     menu.addAction(tr("Open folder"), this, [&preset] {
       QDesktopServices::openUrl(
-          QUrl::fromLocalFile(QString::fromStdString(preset.file.parent_path().string())));
+          QUrl::fromLocalFile(to_qstring(preset.file.parent_path().string())));
     });
     menu.addSeparator();
   }

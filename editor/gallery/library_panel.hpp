@@ -16,6 +16,7 @@ class QListWidgetItem;
 
 namespace psygen::editor {
 
+class MessageLog;
 class PictureService;
 struct PictureReply;
 
@@ -24,17 +25,13 @@ class LibraryPanel final : public QWidget {
   Q_OBJECT
 
  public:
-  // Document and service outlive the panel.
-  LibraryPanel(Document& document, PictureService& service, QWidget* parent = nullptr);
+  // Document, service and messages outlive the panel.
+  LibraryPanel(Document& document, PictureService& service, MessageLog& messages);
 
   // Reads the folders again.
   void reload();
   // Number of images that the rendering process has not finished yet.
   int awaited() const { return awaited_; }
-
- Q_SIGNALS:
-  // The result of a command, or an error.
-  void message_posted(const QString& message);
 
  protected:
   void showEvent(QShowEvent* event) override;
@@ -48,6 +45,7 @@ class LibraryPanel final : public QWidget {
 
   Document& document_;
   PictureService& service_;
+  MessageLog& messages_;
   std::vector<Preset> presets_;
   QComboBox* heading_;
   QLineEdit* search_;

@@ -3,6 +3,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "editor/document/qt_text.hpp"
+#include "editor/panels/message_log.hpp"
 #include "editor/pictures/model_world.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/scene/facts/world_facts.hpp"
@@ -47,8 +49,8 @@ std::optional<WorldView::CameraPlacement> placement_of(
 
 }  // namespace
 
-ModelView::ModelView(Document& document, WorldView& view, QObject* parent)
-    : QObject(parent), document_(document), view_(view) {}
+ModelView::ModelView(Document& document, WorldView& view, MessageLog& messages, QObject* parent)
+    : QObject(parent), document_(document), view_(view), messages_(messages) {}
 
 core::Result<std::string> ModelView::portrait() const {
   const std::size_t index = subject_->steps[1].index;
@@ -77,12 +79,12 @@ void ModelView::show(bool new_session) {
 
 void ModelView::open(const world::TextPath& section) {
   const auto subject = subject_of(section);
-  if (!subject) return Q_EMIT message_posted(tr("Choose a species or a scatter layer first."));
+  if (!subject) return messages_.show_message(tr("Choose a species or a scatter layer first."));
   if (subject_ == subject) return;
   const std::optional<world::TextPath> before = std::exchange(subject_, subject);
   if (const auto text = portrait(); !text) {
     subject_ = before;
-    return Q_EMIT message_posted(QString::fromStdString(text.error().message));
+    return messages_.show_message(to_qstring(text.error().message));
   }
   if (!world_pose_) world_pose_ = view_.camera().pose();
   view_.select(std::nullopt);
@@ -134,7 +136,7 @@ core::CameraPose ModelView::world_pose() const {
 QString ModelView::title() const {
   if (!subject_) return {};
   for (const world::WorldSection& section : document_.sections()) {
-    if (section.path == *subject_) return QString::fromStdString(section.title);
+    if (section.path == *subject_) return to_qstring(section.title);
   }
   return {};
 }

@@ -12,19 +12,21 @@
 
 namespace psygen::editor {
 
+class MessageLog;
+
 // Switches a view between the world and one model.
 class ModelView final : public QObject {
   Q_OBJECT
 
  public:
-  // Document and view outlive this object.
-  ModelView(Document& document, WorldView& view, QObject* parent = nullptr);
+  // Document, view and messages outlive this object.
+  ModelView(Document& document, WorldView& view, MessageLog& messages, QObject* parent);
 
   // Gives the view the text of the document, or of its model alone. `new_session` as in
   // WorldView::show_world().
   void show(bool new_session);
   bool is_on() const { return subject_.has_value(); }
-  // Shows the species or scatter of a section; posts a message if it has none.
+  // Shows the species or scatter of a section; shows a message if it has none.
   void open(const world::TextPath& section);
   // Shows the model of another section, but only if a model is shown already and the section has
   // one.
@@ -41,7 +43,6 @@ class ModelView final : public QObject {
   QString title() const;
 
  Q_SIGNALS:
-  void message_posted(const QString& message);
   // The shown model changed: another one, or none.
   void switched();
 
@@ -51,6 +52,7 @@ class ModelView final : public QObject {
 
   Document& document_;
   WorldView& view_;
+  MessageLog& messages_;
   std::optional<world::TextPath> subject_;  // species[i] or scatter[i]
   std::uint64_t seed_ = 7;
   std::optional<core::CameraPose> world_pose_;  // while a model is shown

@@ -8,9 +8,11 @@
 #include <QStatusBar>
 #include <algorithm>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/gallery/contact_sheet.hpp"
 #include "editor/gallery/export_dialog.hpp"
 #include "editor/gallery/library_panel.hpp"
+#include "editor/panels/message_log.hpp"
 #include "editor/pictures/picture_server.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/scene/scene.hpp"
@@ -34,13 +36,14 @@ QStringList server_arguments(const QString& device) {
 }  // namespace
 
 PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& view,
-                           const QString& device)
+                           MessageLog& messages, const QString& device)
     : QObject(&window),
       window_(window),
       document_(document),
       view_(view),
+      messages_(messages),
       service_(QCoreApplication::applicationFilePath(), server_arguments(device)),
-      library_(new LibraryPanel(document, service_)),
+      library_(new LibraryPanel(document, service_, messages)),
       label_(new QLabel) {
   focus_delay_.setSingleShot(true);
   connect(&focus_delay_, &QTimer::timeout, this, [this] {
@@ -50,7 +53,6 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
   label_->setVisible(false);
   window_.statusBar()->addPermanentWidget(label_);
   service_.set_pictures([this] { return document_.pictures(); });
-  connect(library_, &LibraryPanel::message_posted, this, &PictureTools::message_posted);
   connect(&view_, &WorldView::drawn, this, [this] {
     const scene::Scene& scene = view_.session()->scene();
     view_.set_background_work(BackgroundWork::kPictures, service_.waiting() > 0);
@@ -116,8 +118,7 @@ std::optional<ViewState> PictureTools::view_state() const {
 void PictureTools::open_sheet() {
   if (sheet_ == nullptr) {
     sheet_ = new ContactSheet(
-        document_, service_, [this] { return view_state(); }, &window_);
-    connect(sheet_, &ContactSheet::edit_rejected, this, &PictureTools::message_posted);
+        document_, service_, messages_, [this] { return view_state(); }, &window_);
     connect(sheet_, &ContactSheet::value_applied, this, &PictureTools::set_camera_height);
     if (!focused_field_.empty()) sheet_->suggest(focused_field_);
   }
@@ -143,18 +144,18 @@ void PictureTools::export_selection() {
   const auto request =
       ask_export(&window_, document_, view_.selection(), view_.camera().pose().position.block);
   if (!request) return;
-  const QString file = QString::fromStdString(request->out);
-  Q_EMIT message_posted(tr("Exporting %1 …").arg(file));
+  const QString file = to_qstring(request->out);
+  messages_.show_message(tr("Exporting %1 …").arg(file));
   service_.ask(*request, service_.new_batch(), 0, this, [this, file](const PictureReply& reply) {
-    Q_EMIT message_posted(reply.error.empty()
-                              ? tr("Exported %1: %2.").arg(file, QString::fromStdString(reply.note))
-                              : tr("Export failed: %1").arg(QString::fromStdString(reply.error)));
+    messages_.show_message(reply.error.empty()
+                               ? tr("Exported %1: %2.").arg(file, to_qstring(reply.note))
+                               : tr("Export failed: %1").arg(to_qstring(reply.error)));
   });
 }
 
 void PictureTools::save_large_picture() {
   const auto view = view_state();
-  if (!view || view->size.width == 0) return Q_EMIT message_posted(tr("The view has no image."));
+  if (!view || view->size.width == 0) return messages_.show_message(tr("The view has no image."));
   const QString file = QFileDialog::getSaveFileName(&window_, tr("Save a large image as"),
                                                     "image.png", tr("Images (*.png)"));
   if (file.isEmpty()) return;
@@ -165,13 +166,13 @@ void PictureTools::save_large_picture() {
   request.place = view->place;
   request.now_s = view->now_s;
   request.size = {kLargeWidth, kLargeWidth * view->size.height / view->size.width};
-  Q_EMIT message_posted(tr("Rendering %1 …").arg(file));
-  service_.ask(
-      std::move(request), service_.new_batch(), 0, this, [this, file](const PictureReply& reply) {
-        Q_EMIT message_posted(
-            reply.error.empty() ? tr("Saved %1.").arg(file)
-                                : tr("Saving failed: %1").arg(QString::fromStdString(reply.error)));
-      });
+  messages_.show_message(tr("Rendering %1 …").arg(file));
+  service_.ask(std::move(request), service_.new_batch(), 0, this,
+               [this, file](const PictureReply& reply) {
+                 messages_.show_message(reply.error.empty()
+                                            ? tr("Saved %1.").arg(file)
+                                            : tr("Saving failed: %1").arg(to_qstring(reply.error)));
+               });
 }
 
 // --- A and B
@@ -205,7 +206,7 @@ void PictureTools::mark() {
   marked_ = document_.text();
   marked_pictures_ = document_.pictures();
   marked_at_ = QTime::currentTime();
-  Q_EMIT message_posted(
+  messages_.show_message(
       tr("Marked this state as A. Change the world, then press F8 to swap A and B."));
   update_label();
 }
@@ -233,8 +234,7 @@ void PictureTools::update_label() {
 
 void PictureTools::use_marked() {
   if (!marked_) return;
-  const auto done = document_.set_text(*marked_, tr("Use A"));
-  if (!done) Q_EMIT message_posted(QString::fromStdString(done.error().message));
+  messages_.check(document_.set_text(*marked_, tr("Use A")));
 }
 
 }  // namespace psygen::editor

@@ -26,14 +26,14 @@ namespace psygen::editor {
 
 class ContactSheet;
 class LibraryPanel;
+class MessageLog;
 
 // One per window.
 class PictureTools final : public QObject {
-  Q_OBJECT
-
  public:
   // `device`: part of the name of the Vulkan device, or empty.
-  PictureTools(QMainWindow& window, Document& document, WorldView& view, const QString& device);
+  PictureTools(QMainWindow& window, Document& document, WorldView& view, MessageLog& messages,
+               const QString& device);
 
   // The panel "Library".
   LibraryPanel& library() { return *library_; }
@@ -44,10 +44,6 @@ class PictureTools final : public QObject {
   void add_to_file_menu(QMenu& menu);
   void add_to_view_menu(QMenu& menu);
   void add_to_world_menu(QMenu& menu);
-
- Q_SIGNALS:
-  // The result of a command, or an error.
-  void message_posted(const QString& message);
 
  private:
   std::optional<ViewState> view_state() const;
@@ -65,6 +61,7 @@ class PictureTools final : public QObject {
   QMainWindow& window_;
   Document& document_;
   WorldView& view_;
+  MessageLog& messages_;
   PictureService service_;
   LibraryPanel* library_;
   ContactSheet* sheet_ = nullptr;

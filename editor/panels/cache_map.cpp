@@ -1,15 +1,19 @@
 #include "editor/panels/cache_map.hpp"
 
-#include <QCoreApplication>
+#include <QComboBox>
 #include <QHelpEvent>
+#include <QLabel>
 #include <QPainter>
-#include <QPainterPath>
+#include <QTimer>
 #include <QToolTip>
+#include <QVBoxLayout>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
 
 #include "ecs/ecs.hpp"
+#include "editor/document/qt_text.hpp"
+#include "editor/view/world_view.hpp"
 #include "engine/scene/components.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/frame/input.hpp"
@@ -20,6 +24,7 @@
 namespace psygen::editor {
 namespace {
 
+constexpr int kMapUpdateMs = 250;
 constexpr double kMinRadiusM = 100, kMaxRadiusM = 30'000;
 constexpr double kOldestPower = 3;  // log10 of seconds: older meshes are blue
 const QColor kNotLoaded(90, 90, 96), kFailed(190, 60, 190), kOutdated(230, 150, 40),
@@ -40,12 +45,8 @@ QString scale_text(const QString& least, const QString& middle, const QString& m
   return swatch(heat(0), least) + swatch(heat(0.5), middle) + swatch(heat(1), most);
 }
 
-}  // namespace
-
 QString legend_text(MapColour colour) {
-  const auto words = [](const char* text) {
-    return QCoreApplication::translate("CacheMap", text).replace(' ', "&nbsp;");
-  };
+  const auto words = [](const char* text) { return tr(text).replace(' ', "&nbsp;"); };
   switch (colour) {
     case MapColour::kState:
       return swatch(kInView, words("in view")) + swatch(kOutOfView, words("out of view")) +
@@ -63,6 +64,8 @@ QString legend_text(MapColour colour) {
   }
   return {};
 }
+
+}  // namespace
 
 CacheMap::CacheMap(QWidget* parent) : QWidget(parent) {
   setMinimumSize(160, 160);
@@ -248,6 +251,36 @@ void CacheMap::wheelEvent(QWheelEvent* event) {
                          kMaxRadiusM);
   update();
   event->accept();
+}
+
+QWidget* make_cache_map_panel(WorldView& view) {
+  auto* panel = new QWidget;
+  auto* timer = new QTimer(panel);
+  auto* map = new CacheMap;
+  auto* colours = new QComboBox;
+  colours->addItems({tr("State"), tr("Level"), tr("PLP layer"), tr("Cost"), tr("Age")});
+  colours->setAccessibleName(tr("Colouring of the map"));
+  auto* legend = new QLabel(legend_text(MapColour::kState));
+  legend->setWordWrap(true);
+  legend->setMinimumHeight(2 * legend->fontMetrics().lineSpacing());
+  legend->setAlignment(Qt::AlignTop);
+  auto* layout = new QVBoxLayout(panel);
+  layout->setContentsMargins(4, 4, 4, 4);
+  layout->addWidget(colours);
+  layout->addWidget(map, 1);
+  layout->addWidget(legend);
+  QObject::connect(colours, &QComboBox::activated, panel, [map, legend](int index) {
+    map->set_colour(static_cast<MapColour>(index));
+    legend->setText(legend_text(static_cast<MapColour>(index)));
+  });
+  QObject::connect(timer, &QTimer::timeout, panel, [map, &view] {
+    if (view.session() == nullptr) return;
+    const scene::Scene& scene = view.session()->scene();
+    map->note(scene);  // also while the map is hidden: it measures ages
+    if (map->isVisible()) map->show(scene);
+  });
+  timer->start(kMapUpdateMs);
+  return panel;
 }
 
 }  // namespace psygen::editor

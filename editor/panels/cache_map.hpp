@@ -17,11 +17,10 @@ class Scene;
 
 namespace psygen::editor {
 
+class WorldView;
+
 // The quantity that the colours show.
 enum class MapColour { kState, kLevel, kLayer, kCost, kAge };
-
-// The legend of a colouring, as rich text.
-QString legend_text(MapColour colour);
 
 // North (−z) is up.
 class CacheMap final : public QWidget {
@@ -69,5 +68,9 @@ class CacheMap final : public QWidget {
   double radius_m_ = 1500, yaw_ = 0, fov_ = 0.9;
   MapColour colour_ = MapColour::kState;
 };
+
+// Makes the panel "Cache map": the map of the view's cache, a list of colourings, and their legend.
+// It updates the map four times a second. The view outlives the panel.
+QWidget* make_cache_map_panel(WorldView& view);
 
 }  // namespace psygen::editor

@@ -1,12 +1,13 @@
 #include "editor/panels/cost_strip.hpp"
 
 #include <QHelpEvent>
-#include <QLocale>
 #include <QPainter>
 #include <QPainterPath>
 #include <QToolTip>
 #include <algorithm>
 #include <cmath>
+
+#include "editor/document/qt_text.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -19,15 +20,11 @@ const QColor kMeasured(230, 150, 40);
 }  // namespace
 
 QString cost_text(const BlockCost& cost) {
-  const QLocale locale(QLocale::English);
-  const QString time = locale.toString(cost.seconds * 1e3, 'g', 3);
-  QString text =
-      QObject::tr("%1 models, %2 triangles, %3, %4 ms per block")
-          .arg(locale.toString(cost.models, 'f', 0), locale.toString(std::llround(cost.triangles)),
-               locale.formattedDataSize(std::llround(cost.bytes)), time);
+  QString text = tr("%1 models, %2 triangles, %3, %4 ms per block")
+                     .arg(count_text(cost.models), count_text(cost.triangles),
+                          bytes_text(cost.bytes), kEnglish.toString(cost.seconds * 1e3, 'g', 3));
   if (cost.measured_seconds)
-    text += QObject::tr(" (measured: %1 ms)")
-                .arg(locale.toString(*cost.measured_seconds * 1e3, 'g', 3));
+    text += tr(" (measured: %1 ms)").arg(kEnglish.toString(*cost.measured_seconds * 1e3, 'g', 3));
   return text;
 }
 
@@ -111,7 +108,7 @@ bool CostStrip::event(QEvent* event) {
       std::lround(std::clamp(share, 0.0, 1.0) * static_cast<double>(points_.size() - 1)));
   const CostPoint& point = points_[at];
   const QString value = QLocale::c().toString(point.value, 'g', 4);
-  const QString text = point.cost ? cost_text(*point.cost) : QString::fromStdString(point.error);
+  const QString text = point.cost ? cost_text(*point.cost) : to_qstring(point.error);
   QToolTip::showText(help->globalPos(), value + ": " + text, this);
   return true;
 }

@@ -16,7 +16,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/panels/cost_strip.hpp"
+#include "editor/panels/message_log.hpp"
 #include "editor/panels/number_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
 
@@ -64,22 +66,35 @@ QToolButton* small_button(const QString& text, const QString& help) {
 
 }  // namespace
 
-FieldRow::FieldRow(const world::WorldField& field, QWidget* parent)
-    : QWidget(parent), field_(field), label_(new QLabel), reset_(nullptr) {
-  const QString name = QString::fromStdString(field.label);
-  setObjectName(QString::fromStdString(field.path.text()));
+FieldRow::FieldRow(FieldHost& host, const world::WorldField& field)
+    : host_(host), field_(field), label_(new QLabel), reset_(nullptr) {
+  const QString name = to_qstring(field.label);
+  setObjectName(to_qstring(field.path.text()));
   label_->setText(name);
   label_->setFixedWidth(kLabelWidth);
   label_->setWordWrap(true);
-  setToolTip(QString::fromStdString(field.doc));
+  setToolTip(to_qstring(field.doc));
   reset_ = small_button("↺", tr("Reset %1 to its default").arg(name));
   auto* layout = new QHBoxLayout(this);
   layout->setContentsMargins(2, 1, 2, 1);
   layout->addWidget(label_);
   build(*layout);
   layout->addWidget(reset_);
-  connect(reset_, &QToolButton::clicked, this, [this] { Q_EMIT reset_requested(field_.path); });
+  connect(reset_, &QToolButton::clicked, this, &FieldRow::reset);
+  show_lock();
   show(field);
+}
+
+void FieldRow::set_value(const std::string& toml) {
+  if (!host_.messages.check(host_.document.set_value(field_.path, toml))) show(field_);
+}
+
+void FieldRow::reset() {
+  host_.messages.check(host_.document.reset_value(field_.path));
+}
+
+void FieldRow::randomise() {
+  host_.messages.check(host_.document.randomise(field_.path, host_.random));
 }
 
 void FieldRow::build(QHBoxLayout& layout) {
@@ -99,7 +114,7 @@ void FieldRow::build(QHBoxLayout& layout) {
     default:
       break;
   }
-  const QString name = QString::fromStdString(field_.label);
+  const QString name = to_qstring(field_.label);
   column_ = new QVBoxLayout;
   column_->setSpacing(0);
   const std::size_t count = count_of(field_.kind);
@@ -117,15 +132,14 @@ void FieldRow::build(QHBoxLayout& layout) {
 
 void FieldRow::add_number(QHBoxLayout& layout, const QString& name) {
   NumberEdit::Range range{field_.hard_min, field_.hard_max, scale_of(field_),
-                          QString::fromStdString(field_.unit == "1" ? "" : field_.unit)};
+                          to_qstring(field_.unit == "1" ? "" : field_.unit)};
   auto* edit = new NumberEdit(range, name);
   const std::size_t at = numbers_.size();
   numbers_.push_back(edit);
   layout.addWidget(edit, 1);
   setFocusProxy(numbers_.front());
   connect(edit, &NumberEdit::change_requested, this, [this, at] { want_numbers(at); });
-  connect(edit, &NumberEdit::drag_began, this, &FieldRow::drag_began);
-  connect(edit, &NumberEdit::drag_ended, this, &FieldRow::drag_ended);
+  connect(edit, &NumberEdit::dragged, this, [this](bool on) { host_.set_dragging(on); });
 }
 
 // Moving one end of a range past the other moves both.
@@ -137,22 +151,22 @@ void FieldRow::want_numbers(std::size_t changed) {
       field_.kind == FieldKind::kIntegerRange || field_.kind == FieldKind::kRealRange;
   if (range && values[0] > values[1]) values[1 - changed] = values[changed];
   const auto whole = [](double v) { return static_cast<std::int64_t>(std::llround(v)); };
-  if (range) return want(world::toml_range(values[0], values[1], is_whole(field_.kind)));
-  if (field_.kind == FieldKind::kIntegerPair) return want(world::toml_vector(values));
-  want(is_whole(field_.kind) ? world::toml_number(whole(values[0]))
-                             : world::toml_number(values[0]));
+  if (range) return set_value(world::toml_range(values[0], values[1], is_whole(field_.kind)));
+  if (field_.kind == FieldKind::kIntegerPair) return set_value(world::toml_vector(values));
+  set_value(is_whole(field_.kind) ? world::toml_number(whole(values[0]))
+                                  : world::toml_number(values[0]));
 }
 
 void FieldRow::add_choice(QHBoxLayout& layout) {
   auto* box = new QComboBox;
   for (const std::string& choice : field_.choices)
-    box->addItem(QString::fromStdString(choice));
+    box->addItem(to_qstring(choice));
   box->setAccessibleName(label_->text());
   layout.addWidget(box, 1);
   setFocusProxy(box);
   connect(box, &QComboBox::textActivated, this,
-          [this](const QString& text) { want(world::toml_string(text.toStdString())); });
-  refresh_ = [this, box] { box->setCurrentText(QString::fromStdString(field_.plain)); };
+          [this](const QString& text) { set_value(world::toml_string(text.toStdString())); });
+  refresh_ = [this, box] { box->setCurrentText(to_qstring(field_.plain)); };
 }
 
 void FieldRow::add_text(QHBoxLayout& layout) {
@@ -164,10 +178,10 @@ void FieldRow::add_text(QHBoxLayout& layout) {
   const auto shown_text = [this, toml] { return toml ? field_.value : field_.plain; };
   connect(line, &QLineEdit::editingFinished, this, [this, line, toml, shown_text] {
     const std::string text = line->text().toStdString();
-    if (text != shown_text()) want(toml ? text : world::toml_string(text));
+    if (text != shown_text()) set_value(toml ? text : world::toml_string(text));
   });
   refresh_ = [line, shown_text] {
-    line->setText(QString::fromStdString(shown_text()));
+    line->setText(to_qstring(shown_text()));
     if (!line->hasFocus()) line->setCursorPosition(0);  // shows the beginning of the text
   };
 }
@@ -177,7 +191,7 @@ void FieldRow::add_switch(QHBoxLayout& layout) {
   box->setAccessibleName(label_->text());
   layout.addWidget(box, 1);
   setFocusProxy(box);
-  connect(box, &QCheckBox::toggled, this, [this](bool on) { want(on ? "true" : "false"); });
+  connect(box, &QCheckBox::toggled, this, [this](bool on) { set_value(on ? "true" : "false"); });
   refresh_ = [this, box] {
     const QSignalBlocker quiet(box);
     box->setChecked(field_.value == "true");
@@ -193,7 +207,7 @@ void FieldRow::add_colour(QHBoxLayout& layout) {
   refresh_ = [this, button] {
     const QColor colour = shown(field_.numbers);
     const QColor ink = colour.lightnessF() > 0.5F ? Qt::black : Qt::white;
-    button->setText(QString::fromStdString(field_.value));
+    button->setText(to_qstring(field_.value));
     button->setStyleSheet(QString("QPushButton { background: %1; color: %2; border: 1px solid "
                                   "palette(mid); padding: 3px; }")
                               .arg(colour.name(), ink.name()));
@@ -207,15 +221,15 @@ void FieldRow::choose_colour() {
   double strength = 1;
   for (const double part : field_.numbers)
     strength = std::max(strength, part);
-  Q_EMIT drag_began();
+  host_.set_dragging(true);
   const std::string before = field_.value;
   connect(&dialog, &QColorDialog::currentColorChanged, this, [&](const QColor& c) {
     const double parts[] = {linear_of(c.redF()) * strength, linear_of(c.greenF()) * strength,
                             linear_of(c.blueF()) * strength};
-    want(world::toml_vector(parts));
+    set_value(world::toml_vector(parts));
   });
-  if (dialog.exec() != QDialog::Accepted) want(before);
-  Q_EMIT drag_ended();
+  if (dialog.exec() != QDialog::Accepted) set_value(before);
+  host_.set_dragging(false);
 }
 
 void FieldRow::add_seed(QHBoxLayout& layout) {
@@ -227,43 +241,50 @@ void FieldRow::add_seed(QHBoxLayout& layout) {
   for (QWidget* widget : std::initializer_list<QWidget*>{line, less, more, dice})
     layout.addWidget(widget, widget == line ? 1 : 0);
   setFocusProxy(line);
-  connect(less, &QToolButton::clicked, this, [this] { Q_EMIT step_requested(field_.path, -1); });
-  connect(more, &QToolButton::clicked, this, [this] { Q_EMIT step_requested(field_.path, 1); });
-  connect(dice, &QToolButton::clicked, this, [this] { Q_EMIT randomise_requested(field_.path); });
+  const auto step = [this](int by) {
+    return [this, by] { host_.messages.check(host_.document.step_value(field_.path, by)); };
+  };
+  connect(less, &QToolButton::clicked, this, step(-1));
+  connect(more, &QToolButton::clicked, this, step(1));
+  connect(dice, &QToolButton::clicked, this, &FieldRow::randomise);
   connect(line, &QLineEdit::editingFinished, this, [this, line] {
     bool ok = false;
     const std::uint64_t seed = line->text().toULongLong(&ok);
-    if (!ok) return line->setText(QString::fromStdString(field_.plain));
-    if (line->text().toStdString() != field_.plain) want(world::toml_seed(seed));
+    if (!ok) return line->setText(to_qstring(field_.plain));
+    if (line->text().toStdString() != field_.plain) set_value(world::toml_seed(seed));
   });
-  refresh_ = [this, line] { line->setText(QString::fromStdString(field_.plain)); };
+  refresh_ = [this, line] { line->setText(to_qstring(field_.plain)); };
+}
+
+bool FieldRow::is_locked() const {
+  return host_.document.locks().is_locked(field_.path);
 }
 
 void FieldRow::set_locked(bool locked) {
-  locked_ = locked;
+  host_.document.locks().set_locked(field_.path, locked);
+  show_lock();
+}
+
+void FieldRow::show_lock() {
   QFont font = label_->font();
-  font.setItalic(locked);
+  font.setItalic(is_locked());
   label_->setFont(font);
 }
 
 // Commands of every field.
 void FieldRow::contextMenuEvent(QContextMenuEvent* event) {
   QMenu menu;
-  QAction* lock = menu.addAction(tr("Exclude from Randomise"), this, [this](bool on) {
-    set_locked(on);
-    Q_EMIT lock_requested(field_.path, on);
-  });
+  QAction* lock =
+      menu.addAction(tr("Exclude from Randomise"), this, [this](bool on) { set_locked(on); });
   lock->setCheckable(true);
-  lock->setChecked(locked_);
-  menu.addAction(tr("Random value"), this, [this] { Q_EMIT randomise_requested(field_.path); });
-  menu.addAction(tr("Reset to default"), this, [this] { Q_EMIT reset_requested(field_.path); })
-      ->setEnabled(reset_->isEnabled());
+  lock->setChecked(is_locked());
+  menu.addAction(tr("Random value"), this, &FieldRow::randomise);
+  menu.addAction(tr("Reset to default"), this, &FieldRow::reset)->setEnabled(reset_->isEnabled());
   menu.addSeparator();
-  menu.addAction(tr("Copy value"), this, [this] {
-    QApplication::clipboard()->setText(QString::fromStdString(field_.value));
-  });
+  menu.addAction(tr("Copy value"), this,
+                 [this] { QApplication::clipboard()->setText(to_qstring(field_.value)); });
   menu.addAction(tr("Paste value"), this,
-                 [this] { want(QApplication::clipboard()->text().trimmed().toStdString()); });
+                 [this] { set_value(QApplication::clipboard()->text().trimmed().toStdString()); });
   menu.exec(event->globalPos());
 }
 

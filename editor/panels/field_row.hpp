@@ -1,14 +1,15 @@
 // The control of one field of a world, made from its schema, so that model types of a program need
-// no code here. It shows a value and emits requests, which the document accepts or rejects. Main
-// thread.
+// no code here. It edits the document, which accepts or rejects each value. Main thread.
 #pragma once
 
 #include <QWidget>
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "editor/cost/block_cost.hpp"
+#include "editor/document/document.hpp"
 #include "engine/world/files/world_schema.hpp"
 
 class QHBoxLayout;
@@ -19,7 +20,17 @@ class QVBoxLayout;
 namespace psygen::editor {
 
 class CostStrip;
+class MessageLog;
 class NumberEdit;
+
+// The objects that the controls edit with. They outlive the controls.
+struct FieldHost {
+  Document& document;
+  MessageLog& messages;  // gets the errors
+  // Edits between true and false are one undo step.
+  std::function<void(bool)> set_dragging;
+  std::mt19937_64 random{std::random_device{}()};
+};
 
 // A label, a control that fits the kind of the field, and a reset button.
 class FieldRow final : public QWidget {
@@ -27,27 +38,21 @@ class FieldRow final : public QWidget {
 
  public:
   // Makes the control and shows the value of the field.
-  explicit FieldRow(const world::WorldField& field, QWidget* parent = nullptr);
+  FieldRow(FieldHost& host, const world::WorldField& field);
 
   const world::WorldField& field() const { return field_; }
-  // Shows another value of the same field; emits nothing.
+  // Shows another value of the same field.
   void show(const world::WorldField& field);
-  // Shows the costs of the slider's values.
-  void show_cost(std::vector<CostPoint> points);
+  // Sets a value of the document, as TOML. After an error the row shows the old value again.
+  void set_value(const std::string& toml);
+  void randomise();
   // A locked field is excluded from Randomise; its label is italic.
   void set_locked(bool locked);
-  bool is_locked() const { return locked_; }
+  bool is_locked() const;
+  // Shows the costs of the slider's values.
+  void show_cost(std::vector<CostPoint> points);
 
  Q_SIGNALS:
-  // The user sets a value, as TOML.
-  void change_requested(const world::TextPath& path, const std::string& toml);
-  void reset_requested(const world::TextPath& path);
-  // The user asks for a value some steps further, or for a random one.
-  void step_requested(const world::TextPath& path, int steps);
-  void randomise_requested(const world::TextPath& path);
-  void drag_began();
-  void drag_ended();
-  void lock_requested(const world::TextPath& path, bool locked);
   // The pointer or the keyboard focus enters the field.
   void field_focused(const world::TextPath& path);
 
@@ -66,12 +71,13 @@ class FieldRow final : public QWidget {
   void add_cost();
   void want_numbers(std::size_t changed);
   void choose_colour();
-  void want(const std::string& toml) { Q_EMIT change_requested(field_.path, toml); }
+  void reset();
+  void show_lock();
 
+  FieldHost& host_;
   world::WorldField field_;
   QLabel* label_;
   QToolButton* reset_;
-  bool locked_ = false;
   CostStrip* cost_ = nullptr;  // null: costs do not depend on the field
   QVBoxLayout* column_ = nullptr;
   std::vector<NumberEdit*> numbers_;

@@ -89,8 +89,8 @@ NumberEdit::NumberEdit(const Range& range, const QString& name, QWidget* parent)
   layout->addWidget(box_);
   setFocusProxy(slider_);
   connect(slider_, &QSlider::valueChanged, this, &NumberEdit::slide);
-  connect(slider_, &QSlider::sliderPressed, this, &NumberEdit::drag_began);
-  connect(slider_, &QSlider::sliderReleased, this, &NumberEdit::drag_ended);
+  connect(slider_, &QSlider::sliderPressed, this, [this] { Q_EMIT dragged(true); });
+  connect(slider_, &QSlider::sliderReleased, this, [this] { Q_EMIT dragged(false); });
   connect(box_, &QDoubleSpinBox::valueChanged, this, &NumberEdit::type);
 }
 

@@ -32,9 +32,8 @@ class NumberEdit final : public QWidget {
  Q_SIGNALS:
   // The user sets a value; many times during a drag of the slider.
   void change_requested(double value);
-  // The user presses and releases the slider.
-  void drag_began();
-  void drag_ended();
+  // The user presses (true) or releases the slider.
+  void dragged(bool on);
 
  private:
   double value_at(int position) const;

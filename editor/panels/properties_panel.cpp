@@ -1,16 +1,20 @@
 #include "editor/panels/properties_panel.hpp"
 
+#include <QApplication>
+#include <QClipboard>
 #include <QLabel>
 #include <QLineEdit>
 #include <QScrollArea>
 #include <QSplitter>
+#include <QToolButton>
 #include <QTreeWidget>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <functional>
 
-#include "editor/panels/field_row.hpp"
+#include "editor/document/qt_text.hpp"
 #include "editor/panels/impact_bar.hpp"
-#include "editor/panels/section_bar.hpp"
+#include "editor/panels/message_log.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -35,17 +39,22 @@ bool same_fields(const world::WorldSection& a, const world::WorldSection& b) {
          std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), same_fields);
 }
 
-QString path_text(const world::TextPath& path) {
-  return QString::fromStdString(path.text());
+// True if the text sets a field with a default, in the section or in its parts.
+bool sets_anything(const world::WorldSection& section) {
+  const auto is_set = [](const world::WorldField& field) {
+    return field.is_set && !field.required;
+  };
+  return std::ranges::any_of(section.fields, is_set) ||
+         std::ranges::any_of(section.parts, sets_anything);
 }
 
 }  // namespace
 
-PropertiesPanel::PropertiesPanel(QWidget* parent)
-    : QWidget(parent),
+PropertiesPanel::PropertiesPanel(FieldHost host)
+    : host_(std::move(host)),
       search_(new QLineEdit),
       tree_(new QTreeWidget),
-      section_bar_(new SectionBar),
+      heading_(make_heading()),
       scroll_(new QScrollArea),
       impact_(new ImpactBar) {
   search_->setPlaceholderText(tr("Search all fields"));
@@ -60,7 +69,7 @@ PropertiesPanel::PropertiesPanel(QWidget* parent)
   auto* fields_layout = new QVBoxLayout(fields);
   fields_layout->setContentsMargins(0, 0, 0, 0);
   fields_layout->setSpacing(2);
-  fields_layout->addWidget(section_bar_);
+  fields_layout->addWidget(heading_);
   fields_layout->addWidget(scroll_, 1);
   auto* splitter = new QSplitter(Qt::Vertical);
   splitter->addWidget(tree_);
@@ -73,14 +82,6 @@ PropertiesPanel::PropertiesPanel(QWidget* parent)
   layout->addWidget(search_);
   layout->addWidget(splitter, 1);
   layout->addWidget(impact_);
-  connect(section_bar_, &SectionBar::copy_requested, this,
-          [this] { Q_EMIT copy_requested(chosen_); });
-  connect(section_bar_, &SectionBar::paste_requested, this,
-          [this] { Q_EMIT paste_requested(chosen_); });
-  connect(section_bar_, &SectionBar::randomise_requested, this,
-          [this] { Q_EMIT randomise_requested(chosen_); });
-  connect(section_bar_, &SectionBar::reset_requested, this,
-          [this] { Q_EMIT section_reset_requested(chosen_); });
   connect(search_, &QLineEdit::textChanged, this, &PropertiesPanel::search);
   connect(tree_, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
     if (item == nullptr || item->data(0, kPathRole).isNull()) return;
@@ -92,8 +93,60 @@ PropertiesPanel::PropertiesPanel(QWidget* parent)
   });
   connect(tree_, &QTreeWidget::customContextMenuRequested, this, [this](const QPoint& at) {
     if (tree_->itemAt(at) != nullptr)
-      Q_EMIT section_menu_requested(chosen_, tree_->viewport()->mapToGlobal(at));
+      Q_EMIT section_menu_requested(tree_->viewport()->mapToGlobal(at));
   });
+}
+
+QWidget* PropertiesPanel::make_heading() {
+  auto* heading = new QWidget;
+  heading->setObjectName("heading");
+  auto* layout = new QHBoxLayout(heading);
+  layout->setContentsMargins(4, 0, 4, 0);
+  layout->addWidget(title_ = new QLabel, 1);
+  const auto add = [&](const QString& text, const QString& help, auto command) {
+    auto* button = new QToolButton;
+    button->setText(text);
+    button->setToolTip(help);
+    button->setAccessibleName(help);
+    button->setFocusPolicy(Qt::StrongFocus);
+    layout->addWidget(button);
+    connect(button, &QToolButton::clicked, this, command);
+    return button;
+  };
+  add(tr("Copy"), tr("Copy all fields of this section as text"), &PropertiesPanel::copy);
+  add(tr("Paste"), tr("Paste text into this section"), &PropertiesPanel::paste);
+  add(tr("⚄"), tr("Randomise all fields of this section"), &PropertiesPanel::randomise);
+  reset_ = add(tr("↺"), tr("Reset all fields of this section to their defaults"),
+               &PropertiesPanel::reset);
+  return heading;
+}
+
+// Null hides the heading, for a list of fields from several sections.
+void PropertiesPanel::show_heading(const world::WorldSection* section) {
+  heading_->setVisible(section != nullptr);
+  if (section == nullptr) return;
+  title_->setText("<b>" + to_qstring(section->title).toHtmlEscaped() + "</b>");
+  reset_->setEnabled(sets_anything(*section));
+}
+
+void PropertiesPanel::randomise() {
+  host_.messages.check(host_.document.randomise(chosen_, host_.random));
+}
+
+void PropertiesPanel::reset() {
+  host_.messages.check(host_.document.reset_section(chosen_));
+}
+
+void PropertiesPanel::copy() {
+  const auto text = host_.document.copy(chosen_);
+  if (!text) return host_.messages.show_message(to_qstring(text.error().message));
+  QApplication::clipboard()->setText(to_qstring(*text));
+  host_.messages.show_message(tr("Copied %1 as text.").arg(to_qstring(chosen_.text())));
+}
+
+void PropertiesPanel::paste() {
+  host_.messages.check(
+      host_.document.paste(chosen_, QApplication::clipboard()->text().toStdString()));
 }
 
 void PropertiesPanel::show(const std::vector<world::WorldSection>& sections) {
@@ -101,7 +154,7 @@ void PropertiesPanel::show(const std::vector<world::WorldSection>& sections) {
   sections_ = sections;
   if (!same) return list(sections);
   mark(sections);
-  if (search_->text().isEmpty()) section_bar_->show(chosen());
+  if (search_->text().isEmpty()) show_heading(chosen());
   for (FieldRow* row : rows_) {
     if (const world::WorldField* field = find_field(sections_, row->field().path))
       row->show(*field);
@@ -148,8 +201,8 @@ QTreeWidgetItem* PropertiesPanel::group_of(world::SectionKind kind) {
 
 void PropertiesPanel::add_item(const world::WorldSection& section, QTreeWidgetItem* parent) {
   auto* item = parent != nullptr ? new QTreeWidgetItem(parent) : new QTreeWidgetItem(tree_);
-  item->setText(0, QString::fromStdString(section.title));
-  item->setData(0, kPathRole, path_text(section.path));
+  item->setText(0, to_qstring(section.title));
+  item->setData(0, kPathRole, to_qstring(section.path.text()));
   for (const world::WorldSection& part : section.parts)
     add_item(part, item);
 }
@@ -170,7 +223,7 @@ void PropertiesPanel::mark(const std::vector<world::WorldSection>& sections) {
 void PropertiesPanel::go_to(const world::TextPath& section) {
   for (QTreeWidgetItemIterator it(tree_); *it != nullptr; ++it) {
     const QVariant path = (*it)->data(0, kPathRole);
-    if (path.isNull() || path.toString() != path_text(section)) continue;
+    if (path.isNull() || path.toString() != to_qstring(section.text())) continue;
     tree_->setCurrentItem(*it);
     tree_->scrollToItem(*it);
     return;
@@ -186,17 +239,9 @@ const world::WorldSection* PropertiesPanel::chosen() const {
 }
 
 void PropertiesPanel::add_row(const world::WorldField& field) {
-  auto* row = new FieldRow(field);
+  auto* row = new FieldRow(host_, field);
   lines_->addWidget(row);
   rows_.push_back(row);
-  connect(row, &FieldRow::change_requested, this, &PropertiesPanel::change_requested);
-  connect(row, &FieldRow::reset_requested, this, &PropertiesPanel::reset_requested);
-  connect(row, &FieldRow::step_requested, this, &PropertiesPanel::step_requested);
-  connect(row, &FieldRow::randomise_requested, this, &PropertiesPanel::randomise_requested);
-  connect(row, &FieldRow::drag_began, this, &PropertiesPanel::drag_began);
-  connect(row, &FieldRow::drag_ended, this, &PropertiesPanel::drag_ended);
-  Q_EMIT row_created(row);
-  connect(row, &FieldRow::lock_requested, this, &PropertiesPanel::lock_requested);
   connect(row, &FieldRow::field_focused, this, &PropertiesPanel::field_focused);
 }
 
@@ -212,21 +257,21 @@ void PropertiesPanel::search(const QString& text) {
   lines_->setSpacing(1);
   if (text.isEmpty()) {
     const world::WorldSection* section = chosen();
-    section_bar_->show(section);
+    show_heading(section);
     if (section != nullptr) {
       for (const world::WorldField& field : section->fields)
         add_row(field);
     }
   } else {
-    section_bar_->show(nullptr);
+    show_heading(nullptr);
     visit(sections_, [&](const world::WorldSection& section) {
       bool headed = false;
       for (const world::WorldField& field : section.fields) {
-        const QString about = QString::fromStdString(section.title + " " + field.label + " " +
-                                                     field.doc + " " + field.path.text());
+        const QString about = to_qstring(section.title + " " + field.label + " " + field.doc + " " +
+                                         field.path.text());
         if (!about.contains(text, Qt::CaseInsensitive)) continue;
         if (!std::exchange(headed, true))
-          lines_->addWidget(new QLabel("<b>" + QString::fromStdString(section.title) + "</b>"));
+          lines_->addWidget(new QLabel("<b>" + to_qstring(section.title) + "</b>"));
         add_row(field);
       }
     });

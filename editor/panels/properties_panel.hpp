@@ -6,27 +6,27 @@
 #include <QWidget>
 #include <vector>
 
-#include "engine/world/files/world_schema.hpp"
+#include "editor/panels/field_row.hpp"
 
+class QLabel;
 class QLineEdit;
 class QScrollArea;
+class QToolButton;
 class QTreeWidget;
 class QTreeWidgetItem;
 class QVBoxLayout;
 
 namespace psygen::editor {
 
-class FieldRow;
 class ImpactBar;
-class SectionBar;
 
-// Knows no document: show() sets its sections.
+// Edits the document; show() sets the sections that it shows.
 class PropertiesPanel final : public QWidget {
   Q_OBJECT
 
  public:
   // Without sections at first.
-  explicit PropertiesPanel(QWidget* parent = nullptr);
+  explicit PropertiesPanel(FieldHost host);
 
   void show(const std::vector<world::WorldSection>& sections);
   // Opens a section and scrolls to it.
@@ -40,28 +40,23 @@ class PropertiesPanel final : public QWidget {
   // The impact of the last change, and the question before costly edits.
   ImpactBar& impact() { return *impact_; }
 
+  // Act on the chosen section: random values, defaults, and its text in the clipboard.
+  void randomise();
+  void reset();
+  void copy();
+  void paste();
+
  Q_SIGNALS:
-  // Requests of the fields (field_row.hpp).
-  void change_requested(const world::TextPath& path, const std::string& toml);
-  void reset_requested(const world::TextPath& path);
-  void step_requested(const world::TextPath& path, int steps);
-  void randomise_requested(const world::TextPath& path);
-  void drag_began();
-  void drag_ended();
+  // As FieldRow::field_focused().
   void field_focused(const world::TextPath& path);
-  void lock_requested(const world::TextPath& path, bool locked);
-  // A control was created.
-  void row_created(psygen::editor::FieldRow* row);
   // Another section was chosen.
   void section_chosen(const world::TextPath& path);
-  // The user asks for the context menu of a section; `at`: global position.
-  void section_menu_requested(const world::TextPath& path, const QPoint& at);
-  // Buttons above the fields, with the chosen section.
-  void copy_requested(const world::TextPath& path);
-  void paste_requested(const world::TextPath& path);
-  void section_reset_requested(const world::TextPath& path);
+  // The user asks for the context menu of the chosen section; `at`: global position.
+  void section_menu_requested(const QPoint& at);
 
  private:
+  QWidget* make_heading();
+  void show_heading(const world::WorldSection* section);
   bool same_shape(const std::vector<world::WorldSection>& sections) const;
   void list(const std::vector<world::WorldSection>& sections);
   QTreeWidgetItem* group_of(world::SectionKind kind);
@@ -72,11 +67,14 @@ class PropertiesPanel final : public QWidget {
   void add_row(const world::WorldField& field);
   const world::WorldSection* chosen() const;
 
+  FieldHost host_;
   std::vector<world::WorldSection> sections_;
   world::TextPath chosen_;
   QLineEdit* search_;
   QTreeWidget* tree_;
-  SectionBar* section_bar_;
+  QWidget* heading_;  // above the fields: the title of the section, and buttons
+  QLabel* title_;
+  QToolButton* reset_;
   QScrollArea* scroll_;
   ImpactBar* impact_;
   QWidget* form_ = nullptr;

@@ -2,28 +2,13 @@
 // parameters, as text. Main thread.
 #pragma once
 
-#include <QPlainTextEdit>
-
-#include "editor/view/picking.hpp"
-
-namespace psygen::scene {
-class Scene;
-}
+class QWidget;
 
 namespace psygen::editor {
 
 class WorldView;
 
-// Updates the text whenever the selection changes.
-class SelectionPanel final : public QPlainTextEdit {
-  Q_OBJECT
-
- public:
-  // The view outlives the panel.
-  explicit SelectionPanel(WorldView& view);
-};
-
-// The text of the panel.
-QString describe(const Selection& selection, const scene::Scene& scene);
+// Makes the panel, which updates its text whenever the selection changes. The view outlives it.
+QWidget* make_selection_panel(WorldView& view);
 
 }  // namespace psygen::editor

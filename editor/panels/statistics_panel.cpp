@@ -2,12 +2,12 @@
 
 #include <QHeaderView>
 #include <QLabel>
-#include <QLocale>
 #include <QTableWidget>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/panels/cache_contents.hpp"
 #include "editor/panels/cost_strip.hpp"
 #include "editor/view/world_view.hpp"
@@ -21,8 +21,6 @@ namespace {
 
 constexpr std::size_t kSamples = 512;
 constexpr int kTableUpdateMs = 250;
-
-const QLocale kEnglish(QLocale::English);
 
 // Contents of the types with cached meshes, by name.
 std::map<std::string, TypeContents> contents_by_name(const scene::Scene& scene) {
@@ -93,14 +91,10 @@ void StatisticsPanel::note(const scene::Scene& scene) {
 
 void StatisticsPanel::show(const scene::Scene& scene) {
   const synthesis::CacheStats stats = scene.meshes().stats();
-  cache_->setText(
-      tr("Cache: %3 meshes, %1 of %2 used, %4 in view. %5 evicted, %6 queued.")
-          .arg(kEnglish.formattedDataSize(static_cast<qint64>(stats.bytes)),
-               kEnglish.formattedDataSize(static_cast<qint64>(stats.budget_bytes)),
-               kEnglish.toString(stats.ready),
-               kEnglish.formattedDataSize(static_cast<qint64>(stats.visible_bytes)),
-               kEnglish.toString(static_cast<qulonglong>(stats.evictions)),
-               kEnglish.toString(static_cast<qulonglong>(scene.meshes().outstanding()))));
+  cache_->setText(tr("Cache: %3 meshes, %1 of %2 used, %4 in view. %5 evicted, %6 queued.")
+                      .arg(bytes_text(stats.bytes), bytes_text(stats.budget_bytes),
+                           count_text(stats.ready), bytes_text(stats.visible_bytes),
+                           count_text(stats.evictions), count_text(scene.meshes().outstanding())));
   const auto held = contents_by_name(scene);
   table_->setRowCount(static_cast<int>(held.size()));
   int row = 0;
@@ -110,14 +104,10 @@ void StatisticsPanel::show(const scene::Scene& scene) {
     const std::vector<double> ms = made != made_.end() ? made->second.ms : std::vector<double>{};
     const double share = 100.0 * static_cast<double>(of.bytes) /
                          static_cast<double>(std::max<std::uint64_t>(stats.bytes, 1));
-    const QString cells[] = {QString::fromStdString(name),
-                             kEnglish.toString(static_cast<qulonglong>(of.meshes)),
-                             kEnglish.toString(static_cast<qulonglong>(of.triangles)),
-                             kEnglish.toString(static_cast<qulonglong>(of.vertices)),
-                             kEnglish.formattedDataSize(static_cast<qint64>(of.bytes)),
-                             kEnglish.toString(share, 'f', 1) + " %",
-                             percentile(ms, 0.5),
-                             percentile(ms, 0.99)};
+    const QString cells[] = {to_qstring(name),         count_text(of.meshes),
+                             count_text(of.triangles), count_text(of.vertices),
+                             bytes_text(of.bytes),     kEnglish.toString(share, 'f', 1) + " %",
+                             percentile(ms, 0.5),      percentile(ms, 0.99)};
     for (int column = 0; column < 8; ++column)
       changed = set_cell(*table_, row, column, cells[column]) || changed;
     ++row;
@@ -131,7 +121,7 @@ void StatisticsPanel::show_block_cost(const BlockCost& cost, double blocks) {
     text += " <b>" + tr("The world:") + "</b> " +
             tr("%1 triangles, %2, %3 on one core.")
                 .arg(kEnglish.toString(cost.triangles * blocks, 'g', 3),
-                     kEnglish.formattedDataSize(std::llround(cost.bytes * blocks)),
+                     bytes_text(cost.bytes * blocks),
                      cost.seconds * blocks > 7200
                          ? tr("%1 hours").arg(cost.seconds * blocks / 3600, 0, 'f', 1)
                          : tr("%1 s").arg(cost.seconds * blocks, 0, 'f', 1));

@@ -6,15 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/document/qt_text.hpp"
+
 namespace psygen::editor {
 namespace {
 
 constexpr int kMaxPixels = 8192;  // per side
 constexpr int kKinds = static_cast<int>(PictureKind::kExportBlock) + 1;
-
-QString json_text(const std::string& text) {
-  return QString::fromStdString(text);
-}
 
 QByteArray json_line(const QJsonObject& object) {
   return QJsonDocument(object).toJson(QJsonDocument::Compact) + '\n';
@@ -35,9 +33,9 @@ std::uint64_t id_of(const QJsonObject& object) {
 QByteArray to_line(const PictureRequest& r) {
   QJsonObject o{{"id", static_cast<qint64>(r.id)},
                 {"kind", static_cast<int>(r.kind)},
-                {"text", json_text(r.text)},
-                {"file", json_text(r.file)},
-                {"out", json_text(r.out)},
+                {"text", to_qstring(r.text)},
+                {"file", to_qstring(r.file)},
+                {"out", to_qstring(r.out)},
                 {"width", static_cast<qint64>(r.size.width)},
                 {"height", static_cast<qint64>(r.size.height)},
                 {"now_s", r.now_s},
@@ -54,7 +52,7 @@ QByteArray to_line(const PictureRequest& r) {
   }
   QJsonObject pictures;
   for (const auto& [name, file] : r.pictures)
-    pictures[json_text(name)] = json_text(file);
+    pictures[to_qstring(name)] = to_qstring(file);
   if (!pictures.isEmpty()) o["pictures"] = pictures;
   return json_line(o);
 }
@@ -93,10 +91,10 @@ std::optional<PictureRequest> request_from(const QByteArray& line) {
 
 QByteArray to_line(const PictureReply& r) {
   QJsonObject o{{"id", static_cast<qint64>(r.id)}};
-  if (!r.error.empty()) o["error"] = json_text(r.error);
+  if (!r.error.empty()) o["error"] = to_qstring(r.error);
   if (r.dropped) o["dropped"] = true;
   if (r.distance_m > 0) o["distance_m"] = r.distance_m;
-  if (!r.note.empty()) o["note"] = json_text(r.note);
+  if (!r.note.empty()) o["note"] = to_qstring(r.note);
   if (r.cost) {
     o["cost"] = QJsonObject{{"models", r.cost->models},
                             {"triangles", r.cost->triangles},

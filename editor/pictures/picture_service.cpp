@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "editor/document/paint_change.hpp"
+#include "editor/document/qt_text.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -169,7 +170,7 @@ void PictureService::take(const PictureReply& reply) {
   limit_.stop();
   PictureReply result = reply;
   if (is_picture(job.request)) {
-    const QString file = QString::fromStdString(job.request.out);
+    const QString file = to_qstring(job.request.out);
     if (result.error.empty() && !result.dropped && !job.cancelled) result.image.load(file);
     if (file.startsWith(folder_.path())) QFile::remove(file);
   }

@@ -23,28 +23,24 @@ constexpr int kMaxDelays = 10;  // of kDelayMs each
 EditFeedback::EditFeedback(const EditorContext& context, RegisterModels register_models,
                            CostLimits limits)
     : QObject(&context.window),
-      document_(context.document),
-      view_(context.view),
-      model_(context.model),
-      properties_(context.properties),
+      context_(context),
       limits_(limits),
       worker_(new CostWorker(std::move(register_models), this)) {
-  document_.set_guard([this](const ParsedWorld& before, const ParsedWorld& after) {
+  context_.document.set_guard([this](const ParsedWorld& before, const ParsedWorld& after) {
     return confirmation_for(before, after);
   });
-  connect(&document_, &Document::changed, this, &EditFeedback::on_document_changed);
-  ImpactBar& impact = properties_.impact();
-  connect(&document_, &Document::edit_proposed, &impact, &ImpactBar::ask);
+  connect(&context_.document, &Document::changed, this, &EditFeedback::on_document_changed);
+  ImpactBar& impact = context_.properties.impact();
+  connect(&context_.document, &Document::edit_proposed, &impact, &ImpactBar::ask);
   connect(&impact, &ImpactBar::apply_requested, this, [this, &messages = context.messages] {
-    messages.check(document_.apply_proposed_edit());
+    messages.check(context_.document.apply_proposed_edit());
   });
   connect(&impact, &ImpactBar::discard_requested, this, [this] {
-    document_.discard_proposed_edit();
-    properties_.show(document_.sections());
+    context_.document.discard_proposed_edit();
+    context_.properties.show(context_.document.sections());
   });
-  connect(&properties_, &PropertiesPanel::drag_began, this, [this] { set_dragging(true); });
-  connect(&properties_, &PropertiesPanel::drag_ended, this, [this] { set_dragging(false); });
-  connect(&properties_, &PropertiesPanel::section_chosen, this, &EditFeedback::request_costs);
+  connect(&context_.properties, &PropertiesPanel::section_chosen, this,
+          &EditFeedback::request_costs);
   connect_costs();
 }
 
@@ -52,24 +48,24 @@ void EditFeedback::connect_costs() {
   connect(worker_, &CostWorker::curve, this,
           [this](const std::string& path, const std::vector<CostPoint>& points) {
             const auto at = world::parse_text_path(path);
-            FieldRow* row = at ? properties_.row(*at) : nullptr;
+            FieldRow* row = at ? context_.properties.row(*at) : nullptr;
             if (row != nullptr) row->show_cost(points);
           });
   connect(worker_, &CostWorker::world_cost, this, [this](const BlockCost& cost) {
-    const world::World& world = document_.world();
+    const world::World& world = context_.document.world();
     Q_EMIT block_cost_changed(
         cost, static_cast<double>(world.blocks_x) * static_cast<double>(world.blocks_z));
   });
   connect(worker_, &CostWorker::impact, this, [this](const WorldImpact& impact) {
-    properties_.impact().show_impact(impact_text(impact));
+    context_.properties.impact().show_impact(impact_text(impact));
   });
   delay_.setSingleShot(true);
   connect(&delay_, &QTimer::timeout, this, &EditFeedback::request_costs);
-  connect(&view_, &WorldView::opened, this, [this](const QString& error) {
+  connect(&context_.view, &WorldView::opened, this, [this](const QString& error) {
     if (error.isEmpty()) request_costs();
   });
-  connect(&view_, &WorldView::world_rejected, worker_, &CostWorker::resume);
-  connect(&view_, &WorldView::answered, worker_, &CostWorker::resume);
+  connect(&context_.view, &WorldView::world_rejected, worker_, &CostWorker::resume);
+  connect(&context_.view, &WorldView::answered, worker_, &CostWorker::resume);
 }
 
 // The question before an edit; empty for nearly all edits, which need no confirmation.
@@ -81,12 +77,12 @@ QString EditFeedback::confirmation_for(const ParsedWorld& before, const ParsedWo
 }
 
 void EditFeedback::set_dragging(bool on) {
-  view_.set_draft(on);
+  context_.view.set_draft(on);
   if (on) {
-    document_.begin_drag();
-    drag_start_ = document_.parsed();
+    context_.document.begin_drag();
+    drag_start_ = context_.document.parsed();
   } else {
-    document_.end_drag();
+    context_.document.end_drag();
     drag_start_ = nullptr;
   }
 }
@@ -94,31 +90,31 @@ void EditFeedback::set_dragging(bool on) {
 void EditFeedback::on_document_changed(Changes what) {
   // The dragged slider may no longer exist.
   if (drag_start_ && what.testAnyFlags(Change::kTables | Change::kFile)) set_dragging(false);
-  properties_.show(document_.sections());
+  context_.properties.show(context_.document.sections());
   // The renderer loads images of the ground only when it is created.
-  const auto& images = document_.world().palette.images;
-  model_.show(what.testFlag(Change::kFile) || images != shown_images_);
+  const auto& images = context_.document.world().palette.images;
+  context_.model.show(what.testFlag(Change::kFile) || images != shown_images_);
   shown_images_ = images;
   delay_.start(kDelayMs);
   delay_count_ = 0;
   const ParsedWorldPtr before = drag_start_ ? drag_start_ : last_parsed_;
-  last_parsed_ = document_.parsed();
-  if (what.testFlag(Change::kFile) || view_.session() == nullptr || !before) return;
+  last_parsed_ = context_.document.parsed();
+  if (what.testFlag(Change::kFile) || context_.view.session() == nullptr || !before) return;
   read_scene();
   worker_->rest(kMaxRest);
   worker_->request_impact({.before = before,
                            .after = last_parsed_,
-                           .around = view_.camera().pose().position.block,
+                           .around = context_.view.camera().pose().position.block,
                            .contents = contents_,
                            .learnt = learnt_});
 }
 
 // Reads the cache contents and the cost model of the scene. During a drag they stay as they were.
 void EditFeedback::read_scene() {
-  if (view_.session() == nullptr || (learnt_ && drag_start_) ||
+  if (context_.view.session() == nullptr || (learnt_ && drag_start_) ||
       (since_read_.isValid() && since_read_.elapsed() < kMaxSceneAgeMs))
     return;
-  const scene::Scene& scene = view_.session()->scene();
+  const scene::Scene& scene = context_.view.session()->scene();
   learnt_ = std::make_shared<synthesis::CostModel>(scene.meshes().costs());
   contents_ = contents_of(scene);
   since_read_.start();
@@ -126,16 +122,18 @@ void EditFeedback::read_scene() {
 
 // Requests the costs of the fields in the properties, once the view has its meshes.
 void EditFeedback::request_costs() {
-  if (view_.session() != nullptr && view_.awaits_meshes() && delay_count_++ < kMaxDelays)
+  if (context_.view.session() != nullptr && context_.view.awaits_meshes() &&
+      delay_count_++ < kMaxDelays)
     return delay_.start(kDelayMs);
   delay_count_ = 0;
   read_scene();
-  worker_->request_curves({.text = document_.text(),
-                           .file = document_.file().string(),
-                           .fields = properties_.shown_fields(),
-                           .around = view_.camera().pose().position.block,
-                           .learnt = learnt_,
-                           .files = handmade::files_with(document_.file(), document_.pictures())});
+  worker_->request_curves(
+      {.text = context_.document.text(),
+       .file = context_.document.file().string(),
+       .fields = context_.properties.shown_fields(),
+       .around = context_.view.camera().pose().position.block,
+       .learnt = learnt_,
+       .files = handmade::files_with(context_.document.file(), context_.document.pictures())});
 }
 
 }  // namespace psygen::editor

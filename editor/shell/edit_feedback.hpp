@@ -8,7 +8,7 @@
 
 #include "editor/cost/edit_cost.hpp"
 #include "editor/cost/world_impact.hpp"
-#include "editor/shell/editor_context.hpp"
+#include "editor/shell/main_window.hpp"
 
 namespace psygen::editor {
 
@@ -38,10 +38,7 @@ class EditFeedback final : public QObject {
   void read_scene();
   void request_costs();
 
-  Document& document_;
-  WorldView& view_;
-  ModelView& model_;
-  PropertiesPanel& properties_;
+  const EditorContext context_;
   CostLimits limits_;
   CostWorker* worker_;
   QTimer delay_;         // from the last change to the request of new costs

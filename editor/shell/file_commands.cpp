@@ -12,6 +12,7 @@
 #include <QSettings>
 #include <QVBoxLayout>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/document/recent_files.hpp"
 
 namespace psygen::editor {
@@ -19,28 +20,21 @@ namespace {
 
 const char* const kFilter = "Worlds (*.toml);;All files (*)";
 
-QString shown(const std::filesystem::path& file) {
-  return QString::fromStdString(file.string());
-}
-
 }  // namespace
 
 FileCommands::FileCommands(const EditorContext& context)
-    : QObject(&context.window),
-      window_(context.window),
-      document_(context.document),
-      messages_(context.messages),
-      recent_menu_(new QMenu(&context.window)) {
+    : QObject(&context.window), context_(context), recent_menu_(new QMenu(&context.window)) {
   recent_menu_->setTitle(tr("Open &recent"));
   fill_recent_files();
-  connect(&document_, &Document::file_changed, this, &FileCommands::on_file_changed);
-  connect(&document_, &Document::disk_changed, this, &FileCommands::on_disk_changed);
-  connect(&document_, &Document::autosave_failed, &messages_, &MessageLog::show_message);
+  connect(&context_.document, &Document::file_changed, this, &FileCommands::on_file_changed);
+  connect(&context_.document, &Document::disk_changed, this, &FileCommands::on_disk_changed);
+  connect(&context_.document, &Document::autosave_failed, &context_.messages,
+          &MessageLog::show_message);
 }
 
 void FileCommands::add_to_menu(QMenu& menu) {
   menu.addAction(tr("&New world"), QKeySequence(QKeySequence::New), this, [this] {
-    if (may_discard()) messages_.check(document_.make_new());
+    if (may_discard()) context_.messages.check(context_.document.make_new());
   });
   menu.addAction(tr("&Open …"), QKeySequence::Open, this, &FileCommands::choose_file);
   menu.addMenu(recent_menu_);
@@ -49,22 +43,23 @@ void FileCommands::add_to_menu(QMenu& menu) {
   menu.addAction(tr("Save &as …"), QKeySequence::SaveAs, this, &FileCommands::save_as);
   menu.addAction(tr("Show &changes …"), tr("Ctrl+D"), this, &FileCommands::show_diff);
   menu.addAction(tr("Re&vert to the saved file"), this,
-                 [this] { messages_.check(document_.revert()); });
+                 [this] { context_.messages.check(context_.document.revert()); });
 }
 
 core::Result<void> FileCommands::open(const std::filesystem::path& file) {
-  const core::Result<void> opened = document_.open(file);
-  if (messages_.check(opened)) offer_recovery();
+  const core::Result<void> opened = context_.document.open(file);
+  if (context_.messages.check(opened)) offer_recovery();
   return opened;
 }
 
 void FileCommands::on_file_changed() {
-  if (document_.file().empty()) return;
-  if (document_.is_read_only())
-    messages_.show_message(tr("%1 or its folder is read-only. Save your changes in another folder.")
-                               .arg(shown(document_.file())));
+  if (context_.document.file().empty()) return;
+  if (context_.document.is_read_only())
+    context_.messages.show_message(
+        tr("%1 or its folder is read-only. Save your changes in another folder.")
+            .arg(to_qstring(context_.document.file().string())));
   QSettings settings;
-  note_recent_file(settings, document_.file());
+  note_recent_file(settings, context_.document.file());
   fill_recent_files();
 }
 
@@ -72,7 +67,7 @@ void FileCommands::fill_recent_files() {
   recent_menu_->clear();
   const QSettings settings;
   for (const std::filesystem::path& file : recent_files(settings)) {
-    recent_menu_->addAction(shown(file), this, [this, file] {
+    recent_menu_->addAction(to_qstring(file.string()), this, [this, file] {
       if (may_discard()) open(file);
     });
   }
@@ -81,53 +76,56 @@ void FileCommands::fill_recent_files() {
 
 void FileCommands::choose_file() {
   if (!may_discard()) return;
-  const QString file = QFileDialog::getOpenFileName(&window_, tr("Open a world"),
-                                                    shown(document_.file().parent_path()), kFilter);
+  const QString file = QFileDialog::getOpenFileName(
+      &context_.window, tr("Open a world"),
+      to_qstring(context_.document.file().parent_path().string()), kFilter);
   if (!file.isEmpty()) open(file.toStdString());
 }
 
 bool FileCommands::save() {
-  if (document_.file().empty()) return save_as();
-  const bool saved = messages_.check(document_.save());
-  if (saved) messages_.show_message(tr("Saved %1.").arg(shown(document_.file())));
+  if (context_.document.file().empty()) return save_as();
+  const bool saved = context_.messages.check(context_.document.save());
+  if (saved)
+    context_.messages.show_message(
+        tr("Saved %1.").arg(to_qstring(context_.document.file().string())));
   return saved;
 }
 
 bool FileCommands::save_as() {
-  const QString file = QFileDialog::getSaveFileName(&window_, tr("Save the world as"),
-                                                    shown(document_.file()), kFilter);
+  const QString file =
+      QFileDialog::getSaveFileName(&context_.window, tr("Save the world as"),
+                                   to_qstring(context_.document.file().string()), kFilter);
   if (file.isEmpty()) return false;
-  const auto copied = document_.save_as(file.toStdString());
-  if (!copied) return messages_.check(tl::unexpected(copied.error()));
+  const auto copied = context_.document.save_as(file.toStdString());
+  if (!copied) return context_.messages.check(tl::unexpected(copied.error()));
   QString message = tr("Saved %1.").arg(file);
   QStringList names;
   for (const std::string& name : *copied)
-    names += QString::fromStdString(name);
+    names += to_qstring(name);
   if (!names.isEmpty()) message += " " + tr("Copied with it: %1.").arg(names.join(", "));
-  messages_.show_message(message);
+  context_.messages.show_message(message);
   return true;
 }
 
 bool FileCommands::may_discard() {
-  if (!document_.is_modified()) return true;
+  if (!context_.document.is_modified()) return true;
   const auto answer = QMessageBox::question(
-      &window_, tr("Unsaved changes"), tr("The world has unsaved changes."),
+      &context_.window, tr("Unsaved changes"), tr("The world has unsaved changes."),
       QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
   if (answer == QMessageBox::Save) return save();
   return answer == QMessageBox::Discard;
 }
 
 void FileCommands::show_diff() {
-  QDialog dialog(&window_);
+  QDialog dialog(&context_.window);
   dialog.setWindowTitle(tr("Unsaved changes"));
   dialog.resize(720, 480);
   auto* text = new QPlainTextEdit;
   text->setReadOnly(true);
   text->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
   text->setAccessibleName(tr("Unsaved changes"));
-  const std::string diff = document_.unsaved_diff();
-  text->setPlainText(diff.empty() ? tr("There are no unsaved changes.")
-                                  : QString::fromStdString(diff));
+  const std::string diff = context_.document.unsaved_diff();
+  text->setPlainText(diff.empty() ? tr("There are no unsaved changes.") : to_qstring(diff));
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Save | QDialogButtonBox::Close);
   connect(buttons, &QDialogButtonBox::accepted, &dialog, &QDialog::accept);
   connect(buttons, &QDialogButtonBox::rejected, &dialog, &QDialog::reject);
@@ -140,42 +138,44 @@ void FileCommands::show_diff() {
 void FileCommands::on_disk_changed(DiskState state, bool conflict) {
   if (state == DiskState::kSame) return;
   if (state == DiskState::kRemoved)
-    return messages_.show_message(tr("The file was removed. Save writes it again."));
+    return context_.messages.show_message(tr("The file was removed. Save writes it again."));
   if (!conflict) {
-    if (messages_.check(document_.reload()))
-      messages_.show_message(tr("Another program changed the file. The editor reloaded it."));
+    if (context_.messages.check(context_.document.reload()))
+      context_.messages.show_message(
+          tr("Another program changed the file. The editor reloaded it."));
     return;
   }
   QMessageBox box(QMessageBox::Warning, tr("The file has changed"),
                   tr("Another program changed this file, and you have unsaved changes. You can "
                      "undo either choice until you save."),
-                  QMessageBox::NoButton, &window_);
+                  QMessageBox::NoButton, &context_.window);
   QAbstractButton* reload = box.addButton(tr("Reload the file"), QMessageBox::AcceptRole);
   box.addButton(tr("Keep my version"), QMessageBox::RejectRole);
   box.exec();
   if (box.clickedButton() == reload) {
-    messages_.check(document_.reload());
+    context_.messages.check(context_.document.reload());
   } else {
-    document_.keep_editor_version();
+    context_.document.keep_editor_version();
   }
 }
 
 void FileCommands::offer_recovery() {
-  for (const Recovery& recovery : document_.recoveries()) {
-    if (recovery.world_file != document_.file() && !recovery.world_file.empty()) continue;
-    const QString name = recovery.world_file.empty() ? tr("an unnamed world")
-                                                     : shown(recovery.world_file.filename());
+  for (const Recovery& recovery : context_.document.recoveries()) {
+    if (recovery.world_file != context_.document.file() && !recovery.world_file.empty()) continue;
+    const QString name = recovery.world_file.empty()
+                             ? tr("an unnamed world")
+                             : to_qstring(recovery.world_file.filename().string());
     QMessageBox box(QMessageBox::Question, tr("Recover unsaved changes?"),
                     tr("psygen closed unexpectedly. Recover your changes to %1, last saved "
                        "automatically on %2?")
-                        .arg(name, QLocale(QLocale::English).toString(recovery.time)),
-                    QMessageBox::NoButton, &window_);
+                        .arg(name, kEnglish.toString(recovery.time)),
+                    QMessageBox::NoButton, &context_.window);
     QAbstractButton* recover = box.addButton(tr("Recover"), QMessageBox::AcceptRole);
     QAbstractButton* discard = box.addButton(tr("Discard"), QMessageBox::DestructiveRole);
     box.addButton(tr("Ask again later"), QMessageBox::RejectRole);
     box.exec();
     if (box.clickedButton() == recover) {
-      messages_.check(document_.recover(recovery));
+      context_.messages.check(context_.document.recover(recovery));
       return;
     }
     if (box.clickedButton() == discard) discard_recovery(recovery);

@@ -5,7 +5,7 @@
 #include <QObject>
 #include <filesystem>
 
-#include "editor/shell/editor_context.hpp"
+#include "editor/shell/main_window.hpp"
 
 class QMenu;
 
@@ -37,9 +37,7 @@ class FileCommands final : public QObject {
   void on_disk_changed(DiskState state, bool conflict);
   void offer_recovery();
 
-  QMainWindow& window_;
-  Document& document_;
-  MessageLog& messages_;
+  const EditorContext context_;
   QMenu* recent_menu_;
 };
 

@@ -3,6 +3,7 @@
 #include <QAction>
 #include <QMenu>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/flights/timeline_panel.hpp"
 #include "editor/shell/panel.hpp"
 #include "engine/core/camera.hpp"
@@ -37,33 +38,36 @@ TimelineHost host_of(const EditorContext& context, std::filesystem::path folder)
 
 }  // namespace
 
-FlightCommands::FlightCommands(const EditorContext& context, std::filesystem::path folder)
-    : QObject(&context.window), panel_(new TimelinePanel(host_of(context, std::move(folder)))) {
-  connect(panel_, &TimelinePanel::message_posted, &context.messages, &MessageLog::show_message);
-  connect(panel_, &TimelinePanel::recording_changed, this, [this, &model = context.model] {
-    model.close();
-    show_panel(*panel_);
-  });
-  connect(panel_, &TimelinePanel::needs_processors, &context.view, [&view = context.view](bool on) {
-    view.set_background_work(BackgroundWork::kFlight, on);
-  });
-  connect(&context.view, &WorldView::drawn, panel_, &TimelinePanel::on_frame_drawn);
+TimelinePanel* make_timeline(const EditorContext& context, std::filesystem::path folder) {
+  auto* panel = new TimelinePanel(host_of(context, std::move(folder)));
+  QObject::connect(panel, &TimelinePanel::message_posted, &context.messages,
+                   &MessageLog::show_message);
+  QObject::connect(panel, &TimelinePanel::recording_changed, panel,
+                   [panel, &model = context.model] {
+                     model.close();
+                     show_panel(*panel);
+                   });
+  QObject::connect(
+      panel, &TimelinePanel::needs_processors, &context.view,
+      [&view = context.view](bool on) { view.set_background_work(BackgroundWork::kFlight, on); });
+  QObject::connect(&context.view, &WorldView::drawn, panel, &TimelinePanel::on_frame_drawn);
+  return panel;
 }
 
-void FlightCommands::add_to_menu(QMenu& menu) {
-  QAction* record = menu.addAction(tr("&Record the camera"), tr("Ctrl+Shift+R"), panel_,
+void add_flight_commands(QMenu& menu, TimelinePanel& timeline) {
+  QAction* record = menu.addAction(tr("&Record the camera"), tr("Ctrl+Shift+R"), &timeline,
                                    &TimelinePanel::set_recording);
   record->setCheckable(true);
-  connect(panel_, &TimelinePanel::recording_changed, record, &QAction::setChecked);
-  menu.addAction(tr("&Play from here"), panel_, [this] { panel_->play(true); });
-  menu.addAction(tr("Re-run with the timeline's &settings"), panel_, &TimelinePanel::fly);
+  QObject::connect(&timeline, &TimelinePanel::recording_changed, record, &QAction::setChecked);
+  menu.addAction(tr("&Play from here"), &timeline, [&timeline] { timeline.play(true); });
+  menu.addAction(tr("Re-run with the timeline's &settings"), &timeline, &TimelinePanel::fly);
   menu.addSeparator();
-  menu.addAction(tr("&Open a path …"), panel_, [this] {
-    show_panel(*panel_);
-    panel_->open_path();
+  menu.addAction(tr("&Open a path …"), &timeline, [&timeline] {
+    show_panel(timeline);
+    timeline.open_path();
   });
-  menu.addAction(tr("Save the pat&h …"), panel_, &TimelinePanel::save_path);
-  menu.addAction(tr("Save as frame &test …"), panel_, &TimelinePanel::save_test);
+  menu.addAction(tr("Save the pat&h …"), &timeline, &TimelinePanel::save_path);
+  menu.addAction(tr("Save as frame &test …"), &timeline, &TimelinePanel::save_test);
 }
 
 }  // namespace psygen::editor

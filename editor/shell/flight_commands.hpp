@@ -1,31 +1,17 @@
 // The panel "Timeline" and the Flight menu: records the view's camera and replays it. Main thread.
 #pragma once
 
-#include <QObject>
 #include <filesystem>
 
-#include "editor/shell/editor_context.hpp"
-
-class QMenu;
+#include "editor/shell/main_window.hpp"
 
 namespace psygen::editor {
 
 class TimelinePanel;
 
-// Owns no panel: the window puts it into a dock.
-class FlightCommands final : public QObject {
-  Q_OBJECT
-
- public:
-  // `folder`: for recordings and runs.
-  FlightCommands(const EditorContext& context, std::filesystem::path folder);
-
-  // The panel "Timeline".
-  TimelinePanel& panel() { return *panel_; }
-  void add_to_menu(QMenu& menu);
-
- private:
-  TimelinePanel* panel_;
-};
+// Makes the panel; the caller puts it into a dock. `folder`: for recordings and runs. The objects
+// of the context outlive the panel.
+TimelinePanel* make_timeline(const EditorContext& context, std::filesystem::path folder);
+void add_flight_commands(QMenu& menu, TimelinePanel& timeline);
 
 }  // namespace psygen::editor

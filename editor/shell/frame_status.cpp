@@ -1,8 +1,11 @@
 #include "editor/shell/frame_status.hpp"
 
-#include <QLocale>
+#include <QLabel>
 #include <QStatusBar>
+#include <QTimer>
+#include <memory>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/view/world_view.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/render/types.hpp"
@@ -16,33 +19,42 @@ namespace {
 constexpr int kUpdateMs = 250, kSettledShownMs = 4000;
 constexpr double kSmoothing = 0.1;
 
+QString status_text(WorldView& view, double frame_ms) {
+  if (view.session() == nullptr) return tr("No image");
+  const scene::Scene& scene = view.session()->scene();
+  return tr("%1 ms  ·  %2 triangles  ·  error %3 px  ·  %4 queued  ·  %5 m/s")
+      .arg(frame_ms, 0, 'f', 1)
+      .arg(count_text(scene.drawn().triangles))
+      .arg(scene.quality().error_pixels, 0, 'f', 1)
+      .arg(scene.meshes().outstanding())
+      .arg(view.camera().speed_m_s(), 0, 'f', 0);
+}
+
 }  // namespace
 
-FrameStatus::FrameStatus(QStatusBar& bar, WorldView& view) : view_(view) {
-  bar.addPermanentWidget(this);
-  connect(&view_, &WorldView::drawn, this,
-          [this](double ms) { frame_ms_ += (ms - frame_ms_) * (frame_ms_ == 0 ? 1 : kSmoothing); });
-  connect(&view_, &WorldView::answered, this, [this](double ms) { answered_ms_ = ms; });
-  connect(&view_, &WorldView::settled, this, [this, &bar](double ms) {
+void add_frame_status(QStatusBar& bar, WorldView& view) {
+  auto* label = new QLabel;
+  bar.addPermanentWidget(label);
+  struct Times {
+    double frame_ms = 0;     // smoothed; 0 before the first frame
+    double answered_ms = 0;  // from the last change to its first frame
+  };
+  const auto times = std::make_shared<Times>();
+  QObject::connect(&view, &WorldView::drawn, label, [times](double ms) {
+    times->frame_ms += (ms - times->frame_ms) * (times->frame_ms == 0 ? 1 : kSmoothing);
+  });
+  QObject::connect(&view, &WorldView::answered, label,
+                   [times](double ms) { times->answered_ms = ms; });
+  QObject::connect(&view, &WorldView::settled, label, [times, &bar](double ms) {
     bar.showMessage(tr("Updated in %1 s; fully detailed after %2 s.")
-                        .arg(answered_ms_ * 1e-3, 0, 'f', 1)
+                        .arg(times->answered_ms * 1e-3, 0, 'f', 1)
                         .arg(ms * 1e-3, 0, 'f', 1),
                     kSettledShownMs);
   });
-  connect(&timer_, &QTimer::timeout, this, &FrameStatus::update_text);
-  timer_.start(kUpdateMs);
-}
-
-void FrameStatus::update_text() {
-  if (view_.session() == nullptr) return setText(tr("No image"));
-  const scene::Scene& scene = view_.session()->scene();
-  setText(
-      tr("%1 ms  ·  %2 triangles  ·  error %3 px  ·  %4 queued  ·  %5 m/s")
-          .arg(frame_ms_, 0, 'f', 1)
-          .arg(QLocale(QLocale::English).toString(static_cast<qulonglong>(scene.drawn().triangles)))
-          .arg(scene.quality().error_pixels, 0, 'f', 1)
-          .arg(scene.meshes().outstanding())
-          .arg(view_.camera().speed_m_s(), 0, 'f', 0));
+  auto* timer = new QTimer(label);
+  QObject::connect(timer, &QTimer::timeout, label,
+                   [label, times, &view] { label->setText(status_text(view, times->frame_ms)); });
+  timer->start(kUpdateMs);
 }
 
 }  // namespace psygen::editor

@@ -10,14 +10,15 @@
 #include <algorithm>
 
 #include "editor/attach/remote_panel.hpp"
+#include "editor/document/qt_text.hpp"
 #include "editor/flights/timeline_panel.hpp"
 #include "editor/gallery/library_panel.hpp"
 #include "editor/gallery/picture_tools.hpp"
-#include "editor/panels/cache_map_panel.hpp"
+#include "editor/panels/cache_map.hpp"
 #include "editor/panels/selection_panel.hpp"
 #include "editor/panels/statistics_panel.hpp"
+#include "editor/shell/camera_memory.hpp"
 #include "editor/shell/command_palette.hpp"
-#include "editor/shell/default_world.hpp"
 #include "editor/shell/edit_feedback.hpp"
 #include "editor/shell/file_commands.hpp"
 #include "editor/shell/flight_commands.hpp"
@@ -42,7 +43,7 @@ MainWindow::MainWindow(MainWindowOptions options)
   add_commands();
   panel_commands_ = add_panels(*this, panels());
   add_menus();
-  new FrameStatus(*statusBar(), *view_);  // owned by the status bar
+  add_frame_status(*statusBar(), *view_);
   connect_messages();
   resize(1280, 800);
   first_layout_ = saveState();
@@ -66,26 +67,30 @@ void MainWindow::add_view() {
   view_->set_paused(options_.safe);
 }
 
+EditorContext MainWindow::context() {
+  return {*this, document_, *view_, *model_, *properties_, *messages_};
+}
+
 // Objects that follow the document are notified in the order of their construction here.
 void MainWindow::add_commands() {
-  properties_ = new PropertiesPanel;
-  messages_ = new MessageLog(*statusBar());
-  model_ = new ModelView(document_, *view_, this);
-  palette_ = new CommandPalette(this);
-  const EditorContext context{*this, document_, *view_, *model_, *properties_, *messages_};
   const auto set_dragging = [this](bool on) { feedback_->set_dragging(on); };
+  messages_ = new MessageLog(*statusBar());
+  properties_ = new PropertiesPanel(
+      {.document = document_, .messages = *messages_, .set_dragging = set_dragging});
+  model_ = new ModelView(document_, *view_, *messages_, this);
+  palette_ = new CommandPalette(this);
+  const EditorContext context = this->context();
 
-  pictures_ = new PictureTools(*this, document_, *view_,
-                               QString::fromStdString(options_.session.device_name));
+  pictures_ = new PictureTools(*this, document_, *view_, *messages_,
+                               to_qstring(options_.session.device_name));
   files_ = new FileCommands(context);
   const auto& state_folder = options_.document.state_folder;
-  flights_ = new FlightCommands(
+  flights_ = make_timeline(
       context, (state_folder.empty() ? default_state_folder() : state_folder) / "flights");
   remote_ = new RemoteCommands(context, *files_);
   bars_ = new ViewBars(context, set_dragging);
   tools_ = new ViewTools(*this, document_, *view_, set_dragging);
-  view_commands_ = new ViewCommands(context);
-  sections_ = new SectionCommands(context, pictures_->library());
+  connect_sections(context);
   camera_ = new CameraMemory(context);
   CostLimits limits = options_.limits;
   limits.cache_bytes =
@@ -120,7 +125,7 @@ std::vector<Panel> MainWindow::panels() {
        .title = tr("Selection"),
        .place = PanelPlace::kTopRight,
        .shortcut = tr("Alt+3"),
-       .make = [this] { return new SelectionPanel(*view_); }},
+       .make = [this] { return make_selection_panel(*view_); }},
       {.name = "history",
        .title = tr("History"),
        .place = PanelPlace::kTopRight,
@@ -136,7 +141,7 @@ std::vector<Panel> MainWindow::panels() {
        .title = tr("Cache map"),
        .place = PanelPlace::kBottomRight,
        .shortcut = tr("Alt+5"),
-       .make = [this] { return new CacheMapPanel(*view_); }},
+       .make = [this] { return make_cache_map_panel(*view_); }},
       {.name = "attached",
        .title = tr("Attached"),
        .place = PanelPlace::kBottomRight,
@@ -164,7 +169,7 @@ std::vector<Panel> MainWindow::panels() {
        .place = PanelPlace::kBottom,
        .shortcut = tr("Alt+9"),
        .is_open = false,
-       .make = [this] { return &flights_->panel(); }},
+       .make = [this] { return flights_; }},
   };
 }
 
@@ -172,7 +177,7 @@ void MainWindow::add_menus() {
   QMenu* file = menuBar()->addMenu(tr("&File"));
   files_->add_to_menu(*file);
   file->addSeparator();
-  view_commands_->add_to_file_menu(*file);
+  add_image_commands(*file, context());
   pictures_->add_to_file_menu(*file);
   file->addSeparator();
   remote_->add_to_file_menu(*file);
@@ -180,13 +185,13 @@ void MainWindow::add_menus() {
   add_edit_menu();
   add_view_menu();
   QMenu* world = menuBar()->addMenu(tr("&World"));
-  sections_->add_to_world_menu(*world);
+  add_world_commands(*world, context(), pictures_->library());
   world->addSeparator();
   pictures_->add_to_world_menu(*world);
-  view_commands_->add_to_world_menu(*world, options_.safe);
+  add_pause_command(*world, context(), options_.safe);
   tools_->add_to_menu(*menuBar()->addMenu(tr("&Tools")));
-  flights_->add_to_menu(*menuBar()->addMenu(tr("F&light")));
-  view_commands_->add_to_help_menu(*menuBar()->addMenu(tr("&Help")));
+  add_flight_commands(*menuBar()->addMenu(tr("F&light")), *flights_);
+  add_help_commands(*menuBar()->addMenu(tr("&Help")), context());
 }
 
 void MainWindow::add_edit_menu() {
@@ -197,18 +202,18 @@ void MainWindow::add_edit_menu() {
   redo->setShortcut(QKeySequence::Redo);
   menu->addActions({undo, redo});
   menu->addSeparator();
-  sections_->add_to_edit_menu(*menu);
+  add_section_commands(*menu, context());
   menu->addSeparator();
   menu->addAction(tr("Find a command or field …"), tr("Ctrl+Shift+P"), this, [this] {
     std::vector<CommandPalette::Command> commands = commands_of(*this);
-    std::ranges::move(sections_->field_commands(), std::back_inserter(commands));
+    std::ranges::move(field_commands(context()), std::back_inserter(commands));
     palette_->ask(std::move(commands));
   });
 }
 
 void MainWindow::add_view_menu() {
   QMenu* menu = menuBar()->addMenu(tr("&View"));
-  view_commands_->add_to_view_menu(*menu);
+  add_view_commands(*menu, context());
   pictures_->add_to_view_menu(*menu);
   menu->addSeparator();
   QMenu* panels = menu->addMenu(tr("Pan&els"));
@@ -227,8 +232,6 @@ void MainWindow::connect_messages() {
         tr("The graphics device was lost. The view opens it again; the document is unchanged."));
   });
   connect(view_, &WorldView::world_rejected, messages_, &MessageLog::show_message);
-  connect(model_, &ModelView::message_posted, messages_, &MessageLog::show_message);
-  connect(pictures_, &PictureTools::message_posted, messages_, &MessageLog::show_message);
   connect(tools_, &ViewTools::message_posted, messages_, &MessageLog::show_message);
   connect(&document_, &Document::modified_changed, this, &MainWindow::update_title);
   connect(&document_, &Document::file_changed, this, &MainWindow::update_title);
@@ -238,14 +241,13 @@ core::Result<void> MainWindow::open_file(const std::filesystem::path& file) {
   return files_->open(file);
 }
 
-void MainWindow::set_default_pose(const core::CameraPose& pose, double height_m) {
-  camera_->set_default_pose(pose, height_m);
+void MainWindow::use_first_pose() {
+  camera_->use_first_pose();
 }
 
 void MainWindow::update_title() {
-  const QString name = document_.file().empty()
-                           ? tr("new world")
-                           : QString::fromStdString(document_.file().filename().string());
+  const QString name =
+      document_.file().empty() ? tr("new world") : to_qstring(document_.file().filename().string());
   const QString shown = document_.is_read_only() ? tr("%1 (read-only)").arg(name) : name;
   setWindowTitle(tr("%1[*] – psygen editor").arg(shown));
   setWindowModified(document_.is_modified());

@@ -6,6 +6,9 @@
 
 #include "editor/cost/edit_cost.hpp"
 #include "editor/document/document.hpp"
+#include "editor/gallery/model_view.hpp"
+#include "editor/panels/message_log.hpp"
+#include "editor/panels/properties_panel.hpp"
 #include "editor/shell/panel.hpp"
 #include "editor/view/world_view.hpp"
 
@@ -15,16 +18,21 @@ class CameraMemory;
 class CommandPalette;
 class EditFeedback;
 class FileCommands;
-class FlightCommands;
-class MessageLog;
-class ModelView;
 class PictureTools;
-class PropertiesPanel;
 class RemoteCommands;
-class SectionCommands;
+class TimelinePanel;
 class ViewBars;
-class ViewCommands;
 class ViewTools;
+
+// The objects of a window that its commands work with. MainWindow owns them all.
+struct EditorContext {
+  QMainWindow& window;  // parent of dialogs, actions and command objects
+  Document& document;
+  WorldView& view;
+  ModelView& model;  // a model shown alone in the view
+  PropertiesPanel& properties;
+  MessageLog& messages;
+};
 
 struct MainWindowOptions {
   app::SessionOptions session;
@@ -45,9 +53,8 @@ class MainWindow final : public QMainWindow {
 
   // Opens a world file. Fails like Document::open(); the error also becomes a message.
   core::Result<void> open_file(const std::filesystem::path& file);
-  // Sets the camera's pose for the first world, unless the user has visited it before. The height
-  // counts above the ground.
-  void set_default_pose(const core::CameraPose& pose, double height_m);
+  // As CameraMemory::use_first_pose().
+  void use_first_pose();
   Document& document() { return document_; }
   WorldView& view() { return *view_; }
 
@@ -58,6 +65,7 @@ class MainWindow final : public QMainWindow {
   void changeEvent(QEvent* event) override;
 
  private:
+  EditorContext context();
   void add_view();
   void add_commands();
   std::vector<Panel> panels();
@@ -77,13 +85,11 @@ class MainWindow final : public QMainWindow {
   ModelView* model_ = nullptr;
   PictureTools* pictures_ = nullptr;
   FileCommands* files_ = nullptr;
-  FlightCommands* flights_ = nullptr;
+  TimelinePanel* flights_ = nullptr;
   RemoteCommands* remote_ = nullptr;
   EditFeedback* feedback_ = nullptr;
   ViewBars* bars_ = nullptr;
-  ViewCommands* view_commands_ = nullptr;
   ViewTools* tools_ = nullptr;
-  SectionCommands* sections_ = nullptr;
   CameraMemory* camera_ = nullptr;
   CommandPalette* palette_ = nullptr;
   std::vector<QAction*> panel_commands_;

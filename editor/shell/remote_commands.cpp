@@ -19,12 +19,7 @@ constexpr int kAttachedPx = 330;  // width of the panel while a program is attac
 
 RemoteCommands::RemoteCommands(const EditorContext& context, FileCommands& files)
     : QObject(&context.window),
-      window_(context.window),
-      document_(context.document),
-      view_(context.view),
-      model_(context.model),
-      properties_(context.properties),
-      messages_(context.messages),
+      context_(context),
       files_(files),
       remote_(new RemoteSession(&context.window)),
       panel_(new RemotePanel(*remote_)) {
@@ -32,21 +27,21 @@ RemoteCommands::RemoteCommands(const EditorContext& context, FileCommands& files
   connect(remote_, &RemoteSession::attached, this,
           [this](const QJsonObject&, const std::string& text) { on_attached(text); });
   connect(remote_, &RemoteSession::message_posted, this, [this](const QString& message) {
-    messages_.show_message(tr("Attached program: %1").arg(message));
+    context_.messages.show_message(tr("Attached program: %1").arg(message));
   });
   connect(remote_, &RemoteSession::ended, this, [this](const QString& reason) {
     follows_ = false;
-    messages_.show_message(reason.isEmpty() ? tr("Detached.") : reason);
+    context_.messages.show_message(reason.isEmpty() ? tr("Detached.") : reason);
   });
-  connect(&document_, &Document::changed, this, &RemoteCommands::send_world);
-  connect(&view_, &WorldView::drawn, this, [this] {
-    if (follows_) remote_->set_pose(model_.world_pose());
+  connect(&context_.document, &Document::changed, this, &RemoteCommands::send_world);
+  connect(&context_.view, &WorldView::drawn, this, [this] {
+    if (follows_) remote_->set_pose(context_.model.world_pose());
   });
 }
 
 void RemoteCommands::connect_panel() {
   connect(panel_, &RemotePanel::go_to_requested, this,
-          [this](const core::CameraPose& pose) { model_.go_to_world(pose); });
+          [this](const core::CameraPose& pose) { context_.model.go_to_world(pose); });
   connect(panel_, &RemotePanel::sync_camera_requested, this, [this](bool on) {
     follows_ = on && remote_->is_attached();
     if (!on && remote_->is_attached()) remote_->set_pose(std::nullopt);
@@ -55,14 +50,14 @@ void RemoteCommands::connect_panel() {
 
 void RemoteCommands::on_attached(const std::string& world_text) {
   show_panel(*panel_);
-  window_.resizeDocks({&dock_of(properties_), &dock_of(*panel_)}, {kLeftPanelsPx, kAttachedPx},
-                      Qt::Horizontal);
-  if (world_text != document_.text()) {
+  context_.window.resizeDocks({&dock_of(context_.properties), &dock_of(*panel_)},
+                              {kLeftPanelsPx, kAttachedPx}, Qt::Horizontal);
+  if (world_text != context_.document.text()) {
     if (!files_.may_discard()) return remote_->detach(false);
-    messages_.check(document_.make_new(world_text));
+    context_.messages.check(context_.document.make_new(world_text));
   }
-  sent_world_ = document_.text();
-  messages_.show_message(
+  sent_world_ = context_.document.text();
+  context_.messages.show_message(
       tr("Attached to process %1. It gets your changes at once.").arg(remote_->endpoint().pid));
 }
 
@@ -72,15 +67,14 @@ void RemoteCommands::add_to_file_menu(QMenu& menu) {
 
 void RemoteCommands::attach() {
   if (remote_->is_attached())
-    return messages_.show_message(tr("Detach the attached program first, in its panel."));
-  AttachDialog dialog(&window_);
-  if (dialog.exec() != QDialog::Accepted) return;
-  if (const auto endpoint = dialog.chosen()) messages_.check(remote_->attach(*endpoint));
+    return context_.messages.show_message(tr("Detach the attached program first, in its panel."));
+  if (const auto endpoint = ask_endpoint(&context_.window))
+    context_.messages.check(remote_->attach(*endpoint));
 }
 
 void RemoteCommands::send_world() {
-  if (!remote_->is_attached() || document_.text() == sent_world_) return;
-  sent_world_ = document_.text();
+  if (!remote_->is_attached() || context_.document.text() == sent_world_) return;
+  sent_world_ = context_.document.text();
   remote_->set_world(sent_world_);
 }
 

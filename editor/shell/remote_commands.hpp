@@ -5,7 +5,7 @@
 #include <QObject>
 #include <string>
 
-#include "editor/shell/editor_context.hpp"
+#include "editor/shell/main_window.hpp"
 
 class QMenu;
 
@@ -33,12 +33,7 @@ class RemoteCommands final : public QObject {
   void attach();
   void send_world();
 
-  QMainWindow& window_;
-  Document& document_;
-  WorldView& view_;
-  ModelView& model_;
-  PropertiesPanel& properties_;
-  MessageLog& messages_;
+  const EditorContext context_;
   FileCommands& files_;
   RemoteSession* remote_;
   RemotePanel* panel_;

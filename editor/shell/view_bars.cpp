@@ -8,6 +8,7 @@
 #include <QToolBar>
 #include <cmath>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/document/scale.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
@@ -31,12 +32,7 @@ QSlider* add_slider(QToolBar& bar, const QString& label, const QString& help) {
 }  // namespace
 
 ViewBars::ViewBars(const EditorContext& context, std::function<void(bool)> set_dragging)
-    : QObject(&context.window),
-      document_(context.document),
-      view_(context.view),
-      model_(context.model),
-      messages_(context.messages),
-      set_dragging_(std::move(set_dragging)) {
+    : QObject(&context.window), context_(context), set_dragging_(std::move(set_dragging)) {
   QToolBar* bar = context.window.addToolBar(tr("Image"));
   bar->setObjectName("picture");
   add_quality(*bar);
@@ -56,12 +52,13 @@ void ViewBars::add_quality(QToolBar& bar) {
   bar.addWidget(presets);
   connect(presets, &QComboBox::textActivated, this, [this](const QString& name) {
     const auto preset = render::preset_from(name.toStdString());
-    if (view_.session() != nullptr && preset) messages_.check(view_.session()->set_preset(*preset));
+    if (context_.view.session() != nullptr && preset)
+      context_.messages.check(context_.view.session()->set_preset(*preset));
   });
-  connect(&view_, &WorldView::opened, this, [this, presets](const QString& error) {
+  connect(&context_.view, &WorldView::opened, this, [this, presets](const QString& error) {
     if (error.isEmpty())
       presets->setCurrentText(
-          QString::fromUtf8(render::to_string(view_.session()->renderer().preset()).data()));
+          to_qstring(render::to_string(context_.view.session()->renderer().preset())));
   });
 }
 
@@ -71,26 +68,27 @@ void ViewBars::add_hour(QToolBar& bar) {
   hour->setRange(0, 24 * 60);
   hour->setMaximumWidth(kHourPx);
   connect(hour, &QSlider::valueChanged, this, [this](int minutes) {
-    const world::Sky& sky = document_.world().sky;
-    if (view_.session() == nullptr) return;
+    const world::Sky& sky = context_.document.world().sky;
+    if (context_.view.session() == nullptr) return;
     double hours = minutes / 60.0 - sky.start_hour;
     if (hours < 0) hours += 24;
-    view_.session()->set_now(hours / 24 * sky.day_length_s);
+    context_.view.session()->set_now(hours / 24 * sky.day_length_s);
   });
   const auto update = [this, hour] {
-    const bool has_day = document_.world().sky.day_length_s > 0;
+    const bool has_day = context_.document.world().sky.day_length_s > 0;
     hour->setEnabled(has_day);
-    if (has_day && view_.session() != nullptr && !hour->isSliderDown()) {
+    if (has_day && context_.view.session() != nullptr && !hour->isSliderDown()) {
       const QSignalBlocker blocker(hour);
-      const world::Sky& sky = document_.world().sky;
-      const double hours = sky.start_hour + 24 * view_.session()->now_s() / sky.day_length_s;
+      const world::Sky& sky = context_.document.world().sky;
+      const double hours =
+          sky.start_hour + 24 * context_.view.session()->now_s() / sky.day_length_s;
       hour->setValue(static_cast<int>(60 * std::fmod(hours, 24)));
     }
     hour->setToolTip(has_day ? tr("Time of day")
                              : tr("Set Sky > Day length to use the time of day."));
   };
-  connect(&document_, &Document::changed, this, update);
-  connect(&view_, &WorldView::opened, this, update);
+  connect(&context_.document, &Document::changed, this, update);
+  connect(&context_.view, &WorldView::opened, this, update);
   update();
 }
 
@@ -102,20 +100,20 @@ void ViewBars::add_weather(QToolBar& bar, const SliderText& text, const world::T
   connect(slider, &QSlider::sliderPressed, this, [this] { set_dragging_(true); });
   connect(slider, &QSlider::sliderReleased, this, [this] { set_dragging_(false); });
   connect(slider, &QSlider::valueChanged, this, [this, path](int position) {
-    const world::WorldField* field = document_.field(path);
+    const world::WorldField* field = context_.document.field(path);
     if (field == nullptr) return;
     const double value = scale_of(*field).at(static_cast<double>(position) / kSliderSteps);
-    messages_.check(document_.set_value(path, world::toml_number(value)));
+    context_.messages.check(context_.document.set_value(path, world::toml_number(value)));
   });
   const auto update = [this, slider, path] {
-    const world::WorldField* field = document_.field(path);
+    const world::WorldField* field = context_.document.field(path);
     slider->setEnabled(field != nullptr && !field->numbers.empty());
     if (!slider->isEnabled() || slider->isSliderDown()) return;
     const QSignalBlocker blocker(slider);
     slider->setValue(static_cast<int>(
         std::lround(scale_of(*field).fraction_of(field->numbers[0]) * kSliderSteps)));
   };
-  connect(&document_, &Document::changed, this, update);
+  connect(&context_.document, &Document::changed, this, update);
   update();
 }
 
@@ -128,22 +126,22 @@ void ViewBars::add_model_bar(QMainWindow& window) {
   auto* seed = new QSpinBox;
   seed->setAccessibleName(tr("Seed of the model"));
   seed->setRange(0, 1'000'000);
-  seed->setValue(static_cast<int>(model_.seed()));
+  seed->setValue(static_cast<int>(context_.model.seed()));
   model_bar_->addWidget(seed);
   connect(seed, &QSpinBox::valueChanged, this,
-          [this](int value) { model_.set_seed(static_cast<std::uint64_t>(value)); });
+          [this](int value) { context_.model.set_seed(static_cast<std::uint64_t>(value)); });
   model_bar_->addWidget(new QLabel(tr("  Drag to orbit, scroll to zoom.  ")));
-  model_bar_->addAction(tr("Back to the world"), &model_, &ModelView::close);
+  model_bar_->addAction(tr("Back to the world"), &context_.model, &ModelView::close);
   model_bar_->toggleViewAction()->setVisible(false);
-  connect(&model_, &ModelView::switched, this, [this, title] {
-    title->setText(" <b>" + model_.title().toHtmlEscaped() + "</b>");
+  connect(&context_.model, &ModelView::switched, this, [this, title] {
+    title->setText(" <b>" + context_.model.title().toHtmlEscaped() + "</b>");
     update_model_bar();
   });
   update_model_bar();
 }
 
 void ViewBars::update_model_bar() {
-  model_bar_->setVisible(model_.is_on());
+  model_bar_->setVisible(context_.model.is_on());
 }
 
 }  // namespace psygen::editor

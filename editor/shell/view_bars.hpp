@@ -4,7 +4,7 @@
 #include <QObject>
 #include <functional>
 
-#include "editor/shell/editor_context.hpp"
+#include "editor/shell/main_window.hpp"
 
 class QToolBar;
 
@@ -32,10 +32,7 @@ class ViewBars final : public QObject {
   void add_weather(QToolBar& bar, const SliderText& text, const world::TextPath& path);
   void add_model_bar(QMainWindow& window);
 
-  Document& document_;
-  WorldView& view_;
-  ModelView& model_;
-  MessageLog& messages_;
+  const EditorContext context_;
   std::function<void(bool)> set_dragging_;
   QToolBar* model_bar_ = nullptr;
 };

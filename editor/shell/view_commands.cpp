@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <glm/trigonometric.hpp>
 
+#include "editor/document/qt_text.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
@@ -30,7 +31,7 @@ QString picture_command(app::Session& session, const std::filesystem::path& worl
   const core::WorldPosition& at = pose.position;
   const double surface_m = world::surface_height_m(world, at);
   const std::string_view preset = render::to_string(session.renderer().preset());
-  QString file = QString::fromStdString(world_file.string());
+  QString file = to_qstring(world_file.string());
   if (file.contains(' ')) file = "'" + file + "'";
   return QString(
              "psygen picture --world %1 --at=%2,%3 --height %4 --yaw %5 --pitch=%6 --preset %7 "
@@ -41,57 +42,44 @@ QString picture_command(app::Session& session, const std::filesystem::path& worl
       .arg(std::max(at.local.y - surface_m, 0.1), 0, 'f', 1)
       .arg(glm::degrees(pose.yaw), 0, 'f', 1)
       .arg(glm::degrees(pose.pitch), 0, 'f', 1)
-      .arg(QString::fromUtf8(preset.data(), static_cast<int>(preset.size())))
+      .arg(to_qstring(preset))
       .arg(scene.settings().max_error_pixels, 0, 'g', 4);
 }
 
-}  // namespace
-
-ViewCommands::ViewCommands(const EditorContext& context)
-    : QObject(&context.window),
-      window_(context.window),
-      document_(context.document),
-      view_(context.view),
-      model_(context.model),
-      properties_(context.properties),
-      messages_(context.messages) {}
-
-void ViewCommands::add_to_file_menu(QMenu& menu) {
-  menu.addAction(tr("Save &image …"), tr("F12"), this, &ViewCommands::save_image);
-  menu.addAction(tr("Copy command &line"), this, &ViewCommands::copy_command_line);
+void save_image(const EditorContext& context) {
+  if (context.view.session() == nullptr)
+    return context.messages.show_message(tr("The view has no image."));
+  const QString file = QFileDialog::getSaveFileName(&context.window, tr("Save the image as"),
+                                                    "image.png", tr("Images (*.png)"));
+  if (!file.isEmpty() &&
+      context.messages.check(context.view.session()->save_picture(file.toStdString())))
+    context.messages.show_message(tr("Saved %1.").arg(file));
 }
 
-void ViewCommands::add_to_view_menu(QMenu& menu) {
-  menu.addAction(tr("&Focus the selection"), tr("Ctrl+F"), this, [this] { view_.focus(); });
-  menu.addAction(tr("Select &nothing"), tr("Ctrl+Shift+A"), this,
-                 [this] { view_.select(std::nullopt); });
-  menu.addSeparator();
-  add_debug_views(menu);
-  add_model_alone(menu);
-  add_grids(menu);
+void copy_command_line(const EditorContext& context) {
+  if (context.view.session() == nullptr)
+    return context.messages.show_message(tr("The view has no image."));
+  if (context.model.is_on())
+    return context.messages.show_message(
+        tr("A model alone has no command line. Go back to the world."));
+  const QString line = picture_command(*context.view.session(), context.document.file(),
+                                       context.view.camera().pose());
+  QApplication::clipboard()->setText(line);
+  context.messages.show_message(tr("Copied: %1").arg(line));
 }
 
-void ViewCommands::add_to_world_menu(QMenu& menu, bool paused) {
-  QAction* pause = menu.addAction(tr("Pause &synthesis"), tr("Ctrl+P"), this,
-                                  [this](bool on) { view_.set_paused(on); });
-  pause->setCheckable(true);
-  pause->setChecked(paused);
+void show_about(const EditorContext& context) {
+  QString device = tr("none");
+  if (context.view.session() != nullptr) {
+    const auto& used = context.view.session()->renderer().device();
+    device = to_qstring(used.name + ", " + used.driver);
+  }
+  QMessageBox::about(&context.window, tr("About the psygen editor"),
+                     tr("<b>psygen editor %1</b><br>Qt %2<br>Device: %3")
+                         .arg(QApplication::applicationVersion(), qVersion(), device));
 }
 
-void ViewCommands::add_to_help_menu(QMenu& menu) {
-  menu.addAction(tr("&Keys and mouse"), tr("F1"), this, [this] {
-    QMessageBox::information(
-        &window_, tr("Keys and mouse"),
-        tr("<table><tr><td>W A S D, E, Q &nbsp;<td>fly; Shift: faster; wheel: change the speed"
-           "<tr><td>right button<td>look around<tr><td>click<td>select"
-           "<tr><td>middle button<td>orbit the selection"
-           "<tr><td>wheel<td>zoom to the selection<tr><td>Ctrl+F<td>look at the selection"
-           "<tr><td>Ctrl+Shift+P<td>find any command or field</table>"));
-  });
-  menu.addAction(tr("&About"), this, &ViewCommands::show_about);
-}
-
-void ViewCommands::add_debug_views(QMenu& menu) {
+void add_debug_views(QMenu& menu, const EditorContext& context) {
   struct Entry {
     QString name;
     render::View view;
@@ -101,30 +89,33 @@ void ViewCommands::add_debug_views(QMenu& menu) {
       {tr("PLP l&ayers"), render::View::kLayers},   {tr("&Bounds"), render::View::kBounds},
       {tr("&Wireframe"), render::View::kWireframe}, {tr("&Missing"), render::View::kMissing},
       {tr("&Cache"), render::View::kCache}};
-  auto* group = new QActionGroup(this);
+  auto* group = new QActionGroup(&context.window);
   int key = 1;
   for (const Entry& entry : entries) {
-    QAction* action =
-        menu.addAction(entry.name, QString("Ctrl+%1").arg(key++), this, [this, view = entry.view] {
-          if (view_.session() != nullptr) view_.session()->scene().input().view = view;
-        });
+    QAction* action = menu.addAction(entry.name, QString("Ctrl+%1").arg(key++), &context.window,
+                                     [context, view = entry.view] {
+                                       if (context.view.session() != nullptr)
+                                         context.view.session()->scene().input().view = view;
+                                     });
     action->setCheckable(true);
     action->setChecked(entry.view == render::View::kNormal);
     group->addAction(action);
   }
 }
 
-void ViewCommands::add_model_alone(QMenu& menu) {
-  QAction* alone = menu.addAction(tr("Model a&lone"), tr("Ctrl+M"), this, [this](bool on) {
-    on ? model_.open(properties_.section()) : model_.close();
-  });
+void add_model_alone(QMenu& menu, const EditorContext& context) {
+  QAction* alone =
+      menu.addAction(tr("Model a&lone"), tr("Ctrl+M"), &context.window, [context](bool on) {
+        on ? context.model.open(context.properties.section()) : context.model.close();
+      });
   alone->setCheckable(true);
-  const auto update = [this, alone] { alone->setChecked(model_.is_on()); };
-  connect(&model_, &ModelView::switched, this, update);
-  connect(alone, &QAction::triggered, this, update);  // also if there is no model to show
+  const auto update = [context, alone] { alone->setChecked(context.model.is_on()); };
+  QObject::connect(&context.model, &ModelView::switched, &context.window, update);
+  QObject::connect(alone, &QAction::triggered, &context.window,
+                   update);  // also if there is no model to show
 }
 
-void ViewCommands::add_grids(QMenu& menu) {
+void add_grids(QMenu& menu, const EditorContext& context) {
   struct Entry {
     QString name;
     double spacing_m;
@@ -135,48 +126,60 @@ void ViewCommands::add_grids(QMenu& menu) {
                            {tr("10&0 m"), 100},
                            {tr("&Block borders"), GridOverlay::kBlocks}};
   QMenu* grids = menu.addMenu(tr("&Grid on the ground"));
-  auto* group = new QActionGroup(this);
+  auto* group = new QActionGroup(&context.window);
   for (const Entry& entry : entries) {
-    QAction* action = grids->addAction(entry.name, this, [this, spacing_m = entry.spacing_m] {
-      view_.grid().set_spacing(spacing_m);
-    });
+    QAction* action = grids->addAction(
+        entry.name, &context.window,
+        [context, spacing_m = entry.spacing_m] { context.view.grid().set_spacing(spacing_m); });
     action->setCheckable(true);
     action->setChecked(entry.spacing_m == 0);
     group->addAction(action);
   }
-  menu.addAction(tr("Next grid"), tr("Ctrl+G"), this, [group] {
+  menu.addAction(tr("Next grid"), tr("Ctrl+G"), &context.window, [group] {
     const auto actions = group->actions();
     const auto now = actions.indexOf(group->checkedAction());
     actions[(now + 1) % actions.size()]->trigger();
   });
 }
 
-void ViewCommands::save_image() {
-  if (view_.session() == nullptr) return messages_.show_message(tr("The view has no image."));
-  const QString file = QFileDialog::getSaveFileName(&window_, tr("Save the image as"), "image.png",
-                                                    tr("Images (*.png)"));
-  if (!file.isEmpty() && messages_.check(view_.session()->save_picture(file.toStdString())))
-    messages_.show_message(tr("Saved %1.").arg(file));
+}  // namespace
+
+void add_image_commands(QMenu& menu, const EditorContext& context) {
+  menu.addAction(tr("Save &image …"), tr("F12"), &context.window,
+                 [context] { save_image(context); });
+  menu.addAction(tr("Copy command &line"), &context.window,
+                 [context] { copy_command_line(context); });
 }
 
-void ViewCommands::copy_command_line() {
-  if (view_.session() == nullptr) return messages_.show_message(tr("The view has no image."));
-  if (model_.is_on())
-    return messages_.show_message(tr("A model alone has no command line. Go back to the world."));
-  const QString line = picture_command(*view_.session(), document_.file(), view_.camera().pose());
-  QApplication::clipboard()->setText(line);
-  messages_.show_message(tr("Copied: %1").arg(line));
+void add_view_commands(QMenu& menu, const EditorContext& context) {
+  menu.addAction(tr("&Focus the selection"), tr("Ctrl+F"), &context.window,
+                 [context] { context.view.focus(); });
+  menu.addAction(tr("Select &nothing"), tr("Ctrl+Shift+A"), &context.window,
+                 [context] { context.view.select(std::nullopt); });
+  menu.addSeparator();
+  add_debug_views(menu, context);
+  add_model_alone(menu, context);
+  add_grids(menu, context);
 }
 
-void ViewCommands::show_about() {
-  QString device = tr("none");
-  if (view_.session() != nullptr) {
-    const auto& used = view_.session()->renderer().device();
-    device = QString::fromStdString(used.name + ", " + used.driver);
-  }
-  QMessageBox::about(&window_, tr("About the psygen editor"),
-                     tr("<b>psygen editor %1</b><br>Qt %2<br>Device: %3")
-                         .arg(QApplication::applicationVersion(), qVersion(), device));
+void add_pause_command(QMenu& menu, const EditorContext& context, bool paused) {
+  QAction* pause = menu.addAction(tr("Pause &synthesis"), tr("Ctrl+P"), &context.window,
+                                  [context](bool on) { context.view.set_paused(on); });
+  pause->setCheckable(true);
+  pause->setChecked(paused);
+}
+
+void add_help_commands(QMenu& menu, const EditorContext& context) {
+  menu.addAction(tr("&Keys and mouse"), tr("F1"), &context.window, [context] {
+    QMessageBox::information(
+        &context.window, tr("Keys and mouse"),
+        tr("<table><tr><td>W A S D, E, Q &nbsp;<td>fly; Shift: faster; wheel: change the speed"
+           "<tr><td>right button<td>look around<tr><td>click<td>select"
+           "<tr><td>middle button<td>orbit the selection"
+           "<tr><td>wheel<td>zoom to the selection<tr><td>Ctrl+F<td>look at the selection"
+           "<tr><td>Ctrl+Shift+P<td>find any command or field</table>"));
+  });
+  menu.addAction(tr("&About"), &context.window, [context] { show_about(context); });
 }
 
 }  // namespace psygen::editor

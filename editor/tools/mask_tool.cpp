@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <QCoreApplication>
 #include <algorithm>
 #include <cmath>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/tools/tool_host.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
@@ -18,10 +18,6 @@ constexpr int kTicks = 9;  // on each side of the brush's middle
 const glm::vec3 kBrushColour{0.95F, 0.96F, 1.0F}, kEraserColour{1.0F, 0.45F, 0.35F},
     kAreaColour{0.45F, 0.75F, 1.0F}, kPlannedColour{0.25F, 0.45F, 0.65F},
     kFullColour{0.35F, 0.95F, 0.35F}, kEmptyColour{0.95F, 0.25F, 0.2F};
-
-QString mask_words(const char* text) {
-  return QCoreApplication::translate("MaskTool", text);
-}
 
 // Divides the sides, because the view limits the pieces between two points of a line.
 ToolMarks::Line border(const std::array<double, 4>& area, const glm::vec3& colour) {
@@ -61,7 +57,7 @@ void add_ticks(const world::GreyPicture& picture, const std::array<double, 4>& a
 }
 
 bool is_png(const std::string& name) {
-  return QString::fromStdString(name).endsWith(QStringLiteral(".png"), Qt::CaseInsensitive);
+  return to_qstring(name).endsWith(QStringLiteral(".png"), Qt::CaseInsensitive);
 }
 
 }  // namespace
@@ -88,7 +84,7 @@ bool MaskTool::has_picture() const {
 QString MaskTool::model_name() const {
   const ParsedWorldPtr parsed = host_.document.parsed();
   const std::string_view name = parsed->registry[parsed->world.scatter[*scatter_].model].name();
-  return QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size()));
+  return to_qstring(name);
 }
 
 // A file name beside the world file that neither the folder nor the world has yet.
@@ -111,13 +107,11 @@ NewMask MaskTool::new_mask() const {
 
 void MaskTool::make_mask() {
   cancel();
-  if (!scatter())
-    return host_.show_message(mask_words("Choose a scatter layer for the mask first."));
-  if (has_picture())
-    return host_.show_message(mask_words("This layer has a mask. Paint on the ground."));
+  if (!scatter()) return host_.show_message(tr("Choose a scatter layer for the mask first."));
+  if (has_picture()) return host_.show_message(tr("This layer has a mask. Paint on the ground."));
   const world::World& world = host_.document.world();
   const auto plan = plan_of(new_mask(), world, host_.around(new_mask().side_m));
-  if (!plan) return host_.show_message(QString::fromStdString(plan.error().message));
+  if (!plan) return host_.show_message(to_qstring(plan.error().message));
   auto picture = std::make_shared<world::GreyPicture>();
   picture->width = plan->width, picture->height = plan->height;
   picture->pixels.assign(std::size_t{plan->width} * plan->height, 65535);
@@ -130,14 +124,14 @@ void MaskTool::make_mask() {
             return world::with_value(with_image, path.with("mask_area_m"),
                                      world::toml_vector(plan->area_m));
           });
-  if (!text) return host_.show_message(QString::fromStdString(text.error().message));
-  const auto done = host_.document.paint(mask_words("New mask of %1").arg(model_name()),
+  if (!text) return host_.show_message(to_qstring(text.error().message));
+  const auto done = host_.document.paint(tr("New mask of %1").arg(model_name()),
                                          {PaintChange(name, nullptr, picture)}, *text);
   if (!host_.check(done)) return;
   host_.show_message(
-      mask_words("%1 now appears only inside the blue border. Erase to remove it there. Saving the "
-                 "world writes the mask to %2.")
-          .arg(model_name(), QString::fromStdString(name)));
+      tr("%1 now appears only inside the blue border. Erase to remove it there. Saving the "
+         "world writes the mask to %2.")
+          .arg(model_name(), to_qstring(name)));
 }
 
 void MaskTool::set_radius_m(double radius_m) {
@@ -146,19 +140,17 @@ void MaskTool::set_radius_m(double radius_m) {
 
 void MaskTool::press(const ToolPoint& at) {
   hover_m_ = at.ground_m;
-  if (!scatter()) return host_.show_message(mask_words("Choose the mask to paint first."));
+  if (!scatter()) return host_.show_message(tr("Choose the mask to paint first."));
   if (!has_picture())
-    return host_.show_message(
-        mask_words("%1 has no mask yet. Click \"New mask\".").arg(model_name()));
-  if (!at.ground_m)
-    return host_.show_message(mask_words("There is no ground here. Paint on the ground."));
+    return host_.show_message(tr("%1 has no mask yet. Click \"New mask\".").arg(model_name()));
+  if (!at.ground_m) return host_.show_message(tr("There is no ground here. Paint on the ground."));
   Brush brush = brush_;
   if (at.fine) brush.erases = !brush.erases;
   stroke_.emplace(mask().picture, mask().area_m, brush);
   host_.set_dragging(true);
   drag(at);
   if (stroke_ && !stroke_->has_met())
-    host_.show_message(mask_words("The brush is outside the mask. Paint inside the blue border."));
+    host_.show_message(tr("The brush is outside the mask. Paint inside the blue border."));
 }
 
 void MaskTool::drag(const ToolPoint& at) {
@@ -185,7 +177,7 @@ void MaskTool::release() {
 
 void MaskTool::save_stroke(std::string name, const MaskStroke& stroke) {
   if (stroke.now()->hash == stroke.before()->hash) return;
-  const QString step = mask_words("Paint the mask of %1").arg(model_name());
+  const QString step = tr("Paint the mask of %1").arg(model_name());
   if (is_png(name)) {
     host_.check(host_.document.paint(
         step, {PaintChange::between(name, *stroke.before(), *stroke.now(), stroke.touched())},
@@ -197,10 +189,10 @@ void MaskTool::save_stroke(std::string name, const MaskStroke& stroke) {
   const auto text = world::with_value(host_.document.text(), {"scatter", *scatter_, "mask_image"},
                                       world::toml_string(png));
   host_.check(host_.document.preview_picture(name, stroke.before()));
-  if (!text) return host_.show_message(QString::fromStdString(text.error().message));
+  if (!text) return host_.show_message(to_qstring(text.error().message));
   if (host_.check(host_.document.paint(step, {PaintChange(png, nullptr, stroke.now())}, *text)))
-    host_.show_message(mask_words("%1 is unchanged. The mask is saved as PNG, in %2.")
-                           .arg(QString::fromStdString(name), QString::fromStdString(png)));
+    host_.show_message(tr("%1 is unchanged. The mask is saved as PNG, in %2.")
+                           .arg(to_qstring(name), to_qstring(png)));
 }
 
 bool MaskTool::cancel() {

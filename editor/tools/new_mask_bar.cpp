@@ -4,8 +4,9 @@
 #include <QDoubleSpinBox>
 #include <QHBoxLayout>
 #include <QLabel>
-#include <QLocale>
 #include <QSignalBlocker>
+
+#include "editor/document/qt_text.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -65,11 +66,10 @@ void NewMaskBar::show_plan(const NewMask& mask, const world::World& world) {
   if (side_->value() != mask.side_m) side_->setValue(mask.side_m);
   if (pixel_->value() != mask.pixel_m) pixel_->setValue(mask.pixel_m);
   const auto plan = plan_of(mask, world, {0, 0});
-  const QLocale words(QLocale::English);
-  pixels_->setText(
-      plan ? tr("%1 × %2 pixels").arg(words.toString(plan->width), words.toString(plan->height))
-           : tr("<b>too many pixels</b>"));
-  pixels_->setToolTip(plan ? QString() : QString::fromStdString(plan.error().message));
+  pixels_->setText(plan
+                       ? tr("%1 × %2 pixels").arg(count_text(plan->width), count_text(plan->height))
+                       : tr("<b>too many pixels</b>"));
+  pixels_->setToolTip(plan ? QString() : to_qstring(plan.error().message));
 }
 
 }  // namespace psygen::editor

@@ -1,11 +1,11 @@
 #include "editor/tools/place_tool.hpp"
 
-#include <QCoreApplication>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/tools/tool_host.hpp"
 #include "engine/synthesis/synthesise.hpp"
 #include "engine/world/files/text_edit.hpp"
@@ -16,10 +16,6 @@ namespace {
 
 constexpr double kMinExtentM = 0.3;
 const glm::vec3 kPlacedColour{1.0F, 0.62F, 0.1F}, kNextColour{0.85F, 0.88F, 0.95F};
-
-QString place_words(const char* text) {
-  return QCoreApplication::translate("PlaceTool", text);
-}
 
 std::string toml_point(glm::dvec2 at_m) {
   return world::toml_vector(std::array{at_m.x, at_m.y});
@@ -74,8 +70,7 @@ void PlaceTool::press(const ToolPoint& at) {
     choose(*at.handle);
     return drag_.begin();
   }
-  if (!at.ground_m)
-    return host_.show_message(place_words("There is no ground here. Click on the ground."));
+  if (!at.ground_m) return host_.show_message(tr("There is no ground here. Click on the ground."));
   drag_.begin();
   add(to_decimetres(*at.ground_m));
 }
@@ -84,7 +79,7 @@ void PlaceTool::add(glm::dvec2 at_m) {
   const std::size_t count = host_.document.world().places.all.size();
   const std::string table =
       "model = " + world::toml_string(type()) + "\nat_m = " + toml_point(at_m) + "\n";
-  const QString step = place_words("Place %1").arg(QString::fromStdString(type()));
+  const QString step = tr("Place %1").arg(to_qstring(type()));
   const auto change = [&](std::string_view text) {
     return world::with_table_appended(text, {"place"}, table);
   };
@@ -99,11 +94,10 @@ void PlaceTool::add(glm::dvec2 at_m) {
 void PlaceTool::drag(const ToolPoint& at) {
   hover_m_.reset();
   if (!drag_.active() || !place() || !at.ground_m) return;
-  drag_.note(host_.document.edit(
-      place_words("Move model %1").arg(*place_ + 1), [&](std::string_view text) {
-        return world::with_value(text, {"place", *place_, "at_m"},
-                                 toml_point(to_decimetres(*at.ground_m)));
-      }));
+  drag_.note(host_.document.edit(tr("Move model %1").arg(*place_ + 1), [&](std::string_view text) {
+    return world::with_value(text, {"place", *place_, "at_m"},
+                             toml_point(to_decimetres(*at.ground_m)));
+  }));
 }
 
 void PlaceTool::hover(const ToolPoint& at) {
@@ -118,7 +112,7 @@ void PlaceTool::click_right(const ToolPoint& at) {
 
 void PlaceTool::remove() {
   if (drag_.active()) return;
-  if (!place()) return host_.show_message(place_words("Click on a placed model first."));
+  if (!place()) return host_.show_message(tr("Click on a placed model first."));
   if (host_.check(host_.document.remove_table({"place", *place_}))) choose(std::nullopt);
 }
 
@@ -130,17 +124,16 @@ bool PlaceTool::wheel(const ToolPoint& at, double steps) {
 }
 
 void PlaceTool::turn(double degrees) {
-  if (!place()) return host_.show_message(place_words("Click on a placed model first."));
+  if (!place()) return host_.show_message(tr("Click on a placed model first."));
   Document& document = host_.document;
   const world::Place& turned = document.world().places.all[*place_];
   const models::ModelType& type = document.parsed()->registry[turned.model];
   const int parameter = models::parameter_index(type, "turn_deg");
   if (parameter < 0)
     return host_.show_message(
-        place_words(
-            "%1 cannot be turned. Only models with the parameter turn_deg can, such as those "
-            "from files.")
-            .arg(QString::fromUtf8(type.name().data(), static_cast<int>(type.name().size()))));
+        tr("%1 cannot be turned. Only models with the parameter turn_deg can, such as those "
+           "from files.")
+            .arg(to_qstring(type.name())));
   double now =
       std::fmod(turned.parameters.real(static_cast<std::size_t>(parameter)) + degrees, 360);
   if (now < 0) now += 360;
@@ -151,10 +144,9 @@ void PlaceTool::turn(double degrees) {
     else
       turn_drag_ = document.begin_drag();
   }
-  host_.check(
-      document.edit(place_words("Turn model %1").arg(*place_ + 1), [&](std::string_view text) {
-        return world::with_value(text, {"place", *place_, "turn_deg"}, world::toml_number(now));
-      }));
+  host_.check(document.edit(tr("Turn model %1").arg(*place_ + 1), [&](std::string_view text) {
+    return world::with_value(text, {"place", *place_, "turn_deg"}, world::toml_number(now));
+  }));
   if (!drag_.active()) document.end_drag();
   turned_ = place_;
 }

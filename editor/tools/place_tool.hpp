@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "editor/tools/tool_drag.hpp"
 #include "editor/tools/tool_host.hpp"
 #include "editor/view/view_tool.hpp"
 

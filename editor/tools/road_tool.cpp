@@ -1,9 +1,9 @@
 #include "editor/tools/road_tool.hpp"
 
-#include <QCoreApplication>
 #include <algorithm>
 #include <utility>
 
+#include "editor/document/qt_text.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
 #include "engine/world/road_line.hpp"
@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kMinStepM = 2, kStepFraction = 1.0 / 2000;  // of a road's length, for its line
 const glm::vec3 kRoadColour{0.75F, 0.78F, 0.85F}, kChosenRoadColour{1.0F, 0.62F, 0.1F};
-
-QString road_words(const char* text) {
-  return QCoreApplication::translate("RoadTool", text);
-}
 
 std::string toml_points_of(const std::vector<glm::dvec2>& points) {
   std::string text;
@@ -65,8 +61,7 @@ void RoadTool::press(const ToolPoint& at) {
     return drag_.begin();
   }
   if (at.line && !road() && !begun_) return choose(at.line->line);
-  if (!at.ground_m)
-    return host_.show_message(road_words("There is no ground here. Click on the ground."));
+  if (!at.ground_m) return host_.show_message(tr("There is no ground here. Click on the ground."));
   const glm::dvec2 at_m = to_decimetres(*at.ground_m);
   if (road()) {
     drag_.begin();
@@ -74,7 +69,7 @@ void RoadTool::press(const ToolPoint& at) {
   }
   if (!begun_) {
     begun_ = at_m;
-    return host_.show_message(road_words("Click the next point of the road."));
+    return host_.show_message(tr("Click the next point of the road."));
   }
   drag_.begin();
   add_road(*begun_, at_m);
@@ -86,7 +81,7 @@ void RoadTool::add_point(glm::dvec2 at_m, const std::optional<ToolPoint::OnLine>
   std::size_t place = chosen_point() == std::size_t{0} ? 0 : now.size();
   if (on_line) place = parts_[on_line->line][on_line->part] + 1;
   now.insert(now.begin() + static_cast<std::ptrdiff_t>(place), at_m);
-  if (host_.check(set_points(now, road_words("Add a point to road %1"))))
+  if (host_.check(set_points(now, tr("Add a point to road %1"))))
     point_ = place;
   else
     drag_.cancel();
@@ -94,7 +89,7 @@ void RoadTool::add_point(glm::dvec2 at_m, const std::optional<ToolPoint::OnLine>
 
 void RoadTool::add_road(glm::dvec2 from_m, glm::dvec2 to_m) {
   const std::size_t count = host_.document.world().shaped.roads.size();
-  const QString step = road_words("Add road %1").arg(count + 1);
+  const QString step = tr("Add road %1").arg(count + 1);
   const bool added = host_.check(host_.document.edit(step, [&](std::string_view text) {
     return world::with_table_appended(text, {"road"},
                                       "points_m = " + toml_points_of({from_m, to_m}) + "\n");
@@ -113,7 +108,7 @@ void RoadTool::drag(const ToolPoint& at) {
   if (!drag_.active() || !chosen_point() || !at.ground_m) return;
   Points now = points();
   now[*point_] = to_decimetres(*at.ground_m);
-  drag_.note(set_points(now, road_words("Move a point of road %1")));
+  drag_.note(set_points(now, tr("Move a point of road %1")));
 }
 
 void RoadTool::release() {
@@ -134,18 +129,16 @@ void RoadTool::click_right(const ToolPoint& at) {
 void RoadTool::remove() {
   if (drag_.active()) return;
   if (begun_) return begun_.reset();
-  if (!chosen_point()) return host_.show_message(road_words("Click on a point of a road first."));
+  if (!chosen_point()) return host_.show_message(tr("Click on a point of a road first."));
   if (points().size() > 2) {
     Points now = points();
     now.erase(now.begin() + static_cast<std::ptrdiff_t>(*point_));
-    if (host_.check(set_points(now, road_words("Remove a point of road %1"))) && *point_ > 0)
-      --*point_;
+    if (host_.check(set_points(now, tr("Remove a point of road %1"))) && *point_ > 0) --*point_;
     return;
   }
   if (!host_.check(host_.document.remove_table({"road", *road_}))) return;
   choose(std::nullopt);
-  host_.show_message(
-      road_words("Removed the road, because a road needs two points. Undo restores it."));
+  host_.show_message(tr("Removed the road, because a road needs two points. Undo restores it."));
 }
 
 const ToolMarks& RoadTool::marks() {

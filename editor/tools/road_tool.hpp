@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "editor/tools/tool_drag.hpp"
 #include "editor/tools/tool_host.hpp"
 #include "editor/view/view_tool.hpp"
 

@@ -7,8 +7,11 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "editor/document/document.hpp"
+#include "editor/document/qt_text.hpp"
 #include "editor/view/view_tool.hpp"
 
 namespace psygen::editor {
@@ -27,9 +30,47 @@ struct ToolHost {
 
   // Shows the error message of a failed call. Returns true if the call succeeded.
   bool check(const core::Result<void>& result) const {
-    if (!result) show_message(QString::fromStdString(result.error().message));
+    if (!result) show_message(to_qstring(result.error().message));
     return result.has_value();
   }
+};
+
+// The drag of a tool: all edits while the button is held are one undo step, which can be cancelled.
+// Errors during the drag become one message at its end, because the pointer may pass over invalid
+// places. The host outlives the drag.
+class ToolDrag {
+ public:
+  explicit ToolDrag(const ToolHost& host) : host_(host) {}
+  bool active() const { return active_; }
+
+  void begin() {
+    active_ = true;
+    error_.clear();
+    before_ = host_.document.text();
+    host_.set_dragging(true);
+  }
+  // Records the result of an edit during the drag.
+  void note(const core::Result<void>& edit) {
+    error_ = edit ? QString() : to_qstring(edit.error().message);
+  }
+  void end() {
+    if (!std::exchange(active_, false)) return;
+    host_.set_dragging(false);
+    if (!error_.isEmpty()) host_.show_message(error_);
+  }
+  // Ends the drag and restores the text of its start. Returns false if no drag was active.
+  bool cancel() {
+    if (!std::exchange(active_, false)) return false;
+    host_.check(host_.document.set_text(before_, QString()));
+    host_.set_dragging(false);
+    return true;
+  }
+
+ private:
+  const ToolHost& host_;
+  bool active_ = false;
+  std::string before_;
+  QString error_;
 };
 
 // Rounds a point of the pointer to decimetres, for the file.

@@ -12,6 +12,7 @@
 #include <QToolBar>
 #include <utility>
 
+#include "editor/document/qt_text.hpp"
 #include "editor/tools/new_mask_bar.hpp"
 
 namespace psygen::editor {
@@ -269,8 +270,8 @@ void ViewTools::fill_roads() {
 void ViewTools::fill_types() {
   QStringList names;
   for (const std::string& type : place_.types())
-    names += QString::fromStdString(type);
-  fill(*types_, names, static_cast<int>(names.indexOf(QString::fromStdString(place_.type()))));
+    names += to_qstring(type);
+  fill(*types_, names, static_cast<int>(names.indexOf(to_qstring(place_.type()))));
 }
 
 void ViewTools::fill_masks() {
@@ -279,8 +280,8 @@ void ViewTools::fill_masks() {
   for (const world::Scatter& scatter : parsed->world.scatter) {
     const std::string name(parsed->registry[scatter.model].name());
     const QString mask =
-        scatter.mask.image.empty() ? tr("no mask") : QString::fromStdString(scatter.mask.image);
-    names += tr("%1: %2").arg(QString::fromStdString(name), mask);
+        scatter.mask.image.empty() ? tr("no mask") : to_qstring(scatter.mask.image);
+    names += tr("%1: %2").arg(to_qstring(name), mask);
   }
   fill(*masks_, names, mask_.scatter() ? static_cast<int>(*mask_.scatter()) : -1);
   show_new_mask();

@@ -9,9 +9,9 @@
 #include <filesystem>
 #include <string>
 
-#include "editor/panels/properties_panel.hpp"
 #include "editor/pictures/picture_server.hpp"
-#include "editor/shell/default_world.hpp"
+#include "editor/shell/camera_memory.hpp"
+#include "editor/shell/edit_feedback.hpp"
 #include "editor/shell/main_window.hpp"
 #include "engine/scene/scene.hpp"
 #include "tests/editor/own_display.hpp"
@@ -47,8 +47,8 @@ std::unique_ptr<MainWindow> open_window(const std::filesystem::path& state, Answ
   QObject::connect(&window->view(), &WorldView::settled, window.get(),
                    [&answer](double ms) { answer.last_ms = ms; });
   window->show();
-  window->set_default_pose(default_pose(), kDefaultEyeHeightM);
-  window->open_file(source_file(std::string("game/worlds/") + kDefaultWorld + ".toml"));
+  window->use_first_pose();
+  window->open_file(source_file(std::string("game/worlds/") + kFirstWorld + ".toml"));
   wait_until([&] { return answer.last_ms >= 0; }, kLongestMs);
   return window;
 }
@@ -59,20 +59,20 @@ void steps(benchmark::State& state, bool held, const world::TextPath& path, cons
       std::filesystem::temp_directory_path() / ("psygen_answer_" + std::to_string(::getpid()));
   Answer answer;
   auto window = open_window(home, answer);
-  auto& properties = *window->findChild<PropertiesPanel*>();
+  auto& feedback = *window->findChild<EditFeedback*>();
   bool first = true;
   double last_ms = 0, first_cpu_ms = 0, main_cpu_ms = 0;
   for (auto _ : state) {
     answer = {};
     const double start_ms = cpu_ms(), main_start_ms = cpu_ms(RUSAGE_THREAD);
-    if (held) Q_EMIT properties.drag_began();
-    Q_EMIT properties.change_requested(path, std::exchange(first, !first) ? high : low);
+    if (held) feedback.set_dragging(true);
+    (void)window->document().set_value(path, std::exchange(first, !first) ? high : low);
     if (!wait_until([&] { return answer.first_ms >= 0; }, kLongestMs))
       state.SkipWithError("no answer");
     first_cpu_ms += cpu_ms() - start_ms;
     main_cpu_ms += cpu_ms(RUSAGE_THREAD) - main_start_ms;
     state.SetIterationTime(answer.first_ms * 1e-3);
-    if (held) Q_EMIT properties.drag_ended();
+    if (held) feedback.set_dragging(false);
     if (!wait_until([&] { return answer.last_ms >= 0; }, kLongestMs))
       state.SkipWithError("it does not settle");
     last_ms += answer.last_ms;

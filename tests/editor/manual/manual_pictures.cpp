@@ -36,8 +36,8 @@
 #include "editor/panels/impact_bar.hpp"
 #include "editor/panels/properties_panel.hpp"
 #include "editor/pictures/picture_server.hpp"
+#include "editor/shell/camera_memory.hpp"
 #include "editor/shell/command_palette.hpp"
-#include "editor/shell/default_world.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
 #include "editor/tools/view_tools.hpp"
@@ -186,7 +186,7 @@ void take_panels(Photographer& take, MainWindow& window) {
   colours->setCurrentText("Age");
   Q_EMIT colours->activated(colours->currentIndex());
   take.panel("map", "map-age");
-  Q_EMIT take.properties().change_requested({"sky", "cloud_cover"}, "7");  // invalid
+  window.findChild<MessageLog*>()->check(take.document().set_value({"sky", "cloud_cover"}, "7"));
   take.panel("messages", "messages");
   take.panel("statistics", "statistics");
   colours->setCurrentIndex(0);
@@ -469,10 +469,10 @@ int run(int argc, char** argv, Arguments arguments) {
   options.document.state_folder = arguments.home = display->home();
   MainWindow window(std::move(options));
   window.showFullScreen();
-  window.set_default_pose(default_pose(), kDefaultEyeHeightM);
+  window.use_first_pose();
   // A relative path, so that messages name the same file on every machine.
-  window.open_file(std::filesystem::proximate(
-      source_file(std::string("game/worlds/") + kDefaultWorld + ".toml")));
+  window.open_file(
+      std::filesystem::proximate(source_file(std::string("game/worlds/") + kFirstWorld + ".toml")));
   return take_all(window, arguments) ? 0 : 1;
 }
 

@@ -60,7 +60,7 @@ TEST_F(CostQuestion, TheImpactOfAChangeIsShown) {
 TEST_F(CostQuestion, ACostlyEditNeedsConfirmation) {
   properties().go_to(kScattered);
   const int height = bar().height();
-  Q_EMIT properties().change_requested(kScatteredCount, "200");
+  properties().row(kScatteredCount)->set_value("200");
   EXPECT_TRUE(bar().asks());
   EXPECT_TRUE(said().contains("A block at full detail would take")) << said().toStdString();
   EXPECT_EQ(document().text(), kSmallWorld);
@@ -69,7 +69,7 @@ TEST_F(CostQuestion, ACostlyEditNeedsConfirmation) {
   click("Keep the old value");
   EXPECT_FALSE(bar().asks());
   EXPECT_EQ(in_box(), 6);
-  Q_EMIT properties().change_requested(kScatteredCount, "200");
+  properties().row(kScatteredCount)->set_value("200");
   click("Apply anyway");
   EXPECT_FALSE(bar().asks());
   settle();

@@ -12,7 +12,6 @@
 
 #include "editor/flights/timeline_panel.hpp"
 #include "editor/panels/cache_map.hpp"
-#include "editor/panels/section_bar.hpp"
 #include "tests/editor/window/window_fixture.hpp"
 
 namespace psygen::editor {
@@ -92,7 +91,7 @@ TEST_F(EditorWindow, TheWeatherSlidersAreFieldsOfTheSky) {
 
 TEST_F(EditorWindow, ASectionIsCopiedAndResetWithItsButtons) {
   properties().go_to(kRocks);
-  auto* bar = properties().findChild<SectionBar*>();
+  auto* bar = properties().findChild<QWidget*>("heading");
   const auto button = [&](const QString& text) {
     for (auto* found : bar->findChildren<QToolButton*>()) {
       if (found->text() == text) return found;

@@ -58,7 +58,7 @@ TEST_F(EditorWindow, ASavedWorldOpensAsTheSameWorld) {
 
 TEST_F(EditorWindow, AnInvalidValueChangesNothing) {
   properties().go_to(kTrees);
-  Q_EMIT properties().change_requested(kCount, "100000");
+  properties().row(kCount)->set_value("100000");
   EXPECT_EQ(document().text(), kSmallWorld);
   EXPECT_EQ(document().undo_stack().count(), 0);
   EXPECT_EQ(properties().row(kCount)->findChild<QDoubleSpinBox*>()->value(), 6);
@@ -79,7 +79,7 @@ TEST_F(EditorWindow, ASeedCanBeSteppedAndLocked) {
   EXPECT_EQ(document().field(seed)->plain, "6");
   click("−");
   EXPECT_EQ(document().field(seed)->plain, "5");
-  Q_EMIT properties().lock_requested(seed, true);
+  row->set_locked(true);
   EXPECT_TRUE(document().locks().is_locked(seed));
   click("⚄");
   EXPECT_EQ(document().field(seed)->plain, "5");
@@ -87,8 +87,8 @@ TEST_F(EditorWindow, ASeedCanBeSteppedAndLocked) {
   properties().go_to(kTrees);
   properties().go_to({"world"});
   EXPECT_TRUE(properties().row(seed)->is_locked());
-  Q_EMIT properties().lock_requested(seed, false);
-  Q_EMIT properties().randomise_requested(seed);
+  properties().row(seed)->set_locked(false);
+  properties().row(seed)->randomise();
   EXPECT_NE(document().field(seed)->plain, "5");
 }
 

@@ -1,7 +1,9 @@
-#include "editor/shell/message_log.hpp"
+#include "editor/panels/message_log.hpp"
 
 #include <QDateTime>
 #include <QStatusBar>
+
+#include "editor/document/qt_text.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -23,7 +25,7 @@ void MessageLog::show_message(const QString& message) {
 }
 
 bool MessageLog::check(const core::Result<void>& result) {
-  if (!result) show_message(QString::fromStdString(result.error().message));
+  if (!result) show_message(to_qstring(result.error().message));
   return result.has_value();
 }
 
