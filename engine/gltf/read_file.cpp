@@ -160,25 +160,24 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
+// Bytes that a file and the files that it names may have. TinyGLTF counts them as int.
+std::uint64_t max_bytes_of(const Limits& limits) {
+  return std::min<std::uint64_t>(limits.bytes, INT32_MAX);
+}
+
 // Parses the JSON and the bytes of a file with TinyGLTF. Indices in the result are not checked, and
 // images are not decoded: the member `image` of an image with a URI has the bytes of its file.
 // Appends the files that it names to `named`. Fails like read_file(). Throws std::bad_alloc and
 // exceptions of TinyGLTF.
-core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Limits& limits,
+core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Bytes& bytes,
+                                    const Limits& limits,
                                     std::vector<std::filesystem::path>& named) {
-  const auto refuse = [&](ErrorCode code, std::string_view sentence) {
-    return core::fail(code, fmt::format("{}: {}", path.string(), sentence));
-  };
-  const std::uint64_t max_bytes = std::min<std::uint64_t>(limits.bytes, INT32_MAX);
-  const auto bytes = core::read_file(path, max_bytes);
-  if (!bytes) return tl::unexpected(bytes.error());
-  const bool binary = characters(*bytes).starts_with("glTF");
-  if (auto ok = check_length(*bytes, binary); !ok)
-    return refuse(ok.error().code, ok.error().message);
-  if (auto ok = check_shape(json_of(*bytes, binary), limits.json_values); !ok)
-    return refuse(ok.error().code, ok.error().message);
+  const bool binary = characters(bytes).starts_with("glTF");
+  if (auto ok = check_length(bytes, binary); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_shape(json_of(bytes, binary), limits.json_values); !ok)
+    return tl::unexpected(ok.error());
 
-  FileGate gate{path, max_bytes - bytes->size(), named, {}};
+  FileGate gate{path, max_bytes_of(limits) - bytes.size(), named, {}};
   tinygltf::TinyGLTF reader;
   tinygltf::FsCallbacks files{};
   files.FileExists = [](const std::string&, void*) { return true; };
@@ -198,22 +197,21 @@ core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Lim
 
   tinygltf::Model model;
   std::string errors, warnings;
-  const auto size = static_cast<unsigned>(bytes->size());
+  const auto size = static_cast<unsigned>(bytes.size());
   const bool parsed =
-      binary ? reader.LoadBinaryFromMemory(&model, &errors, &warnings, bytes->data(), size)
-             : reader.LoadASCIIFromString(&model, &errors, &warnings, characters(*bytes).data(),
+      binary ? reader.LoadBinaryFromMemory(&model, &errors, &warnings, bytes.data(), size)
+             : reader.LoadASCIIFromString(&model, &errors, &warnings, characters(bytes).data(),
                                           size, "");
-  if (gate.error) return refuse(gate.error->code, gate.error->message);
+  if (gate.error) return tl::unexpected(*gate.error);
   // TinyGLTF continues after many errors and loses the faulty parts. This message is no error in
   // glTF 2.0.
   constexpr std::string_view kNoError = "'inverseBindMatrices' property is missing in Skin.\n";
   for (std::size_t at = errors.find(kNoError); at != std::string::npos; at = errors.find(kNoError))
     errors.erase(at, kNoError.size());
-  if (!parsed || !errors.empty()) {
-    return refuse(ErrorCode::kParse,
-                  "is not glTF that can be read: " + core::shown(first_line(errors), kMaxMessage));
-  }
-  if (auto ok = check_version(model); !ok) return refuse(ok.error().code, ok.error().message);
+  if (!parsed || !errors.empty())
+    return core::fail(ErrorCode::kParse, "is not glTF that can be read: " +
+                                             core::shown(first_line(errors), kMaxMessage));
+  if (auto ok = check_version(model); !ok) return tl::unexpected(ok.error());
   return model;
 }
 
@@ -246,13 +244,14 @@ core::Result<Model> read_parsed(const std::filesystem::path& path, const tinyglt
 core::Result<Model> read_file(const std::filesystem::path& path, const Limits& limits) {
   try {
     std::vector<std::filesystem::path> named;
-    const auto file = parse(path, limits, named);
-    if (!file) return tl::unexpected(file.error());
-    auto model = read_parsed(path, *file, limits);
-    if (!model) {
+    const auto bytes = core::read_file(path, max_bytes_of(limits));
+    if (!bytes) return tl::unexpected(bytes.error());
+    auto model = parse(path, *bytes, limits, named).and_then([&](const tinygltf::Model& file) {
+      return read_parsed(path, file, limits);
+    });
+    if (!model)
       return core::fail(model.error().code,
                         fmt::format("{}: {}", path.string(), model.error().message));
-    }
     model->files = std::move(named);
     return model;
   } catch (const std::bad_alloc&) {
