@@ -1,4 +1,4 @@
-// Pictures of models seen from around (engine/core/impostor_texture.hpp): alpha-tested, with the square
+// Pictures of models seen from around (engine/core/vertex_layout.hpp): alpha-tested, with the square
 // root of the albedo. Vertices of such a mesh without a picture use layer 0, which is white.
 #ifdef PSYGEN_PICTURE
 layout(set = 0, binding = PSYGEN_BINDING_PICTURES) uniform sampler2DArray pictures;

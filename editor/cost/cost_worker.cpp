@@ -3,7 +3,7 @@
 #include <QMetaObject>
 #include <utility>
 
-#include "engine/core/start_thread.hpp"
+#include "engine/core/headroom.hpp"
 #include "engine/synthesis/thread_priority.hpp"
 
 namespace psygen::editor {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "engine/core/start_thread.hpp"
+#include "engine/core/headroom.hpp"
 #include "engine/render/hud_drawing.hpp"
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/frame/input.hpp"

@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "engine/core/clock.hpp"
+#include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
-#include "engine/core/start_thread.hpp"
 #include "engine/synthesis/thread_priority.hpp"
 
 namespace psygen::amplify {

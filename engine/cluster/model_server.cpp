@@ -15,7 +15,7 @@
 
 #include "engine/cluster/mesh_messages.hpp"
 #include "engine/core/clock.hpp"
-#include "engine/core/start_thread.hpp"
+#include "engine/core/headroom.hpp"
 #include "engine/synthesis/synthesise.hpp"
 #include "engine/synthesis/thread_priority.hpp"
 

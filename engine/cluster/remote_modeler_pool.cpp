@@ -7,8 +7,8 @@
 
 #include "engine/cluster/mesh_messages.hpp"
 #include "engine/core/clock.hpp"
+#include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
-#include "engine/core/start_thread.hpp"
 
 namespace psygen::cluster {
 namespace {

@@ -2,11 +2,17 @@
 // resource and frees it immediately. This reveals limits (ulimit -d, -v, -u, container limits on
 // threads, memory that must not be overcommitted) before a library that cannot handle them reaches
 // them. It does not see memory limits that the kernel enforces by killing. An answer holds only for
-// the moment. POSIX. Any thread.
+// the moment. Also starts threads where the system may refuse. POSIX. Any thread.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "engine/core/error.hpp"
 
 namespace psygen::core {
 
@@ -18,5 +24,18 @@ bool addresses_left(std::uint64_t bytes);
 // Returns the number of threads that can be started, at most `most`. Takes about 10 microseconds a
 // thread.
 std::size_t threads_left(std::size_t most);
+
+// Runs `work` on a new thread, which the caller joins. Fails with kInternal if the system grants
+// this process no thread (ulimit -u, container limits) or no memory for its stack.
+template <class Work>
+Result<std::thread> start_thread(Work&& work) {
+  try {
+    return std::thread(std::forward<Work>(work));
+  } catch (const std::exception& e) {  // std::system_error or std::bad_alloc
+    return fail(
+        ErrorCode::kInternal,
+        std::string("the system gives no more threads, or no memory for one (") + e.what() + ")");
+  }
+}
 
 }  // namespace psygen::core

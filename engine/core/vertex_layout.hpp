@@ -1,11 +1,12 @@
-// The three vertex formats. Modelers (engine/models) write them and shaders read them
-// (shaders/terrain.vert, shaders/model.vert). The interface between synthesis and rendering: byte
-// layouts, no behaviour. Any thread.
+// The three vertex formats, and the texture format of impostors. Modelers (engine/models) write
+// them and shaders read them (shaders/terrain.vert, shaders/model.vert). The interface between
+// synthesis and rendering: byte layouts, no behaviour. Any thread.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace psygen::core {
 
@@ -65,7 +66,7 @@ static_assert(sizeof(ObjectVertex) == 24);
 inline constexpr std::uint8_t kBillboardBit = 2;
 inline constexpr float kBillboardReachM = 256;
 // A bit that only occurs together with kBillboardBit: the vertex is a corner of an impostor
-// (model_picture.hpp). `colour` then holds kImpostorViews · impostor index + number of views by
+// (kImpostorSide). `colour` then holds kImpostorViews · impostor index + number of views by
 // which the model is turned, and the texture coordinates u and v.
 inline constexpr std::uint8_t kImpostorBit = 4;
 // Upper bound of the distance by which billboard rotation moves the vertex from `position`, in
@@ -101,6 +102,34 @@ constexpr std::uint32_t vertex_stride_bytes(VertexLayout layout) {
 template <class Vertex>
 std::span<const Vertex> vertices_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const Vertex*>(bytes.data()), bytes.size() / sizeof(Vertex)};
+}
+
+// Impostors stand in for distant models: views from around the model, one after the other in one
+// texture. Synthesis makes them (world/far/tree_impostors.hpp), and the renderer draws them.
+// Texels of 4 bytes: red, green and blue as the square root of the linear albedo, and opacity,
+// which is drawn from one half on. The texture stores level by level, each half as wide as the one
+// before; in a level view by view; in a view rows from the top. View k shows the model to a viewer
+// who looks along (cos, 0, sin) of k · 45°.
+inline constexpr std::uint32_t kImpostorSide = 128;  // texels
+inline constexpr std::uint32_t kImpostorViews = 8;
+inline constexpr std::uint32_t kImpostorLevels = 6;  // the last one has 4 x 4 texels
+// Limit of the renderer: one byte holds an impostor and a view, and every device has as many
+// layers.
+inline constexpr std::uint32_t kMaxImpostors = 31;
+
+// The texels of one impostor.
+using ImpostorTexture = std::vector<std::uint8_t>;
+
+// Bytes of one level of all views, and of a whole impostor.
+constexpr std::size_t impostor_level_bytes(std::uint32_t level) {
+  const std::size_t side = kImpostorSide >> level;
+  return kImpostorViews * side * side * 4;
+}
+constexpr std::size_t impostor_bytes() {
+  std::size_t sum = 0;
+  for (std::uint32_t level = 0; level < kImpostorLevels; ++level)
+    sum += impostor_level_bytes(level);
+  return sum;
 }
 
 }  // namespace psygen::core

@@ -87,8 +87,7 @@ void read_session(TableReader& reader, app::SessionOptions& session) {
   read_scene(reader, session.scene);
 }
 
-void read_flight(const world::Member& table, app::FlightOptions& flight, Problems& problems) {
-  TableReader reader(table.value, table.key, table.line, problems);
+void read_flight(TableReader& reader, app::FlightOptions& flight) {
   read_file_name(reader, "path", flight.path_file);
   reader.read("seconds", flight.seconds, {0, 86400});
   reader.read("warmup", flight.warmup_seconds, {0, 3600});
@@ -202,17 +201,15 @@ core::Result<FrameTest> parse_frame_test(std::string_view text,
   test.name = core::shown(file_name.stem().string(), kMaxNameBytes);
   root.read("name", test.name, kMaxNameBytes);
   if (test.name.find('/') != std::string::npos)
-    root.problem(root.find("name")->line, "name",
-                 "the name is also used for a folder and must not contain /");
+    root.problem("name", "the name is also used for a folder and must not contain /");
   test.flight.session.headless = true;
   test.flight.session.world_file = "paper";
   test.flight.session.preset = render::Preset::kLow;
-  if (const world::Member* flight = root.table("flight"))
-    read_flight(*flight, test.flight, problems);
+  if (auto flight = root.table("flight")) read_flight(*flight, test.flight);
   const KnownFields known;
   for (const Relation relation : {Relation::kAtMost, Relation::kAtLeast, Relation::kEqual}) {
-    if (const world::Member* table = root.table(name_of(relation)))
-      read_budgets(table->value, "", relation, known, problems, test.budgets);
+    if (const auto table = root.table(name_of(relation)))
+      read_budgets(table->node(), "", relation, known, problems, test.budgets);
   }
   root.finish();
   if (!problems.any() && test.budgets.empty())

@@ -1,4 +1,4 @@
-// Reads the files that a world file names (world/files/files_beside.hpp): glTF models as model
+// Reads the files that a world file names (world/files/resource_loader.hpp): glTF models as model
 // types with levels of detail, and images as grey values. Not for objects of a game with textures
 // and animations (engine/prefab). Any thread; too slow for the tick.
 #pragma once

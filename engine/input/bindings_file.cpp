@@ -28,19 +28,18 @@ struct ActionTable {
   std::vector<Binding> bindings;
 };
 
-Binding read_binding(const Node& node, const std::string& path, Problems& problems) {
-  TableReader reader(node, path, node.line, problems);
+Binding read_binding(TableReader& reader) {
   Binding binding;
   std::string control;
   if (reader.read("control", control, kMaxControlBytes, Presence::kRequired)) {
     if (const auto named = control_named(control)) {
       binding.control = *named;
     } else {
-      reader.problem(reader.find("control")->line, "control", named.error().message);
+      reader.problem("control", named.error().message);
     }
   }
   if (reader.read("scale", binding.scale, kScales) && binding.scale == 0)
-    reader.problem(reader.find("scale")->line, "scale", "0 would ignore the control");
+    reader.problem("scale", "0 would ignore the control");
   reader.read("dead_zone", binding.dead_zone, kDeadZones);
   reader.finish();
   return binding;
@@ -55,23 +54,18 @@ std::string no_action(const std::string& name, const Actions& actions) {
                      nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest));
 }
 
-ActionTable read_action(const Node& node, std::size_t number, const Actions& actions,
-                        Problems& problems) {
-  const std::string path = fmt::format("action[{}]", number);
-  TableReader reader(node, path, node.line, problems);
+ActionTable read_action(TableReader& reader, const Actions& actions) {
   ActionTable table;
   std::string name;
   if (reader.read("name", name, Actions::kMaxNameBytes, Presence::kRequired)) {
     if (const auto id = actions.find(name)) {
       table.action = *id;
     } else {
-      reader.problem(reader.find("name")->line, "name", no_action(name, actions));
+      reader.problem("name", no_action(name, actions));
     }
   }
-  for (const Node* binding : reader.tables("binding", Actions::kMaxBindings)) {
-    table.bindings.push_back(read_binding(
-        *binding, fmt::format("{}.binding[{}]", path, table.bindings.size()), problems));
-  }
+  for (TableReader& binding : reader.tables("binding", Actions::kMaxBindings))
+    table.bindings.push_back(read_binding(binding));
   reader.finish();
   return table;
 }
@@ -103,12 +97,12 @@ core::Result<void> apply_bindings(std::string_view text, std::string_view file_n
   if (problems.any()) return tl::unexpected(problems.first());
   std::vector<ActionTable> tables;
   std::vector<bool> seen(actions.size(), false);
-  for (const Node* node : root.tables("action", Actions::kMaxActions)) {
-    tables.push_back(read_action(*node, tables.size(), actions, problems));
+  for (TableReader& reader : root.tables("action", Actions::kMaxActions)) {
+    tables.push_back(read_action(reader, actions));
     if (problems.any()) continue;
     if (seen[tables.back().action]) {
-      problems.add(node->line, fmt::format("action[{}].name", tables.size() - 1),
-                   fmt::format("\"{}\" is a duplicate", actions.name(tables.back().action)));
+      reader.problem(reader.line(), "name",
+                     fmt::format("\"{}\" is a duplicate", actions.name(tables.back().action)));
     }
     seen[tables.back().action] = true;
   }

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "engine/app/session.hpp"
+#include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
-#include "engine/core/start_thread.hpp"
 #include "engine/inspect/inspect.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/facts/world_facts.hpp"

@@ -12,7 +12,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/geometry_memory.hpp"
-#include "engine/core/impostor_texture.hpp"
+#include "engine/core/vertex_layout.hpp"
 #include "engine/render/types.hpp"
 
 struct ImFontAtlas;

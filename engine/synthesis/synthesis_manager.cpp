@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "engine/core/clock.hpp"
+#include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
-#include "engine/core/start_thread.hpp"
 
 namespace psygen::synthesis {
 namespace {

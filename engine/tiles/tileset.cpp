@@ -9,9 +9,9 @@
 #include <thread>
 #include <vector>
 
+#include "engine/core/headroom.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/core/replace_file.hpp"
-#include "engine/core/start_thread.hpp"
 #include "engine/exchange/write_document.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/tiles/subtree.hpp"

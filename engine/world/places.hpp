@@ -1,6 +1,6 @@
 // Models that a world file places one by one, each at a point. They are part of the world's
 // function, next to scattered models and models placed by edits (edits/edits.hpp). Plain values;
-// immutable in use, any thread. They read no files (files/place_file.hpp). docs/world-files.md.
+// immutable in use, any thread. They read no files (files/scatter_file.hpp). docs/world-files.md.
 #pragma once
 
 #include <cstdint>

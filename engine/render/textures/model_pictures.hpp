@@ -1,11 +1,11 @@
-// The texture with the pictures of models (core/impostor_texture.hpp) and its sampler. Layer 0 is
+// The texture with the pictures of models (core/vertex_layout.hpp) and its sampler. Layer 0 is
 // white, for what has no picture. It knows nothing of models. Main thread; everything waits for the
 // device. Private to engine/render.
 #pragma once
 
 #include <span>
 
-#include "engine/core/impostor_texture.hpp"
+#include "engine/core/vertex_layout.hpp"
 #include "engine/render/memory/memory.hpp"
 
 namespace psygen::render {

@@ -1,4 +1,4 @@
-// Bakes the impostor of a model (core/model_picture.hpp): rasterises its triangles from several
+// Bakes the impostor of a model (core/vertex_layout.hpp): rasterises its triangles from several
 // directions, lit through its own crown, and makes the smaller levels, which keep the opaque area.
 // Pure, any thread, the same bits on every machine; linear in the triangles.
 #pragma once
@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/core/impostor_texture.hpp"
+#include "engine/core/vertex_layout.hpp"
 #include "engine/world/far/outline.hpp"
 
 namespace psygen::world {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <optional>
@@ -9,11 +10,10 @@
 #include "engine/core/assert.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/world/far/merged_identity.hpp"
 #include "engine/world/far/merged_plan.hpp"
 #include "engine/world/far/node_walk.hpp"
-#include "engine/world/far/placed_proxies.hpp"
 #include "engine/world/far/proxy_writer.hpp"
+#include "engine/world/ground_blends.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::world {
@@ -28,6 +28,28 @@ constexpr int kDetails = 2;
 // Error of the forms of the next node level, relative to the height of the models. It doubles with
 // every node level.
 constexpr double kNextFormsError = 0.2;
+
+constexpr std::uint64_t kEdition = 4;  // version of the meshes
+
+constexpr ParameterSpec kSchema[kMergedParameterCount] = {
+    models::placed(models::integer_parameter("block_x", "nodes", 0,
+                                             models::HardRange{-0x1.0p31, 0x1.0p31 - 1},
+                                             models::SoftRange{-1000, 1000}, "node along x")),
+    models::placed(models::integer_parameter("block_z", "nodes", 0,
+                                             models::HardRange{-0x1.0p31, 0x1.0p31 - 1},
+                                             models::SoftRange{-1000, 1000}, "node along z")),
+    models::placed(models::integer_parameter(
+        "node_level", "", 1, models::HardRange{1, kMaxMergedLevel},
+        models::SoftRange{1, kMaxMergedLevel}, "the node is 2^node_level blocks wide and long")),
+};
+
+// The world itself if it has no edits, else a copy without them.
+std::shared_ptr<const World> without_edits(std::shared_ptr<const World> world) {
+  if (!world->edits) return world;
+  auto copy = std::make_shared<World>(*world);
+  set_edits(*copy, nullptr);
+  return copy;
+}
 
 int level_of(const Parameters& p) {
   return static_cast<int>(
@@ -59,7 +81,7 @@ class MergedType final : public models::ModelType {
   std::string_view doc() const override {
     return "all trees and rocks of a node's blocks, a few triangles each";
   }
-  std::span<const ParameterSpec> parameters() const override { return merged_schema(); }
+  std::span<const ParameterSpec> parameters() const override { return kSchema; }
   int level_count() const override { return kDetails; }
   int level_count_of(const Parameters& p) const override {
     return plan(p, 0).form_level == plan(p, 1).form_level ? 1 : kDetails;
@@ -306,6 +328,37 @@ core::Bounds MergedType::synthesise(const Parameters& p, int level, const MeshVi
 }
 
 }  // namespace
+
+std::uint64_t merged_identity(const World& world, const models::Registry& registry) {
+  std::uint64_t h = core::combine(kEdition, world.seed);
+  const auto add = [&h](std::uint64_t v) { h = core::combine(h, v); };
+  const auto add_real = [&add](double v) { add(std::bit_cast<std::uint64_t>(v)); };
+  add(static_cast<std::uint64_t>(world.blocks_x));
+  add(static_cast<std::uint64_t>(world.blocks_z));
+  add(models::parameters_hash(registry[world.terrain_model], world.terrain));
+  for (const Scatter& s : world.scatter) {
+    const models::ModelType& type = registry[s.model];
+    add(core::hash_bytes(std::as_bytes(std::span(type.name()))));
+    add(models::parameters_hash(type, models::default_parameters(type)));
+    add(s.count);
+    for (const ParameterRange& range : s.ranges) {
+      add_real(range.low);
+      add_real(range.high);
+    }
+    add_real(s.min_height_m);
+    add_real(s.max_height_m);
+    add_real(s.max_slope_deg);
+    if (const std::uint64_t mask = mask_hash(s.mask); mask != 0) add(mask);
+  }
+  if (const std::uint64_t shape = shape_hash(world); shape != 0) add(shape);
+  if (const std::uint64_t places = places_hash(world, registry); places != 0) {
+    add(places);
+    for (const Place& place : world.places.all)
+      add(registry[place.model].identity());
+  }
+  if (const std::uint64_t ground = placing_hash(world); ground != 0) add(ground);
+  return h;
+}
 
 std::unique_ptr<models::ModelType> make_merged_type(std::shared_ptr<const World> world,
                                                     const models::Registry& registry,

@@ -50,6 +50,10 @@ std::unique_ptr<models::ModelType> make_merged_type(
     std::shared_ptr<const ImpostorSet> pictures = nullptr,
     std::shared_ptr<const FarScatters> scatters = nullptr);
 
+// ModelType::identity() of that type without pictures, for a world without edits: a hash of
+// everything in the world that its meshes depend on.
+std::uint64_t merged_identity(const World& world, const models::Registry& registry);
+
 // The parameters of one node without edits. `node` is in nodes of its level, 1 … kMaxMergedLevel.
 models::Parameters merged_parameters(core::BlockCoord node, int node_level);
 // The same with the edits of the world.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <new>
 
+#include "engine/models/kit/exact_math.hpp"
+#include "engine/world/far/merged_models.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world_parts.hpp"
 
@@ -43,6 +45,15 @@ Silhouette silhouette_of_form(Form form, const Outline& outline) {
     places[i] = mesh.corners[i].position + glm::vec3(aside_of(form, mesh, i), 0, 0);
   return silhouette_of(std::span(places).first(size.vertices),
                        std::span(mesh.indices).first(std::size_t{3} * size.triangles));
+}
+
+// The albedo of an instance from above, weighted like that of its upper half.
+glm::vec3 albedo_of(const Outline& outline) {
+  const auto reflected = [](const Corner& c) { return c.colour * c.colour * c.ambient; };
+  glm::vec3 sum = reflected(outline.top) * 0.5F;
+  for (const Corner& c : outline.ring)
+    sum += reflected(c) * 0.125F;
+  return sum;
 }
 
 }  // namespace
@@ -203,6 +214,26 @@ FarScatter::Reach FarScatter::reach(float models) const {
     most.aside = std::max(most.aside, aside + std::abs(axis.x) + std::abs(axis.y));
   }
   return {kRoom * most.aside, kRoom * most.up, kRoom * most.down};
+}
+
+FarCover far_cover(const World& world, const FarScatters& scatters,
+                   std::span<const double> placed) {
+  const double block_m2 = world.block_size_m() * world.block_size_m();
+  glm::vec3 light(0.0F);
+  double covered = 0;
+  for (std::size_t s = 0; s < world.scatter.size(); ++s) {
+    const FarScatter& far = scatters.all()[s];
+    for (const Representative& r : far.representatives()) {
+      const double share = placed[s] * static_cast<double>(r.silhouette.plan_m2) /
+                           (static_cast<double>(far.representatives().size()) * block_m2);
+      light += albedo_of(r.outline) * static_cast<float>(share);
+      covered += share;
+    }
+  }
+  if (covered <= 0) return {};
+  // Models at random positions overlap at random.
+  return {light / static_cast<float>(covered),
+          static_cast<float>(1 - models::exact_exp(-std::min(covered, 100.0)))};
 }
 
 }  // namespace psygen::world

@@ -1,4 +1,4 @@
-// Impostors of trees (core/model_picture.hpp): the models of a world that have one, its image, and
+// Impostors of trees (core/vertex_layout.hpp): the models of a world that have one, its image, and
 // the quad that shows it in place of another model of the same type. Impostors are made from the
 // finest mesh of a few instances of every scatter of trees; all other instances use the most
 // similar impostor, stretched to their own size. Immutable after construction, any thread. Draws
@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/core/impostor_texture.hpp"
+#include "engine/core/vertex_layout.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/world/far/impostor_raster.hpp"
 #include "engine/world/far/proxy_shapes.hpp"

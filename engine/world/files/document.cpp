@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "engine/core/utf8.hpp"
@@ -37,10 +39,6 @@ namespace psygen::world {
 namespace {
 
 static_assert(kMaxNesting == TOML_MAX_NESTED_VALUES);
-
-core::Error error_at(std::string_view file, std::size_t line, std::string_view sentence) {
-  return {core::ErrorCode::kParse, fmt::format("{}:{}: {}", file, line, sentence)};
-}
 
 int line_of(const toml::source_region& source) {
   return static_cast<int>(source.begin.line);
@@ -102,32 +100,29 @@ core::Result<Node> parse_document(std::string_view text, std::string_view file_n
     return tl::unexpected(std::move(screened.error()));
   const toml::parse_result parsed = toml::parse(text, file_name);
   if (!parsed) {
-    return tl::unexpected(
-        error_at(file_name, parsed.error().source().begin.line, sentence_of(parsed.error())));
+    return core::fail(core::ErrorCode::kParse,
+                      fmt::format("{}:{}: {}", file_name, parsed.error().source().begin.line,
+                                  sentence_of(parsed.error())));
   }
   Node root;
   convert_table(parsed.table(), root);
   return root;
 }
 
+const Member* Node::find(std::string_view key) const {
+  const auto at = std::ranges::find(members, key, &Member::key);
+  return at == members.end() ? nullptr : &*at;
+}
+
+int Node::line_of(std::string_view key) const {
+  const Member* member = find(key);
+  return member != nullptr ? member->value.line : line;
+}
+
 std::string_view kind_name(Node::Kind kind) {
-  switch (kind) {
-    case Node::Kind::kInteger:
-      return "an integer";
-    case Node::Kind::kReal:
-      return "a number";
-    case Node::Kind::kText:
-      return "a string";
-    case Node::Kind::kBoolean:
-      return "a boolean";
-    case Node::Kind::kTime:
-      return "a date or time";
-    case Node::Kind::kArray:
-      return "an array";
-    case Node::Kind::kTable:
-      return "a table";
-  }
-  return "a value";
+  static constexpr std::array<std::string_view, 7> kNames{
+      "an integer", "a number", "a string", "a boolean", "a date or time", "an array", "a table"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace psygen::world

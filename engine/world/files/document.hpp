@@ -26,6 +26,11 @@ struct Node {
   std::string text;
   std::vector<Node> items;      // of an array
   std::vector<Member> members;  // of a table, sorted by key
+
+  // The member of a table with this key, or null.
+  const Member* find(std::string_view key) const;
+  // The line of that member's value, or of the table if it has no such member.
+  int line_of(std::string_view key) const;
 };
 
 // A key of a table with its line and its value.

@@ -24,23 +24,21 @@ constexpr Limits kHeadings{-36'000, 36'000};
 constexpr Limits kPitches{-89, 89};
 constexpr Limits kSmoothing{0.1, 10};
 
-CameraPath::Settings read_settings(TableReader& root, Problems& problems) {
+CameraPath::Settings read_settings(TableReader& root) {
   CameraPath::Settings settings;
-  const Member* member = root.table("path", Presence::kRequired);
-  if (member == nullptr) return settings;
-  TableReader reader(member->value, "path", member->line, problems);
-  reader.read("name", settings.name, kMaxNameBytes, Presence::kRequired);
+  std::optional<TableReader> reader = root.table("path", Presence::kRequired);
+  if (!reader) return settings;
+  reader->read("name", settings.name, kMaxNameBytes, Presence::kRequired);
   std::int64_t block[2] = {0, 0};
-  reader.read_pair("origin_block", block, {-0x1.0p31, 0x1.0p31 - 1});
+  reader->read_pair("origin_block", block, {-0x1.0p31, 0x1.0p31 - 1});
   settings.origin_block = {static_cast<std::int32_t>(block[0]),
                            static_cast<std::int32_t>(block[1])};
-  reader.read("smoothing_s", settings.smoothing_s, kSmoothing);
-  reader.finish();
+  reader->read("smoothing_s", settings.smoothing_s, kSmoothing);
+  reader->finish();
   return settings;
 }
 
-PathPoint read_point(const Node& node, std::size_t number, Problems& problems) {
-  TableReader reader(node, fmt::format("point[{}]", number), node.line, problems);
+PathPoint read_point(TableReader& reader, bool is_first) {
   PathPoint point;
   reader.read("time_s", point.time_s, kTimes, Presence::kRequired);
   reader.read("at_m", point.at_m, kPlaces, Presence::kRequired);
@@ -50,41 +48,39 @@ PathPoint read_point(const Node& node, std::size_t number, Problems& problems) {
   glm::dvec2 target{0.0};
   if (reader.read("look_at_m", target, kPlaces)) point.look_at_m = target;
   if (point.heading_deg && point.look_at_m)
-    reader.problem(reader.find("look_at_m")->line, "look_at_m",
-                   "a point may have heading_deg or look_at_m, not both");
+    reader.problem("look_at_m", "a point may have heading_deg or look_at_m, not both");
   reader.read("pitch_deg", point.pitch_deg, kPitches);
-  if (reader.read("jump", point.jump) && point.jump && number == 0)
-    reader.problem(node.line, "jump", "the first point cannot be a jump");
+  if (reader.read("jump", point.jump) && point.jump && is_first)
+    reader.problem(reader.line(), "jump", "the first point cannot be a jump");
   reader.finish();
   return point;
 }
 
 // Checks a point against the previous one.
-void check_order(const PathPoint& before, const PathPoint& point, const Node& node,
-                 std::size_t number, Problems& problems) {
+void check_order(const PathPoint& before, const PathPoint& point, TableReader& reader) {
   const double dt = point.time_s - before.time_s;
-  if (!(dt > 0)) {
-    problems.add(
-        node.line, fmt::format("point[{}].time_s", number),
+  const double way_m = glm::distance(point.at_m, before.at_m);
+  if (!(dt > 0))
+    reader.problem(
+        reader.line(), "time_s",
         fmt::format("{} is not after the previous point, which is at {}: times must ascend",
                     point.time_s, before.time_s));
-  } else if (!point.jump && glm::distance(point.at_m, before.at_m) > kMaxSpeed_m_s * dt) {
-    problems.add(node.line, fmt::format("point[{}].at_m", number),
-                 fmt::format("it is {:.0f} m in {} s from the previous point; allowed: {} m/s, or "
-                             "jump = true",
-                             glm::distance(point.at_m, before.at_m), dt, kMaxSpeed_m_s));
-  }
+  else if (!point.jump && way_m > kMaxSpeed_m_s * dt)
+    reader.problem(reader.line(), "at_m",
+                   fmt::format("it is {:.0f} m in {} s from the previous point; allowed: {} m/s, "
+                               "or jump = true",
+                               way_m, dt, kMaxSpeed_m_s));
 }
 
-std::vector<PathPoint> read_points(TableReader& root, Problems& problems) {
+std::vector<PathPoint> read_points(TableReader& root) {
   std::vector<PathPoint> points;
-  for (const Node* node : root.tables("point", kMaxPoints)) {
-    points.push_back(read_point(*node, points.size(), problems));
-    const std::size_t last = points.size() - 1;
-    if (last > 0) check_order(points[last - 1], points[last], *node, last, problems);
+  for (TableReader& reader : root.tables("point", kMaxPoints)) {
+    const PathPoint point = read_point(reader, points.empty());
+    if (!points.empty()) check_order(points.back(), point, reader);
+    points.push_back(point);
   }
   if (points.empty())
-    problems.add(root.line(), "point", "a path needs at least one point, [[point]]");
+    root.problem(root.line(), "point", "a path needs at least one point, [[point]]");
   return points;
 }
 
@@ -98,8 +94,8 @@ core::Result<CameraPath> parse_camera_path(std::string_view text, std::string_vi
   read_format(root, kPathFormat);
   // For another version, errors about other fields would be misleading.
   if (problems.any()) return tl::unexpected(problems.first());
-  CameraPath::Settings settings = read_settings(root, problems);
-  std::vector<PathPoint> points = read_points(root, problems);
+  CameraPath::Settings settings = read_settings(root);
+  std::vector<PathPoint> points = read_points(root);
   root.finish();
   if (problems.any()) return tl::unexpected(problems.first());
   return CameraPath(std::move(settings), std::move(points));

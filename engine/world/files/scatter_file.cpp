@@ -4,11 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <iterator>
 
 #include "engine/world/files/fields.hpp"
-#include "engine/world/files/mask_file.hpp"
+#include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/model_fields.hpp"
+#include "engine/world/files/toml_values.hpp"
+#include "engine/world/ground_blends.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::world {
@@ -16,6 +20,69 @@ namespace {
 
 // log2 of the maximum number of triangles of all models of one block.
 constexpr double kMaxLog2BlockCost = 26;
+constexpr Limits kMaskPlaces{-1e12, 1e12};  // metres
+constexpr Limits kPlacePoints{-kFarthestShapeM, kFarthestShapeM};
+
+// The index of the model type that the key "model" names, or −1 after a problem. The terrain is not
+// allowed.
+int read_model_name(TableReader& reader, const World& world, const models::Registry& registry) {
+  std::string name;
+  if (!reader.read("model", name, 64, Presence::kRequired)) return -1;
+  const int index = registry.find(name);
+  if (index >= 0 && index != world.terrain_model) return index;
+  std::vector<std::string_view> known;
+  for (models::ModelIndex i = 0; i < registry.size(); ++i) {
+    if (i != world.terrain_model) known.push_back(registry[i].name());
+  }
+  reader.problem("model", fmt::format("there is no such model to scatter; allowed: {}",
+                                      fmt::join(known, ", ")));
+  return -1;
+}
+
+// The parameters of a model, which are ranges in a [[scatter]].
+ModelFields read_model_fields(TableReader& reader, const models::ModelType& type, bool are_ranges) {
+  ModelFields fields = fields_of(type, reader.line());
+  const auto specs = type.parameters();
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    if (specs[i].source == models::ParameterSource::kUser)
+      read_parameter(reader, specs[i].name, i, are_ranges, fields);
+  }
+  return fields;
+}
+
+void read_grounds(TableReader& reader, ScatterMask& mask) {
+  const Member* member = reader.find("on_ground");
+  if (member == nullptr) return;
+  const Node& node = member->value;
+  std::uint32_t grounds = 0;
+  bool sound = node.kind == Node::Kind::kArray && !node.items.empty();
+  for (const Node& item : node.items) {
+    const auto at = std::ranges::find(kGroundNames, item.text);
+    sound = sound && item.kind == Node::Kind::kText && at != kGroundNames.end();
+    if (sound) grounds |= 1U << (at - kGroundNames.begin());
+  }
+  if (sound)
+    mask.ground = grounds;
+  else
+    reader.problem("on_ground",
+                   fmt::format("it must be a list of kinds of ground, [\"grass\", …]; allowed: {}",
+                               fmt::join(kGroundNames, ", ")));
+}
+
+void read_area(TableReader& reader, const World& world, ScatterMask& mask) {
+  const bool given = reader.read("mask_area_m", mask.area_m, kMaskPlaces);
+  const bool has_area = reader.find("mask_area_m") != nullptr;
+  if (reader.find("mask_image") == nullptr) {
+    if (has_area) reader.problem("mask_area_m", "it is the area of mask_image, which is missing");
+  } else if (!has_area && world.is_endless()) {
+    reader.problem("mask_image", "an endless world also needs mask_area_m");
+  } else if (!has_area) {
+    mask.area_m = {0, 0, static_cast<double>(world.blocks_x) * world.block_size_m(),
+                   static_cast<double>(world.blocks_z) * world.block_size_m()};
+  } else if (given && !(mask.area_m[0] < mask.area_m[2] && mask.area_m[1] < mask.area_m[3])) {
+    reader.problem("mask_area_m", "it must be [x0, z0, x1, z1] with x0 below x1 and z0 below z1");
+  }
+}
 
 // The number of models of a [[scatter]] per block, or 0 after a problem. Numbers that are too large
 // are returned too, so the caller can reject them with their cost.
@@ -30,9 +97,8 @@ std::int64_t read_count(TableReader& reader) {
 }
 
 // Reads one [[scatter]]. Returns log2 of its largest number of triangles per block.
-double read_scatter(const Node& node, std::size_t number, const models::Registry& registry,
-                    const Beside& beside, World& world, Problems& problems) {
-  TableReader reader(node, fmt::format("scatter[{}]", number), node.line, problems);
+double read_scatter(TableReader& reader, const models::Registry& registry, const Beside& beside,
+                    World& world) {
   const int model = read_model_name(reader, world, registry);
   if (model < 0) return 0;
   Scatter scatter;
@@ -40,25 +106,20 @@ double read_scatter(const Node& node, std::size_t number, const models::Registry
   const std::int64_t count = read_count(reader);
   const bool too_many = count > kMaxModelsPerBlock;
   scatter.count = too_many ? 0 : static_cast<std::uint32_t>(count);
-  visit_place(scatter, [&reader](std::string_view key, double& field, const FieldSpec& spec) {
-    reader.read(key, field, {spec.low, spec.high});
-  });
+  visit_place(scatter, FieldReader{reader});
   if (scatter.min_height_m > scatter.max_height_m)
-    reader.problem(node.line, "min_height_m", "it must not be above max_height_m");
-
-  read_mask(reader, world, beside, scatter.mask);
-  ModelFields fields = fields_of(registry[scatter.model], node.line);
-  const auto specs = fields.type->parameters();
-  for (std::size_t i = 0; i < specs.size(); ++i) {
-    if (specs[i].source == models::ParameterSource::kUser)
-      read_parameter(reader, specs[i].name, i, true, fields);
-  }
+    reader.problem(reader.line(), "min_height_m", "it must not be above max_height_m");
+  visit_mask(scatter.mask, FieldReader{reader});
+  read_grounds(reader, scatter.mask);
+  scatter.mask.picture = read_picture(reader, "mask_image", beside, scatter.mask.image);
+  read_area(reader, world, scatter.mask);
+  ModelFields fields = read_model_fields(reader, registry[scatter.model], true);
   reader.finish();
-  const bool allowed = check_model(fields, problems) && !too_many;
+  const bool allowed = check_model(fields, reader.problems()) && !too_many;
   const double cost =
       log2_cost(fields) + std::log2(std::max<double>(static_cast<double>(count), 1));
   if (too_many)
-    reader.problem(reader.find("count")->line, "count",
+    reader.problem("count",
                    fmt::format("{} is not allowed: it must be an integer from 0 to {} ({} on each "
                                "block)",
                                count, kMaxModelsPerBlock, models::predicted_cost_text(cost)));
@@ -67,43 +128,139 @@ double read_scatter(const Node& node, std::size_t number, const models::Registry
   return allowed ? cost : 0;
 }
 
-}  // namespace
-
-int read_model_name(TableReader& reader, const World& world, const models::Registry& registry) {
-  std::string name;
-  if (!reader.read("model", name, 64, Presence::kRequired)) return -1;
-  const int index = registry.find(name);
-  if (index >= 0 && index != world.terrain_model) return index;
-  std::vector<std::string> known;
-  for (models::ModelIndex i = 0; i < registry.size(); ++i) {
-    if (i != world.terrain_model) known.emplace_back(registry[i].name());
-  }
-  reader.problem(
-      reader.find("model")->line, "model",
-      fmt::format("there is no such model to scatter; allowed: {}", fmt::join(known, ", ")));
-  return -1;
+// A seed that distinguishes equal models at different positions.
+std::int64_t seed_at(const World& world, glm::dvec2 at_m) {
+  const std::uint64_t x = std::bit_cast<std::uint64_t>(at_m.x + 0.0);
+  const std::uint64_t z = std::bit_cast<std::uint64_t>(at_m.y + 0.0);
+  return std::bit_cast<std::int64_t>(core::combine(core::combine(world.seed, x), z));
 }
 
+void read_place(TableReader& reader, const models::Registry& registry, const World& world,
+                std::vector<Place>& places) {
+  Place place;
+  const int model = read_model_name(reader, world, registry);
+  if (model < 0) return;
+  place.model = static_cast<models::ModelIndex>(model);
+  if (reader.read("at_m", place.at_m, kPlacePoints, Presence::kRequired)) {
+    const core::WorldPosition at =
+        core::normalised({{0, 0}, {place.at_m.x, 0, place.at_m.y}}, world.block_size_m());
+    if (!world.contains(at.block))
+      reader.problem("at_m",
+                     fmt::format("{:g}, {:g} m is outside the world", place.at_m.x, place.at_m.y));
+  }
+  visit_placed(place, FieldReader{reader});
+  const models::ModelType& type = registry[place.model];
+  const ModelFields fields = read_model_fields(reader, type, false);
+  reader.finish();
+  if (!check_model(fields, reader.problems())) return;
+  place.parameters = corner_of(fields, 0);
+  if (const int seed = models::parameter_index(type, "seed");
+      seed >= 0 &&
+      type.parameters()[static_cast<std::size_t>(seed)].source == models::ParameterSource::kPlaced)
+    place.parameters.set_integer(static_cast<std::size_t>(seed), seed_at(world, place.at_m));
+  if (type.mesh_size(place.parameters, 0).layout != core::VertexLayout::kModel)
+    return reader.problem("model", "this model type cannot be placed");
+  places.push_back(place);
+}
+
+void write_mask(const ScatterMask& mask, std::string& text) {
+  const auto out = std::back_inserter(text);
+  if (!mask.image.empty())
+    fmt::format_to(out, "mask_image = {}\nmask_area_m = {}\n", toml_string(mask.image),
+                   toml_vector(mask.area_m));
+  const ScatterMask usual;
+  if (mask.noise_m != usual.noise_m || mask.share != usual.share || mask.patches != usual.patches)
+    visit_mask(mask, FieldWriter{text});
+  if (mask.ground != 0) fmt::format_to(out, "on_ground = {}\n", toml_grounds(mask.ground));
+}
+
+}  // namespace
+
 void read_scatters(TableReader& root, const models::Registry& registry, const Beside& beside,
-                   World& world, Problems& problems) {
+                   World& world) {
   double triangles = 0;
-  std::size_t number = 0;
   int line = root.line();
-  for (const Node* node : root.tables("scatter", kMaxScatters)) {
-    triangles += std::exp2(read_scatter(*node, number++, registry, beside, world, problems));
-    line = node->line;
+  for (TableReader& reader : root.tables("scatter", kMaxScatters)) {
+    triangles += std::exp2(read_scatter(reader, registry, beside, world));
+    line = reader.line();
   }
   if (models_per_block(world) > kMaxModelsPerBlock)
-    problems.add(line, "scatter",
+    root.problem(line, "scatter",
                  fmt::format("{} models on each block are too many (allowed: {})",
                              models_per_block(world), kMaxModelsPerBlock),
                  core::ErrorCode::kOverBudget);
   if (triangles > std::exp2(kMaxLog2BlockCost))
-    problems.add(line, "scatter",
+    root.problem(line, "scatter",
                  fmt::format("the models of one block together are too large (predicted: up to "
                              "{:.3g} million triangles; allowed: {:.0f} million)",
                              triangles / 1e6, std::exp2(kMaxLog2BlockCost) / 1e6),
                  core::ErrorCode::kOverBudget);
+}
+
+std::vector<Place> read_places(TableReader& root, const models::Registry& registry,
+                               const World& world) {
+  std::vector<Place> places;
+  for (TableReader& reader : root.tables("place", kMaxPlaces))
+    read_place(reader, registry, world, places);
+  return places;
+}
+
+void write_scatters(const World& world, const models::Registry& registry, std::string& text) {
+  const auto out = std::back_inserter(text);
+  for (const Scatter& scatter : world.scatter) {
+    const models::ModelType& type = registry[scatter.model];
+    fmt::format_to(out, "\n[[scatter]]\nmodel = {}\ncount = {}\n", toml_string(type.name()),
+                   scatter.count);
+    if (std::isfinite(scatter.min_height_m))
+      fmt::format_to(out, "min_height_m = {}\n", scatter.min_height_m);
+    if (std::isfinite(scatter.max_height_m))
+      fmt::format_to(out, "max_height_m = {}\n", scatter.max_height_m);
+    if (scatter.max_slope_deg < 90)
+      fmt::format_to(out, "max_slope_deg = {}\n", scatter.max_slope_deg);
+    write_mask(scatter.mask, text);
+    for (std::size_t i = 0; i < scatter.ranges.size(); ++i) {
+      const models::ParameterSpec& spec = type.parameters()[i];
+      const auto [low, high] = scatter.ranges[i];
+      if (spec.source != models::ParameterSource::kPlaced)
+        fmt::format_to(out, "{} = {}\n", spec.name,
+                       toml_range(low, high, spec.type == models::ParameterType::kInteger));
+    }
+  }
+}
+
+void write_places(const World& world, const models::Registry& registry, std::string& text) {
+  const auto out = std::back_inserter(text);
+  for (const Place& place : world.places.all) {
+    const models::ModelType& type = registry[place.model];
+    fmt::format_to(out, "\n[[place]]\nmodel = {}\nat_m = [{}, {}]\n", toml_string(type.name()),
+                   place.at_m.x, place.at_m.y);
+    visit_placed(place, FieldWriter{text});
+    const auto specs = type.parameters();
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      if (specs[i].source != models::ParameterSource::kPlaced)
+        fmt::format_to(out, "{} = {}\n", specs[i].name,
+                       specs[i].type == models::ParameterType::kInteger
+                           ? toml_number(place.parameters.integer(i))
+                           : toml_number(place.parameters.real(i)));
+    }
+  }
+}
+
+std::shared_ptr<const GreyPicture> read_picture(TableReader& reader, std::string_view key,
+                                                const Beside& beside, std::string& name,
+                                                Presence presence) {
+  if (!read_name_beside(reader, key, name, presence)) return nullptr;
+  auto picture = beside.read_grey(name);
+  if (picture) return std::move(*picture);
+  reader.problem(key, picture.error().message, picture.error().code);
+  return nullptr;
+}
+
+std::string toml_grounds(std::uint32_t grounds) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < kGroundNames.size(); ++i)
+    if ((grounds >> i & 1U) != 0) names.push_back(toml_string(kGroundNames[i]));
+  return fmt::format("[{}]", fmt::join(names, ", "));
 }
 
 }  // namespace psygen::world

@@ -1,6 +1,9 @@
-// Reads the [[scatter]] tables of a world file: the models on each block. Internal to world.
-// Writing is in write_world.cpp. Format: docs/world-files.md.
+// Reads and writes the models of a world file: the [[scatter]] tables with their masks, for models
+// on every block, and the [[place]] tables, for single models. It reads no images
+// (resource_loader.hpp). Internal to world; one thread per file. Format: docs/world-files.md.
 #pragma once
+
+#include <string>
 
 #include "engine/world/files/resource_loader.hpp"
 #include "engine/world/files/table_reader.hpp"
@@ -10,14 +13,26 @@ namespace psygen::world {
 
 inline constexpr std::size_t kMaxScatters = 64;  // per file
 
-// Reads the key "model" of a table: the index of the model type, or −1 after a problem. The terrain
-// is not allowed.
-int read_model_name(TableReader& reader, const World& world, const models::Registry& registry);
-
-// Reads all tables into world.scatter. Adds problems for unknown models, for parameters that their
-// types reject, and for too many models or triangles on a block. `world` must already have the
-// values of [world] and its terrain.
+// Reads all [[scatter]] tables, with the images of masks, into world.scatter. Adds problems for
+// unknown models, for parameters that their types reject, and for too many models or triangles on a
+// block. `world` must already have the values of [world] and its terrain.
 void read_scatters(TableReader& root, const models::Registry& registry, const Beside& beside,
-                   World& world, Problems& problems);
+                   World& world);
+// Reads all [[place]] tables. Requires world.terrain and world.seed.
+std::vector<Place> read_places(TableReader& root, const models::Registry& registry,
+                               const World& world);
+
+// Append tables to `out` that are read back as equal scatters and places.
+void write_scatters(const World& world, const models::Registry& registry, std::string& out);
+void write_places(const World& world, const models::Registry& registry, std::string& out);
+
+// Reads the name of an image beside the world file, and the image. Null if the key is missing or
+// after a problem.
+std::shared_ptr<const GreyPicture> read_picture(TableReader& reader, std::string_view key,
+                                                const Beside& beside, std::string& name,
+                                                Presence presence = Presence::kOptional);
+
+// Allowed kinds of ground as TOML: ["grass", "dry"].
+std::string toml_grounds(std::uint32_t grounds);
 
 }  // namespace psygen::world

@@ -8,46 +8,31 @@
 #include <iterator>
 
 #include "engine/world/files/fields.hpp"
-#include "engine/world/files/handmade_file.hpp"
+#include "engine/world/files/scatter_file.hpp"
 #include "engine/world/files/toml_values.hpp"
 
 namespace psygen::world {
 namespace {
 
-constexpr std::size_t kMaxStampBytes = 200;  // of an image's name
 constexpr Limits kShapePlaces{-kFarthestShapeM, kFarthestShapeM};
 
-void read_stamp_picture(TableReader& reader, const Beside& beside, Stamp& stamp) {
-  if (!reader.read("image", stamp.image, kMaxStampBytes, Presence::kRequired)) return;
-  if (!check_name_beside(reader, "image", stamp.image)) return;
-  const int line = reader.find("image")->line;
-  auto picture = beside.read_grey(stamp.image);
-  if (!picture) return reader.problem(line, "image", picture.error().message, picture.error().code);
-  if ((*picture)->width < 2 || (*picture)->height < 2)
-    return reader.problem(line, "image",
-                          fmt::format("the image has {} x {} pixels; a stamp needs at least 2 x 2",
-                                      (*picture)->width, (*picture)->height));
-  stamp.picture = std::move(*picture);
-}
-
-Stamp read_stamp(const Node& node, std::size_t number, const Beside& beside, Problems& problems) {
-  TableReader reader(node, fmt::format("stamp[{}]", number), node.line, problems);
+Stamp read_stamp(TableReader& reader, const Beside& beside) {
   Stamp stamp;
   reader.read("centre_m", stamp.centre_m, kShapePlaces, Presence::kRequired);
-  visit_stamp(stamp, [&reader](std::string_view key, auto& field, const FieldSpec& spec) {
-    reader.read(key, field, {spec.low, spec.high});
-  });
+  visit_stamp(stamp, FieldReader{reader});
   if (reader.read("mode", stamp.mode, 16) &&
-      std::ranges::find(kStampModes, stamp.mode) == kStampModes.end()) {
-    reader.problem(reader.find("mode")->line, "mode",
-                   fmt::format("it must be one of {}", fmt::join(kStampModes, ", ")));
-  }
-  if (const Member* border = reader.find("border_m");
-      border != nullptr && stamp.border_m > stamp.size_m / 2)
-    reader.problem(border->line, "border_m",
+      std::ranges::find(kStampModes, stamp.mode) == kStampModes.end())
+    reader.problem("mode", fmt::format("it must be one of {}", fmt::join(kStampModes, ", ")));
+  if (reader.find("border_m") != nullptr && stamp.border_m > stamp.size_m / 2)
+    reader.problem("border_m",
                    fmt::format("{:g} is not allowed: it must be at most half of size_m, {:g}",
                                stamp.border_m, stamp.size_m / 2));
-  read_stamp_picture(reader, beside, stamp);
+  auto picture = read_picture(reader, "image", beside, stamp.image, Presence::kRequired);
+  if (picture && (picture->width < 2 || picture->height < 2))
+    reader.problem("image",
+                   fmt::format("the image has {} x {} pixels; a stamp needs at least 2 x 2",
+                               picture->width, picture->height));
+  stamp.picture = std::move(picture);
   reader.finish();
   return stamp;
 }
@@ -85,38 +70,31 @@ void read_points(TableReader& reader, std::vector<glm::dvec2>& points) {
   }
 }
 
-Road read_road(const Node& node, std::size_t number, Problems& problems) {
-  TableReader reader(node, fmt::format("road[{}]", number), node.line, problems);
+Road read_road(TableReader& reader) {
   Road road;
   read_points(reader, road.points_m);
-  visit_road(road, [&reader](std::string_view key, auto& field, const FieldSpec& spec) {
-    reader.read(key, field, {spec.low, spec.high});
-  });
+  visit_road(road, FieldReader{reader});
   reader.finish();
   return road;
 }
 
 }  // namespace
 
-ShapedGround read_shaped(TableReader& root, const Beside& beside, Problems& problems) {
+ShapedGround read_shaped(TableReader& root, const Beside& beside) {
   ShapedGround shaped;
-  for (const Node* node : root.tables("stamp", kMaxStamps))
-    shaped.stamps.push_back(read_stamp(*node, shaped.stamps.size(), beside, problems));
-  for (const Node* node : root.tables("road", kMaxRoads))
-    shaped.roads.push_back(read_road(*node, shaped.roads.size(), problems));
+  for (TableReader& reader : root.tables("stamp", kMaxStamps))
+    shaped.stamps.push_back(read_stamp(reader, beside));
+  for (TableReader& reader : root.tables("road", kMaxRoads))
+    shaped.roads.push_back(read_road(reader));
   return shaped;
 }
 
-void shape_world(TableReader& root, World& world, Problems& problems) {
-  auto shaped = shape_ground(world);
+void shape_world(TableReader& root, World& world) {
+  const auto shaped = shape_ground(world);
   if (shaped) return;
   const ShapeError& wrong = shaped.error();
-  const Node& node = *root.tables(wrong.place, kMaxRoads)[wrong.number];
-  int line = node.line;
-  for (const Member& member : node.members)
-    if (member.key == wrong.key) line = member.value.line;
-  problems.add(line, fmt::format("{}[{}].{}", wrong.place, wrong.number, wrong.key),
-               wrong.error.message, wrong.error.code);
+  root.tables(wrong.place, kMaxRoads)[wrong.number].problem(wrong.key, wrong.error.message,
+                                                            wrong.error.code);
 }
 
 void write_shaped(const ShapedGround& shaped, std::string& text) {

@@ -10,11 +10,11 @@
 
 namespace psygen::world {
 
-// Reads all tables and the images of stamps. Adds problems to `problems`.
-ShapedGround read_shaped(TableReader& root, const Beside& beside, Problems& problems);
+// Reads all tables and the images of stamps.
+ShapedGround read_shaped(TableReader& root, const Beside& beside);
 
 // Calls shape_ground() for a world that was read from this file. Errors become problems.
-void shape_world(TableReader& root, World& world, Problems& problems);
+void shape_world(TableReader& root, World& world);
 
 // Appends tables to `out` that read_shaped() reads back as equal ground.
 void write_shaped(const ShapedGround& shaped, std::string& out);

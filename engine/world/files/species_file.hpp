@@ -12,9 +12,8 @@ namespace psygen::world {
 
 inline constexpr std::size_t kMaxSpecies = 32;  // per file
 
-// Reads all species from the root table. Adds problems, with the line of the field, to `problems`;
-// after a problem, do not use the result.
-std::vector<models::Species> read_species(TableReader& root, Problems& problems);
+// Reads all species from the root table. After a problem, do not use the result.
+std::vector<models::Species> read_species(TableReader& root);
 
 // Appends tables to `out` that read_species() reads back as equal species.
 void write_species(const std::vector<models::Species>& species, std::string& out);

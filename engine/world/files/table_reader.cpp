@@ -65,13 +65,17 @@ std::string TableReader::field(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
+void TableReader::problem(std::string_view key, std::string_view sentence, core::ErrorCode code) {
+  const Member* member = table_.find(key);
+  problem(member != nullptr ? member->line : line_, key, sentence, code);
+}
+
 const Member* TableReader::find(std::string_view key, Presence presence) {
   if (std::ranges::find(known_, key) == known_.end()) known_.emplace_back(key);
-  for (const Member& member : table_.members) {
-    if (member.key == key) return &member;
-  }
-  if (presence == Presence::kRequired) problems_.add_missing(line_, field(key));
-  return nullptr;
+  const Member* member = table_.find(key);
+  if (member == nullptr && presence == Presence::kRequired)
+    problems_.add_missing(line_, field(key));
+  return member;
 }
 
 bool TableReader::check_number(const Node& node, std::string_view name, Limits limits,
@@ -85,53 +89,11 @@ bool TableReader::check_number(const Node& node, std::string_view name, Limits l
   return false;
 }
 
-bool TableReader::read(std::string_view key, double& value, Limits limits, Presence presence) {
+const Node* TableReader::number_of(std::string_view key, Limits limits, bool integer,
+                                   Presence presence) {
   const Member* member = find(key, presence);
-  if (member == nullptr || !check_number(member->value, field(key), limits, false)) return false;
-  value = member->value.real;
-  return true;
-}
-
-bool TableReader::read(std::string_view key, float& value, Limits limits, Presence presence) {
-  double wide = 0;
-  if (!read(key, wide, limits, presence)) return false;
-  value = static_cast<float>(wide);
-  return true;
-}
-
-bool TableReader::read(std::string_view key, std::int64_t& value, Limits limits,
-                       Presence presence) {
-  const Member* member = find(key, presence);
-  if (member == nullptr || !check_number(member->value, field(key), limits, true)) return false;
-  value = member->value.integer;
-  return true;
-}
-
-bool TableReader::read(std::string_view key, bool& value, Presence presence) {
-  const Member* member = find(key, presence);
-  if (member == nullptr) return false;
-  if (member->value.kind != Node::Kind::kBoolean) {
-    problem(member->value.line, key, "it must be true or false");
-    return false;
-  }
-  value = member->value.boolean;
-  return true;
-}
-
-bool TableReader::read(std::string_view key, std::string& value, std::size_t max_bytes,
-                       Presence presence) {
-  const Member* member = find(key, presence);
-  if (member == nullptr) return false;
-  const Node& node = member->value;
-  if (node.kind == Node::Kind::kText && !node.text.empty() && node.text.size() <= max_bytes &&
-      !has_control_characters(node.text)) {
-    value = node.text;
-    return true;
-  }
-  problem(
-      node.line, key,
-      fmt::format("it must be a string of 1 to {} bytes without control characters", max_bytes));
-  return false;
+  const bool sound = member != nullptr && check_number(member->value, field(key), limits, integer);
+  return sound ? &member->value : nullptr;
 }
 
 const Node* TableReader::array_of(std::string_view key, std::size_t count, Limits limits,
@@ -140,9 +102,8 @@ const Node* TableReader::array_of(std::string_view key, std::size_t count, Limit
   if (member == nullptr) return nullptr;
   const Node& node = member->value;
   if (node.kind != Node::Kind::kArray || node.items.size() != count) {
-    problem(
-        node.line, key,
-        fmt::format("it must be an array of {}, each {}", count, allowed_text(limits, integers)));
+    problem(key, fmt::format("it must be an array of {}, each {}", count,
+                             allowed_text(limits, integers)));
     return nullptr;
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -152,36 +113,76 @@ const Node* TableReader::array_of(std::string_view key, std::size_t count, Limit
   return &node;
 }
 
+bool TableReader::read(std::string_view key, double& value, Limits limits, Presence presence) {
+  const Node* node = number_of(key, limits, false, presence);
+  if (node != nullptr) value = node->real;
+  return node != nullptr;
+}
+
+bool TableReader::read(std::string_view key, float& value, Limits limits, Presence presence) {
+  const Node* node = number_of(key, limits, false, presence);
+  if (node != nullptr) value = static_cast<float>(node->real);
+  return node != nullptr;
+}
+
+bool TableReader::read(std::string_view key, std::int64_t& value, Limits limits,
+                       Presence presence) {
+  const Node* node = number_of(key, limits, true, presence);
+  if (node != nullptr) value = node->integer;
+  return node != nullptr;
+}
+
+bool TableReader::read(std::string_view key, bool& value, Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr) return false;
+  const bool sound = member->value.kind == Node::Kind::kBoolean;
+  if (sound)
+    value = member->value.boolean;
+  else
+    problem(key, "it must be true or false");
+  return sound;
+}
+
+bool TableReader::read(std::string_view key, std::string& value, std::size_t max_bytes,
+                       Presence presence) {
+  const Member* member = find(key, presence);
+  if (member == nullptr) return false;
+  const std::string& text = member->value.text;
+  const bool sound = member->value.kind == Node::Kind::kText && !text.empty() &&
+                     text.size() <= max_bytes && !has_control_characters(text);
+  if (sound)
+    value = text;
+  else
+    problem(key, fmt::format("it must be a string of 1 to {} bytes without control characters",
+                             max_bytes));
+  return sound;
+}
+
 bool TableReader::read(std::string_view key, glm::vec3& value, Limits limits, Presence presence) {
   const Node* node = array_of(key, 3, limits, false, presence);
-  if (node == nullptr) return false;
-  value = glm::vec3(node->items[0].real, node->items[1].real, node->items[2].real);
-  return true;
+  if (node != nullptr)
+    value = glm::vec3(node->items[0].real, node->items[1].real, node->items[2].real);
+  return node != nullptr;
 }
 
 bool TableReader::read(std::string_view key, glm::dvec2& value, Limits limits, Presence presence) {
   const Node* node = array_of(key, 2, limits, false, presence);
-  if (node == nullptr) return false;
-  value = {node->items[0].real, node->items[1].real};
-  return true;
+  if (node != nullptr) value = {node->items[0].real, node->items[1].real};
+  return node != nullptr;
 }
 
 bool TableReader::read(std::string_view key, std::array<double, 4>& value, Limits limits,
                        Presence presence) {
   const Node* node = array_of(key, value.size(), limits, false, presence);
-  if (node == nullptr) return false;
-  for (std::size_t i = 0; i < value.size(); ++i)
-    value[i] = node->items[i].real;
-  return true;
+  if (node != nullptr) std::ranges::transform(node->items, value.begin(), &Node::real);
+  return node != nullptr;
 }
 
 bool TableReader::read_pair(std::string_view key, std::int64_t (&value)[2], Limits limits,
                             Presence presence) {
   const Node* node = array_of(key, 2, limits, true, presence);
-  if (node == nullptr) return false;
-  value[0] = node->items[0].integer;
-  value[1] = node->items[1].integer;
-  return true;
+  if (node != nullptr) std::ranges::transform(node->items, value, &Node::integer);
+  return node != nullptr;
 }
 
 std::optional<NumberRange> TableReader::read_range(std::string_view key) {
@@ -192,47 +193,44 @@ std::optional<NumberRange> TableReader::read_range(std::string_view key) {
   const Node& low = is_pair ? node.items[0] : node;
   const Node& high = is_pair ? node.items[1] : node;
   if (!is_number(low) || !is_number(high)) {
-    problem(node.line, key, "it must be a number, or [lowest, highest]");
-    return std::nullopt;
+    problem(key, "it must be a number, or [lowest, highest]");
+  } else if (!std::isfinite(low.real) || !std::isfinite(high.real)) {
+    problem(key, fmt::format("{} is not allowed: it must be finite",
+                             value_text(std::isfinite(low.real) ? high : low)));
+  } else if (low.real > high.real) {
+    problem(key, fmt::format("[{}, {}] is reversed: give the lowest value first", value_text(low),
+                             value_text(high)));
+  } else {
+    return NumberRange{low.real, high.real,
+                       low.kind == Node::Kind::kInteger && high.kind == Node::Kind::kInteger,
+                       node.line};
   }
-  if (!std::isfinite(low.real) || !std::isfinite(high.real)) {
-    problem(node.line, key,
-            fmt::format("{} is not allowed: it must be finite",
-                        value_text(std::isfinite(low.real) ? high : low)));
-    return std::nullopt;
-  }
-  if (low.real > high.real) {
-    problem(node.line, key,
-            fmt::format("[{}, {}] is reversed: give the lowest value first", value_text(low),
-                        value_text(high)));
-    return std::nullopt;
-  }
-  return NumberRange{low.real, high.real,
-                     low.kind == Node::Kind::kInteger && high.kind == Node::Kind::kInteger,
-                     node.line};
+  return std::nullopt;
 }
 
-const Member* TableReader::table(std::string_view key, Presence presence) {
+std::optional<TableReader> TableReader::table(std::string_view key, Presence presence) {
   const Member* member = find(key, presence);
-  if (member == nullptr || member->value.kind == Node::Kind::kTable) return member;
-  problem(member->line, key,
-          fmt::format("it must be a table, [{}], not {}", key, kind_name(member->value.kind)));
-  return nullptr;
+  if (member == nullptr) return std::nullopt;
+  if (member->value.kind == Node::Kind::kTable)
+    return TableReader(member->value, field(key), member->line, problems_);
+  problem(key, fmt::format("it must be a table, [{}], not {}", key, kind_name(member->value.kind)));
+  return std::nullopt;
 }
 
-std::vector<const Node*> TableReader::tables(std::string_view key, std::size_t max_count) {
+std::vector<TableReader> TableReader::tables(std::string_view key, std::size_t max_count) {
   const Member* member = find(key);
   if (member == nullptr) return {};
-  const Node& node = member->value;
-  const bool fits = node.kind == Node::Kind::kArray && node.items.size() <= max_count;
-  if (!fits || !std::ranges::all_of(
-                   node.items, [](const Node& item) { return item.kind == Node::Kind::kTable; })) {
-    problem(member->line, key, fmt::format("it must be at most {} tables, [[{}]]", max_count, key));
-    return {};
+  const std::vector<Node>& items = member->value.items;
+  std::vector<TableReader> found;
+  if (member->value.kind == Node::Kind::kArray && items.size() <= max_count &&
+      std::ranges::all_of(
+          items, [](Node::Kind kind) { return kind == Node::Kind::kTable; }, &Node::kind)) {
+    for (const Node& item : items)
+      found.push_back(
+          {item, fmt::format("{}[{}]", field(key), found.size()), item.line, problems_});
+  } else {
+    problem(key, fmt::format("it must be at most {} tables, [[{}]]", max_count, key));
   }
-  std::vector<const Node*> found;
-  for (const Node& item : node.items)
-    found.push_back(&item);
   return found;
 }
 

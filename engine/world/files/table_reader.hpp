@@ -82,10 +82,10 @@ class TableReader {
                  Presence = Presence::kOptional);
   std::optional<NumberRange> read_range(std::string_view key);
 
-  // A sub-table, or null if it is missing or not a table. Pointers live as long as the node.
-  const Member* table(std::string_view key, Presence = Presence::kOptional);
-  // The tables of an array of tables; empty if it is missing or wrong.
-  std::vector<const Node*> tables(std::string_view key, std::size_t max_count);
+  // The reader of a sub-table; nothing if it is missing or not a table.
+  std::optional<TableReader> table(std::string_view key, Presence = Presence::kOptional);
+  // The readers of an array of tables; none if it is missing or wrong.
+  std::vector<TableReader> tables(std::string_view key, std::size_t max_count);
 
   // Adds a problem for every key that was never read and suggests the nearest known key. Call it
   // last.
@@ -93,16 +93,23 @@ class TableReader {
 
   // A member of the table, or null. Registers the key as known.
   const Member* find(std::string_view key, Presence = Presence::kOptional);
-  // The full name of a key ("sky.exposure"), the first line of the table, and a problem with a key.
+  // The full name of a key ("sky.exposure"), the table, its first line, and its file's problems.
   std::string field(std::string_view key) const;
+  const Node& node() const { return table_; }
   int line() const { return line_; }
+  Problems& problems() const { return problems_; }
+  // Adds a problem with a key: on this line, or on the key's line (the table's if it is missing).
   void problem(int line, std::string_view key, std::string_view sentence,
                core::ErrorCode code = core::ErrorCode::kParse) {
     problems_.add(line, field(key), sentence, code);
   }
+  void problem(std::string_view key, std::string_view sentence,
+               core::ErrorCode code = core::ErrorCode::kParse);
 
  private:
   bool check_number(const Node& node, std::string_view field, Limits limits, bool integer);
+  // The value of a key if it is a number, or an array of numbers, within the limits; else null.
+  const Node* number_of(std::string_view key, Limits limits, bool integer, Presence presence);
   const Node* array_of(std::string_view key, std::size_t count, Limits limits, bool integers,
                        Presence presence);
 

@@ -43,11 +43,11 @@ core::Result<std::string> checked_edit(std::string text, const TextPath& path) {
 
 std::size_t place_of_new_table(const TextLayout& layout, const TextPath& path) {
   TextPath parent = path.parent();
-  while (!parent.empty() && layout.find(parent) < 0)
+  while (!parent.empty() && layout.find(parent) == nullptr)
     parent = parent.parent();
   const std::ptrdiff_t order = order_of(parent, path.steps[parent.size()]);
-  std::size_t i = layout.next_header(parent.empty() ? -1 : layout.find(parent));
-  for (; i < layout.places.size(); i = layout.next_header(static_cast<int>(i))) {
+  std::size_t i = layout.next_header(parent.empty() ? nullptr : layout.find(parent));
+  for (; i < layout.places.size(); i = layout.next_header(&layout.places[i])) {
     const TextPlace& header = layout.places[i];
     if (!header.path.starts_with(parent) ||
         order_of(parent, header.path.steps[parent.size()]) > order)
@@ -78,12 +78,7 @@ std::string_view indent_at(std::string_view text, std::size_t line_begin) {
 }
 
 std::string header_line(const TextLayout& layout, const TextPath& path, bool is_item) {
-  std::string key, indent;
-  for (const TextStep& step : path.steps) {
-    if (step.is_index) continue;
-    if (!key.empty()) key += '.';
-    key += toml_key(step.key);
-  }
+  std::string_view indent;
   for (const TextPlace& place : layout.places) {
     if (place.is_header() && place.path.size() > 1 && !path.parent().empty() &&
         place.path.starts_with(path.parent()) && place.path.size() > path.parent().size()) {
@@ -91,8 +86,8 @@ std::string header_line(const TextLayout& layout, const TextPath& path, bool is_
       break;
     }
   }
-  return fmt::format("{}{}{}{}{}", indent, is_item ? "[[" : "[", key, is_item ? "]]" : "]",
-                     layout.line_break());
+  return fmt::format("{}{}{}{}{}", indent, is_item ? "[[" : "[", path.keys().text(),
+                     is_item ? "]]" : "]", layout.line_break());
 }
 
 std::string with_breaks(const TextLayout& layout, std::string_view text) {

@@ -29,11 +29,6 @@ std::string with_span(std::string_view text, TextSpan span, std::string_view con
   return out;
 }
 
-std::string_view value_of(const TextLayout& layout, std::size_t at) {
-  const TextSpan span = layout.places[at].value;
-  return layout.text.substr(span.begin, span.end - span.begin);
-}
-
 // The text with "key = value" in an inline table, which starts at "{".
 std::string with_member(const TextLayout& layout, const TextPlace& table, std::string_view member) {
   const std::string_view text = layout.text;
@@ -66,14 +61,13 @@ std::string with_line_behind(const TextLayout& layout, TextSpan lines, std::stri
       fmt::format("{}{}{}{}", cut ? end : "", indent_at(layout.text, lines.begin), line, end));
 }
 
-// Adds a key to an existing table: one with a header, or the root.
-std::string with_statement(const TextLayout& layout, int header, std::string_view line) {
-  const std::size_t next = layout.next_header(header);
-  for (std::size_t i = next; i-- > static_cast<std::size_t>(header + 1);) {
+// Adds a key to an existing table: one with a header, or the root (null).
+std::string with_statement(const TextLayout& layout, const TextPlace* header,
+                           std::string_view line) {
+  for (std::size_t i = layout.next_header(header); i-- > 0 && &layout.places[i] != header;) {
     if (!layout.places[i].nested) return with_line_behind(layout, layout.places[i].lines, line);
   }
-  if (header >= 0)
-    return with_line_behind(layout, layout.places[static_cast<std::size_t>(header)].lines, line);
+  if (header != nullptr) return with_line_behind(layout, header->lines, line);
   return with_span(layout.text, {layout.begin(), layout.begin()},
                    fmt::format("{}{}", line, layout.line_break()));
 }
@@ -102,20 +96,18 @@ std::optional<std::string> with_dotted_key(const TextLayout& layout, const TextP
 core::Result<std::string> with_new_value(const TextLayout& layout, const TextPath& path,
                                          std::string_view value) {
   const TextPath parent = path.parent();
-  const int at = layout.find(parent);
+  const TextPlace* at = layout.find(parent);
   if (path.back().is_index) {
-    if (at < 0 || layout.text[layout.places[static_cast<std::size_t>(at)].value.begin] != '[' ||
-        layout.places[static_cast<std::size_t>(at)].is_header() ||
+    if (at == nullptr || layout.text[at->value.begin] != '[' || at->is_header() ||
         path.back().index != layout.item_count(parent))
       return refuse_edit(path, fmt::format("there are only {} items", layout.item_count(parent)));
-    return with_item(layout, layout.places[static_cast<std::size_t>(at)], value);
+    return with_item(layout, *at, value);
   }
   const std::string member = fmt::format("{} = {}", toml_key(path.back().key), value);
-  if (parent.empty()) return with_statement(layout, -1, member);
-  if (at >= 0) {
-    const TextPlace& place = layout.places[static_cast<std::size_t>(at)];
-    if (place.is_header()) return with_statement(layout, at, member);
-    if (layout.text[place.value.begin] == '{') return with_member(layout, place, member);
+  if (parent.empty()) return with_statement(layout, nullptr, member);
+  if (at != nullptr) {
+    if (at->is_header()) return with_statement(layout, at, member);
+    if (layout.text[at->value.begin] == '{') return with_member(layout, *at, member);
     return refuse_edit(parent, "this is not a table");
   }
   if (auto dotted = with_dotted_key(layout, path, value)) return *std::move(dotted);
@@ -124,8 +116,8 @@ core::Result<std::string> with_new_value(const TextLayout& layout, const TextPat
                        fmt::format("there are only {} items", layout.item_count(parent.parent())));
   // A missing table becomes an inline table inside an inline table, else it gets a header.
   if (parent.size() > 1) {
-    const int within = layout.find(parent.parent());
-    if (within >= 0 && !layout.places[static_cast<std::size_t>(within)].is_header())
+    const TextPlace* within = layout.find(parent.parent());
+    if (within != nullptr && !within->is_header())
       return with_new_value(layout, parent, fmt::format("{{ {} }}", member));
   }
   if (layout.item_count(parent) > 0) return refuse_edit(parent, "this is an array");
@@ -165,18 +157,17 @@ core::Result<std::string> with_value(std::string_view text, const TextPath& path
   const auto layout = lay_out_edited(text);
   if (!layout) return tl::unexpected(layout.error());
   core::Result<std::string> changed;
-  if (const int at = layout->find(path); at >= 0) {
-    const TextPlace& place = layout->places[static_cast<std::size_t>(at)];
-    if (place.is_header()) return refuse_edit(path, "this is a table with a header, not a value");
-    changed = with_span(text, place.value, toml_value);
+  if (const TextPlace* at = layout->find(path)) {
+    if (at->is_header()) return refuse_edit(path, "this is a table with a header, not a value");
+    changed = with_span(text, at->value, toml_value);
   } else {
     changed = with_new_value(*layout, path, toml_value);
   }
   if (!changed) return changed;
   const auto after = lay_out_edited(*changed);
   if (!after) return checked_edit(*std::move(changed), path);
-  const int at = after->find(path);
-  if (at < 0 || value_of(*after, static_cast<std::size_t>(at)) != toml_value)
+  const TextPlace* at = after->find(path);
+  if (at == nullptr || after->value_of(*at) != toml_value)
     return refuse_edit(path, "no value can be written here");
   return changed;
 }
@@ -205,20 +196,18 @@ core::Result<std::string> with_each_value(std::string_view text,
 core::Result<std::string> without_value(std::string_view text, const TextPath& path) {
   const auto layout = lay_out_edited(text);
   if (!layout) return tl::unexpected(layout.error());
-  const int at = layout->find(path);
-  if (at < 0) return std::string(text);
-  const TextPlace& place = layout->places[static_cast<std::size_t>(at)];
-  if (place.is_header()) return refuse_edit(path, "this is a table with a header, not a value");
-  return checked_edit(
-      place.nested ? without_nested(text, place.lines) : with_span(text, place.lines, ""), path);
+  const TextPlace* at = layout->find(path);
+  if (at == nullptr) return std::string(text);
+  if (at->is_header()) return refuse_edit(path, "this is a table with a header, not a value");
+  return checked_edit(at->nested ? without_nested(text, at->lines) : with_span(text, at->lines, ""),
+                      path);
 }
 
 std::optional<std::string> value_text(std::string_view text, const TextPath& path) {
   const auto layout = lay_out_edited(text);
-  const int at = layout ? layout->find(path) : -1;
-  if (at < 0) return {};
-  if (layout->places[static_cast<std::size_t>(at)].is_header()) return {};
-  return std::string(value_of(*layout, static_cast<std::size_t>(at)));
+  const TextPlace* at = layout ? layout->find(path) : nullptr;
+  if (at == nullptr || at->is_header()) return {};
+  return std::string(layout->value_of(*at));
 }
 
 std::size_t item_count(std::string_view text, const TextPath& path) {

@@ -1,5 +1,7 @@
 #include "engine/world/files/text_layout.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -245,11 +247,9 @@ std::size_t TextLayout::begin() const {
   return text.starts_with(kMark) ? kMark.size() : 0;
 }
 
-int TextLayout::find(const TextPath& path) const {
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i].path == path) return static_cast<int>(i);
-  }
-  return -1;
+const TextPlace* TextLayout::find(const TextPath& path) const {
+  const auto at = std::ranges::find(places, path, &TextPlace::path);
+  return at == places.end() ? nullptr : &*at;
 }
 
 std::size_t TextLayout::start_of(const TextPlace& header) const {
@@ -263,21 +263,17 @@ std::size_t TextLayout::start_of(const TextPlace& header) const {
   return start <= begin() ? header.lines.begin : start;
 }
 
-std::size_t TextLayout::next_header(int i) const {
-  auto next = static_cast<std::size_t>(i + 1);
-  while (next < places.size() && !places[next].is_header())
-    ++next;
-  return next;
+std::size_t TextLayout::next_header(const TextPlace* place) const {
+  const auto from = places.begin() + (place == nullptr ? 0 : place - places.data() + 1);
+  return static_cast<std::size_t>(
+      std::find_if(from, places.end(), std::mem_fn(&TextPlace::is_header)) - places.begin());
 }
 
 std::size_t TextLayout::item_count(const TextPath& array) const {
-  std::size_t count = 0;
-  for (const TextPlace& place : places)
-    count += place.path.size() == array.size() + 1 && place.path.back().is_index &&
-                     place.path.starts_with(array)
-                 ? 1
-                 : 0;
-  return count;
+  return static_cast<std::size_t>(std::ranges::count_if(places, [&](const TextPlace& place) {
+    return place.path.size() == array.size() + 1 && place.path.back().is_index &&
+           place.path.starts_with(array);
+  }));
 }
 
 std::string_view TextLayout::line_break() const {

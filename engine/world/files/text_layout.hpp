@@ -42,12 +42,15 @@ struct TextLayout {
   std::vector<TextPlace> places;
 
   std::size_t begin() const;  // after a byte order mark
-  // The index of the place with this path, or -1.
-  int find(const TextPath& path) const;
+  // The place with this path, or null; and the text of a place's value.
+  const TextPlace* find(const TextPath& path) const;
+  std::string_view value_of(const TextPlace& place) const {
+    return text.substr(place.value.begin, place.value.end - place.value.begin);
+  }
   // The start of a header with the comment lines directly above it, unless these begin the file.
   std::size_t start_of(const TextPlace& header) const;
-  // The index of the first header after place `i` (-1: of all headers), or places.size().
-  std::size_t next_header(int i) const;
+  // The index of the first header after a place (null: of all headers), or places.size().
+  std::size_t next_header(const TextPlace* place) const;
   // The number of items of an array, of tables or inline; 0 if there is no such array.
   std::size_t item_count(const TextPath& array) const;
   // The line break of the text: "\r\n" if its first line ends with it.

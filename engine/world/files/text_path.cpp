@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
 #include <iterator>
 
 #include "engine/world/files/toml_values.hpp"
@@ -27,6 +28,12 @@ TextPath TextPath::first(std::size_t count) const {
 TextPath TextPath::with(TextStep step) const {
   TextPath path = *this;
   path.steps.push_back(std::move(step));
+  return path;
+}
+
+TextPath TextPath::keys() const {
+  TextPath path = *this;
+  std::erase_if(path.steps, std::mem_fn(&TextStep::is_index));
   return path;
 }
 

@@ -45,6 +45,8 @@ struct TextPath {
   TextPath parent() const { return first(size() - 1); }
   // This path with one more step.
   TextPath with(TextStep step) const;
+  // The path without indices, as headers write it.
+  TextPath keys() const;
   // True if `start` is this path or the beginning of it.
   bool starts_with(const TextPath& start) const;
   // The path as messages write it: "scatter[2].branches". Keys that are not bare are in quotes.

@@ -15,14 +15,6 @@ namespace {
 
 constexpr std::string_view kSnippet = "the pasted text";
 
-// The path without indices, as headers write it.
-TextPath keys_of(const TextPath& path) {
-  TextPath keys;
-  for (const TextStep& step : path.steps)
-    if (!step.is_index) keys.steps.push_back(step);
-  return keys;
-}
-
 std::string named(const TextPath& keys) {
   return keys.empty() ? "keys without a table" : fmt::format("[{}]", keys.text());
 }
@@ -59,7 +51,7 @@ core::Result<TextPath> snippet_table(std::string_view snippet) {
   const auto layout = lay_out(snippet, kSnippet);
   if (!layout) return tl::unexpected(layout.error());
   if (layout->places.empty() || !layout->places.front().is_header()) return TextPath{};
-  return keys_of(layout->places.front().path);
+  return layout->places.front().path.keys();
 }
 
 core::Result<std::string> copied_snippet(std::string_view text, const TextPath& path) {
@@ -80,10 +72,10 @@ core::Result<std::string> with_snippet(std::string_view text, const TextPath& pa
   if (!layout) return tl::unexpected(layout.error());
   const bool bare = layout->places.empty() || !layout->places.front().is_header();
   const TextPath base = bare ? TextPath{} : layout->places.front().path;
-  if (!bare && keys_of(base) != keys_of(path))
+  if (!bare && base.keys() != path.keys())
     return refuse_edit(path,
                        fmt::format("the pasted text belongs to {}, which does not fit into {}",
-                                   named(keys_of(base)), named(keys_of(path))));
+                                   named(base.keys()), named(path.keys())));
   auto changed = without_replaced(std::string(text), path, *layout, base.size());
   for (std::size_t i = 0; changed && i < layout->places.size(); ++i) {
     const TextPlace& place = layout->places[i];
@@ -92,8 +84,7 @@ core::Result<std::string> with_snippet(std::string_view text, const TextPath& pa
     if (place.nested) continue;
     const TextPath to = moved_path(path, place.path, base.size());
     if (!place.is_header()) {
-      changed = with_value(*changed, to,
-                           snippet.substr(place.value.begin, place.value.end - place.value.begin));
+      changed = with_value(*changed, to, layout->value_of(place));
     } else if (place.kind == TextPlace::Kind::kItem && place.path.size() > base.size()) {
       changed = with_table_appended(*changed, to.parent(), "");
     }
@@ -119,7 +110,7 @@ core::Result<std::string> read_preset(std::string_view text, std::string_view fi
         fmt::format("partial: this program does not know version {} of presets; "
                     "allowed: {}",
                     version, kPresetFormat));
-  const std::size_t first = layout->next_header(-1);
+  const std::size_t first = layout->next_header(nullptr);
   if (first != 1 || first == layout->places.size())
     return refuse("a preset must have the line partial and one table");
   return std::string(text.substr(layout->start_of(layout->places[first])));

@@ -15,9 +15,9 @@ namespace {
 // headers and the blank lines after them. Usually there is one part.
 std::vector<TextSpan> parts_of(const TextLayout& layout, const TextPath& table) {
   std::vector<TextSpan> parts;
-  for (std::size_t i = layout.next_header(-1); i < layout.places.size();) {
+  for (std::size_t i = layout.next_header(nullptr); i < layout.places.size();) {
     const TextPlace& header = layout.places[i];
-    const std::size_t next = layout.next_header(static_cast<int>(i));
+    const std::size_t next = layout.next_header(&header);
     const std::size_t end =
         next < layout.places.size() ? layout.start_of(layout.places[next]) : layout.text.size();
     if (header.path.starts_with(table)) {
@@ -60,32 +60,25 @@ std::string without_parts(std::string_view text, const std::vector<TextSpan>& pa
 // True if the text is one whole table with headers of this array.
 bool has_headers_of(const TextLayout& table, const TextPath& array) {
   if (table.places.empty() || !table.places.front().is_header()) return false;
-  std::vector<std::string> keys;  // the headers name arrays without indices
-  for (const TextStep& step : array.steps)
-    if (!step.is_index) keys.push_back(step.key);
+  const TextPath keys = array.keys();
   std::size_t items = 0;
   for (const TextPlace& place : table.places) {
-    std::vector<std::string> of_place;
-    for (const TextStep& step : place.path.steps)
-      if (!step.is_index) of_place.push_back(step.key);
-    if (of_place.size() < keys.size() || !std::equal(keys.begin(), keys.end(), of_place.begin()))
-      return false;
+    const TextPath of_place = place.path.keys();
+    if (!of_place.starts_with(keys)) return false;
     if (place.is_header() && of_place.size() == keys.size()) ++items;
   }
   return items == 1;
 }
 
 core::Result<void> require_item(const TextLayout& layout, const TextPath& path) {
-  const int at = path.empty() ? -1 : layout.find(path);
-  if (at >= 0 && layout.places[static_cast<std::size_t>(at)].kind == TextPlace::Kind::kItem)
-    return {};
+  const TextPlace* at = path.empty() ? nullptr : layout.find(path);
+  if (at != nullptr && at->kind == TextPlace::Kind::kItem) return {};
   return refuse_edit(path, "there is no such table with a header in the text");
 }
 
 // The offset for a new item with this index: before the item that has the index, or after the last.
 std::size_t place_of_item(const TextLayout& layout, const TextPath& array, std::size_t index) {
-  if (const int at = layout.find(array.with(index)); at >= 0)
-    return layout.start_of(layout.places[static_cast<std::size_t>(at)]);
+  if (const TextPlace* at = layout.find(array.with(index))) return layout.start_of(*at);
   if (index > 0) {
     const std::vector<TextSpan> parts = parts_of(layout, array.with(index - 1));
     if (!parts.empty()) return parts.back().end;
@@ -104,11 +97,11 @@ core::Result<std::string> with_table_appended(std::string_view text, const TextP
   const auto added = lay_out(table, "the table");
   if (!added) return tl::unexpected(added.error());
   const bool whole = has_headers_of(*added, array);
-  if (!whole && added->next_header(-1) < added->places.size())
+  if (!whole && added->next_header(nullptr) < added->places.size())
     return refuse_edit(array, "the table to add must be one table of this array");
   const std::size_t count = layout->item_count(array);
-  if (count == 0 && layout->find(array) >= 0 &&
-      layout->places[static_cast<std::size_t>(layout->find(array))].is_header())
+  const TextPlace* there = layout->find(array);
+  if (count == 0 && there != nullptr && there->is_header())
     return refuse_edit(array, "this is a table, not an array of tables");
   const std::string item =
       (whole ? "" : header_line(*layout, array, true)) + with_breaks(*layout, table);
@@ -124,8 +117,7 @@ core::Result<std::string> without_table(std::string_view text, const TextPath& p
   const auto layout = lay_out_edited(text);
   if (!layout) return tl::unexpected(layout.error());
   if (path.empty()) return refuse_edit(path, "the whole text cannot be removed");
-  if (const int at = layout->find(path);
-      at >= 0 && !layout->places[static_cast<std::size_t>(at)].is_header())
+  if (const TextPlace* at = layout->find(path); at != nullptr && !at->is_header())
     return without_value(text, path);
   const std::vector<TextSpan> parts = parts_of(*layout, path);
   if (parts.empty()) return std::string(text);
@@ -164,8 +156,8 @@ core::Result<std::string> with_table_moved(std::string_view text, const TextPath
 std::optional<std::string> table_text(std::string_view text, const TextPath& path) {
   const auto layout = lay_out_edited(text);
   if (!layout) return {};
-  const int at = path.empty() ? -1 : layout->find(path);
-  if (at < 0 || !layout->places[static_cast<std::size_t>(at)].is_header()) return {};
+  const TextPlace* at = path.empty() ? nullptr : layout->find(path);
+  if (at == nullptr || !at->is_header()) return {};
   return joined(*layout, parts_of(*layout, path));
 }
 

@@ -1,25 +1,28 @@
-// World files: text → World. The [[scatter]] tables are read in scatter_file.cpp, the species in
-// species_file.cpp, the handmade models in handmade_file.cpp, stamps and roads in shaped_file.cpp,
-// models placed by hand in place_file.cpp. Writing is in write_world.cpp. docs/world-files.md
-// describes the format.
+// World files. The [[scatter]] and [[place]] tables are in scatter_file.cpp, the species in
+// species_file.cpp, the handmade models in handmade_file.cpp, stamps and roads in shaped_file.cpp.
+// docs/world-files.md describes the format.
 #include "engine/world/files/world_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
+#include <optional>
+#include <span>
 
+#include "engine/core/hash.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/world/files/document.hpp"
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/model_fields.hpp"
-#include "engine/world/files/place_file.hpp"
 #include "engine/world/files/scatter_file.hpp"
 #include "engine/world/files/shaped_file.hpp"
 #include "engine/world/files/species_file.hpp"
 #include "engine/world/files/table_reader.hpp"
 #include "engine/world/files/text_file.hpp"
+#include "engine/world/files/toml_values.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world.hpp"
 
@@ -44,7 +47,7 @@ void read_seed(TableReader& reader, std::uint64_t& seed) {
   }
   constexpr std::size_t kMaxShownBytes = 40;
   reader.problem(
-      node.line, "seed",
+      "seed",
       fmt::format("{} is not allowed: it must be an integer from 0 to {}, or a string of digits up "
                   "to \"{}\"",
                   node.kind == Node::Kind::kText
@@ -53,107 +56,70 @@ void read_seed(TableReader& reader, std::uint64_t& seed) {
                   INT64_MAX, UINT64_MAX));
 }
 
-void read_world_table(TableReader& root, World& world, ModelFields& terrain, Problems& problems) {
-  const Member* member = root.table("world", Presence::kRequired);
-  if (member == nullptr) return;
-  TableReader reader(member->value, "world", member->line, problems);
-  reader.read("name", world.name, kMaxNameBytes, Presence::kRequired);
-  read_seed(reader, world.seed);
+void read_world_table(TableReader& root, World& world, ModelFields& terrain) {
+  std::optional<TableReader> reader = root.table("world", Presence::kRequired);
+  if (!reader) return;
+  reader->read("name", world.name, kMaxNameBytes, Presence::kRequired);
+  read_seed(*reader, world.seed);
   std::int64_t blocks[2] = {0, 0};
-  if (reader.read_pair("blocks", blocks, {kBlocks.low, kBlocks.high}, Presence::kRequired)) {
+  if (reader->read_pair("blocks", blocks, {kBlocks.low, kBlocks.high}, Presence::kRequired)) {
     world.blocks_x = blocks[0];
     world.blocks_z = blocks[1];
   }
   for (const TerrainAlias& alias : kWorldKeys) {
     const int i = models::parameter_index(*terrain.type, alias.parameter);
-    read_parameter(reader, alias.key, static_cast<std::size_t>(i), false, terrain);
+    read_parameter(*reader, alias.key, static_cast<std::size_t>(i), false, terrain);
   }
-  reader.finish();
+  reader->finish();
 }
 
-bool is_world_key(std::string_view parameter) {
-  for (const TerrainAlias& alias : kWorldKeys) {
-    if (alias.parameter == parameter) return true;
-  }
-  return false;
-}
-
-void read_terrain_table(TableReader& root, ModelFields& terrain, Problems& problems) {
-  const Member* member = root.table("terrain");
-  if (member == nullptr) return;
-  TableReader reader(member->value, "terrain", member->line, problems);
+void read_terrain_table(TableReader& root, ModelFields& terrain) {
+  std::optional<TableReader> reader = root.table("terrain");
+  if (!reader) return;
   const auto specs = terrain.type->parameters();
   for (std::size_t i = 0; i < specs.size(); ++i) {
-    if (specs[i].source == models::ParameterSource::kUser && !is_world_key(specs[i].name))
-      read_parameter(reader, specs[i].name, i, false, terrain);
+    if (is_terrain_key(specs[i])) read_parameter(*reader, specs[i].name, i, false, terrain);
   }
-  reader.finish();
+  reader->finish();
 }
 
 // Reads the fields of a table. `visit_fields` calls its argument for every field (fields.hpp).
-template <class VisitFields>
-void read_fields(TableReader& root, std::string_view name, Problems& problems,
-                 const VisitFields& visit_fields) {
-  const Member* member = root.table(name);
-  if (member == nullptr) return;
-  TableReader reader(member->value, std::string(name), member->line, problems);
-  visit_fields([&reader](std::string_view key, auto& field, const FieldSpec& spec) {
-    reader.read(key, field, Limits{spec.low, spec.high});
-  });
-  reader.finish();
+void read_fields(TableReader& root, std::string_view name, auto& values, const auto& visit_fields) {
+  std::optional<TableReader> reader = root.table(name);
+  if (!reader) return;
+  visit_fields(values, FieldReader{*reader});
+  reader->finish();
 }
 
-// The palette with the names of its images, which must not lead out of the world's folder.
-void read_palette(TableReader& root, Palette& palette, Problems& problems) {
-  constexpr std::size_t kLongestName = 200;  // bytes
-  const Member* member = root.table("palette");
-  if (member == nullptr) return;
-  TableReader reader(member->value, "palette", member->line, problems);
-  visit_palette(palette, [&reader](std::string_view key, auto& field, const FieldSpec& spec) {
-    reader.read(key, field, Limits{spec.low, spec.high});
+// The palette with the names of its images.
+void read_palette(TableReader& root, Palette& palette) {
+  read_fields(root, "palette", palette, [](Palette& fields, const FieldReader& visit) {
+    visit_palette(fields, visit);
+    for (std::size_t i = 0; i < kPaletteImages.size(); ++i)
+      read_name_beside(visit.reader, kPaletteImages[i], fields.images[i]);
   });
-  for (std::size_t i = 0; i < kPaletteImages.size(); ++i) {
-    const std::string_view key = kPaletteImages[i];
-    if (reader.read(key, palette.images[i], kLongestName))
-      check_name_beside(reader, key, palette.images[i]);
-  }
-  reader.finish();
 }
 
 // The default sky: its colours are computed for the sun's elevation in the file. Wrong values are
 // reported later, when the table is read.
-Sky usual_sky(TableReader& root) {
+Sky usual_sky(const Node& root) {
   const Sky usual;
-  const Member* member = root.table("sky");
-  if (member == nullptr) return usual;
   SunPlace sun{usual.sun_azimuth_deg, usual.sun_elevation_deg};
   Problems deferred_problems("");
-  TableReader reader(member->value, "sky", member->line, deferred_problems);
-  reader.read("sun_elevation_deg", sun.elevation_deg, {-90, 90});
+  if (auto reader = TableReader(root, "", 1, deferred_problems).table("sky"))
+    reader->read("sun_elevation_deg", sun.elevation_deg, {-90, 90});
   return with_sun(usual, sun);
 }
 
 // Adds the species of a world to the registry `grown`; null: the registry cannot grow.
 void register_species(TableReader& root, const World& world, const models::Registry& registry,
-                      models::Registry* grown, Problems& problems) {
-  const std::vector<const Node*> nodes = root.tables("species", kMaxSpecies);
+                      models::Registry* grown) {
+  std::vector<TableReader> readers = root.tables("species", kMaxSpecies);
   for (std::size_t i = 0; i < world.species.size(); ++i) {
-    const models::Species& species = world.species[i];
-    const auto refuse = [&](std::string_view sentence) {
-      problems.add(nodes[i]->line, fmt::format("species[{}].name", i), sentence);
-    };
-    auto type = models::make_species_type(species);
-    if (!type) return refuse(type.error().message);
-    const int known = registry.find(species.name);
-    if (known >= 0) {
-      const models::ModelType& there = registry[static_cast<models::ModelIndex>(known)];
-      if (there.identity() != (*type)->identity())
-        return refuse(fmt::format("another model is named {}", species.name));
-    } else if (grown == nullptr) {
-      return refuse("this registry does not accept new species");
-    } else if (auto added = grown->add(std::move(*type)); !added) {
-      return refuse(added.error().message);
-    }
+    auto type = models::make_species_type(world.species[i]);
+    const auto refused = type ? register_type(std::move(*type), registry, grown)
+                              : std::optional(type.error().message);
+    if (refused) return readers[i].problem(readers[i].line(), "name", *refused);
   }
 }
 
@@ -174,29 +140,47 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
   read_format(root, kWorldFormat);
   // For another version, errors about other fields would be misleading.
   if (problems.any()) return tl::unexpected(problems.first());
-  read_world_table(root, world, terrain, problems);
-  read_terrain_table(root, terrain, problems);
+  read_world_table(root, world, terrain);
+  read_terrain_table(root, terrain);
   check_model(terrain, problems);
   world.terrain = corner_of(terrain, 0);
   Problems of_types(file_name);
-  world.species = read_species(root, of_types);
-  if (!of_types.any()) register_species(root, world, registry, grown, of_types);
-  world.models = read_handmade(root, {{file_name, beside}, registry, grown}, of_types);
+  TableReader types(*document, "", 1, of_types);
+  world.species = read_species(types);
+  if (!of_types.any()) register_species(types, world, registry, grown);
+  world.models = read_handmade(types, {{file_name, beside}, registry, grown});
   if (of_types.any()) return tl::unexpected(problems.any() ? problems.first() : of_types.first());
-  read_scatters(root, registry, {file_name, beside}, world, problems);
-  world.sky = usual_sky(root);
-  read_fields(root, "sky", problems, [&](const auto& visit) { visit_sky(world.sky, visit); });
-  read_fields(root, "water", problems, [&](const auto& visit) { visit_water(world.water, visit); });
-  read_palette(root, world.palette, problems);
-  world.places.all = read_places(root, registry, world, problems);
-  world.shaped = read_shaped(root, {file_name, beside}, problems);
+  for (const char* key : {"species", "model"})
+    (void)root.find(key);  // finish() must know them
+  read_scatters(root, registry, {file_name, beside}, world);
+  world.sky = usual_sky(*document);
+  read_fields(root, "sky", world.sky, visit_sky);
+  read_fields(root, "water", world.water, visit_water);
+  read_palette(root, world.palette);
+  world.places.all = read_places(root, registry, world);
+  world.shaped = read_shaped(root, {file_name, beside});
   root.finish();
   if (problems.any()) return tl::unexpected(problems.first());
   world.terrain = terrain_parameters(world, {0, 0});
-  shape_world(root, world, problems);
+  shape_world(root, world);
   if (problems.any()) return tl::unexpected(problems.first());
   sort_places(world, registry);
   return world;
+}
+
+void write_terrain(std::string& text, const World& world, const models::ModelType& type) {
+  const auto out = std::back_inserter(text);
+  const auto specs = type.parameters();
+  const auto write = [&](std::string_view key, std::size_t i) {
+    const double value = models::parameter_number(type, world.terrain, i);
+    fmt::format_to(out, "{} = {}\n", key,
+                   toml_range(value, value, specs[i].type == models::ParameterType::kInteger));
+  };
+  for (const TerrainAlias& alias : kWorldKeys)
+    write(alias.key, static_cast<std::size_t>(models::parameter_index(type, alias.parameter)));
+  text += "\n[terrain]\n";
+  for (std::size_t i = 0; i < specs.size(); ++i)
+    if (is_terrain_key(specs[i])) write(specs[i].name, i);
 }
 
 }  // namespace
@@ -226,6 +210,36 @@ core::Result<World> load_world(const std::filesystem::path& file, const models::
   const core::Result<std::string> text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
   return parse_world(*text, file.string(), registry, beside);
+}
+
+std::string write_world(const World& world, const models::Registry& registry) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "format = {}\n\n[world]\nname = {}\nseed = {}\nblocks = [{}, {}]\n",
+                 world.format, toml_string(world.name), toml_seed(world.seed), world.blocks_x,
+                 world.blocks_z);
+  write_terrain(text, world, registry[world.terrain_model]);
+  write_species(world.species, text);
+  write_handmade(world.models, text);
+  write_scatters(world, registry, text);
+  write_places(world, registry, text);
+  write_shaped(world.shaped, text);
+  text += "\n[sky]\n";
+  visit_sky(world.sky, FieldWriter{text});
+  text += "\n[water]\n";
+  visit_water(world.water, FieldWriter{text});
+  text += "\n[palette]\n";
+  visit_palette(world.palette, FieldWriter{text});
+  for (std::size_t i = 0; i < kPaletteImages.size(); ++i) {
+    const std::string& name = world.palette.images[i];
+    if (!name.empty()) fmt::format_to(out, "{} = {}\n", kPaletteImages[i], toml_string(name));
+  }
+  return text;
+}
+
+std::uint64_t world_hash(const World& world, const models::Registry& registry) {
+  const std::string text = write_world(world, registry);
+  return core::hash_bytes(std::as_bytes(std::span(text)), world.files_hash);
 }
 
 }  // namespace psygen::world

@@ -7,7 +7,6 @@
 
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/handmade_file.hpp"
-#include "engine/world/files/mask_file.hpp"
 #include "engine/world/files/scatter_file.hpp"
 #include "engine/world/files/shaped_file.hpp"
 #include "engine/world/files/species_file.hpp"
@@ -64,28 +63,28 @@ class SchemaBuilder {
     const Sky usual = with_sun(Sky{}, {Sky{}.sun_azimuth_deg, world_.sky.sun_elevation_deg});
     Sky usual_here = usual;
     usual_here.sun_elevation_deg = Sky{}.sun_elevation_deg;
-    add_all(sections.back(), world_.sky, usual_here,
-            [](auto& o, const auto& v) { visit_sky(o, v); });
+    add_all(sections.back(), world_.sky, usual_here, visit_sky);
     sections.push_back(section(SectionKind::kWater, {"water"}, "Water"));
-    add_all(sections.back(), world_.water, Water{},
-            [](auto& o, const auto& v) { visit_water(o, v); });
+    add_all(sections.back(), world_.water, Water{}, visit_water);
     sections.push_back(palette_section());
-    for (std::size_t i = 0; i < world_.species.size(); ++i)
-      sections.push_back(species_section(world_.species[i], {"species", i}));
-    for (std::size_t i = 0; i < world_.models.size(); ++i)
-      sections.push_back(handmade_section(world_.models[i], {"model", i}));
-    for (std::size_t i = 0; i < world_.scatter.size(); ++i)
-      sections.push_back(scatter_section(world_.scatter[i], {"scatter", i}));
-    for (std::size_t i = 0; i < world_.places.all.size(); ++i)
-      sections.push_back(place_section(world_.places.all[i], {"place", i}));
-    for (std::size_t i = 0; i < world_.shaped.stamps.size(); ++i)
-      sections.push_back(stamp_section(world_.shaped.stamps[i], {"stamp", i}));
-    for (std::size_t i = 0; i < world_.shaped.roads.size(); ++i)
-      sections.push_back(road_section(world_.shaped.roads[i], {"road", i}));
+    add_each(sections, "species", world_.species, &SchemaBuilder::species_section);
+    add_each(sections, "model", world_.models, &SchemaBuilder::handmade_section);
+    add_each(sections, "scatter", world_.scatter, &SchemaBuilder::scatter_section);
+    add_each(sections, "place", world_.places.all, &SchemaBuilder::place_section);
+    add_each(sections, "stamp", world_.shaped.stamps, &SchemaBuilder::stamp_section);
+    add_each(sections, "road", world_.shaped.roads, &SchemaBuilder::road_section);
     return sections;
   }
 
  private:
+  template <class Item>
+  void add_each(std::vector<WorldSection>& sections, std::string_view key,
+                const std::vector<Item>& items,
+                WorldSection (SchemaBuilder::*section_of)(const Item&, const TextPath&)
+                    const) const {
+    for (std::size_t i = 0; i < items.size(); ++i)
+      sections.push_back((this->*section_of)(items[i], {key, i}));
+  }
   WorldSection section(SectionKind kind, TextPath path, std::string title) const {
     WorldSection made;
     made.kind = kind;
@@ -109,13 +108,9 @@ class SchemaBuilder {
     field.hard_min = spec.low, field.hard_max = spec.high;
     field.soft_min = spec.soft_low, field.soft_max = spec.soft_high;
     field.logarithmic = spec.soft_low > 0 && spec.soft_high >= kDecades * spec.soft_low;
-    const int at = layout_.find(field.path);
-    field.is_set = at >= 0;
-    field.value = std::move(now.toml);
-    if (field.is_set) {
-      const TextSpan span = layout_.places[static_cast<std::size_t>(at)].value;
-      field.value = layout_.text.substr(span.begin, span.end - span.begin);
-    }
+    const TextPlace* at = layout_.find(field.path);
+    field.is_set = at != nullptr;
+    field.value = field.is_set ? std::string(layout_.value_of(*at)) : std::move(now.toml);
     field.numbers = std::move(now.numbers);
     field.plain = std::move(now.plain);
     field.usual = std::move(usual);
@@ -193,17 +188,14 @@ class SchemaBuilder {
     WorldSection made = section(SectionKind::kTerrain, {"terrain"}, "Terrain");
     const auto specs = registry_[world_.terrain_model].parameters();
     for (std::size_t i = 0; i < specs.size(); ++i) {
-      bool elsewhere = specs[i].source == models::ParameterSource::kPlaced;
-      for (const TerrainAlias& alias : kWorldKeys)
-        elsewhere = elsewhere || alias.parameter == specs[i].name;
-      if (!elsewhere) add_terrain_parameter(made, specs[i].name, i);
+      if (is_terrain_key(specs[i])) add_terrain_parameter(made, specs[i].name, i);
     }
     return made;
   }
 
   WorldSection palette_section() const {
     WorldSection made = section(SectionKind::kPalette, {"palette"}, "Palette");
-    add_all(made, world_.palette, Palette{}, [](auto& o, const auto& v) { visit_palette(o, v); });
+    add_all(made, world_.palette, Palette{}, visit_palette);
     for (std::size_t i = 0; i < kPaletteImages.size(); ++i)
       add(made, kPaletteImages[i], text_value(world_.palette.images[i], FieldKind::kImage), "",
           without_limits("a square image that repeats and replaces the texture"));
@@ -266,7 +258,7 @@ class SchemaBuilder {
                  without_limits("snake_case, different from all other models"));
     add_required(made, "file", text_value(m.file),
                  without_limits("a glTF file (.glb or .gltf) in the folder of the world or below"));
-    add_all(made, m, usual, [](auto& o, const auto& v) { visit_handmade(o, v); });
+    add_all(made, m, usual, visit_handmade);
     add_choice(made, "collider", m.collider, usual.collider, kHandmadeColliders,
                "collider: the hull of its points, their box, or none");
     return made;
@@ -280,19 +272,28 @@ class SchemaBuilder {
         without_limits("an image whose grey is the fraction of instances kept; white: all"));
     add(to, "mask_area_m", {FieldKind::kToml, whole_world ? "" : toml_vector(mask.area_m), {}}, "",
         without_limits("area of the image: [x0, z0, x1, z1]; default: the whole world", "m"));
-    add_all(to, mask, ScatterMask{}, [](auto& o, const auto& v) { visit_mask(o, v); });
+    add_all(to, mask, ScatterMask{}, visit_mask);
+  }
+
+  // A section whose first field chooses a model type.
+  WorldSection model_section(SectionKind kind, const TextPath& path, const models::ModelType& type,
+                             std::string_view doc) const {
+    const std::string name(type.name());
+    WorldSection made = section(kind, path, name);
+    WorldField& model =
+        add(made, "model", text_value(name, FieldKind::kChoice), "", without_limits(doc));
+    model.required = true;
+    for (models::ModelIndex i = 0; i < registry_.size(); ++i)
+      if (i != world_.terrain_model) model.choices.emplace_back(registry_[i].name());
+    return made;
   }
 
   WorldSection scatter_section(const Scatter& s, const TextPath& path) const {
     const models::ModelType& type = registry_[s.model];
-    WorldSection made = section(SectionKind::kScatter, path, std::string(type.name()));
-    WorldField& model = add(made, "model", text_value(std::string(type.name()), FieldKind::kChoice),
-                            "", without_limits("model type of the instances"));
-    model.required = true;
-    for (models::ModelIndex i = 0; i < registry_.size(); ++i)
-      if (i != world_.terrain_model) model.choices.emplace_back(registry_[i].name());
+    WorldSection made =
+        model_section(SectionKind::kScatter, path, type, "model type of the instances");
     add_required(made, "count", value_of(std::int64_t{s.count}), kCount);
-    add_all(made, s, Scatter{}, [](auto& o, const auto& v) { visit_place(o, v); });
+    add_all(made, s, Scatter{}, visit_place);
     add_mask(made, s.mask);
     for (std::size_t i = 0; i < s.ranges.size(); ++i) {
       const models::ParameterSpec& spec = type.parameters()[i];
@@ -304,15 +305,10 @@ class SchemaBuilder {
 
   WorldSection place_section(const Place& p, const TextPath& path) const {
     const models::ModelType& type = registry_[p.model];
-    WorldSection made = section(SectionKind::kPlace, path, std::string(type.name()));
-    WorldField& model = add(made, "model", text_value(std::string(type.name()), FieldKind::kChoice),
-                            "", without_limits("model type"));
-    model.required = true;
-    for (models::ModelIndex i = 0; i < registry_.size(); ++i)
-      if (i != world_.terrain_model) model.choices.emplace_back(registry_[i].name());
+    WorldSection made = model_section(SectionKind::kPlace, path, type, "model type");
     add_required(made, "at_m", {FieldKind::kToml, toml_vector(std::array{p.at_m.x, p.at_m.y}), {}},
                  without_limits("position: [x, z]", "m"));
-    add_all(made, p, Place{}, [](auto& o, const auto& v) { visit_placed(o, v); });
+    add_all(made, p, Place{}, visit_placed);
     const auto specs = type.parameters();
     for (std::size_t i = 0; i < specs.size(); ++i) {
       if (specs[i].source != models::ParameterSource::kUser) continue;
@@ -330,7 +326,7 @@ class SchemaBuilder {
     add_required(made, "centre_m",
                  {FieldKind::kToml, toml_vector(std::array{s.centre_m.x, s.centre_m.y}), {}},
                  without_limits("centre of the square: [x, z]", "m"));
-    add_all(made, s, usual, [](auto& o, const auto& v) { visit_stamp(o, v); });
+    add_all(made, s, usual, visit_stamp);
     add_choice(made, "mode", s.mode, usual.mode, kStampModes, "adds to the ground, or replaces it");
     return made;
   }
@@ -340,7 +336,7 @@ class SchemaBuilder {
         section(SectionKind::kRoad, path, fmt::format("road {}", path.back().index + 1));
     add_required(made, "points_m", {FieldKind::kToml, toml_points(r.points_m), {}},
                  without_limits("points on the road: [[x, z], [x, z]]", "m"));
-    add_all(made, r, Road{}, [](auto& o, const auto& v) { visit_road(o, v); });
+    add_all(made, r, Road{}, visit_road);
     return made;
   }
 

@@ -34,7 +34,7 @@ struct Frame {
 #pragma GCC diagnostic pop
 }  // namespace shader
 
-// As render/frame_data.cpp fills it.
+// As render/frame/frame_data.cpp fills it.
 void set_frame(const Palette& p) {
   const auto f = [](double v) { return static_cast<float>(v); };
   const auto blend = [&](double v) { return std::max(f(v), 1e-3F); };

@@ -4,7 +4,6 @@
 
 #include "engine/models/terrain/ground.hpp"
 #include "engine/world/edits/edits.hpp"
-#include "engine/world/far/merged_identity.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/files/world_schema.hpp"
 #include "engine/world/models_reach.hpp"

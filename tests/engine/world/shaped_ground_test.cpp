@@ -10,7 +10,6 @@
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/edits/edit_bytes.hpp"
-#include "engine/world/far/merged_identity.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/placement.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"

@@ -1,5 +1,3 @@
-#include "engine/world/far/placed_proxies.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "engine/models/kit/packing.hpp"
 #include "engine/world/far/merged_models.hpp"
+#include "engine/world/far/merged_plan.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/world/edits/edited_world.hpp"
 

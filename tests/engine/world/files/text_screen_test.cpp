@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "engine/world/files/document.hpp"
 
 namespace psygen::world {
@@ -19,6 +21,19 @@ std::string screen_error(std::string_view text) {
   EXPECT_EQ(screened.error().code, core::ErrorCode::kParse);
   EXPECT_EQ(parse_document(text, "f.toml").error().message, screened.error().message);
   return screened.error().message;
+}
+
+struct Described {
+  std::string name, advice;
+};
+
+// The description of a character that is not ASCII.
+Described described(std::string_view character) {
+  const std::string message = screen_error("a" + std::string(character));
+  std::smatch parts;
+  const std::regex form("f.toml:1:2: (.*) is not allowed here(?:: (.*))?; outside of strings .*");
+  EXPECT_TRUE(std::regex_match(message, parts, form)) << message;
+  return {parts[1], parts[2]};
 }
 
 std::string utf8(char32_t c) {
@@ -127,6 +142,39 @@ TEST(TextScreen, BytesThatAreNotUtf8AreRejectedEvenInStringsAndComments) {
                                        "\0a",
                                        4)),
               HasSubstr("UTF-16"));
+}
+
+TEST(TextScreen, ForeignCharactersAreNamedByTheirGlyphAndNumber) {
+  EXPECT_EQ(described("ö").name, "'ö' (U+00F6)");
+  EXPECT_EQ(described("×").name, "'×' (U+00D7)");
+  EXPECT_EQ(described("字").name, "'字' (U+5B57)");
+  EXPECT_EQ(described("😀").name, "'😀' (U+1F600)");
+  EXPECT_EQ(described("ö").advice, "");
+}
+
+TEST(TextScreen, InvisibleCharactersHaveADescriptionOnly) {
+  EXPECT_EQ(described("\xC2\xA0").name, "U+00A0 (a non-breaking space)");
+  EXPECT_EQ(described("\xC2\xA0").advice, "write a plain space");
+  EXPECT_EQ(described("\xE2\x80\x8B").name, "U+200B (a zero-width space, which is invisible)");
+  EXPECT_EQ(described("\xE2\x80\x8B").advice, "delete it");
+  EXPECT_EQ(described("\xEF\xBB\xBF").name,
+            "U+FEFF (a byte order mark, which may only start a file)");
+  EXPECT_EQ(described("\xE2\x80\xAE").name,
+            "U+202E (an invisible mark that reverses the direction of the text)");
+  EXPECT_EQ(described("\xCC\x88").name, "U+0308 (a mark on the previous letter)");
+  EXPECT_EQ(described("\xEE\x80\x80").name, "U+E000") << "nobody knows what it looks like";
+  EXPECT_EQ(described("\xF4\x8F\xBF\xBF").name, "U+10FFFF");
+}
+
+TEST(TextScreen, LookalikesOfAsciiComeWithACorrection) {
+  EXPECT_EQ(described("“").name, "'“' (U+201C, a typographic quotation mark)");
+  for (const auto& [text, advice] :
+       {std::pair("“", "write \""), std::pair("”", "write \""), std::pair("„", "write \""),
+        std::pair("’", "write '"), std::pair("−", "write -"), std::pair("–", "write -"),
+        std::pair("\xE2\x80\xAF", "write a plain space"), std::pair("＝", "write ="),
+        std::pair("５", "write 5"), std::pair("ｃ", "write c")})
+    EXPECT_EQ(described(text).advice, advice) << text;
+  EXPECT_EQ(described("с").name, "'с' (U+0441, a Cyrillic letter)");
 }
 
 }  // namespace
