@@ -36,6 +36,14 @@ QString shown_value(const std::string& toml) {
   return text;
 }
 
+// The values of a cell, for its caption.
+QString caption_of(const SweepCell& cell) {
+  QStringList values;
+  for (const std::string& value : cell.values)
+    values += shown_value(value);
+  return values.join(" · ");
+}
+
 // True for paths inside a species or a scatter.
 bool is_of_model(const world::TextPath& path) {
   return path.size() > 2 && path.steps[1].is_index &&
@@ -205,10 +213,7 @@ void ContactSheet::fill() {
       swept_.size() == 2 ? sweep_values(swept_[0], columns, page_).size() : columns;
   for (std::size_t i = 0; i < cells->size(); ++i) {
     auto* widget = new PictureCell;
-    QStringList values;
-    for (const std::string& value : (*cells)[i].values)
-      values += shown_value(value);
-    widget->set_caption(values.join(" · "), {});
+    widget->set_caption(caption_of((*cells)[i]), {});
     connect(widget, &PictureCell::clicked, this, [this, i] { apply(i); });
     grid_->addWidget(widget, static_cast<int>(i / wide), static_cast<int>(i % wide));
     shown_.push_back({.cell = std::move((*cells)[i]), .widget = widget, .seconds = {}});
@@ -264,15 +269,11 @@ void ContactSheet::ask_costs() {
 
 void ContactSheet::note_cost(std::size_t i, const PictureReply& reply) {
   Shown& shown = shown_[i];
-  QStringList values;
-  for (const std::string& value : shown.cell.values)
-    values += shown_value(value);
   if (reply.cost) {
     shown.seconds = reply.cost->seconds;
-    shown.widget->set_caption(values.join(" · "), cost_text(*reply.cost));
+    shown.widget->set_caption(caption_of(shown.cell), cost_text(*reply.cost));
   } else {
-    shown.failed = true;
-    shown.widget->set_error(to_qstring(reply.error));
+    fail(i, to_qstring(reply.error));
   }
   if (--costs_left_ == 0) ask_distances();
 }
@@ -288,10 +289,7 @@ void ContactSheet::ask_distances() {
     service_.ask(*std::move(request), batch_, static_cast<double>(i), this,
                  [this, i](const PictureReply& reply) {
                    shown_[i].distance_m = reply.distance_m;
-                   if (!reply.error.empty()) {
-                     shown_[i].failed = true;
-                     shown_[i].widget->set_error(to_qstring(reply.error));
-                   }
+                   if (!reply.error.empty()) fail(i, to_qstring(reply.error));
                    if (--distances_left_ == 0) ask_pictures();
                  });
   }
@@ -309,8 +307,7 @@ void ContactSheet::ask_pictures() {
     if (shown_[i].failed) continue;
     auto request = request_of(shown_[i].cell);
     if (!request) {
-      shown_[i].failed = true;
-      shown_[i].widget->set_error(to_qstring(request.error().message));
+      fail(i, to_qstring(request.error().message));
       continue;
     }
     request->distance_m = std::min(farthest_m, kMaxSmaller * shown_[i].distance_m);
@@ -324,11 +321,15 @@ void ContactSheet::note_picture(std::size_t i, const PictureReply& reply) {
   if (reply.error.empty() && !reply.image.isNull()) {
     shown_[i].widget->set_image(reply.image);
   } else {
-    shown_[i].failed = true;
-    shown_[i].widget->set_error(reply.error.empty() ? tr("no image") : to_qstring(reply.error));
+    fail(i, reply.error.empty() ? tr("no image") : to_qstring(reply.error));
   }
   ++drawn_;
   update_status();
+}
+
+void ContactSheet::fail(std::size_t i, const QString& error) {
+  shown_[i].failed = true;
+  shown_[i].widget->set_error(error);
 }
 
 void ContactSheet::apply(std::size_t i) {

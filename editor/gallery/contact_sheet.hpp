@@ -61,6 +61,7 @@ class ContactSheet final : public QDialog {
   void ask_pictures();
   void note_picture(std::size_t i, const PictureReply& reply);
   core::Result<PictureRequest> request_of(const SweepCell& cell) const;
+  void fail(std::size_t i, const QString& error);
   void apply(std::size_t i);
   void mark_present();
   void update_status();

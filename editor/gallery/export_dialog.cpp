@@ -42,8 +42,7 @@ QString settings_of(const models::ModelType& type, const models::Parameters& p) 
   return text;
 }
 
-}  // namespace
-
+// The command line that exports a block or a model from the saved file.
 QString export_command(const std::filesystem::path& world_file, const PictureRequest& request,
                        const models::Registry& registry,
                        const std::optional<Selection>& selection) {
@@ -58,6 +57,8 @@ QString export_command(const std::filesystem::path& world_file, const PictureReq
   if (request.level > 0) line += QString(" --level %1").arg(request.level);
   return line + " --out " + quoted(to_qstring(request.out));
 }
+
+}  // namespace
 
 std::optional<PictureRequest> ask_export(QWidget* parent, const Document& document,
                                          const std::optional<Selection>& selection,

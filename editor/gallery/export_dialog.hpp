@@ -2,7 +2,6 @@
 // Shows the equivalent command. Main thread.
 #pragma once
 
-#include <QString>
 #include <optional>
 
 #include "editor/document/document.hpp"
@@ -18,9 +17,5 @@ namespace psygen::editor {
 std::optional<PictureRequest> ask_export(QWidget* parent, const Document& document,
                                          const std::optional<Selection>& selection,
                                          core::BlockCoord block);
-
-// Returns the command line that exports a block or a model from the saved file.
-QString export_command(const std::filesystem::path& world_file, const PictureRequest& request,
-                       const models::Registry& registry, const std::optional<Selection>& selection);
 
 }  // namespace psygen::editor

@@ -13,16 +13,8 @@ namespace {
 constexpr int kRightPx = 240, kBottomPx = 150;  // of the first layout
 
 Qt::DockWidgetArea area_of(PanelPlace place) {
-  switch (place) {
-    case PanelPlace::kTopRight:
-    case PanelPlace::kBottomRight:
-      return Qt::RightDockWidgetArea;
-    case PanelPlace::kBottom:
-      return Qt::BottomDockWidgetArea;
-    case PanelPlace::kLeft:
-      break;
-  }
-  return Qt::LeftDockWidgetArea;
+  if (place == PanelPlace::kLeft) return Qt::LeftDockWidgetArea;
+  return place == PanelPlace::kBottom ? Qt::BottomDockWidgetArea : Qt::RightDockWidgetArea;
 }
 
 void show_dock(QDockWidget& dock) {

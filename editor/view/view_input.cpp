@@ -3,6 +3,8 @@
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QWheelEvent>
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace psygen::editor {
@@ -17,33 +19,20 @@ constexpr double kWheelUnits = 120;  // of Qt, per step
 std::optional<Key> key_of(int key) {
   if (key >= Qt::Key_A && key <= Qt::Key_Z)
     return static_cast<Key>(static_cast<int>(Key::kA) + key - Qt::Key_A);
-  switch (key) {
-    case Qt::Key_Up:
-      return Key::kUp;
-    case Qt::Key_Down:
-      return Key::kDown;
-    case Qt::Key_Left:
-      return Key::kLeft;
-    case Qt::Key_Right:
-      return Key::kRight;
-    case Qt::Key_Shift:
-      return Key::kShift;
-    default:
-      return std::nullopt;
-  }
+  constexpr std::pair<int, Key> kKeys[] = {{Qt::Key_Up, Key::kUp},
+                                           {Qt::Key_Down, Key::kDown},
+                                           {Qt::Key_Left, Key::kLeft},
+                                           {Qt::Key_Right, Key::kRight},
+                                           {Qt::Key_Shift, Key::kShift}};
+  const auto* const known = std::ranges::find(kKeys, key, &std::pair<int, Key>::first);
+  return known != std::end(kKeys) ? std::optional(known->second) : std::nullopt;
 }
 
 std::optional<MouseButton> button_of(Qt::MouseButton button) {
-  switch (button) {
-    case Qt::LeftButton:
-      return MouseButton::kLeft;
-    case Qt::RightButton:
-      return MouseButton::kRight;
-    case Qt::MiddleButton:
-      return MouseButton::kMiddle;
-    default:
-      return std::nullopt;
-  }
+  if (button == Qt::LeftButton) return MouseButton::kLeft;
+  if (button == Qt::RightButton) return MouseButton::kRight;
+  if (button == Qt::MiddleButton) return MouseButton::kMiddle;
+  return std::nullopt;
 }
 
 }  // namespace
