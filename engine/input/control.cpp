@@ -65,30 +65,13 @@ Reading read_pads(Control control, const InputState& input, std::optional<std::s
   return strongest;
 }
 
-double wheel_of(WheelDirection way, const InputState& input) {
-  switch (way) {
-    case WheelDirection::kUp:
-      return input.wheel;
-    case WheelDirection::kDown:
-      return -input.wheel;
-    case WheelDirection::kLeft:
-      return input.wheel_x;
-    default:
-      return -input.wheel_x;
-  }
-}
-
-double moved(MouseDirection way, const InputState& input) {
-  switch (way) {
-    case MouseDirection::kUp:
-      return -input.move_px.y;
-    case MouseDirection::kDown:
-      return input.move_px.y;
-    case MouseDirection::kLeft:
-      return -input.move_px.x;
-    default:
-      return input.move_px.x;
-  }
+// The part of a movement of the wheel or the mouse, upwards and to the left, in one of its
+// directions.
+double moved(std::uint8_t way, double up, double left) {
+  static_assert(static_cast<int>(WheelDirection::kLeft) == 2 &&
+                static_cast<int>(MouseDirection::kLeft) == 2);
+  const double along = way < 2 ? up : left;
+  return forward(way % 2 == 0 ? along : -along);
 }
 
 template <class Code>
@@ -165,9 +148,9 @@ Reading read(Control control, const InputState& input, std::optional<std::size_t
       return {input.buttons_held[control.code] ? 1.0 : 0.0, input.buttons_went_down[control.code],
               input.buttons_went_up[control.code]};
     case Device::kWheel:
-      return {forward(wheel_of(static_cast<WheelDirection>(control.code), input))};
+      return {moved(control.code, input.wheel, input.wheel_x)};
     case Device::kMouse:
-      return {forward(moved(static_cast<MouseDirection>(control.code), input))};
+      return {moved(control.code, -input.move_px.y, -input.move_px.x)};
     case Device::kPadButton:
     case Device::kPadAxis:
       return read_pads(control, input, pad_slot);

@@ -12,6 +12,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kPresets{"low", "medium", "high", "ultra"};
 constexpr std::array<std::string_view, 7> kViews{"normal",    "levels",  "layers", "bounds",
                                                  "wireframe", "missing", "cache"};
+constexpr std::array<std::string_view, 3> kPaths{"auto", "cpu", "gpu"};
 
 template <class Value, std::size_t kCount>
 core::Result<Value> named(const std::array<std::string_view, kCount>& names, std::string_view name,
@@ -73,20 +74,11 @@ View next_view(View view) {
 }
 
 std::string_view to_string(RenderPath path) {
-  switch (path) {
-    case RenderPath::kCpu:
-      return "cpu";
-    case RenderPath::kGpu:
-      return "gpu";
-    case RenderPath::kAuto:
-      break;
-  }
-  return "auto";
+  return kPaths[static_cast<std::size_t>(path)];
 }
-
 core::Result<RenderPath> render_path_from(std::string_view name) {
-  for (const RenderPath path : {RenderPath::kAuto, RenderPath::kCpu, RenderPath::kGpu}) {
-    if (to_string(path) == name) return path;
+  for (std::size_t i = 0; i < kPaths.size(); ++i) {
+    if (kPaths[i] == name) return static_cast<RenderPath>(i);
   }
   return core::fail(core::ErrorCode::kInvalidArgument,
                     fmt::format("render path '{}' is unknown; allowed are auto, cpu, gpu", name));

@@ -75,7 +75,7 @@ Result<void> RendererImpl::create_device() {
       });
 }
 
-Result<void> RendererImpl::create(const Progress& progress) {
+Result<void> RendererImpl::create_all(const Progress& progress) {
   const std::uint64_t largest = std::uint64_t{1} << 40;
   if (options_.surface == nullptr && is_empty(options_.size)) {
     return core::fail(ErrorCode::kInvalidArgument, "a picture needs at least one pixel");
@@ -107,17 +107,18 @@ Result<void> RendererImpl::create(const Progress& progress) {
 }
 
 Result<void> RendererImpl::create_geometry() {
-  pool_ =
-      std::make_unique<GeometryPool>(options_.geometry_budget_bytes,
-                                     [this](std::uint64_t bytes) { return add_pool_block(bytes); });
+  const auto add_block = [this](std::uint64_t bytes) { return add_pool_block(bytes); };
+  const std::uint64_t budget = options_.geometry_budget_bytes;
   // A heap below twice the budget is taken for the small mapped window of a device.
-  const bool writable =
-      device_->info.software || device_->writable_bytes() / 2 >= options_.geometry_budget_bytes;
-  if (options_.upload == Upload::kStaged || (options_.upload == Upload::kAuto && !writable)) {
-    staged_ = std::make_unique<StagedGeometry>(*pool_);
-    return staged_->create(*device_);
+  const bool writable = device_->info.software || device_->writable_bytes() / 2 >= budget;
+  if (options_.upload == Upload::kDirect || (options_.upload == Upload::kAuto && writable)) {
+    pool_ = std::make_unique<GeometryPool>(budget, add_block);
+    return {};
   }
-  return {};
+  auto staged = std::make_unique<StagedGeometry>(budget, add_block);
+  staged_ = staged.get();
+  pool_ = std::move(staged);
+  return staged_->create(*device_);
 }
 
 Result<void> RendererImpl::create_culling() {

@@ -45,11 +45,16 @@ Result<void> check_camera(const FrameInput& input) {
 RendererImpl::RendererImpl(const RendererOptions& options) : options_(options) {}
 
 RendererImpl::~RendererImpl() {
-  if (device_) wait_idle();
-}
-
-bool RendererImpl::hangs() const {
-  return device_ && device_->vk.hangs;
+  if (!device_) return;
+  if (!device_->vk.hangs) {
+    wait_idle();
+    return;
+  }
+  // Handles of the device leave it what it may still use (DeviceHandle).
+  (void)new auto(std::move(presenting_));
+  (void)new auto(std::move(surface_));
+  (void)device_.release();
+  (void)instance_.release();
 }
 
 Result<void> RendererImpl::wait_for(FrameSlot& slot) {
@@ -126,7 +131,7 @@ Result<void> RendererImpl::prepare_for(const FrameInput& input) {
   });
 }
 
-Result<void> RendererImpl::set_pictures(std::span<const core::ImpostorTexture> pictures) {
+Result<void> RendererImpl::set_model_pictures(std::span<const core::ImpostorTexture> pictures) {
   if (lost_) return core::fail(ErrorCode::kDeviceLost, "the device was lost before");
   if (pictures.size() > core::kMaxImpostors ||
       materials_.texture_bytes() + pictures.size() * core::impostor_bytes() >
@@ -150,7 +155,8 @@ Result<void> RendererImpl::set_pictures(std::span<const core::ImpostorTexture> p
   return {};
 }
 
-Result<void> RendererImpl::set_picture(std::size_t number, const core::ImpostorTexture& picture) {
+Result<void> RendererImpl::set_model_picture(std::size_t number,
+                                             const core::ImpostorTexture& picture) {
   if (lost_) return core::fail(ErrorCode::kDeviceLost, "the device was lost before");
   if (number >= pictures_.count() || picture.size() != core::impostor_bytes())
     return core::fail(ErrorCode::kInvalidArgument, "a picture of a model that does not exist");

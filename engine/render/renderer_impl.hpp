@@ -1,5 +1,5 @@
 // The implementation of renderer.hpp. Owns every Vulkan object, in order of creation. Main thread.
-// Functions without a comment are those of Renderer. Private to engine/render.
+// Private to engine/render.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@
 #include "engine/render/meshes/contact_shadow_map.hpp"
 #include "engine/render/passes/gpu_culling.hpp"
 #include "engine/render/passes/record.hpp"
+#include "engine/render/renderer.hpp"
 #include "engine/render/text/overlay_layout.hpp"
 #include "engine/render/textures/model_pictures.hpp"
-#include "engine/render/types.hpp"
 
 namespace psygen::render {
 
@@ -38,55 +38,57 @@ struct Looks {
 
 // Its parts are in renderer_create.cpp, renderer_impl.cpp (frames), renderer_preset.cpp,
 // renderer_readback.cpp and renderer_window.cpp.
-class RendererImpl {
+class RendererImpl final : public Renderer {
  public:
   static constexpr std::size_t kFramesInFlight = 2;
 
   // Only stores the options.
   explicit RendererImpl(const RendererOptions& options);
-  ~RendererImpl();
-  RendererImpl(const RendererImpl&) = delete;
-  RendererImpl& operator=(const RendererImpl&) = delete;
+  // Waits for the device, or leaks its objects if it hangs: destroying them would wait for ever.
+  ~RendererImpl() override;
 
   // Creates everything. Call it once, before all others; during it, `progress` may call show().
   // After an error only destruction is allowed.
-  core::Result<void> create(const Progress& progress);
+  core::Result<void> create_all(const Progress& progress);
 
-  // Renderer's functions, and hangs(): DeviceTable::hangs.
-  core::GeometryMemory& geometry() {
-    return staged_ ? static_cast<core::GeometryMemory&>(*staged_) : *pool_;
-  }
-  core::Result<std::uint32_t> add_shared_indices(std::span<const std::uint16_t> indices) {
+  // Renderer.
+  core::GeometryMemory& geometry() override { return *pool_; }
+  core::Result<std::uint32_t> upload_shared_indices(
+      std::span<const std::uint16_t> indices) override {
     return shared_.add(indices);
   }
-  core::Result<TextureId> add_texture(const TexturePixels& pixels) {
+  core::Result<TextureId> add_texture(const TexturePixels& pixels) override {
     return noted(materials_.add_texture(*device_, pixels));
   }
-  core::Result<MaterialId> add_material(const Material& material) {
+  core::Result<MaterialId> add_material(const Material& material) override {
     return materials_.add(*device_, material);
   }
-  core::Result<void> prepare(Feature feature);
-  core::Result<void> set_pictures(std::span<const core::ImpostorTexture> pictures);
-  core::Result<void> set_picture(std::size_t number, const core::ImpostorTexture& picture);
-  std::uint64_t texture_bytes() const { return materials_.texture_bytes() + pictures_.bytes(); }
-  core::Result<FrameResult> render(const FrameInput& input);
+  core::Result<void> prepare(Feature feature) override;
+  core::Result<void> set_model_pictures(std::span<const core::ImpostorTexture> pictures) override;
+  core::Result<void> set_model_picture(std::size_t number,
+                                       const core::ImpostorTexture& picture) override;
+  std::uint64_t texture_bytes() const override {
+    return materials_.texture_bytes() + pictures_.bytes();
+  }
+  core::Result<FrameResult> render(const FrameInput& input) override;
   core::Result<void> show(std::span<const TextPanel> panels, float text_scale,
-                          const HudDrawing& hud);
-  ImFontAtlas& font_atlas() { return overlay_.font_atlas(); }
-  core::Result<void> set_preset(Preset preset, const Progress& progress);
-  Preset preset() const { return looks_.preset; }
-  core::Result<Picture> capture();
-  core::Result<void> resize(core::Extent size);
-  core::Extent size() const { return targets_.empty() ? core::Extent{} : targets_[0].extent; }
-  const DeviceInfo& info() const { return device_->info; }
-  std::vector<std::string> messages() const { return instance_->messages(); }
-  core::Result<double> replay_floor_ms(int repeats);
-  core::Result<std::vector<DrawnMesh>> drawn_meshes();
-  RenderPath path() const { return culling_ ? RenderPath::kGpu : RenderPath::kCpu; }
-  bool casts_shadows() const { return looks_.traits.cascades > 0; }
-  bool has_near_models() const { return !looks_.traits.pixel_light; }  // meshes/models.cpp
-  void wait_idle();
-  bool hangs() const;
+                          const HudDrawing& hud) override;
+  ImFontAtlas& font_atlas() override { return overlay_.font_atlas(); }
+  core::Result<void> set_preset(Preset preset, const Progress& progress) override;
+  Preset preset() const override { return looks_.preset; }
+  core::Result<Picture> capture() override;
+  core::Result<void> resize(core::Extent size) override;
+  core::Extent size() const override {
+    return targets_.empty() ? core::Extent{} : targets_[0].extent;
+  }
+  const DeviceInfo& device() const override { return device_->info; }
+  std::vector<std::string> validation_messages() const override { return instance_->messages(); }
+  core::Result<double> replay_floor_ms(int repeats) override;
+  core::Result<std::vector<DrawnMesh>> drawn_meshes() override;
+  RenderPath path() const override { return culling_ ? RenderPath::kGpu : RenderPath::kCpu; }
+  bool casts_shadows() const override { return looks_.traits.cascades > 0; }
+  bool has_near_models() const override { return !looks_.traits.pixel_light; }  // models.cpp
+  void wait_idle() override;
 
  private:
   enum class WindowState : std::uint8_t { kReady, kNotNow };
@@ -156,7 +158,7 @@ class RendererImpl {
   std::uint32_t pushed_from_ = 0;  // meshes with at least this many indices are pushed
   std::vector<Buffer> pool_blocks_;
   std::unique_ptr<GeometryPool> pool_;
-  std::unique_ptr<StagedGeometry> staged_;  // null if the CPU writes the blocks directly
+  StagedGeometry* staged_ = nullptr;  // pool_, or null if the CPU writes the blocks directly
   SharedIndexLists shared_;
   MaterialTable materials_;
   ImpostorTextures pictures_;

@@ -1,7 +1,5 @@
 #include "engine/render/device/compute_pipeline.hpp"
 
-#include "engine/render/device/pipeline_build.hpp"
-
 namespace psygen::render {
 
 using core::Result;

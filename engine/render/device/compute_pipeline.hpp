@@ -6,7 +6,7 @@
 #include <span>
 
 #include "engine/render/device/descriptors.hpp"
-#include "engine/render/device/shaders.hpp"
+#include "engine/render/device/pipeline_build.hpp"
 
 namespace psygen::render {
 

@@ -16,6 +16,9 @@ using core::Result;
 
 namespace {
 
+using ShaderCode = std::span<const std::uint32_t>;
+#include "shader_code.h"
+
 VkPipelineColorBlendAttachmentState blend_of(const PipelineShape& shape) {
   VkPipelineColorBlendAttachmentState blend{};
   blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
@@ -161,7 +164,7 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
 }  // namespace
 
 Result<UniqueShaderModule> make_module(const Device& device, Shader shader) {
-  const std::span<const std::uint32_t> code = code_of(shader);
+  const ShaderCode code = kShaders[static_cast<std::size_t>(shader)];
   VkShaderModuleCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   info.codeSize = code.size_bytes();

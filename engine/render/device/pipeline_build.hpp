@@ -8,10 +8,31 @@
 #include "engine/core/error.hpp"
 #include "engine/core/vertex_layout.hpp"
 #include "engine/render/device/device.hpp"
-#include "engine/render/device/shaders.hpp"
 #include "engine/render/types.hpp"
+#include "shader_list.h"
 
 namespace psygen::render {
+
+// The compiled shaders are embedded in the library. CMakeLists.txt has their list, and
+// shaders.cmake makes `enum class Shader` of it.
+
+// The outputs of a mesh's vertex shader (shaders/surface_out.glsl).
+enum class MeshLook : std::uint8_t { kColour, kLit, kDrawColour, kShadow };
+
+// A variant of a vertex shader of meshes. `first` is the one for kColour.
+constexpr Shader mesh_shader(Shader first, MeshLook look) {
+  return static_cast<Shader>(static_cast<unsigned>(first) + 2 * static_cast<unsigned>(look));
+}
+// The variant that takes the data of a draw from push constants instead of the buffer of draws.
+constexpr Shader pushed_shader(Shader vert) {
+  return static_cast<Shader>(static_cast<unsigned>(vert) + 1);
+}
+static_assert(pushed_shader(mesh_shader(Shader::kModelObjectVert, MeshLook::kShadow)) ==
+              Shader::kModelObjectShadowDrawPushedVert);
+static_assert(pushed_shader(Shader::kTerrainGroundDetailVert) ==
+              Shader::kTerrainGroundDetailDrawPushedVert);
+static_assert(pushed_shader(Shader::kModelFadingModelDetailVert) ==
+              Shader::kModelFadingModelDetailDrawPushedVert);
 
 inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 

@@ -1,6 +1,13 @@
 #include "engine/render/frame/frame_sets.hpp"
 
 #include "engine/render/textures/cloud_texture.hpp"
+#include "engine/render/textures/ground_textures.hpp"
+#include "shaders/shared.h"
+
+static_assert(PSYGEN_GROUND_SIDE == psygen::render::kPatternSide);
+static_assert(PSYGEN_GROUND_TEXTURES == psygen::render::kGroundTextures);
+static_assert(PSYGEN_NEAR_GROUND_M == psygen::render::kNearGroundM);
+static_assert(PSYGEN_NEAR_MODELS_M == psygen::render::kNearModelsM);
 
 namespace psygen::render {
 
@@ -44,7 +51,7 @@ Result<void> FrameSets::create(const Device& device, std::size_t slots,
                             std::as_bytes(std::span(clouds)));
       })
       .map(into(clouds_))
-      .and_then([&] { return ground_.create(device, input.traits, input.ground); })
+      .and_then([&] { return create_ground(device, input); })
       .and_then([&] { return shadows_.create(device, input.traits); })
       .and_then([&] { return create_sets(device, slots); })
       .and_then([&] { return make_pipeline_layout(device, shared(), push_range()); })
@@ -61,6 +68,35 @@ Result<void> FrameSets::create_samplers(const Device& device) {
           [&] { return make_plain_sampler(device, VK_FILTER_NEAREST, kClamp, nearest_sampler_); });
 }
 
+// The textures of the ground: for presets with light per pixel all of them as layers, else those of
+// brightness.
+Result<void> FrameSets::create_ground(const Device& device, const FrameSetsInput& input) {
+  VkSamplerCreateInfo info{};
+  info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+  // Two levels at once would cost software devices twice as much.
+  info.mipmapMode =
+      input.traits.fine_grain ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+  info.maxLod = VK_LOD_CLAMP_NONE;
+  const GroundLevels levels = input.traits.pixel_light ? make_ground_layers(input.ground)
+                                                       : make_ground_detail(input.ground);
+  const std::uint32_t layers = input.traits.pixel_light ? kGroundLayers : kDetailLayers;
+  return make_sampler(device, info)
+      .map(into(ground_sampler_))
+      .and_then([&] {
+        return make_image(
+            device, {kPatternSide, kPatternSide}, VK_FORMAT_R8G8B8A8_UNORM,
+            VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, VK_IMAGE_ASPECT_COLOR_BIT,
+            {.array = true, .layers = layers, .mips = static_cast<std::uint32_t>(levels.size())});
+      })
+      .map(into(ground_))
+      .and_then([&] {
+        std::vector<std::span<const std::byte>> bytes;
+        for (const auto& level : levels)
+          bytes.push_back(std::as_bytes(std::span(level)));
+        return upload_image(device, ground_, {kPatternSide, kPatternSide}, bytes, layers);
+      });
+}
+
 Result<void> FrameSets::create_sets(const Device& device, std::size_t count) {
   constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                              kBuffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -73,7 +109,7 @@ Result<void> FrameSets::create_sets(const Device& device, std::size_t count) {
   bindings[PSYGEN_BINDING_CLOUDS] = {kTexture, kFragment, cloud_sampler_.address()};
   bindings[PSYGEN_BINDING_SHADOWS] = {kTexture, kFragment, shadows_.sampler()};
   bindings[PSYGEN_BINDING_MATERIALS] = {kBuffer, kBoth};
-  bindings[PSYGEN_BINDING_GROUND] = {kTexture, kFragment, ground_.sampler()};
+  bindings[PSYGEN_BINDING_GROUND] = {kTexture, kFragment, ground_sampler_.address()};
   bindings[PSYGEN_BINDING_SHADE] = {kBuffer, kBoth};
   bindings[PSYGEN_BINDING_PICTURES] = {kTexture, kFragment, pictures_->sampler()};
   return sets_.create(device, bindings, count);
@@ -97,7 +133,7 @@ void FrameSets::write(const Device& device, std::size_t slot, const SlotBuffers&
   buffer(PSYGEN_BINDING_SHADE, buffers.shade);
   image(PSYGEN_BINDING_CLOUDS, clouds_.view.get());
   image(PSYGEN_BINDING_SHADOWS, shadows_.all_layers(), VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL);
-  image(PSYGEN_BINDING_GROUND, ground_.view());
+  image(PSYGEN_BINDING_GROUND, ground_.view.get());
   image(PSYGEN_BINDING_PICTURES, pictures_->view());
 }
 

@@ -10,7 +10,6 @@
 
 #include "engine/render/device/descriptors.hpp"
 #include "engine/render/frame/shadow_maps.hpp"
-#include "engine/render/textures/ground_texture_array.hpp"
 #include "engine/render/textures/materials.hpp"
 #include "engine/render/textures/model_pictures.hpp"
 
@@ -63,14 +62,14 @@ class FrameSets {
 
  private:
   core::Result<void> create_samplers(const Device& device);
+  core::Result<void> create_ground(const Device& device, const FrameSetsInput& input);
   core::Result<void> create_sets(const Device& device, std::size_t count);
 
   const MaterialTable* materials_ = nullptr;
   const ImpostorTextures* pictures_ = nullptr;
-  UniqueSampler cloud_sampler_, smooth_sampler_, nearest_sampler_;
+  UniqueSampler cloud_sampler_, ground_sampler_, smooth_sampler_, nearest_sampler_;
   ShadowMaps shadows_;
-  Image clouds_;
-  GroundTextureArray ground_;
+  Image clouds_, ground_;
   DescriptorSets sets_;
   UniquePipelineLayout layout_;
 };

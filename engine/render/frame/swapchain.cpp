@@ -70,6 +70,14 @@ core::Extent extent_of(const VkSurfaceCapabilitiesKHR& able, core::Extent wished
           std::clamp(wished.height, able.minImageExtent.height, able.maxImageExtent.height)};
 }
 
+Result<SwapchainState> state_after(VkResult result, const char* what) {
+  if (result == VK_SUCCESS) return SwapchainState::kReady;
+  if (result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_OUT_OF_DATE_KHR)
+    return SwapchainState::kStale;
+  if (result == VK_ERROR_SURFACE_LOST_KHR) return SwapchainState::kSurfaceLost;
+  return vulkan_failure(result, what);
+}
+
 }  // namespace
 
 Result<UniqueSurface> make_surface(const Instance& instance, core::SurfaceProvider& provider) {
@@ -134,20 +142,9 @@ void Swapchain::destroy() {
 Result<SwapchainState> Swapchain::acquire(const Device& device, VkSemaphore ready) {
   const VkResult result = device.vk.vkAcquireNextImageKHR(
       device.handle, swapchain_.get(), kAcquireTimeoutNs, ready, VK_NULL_HANDLE, &current_);
-  switch (result) {
-    case VK_SUCCESS:
-    case VK_SUBOPTIMAL_KHR:
-      return SwapchainState::kReady;
-    case VK_TIMEOUT:
-    case VK_NOT_READY:
-      return SwapchainState::kNotNow;
-    case VK_ERROR_OUT_OF_DATE_KHR:
-      return SwapchainState::kStale;
-    case VK_ERROR_SURFACE_LOST_KHR:
-      return SwapchainState::kSurfaceLost;
-    default:
-      return vulkan_failure(result, "acquiring a picture of the window");
-  }
+  if (result == VK_SUBOPTIMAL_KHR) return SwapchainState::kReady;
+  if (result == VK_TIMEOUT || result == VK_NOT_READY) return SwapchainState::kNotNow;
+  return state_after(result, "acquiring a picture of the window");
 }
 
 Result<SwapchainState> Swapchain::present(const Device& device) {
@@ -160,18 +157,7 @@ Result<SwapchainState> Swapchain::present(const Device& device) {
   info.swapchainCount = 1;
   info.pSwapchains = &swapchain;
   info.pImageIndices = &current_;
-  const VkResult result = device.present(info);
-  switch (result) {
-    case VK_SUCCESS:
-      return SwapchainState::kReady;
-    case VK_SUBOPTIMAL_KHR:
-    case VK_ERROR_OUT_OF_DATE_KHR:
-      return SwapchainState::kStale;
-    case VK_ERROR_SURFACE_LOST_KHR:
-      return SwapchainState::kSurfaceLost;
-    default:
-      return vulkan_failure(result, "presenting a picture");
-  }
+  return state_after(device.present(info), "presenting a picture");
 }
 
 }  // namespace psygen::render

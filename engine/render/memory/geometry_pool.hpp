@@ -19,7 +19,7 @@
 namespace psygen::render {
 
 // The pool. reserve() is O(blocks), release() O(1).
-class GeometryPool final : public core::GeometryMemory {
+class GeometryPool : public core::GeometryMemory {
  public:
   static constexpr std::uint64_t kBlockBytes = 64ull << 20;
   // If there is no memory for a whole block, smaller ones are tried, down to this size.

@@ -60,7 +60,7 @@ Result<std::byte*> StagedGeometry::add_block(std::uint64_t bytes) {
 }
 
 void StagedGeometry::commit(const core::GeometryRange& range) {
-  pool_.commit(range);
+  GeometryPool::commit(range);
   const std::uint64_t first = std::uint64_t{range.first_vertex} * vertex_stride_bytes(range.layout);
   const std::uint64_t end =
       (std::uint64_t{range.first_index} + range.index_count) * sizeof(std::uint16_t);
@@ -70,7 +70,7 @@ void StagedGeometry::commit(const core::GeometryRange& range) {
 void StagedGeometry::release(const core::GeometryRange& range) {
   // From here on its bytes may belong to another mesh.
   std::erase_if(pending_, [&](const Piece& piece) { return piece.id == range.id; });
-  pool_.release(range);
+  GeometryPool::release(range);
 }
 
 // Fills a part with pending bytes, in order. The last mesh may be split.

@@ -1,8 +1,8 @@
 // Geometry memory for devices whose own memory the CPU cannot write. Meshes are written to CPU
 // memory that mirrors the pool's blocks. Committed meshes are copied through a ring of staging
 // memory into the device's blocks, on a transfer queue if there is one, before the next frame that
-// could draw them. A frame that commits more than the ring holds waits for parts of it. It
-// allocates no ranges itself (geometry_pool.hpp). Main thread. Private to engine/render.
+// could draw them. A frame that commits more than the ring holds waits for parts of it. Main
+// thread. Private to engine/render.
 #pragma once
 
 #include <array>
@@ -15,14 +15,14 @@
 
 namespace psygen::render {
 
-// Adds the copies to a GeometryPool.
-class StagedGeometry final : public core::GeometryMemory {
+// A pool with these copies.
+class StagedGeometry final : public GeometryPool {
  public:
   static constexpr std::uint64_t kPartBytes = 4ull << 20;
   static constexpr std::size_t kParts = 3;  // of the ring
 
-  // `pool` must outlive this object and take its blocks from add_block().
-  explicit StagedGeometry(GeometryPool& pool) : pool_(pool) {}
+  // The source of its blocks returns add_block().
+  using GeometryPool::GeometryPool;
 
   // Creates the ring, once, before flush().
   core::Result<void> create(const Device& device);
@@ -37,27 +37,10 @@ class StagedGeometry final : public core::GeometryMemory {
   VkSemaphore timeline() const { return timeline_.get(); }
   std::uint64_t value() const { return value_; }
 
-  // core::GeometryMemory, by the pool.
-  core::Result<core::GeometryReservation> reserve(core::VertexLayout layout,
-                                                  std::uint32_t vertex_count,
-                                                  std::uint32_t index_count) override {
-    return pool_.reserve(layout, vertex_count, index_count);
-  }
+  // core::GeometryMemory.
   void commit(const core::GeometryRange& range) override;
   void release(const core::GeometryRange& range) override;
-  std::uint32_t charged_bytes(core::VertexLayout layout, std::uint32_t vertex_count,
-                              std::uint32_t index_count) const override {
-    return pool_.charged_bytes(layout, vertex_count, index_count);
-  }
-  std::uint64_t used_bytes() const override { return pool_.used_bytes(); }
-  std::uint64_t capacity_bytes() const override { return pool_.capacity_bytes(); }
   bool zero_copy() const override { return false; }
-  std::span<const std::byte> vertex_bytes(const core::GeometryRange& range) const override {
-    return pool_.vertex_bytes(range);
-  }
-  std::span<const std::uint16_t> indices(const core::GeometryRange& range) const override {
-    return pool_.indices(range);
-  }
 
  private:
   struct Part {
@@ -75,7 +58,6 @@ class StagedGeometry final : public core::GeometryMemory {
   core::Result<void> submit(const Device& device, std::span<const Buffer> blocks, Part& part,
                             std::span<const Piece> pieces);
 
-  GeometryPool& pool_;
   std::vector<std::unique_ptr<std::byte[]>> mirrors_;
   std::deque<Piece> pending_;
   std::array<Part, kParts> parts_;

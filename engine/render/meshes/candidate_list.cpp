@@ -32,20 +32,25 @@ std::uint32_t CandidateList::group_for(const core::GeometryRange& range, bool sh
 }
 
 template <class Draw>
-void CandidateList::add(const Draw& draw) {
+void CandidateList::add(const Draw& draw, std::uint32_t group, std::uint32_t name) {
   const core::Bounds box = bounds_of(draw);
-  const IndexList indices = indices_of(draw.range, draw.shared_indices, draw.part, facts_.shared);
-  const std::uint32_t group =
-      group_for(draw.range, draw.shared_indices != kNoSharedIndices, coverage_of(draw));
-  // Meshes without an id share bit 0.
-  const std::uint32_t name = draw.range.id == core::kNoGeometry ? 0 : draw.range.id + 1;
+  const IndexList indices = indices_of(draw, facts_.shared);
   name_count_ = std::max(name_count_, name + 1);
   candidates_.push_back({{box.min, 0.0F},
                          {box.max, 0.0F},
-                         data_of(draw),
+                         data_of(draw, facts_.coloured),
                          {indices.first_index, indices.index_count, draw.range.first_vertex, group},
                          {name, 0, 0, 0}});
-  if (facts_.coloured) set_colour(candidates_.back().data, draw);
+}
+
+template <class Draw>
+void CandidateList::add_meshes(std::span<const Draw> draws) {
+  for (const Draw& draw : draws) {
+    const bool shared = draw.shared_indices != kNoSharedIndices;
+    // Meshes without an id share bit 0.
+    const std::uint32_t name = draw.range.id == core::kNoGeometry ? 0 : draw.range.id + 1;
+    add(draw, group_for(draw.range, shared, coverage_of(draw)), name);
+  }
 }
 
 void CandidateList::build(const ListFacts& facts, std::span<const TerrainDraw> terrain,
@@ -53,13 +58,18 @@ void CandidateList::build(const ListFacts& facts, std::span<const TerrainDraw> t
   candidates_.clear();
   groups_.clear();
   std::fill(open_.begin(), open_.end(), 0u);
+  open_objects_.clear();
   name_count_ = 1;
   facts_ = facts;
-  for (const TerrainDraw& draw : terrain)
-    add(draw);
-  for (const MeshDraw& draw : models)
-    add(draw);
-  add_objects(objects);
+  add_meshes(terrain);
+  add_meshes(models);
+  // Objects come above the bits of other meshes. Their number may change from frame to frame. Then
+  // a bit names another object for a frame, which costs a test and leaves nothing out
+  // (gpu_culling.hpp).
+  const std::uint32_t first_name = std::bit_ceil(name_count_);
+  for (const ObjectDraw& draw : objects)
+    add(draw, group_for(draw, kind_of(facts_.materials, draw.material)),
+        first_name + draw.name % kMaxNames);
   facts_ = {};
   place_groups();
 }
@@ -100,26 +110,6 @@ std::uint32_t CandidateList::group_for(const ObjectDraw& draw, MaterialKind kind
   }
   ++groups_[open->second].capacity;
   return open->second;
-}
-
-void CandidateList::add_objects(std::span<const ObjectDraw> objects) {
-  open_objects_.clear();
-  // Above the bits of other meshes. Their number may change from frame to frame. Then a bit names
-  // another object for a frame, which costs a test and leaves nothing out (gpu_culling.hpp).
-  const std::uint32_t first_name = std::bit_ceil(name_count_);
-  for (const ObjectDraw& draw : objects) {
-    const core::Bounds box = bounds_of(draw);
-    const std::uint32_t group = group_for(draw, kind_of(facts_.materials, draw.material));
-    const std::uint32_t name = first_name + draw.name % kMaxNames;
-    name_count_ = std::max(name_count_, name + 1);
-    candidates_.push_back(
-        {{box.min, 0.0F},
-         {box.max, 0.0F},
-         data_of(draw),
-         {draw.range.first_index, draw.range.index_count, draw.range.first_vertex, group},
-         {name, 0, 0, 0}});
-    if (facts_.coloured) set_colour(candidates_.back().data, draw);
-  }
 }
 
 }  // namespace psygen::render

@@ -50,8 +50,9 @@ class CandidateList {
 
  private:
   template <class Draw>
-  void add(const Draw& draw);
-  void add_objects(std::span<const ObjectDraw> objects);
+  void add(const Draw& draw, std::uint32_t group, std::uint32_t name);
+  template <class Draw>
+  void add_meshes(std::span<const Draw> draws);
   std::uint32_t group_for(const core::GeometryRange& range, bool shared, Coverage coverage);
   std::uint32_t group_for(const ObjectDraw& draw, MaterialKind kind);
   void place_groups();

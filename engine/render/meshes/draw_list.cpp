@@ -20,18 +20,6 @@ IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indi
   return {all.first_index + part.first, part.count};
 }
 
-namespace {
-
-template <class Draw>
-IndexList indices_of(const Draw& draw, std::span<const IndexList> lists) {
-  return indices_of(draw.range, draw.shared_indices, draw.part, lists);
-}
-IndexList indices_of(const ObjectDraw& draw, std::span<const IndexList>) {
-  return {draw.range.first_index, draw.range.index_count};
-}
-
-}  // namespace
-
 // Of one draw, without its place.
 template <class Draw>
 DrawRun DrawList::run_of(const Draw& draw) const {
@@ -60,8 +48,7 @@ void DrawList::append(const Draw& draw) {
   ++runs_.back().count;
   draws_.push_back({indices.first_index, indices.index_count,
                     static_cast<std::int32_t>(draw.range.first_vertex)});
-  data_.push_back(data_of(draw));
-  if (facts_.coloured) set_colour(data_.back(), draw);
+  data_.push_back(data_of(draw, facts_.coloured));
   triangle_count_ += indices.index_count / 3;
 }
 

@@ -25,6 +25,13 @@ namespace psygen::render {
 // them. `lists` is indexed by shared_indices − 1.
 IndexList indices_of(const core::GeometryRange& range, std::uint32_t shared_indices,
                      core::IndexPart part, std::span<const IndexList> lists);
+template <class Draw>
+IndexList indices_of(const Draw& draw, std::span<const IndexList> lists) {
+  return indices_of(draw.range, draw.shared_indices, draw.part, lists);
+}
+inline IndexList indices_of(const ObjectDraw& draw, std::span<const IndexList>) {
+  return {draw.range.first_index, draw.range.index_count};
+}
 
 // Facts about the draws of a frame that decide how they are listed. Valid while a list is built.
 struct ListFacts {

@@ -12,7 +12,8 @@ using core::Result;
 
 static_assert(static_cast<int>(core::VertexLayout::kObject) < 3);
 
-Result<void> MeshTables::make(const PassSetup& setup, const PipelineShape& shape) {
+Result<void> MeshTables::make(const PassSetup& setup, PipelineShape shape, bool pushed) {
+  if (pushed) shape.vert = pushed_shader(shape.vert);
   UniquePipeline pipeline;
   return setup.pipelines.make(setup.sets.layout(), shape, pipeline).map([&] {
     pipelines_.push_back(std::move(pipeline));

@@ -41,6 +41,11 @@ struct MeshVariant {
   }
 };
 
+// A debug colour, 0xRRGGBB, as DrawData has it.
+constexpr float packed_colour(std::uint32_t rgb) {
+  return static_cast<float>(rgb & 0xFFFFFF);
+}
+
 // The pictures that meshes are drawn for.
 enum class MeshUse : std::uint8_t { kLandscape, kDrawColour, kWireframe, kShadow };
 // The use in a frame's view.
@@ -60,14 +65,20 @@ class MeshTables {
                   [variant.index()];
   }
 
-  // For vertex layouts. Creates a pipeline and puts it into every entry for which fits(variant).
+  // For vertex layouts. Creates the pipelines of a shape, with the data of draws in their buffer
+  // (shape.vert) and pushed (the next shader), and puts each into its entries for which
+  // fits(variant).
   template <class Fits>
   core::Result<void> add(const PassSetup& setup, const PipelineShape& shape, MeshUse use,
                          const Fits& fits) {
-    if (core::Result<void> made = make(setup, shape); !made) return made;
     MeshTable& table = table_of(*shape.vertices, use);
-    for (std::size_t i = 0; i < MeshVariant::kCount; ++i)
-      if (fits(MeshVariant::at(i))) table[i] = pipelines_.back().get();
+    for (const bool pushed : {false, true}) {
+      if (core::Result<void> made = make(setup, shape, pushed); !made) return made;
+      for (std::size_t i = 0; i < MeshVariant::kCount; ++i) {
+        const MeshVariant variant = MeshVariant::at(i);
+        if (variant.pushed == pushed && fits(variant)) table[i] = pipelines_.back().get();
+      }
+    }
     return {};
   }
 
@@ -76,7 +87,7 @@ class MeshTables {
   MeshTable& table_of(core::VertexLayout layout, MeshUse use) {
     return tables_[static_cast<std::size_t>(layout)][static_cast<std::size_t>(use)];
   }
-  core::Result<void> make(const PassSetup& setup, const PipelineShape& shape);
+  core::Result<void> make(const PassSetup& setup, PipelineShape shape, bool pushed);
   core::Result<void> create_missing(const PassSetup& setup, Features wanted);
 
   std::array<std::array<MeshTable, 4>, 3> tables_{};  // by layout and use

@@ -27,43 +27,35 @@ Result<void> add_models(const PassSetup& setup, PipelineShape shape, const Model
   shape.vertices = core::VertexLayout::kModel;
   shape.depth = DepthUse::kWrite;
   Result<void> made;
-  for (const bool pushed : {false, true}) {
-    const auto add = [&](Shader vert, std::optional<Shader> frag, auto&& covers) {
-      shape.vert = vert;
-      shape.frag = frag;
-      if (!made) return;
-      made = tables.add(setup, shape, use, [&](MeshVariant v) {
-        return v.pushed == pushed && fits(v) && covers(v.coverage);
-      });
-    };
-    add(mesh_shader(Shader::kModelVert, look, pushed), shaders.whole,
-        [](Coverage c) { return c == Coverage::kWhole; });
-    add(mesh_shader(Shader::kModelFadingVert, look, pushed), shaders.fading, [&](Coverage c) {
-      return c == Coverage::kPart || (c == Coverage::kNear && !shaders.near);
-    });
-    add(mesh_shader(Shader::kModelFadingPictureVert, look, pushed), shaders.pictured,
-        [](Coverage c) { return c == Coverage::kPictured; });
-    if (shaders.near)
-      add(pushed ? Shader::kModelFadingModelDetailDrawPushedVert
-                 : Shader::kModelFadingModelDetailVert,
-          shaders.near, [](Coverage c) { return c == Coverage::kNear; });
-  }
+  const auto add = [&](Shader vert, std::optional<Shader> frag, auto&& covers) {
+    shape.vert = vert;
+    shape.frag = frag;
+    if (!made) return;
+    made =
+        tables.add(setup, shape, use, [&](MeshVariant v) { return fits(v) && covers(v.coverage); });
+  };
+  add(mesh_shader(Shader::kModelVert, look), shaders.whole,
+      [](Coverage c) { return c == Coverage::kWhole; });
+  add(mesh_shader(Shader::kModelFadingVert, look), shaders.fading,
+      [&](Coverage c) { return c == Coverage::kPart || (c == Coverage::kNear && !shaders.near); });
+  add(mesh_shader(Shader::kModelFadingPictureVert, look), shaders.pictured,
+      [](Coverage c) { return c == Coverage::kPictured; });
+  if (shaders.near)
+    add(Shader::kModelFadingModelDetailVert, shaders.near,
+        [](Coverage c) { return c == Coverage::kNear; });
   return made;
 }
 
 }  // namespace
 
-shaders::DrawData data_of(const MeshDraw& draw) {
+shaders::DrawData data_of(const MeshDraw& draw, bool coloured) {
   // The phase depends on the mesh, not on the camera. Neighbours differ because their boxes do.
   const float phase = 7.31F * (draw.box_half_extent.x + draw.box_centre.x + draw.box_centre.z);
-  return {.origin = {draw.origin + draw.box_centre, phase - std::floor(phase)},
+  return {.origin = {draw.origin + draw.box_centre,
+                     coloured ? packed_colour(draw.debug_colour) : phase - std::floor(phase)},
           .scale = {draw.box_half_extent, draw.fade},
           .light = {draw.sun, static_cast<float>(draw.surface), 0, 0},
           .turn = {}};
-}
-
-void set_colour(shaders::DrawData& data, const MeshDraw& draw) {
-  data.origin.w = static_cast<float>(draw.debug_colour & 0xFFFFFF);
 }
 
 core::Bounds bounds_of(const MeshDraw& draw) {
@@ -104,19 +96,14 @@ Result<void> add_model_views(const PassSetup& setup, MeshTables& tables) {
                        .pictured = Shader::kShadowFadingFadingPictureFrag},
                       MeshLook::kShadow, MeshUse::kShadow, all, tables);
   }
-  if (!setup.device.info.wireframe) return made;
+  if (!made || !setup.device.info.wireframe) return made;
   // Edges show all of a model.
-  for (const bool pushed : {false, true}) {
-    const PipelineShape edges{.vert = mesh_shader(Shader::kModelVert, MeshLook::kColour, pushed),
-                              .frag = Shader::kSurfaceFrag,
-                              .vertices = core::VertexLayout::kModel,
-                              .depth = DepthUse::kWrite,
-                              .wireframe = true};
-    if (!made) return made;
-    made = tables.add(setup, edges, MeshUse::kWireframe,
-                      [&](MeshVariant v) { return v.pushed == pushed; });
-  }
-  return made;
+  const PipelineShape edges{.vert = Shader::kModelVert,
+                            .frag = Shader::kSurfaceFrag,
+                            .vertices = core::VertexLayout::kModel,
+                            .depth = DepthUse::kWrite,
+                            .wireframe = true};
+  return tables.add(setup, edges, MeshUse::kWireframe, all);
 }
 
 }  // namespace psygen::render

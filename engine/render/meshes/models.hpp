@@ -9,10 +9,9 @@
 
 namespace psygen::render {
 
-// The data of a draw for the shaders. Pure.
-shaders::DrawData data_of(const MeshDraw& draw);
-// Puts the debug colour of a draw into its data, for the views that show it.
-void set_colour(shaders::DrawData& data, const MeshDraw& draw);
+// The data of a draw for the shaders; `coloured`: with its debug colour, for the views that show
+// it. Pure.
+shaders::DrawData data_of(const MeshDraw& draw, bool coloured = false);
 constexpr Coverage coverage_of(const MeshDraw& draw) {
   return draw.pictured      ? Coverage::kPictured
          : draw.near        ? Coverage::kNear

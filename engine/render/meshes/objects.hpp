@@ -12,10 +12,9 @@
 
 namespace psygen::render {
 
-// The data of a draw for the shaders. Pure.
-shaders::DrawData data_of(const ObjectDraw& draw);
-// Puts the debug colour of a draw into its data, for the views that show it.
-void set_colour(shaders::DrawData& data, const ObjectDraw& draw);
+// The data of a draw for the shaders; `coloured`: with its debug colour, for the views that show
+// it. Pure.
+shaders::DrawData data_of(const ObjectDraw& draw, bool coloured = false);
 inline Coverage coverage_of(const ObjectDraw& draw, MaterialKind kind) {
   return kind.holes || draw.fade < 1.0F ? Coverage::kPart : Coverage::kWhole;
 }

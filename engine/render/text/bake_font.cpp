@@ -1,7 +1,7 @@
 // Runs at build time: bakes the letters of a TrueType font into signed distances, from which text
 // of any size is drawn sharply (Green, "Improved Alpha-Tested Magnification", SIGGRAPH 2007).
 // Writes a C++ header with one texture and the metrics of each letter;
-// engine/render/text/hud_font.cpp includes it.
+// engine/render/text/hud_layout.cpp includes it.
 //
 // usage: bake_font FONT.ttf OUTPUT.h
 #include <stb/stb_rect_pack.h>

@@ -6,10 +6,11 @@
 #include <string_view>
 
 #include "engine/core/utf8.hpp"
-#include "engine/render/text/hud_font.hpp"
 
 namespace psygen::render {
 namespace {
+
+#include "hud_font_baked.h"
 
 using Vertices = std::vector<shaders::OverlayVertex>;
 
@@ -27,21 +28,8 @@ struct Look {
   float dilation_px = 0, softness_px = 1;
 };
 
-void add_quad(Vertices& out, const glm::vec2& from, const glm::vec2& to, const glm::vec2& uv_from,
-              const glm::vec2& uv_to, const glm::vec4& colour, const glm::vec4& look) {
-  const auto corner = [&](bool right, bool bottom) {
-    return shaders::OverlayVertex{{right ? to.x : from.x, bottom ? to.y : from.y,
-                                   right ? uv_to.x : uv_from.x, bottom ? uv_to.y : uv_from.y},
-                                  colour,
-                                  look};
-  };
-  for (const auto& [right, bottom] : {std::pair{false, false},
-                                      {false, true},
-                                      {true, true},
-                                      {false, false},
-                                      {true, true},
-                                      {true, false}})
-    out.push_back(corner(right, bottom));
+Box box_of(const glm::vec2& from, const glm::vec2& to) {
+  return {from.x, from.y, to.x, to.y};
 }
 
 // Calls f(letter) for each of a line.
@@ -119,8 +107,8 @@ class TextLayout {
         const glm::vec2 size(letter.width, letter.height);
         const glm::vec2 uv = atlas_.font_corner + glm::vec2(letter.u, letter.v);
         if (letter.width > 0 && out_.size() < kMaxHudQuads * 6) {
-          add_quad(out_, from, from + size * scale_, uv / texture, (uv + size) / texture, colour,
-                   sdf);
+          add_quad(out_, box_of(from, from + size * scale_),
+                   box_of(uv / texture, (uv + size) / texture), colour, sdf);
         }
         at.x += letter.advance * scale_;
       });
@@ -141,14 +129,52 @@ glm::vec2 pixels_of(const HudPlace& place, core::Extent picture) {
 
 }  // namespace
 
+const HudFont& hud_font() {
+  static const HudFont font{{kBakedWidth, kBakedHeight},
+                            std::as_bytes(std::span(kBakedTexels)),
+                            kBakedLetters,
+                            kBakedEm,
+                            kBakedAscent,
+                            kBakedSpread};
+  return font;
+}
+
+const BakedLetter& HudFont::letter(char32_t code) const {
+  const auto find = [this](char32_t wanted) {
+    const auto found = std::ranges::lower_bound(letters, wanted, {}, &BakedLetter::code);
+    return found != letters.end() && found->code == wanted ? &*found : nullptr;
+  };
+  if (const BakedLetter* found = find(code)) return *found;
+  const BakedLetter* const replacement = find(0xFFFD);
+  return replacement != nullptr ? *replacement : letters.front();
+}
+
+void add_quad(Vertices& out, const Box& at, const Box& uv, const glm::vec4& colour,
+              const glm::vec4& look) {
+  const auto corner = [&](bool right, bool bottom) {
+    return shaders::OverlayVertex{{right ? at.x1 : at.x0, bottom ? at.y1 : at.y0,
+                                   right ? uv.x1 : uv.x0, bottom ? uv.y1 : uv.y0},
+                                  colour,
+                                  look};
+  };
+  for (const auto& [right, bottom] : {std::pair{false, false},
+                                      {false, true},
+                                      {true, true},
+                                      {false, false},
+                                      {true, true},
+                                      {true, false}})
+    out.push_back(corner(right, bottom));
+}
+
 void lay_out_hud(const HudDrawing& drawing, core::Extent picture, const HudAtlas& atlas,
                  Vertices& out) {
   for (const HudArea& area : drawing.areas) {
     const glm::vec2 from = glm::round(pixels_of(area.at, picture));
     const glm::vec2 to = glm::round(from + pixels_of(area.size, picture));
     if (!is_finite(from) || !is_finite(to) || out.size() >= kMaxHudQuads * 6) continue;
-    add_quad(out, glm::clamp(from, -kMaxOffPx, kMaxOffPx), glm::clamp(to, -kMaxOffPx, kMaxOffPx),
-             atlas.white_uv, atlas.white_uv, area.colour, glm::vec4(0.0F));
+    add_quad(out,
+             box_of(glm::clamp(from, -kMaxOffPx, kMaxOffPx), glm::clamp(to, -kMaxOffPx, kMaxOffPx)),
+             box_of(atlas.white_uv, atlas.white_uv), area.colour);
   }
   for (const HudText& text : drawing.texts)
     if (std::isfinite(text.size_px)) TextLayout(text, picture, atlas, out).add();

@@ -10,7 +10,6 @@
 #include <cstring>
 
 #include "engine/core/assert.hpp"
-#include "engine/render/text/hud_font.hpp"
 
 namespace psygen::render {
 
@@ -39,28 +38,6 @@ constexpr glm::vec4 kPanelColour{0.03F, 0.04F, 0.06F, 0.70F};
 constexpr glm::vec4 kGroundColour{0.06F, 0.08F, 0.11F, 1.0F};
 constexpr glm::vec4 kBarColour{0.45F, 0.66F, 0.85F, 1.0F};
 constexpr glm::vec4 kBarGroundColour{0.25F, 0.27F, 0.30F, 1.0F};
-
-struct Box {
-  float x0, y0, x1, y1;
-};
-
-void add_quad(std::vector<shaders::OverlayVertex>& out, const Box& at, const Box& uv,
-              const glm::vec4& colour) {
-  const auto corner = [&](bool right, bool bottom) {
-    return shaders::OverlayVertex{{right ? at.x1 : at.x0, bottom ? at.y1 : at.y0,
-                                   right ? uv.x1 : uv.x0, bottom ? uv.y1 : uv.y0},
-                                  colour,
-                                  glm::vec4(0.0F)};
-  };
-  for (const auto& [right, bottom] : {std::pair{false, false},
-                                      {false, true},
-                                      {true, true},
-                                      {false, false},
-                                      {true, true},
-                                      {true, false}}) {
-    out.push_back(corner(right, bottom));
-  }
-}
 
 void add_area(std::vector<shaders::OverlayVertex>& out, const Box& at, const ImFontAtlas& atlas,
               const glm::vec4& colour) {

@@ -1,7 +1,7 @@
 // The textures of the ground, one for each kind of ground, which repeat without a seam: shares of
 // the albedo that the world gives its ground, heights, normals and roughness, with mip levels.
 // Computed once at start-up; the same on every machine. Pure, any thread. It makes no Vulkan image
-// (ground_texture_array.hpp), and decides nothing about where which kind is (shaders/ground.glsl).
+// (frame/frame_sets.cpp), and decides nothing about where which kind is (shaders/ground.glsl).
 // Private to engine/render.
 #pragma once
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/render/text/hud_font.hpp"
-
 namespace psygen::render {
 namespace {
 
