@@ -3,6 +3,7 @@
 // slot of the cache; its generation detects stale handles.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string_view>
@@ -42,8 +43,10 @@ constexpr MeshKey duplicate_of(MeshKey key) {
 
 // empty → requested → ready or failed. A key unknown to the cache is empty.
 enum class MeshState : std::uint8_t { kEmpty, kRequested, kReady, kFailed };
-// "empty", "requested", "ready", "failed".
-std::string_view name_of(MeshState state);
+constexpr std::string_view name_of(MeshState state) {
+  constexpr std::array<std::string_view, 4> kNames{"empty", "requested", "ready", "failed"};
+  return kNames[static_cast<std::size_t>(state)];
+}
 
 // Index of a slot in the cache.
 using Slot = std::uint32_t;

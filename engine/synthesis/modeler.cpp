@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
+#include <new>
 #include <utility>
 
 #include "engine/core/clock.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/synthesis/content_hash.hpp"
-#include "engine/synthesis/making.hpp"
 #include "engine/synthesis/synthesise.hpp"
 #include "engine/synthesis/thread_priority.hpp"
 
@@ -17,6 +19,35 @@ namespace {
 template <class T>
 void add(std::atomic<T>& counter, T value) {
   counter.store(counter.load(std::memory_order_relaxed) + value, std::memory_order_relaxed);
+}
+
+// Calls a function that annotates a mesh. An exception fails the request.
+template <class Work>
+void noting(Completion& c, const Work& work) {
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    c.ok = false;
+    c.error = core::out_of_memory("the annotation of a mesh");
+  } catch (const std::exception& e) {
+    c.ok = false;
+    c.error = fmt::format("the annotation of a mesh failed: {}", e.what());
+  } catch (...) {
+    c.ok = false;
+    c.error = "the annotation of a mesh failed";
+  }
+}
+
+// Annotation function for meshes of a type; null if there is none.
+const Annotate* annotate_of(const Workshop& workshop, models::ModelIndex model) {
+  const std::vector<Annotate>& all = workshop.annotate;
+  return model < all.size() && all[model] ? &all[model] : nullptr;
+}
+
+// Copies vertices and indices. Both meshes have the same size.
+void copy_mesh(const models::MeshView& mesh, const models::MeshView& destination) {
+  std::ranges::copy(mesh.vertices, destination.vertices.begin());
+  std::ranges::copy(mesh.indices, destination.indices.begin());
 }
 
 }  // namespace
@@ -194,6 +225,53 @@ bool Modeler::give_up_if_older(double limit_s, double now_s, Completion& out) {
   out.error =
       fmt::format("level {} was abandoned after {:.1f} s", out.key.level, now_s - started_s);
   return true;
+}
+
+// This thread owns the destination only after the mesh has arrived and unless the request was
+// abandoned.
+bool Modeler::execute_there(Workshop& workshop) {
+  Completion c = completion_of(current_, number_);
+  c.remote = true;
+  c.started_s = workshop.clock();
+  c.predicted_seconds = current_.cost.warm_s();
+  // Look up the type first: once the request can be abandoned, the types may change.
+  const models::ModelIndex model = current_.key.model;
+  const models::ModelType& type = (*workshop.registry)[model];
+  const Annotate* annotate = annotate_of(workshop, model);
+  begin(c.started_s);
+  RemoteMesh mesh = place_.modelers->make(place_.number, type, current_);
+  std::uint64_t expected = serial_ * 4 + kWorking;
+  if (!state_.compare_exchange_strong(expected, serial_ * 4 + kWriting, std::memory_order_acq_rel))
+    return false;
+  const bool made = mesh.answer != RemoteMesh::Answer::kNone;
+  if (made) write_remote_mesh(workshop, annotate, mesh, c);
+  c.finished_s = workshop.clock();
+  state_.store(serial_ * 4 + kIdle, std::memory_order_release);
+  if (made) {
+    finish(std::move(c));
+  } else {
+    give_back(workshop);
+  }
+  return true;
+}
+
+void Modeler::write_remote_mesh(const Workshop& workshop, const Annotate* annotate,
+                                RemoteMesh& mesh, Completion& c) {
+  c.seconds = mesh.seconds;
+  c.tight = mesh.tight;
+  c.ok = mesh.answer == RemoteMesh::Answer::kMade;
+  c.error = std::move(mesh.error);
+  if (!c.ok) return;
+  const models::MeshView made = models::mesh_view(mesh.bytes.data(), current_.size);
+  if (annotate != nullptr) noting(c, [&] { c.note = (*annotate)(current_, made); });
+  copy_mesh(made, current_.destination);
+  if (workshop.hash_content && c.ok) c.content_hash = content_hash(current_.key, made);
+}
+
+void Modeler::give_back(Workshop& workshop) {
+  const std::lock_guard lock(workshop.mutex);
+  workshop.returned.push_back(current_);
+  workshop.has_returned.store(true, std::memory_order_release);
 }
 
 }  // namespace psygen::synthesis

@@ -117,10 +117,6 @@ void set_sun(models::Parameters& terrain, double azimuth_deg, double elevation_d
   terrain.set_real(models::kTerrainSunElevation, std::min(elevation, 90.0));
 }
 
-models::Parameters terrain_parameters(const World& world, core::BlockCoord block) {
-  return terrain_parameters(world, block, 0);
-}
-
 models::Parameters terrain_parameters(const World& world, core::BlockCoord node, int node_level) {
   models::Parameters p = unedited_terrain(world);
   p.set_integer(models::kTerrainSeed, std::bit_cast<std::int64_t>(world.seed));

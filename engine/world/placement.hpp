@@ -86,10 +86,10 @@ inline constexpr double kSunAzimuthStep = 2, kSunElevationStep = 1;
 // and so do all suns in the zenith.
 void set_sun(models::Parameters& terrain, double azimuth_deg, double elevation_deg);
 
-// The parameters of one block's terrain under the world's sky, with the edits that reach the block.
-models::Parameters terrain_parameters(const World& world, core::BlockCoord block);
-// The parameters for a node of 2^level × 2^level blocks. `node` counts nodes of this level.
-models::Parameters terrain_parameters(const World& world, core::BlockCoord node, int node_level);
+// The parameters of the terrain of a node of 2^level × 2^level blocks under the world's sky, with
+// the edits that reach it. `node` counts nodes of this level; at level 0 it is a block.
+models::Parameters terrain_parameters(const World& world, core::BlockCoord node,
+                                      int node_level = 0);
 // Distance beyond a node's border up to which heights affect the node's ground mesh, in blocks.
 double ground_margin(const World& world, int node_level);
 

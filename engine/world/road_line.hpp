@@ -22,8 +22,9 @@ struct RoadPoint {
 double chords_m(const Road& road);
 
 // The points of the centre line, about `step_m` apart. `height_at` returns the height of the
-// ground. Heights are means of the ground over road.smoothing_m in both directions, and over less
-// at the ends, where the road meets the ground. Linear in points times smoothing over step.
+// ground. Heights are weighted means of the ground up to road.smoothing_m before and behind a
+// point, and over less at the ends, where the road meets the ground. Linear in points times
+// smoothing over step.
 std::vector<RoadPoint> road_line(const Road& road, double step_m,
                                  const std::function<double(glm::dvec2)>& height_at);
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/edits/edits.hpp"
@@ -18,21 +17,22 @@ using models::BlockEdits;
 using models::GroundEdit;
 
 core::Result<void> check_heightmap(const models::Heightmap* map, double relief_m, bool adds) {
-  if (map == nullptr) return refuse("the stamp has no heightmap");
+  if (map == nullptr) return core::invalid_argument("the stamp has no heightmap");
   const auto side = [](std::uint32_t n) { return n >= 2 && n <= kMaxHeightmapSide; };
   if (!side(map->columns) || !side(map->rows)) {
-    return refuse(fmt::format("a heightmap of {} × {} points is not allowed: each side has 2 to {}",
-                              map->columns, map->rows, kMaxHeightmapSide));
+    return core::invalid_argument(
+        fmt::format("a heightmap of {} × {} points is not allowed: each side has 2 to {}",
+                    map->columns, map->rows, kMaxHeightmapSide));
   }
   const std::size_t points = std::size_t{map->columns} * map->rows;
   if (map->heights_m.size() != points) {
-    return refuse(fmt::format("the heightmap has {} heights, not {} × {}", map->heights_m.size(),
-                              map->columns, map->rows));
+    return core::invalid_argument(fmt::format("the heightmap has {} heights, not {} × {}",
+                                              map->heights_m.size(), map->columns, map->rows));
   }
   const double lowest = adds ? -relief_m : 0;
   for (const float h : map->heights_m) {
     if (static_cast<double>(h) >= lowest && static_cast<double>(h) <= relief_m) continue;
-    return refuse(
+    return core::invalid_argument(
         fmt::format("a height of {:g} m in the heightmap is not allowed: it must be {:g} to {:g} m",
                     h, lowest, relief_m));
   }
@@ -41,17 +41,13 @@ core::Result<void> check_heightmap(const models::Heightmap* map, double relief_m
 
 }  // namespace
 
-tl::unexpected<core::Error> refuse(std::string sentence) {
-  return core::fail(ErrorCode::kInvalidArgument, std::move(sentence));
-}
-
 std::string text_of(core::BlockCoord block) {
   return fmt::format("block ({}, {})", block.x, block.z);
 }
 
 core::Result<void> check_block(const World& world, core::BlockCoord block) {
   if (world.contains(block)) return {};
-  return refuse(fmt::format("{} is outside the world", text_of(block)));
+  return core::invalid_argument(fmt::format("{} is outside the world", text_of(block)));
 }
 
 core::Result<void> check_heights(const BlockEdits& edits, core::BlockCoord block) {
@@ -75,15 +71,16 @@ core::Result<void> check_removed(const World& world, core::BlockCoord block, std
   if (auto ok = check_block(world, block); !ok) return ok;
   const std::size_t count = models_per_block(world);
   if (index < count) return {};
-  return refuse(fmt::format("{} has no model {}: a block has {}", text_of(block), index, count));
+  return core::invalid_argument(
+      fmt::format("{} has no model {}: a block has {}", text_of(block), index, count));
 }
 
 core::Result<core::WorldPosition> check_place(const World& world, const core::WorldPosition& at) {
   constexpr double kFarthest = 1e9;
   const auto usable = [](double v) { return std::abs(v) <= kFarthest; };  // false for NaN
   if (!usable(at.local.x) || !usable(at.local.z)) {
-    return refuse(fmt::format("the position {:g}, {:g} m from {} is out of range", at.local.x,
-                              at.local.z, text_of(at.block)));
+    return core::invalid_argument(fmt::format("the position {:g}, {:g} m from {} is out of range",
+                                              at.local.x, at.local.z, text_of(at.block)));
   }
   const double size = world.block_size_m();
   const auto index = [size](std::int32_t block, double local) {
@@ -93,8 +90,9 @@ core::Result<core::WorldPosition> check_place(const World& world, const core::Wo
   core::WorldPosition place = core::normalised(at, size);
   const bool inside = fits(index(at.block.x, at.local.x)) && fits(index(at.block.z, at.local.z));
   if (!inside || !world.contains(place.block)) {
-    return refuse(fmt::format("the position {:g}, {:g} m from {} is outside the world", at.local.x,
-                              at.local.z, text_of(at.block)));
+    return core::invalid_argument(
+        fmt::format("the position {:g}, {:g} m from {} is outside the world", at.local.x,
+                    at.local.z, text_of(at.block)));
   }
   place.local.y = 0;
   return place;
@@ -103,20 +101,22 @@ core::Result<core::WorldPosition> check_place(const World& world, const core::Wo
 core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
   const double relief_m = world.terrain.real(models::kTerrainReliefM);
   if (!(edit.radius_m >= kMinEditRadiusM && edit.radius_m <= kMaxEditRadiusM)) {
-    return refuse(fmt::format("a radius of {:g} m is not allowed: it must be {:g} to {:g} m",
-                              edit.radius_m, kMinEditRadiusM, kMaxEditRadiusM));
+    return core::invalid_argument(
+        fmt::format("a radius of {:g} m is not allowed: it must be {:g} to {:g} m", edit.radius_m,
+                    kMinEditRadiusM, kMaxEditRadiusM));
   }
   if (!(edit.falloff >= 0 && edit.falloff <= 1))
-    return refuse(fmt::format("a falloff of {:g} is not allowed: it must be 0 to 1", edit.falloff));
+    return core::invalid_argument(
+        fmt::format("a falloff of {:g} is not allowed: it must be 0 to 1", edit.falloff));
   switch (edit.change) {
     case models::GroundChange::kRaise:
       if (std::abs(edit.height_m) <= relief_m) return {};
-      return refuse(
+      return core::invalid_argument(
           fmt::format("raising ground by {:g} m is not allowed: at most {:g} m, up or down",
                       edit.height_m, relief_m));
     case models::GroundChange::kFlatten:
       if (edit.height_m >= 0 && edit.height_m <= relief_m) return {};
-      return refuse(
+      return core::invalid_argument(
           fmt::format("ground at {:g} m is not allowed: it must be 0 to {:g} m, the height range "
                       "of the terrain",
                       edit.height_m, relief_m));
@@ -125,24 +125,26 @@ core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
     case models::GroundChange::kStampSet:
       return check_heightmap(edit.map.get(), relief_m, false);
     case models::GroundChange::kRoad:
-      return refuse("roads can be in world files only");
+      return core::invalid_argument("roads can be in world files only");
   }
-  return refuse("this type of ground edit does not exist");
+  return core::invalid_argument("this type of ground edit does not exist");
 }
 
 core::Result<void> check_model(const models::Registry& registry, models::ModelIndex model,
                                const models::Parameters& parameters, double above_m) {
   if (model >= registry.size())
-    return refuse(fmt::format("there is no model type {}: there are {}", model, registry.size()));
+    return core::invalid_argument(
+        fmt::format("there is no model type {}: there are {}", model, registry.size()));
   constexpr double kHighest = 1000;
   if (!(std::abs(above_m) <= kHighest)) {
-    return refuse(fmt::format("{:g} m above the ground is not allowed: it must be {:g} to {:g} m",
-                              above_m, -kHighest, kHighest));
+    return core::invalid_argument(
+        fmt::format("{:g} m above the ground is not allowed: it must be {:g} to {:g} m", above_m,
+                    -kHighest, kHighest));
   }
   const models::ModelType& type = registry[model];
   if (auto ok = models::validate(type, parameters); !ok) return ok;
   if (type.mesh_size(parameters, 0).layout != core::VertexLayout::kModel)
-    return refuse(fmt::format("models of type {} cannot be placed", type.name()));
+    return core::invalid_argument(fmt::format("models of type {} cannot be placed", type.name()));
   return {};
 }
 

@@ -12,8 +12,7 @@
 
 namespace psygen::world {
 
-// An error (kInvalidArgument) with this message; and a block's name in messages.
-tl::unexpected<core::Error> refuse(std::string sentence);
+// A block's name in messages.
 std::string text_of(core::BlockCoord block);
 
 // Fails for a block outside the world.

@@ -89,7 +89,8 @@ core::Result<EditName> Edits::move(const World& world, const models::Registry& r
   const auto at = std::ranges::lower_bound(placements, model.index, {}, &Placement::index);
   if (at == placements.end() || at->index != model.index ||
       edits_of(model.block).is_removed(model.index)) {
-    return refuse(fmt::format("model {} of {} does not exist", model.index, text_of(model.block)));
+    return core::invalid_argument(
+        fmt::format("model {} of {} does not exist", model.index, text_of(model.block)));
   }
   Edits moved = *this;
   auto placed = moved.place(world, registry, {at->model, at->parameters, to, 0});
@@ -105,7 +106,8 @@ core::Result<EditName> Edits::move(const World& world, const models::Registry& r
 core::Result<void> Edits::restore(const InstanceName& model) {
   BlockEdits edits = edits_of(model.block);
   if (!edits.is_removed(model.index))
-    return refuse(fmt::format("model {} of {} was not removed", model.index, text_of(model.block)));
+    return core::invalid_argument(
+        fmt::format("model {} of {} was not removed", model.index, text_of(model.block)));
   const auto at = std::ranges::lower_bound(edits.removed, model.index, {}, &RemovedModel::index);
   const RemovedModel removed = *at;
   edits.removed.erase(at);
@@ -141,7 +143,7 @@ core::Result<EditName> Edits::place(const World& world, const models::Registry& 
 core::Result<void> Edits::remove_placed(const EditName& model) {
   BlockEdits edits = edits_of(model.block);
   if (std::erase_if(edits.placed, [&](const PlacedModel& p) { return p.id == model.id; }) == 0) {
-    return refuse(
+    return core::invalid_argument(
         fmt::format("{} has no placed model with the id {}", text_of(model.block), model.id));
   }
   commit(copy(), model.block, std::move(edits));
@@ -195,7 +197,7 @@ core::Result<void> Edits::remove_ground(const World& world, const EditName& edit
   BlockEdits edits = edits_of(edit.block);
   const auto at = std::ranges::find(edits.ground, edit.id, &GroundEdit::id);
   if (at == edits.ground.end()) {
-    return refuse(
+    return core::invalid_argument(
         fmt::format("{} has no ground edit with the id {}", text_of(edit.block), edit.id));
   }
   EditLayer layer = copy();
