@@ -177,7 +177,7 @@ core::Result<void> SaveGame::save() {
   if (auto written = s.write_all(); !written) {
     Database& database = s.tables.database();
     if (database.in_transaction()) (void)database.run("ROLLBACK", "cannot be saved");
-    written.error().message += "; the file has the last save, and no unsaved change is lost";
+    written.error().message += "; the file keeps the last save";
     return written;
   }
   discard();

@@ -135,8 +135,7 @@ TEST(SaveCrash, AFullDiskAtAnyWriteIsAnErrorAndTheNextSaveHasEverything) {
         EXPECT_EQ(saved.error().code, core::ErrorCode::kIo);
         EXPECT_EQ(saved.error().message,
                   (folder / "game.save").string() +
-                      ": cannot be saved: the disk is full; the file has the last save, and "
-                      "no unsaved change is lost");
+                      ": cannot be saved: the disk is full; the file keeps the last save");
         EXPECT_TRUE(save.has_unsaved());
       }
     }
