@@ -17,7 +17,7 @@ ImpactBar::ImpactBar(QWidget* parent)
   text_->setWordWrap(true);
   text_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
   text_->setAccessibleName(tr("Impact of the last change"));
-  text_->setMinimumHeight(2 * text_->fontMetrics().lineSpacing());
+  text_->setMinimumHeight(3 * text_->fontMetrics().lineSpacing());
   auto* buttons = new QHBoxLayout;
   buttons->addWidget(apply_);
   buttons->addWidget(discard_);

@@ -145,7 +145,8 @@ ClipPtr chime_sound() {
   return clip(out);
 }
 
-// Synthesises all clips; no file is read. Each takes a few milliseconds, and the music about 0.1 s.
+}  // namespace
+
 Clips make_clips() {
   Clips made{wind_sound(),
              rain_sound(),
@@ -165,8 +166,6 @@ Clips make_clips() {
   }
   return made;
 }
-
-}  // namespace
 
 Sounds::Sounds(double block_m, audio::Destination destination)
     : audio_({.destination = destination, .block_size_m = block_m}),

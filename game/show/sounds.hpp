@@ -21,6 +21,9 @@ struct Clips {
   std::array<ClipPtr, 3> steps, birds;  // steps from snow to rock
 };
 
+// Synthesises all clips; no file is read. Each takes a few milliseconds, and the music about 0.1 s.
+Clips make_clips();
+
 class Sounds {
  public:
   explicit Sounds(double block_m, audio::Destination destination);

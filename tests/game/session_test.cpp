@@ -205,9 +205,11 @@ TEST(Controls, APadMovesLooksAndJumps) {
 }
 
 TEST(Synth, SoundsAreAudibleAndNotClipped) {
-  const ClipPtr all[] = {wind_sound(),  rain_sound(),  water_sound(),  fire_sound(), music_sound(1),
-                         step_sound(0), step_sound(1), splash_sound(), chop_sound(), fall_sound(),
-                         stone_sound(), bird_sound(0), bird_sound(2),  chime_sound()};
+  const Clips made = make_clips();
+  std::vector<ClipPtr> all{made.wind,   made.rain, made.water, made.fire,  made.music,
+                           made.splash, made.chop, made.fall,  made.stone, made.chime};
+  all.insert(all.end(), made.steps.begin(), made.steps.end());
+  all.insert(all.end(), made.birds.begin(), made.birds.end());
   for (const ClipPtr& clip : all) {
     ASSERT_TRUE(audio::check_clip(*clip));
     int loudest = 0;

@@ -27,10 +27,11 @@ TEST(EditCost, NeedsConfirmationBeyondALimitAndOnlyIfItGrows) {
   const EditCost cheap{"tree", 0.5, 5, 500};
   EXPECT_TRUE(confirmation_for({}, cheap, limits).isEmpty());
   const EditCost slow_model{"tree", 1.5, 5, 500};
-  EXPECT_TRUE(confirmation_for(cheap, slow_model, limits).contains("“tree” takes 1.5 s"));
+  EXPECT_TRUE(confirmation_for(cheap, slow_model, limits).contains("“tree” would take 1.5 s"));
   EXPECT_TRUE(confirmation_for(slow_model, slow_model, limits).isEmpty()) << "it was so before";
   const EditCost large{"tree", 0.5, 5, 2000};
-  EXPECT_TRUE(confirmation_for(cheap, large, limits).contains("The cache holds 2 such blocks."));
+  EXPECT_TRUE(
+      confirmation_for(cheap, large, limits).contains("The cache would hold 2 such blocks."));
   EXPECT_TRUE(confirmation_for({"tree", 0.5, 5, 3000}, large, limits).isEmpty()) << "it shrinks";
   EXPECT_FALSE(confirmation_for(cheap, {"tree", 0.5, 20, 500}, limits).isEmpty());
 }

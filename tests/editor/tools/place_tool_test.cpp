@@ -139,7 +139,8 @@ TEST(PlaceTool, InvalidPlacesAreRejectedWithAMessage) {
   click(bench.tool, ground(40, 50));
   bench.tool.turn(15);
   EXPECT_EQ(bench.messages.back(),
-            "tree cannot be turned: it has no parameter turn_deg, as models from files have.");
+            "tree cannot be turned. Only models with the parameter turn_deg can, such as those "
+            "from files.");
   EXPECT_EQ(bench.steps(), 1);
 }
 
