@@ -14,8 +14,7 @@
 #include "editor/shell/theme.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/core/data_file.hpp"
-#include "engine/core/log.hpp"
-#include "engine/render/device/software_tuning.hpp"
+#include "engine/program/program.hpp"
 #include "engine/render/preset.hpp"
 
 namespace psygen::editor {
@@ -60,9 +59,7 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
   return std::nullopt;
 }
 
-}  // namespace
-
-int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
+int edit(int argc, char** argv, std::vector<app::Plugin> plugins) {
   // The rendering process of the gallery (pictures/picture_server.hpp).
   if (argc > 1 && std::strcmp(argv[1], kPicturesOption) == 0)
     return render_pictures(std::move(plugins), argc > 2 ? argv[2] : "");
@@ -72,8 +69,6 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   QApplication::setApplicationVersion(to_qstring(core::version()));
   Arguments arguments;
   if (const auto code = read_arguments(app, arguments)) return *code;
-  if (auto ok = render::fit_software_rendering_to_threads(); !ok)
-    return core::log_error(ok.error().message), 1;
   apply_saved_look();
 
   MainWindowOptions options;
@@ -96,6 +91,12 @@ int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
   // A modeler that hangs may still write into memory, so the process ends without destructors.
   if (window.view().has_hung()) std::_Exit(code);
   return code;
+}
+
+}  // namespace
+
+int run(int argc, char** argv, std::vector<app::Plugin> plugins) {
+  return program::run("psygen-editor", [&] { return edit(argc, argv, std::move(plugins)); });
 }
 
 }  // namespace psygen::editor

@@ -1,5 +1,7 @@
 #include "game/game.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -141,6 +143,7 @@ core::Result<void> Game::begin(app::Session& session, Loaded loaded) {
   scenery_.clear(session);
   pilot_.reset();
   saved_ = std::move(opened);
+  unsaved_s_ = unsaved_at_put_s_ = 0;
   lands_.emplace(std::move(loaded));
   seed_ = seed;
   if (options_.autoplay) pilot_.emplace(*lands_->play);
@@ -177,6 +180,7 @@ void Game::open_page(app::Session& session, Page page) {
 
 void Game::step(app::Session& session, double dt) {
   if (!lands_ || menu_.page != Page::kNone) return;
+  unsaved_s_ += dt;
   if (recording_) {
     if (auto ok = recording_->add(session.actions().states()); !ok) {
       hud_.say(ok.error().message, {}, 8);
@@ -217,24 +221,50 @@ void Game::sync_presentation(app::Session& session, double dt_s) {
     if (auto ok = save(); !ok) hud_.say(ok.error().message, {}, 8);
   }
   if (saved_) {
-    if (const auto done = saved_->outcome(); done && !*done) hud_.say(done->error().message);
+    if (const auto done = saved_->outcome()) note_outcome(*done);
   }
 }
 
 core::Result<void> Game::save() {
   until_save_s_ = kSaveEveryS;
-  return lands_ && saved_ ? saved_->put(*lands_->play) : core::Result<void>();
+  if (!lands_ || !saved_) return {};
+  auto put = saved_->put(*lands_->play);
+  unsaved_at_put_s_ = put ? unsaved_s_ : 0;
+  return put;
+}
+
+// Takes the result of a finished write.
+void Game::note_outcome(const core::Result<void>& outcome) {
+  menu_.cannot_save = !outcome;
+  if (outcome)
+    unsaved_s_ -= std::exchange(unsaved_at_put_s_, 0);
+  else
+    hud_.say(outcome.error().message, {}, 8);
 }
 
 core::Result<void> Game::save_now() {
-  return save().and_then([&] { return saved_ ? saved_->wait() : core::Result<void>(); });
+  auto saved = save().and_then([&] { return saved_ ? saved_->wait() : core::Result<void>(); });
+  note_outcome(saved);
+  return saved;
 }
 
 // Returns false if the game cannot be saved; the page then shows the reason.
 bool Game::save_and_leave() {
-  auto saved = save_now();
-  if (!saved) menu_.message = saved.error().message;
+  const auto saved = save_now();
+  if (!saved)
+    menu_.message = fmt::format("{}. Make room and save again, or lose the last {:.0f} s.",
+                                saved.error().message, unsaved_s_);
   return saved.has_value();
+}
+
+bool Game::may_end(app::Session& session) {
+  if (session.stopped() || session.window() == nullptr || abandoned_ || save_and_leave())
+    return true;
+  const std::string message = menu_.message;
+  if (menu_.page != Page::kPause) open_page(session, Page::kPause);
+  menu_.message = message;
+  session.keep_open();
+  return false;
 }
 
 void Game::choose(app::Session& session, Choice choice) {
@@ -252,6 +282,10 @@ void Game::choose(app::Session& session, Choice choice) {
     open_page(session, Page::kNone);
   }
   if (choice == Choice::kQuit && save_and_leave()) session.close();
+  if (choice == Choice::kAbandon) {
+    abandoned_ = true;
+    session.close();
+  }
   if (choice == Choice::kToTitle && save_and_leave()) {
     scenery_.clear(session);
     pilot_.reset();
@@ -389,7 +423,9 @@ core::CameraPose Game::playing(app::Session& session, double dt_s) {
 }
 
 core::Result<void> Game::end() {
-  auto kept = save_now();
+  auto kept = abandoned_ ? core::Result<void>() : save_now();
+  if (!kept)
+    kept.error().message += fmt::format("; the last {:.0f} s of the game are lost", unsaved_s_);
   if (recording_) {
     if (auto ok = recording_->save(options_.record); !ok && kept) kept = ok;
   }

@@ -42,8 +42,12 @@ class Game {
   // Call before every tick. Updates pages, HUD and sounds, and returns the camera pose. `dt_s`:
   // real seconds since the last frame.
   core::CameraPose frame(app::Session& session, double dt_s);
+  // Call when the session is over. Returns true if the program may end: the game is saved, there is
+  // none, or the player wants to quit without saving. Otherwise keeps the session open, and the
+  // pause page asks.
+  bool may_end(app::Session& session);
   // Call after the last frame. Saves the game and writes the input recording. Fails like
-  // Saved::put(), or if the recording cannot be written.
+  // Saved::put(), with the seconds that are lost, or if the recording cannot be written.
   core::Result<void> end();
 
   Page page() const { return menu_.page; }
@@ -66,6 +70,7 @@ class Game {
   void take_keys(app::Session& session);
   void apply_settings(app::Session& session);
   core::Result<void> save();
+  void note_outcome(const core::Result<void>& outcome);
   core::Result<void> save_now();
   bool save_and_leave();
   core::CameraPose playing(app::Session& session, double dt_s);
@@ -88,10 +93,12 @@ class Game {
   std::optional<input::Recording> recording_;
   std::shared_ptr<const models::EditLayer> shown_edits_;
   Page shown_page_ = Page::kTitle;
+  double unsaved_s_ = 0,
+         unsaved_at_put_s_ = 0;  // playing time since the last save; at Saved::put()
   double until_save_s_ = 0, title_s_ = 0, title_height_m_ = 0;
   int picture_in_ = 0;   // frames until a screenshot is saved; 0: none pending
   int quiet_steps_ = 0;  // steps that ignore presses, because they closed a page
-  bool zoom_ = false, settings_broken_ = false;
+  bool zoom_ = false, settings_broken_ = false, abandoned_ = false;
   glm::dvec2 photo_turn_{0.0};
   std::optional<query::World> title_query_;  // of the land behind the title screen
   core::WorldPosition title_place_;

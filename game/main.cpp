@@ -1,23 +1,25 @@
 // psygen-game: Cairns in a window, or played by the autopilot. Exit codes: 0 success, 1 failure,
 // 2 usage error, 4 no usable device or display.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <csignal>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
 #include "engine/app/session.hpp"
+#include "engine/core/log.hpp"
+#include "engine/program/command_line.hpp"
+#include "engine/program/program.hpp"
 #include "engine/render/preset.hpp"
+#include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
 #include "game/game.hpp"
 
 namespace cairns {
 namespace {
 
-std::atomic<bool> stop{false};
 constexpr double kWarmUpS = 3;  // frames of this part of an autoplay are excluded from statistics
 
 struct Arguments {
@@ -54,36 +56,36 @@ std::optional<int> read(int argc, char** argv, Arguments& a) {
   cli.add_option("--picture", a.picture, "Save the last frame to this PNG file");
   cli.add_flag("!--no-sound", a.game.sound, "Disable sound");
   cli.add_flag("--validation", a.validation, "Enable Vulkan validation layers");
-  try {
-    cli.parse(argc, argv);
-    if (!a.preset.empty()) {
-      const auto preset = render::preset_from(a.preset);
-      if (!preset) throw CLI::ValidationError("--preset", preset.error().message);
-      a.game.preset = *preset;
+  if (const auto code = program::read_command_line(cli, argc, argv)) return code;
+  if (!a.preset.empty()) {
+    const auto preset = render::preset_from(a.preset);
+    if (!preset) {
+      core::log_error("--preset: " + preset.error().message);
+      return program::kUsage;
     }
-  } catch (const CLI::ParseError& error) {
-    return cli.exit(error) == 0 ? 0 : 2;
+    a.game.preset = *preset;
   }
   a.game.autoplay = a.seconds > 0;
   return std::nullopt;
 }
 
-// Prints the median and the 99th percentile of frame times in milliseconds.
-void tell(std::vector<double> frame_ms) {
-  if (frame_ms.empty()) return;
+// The median and the 99th percentile of frame times in milliseconds.
+std::string frame_times(std::vector<double> frame_ms) {
+  if (frame_ms.empty()) return {};
   std::ranges::sort(frame_ms);
   const auto at = [&](double share) {
     return frame_ms[static_cast<std::size_t>(share * static_cast<double>(frame_ms.size() - 1))];
   };
-  std::printf("%zu frames: median %.1f ms, 99th percentile %.1f ms\n", frame_ms.size(), at(0.5),
-              at(0.99));
+  return fmt::format("{} frames: median {:.1f} ms, 99th percentile {:.1f} ms\n", frame_ms.size(),
+                     at(0.5), at(0.99));
 }
 
-void tell(const Play* play) {
-  if (play == nullptr) return;
+std::string progress_of(const Play* play) {
+  if (play == nullptr) return {};
   const Progress& p = play->progress();
-  std::printf(
-      "%zu of %zu cairns, %.0f s, walked %.0f m, %zu edits, at block %d, %d: %.3f, %.3f, %.3f\n",
+  return fmt::format(
+      "{} of {} cairns, {:.0f} s, walked {:.0f} m, {} edits, at block {}, {}: {:.3f}, {:.3f}, "
+      "{:.3f}\n",
       p.found.count(), kCairns, p.time_s, play->walker().walked_m(),
       static_cast<std::size_t>(play->edits().counts().removed + play->edits().counts().placed),
       p.feet.block.x, p.feet.block.z, p.feet.local.x, p.feet.local.y, p.feet.local.z);
@@ -96,7 +98,7 @@ core::Result<void> run(Arguments a) {
   if (!options) return tl::unexpected(options.error());
   options->device_name = a.device;
   options->validation = a.validation;
-  options->stop = &stop;
+  options->stop = &program::stop_at_interrupt();
   auto made = app::Session::create(std::move(*options));
   if (!made) return tl::unexpected(made.error());
   app::Session& session = **made;
@@ -106,7 +108,8 @@ core::Result<void> run(Arguments a) {
   double dt_s = 1.0 / 60, played_s = 0;
   std::vector<double> frame_ms;
   core::Result<void> ended;
-  while (session.poll() && (a.seconds == 0 || played_s < a.seconds)) {
+  while (a.seconds == 0 || played_s < a.seconds) {
+    if (!session.poll() && game.may_end(session)) break;
     ended = session.tick(game.frame(session, dt_s), dt_s);
     if (!ended) break;
     played_s += dt_s;
@@ -117,10 +120,17 @@ core::Result<void> run(Arguments a) {
     if (a.seconds > 0 && game.play() != nullptr && game.play()->is_finished()) break;
   }
   if (ended && !a.picture.empty()) ended = session.save_picture(a.picture);
-  tell(std::move(frame_ms));
-  tell(game.play());
+  const std::string told = frame_times(std::move(frame_ms)) + progress_of(game.play());
   const auto kept = game.end();  // also after a failed frame
-  return ended ? kept : ended;
+  if (program::print(told) != program::kOk && ended)
+    ended = core::fail(core::ErrorCode::kIo, "the results were not printed");
+  if (!ended || !kept) return ended ? kept : ended;
+  const std::vector<std::string> messages = session.renderer().validation_messages();
+  for (const std::string& message : messages)
+    core::log_error(message);
+  if (messages.empty()) return {};
+  return core::fail(core::ErrorCode::kInternal,
+                    fmt::format("the validation layers sent {} messages", messages.size()));
 }
 
 }  // namespace
@@ -128,12 +138,9 @@ core::Result<void> run(Arguments a) {
 
 int main(int argc, char** argv) {
   using namespace cairns;
-  Arguments arguments;
-  if (const auto code = read(argc, argv, arguments)) return *code;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-    std::signal(signal, [](int) { stop = true; });
-  const auto ran = run(std::move(arguments));
-  if (ran || ran.error().code == core::ErrorCode::kInterrupted) return 0;
-  std::fprintf(stderr, "psygen-game: %s\n", ran.error().message.c_str());
-  return ran.error().code == core::ErrorCode::kNoDevice ? 4 : 1;
+  return program::run("psygen-game", [&] {
+    Arguments arguments;
+    if (const auto code = read(argc, argv, arguments)) return *code;
+    return program::exit_code(run(std::move(arguments)));
+  });
 }

@@ -24,7 +24,6 @@
 #include "engine/handmade/files.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/frame/input.hpp"
@@ -276,8 +275,6 @@ int render_pictures(std::vector<app::Plugin> plugins, std::string device_name) {
   std::ofstream("/proc/self/oom_score_adj") << 1000;
   const rlimit no_core{0, 0};
   (void)::setrlimit(RLIMIT_CORE, &no_core);
-  if (auto ok = render::fit_software_rendering_to_threads(); !ok)
-    return core::log_error(ok.error().message), 1;
   PictureServer server(std::move(plugins), std::move(device_name));
   return server.take_output() ? server.run() : 1;
 }

@@ -18,6 +18,7 @@
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/platform/window.hpp"
+#include "engine/render/device/software_tuning.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/render/types.hpp"
@@ -84,6 +85,7 @@ core::Result<std::unique_ptr<Session>> Session::create(SessionOptions options) {
 }
 
 core::Result<void> Session::open() {
+  if (auto ok = render::fit_software_rendering_to_threads(); !ok) return ok;
   if (auto ok = scene::Scene::check(options_.scene); !ok) return ok;
   auto registry = make_registry(options_.plugins);
   if (!registry) return tl::unexpected(registry.error());
@@ -282,6 +284,11 @@ void Session::follow_surface() {
   if (options_.surface == nullptr) return;
   const core::Extent size = options_.surface->framebuffer_size();
   if (std::exchange(surface_size_, size) != size) resize(size);
+}
+
+void Session::keep_open() {
+  closed_ = false;
+  if (window_) window_->cancel_close();
 }
 
 void Session::take_events() {

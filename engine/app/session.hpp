@@ -70,6 +70,9 @@ class Session {
   core::Result<void> tick(const core::CameraPose& pose, double dt_s);
   // Makes the next poll() return false.
   void close() { closed_ = true; }
+  // Cancels close() and the closing of the window, for example to ask the player first. The next
+  // poll() returns true unless SessionOptions::stop is set.
+  void keep_open();
   bool over() const { return closed_ || stopped(); }
   // True if SessionOptions::stop is set.
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }

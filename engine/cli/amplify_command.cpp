@@ -13,7 +13,6 @@
 #include "engine/amplify/shard.hpp"
 #include "engine/cli/amplify_stats.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/text_values.hpp"

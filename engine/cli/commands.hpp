@@ -3,25 +3,17 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
-#include <string>
 #include <vector>
 
-#include "engine/core/error.hpp"
+#include "engine/program/program.hpp"
 
 namespace psygen::cli {
 
-// Exit code of `psygen`.
-enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDevice = 4 };
-
-// kNoDevice for an error of that code, else kFailed.
-inline int exit_code_of(const core::Error& error) {
-  return error.code == core::ErrorCode::kNoDevice ? kNoDevice : kFailed;
-}
-// Logs the error and returns its exit code.
-int fail_with(const core::Error& error);
-// Writes data to stdout. Returns kFailed if it cannot be written, with a message unless the reader
-// has closed the pipe.
-int print(const std::string& text);
+using program::exit_code_of;
+using program::fail_with;
+using program::print;
+using program::stop_at_interrupt;
+using enum program::ExitCode;
 
 // A subcommand. The constructor of its class declares its options.
 class Command {

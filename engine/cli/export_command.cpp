@@ -14,7 +14,6 @@
 #include "engine/amplify/amplify.hpp"
 #include "engine/amplify/block_files.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/text_values.hpp"

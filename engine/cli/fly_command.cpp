@@ -12,7 +12,6 @@
 
 #include "engine/app/flight.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/scene_options.hpp"
 #include "engine/cli/shipped_files.hpp"
@@ -24,7 +23,6 @@
 #include "engine/core/replace_file.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/inspect/inspect.hpp"
-#include "engine/render/device/software_tuning.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
@@ -279,9 +277,7 @@ int FlyCommand::run_here() {
   // Before the driver and the modelers use up the available threads.
   const auto codec =
       options_.images_every > 0 ? image::load_picture_libraries() : core::Result<void>{};
-  auto flight = codec.and_then(render::fit_software_rendering_to_threads).and_then([this] {
-    return app::Flight::create(options_);
-  });
+  auto flight = codec.and_then([this] { return app::Flight::create(options_); });
   if (!flight) return code_of(flight.error());
   flight_ = std::move(*flight);
   return fly();

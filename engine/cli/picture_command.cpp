@@ -10,14 +10,12 @@
 
 #include "engine/app/session.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/scene_options.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/text_values.hpp"
 #include "engine/core/log.hpp"
 #include "engine/image/image_io.hpp"
-#include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/frame/quality.hpp"
 #include "engine/scene/scene.hpp"
@@ -89,9 +87,9 @@ class PictureCommand final : public Command {
     const auto folder = std::filesystem::path(out_).parent_path();
     // Checks the folder before the work begins.
     const auto writable = telemetry::create_output_folder(folder.empty() ? "." : folder);
-    auto session = writable.and_then(image::load_picture_libraries)
-                       .and_then(render::fit_software_rendering_to_threads)
-                       .and_then([this] { return app::Session::create(options_); });
+    auto session = writable.and_then(image::load_picture_libraries).and_then([this] {
+      return app::Session::create(options_);
+    });
     const auto taken = session.and_then([this](const auto& made) { return take(*made); });
     if (taken) {
       core::log_info(fmt::format("wrote {}", out_));

@@ -1,10 +1,8 @@
 // `psygen test`: runs frame tests (docs/frame-tests.md).
 #include "engine/cli/commands.hpp"
-#include "engine/cli/interrupt.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/core/log.hpp"
 #include "engine/frametest/run.hpp"
-#include "engine/render/device/software_tuning.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -26,10 +24,6 @@ class TestCommand final : public Command {
 
   int run() override {
     options_.stop = &stop_at_interrupt();
-    if (auto ok = render::fit_software_rendering_to_threads(); !ok) {
-      core::log_error(ok.error().message);
-      return frametest::kFailed;
-    }
     return frametest::run_frame_tests(options_);
   }
 

@@ -3,6 +3,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <string>
+
 #include "engine/core/utf8.hpp"
 
 namespace psygen::core {
@@ -16,6 +18,13 @@ spdlog::logger& logger() {
   return *instance;
 }
 }  // namespace
+
+void set_log_name(std::string_view name) {
+  std::string pattern;
+  for (const char c : shown(name))
+    pattern += c == '%' ? "%%" : std::string(1, c);
+  logger().set_pattern(pattern + ": %^%l%$: %v");
+}
 
 void log_info(std::string_view message) {
   logger().info(shown(message));

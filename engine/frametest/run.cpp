@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <string_view>
 
 #include "engine/app/flight.hpp"
 #include "engine/core/clock.hpp"
+#include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/frametest/failure.hpp"
+#include "engine/program/program.hpp"
 #include "engine/telemetry/report_plot.hpp"
 #include "engine/telemetry/summary_fields.hpp"
 
@@ -70,7 +71,7 @@ void show_failure(const FrameTest& test, std::span<const WorstFrame> worst,
   if (page) {
     result.page = *page;
   } else {
-    std::fprintf(stderr, "%s: %s\n", result.name.c_str(), page.error().message.c_str());
+    core::log_error(fmt::format("{}: {}", result.name, page.error().message));
   }
 }
 
@@ -168,7 +169,7 @@ TestResult run_frame_test(const std::filesystem::path& file, const RunOptions& o
   const double start_s = core::monotonic_seconds();
   TestResult result;
   result.file = file;
-  result.name = file.stem().string();
+  result.name = core::shown(file.stem().string());
   const auto test = load_frame_test(file);
   if (test) result.name = test->name;
   auto flown = test.and_then([&](const FrameTest& t) { return fly(t, options, hooks); });
@@ -202,24 +203,25 @@ std::string to_junit(std::span<const TestResult> results) {
 
 int run_frame_tests(const RunOptions& options, const Hooks& hooks) {
   std::vector<TestResult> results;
+  bool printed = true;
   for (const std::filesystem::path& file : options.files) {
     results.push_back(run_frame_test(file, options, hooks));
     const TestResult& result = results.back();
-    std::fputs(to_text(result).c_str(), stdout);
-    if (result.error)
-      std::fprintf(stderr, "%s: %s\n", result.name.c_str(), result.error->message.c_str());
-    std::fflush(stdout);
+    printed = program::print(to_text(result)) == program::kOk && printed;
+    if (result.error) core::log_error(fmt::format("{}: {}", result.name, result.error->message));
   }
-  int code = exit_code_of(results);
+  int code = printed ? exit_code_of(results) : kFailed;
   if (options.junit.empty()) return code;
   if (const auto written = core::replace_file(options.junit, to_junit(results)); !written) {
-    std::fprintf(stderr, "%s\n", written.error().message.c_str());
+    core::log_error(written.error().message);
     code = kFailed;
   }
   return code;
 }
 
-int frame_test_main(int argc, char** argv, const Hooks& hooks) {
+namespace {
+
+int run_command_line(int argc, char** argv, const Hooks& hooks) {
   RunOptions options;
   bool usable = true;
   for (int i = 1; i < argc; ++i) {
@@ -239,12 +241,18 @@ int frame_test_main(int argc, char** argv, const Hooks& hooks) {
     if (argument == "--device") options.device = value;
   }
   if (!usable || options.files.empty()) {
-    std::fprintf(stderr,
-                 "usage: %s FILE... [--junit FILE] [--out DIR] [--device NAME] [--worst N]\n",
-                 argv[0]);
+    core::log_error("usage: FILE... [--junit FILE] [--out DIR] [--device NAME] [--worst N]");
     return kUsage;
   }
+  options.stop = &program::stop_at_interrupt();
   return run_frame_tests(options, hooks);
+}
+
+}  // namespace
+
+int frame_test_main(int argc, char** argv, const Hooks& hooks) {
+  const std::string name = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "";
+  return program::run(name, [&] { return run_command_line(argc, argv, hooks); });
 }
 
 }  // namespace psygen::frametest

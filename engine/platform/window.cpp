@@ -370,6 +370,10 @@ void Window::request_close() {
   glfwSetWindowShouldClose(implementation_->window, GLFW_TRUE);
 }
 
+void Window::cancel_close() {
+  glfwSetWindowShouldClose(implementation_->window, GLFW_FALSE);
+}
+
 bool Window::minimised() const {
   return glfwGetWindowAttrib(implementation_->window, GLFW_ICONIFIED) == GLFW_TRUE;
 }

@@ -63,6 +63,8 @@ class Window final : public core::SurfaceProvider {
   // True if the user asked to close the window, or request_close() was called.
   bool should_close() const;
   void request_close();
+  // Forgets a request to close.
+  void cancel_close();
   // True if the window is minimised.
   bool minimised() const;
 

@@ -2,21 +2,15 @@
 // saves an image instead of opening a window.
 //   example_window [picture.png]
 #include <chrono>
-#include <cstdio>
 #include <utility>
 
 #include "engine/app/session.hpp"
 #include "engine/core/data_file.hpp"
+#include "engine/program/program.hpp"
 
 using namespace psygen;
 
 namespace {
-
-int failed(const core::Error& error) {
-  if (error.code == core::ErrorCode::kInterrupted) return 0;  // the user closed the window
-  std::fprintf(stderr, "%s\n", error.message.c_str());
-  return 1;
-}
 
 // Seconds since the last call.
 double elapsed_s() {
@@ -26,31 +20,36 @@ double elapsed_s() {
   return std::chrono::duration<double>(now - std::exchange(last, now)).count();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+core::Result<void> play(int argc, char** argv) {
   const auto world = core::data_file("worlds/silver_combe.toml");
-  if (!world) return failed(world.error());
+  if (!world) return tl::unexpected(world.error());
 
   app::SessionOptions options;
   options.world_file = *world;
   options.headless = argc > 1;
+  options.stop = &program::stop_at_interrupt();  // Ctrl+C ends the loop below
   auto session = app::Session::create(options);
-  if (!session) return failed(session.error());
+  if (!session) return tl::unexpected(session.error());
 
   core::CameraPose pose = (*session)->home();  // above the centre of the world
-  if (auto ok = (*session)->prepare(pose); !ok) return failed(ok.error());
+  if (auto ok = (*session)->prepare(pose); !ok) return tl::unexpected(ok.error());
   if (argc > 1) {
-    if (auto ok = (*session)->tick(pose, 1.0 / 60); !ok) return failed(ok.error());
-    if (auto ok = (*session)->save_picture(argv[1]); !ok) return failed(ok.error());
-    return 0;
+    if (auto ok = (*session)->tick(pose, 1.0 / 60); !ok) return tl::unexpected(ok.error());
+    if (auto ok = (*session)->save_picture(argv[1]); !ok) return tl::unexpected(ok.error());
+    return {};
   }
   elapsed_s();
   double dt_s = 1.0 / 60;
   while ((*session)->poll()) {  // until the user closes the window
     pose.yaw += 0.1 * dt_s;     // radians
-    if (auto ok = (*session)->tick(pose, dt_s); !ok) return failed(ok.error());
+    if (auto ok = (*session)->tick(pose, dt_s); !ok) return tl::unexpected(ok.error());
     dt_s = elapsed_s();
   }
-  return 0;
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return program::run("example_window", [&] { return play(argc, argv); });
 }

@@ -8,6 +8,7 @@
 #include "engine/core/data_file.hpp"
 #include "engine/models/kit/packing.hpp"
 #include "engine/models/model_type.hpp"
+#include "engine/program/program.hpp"
 
 using namespace psygen;
 
@@ -114,7 +115,5 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: example_model_type picture.png\n");
     return 2;
   }
-  const auto taken = take_picture(argv[1]);
-  if (!taken) std::fprintf(stderr, "%s\n", taken.error().message.c_str());
-  return taken ? 0 : 1;
+  return program::run("example_model_type", [&] { return take_picture(argv[1]); });
 }

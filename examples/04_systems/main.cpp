@@ -10,6 +10,7 @@
 #include "engine/app/session.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
+#include "engine/program/program.hpp"
 #include "engine/scene/events.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/frame/input.hpp"
@@ -59,17 +60,10 @@ void count(Trip& trip, ecs::EventReader<scene::ModelCreated>& created) {
   trip.models_seen += created.drain([](std::span<const scene::ModelCreated>) {});
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+core::Result<void> play(int argc, char** argv) {
   const double seconds = argc > 1 ? std::atof(argv[1]) : 5;
-  const auto failed = [](const core::Error& error) {
-    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the user closed the window
-    std::fprintf(stderr, "%s\n", error.message.c_str());
-    return 1;
-  };
   const auto world = core::data_file("worlds/five_species.toml");
-  if (!world) return failed(world.error());
+  if (!world) return tl::unexpected(world.error());
 
   Trip* trip = nullptr;
   app::Plugin plugin;
@@ -88,16 +82,22 @@ int main(int argc, char** argv) {
   options.size = {320, 180};
   options.plugins.push_back(plugin);
   auto session = app::Session::create(options);
-  if (!session) return failed(session.error());
+  if (!session) return tl::unexpected(session.error());
   trip->start = (*session)->home();
 
-  if (auto ok = (*session)->prepare(trip->start); !ok) return failed(ok.error());
+  if (auto ok = (*session)->prepare(trip->start); !ok) return tl::unexpected(ok.error());
   for (double now_s = 0; now_s < seconds; now_s += 1.0 / 30) {
-    if (auto ok = (*session)->tick(trip->start, 1.0 / 30); !ok) return failed(ok.error());
+    if (auto ok = (*session)->tick(trip->start, 1.0 / 30); !ok) return tl::unexpected(ok.error());
   }
   const scene::Scene& scene = (*session)->scene();
   const core::WorldPosition& at = scene.camera().pose.position;
   std::printf("%llu steps, block %d, %zu models seen\n",
               static_cast<unsigned long long>(scene.step().index), at.block.x, trip->models_seen);
-  return 0;
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return program::run("example_systems", [&] { return play(argc, argv); });
 }

@@ -17,6 +17,7 @@
 #include "engine/models/registry.hpp"
 #include "engine/physics/world.hpp"
 #include "engine/platform/window.hpp"
+#include "engine/program/program.hpp"
 #include "engine/query/world.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/scene.hpp"
@@ -89,17 +90,10 @@ core::CameraPose eyes(const Game& game, double share) {
   return pose;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+core::Result<void> play(int argc, char** argv) {
   const bool by_itself = argc > 1;
-  const auto failed = [](const core::Error& error) {
-    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the user closed the window
-    std::fprintf(stderr, "%s\n", error.message.c_str());
-    return 1;
-  };
   const auto world = core::data_file("worlds/five_species.toml");
-  if (!world) return failed(world.error());
+  if (!world) return tl::unexpected(world.error());
   Game game;
   app::Plugin plugin;
   plugin.name = "walking";
@@ -112,32 +106,39 @@ int main(int argc, char** argv) {
   if (by_itself) options.size = {320, 180};
   options.plugins.push_back(plugin);
   auto session = app::Session::create(options);
-  if (!session) return failed(session.error());
-  if (auto ok = add_actions((*session)->actions(), game); !ok) return failed(ok.error());
+  if (!session) return tl::unexpected(session.error());
+  if (auto ok = add_actions((*session)->actions(), game); !ok) return tl::unexpected(ok.error());
 
   scene::Scene& scene = (*session)->scene();
   game.query.emplace(scene.world(), scene.registry());
   auto physics = physics::World::create(*game.query);
-  if (!physics) return failed(physics.error());
+  if (!physics) return tl::unexpected(physics.error());
   game.physics.emplace(std::move(*physics));
   game.feet = game.feet_before = (*session)->home().position;
   const auto player = game.physics->add(physics::CharacterSettings{.feet = game.feet});
-  if (!player) return failed(player.error());
+  if (!player) return tl::unexpected(player.error());
   game.player = *player;
   if ((*session)->window() != nullptr) (*session)->window()->capture_cursor(true);
-  if (auto ok = (*session)->prepare(eyes(game, 1)); !ok) return failed(ok.error());
+  if (auto ok = (*session)->prepare(eyes(game, 1)); !ok) return tl::unexpected(ok.error());
 
   using Clock = std::chrono::steady_clock;
   Clock::time_point last = Clock::now();
   double dt_s = 1.0 / 60;
   while ((*session)->poll() && !(by_itself && (*session)->now_s() >= std::atof(argv[1]))) {
     const auto drawn = (*session)->tick(eyes(game, scene.step().share), dt_s);
-    if (!drawn) return failed(drawn.error());
+    if (!drawn) return tl::unexpected(drawn.error());
     const Clock::time_point now = Clock::now();
     if (!by_itself) dt_s = std::chrono::duration<double>(now - std::exchange(last, now)).count();
   }
   const auto ground = game.query->ground(game.feet);
   const double above_m = ground ? game.feet.local.y - ground->height_m : -1;
   std::printf("walked %.0f m, %.2f m above the ground\n", game.walked_m, above_m);
-  return above_m > -0.01 ? 0 : 1;
+  if (above_m > -0.01) return {};
+  return core::fail(core::ErrorCode::kInternal, "the walker is below the ground");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return program::run("example_walking", [&] { return play(argc, argv); });
 }

@@ -6,6 +6,7 @@
 #include "engine/app/session.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
+#include "engine/program/program.hpp"
 #include "engine/query/world.hpp"
 #include "engine/save/save_game.hpp"
 #include "engine/scene/facts/world_facts.hpp"
@@ -92,7 +93,5 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: example_felling game.save picture.png\n");
     return 2;
   }
-  const auto done = fell(argv[1], argv[2]);
-  if (!done) std::fprintf(stderr, "%s\n", done.error().message.c_str());
-  return done ? 0 : 1;
+  return program::run("example_felling", [&] { return fell(argv[1], argv[2]); });
 }

@@ -11,6 +11,7 @@
 #include "engine/core/camera.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/platform/input.hpp"
+#include "engine/program/program.hpp"
 #include "engine/scene/scene.hpp"
 
 using namespace psygen;
@@ -48,16 +49,9 @@ void draw_hud(app::Session& session, double time_s) {
   session.hud().texts = {text};
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const auto failed = [](const core::Error& error) {
-    if (error.code == core::ErrorCode::kInterrupted) return 0;  // the user closed the window
-    std::fprintf(stderr, "%s\n", error.message.c_str());
-    return 1;
-  };
+core::Result<void> play(int argc, char** argv) {
   const auto world = core::data_file("worlds/lakes.toml");
-  if (!world) return failed(world.error());
+  if (!world) return tl::unexpected(world.error());
   Menu menu{.open = argc > 1};
   app::Plugin plugin;
   plugin.name = "menu";
@@ -67,9 +61,9 @@ int main(int argc, char** argv) {
   options.headless = argc > 1;
   options.plugins.push_back(plugin);
   auto session = app::Session::create(options);
-  if (!session) return failed(session.error());
+  if (!session) return tl::unexpected(session.error());
   core::CameraPose pose = (*session)->home();
-  if (auto ok = (*session)->prepare(pose); !ok) return failed(ok.error());
+  if (auto ok = (*session)->prepare(pose); !ok) return tl::unexpected(ok.error());
 
   using Clock = std::chrono::steady_clock;
   Clock::time_point last = Clock::now();
@@ -81,11 +75,17 @@ int main(int argc, char** argv) {
     }
     draw_hud(**session, (*session)->now_s());
     if (!menu.open) pose.yaw += double{menu.speed} * dt_s;
-    if (auto ok = (*session)->tick(pose, dt_s); !ok) return failed(ok.error());
+    if (auto ok = (*session)->tick(pose, dt_s); !ok) return tl::unexpected(ok.error());
     const Clock::time_point now = Clock::now();
     dt_s = std::chrono::duration<double>(now - std::exchange(last, now)).count();
   }
-  if (argc == 1) return 0;
-  if (auto ok = (*session)->save_picture(argv[1]); !ok) return failed(ok.error());
-  return 0;
+  if (argc == 1) return {};
+  if (auto ok = (*session)->save_picture(argv[1]); !ok) return tl::unexpected(ok.error());
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return program::run("example_hud", [&] { return play(argc, argv); });
 }

@@ -2,10 +2,10 @@
 // steps. Saves an image to a file instead of opening a window: example_objects [picture.png]
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include "engine/app/session.hpp"
 #include "engine/core/data_file.hpp"
+#include "engine/program/program.hpp"
 #include "engine/query/world.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/objects/assets.hpp"
@@ -143,8 +143,5 @@ core::Result<void> run(const char* picture) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto done = run(argc > 1 ? argv[1] : nullptr);
-  if (done || done.error().code == core::ErrorCode::kInterrupted) return 0;
-  std::fprintf(stderr, "%s\n", done.error().message.c_str());
-  return 1;
+  return program::run("example_objects", [&] { return run(argc > 1 ? argv[1] : nullptr); });
 }

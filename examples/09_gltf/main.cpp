@@ -2,7 +2,6 @@
 // that opens. With the name of a PNG file, it saves an image instead of opening a window.
 //   example_gltf [picture.png]
 #include <chrono>
-#include <cstdio>
 
 #include "ecs/ecs.hpp"
 #include "engine/app/session.hpp"
@@ -10,6 +9,7 @@
 #include "engine/core/data_file.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/prefab/prefab.hpp"
+#include "engine/program/program.hpp"
 #include "engine/query/world.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/objects/assets.hpp"
@@ -76,9 +76,5 @@ core::Result<void> run(const char* picture) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto done = run(argc > 1 ? argv[1] : nullptr);
-  // Closing the window while the world loads is not an error.
-  if (done || done.error().code == core::ErrorCode::kInterrupted) return 0;
-  std::fprintf(stderr, "%s\n", done.error().message.c_str());
-  return 1;
+  return program::run("example_gltf", [&] { return run(argc > 1 ? argv[1] : nullptr); });
 }

@@ -1,8 +1,8 @@
 // The game in its window.
 //   my_game [picture.png]      with a file name: runs two seconds without a window, saves an image
 #include <chrono>
-#include <cstdio>
 
+#include "engine/program/program.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/scene.hpp"
 #include "game.hpp"
@@ -16,6 +16,7 @@ core::Result<void> play(const char* picture) {
   auto options = game.options();
   if (!options) return tl::unexpected(options.error());
   options->headless = picture != nullptr;
+  options->stop = &program::stop_at_interrupt();
   auto made = app::Session::create(std::move(*options));
   if (!made) return tl::unexpected(made.error());
   app::Session& session = **made;
@@ -39,8 +40,5 @@ core::Result<void> play(const char* picture) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto played = play(argc > 1 ? argv[1] : nullptr);
-  if (played || played.error().code == core::ErrorCode::kInterrupted) return 0;
-  std::fprintf(stderr, "%s\n", played.error().message.c_str());
-  return 1;
+  return program::run("my_game", [&] { return play(argc > 1 ? argv[1] : nullptr); });
 }

@@ -117,6 +117,7 @@ Choice Menu::draw_pause() {
   if (button("Photo mode")) open(Page::kPhoto);
   if (button("Settings")) open(Page::kSettings);
   if (button("Quit to title")) return Choice::kToTitle;
+  if (cannot_save && button("Quit without saving")) return Choice::kAbandon;
   return button("Save and quit") ? Choice::kQuit : Choice::kNothing;
 }
 

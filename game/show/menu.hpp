@@ -16,7 +16,16 @@ namespace cairns {
 
 enum class Page : std::uint8_t { kTitle, kNone, kPause, kSettings, kMap, kPhoto, kCredits };
 // The player's choice. For kNew the seed is Menu::seed.
-enum class Choice : std::uint8_t { kNothing, kContinue, kNew, kToTitle, kSave, kPicture, kQuit };
+enum class Choice : std::uint8_t {
+  kNothing,
+  kContinue,
+  kNew,
+  kToTitle,
+  kSave,
+  kPicture,
+  kQuit,
+  kAbandon
+};
 
 // Settings of the photo mode.
 struct Photo {
@@ -39,6 +48,7 @@ class Menu {
   std::string message;  // error message, until another page opens
   Photo photo;
   bool can_continue = false, busy = false;  // a save exists; a land is being created
+  bool cannot_save = false;                 // the pause page offers to quit without saving
   bool settings_changed = false;
 
   // Draws the page and returns the player's choice. `play` may be null.

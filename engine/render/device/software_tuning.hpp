@@ -20,10 +20,10 @@ void tune_allocator_for_software_rendering();
 // the kernel has no such pages, for device memory, and for memory smaller than such a page.
 void prefer_huge_pages(std::span<std::byte> memory);
 
-// For programs, before a renderer is created. llvmpipe waits forever for its own threads if it
-// could not start them. If the system does not allow all of them (ulimit -u, limits of containers),
-// this makes it start fewer (LP_NUM_THREADS, unless that is set). Fails with kInternal if there
-// would be no thread for drawing.
+// app::Session calls it before it creates a renderer. llvmpipe waits forever for its own threads if
+// it could not start them. If the system does not allow all of them (ulimit -u, limits of
+// containers), this makes it start fewer (LP_NUM_THREADS, unless that is set). Fails with kInternal
+// if there would be no thread for drawing.
 core::Result<void> fit_software_rendering_to_threads();
 
 }  // namespace psygen::render

@@ -1,6 +1,4 @@
 // Tests the messages for wrong command lines, with the real commands of psygen.
-#include "engine/cli/usage.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "engine/cli/commands.hpp"
 #include "engine/cli/option_checks.hpp"
 #include "engine/core/utf8.hpp"
+#include "engine/program/command_line.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -38,7 +37,8 @@ Told told(Arguments arguments) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   Told result;
-  result.code = read_command_line(program.cli, static_cast<int>(arguments.size()), argv.data());
+  result.code =
+      program::read_command_line(program.cli, static_cast<int>(arguments.size()), argv.data());
   result.out = testing::internal::GetCapturedStdout();
   result.err = testing::internal::GetCapturedStderr();
   return result;
@@ -141,7 +141,7 @@ TEST(Usage, OptionsOfAGroupBehaveLikeOthers) {
     for (std::string& argument : arguments)
       argv.push_back(argument.data());
     testing::internal::CaptureStderr();
-    EXPECT_EQ(read_command_line(cli, static_cast<int>(argv.size()), argv.data()), kUsage);
+    EXPECT_EQ(program::read_command_line(cli, static_cast<int>(argv.size()), argv.data()), kUsage);
     return testing::internal::GetCapturedStderr();
   };
   EXPECT_NE(told_of({"--where", ""}).find("--where: the value is empty"), std::string::npos);
@@ -218,7 +218,7 @@ TEST(Usage, ALeadingZeroIsNotOctal) {
   std::string arguments[] = {"psygen", "a", "--number", "010"};
   char* argv[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(),
                   arguments[3].data()};
-  EXPECT_FALSE(read_command_line(cli, 4, argv).has_value());
+  EXPECT_FALSE(program::read_command_line(cli, 4, argv).has_value());
   EXPECT_EQ(number, 10);
 }
 

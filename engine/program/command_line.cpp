@@ -1,16 +1,17 @@
-#include "engine/cli/usage.hpp"
+#include "engine/program/command_line.hpp"
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <sstream>
 
-#include "engine/cli/commands.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/nearest_word.hpp"
 #include "engine/core/utf8.hpp"
+#include "engine/program/program.hpp"
 
-namespace psygen::cli {
+namespace psygen::program {
 namespace {
 
 constexpr std::size_t kMaxShownBytes = 80;  // of an argument
@@ -34,6 +35,11 @@ std::vector<CLI::App*> commands_of(CLI::App& cli) {
   return cli.get_subcommands([](CLI::App* app) { return !app->get_name().empty(); });
 }
 
+std::string full_name(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return (parent != nullptr ? parent->get_name() + " " : "") + command.get_name();
+}
+
 std::string check_value(const std::string& text) {
   if (text.empty()) return "the value is empty";
   if (text.starts_with("--"))
@@ -44,7 +50,9 @@ std::string check_value(const std::string& text) {
 
 // CLI11 would take the next argument as the value of "--name=" and of "--name --other".
 void refuse_missing_values(CLI::App& cli) {
-  for (CLI::App* command : commands_of(cli)) {
+  std::vector<CLI::App*> apps = commands_of(cli);
+  apps.push_back(&cli);
+  for (CLI::App* command : apps) {
     for (CLI::Option* option : options_of(*command)) {
       if (option->get_items_expected_max() > 0)
         option->transform(CLI::Validator([](std::string& text) { return check_value(text); }, ""));
@@ -56,7 +64,7 @@ void refuse_missing_values(CLI::App& cli) {
 
 // Accepts "help" and "help fly" for "--help" and "fly --help".
 void read_help(CLI::App& cli, std::vector<std::string>& arguments) {
-  if (arguments.empty() || arguments.front() != "help") return;
+  if (arguments.empty() || arguments.front() != "help" || commands_of(cli).empty()) return;
   arguments.erase(arguments.begin());
   const auto is_next = [&](const CLI::App* app) { return app->get_name() == arguments.front(); };
   if (arguments.empty())
@@ -93,7 +101,7 @@ std::string about_option(CLI::App& command, const std::string& argument) {
   std::vector<std::string> names;
   for (const CLI::Option* option : options_of(command))
     names.push_back(option->get_name());
-  return fmt::format("psygen {} has no option {}{}", command.get_name(), in_quotes(word),
+  return fmt::format("{} has no option {}{}", full_name(command), in_quotes(word),
                      core::suggestion(word, names));
 }
 
@@ -103,8 +111,9 @@ std::string about_extra(CLI::App& cli) {
   if (first.starts_with('-')) {
     const std::string near =
         core::suggestion(first, std::vector<std::string>{"--version", "--help"});
-    return near.empty() ? in_quotes(first) + " precedes the command; options follow it"
-                        : fmt::format("psygen has no option {}{}", in_quotes(first), near);
+    return near.empty()
+               ? in_quotes(first) + " precedes the command; options follow it"
+               : fmt::format("{} has no option {}{}", cli.get_name(), in_quotes(first), near);
   }
   if (cli.get_subcommands().empty()) return about_command(cli, first);
   return fmt::format("unexpected argument {}", in_quotes(first));
@@ -117,8 +126,9 @@ std::string about_extra_of(CLI::App& command) {
   const auto option =
       std::ranges::find_if(extras, [](const std::string& text) { return text.starts_with('-'); });
   if (option != extras.end()) return about_option(command, *option);
-  return fmt::format("unexpected argument {}: only options may follow the command",
-                     in_quotes(extras.front()));
+  return fmt::format("unexpected argument {}: only options may follow {}",
+                     in_quotes(extras.front()),
+                     command.get_parent() != nullptr ? "the command" : command.get_name());
 }
 
 // Error message for a repeated option, an option without a value, or a flag with one.
@@ -136,8 +146,9 @@ std::string about_count(CLI::App& command, const CLI::ParseError& error) {
 
 std::string sentence_of(CLI::App& cli, CLI::App& command, const CLI::ParseError& error) {
   const auto kind = static_cast<CLI::ExitCodes>(error.get_exit_code());
-  if (!cli.remaining().empty()) return about_extra(cli);
-  if (&command == &cli) return "a command is missing";
+  const bool has_commands = !commands_of(cli).empty();
+  if (has_commands && !cli.remaining().empty()) return about_extra(cli);
+  if (has_commands && &command == &cli) return "a command is missing";
   if (kind == CLI::ExitCodes::ArgumentMismatch) return about_count(command, error);
   // A missing option may be present under a misspelt name.
   const bool wrong_value = kind == CLI::ExitCodes::ValidationError;
@@ -149,9 +160,9 @@ int refuse(CLI::App& cli, const CLI::ParseError& error) {
   const auto chosen = cli.get_subcommands();
   CLI::App& command = chosen.empty() ? cli : *chosen.front();
   core::log_error(sentence_of(cli, command, error));
-  const std::string more =
-      chosen.empty() ? "\n" + cli.help()
-                     : fmt::format("psygen {} --help lists its options\n", command.get_name());
+  const std::string more = commands_of(cli).empty() || !chosen.empty()
+                               ? fmt::format("{} --help lists its options\n", full_name(command))
+                               : "\n" + cli.help();
   std::fputs(more.c_str(), stderr);
   return kUsage;
 }
@@ -172,4 +183,4 @@ std::optional<int> read_command_line(CLI::App& cli, int argc, char** argv) {
   return std::nullopt;
 }
 
-}  // namespace psygen::cli
+}  // namespace psygen::program

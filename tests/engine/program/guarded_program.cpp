@@ -1,0 +1,78 @@
+// A program that meets one fault, named by its argument, under the guards of program::run().
+#include <atomic>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "engine/program/program.hpp"
+
+namespace psygen::program {
+namespace {
+
+using Body = core::Result<void> (*)(const std::string& argument);
+
+core::Result<void> allocate(const std::string&) {
+  std::vector<char> bytes(std::size_t{1} << 46);
+  return core::fail(core::ErrorCode::kInternal, std::to_string(bytes.size()));
+}
+
+core::Result<void> print_much(const std::string&) {
+  for (int i = 0; i < 1000; ++i) {
+    if (print(std::string(1000, 'x')) != kOk)
+      return core::fail(core::ErrorCode::kIo, "the output was not printed");
+  }
+  return {};
+}
+
+core::Result<void> write_much(const std::string& file) {
+  std::ofstream out(file);
+  out << std::string(1 << 20, 'x') << std::flush;
+  if (out) return {};
+  return core::fail(core::ErrorCode::kIo, file + ": cannot be written");
+}
+
+const std::map<std::string, Body> kFaults{
+    {"allocate", allocate},
+    {"allocate in a thread",
+     [](const std::string& argument) -> core::Result<void> {
+       std::thread([&] { (void)allocate(argument); }).join();
+       return {};
+     }},
+    {"print", print_much},
+    {"write", write_much},
+    {"throw",
+     [](const std::string& text) -> core::Result<void> { throw std::runtime_error(text); }},
+    {"throw a number", [](const std::string&) -> core::Result<void> { throw 7; }},
+    {"fail",
+     [](const std::string& text) -> core::Result<void> {
+       return core::fail(core::ErrorCode::kIo, text);
+     }},
+    {"no device",
+     [](const std::string&) -> core::Result<void> {
+       return core::fail(core::ErrorCode::kNoDevice, "no device");
+     }},
+    {"interrupted",
+     [](const std::string&) -> core::Result<void> {
+       return core::fail(core::ErrorCode::kInterrupted, "closed");
+     }},
+    {"signal",
+     [](const std::string&) -> core::Result<void> {
+       const std::atomic<bool>& stop = stop_at_interrupt();
+       (void)std::raise(SIGTERM);
+       return stop ? core::Result<void>() : core::fail(core::ErrorCode::kInternal, "no signal");
+     }},
+};
+
+}  // namespace
+}  // namespace psygen::program
+
+int main(int argc, char** argv) {
+  return psygen::program::run("guarded", [&] {
+    return psygen::program::kFaults.at(argc > 1 ? argv[1] : "")(argc > 2 ? argv[2] : "");
+  });
+}

@@ -1,0 +1,50 @@
+// The program of the game, as users start it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "tests/temporary_folder.hpp"
+
+namespace cairns {
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string err;
+};
+
+Outcome run_game(const std::string& arguments) {
+  const psygen::TemporaryFolder folder;
+  const std::string err = (folder / "err").string();
+  const int status = std::system((PSYGEN_GAME " " + arguments + " 2>" + err).c_str());
+  std::ifstream file(err);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {std::istreambuf_iterator<char>(file), {}}};
+}
+
+TEST(Program, AWrongOptionIsAMessageWithoutEscapes) {
+  const Outcome outcome = run_game("\"--seeed$(printf '\\033]0;x\\007')\"");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err.find('\033'), std::string::npos);
+  EXPECT_THAT(outcome.err, testing::StartsWith("psygen-game: error: psygen-game has no option"));
+  EXPECT_THAT(run_game("--preset best").err, testing::HasSubstr("--preset: "));
+}
+
+TEST(Program, AFullOutputIsAnError) {
+  EXPECT_EQ(run_game("--help >/dev/full").code, 1);
+}
+
+TEST(Program, SignalsDuringALoadEndItWithSuccess) {
+  const psygen::TemporaryFolder folder;
+  const Outcome outcome =
+      run_game("--headless --autoplay 1000000 --seed 3 --no-sound --folder " +
+               folder.path().string() + " --width 64 --height 36 --preset low & p=$!; until [ -e " +
+               (folder / "saves/3.cairns").string() + " -o -e " + (folder / "3.cairns").string() +
+               " ]; do kill -0 $p || break; done; kill -TERM $p; wait $p");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+}  // namespace
+}  // namespace cairns
