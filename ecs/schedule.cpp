@@ -24,7 +24,7 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Ends the program if the parameters name a resource twice: one of the two would be superfluous, or
+// Refuses a system whose parameters name a resource twice: one of the two would be superfluous, or
 // would write a resource that the other takes as constant. Readers are no resources: a system may
 // read a queue and emit into it.
 void expect_each_once(const SystemInfo& system) {
@@ -36,8 +36,8 @@ void expect_each_once(const SystemInfo& system) {
     for (std::size_t k = 0; k < i; ++k) {
       if (all[i].type != all[k].type || all[i].is_component) continue;
       if (all[i].is_reader || all[k].is_reader) continue;
-      detail::give_up("schedule: the system '" + system.name + "' takes " + all[i].name +
-                      " twice, " + source(all[k]) + " and " + source(all[i]));
+      throw detail::Refusal{"the system '" + system.name + "' takes " + all[i].name + " twice, " +
+                            source(all[k]) + " and " + source(all[i])};
     }
   }
 }
@@ -85,6 +85,7 @@ struct Schedule::Parts {
   std::vector<SystemInfo> infos;
   std::vector<Step> steps;
   bool arranged = true;
+  std::string refused;  // the first mistake of add() and provide()
 
   std::mutex mutex;
   std::condition_variable changed;
@@ -239,7 +240,7 @@ std::size_t Schedule::threads() const {
 void Schedule::provide_one(const void* type, std::string label, void* resource) {
   parts_->expect_idle("provide");
   for (const Parts::Resource& known : parts_->resources) {
-    if (known.type == type) detail::give_up("schedule: a second " + label + " is provided");
+    if (known.type == type) return refuse("a second " + label + " is provided");
   }
   parts_->resources.push_back({type, resource});
 }
@@ -248,8 +249,12 @@ void* Schedule::resource(const System& asker, const void* type, const std::strin
   for (const Parts::Resource& known : parts_->resources) {
     if (known.type == type) return known.object;
   }
-  detail::give_up("schedule: the system '" + asker.info.name + "' wants a " + label +
-                  ", which was not provided before it");
+  throw detail::Refusal{"the system '" + asker.info.name + "' wants a " + label +
+                        ", which was not provided before it"};
+}
+
+void Schedule::refuse(std::string sentence) {
+  if (parts_->refused.empty()) parts_->refused = std::move(sentence);
 }
 
 void Schedule::own(std::shared_ptr<void> resource) {
@@ -266,6 +271,7 @@ void Schedule::append(System system) {
 
 std::string Schedule::arrange() {
   parts_->expect_idle("arrange");
+  if (!parts_->refused.empty()) return parts_->refused;
   if (parts_->arranged) return {};
   std::vector<detail::PlacedSystem> placed;
   for (const System& system : parts_->systems)

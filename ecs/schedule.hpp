@@ -78,8 +78,8 @@ class Schedule {
   Schedule(const Schedule&) = delete;
   Schedule& operator=(const Schedule&) = delete;
 
-  // Makes an object known to systems by its type, one object per type; a second one ends the
-  // program. It must outlive the schedule.
+  // Makes an object known to systems by its type, one object per type; arrange() reports a second
+  // one. It must outlive the schedule.
   template <class... Rs>
   void provide(Rs&... resources) {
     static_assert((!std::is_const_v<Rs> && ...),
@@ -97,8 +97,9 @@ class Schedule {
     return resource;
   }
 
-  // Adds a system. Provide its resources first: the program ends with a message that names a
-  // missing one, or one that the parameters name twice. Not from inside a system. O(systems).
+  // Adds a system. Provide its resources first: a system with a missing one, or with one that the
+  // parameters name twice, is left out, and arrange() reports it. Not from inside a system.
+  // O(systems).
   template <class F>
   void add(std::string_view name, F system, RunsOn runs_on = RunsOn::kAnyThread) {
     add(name, std::move(system), Place{}, runs_on);
@@ -108,9 +109,9 @@ class Schedule {
   template <class F>
   void add(std::string_view name, F system, Place place, RunsOn runs_on = RunsOn::kAnyThread);
 
-  // Sorts all systems by their constraints. Returns an empty string, or a message if no such order
-  // exists: a repeated name, an unknown name, a cycle. The order is then unchanged. O(systems²),
-  // and O(1) if nothing was added since.
+  // Sorts all systems by their constraints. Returns an empty string, or a message if add() or
+  // provide() were refused or no such order exists: a repeated name, an unknown name, a cycle. The
+  // order is then unchanged. O(systems²), and O(1) if nothing was added since.
   std::string arrange();
 
   // Runs every system once, commands included, and returns when all are done. Arranges them first,
@@ -156,12 +157,13 @@ class Schedule {
   template <class F, class... Ps>
   void add_with(System system, F f, std::type_identity<std::tuple<Ps...>>);
 
-  // The untyped parts of provide and add. resource() ends the program if `asker` needs a type that
-  // was not provided.
+  // The untyped parts of provide and add. resource() and append() throw a detail::Refusal if
+  // `asker` needs a type that was not provided, or `system` one twice.
   void provide_one(const void* type, std::string label, void* resource);
   void own(std::shared_ptr<void> resource);
   void* resource(const System& asker, const void* type, const std::string& label) const;
   void append(System system);
+  void refuse(std::string sentence);
   void run_on_threads();
 
   World& world_;
@@ -169,6 +171,11 @@ class Schedule {
 };
 
 namespace detail {
+
+// Leads from a parameter to Schedule::add(), which catches it: the system is left out.
+struct Refusal {
+  std::string sentence;
+};
 
 // The parameters of a function pointer, or of an object with one operator(), as a tuple type.
 template <class F>
@@ -368,8 +375,12 @@ void Schedule::add(std::string_view name, F system, Place place, RunsOn runs_on)
   entry.info.name = name;
   entry.place = std::move(place);
   entry.info.runs_on = runs_on;
-  add_with(std::move(entry), std::move(system),
-           std::type_identity<typename detail::ParametersOf<F>::type>{});
+  try {
+    add_with(std::move(entry), std::move(system),
+             std::type_identity<typename detail::ParametersOf<F>::type>{});
+  } catch (detail::Refusal& refusal) {
+    refuse(std::move(refusal.sentence));
+  }
 }
 
 // Calls the function with the value of each parameter.

@@ -1,9 +1,16 @@
 #include "engine/app/gui.hpp"
 
+#include <fmt/format.h>
 #include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <csetjmp>
+#include <csignal>
+#include <cstdarg>
+#include <cstdio>
 #include <iterator>
 #include <type_traits>
 #include <utility>
@@ -121,7 +128,104 @@ ImGuiStyle style_at(float scale) {
   return style;
 }
 
+// Debian's ImGui checks by assert() that calls come in pairs, so a wrong pair aborts.
+thread_local sigjmp_buf* way_out = nullptr;
+
+// While it lives, an abort of this thread jumps to `target`; those of other threads end the program
+// as always.
+class AbortTrap {
+ public:
+  explicit AbortTrap(sigjmp_buf& target) {
+    way_out = &target;
+    struct sigaction jump = {};
+    jump.sa_handler = [](int) {
+      if (way_out != nullptr) siglongjmp(*way_out, 1);
+    };
+    sigaction(SIGABRT, &jump, &before_);
+  }
+  ~AbortTrap() {
+    sigaction(SIGABRT, &before_, nullptr);
+    way_out = nullptr;
+  }
+  AbortTrap(const AbortTrap&) = delete;
+  AbortTrap& operator=(const AbortTrap&) = delete;
+
+ private:
+  struct sigaction before_ = {};
+};
+
+// Returns false if the code aborted.
+bool survives(const std::function<void()>& code) {
+  sigjmp_buf here;
+  const AbortTrap trap(here);
+  if (sigsetjmp(here, 1) != 0) return false;
+  code();
+  return true;
+}
+
+// Keeps the first of ImGui's messages, "Recovered from missing End() for 'Menu'".
+__attribute__((format(printf, 2, 3))) void note_missing(void* first, const char* format, ...) {
+  std::string& missing = *static_cast<std::string*>(first);
+  if (!missing.empty()) return;
+  std::array<char, 256> text{};
+  std::va_list values;
+  va_start(values, format);
+  std::vsnprintf(text.data(), text.size(), format, values);
+  va_end(values);
+  missing = text.data();
+  constexpr std::string_view kBefore = "Recovered from ";
+  if (missing.starts_with(kBefore)) missing.erase(0, kBefore.size());
+}
+
+// Closes all that is open in the frame, except its own fallback window. Returns the first missing
+// call; empty: none.
+std::string close_all() {
+  ImGuiContext& g = *ImGui::GetCurrentContext();
+  std::string missing;
+  while (g.WithinFrameScope && g.CurrentWindowStack.Size > 0) {
+    const char* const name = g.CurrentWindow->Name;
+    ImGui::ErrorCheckEndWindowRecover(note_missing, &missing);
+    while (g.FontStack.Size > g.CurrentWindowStack.back().StackSizesOnBegin.SizeOfFontStack) {
+      note_missing(&missing, "missing PopFont() in '%s'", name);
+      ImGui::PopFont();
+    }
+    if (g.CurrentWindowStack.Size == 1) break;
+    const bool child = (g.CurrentWindow->Flags & ImGuiWindowFlags_ChildWindow) != 0;
+    note_missing(&missing, "missing %s() for '%s'", child ? "EndChild" : "End", name);
+    child ? ImGui::EndChild() : ImGui::End();
+  }
+  return missing;
+}
+
+// Ends a frame that failed.
+void abandon_frame() {
+  survives([] {
+    close_all();
+    ImGui::EndFrame();
+  });
+  ImGui::GetIO().Fonts->Locked = false;
+}
+
 }  // namespace
+
+core::Result<void> Gui::draw(const std::function<void()>& code) {
+  ImGui::SetCurrentContext(context_);
+  std::string missing;
+  bool whole = false;
+  try {
+    whole = survives(code);
+  } catch (...) {
+    ImGui::SetCurrentContext(context_);
+    abandon_frame();
+    throw;
+  }
+  ImGui::SetCurrentContext(context_);
+  whole = whole && survives([&missing] { missing = close_all(); });
+  if (whole && missing.empty()) return {};
+  abandon_frame();
+  return core::fail(core::ErrorCode::kInternal,
+                    whole ? missing : "it aborted; stderr has the assertion");
+}
 
 const char* Gui::read_clipboard(void* self) {
   Gui& gui = *static_cast<Gui*>(self);

@@ -1,11 +1,12 @@
 // Dear ImGui in a session: menus and tools that a game draws over the image, in a window or
 // headless. Owns one ImGui context; the renderer's overlay draws it. Drawing code includes imgui.h
-// itself and runs between begin() and end() (Session calls both). Main thread only; costs nothing
-// if unused.
+// itself and runs in draw() (Session calls it). Main thread only; costs nothing if unused.
 #pragma once
 
+#include <functional>
 #include <string>
 
+#include "engine/core/error.hpp"
 #include "engine/core/surface_provider.hpp"
 #include "engine/platform/input.hpp"
 
@@ -33,6 +34,12 @@ class Gui {
   // Begins a frame: makes the context current and passes the user's input. `scale` applies to text
   // and controls; dt_s is the real time in seconds since the last frame.
   void begin(const platform::InputState& input, core::Extent picture, float scale, double dt_s);
+  // Runs drawing code between begin() and end(). Fails with kInternal if the code leaves something
+  // open (the message names the missing call), or if an assertion of ImGui, or of the code, aborts:
+  // the code then ends there without its destructors, and stderr has the assertion. After an error
+  // or an exception, which passes through, all is closed and the frame has ended without draw data.
+  // After an abort the context may be beyond repair: draw no more with it.
+  core::Result<void> draw(const std::function<void()>& code);
   // Ends the frame. The draw data is valid until the next begin().
   const ImDrawData* end();
 

@@ -33,8 +33,8 @@ namespace psygen::app {
 class Session;
 struct FlightReport;
 
-// Code that a game adds. All members except the name are optional. An exception in any of them ends
-// the session with an error that names the plugin.
+// Code that a game adds. All members except the name are optional. An exception of any type in one
+// of them becomes an error that names plugin and member, and ends the session.
 struct Plugin {
   std::string name = {};
   // Registers model types before the world file is read.
@@ -50,7 +50,8 @@ struct Plugin {
   // Called once after a flight has ended and written its outputs. A window may stay open.
   std::function<void(Session&, const FlightReport&)> on_end = {};
   // Draws Dear ImGui windows over the image, once per tick, before the systems run (docs/hud.md).
-  // Session::input() excludes input that ImGui uses.
+  // Session::input() excludes input that ImGui uses. A call without its partner (End, PopID) fails
+  // like an exception.
   std::function<void(Session&)> on_gui = {};
 };
 

@@ -10,10 +10,11 @@
 #include <type_traits>
 
 #include "engine/app/options.hpp"
+#include "engine/core/out_of_memory.hpp"
 
 namespace psygen::app {
 
-// Calls code of a plugin. Its errors and exceptions name it; only std::bad_alloc passes through.
+// Calls code of a plugin. Its errors and exceptions, std::bad_alloc among them, name it.
 template <class F>
 core::Result<void> call_plugin(const Plugin& plugin, std::string_view hook, const F& f) {
   const auto threw = [&](const char* what) {
@@ -29,7 +30,8 @@ core::Result<void> call_plugin(const Plugin& plugin, std::string_view hook, cons
     }
     return {};
   } catch (const std::bad_alloc&) {
-    throw;
+    return core::fail(core::ErrorCode::kOutOfMemory,
+                      core::out_of_memory(fmt::format("plugin {}: {}", plugin.name, hook)));
   } catch (const std::exception& error) {
     return threw(error.what());
   } catch (...) {

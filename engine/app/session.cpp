@@ -311,17 +311,27 @@ core::Result<void> Session::add_systems() {
     systems.step.provide(actions_);
     systems.step.add("actions", [this](input::Actions& actions) { step_actions(actions); });
   }
+  // Gives the systems without an owner to a plugin; empty: their names need none.
+  const auto claim = [&](const std::string& owner) {
+    for (const ecs::Schedule* schedule : {&systems.frame, &systems.step}) {
+      for (const ecs::SystemInfo& system : schedule->systems())
+        owners_.try_emplace(system.name, owner);
+    }
+  };
+  claim({});
   for (const Plugin& plugin : options_.plugins) {
     if (plugin.add_systems) {
       const auto ok =
           call_plugin(plugin, "add_systems", [&] { return plugin.add_systems(systems); });
       if (!ok) return ok;
+      claim(plugin.name);
     }
     if (!plugin.on_step) continue;
     systems.step.add(plugin.name + " on_step",
                      [this, &plugin](const scene::FixedStep& step, ecs::World&) {
                        plugin.on_step(*this, step.step_s);
                      });
+    claim({});
   }
   return scene_->arrange();
 }
@@ -352,9 +362,17 @@ core::Result<void> Session::draw_gui(double dt_s) {
   if (std::ranges::none_of(options_.plugins, draws)) return {};
   const core::Extent size = picture_size();
   gui().begin(all_input_, size, text_scale(window_ ? window_->content_scale() : 1.0F, size), dt_s);
-  const auto drawn = call_plugins(options_.plugins, &Plugin::on_gui, "on_gui", *this);
+  for (const Plugin& plugin : options_.plugins) {
+    if (!draws(plugin)) continue;
+    const auto drawn = call_plugin(plugin, "on_gui", [&] {
+      return gui_->draw([&] { plugin.on_gui(*this); }).map_error([](core::Error error) {
+        return core::Error{error.code, "on_gui: " + error.message};
+      });
+    });
+    if (!drawn) return drawn;
+  }
   scene_->input().gui = gui_->end();
-  return drawn;
+  return {};
 }
 
 // Passes frame times to the governor. The GPU time counts if it is longer; waiting for the GPU or a
@@ -379,11 +397,21 @@ void Session::tell_governor(double tick_ms, bool took_pictures) {
 }
 
 core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
-  const double start_s = core::monotonic_seconds();
-  const std::size_t pictures = saved_.size();
+  if (failure_) return tl::unexpected(*failure_);
   if (!(std::isfinite(dt_s) && dt_s >= 0)) {
     return core::invalid_argument(fmt::format("{} is not a valid frame time in seconds", dt_s));
   }
+  auto drawn = core::catch_out_of_memory("the frame", [&] { return draw_frame(pose, dt_s); });
+  if (!drawn) {
+    failure_ = drawn.error();
+    closed_ = true;
+  }
+  return drawn;
+}
+
+core::Result<void> Session::draw_frame(const core::CameraPose& pose, double dt_s) {
+  const double start_s = core::monotonic_seconds();
+  const std::size_t pictures = saved_.size();
   if (auto ok = start(); !ok) return ok;
   scene::Scene& scene = *scene_;
   scene.input().pose = pose;
@@ -393,11 +421,23 @@ core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
   const auto ticked = scene.tick();
   scene.input().gui = nullptr;
   scene.set_now(scene.clock().now_s + dt_s);
-  if (!ticked) return ticked;
+  if (!ticked) return tl::unexpected(with_plugin(ticked.error()));
   if (auto ok = call_plugins(options_.plugins, &Plugin::on_frame, "on_frame", *this, dt_s); !ok)
     return ok;
   tell_governor((core::monotonic_seconds() - start_s) * 1000.0, saved_.size() > pictures);
   return {};
+}
+
+// Names the plugin whose system threw, if one did.
+core::Error Session::with_plugin(core::Error error) {
+  const scene::Systems systems = scene_->systems();
+  for (const std::string& system : {systems.step.threw(), systems.frame.threw()}) {
+    const auto owner = owners_.find(system);
+    if (owner == owners_.end() || owner->second.empty()) continue;
+    error.message = fmt::format("plugin {}: {}", owner->second, error.message);
+    break;
+  }
+  return error;
 }
 
 core::Result<image::Image> Session::picture() {

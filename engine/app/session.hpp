@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -65,8 +66,10 @@ class Session {
   bool poll();
   // Runs one frame with a pose: runs the systems, draws and presents, then advances the clock by
   // `dt_s` and calls the plugins. Its duration controls the detail of the next frames
-  // (SessionOptions::target_hz). Fails with kInvalidArgument for a negative or non-finite time;
-  // after other errors such as kDeviceLost the session is over.
+  // (SessionOptions::target_hz). Fails with kInvalidArgument for a negative or non-finite time.
+  // After any other error, such as kDeviceLost or an exception of a plugin's hook or system
+  // (kInternal or kOutOfMemory; the message names both), the session is over: further ticks return
+  // that error again.
   core::Result<void> tick(const core::CameraPose& pose, double dt_s);
   // Makes the next poll() return false.
   void close() { closed_ = true; }
@@ -155,7 +158,9 @@ class Session {
   void take_events();
   void follow_surface();
   void resize(core::Extent size);
+  core::Result<void> draw_frame(const core::CameraPose& pose, double dt_s);
   core::Result<void> draw_gui(double dt_s);
+  core::Error with_plugin(core::Error error);
   void tell_governor(double tick_ms, bool took_pictures);
   core::Result<void> add_systems();
   void step_actions(input::Actions& actions);
@@ -168,6 +173,8 @@ class Session {
   std::unique_ptr<telemetry::TraceLog> trace_;
   input::Actions actions_;
   std::optional<input::Replay> replay_;
+  std::map<std::string, std::string> owners_;  // names of plugins by system; empty: the engine
+  std::optional<core::Error> failure_;         // of a tick; the session is over
   std::unique_ptr<scene::Scene> scene_;
   std::unique_ptr<Gui> gui_;                // null until it is used
   platform::InputState all_input_, input_;  // the latter without input used by ImGui

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/core/clock.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/scene/state.hpp"
 
 namespace psygen::scene {
@@ -109,24 +110,27 @@ void measure_systems(State& state) {
   state.system_ms.insert(state.system_ms.end(), step_ms.begin(), step_ms.end());
 }
 
-// Runs all systems. An exception of a system ends the flight with an error; std::bad_alloc passes
-// through.
+// Runs all systems. An exception of a system becomes an error that names it.
 void run_systems(State& state) {
-  const auto fail = [&state](const char* what) {
+  const auto fail = [&state](core::ErrorCode code, const auto& describe) {
     const std::string& outer = state.tick.threw();
     const std::string& step = state.simulation.systems.threw();
     const std::string& system = outer == kSimulationSystem && !step.empty() ? step : outer;
-    state.output.error = core::Error{core::ErrorCode::kInternal,
-                                     fmt::format("the system '{}' threw: {}", system, what)};
+    state.output.error = core::Error{code, describe(fmt::format("the system '{}'", system))};
+  };
+  const auto threw = [&fail](std::string_view what) {
+    fail(core::ErrorCode::kInternal,
+         [what](const std::string& system) { return fmt::format("{} threw: {}", system, what); });
   };
   try {
     state.tick.run();
   } catch (const std::bad_alloc&) {
-    throw;
+    fail(core::ErrorCode::kOutOfMemory,
+         [](const std::string& system) { return core::out_of_memory(system); });
   } catch (const std::exception& error) {
-    fail(error.what());
+    threw(error.what());
   } catch (...) {
-    fail("an exception of an unknown type");
+    threw("an exception of an unknown type");
   }
 }
 

@@ -143,6 +143,83 @@ TEST_F(GuiOfAPerson, ToleratesInvalidTimesAndSizes) {
   EXPECT_EQ(presses_, 1);
 }
 
+using Code = std::function<void()>;
+
+TEST_F(GuiOfAPerson, ClosesWhatDrawingCodeLeavesOpenAndNamesIt) {
+  const std::pair<Code, const char*> cases[] = {
+      {[] { ImGui::Begin("a"); }, "missing End() for 'a'"},
+      {[] { ImGui::Begin("a"), ImGui::Begin("b"), ImGui::End(); }, "missing End() for 'a'"},
+      {[] { ImGui::Begin("a"), ImGui::BeginChild("b"); }, "missing EndChild() for 'a/b"},
+      {[] { ImGui::Begin("a"), ImGui::PushID(1); }, "missing PopID() in 'a'"},
+      {[] { ImGui::PushID(1); }, "missing PopID() in 'Debug##Default'"},
+      {[] { ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.5F); }, "missing PopStyleVar() in"},
+      {[] { ImGui::PushStyleColor(ImGuiCol_Text, 0U); }, "missing PopStyleColor() in"},
+      {[] { ImGui::Begin("a"), ImGui::PushFont(ImGui::GetFont()); }, "missing PopFont() in 'a'"},
+      {[] { ImGui::BeginDisabled(); }, "missing EndDisabled() in"},
+      {[] { ImGui::Begin("a"), ImGui::BeginGroup(); }, "missing EndGroup() in 'a'"},
+      {[] { ImGui::Begin("a"), ImGui::BeginTable("t", 2); }, "missing EndTable() in 'a'"},
+      {[] { ImGui::Begin("a"), ImGui::BeginTabBar("t"); }, "missing EndTabBar() in 'a'"},
+      {[] { ImGui::Begin("a"), ImGui::TreePush("t"); }, "missing "},
+      {[] { ImGui::BeginTooltip(); }, "missing End() for '##Tooltip"},
+      {[] { ImGui::BeginMainMenuBar(); }, "missing "},
+      {[] { ImGui::OpenPopup("p"), ImGui::BeginPopup("p"); }, "missing End() for '##Popup"}};
+  for (const auto& [code, missing] : cases) {
+    for (const bool throws : {false, true}) {
+      gui_.begin(input_, kGuiSize, 1, 1.0 / 60);
+      if (throws) {
+        EXPECT_THROW((void)gui_.draw([&] { code(), throw 7; }), int) << missing;
+      } else {
+        const auto drawn = gui_.draw(code);
+        ASSERT_FALSE(drawn) << missing;
+        EXPECT_THAT(drawn.error().message, testing::StartsWith(missing));
+      }
+      ASSERT_GT(frame()->TotalVtxCount, 0) << "the next frame after " << missing;
+    }
+  }
+  click(button_);
+  EXPECT_EQ(presses_, 1);
+}
+
+TEST_F(GuiOfAPerson, ReportsCodeThatItsAssertionsAbort) {
+  const Code cases[] = {[] { ImGui::Begin("a"), ImGui::PushID(1), ImGui::End(); },
+                        [] { ImGui::Begin("a"), ImGui::BeginChild("b"), ImGui::End(); },
+                        [] { ImGui::End(); },
+                        [] { ImGui::PopID(); },
+                        [] { ImGui::PopStyleVar(); },
+                        [] { ImGui::NewFrame(); }};
+  for (const Code& code : cases) {
+    Gui gui(overlay_.font_atlas(), nullptr);
+    gui.begin(input_, kGuiSize, 1, 1.0 / 60);
+    const auto drawn = gui.draw(code);
+    ASSERT_FALSE(drawn);
+    EXPECT_EQ(drawn.error().message, "it aborted; stderr has the assertion");
+  }
+  ASSERT_GT(frame()->TotalVtxCount, 0) << "another context";
+  EXPECT_DEATH(std::abort(), "") << "aborts elsewhere end the program";
+}
+
+TEST(GuiInASession, ACallWithoutItsPartnerEndsTheSessionWithAnErrorThatNamesThePlugin) {
+  const std::pair<Code, const char*> cases[] = {
+      {[] { ImGui::Begin("Menu"); }, "missing End() for 'Menu'"},
+      {[] { ImGui::Begin("Menu"), ImGui::PushID(1); }, "missing PopID() in 'Menu'"},
+      {[] { ImGui::Begin("Menu"), ImGui::BeginChild("list"); }, "missing EndChild() for 'Menu/"},
+      {[] { ImGui::Begin("Menu"), ImGui::PushID(1), ImGui::End(); }, "it aborted"}};
+  for (const auto& [code, missing] : cases) {
+    SessionOptions options = short_session();
+    options.plugins = {{.name = "sheep", .on_gui = [](Session&) { ImGui::Text("baa"); }},
+                       {.name = "wolves", .on_gui = [code = code](Session&) { code(); }}};
+    auto session = Session::create(options);
+    ASSERT_TRUE(session) << session.error().message;
+    const auto ticked = (*session)->tick((*session)->home(), 1.0 / 60);
+    ASSERT_FALSE(ticked);
+    EXPECT_EQ(ticked.error().code, core::ErrorCode::kInternal);
+    EXPECT_THAT(ticked.error().message,
+                testing::StartsWith(std::string("plugin wolves: on_gui: ") + missing));
+    EXPECT_TRUE((*session)->over());
+    EXPECT_FALSE((*session)->tick((*session)->home(), 1.0 / 60));
+  }
+}
+
 TEST(GuiInAWindow, KeepsClicksOnAMenuFromTheGameAndPassesOthers) {
   const auto display = platform::VirtualDisplay::start();
   ASSERT_NE(display, nullptr) << "these tests need xvfb, openbox and xdotool";

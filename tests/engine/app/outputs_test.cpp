@@ -111,7 +111,7 @@ TEST(Outputs, OutOfMemoryFailsTheFlightWhichStillWritesItsMeasurements) {
   const auto report = (*flight)->run();
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, core::ErrorCode::kOutOfMemory);
-  EXPECT_EQ(report.error().message.find("the flight: memory ran out ("), 0u);
+  EXPECT_EQ(report.error().message.find("plugin hungry: on_frame: memory ran out ("), 0u);
   std::ifstream file(folder / "summary.json");
   const auto summary = nlohmann::json::parse(file);
   EXPECT_EQ(summary["run"]["frames"], 3);

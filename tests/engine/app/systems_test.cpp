@@ -58,15 +58,6 @@ std::string error_with(Plugin plugin) {
   return session ? std::string() : session.error().message;
 }
 
-std::string tick_error_with(Plugin plugin) {
-  plugin.name = "wolves";
-  const auto session = session_with({std::move(plugin)});
-  const auto ticked = session->tick(session->home(), 1.0 / 60);
-  if (!ticked) return ticked.error().message;
-  const auto next = session->tick(session->home(), 1.0 / 60);
-  return next ? std::string() : next.error().message;
-}
-
 std::uint64_t hash_of_wolves(Session& session) {
   std::uint64_t hash = 0;
   session.scene().entities().each<const Wolf>([&](auto, std::span<const Wolf> all) {
@@ -189,23 +180,85 @@ TEST(Systems, APluginMayNameSystemsOfLaterPlugins) {
   EXPECT_EQ(std::ranges::find(names, "howl") + 1, std::ranges::find(names, "flee"));
 }
 
-TEST(Systems, AnExceptionEndsTheSessionWithAnErrorThatNamesTheSystem) {
-  const auto throws = [](auto&&...) { throw std::runtime_error("no moon"); };
-  EXPECT_EQ(error_with({.register_models = [](models::Registry&) -> core::Result<void> {
-              throw std::runtime_error("no moon");
-            }}),
-            "plugin wolves: register_models threw: no moon");
-  EXPECT_EQ(error_with({.add_systems = [](Systems&) -> core::Result<void> { throw 7; }}),
-            "plugin wolves: add_systems threw: an exception of unknown type");
-  EXPECT_EQ(tick_error_with({.on_start = throws}), "plugin wolves: on_start threw: no moon");
-  EXPECT_EQ(tick_error_with({.on_frame = throws}), "plugin wolves: on_frame threw: no moon");
-  EXPECT_EQ(tick_error_with({.on_step = throws}), "the system 'wolves on_step' threw: no moon");
-  EXPECT_EQ(tick_error_with({.add_systems = [](Systems& systems) -> core::Result<void> {
-              systems.frame.add("howl",
-                                [](const scene::Clock&) { throw std::runtime_error("no moon"); });
+struct Thrown {
+  void (*thrower)();
+  core::ErrorCode code;
+  std::string text;  // of the message, after the hook
+};
+const Thrown kThrown[] = {
+    {[] { throw std::runtime_error("no moon"); }, core::ErrorCode::kInternal, " threw: no moon"},
+    {[] { throw std::bad_alloc(); }, core::ErrorCode::kOutOfMemory, ": memory ran out ("},
+    {[] { throw 7; }, core::ErrorCode::kInternal, " threw: an exception of "}};
+
+TEST(Systems, AnExceptionOfAnyTypeEndsTheSessionWithAnErrorThatNamesPluginAndHook) {
+  for (const auto& [thrower, code, text] : kThrown) {
+    const auto hook = [thrower = thrower](auto&&...) { thrower(); };
+    const std::pair<Plugin, std::string> cases[] = {
+        {{.on_start = hook}, "plugin wolves: on_start"},
+        {{.on_step = hook}, "the system 'wolves on_step'"},
+        {{.on_frame = hook}, "plugin wolves: on_frame"},
+        {{.on_gui = hook}, "plugin wolves: on_gui"},
+        {{.add_systems = [hook](Systems& systems) -> core::Result<void> {
+           systems.frame.add("howl", [hook](const scene::Clock&) { hook(); });
+           return {};
+         }},
+         "plugin wolves: the system 'howl'"},
+        {{.add_systems = [hook](Systems& systems) -> core::Result<void> {
+           systems.step.add("howl", [hook](const FixedStep&) { hook(); });
+           return {};
+         }},
+         "plugin wolves: the system 'howl'"}};
+    for (const auto& [plugin, hook_name] : cases) {
+      const std::string expected = hook_name + text;
+      std::vector<Plugin> plugins(2, plugin);
+      plugins[0] = {.name = "sheep", .on_step = [](Session&, double) {}};
+      plugins[1].name = "wolves";
+      const auto session = session_with(std::move(plugins));
+      auto ticked = session->tick(session->home(), 1.0 / 60);
+      if (ticked) ticked = session->tick(session->home(), 1.0 / 60);
+      ASSERT_FALSE(ticked) << expected;
+      EXPECT_EQ(ticked.error().code, code);
+      EXPECT_THAT(ticked.error().message, testing::StartsWith(expected));
+      EXPECT_TRUE(session->over()) << expected;
+      EXPECT_FALSE(session->poll()) << expected;
+      const auto again = session->tick(session->home(), 1.0 / 60);
+      ASSERT_FALSE(again) << expected;
+      EXPECT_EQ(again.error().message, ticked.error().message);
+    }
+    EXPECT_THAT(error_with({.register_models = [hook](models::Registry&) -> core::Result<void> {
+                  hook();
+                  return {};
+                }}),
+                testing::StartsWith("plugin wolves: register_models" + text));
+    EXPECT_THAT(error_with({.add_systems = [hook](Systems&) -> core::Result<void> {
+                  hook();
+                  return {};
+                }}),
+                testing::StartsWith("plugin wolves: add_systems" + text));
+    FlightOptions options = short_flight();
+    options.frames = 1;
+    options.session.plugins = {{.name = "wolves", .on_end = hook}};
+    auto flight = Flight::create(options);
+    ASSERT_TRUE(flight) << flight.error().message;
+    const auto flown = (*flight)->run();
+    ASSERT_FALSE(flown);
+    EXPECT_THAT(flown.error().message, testing::StartsWith("plugin wolves: on_end" + text));
+  }
+}
+
+TEST(Systems, AMissingResourceIsAnErrorOfCreate) {
+  struct Moon {};
+  EXPECT_EQ(error_with({.add_systems = [](Systems& systems) -> core::Result<void> {
+              systems.step.add("howl", [](const Moon&) {});
               return {};
             }}),
-            "the system 'howl' threw: no moon");
+            "the system 'howl' wants a Moon, which was not provided before it");
+  EXPECT_EQ(error_with({.add_systems = [](Systems& systems) -> core::Result<void> {
+              systems.resource<Moon>();
+              systems.resource<Moon>();
+              return {};
+            }}),
+            "a second Moon is provided");
 }
 
 TEST(Systems, EventsReachASystemOfAStep) {
