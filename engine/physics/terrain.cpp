@@ -1,12 +1,12 @@
 #include "engine/physics/terrain.hpp"
 
-#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
+#include "engine/physics/ground_contacts.hpp"
 #include "engine/physics/shapes.hpp"
 
 namespace psygen::physics {
@@ -72,13 +72,22 @@ void Terrain::add(core::BlockCoord at, Block& block, std::unique_ptr<btCollision
   block.parts.push_back({std::move(shape), std::move(object), place.getOrigin()});
 }
 
+double Terrain::height(core::BlockCoord at, int size, int x, int z) const {
+  const int last = size - 1;
+  const int aside_x = x < 0 ? -1 : x > last, aside_z = z < 0 ? -1 : z > last;
+  const auto block = blocks_.find(core::moved(at, aside_x, aside_z));
+  if (block == blocks_.end()) return std::numeric_limits<double>::quiet_NaN();
+  return block->second
+      .heights[static_cast<std::size_t>((z - aside_z * last) * size + x - aside_x * last)];
+}
+
 void Terrain::make(core::BlockCoord at, Block& block) {
   const query::GroundGrid& grid = query_.ground_grid(at);
   for (const std::uint16_t height : grid.heights())
     block.heights.push_back(grid.metres(height));
-  auto ground = std::make_unique<btHeightfieldTerrainShape>(
-      grid.size(), grid.size(), block.heights.data(), grid.lowest_m(), grid.highest_m(), 1, false);
-  ground->setLocalScaling({grid.cell_m(), 1, grid.cell_m()});
+  auto ground = std::make_unique<GroundShape>(
+      grid.size(), block.heights.data(), grid.cell_m(), grid.lowest_m(), grid.highest_m(),
+      [this, at, size = grid.size()](int x, int z) { return height(at, size, x, z); });
   // Bullet's heightfields have their origin in the middle of their box.
   const double half = 0.5 * query_.world().block_size_m();
   const btVector3 middle(half, 0.5 * (grid.lowest_m() + grid.highest_m()), half);

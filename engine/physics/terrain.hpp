@@ -76,6 +76,9 @@ class Terrain {
   using Blocks = std::unordered_map<core::BlockCoord, Block, core::BlockCoordHash>;
 
   glm::dvec3 corner_of(core::BlockCoord block) const;
+  // Returns the height of a vertex of a block's grid of size² vertices, or of the row beyond its
+  // border. NaN if no block is loaded there.
+  double height(core::BlockCoord block, int size, int x, int z) const;
   void make(core::BlockCoord at, Block& block);
   // `place` is relative to the block's corner.
   void add(core::BlockCoord at, Block& block, std::unique_ptr<btCollisionShape> shape,

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "engine/physics/character.hpp"
+#include "engine/physics/ground_contacts.hpp"
 #include "engine/physics/object_bodies.hpp"
 #include "engine/physics/shapes.hpp"
 #include "engine/physics/terrain.hpp"
@@ -53,7 +54,7 @@ struct World::Impl {
 
   query::World& query;
   Settings settings;
-  btDefaultCollisionConfiguration configuration;
+  GroundConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
