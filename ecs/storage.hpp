@@ -19,7 +19,6 @@
 #include "ecs/entity_slots.hpp"
 #include "ecs/row_bits.hpp"
 #include "ecs/row_directory.hpp"
-#include "ecs/signature.hpp"
 #include "ecs/sparse_set.hpp"
 #include "ecs/table.hpp"
 

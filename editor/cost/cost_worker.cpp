@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "engine/core/headroom.hpp"
-#include "engine/synthesis/thread_priority.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -65,7 +64,7 @@ void CostWorker::wait_while_resting(std::unique_lock<std::mutex>& lock) {
 }
 
 void CostWorker::run() {
-  synthesis::lower_priority_of_this_thread();
+  core::lower_priority_of_this_thread();
   while (true) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock,

@@ -12,7 +12,6 @@
 
 #include "editor/flights/flight_process.hpp"
 #include "engine/world/camera_path.hpp"
-#include "engine/world/recorded_path.hpp"
 
 class QComboBox;
 class QDoubleSpinBox;

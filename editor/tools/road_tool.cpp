@@ -6,7 +6,7 @@
 #include "editor/document/qt_text.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
-#include "engine/world/road_line.hpp"
+#include "engine/world/shaped_ground.hpp"
 
 namespace psygen::editor {
 namespace {

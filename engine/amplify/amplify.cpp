@@ -13,7 +13,6 @@
 #include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
-#include "engine/synthesis/thread_priority.hpp"
 
 namespace psygen::amplify {
 namespace {
@@ -114,8 +113,8 @@ core::Result<void> Worker::make_blocks(Shared& shared) {
 }
 
 void Worker::work(Shared& shared) {
-  synthesis::name_this_thread("amplify");
-  if (shared.options.lowest_priority) synthesis::lower_priority_of_this_thread();
+  core::name_this_thread("amplify");
+  if (shared.options.lowest_priority) core::lower_priority_of_this_thread();
   try {  // user types and sinks may throw; our own code throws only when memory is exhausted
     if (auto ok = make_blocks(shared); !ok) error = ok.error();
   } catch (const std::bad_alloc&) {

@@ -4,15 +4,14 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <mutex>
 #include <sstream>
 #include <thread>
 #include <utility>
 
-#include "engine/cluster/agreement.hpp"
+#include "engine/cluster/meeting.hpp"
 #include "engine/cluster/plan.hpp"
+#include "engine/core/bytes.hpp"
 #include "engine/core/replace_file.hpp"
 
 namespace psygen::cluster {
@@ -54,45 +53,42 @@ amplify::CostMap shared_costs(const world::World& world, const models::Registry&
   const auto border = [&](std::uint64_t rank) { return samples * rank / peers.count(); };
   const std::vector<double> mine = amplify::prices_of(
       world, registry, key.region, rates, border(peers.rank()), border(peers.rank() + 1));
-  std::string bytes(mine.size() * sizeof(double), '\0');
-  std::memcpy(bytes.data(), mine.data(), bytes.size());
+  std::string bytes;
+  core::put_all(bytes, std::span(mine));
   std::vector<double> all;
   for (const std::string& part : peers.exchange(bytes)) {
-    const std::size_t before = all.size();
-    all.resize(before + part.size() / sizeof(double));
-    std::memcpy(all.data() + before, part.data(), part.size());
+    const auto theirs = core::ByteReader(part).get_all<double>(part.size() / sizeof(double));
+    all.insert(all.end(), theirs.begin(), theirs.end());
   }
   return amplify::CostMap::from(blocks, std::move(all));
 }
 
-std::string text_of(const JobReport& job) {
+std::string bytes_of(const JobReport& job) {
   const amplify::Report& r = job.report;
   const Totals& t = r.totals;
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {}", t.blocks, t.models, t.triangles,
-                     t.bytes, t.failed, t.hash.sum(), t.hash.count(), r.threads,
-                     std::bit_cast<std::uint64_t>(r.cpu_seconds),
-                     std::bit_cast<std::uint64_t>(r.seconds), job.written, job.skipped,
-                     job.messages, t.first_failure);
+  std::string bytes;
+  core::put(bytes, t.blocks, t.models, t.triangles, t.bytes, t.failed, t.hash.sum(), t.hash.count(),
+            r.threads, r.cpu_seconds, r.seconds, job.written, job.skipped, job.messages);
+  return bytes + t.first_failure;
 }
 
-void add_from(const std::string& text, JobReport& sum) {
-  std::istringstream numbers(text);
-  amplify::Report& r = sum.report;
-  Totals t;
-  std::uint64_t hash_sum = 0, hash_count = 0, cpu = 0, wall = 0, written = 0, skipped = 0,
-                messages = 0;
-  unsigned threads = 0;
-  numbers >> t.blocks >> t.models >> t.triangles >> t.bytes >> t.failed >> hash_sum >> hash_count >>
-      threads >> cpu >> wall >> written >> skipped >> messages;
-  std::getline(numbers >> std::ws, t.first_failure);
+void add_from(const std::string& bytes, JobReport& sum) {
+  core::ByteReader in(bytes);
+  JobReport part;
+  amplify::Report &r = part.report, &all = sum.report;
+  Totals& t = r.totals;
+  std::uint64_t hash_sum = 0, hash_count = 0;
+  in.read(t.blocks, t.models, t.triangles, t.bytes, t.failed, hash_sum, hash_count, r.threads,
+          r.cpu_seconds, r.seconds, part.written, part.skipped, part.messages);
+  t.first_failure = in.get_text(in.left());
   t.hash = synthesis::WorldHash::restored(hash_sum, hash_count);
-  r.totals.add(t);
-  r.threads += threads;
-  r.cpu_seconds += std::bit_cast<double>(cpu);
-  r.seconds = std::max(r.seconds, std::bit_cast<double>(wall));
-  sum.written += written;
-  sum.skipped += skipped;
-  sum.messages += messages;
+  all.totals.add(t);
+  all.threads += r.threads;
+  all.cpu_seconds += r.cpu_seconds;
+  all.seconds = std::max(all.seconds, r.seconds);
+  sum.written += part.written;
+  sum.skipped += part.skipped;
+  sum.messages += part.messages;
 }
 
 // Source of the blocks of one rank: first its fixed share, then chunks that it claims one at a
@@ -326,8 +322,8 @@ tl::expected<JobReport, JobError> amplify_together(const world::World& world,
   }
   if (own.report.stopped) return own;
   JobReport all;
-  for (const std::string& text : peers.exchange(text_of(own)))
-    add_from(text, all);
+  for (const std::string& bytes : peers.exchange(bytes_of(own)))
+    add_from(bytes, all);
   core::Result<void> gathered{};
   start.mine.reset();
   if (start.job) {

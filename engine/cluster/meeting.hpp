@@ -1,16 +1,35 @@
-// Handshake before a flight: all ranks check that they make the same meshes. Collective; all ranks
-// get the same result. Main thread.
+// Checks that all ranks agree: before the first block that they run the same job, and before a
+// flight that they make the same meshes. Collective; all ranks get the same result. Main thread.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "engine/amplify/ledger.hpp"
 #include "engine/cluster/peers.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::cluster {
+
+// Succeeds if all ranks have the same key, and either all or none have a folder. `mine` is this
+// rank's key, or the reason why it has none. Fails with kInvalidArgument; the message names the
+// first rank that differs from rank 0, its machine and its instruction set.
+core::Result<void> check_same_job(const core::Result<amplify::JobKey>& mine, bool with_folder,
+                                  Peers& peers);
+
+// Succeeds if all ranks see the same folder: rank 0 creates it and writes a file that the others
+// look for. Fails with kIo or kInvalidArgument.
+core::Result<void> check_folder(const std::filesystem::path& folder, Peers& peers);
+
+// Returns the first error of any rank to all ranks; `mine` is the result of this rank.
+core::Result<void> agree(const core::Result<void>& mine, Peers& peers);
+template <class T>
+core::Result<void> agree(const core::Result<T>& mine, Peers& peers) {
+  return agree(mine ? core::Result<void>{} : tl::unexpected(mine.error()), peers);
+}
 
 // A model type and the hash of the mesh that it makes from its default parameters.
 struct TypeFingerprint {

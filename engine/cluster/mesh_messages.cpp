@@ -19,9 +19,10 @@ constexpr std::size_t kHashBytes = sizeof(std::uint64_t);
 // bytes, ticket, seconds, bounds, size of the mesh, 8 unused bytes.
 constexpr std::size_t kAnswerHeader = 64;
 
-Bytes begin(MessageKind kind) {
+template <class... T>
+Bytes begin(MessageKind kind, T... values) {
   Bytes bytes;
-  core::put(bytes, kind);
+  core::put(bytes, kind, values...);
   return bytes;
 }
 
@@ -32,29 +33,19 @@ Bytes sealed(Bytes bytes) {
 
 void write_answer_header(std::span<std::byte> to, std::uint64_t ticket, RemoteMesh::Answer answer,
                          double seconds, const core::Bounds& tight, std::uint64_t mesh_bytes) {
-  Bytes header = begin(MessageKind::kAnswer);
-  core::put(header, answer);
+  Bytes header = begin(MessageKind::kAnswer, answer);
   header.resize(8);
-  core::put(header, ticket);
-  core::put(header, seconds);
-  for (const glm::vec3& corner : {tight.min, tight.max})
-    for (int i = 0; i < 3; ++i)
-      core::put(header, corner[i]);
-  core::put(header, mesh_bytes);
+  core::put(header, ticket, seconds, tight.min, tight.max, mesh_bytes);
   header.resize(kAnswerHeader);
   std::ranges::copy(header, to.begin());
 }
 
 bool read_answer(core::ByteReader& in, Message& message, Bytes&& bytes) {
   RemoteMesh& mesh = message.mesh;
-  mesh.answer = in.get<RemoteMesh::Answer>();
+  in.read(mesh.answer);
   in.get_text(6);
-  message.ticket = in.get<std::uint64_t>();
-  mesh.seconds = in.get<double>();
-  for (glm::vec3* corner : {&mesh.tight.min, &mesh.tight.max})
-    for (int i = 0; i < 3; ++i)
-      (*corner)[i] = in.get<float>();
-  const auto mesh_bytes = in.get<std::uint64_t>();
+  std::uint64_t mesh_bytes = 0;
+  in.read(message.ticket, mesh.seconds, mesh.tight.min, mesh.tight.max, mesh_bytes);
   in.get_text(8);
   if (in.failed() || mesh.answer > RemoteMesh::Answer::kNone || !std::isfinite(mesh.seconds))
     return false;
@@ -69,15 +60,11 @@ bool read_answer(core::ByteReader& in, Message& message, Bytes&& bytes) {
 }
 
 bool read_make(core::ByteReader& in, MakeMessage& make) {
-  make.ticket = in.get<std::uint64_t>();
-  make.parameters_hash = in.get<std::uint64_t>();
+  in.read(make.ticket, make.parameters_hash);
   for (std::size_t i = 0; i < models::Parameters::kMaxCount; ++i)
     make.parameters.set_integer(i, in.get<std::int64_t>());
-  make.level = in.get<std::uint16_t>();
-  make.size.vertex_count = in.get<std::uint32_t>();
-  make.size.index_count = in.get<std::uint32_t>();
-  make.size.shared_indices = in.get<std::uint32_t>();
-  make.size.layout = in.get<core::VertexLayout>();
+  in.read(make.level, make.size.vertex_count, make.size.index_count, make.size.shared_indices,
+          make.size.layout);
   make.type = in.get_text(in.left());
   return !in.failed() && make.size.layout <= core::VertexLayout::kObject;
 }
@@ -85,30 +72,22 @@ bool read_make(core::ByteReader& in, MakeMessage& make) {
 }  // namespace
 
 Bytes ping_message(std::uint64_t ticket, std::uint64_t wanted_bytes) {
-  Bytes bytes = begin(MessageKind::kPing);
-  core::put(bytes, ticket);
-  core::put(bytes, wanted_bytes);
-  return sealed(std::move(bytes));
+  return sealed(begin(MessageKind::kPing, ticket, wanted_bytes));
 }
 
 Bytes pong_message(std::uint64_t ticket, std::uint64_t count) {
-  Bytes bytes = begin(MessageKind::kPong);
-  core::put(bytes, ticket);
+  Bytes bytes = begin(MessageKind::kPong, ticket);
   bytes.resize(bytes.size() + count);
   return sealed(std::move(bytes));
 }
 
 Bytes make_message(const MakeMessage& request) {
-  Bytes bytes = begin(MessageKind::kMake);
-  core::put(bytes, request.ticket);
-  core::put(bytes, request.parameters_hash);
+  Bytes bytes = begin(MessageKind::kMake, request.ticket, request.parameters_hash);
   for (std::size_t i = 0; i < models::Parameters::kMaxCount; ++i)
     core::put(bytes, request.parameters.integer(i));
-  core::put(bytes, request.level);
-  core::put(bytes, request.size.vertex_count);
-  core::put(bytes, request.size.index_count);
-  core::put(bytes, request.size.shared_indices);
-  core::put(bytes, request.size.layout);
+  const models::MeshSize& size = request.size;
+  core::put(bytes, request.level, size.vertex_count, size.index_count, size.shared_indices,
+            size.layout);
   core::put_all(bytes, std::span<const char>(request.type));
   return sealed(std::move(bytes));
 }
@@ -162,12 +141,11 @@ std::optional<Message> read_message(Bytes&& bytes) {
   bool whole = true;
   switch (message.kind) {
     case MessageKind::kPing:
-      message.ticket = in.get<std::uint64_t>();
-      message.wanted_bytes = in.get<std::uint64_t>();
+      in.read(message.ticket, message.wanted_bytes);
       whole = !in.failed();
       break;
     case MessageKind::kPong:
-      message.ticket = in.get<std::uint64_t>();
+      in.read(message.ticket);
       whole = !in.failed();
       break;
     case MessageKind::kMake:

@@ -17,7 +17,6 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/headroom.hpp"
 #include "engine/synthesis/synthesise.hpp"
-#include "engine/synthesis/thread_priority.hpp"
 
 namespace psygen::cluster {
 namespace {
@@ -91,7 +90,7 @@ Bytes answer_to(const MakeMessage& make, Shop& shop) {
 
 // Runs at the lowest priority: on a shared machine, the frames of rank 0 come first.
 void work(Shop& shop) {
-  synthesis::lower_priority_of_this_thread();
+  core::lower_priority_of_this_thread();
   for (;;) {
     MakeMessage make;
     {

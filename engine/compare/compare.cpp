@@ -118,15 +118,9 @@ double error_of(const RecordedRun& run) {
   return run.error_pixels;
 }
 
-void judge_picture(Runs a, Runs b, Batch& batch) {
-  const auto missing_a = figures(a, missing_of), missing_b = figures(b, missing_of);
-  batch.missing_a = mean(missing_a);
-  batch.missing_b = mean(missing_b);
-  batch.p_missing = swap_test(missing_a, missing_b);
-  const auto error_a = figures(a, error_of), error_b = figures(b, error_of);
-  batch.error_a = mean(error_a);
-  batch.error_b = mean(error_b);
-  batch.p_error = swap_test(error_a, error_b);
+Compared<double> compared(Runs a, Runs b, double (*field)(const RecordedRun&)) {
+  const auto of_a = figures(a, field), of_b = figures(b, field);
+  return {mean(of_a), mean(of_b), swap_test(of_a, of_b)};
 }
 
 core::Result<Batch> judge_batch(Runs a, Runs b) {
@@ -142,10 +136,10 @@ core::Result<Batch> judge_batch(Runs a, Runs b) {
                     kFewestFrames));
   batch.minima = minima_test(times_a, times_b);
   batch.cpu = cpu_test(a, b, left_out);
-  batch.hitchy_a = hitchy(times_a);
-  batch.hitchy_b = hitchy(times_b);
-  batch.p_hitchy = fisher_more(batch.hitchy_a, a.size(), batch.hitchy_b, b.size());
-  judge_picture(a, b, batch);
+  batch.hitchy = {hitchy(times_a), hitchy(times_b)};
+  batch.hitchy.p = fisher_more(batch.hitchy.a, a.size(), batch.hitchy.b, b.size());
+  batch.missing = compared(a, b, missing_of);
+  batch.error = compared(a, b, error_of);
   return batch;
 }
 
@@ -164,10 +158,10 @@ enum Finding {
 std::array<bool, kFindings> findings_of(const Batch& batch) {
   std::array<bool, kFindings> found{};
   constexpr double kPercent = 0.01;  // of the image: a smaller difference is invisible
-  found[kMissing] = batch.p_missing <= kSignificant && batch.missing_b > batch.missing_a + kPercent;
-  found[kError] = batch.p_error <= kSignificant && batch.error_b > 1.01 * batch.error_a;
+  found[kMissing] = batch.missing.p <= kSignificant && batch.missing.b > batch.missing.a + kPercent;
+  found[kError] = batch.error.p <= kSignificant && batch.error.b > 1.01 * batch.error.a;
   found[kSlower] = batch.minima.p_slower <= kSignificant && batch.minima.ratio > kSlowerRatio;
-  found[kHitches] = batch.p_hitchy <= kSignificant;
+  found[kHitches] = batch.hitchy.p <= kSignificant;
   found[kFaster] = batch.minima.p_faster <= kSignificant && batch.minima.ratio < 1 / kSlowerRatio;
   if (batch.cpu) {
     found[kMoreCpu] = batch.cpu->p_slower <= kSignificant && batch.cpu->ratio > kSlowerRatio;
@@ -183,15 +177,15 @@ std::string sentence_of(Finding finding, const Batch& b) {
       return fmt::format(
           "more geometry is missing or too coarse: {:.3g} % of the image, before "
           "{:.3g} %",
-          b.missing_b, b.missing_a);
+          b.missing.b, b.missing.a);
     case kError:
       return fmt::format("levels of detail have a larger error: {:.3g} pixels, before {:.3g}",
-                         b.error_b, b.error_a);
+                         b.error.b, b.error.a);
     case kSlower:
       return fmt::format("frames take {:.1f} % more (p {:.3f})", percent, b.minima.p_slower);
     case kHitches:
-      return fmt::format("{} of {} runs have a hitch, before {} (p {:.3f})", b.hitchy_b, b.pairs,
-                         b.hitchy_a, b.p_hitchy);
+      return fmt::format("{} of {} runs have a hitch, before {} (p {:.3f})", b.hitchy.b, b.pairs,
+                         b.hitchy.a, b.hitchy.p);
     case kMoreCpu:
       return fmt::format("the main thread takes {:.1f} % more processor time (p {:.3f})",
                          100 * (b.cpu->ratio - 1), b.cpu->p_slower);
@@ -219,9 +213,7 @@ void judge_all(Runs a, Runs b, Comparison& comparison) {
   times.insert(times.end(), times_b.begin(), times_b.end());
   const std::vector<double> rare = rare_frames(times);
   const auto rare_a = std::span(rare).first(a.size()), rare_b = std::span(rare).subspan(a.size());
-  comparison.rare_a = std::exp(mean(rare_a));
-  comparison.rare_b = std::exp(mean(rare_b));
-  comparison.p_rare = swap_test(rare_a, rare_b);
+  comparison.rare = {std::exp(mean(rare_a)), std::exp(mean(rare_b)), swap_test(rare_a, rare_b)};
   const double p_missing =
       swap_test(less(figures(b, missing_of), 0, kUnseenPercent), figures(a, missing_of));
   const double p_error =
@@ -237,12 +229,12 @@ bool judge_rare_frames(Comparison& comparison) {
         fmt::format("the 1 % of frames that changed most take {:.2f} times as long (p {:.4f})",
                     comparison.tail.ratio, comparison.tail.p));
   const bool rare =
-      comparison.p_rare <= kSignificantRare && comparison.rare_b > kRareRatio * comparison.rare_a;
+      comparison.rare.p <= kSignificantRare && comparison.rare.b > kRareRatio * comparison.rare.a;
   if (rare)
     comparison.reasons.push_back(fmt::format(
         "the slowest frames of a run take {:.2f} times their typical time, before {:.2f} "
         "(p {:.4f})",
-        comparison.rare_b, comparison.rare_a, comparison.p_rare));
+        comparison.rare.b, comparison.rare.a, comparison.rare.p));
   return tail || rare;
 }
 
@@ -280,7 +272,7 @@ void conclude(Comparison& comparison) {
     comparison.reasons.push_back(fmt::format(
         "missing geometry and its error vary too much from run to run to tell whether B "
         "shows as much: {:.3g} and {:.3g} % of the image, error {:.3g} and {:.3g} pixels",
-        last.missing_a, last.missing_b, last.error_a, last.error_b));
+        last.missing.a, last.missing.b, last.error.a, last.error.b));
   } else if (faster || same) {
     comparison.verdict = faster ? Verdict::kBetter : Verdict::kSame;
   } else {
@@ -305,12 +297,13 @@ core::Result<Comparison> compare_exactly(Runs a, Runs b) {
   Batch batch;
   batch.pairs = 1;
   batch.frames = x.frame_ms.size();
-  judge_picture(a.first(1), b.first(1), batch);
+  batch.missing = compared(a.first(1), b.first(1), missing_of);
+  batch.error = compared(a.first(1), b.first(1), error_of);
   batch.minima.ratio = batch.minima.low = batch.minima.high = mean(y.frame_ms) / mean(x.frame_ms);
-  batch.p_missing = batch.p_error = batch.minima.p_slower = batch.minima.p_faster = 0;
+  batch.missing.p = batch.error.p = batch.minima.p_slower = batch.minima.p_faster = 0;
   comparison.batches.push_back(batch);
-  const bool less = batch.missing_b > batch.missing_a || y.holes > x.holes;
-  const bool coarser = batch.error_b > batch.error_a;
+  const bool less = batch.missing.b > batch.missing.a || y.holes > x.holes;
+  const bool coarser = batch.error.b > batch.error.a;
   if (less) comparison.reasons.push_back(sentence_of(kMissing, batch));
   if (coarser) comparison.reasons.push_back(sentence_of(kError, batch));
   const bool slower = batch.minima.ratio > 1, faster = batch.minima.ratio < 1;
@@ -323,7 +316,7 @@ core::Result<Comparison> compare_exactly(Runs a, Runs b) {
   if (faster && (less || coarser))
     comparison.reasons.push_back("B is faster, but its image is worse, which is not better");
   const bool differ =
-      x.frame_ms != y.frame_ms || x.time_s != y.time_s || batch.missing_a != batch.missing_b;
+      x.frame_ms != y.frame_ms || x.time_s != y.time_s || batch.missing.a != batch.missing.b;
   comparison.verdict = less || coarser || slower ? Verdict::kWorse
                        : faster                  ? Verdict::kBetter
                        : differ                  ? Verdict::kInconclusive

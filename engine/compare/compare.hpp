@@ -29,15 +29,21 @@ inline constexpr double kSignificantRare = 0.001, kTailRatio = 1.2, kRareRatio =
 inline constexpr double kUnseenPercent = 0.25, kUnseenErrorRatio = 1.02, kLikely = 0.05;
 inline constexpr std::size_t kFewestFrames = 50;
 
+// A quantity of both sides, and the probability of the difference by chance.
+template <class T>
+struct Compared {
+  T a{}, b{};
+  double p = 1;
+};
+
 // Result of one batch of pairs.
 struct Batch {
   std::size_t pairs = 0, frames = 0;
   MinimaTest minima;
-  std::optional<MinimaTest> cpu;  // of the main thread's processor time; none on the virtual clock
-  std::uint64_t hitchy_a = 0, hitchy_b = 0;  // runs with a hitch
-  double p_hitchy = 1;
-  double missing_a = 0, missing_b = 0, p_missing = 1;  // percent of the image, missing or coarse
-  double error_a = 0, error_b = 0, p_error = 1;        // pixels, of LODs
+  std::optional<MinimaTest> cpu;   // of the main thread's processor time; none on the virtual clock
+  Compared<std::uint64_t> hitchy;  // runs with a hitch
+  Compared<double> missing;        // percent of the image, missing or coarse
+  Compared<double> error;          // pixels, of LODs
 };
 
 struct Comparison {
@@ -50,7 +56,7 @@ struct Comparison {
   // Over all pairs of two batches: the frames that changed most, and the ratio of rare slow frames
   // to their typical time (rare_frames(), mean over the runs).
   TailTest tail;
-  double rare_a = 1, rare_b = 1, p_rare = 1;
+  Compared<double> rare{1, 1, 1};
   bool shows_as_much = true;  // no visible loss of B is hidden by noise
   std::vector<Batch> batches;
 };

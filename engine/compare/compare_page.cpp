@@ -121,14 +121,14 @@ std::vector<Effect> effects_of(const Batch& b, bool exact) {
   std::vector<Effect> effects = {
       {"frame time", "", "", interval, p(std::min(b.minima.p_slower, b.minima.p_faster))}};
   if (!exact) {
-    effects.push_back({"runs with a hitch", std::to_string(b.hitchy_a), std::to_string(b.hitchy_b),
-                       change(static_cast<double>(b.hitchy_a), static_cast<double>(b.hitchy_b)),
-                       p(b.p_hitchy)});
+    effects.push_back({"runs with a hitch", std::to_string(b.hitchy.a), std::to_string(b.hitchy.b),
+                       change(static_cast<double>(b.hitchy.a), static_cast<double>(b.hitchy.b)),
+                       p(b.hitchy.p)});
   }
-  effects.push_back({"missing or too coarse, % of the image", three_digits(b.missing_a),
-                     three_digits(b.missing_b), change(b.missing_a, b.missing_b), p(b.p_missing)});
-  effects.push_back({"error of LODs, pixels", three_digits(b.error_a), three_digits(b.error_b),
-                     change(b.error_a, b.error_b), p(b.p_error)});
+  effects.push_back({"missing or too coarse, % of the image", three_digits(b.missing.a),
+                     three_digits(b.missing.b), change(b.missing.a, b.missing.b), p(b.missing.p)});
+  effects.push_back({"error of LODs, pixels", three_digits(b.error.a), three_digits(b.error.b),
+                     change(b.error.a, b.error.b), p(b.error.p)});
   return effects;
 }
 
@@ -170,8 +170,8 @@ std::string batch_section(const Comparison& comparison, std::size_t index) {
         "<td>p {:.4f}</td></tr><tr><th>slowest frames, relative to their typical time, both "
         "batches</th>"
         "<td>{:.2f}</td><td>{:.2f}</td><td>× {:.3f}</td><td>p {:.4f}</td></tr>",
-        comparison.tail.ratio, comparison.tail.p, comparison.rare_a, comparison.rare_b,
-        comparison.rare_b / comparison.rare_a, comparison.p_rare);
+        comparison.tail.ratio, comparison.tail.p, comparison.rare.a, comparison.rare.b,
+        comparison.rare.b / comparison.rare.a, comparison.rare.p);
   return html + "</table></section>\n";
 }
 
@@ -202,8 +202,8 @@ constexpr std::string_view kStyle =
 
 std::string headline(const Comparison& comparison) {
   const Batch& last = comparison.batches.back();
-  const bool missing = last.missing_b > last.missing_a && last.p_missing <= kSignificant;
-  const bool coarser = last.error_b > last.error_a && last.p_error <= kSignificant;
+  const bool missing = last.missing.b > last.missing.a && last.missing.p <= kSignificant;
+  const bool coarser = last.error.b > last.error.a && last.error.p <= kSignificant;
   const bool less = missing || coarser;
   const bool slower = last.minima.ratio > (comparison.exact ? 1 : kSlowerRatio);
   switch (comparison.verdict) {

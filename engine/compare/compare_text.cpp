@@ -22,14 +22,19 @@ Json test_json(const MinimaTest& test) {
           {"p_faster", test.p_faster}};
 }
 
+template <class T>
+Json compared_json(const Compared<T>& both) {
+  return {{"a", both.a}, {"b", both.b}, {"p", both.p}};
+}
+
 Json batch_json(const Batch& b) {
   return {{"pairs", b.pairs},
           {"frames", b.frames},
           {"frame_ms", test_json(b.minima)},
           {"main_cpu_ms", b.cpu ? test_json(*b.cpu) : Json(nullptr)},
-          {"hitchy_runs", {{"a", b.hitchy_a}, {"b", b.hitchy_b}, {"p", b.p_hitchy}}},
-          {"missing_percent", {{"a", b.missing_a}, {"b", b.missing_b}, {"p", b.p_missing}}},
-          {"error_pixels", {{"a", b.error_a}, {"b", b.error_b}, {"p", b.p_error}}}};
+          {"hitchy_runs", compared_json(b.hitchy)},
+          {"missing_percent", compared_json(b.missing)},
+          {"error_pixels", compared_json(b.error)}};
 }
 
 }  // namespace
@@ -48,19 +53,19 @@ std::string to_text(const Comparison& comparison, const FalseAlarms* alarms) {
       text += " (exact)";
     } else {
       text += fmt::format(" ({:.3f} to {:.3f}), runs with a hitch {} and {}", b.minima.low,
-                          b.minima.high, b.hitchy_a, b.hitchy_b);
+                          b.minima.high, b.hitchy.a, b.hitchy.b);
     }
     if (b.cpu)
       text += fmt::format(", processor time of the main thread {:.4f} ({:.3f} to {:.3f})",
                           b.cpu->ratio, b.cpu->low, b.cpu->high);
     text += fmt::format(", missing or coarse {:.3g} and {:.3g} %, error {:.3g} and {:.3g} pixels\n",
-                        b.missing_a, b.missing_b, b.error_a, b.error_b);
+                        b.missing.a, b.missing.b, b.error.a, b.error.b);
   }
   if (comparison.batches.size() > 1)
     text += fmt::format(
         "all pairs: the 1 % of frames that changed most {:.3f}, the slowest frames take {:.2f} and "
         "{:.2f} times their typical time\n",
-        comparison.tail.ratio, comparison.rare_a, comparison.rare_b);
+        comparison.tail.ratio, comparison.rare.a, comparison.rare.b);
   if (alarms != nullptr)
     text += fmt::format("A against itself, {} comparisons: {} worse, {} better, {} inconclusive\n",
                         alarms->comparisons, alarms->worse, alarms->better, alarms->inconclusive);
@@ -75,8 +80,7 @@ std::string to_json(const Comparison& comparison, const FalseAlarms* alarms) {
   json["noise_percent"] = finite(comparison.noise_percent);
   json["exact"] = comparison.exact;
   json["tail"] = {{"ratio", finite(comparison.tail.ratio)}, {"p", comparison.tail.p}};
-  json["rare_frames"] = {
-      {"a", comparison.rare_a}, {"b", comparison.rare_b}, {"p", comparison.p_rare}};
+  json["rare_frames"] = compared_json(comparison.rare);
   json["shows_as_much"] = comparison.shows_as_much;
   json["batches"] = Json::array();
   for (const Batch& batch : comparison.batches)

@@ -17,7 +17,7 @@ namespace psygen::core {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 
-// Appends the bytes of many values of one type, or of a single value.
+// Appends the bytes of many values of one type, or of values one after the other.
 template <class T, class Bytes>
 void put_all(Bytes& out, std::span<const T> values) {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(typename Bytes::value_type) == 1);
@@ -25,9 +25,9 @@ void put_all(Bytes& out, std::span<const T> values) {
   out.resize(before + values.size_bytes());
   if (!values.empty()) std::memcpy(out.data() + before, values.data(), values.size_bytes());
 }
-template <class T, class Bytes>
-void put(Bytes& out, T value) {
-  put_all(out, std::span<const T>(&value, 1));
+template <class Bytes, class... T>
+void put(Bytes& out, T... values) {
+  (put_all(out, std::span<const T>(&values, 1)), ...);
 }
 // Appends a number in groups of 7 bits, the lowest first: 1 … 10 bytes.
 template <class Bytes>
@@ -51,6 +51,11 @@ class ByteReader {
     const auto from = next(sizeof value);
     if (!failed_) std::memcpy(&value, from.data(), sizeof value);
     return value;
+  }
+  // Reads the next numbers one after the other; those for which too few bytes are left become 0.
+  template <class... T>
+  void read(T&... values) {
+    ((values = get<T>()), ...);
   }
   // Returns the next `count` numbers; an empty list if too few bytes are left.
   template <class T>

@@ -2,7 +2,8 @@
 // resource and frees it immediately. This reveals limits (ulimit -d, -v, -u, container limits on
 // threads, memory that must not be overcommitted) before a library that cannot handle them reaches
 // them. It does not see memory limits that the kernel enforces by killing. An answer holds only for
-// the moment. Also starts threads where the system may refuse. POSIX. Any thread.
+// the moment. Also starts threads where the system may refuse, and
+// sets their priorities. POSIX. Any thread.
 #pragma once
 
 #include <cstddef>
@@ -37,5 +38,11 @@ Result<std::thread> start_thread(Work&& work) {
         std::string("the system gives no more threads, or no memory for one (") + e.what() + ")");
   }
 }
+
+// Sets nice 19 for the calling thread alone (Linux): it uses processor time that no other thread
+// needs. Does nothing on systems without per-thread priorities.
+void lower_priority_of_this_thread();
+// Sets the name of the calling thread; at most 15 characters are kept.
+void name_this_thread(const std::string& name);
 
 }  // namespace psygen::core

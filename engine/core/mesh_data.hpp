@@ -1,8 +1,10 @@
 // A triangle mesh as plain lists, as a game's code or a file describes it, before it is packed for
 // drawing (scene/objects/packed_mesh.hpp). Metres, +Y up, right-handed, counter-clockwise seen from
-// outside, colours as linear albedo. Not a scene graph. Values; any thread.
+// outside, colours as linear albedo. add_ellipsoid() and add_triangle() build meshes in code, such
+// as an animal with fins. Not a scene graph, nor a modelling tool. Values; any thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -34,5 +36,14 @@ inline constexpr std::uint32_t kMaxMeshVertices = 65535;
 // Splits the mesh into parts of at most `max_vertices` (>= 3) vertices, which share none. The mesh
 // must have passed check(). Triangles keep their order. O(n).
 std::vector<MeshData> split(const MeshData& mesh, std::uint32_t max_vertices = kMaxMeshVertices);
+
+// Adds an ellipsoid of kEllipsoidTriangles triangles with these half axes in metres (> 0). `above`
+// and `below` colour its upper side and its underside. Adds vertices with normals and colours.
+inline constexpr std::size_t kEllipsoidTriangles = 80;
+void add_ellipsoid(MeshData& mesh, const glm::vec3& middle, const glm::vec3& half,
+                   const glm::vec3& above, const glm::vec3& below);
+
+// Adds one triangle, counter-clockwise seen from outside. Its normals point to its upper side.
+void add_triangle(MeshData& mesh, const std::array<glm::vec3, 3>& corners, const glm::vec3& colour);
 
 }  // namespace psygen::core

@@ -1,6 +1,6 @@
-// Compares two images channel by channel. For golden images: the same image from another driver may
-// differ by 5/255 and, at edges, by more on at most 0.1 % of its pixels. Not a perceptual metric.
-// Pure; any thread; linear in the pixels.
+// Compares images: channel by channel for golden images, by flicker, and by visual similarity. The
+// same image from another driver may differ from its golden image by 5/255 and, at edges, by more
+// on at most 0.1 % of its pixels. Pure; any thread; linear in the pixels.
 #pragma once
 
 #include <cstdint>
@@ -37,5 +37,30 @@ bool matches_golden(const ImageDifference& difference);
 // kInvalidArgument for different sizes.
 core::Result<Image> picture_of_difference(const Image& expected, const Image& seen,
                                           std::uint8_t threshold = kGoldenThreshold);
+
+// Flicker: pixels that change and change back in successive images. A motion through a still world
+// has little flicker, and viewers notice it first. For image sequences at their display rate.
+
+// The channel difference, of 255, above which two pixels count as different.
+inline constexpr int kFlickerStep = 8;
+
+// 1 for each pixel that changes and changes back, else 0: `now` differs by more than kFlickerStep
+// from `before` and from `after`, which do not differ by more from each other. The difference of
+// two pixels is the maximum over their channels, without alpha. Requires valid images of one size.
+// O(pixels).
+std::vector<std::uint8_t> flickering(const Image& before, const Image& now, const Image& after);
+
+// Visual similarity: the mean structural similarity (SSIM) of Wang, Bovik, Sheikh and Simoncelli,
+// "Image Quality Assessment: From Error Visibility to Structural Similarity" (2004). For images of
+// the same view.
+
+// Side of a window, and minimum side of an image, in pixels.
+inline constexpr std::uint32_t kSimilarityWindow = 8;
+
+// 1 for equal images, lower the more they differ, at least -1. Computed on luma, 0.299 R + 0.587 G
+// + 0.114 B, without alpha, in windows of 8 × 8 pixels, one every 4 pixels along both sides, with
+// the paper's constants. Requires valid images of one size, at least a window wide and high.
+// O(pixels).
+double structural_similarity(const Image& a, const Image& b);
 
 }  // namespace psygen::image

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/core/error.hpp"
 #include "engine/platform/input.hpp"
@@ -83,5 +84,19 @@ struct Reading {
 // at most 1e6.
 Reading read(Control control, const platform::InputState& input,
              std::optional<std::size_t> pad_slot = {});
+
+// "Press a key ...": waits for the next control that the user presses, for a new binding. Ignores
+// mouse movement, because the mouse always moves. One thread; linear in controls.
+class BindingCapture {
+ public:
+  // Starts at `now`. Controls held then must be released before they count.
+  explicit BindingCapture(const platform::InputState& now);
+  // The control pressed in this frame, or nothing. Call it once per frame. Modifier keys are
+  // reported as left or right. The caller chooses the key that cancels.
+  std::optional<Control> update(const platform::InputState& input);
+
+ private:
+  std::vector<bool> armed_;  // for each of all_controls(): it has been at rest
+};
 
 }  // namespace psygen::input

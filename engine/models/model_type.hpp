@@ -77,10 +77,10 @@ constexpr ParameterSpec placed(ParameterSpec spec) {
 // a line of help. The lists of such numbers (tree/species.hpp, world/files/fields.hpp) are visited
 // with it. The strings are literals.
 struct NumberSpec {
-  double low = 0, high = 0;            // values outside are rejected
-  double soft_low = 0, soft_high = 0;  // the range of a slider
-  std::string_view unit;               // "m", "degrees"; "" for none
-  std::string_view doc;                // one line for users
+  HardRange hard{};
+  SoftRange soft{};
+  std::string_view unit;  // "m", "degrees"; "" for none
+  std::string_view doc;   // one line for users
 };
 
 struct EditLayer;  // edits.hpp

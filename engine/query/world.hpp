@@ -12,7 +12,7 @@
 #include "engine/query/block_cache.hpp"
 #include "engine/query/objects.hpp"
 #include "engine/world/ground_blends.hpp"
-#include "engine/world/models_reach.hpp"
+#include "engine/world/placement.hpp"
 
 namespace psygen::query {
 

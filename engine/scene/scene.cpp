@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/core/clock.hpp"
-#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/geometry_memory.hpp"
 #include "engine/core/log.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/facts/derive.hpp"

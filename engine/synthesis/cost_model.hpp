@@ -1,7 +1,7 @@
 // Predicts the duration of a synthesis with one measured curve over operations, triangles and steps
 // (cost_fit.hpp) per model type and level (paper, sections 5.2 and 6: the constants are computed at
 // start-up). Calibrated in well under a second, then corrected by every finished request, which
-// meets colder caches (cost_correction.hpp). Records the error of its own predictions, so that
+// meets colder caches (cost_fit.hpp). Records the error of its own predictions, so that
 // every number used by a schedule is checked. One thread. Not a profiler. predict() and observe()
 // are O(1) plus the type's complexity(), mesh_size() and steps().
 #pragma once
@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "engine/models/registry.hpp"
-#include "engine/synthesis/cost_correction.hpp"
 #include "engine/synthesis/cost_fit.hpp"
 
 namespace psygen::synthesis {

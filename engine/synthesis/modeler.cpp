@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "engine/core/clock.hpp"
+#include "engine/core/headroom.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/synthesis/content_hash.hpp"
 #include "engine/synthesis/synthesise.hpp"
-#include "engine/synthesis/thread_priority.hpp"
 
 namespace psygen::synthesis {
 namespace {
@@ -53,7 +53,7 @@ void copy_mesh(const models::MeshView& mesh, const models::MeshView& destination
 }  // namespace
 
 void Modeler::run(Workshop& workshop) {
-  name_this_thread(fmt::format("modeler-{}", number_));
+  core::name_this_thread(fmt::format("modeler-{}", number_));
   bool lowered = false;
   cpu_s_ = core::thread_cpu_seconds();
   while (!workshop.stop.load(std::memory_order_acquire)) {
@@ -62,7 +62,7 @@ void Modeler::run(Workshop& workshop) {
     const bool claimed = claim(workshop);
     // A remote modeler's thread uses hardly any processor time.
     if (!lowered && !is_remote() && workshop.lowest_priority.load(std::memory_order_relaxed)) {
-      lower_priority_of_this_thread();
+      core::lower_priority_of_this_thread();
       lowered = true;
     }
     if (claimed) {

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "engine/models/registry.hpp"
-#include "engine/synthesis/cost_correction.hpp"
 #include "engine/synthesis/cost_fit.hpp"
 #include "engine/synthesis/mesh_key.hpp"
 

@@ -3,7 +3,7 @@
 // unclaimed requests. The watchdog abandons requests that never end and replaces hung modelers.
 // Remote modelers (remote_modelers.hpp) take only meshes that outweigh their round trip; a request
 // that one returns is made here. Main thread only. The planner (planner.hpp) decides the requests;
-// landing.hpp updates the cache. wait_all(), quiesce() and the destructor block.
+// land() (mesh_supply.hpp) updates the cache. wait_all(), quiesce() and the destructor block.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/telemetry/measured.hpp"
+#include "engine/telemetry/statistics.hpp"
 
 namespace psygen::telemetry {
 

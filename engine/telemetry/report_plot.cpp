@@ -43,27 +43,13 @@ std::string data(const Plot& plot) {
 }  // namespace
 
 std::string escaped(std::string_view text) {
+  constexpr std::string_view kSpecial = "&<>\"'";
+  constexpr std::array<std::string_view, 5> kEntities = {"&amp;", "&lt;", "&gt;", "&quot;",
+                                                         "&#39;"};
   std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default:
-        result += c;
-    }
+  for (const char& c : text) {
+    const std::size_t at = kSpecial.find(c);
+    result += at == std::string_view::npos ? std::string_view(&c, 1) : kEntities[at];
   }
   return result;
 }

@@ -3,12 +3,40 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "engine/telemetry/measured.hpp"
-
 namespace psygen::telemetry {
+
+// A value, or the reason for its absence: too few frames, an endless world, a GPU without
+// timestamps. In summary.json it becomes a number, or null with a reason. Not an Error: nothing
+// failed. A plain value.
+template <class T>
+struct Measured {
+  std::optional<T> value;
+  std::string reason = "not measured in this run";  // a phrase; empty if there is a value
+
+  // Missing with the default reason, or known. The conversion is implicit on purpose.
+  Measured() = default;
+  Measured(T known) : value(std::move(known)), reason() {}
+  // Missing for this reason.
+  static Measured missing(std::string why) {
+    Measured result;
+    result.reason = std::move(why);
+    return result;
+  }
+
+  // True if the value is known, which operator* requires.
+  bool has_value() const { return value.has_value(); }
+  const T& operator*() const { return *value; }
+  friend bool operator==(const Measured&, const Measured&) = default;
+};
+
+// A measured real number.
+using Figure = Measured<double>;
 
 // Percentile p in [0, 1] of values in any order: h = p(N − 1), linear between the neighbours of h.
 // Missing below 1 / (1 − p) values (20 for p95, 100 for p99, 1000 for p999), because no value would

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/telemetry/frame_log.hpp"
-#include "engine/telemetry/measured.hpp"
+#include "engine/telemetry/statistics.hpp"
 
 namespace psygen::telemetry {
 

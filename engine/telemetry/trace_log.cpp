@@ -71,13 +71,6 @@ void TraceLog::add_value(Track counter, double time_s, double value) {
   add(rings_[counter], {time_s, value, kNoArgument, 0});
 }
 
-std::uint64_t TraceLog::kept_count() const {
-  std::uint64_t count = 0;
-  for (const Ring& ring : rings_)
-    count += ring.spans.size();
-  return count;
-}
-
 std::uint64_t TraceLog::dropped_count() const {
   std::uint64_t count = 0;
   for (const Ring& ring : rings_)

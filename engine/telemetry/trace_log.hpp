@@ -47,8 +47,7 @@ class TraceLog {
                 std::uint64_t argument = kNoArgument);
   void add_value(Track counter, double time_s, double value);
 
-  // Number of spans and values stored, and number replaced by newer ones. O(tracks).
-  std::uint64_t kept_count() const;
+  // Number of spans and values replaced by newer ones. O(tracks).
   std::uint64_t dropped_count() const;
   // Writes trace.json. The earliest stored time becomes 0. Fails with kIo and the path.
   core::Result<void> write(const std::filesystem::path& path) const;

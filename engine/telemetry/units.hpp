@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/telemetry/measured.hpp"
+#include "engine/telemetry/statistics.hpp"
 
 namespace psygen::telemetry {
 

@@ -4,7 +4,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/trigonometric.hpp>
+#include <numbers>
+#include <vector>
 
 #include "engine/core/assert.hpp"
 #include "engine/models/edits.hpp"
@@ -26,6 +29,77 @@ models::Parameters unedited_terrain(const World& world) {
   models::Parameters p = world.terrain;
   p.set_edits(world.shaped.layer.get(), 0);
   return p;
+}
+
+// True if edits may change heights in a block.
+bool has_edited_ground(const World& world, core::BlockCoord block) {
+  return world.edits &&
+         world.edits->ground.own().reaches(models::QuadCoord::of(block), world.block_size_m());
+}
+
+// The ground on which instances find their positions, and the ground on which they stand.
+struct Grounds {
+  const models::BlockGround &base, &shown;
+};
+
+// The placements of the world's function that were not removed. `wanted` selects scatters; null:
+// all.
+void place_instances(const World& world, const models::Registry& registry, core::BlockCoord block,
+                     const Grounds& grounds, const models::BlockEdits* edits,
+                     const std::vector<bool>* wanted, std::vector<Placement>& out) {
+  std::uint32_t first = 0;
+  for (std::size_t s = 0; s < world.scatter.size(); first += world.scatter[s++].count) {
+    if (wanted != nullptr && !(*wanted)[s]) continue;
+    const Scatter& scatter = world.scatter[s];
+    std::uint32_t index = first;
+    const Scattering scattering(world, registry[scatter.model], scatter, block);
+    for (std::uint32_t k = 0; k < scatter.count; ++k, ++index) {
+      if (edits != nullptr && edits->is_removed(index)) continue;
+      auto place = scattering.place(grounds.base, index);
+      if (!place) continue;
+      if (&grounds.base != &grounds.shown) {
+        const models::GroundPoint point = grounds.shown.at({place->position.x, place->position.z});
+        place->position.y = static_cast<float>(point.height_m);
+        place->normal = point.normal;
+      }
+      out.push_back(
+          {scatter.model, index, place->position, scattering.parameters(index, place->normal)});
+    }
+  }
+}
+
+void place_by_hand(const models::BlockEdits& edits, const models::Registry& registry,
+                   const models::BlockGround& ground, std::uint32_t first_index,
+                   std::vector<Placement>& out) {
+  for (const models::PlacedModel& placed : edits.placed) {
+    const models::GroundPoint point = ground.at(placed.local_m);
+    const models::ModelType& type = registry[placed.model];
+    Placement placement{
+        placed.model,
+        first_index + placed.id,
+        {placed.local_m.x, static_cast<float>(point.height_m) + placed.above_m, placed.local_m.y},
+        placed.parameters};
+    set_slope(type, slope_parameters(type),
+              glm::vec2(point.normal.x, point.normal.z) / -point.normal.y, placement.parameters);
+    out.push_back(placement);
+  }
+}
+
+void place_wanted(const World& world, const models::Registry& registry, core::BlockCoord block,
+                  const models::BlockGround& ground, const std::vector<bool>* wanted,
+                  std::vector<Placement>& out) {
+  out.clear();
+  const models::BlockEdits* const edits = world.edits ? world.edits->block(block) : nullptr;
+  if (has_edited_ground(world, block)) {
+    const models::BlockGround base(unedited_terrain(world), block, models_per_block(world));
+    place_instances(world, registry, block, {base, ground}, edits, wanted, out);
+  } else {
+    place_instances(world, registry, block, {ground, ground}, edits, wanted, out);
+  }
+  if (edits != nullptr) place_by_hand(*edits, registry, ground, kPlacedIndex, out);
+  if (!world.places.by_block) return;
+  if (const models::BlockEdits* const of_file = world.places.by_block->block(block))
+    place_by_hand(*of_file, registry, ground, kFilePlacedIndex, out);
 }
 
 }  // namespace
@@ -147,81 +221,6 @@ std::size_t models_per_block(const World& world) {
   return count;
 }
 
-namespace {
-
-// True if edits may change heights in a block.
-bool has_edited_ground(const World& world, core::BlockCoord block) {
-  return world.edits &&
-         world.edits->ground.own().reaches(models::QuadCoord::of(block), world.block_size_m());
-}
-
-// The ground on which instances find their positions, and the ground on which they stand.
-struct Grounds {
-  const models::BlockGround &base, &shown;
-};
-
-// The placements of the world's function that were not removed. `wanted` selects scatters; null:
-// all.
-void place_instances(const World& world, const models::Registry& registry, core::BlockCoord block,
-                     const Grounds& grounds, const models::BlockEdits* edits,
-                     const std::vector<bool>* wanted, std::vector<Placement>& out) {
-  std::uint32_t first = 0;
-  for (std::size_t s = 0; s < world.scatter.size(); first += world.scatter[s++].count) {
-    if (wanted != nullptr && !(*wanted)[s]) continue;
-    const Scatter& scatter = world.scatter[s];
-    std::uint32_t index = first;
-    const Scattering scattering(world, registry[scatter.model], scatter, block);
-    for (std::uint32_t k = 0; k < scatter.count; ++k, ++index) {
-      if (edits != nullptr && edits->is_removed(index)) continue;
-      auto place = scattering.place(grounds.base, index);
-      if (!place) continue;
-      if (&grounds.base != &grounds.shown) {
-        const models::GroundPoint point = grounds.shown.at({place->position.x, place->position.z});
-        place->position.y = static_cast<float>(point.height_m);
-        place->normal = point.normal;
-      }
-      out.push_back(
-          {scatter.model, index, place->position, scattering.parameters(index, place->normal)});
-    }
-  }
-}
-
-void place_by_hand(const models::BlockEdits& edits, const models::Registry& registry,
-                   const models::BlockGround& ground, std::uint32_t first_index,
-                   std::vector<Placement>& out) {
-  for (const models::PlacedModel& placed : edits.placed) {
-    const models::GroundPoint point = ground.at(placed.local_m);
-    const models::ModelType& type = registry[placed.model];
-    Placement placement{
-        placed.model,
-        first_index + placed.id,
-        {placed.local_m.x, static_cast<float>(point.height_m) + placed.above_m, placed.local_m.y},
-        placed.parameters};
-    set_slope(type, slope_parameters(type),
-              glm::vec2(point.normal.x, point.normal.z) / -point.normal.y, placement.parameters);
-    out.push_back(placement);
-  }
-}
-
-void place_wanted(const World& world, const models::Registry& registry, core::BlockCoord block,
-                  const models::BlockGround& ground, const std::vector<bool>* wanted,
-                  std::vector<Placement>& out) {
-  out.clear();
-  const models::BlockEdits* const edits = world.edits ? world.edits->block(block) : nullptr;
-  if (has_edited_ground(world, block)) {
-    const models::BlockGround base(unedited_terrain(world), block, models_per_block(world));
-    place_instances(world, registry, block, {base, ground}, edits, wanted, out);
-  } else {
-    place_instances(world, registry, block, {ground, ground}, edits, wanted, out);
-  }
-  if (edits != nullptr) place_by_hand(*edits, registry, ground, kPlacedIndex, out);
-  if (!world.places.by_block) return;
-  if (const models::BlockEdits* const of_file = world.places.by_block->block(block))
-    place_by_hand(*of_file, registry, ground, kFilePlacedIndex, out);
-}
-
-}  // namespace
-
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out) {
   // world.terrain has the edits.
@@ -303,6 +302,44 @@ models::Parameters draw_parameters(const World& world, const models::Registry& r
                                    const Scatter& scatter, core::BlockCoord block,
                                    std::uint32_t index) {
   return Scattering(world, registry[scatter.model], scatter, block).parameters(index);
+}
+
+glm::vec2 models_reach_m(const World& world, const models::Registry& registry) {
+  // Maximum number of ranged parameters whose ends are tried in all combinations.
+  constexpr std::size_t kMaxVaried = 12;
+  glm::vec2 reach_m(0.0F);
+  for (const Scatter& scatter : world.scatter) {
+    const models::ModelType& type = registry[scatter.model];
+    const auto specs = type.parameters();
+    std::vector<std::size_t> ranged;
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      if (scatter.ranges[i].low != scatter.ranges[i].high) ranged.push_back(i);
+    }
+    const std::size_t varied = std::min(ranged.size(), kMaxVaried);
+    for (std::uint32_t corner = 0; corner < (1u << varied); ++corner) {
+      models::Parameters p = scatter_parameters(registry, scatter);
+      for (std::size_t k = 0; k < varied; ++k) {
+        const ParameterRange& range = scatter.ranges[ranged[k]];
+        set_parameter(type, p, ranged[k], (corner >> k & 1) != 0 ? range.high : range.low);
+      }
+      const auto steepest =
+          static_cast<float>(std::tan(scatter.max_slope_deg * std::numbers::pi / 180));
+      set_slope(type, slope_parameters(type), glm::vec2(steepest), p);
+      const core::Bounds box = type.bounds(p);
+      reach_m.x = std::max({reach_m.x, -box.min.x, -box.min.z, box.max.x, box.max.z});
+      reach_m.y = std::max(reach_m.y, box.max.y);
+    }
+  }
+  return reach_m;
+}
+
+glm::vec2 with_placed_models(glm::vec2 scattered, const World& world) {
+  for (const models::EditLayer* layer : {world.edits.get(), world.places.by_block.get()}) {
+    if (layer == nullptr || layer->blocks.empty()) continue;
+    const glm::vec3& placed = layer->blocks.root()->summary.reach_m;
+    scattered = glm::max(scattered, glm::vec2(placed.x, placed.y));
+  }
+  return scattered;
 }
 
 }  // namespace psygen::world

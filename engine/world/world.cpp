@@ -6,8 +6,31 @@
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/world/placement.hpp"
 
 namespace psygen::world {
+namespace {
+
+// Mean size of one instance of a scatter. `first` is the index of its first instance in a block.
+// The samples are real instances of the world, from consecutive blocks.
+struct MeanSize {
+  double triangles = 0, bytes = 0;
+};
+MeanSize mean_size(const World& world, const models::Registry& registry, const Scatter& scatter,
+                   std::uint32_t first) {
+  MeanSize sum;
+  for (std::uint32_t k = 0; k < kSizeSamples; ++k) {
+    const core::BlockCoord block{static_cast<std::int32_t>(k / scatter.count), 0};
+    const models::Parameters p =
+        draw_parameters(world, registry, scatter, block, first + k % scatter.count);
+    const models::MeshSize size = registry[scatter.model].mesh_size(p, 0);
+    sum.triangles += size.triangle_count();
+    sum.bytes += static_cast<double>(size.bytes());
+  }
+  return {sum.triangles / kSizeSamples, sum.bytes / kSizeSamples};
+}
+
+}  // namespace
 
 double World::block_size_m() const {
   return models::terrain_block_size_m(terrain);
@@ -47,6 +70,68 @@ bool World::contains(core::BlockCoord block) const {
     return count == 0 || (index >= 0 && index < count);
   };
   return inside(block.x, blocks_x) && inside(block.z, blocks_z);
+}
+
+std::vector<double> placed_per_block(const World& world, const models::Registry& registry,
+                                     std::span<const std::optional<double>> known) {
+  std::vector<double> counts;
+  std::vector<bool> wanted;
+  bool filtered = !world.shaped.roads.empty();
+  for (const Scatter& scatter : world.scatter) {
+    const std::size_t s = counts.size();
+    wanted.push_back(s >= known.size() || !known[s]);
+    counts.push_back(wanted[s] ? scatter.count : *known[s]);
+    filtered = filtered || scatter.has_filter();
+  }
+  if (!filtered || std::ranges::find(wanted, true) == wanted.end()) return counts;
+  for (std::size_t s = 0; s < counts.size(); ++s)
+    counts[s] = wanted[s] ? 0 : counts[s];
+  std::vector<Placement> placements;
+  for (std::uint32_t k = 0; k < kSizeBlocks; ++k) {
+    core::RandomStream random(world.seed, 0, 0, k, core::Purpose::kStructure);
+    const auto coordinate = [&random](std::int64_t blocks) {
+      return static_cast<std::int32_t>(random.next_integer(0, (blocks == 0 ? 65536 : blocks) - 1));
+    };
+    const std::int32_t x = coordinate(world.blocks_x), z = coordinate(world.blocks_z);
+    place_models(world, registry, {x, z}, wanted, placements);
+    for (const Placement& placement : placements) {
+      if (placement.index >= kPlacedIndex) continue;
+      std::size_t s = 0;
+      for (std::uint32_t first = 0; placement.index - first >= world.scatter[s].count; ++s)
+        first += world.scatter[s].count;
+      counts[s] += 1.0 / kSizeBlocks;
+    }
+  }
+  return counts;
+}
+
+WorldSize world_size(const World& world, const models::Registry& registry) {
+  WorldSize size;
+  size.endless = world.is_endless();
+  size.blocks = size.endless ? 0
+                             : static_cast<std::uint64_t>(world.blocks_x) *
+                                   static_cast<std::uint64_t>(world.blocks_z);
+  size.block_triangles = models::terrain_surface_triangles(world.terrain, 0);
+  size.block_bytes =
+      static_cast<double>(registry[world.terrain_model].mesh_size(world.terrain, 0).bytes());
+  const std::vector<double> counts = placed_per_block(world, registry);
+  std::uint32_t first = 0;
+  for (std::size_t s = 0; s < world.scatter.size(); ++s) {
+    const Scatter& scatter = world.scatter[s];
+    if (scatter.count == 0) continue;
+    const MeanSize mean = mean_size(world, registry, scatter, first);
+    size.block_models += counts[s];
+    size.block_triangles += counts[s] * mean.triangles;
+    size.block_bytes += counts[s] * mean.bytes;
+    first += scatter.count;
+  }
+  const auto blocks = static_cast<double>(size.blocks);
+  const double all_models = blocks * size.block_models + 0.5;
+  size.models = all_models < 0x1.0p64 ? static_cast<std::uint64_t>(all_models) : UINT64_MAX;
+  size.triangles = blocks * size.block_triangles;
+  size.bytes = blocks * size.block_bytes;
+  size.bytes_paper = size.triangles * 256;
+  return size;
 }
 
 }  // namespace psygen::world

@@ -134,65 +134,75 @@ class StoneWriter {
   std::size_t index_ = 0;
 };
 
+class CairnType final : public models::ModelType {
+ public:
+  std::string_view name() const override { return "cairn"; }
+  std::string_view doc() const override { return "A stack of stones that marks a place"; }
+  std::span<const models::ParameterSpec> parameters() const override { return kSchema; }
+  int level_count() const override { return 3; }
+  core::SurfaceKind surface() const override { return core::SurfaceKind::kStone; }
+  bool may_run_on_main_thread() const override { return true; }
+  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {}
+  double level_error_m(const models::Parameters& p, int level) const override {
+    constexpr std::array<double, 3> kShares{0, 0.03, 0.09};
+    return kShares[static_cast<std::size_t>(level)] * p.real(kCairnWidthM);
+  }
+
+  core::Bounds bounds(const models::Parameters& p) const override {
+    const auto width = static_cast<float>(p.real(kCairnWidthM));
+    const float aside = 0.8F * width;
+    return {{-aside, -0.2F * width, -aside},
+            {aside, 0.5F * width * static_cast<float>(stones_of(p)), aside}};
+  }
+
+  models::MeshSize mesh_size(const models::Parameters& p, int level) const override {
+    const std::uint32_t sides = kStoneSides[static_cast<std::size_t>(level)];
+    const std::uint32_t rings = kStoneRings[static_cast<std::size_t>(level)];
+    return {stones_of(p) * (2 + rings * sides), stones_of(p) * 6 * rings * sides, 0,
+            core::VertexLayout::kModel};
+  }
+
+  double complexity(const models::Parameters& p, int level) const override {
+    return mesh_size(p, level).triangle_count();
+  }
+
+  double log2_cost(const models::Parameters& p) const override {
+    const double stones = std::max(1.0, static_cast<double>(p.integer(kCairnStones)));
+    return std::log2(2.0 * kStoneSides[0] * kStoneRings[0] * stones);
+  }
+
+  core::Bounds synthesise(const models::Parameters& p, int level,
+                          const models::MeshView& out) const override {
+    StoneWriter writer(bounds(p), out, level);
+    core::Bounds tight{glm::vec3(1e9F), glm::vec3(-1e9F)};
+    float foot_m = 0;
+    for (std::uint32_t i = 0; i < stones_of(p); ++i) {
+      core::RandomStream random(static_cast<std::uint64_t>(p.integer(kCairnSeed)), 0, 0, i,
+                                core::Purpose::kColour);
+      writer.write(stone(p, i, foot_m), i, static_cast<float>(random.next_real(0.13, 0.27)), tight);
+    }
+    return tight;
+  }
+
+  models::Collider collider(const models::Parameters& p) const override {
+    models::Collider made;
+    float foot_m = 0;
+    Stone first{}, last{};
+    for (std::uint32_t i = 0; i < stones_of(p); ++i) {
+      last = stone(p, i, foot_m);
+      if (i == 0) first = last;
+    }
+    const float radius = 0.7F * first.radius;
+    made.shapes.emplace_back(models::Collider::Capsule{
+        {0, 0, 0}, {0, std::max(last.middle.y - radius, 0.05F), 0}, radius});
+    return made;
+  }
+};
+
 }  // namespace
 
-std::span<const models::ParameterSpec> CairnType::parameters() const {
-  return kSchema;
-}
-
-double CairnType::level_error_m(const models::Parameters& p, int level) const {
-  constexpr std::array<double, 3> kShares{0, 0.03, 0.09};
-  return kShares[static_cast<std::size_t>(level)] * p.real(kCairnWidthM);
-}
-
-core::Bounds CairnType::bounds(const models::Parameters& p) const {
-  const auto width = static_cast<float>(p.real(kCairnWidthM));
-  const float aside = 0.8F * width;
-  return {{-aside, -0.2F * width, -aside},
-          {aside, 0.5F * width * static_cast<float>(stones_of(p)), aside}};
-}
-
-models::MeshSize CairnType::mesh_size(const models::Parameters& p, int level) const {
-  const std::uint32_t sides = kStoneSides[static_cast<std::size_t>(level)];
-  const std::uint32_t rings = kStoneRings[static_cast<std::size_t>(level)];
-  return {stones_of(p) * (2 + rings * sides), stones_of(p) * 6 * rings * sides, 0,
-          core::VertexLayout::kModel};
-}
-
-double CairnType::complexity(const models::Parameters& p, int level) const {
-  return mesh_size(p, level).triangle_count();
-}
-
-double CairnType::log2_cost(const models::Parameters& p) const {
-  const double stones = std::max(1.0, static_cast<double>(p.integer(kCairnStones)));
-  return std::log2(2.0 * kStoneSides[0] * kStoneRings[0] * stones);
-}
-
-core::Bounds CairnType::synthesise(const models::Parameters& p, int level,
-                                   const models::MeshView& out) const {
-  StoneWriter writer(bounds(p), out, level);
-  core::Bounds tight{glm::vec3(1e9F), glm::vec3(-1e9F)};
-  float foot_m = 0;
-  for (std::uint32_t i = 0; i < stones_of(p); ++i) {
-    core::RandomStream random(static_cast<std::uint64_t>(p.integer(kCairnSeed)), 0, 0, i,
-                              core::Purpose::kColour);
-    writer.write(stone(p, i, foot_m), i, static_cast<float>(random.next_real(0.13, 0.27)), tight);
-  }
-  return tight;
-}
-
-models::Collider CairnType::collider(const models::Parameters& p) const {
-  models::Collider made;
-  float foot_m = 0;
-  Stone first{}, last{};
-  for (std::uint32_t i = 0; i < stones_of(p); ++i) {
-    last = stone(p, i, foot_m);
-    if (i == 0) first = last;
-  }
-  const float radius = 0.7F * first.radius;
-  made.shapes.emplace_back(models::Collider::Capsule{
-      {0, 0, 0}, {0, std::max(last.middle.y - radius, 0.05F), 0}, radius});
-  return made;
+std::unique_ptr<models::ModelType> make_cairn_type() {
+  return std::make_unique<CairnType>();
 }
 
 }  // namespace cairns

@@ -17,6 +17,22 @@ namespace {
 constexpr const char* kFile = "worlds/cairns.toml";
 constexpr std::string_view kSeedLine = "\nseed = ";
 
+// Value noise with one knot per integer, 0 to 1.
+double noise(std::uint64_t seed, double at) {
+  const double knot = std::floor(at);
+  const auto value = [&](double k) {
+    const std::uint64_t number = static_cast<std::uint64_t>(static_cast<std::int64_t>(k));
+    return static_cast<double>(psygen::core::combine(seed, number) >> 11) * 0x1.0p-53;
+  };
+  const double t = at - knot, s = t * t * (3 - 2 * t);
+  return std::lerp(value(knot), value(knot + 1), s);
+}
+
+// Linear ramp: 0 up to `from`, 1 from `to` on.
+double ramp(double value, double from, double to) {
+  return std::clamp((value - from) / (to - from), 0.0, 1.0);
+}
+
 }  // namespace
 
 std::uint64_t seed_of(std::string_view typed) {
@@ -45,15 +61,11 @@ core::Result<std::string> land_text(std::uint64_t seed) {
     return core::fail(core::ErrorCode::kParse, *file + ": the line `seed = …` is missing");
   const std::size_t from = line + kSeedLine.size();
   const std::size_t end = std::min(text.find('\n', from), text.size());
-  std::string changed = text.substr(0, from);
-  changed += '"';
-  changed += std::to_string(seed);
-  changed += '"';
-  return changed + text.substr(end);
+  return text.replace(from, end - from, '"' + std::to_string(seed) + '"');
 }
 
 core::Result<void> add_types(models::Registry& registry) {
-  const auto added = registry.add(std::make_unique<CairnType>());
+  const auto added = registry.add(make_cairn_type());
   if (!added) return tl::unexpected(added.error());
   return {};
 }
@@ -83,6 +95,19 @@ double distance_m(const core::WorldPosition& from, const core::WorldPosition& to
 core::WorldPosition position_at_offset(const core::WorldPosition& from, const glm::dvec3& way,
                                        double block_m) {
   return core::normalised({from.block, from.local + way}, block_m);
+}
+
+Weather weather_at(std::uint64_t seed, double time_s) {
+  // Every game starts in fair weather.
+  const double calm = ramp(time_s, 120, 420);
+  const double foul = calm * noise(seed ^ 1, time_s / 260);
+  Weather now;
+  now.clouds = std::lerp(0.2 + 0.25 * noise(seed ^ 2, time_s / 180), 1.0, ramp(foul, 0.45, 0.75));
+  now.wet = ramp(foul, 0.66, 0.9);
+  now.fog = std::max(0.45 * now.wet, calm * ramp(noise(seed ^ 3, time_s / 330), 0.72, 0.95));
+  const double speed = 1.5 + 7 * foul, from = 6.28 * noise(seed ^ 4, time_s / 700);
+  now.wind = {speed * std::cos(from), 0, speed * std::sin(from)};
+  return now;
 }
 
 }  // namespace cairns

@@ -1,5 +1,6 @@
 // The land of a game: the world file of Cairns with the game's seed, and distances between
-// positions. Pure, except for reading the world file. It contains no rules of the game.
+// positions, and the weather. Pure, except for reading the world file. It contains no rules of the
+// game.
 #pragma once
 
 #include <cstdint>
@@ -49,5 +50,18 @@ double distance_m(const core::WorldPosition& from, const core::WorldPosition& to
 // Returns the position at an offset in metres, normalised.
 core::WorldPosition position_at_offset(const core::WorldPosition& from, const glm::dvec3& way,
                                        double block_m);
+
+// The weather of a land, a pure function of its seed and the time.
+struct Weather {
+  double clouds = 0.4;   // 0 (clear) to 1 (overcast)
+  double wet = 0;        // 0 (dry) to 1 (pouring); snow where it is cold
+  double fog = 0;        // 0 (clear) to 1 (visibility of 150 m)
+  glm::dvec3 wind{0.0};  // m/s
+};
+
+// Returns the weather at a time of the game in seconds. Changes take minutes.
+Weather weather_at(std::uint64_t seed, double time_s);
+// Height in metres above which rain becomes snow.
+inline constexpr double kSnowLineM = 150;
 
 }  // namespace cairns

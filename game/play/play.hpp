@@ -13,10 +13,9 @@
 #include "engine/query/world.hpp"
 #include "engine/world/edits/edits.hpp"
 #include "game/play/creatures.hpp"
+#include "game/play/land.hpp"
 #include "game/play/route.hpp"
-#include "game/play/story.hpp"
 #include "game/play/walker.hpp"
-#include "game/play/weather.hpp"
 
 namespace cairns {
 

@@ -9,8 +9,8 @@
 #include "engine/core/camera.hpp"
 #include "engine/physics/world.hpp"
 #include "engine/query/world.hpp"
-#include "game/play/story.hpp"
-#include "game/play/weather.hpp"
+#include "game/play/land.hpp"
+#include "game/play/route.hpp"
 
 namespace cairns {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "engine/app/session.hpp"
-#include "engine/input/binding_capture.hpp"
+#include "engine/input/control.hpp"
 #include "game/play/play.hpp"
 #include "game/show/controls.hpp"
 #include "game/show/settings.hpp"

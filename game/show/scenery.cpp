@@ -5,7 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "ecs/ecs.hpp"
-#include "engine/core/mesh_shapes.hpp"
+#include "engine/core/mesh_data.hpp"
 #include "engine/scene/objects/assets.hpp"
 #include "engine/scene/objects/effects.hpp"
 #include "engine/scene/objects/particle_kinds.hpp"

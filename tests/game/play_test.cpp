@@ -247,7 +247,8 @@ TEST(Weather, DependsOnlyOnSeedAndTimeAndChangesSlowly) {
 }
 
 TEST(CairnType, WritesTheDeclaredSizeWithinItsBounds) {
-  const CairnType type;
+  const auto made = make_cairn_type();
+  const models::ModelType& type = *made;
   models::Parameters p = models::default_parameters(type);
   for (const int stones : {1, 6, 24}) {
     p.set_integer(kCairnStones, stones);

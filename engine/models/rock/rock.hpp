@@ -32,23 +32,21 @@ inline constexpr int kMaxSubdivisions = 6;
 
 // The schema of the type "rock", by RockParameter.
 inline constexpr ParameterSpec kRockSchema[] = {
-    placed(integer_parameter("seed", "", 1, HardRange{-0x1.0p63, 0x1.0p63}, SoftRange{0, 1000},
+    placed(integer_parameter("seed", "", 1, {-0x1.0p63, 0x1.0p63}, {0, 1000},
                              "selects one of all rocks")),
-    integer_parameter("subdivisions", "", 2, HardRange{0, kMaxSubdivisions}, SoftRange{0, 4},
+    integer_parameter("subdivisions", "", 2, {0, kMaxSubdivisions}, {0, 4},
                       "number of times that every triangle is split into four"),
-    real_parameter("radius_m", "m", 0.6, HardRange{0.01, 100}, SoftRange{0.1, 4}, "mean radius"),
-    real_parameter("amplitude", "1", 0.24, HardRange{0, 0.6}, SoftRange{0, 0.4},
+    real_parameter("radius_m", "m", 0.6, {0.01, 100}, {0.1, 4}, "mean radius"),
+    real_parameter("amplitude", "1", 0.24, {0, 0.6}, {0, 0.4},
                    "roughness: displacement relative to the radius"),
-    real_parameter("decay", "1", 0.55, HardRange{0, 1}, SoftRange{0.3, 0.9},
+    real_parameter("decay", "1", 0.55, {0, 1}, {0.3, 0.9},
                    "ratio of the displacements of two subdivisions"),
-    real_parameter("albedo", "1", 0.26, HardRange{0.02, 0.9}, SoftRange{0.1, 0.5},
+    real_parameter("albedo", "1", 0.26, {0.02, 0.9}, {0.1, 0.5},
                    "mean reflected fraction of light"),
-    real_parameter("warmth", "1", 0.25, HardRange{-1, 1}, SoftRange{-0.5, 0.7},
-                   "blue-grey (-1) to red-brown (1)"),
-    real_parameter("moss", "1", 0.3, HardRange{0, 1}, SoftRange{0, 1},
-                   "cover of moss on surfaces that face up"),
-    integer_parameter("family", "", kRockRounded, HardRange{0, kRockFamilyCount - 1},
-                      SoftRange{0, kRockFamilyCount - 1}, "0 rounded, 1 faceted, 2 layered"),
+    real_parameter("warmth", "1", 0.25, {-1, 1}, {-0.5, 0.7}, "blue-grey (-1) to red-brown (1)"),
+    real_parameter("moss", "1", 0.3, {0, 1}, {0, 1}, "cover of moss on surfaces that face up"),
+    integer_parameter("family", "", kRockRounded, {0, kRockFamilyCount - 1},
+                      {0, kRockFamilyCount - 1}, "0 rounded, 1 faceted, 2 layered"),
 };
 static_assert(std::size(kRockSchema) == kRockParameterCount);
 

@@ -64,7 +64,9 @@ struct KindPlan {
 inline constexpr std::uint32_t kMaxSprayVertices = 10, kMaxSprayTriangles = 8;
 struct SprayForm {
   std::uint32_t vertices, triangles;
-  float along[kMaxSprayVertices], across[kMaxSprayVertices], droop[kMaxSprayVertices];
+  struct {
+    float along[kMaxSprayVertices], across[kMaxSprayVertices], droop[kMaxSprayVertices];
+  } corners;
   std::uint8_t indices[3 * kMaxSprayTriangles];
 };
 

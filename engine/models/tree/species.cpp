@@ -28,10 +28,10 @@ struct NumberCheck {
   std::size_t number;
   Fault& first;
   void operator()(std::string_view field, double value, const NumberSpec& spec) const {
-    if (first || (value >= spec.low && value <= spec.high)) return;  // false for NaN
+    if (first || (value >= spec.hard.min && value <= spec.hard.max)) return;  // false for NaN
     first = fault(part, number, field,
                   fmt::format("{:g} is not allowed: it must be a number from {:g} to {:g}", value,
-                              spec.low, spec.high));
+                              spec.hard.min, spec.hard.max));
   }
   void operator()(std::string_view field, const std::array<double, 3>& colour,
                   const NumberSpec& spec) const {
@@ -113,7 +113,8 @@ NumberSpec range_of(const Species& s, std::string_view count) {
 }
 
 bool is_within(const NumberSpec& range, std::int64_t value) {
-  return static_cast<double>(value) >= range.low && static_cast<double>(value) <= range.high;
+  return static_cast<double>(value) >= range.hard.min &&
+         static_cast<double>(value) <= range.hard.max;
 }
 
 Fault check_growth(const Species& s) {
@@ -129,7 +130,7 @@ Fault check_growth(const Species& s) {
     return fault("", 0, field,
                  fmt::format("{} is not allowed: it must be an integer from {} to {} (predicted "
                              "cost: {} branches)",
-                             value, range.low, range.high, cost));
+                             value, range.hard.min, range.hard.max, cost));
   };
   if (Fault found = check("iterations", s.iterations)) return found;
   if (Fault found = check("branches", s.branches)) return found;
@@ -151,7 +152,7 @@ std::optional<SpeciesFault> find_fault(const Species& s) {
   if (const NumberSpec range = range_of(s, "spread"); !is_within(range, s.spread))
     return fault("", 0, "spread",
                  fmt::format("{} is not allowed: it must be an integer from {} to {}", s.spread,
-                             range.low, range.high));
+                             range.hard.min, range.hard.max));
   if (std::ranges::find(kFoliageForms, s.foliage.form) == kFoliageForms.end())
     return fault("foliage", 0, "form", "it must be leaflets, needles, fronds, clump or none");
   if (Fault found = check_numbers(s)) return found;

@@ -97,72 +97,77 @@ template <class S, class Visit>
 void visit_counts(S& s, const Visit& visit) {
   using Spec = NumberSpec;
   visit("iterations", s.iterations,
-        Spec{1, kMaxTreeIterations, 1, 6, "", "number of times that the rules apply"});
-  visit("branches", s.branches, Spec{1, 8, 1, 6, "", "mean number that a star fills up to"});
-  visit("spread", s.spread, Spec{0, 8, 0, 4, "", "variation of that number, up and down"});
+        Spec{{1, kMaxTreeIterations}, {1, 6}, "", "number of times that the rules apply"});
+  visit("branches", s.branches, Spec{{1, 8}, {1, 6}, "", "mean number that a star fills up to"});
+  visit("spread", s.spread, Spec{{0, 8}, {0, 4}, "", "variation of that number, up and down"});
 }
 template <class S, class Visit>
 void visit_numbers(S& s, const Visit& visit) {
   using Spec = NumberSpec;
-  visit("size_m", s.size_m, Spec{0.05, 30, 0.5, 8, "m", "length of the trunk"});
-  visit("radius_m", s.radius_m, Spec{0.002, 3, 0.02, 0.8, "m", "radius of the trunk"});
-  visit("flare", s.flare, Spec{0, 3, 0, 2, "", "widening of the trunk at its base"});
+  visit("size_m", s.size_m, Spec{{0.05, 30}, {0.5, 8}, "m", "length of the trunk"});
+  visit("radius_m", s.radius_m, Spec{{0.002, 3}, {0.02, 0.8}, "m", "radius of the trunk"});
+  visit("flare", s.flare, Spec{{0, 3}, {0, 2}, "", "widening of the trunk at its base"});
   visit("taper", s.taper,
-        Spec{0.1, 1, 0.5, 1, "", "radius of every branch at its end over that at its base"});
-  visit("trunk_curvature", s.trunk_curvature, Spec{0, 2, 0, 1, "", "crookedness of the trunk"});
+        Spec{{0.1, 1}, {0.5, 1}, "", "radius of every branch at its end over that at its base"});
+  visit("trunk_curvature", s.trunk_curvature, Spec{{0, 2}, {0, 1}, "", "crookedness of the trunk"});
   visit("crown_limit", s.crown_limit,
-        Spec{0, 4, 0, 2, "", "size of the ellipsoid that limits branches; 0: none"});
+        Spec{{0, 4}, {0, 2}, "", "size of the ellipsoid that limits branches; 0: none"});
   visit("colour_variation", s.colour_variation,
-        Spec{0, 1, 0, 1, "", "difference of the colours of two trees"});
+        Spec{{0, 1}, {0, 1}, "", "difference of the colours of two trees"});
 }
 template <class K, class Visit>
 void visit_kind_numbers(K& k, const Visit& visit) {
   using Spec = NumberSpec;
   visit("angle_deg", k.angle_deg,
-        Spec{0, 170, 0, 120, "degrees", "from the parent, at the highest position on it"});
+        Spec{{0, 170}, {0, 120}, "degrees", "from the parent, at the highest position on it"});
   visit("angle_low_deg", k.angle_low_deg,
-        Spec{0, 170, 0, 120, "degrees", "from the parent, at the lowest position on it"});
+        Spec{{0, 170}, {0, 120}, "degrees", "from the parent, at the lowest position on it"});
   visit("angle_variation", k.angle_variation,
-        Spec{0, 1, 0, 1, "", "spread of the angles, relative to the angle"});
+        Spec{{0, 1}, {0, 1}, "", "spread of the angles, relative to the angle"});
   visit("whorl_deg", k.whorl_deg,
-        Spec{0, 360, 0, 360, "degrees", "around the parent from one branch to the next"});
+        Spec{{0, 360}, {0, 360}, "degrees", "around the parent from one branch to the next"});
   visit("along_low", k.along_low,
-        Spec{0, 1, 0, 1, "", "lowest position on the parent; 0 is its base, 1 its end"});
+        Spec{{0, 1}, {0, 1}, "", "lowest position on the parent; 0 is its base, 1 its end"});
   visit("along_high", k.along_high,
-        Spec{0, 1, 0, 1, "", "highest position on the parent; 0 is its base, 1 its end"});
+        Spec{{0, 1}, {0, 1}, "", "highest position on the parent; 0 is its base, 1 its end"});
   visit("length", k.length,
-        Spec{0.02, 3, 0.2, 1.5, "", "relative to the parent's length, at the parent's end"});
-  visit("length_low", k.length_low,
-        Spec{0.02, 3, 0.2, 1.5, "", "relative to the parent's length, extrapolated to its base"});
+        Spec{{0.02, 3}, {0.2, 1.5}, "", "relative to the parent's length, at the parent's end"});
+  visit(
+      "length_low", k.length_low,
+      Spec{{0.02, 3}, {0.2, 1.5}, "", "relative to the parent's length, extrapolated to its base"});
   visit("radius", k.radius,
-        Spec{0.02, 1, 0.2, 1, "", "relative to the parent's radius at that position"});
-  visit("tropism", k.tropism, Spec{-2, 2, -1, 1, "", "bends upwards; negative: downwards"});
-  visit("curvature", k.curvature, Spec{0, 2, 0, 1, "", "crookedness of the branches"});
+        Spec{{0.02, 1}, {0.2, 1}, "", "relative to the parent's radius at that position"});
+  visit("tropism", k.tropism, Spec{{-2, 2}, {-1, 1}, "", "bends upwards; negative: downwards"});
+  visit("curvature", k.curvature, Spec{{0, 2}, {0, 1}, "", "crookedness of the branches"});
 }
 template <class R, class Visit>
 void visit_rule_numbers(R& r, const Visit& visit) {
   visit("probability", r.probability,
-        NumberSpec{0, 1, 0, 1, "", "of this rule, above 0; the rules of a kind add up to 1"});
+        NumberSpec{{0, 1}, {0, 1}, "", "of this rule, above 0; the rules of a kind add up to 1"});
 }
 template <class F, class Visit>
 void visit_foliage_numbers(F& f, const Visit& visit) {
   using Spec = NumberSpec;
-  constexpr Spec kShare{0, 1, 0, 1, "", "fraction of the sprays on the tree in that season"};
-  visit("random", f.random, Spec{0, 2, 0, 1, "", "randomness of the direction of sprays"});
-  visit("out", f.out, Spec{-2, 2, -1, 1, "", "tendency of sprays to point out of the crown"});
-  visit("branch", f.branch, Spec{-2, 2, -1, 1, "", "tendency of sprays to point along the branch"});
+  constexpr Spec kShare{{0, 1}, {0, 1}, "", "fraction of the sprays on the tree in that season"};
+  visit("random", f.random, Spec{{0, 2}, {0, 1}, "", "randomness of the direction of sprays"});
+  visit("out", f.out, Spec{{-2, 2}, {-1, 1}, "", "tendency of sprays to point out of the crown"});
+  visit("branch", f.branch,
+        Spec{{-2, 2}, {-1, 1}, "", "tendency of sprays to point along the branch"});
   visit("up", f.up,
-        Spec{-2, 2, -1, 1, "", "tendency of sprays to point upwards; negative: they hang"});
+        Spec{{-2, 2}, {-1, 1}, "", "tendency of sprays to point upwards; negative: they hang"});
   visit("side_random", f.side_random,
-        Spec{0, 2, 0, 1, "", "randomness of the direction of their width"});
+        Spec{{0, 2}, {0, 1}, "", "randomness of the direction of their width"});
   visit("side_out", f.side_out,
-        Spec{-2, 2, -1, 1, "", "tendency of their width to point out of the crown"});
-  visit("side_up", f.side_up, Spec{-2, 2, -1, 1, "", "tendency of their width to point upwards"});
-  visit("normal_up", f.normal_up, Spec{-1, 2, 0, 1, "", "light from above"});
-  visit("from", f.from, Spec{0, 0.95, 0, 0.95, "", "position on a branch where sprays begin"});
-  visit("cluster", f.cluster, Spec{0, 2, 0, 2, "", "distance of sprays from the branch"});
-  visit("size", f.size, Spec{0.1, 3, 0.3, 2, "", "relative to the size that just fills the crown"});
-  visit("density", f.density, Spec{0.1, 64, 0.3, 32, "", "sprays of eight triangles per branch"});
+        Spec{{-2, 2}, {-1, 1}, "", "tendency of their width to point out of the crown"});
+  visit("side_up", f.side_up,
+        Spec{{-2, 2}, {-1, 1}, "", "tendency of their width to point upwards"});
+  visit("normal_up", f.normal_up, Spec{{-1, 2}, {0, 1}, "", "light from above"});
+  visit("from", f.from, Spec{{0, 0.95}, {0, 0.95}, "", "position on a branch where sprays begin"});
+  visit("cluster", f.cluster, Spec{{0, 2}, {0, 2}, "", "distance of sprays from the branch"});
+  visit("size", f.size,
+        Spec{{0.1, 3}, {0.3, 2}, "", "relative to the size that just fills the crown"});
+  visit("density", f.density,
+        Spec{{0.1, 64}, {0.3, 32}, "", "sprays of eight triangles per branch"});
   visit("density_spring", f.density_spring, kShare);
   visit("density_summer", f.density_summer, kShare);
   visit("density_autumn", f.density_autumn, kShare);
@@ -173,9 +178,9 @@ template <class C, class Visit>
 void visit_colours(C& c, const Visit& visit) {
   using Spec = NumberSpec;
   for (std::size_t i = 0; i < kSeasonKeys.size(); ++i)
-    visit(kSeasonKeys[i], c.season[i], Spec{0, 1, 0, 1, "", "of the leaves in that season"});
-  visit("bark", c.bark, Spec{0, 1, 0, 1, "", "of trunk and branches"});
-  visit("bark_contrast", c.bark_contrast, Spec{0, 0.9, 0, 0.5, "", "of the bark's pattern"});
+    visit(kSeasonKeys[i], c.season[i], Spec{{0, 1}, {0, 1}, "", "of the leaves in that season"});
+  visit("bark", c.bark, Spec{{0, 1}, {0, 1}, "", "of trunk and branches"});
+  visit("bark_contrast", c.bark_contrast, Spec{{0, 0.9}, {0, 0.5}, "", "of the bark's pattern"});
 }
 
 // A fault of a species. `part` is "" (the species itself), "kind", "rule", "foliage" or "colours".

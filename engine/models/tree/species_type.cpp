@@ -165,31 +165,29 @@ class SpeciesType final : public PlannedTree {
 void SpeciesType::set_schema() {
   const auto n = static_cast<double>(species_.iterations);
   const auto m = static_cast<double>(species_.branches);
-  schema_[kSpeciesSeed] =
-      placed(integer_parameter("seed", "", 1, HardRange{-9.3e18, 9.3e18}, SoftRange{0, 1e6},
-                               "selects one tree of the species"));
+  schema_[kSpeciesSeed] = placed(integer_parameter("seed", "", 1, {-9.3e18, 9.3e18}, {0, 1e6},
+                                                   "selects one tree of the species"));
   schema_[kSpeciesIterations] =
-      integer_parameter("iterations", "1", n, HardRange{1, kMaxTreeIterations},
-                        SoftRange{std::max(n - 1, 1.0), n}, "number of times that the rules apply");
-  schema_[kSpeciesBranches] = integer_parameter("branches", "1", m, HardRange{1, kMaxBranches},
-                                                SoftRange{std::max(m - 1, 1.0), m},
-                                                "mean number of branches that a star fills up to");
+      integer_parameter("iterations", "1", n, {1, kMaxTreeIterations}, {std::max(n - 1, 1.0), n},
+                        "number of times that the rules apply");
+  schema_[kSpeciesBranches] =
+      integer_parameter("branches", "1", m, {1, kMaxBranches}, {std::max(m - 1, 1.0), m},
+                        "mean number of branches that a star fills up to");
   schema_[kSpeciesSizeM] =
-      real_parameter("size_m", "m", species_.size_m, HardRange{0.05, 30},
-                     SoftRange{0.7 * species_.size_m, std::min(1.4 * species_.size_m, 30.0)},
+      real_parameter("size_m", "m", species_.size_m, {0.05, 30},
+                     {0.7 * species_.size_m, std::min(1.4 * species_.size_m, 30.0)},
                      "length of the trunk up to its end");
   schema_[kSpeciesRadiusM] =
-      real_parameter("radius_m", "m", species_.radius_m, HardRange{0.002, 3},
-                     SoftRange{0.7 * species_.radius_m, std::min(1.4 * species_.radius_m, 3.0)},
+      real_parameter("radius_m", "m", species_.radius_m, {0.002, 3},
+                     {0.7 * species_.radius_m, std::min(1.4 * species_.radius_m, 3.0)},
                      "radius of the trunk above its flare");
-  schema_[kSpeciesSeason] = real_parameter("season", "1", 1, HardRange{0, 4}, SoftRange{0, 4},
+  schema_[kSpeciesSeason] = real_parameter("season", "1", 1, {0, 4}, {0, 4},
                                            "0 spring, 1 summer, 2 autumn, 3 winter, 4 spring");
-  schema_[kSpeciesLeafScale] =
-      real_parameter("leaf_scale", "1", 1, HardRange{0.1, 3}, SoftRange{0.7, 1.4},
-                     "size of leaves, relative to the species");
+  schema_[kSpeciesLeafScale] = real_parameter("leaf_scale", "1", 1, {0.1, 3}, {0.7, 1.4},
+                                              "size of leaves, relative to the species");
   schema_[kSpeciesColourVariation] =
-      real_parameter("colour_variation", "1", species_.colour_variation, HardRange{0, 1},
-                     SoftRange{0, 1}, "spread of colour between leaves and trees");
+      real_parameter("colour_variation", "1", species_.colour_variation, {0, 1}, {0, 1},
+                     "spread of colour between leaves and trees");
   for (ParameterSpec& spec : schema_)  // ranges around extreme defaults
     spec.soft_min = std::max(spec.soft_min, spec.hard_min);
 }

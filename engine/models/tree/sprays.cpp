@@ -164,11 +164,15 @@ HWY_INLINE void colour_sprays(const SprayJob& job, std::size_t count, Chunk& c) 
 template <const SprayForm& kForm, std::size_t kCorner>
 HWY_INLINE void write_corner(Vec3 p, Vec3 along, Vec3 across, Vec3 face, VU light, Pair look,
                              std::size_t part, std::uint32_t* block, Extent& extent) {
-  if constexpr (kForm.along[kCorner] != 0.0F) p = p + f1(kForm.along[kCorner]) * along;
+  if constexpr (kForm.corners.along[kCorner] != 0.0F)
+    p = p + f1(kForm.corners.along[kCorner]) * along;
   // The same product as at the mirrored corner.
-  if constexpr (kForm.across[kCorner] > 0.0F) p = p + f1(kForm.across[kCorner]) * across;
-  if constexpr (kForm.across[kCorner] < 0.0F) p = p - f1(-kForm.across[kCorner]) * across;
-  if constexpr (kForm.droop[kCorner] != 0.0F) p = p - f1(kForm.droop[kCorner]) * face;
+  if constexpr (kForm.corners.across[kCorner] > 0.0F)
+    p = p + f1(kForm.corners.across[kCorner]) * across;
+  if constexpr (kForm.corners.across[kCorner] < 0.0F)
+    p = p - f1(-kForm.corners.across[kCorner]) * across;
+  if constexpr (kForm.corners.droop[kCorner] != 0.0F)
+    p = p - f1(kForm.corners.droop[kCorner]) * face;
   const VU xy = xy_word(rounded_bits(p.x), rounded_bits(p.y));
   const VU zl = z_word(rounded_bits(p.z), light);
   extent.add(xy, zl);

@@ -18,7 +18,6 @@
 #include "engine/synthesis/synthesise.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/far/tree_impostors.hpp"
-#include "engine/world/models_reach.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::scene {

@@ -5,7 +5,7 @@
 #include "engine/models/edits.hpp"
 #include "engine/scene/components.hpp"
 #include "engine/scene/facts/world_facts.hpp"
-#include "engine/world/models_reach.hpp"
+#include "engine/world/placement.hpp"
 
 namespace psygen::scene {
 namespace {

@@ -74,10 +74,7 @@ class BlockReader {
     const std::size_t count = in_.get_count(16);
     for (std::size_t i = 0; i < count; ++i) {
       RemovedModel r;
-      r.index = in_.get<std::uint32_t>();
-      r.moved_id = in_.get<std::uint32_t>();
-      r.moved_to.x = in_.get<std::int32_t>();
-      r.moved_to.z = in_.get<std::int32_t>();
+      in_.read(r.index, r.moved_id, r.moved_to.x, r.moved_to.z);
       if (i > 0 && r.index <= edits.removed.back().index) return wrong("models are not in order");
       if (r.index >= models_per_block(world_))
         return wrong(fmt::format("the block has no model {}", r.index));
@@ -102,10 +99,7 @@ class BlockReader {
     const std::size_t count = in_.get_count(18);
     for (std::size_t i = 0; i < count; ++i) {
       PlacedModel p;
-      p.id = in_.get<std::uint32_t>();
-      p.local_m.x = in_.get<float>();
-      p.local_m.y = in_.get<float>();
-      p.above_m = in_.get<float>();
+      in_.read(p.id, p.local_m.x, p.local_m.y, p.above_m);
       const auto type = read_type();
       if (!type) return tl::unexpected(type.error());
       p.model = *type;
@@ -142,11 +136,7 @@ class BlockReader {
       e.change = static_cast<models::GroundChange>(change);
       e.square = in_.get<std::uint8_t>() != 0;
       e.centre.block = block_;
-      e.centre.local.x = in_.get<double>();
-      e.centre.local.z = in_.get<double>();
-      e.radius_m = in_.get<double>();
-      e.falloff = in_.get<double>();
-      e.height_m = in_.get<double>();
+      in_.read(e.centre.local.x, e.centre.local.z, e.radius_m, e.falloff, e.height_m);
       if (is_stamp(e.change)) {
         e.square = true;
         e.map = read_map();
@@ -164,8 +154,7 @@ class BlockReader {
 
   std::shared_ptr<const models::Heightmap> read_map() {
     auto map = std::make_shared<models::Heightmap>();
-    map->columns = in_.get<std::uint32_t>();
-    map->rows = in_.get<std::uint32_t>();
+    in_.read(map->columns, map->rows);
     const bool fits = map->columns <= kMaxHeightmapSide && map->rows <= kMaxHeightmapSide;
     if (fits) map->heights_m = in_.get_all<float>(std::size_t{map->columns} * map->rows);
     return map;  // check_ground() rejects maps that are too large
@@ -179,10 +168,7 @@ class BlockReader {
 
 void put_placed(const PlacedModel& p, const models::Registry& registry, Bytes& out) {
   const models::ModelType& type = registry[p.model];
-  core::put(out, p.id);
-  core::put(out, p.local_m.x);
-  core::put(out, p.local_m.y);
-  core::put(out, p.above_m);
+  core::put(out, p.id, p.local_m.x, p.local_m.y, p.above_m);
   const std::string_view name = type.name().substr(0, 255);
   core::put(out, static_cast<std::uint8_t>(name.size()));
   core::put_all(out, std::span<const char>(name));
@@ -193,14 +179,11 @@ void put_placed(const PlacedModel& p, const models::Registry& registry, Bytes& o
 }
 
 void put_ground(const GroundEdit& e, Bytes& out) {
-  core::put(out, e.id);
-  core::put(out, static_cast<std::uint8_t>(e.change));
-  core::put(out, static_cast<std::uint8_t>(e.square ? 1 : 0));
-  for (const double v : {e.centre.local.x, e.centre.local.z, e.radius_m, e.falloff, e.height_m})
-    core::put(out, v);
+  core::put(out, e.id, static_cast<std::uint8_t>(e.change),
+            static_cast<std::uint8_t>(e.square ? 1 : 0), e.centre.local.x, e.centre.local.z,
+            e.radius_m, e.falloff, e.height_m);
   if (!is_stamp(e.change)) return;
-  core::put(out, e.map->columns);
-  core::put(out, e.map->rows);
+  core::put(out, e.map->columns, e.map->rows);
   core::put_all(out, std::span<const float>(e.map->heights_m));
 }
 
@@ -211,15 +194,9 @@ std::vector<std::byte> encode_block(const Edits& edits, const models::Registry& 
   const BlockEdits* const of_block = edits.layer() ? edits.layer()->block(block) : nullptr;
   if (of_block == nullptr) return {};
   Bytes out;
-  core::put(out, kMagic);
-  core::put(out, kEditFormat);
-  core::put(out, static_cast<std::uint32_t>(of_block->removed.size()));
-  for (const RemovedModel& r : of_block->removed) {
-    core::put(out, r.index);
-    core::put(out, r.moved_id);
-    core::put(out, r.moved_to.x);
-    core::put(out, r.moved_to.z);
-  }
+  core::put(out, kMagic, kEditFormat, static_cast<std::uint32_t>(of_block->removed.size()));
+  for (const RemovedModel& r : of_block->removed)
+    core::put(out, r.index, r.moved_id, r.moved_to.x, r.moved_to.z);
   core::put(out, static_cast<std::uint32_t>(of_block->placed.size()));
   for (const PlacedModel& p : of_block->placed)
     put_placed(p, registry, out);

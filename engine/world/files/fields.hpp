@@ -21,7 +21,7 @@ using FieldSpec = models::NumberSpec;
 struct FieldReader {
   TableReader& reader;
   void operator()(std::string_view key, auto& field, const FieldSpec& spec) const {
-    reader.read(key, field, {spec.low, spec.high});
+    reader.read(key, field, {spec.hard.min, spec.hard.max});
   }
 };
 
@@ -39,12 +39,7 @@ struct FieldWriter {
 
 // A field with these limits, and with a slider over the range `usual`.
 constexpr FieldSpec in(std::string_view unit, Limits limits, Limits usual, std::string_view doc) {
-  return {.low = limits.low,
-          .high = limits.high,
-          .soft_low = usual.low,
-          .soft_high = usual.high,
-          .unit = unit,
-          .doc = doc};
+  return {{limits.low, limits.high}, {usual.low, usual.high}, unit, doc};
 }
 // The limits of common quantities.
 constexpr FieldSpec radiance(double usual, std::string_view doc) {

@@ -1,7 +1,14 @@
 #include "engine/world/files/model_fields.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "engine/world/files/fields.hpp"
+#include "engine/world/files/toml_values.hpp"
 #include "engine/world/placement.hpp"
 
 namespace psygen::world {
@@ -23,6 +30,34 @@ std::size_t culprit_of(const ModelFields& fields, const models::Parameters& p) {
 std::uint32_t corner_count(const ModelFields& fields) {
   return 1U << std::ranges::count_if(fields.ranges,
                                      [](const ParameterRange& r) { return r.low != r.high; });
+}
+
+// Reads a table, except its file. Returns false after a problem.
+bool read_table(TableReader& reader, HandmadeModel& model) {
+  bool sound = reader.read("name", model.name, 64, Presence::kRequired);
+  read_name_beside(reader, "file", model.file, Presence::kRequired);
+  visit_handmade(model, FieldReader{reader});
+  if (reader.read("collider", model.collider, 16) &&
+      std::ranges::find(kHandmadeColliders, model.collider) == kHandmadeColliders.end())
+    reader.problem("collider",
+                   fmt::format("it must be one of {}", fmt::join(kHandmadeColliders, ", ")));
+  if (model.size_m > 0 && model.scale != 1)
+    reader.problem("scale",
+                   "size_m already sets the height of the model; give only one of the two");
+  reader.finish();
+  return sound;
+}
+
+void register_model(const HandmadeModel& model, const HandmadeSource& source, TableReader& reader) {
+  if (source.beside.files == nullptr)
+    return reader.problem("file", "this program cannot read glTF models (engine/handmade)",
+                          core::ErrorCode::kInvalidArgument);
+  auto type = source.beside.path_of(model.file).and_then([&](const std::filesystem::path& file) {
+    return source.beside.files->read_model(file, model);
+  });
+  if (!type) return reader.problem("file", type.error().message, type.error().code);
+  if (const auto refused = register_type(std::move(*type), source.registry, source.grown))
+    reader.problem("name", *refused);
 }
 
 }  // namespace
@@ -82,6 +117,49 @@ double log2_cost(const ModelFields& fields) {
   for (std::uint32_t corner = 0; corner < corner_count(fields); ++corner)
     cost = std::max(cost, fields.type->log2_cost(corner_of(fields, corner)));
   return cost;
+}
+
+std::optional<std::string> register_type(std::unique_ptr<models::ModelType> type,
+                                         const models::Registry& registry,
+                                         models::Registry* grown) {
+  if (const int known = registry.find(type->name()); known >= 0) {
+    const models::ModelType& there = registry[static_cast<models::ModelIndex>(known)];
+    if (there.identity() == type->identity()) return std::nullopt;
+    return fmt::format("another model is named {}", type->name());
+  }
+  if (grown == nullptr) return "this registry does not accept new models";
+  const auto added = grown->add(std::move(type));
+  return added ? std::nullopt : std::optional(added.error().message);
+}
+
+bool read_name_beside(TableReader& reader, std::string_view key, std::string& name,
+                      Presence presence) {
+  constexpr std::size_t kMaxBytes = 200;
+  if (!reader.read(key, name, kMaxBytes, presence)) return false;
+  const std::filesystem::path path(name);
+  const bool leads_out = path.has_root_path() || std::ranges::find(path, "..") != path.end();
+  if (leads_out)
+    reader.problem(key, "it must be relative to the folder of the world file, without ..");
+  return !leads_out;
+}
+
+std::vector<HandmadeModel> read_handmade(TableReader& root, const HandmadeSource& source) {
+  std::vector<HandmadeModel> models;
+  for (TableReader& reader : root.tables("model", kMaxHandmadeModels)) {
+    const bool sound = read_table(reader, models.emplace_back());
+    if (sound && !root.problems().any()) register_model(models.back(), source, reader);
+  }
+  return models;
+}
+
+void write_handmade(const std::vector<HandmadeModel>& models, std::string& text) {
+  const auto out = std::back_inserter(text);
+  for (const HandmadeModel& model : models) {
+    fmt::format_to(out, "\n[[model]]\nname = {}\nfile = {}\n", toml_string(model.name),
+                   toml_string(model.file));
+    visit_handmade(model, FieldWriter{text});
+    fmt::format_to(out, "collider = {}\n", toml_string(model.collider));
+  }
 }
 
 }  // namespace psygen::world

@@ -9,7 +9,6 @@
 #include <iterator>
 
 #include "engine/world/files/fields.hpp"
-#include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/model_fields.hpp"
 #include "engine/world/files/toml_values.hpp"
 #include "engine/world/ground_blends.hpp"

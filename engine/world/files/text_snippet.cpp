@@ -6,7 +6,6 @@
 #include <set>
 
 #include "engine/world/files/document.hpp"
-#include "engine/world/files/text_change.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/text_layout.hpp"
 

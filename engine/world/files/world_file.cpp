@@ -15,7 +15,6 @@
 #include "engine/core/utf8.hpp"
 #include "engine/world/files/document.hpp"
 #include "engine/world/files/fields.hpp"
-#include "engine/world/files/handmade_file.hpp"
 #include "engine/world/files/model_fields.hpp"
 #include "engine/world/files/scatter_file.hpp"
 #include "engine/world/files/shaped_file.hpp"

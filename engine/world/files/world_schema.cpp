@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/world/files/fields.hpp"
-#include "engine/world/files/handmade_file.hpp"
+#include "engine/world/files/model_fields.hpp"
 #include "engine/world/files/scatter_file.hpp"
 #include "engine/world/files/shaped_file.hpp"
 #include "engine/world/files/species_file.hpp"
@@ -105,9 +105,9 @@ class SchemaBuilder {
     field.kind = now.kind;
     field.unit = spec.unit == "1" ? "" : spec.unit;
     field.doc = spec.doc;
-    field.hard_min = spec.low, field.hard_max = spec.high;
-    field.soft_min = spec.soft_low, field.soft_max = spec.soft_high;
-    field.logarithmic = spec.soft_low > 0 && spec.soft_high >= kDecades * spec.soft_low;
+    field.hard_min = spec.hard.min, field.hard_max = spec.hard.max;
+    field.soft_min = spec.soft.min, field.soft_max = spec.soft.max;
+    field.logarithmic = spec.soft.min > 0 && spec.soft.max >= kDecades * spec.soft.min;
     const TextPlace* at = layout_.find(field.path);
     field.is_set = at != nullptr;
     field.value = field.is_set ? std::string(layout_.value_of(*at)) : std::move(now.toml);
@@ -150,12 +150,7 @@ class SchemaBuilder {
     FieldValue value{kind, toml_range(now.low, now.high, integer), {now.low}};
     if (is_range) value.numbers.push_back(now.high);
     add(to, key, std::move(value), toml_range(spec.default_value, spec.default_value, integer),
-        {.low = spec.hard_min,
-         .high = spec.hard_max,
-         .soft_low = spec.soft_min,
-         .soft_high = spec.soft_max,
-         .unit = spec.unit,
-         .doc = spec.doc});
+        {{spec.hard_min, spec.hard_max}, {spec.soft_min, spec.soft_max}, spec.unit, spec.doc});
   }
   void add_terrain_parameter(WorldSection& to, std::string_view key, std::size_t i) const {
     const models::ModelType& type = registry_[world_.terrain_model];
@@ -170,9 +165,8 @@ class SchemaBuilder {
                     toml_seed(world_.seed),
                     {static_cast<double>(world_.seed)},
                     fmt::format("{}", world_.seed)};
-    add_required(
-        made, "seed", std::move(seed),
-        {.high = 0x1.0p64, .soft_high = 0x1.0p63, .unit = "", .doc = "random seed of the world"});
+    add_required(made, "seed", std::move(seed),
+                 {{0, 0x1.0p64}, {0, 0x1.0p63}, "", "random seed of the world"});
     const double x = static_cast<double>(world_.blocks_x), z = static_cast<double>(world_.blocks_z);
     FieldValue blocks{
         FieldKind::kIntegerPair, fmt::format("[{}, {}]", world_.blocks_x, world_.blocks_z), {x, z}};

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
-#include "engine/image/similarity.hpp"
 #include "tests/bench/image/pictures_in.hpp"
 #include "tests/bench/image/seen_difference.hpp"
 

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "engine/image/flicker.hpp"
+#include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "tests/bench/image/pictures_in.hpp"
 

@@ -12,10 +12,10 @@
 #include "engine/core/replace_file.hpp"
 #include "engine/frametest/frame_test.hpp"
 #include "engine/telemetry/frame_log.hpp"
+#include "engine/world/camera_path.hpp"
 #include "engine/world/files/path_file.hpp"
 #include "engine/world/files/text_file.hpp"
 #include "engine/world/files/world_file.hpp"
-#include "engine/world/recorded_path.hpp"
 #include "tests/source_file.hpp"
 #include "tests/temporary_folder.hpp"
 

@@ -1,8 +1,8 @@
-#include "engine/core/heap_geometry_memory.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "engine/core/geometry_memory.hpp"
 
 namespace psygen::core {
 namespace {

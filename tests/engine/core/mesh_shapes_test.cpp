@@ -1,8 +1,8 @@
-#include "engine/core/mesh_shapes.hpp"
-
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
+
+#include "engine/core/mesh_data.hpp"
 
 namespace psygen::core {
 namespace {

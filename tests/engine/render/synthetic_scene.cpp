@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/geometry_memory.hpp"
 
 namespace psygen::render::synthetic {
 

@@ -1,8 +1,7 @@
-#include "engine/synthesis/cost_correction.hpp"
-
 #include <gtest/gtest.h>
 
 #include "engine/core/hash.hpp"
+#include "engine/synthesis/cost_fit.hpp"
 
 namespace psygen::synthesis {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <deque>
 
-#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/geometry_memory.hpp"
 
 namespace psygen::synthesis::testing {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/geometry_memory.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 
 namespace psygen::synthesis {

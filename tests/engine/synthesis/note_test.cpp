@@ -3,9 +3,9 @@
 
 #include <thread>
 
-#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/geometry_memory.hpp"
 #include "engine/synthesis/content_hash.hpp"
-#include "engine/synthesis/landing.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 #include "engine/synthesis/synthesis_manager.hpp"
 #include "engine/synthesis/synthesise.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"

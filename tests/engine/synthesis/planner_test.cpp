@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "engine/core/clock.hpp"
-#include "engine/core/heap_geometry_memory.hpp"
-#include "engine/synthesis/landing.hpp"
+#include "engine/core/geometry_memory.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"
 
 namespace psygen::synthesis {

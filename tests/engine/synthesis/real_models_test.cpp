@@ -1,9 +1,9 @@
 // Tests the standard models through the whole pipeline: plan, modelers, cache, hash.
 #include <gtest/gtest.h>
 
-#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/geometry_memory.hpp"
 #include "engine/synthesis/content_hash.hpp"
-#include "engine/synthesis/landing.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 #include "engine/synthesis/planner.hpp"
 
 namespace psygen::synthesis {

@@ -9,7 +9,7 @@
 #include <map>
 #include <thread>
 
-#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/geometry_memory.hpp"
 #include "engine/synthesis/planner.hpp"
 #include "engine/synthesis/synthesis_manager.hpp"
 #include "engine/synthesis/synthesise.hpp"

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <thread>
 
-#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/geometry_memory.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/synthesis/synthesise.hpp"
 #include "tests/engine/synthesis/fake_models.hpp"

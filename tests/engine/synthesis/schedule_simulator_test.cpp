@@ -1,8 +1,7 @@
-#include "engine/synthesis/schedule_simulator.hpp"
-
 #include <gtest/gtest.h>
 
 #include "engine/core/hash.hpp"
+#include "engine/synthesis/request_stream.hpp"
 
 namespace psygen::synthesis {
 namespace {

@@ -1,6 +1,6 @@
-#include "engine/synthesis/unwanted_meshes.hpp"
-
 #include <gtest/gtest.h>
+
+#include "engine/synthesis/geometry_cache.hpp"
 
 namespace psygen::synthesis {
 namespace {

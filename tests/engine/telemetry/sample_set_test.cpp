@@ -1,11 +1,10 @@
-#include "engine/telemetry/sample_set.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/statistics.hpp"
 
 namespace psygen::telemetry {

@@ -70,7 +70,6 @@ TEST(TraceLog, ATrackKeepsItsNewestSpansInOrderIndependentlyOfOthers) {
   trace.add_span(main, name, 0.0, 0.5, 1000);
   for (int i = 0; i < 10; ++i)
     trace.add_span(modeler, name, i, i + 0.5, static_cast<std::uint64_t>(i));
-  EXPECT_EQ(trace.kept_count(), 5U);
   EXPECT_EQ(trace.dropped_count(), 6U);
   const json j = written(trace);
   std::vector<int> ids;
@@ -98,7 +97,6 @@ TEST(TraceLog, IgnoresSpansThatEndBeforeTheyStart) {
   const auto track = trace.add_track("main");
   trace.add_span(track, trace.intern("x"), 2.0, 1.0);
   trace.add_span(track, trace.intern("x"), std::nan(""), 1.0);
-  EXPECT_EQ(trace.kept_count(), 0U);
   EXPECT_TRUE(events_of_kind(written(trace), "X").empty());
 }
 

@@ -1,4 +1,3 @@
-#include "engine/world/models_reach.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include "engine/world/edits/edits.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/files/world_schema.hpp"
-#include "engine/world/models_reach.hpp"
 #include "engine/world/placement.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/world/shaped_worlds.hpp"

@@ -1,10 +1,9 @@
-#include "engine/world/recorded_path.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "engine/world/camera_path.hpp"
 #include "engine/world/files/path_file.hpp"
 #include "tests/engine/world/shipped.hpp"
 

@@ -124,9 +124,10 @@ class FoliageOracle : public BranchOracle {
             glm::dvec3(p_.bounds.centre());
     std::vector<Vertex> result;
     for (std::uint32_t c = 0; c < form.vertices; ++c)
-      result.push_back({place + length * ((d(form.along[c]) - 0.45) * axis +
-                                          d(form.across[c]) * side - d(form.droop[c]) * face),
-                        normal, false, numbers[c == 0 ? 0 : 1]});
+      result.push_back(
+          {place + length * ((d(form.corners.along[c]) - 0.45) * axis +
+                             d(form.corners.across[c]) * side - d(form.corners.droop[c]) * face),
+           normal, false, numbers[c == 0 ? 0 : 1]});
     return result;
   }
   std::array<std::uint32_t, 2> spray_looks(const glm::dvec3& place, std::uint32_t h3,

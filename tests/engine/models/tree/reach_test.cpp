@@ -70,7 +70,7 @@ Species extreme_species(Random& random, int i) {
   s.name = std::string("any");
   s.doc = std::string("any");
   const auto draw = [&](std::string_view, double& value, const NumberSpec& spec) {
-    value = extreme(random, spec.low, spec.high);
+    value = extreme(random, spec.hard.min, spec.hard.max);
   };
   visit_numbers(s, draw);
   s.crown_limit = i % 2 == 0 ? 0 : extreme(random, 0.05, 4);

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/geometry_memory.hpp"
 #include "engine/scene/state.hpp"
 #include "tests/engine/scene/fixture.hpp"
 

@@ -1,4 +1,3 @@
-#include "engine/world/files/text_screen.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "engine/core/heap_geometry_memory.hpp"
+#include "engine/core/geometry_memory.hpp"
 
 #include <algorithm>
 #include <new>
