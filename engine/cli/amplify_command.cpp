@@ -116,6 +116,13 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
 int AmplifyCommand::run() {
   if (!simd_.empty()) models::pin_simd_target(simd_);
   if (mpi_ || (cluster::is_rank() && !shard_ && samples_.empty())) return run_rank();
+  if (const unsigned copies = cluster::copies_started(); copies > 1 && !shard_ && samples_.empty())
+    return fail_with({core::ErrorCode::kInvalidArgument,
+                      fmt::format("srun started {0} copies, and each would make the whole region; "
+                                  "share it by MPI (mpirun -n {0} psygen amplify ..., or srun "
+                                  "--mpi=pmix with --mpi), or by shards (--shard "
+                                  "$((SLURM_PROCID + 1))/{0} in a script that srun starts)",
+                                  copies)});
   models::Registry registry = models::make_standard_registry();
   const auto world = load_world_and_files(world_, registry);
   if (!world) return fail_with(world.error());

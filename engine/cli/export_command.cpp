@@ -17,6 +17,7 @@
 #include "engine/cli/option_checks.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/cli/text_values.hpp"
+#include "engine/cluster/peers.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/nearest_word.hpp"
 #include "engine/core/utf8.hpp"
@@ -275,6 +276,8 @@ core::Result<exchange::Document> ExportCommand::block_document(
 int ExportCommand::export_region(const world::World& world,
                                  const models::Registry& registry) const {
   if (auto ok = amplify::check_region(world, *region_); !ok) return fail_with(ok.error());
+  if (auto ok = cluster::check_one_copy("export the whole region"); !ok)
+    return fail_with(ok.error());
   const unsigned threads =
       threads_ > 0 ? threads_ : amplify::threads_for(std::thread::hardware_concurrency());
   if (format_ == "heightmap") return export_heightmap(world, threads);

@@ -18,6 +18,7 @@
 #include "engine/cluster/job.hpp"
 #include "engine/cluster/meeting.hpp"
 #include "engine/cluster/model_server.hpp"
+#include "engine/cluster/peers.hpp"
 #include "engine/cluster/remote_modeler_pool.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
@@ -319,12 +320,11 @@ core::Result<void> FlyCommand::write_requests() const {
 }
 
 std::string FlyCommand::validate_cluster_options() const {
-  const char* const ranks = std::getenv("OMPI_COMM_WORLD_SIZE");
-  if (!in_cluster_ && ranks != nullptr && std::atoi(ranks) > 1)
+  if (const unsigned copies = cluster::copies_started(); !in_cluster_ && copies > 1)
     return fmt::format(
-        "each of the {} MPI ranks would start its own flight; with --cluster, rank 0 flies and "
-        "the others make its meshes",
-        ranks);
+        "each of the {} processes would start its own flight; with mpirun and --cluster, rank 0 "
+        "flies and the others make its meshes",
+        copies);
   if (in_cluster_ && !was_started_as_rank())
     return "--cluster needs other ranks: mpirun -n 4 psygen fly --cluster";
   return {};

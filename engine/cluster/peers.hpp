@@ -83,6 +83,13 @@ class Nap {
 // Returns true if mpirun started this process as a rank.
 bool is_rank();
 
+// Returns the number of processes of this job step, as mpirun (OMPI_COMM_WORLD_SIZE), srun
+// (SLURM_STEP_NUM_TASKS) or another launcher (PMI_SIZE) tells it; 1 for a process started alone.
+// SLURM_NTASKS does not count, because the shell of a batch script has it too.
+unsigned copies_started();
+// Fails with kInvalidArgument if several copies would do the same work ("make the whole region").
+core::Result<void> check_one_copy(std::string_view work);
+
 // Loads MPI and joins the other ranks. Fails with kInternal if psygen was built without MPI or its
 // libraries are missing.
 core::Result<std::unique_ptr<Peers>> join_communicator();

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "engine/core/hash.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/world/files/document.hpp"
 #include "engine/world/files/fields.hpp"
@@ -61,7 +62,8 @@ void read_world_table(TableReader& root, World& world, ModelFields& terrain) {
   reader->read("name", world.name, kMaxNameBytes, Presence::kRequired);
   read_seed(*reader, world.seed);
   std::int64_t blocks[2] = {0, 0};
-  if (reader->read_pair("blocks", blocks, {kBlocks.low, kBlocks.high}, Presence::kRequired)) {
+  if (reader->read_pair("blocks", blocks, {kBlocks.hard.min, kBlocks.hard.max},
+                        Presence::kRequired)) {
     world.blocks_x = blocks[0];
     world.blocks_z = blocks[1];
   }
@@ -186,6 +188,7 @@ void write_terrain(std::string& text, const World& world, const models::ModelTyp
 
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
                                 models::Registry& registry, const ResourceLoader* beside) {
+  const core::RoundToNearest rounding;
   const std::size_t before = registry.size();
   auto world = read_world(text, file_name, registry, &registry, beside);
   if (!world) registry.shrink(before);
@@ -194,6 +197,7 @@ core::Result<World> parse_world(std::string_view text, std::string_view file_nam
 
 core::Result<World> parse_world(std::string_view text, std::string_view file_name,
                                 const models::Registry& registry, const ResourceLoader* beside) {
+  const core::RoundToNearest rounding;
   return read_world(text, file_name, registry, nullptr, beside);
 }
 

@@ -37,6 +37,22 @@ TEST_F(Shards, MergedShardsHaveTheHashOfOneProcessWithOneThread) {
   EXPECT_EQ(hash_in(run("merge s s/kept --json")), whole);
 }
 
+// The shell of a batch script knows the job's tasks too, and is one process.
+TEST_F(Shards, CopiesThatWouldAllMakeTheWholeRegionAreRejected) {
+  for (const char* variable : {"SLURM_STEP_NUM_TASKS=4", "PMI_SIZE=4"}) {
+    for (const char* work : {"--out s", ""}) {
+      const Outcome outcome = amplify(work, variable);
+      EXPECT_EQ(outcome.code, 1);
+      EXPECT_TRUE(mentions(outcome.err, "4 copies, and each would make the whole region"))
+          << outcome.err;
+    }
+    EXPECT_EQ(amplify("--shard 1/3 --out s --format none", variable).code, 0);
+    EXPECT_EQ(run("export --world small.toml --region 0,0,1,1 --out t", variable).code, 1);
+  }
+  for (const char* variable : {"SLURM_STEP_NUM_TASKS=1", "SLURM_NTASKS=4"})
+    EXPECT_EQ(amplify("", variable).code, 0);
+}
+
 // The process dies at a call that writes, also inside a write, twenty times, at moments chosen by a
 // seed. The files that it leaves are complete, and the same command finishes the shard.
 TEST_F(Shards, ShardsKilledAtAnyMomentCanBeResumed) {

@@ -170,7 +170,7 @@ TEST_F(Mpirun, AFlightThatCannotBeDistributedSaysWhyOnce) {
   std::ofstream(folder_ / "rocks.toml") << kRocks;
   const Outcome each = run("-n 3 FLY ");
   EXPECT_NE(each.code, 0);
-  const std::string sentence = "each of the 3 MPI ranks would start its own flight";
+  const std::string sentence = "each of the 3 processes would start its own flight";
   EXPECT_TRUE(mentions(each.err, sentence)) << each.err;
   EXPECT_EQ(each.err.find(sentence), each.err.rfind(sentence));
   std::ofstream(folder_ / "other.toml") << kRocks << "radius_m = [1, 2]\n";
