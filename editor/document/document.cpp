@@ -39,21 +39,6 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   return !a.empty() && !b.empty() && file_key(a) == file_key(b);
 }
 
-// Replaces a file atomically, also behind a symbolic link, and keeps its permissions.
-core::Result<void> write_whole(const std::filesystem::path& file, std::string_view text) {
-  std::error_code error;
-  const std::filesystem::path target = std::filesystem::canonical(file, error);
-  if (error) return core::replace_file(file, text);
-  if (access(target.c_str(), W_OK) != 0)
-    return core::fail(
-        core::ErrorCode::kIo,
-        fmt::format("{}: the file is read-only; save it under another name", file.string()));
-  const auto permissions = std::filesystem::status(target, error).permissions();
-  auto written = core::replace_file(target, text);
-  if (written) std::filesystem::permissions(target, permissions, error);
-  return written;
-}
-
 }  // namespace
 
 Document::Document(DocumentOptions options, QObject* parent)
@@ -197,7 +182,7 @@ core::Result<void> Document::save() {
 }
 
 core::Result<void> Document::write_all(const std::filesystem::path& file) {
-  auto written = write_pictures(file).and_then([&] { return write_whole(file, *text_); });
+  auto written = write_pictures(file).and_then([&] { return core::replace_file(file, *text_); });
   if (written) note_pictures_written();
   return written;
 }

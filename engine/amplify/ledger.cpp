@@ -316,8 +316,14 @@ core::Result<std::unique_ptr<Ledger>> Ledger::open(std::filesystem::path file, L
 
 // Opens the file to append and locks it. File systems without locks are used unlocked.
 core::Result<void> Ledger::lock() {
-  const int handle = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  // O_NONBLOCK: a pipe would wait for a reader.
+  const int handle = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NONBLOCK);
   if (handle < 0) return io_error(file_, "cannot be opened");
+  struct stat status {};
+  if (fstat(handle, &status) != 0 || !S_ISREG(status.st_mode)) {
+    close(handle);
+    return core::fail(core::ErrorCode::kIo, file_.string() + ": is not a regular file");
+  }
   const bool refused = flock(handle, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   if (refused || !is_at(file_, handle)) {
     close(handle);

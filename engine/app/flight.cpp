@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -60,6 +61,9 @@ void forget_real_times(telemetry::FrameRecord& record) {
   record.apart = telemetry::Apart::kNo;
 }
 
+// Files of the output folder, which exist after the flight.
+constexpr std::array kFiles{"summary.json", "report.html", "frames.csv", "trace.json"};
+
 }  // namespace
 
 core::Result<std::unique_ptr<Flight>> Flight::create(FlightOptions options) {
@@ -72,7 +76,12 @@ core::Result<std::unique_ptr<Flight>> Flight::create(FlightOptions options) {
 
 core::Result<void> Flight::open() {
   if (!options_.out_folder.empty()) {
-    if (auto ok = telemetry::create_output_folder(options_.out_folder); !ok) return ok;
+    auto folder = telemetry::OutputFolder::open(options_.out_folder);
+    if (!folder) return tl::unexpected(folder.error());
+    out_.emplace(std::move(*folder));
+    for (const char* name : kFiles) {
+      if (auto ok = telemetry::check_output_file(options_.out_folder / name); !ok) return ok;
+    }
   }
   if (!options_.path_file.empty()) {
     auto path = world::load_camera_path(options_.path_file);

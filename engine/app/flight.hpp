@@ -11,6 +11,7 @@
 #include "engine/app/session.hpp"
 #include "engine/platform/fly_camera.hpp"
 #include "engine/telemetry/frame_log.hpp"
+#include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/summary.hpp"
 #include "engine/world/camera_path.hpp"
 
@@ -71,6 +72,7 @@ class Flight {
   void note_written(const std::filesystem::path& file, const core::Result<void>& result);
 
   FlightOptions options_;
+  std::optional<telemetry::OutputFolder> out_;  // of options_.out_folder
   std::unique_ptr<Session> session_;
   std::optional<world::CameraPath> path_;
   std::unique_ptr<telemetry::FrameLog> log_;

@@ -3,22 +3,23 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <link.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "engine/cli/commands.hpp"
@@ -77,21 +78,52 @@ std::vector<std::string> with_ours(std::vector<std::string> environment) {
   return ours;
 }
 
-// The words of a command line, separated by blanks; quotes are not supported.
-std::vector<std::string> words_of(const std::string& command) {
+// The words of a command line, by the shell's rules for blanks, quotes and backslashes; nothing is
+// expanded. Fails with kInvalidArgument for an open quote and without a word.
+core::Result<std::vector<std::string>> words_of(const std::string& command) {
   std::vector<std::string> words;
-  std::istringstream text(command);
-  for (std::string word; text >> word;)
-    words.push_back(word);
+  bool in_word = false;
+  char quote = 0;
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    const char c = command[i];
+    const bool blank = c == ' ' || c == '\t' || c == '\n';
+    if (quote == 0 && blank) {
+      in_word = false;
+      continue;
+    }
+    if (!std::exchange(in_word, true)) words.emplace_back();
+    if (c == '\\' && quote != '\'' && i + 1 < command.size())
+      words.back() += command[++i];
+    else if (quote == 0 ? c == '\'' || c == '"' : c == quote)
+      quote = quote == 0 ? c : 0;
+    else
+      words.back() += c;
+  }
+  if (quote != 0) return core::invalid_argument(fmt::format("{}: a quote is open", command));
+  if (words.empty()) return core::invalid_argument("an empty command");
   return words;
+}
+
+// Waits for a child, the leader of its process group. Once the user interrupts psygen, ends the
+// group: with SIGTERM, and with SIGKILL after five seconds.
+int status_of(pid_t child, const std::atomic<bool>& stop) {
+  constexpr int kPollMs = 50, kPatienceMs = 5000;
+  int status = 0, waited_ms = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    poll(nullptr, 0, kPollMs);
+    if (!stop) continue;
+    if (waited_ms == 0) kill(-child, SIGTERM);
+    if ((waited_ms += kPollMs) > kPatienceMs) kill(-child, SIGKILL);
+  }
+  return status;
 }
 
 // Runs a program to its end and writes its output to a file; `environment` ("NAME=VALUE") is added
 // to that of this process. Returns its exit code, or 128 plus the number of the signal that ended
-// it. Fails with kIo if it cannot be started.
+// it. Fails with kIo if it cannot be started, and with kInterrupted after a signal to psygen.
 core::Result<int> run_program(std::vector<std::string> words, const std::filesystem::path& log,
                               std::vector<std::string> environment = {}) {
-  if (words.empty()) return core::invalid_argument("an empty command");
+  const std::atomic<bool>& stop = stop_at_interrupt();
   std::vector<std::string> variables = with_ours(std::move(environment));
   const std::vector<char*> arguments = pointers_to(words), values = pointers_to(variables);
   posix_spawn_file_actions_t actions;
@@ -99,17 +131,20 @@ core::Result<int> run_program(std::vector<std::string> words, const std::filesys
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
                                    O_WRONLY | O_CREAT | O_TRUNC, 0644);
   posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // a group of its own
   pid_t child = 0;
-  const int failed =
-      posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(), values.data());
+  const int failed = posix_spawnp(&child, arguments.front(), &actions, &attributes,
+                                  arguments.data(), values.data());
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) {
     return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot run: {}", words.front(),
                                                         std::generic_category().message(failed)));
   }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = status_of(child, stop);
+  if (stop) return core::fail(core::ErrorCode::kInterrupted, "interrupted");
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
@@ -122,9 +157,10 @@ constexpr const char* kNoValgrind =
     "it counts instructions (package valgrind); nothing was compared";
 
 // Default work: generators of the paper's world in one thread, without a GPU.
-std::vector<std::string> work_of(const std::string& command) {
-  const bool is_program = words_of(command).size() == 1;
-  return words_of(is_program ? command + " amplify --region 0,0,3,3 --threads 1" : command);
+core::Result<std::vector<std::string>> work_of(const std::string& command) {
+  const auto words = words_of(command);
+  const bool is_program = words && words->size() == 1;
+  return is_program ? words_of(command + " amplify --region 0,0,3,3 --threads 1") : words;
 }
 
 // Path of the library that replaces an instruction valgrind cannot run (countable.cpp). Empty if it
@@ -161,9 +197,12 @@ core::Result<Counted> count(const std::string& command, const std::filesystem::p
              log = out / fmt::format("{}.txt", name);
   std::vector<std::string> words{"valgrind", "--tool=callgrind",
                                  "--callgrind-out-file=" + profile.string()};
-  const std::vector<std::string> work = work_of(command);
-  words.insert(words.end(), work.begin(), work.end());
+  const auto work = work_of(command);
+  if (!work) return tl::unexpected(work.error());
+  words.insert(words.end(), work->begin(), work->end());
   const auto code = run_program(words, log, environment());
+  if (!code && code.error().code == core::ErrorCode::kInterrupted)
+    return tl::unexpected(code.error());
   if (!code)
     return core::fail(core::ErrorCode::kNoDevice,
                       fmt::format("{}; {}", code.error().message, kNoValgrind));
@@ -179,7 +218,13 @@ core::Result<Counted> count(const std::string& command, const std::filesystem::p
                                   *code, log.string()));
   const auto instructions = compare::instructions_in(whole_text(profile), profile.string());
   if (!instructions) return tl::unexpected(instructions.error());
-  return Counted{*instructions, std::string(compare::hash_in(whole_text(log)))};
+  const std::string output = whole_text(log);
+  const std::string hash(compare::hash_in(output));
+  if (hash.empty())
+    return core::invalid_argument(
+        fmt::format("{}: prints no hash, so its result cannot be compared; its output is in {}",
+                    command, log.string()));
+  return Counted{*instructions, hash};
 }
 
 }  // namespace
@@ -208,10 +253,11 @@ CompareCommand::CompareCommand(CLI::App& cli)
 core::Result<compare::RecordedRun> CompareCommand::record(
     const std::string& command, const std::filesystem::path& folder) const {
   if (auto ok = telemetry::create_output_folder(folder); !ok) return tl::unexpected(ok.error());
-  std::vector<std::string> words = words_of(command);
-  words.insert(words.end(), {test_, "--out", folder.string()});
+  auto words = words_of(command);
+  if (!words) return tl::unexpected(words.error());
+  words->insert(words->end(), {test_, "--out", folder.string()});
   const auto log = folder / "output.txt";
-  const auto code = run_program(words, log);
+  const auto code = run_program(*words, log);
   if (!code) return tl::unexpected(code.error());
   if (*code != frametest::kHeld && *code != frametest::kMissed) {
     return core::fail(
@@ -263,8 +309,10 @@ std::string CompareCommand::misuse() const {
   if (!test_.empty() && !out_.empty()) return {};
   std::error_code ignored;
   for (const std::string& side : {a_, b_}) {
-    const bool is_path = side.find('/') != std::string::npos && side.find(' ') == std::string::npos;
-    if (is_path && !std::filesystem::exists(side, ignored))
+    const auto words = words_of(side);
+    if (!words) return words.error().message;
+    const bool is_path = words->size() == 1 && words->front().find('/') != std::string::npos;
+    if (is_path && !std::filesystem::exists(words->front(), ignored))
       return side + ": no such folder or program";
   }
   return "two commands need --test and --out; recorded runs need two folders";

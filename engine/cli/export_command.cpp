@@ -24,6 +24,7 @@
 #include "engine/exchange/unpack.hpp"
 #include "engine/exchange/write_document.hpp"
 #include "engine/synthesis/synthesise.hpp"
+#include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "engine/telemetry/units.hpp"
 #include "engine/tiles/heightmap.hpp"
@@ -223,6 +224,7 @@ int ExportCommand::run() {
     world = std::move(*loaded);
   }
   if (region_) return export_region(*world, registry);
+  if (auto ok = telemetry::check_output_file(out_); !ok) return fail_with(ok.error());
   const auto document =
       block_ ? block_document(*world, registry)
              : model_document(registry, world ? world::drawn_palette(*world) : world::Palette{});

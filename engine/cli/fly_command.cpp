@@ -264,9 +264,7 @@ int FlyCommand::run_here() {
   reporter.name = "report";
   if (!requests_.empty()) {
     options_.session.prefill = false;  // the initial fill is a part of the recording
-    const auto folder = std::filesystem::path(requests_).parent_path();
-    if (auto ok = telemetry::create_output_folder(folder.empty() ? "." : folder); !ok)
-      return code_of(ok.error());
+    if (auto ok = telemetry::check_output_file(requests_); !ok) return code_of(ok.error());
     reporter.on_frame = [this](app::Session& session, double) {
       if (flight_->is_recorded()) recorder_.observe(session.scene());
     };

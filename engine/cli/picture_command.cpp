@@ -84,12 +84,10 @@ class PictureCommand final : public Command {
     if (auto ok = find_world(options_); !ok) return fail_with(ok.error());
     options_.headless = true;
     options_.stop = &stop_at_interrupt();
-    const auto folder = std::filesystem::path(out_).parent_path();
-    // Checks the folder before the work begins.
-    const auto writable = telemetry::create_output_folder(folder.empty() ? "." : folder);
-    auto session = writable.and_then(image::load_picture_libraries).and_then([this] {
-      return app::Session::create(options_);
-    });
+    auto session =
+        telemetry::check_output_file(out_).and_then(image::load_picture_libraries).and_then([this] {
+          return app::Session::create(options_);
+        });
     const auto taken = session.and_then([this](const auto& made) { return take(*made); });
     if (taken) {
       core::log_info(fmt::format("wrote {}", out_));

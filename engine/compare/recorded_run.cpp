@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "engine/compare/csv_rows.hpp"
+#include "engine/core/read_file.hpp"
 
 namespace psygen::compare {
 namespace {
@@ -145,11 +144,13 @@ std::optional<T> member(const Parsed& json, const char* path) {
   return value.get<T>();
 }
 
+// More than a flight of a day.
+constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
+
 core::Result<std::string> read_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream) return core::fail(core::ErrorCode::kIo, file.string() + ": cannot read the file");
-  return text;
+  return core::read_file(file, kMaxBytes).map([](const std::vector<std::uint8_t>& bytes) {
+    return std::string(bytes.begin(), bytes.end());
+  });
 }
 
 }  // namespace

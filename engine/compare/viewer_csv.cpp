@@ -65,13 +65,19 @@ core::Result<std::vector<ViewerRow>> rows_of(std::string_view text, const std::s
   return rows;
 }
 
-// A name as one cell: viewers parse these formats without quotes.
+// A name as one cell: viewers parse these formats without quotes, and spreadsheets take cells that
+// begin with an operator for formulas.
 std::string cell_of(const nlohmann::json& json, const char* path) {
   const nlohmann::json::json_pointer pointer(path);
   if (!json.contains(pointer) || !json[pointer].is_string()) return {};
   std::string text = json[pointer].get<std::string>();
   std::ranges::replace_if(
-      text, [](char c) { return c == ',' || c == '"' || (c >= 0 && c < ' '); }, ' ');
+      text, [](char c) { return c == ',' || c == '"' || static_cast<unsigned char>(c) < ' '; },
+      ' ');
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first != std::string::npos &&
+      std::string_view("=+-@").find(text[first]) != std::string_view::npos)
+    text.insert(0, "'");
   return text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -31,6 +32,23 @@ const std::string& host_mark() {
     return fmt::format("{:08x}", static_cast<std::uint32_t>(hash));
   }();
   return mark;
+}
+
+// Returns the file that a chain of links leads to, whether it exists or not.
+std::filesystem::path without_links(std::filesystem::path path) {
+  std::error_code error;
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(path, error); ++links) {
+    const std::filesystem::path next = std::filesystem::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / next;  // replaces the whole path if the link is absolute
+  }
+  return path;
+}
+
+// Returns false, with errno, if there is no such file.
+bool look_at(const std::filesystem::path& path, struct statx& status) {
+  return statx(AT_FDCWD, path.c_str(), 0, STATX_TYPE | STATX_MODE | STATX_UID | STATX_GID,
+               &status) == 0;
 }
 
 // Opens a new file next to `path` and stores its name; returns -1 and sets errno if that fails.
@@ -111,18 +129,41 @@ void remove_partials_of(const std::filesystem::path& folder,
   remove_partials_that(folder, [&](const Partial& partial) { return is_ours(partial.file); });
 }
 
-FileReplacement::FileReplacement(std::filesystem::path path) : path_(std::move(path)) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path_, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    failure_ = fmt::format("{}: is not a regular file, and is not replaced", path_.string());
+Result<void> check_replaceable(const std::filesystem::path& path) {
+  const auto refuse = [&](const char* reason) {
+    return fail(ErrorCode::kIo, fmt::format("{}: {}", path.string(), reason));
+  };
+  struct statx status {};
+  const std::filesystem::path target = without_links(path);
+  if (!look_at(target, status)) {
+    if (errno == ELOOP) return refuse(std::strerror(ELOOP));
+    return {};
+  }
+  if (!S_ISREG(status.stx_mode)) return refuse("is not a regular file, and is not replaced");
+  if ((status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0)
+    return refuse("is a mount point, and cannot be replaced");
+  if (access(target.c_str(), W_OK) != 0) return refuse("the file is read-only");
+  return {};
+}
+
+FileReplacement::FileReplacement(std::filesystem::path path)
+    : path_(std::move(path)), target_(without_links(path_)) {
+  struct statx status {};
+  const bool exists = look_at(target_, status);
+  if (auto ok = check_replaceable(path_); !ok) {
+    failure_ = ok.error().message;
     return;
   }
-  file_ = open_temporary(path_, temporary_);
-  if (file_ >= 0) return;
-  fail_with(errno == ENOENT ? "its folder is missing" : "cannot create a file in its folder",
-            errno);
-  temporary_.clear();
+  file_ = open_temporary(target_, temporary_);
+  if (file_ < 0) {
+    fail_with(errno == ENOENT ? "its folder is missing" : "cannot create a file in its folder",
+              errno);
+    temporary_.clear();
+  } else if (exists) {
+    // The owner first, because a change of owner clears bits of the mode. Only root may change it.
+    (void)!fchown(file_, status.stx_uid, status.stx_gid);
+    (void)fchmod(file_, status.stx_mode & 07777U);
+  }
 }
 
 FileReplacement::~FileReplacement() {
@@ -169,12 +210,12 @@ Result<void> FileReplacement::flush() {
 
 Result<void> FileReplacement::commit() {
   if (auto ok = flush(); !ok) return ok;
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) {
     fail_with("cannot write", errno);
     return fail(ErrorCode::kIo, failure_);
   }
   temporary_.clear();
-  flush_folder(path_);
+  flush_folder(target_);
   return {};
 }
 

@@ -1,6 +1,7 @@
 // Replaces a file's content as a whole: after a crash or a full disk the file holds the old content
-// or the new content, never a mix. Not a lock: the last of several writers wins. POSIX. One thread
-// per file; different files from any thread.
+// or the new content, never a mix. Follows links, and keeps the permissions of an existing file.
+// Not a lock: the last of several writers wins. POSIX. One thread per file; different files from
+// any thread.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@ namespace psygen::core {
 // `path`, which the destructor removes.
 class FileReplacement {
  public:
-  // Rejects a path that exists and is not a regular file. Always constructs an object: it keeps the
-  // first error, and commit() returns it.
+  // Rejects a path that exists and is not a regular file, is read-only, or is a mount point. Always
+  // constructs an object: it keeps the first error, and commit() returns it.
   explicit FileReplacement(std::filesystem::path path);
   // Removes the temporary file unless it was committed.
   ~FileReplacement();
@@ -38,13 +39,17 @@ class FileReplacement {
   void write_out(std::string_view bytes);
   void fail_with(const char* action, int error);
 
-  std::filesystem::path path_;
-  std::filesystem::path temporary_;  // empty: none
+  std::filesystem::path path_;       // as given, for messages
+  std::filesystem::path target_;     // without links
+  std::filesystem::path temporary_;  // next to the target; empty: none
   int file_ = -1;                    // open until the flush
   std::string buffer_;               // bytes not yet written
   std::string failure_;              // the first error; empty: none
 };
 
+// Fails with kIo, and the path, for a file that cannot be replaced: one that is not regular, is
+// read-only, or is a mount point. For a check before long work.
+Result<void> check_replaceable(const std::filesystem::path& path);
 // Replaces the whole content. Fails like FileReplacement::commit().
 Result<void> replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Result<void> replace_file(const std::filesystem::path& path, std::string_view text);

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <map>
 
+#include "engine/core/utf8.hpp"
 #include "engine/exchange/write_document.hpp"
 
 namespace psygen::exchange {
@@ -47,7 +48,7 @@ std::string mtl_of(const Document& document) {
 
 std::string obj_first_line(std::string_view document_name) {
   return fmt::format("# {}: metres, +Y up; colours behind the coordinates are sRGB\n",
-                     document_name);
+                     core::shown(document_name));
 }
 
 ObjText obj_text(const Document& document, std::string_view mtl_file_name) {
@@ -57,7 +58,7 @@ ObjText obj_text(const Document& document, std::string_view mtl_file_name) {
   fmt::format_to(out, "{}mtllib {}\n", obj_first_line(document.name), mtl_file_name);
   std::uint64_t first = 1;  // OBJ counts vertices from 1, over the whole file
   for (const Object& object : document.objects) {
-    fmt::format_to(out, "o {}\n", object.name);
+    fmt::format_to(out, "o {}\n", core::shown(object.name));
     for (const Part& part : object.parts) {
       for (std::size_t i = 0; i < part.positions.size(); ++i) {
         const glm::vec3 p = part.positions[i] + object.position;

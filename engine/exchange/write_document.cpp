@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/core/replace_file.hpp"
+#include "engine/core/utf8.hpp"
 
 namespace psygen::exchange {
 
@@ -55,7 +56,8 @@ core::Result<void> write_scene(const std::filesystem::path& path, Format format,
     return core::replace_file(path, *bytes);
   }
   std::filesystem::path mtl = path;
-  mtl.replace_extension(".mtl");
+  // One line of the OBJ names it, so a line break in its name becomes an escape.
+  mtl.replace_filename(core::shown(path.stem().string()) + ".mtl");
   const ObjText text = obj_text(document, mtl.filename().string());
   core::FileReplacement materials(mtl), objects(path);
   materials.write(text.mtl);

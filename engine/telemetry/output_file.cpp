@@ -1,6 +1,8 @@
 #include "engine/telemetry/output_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -21,6 +23,25 @@ core::Result<void> create_output_folder(const std::filesystem::path& folder) {
   }
   core::remove_stale_partials(folder);
   return {};
+}
+
+core::Result<void> check_output_file(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.parent_path();
+  if (auto ok = create_output_folder(folder.empty() ? "." : folder); !ok) return ok;
+  return core::check_replaceable(file);
+}
+
+core::Result<OutputFolder> OutputFolder::open(const std::filesystem::path& folder) {
+  if (auto ok = create_output_folder(folder); !ok) return tl::unexpected(ok.error());
+  OutputFolder opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (opened.lock_ < 0 || flock(opened.lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+    return opened;
+  return core::fail(core::ErrorCode::kIo,
+                    fmt::format("{}: another flight writes into this folder", folder.string()));
+}
+
+OutputFolder::~OutputFolder() {
+  if (lock_ >= 0) close(lock_);
 }
 
 }  // namespace psygen::telemetry

@@ -346,7 +346,7 @@ TEST(CommandLine, ExportListsTheValidNamesForAnUnknownName) {
   EXPECT_EQ(block.code, 1);
   EXPECT_TRUE(mentions(block.err, "the world has no block 600,1: ")) << block.err;
   EXPECT_TRUE(mentions(block.err, "0 to 511")) << block.err;
-  EXPECT_EQ(run_psygen("export --model rock --out /nonexistent/a.glb").code, 1);
+  EXPECT_EQ(run_psygen("export --model rock --out /dev/null/a.glb").code, 1);
   const Outcome world = run_psygen("export --model rock --world missing.toml --out a.glb");
   EXPECT_EQ(world.code, 1);
   EXPECT_TRUE(mentions(world.err, "missing.toml")) << world.err;

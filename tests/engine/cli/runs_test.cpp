@@ -1,4 +1,6 @@
 // `psygen convert` and `psygen compare` on files and programs that need no GPU.
+#include <sys/stat.h>
+
 #include <fstream>
 
 #include "tests/engine/cli/psygen_process.hpp"
@@ -32,7 +34,7 @@ TEST(Convert, ReportsUnreadableUnwritableAndUnknownArguments) {
   const std::string run = (folder / "run").string();
   const Outcome none = run_psygen("convert /nowhere --to mangohud --out log.csv");
   EXPECT_EQ(none.code, 1);
-  EXPECT_TRUE(mentions(none.err, "/nowhere/frames.csv: cannot read the file")) << none.err;
+  EXPECT_TRUE(mentions(none.err, "/nowhere/frames.csv: No such file")) << none.err;
   const Outcome unwritable = run_psygen("convert " + run + " --to mangohud --out /nowhere/log.csv");
   EXPECT_EQ(unwritable.code, 1);
   EXPECT_TRUE(mentions(unwritable.err, "/nowhere/log.csv")) << unwritable.err;
@@ -48,7 +50,7 @@ std::string path_with(const TemporaryFolder& folder, const std::string& script) 
 }
 constexpr const char* kCounts =
     "for word; do case $word in --callgrind-out-file=*) file=${word#*=};; esac; done\n"
-    "echo \"totals: $word\" > $file\n[ $word = 7 ] && echo hash 0007\nexit 0\n";
+    "echo \"totals: $word\" > $file\n[ $word = 7 ] && echo hash 0007 || echo hash 0001\n";
 
 Outcome compare(const TemporaryFolder& folder, const std::string& script, const std::string& a,
                 const std::string& b) {
@@ -72,8 +74,13 @@ TEST(Instructions, OfDifferentOutputsAreNotCompared) {
   const TemporaryFolder folder;
   const Outcome other = compare(folder, kCounts, "a 7", "b 8");
   EXPECT_EQ(other.code, 1);
-  EXPECT_TRUE(mentions(other.err, "hashes '0007' and ''")) << other.err;
+  EXPECT_TRUE(mentions(other.err, "hashes '0007' and '0001'")) << other.err;
   EXPECT_EQ(compare(folder, "exit 5", "a 7", "b 7").code, 1) << "a command that fails";
+  const std::string silent =
+      std::string(kCounts).substr(0, std::string(kCounts).find("\n[")) + "\n";
+  const Outcome none = compare(folder, silent, "a 1000", "b 1000");
+  EXPECT_EQ(none.code, 1);
+  EXPECT_TRUE(mentions(none.err, "a 1000: prints no hash")) << none.err;
 }
 
 TEST(Instructions, AreSkippedWithAMessageIfValgrindCannotCount) {
@@ -85,6 +92,47 @@ TEST(Instructions, AreSkippedWithAMessageIfValgrindCannotCount) {
       "compare --instructions 'a 1' 'b 1' --out " + (folder / "out").string(), "PATH=/nowhere");
   EXPECT_EQ(none.code, 77);
   EXPECT_TRUE(mentions(none.err, "valgrind: cannot run")) << none.err;
+}
+
+// A program that runs until a signal ends it, and then writes a file.
+std::string lasting_program(const TemporaryFolder& folder) {
+  const std::string name = (folder / "my builds/lasting").string();
+  std::filesystem::create_directories(folder / "my builds");
+  std::ofstream(name) << "#!/bin/sh\ntrap 'echo ended > \"" << (folder / "ended").string()
+                      << "\"; exit 1' TERM\necho $2 > \"" << (folder / "started").string()
+                      << "\"\nwhile :; do sleep 0.1; done\n";
+  std::filesystem::permissions(name, std::filesystem::perms::owner_all);
+  return name;
+}
+
+TEST(Compare, ASignalEndsTheProgramThatItRuns) {
+  const TemporaryFolder folder;
+  // Which of the two runs first is random.
+  const std::string command = "\"'" + lasting_program(folder) + "' 'a b'\"";
+  for (const char* signal : {"INT", "TERM", "HUP"}) {
+    std::filesystem::remove(folder / "started");
+    std::filesystem::remove(folder / "ended");
+    const std::string started = (folder / "started").string();
+    const Outcome outcome = run_psygen(
+        "compare " + command + " " + command + " --test t.toml --out " + (folder / "out").string(),
+        "run() { \"$@\" & p=$!; until [ -e " + started +
+            " ]; do kill -0 $p || break; done; kill -" + signal + " $p; wait $p; }; run");
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_TRUE(std::filesystem::exists(folder / "ended")) << signal;
+    EXPECT_EQ(read(started), "t.toml\n") << "the quoted words";
+  }
+}
+
+TEST(Compare, RunsThatAreNoFilesAreRefused) {
+  const TemporaryFolder folder;
+  for (const char* side : {"a", "b"})
+    write_run(folder / side);
+  std::filesystem::remove(folder / "b/frames.csv");
+  ASSERT_EQ(mkfifo((folder / "b/frames.csv").c_str(), 0600), 0);
+  const std::string a = (folder / "a").string(), b = (folder / "b").string();
+  EXPECT_EQ(run_psygen("compare " + a + " " + b).code, 1);
+  const Outcome converted = run_psygen("convert " + b + " --to mangohud --out " + a + "/log.csv");
+  EXPECT_TRUE(mentions(converted.err, "is not a regular file")) << converted.err;
 }
 
 TEST(Compare, WithoutATestOrWithAMissingFolderIsAUsageError) {

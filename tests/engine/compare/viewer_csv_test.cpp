@@ -69,6 +69,15 @@ TEST(ViewerCsv, ForCapFrameXIsACaptureOfPresentMon) {
   EXPECT_THAT(columns["Comment"], testing::ElementsAre("a  wood ", "a  wood "));
 }
 
+TEST(ViewerCsv, NamesAreNoFormulasOfSpreadsheets) {
+  for (const char* name : {"=cmd|' /C calc'!A0", "+1", "-1", "@SUM(1)", "\\t=1"}) {
+    const auto text = viewer_csv(Viewer::kCapFrameX, kFrames,
+                                 std::string(R"({"world": {"name": ")") + name + "\"}}", "dir");
+    ASSERT_TRUE(text);
+    EXPECT_EQ(columns_of(*text, 0)["Comment"][0].front(), '\'') << name;
+  }
+}
+
 TEST(ViewerCsv, RejectsFilesThatNoRunWrites) {
   EXPECT_EQ(converted(Viewer::kMangoHud, "frame_ms,apart\n"),
             "dir/frames.csv:1: the column present_ms is missing");

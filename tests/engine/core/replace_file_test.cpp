@@ -54,6 +54,40 @@ TEST(ReplaceFile, NamesThePathWhenTheFolderDoesNotExist) {
   EXPECT_NE(result.error().message.find(path.string()), std::string::npos);
 }
 
+TEST(ReplaceFile, WritesTheFileBehindAChainOfLinksAndKeepsTheLinks) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "there");
+  std::filesystem::create_symlink("there/second", folder / "first");
+  std::filesystem::create_symlink(folder / "there/real", folder / "there/second");
+  for (const char* content : {"new", "newer"}) {  // the file appears, and is replaced
+    ASSERT_TRUE(replace_file(folder / "first", text(content)));
+    EXPECT_EQ(bytes_of(folder / "there/real"), text(content));
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "first"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "there/second"));
+  std::filesystem::create_symlink("loop", folder / "loop");
+  EXPECT_FALSE(replace_file(folder / "loop", text("x")));
+}
+
+TEST(ReplaceFile, KeepsThePermissionsOfAnExistingFile) {
+  const TemporaryFolder folder;
+  for (const mode_t mode : {0640, 0600, 0755}) {
+    ASSERT_TRUE(replace_file(folder / "a.bin", text("old")));
+    ASSERT_EQ(chmod((folder / "a.bin").c_str(), mode), 0);
+    ASSERT_TRUE(replace_file(folder / "a.bin", text("new")));
+    struct stat status {};
+    ASSERT_EQ(stat((folder / "a.bin").c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777U, mode);
+  }
+}
+
+TEST(ReplaceFile, IsCheckedBeforeTheContentExists) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(check_replaceable(folder / "new"));
+  EXPECT_FALSE(check_replaceable(folder.path()));
+  EXPECT_EQ(folder.file_count(), 0U);
+}
+
 TEST(ReplaceFile, DoesNotWaitForAReaderOfAPipe) {
   const TemporaryFolder folder;
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);

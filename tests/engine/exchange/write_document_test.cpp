@@ -91,6 +91,21 @@ TEST(WriteDocument, AnObjReadByAnotherLibraryHasTheSameTrianglesPlacesAndMateria
   EXPECT_EQ(names, (std::set<std::string>{"ground", "leaf", "solid"}));
 }
 
+TEST(WriteDocument, NamesWithLineBreaksStayOneLineOfAnObj) {
+  const TemporaryFolder folder;
+  Document document = grove();
+  document.name = "a\nf 1 2 3";
+  document.objects[0].name = "b\nmtllib c";
+  ASSERT_TRUE(write_scene(folder / "two\nlines.obj", Format::kObj, document));
+  std::ifstream file(folder / "two\nlines.obj");
+  std::string line;
+  std::getline(file, line);
+  EXPECT_TRUE(line.starts_with("# a\\nf 1 2 3: metres")) << line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "mtllib two\\nlines.mtl");
+  EXPECT_TRUE(std::filesystem::exists(folder / "two\\nlines.mtl"));
+}
+
 TEST(WriteDocument, AnObjHasOneLineForEveryVertexAndTriangle) {
   const Document document = grove();
   const ObjText text = obj_text(document, "a.mtl");

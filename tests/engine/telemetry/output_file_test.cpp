@@ -35,5 +35,27 @@ TEST(OutputFolder, CannotReplaceAFileOrBeInAnUnwritablePlace) {
   }
 }
 
+TEST(OutputFolder, BelongsToOneFlightAtATime) {
+  const TemporaryFolder folder;
+  {
+    const auto first = OutputFolder::open(folder / "out");
+    ASSERT_TRUE(first);
+    const auto second = OutputFolder::open(folder / "out");
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().message,
+              (folder / "out").string() + ": another flight writes into this folder");
+    EXPECT_TRUE(OutputFolder::open(folder / "other"));
+  }
+  EXPECT_TRUE(OutputFolder::open(folder / "out"));
+}
+
+TEST(OutputFile, IsCheckedWithItsFolderBeforeTheWork) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(check_output_file(folder / "a/b/picture.png"));
+  EXPECT_TRUE(std::filesystem::is_directory(folder / "a/b"));
+  EXPECT_FALSE(check_output_file(folder / "a/b")) << "a folder";
+  EXPECT_FALSE(check_output_file("/dev/full"));
+}
+
 }  // namespace
 }  // namespace psygen::telemetry
