@@ -50,8 +50,15 @@ core::Result<void> check(std::string_view action, const std::vector<Binding>& bi
   return {};
 }
 
-double beyond_dead_zone(double value, double dead_zone) {
-  return std::max(0.0, value - dead_zone) / (1 - dead_zone);
+// A worn stick does not reach its end.
+constexpr double kOuterZone = 0.05;
+
+// The part of `value`, a coordinate of a vector of this length, beyond the dead zone: 0 inside it,
+// 1 for a vector along the axis that reaches the outer zone.
+double beyond_dead_zone(double value, double length, double dead_zone) {
+  if (length <= dead_zone) return 0;
+  const double reach = std::min(1.0, (length - dead_zone) / (1 - kOuterZone - dead_zone));
+  return value / length * reach;
 }
 
 void add_changes(std::uint32_t& changes, std::uint32_t more) {
@@ -138,7 +145,8 @@ void Actions::feed(Action& action, const platform::InputState& input) {
       at.level = reading.value;
       at.down = reading.value > 0;
     } else {
-      at.level = beyond_dead_zone(reading.value, static_cast<double>(binding.dead_zone));
+      at.level =
+          beyond_dead_zone(reading.value, reading.length, static_cast<double>(binding.dead_zone));
       at.down = at.level >= (was_down ? kReleaseAt : kPressAt);
     }
     went_down |= at.down && !was_down;

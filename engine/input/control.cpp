@@ -47,6 +47,14 @@ double forward(double value) {
   return std::isfinite(value) ? std::clamp(value, 0.0, kMaxMoved) : 0.0;
 }
 
+// How far the stick of an axis is pushed; 0 for triggers.
+double stick_length(const platform::Gamepad& pad, PadAxis axis) {
+  using enum PadAxis;
+  if (axis == kLeftX || axis == kLeftY) return std::hypot(pad.axis(kLeftX), pad.axis(kLeftY));
+  if (axis == kRightX || axis == kRightY) return std::hypot(pad.axis(kRightX), pad.axis(kRightY));
+  return 0;
+}
+
 Reading read_pads(Control control, const InputState& input, std::optional<std::size_t> slot) {
   Reading strongest;
   for (std::size_t i = 0; i < input.pads.size(); ++i) {
@@ -58,8 +66,11 @@ Reading read_pads(Control control, const InputState& input, std::optional<std::s
       strongest.went_up |= pad.went_up[control.code];
     } else {
       const Half half = kHalves[control.code];
-      const double value = forward(static_cast<double>(pad.axis(half.axis) * half.sign));
-      strongest.value = std::max(strongest.value, std::min(value, 1.0));
+      const double value =
+          std::min(forward(static_cast<double>(pad.axis(half.axis) * half.sign)), 1.0);
+      if (value < strongest.value) continue;
+      strongest.value = value;
+      strongest.length = std::max(value, stick_length(pad, half.axis));
     }
   }
   return strongest;

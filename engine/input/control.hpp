@@ -79,6 +79,7 @@ struct Reading {
   double value = 0;  // digital: 0 or 1; axes: 0 … 1; wheel: steps; mouse: screen coordinates
   bool went_down = false;  // digital only; pressed during the frame
   bool went_up = false;
+  double length = 0;  // axes: how far the stick is pushed in any direction, at least `value`
 };
 // For a gamepad control: the strongest value of all gamepads, or the value of one slot. Never NaN,
 // at most 1e6.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <clocale>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <optional>
@@ -164,6 +165,7 @@ struct Window::Implementation {
   InputState input;         // collected since the last poll
   glm::dvec2 pointer{0.0};  // last reported position; leaves the window while looking
   bool right_looks = true;
+  bool background_gamepads = false;
 
   explicit Implementation(GLFWwindow* created) : window(created) {
     ++window_count();
@@ -271,7 +273,11 @@ core::Result<std::unique_ptr<Window>> Window::create(const WindowSettings& setti
     return core::fail(core::ErrorCode::kNoDevice,
                       fmt::format("no window can be opened here: {}", reason));
   }
-  return std::unique_ptr<Window>(new Window(std::make_unique<Implementation>(window)));
+  if (const char* mappings = std::getenv("SDL_GAMECONTROLLERCONFIG"))
+    (void)add_gamepad_mappings(mappings);
+  std::unique_ptr<Window> made(new Window(std::make_unique<Implementation>(window)));
+  made->set_raw_mouse_motion(true);
+  return made;
 }
 
 Window::Window(std::unique_ptr<Implementation> implementation)
@@ -307,9 +313,15 @@ core::Extent Window::framebuffer_size() const {
 InputState Window::poll() {
   glfwPollEvents();
   InputState& input = implementation_->input;
-  update_gamepads(read_pad, input.pads);
   input.pointer_px = implementation_->pointer_px();
   input.focused = glfwGetWindowAttrib(implementation_->window, GLFW_FOCUSED) == GLFW_TRUE;
+  const bool listens = input.focused || implementation_->background_gamepads;
+  const auto read = [&](std::size_t slot) {
+    auto reading = read_pad(slot);
+    if (reading && !listens) *reading = {};
+    return reading;
+  };
+  update_gamepads(read, input.pads);
   InputState result = input;
   clear_changes(input);
   return result;
@@ -322,6 +334,19 @@ void Window::capture_cursor(bool captured) {
 
 bool Window::cursor_captured() const {
   return implementation_->input.captured;
+}
+
+void Window::set_background_gamepads(bool listens) {
+  implementation_->background_gamepads = listens;
+}
+
+void Window::set_raw_mouse_motion(bool raw) {
+  if (glfwRawMouseMotionSupported() == GLFW_TRUE)
+    glfwSetInputMode(implementation_->window, GLFW_RAW_MOUSE_MOTION, raw ? GLFW_TRUE : GLFW_FALSE);
+}
+
+bool Window::add_gamepad_mappings(const std::string& text) {
+  return glfwUpdateGamepadMappings(text.c_str()) == GLFW_TRUE;
 }
 
 void Window::set_right_button_looks(bool looks) {

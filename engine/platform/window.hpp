@@ -47,6 +47,15 @@ class Window final : public core::SurfaceProvider {
   // InputState::captured and looking are set. Released by capture_cursor(false), not by any key.
   void capture_cursor(bool captured);
   bool cursor_captured() const;
+  // Lets gamepads act while another window has the focus; off by default.
+  void set_background_gamepads(bool listens);
+  // Reports a captured mouse's motion without the desktop's acceleration, where the system supports
+  // it; on by default.
+  void set_raw_mouse_motion(bool raw);
+  // Adds mappings of gamepads in SDL's format (gamecontrollerdb.txt), one per line, for all
+  // windows. Returns false for a text with errors. create() adds those of the environment variable
+  // SDL_GAMECONTROLLERCONFIG.
+  static bool add_gamepad_mappings(const std::string& text);
   // Lets the right button look around while it is held (InputState::looking), for the fly camera;
   // on by default. Games that use the button otherwise switch this off.
   void set_right_button_looks(bool looks);

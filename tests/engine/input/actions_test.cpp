@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "tests/engine/input/person.hpp"
@@ -179,19 +180,40 @@ TEST_F(ActionsOfAPerson, AddUpControlsOfOppositeSignWithinOne) {
   EXPECT_EQ(step(move).value, 1) << "never more than one";
   person_.press(Key::kA);
   frame();
-  EXPECT_NEAR(step(move).value, 0.75F, 1e-6F);
+  EXPECT_NEAR(step(move).value, 0.8F, 1e-6F);
   person_.release(Key::kD);
   frame();
-  EXPECT_NEAR(step(move).value, -0.25F, 1e-6F);
+  EXPECT_NEAR(step(move).value, -0.2F, 1e-6F);
 }
 
-TEST_F(ActionsOfAPerson, IgnoreADeadZoneAndReachOneAtTheEnd) {
+TEST_F(ActionsOfAPerson, IgnoreADeadZoneAndReachOneBeforeTheEnd) {
   const ActionId move = add("move", {{PadAxisDirection::kLeftStickUp, 1, 0.25F}});
-  for (const auto& [axis, value] :
-       {std::pair{0.0F, 0.0F}, {0.25F, 0.0F}, {0.625F, 0.5F}, {1.0F, 1.0F}, {-1.0F, 0.0F}}) {
+  for (const auto& [axis, value] : {std::pair{0.0F, 0.0F},
+                                    {0.25F, 0.0F},
+                                    {0.6F, 0.5F},
+                                    {0.95F, 1.0F},
+                                    {1.0F, 1.0F},
+                                    {-1.0F, 0.0F}}) {
     person_.set_axis(PadAxis::kLeftY, axis);
     frame();
-    EXPECT_EQ(step(move).value, value) << axis;
+    EXPECT_NEAR(step(move).value, value, 1e-6F) << axis;
+  }
+}
+
+TEST_F(ActionsOfAPerson, KeepEveryDirectionOfAStick) {
+  const ActionId x =
+      add("x", {{PadAxisDirection::kLeftStickRight, 1}, {PadAxisDirection::kLeftStickLeft, -1}});
+  const ActionId y =
+      add("y", {{PadAxisDirection::kLeftStickUp, 1}, {PadAxisDirection::kLeftStickDown, -1}});
+  for (const auto& [radius, speed] : {std::pair{0.1F, 0.0F}, {0.55F, 0.5F}, {0.95F, 1.0F}}) {
+    for (int degrees = 0; degrees < 360; ++degrees) {
+      const float angle = static_cast<float>(degrees) * std::numbers::pi_v<float> / 180;
+      person_.set_axis(PadAxis::kLeftX, radius * std::cos(angle));
+      person_.set_axis(PadAxis::kLeftY, radius * std::sin(angle));
+      frame();
+      EXPECT_NEAR(step(x).value, speed * std::cos(angle), 1e-5F) << degrees;
+      EXPECT_NEAR(actions_.state(y).value, speed * std::sin(angle), 1e-5F) << degrees;
+    }
   }
 }
 
@@ -262,7 +284,7 @@ TEST_F(ActionsOfAPerson, ReadTheSelectedGamepadEvenIfAnotherIsMovedMore) {
   EXPECT_TRUE(actions_.state(jump).held);
   actions_.use_gamepad(3);
   frame();
-  EXPECT_EQ(step(move).value, 0.25F);
+  EXPECT_NEAR(step(move).value, 0.25F / 0.95F, 1e-6F);
   EXPECT_TRUE(actions_.state(jump).released) << "only the other one holds it";
   person_.set_button(PadButton::kA, true, 3);
   frame();
