@@ -9,6 +9,9 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/models/kit/quad_map.hpp"
@@ -18,15 +21,26 @@
 
 namespace psygen::models {
 
-// A model that was placed by hand, or moved to this block.
+// A model that was placed by hand, or moved to this block. It names its type, so it stays the same
+// model under another registry; it is left out where no type of that name allows it (type_of()).
 struct PlacedModel {
-  std::uint32_t id = 0;  // unique in the layer, from 1
-  ModelIndex model = 0;
+  std::uint32_t id = 0;     // unique in the layer, from 1
   glm::vec2 local_m{0.0F};  // from the block's corner along x and z
   float above_m = 0;        // of its base point, over the ground
-  glm::vec3 reach_m{0.0F};  // of its bounds from the base point: sideways, up, down; all >= 0
   Parameters parameters;    // without the slope of the ground
+  // Set by bind():
+  std::string type = {};              // its name
+  std::uint64_t identity = 0;         // ModelType::identity()
+  std::uint32_t parameter_count = 0;  // of the type's schema
+  glm::vec3 reach_m{0.0F};  // of its bounds from the base point: sideways, up, down; all >= 0
 };
+// Sets the members of a placed model that depend on its type, for which the others are legal.
+void bind(PlacedModel& placed, const ModelType& type);
+// True if `type` has the name and the schema of the placed model's type and, where its identity
+// differs, allows the parameters. Compares three values in the usual case.
+bool is_bound(const PlacedModel& placed, const ModelType& type);
+// Returns the type of a placed model in a registry; nothing if there is none that is_bound(). O(1).
+std::optional<ModelIndex> type_of(const PlacedModel& placed, const Registry& registry);
 
 // A removed model of the world's function.
 struct RemovedModel {
@@ -73,6 +87,7 @@ struct EditLayer {
   GroundEdits ground;          // by position
   QuadMap<BlockEdits> blocks;  // all edits, by the block that they belong to; keys are blocks
   std::uint32_t next_id = 1;   // of placed models and edits of the ground
+  double block_m = 0;  // side of the blocks that positions refer to; 0: that of the world in use
 
   // Returns the edits of one block, or null. O(log n).
   const BlockEdits* block(core::BlockCoord at) const { return blocks.find(QuadCoord::of(at)); }

@@ -74,13 +74,20 @@ core::Result<ModelIndex> Registry::add(std::unique_ptr<ModelType> type) {
         fmt::format("model type {}: it has no level of detail", type->name()));
   if (auto checked = check_schema(*type); !checked)
     return tl::unexpected<core::Error>(std::move(checked.error()));
+  const auto index = static_cast<ModelIndex>(types_.size());
+  by_name_.emplace(type->name(), index);
   types_.push_back(std::move(type));
-  return static_cast<ModelIndex>(types_.size() - 1);
+  return index;
+}
+
+void Registry::shrink(std::size_t size) {
+  for (; types_.size() > size; types_.pop_back())
+    by_name_.erase(types_.back()->name());
 }
 
 int Registry::find(std::string_view name) const {
-  const auto found = std::ranges::find(types_, name, [](const auto& type) { return type->name(); });
-  return found == types_.end() ? -1 : static_cast<int>(found - types_.begin());
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? -1 : int{found->second};
 }
 
 Registry make_standard_registry() {

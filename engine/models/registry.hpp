@@ -2,9 +2,9 @@
 // read-only and usable from any thread. Knows no worlds and no meshes.
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "engine/models/model_type.hpp"
@@ -24,16 +24,17 @@ class Registry {
   core::Result<ModelIndex> add(std::unique_ptr<ModelType> type);
 
   // Destroys the types from index `size` on. References to them become invalid.
-  void shrink(std::size_t size) { types_.resize(std::min(size, types_.size())); }
+  void shrink(std::size_t size);
 
   // Number of types, and the type of an index below it.
   std::size_t size() const { return types_.size(); }
   const ModelType& operator[](ModelIndex index) const { return *types_[index]; }
-  // Returns the index of a name, or -1. Linear in size().
+  // Returns the index of a name, or -1. O(1).
   int find(std::string_view name) const;
 
  private:
   std::vector<std::unique_ptr<ModelType>> types_;
+  std::unordered_map<std::string_view, ModelIndex> by_name_;  // the types own the names
 };
 
 // Makes a registry of terrain, rock and tree (paper, section 5.2) and grass, in this order.

@@ -148,6 +148,19 @@ void Terrain::remove(core::BlockCoord at) {
   if (const auto block = blocks_.find(at); block != blocks_.end()) erase(block);
 }
 
+std::optional<btVector3> Terrain::follow_world() {
+  const world::World& world = query_.world();
+  if (world.revision.number == revision_) return std::nullopt;
+  revision_ = world.revision.number;
+  clear();
+  edits_ = world.edits;
+  reach_m_ = query_.models_reach_m();
+  const double before_m = std::exchange(block_m_, world.block_size_m());
+  const core::WorldPosition corner = world::rebased({origin_}, before_m, block_m_);
+  origin_ = corner.block;
+  return to_bt(-corner.local);
+}
+
 Terrain::Changes Terrain::sync_edits() {
   Changes changes;
   if (query_.world().edits == edits_) return changes;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -24,7 +25,11 @@ class Terrain {
   static constexpr std::int64_t kMaxAside = 32;
 
   // Both arguments must outlive it.
-  Terrain(btDynamicsWorld& bullet, query::World& query) : bullet_(bullet), query_(query) {}
+  Terrain(btDynamicsWorld& bullet, query::World& query)
+      : bullet_(bullet),
+        query_(query),
+        revision_(query.world().revision.number),
+        block_m_(query.world().block_size_m()) {}
   ~Terrain() { clear(); }
   Terrain(const Terrain&) = delete;
   Terrain& operator=(const Terrain&) = delete;
@@ -39,6 +44,10 @@ class Terrain {
   // `most` newest.
   void drop_idle(std::uint64_t step, std::uint32_t keep_steps, std::size_t most);
   void remove(core::BlockCoord block);
+  // Removes all blocks if the world was replaced since the last call (World::revision), and names
+  // Bullet's origin by a block of the new world. Returns the offset by which all coordinates must
+  // be reduced then: not 0 only for blocks of another size.
+  std::optional<btVector3> follow_world();
   // Blocks that edits of the world have changed, and the larger reach of their models before and
   // after.
   struct Changes {
@@ -93,6 +102,8 @@ class Terrain {
   query::World& query_;
   std::shared_ptr<const models::EditLayer> edits_;  // at the last look
   double reach_m_ = 0;                              // of the models at that time
+  std::uint64_t revision_;                          // of the world that the blocks belong to
+  double block_m_;                                  // side of its blocks
   std::uint64_t last_step_ = 0;                     // the last step of need()
   core::BlockCoord origin_;
   Blocks blocks_;

@@ -74,6 +74,7 @@ core::Result<void> World::remove(CharacterId id) {
 }
 
 core::Result<CharacterState> World::state(CharacterId id) const {
+  impl_->follow_world();
   const Character* character = impl_->find(id);
   if (character == nullptr) return no_character(id);
   return CharacterState{impl_->terrain.position(character->feet()), to_glm(character->velocity),
@@ -124,6 +125,7 @@ core::Result<void> World::step(double dt) {
 core::Result<std::optional<BodyHit>> World::cast(const core::WorldPosition& origin,
                                                  const glm::dvec3& direction,
                                                  double longest_m) const {
+  impl_->follow_world();
   const auto from = query::checked(origin, impl_->query.world().block_size_m());
   if (!from) return tl::unexpected(from.error());
   const double largest =

@@ -22,7 +22,9 @@ struct Settings {
   std::size_t max_idle_blocks = 64;
 };
 
-// The physics of one world. Functions fail with kInvalidArgument for values that are not finite or
+// The physics of one world. It follows edits and the replacement of that world as its queries do:
+// bodies and characters keep their places in metres, and those below the new ground are lifted onto
+// it. Functions fail with kInvalidArgument for values that are not finite or
 // out of their ranges, for positions outside a bounded world, and for ids that do not exist.
 class World {
  public:

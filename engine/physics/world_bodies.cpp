@@ -96,6 +96,7 @@ core::Result<void> World::remove(BodyId id) {
 }
 
 core::Result<BodyState> World::state(BodyId id) const {
+  impl_->follow_world();
   const Impl::Body* body = impl_->find(id);
   if (body == nullptr) return no_body(id);
   const btRigidBody& rigid = *body->rigid;

@@ -53,6 +53,7 @@ Character* World::Impl::find(CharacterId id) {
 }
 
 core::Result<btVector3> World::Impl::place(const core::WorldPosition& at) {
+  follow_world();
   const auto sound = query::checked(at, query.world().block_size_m());
   if (!sound) return tl::unexpected(sound.error());
   if (!query.world().contains(sound->block))
@@ -79,6 +80,11 @@ void World::Impl::move_origin(core::BlockCoord to) {
   // All objects move alike, so there are no new pairs to find.
   broadphase.m_deferedcollide = true;
   terrain.set_origin(to);
+  shift(by);
+  broadphase.m_deferedcollide = false;
+}
+
+void World::Impl::shift(const btVector3& by) {
   for (auto& [number, character] : characters)
     character.shift(by);
   objects.shift(by);
@@ -91,7 +97,20 @@ void World::Impl::move_origin(core::BlockCoord to) {
     target.setOrigin(target.getOrigin() - by);
     body.motion.setWorldTransform(target);
   }
-  broadphase.m_deferedcollide = false;
+}
+
+void World::Impl::follow_world() {
+  const auto by = terrain.follow_world();
+  if (!by) return;
+  if (!by->isZero()) shift(*by);
+  for (auto& [number, character] : characters)
+    character.teleport(character.feet());
+  for (auto& [number, body] : bodies) {
+    if (body.kind != Motion::kDynamic) continue;
+    body.rigid->activate(true);
+    body.before = body.rigid->getCenterOfMassPosition();
+    lift_above_ground(body);
+  }
 }
 
 void World::Impl::make_surroundings(double dt) {
@@ -114,6 +133,7 @@ void World::Impl::make_surroundings(double dt) {
 
 void World::Impl::step(double dt) {
   ++steps;
+  follow_world();
   shift_origin();
   sync_edits();
   objects.follow(dt);

@@ -42,6 +42,12 @@ struct World::Impl {
   void step(double dt);
   void shift_origin();
   void move_origin(core::BlockCoord to);
+  // Reduces the coordinates of everything that is not terrain.
+  void shift(const btVector3& by);
+  // Adapts to a replaced world: drops its terrain, wakes all bodies, and lifts bodies and
+  // characters that are below the new ground. All functions of World that use positions call it
+  // first.
+  void follow_world();
   // Loads ground, models and objects wherever something can move in this step.
   void make_surroundings(double dt);
   // Fails with kOverBudget if the settings allow no more bodies and characters.

@@ -26,10 +26,21 @@ void add(BlockSolids& all, StandingSolid solid) {
 
 BlockCache::BlockCache(const world::World& world, const models::Registry& registry,
                        std::size_t max_bytes)
-    : world_(world), registry_(registry), max_bytes_(max_bytes), edits_(world.edits) {}
+    : world_(world),
+      registry_(registry),
+      max_bytes_(max_bytes),
+      edits_(world.edits),
+      revision_(world.revision.number) {}
 
-// Drops the blocks that edits have changed since the last call.
-void BlockCache::sync_edits() {
+// Drops the blocks that edits have changed since the last call, or all of a replaced world.
+void BlockCache::follow_world() {
+  if (world_.revision.number != revision_) {
+    revision_ = world_.revision.number;
+    edits_ = world_.edits;
+    blocks_.clear();
+    index_.clear();
+    bytes_ = 0;
+  }
   if (world_.edits == edits_) return;
   edits_ = world_.edits;
   for (auto block = blocks_.begin(); block != blocks_.end();) {
@@ -41,7 +52,7 @@ void BlockCache::sync_edits() {
 }
 
 BlockCache::Block& BlockCache::touch(core::BlockCoord block) {
-  sync_edits();
+  follow_world();
   if (!blocks_.empty() && blocks_.front().at == block) return blocks_.front();
   if (const auto found = index_.find(block); found != index_.end()) {
     blocks_.splice(blocks_.begin(), blocks_, found->second);

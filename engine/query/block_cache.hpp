@@ -34,9 +34,9 @@ struct BlockSolids {
   core::Bounds box;                 // around all solids; meaningless without solids
 };
 
-// World and registry must outlive the cache. Between two calls, only the world's edits may change;
-// the cache then rebuilds the blocks that they reach. Returned spans and references are valid until
-// the next call.
+// World and registry must outlive the cache. Between two calls the world's edits may change: the
+// cache then rebuilds the blocks that they reach. After a new World::revision it drops all blocks.
+// Returned spans and references are valid until the next call.
 class BlockCache {
  public:
   // An empty cache. `max_bytes` bounds the memory of the cached blocks.
@@ -66,13 +66,14 @@ class BlockCache {
 
   Block& touch(core::BlockCoord block);
   void forget(core::BlockCoord block);
-  void sync_edits();
+  void follow_world();
   void charge(Block& block, std::size_t bytes);
 
   const world::World& world_;
   const models::Registry& registry_;
   std::size_t max_bytes_, bytes_ = 0;
   std::shared_ptr<const models::EditLayer> edits_;  // the world's edits at the last call
+  std::uint64_t revision_;                          // and its revision
   Order blocks_;
   std::unordered_map<core::BlockCoord, Order::iterator, core::BlockCoordHash> index_;
 };

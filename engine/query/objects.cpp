@@ -121,6 +121,19 @@ core::Result<PlacedObject> Objects::placed(const ObjectPose& pose) const {
   return object;
 }
 
+void Objects::follow_world() {
+  if (world_ == nullptr || world_->block_size_m() == block_m_) return;
+  const double before_m = std::exchange(block_m_, world_->block_size_m());
+  origin_ = world::rebased({origin_}, before_m, block_m_).block;
+  for (Slot& slot : slots_) {
+    if (!slot.lives) continue;
+    PlacedObject& object = slot.object;
+    object.pose.position = world::rebased(object.pose.position, before_m, block_m_);
+    object.position = world::rebased(object.position, before_m, block_m_);
+    tree_.move(slot.leaf, box_of(object), glm::dvec3(0.0));
+  }
+}
+
 glm::dvec3 Objects::coordinates(const core::WorldPosition& at) const {
   return core::offset_m(at.block, {origin_}, world_->block_size_m()) + at.local;
 }
@@ -139,6 +152,7 @@ core::Result<ObjectId> Objects::add(ObjectTag name, const ObjectShape& shape,
                                     const ObjectPose& pose) {
   if (world_ == nullptr || shape == nullptr || name == 0)
     return core::invalid_argument("an object needs a world, a shape and a name above 0");
+  follow_world();
   if (size() >= kMaxObjects)
     return core::fail(core::ErrorCode::kOverBudget,
                       fmt::format("there are {} objects already", kMaxObjects));
@@ -167,6 +181,7 @@ core::Result<ObjectId> Objects::add(ObjectTag name, const ObjectShape& shape,
 
 core::Result<void> Objects::move(ObjectId id, const ObjectPose& pose) {
   if (find(id) == nullptr) return core::invalid_argument("the object does not exist");
+  follow_world();
   Slot& slot = slots_[id.slot];
   if (slot.object.pose == pose) {
     slot.told = true;
@@ -202,6 +217,7 @@ bool Objects::remove(ObjectId id) {
 }
 
 std::size_t Objects::remove_stale() {
+  follow_world();
   std::size_t removed = 0;
   for (std::uint32_t i = 0; i < slots_.size(); ++i) {
     if (slots_[i].lives && !std::exchange(slots_[i].told, false))

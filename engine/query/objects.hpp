@@ -55,7 +55,9 @@ struct ObjectHit {
   SolidHit hit;
 };
 
-// The objects of one world, which must outlive them. Movable.
+// The objects of one world, which must outlive them. If the world is replaced by one with blocks of
+// another size, the next add(), move() or remove_stale() names all objects by the new blocks at the
+// places that they have (world::rebased()). Movable.
 class Objects {
  public:
   // Limits of an object's parts after scaling: their size along any axis, and their reach from the
@@ -65,7 +67,7 @@ class Objects {
   static constexpr std::size_t kMaxObjects = 1'000'000;
 
   Objects() = default;  // without a world: add() fails
-  explicit Objects(const world::World& world) : world_(&world) {}
+  explicit Objects(const world::World& world) : world_(&world), block_m_(world.block_size_m()) {}
 
   // Checks a collider. Fails with kInvalidArgument and a message that names the part, for colliders
   // without parts or with more than kMaxParts, values that are not finite, sizes outside of
@@ -107,12 +109,14 @@ class Objects {
     std::uint32_t generation = 0;
     bool lives = false, told = false;
   };
+  void follow_world();
   core::Result<PlacedObject> placed(const ObjectPose& pose) const;
   WideBox box_of(const PlacedObject& object) const;
   // Metres from the origin, in the coordinates of the tree's boxes.
   glm::dvec3 coordinates(const core::WorldPosition& at) const;
 
   const world::World* world_ = nullptr;
+  double block_m_ = 0;       // of the blocks that positions refer to
   core::BlockCoord origin_;  // the block of the first object: precision is highest near it
   BoxTree tree_;
   std::vector<Slot> slots_;

@@ -76,6 +76,8 @@ class PathFinder::Search {
   }
 
   bool has_arrived() const { return best_ == to_; }
+  const core::WorldPosition& start() const { return start_; }
+  const core::WorldPosition& end() const { return end_; }
 
   // Returns the path to the reached cell that is nearest to the destination.
   std::vector<core::WorldPosition> way() {
@@ -213,12 +215,27 @@ class PathFinder::Search {
 };
 
 PathFinder::PathFinder(World& query, const PathSettings& settings)
-    : query_(&query), settings_(settings) {}
+    : query_(&query),
+      revision_(query.world().revision.number),
+      block_m_(query.world().block_size_m()),
+      settings_(settings) {}
 PathFinder::~PathFinder() = default;
 PathFinder::PathFinder(PathFinder&&) noexcept = default;
 PathFinder& PathFinder::operator=(PathFinder&&) noexcept = default;
 
+void PathFinder::follow_world() {
+  const world::World& world = query_->world();
+  if (world.revision.number == revision_) return;
+  revision_ = world.revision.number;
+  avoided_.clear();
+  const double before_m = std::exchange(block_m_, world.block_size_m());
+  if (search_)
+    search_ = std::make_unique<Search>(*this, world::rebased(search_->start(), before_m, block_m_),
+                                       world::rebased(search_->end(), before_m, block_m_), true);
+}
+
 void PathFinder::avoid(const core::WorldPosition& at) {
+  follow_world();
   const Cell middle = cell_at(at, query_->world().block_size_m());
   for (std::int32_t z = -1; z <= 1; ++z) {
     for (std::int32_t x = -1; x <= 1; ++x)
@@ -227,6 +244,7 @@ void PathFinder::avoid(const core::WorldPosition& at) {
 }
 
 bool PathFinder::reaches(const core::WorldPosition& from, const core::WorldPosition& to) {
+  follow_world();
   Search search(*this, from, to, false);
   search.run(SIZE_MAX);
   return search.has_arrived();
@@ -234,16 +252,19 @@ bool PathFinder::reaches(const core::WorldPosition& from, const core::WorldPosit
 
 std::vector<core::WorldPosition> PathFinder::find(const core::WorldPosition& from,
                                                   const core::WorldPosition& to) {
+  follow_world();
   Search search(*this, from, to, true);
   search.run(SIZE_MAX);
   return search.way();
 }
 
 void PathFinder::begin(const core::WorldPosition& from, const core::WorldPosition& to) {
+  follow_world();
   search_ = std::make_unique<Search>(*this, from, to, true);
 }
 
 std::optional<std::vector<core::WorldPosition>> PathFinder::advance(std::size_t cells) {
+  follow_world();
   if (!search_ || !search_->run(cells)) return std::nullopt;
   return std::exchange(search_, nullptr)->way();
 }

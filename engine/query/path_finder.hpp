@@ -26,7 +26,8 @@ struct PathSettings {
   std::size_t max_cells = 150'000;
 };
 
-// Searches paths in the world of its queries. Movable; not copyable.
+// Searches paths in the world of its queries. When that world is replaced (World::revision), a
+// search in progress starts again and positions to avoid are forgotten. Movable; not copyable.
 class PathFinder {
  public:
   static constexpr double kCellM = 2;
@@ -58,8 +59,11 @@ class PathFinder {
 
  private:
   class Search;
+  void follow_world();
 
   World* query_;
+  std::uint64_t revision_;  // of the world at the last call
+  double block_m_;          // and its blocks
   PathSettings settings_;
   std::unordered_set<std::uint64_t> avoided_;
   std::unique_ptr<Search> search_;  // the search in progress

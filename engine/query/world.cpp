@@ -44,14 +44,17 @@ core::Result<core::WorldPosition> checked(const core::WorldPosition& at, double 
 World::World(const world::World& world, const models::Registry& registry, std::size_t cache_bytes)
     : world_(&world),
       registry_(&registry),
-      block_m_(world.block_size_m()),
-      relief_m_(world.terrain.real(models::kTerrainReliefM)),
-      scattered_reach_m_(world::models_reach_m(world, registry)),
-      palette_(world::drawn_palette(world)),
+      derived_(derived_from(world, registry)),
       cache_(world, registry, cache_bytes) {}
 
+World::Derived World::derived_from(const world::World& world, const models::Registry& registry) {
+  return {world.revision.number, world.block_size_m(), world.terrain.real(models::kTerrainReliefM),
+          world::models_reach_m(world, registry), world::drawn_palette(world)};
+}
+
 core::Result<Ground> World::ground(const core::WorldPosition& position) {
-  const auto at = checked(position, block_m_);
+  follow_world();
+  const auto at = checked(position, derived_.block_m);
   if (!at) return tl::unexpected(at.error());
   if (!world_->contains(at->block))
     return core::invalid_argument(
@@ -59,8 +62,8 @@ core::Result<Ground> World::ground(const core::WorldPosition& position) {
   const glm::dvec2 local(at->local.x, at->local.z);
   const models::GroundPoint point = cache_.ground(at->block).at(local);
   const world::GroundBlends blends =
-      world::ground_blends(palette_, static_cast<float>(point.height_m), point.normal,
-                           world::pattern_place(at->block, block_m_, glm::vec2(local)),
+      world::ground_blends(derived_.palette, static_cast<float>(point.height_m), point.normal,
+                           world::pattern_place(at->block, derived_.block_m, glm::vec2(local)),
                            world::road_at(*world_, at->block, local));
   const world::Water& water = world_->water;
   return Ground{point.height_m, point.normal, world::main_kind(blends),
@@ -80,7 +83,8 @@ struct World::Course {
 };
 
 core::Result<Hit> World::cast(const Ray& ray) {
-  const auto origin = checked(ray.origin, block_m_);
+  follow_world();
+  const auto origin = checked(ray.origin, derived_.block_m);
   if (!origin) return tl::unexpected(origin.error());
   const double largest =
       std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
@@ -100,7 +104,7 @@ core::Result<Hit> World::cast(const Ray& ray) {
   if (ray.models) cast_models(course, hit);
   if (ray.objects) cast_objects(course, hit);
   hit.position = core::normalised(
-      {origin->block, origin->local + hit.distance_m * course.direction}, block_m_);
+      {origin->block, origin->local + hit.distance_m * course.direction}, derived_.block_m);
   return hit;
 }
 
@@ -108,7 +112,7 @@ void World::cast_ground(const Course& course, Hit& hit) {
   Side side = Side::kUnknown;
   std::int64_t left = kMaxBlocks;
   const PlaneLine plane = course.plane();
-  march(plane, block_m_, 0, course.longest_m,
+  march(plane, derived_.block_m, 0, course.longest_m,
         [&](std::int64_t x, std::int64_t z, double from, double to) {
           if (left-- == 0) {
             hit.distance_m = from;
@@ -119,7 +123,7 @@ void World::cast_ground(const Course& course, Hit& hit) {
             side = Side::kUnknown;
             return true;
           }
-          if (course.lowest(from, to) > relief_m_) {
+          if (course.lowest(from, to) > derived_.relief_m) {
             side = Side::kAbove;
             return course.direction.y < 0;  // else it never descends
           }
@@ -127,7 +131,7 @@ void World::cast_ground(const Course& course, Hit& hit) {
             side = Side::kBelow;
             return course.direction.y > 0;
           }
-          const glm::dvec2 corner = glm::dvec2(x, z) * block_m_;
+          const glm::dvec2 corner = glm::dvec2(x, z) * derived_.block_m;
           const GroundRay local{
               {plane.from - corner, plane.step}, course.origin.local.y, course.direction.y};
           const auto found = cache_.ground(block).cast(local, from, to, side);
@@ -174,37 +178,39 @@ void World::cast_models(const Course& course, Hit& hit) {
   const PlaneLine plane = course.plane();
   const double longest_m = hit.distance_m;
   const glm::dvec2 max_m(max_reach_m());
-  const double reach_m = max_m.x, top_m = relief_m_ + max_m.y;
-  march(plane, block_m_, 0, longest_m, [&](std::int64_t x, std::int64_t z, double from, double to) {
-    if (from > hit.distance_m) return false;
-    if (course.lowest(from, to) > top_m) return course.direction.y < 0;
-    const glm::dvec2 a = plane.at(from), b = plane.at(to);
-    const BlockRange near =
-        blocks_around(glm::min(a, b) - reach_m, glm::max(a, b) + reach_m, block_m_);
-    const double farthest = 2 * std::ceil(reach_m / block_m_) + 1;
-    std::erase_if(seen, [&](const glm::dvec2& s) {
-      return std::abs(s.x - static_cast<double>(x)) > farthest ||
-             std::abs(s.y - static_cast<double>(z)) > farthest;
-    });
-    for (double bz = near.first.y; bz <= near.last.y; ++bz) {
-      for (double bx = near.first.x; bx <= near.last.x; ++bx) {
-        const BlockCoord block = moved(course.origin.block, static_cast<std::int64_t>(bx),
-                                       static_cast<std::int64_t>(bz));
-        if (!world_->contains(block) || std::ranges::find(seen, glm::dvec2(bx, bz)) != seen.end())
-          continue;
-        if (left-- == 0) {
-          if (from < hit.distance_m) {
-            hit = Hit();
-            hit.distance_m = from;
+  const double reach_m = max_m.x, top_m = derived_.relief_m + max_m.y;
+  march(plane, derived_.block_m, 0, longest_m,
+        [&](std::int64_t x, std::int64_t z, double from, double to) {
+          if (from > hit.distance_m) return false;
+          if (course.lowest(from, to) > top_m) return course.direction.y < 0;
+          const glm::dvec2 a = plane.at(from), b = plane.at(to);
+          const BlockRange near =
+              blocks_around(glm::min(a, b) - reach_m, glm::max(a, b) + reach_m, derived_.block_m);
+          const double farthest = 2 * std::ceil(reach_m / derived_.block_m) + 1;
+          std::erase_if(seen, [&](const glm::dvec2& s) {
+            return std::abs(s.x - static_cast<double>(x)) > farthest ||
+                   std::abs(s.y - static_cast<double>(z)) > farthest;
+          });
+          for (double bz = near.first.y; bz <= near.last.y; ++bz) {
+            for (double bx = near.first.x; bx <= near.last.x; ++bx) {
+              const BlockCoord block = moved(course.origin.block, static_cast<std::int64_t>(bx),
+                                             static_cast<std::int64_t>(bz));
+              if (!world_->contains(block) ||
+                  std::ranges::find(seen, glm::dvec2(bx, bz)) != seen.end())
+                continue;
+              if (left-- == 0) {
+                if (from < hit.distance_m) {
+                  hit = Hit();
+                  hit.distance_m = from;
+                }
+                return false;
+              }
+              seen.emplace_back(bx, bz);
+              cast_block(course, {bx * derived_.block_m, 0, bz * derived_.block_m}, block, hit);
+            }
           }
-          return false;
-        }
-        seen.emplace_back(bx, bz);
-        cast_block(course, {bx * block_m_, 0, bz * block_m_}, block, hit);
-      }
-    }
-    return true;
-  });
+          return true;
+        });
 }
 
 void World::cast_objects(const Course& course, Hit& hit) const {
@@ -225,7 +231,7 @@ core::Result<std::vector<World::BlockAround>> World::blocks_within(const core::W
     return core::invalid_argument(
         fmt::format("the radius must be finite and not negative, not {} m", radius_m));
   const glm::dvec2 centre(at.local.x, at.local.z);
-  const BlockRange range = blocks_around(centre - radius_m, centre + radius_m, block_m_);
+  const BlockRange range = blocks_around(centre - radius_m, centre + radius_m, derived_.block_m);
   if (!(range.count() <= static_cast<double>(kMaxBlocks)))
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("a radius of {} m covers {:.0f} blocks; at most {} are searched",
@@ -235,8 +241,8 @@ core::Result<std::vector<World::BlockAround>> World::blocks_within(const core::W
     for (double x = range.first.x; x <= range.last.x; ++x) {
       const BlockCoord block =
           moved(at.block, static_cast<std::int64_t>(x), static_cast<std::int64_t>(z));
-      const glm::dvec2 corner = glm::dvec2(x, z) * block_m_;
-      const glm::dvec2 gap = centre - glm::clamp(centre, corner, corner + block_m_);
+      const glm::dvec2 corner = glm::dvec2(x, z) * derived_.block_m;
+      const glm::dvec2 gap = centre - glm::clamp(centre, corner, corner + derived_.block_m);
       const double distance_m = std::sqrt(glm::dot(gap, gap));
       if (distance_m <= radius_m && world_->contains(block))
         blocks.push_back({block, {corner.x, 0, corner.y}, distance_m});
@@ -259,7 +265,8 @@ core::Result<void> World::models_within(const core::WorldPosition& position, dou
                                         std::vector<NearbyModel>& out,
                                         std::span<const models::ModelIndex> only) {
   out.clear();
-  const auto at = checked(position, block_m_);
+  follow_world();
+  const auto at = checked(position, derived_.block_m);
   if (!at) return tl::unexpected(at.error());
   const auto blocks = blocks_within(*at, radius_m);
   if (!blocks) return tl::unexpected(blocks.error());
@@ -274,7 +281,8 @@ core::Result<void> World::models_within(const core::WorldPosition& position, dou
 core::Result<std::optional<NearbyModel>> World::nearest(const core::WorldPosition& position,
                                                         double radius_m,
                                                         std::span<const models::ModelIndex> only) {
-  const auto at = checked(position, block_m_);
+  follow_world();
+  const auto at = checked(position, derived_.block_m);
   if (!at) return tl::unexpected(at.error());
   auto blocks = blocks_within(*at, radius_m);
   if (!blocks) return tl::unexpected(blocks.error());

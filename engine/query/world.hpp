@@ -63,8 +63,10 @@ struct NearbyModel {
   double distance_m = 0;         // from its base point to the query's position
 };
 
-// The queries of one world. World and registry must outlive this object. Only the world's edits may
-// change: every call reads them, without a lock. So it belongs to the thread that edits the world;
+// The queries of one world. World and registry must outlive this object. The world's edits may
+// change, and the world and its registry may be replaced in place under a new World::revision, as
+// Scene::set_world() does: every call follows. It reads them without a lock, so it belongs to the
+// thread that edits the world;
 // in a scene this is the main thread. Another thread copies the value (world::World), which costs
 // some kilobytes and shares no mutable state, and makes its own queries on the copy. Movable; not
 // copyable.
@@ -122,7 +124,10 @@ class World {
 
   // The largest horizontal reach of models from their base points, in metres, including models that
   // edits have placed. O(1).
-  double models_reach_m() const { return static_cast<double>(max_reach_m().x); }
+  double models_reach_m() {
+    follow_world();
+    return static_cast<double>(max_reach_m().x);
+  }
 
   // World and registry of these queries.
   const world::World& world() const { return *world_; }
@@ -135,7 +140,20 @@ class World {
     glm::dvec3 corner_m{0.0};  // from the corner of the position's block
     double distance_m = 0;     // in the plane
   };
-  glm::vec2 max_reach_m() const { return world::with_placed_models(scattered_reach_m_, *world_); }
+  // The values that depend on the world, and the call that makes them again for a replaced one.
+  struct Derived {
+    std::uint64_t revision = 0;
+    double block_m = 0, relief_m = 0;
+    glm::vec2 scattered_reach_m{0.0F};  // of the models that the world's function places
+    world::Palette palette;
+  };
+  static Derived derived_from(const world::World& world, const models::Registry& registry);
+  void follow_world() {
+    if (world_->revision.number != derived_.revision) derived_ = derived_from(*world_, *registry_);
+  }
+  glm::vec2 max_reach_m() const {
+    return world::with_placed_models(derived_.scattered_reach_m, *world_);
+  }
   void cast_ground(const Course& course, Hit& hit);
   void cast_models(const Course& course, Hit& hit);
   void cast_objects(const Course& course, Hit& hit) const;
@@ -149,9 +167,7 @@ class World {
 
   const world::World* world_;
   const models::Registry* registry_;
-  double block_m_, relief_m_;
-  glm::vec2 scattered_reach_m_;  // of the models that the world's function places
-  world::Palette palette_;
+  Derived derived_;
   BlockCache cache_;
   const Objects* objects_ = nullptr;
 };

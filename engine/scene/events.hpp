@@ -50,6 +50,19 @@ struct MeshEvicted {
   synthesis::MeshKey key;
 };
 
+// Scene::set_world() replaced the world. Queries, paths, physics, solid objects, prefabs and edits
+// follow by themselves; a game finds its numbers of model types (models::ModelIndex) and whatever
+// else it derived from the world again.
+struct WorldChanged {
+  bool ground = false;  // heights or blocks differ
+  bool models = false;  // types, places or shapes of models differ; implied by `ground`
+  bool looks = false;   // name, sky, water or palette differ
+  // Side of the replaced world's blocks in metres. If it differs from the new one, the scene has
+  // moved all Transforms to the same places in the new blocks; world::rebased() moves positions of
+  // the game's own.
+  double block_m_before = 0;
+};
+
 // The queues that the engine fills.
 struct Events {
   ecs::EventQueue<NodeShown> shown;
@@ -59,6 +72,7 @@ struct Events {
   ecs::EventQueue<MeshReady> ready;
   ecs::EventQueue<MeshEvicted> evicted;
   ecs::EventQueue<PlaceReady> places_ready;
+  ecs::EventQueue<WorldChanged> world_changed;
 };
 
 }  // namespace psygen::scene

@@ -187,15 +187,17 @@ class Scene {
   // The edits of the world: all that were given to edit(), though some may be drawn only some ticks
   // later (engine/world/edits/edits.hpp). A copy is O(1), and editing a copy changes nothing here.
   const world::Edits& edits() const;
-  // Replaces the edits from the next tick on. They must be made for this world and registry. Old
-  // meshes are drawn until the new ones are ready. An edit taken back restores the same meshes.
+  // Replaces the edits from the next tick on. They are made for this world, or for one that it has
+  // replaced (world::fitted()). Old meshes are drawn until the new ones are ready. An edit taken
+  // back restores the same meshes.
   void edit(world::Edits edits);
 
   // Replaces the world and its types from the next tick on (facts/world_facts.hpp): for editors,
   // and for games whose world changes. Equal meshes stay, others are drawn until the new ones are
-  // ready; worlds with another block size or other levels are built from nothing. Edits are kept.
-  // Waits for requests that modelers work on. Ends queries of the old world (query::World). After
-  // kDeviceLost the scene is lost; after other errors nothing has changed.
+  // ready; worlds with another block size or other levels are built from nothing. Edits are kept,
+  // with models of types that are gone left out until these return. Waits for requests that
+  // modelers work on. Increases World::revision, by which queries and physics follow, and emits
+  // WorldChanged. After kDeviceLost the scene is lost; after other errors nothing has changed.
   core::Result<void> set_world(PreparedWorld prepared);
   // As above, with the slow part included.
   core::Result<void> set_world(world::World world, models::Registry registry);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "engine/scene/facts/derive.hpp"
@@ -11,7 +12,9 @@
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/meshes/mesh_annotations.hpp"
 #include "engine/scene/meshes/tree_impostors.hpp"
+#include "engine/scene/nodes/edits.hpp"
 #include "engine/scene/nodes/entities.hpp"
+#include "engine/scene/objects/components.hpp"
 #include "engine/scene/state.hpp"
 #include "engine/world/far/tree_impostors.hpp"
 #include "engine/world/ground_blends.hpp"
@@ -133,8 +136,37 @@ void replace_sky(const world::Sky& sky, State& s) {
   s.facts.light = light_of(s.facts.world, s.settings.view_distance_m);
 }
 
+bool same_looks(const world::World& a, const world::World& b) {
+  return a.name == b.name && a.sky == b.sky && a.water == b.water && a.palette == b.palette;
+}
+
+WorldChanged change_between(const WorldFacts& before, const WorldFacts& after) {
+  const DerivedWorldData &a = *before.derived, &b = *after.derived;
+  const world::World &from = before.world, &to = after.world;
+  return {.ground = a.parts.ground != b.parts.ground,
+          .models = a.types != b.types || a.parts != b.parts || from.species != to.species ||
+                    from.models != to.models || from.places != to.places,
+          .looks = !same_looks(from, to),
+          .block_m_before = from.block_size_m()};
+}
+
+// Keeps the places of entities and requested places when blocks get another size.
+void resize_blocks(double before_m, State& s) {
+  const double block_m = s.facts.world.block_size_m();
+  if (block_m == before_m) return;
+  s.entities.each<Transform>([&](auto, std::span<Transform> transforms) {
+    for (Transform& transform : transforms) {
+      if (core::is_finite(transform.position.local))
+        transform.position = world::rebased(transform.position, before_m, block_m);
+    }
+  });
+  for (RequestedPlace& place : s.meshes.places.places)
+    place.position = world::rebased(place.position, before_m, block_m);
+}
+
 void replace_looks(const world::World& world, State& s) {
   WorldFacts& facts = s.facts;
+  ++facts.world.revision.number;
   facts.world.name = world.name;
   facts.world.water = world.water;
   facts.world.palette = world.palette;
@@ -204,7 +236,10 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
   const bool other = prepared.before && (prepared.before != s.facts.derived || s.facts.world.edits);
   if (other) return set_world(std::move(next.world), without_own_types(next));
   if (prepared.looks_only) {
+    const WorldChanged change{.looks = !same_looks(next.world, s.facts.world),
+                              .block_m_before = next.world.block_size_m()};
     replace_looks(next.world, s);
+    s.events.world_changed.emit(change);
     return {};
   }
   if (!show_stand_ins(next, s.facts.pictures.get(), s.meshes, s.output)) {
@@ -225,16 +260,22 @@ core::Result<void> Scene::set_world(PreparedWorld prepared) {
                            prepared.before->types == next.derived->types &&
                            prepared.before->parts.ground == next.derived->parts.ground;
   const auto kept = same_ground ? std::optional(kept_models(s.facts, next)) : std::nullopt;
+  const WorldChanged change = change_between(s.facts, next);
+  next.world.revision.number = s.facts.world.revision.number + 1;
   std::swap(s.facts, next);
   if (!rested || s.assets.mesh_count() > 0) s.retired_types.push_back(std::move(next.registry));
   s.supply.adopt_types(mesh_annotations(s.facts));
   s.supply.set_edits(s.facts.world.layer());
   on_preset_changed();
   name_types(s.facts.registry, s.trace);
-  edit(std::move(s.pending_edits.edits));
+  resize_blocks(change.block_m_before, s);
   if (same) update_all_nodes(prepared, kept ? &*kept : nullptr, s);
+  // Fixed steps of the next tick come before its system "edits".
+  edit(std::move(s.pending_edits.edits));
+  edits_system(s.daylight, s.pending_edits, s.facts, s.node_work());
   for (RequestedPlace& place : s.meshes.places.places)
     place.stale = true;
+  s.events.world_changed.emit(change);
   return {};
 }
 

@@ -22,7 +22,8 @@ void build_tick(State& s) {
                  s.daylight, s.pending_edits, s.streaming, s.view, s.output, s.supply, s.meshes,
                  s.draws, s.assets, s.object_draws, s.light_draws, s.particle_draws, s.shown,
                  s.simulation, s.step, s.trace, s.telemetry, events.shown, events.hidden,
-                 events.created, events.removed, events.ready, events.evicted, events.places_ready);
+                 events.created, events.removed, events.ready, events.evicted, events.places_ready,
+                 events.world_changed);
   s.tick.add(kSimulationSystem, simulation_system);
   s.tick.add("input", input_system);
   s.tick.add("quality", quality_system);
@@ -45,7 +46,8 @@ void build_tick(State& s) {
       s.engine_values.insert(access.type);
   }
   s.simulation.systems.provide(s.facts, s.step, events.shown, events.hidden, events.created,
-                               events.removed, events.ready, events.evicted, events.places_ready);
+                               events.removed, events.ready, events.evicted, events.places_ready,
+                               events.world_changed);
 }
 
 void reset_counts(State& s) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/ground_blends.hpp"
@@ -72,10 +73,12 @@ void place_by_hand(const models::BlockEdits& edits, const models::Registry& regi
                    const models::BlockGround& ground, std::uint32_t first_index,
                    std::vector<Placement>& out) {
   for (const models::PlacedModel& placed : edits.placed) {
+    const auto model = models::type_of(placed, registry);
+    if (!model) continue;
     const models::GroundPoint point = ground.at(placed.local_m);
-    const models::ModelType& type = registry[placed.model];
+    const models::ModelType& type = registry[*model];
     Placement placement{
-        placed.model,
+        *model,
         first_index + placed.id,
         {placed.local_m.x, static_cast<float>(point.height_m) + placed.above_m, placed.local_m.y},
         placed.parameters};
@@ -88,6 +91,7 @@ void place_by_hand(const models::BlockEdits& edits, const models::Registry& regi
 void place_wanted(const World& world, const models::Registry& registry, core::BlockCoord block,
                   const models::BlockGround& ground, const std::vector<bool>* wanted,
                   std::vector<Placement>& out) {
+  const core::RoundToNearest rounding;
   out.clear();
   const models::BlockEdits* const edits = world.edits ? world.edits->block(block) : nullptr;
   if (has_edited_ground(world, block)) {

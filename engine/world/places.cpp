@@ -14,18 +14,15 @@ namespace {
 
 models::PlacedModel placed_model(const Place& place, const models::ModelType& type,
                                  std::uint32_t id, const core::WorldPosition& at, float size_m) {
-  const core::Bounds box = type.bounds(place.parameters);
-  const auto above = static_cast<float>(place.above_m);
   const auto within = [size_m](double local_m) {
     return std::min(static_cast<float>(local_m), std::nextafter(size_m, 0.0F));
   };
-  return {id,
-          place.model,
-          {within(at.local.x), within(at.local.z)},
-          above,
-          {std::max({-box.min.x, -box.min.z, box.max.x, box.max.z, 0.0F}),
-           std::max(box.max.y + above, 0.0F), std::max(-box.min.y - above, 0.0F)},
-          place.parameters};
+  models::PlacedModel placed{.id = id,
+                             .local_m = {within(at.local.x), within(at.local.z)},
+                             .above_m = static_cast<float>(place.above_m),
+                             .parameters = place.parameters};
+  models::bind(placed, type);
+  return placed;
 }
 
 }  // namespace

@@ -40,6 +40,11 @@ double World::cell_m() const {
   return terrain.real(models::kTerrainCellM);
 }
 
+core::WorldPosition rebased(const core::WorldPosition& at, double from_m, double to_m) {
+  if (from_m == to_m) return at;
+  return core::normalised({{}, core::offset_m(at.block, {}, from_m) + at.local}, to_m);
+}
+
 double surface_height_m(const World& world, const core::WorldPosition& at) {
   const double ground_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
   return world.water.exists() ? std::max(ground_m, world.water.level_m) : ground_m;

@@ -141,6 +141,13 @@ struct Palette {
   friend bool operator==(const Palette&, const Palette&) = default;
 };
 
+// Counts the replacements of a world in place: queries and physics that see another number than
+// before forget everything derived from the world. Equal worlds may have different numbers.
+struct Revision {
+  std::uint64_t number = 0;
+  friend bool operator==(const Revision&, const Revision&) { return true; }
+};
+
 // A whole world: a function, and the edits over it.
 struct World {
   int format = kWorldFormat;
@@ -160,6 +167,9 @@ struct World {
   // Changes made by hand (edits/edits.hpp), over the shaped ground; null: none. Not part of world
   // files. `terrain` refers to the same layer, so change it with set_edits().
   std::shared_ptr<const models::EditLayer> edits;
+  // Increase it after changes of anything but edits and sky while queries refer to the world;
+  // Scene::set_world() does. Not part of world files.
+  Revision revision;
   // A hash of the contents of the files named here (handmade::hash_of_files()) if it was requested,
   // else 0. Not part of world files.
   std::uint64_t files_hash = 0;
@@ -177,6 +187,11 @@ struct World {
   bool is_endless() const { return blocks_x == 0 || blocks_z == 0; }
   friend bool operator==(const World&, const World&) = default;
 };
+
+// Returns the same place in blocks of `to_m` instead of `from_m` metres, both counted from the
+// corner of block (0, 0): for positions that outlive a world with blocks of another size.
+// Normalised, unless the sizes are equal. Block indices wrap at 2^32.
+core::WorldPosition rebased(const core::WorldPosition& at, double from_m, double to_m);
 
 // The height of the ground at a position, or of the water above it, in metres of the world. Ignores
 // the position's own height. engine/query answers exact questions about drawn ground.

@@ -34,7 +34,7 @@ struct Game {
   std::optional<physics::World> physics;
   physics::CharacterId player;
   double yaw = 0, pitch = 0, walked_m = 0;
-  core::WorldPosition feet, feet_before;  // after the last two steps
+  glm::dvec3 moved{0.0};  // metres, in the last step
   input::ActionId ahead = 0, aside = 0, run = 0, jump = 0, look_x = 0, look_y = 0;
 };
 
@@ -67,23 +67,19 @@ void step(Game& game, const input::Actions& actions, bool by_itself, double step
   wanted.direction = {s * ahead + c * aside, -c * ahead + s * aside};
   wanted.run = by_itself || actions.state(game.run).held;
   wanted.jump = actions.state(game.jump).pressed;
+  const core::WorldPosition before = game.physics->state(game.player)->feet;
   (void)game.physics->tell(game.player, wanted);
   (void)game.physics->step(step_s);
-  game.feet_before = std::exchange(game.feet, game.physics->state(game.player)->feet);
-  const double block_m = game.query->world().block_size_m();
-  const glm::dvec3 way = core::offset_m(game.feet.block, game.feet_before, block_m);
-  game.walked_m += std::hypot(way.x + game.feet.local.x, way.z + game.feet.local.z);
+  const core::WorldPosition feet = game.physics->state(game.player)->feet;
+  game.moved = feet.local + core::offset_m(feet.block, before, game.query->world().block_size_m());
+  game.walked_m += std::hypot(game.moved.x, game.moved.z);
 }
 
 // Returns the eyes, interpolated between the last two steps.
 core::CameraPose eyes(const Game& game, double share) {
   core::CameraPose pose;
-  pose.position = game.feet;
-  const core::WorldPosition corner{game.feet.block, glm::dvec3(0.0)};
-  const glm::dvec3 before =
-      core::offset_m(game.feet_before.block, corner, game.query->world().block_size_m()) +
-      game.feet_before.local;
-  pose.position.local = before + (game.feet.local - before) * share;
+  pose.position = game.physics->state(game.player)->feet;
+  pose.position.local -= game.moved * (1 - share);
   pose.position.local.y += kEyesM;
   pose.yaw = game.yaw;
   pose.pitch = game.pitch;
@@ -114,8 +110,8 @@ core::Result<void> play(int argc, char** argv) {
   auto physics = physics::World::create(*game.query);
   if (!physics) return tl::unexpected(physics.error());
   game.physics.emplace(std::move(*physics));
-  game.feet = game.feet_before = (*session)->home().position;
-  const auto player = game.physics->add(physics::CharacterSettings{.feet = game.feet});
+  const auto player =
+      game.physics->add(physics::CharacterSettings{.feet = (*session)->home().position});
   if (!player) return tl::unexpected(player.error());
   game.player = *player;
   if ((*session)->window() != nullptr) (*session)->window()->capture_cursor(true);
@@ -130,8 +126,9 @@ core::Result<void> play(int argc, char** argv) {
     const Clock::time_point now = Clock::now();
     if (!by_itself) dt_s = std::chrono::duration<double>(now - std::exchange(last, now)).count();
   }
-  const auto ground = game.query->ground(game.feet);
-  const double above_m = ground ? game.feet.local.y - ground->height_m : -1;
+  const core::WorldPosition feet = game.physics->state(game.player)->feet;
+  const auto ground = game.query->ground(feet);
+  const double above_m = ground ? feet.local.y - ground->height_m : -1;
   std::printf("walked %.0f m, %.2f m above the ground\n", game.walked_m, above_m);
   if (above_m > -0.01) return {};
   return core::fail(core::ErrorCode::kInternal, "the walker is below the ground");

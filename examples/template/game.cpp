@@ -39,8 +39,7 @@ core::Result<void> Game::start(app::Session& session) {
   auto physics = physics::World::create(*query_);
   if (!physics) return tl::unexpected(physics.error());
   physics_.emplace(std::move(*physics));
-  feet_ = feet_before_ = session.home().position;
-  const auto walker = physics_->add(physics::CharacterSettings{.feet = feet_});
+  const auto walker = physics_->add(physics::CharacterSettings{.feet = session.home().position});
   if (!walker) return tl::unexpected(walker.error());
   walker_ = *walker;
   if (session.window() != nullptr) session.window()->capture_cursor(true);
@@ -76,20 +75,20 @@ void Game::step(app::Session& session, double step_s) {
                       -c * value(ahead_) + s * value(aside_)};
   wanted.run = session.actions().state(run_).held;
   wanted.jump = session.actions().state(jump_).pressed;
+  const core::WorldPosition before = physics_->state(walker_)->feet;
   (void)physics_->tell(walker_, wanted);
   (void)physics_->step(step_s);
-  feet_before_ = std::exchange(feet_, physics_->state(walker_)->feet);
-  const glm::dvec3 moved =
-      feet_.local + core::offset_m(feet_.block, feet_before_, query_->world().block_size_m());
-  way_m_ += std::hypot(moved.x, moved.z);
+  const core::WorldPosition feet = physics_->state(walker_)->feet;
+  moved_ = feet.local + core::offset_m(feet.block, before, query_->world().block_size_m());
+  way_m_ += std::hypot(moved_.x, moved_.z);
 }
 
+// Physics follows when an editor replaces the world, also by one with blocks of another size, so
+// this keeps no positions.
 core::CameraPose Game::eyes(double share) const {
   core::CameraPose pose;
-  pose.position = feet_;
-  const glm::dvec3 moved =
-      feet_.local + core::offset_m(feet_.block, feet_before_, query_->world().block_size_m());
-  pose.position.local -= moved * (1 - share);
+  pose.position = physics_->state(walker_)->feet;
+  pose.position.local -= moved_ * (1 - share);
   pose.position.local.y += kEyesM;
   pose.yaw = yaw_;
   pose.pitch = pitch_;

@@ -30,7 +30,7 @@ class Game {
   std::optional<psygen::query::World> query_;
   std::optional<psygen::physics::World> physics_;
   psygen::physics::CharacterId walker_;
-  psygen::core::WorldPosition feet_, feet_before_;  // after the last two steps
+  glm::dvec3 moved_{0.0};  // metres, in the last step
   double yaw_ = 0, pitch_ = 0, way_m_ = 0;
   float mouse_ = 1;  // mouse sensitivity, set in the menu
   bool menu_ = false;

@@ -43,7 +43,10 @@ void edits_system(const Daylight& daylight, PendingEdits& pending, WorldFacts& f
   if (!std::exchange(pending.pending, false)) return;
   // Lives until no entity of the scene refers to it.
   const std::shared_ptr<const models::EditLayer> before = facts.world.layer();
-  world::set_edits(facts.world, pending.edits.layer());
+  // Edits of a replaced world may have types and blocks that this one lacks.
+  const bool own = facts.world.revision.number == 0;
+  const world::Edits& edits = pending.edits;
+  world::set_edits(facts.world, (own ? edits : fitted(edits, facts.world, facts.registry)).layer());
   work.supply.set_edits(facts.world.layer());
   facts.models_reach_m = world::with_placed_models(facts.scattered_reach_m, facts.world);
   const LayerChange change(facts.world, before, facts.world.layer());

@@ -31,7 +31,8 @@ class LayerChange {
   std::shared_ptr<const models::EditLayer> before_, after_;  // not null
 };
 
-// System: moves pending edits into the world. O(nodes) if there are any.
+// System: moves pending edits into the world, as far as they hold there (world::fitted()). O(nodes)
+// if there are any.
 void edits_system(const Daylight& daylight, PendingEdits& pending, WorldFacts& facts,
                   NodeWork work);
 

@@ -100,26 +100,25 @@ class BlockReader {
     for (std::size_t i = 0; i < count; ++i) {
       PlacedModel p;
       in_.read(p.id, p.local_m.x, p.local_m.y, p.above_m);
-      const auto type = read_type();
-      if (!type) return tl::unexpected(type.error());
-      p.model = *type;
+      const auto model = read_type();
+      if (!model) return tl::unexpected(model.error());
+      const models::ModelType& type = registry_[*model];
       // An older version of the type may have had fewer parameters. The others have their defaults,
       // as in world files and their identity (save/world_identity.hpp).
-      const std::size_t known = registry_[p.model].parameters().size();
+      const std::size_t known = type.parameters().size();
       const std::size_t values = in_.get<std::uint8_t>();
       if (values > known)
-        return wrong(fmt::format("{} has {} parameters, but these edits store {}",
-                                 registry_[p.model].name(), known, values));
-      p.parameters = models::default_parameters(registry_[p.model]);
+        return wrong(fmt::format("{} has {} parameters, but these edits store {}", type.name(),
+                                 known, values));
+      p.parameters = models::default_parameters(type);
       for (std::size_t k = 0; k < values; ++k)
         p.parameters.set_integer(k, in_.get<std::int64_t>());
       if (in_.failed()) return {};
       if (!is_next_id(p.id, i > 0 ? edits.placed.back().id : 0))
         return wrong("ids are not in order");
       if (auto ok = check_inside(double{p.local_m.x}, double{p.local_m.y}); !ok) return ok;
-      if (auto ok = check_model(registry_, p.model, p.parameters, double{p.above_m}); !ok)
-        return ok;
-      p.reach_m = placed_reach(registry_[p.model], p.parameters, double{p.above_m});
+      if (auto ok = check_model(registry_, *model, p.parameters, double{p.above_m}); !ok) return ok;
+      models::bind(p, type);
       edits.placed.push_back(std::move(p));
     }
     return {};
@@ -166,15 +165,13 @@ class BlockReader {
   core::ByteReader in_;
 };
 
-void put_placed(const PlacedModel& p, const models::Registry& registry, Bytes& out) {
-  const models::ModelType& type = registry[p.model];
+void put_placed(const PlacedModel& p, Bytes& out) {
   core::put(out, p.id, p.local_m.x, p.local_m.y, p.above_m);
-  const std::string_view name = type.name().substr(0, 255);
+  const std::string_view name = std::string_view(p.type).substr(0, 255);
   core::put(out, static_cast<std::uint8_t>(name.size()));
   core::put_all(out, std::span<const char>(name));
-  const std::size_t values = type.parameters().size();
-  core::put(out, static_cast<std::uint8_t>(values));
-  for (std::size_t k = 0; k < values; ++k)
+  core::put(out, static_cast<std::uint8_t>(p.parameter_count));
+  for (std::size_t k = 0; k < p.parameter_count; ++k)
     core::put(out, p.parameters.integer(k));
 }
 
@@ -189,7 +186,7 @@ void put_ground(const GroundEdit& e, Bytes& out) {
 
 }  // namespace
 
-std::vector<std::byte> encode_block(const Edits& edits, const models::Registry& registry,
+std::vector<std::byte> encode_block(const Edits& edits, const models::Registry&,
                                     core::BlockCoord block) {
   const BlockEdits* const of_block = edits.layer() ? edits.layer()->block(block) : nullptr;
   if (of_block == nullptr) return {};
@@ -199,7 +196,7 @@ std::vector<std::byte> encode_block(const Edits& edits, const models::Registry& 
     core::put(out, r.index, r.moved_id, r.moved_to.x, r.moved_to.z);
   core::put(out, static_cast<std::uint32_t>(of_block->placed.size()));
   for (const PlacedModel& p : of_block->placed)
-    put_placed(p, registry, out);
+    put_placed(p, out);
   core::put(out, static_cast<std::uint32_t>(of_block->ground.size()));
   for (const auto& e : of_block->ground)
     put_ground(*e, out);

@@ -18,7 +18,8 @@ namespace psygen::world {
 // (save::SaveGame::put_edits).
 inline constexpr std::uint16_t kEditFormat = 1;
 
-// All edits of a block. Empty if there are none; then delete the block from the store.
+// All edits of a block, also of models whose types the registry lacks. Empty if there are none;
+// then delete the block from the store.
 std::vector<std::byte> encode_block(const Edits& edits, const models::Registry& registry,
                                     core::BlockCoord block);
 

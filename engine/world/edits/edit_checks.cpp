@@ -148,12 +148,4 @@ core::Result<void> check_model(const models::Registry& registry, models::ModelIn
   return {};
 }
 
-glm::vec3 placed_reach(const models::ModelType& type, const models::Parameters& parameters,
-                       double above_m) {
-  const core::Bounds box = type.bounds(parameters);
-  const auto above = static_cast<float>(above_m);
-  return {std::max({-box.min.x, -box.min.z, box.max.x, box.max.z, 0.0F}),
-          std::max(box.max.y + above, 0.0F), std::max(-box.min.y - above, 0.0F)};
-}
-
 }  // namespace psygen::world

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <string>
 
 #include "engine/core/error.hpp"
@@ -31,8 +30,5 @@ core::Result<void> check_ground(const World& world, const models::GroundEdit& ed
 // Fails for a model that cannot be placed at this height above the ground.
 core::Result<void> check_model(const models::Registry& registry, models::ModelIndex model,
                                const models::Parameters& parameters, double above_m);
-// PlacedModel::reach_m of a model whose base point is at this height above the ground.
-glm::vec3 placed_reach(const models::ModelType& type, const models::Parameters& parameters,
-                       double above_m);
 
 }  // namespace psygen::world

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "engine/world/edits/edit_checks.hpp"
@@ -20,10 +23,10 @@ using models::PlacedModel;
 using models::QuadCoord;
 using models::RemovedModel;
 
-// A coordinate in a block as a float, which must not round up to the next block.
-float within(double local_m, const World& world) {
-  const auto size_m = static_cast<float>(world.block_size_m());
-  return std::min(static_cast<float>(local_m), std::nextafter(size_m, 0.0F));
+// A position in a block as floats, which must not round up to the next block.
+glm::vec2 within(const glm::dvec3& local_m, double block_m) {
+  const float most = std::nextafter(static_cast<float>(block_m), 0.0F);
+  return glm::min(glm::vec2(local_m.x, local_m.z), most);
 }
 
 // An edit of a disc of the ground.
@@ -37,7 +40,73 @@ GroundEdit disc(models::GroundChange change, const core::WorldPosition& at, doub
   return edit;
 }
 
+// The same edits at the same places, for blocks of another size. Instances of the world's function
+// are others there, so nothing is removed. Leaves out ground edits above kMaxTogether.
+EditLayer resized(const EditLayer& layer, double block_m) {
+  EditLayer next;
+  next.next_id = layer.next_id;
+  next.block_m = block_m;
+  std::map<core::BlockCoord, BlockEdits> blocks;
+  std::set<std::pair<core::BlockCoord, std::uint32_t>> used;  // blocks may have had equal ids
+  const auto id_in = [&](core::BlockCoord block, std::uint32_t id) {
+    return used.insert({block, id}).second ? id : next.next_id++;
+  };
+  const auto add = [&](const QuadCoord& at, const BlockEdits*, const BlockEdits* edits) {
+    for (PlacedModel placed : edits->placed) {
+      const core::WorldPosition place =
+          rebased({at.corner(), {placed.local_m.x, 0, placed.local_m.y}}, layer.block_m, block_m);
+      placed.id = id_in(place.block, placed.id);
+      placed.local_m = within(place.local, block_m);
+      blocks[place.block].placed.push_back(std::move(placed));
+    }
+    for (const auto& before : edits->ground) {
+      GroundEdit edit = *before;
+      edit.centre = rebased(edit.centre, layer.block_m, block_m);
+      edit.id = id_in(edit.centre.block, edit.id);
+      seal(edit);
+      blocks[edit.centre.block].ground.push_back(
+          std::make_shared<const GroundEdit>(std::move(edit)));
+    }
+  };
+  models::QuadMap<BlockEdits>::each_difference({}, layer.blocks, add);
+  for (auto& [block, edits] : blocks) {
+    std::ranges::sort(edits.placed, {}, &PlacedModel::id);
+    std::ranges::sort(edits.ground, {}, [](const auto& edit) { return edit->id; });
+    std::erase_if(edits.ground, [&](const auto& e) { return !next.ground.add(e, block_m); });
+    next.blocks.set(QuadCoord::of(block), std::move(edits));
+  }
+  return next;
+}
+
 }  // namespace
+
+Edits fitted(const Edits& edits, const World& world, const models::Registry& registry) {
+  Edits resized = edits;
+  resized.resize_blocks(world);
+  if (resized.empty()) return resized;
+  models::QuadMap<BlockEdits> blocks = resized.layer()->blocks;
+  bool changed = false;
+  const auto fit = [&](const QuadCoord& at, const BlockEdits*, const BlockEdits* of_block) {
+    const auto type = [&](const PlacedModel& placed) { return type_of(placed, registry); };
+    const auto is_same = [&](const PlacedModel& placed) {
+      const auto model = type(placed);
+      return model && registry[*model].identity() == placed.identity;
+    };
+    if (std::ranges::all_of(of_block->placed, is_same)) return;
+    BlockEdits here = *of_block;
+    std::erase_if(here.placed, [&](const PlacedModel& placed) { return !type(placed); });
+    for (PlacedModel& placed : here.placed)
+      models::bind(placed, registry[*type(placed)]);
+    blocks.set(at, std::move(here));
+    changed = true;
+  };
+  models::QuadMap<BlockEdits>::each_difference({}, resized.layer()->blocks, fit);
+  if (!changed) return resized;
+  if (blocks.empty()) return {};
+  EditLayer layer = *resized.layer();
+  layer.blocks = std::move(blocks);
+  return Edits(std::make_shared<const EditLayer>(std::move(layer)));
+}
 
 EditCounts Edits::counts() const {
   if (!layer_ || layer_->blocks.empty()) return {};
@@ -52,8 +121,16 @@ core::Result<std::uint32_t> Edits::next_id() const {
                     fmt::format("no ids are left: at most {} edits may be made", kMaxEditId));
 }
 
-EditLayer Edits::copy() const {
-  return layer_ ? *layer_ : EditLayer{};
+void Edits::resize_blocks(const World& world) {
+  const double block_m = world.block_size_m();
+  if (layer_ && layer_->block_m != 0 && layer_->block_m != block_m)
+    layer_ = std::make_shared<const EditLayer>(resized(*layer_, block_m));
+}
+
+EditLayer Edits::copy(const World& world) const {
+  EditLayer layer = layer_ ? *layer_ : EditLayer{};
+  layer.block_m = world.block_size_m();
+  return layer;
 }
 
 BlockEdits Edits::edits_of(core::BlockCoord block) const {
@@ -68,13 +145,14 @@ void Edits::commit(EditLayer layer, core::BlockCoord block, BlockEdits edits) {
 
 core::Result<void> Edits::remove(const World& world, const InstanceName& model) {
   if (auto ok = check_removed(world, model.block, model.index); !ok) return ok;
+  resize_blocks(world);
   BlockEdits edits = edits_of(model.block);
   if (edits.is_removed(model.index)) return {};
   if (auto ok = check_room(edits, model.block); !ok) return ok;
   edits.removed.insert(
       std::ranges::upper_bound(edits.removed, model.index, {}, &RemovedModel::index),
       RemovedModel{model.index, 0, {}});
-  commit(copy(), model.block, std::move(edits));
+  commit(copy(world), model.block, std::move(edits));
   return {};
 }
 
@@ -93,13 +171,14 @@ core::Result<EditName> Edits::move(const World& world, const models::Registry& r
         fmt::format("model {} of {} does not exist", model.index, text_of(model.block)));
   }
   Edits moved = *this;
+  moved.resize_blocks(world);
   auto placed = moved.place(world, registry, {at->model, at->parameters, to, 0});
   if (!placed) return placed;
   if (auto ok = moved.remove(world, model); !ok) return tl::unexpected(ok.error());
   BlockEdits edits = moved.edits_of(model.block);
   auto removed = std::ranges::lower_bound(edits.removed, model.index, {}, &RemovedModel::index);
   *removed = {model.index, placed->id, placed->block};
-  commit(moved.copy(), model.block, std::move(edits));
+  commit(moved.copy(world), model.block, std::move(edits));
   return placed;
 }
 
@@ -111,7 +190,7 @@ core::Result<void> Edits::restore(const InstanceName& model) {
   const auto at = std::ranges::lower_bound(edits.removed, model.index, {}, &RemovedModel::index);
   const RemovedModel removed = *at;
   edits.removed.erase(at);
-  commit(copy(), model.block, std::move(edits));
+  commit(*layer_, model.block, std::move(edits));
   if (removed.moved_id != 0) (void)remove_placed({removed.moved_to, removed.moved_id});
   return {};
 }
@@ -122,18 +201,18 @@ core::Result<EditName> Edits::place(const World& world, const models::Registry& 
   if (!at) return tl::unexpected(at.error());
   if (auto ok = check_model(registry, model.model, model.parameters, model.above_m); !ok)
     return tl::unexpected(ok.error());
+  resize_blocks(world);
   const auto id = next_id();
   if (!id) return tl::unexpected(id.error());
-  EditLayer layer = copy();
+  EditLayer layer = copy(world);
   BlockEdits edits = edits_of(at->block);
   if (auto ok = check_room(edits, at->block); !ok) return tl::unexpected(ok.error());
-  PlacedModel placed{*id,
-                     model.model,
-                     {within(at->local.x, world), within(at->local.z, world)},
-                     static_cast<float>(model.above_m),
-                     placed_reach(registry[model.model], model.parameters, model.above_m),
-                     model.parameters};
+  PlacedModel placed{.id = *id,
+                     .local_m = within(at->local, world.block_size_m()),
+                     .above_m = static_cast<float>(model.above_m),
+                     .parameters = model.parameters};
   placed.parameters.set_edits(nullptr, 0);
+  models::bind(placed, registry[model.model]);
   edits.placed.push_back(std::move(placed));  // ids only grow
   layer.next_id = *id + 1;
   commit(std::move(layer), at->block, std::move(edits));
@@ -146,7 +225,7 @@ core::Result<void> Edits::remove_placed(const EditName& model) {
     return core::invalid_argument(
         fmt::format("{} has no placed model with the id {}", text_of(model.block), model.id));
   }
-  commit(copy(), model.block, std::move(edits));
+  commit(*layer_, model.block, std::move(edits));
   return {};
 }
 
@@ -161,9 +240,10 @@ core::Result<EditName> Edits::edit_ground(const World& world, GroundEdit edit) {
   } else {
     edit.map.reset();
   }
+  resize_blocks(world);
   const auto id = next_id();
   if (!id) return tl::unexpected(id.error());
-  EditLayer layer = copy();
+  EditLayer layer = copy(world);
   BlockEdits edits = edits_of(at->block);
   if (auto ok = check_room(edits, at->block); !ok) return tl::unexpected(ok.error());
   edit.centre = *at;
@@ -194,13 +274,14 @@ core::Result<EditName> Edits::flatten(const World& world, const core::WorldPosit
 }
 
 core::Result<void> Edits::remove_ground(const World& world, const EditName& edit) {
+  resize_blocks(world);
   BlockEdits edits = edits_of(edit.block);
   const auto at = std::ranges::find(edits.ground, edit.id, &GroundEdit::id);
   if (at == edits.ground.end()) {
     return core::invalid_argument(
         fmt::format("{} has no ground edit with the id {}", text_of(edit.block), edit.id));
   }
-  EditLayer layer = copy();
+  EditLayer layer = copy(world);
   layer.ground.remove(**at, world.block_size_m());
   edits.ground.erase(at);
   commit(std::move(layer), edit.block, std::move(edits));
@@ -211,7 +292,8 @@ core::Result<void> Edits::replace_block(const World& world, core::BlockCoord blo
                                         BlockEdits edits) {
   if (auto ok = check_block(world, block); !ok) return ok;
   if (auto ok = check_heights(edits, block); !ok) return ok;
-  EditLayer layer = copy();
+  resize_blocks(world);
+  EditLayer layer = copy(world);
   const double block_m = world.block_size_m();
   if (const BlockEdits* before = layer.block(block)) {
     for (const auto& edit : before->ground)

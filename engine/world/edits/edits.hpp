@@ -75,7 +75,7 @@ class Edits {
                               const InstanceName& model, const core::WorldPosition& to);
   // Undoes remove() or move().
   core::Result<void> restore(const InstanceName& model);
-  // Places a model. The types of placed models must keep their indices in the registry.
+  // Places a model. The edits keep the name of its type, not its index.
   core::Result<EditName> place(const World& world, const models::Registry& registry,
                                const NewModel& model);
   // Removes a placed model, also one that was moved.
@@ -102,14 +102,25 @@ class Edits {
 
  private:
   core::Result<std::uint32_t> next_id() const;
+  friend Edits fitted(const Edits&, const World&, const models::Registry&);
+  // Moves the edits into blocks of the world's size.
+  void resize_blocks(const World& world);
   // Copies to be changed: of all edits, and of the edits of a block.
-  models::EditLayer copy() const;
+  models::EditLayer copy(const World& world) const;
   models::BlockEdits edits_of(core::BlockCoord block) const;
   // Stores a changed layer with these edits of a block.
   void commit(models::EditLayer layer, core::BlockCoord block, models::BlockEdits edits);
 
   std::shared_ptr<const models::EditLayer> layer_;
 };
+
+// The edits as they hold in a world that replaces the one they were made for: placed models get the
+// types of the same names in `registry`, and are left out where none allows their parameters. With
+// blocks of another size all edits keep their places, and no instance of the world's function is
+// removed. Keep `edits` themselves: they hold again when the old world returns. O(edits); the same
+// layer if nothing differs. A change of edits by functions that get a world with blocks of another
+// size keeps what fitted() keeps.
+Edits fitted(const Edits& edits, const World& world, const models::Registry& registry);
 
 // The blocks whose edits differ, in no particular order: the blocks to store again. O(differences ·
 // log n).

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <optional>
+#include <string_view>
+#include <unordered_map>
 
 #include "engine/core/assert.hpp"
 #include "engine/models/edits.hpp"
@@ -66,7 +68,7 @@ class MergedType final : public models::ModelType {
         identity_(merged_identity(*world_, registry)) {
     if (pictures_) identity_ = core::combine(identity_, pictures_->identity());
     for (models::ModelIndex i = 0; i < registry.size(); ++i)
-      types_.push_back(&registry[i]);
+      types_.emplace(registry[i].name(), &registry[i]);
     held_scatters_ = scatters ? std::move(scatters) : far_scatters(world_, registry);
     scatters_ = held_scatters_->all();
     for (const FarScatter& scatter : scatters_) {
@@ -153,7 +155,8 @@ class MergedType final : public models::ModelType {
   std::shared_ptr<const World> world_;
   std::shared_ptr<const ImpostorSet> pictures_;  // null: none
   std::uint64_t identity_;
-  std::vector<const models::ModelType*> types_;  // the registry's types, for placed models
+  // The registry's types by name, for placed models.
+  std::unordered_map<std::string_view, const models::ModelType*> types_;
   std::shared_ptr<const FarScatters> held_scatters_;
   std::span<const FarScatter> scatters_;  // of these
   bool may_run_on_main_thread_ = true;    // true if true for all scattered types
@@ -276,8 +279,10 @@ void MergedType::add_placed(const models::BlockEdits& edits, const NodeBlock& bl
                             Making& making) const {
   for (const models::PlacedModel& model : edits.placed) {
     if (making.placed_count++ % making.placed.together != 0) continue;
-    const models::ModelType* type = model.model < types_.size() ? types_[model.model] : nullptr;
-    if (type == nullptr || !type->may_run_on_main_thread() || !type->is_seen_from_far()) continue;
+    const auto found = types_.find(model.type);
+    if (found == types_.end() || !models::is_bound(model, *found->second)) continue;
+    const models::ModelType* type = found->second;
+    if (!type->may_run_on_main_thread() || !type->is_seen_from_far()) continue;
     const auto form = make_placed_proxy(*type, model.parameters, making.placed, making.mesh,
                                         direction_of(core::mix64(model.id)), making.form);
     if (!form) continue;

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <atomic>
+#include <cmath>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -13,6 +14,7 @@
 #include "engine/app/session.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/inspect/client.hpp"
+#include "engine/query/world.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/frame/input.hpp"
@@ -147,6 +149,29 @@ TEST_F(InspectTest, LeavesNoTrace) {
   EXPECT_EQ(written(), before);
   EXPECT_FALSE(session_->paused());
   EXPECT_EQ(session_->scene().camera().pose.yaw, pose_.yaw);
+}
+
+TEST_F(InspectTest, QueriesOfTheGameFollowEveryReplacedWorld) {
+  open();
+  greet();
+  const scene::Scene& scene = session_->scene();
+  query::World query(scene.world(), scene.registry());
+  const auto expect_like_new = [&] {
+    query::World fresh(scene.world(), scene.registry());
+    for (int i = 0; i < 20; ++i) {
+      core::WorldPosition at = pose_.position;
+      at.local += glm::dvec3(13.7 * i, 0, 7.1 * i);
+      EXPECT_EQ(query.ground(at)->height_m, fresh.ground(at)->height_m);
+    }
+    return fresh.ground(pose_.position)->height_m;
+  };
+  const double before_m = expect_like_new();
+  ASSERT_EQ(ask({{"do", "set_world"}, {"text", changed_text()}})["ok"], true);
+  EXPECT_GT(std::abs(expect_like_new() - before_m), 0.5);
+  ASSERT_EQ(ask({{"do", "detach"}})["ok"], true);
+  tick();
+  tick();
+  EXPECT_EQ(expect_like_new(), before_m);
 }
 
 TEST_F(InspectTest, KeepsChangesOnRequest) {

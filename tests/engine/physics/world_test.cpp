@@ -244,5 +244,50 @@ TEST(PhysicsWorld, BodiesAndCharactersFollowEditsOfTheGround) {
   EXPECT_NEAR(feet.local.y, scene.ground_m(feet), 0.05);
 }
 
+TEST(PhysicsWorld, FollowsAReplacedWorldInTheNextStep) {
+  const std::string before = kBounded;
+  const auto with = [&](const char* what, const char* by) {
+    std::string text = before;
+    return text.replace(text.find(what), std::string(what).size(), by);
+  };
+  for (const std::string& after :
+       {with("seed = 5", "seed = 8"), with("relief_m = 60", "relief_m = 150"),
+        with("relief_m = 60", "relief_m = 9"),
+        with("block_vertices = 33", "block_vertices = 17")}) {
+    Scene scene(Loaded::parsed(before));
+    const auto walker = scene.physics.add(CharacterSettings{.feet = scene.above({2, 1}, 9, 9, 0)});
+    std::vector<BodyId> boxes;
+    for (int i = 0; i < 4; ++i)
+      boxes.push_back(*scene.physics.add({.shape = box(glm::vec3(0.5F)),
+                                          .position = scene.above({2, 1}, 20 + 8.0 * i, 30, 0.6),
+                                          .friction = 10}));
+    let_sleep(scene, boxes);
+    const double block_m = scene.loaded.world.block_size_m();
+    const core::WorldPosition feet = scene.physics.state(*walker)->feet;
+    Loaded next = Loaded::parsed(after);
+    next.world.revision.number = 1;
+    std::swap(scene.loaded, next);
+    const core::WorldPosition now = scene.physics.state(*walker)->feet;
+    const core::WorldPosition same =
+        world::rebased(feet, block_m, scene.loaded.world.block_size_m());
+    EXPECT_EQ(now.block, same.block);
+    EXPECT_NEAR(now.local.x, same.local.x, 1e-9);
+    scene.steps(1);
+    for (const BodyId id : boxes) {
+      const auto state = scene.physics.state(id);
+      EXPECT_FALSE(state->asleep);
+      EXPECT_GT(state->position.local.y, scene.ground_m(state->position) - 0.01);
+    }
+    scene.steps(600);
+    const auto state = scene.physics.state(*walker);
+    EXPECT_NEAR(state->feet.local.y, scene.ground_m(state->feet), 2);
+    EXPECT_GE(state->feet.local.y, scene.ground_m(state->feet) - 1e-6);
+    for (const BodyId id : boxes) {
+      const core::WorldPosition at = scene.physics.state(id)->position;
+      EXPECT_LT(at.local.y - scene.ground_m(at), 3) << "fell onto the new ground";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace psygen::physics

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "engine/models/terrain/grid.hpp"
+#include "engine/query/path_finder.hpp"
 #include "engine/world/edits/edits.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/query/triangles.hpp"
@@ -549,6 +550,81 @@ TEST(QueryWorld, QueriesOfACopyOfTheWorldRunInAnotherThreadWhileTheWorldIsEdited
 }
 
 static_assert(std::is_move_constructible_v<World> && !std::is_copy_constructible_v<World>);
+
+// Replaces a world in place, as a scene does.
+void replace(Loaded& loaded, Loaded next) {
+  next.world.revision.number = loaded.world.revision.number + 1;
+  std::swap(loaded, next);
+}
+
+std::string changed(const char* what, const char* by) {
+  std::string text = kBounded;
+  return text.replace(text.find(what), std::string(what).size(), by);
+}
+
+TEST(QueryWorld, AnswersForAReplacedWorldLikeNewQueries) {
+  const std::string worlds[] = {changed("seed = 5", "seed = 6"),
+                                changed("relief_m = 60", "relief_m = 20"),
+                                changed("block_vertices = 33", "block_vertices = 17"),
+                                changed("[[scatter]]\nmodel = \"tree\"\ncount = 3\n",
+                                        "[[scatter]]\nmodel = \"rock\"\ncount = 9\n#"),
+                                std::string(kBounded) + "[water]\nlevel_m = 40\n"};
+  for (std::string text : worlds) {
+    if (const auto at = text.find("#iterations"); at != std::string::npos)
+      text.erase(at, text.find("\n\n", at) - at);
+    Loaded loaded = Loaded::parsed(kBounded);
+    World query(loaded.world, loaded.registry);
+    PathFinder finder(query);
+    const auto place = [](int i) {
+      return core::WorldPosition{{i % 3, i % 2}, {3.1 * i, 60, 2.7 * i}};
+    };
+    for (int i = 0; i < 10; ++i)
+      ASSERT_TRUE(query.ground(place(i)) && query.cast({.origin = place(i)}));
+    finder.begin(place(0), place(4));
+    finder.avoid(place(2));
+    (void)finder.advance(1);
+    replace(loaded, Loaded::parsed(text));
+    World fresh(loaded.world, loaded.registry);
+    EXPECT_EQ(query.models_reach_m(), fresh.models_reach_m());
+    std::vector<NearbyModel> near, near_fresh;
+    for (int i = 0; i < 10; ++i) {
+      const auto a = query.ground(place(i)), b = fresh.ground(place(i));
+      ASSERT_TRUE(a && b);
+      EXPECT_EQ(a->height_m, b->height_m);
+      EXPECT_EQ(a->kind, b->kind);
+      EXPECT_EQ(a->water_depth_m, b->water_depth_m);
+      EXPECT_EQ(query.cast({.origin = place(i)})->distance_m,
+                fresh.cast({.origin = place(i)})->distance_m);
+      ASSERT_TRUE(query.models_within(place(i), 40, near));
+      ASSERT_TRUE(fresh.models_within(place(i), 40, near_fresh));
+      EXPECT_TRUE(std::ranges::equal(near, near_fresh, {}, &NearbyModel::distance_m,
+                                     &NearbyModel::distance_m));
+    }
+    const auto points = finder.advance(100'000);
+    ASSERT_TRUE(points);
+    for (std::size_t i = 1; i + 1 < points->size(); ++i)
+      EXPECT_NEAR((*points)[i].local.y, fresh.ground((*points)[i])->height_m, 1e-9);
+  }
+}
+
+TEST(QueryWorld, ObjectsKeepTheirPlacesInBlocksOfAnotherSize) {
+  Loaded loaded = Loaded::parsed(kBounded);
+  Objects objects(loaded.world);
+  models::Collider ball;
+  ball.shapes.emplace_back(models::Collider::Sphere{{0, 0, 0}, 1});
+  const auto shape = Objects::make_shape(ball);
+  ASSERT_TRUE(shape);
+  const auto id = objects.add(7, *shape, {.position = {{2, 1}, {10, 80, 20}}});
+  ASSERT_TRUE(id);
+  World query(loaded.world, loaded.registry);
+  query.meet(&objects);
+  replace(loaded, Loaded::parsed(changed("block_vertices = 33", "block_vertices = 17")));
+  EXPECT_EQ(objects.remove_stale(), 0U);
+  const auto hit = query.cast({.origin = world::rebased({{2, 1}, {10, 95, 20}}, 64, 32)});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->kind, HitKind::kObject);
+  EXPECT_NEAR(hit->distance_m, 14, 1e-6);
+}
 
 }  // namespace
 }  // namespace psygen::query

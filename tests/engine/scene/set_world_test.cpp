@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "engine/scene/objects/components.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "tests/engine/scene/fixture.hpp"
 #include "tests/engine/scene/forwarding_type.hpp"
@@ -450,6 +451,95 @@ TEST_F(SetWorld, ChangesInEveryTickEndWithTheLastOne) {
   const auto fresh = scene_of(paper_, settings_);
   fresh->settle(pose_);
   EXPECT_EQ(contents_of(*scene), contents_of(*fresh));
+}
+
+std::string with_species(int count, const char* more = "") {
+  std::string text =
+      "format = 1\n[world]\nname = \"w\"\nseed = 1\nblocks = [0, 0]\n[terrain]\nrelief_m = 80\n";
+  for (int i = 0; i < count; ++i)
+    text += "[[species]]\nname = \"kind_" + std::to_string(i) +
+            "\"\naxiom = \"T\"\niterations = 3\nbranches = 3\nspread = 1\n"
+            "[[species.kind]]\nsymbol = \"T\"\nleaves = \"none\"\n"
+            "[[species.kind]]\nsymbol = \"B\"\nangle_deg = 40\n"
+            "[[species.rule]]\nfrom = \"T\"\nto = \"B*\"\n";
+  text += "[[scatter]]\nmodel = \"rock\"\ncount = 5\n";
+  for (int i = 0; i < count; ++i)
+    text += "[[scatter]]\nmodel = \"kind_" + std::to_string(i) + "\"\ncount = 2\n";
+  return text + more;
+}
+
+// The types of the placed models that a scene shows in a block.
+std::vector<std::string> placed_in(Scene& scene, core::BlockCoord block) {
+  std::vector<std::string> names;
+  for (const auto& [place, what] : contents_of(scene)) {
+    const auto [x, z, index] = place;
+    if (core::BlockCoord{x, z} == block && index > world::kPlacedIndex &&
+        index < world::kFilePlacedIndex)
+      names.push_back(std::get<0>(what));
+  }
+  return names;
+}
+
+TEST_F(SetWorld, PlacedModelsKeepTheirTypesWhenSpeciesGoAndReturn) {
+  const auto scene = scene_of(with_species(20), settings_);
+  scene->settle(pose_);
+  world::Edits edits;
+  for (const char* name : {"rock", "kind_3", "kind_19"}) {
+    const auto model = static_cast<models::ModelIndex>(scene->registry().find(name));
+    ASSERT_TRUE(edits.place(scene->world(), scene->registry(),
+                            {model,
+                             models::default_parameters(scene->registry()[model]),
+                             {{256, 256}, {30, 0, 30}},
+                             0}));
+  }
+  using Names = std::vector<std::string>;
+  scene->edit(edits);
+  scene->settle(pose_);
+  EXPECT_EQ(placed_in(*scene, {256, 256}), (Names{"rock", "kind_3", "kind_19"}));
+  const std::pair<int, Names> worlds[] = {
+      {4, {"rock", "kind_3"}}, {0, {"rock"}}, {20, {"rock", "kind_3", "kind_19"}}};
+  for (const auto& [count, names] : worlds) {
+    ASSERT_TRUE(set(*scene, with_species(count)));
+    scene->settle(pose_);
+    expect_consistent(*scene);
+    EXPECT_EQ(placed_in(*scene, {256, 256}), names);
+    scene->edit(edits);  // of the first registry
+    scene->settle(pose_);
+    EXPECT_EQ(placed_in(*scene, {256, 256}), names);
+    EXPECT_EQ(scene->edits().counts().placed, 3U);
+  }
+}
+
+TEST_F(SetWorld, EveryReplacementEmitsOneEventThatTellsWhatChanged) {
+  const auto scene = scene_of(with_species(2), settings_);
+  scene->settle(pose_);
+  const ecs::Entity object = scene->entities().create<Transform>(1).entities[0];
+  scene->entities().get<Transform>(object)->position = {{100, 10}, {62, 5, 1}};
+  ecs::EventReader<WorldChanged> reader = state_of(*scene).events.world_changed.reader();
+  const auto expect = [&](const std::string& text, bool ground, bool models, bool looks) {
+    const std::uint64_t revision = scene->world().revision.number;
+    ASSERT_TRUE(set(*scene, text));
+    EXPECT_NE(scene->world().revision.number, revision);
+    std::vector<WorldChanged> seen;
+    reader.drain([&](std::span<const WorldChanged> events) {
+      seen.insert(seen.end(), events.begin(), events.end());
+    });
+    ASSERT_EQ(seen.size(), 1U);
+    EXPECT_EQ(seen[0].ground, ground);
+    EXPECT_EQ(seen[0].models, models);
+    EXPECT_EQ(seen[0].looks, looks);
+    EXPECT_EQ(seen[0].block_m_before, 63);
+  };
+  expect(with_species(2, "[sky]\ncloud_cover = 0.1\n"), false, false, true);
+  expect(with_species(1, "[sky]\ncloud_cover = 0.1\n"), false, true, false);
+  expect(replaced(with_species(1, "[sky]\ncloud_cover = 0.1\n"), "relief_m = 80", "relief_m = 90"),
+         true, true, false);
+  expect(replaced(with_species(1), "blocks = [0, 0]", "blocks = [0, 0]\nblock_vertices = 32"), true,
+         true, true);
+  const core::WorldPosition at = scene->entities().get<Transform>(object)->position;
+  EXPECT_EQ(at.block, (core::BlockCoord{205, 20}));  // 6362 m and 631 m
+  EXPECT_DOUBLE_EQ(at.local.x, 7);
+  EXPECT_DOUBLE_EQ(at.local.z, 11);
 }
 
 }  // namespace

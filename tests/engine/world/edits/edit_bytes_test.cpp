@@ -83,7 +83,7 @@ TEST_F(EditBytes, TruncatedOrExtendedBytesAreRejected) {
 // Old saves hold models of types that have gained a parameter since.
 TEST_F(EditBytes, AParameterThatAnOlderVersionLackedHasItsDefault) {
   const models::PlacedModel& moved = edits.layer()->block({2, 3})->placed.front();
-  const models::ModelType& type = registry[moved.model];
+  const models::ModelType& type = registry[*type_of(moved, registry)];
   const std::size_t last = type.parameters().size() - 1;
   std::vector<std::byte> bytes = encode_block(edits, registry, {2, 3});
   const auto name = std::ranges::search(bytes, std::as_bytes(std::span(type.name())));
@@ -102,7 +102,8 @@ TEST_F(EditBytes, AParameterThatAnOlderVersionLackedHasItsDefault) {
 }
 
 TEST_F(EditBytes, MoreParametersThanTheTypeHasAreRejected) {
-  const models::ModelType& type = registry[edits.layer()->block({2, 3})->placed.front().model];
+  const models::PlacedModel& moved = edits.layer()->block({2, 3})->placed.front();
+  const models::ModelType& type = registry[*type_of(moved, registry)];
   std::vector<std::byte> bytes = encode_block(edits, registry, {2, 3});
   const auto name = std::ranges::search(bytes, std::as_bytes(std::span(type.name())));
   *name.end() = std::byte(type.parameters().size() + 1);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/placement.hpp"
@@ -188,6 +190,85 @@ TEST_F(EditsTest, ImpossibleEditsAreRejectedWithAMessageAndChangeNothing) {
   wrong.parameters.set_integer(0, -5);
   wrong.parameters.set_real(1, kNan);
   refused(edits.place(world, registry, wrong), "not allowed");
+}
+
+// Worlds whose registries give the same type other numbers.
+struct Planted {
+  models::Registry registry = models::make_standard_registry();
+  World world;
+
+  explicit Planted(const std::vector<std::string>& species, int vertices = 64) {
+    std::string text =
+        "format = 1\n[world]\nname = \"w\"\nseed = 1\nblocks = [0, 0]\nblock_vertices = " +
+        std::to_string(vertices) + "\n[terrain]\nrelief_m = 60\n";
+    for (const std::string& name : species)
+      text += "[[species]]\nname = \"" + name +
+              "\"\naxiom = \"T\"\niterations = 3\nbranches = 3\nspread = 1\n"
+              "[[species.kind]]\nsymbol = \"T\"\nleaves = \"none\"\n"
+              "[[species.kind]]\nsymbol = \"B\"\nangle_deg = 40\n"
+              "[[species.rule]]\nfrom = \"T\"\nto = \"B*\"\n";
+    auto read = parse_world(text, "test.toml", registry);
+    EXPECT_TRUE(read) << read.error().message;
+    world = std::move(*read);
+  }
+  // The names of the types that stand in a block with these edits.
+  std::vector<std::string> standing(const Edits& edits, core::BlockCoord block) {
+    World edited = world;
+    set_edits(edited, fitted(edits, world, registry).layer());
+    std::vector<Placement> found, unfitted;
+    place_models(edited, registry, block, found);
+    set_edits(edited, edits.layer());
+    place_models(edited, registry, block, unfitted);
+    if (!edits.empty() && edits.layer()->block_m == world.block_size_m()) {
+      EXPECT_EQ(found.size(), unfitted.size());
+    }
+    std::vector<std::string> names;
+    for (const Placement& placement : found)
+      names.emplace_back(registry[placement.model].name());
+    return names;
+  }
+  NewModel model(const char* name, const core::WorldPosition& at) const {
+    const auto index = static_cast<models::ModelIndex>(registry.find(name));
+    return {index, models::default_parameters(registry[index]), at, 0};
+  }
+};
+
+TEST(FittedEdits, PlacedModelsKeepTheirTypesUnderAnotherRegistry) {
+  Planted before({"ash", "beech", "oak"}), fewer({"oak"}), turned({"oak", "ash"}), none({});
+  Edits edits;
+  for (const char* name : {"ash", "beech", "oak", "rock"})
+    ASSERT_TRUE(
+        edits.place(before.world, before.registry, before.model(name, {{2, 3}, {9, 0, 9}})));
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(before.standing(edits, {2, 3}), (Names{"ash", "beech", "oak", "rock"}));
+  EXPECT_EQ(turned.standing(edits, {2, 3}), (Names{"ash", "oak", "rock"}));
+  EXPECT_EQ(fewer.standing(edits, {2, 3}), (Names{"oak", "rock"}));
+  EXPECT_EQ(none.standing(edits, {2, 3}), (Names{"rock"}));
+  EXPECT_EQ(edits.counts().placed, 4U) << "all stand again when their types return";
+  EXPECT_EQ(fitted(edits, before.world, before.registry).layer(), edits.layer());
+}
+
+TEST(FittedEdits, KeepTheirPlacesInBlocksOfAnotherSize) {
+  Planted before({"oak"}, 64), after({"oak"}, 32);
+  Edits edits;
+  ASSERT_TRUE(
+      edits.place(before.world, before.registry, before.model("oak", {{2, 3}, {9, 0, 50}})));
+  ASSERT_TRUE(edits.raise(before.world, {{2, 3}, {9, 0, 50}}, 20, 7));
+  ASSERT_TRUE(
+      edits.remove_placed({{2, 3}, 1}) &&
+      edits.place(before.world, before.registry, before.model("oak", {{2, 3}, {9, 0, 50}})));
+  EXPECT_EQ(before.world.block_size_m(), 63);
+  EXPECT_EQ(after.world.block_size_m(), 31);
+  // 135 m along x are 4 blocks and 11 m; 239 m along z are 7 blocks and 22 m.
+  EXPECT_EQ(after.standing(edits, {4, 7}), std::vector<std::string>{"oak"});
+  World edited = after.world;
+  const core::WorldPosition place{{4, 7}, {11, 0, 22}};
+  const double flat_m = surface_height_m(edited, place);
+  set_edits(edited, fitted(edits, after.world, after.registry).layer());
+  EXPECT_NEAR(surface_height_m(edited, place), std::min(flat_m + 7, 60.0), 1e-3);
+  Edits more = edits;
+  ASSERT_TRUE(more.place(after.world, after.registry, after.model("rock", place)));
+  EXPECT_EQ(after.standing(more, {4, 7}), (std::vector<std::string>{"oak", "rock"}));
 }
 
 }  // namespace
