@@ -1,9 +1,11 @@
 #include "engine/core/headroom.hpp"
 
+#include <pthread.h>
 #include <sys/mman.h>
 
 #include <exception>
 #include <latch>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -29,7 +31,43 @@ bool can_map(std::uint64_t bytes, int protection) {
   return true;
 }
 
+// Of the default size.
+std::mutex& stacks_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+std::size_t default_stack_bytes() {
+  pthread_attr_t attributes;
+  std::size_t bytes = 0;
+  if (pthread_getattr_default_np(&attributes) != 0) return 0;
+  pthread_attr_getstacksize(&attributes, &bytes);
+  pthread_attr_destroy(&attributes);
+  return bytes;
+}
+
+void set_default_stack_bytes(std::size_t bytes) {
+  pthread_attr_t attributes;
+  if (pthread_getattr_default_np(&attributes) != 0) return;
+  pthread_attr_setstacksize(&attributes, bytes);
+  pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+}
+
 }  // namespace
+
+UsualStacks::UsualStacks() {
+  stacks_mutex().lock();
+  const std::size_t bytes = default_stack_bytes();
+  if (bytes == 0 || bytes >= kThreadStackBytes) return;
+  former_bytes_ = bytes;
+  set_default_stack_bytes(kThreadStackBytes);
+}
+
+UsualStacks::~UsualStacks() {
+  if (former_bytes_ > 0) set_default_stack_bytes(former_bytes_);
+  stacks_mutex().unlock();
+}
 
 bool memory_left(std::uint64_t bytes) {
   return can_map(bytes, PROT_READ | PROT_WRITE);

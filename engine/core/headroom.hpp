@@ -26,11 +26,30 @@ bool addresses_left(std::uint64_t bytes);
 // thread.
 std::size_t threads_left(std::size_t most);
 
+// Least stack of start_thread()'s threads, whatever `ulimit -s` says: the usual size on Linux,
+// which model types and systems of games may expect. Only pages in use take memory. The engine's
+// own types use 0.2 MiB of it.
+inline constexpr std::size_t kThreadStackBytes = std::size_t{8} << 20;
+
+// While it lives, new threads of this process have at least kThreadStackBytes of stack. std::thread
+// knows no sizes, so this is the process's default; one object at a time, others wait.
+class UsualStacks {
+ public:
+  UsualStacks();
+  ~UsualStacks();
+  UsualStacks(const UsualStacks&) = delete;
+  UsualStacks& operator=(const UsualStacks&) = delete;
+
+ private:
+  std::size_t former_bytes_ = 0;  // 0: the default is large enough
+};
+
 // Runs `work` on a new thread, which the caller joins. Fails with kInternal if the system grants
 // this process no thread (ulimit -u, container limits) or no memory for its stack.
 template <class Work>
 Result<std::thread> start_thread(Work&& work) {
   try {
+    const UsualStacks stacks;
     return std::thread(std::forward<Work>(work));
   } catch (const std::exception& e) {  // std::system_error or std::bad_alloc
     return fail(

@@ -203,7 +203,10 @@ class ModelType {
 
   // Fills `out`, whose spans have exactly the sizes of mesh_size(). Returns the tight bounds of the
   // vertices written, which are inside bounds(p). Deterministic: same bits for the same (p, level)
-  // on any thread and any CPU. No allocation that outlives the call, no I/O, no globals.
+  // on any thread and any CPU. No I/O, no globals, and no allocation that outlives the call but
+  // scratch memory of the thread. Modelers have core::kThreadStackBytes of stack. The engine's own
+  // types, and all that makes meshes on a caller's thread, need 256 KiB at most, the rest of the
+  // caller included (small_stack_test.cpp).
   virtual core::Bounds synthesise(const Parameters& p, int level, const MeshView& out) const = 0;
   // Distinguishes types of the same name with different functions, such as two editions of a
   // species. Part of every mesh's key (parameters_hash). 0 for types that never change.

@@ -82,11 +82,10 @@ class BlockCache {
 // thread.
 
 // Returns the quantised heights of the vertices of a block's finest mesh, row by row. About 15 µs
-// for 64 x 64 vertices. Needs 350 KiB of stack.
+// for 64 x 64 vertices.
 std::vector<std::uint16_t> ground_of_block(const world::World& world, core::BlockCoord block);
 
-// Returns the models of a block by growing index. Takes as long, plus 0.1 µs for each model. Needs
-// 350 KiB of stack.
+// Returns the models of a block by growing index. Takes as long, plus 0.1 µs for each model.
 std::vector<world::Placement> models_of_block(const world::World& world,
                                               const models::Registry& registry,
                                               core::BlockCoord block);

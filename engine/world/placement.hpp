@@ -101,7 +101,7 @@ std::size_t models_per_block(const World& world);
 // Replaces `out` by the placements of `block`, by ascending index. An instance that finds no
 // allowed position in kPlacementTries tries is skipped; the indices of the others do not change.
 // Takes about 10 µs for the block's heights and 0.1 µs for each model. Does not check that the
-// world contains the block. Needs 350 KiB of stack.
+// world contains the block.
 // Edits: instances find their positions on the unedited ground and stand on the edited ground.
 // Removed instances are skipped. The models placed by edits follow, by ascending id, then those
 // placed by the world file.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "engine/models/kit/scratch.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/models/rock/kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -359,7 +361,7 @@ class RockMesher {
 core::Bounds mesh(const RockShape& shape, const RockTopology& topology, int subdivisions,
                   std::byte* out) {
   if (subdivisions <= 2) return RockMesher<2>(shape, topology, subdivisions).run(out);
-  return RockMesher<kMaxSubdivisions>(shape, topology, subdivisions).run(out);
+  return Scratch<RockMesher<kMaxSubdivisions>>(shape, topology, subdivisions)->run(out);
 }
 
 }  // namespace psygen::models::HWY_NAMESPACE

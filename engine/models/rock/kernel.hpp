@@ -53,8 +53,7 @@ constexpr std::uint32_t rock_mesh_vertices(int subdivisions, bool faceted) {
 }
 
 // Writes rock_mesh_vertices() of core::ModelVertex to `out`, which is not read, and returns their
-// bounds in metres. 0 <= subdivisions <= kMaxSubdivisions; time is linear in the vertices. Needs
-// 700 KiB of stack for 6 subdivisions, 5 KiB for 2.
+// bounds in metres. 0 <= subdivisions <= kMaxSubdivisions; time is linear in the vertices.
 core::Bounds mesh_rock(const RockShape& shape, const RockTopology& topology, int subdivisions,
                        std::byte* out);
 

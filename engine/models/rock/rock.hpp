@@ -52,7 +52,7 @@ static_assert(std::size(kRockSchema) == kRockParameterCount);
 
 // The model type "rock". Level l has n = max(subdivisions − l, 0) subdivisions: exactly 4·4^n
 // triangles and 2·4^n + 2 core::ModelVertex, or three per triangle if faceted. Corners that two
-// levels share have the same positions. Synthesis needs 700 KiB of stack and no heap. The collider
+// levels share have the same positions. The collider
 // is the convex hull of the corners. With more than two subdivisions, it is the hull of the 56
 // corners that are farthest in fixed directions, and other corners are outside by at most 0.15 of
 // the radius.

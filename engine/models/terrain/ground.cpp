@@ -27,7 +27,6 @@ glm::vec3 unit_normal(double slope_x, double slope_z) {
           static_cast<float>(-slope_z * scale)};
 }
 
-// noise_ stays uninitialised if it is not evaluated: clearing it would take as long as using it.
 BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block, std::size_t questions)
     : shape_(terrain), block_(block) {
   const auto size = static_cast<std::size_t>(shape_.size);
@@ -57,6 +56,8 @@ void BlockGround::evaluate_vertices() {
   const std::span x = std::span(columns).first(vertices_), z = std::span(rows).first(vertices_);
   world_of(block_.x, 0, x);
   world_of(block_.z, 0, z);
+  noise_memory_.emplace(vertices_ * vertices_ * sizeof(float));
+  noise_ = {static_cast<float*>(noise_memory_->get()), vertices_ * vertices_};
   shape_.evaluate(x, z, noise_, vertices_);
 }
 

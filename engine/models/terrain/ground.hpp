@@ -9,8 +9,10 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 
+#include "engine/models/kit/scratch.hpp"
 #include "engine/models/terrain/grid.hpp"
 #include "engine/models/terrain/shape.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -20,11 +22,11 @@ namespace psygen::models {
 // Returns the upward unit normal of a plane with these slopes along x and z.
 glm::vec3 unit_normal(double slope_x, double slope_z);
 
-// The heights of one block. 66 KiB, no heap. Immutable after construction; any thread.
+// The heights of one block. Immutable after construction; any thread.
 class BlockGround {
  public:
   // `questions` is the approximate number of calls of at(). The block coordinates in `terrain` are
-  // ignored. Needs 256 KiB of stack.
+  // ignored. Throws std::bad_alloc.
   BlockGround(const Parameters& terrain, core::BlockCoord block, std::size_t questions);
 
   // Reads the heights from `mesh`, the vertices of the block's mesh of level 0, which must outlive
@@ -55,7 +57,8 @@ class BlockGround {
   core::BlockCoord block_;
   std::size_t vertices_ = 0;         // per side, with known heights; 0: none
   std::span<const std::byte> mesh_;  // empty: the heights are in noise_
-  std::array<float, std::size_t{kMaxTerrainSize} * kMaxTerrainSize> noise_;  // of the vertices
+  std::optional<ScratchMemory> noise_memory_;
+  std::span<float> noise_;  // of the vertices, if they were evaluated
 };
 
 }  // namespace psygen::models

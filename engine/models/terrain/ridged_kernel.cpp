@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "engine/models/kit/scratch.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/models/terrain/ridged_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -440,14 +442,17 @@ void evaluate(const RidgedKernel& kernel, std::span<const std::int64_t> columns,
               std::span<const std::int64_t> rows, float* values, std::size_t stride) {
   const auto octave_count = static_cast<std::size_t>(kernel.octave_count);
   const bool warped = kernel.warp > 0;
-  const RowOctaves along_z(kernel, Axis(rows));
+  const Scratch<RowOctaves> scratch_z(kernel, Axis(rows));
+  const RowOctaves& along_z = *scratch_z;
   const std::size_t ends =
       warped || !along_z.contiguous ? 0 : EndColumns::count(columns.size(), rows.size());
   const std::size_t main_count = columns.size() - ends;
   const RowSettings settings{along_z.next_limit, octave_count, kernel.offset, kernel.result_scale};
   if (ends > 0)
-    EndColumns(kernel, along_z, columns.last(ends)).write(settings, values + main_count, stride);
-  Workspace memory;
+    Scratch<EndColumns>(kernel, along_z, columns.last(ends))
+        ->write(settings, values + main_count, stride);
+  const Scratch<Workspace> scratch;
+  Workspace& memory = *scratch;
   const Axis column_axis(columns.first(main_count));
   for (std::size_t o = 0; o < octave_count; ++o)
     memory.prepare(o, kernel.octaves[o], column_axis);

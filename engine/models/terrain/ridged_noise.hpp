@@ -40,7 +40,7 @@ class RidgedNoise {
   // Writes values[r · stride + c] = R(columns[c], rows[r]). At most kMaxAxis columns and kMaxAxis
   // rows, stride >= number of columns, values.size() >= rows · stride. With fewer than all octaves:
   // the sum of the first ones. Ascending coordinates without large gaps are fastest; a warp takes
-  // ten times as long. Needs about 250 KiB of stack.
+  // ten times as long. Throws std::bad_alloc.
   static constexpr std::size_t kMaxAxis = kMaxNoiseAxis;
   void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                 std::span<float> values, std::size_t stride, int octaves = kMaxOctaves) const;

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/core/assert.hpp"
 #include "engine/core/vertex_layout.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/kit/exact_math.hpp"
+#include "engine/models/kit/scratch.hpp"
 #include "engine/models/terrain/grid.hpp"
 #include "engine/models/terrain/kernel.hpp"
 #include "engine/models/terrain/light.hpp"
@@ -246,7 +248,8 @@ core::Bounds TerrainType::synthesise(const Parameters& p, int level, const MeshV
   const SampleAxis columns(grid, shape, p.integer(kTerrainBlockX));
   const SampleAxis rows(grid, shape, p.integer(kTerrainBlockZ));
   constexpr std::size_t kMaxStride = RidgedNoise::kMaxAxis;
-  alignas(64) std::array<float, kMaxStride*(kMaxTerrainSize + 2) + 16> noise;
+  const Scratch<std::array<float, kMaxStride*(kMaxTerrainSize + 2) + 16>> scratch;
+  const std::span<float> noise = *scratch;
   const std::size_t stride = (columns.count + 15) / 16 * 16;  // rows start at cache lines
   shape.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count}, noise,
                  stride);

@@ -83,7 +83,7 @@ static_assert(std::size(kTerrainSchema) == kTerrainParameterCount);
 // The model type "terrain". Level 0 has every vertex, levels 1 … 3 every Nth one (terrain_strides()
 // in grid.hpp). Vertices are core::TerrainVertex: n² of the surface, then 4·(n − 1) of the skirt.
 // The first 3 · terrain_surface_triangles() indices are the surface, the others the skirt. bounds()
-// and the result of synthesise() exclude the skirt. Synthesis needs 448 KiB of stack and no heap.
+// and the result of synthesise() exclude the skirt.
 std::unique_ptr<ModelType> make_terrain_type();
 
 // Triangles of a level without its skirts (7,938 for 64 vertices per side at level 0).

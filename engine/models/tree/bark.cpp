@@ -1,5 +1,6 @@
 // Trunk and branches: tapering tubes around the skeleton's curves. The lanes are the branches of
 // one kind and depth; where a depth has few branches, the lanes are the rings of all of them.
+#include "engine/models/kit/scratch.hpp"
 #include "engine/models/tree/mesh.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -450,7 +451,7 @@ void append_pattern(const std::uint16_t* pattern, std::size_t length, std::uint3
 void mesh_bark(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
                const TreeCrown& crown, MeshWriter& out) {
   const Colours colours = bark_colours(plan);
-  BarkLanes lanes;
+  const Scratch<BarkLanes> lanes;
   for (std::size_t first = 0, last = 0; first < skeleton.group_count; first = last) {
     const int depth = skeleton.groups[first].depth;
     while (last < skeleton.group_count && skeleton.groups[last].depth == depth)
@@ -467,7 +468,7 @@ void mesh_bark(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
                         .sway_end = sway_at(depth, skeleton.depth),
                         .trunk = depth == 0,
                         .tip = tip};
-      mesh_depth(job, skeleton, first, last, lanes, out);
+      mesh_depth(job, skeleton, first, last, *lanes, out);
     }
   }
 }

@@ -1,4 +1,5 @@
 // Counts the branches of a tree by hashing alone, for the exact sizes of meshes before synthesis.
+#include "engine/models/kit/scratch.hpp"
 #include "engine/models/tree/paths.hpp"
 #include "engine/models/tree/skeleton.hpp"
 
@@ -105,11 +106,12 @@ TreeCount count_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, in
   result.group_count = 1;
   result.nodes = 1;
   const Counter counter(plan, max_tips != kWholeTree);
-  Generation generations[2];
+  const Scratch<std::array<Generation, 2>> scratch;
+  std::array<Generation, 2>& generations = *scratch;
   plant(plan, max_tips, generations[0]);
   const int deepest = std::min(depth, last);
   for (int d = 1; d <= deepest; ++d) {
-    Generation& parents = generations[(d + 1) % 2];
+    Generation& parents = generations[static_cast<std::size_t>(d + 1) % 2];
     const int remaining = plan.iterations - d;
     const ChildTotals totals = counter.totals(parents, remaining);
     std::uint32_t all = 0;
@@ -123,7 +125,8 @@ TreeCount count_tree(const TreePlan& plan, int depth, std::uint32_t max_tips, in
     }
     result.nodes += all;
     result.depth = d;
-    if (d < deepest) counter.raise(parents, totals, remaining, generations[d % 2]);
+    if (d < deepest)
+      counter.raise(parents, totals, remaining, generations[static_cast<std::size_t>(d) % 2]);
   }
   result.bearers = result.tips = 0;
   for (std::size_t g = 0; g < result.group_count; ++g) {

@@ -1,6 +1,7 @@
 #include "engine/models/tree/mesh.hpp"
 
 #include "engine/core/assert.hpp"
+#include "engine/models/kit/scratch.hpp"
 #include "engine/models/tree/paths.hpp"
 
 namespace psygen::models {
@@ -133,7 +134,8 @@ core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& ou
   const bool leafy = plan.foliage.near != nullptr;
   const bool whole = paths_of(plan, level) == kWholeTree;
   const int depth = whole || plan.always_complete ? plan.iterations : tree_depth(plan);
-  TreeSkeleton skeleton;
+  const Scratch<TreeSkeleton> scratch;
+  TreeSkeleton& skeleton = *scratch;
   grow_tree(plan, depth, whole ? kWholeTree : kCrownPaths, skeleton);
   const TreeCrown crown = crown_of(plan, skeleton, whole);
   if (leafy && level >= 4) {
@@ -152,7 +154,8 @@ core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& ou
 
 Collider trunk_collider(const TreePlan& plan) {
   constexpr std::array kEnds{0.0F, 0.15F, 0.5F, 1.0F};
-  TreeSkeleton trunk;
+  const Scratch<TreeSkeleton> scratch;
+  TreeSkeleton& trunk = *scratch;
   grow_tree(plan, 0, 1, trunk);
   const float end = plan.grammar->grows(plan.axiom) ? plan.taper : 0.0F;
   Collider collider;

@@ -162,8 +162,7 @@ void mesh_hull(const TreePlan& plan, int level, const TreeCrown& crown, const Cr
                MeshWriter& out);
 
 // ModelType::synthesise(), mesh_size() and steps() of every tree. A step is about the time of one
-// branch; steps count the branches that are grown and a fixed cost of each group. Synthesis needs
-// about 900 KiB of stack.
+// branch; steps count the branches that are grown and a fixed cost of each group.
 core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& out);
 MeshSize tree_mesh_size(const TreePlan& plan, int level);
 double tree_steps(const TreePlan& plan, int level);
@@ -171,7 +170,7 @@ double tree_steps(const TreePlan& plan, int level);
 // Capsules from the trunk's sunk base to its end, along its bends; each has the trunk's width at
 // its middle. The drawn trunk differs from them by at most 0.1 of its length, its radius and the
 // widening at its base together (mesh_test.cpp measures it). Branches have no collider. Constant
-// time; needs 500 KiB of stack.
+// time.
 Collider trunk_collider(const TreePlan& plan);
 
 // Metres by which the trunk extends below the base point, to meet sloping ground.

@@ -56,7 +56,7 @@ enum TreeRow : std::size_t {
 // The branches of a tree. Branch i is the curve base + length · (t · direction + t² · bend), t in
 // [0, 1], in metres from the tree's base point. Groups are in order of depth, then kind. Branches
 // are in order of their parents, then their rank among siblings of their kind. Slots between groups
-// have no meaning. About 470 KiB, for the stack.
+// have no meaning. About 470 KiB: too large for a stack (Scratch).
 struct TreeSkeleton {
   // One number for each slot.
   using Row = std::array<float, kMaxTreeSlots>;

@@ -6,6 +6,7 @@
 // neighbouring bearers.
 #include <utility>
 
+#include "engine/models/kit/scratch.hpp"
 #include "engine/models/tree/mesh.hpp"
 #include "engine/models/tree/paths.hpp"
 #include "engine/models/tree/spray_forms.hpp"
@@ -358,7 +359,8 @@ std::uint32_t spray_count(const TreePlan& plan, int level, std::uint32_t bearers
 void mesh_sprays(const TreePlan& plan, int level, const TreeSkeleton& skeleton,
                  const TreeCrown& crown, std::uint32_t sprays, MeshWriter& out) {
   if (sprays == 0) return;
-  Bearers bearers;
+  const Scratch<Bearers> scratch;
+  Bearers& bearers = *scratch;
   const SpraySize size = spray_size(plan, level, crown, sprays);
   HWY_DYNAMIC_DISPATCH(collect)(plan, skeleton, crown, size.pull, bearers);
   const SprayJob job = spray_job(plan, level, crown, bearers.count, size, out);

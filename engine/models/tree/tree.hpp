@@ -72,7 +72,7 @@ static_assert(std::size(kTreeSchema) == kTreeParameterCount);
 TreePlan plan_of_tree(const Parameters& p);
 
 // The model type "tree". Levels 0 … 5 have on average, over the paper's ranges, about 5,000, 1,200,
-// 300, 80, 23 and 11 triangles. Synthesis needs about 900 KiB of stack and no heap.
+// 300, 80, 23 and 11 triangles.
 std::unique_ptr<ModelType> make_tree_type();
 
 }  // namespace psygen::models

@@ -40,7 +40,7 @@ std::shared_ptr<const FarScatters> far_scatters(std::shared_ptr<const World> wor
 // The model type of a world. It has two levels of detail: the forms of the node level, and those of
 // the next node level, which are coarser than all single models except the smallest stones.
 // Positions are in metres from the node's corner. Models that find no position leave degenerate
-// triangles at the end of the mesh. Synthesis needs 1.1 MiB of stack. The model types of `registry`
+// triangles at the end of the mesh. The model types of `registry`
 // must outlive the result, which may be added to it; `world` must belong to this registry. Edits of
 // `world` are ignored: a mesh shows the edits that its parameters name. Placed models of types that
 // may not run on the main thread are left out. `pictures` and `scatters` must belong to this world;

@@ -48,7 +48,7 @@ class NodeWalk {
   bool starts_tile(std::uint32_t ordinal) const {
     return (ordinal & ((1U << (2 * tile_)) - 1)) == 0;
   }
-  // Evaluates the ground of the tile with this block. Needs 256 KiB of stack.
+  // Evaluates the ground of the tile with this block.
   void make_ground(std::uint32_t ordinal, std::optional<models::BlockGround>& out) const;
   // The ground of the whole node with these edits (null: without), which must outlive it; and the
   // stride for BlockGround::at() that gives the drawn ground.
