@@ -13,6 +13,7 @@
 #include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
+#include "engine/core/rounding.hpp"
 
 namespace psygen::amplify {
 namespace {
@@ -200,6 +201,7 @@ core::Result<void> start(Crew& crew) {
 
 core::Result<Report> amplify(const world::World& world, const models::Registry& registry,
                              const Region& region, const Options& options) {
+  const core::RoundToNearest rounding;
   if (auto ok = check_region(world, region); !ok) return tl::unexpected(ok.error());
   if (options.threads < 1 || options.threads > kMaxThreads) {
     return core::invalid_argument(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "engine/core/rounding.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/synthesis/synthesise.hpp"
 
@@ -52,6 +53,7 @@ models::MeshView BlockSynthesiser::room_for(const models::MeshSize& size) {
 
 void BlockSynthesiser::synthesise(core::BlockCoord block, Totals& totals,
                                   const std::function<void(const BlockMesh&)>& visit) {
+  const core::RoundToNearest rounding;
   const world::Placement terrain{world_.terrain_model, world::kTerrainIndex, glm::vec3(0.0F),
                                  world::terrain_parameters(world_, block)};
   const bool made = make_levels(terrain, block, totals, visit);

@@ -14,6 +14,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -40,6 +41,8 @@ namespace {
 constexpr double kHomeHeightM = 25.0;  // height of the camera before it moves
 constexpr double kWindowHz = 60;       // default target in windows
 constexpr double kMaxTargetHz = 1e6;
+constexpr double kMaxFrameS = 1e6;  // and of set_now(): a double still counts microseconds
+constexpr double kMaxClockS = 1e9;
 constexpr double kMinimisedWaitSeconds = 0.1;  // polling interval of a minimised window
 
 tl::unexpected<core::Error> closed_early() {
@@ -77,6 +80,7 @@ Session::Session(SessionOptions options) : options_(std::move(options)) {}
 Session::~Session() = default;
 
 core::Result<std::unique_ptr<Session>> Session::create(SessionOptions options) {
+  const core::RoundToNearest rounding;
   std::unique_ptr<Session> session(new Session(std::move(options)));
   const auto opened =
       core::catch_out_of_memory("starting the session", [&session] { return session->open(); });
@@ -120,6 +124,7 @@ core::Result<void> Session::set_world(std::string_view text) {
 
 std::function<core::Result<scene::PreparedWorld>()> Session::prepare_world(std::string text) const {
   return [this, text = std::move(text), files = options_.files, snapshot = scene_->snapshot()] {
+    const core::RoundToNearest rounding;
     return make_registry(options_.plugins).and_then([&](models::Registry registry) {
       return read_world(text, registry, files.get()).and_then([&](world::World world) {
         return scene::prepare_world(std::move(world), std::move(registry), snapshot);
@@ -129,6 +134,7 @@ std::function<core::Result<scene::PreparedWorld>()> Session::prepare_world(std::
 }
 
 core::Result<void> Session::show_world(scene::PreparedWorld prepared) {
+  const core::RoundToNearest rounding;
   if (prepared.facts.world.palette.images != scene_->world().palette.images) {
     return core::invalid_argument("changed ground textures take effect when the world is reopened");
   }
@@ -253,7 +259,7 @@ double Session::now_s() const {
 }
 
 void Session::set_now(double now_s) {
-  if (std::isfinite(now_s)) scene_->set_now(now_s);
+  if (std::abs(now_s) <= kMaxClockS) scene_->set_now(now_s);
 }
 
 bool Session::has_hung_modelers() const {
@@ -398,14 +404,16 @@ void Session::tell_governor(double tick_ms, bool took_pictures) {
 
 core::Result<void> Session::tick(const core::CameraPose& pose, double dt_s) {
   if (failure_) return tl::unexpected(*failure_);
-  if (!(std::isfinite(dt_s) && dt_s >= 0)) {
-    return core::invalid_argument(fmt::format("{} is not a valid frame time in seconds", dt_s));
+  if (!(dt_s >= 0 && dt_s <= kMaxFrameS)) {
+    return core::invalid_argument(
+        fmt::format("{} is not a valid frame time: 0 to {:.0f} seconds", dt_s, kMaxFrameS));
+  }
+  if (!(now_s() + dt_s <= kMaxClockS)) {
+    return core::invalid_argument(
+        fmt::format("the clock cannot pass {:.0f} seconds; set_now() sets it back", kMaxClockS));
   }
   auto drawn = core::catch_out_of_memory("the frame", [&] { return draw_frame(pose, dt_s); });
-  if (!drawn) {
-    failure_ = drawn.error();
-    closed_ = true;
-  }
+  if (!drawn) failure_ = drawn.error();
   return drawn;
 }
 

@@ -66,7 +66,8 @@ class Session {
   bool poll();
   // Runs one frame with a pose: runs the systems, draws and presents, then advances the clock by
   // `dt_s` and calls the plugins. Its duration controls the detail of the next frames
-  // (SessionOptions::target_hz). Fails with kInvalidArgument for a negative or non-finite time.
+  // (SessionOptions::target_hz). Fails with kInvalidArgument for a time outside 0 to
+  // 10^6 s, and if the clock would pass 10^9 s, where a double no longer counts microseconds.
   // After any other error, such as kDeviceLost or an exception of a plugin's hook or system
   // (kInternal or kOutOfMemory; the message names both), the session is over: further ticks return
   // that error again.
@@ -74,9 +75,9 @@ class Session {
   // Makes the next poll() return false.
   void close() { closed_ = true; }
   // Cancels close() and the closing of the window, for example to ask the player first. The next
-  // poll() returns true unless SessionOptions::stop is set.
+  // poll() returns true unless a tick has failed or SessionOptions::stop is set.
   void keep_open();
-  bool over() const { return closed_ || stopped(); }
+  bool over() const { return closed_ || failure_ || stopped(); }
   // True if SessionOptions::stop is set.
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
@@ -98,7 +99,7 @@ class Session {
   render::HudDrawing& hud();
   // The ImGui of the plugins' on_gui, created on first use.
   Gui& gui();
-  // Clock in seconds at which the next tick is drawn. Non-finite times are ignored.
+  // Clock in seconds at which the next tick is drawn. Times beyond ±10^9 s are ignored.
   double now_s() const;
   void set_now(double now_s);
   // Pixels of the next frame; {0, 0} while the window is minimised.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -39,9 +40,9 @@ core::Result<std::vector<Endpoint>> endpoints(const std::filesystem::path& folde
   for (const auto& entry : std::filesystem::directory_iterator(*checked, error)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(kSocketPrefix) || !name.ends_with(kSocketSuffix)) continue;
-    const Descriptor fd = connect_to(entry.path());
-    if (!fd) continue;
-    if (const auto pid = peer_of(fd.get())) found.push_back({entry.path(), *pid, command_of(*pid)});
+    int pid = 0;  // psygen-PID.inspect, psygen-PID-2.inspect
+    std::from_chars(name.data() + kSocketPrefix.size(), name.data() + name.size(), pid);
+    if (pid > 0 && is_served(entry.path())) found.push_back({entry.path(), pid, command_of(pid)});
   }
   std::ranges::sort(found, {}, [](const Endpoint& e) { return std::pair(e.pid, e.socket); });
   return found;

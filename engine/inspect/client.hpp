@@ -20,8 +20,9 @@ struct Endpoint {
   std::string command;  // command line of its process
 };
 
-// Sessions in a folder, or in $XDG_RUNTIME_DIR if it is empty, by process. Fails with
-// kInvalidArgument for folders that other users may enter.
+// Sessions in a folder, or in $XDG_RUNTIME_DIR if it is empty, by process. Connects to none, so a
+// session stays free for its next client. Fails with kInvalidArgument for folders that other users
+// may enter.
 core::Result<std::vector<Endpoint>> endpoints(const std::filesystem::path& folder = {});
 
 // A connection to a session.

@@ -86,8 +86,13 @@ LineServer::~LineServer() {
 }
 
 bool LineServer::accept() {
-  client_ = Descriptor(::accept4(listening_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-  if (!client_) return false;
+  do {
+    client_ =
+        Descriptor(::accept4(listening_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (!client_) return false;
+    char first = 0;  // a connection that has ended was only a look
+    if (::recv(client_.get(), &first, 1, MSG_PEEK) == 0) drop();
+  } while (!client_);
   if (!peer_of(client_.get())) return drop(), false;
   since_s_ = core::monotonic_seconds();
   return true;

@@ -55,6 +55,15 @@ Descriptor connect_to(const std::filesystem::path& socket) {
   return fd;
 }
 
+// A datagram socket cannot connect to a stream: the kernel looks for the listener first.
+bool is_served(const std::filesystem::path& socket) {
+  const auto address = address_of(socket);
+  const Descriptor fd(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  return address && fd &&
+         ::connect(fd.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof(*address)) != 0 &&
+         errno == EPROTOTYPE;
+}
+
 std::optional<int> peer_of(int fd) {
   ucred peer{};
   socklen_t size = sizeof(peer);

@@ -42,6 +42,9 @@ std::optional<sockaddr_un> address_of(const std::filesystem::path& socket);
 // Returns a connected non-blocking socket, or none if no process listens; errno has the reason.
 Descriptor connect_to(const std::filesystem::path& socket);
 
+// Returns true if a process listens. Does not connect, so that nobody loses a seat.
+bool is_served(const std::filesystem::path& socket);
+
 // Returns the process id of the peer if it belongs to the same user.
 std::optional<int> peer_of(int fd);
 

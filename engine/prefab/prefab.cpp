@@ -290,7 +290,9 @@ ecs::Entity Library::node_of(const ecs::World& world, ecs::Entity instance,
   const std::vector<gltf::Node>& nodes = (*this)[of->prefab].nodes;
   const auto found = std::ranges::find(nodes, name, &gltf::Node::name);
   if (found == nodes.end()) return ecs::kNullEntity;
-  return world.children(instance)[static_cast<std::size_t>(found - nodes.begin())];
+  const std::span<const ecs::Entity> children = world.children(instance);
+  const auto i = static_cast<std::size_t>(found - nodes.begin());
+  return i < children.size() && world.alive(children[i]) ? children[i] : ecs::kNullEntity;
 }
 
 }  // namespace psygen::prefab

@@ -146,7 +146,7 @@ class Library {
   // animations.
   core::Result<void> play(Instance& instance, std::string_view animation,
                           const scene::FixedStep& step, const Playback& how = {}) const;
-  // Entity of an instance's first node with this name; null if there is none.
+  // Entity of an instance's first node with this name; null if there is none, or it was destroyed.
   ecs::Entity node_of(const ecs::World& world, ecs::Entity instance, std::string_view name) const;
 
  private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/core/rounding.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/nodes/mesh_entity.hpp"
 #include "engine/scene/state.hpp"
@@ -107,6 +108,7 @@ core::Result<void> check_region(const State& s, std::span<const synthesis::Want>
 }  // namespace
 
 std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progress) {
+  const core::RoundToNearest rounding;
   State& s = *state_;
   std::uint64_t synthesised = 0;
   int quiet = 0, idle = 0, refused = 0;
@@ -139,6 +141,7 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
 }
 
 core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const Progress& progress) {
+  const core::RoundToNearest rounding;
   State& s = *state_;
   s.input.pose = pose;
   s.rules = rules_of(s.settings, false);

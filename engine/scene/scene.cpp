@@ -9,6 +9,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/geometry_memory.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/facts/derive.hpp"
 #include "engine/scene/meshes/mesh_annotations.hpp"
@@ -224,6 +225,7 @@ core::Result<void> Scene::arrange() {
 }
 
 core::Result<void> Scene::tick() {
+  const core::RoundToNearest rounding;
   scene::tick(*state_);
   if (state_->output.error) return tl::unexpected(*state_->output.error);
   return {};

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "engine/core/out_of_memory.hpp"
+#include "engine/core/rounding.hpp"
 
 namespace psygen::synthesis {
 namespace {
@@ -27,6 +28,7 @@ SynthesisOutcome failed(const Sentence& sentence) noexcept {
 
 SynthesisOutcome synthesise_guarded(const models::ModelType& type, const models::Parameters& p,
                                     int level, const models::MeshView& out) {
+  const core::RoundToNearest rounding;
   try {  // model types of users may throw; the engine's own do so only without memory
     const core::Bounds tight = type.synthesise(p, level, out);
     if (core::is_box(tight)) return {true, tight, {}};
@@ -45,6 +47,7 @@ SynthesisOutcome synthesise_guarded(const models::ModelType& type, const models:
 
 core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
                                                  const models::Parameters& p, int level) {
+  const core::RoundToNearest rounding;
   models::MeshSize size;
   try {
     size = type.mesh_size(p, level);

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/models/kit/packing.hpp"
 
 namespace psygen::models {
@@ -330,6 +331,7 @@ MeshSize GrassType::mesh_size(const Parameters& p, int level) const {
 }
 
 core::Bounds GrassType::synthesise(const Parameters& p, int level, const MeshView& out) const {
+  const core::RoundToNearest rounding;
   const MeshSize size = mesh_size(p, level);
   PSYGEN_CHECK(out.vertices.size() == size.vertex_count * sizeof(core::ModelVertex) &&
                    out.indices.size() == size.index_count,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/models/kit/packing.hpp"
 #include "engine/models/rock/kernel.hpp"
 
@@ -179,6 +180,7 @@ void RockType::write_shared_indices(std::uint32_t id, std::span<std::uint16_t> o
 }
 
 core::Bounds RockType::synthesise(const Parameters& p, int level, const MeshView& out) const {
+  const core::RoundToNearest rounding;
   const int n = subdivisions_at(p, level);
   PSYGEN_CHECK(out.vertices.size() ==
                    rock_mesh_vertices(n, family_of(p).facet > 0) * sizeof(core::ModelVertex),
@@ -209,6 +211,7 @@ std::vector<glm::vec3> farthest(const std::vector<glm::vec3>& points) {
 // Up to two subdivisions the hull has all corners. Finer rocks use the mesh of at most four
 // subdivisions, and only its farthest corners in 56 directions.
 Collider RockType::collider(const Parameters& p) const {
+  const core::RoundToNearest rounding;
   constexpr int kAll = 2, kFinest = 4;
   constexpr std::uint32_t kMax = rock_mesh_vertices(kFinest, true);
   const int n = std::min(subdivisions_at(p, 0), kFinest);

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/core/vertex_layout.hpp"
 
 namespace psygen::models {
@@ -51,6 +52,7 @@ void BlockGround::world_of(std::int32_t block_index, std::int64_t first,
 }
 
 void BlockGround::evaluate_vertices() {
+  const core::RoundToNearest rounding;
   vertices_ = static_cast<std::size_t>(shape_.size);
   std::array<std::int64_t, kMaxTerrainSize> columns, rows;
   const std::span x = std::span(columns).first(vertices_), z = std::span(rows).first(vertices_);
@@ -119,6 +121,7 @@ GroundPoint BlockGround::at(glm::dvec2 local_xz, int stride) const {
 void sample_ground(const Parameters& terrain, core::BlockCoord block,
                    std::span<const glm::dvec2> local_xz, std::span<GroundPoint> ground) {
   PSYGEN_CHECK(ground.size() == local_xz.size(), "there is room for every point");
+  const core::RoundToNearest rounding;
   const BlockGround all(terrain, block, local_xz.size());
   for (std::size_t i = 0; i < local_xz.size(); ++i)
     ground[i] = all.at(local_xz[i]);
@@ -126,11 +129,13 @@ void sample_ground(const Parameters& terrain, core::BlockCoord block,
 
 double ground_height_m(const Parameters& terrain, core::BlockCoord block, double local_x,
                        double local_z) {
+  const core::RoundToNearest rounding;
   return BlockGround(terrain, block, 1).at({local_x, local_z}).height_m;
 }
 
 glm::vec3 ground_normal(const Parameters& terrain, core::BlockCoord block, double local_x,
                         double local_z) {
+  const core::RoundToNearest rounding;
   return BlockGround(terrain, block, 1).at({local_x, local_z}).normal;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/core/vertex_layout.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/kit/exact_math.hpp"
@@ -240,6 +241,7 @@ void mark_roads(const TerrainShape& shape, const TerrainGrid& grid, core::BlockC
 }
 
 core::Bounds TerrainType::synthesise(const Parameters& p, int level, const MeshView& out) const {
+  const core::RoundToNearest rounding;
   const TerrainShape shape(p);
   const TerrainGrid grid = grid_of(p, level);
   PSYGEN_CHECK(out.vertices.size() ==

@@ -1,6 +1,7 @@
 #include "engine/models/tree/mesh.hpp"
 
 #include "engine/core/assert.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/models/kit/scratch.hpp"
 #include "engine/models/tree/paths.hpp"
 
@@ -130,6 +131,7 @@ double tree_steps(const TreePlan& plan, int level) {
 }
 
 core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& out) {
+  const core::RoundToNearest rounding;
   MeshWriter writer(plan.bounds, out);
   const bool leafy = plan.foliage.near != nullptr;
   const bool whole = paths_of(plan, level) == kWholeTree;
@@ -153,6 +155,7 @@ core::Bounds synthesise_tree(const TreePlan& plan, int level, const MeshView& ou
 }
 
 Collider trunk_collider(const TreePlan& plan) {
+  const core::RoundToNearest rounding;
   constexpr std::array kEnds{0.0F, 0.15F, 0.5F, 1.0F};
   const Scratch<TreeSkeleton> scratch;
   TreeSkeleton& trunk = *scratch;

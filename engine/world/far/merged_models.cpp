@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "engine/core/assert.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/far/merged_plan.hpp"
@@ -296,6 +297,7 @@ void MergedType::add_placed(const models::BlockEdits& edits, const NodeBlock& bl
 }
 
 core::Bounds MergedType::synthesise(const Parameters& p, int level, const MeshView& out) const {
+  const core::RoundToNearest rounding;
   const LevelPlan& made = plan(p, level);
   const MeshSize size = mesh_size(p, level);
   PSYGEN_CHECK(out.vertices.size() == size.vertex_count * sizeof(core::ModelVertex) &&

@@ -2,6 +2,7 @@
 // levels of detail. A change to the bits of geometry changes them and is noted in CHANGELOG.md.
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <cstdint>
 #include <ostream>
 #include <string>
@@ -42,6 +43,19 @@ TEST_P(GoldenHash, IsTheSameInEveryBuildAndOnEveryInstructionSet) {
     EXPECT_EQ(totals.hash.value(), GetParam().hash)
         << target << " 0x" << std::hex << totals.hash.value();
     EXPECT_EQ(totals.failed, 0u);
+  }
+}
+
+TEST_P(GoldenHash, IsTheSameInEveryRoundingModeOfTheProgram) {
+  for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+    ASSERT_EQ(std::fesetround(mode), 0);
+    models::Registry registry = models::make_standard_registry();
+    const auto world = world::load_world(source_file("game/worlds/") + GetParam().world, registry);
+    Totals totals;
+    if (world) BlockSynthesiser(*world, registry, kAllLevels).synthesise(GetParam().block, totals);
+    EXPECT_EQ(std::fegetround(), mode) << "the program's mode is back";
+    std::fesetround(FE_TONEAREST);
+    EXPECT_EQ(totals.hash.value(), GetParam().hash) << mode;
   }
 }
 

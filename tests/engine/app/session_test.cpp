@@ -53,6 +53,28 @@ TEST(Session, DrawsTheNextTickAtTheTimeOfItsClock) {
   EXPECT_EQ(drawn_s, (std::vector<double>{0, 2, 0.5}));
 }
 
+TEST(Session, HasAClockThatCountsMicrosecondsAndRefusesTimesBeyond) {
+  auto session = Session::create(short_session());
+  ASSERT_TRUE(session) << session.error().message;
+  for (const double dt_s : {1e15, 1.1e6, -1e-9, HUGE_VAL, std::nan("")}) {
+    const auto ticked = (*session)->tick((*session)->home(), dt_s);
+    ASSERT_FALSE(ticked) << dt_s;
+    EXPECT_EQ(ticked.error().code, core::ErrorCode::kInvalidArgument);
+    EXPECT_NE(ticked.error().message.find("0 to 1000000 seconds"), std::string::npos);
+    EXPECT_FALSE((*session)->over());
+  }
+  EXPECT_TRUE((*session)->tick((*session)->home(), 1e6));
+  EXPECT_EQ((*session)->now_s(), 1e6);
+  (*session)->set_now(1e15);
+  EXPECT_EQ((*session)->now_s(), 1e6) << "ignored";
+  (*session)->set_now(1e9);
+  const auto ticked = (*session)->tick((*session)->home(), 1);
+  ASSERT_FALSE(ticked);
+  EXPECT_EQ(ticked.error().message,
+            "the clock cannot pass 1000000000 seconds; set_now() sets it back");
+  EXPECT_TRUE((*session)->tick((*session)->home(), 0));
+}
+
 TEST(Session, EndsOnceTheStopFlagIsSet) {
   std::atomic<bool> stop = false;
   SessionOptions options = short_session();

@@ -220,6 +220,7 @@ TEST(Systems, AnExceptionOfAnyTypeEndsTheSessionWithAnErrorThatNamesPluginAndHoo
       EXPECT_EQ(ticked.error().code, code);
       EXPECT_THAT(ticked.error().message, testing::StartsWith(expected));
       EXPECT_TRUE(session->over()) << expected;
+      session->keep_open();
       EXPECT_FALSE(session->poll()) << expected;
       const auto again = session->tick(session->home(), 1.0 / 60);
       ASSERT_FALSE(again) << expected;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -136,6 +137,21 @@ TEST_F(LineServerTest, RejectsASecondClientWithAMessage) {
   EXPECT_EQ((*second)->take_answer(), std::nullopt);
   EXPECT_FALSE((*second)->is_open());
   EXPECT_TRUE(server_->attached());
+}
+
+TEST_F(LineServerTest, AProgramThatLooksForSessionsTakesNoSeat) {
+  const auto found = endpoints(folder_.path());
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_EQ(found->size(), 1U);
+  EXPECT_EQ(found->front().pid, ::getpid());
+  EXPECT_EQ(found->front().socket, server_->address());
+  EXPECT_FALSE(server_->accept()) << "nobody has connected";
+  { const Descriptor look = connect_to(server_->address()); }  // another kind of look
+  const Descriptor client = connect_to(server_->address());
+  ASSERT_TRUE(server_->accept());
+  send(client, "hello\n");
+  server_->receive();
+  EXPECT_EQ(server_->take_line(), "hello") << "in the same frame";
 }
 
 TEST_F(LineServerTest, DetectsThatAClientIsGoneAndAcceptsTheNext) {

@@ -121,6 +121,7 @@ TEST_F(Prefabs, DisappearWithTheirRootAndMayLoseSingleParts) {
   tick(3);
   const ecs::Entity arm = library_.node_of(scene_->entities(), root_, "arm");
   scene_->entities().destroy(std::span(&arm, 1));
+  EXPECT_EQ(library_.node_of(scene_->entities(), root_, "arm"), ecs::kNullEntity);
   ASSERT_TRUE(library_.play(*scene_->entities().get<Instance>(root_), "lift", {}));
   tick(3);
   EXPECT_EQ(scene_->statistics().objects.drawn, 3u) << "attached entities keep their positions";

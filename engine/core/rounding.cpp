@@ -1,0 +1,45 @@
+#include "engine/core/rounding.hpp"
+
+#include <cfenv>
+
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
+namespace psygen::core {
+namespace {
+
+// The control bits of this thread's arithmetic; 0: nearest, and no flush to zero.
+#ifdef __SSE__
+constexpr unsigned kControl = _MM_ROUND_MASK | _MM_FLUSH_ZERO_MASK | 0x0040;  // denormals are zero
+
+unsigned control() {
+  return _mm_getcsr() & kControl;
+}
+void set_control(unsigned bits) {
+  _mm_setcsr((_mm_getcsr() & ~kControl) | bits);
+}
+#else
+unsigned control() {
+  return std::fegetround() == FE_TONEAREST ? 0 : 1;
+}
+void set_control(unsigned) {}
+#endif
+
+}  // namespace
+
+// std::fesetround() also sets the mode of the x87 unit, which functions such as std::strtod() obey.
+RoundToNearest::RoundToNearest() : control_(control()) {
+  if (control_ == 0) return;
+  mode_ = std::fegetround();
+  std::fesetround(FE_TONEAREST);
+  set_control(0);
+}
+
+RoundToNearest::~RoundToNearest() {
+  if (control_ == 0) return;
+  std::fesetround(mode_);
+  set_control(control_);
+}
+
+}  // namespace psygen::core
