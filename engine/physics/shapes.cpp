@@ -54,6 +54,21 @@ bool is_legal(const Collider::Shape& shape) {
   return true;
 }
 
+double inner_m(const Collider::Shape& shape) {
+  if (const auto* capsule = std::get_if<Collider::Capsule>(&shape)) return capsule->radius;
+  const glm::vec3 half = models::bounds_of(shape).half_extent();
+  return std::min({half.x, half.y, half.z});
+}
+
+btVector3 middle_of(const Collider::Shape& shape) {
+  const auto* hull = std::get_if<Collider::Hull>(&shape);
+  if (hull == nullptr) return to_bt(models::bounds_of(shape).centre());
+  glm::dvec3 sum(0);
+  for (const glm::vec3& point : hull->points)
+    sum += point;
+  return to_bt(sum / static_cast<double>(hull->points.size()));
+}
+
 }  // namespace
 
 PlacedShape make_part(const Collider::Shape& shape) {
@@ -71,9 +86,9 @@ core::Result<OwnedShape> make_shape(const models::Collider& collider) {
   double inner = 0;
   for (const Collider::Shape& shape : collider.shapes) {
     PlacedShape part = make_part(shape);
-    const core::Bounds box = models::bounds_of(shape);
-    const glm::vec3 half = box.half_extent();
-    inner = std::max(inner, static_cast<double>(std::min({half.x, half.y, half.z})));
+    inner = std::max(inner, inner_m(shape));
+    if (const btVector3 middle = middle_of(shape); middle.length2() > 0)
+      owned.middles.push_back(middle);
     whole->addChildShape(part.place, part.shape.get());
     owned.parts.push_back(std::move(part.shape));
   }

@@ -45,7 +45,8 @@ inline void put(btCollisionWorld& bullet, btCollisionObject& body, const btTrans
 // A shape with the parts that it points to.
 struct OwnedShape {
   std::vector<std::unique_ptr<btCollisionShape>> parts;  // the last one is the whole
-  double inner_m = 0;  // radius of a ball around the origin that the shape nearly fills
+  double inner_m = 0;              // half of the thickness of the thickest part
+  std::vector<btVector3> middles;  // a point inside each part, apart from the origin
   btCollisionShape* get() const { return parts.back().get(); }
 };
 

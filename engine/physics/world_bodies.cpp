@@ -60,8 +60,8 @@ core::Result<BodyId> World::add(const BodySettings& s) {
   btScalar radius;
   body.shape.get()->getBoundingSphere(centre, radius);
   body.reach_m = centre.length() + radius;
-  body.before = *at;
-  body.motion = btDefaultMotionState(btTransform(to_bt(*rotation), *at));
+  body.before = btTransform(to_bt(*rotation), *at);
+  body.motion = btDefaultMotionState(body.before);
   const bool dynamic = s.motion == Motion::kDynamic;
   btVector3 inertia(0, 0, 0);
   if (dynamic) body.shape.get()->calculateLocalInertia(s.mass_kg, inertia);
@@ -76,8 +76,6 @@ core::Result<BodyId> World::add(const BodySettings& s) {
   if (dynamic) {
     rigid.setLinearVelocity(to_bt(s.velocity));
     rigid.setAngularVelocity(to_bt(s.spin));
-    rigid.setCcdMotionThreshold(body.shape.inner_m);
-    rigid.setCcdSweptSphereRadius(0.5 * body.shape.inner_m);
   } else {
     rigid.setCollisionFlags(rigid.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
     body.is_moved = true;

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "engine/physics/impact.hpp"
 #include "engine/physics/shapes.hpp"
 
 namespace psygen::physics {
@@ -108,7 +111,7 @@ void World::Impl::follow_world() {
   for (auto& [number, body] : bodies) {
     if (body.kind != Motion::kDynamic) continue;
     body.rigid->activate(true);
-    body.before = body.rigid->getCenterOfMassPosition();
+    body.before = body.rigid->getWorldTransform();
     lift_above_ground(body);
   }
 }
@@ -141,7 +144,7 @@ void World::Impl::step(double dt) {
   for (auto& [number, character] : characters)
     character.step(dt, settings.gravity, objects.way_of(character.floor(), character.feet()));
   for (auto& [number, body] : bodies) {
-    body.before = body.rigid->getCenterOfMassPosition();
+    body.before = body.rigid->getWorldTransform();
     if (body.kind != Motion::kKinematic) continue;
     // Bodies that rest on a kinematic one sleep only if it does.
     const bool moves = body.is_moved || body.rigid->getLinearVelocity().length2() > 0 ||
@@ -150,6 +153,7 @@ void World::Impl::step(double dt) {
     body.is_moved = false;
   }
   bullet.stepSimulation(dt, 0);
+  stop_at_impacts();
   for (auto& [number, body] : bodies)
     if (body.kind == Motion::kDynamic) lift_above_ground(body);
   terrain.drop_idle(steps, settings.keep_steps, settings.max_idle_blocks);
@@ -189,8 +193,34 @@ void World::Impl::sync_edits() {
   }
 }
 
+// Objects and kinematic bodies have moved before Bullet's step. All paths are those of Bullet, so
+// two bodies stop where they meet.
+void World::Impl::stop_at_impacts() {
+  const auto path_of = [&](const btCollisionObject& object) {
+    const btTransform& pose = object.getWorldTransform();
+    const Body* body = object.getUserIndex2() == kBodies
+                           ? find(BodyId{static_cast<std::uint32_t>(object.getUserIndex())})
+                           : nullptr;
+    return body != nullptr && body->kind == Motion::kDynamic ? Path::between(body->before, pose)
+                                                             : Path{pose};
+  };
+  std::vector<std::pair<btRigidBody*, btTransform>> stopped;
+  for (auto& [number, body] : bodies) {
+    if (body.kind != Motion::kDynamic || !body.rigid->isActive()) continue;
+    if (!is_finite(body.rigid->getWorldTransform().getOrigin())) continue;
+    const Path path = path_of(*body.rigid);
+    const Impact impact = first_impact(broadphase, *body.rigid, path, path_of);
+    if (impact.share == 1) continue;
+    btTransform pose = path.at(impact.share);
+    pose.setOrigin(pose.getOrigin() + impact.push);
+    stopped.emplace_back(body.rigid.get(), pose);
+  }
+  for (const auto& [rigid, pose] : stopped)
+    put(bullet, *rigid, pose);
+}
+
 // Bullet finds contacts only at the end of a step, so fast bodies may be below the ground by then.
-// Checks the path of the centre against the exact ground.
+// Checks the path of the centre against the exact ground, and then the middle of each part.
 void World::Impl::lift_above_ground(Body& body) {
   btRigidBody& rigid = *body.rigid;
   if (!rigid.isActive()) return;
@@ -199,8 +229,8 @@ void World::Impl::lift_above_ground(Body& body) {
   const double inner = body.shape.inner_m;
   bool changed = false;
   if (!is_finite(at) || !is_finite(velocity) || !is_finite(rigid.getAngularVelocity())) {
-    transform = btTransform(btQuaternion::getIdentity(), body.before);
-    at = body.before;
+    transform = btTransform(btQuaternion::getIdentity(), body.before.getOrigin());
+    at = body.before.getOrigin();
     velocity = {0, 0, 0};
     rigid.setAngularVelocity({0, 0, 0});
     changed = true;
@@ -209,16 +239,16 @@ void World::Impl::lift_above_ground(Body& body) {
     velocity -= normal * std::min(velocity.dot(normal), btScalar(0));
     changed = true;
   };
-  const btVector3 way = at - body.before;
+  const btVector3 before = body.before.getOrigin(), way = at - before;
   if (way.length() > 0.5 * inner) {
-    const auto hit = query.cast({.origin = terrain.position(body.before),
+    const auto hit = query.cast({.origin = terrain.position(before),
                                  .direction = to_glm(way),
                                  .longest_m = way.length(),
                                  .models = false,
                                  .objects = false});
     if (hit && hit->kind == query::HitKind::kGround && !hit->from_inside) {
       const btVector3 normal = to_bt(hit->normal);
-      at = body.before + way.normalized() * hit->distance_m + normal * inner;
+      at = before + way.normalized() * hit->distance_m + normal * inner;
       stop_at(normal);
     }
   }
@@ -230,6 +260,14 @@ void World::Impl::lift_above_ground(Body& body) {
   if (at.y() < ground.height_m) {
     at.setY(ground.height_m + inner);
     stop_at(to_bt(ground.normal));
+  }
+  // Such parts keep their speed, for their contacts with the ground.
+  for (const btVector3& middle : body.shape.middles) {
+    const btVector3 part = at + transform.getBasis() * middle;
+    const double depth_m = terrain.ground(part).height_m - part.y();
+    if (depth_m <= 0) continue;
+    at.setY(at.y() + depth_m);
+    changed = true;
   }
   if (velocity.length() > kMaxSpeed) {
     velocity = limited(velocity, kMaxSpeed);

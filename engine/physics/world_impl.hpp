@@ -24,8 +24,8 @@ struct World::Impl {
     double reach_m = 0;  // radius of a ball around the centre that holds the shape
     btDefaultMotionState motion;
     std::unique_ptr<btRigidBody> rigid;
-    btVector3 before{0, 0, 0};  // centre before the step
-    bool is_moved = false;      // true if a kinematic body has a new pose for the next step
+    btTransform before;     // pose before the step
+    bool is_moved = false;  // true if a kinematic body has a new pose for the next step
   };
 
   // `queries` must outlive it; the settings are legal.
@@ -52,6 +52,8 @@ struct World::Impl {
   void make_surroundings(double dt);
   // Fails with kOverBudget if the settings allow no more bodies and characters.
   core::Result<void> check_room() const;
+  // Puts fast bodies back to where their paths of this step meet an object.
+  void stop_at_impacts();
   void lift_above_ground(Body& body);
   // Wakes the dynamic bodies that touch an object, which will be removed.
   void wake_touching(const btCollisionObject& object);
