@@ -42,10 +42,9 @@ void drop_empty_triangles(exchange::Part& part) {
 }  // namespace
 
 TileMaker::TileMaker(const world::World& world, const models::Registry& registry)
-    : world_(world), registry_(registry) {
-  if (world::models_per_block(world) > 0)
-    merged_ = world::make_merged_type(std::make_shared<const world::World>(world), registry);
-}
+    : world_(world),
+      registry_(registry),
+      merged_(world::make_merged_type(std::make_shared<const world::World>(world), registry)) {}
 
 TileMaker::~TileMaker() = default;
 
@@ -78,7 +77,8 @@ core::Result<exchange::Document> TileMaker::document(const TileTree& tree, const
     document.objects.front() = std::move(*ground);
   } else {
     document.objects.push_back(std::move(*ground));
-    if (merged_ && level <= world::kMaxMergedLevel) {
+    if ((level <= world::kMaxMergedLevel && world::scattered_bounds(*merged_, level)) ||
+        world::has_placed(world_, node, level)) {
       auto models = object(*merged_, world::merged_parameters(world_, node, level), 0);
       if (!models) return tl::unexpected(models.error());
       document.objects.push_back(std::move(*models));

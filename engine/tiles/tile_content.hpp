@@ -32,7 +32,7 @@ class TileMaker {
 
   const world::World& world_;
   const models::Registry& registry_;
-  std::unique_ptr<models::ModelType> merged_;  // null: the world has no models
+  std::unique_ptr<models::ModelType> merged_;
 };
 
 // The smallest box around a document, relative to its origin. Requires a vertex.

@@ -89,7 +89,7 @@ core::Result<void> find_levels(const SceneSettings& settings, WorldFacts& facts,
                                             before != nullptr ? before->scatters.get() : nullptr);
   DerivedWorldData derived{
       world::parts_of(*world, facts.registry), 0, scatters, {}, {}, facts.pictures};
-  if (settings.levels_of_detail && world::models_per_block(facts.world) > 0) {
+  if (settings.levels_of_detail) {
     const auto added = facts.registry.add(
         world::make_merged_type(world, facts.registry, facts.pictures, scatters));
     if (!added) return tl::unexpected(added.error());

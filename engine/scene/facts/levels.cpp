@@ -126,14 +126,20 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
     level.error_m = level.ground_error_m;
     level.skirt_m = kMinSkirtM + kSkirtPerBound * static_cast<float>(level.ground_bound_m);
     if (merged == nullptr || k == 0 || k > world::kMaxMergedLevel) continue;
-    const models::Parameters all = world::merged_parameters({}, static_cast<int>(k));
-    level.merged = merged->mesh_size(all, 0).vertex_count > 0;
+    const auto scattered = world::scattered_bounds(*merged, static_cast<int>(k));
+    level.merged = scattered.has_value();
     if (!level.merged) continue;
-    const double height_m = merged->bounds(all).max.y - level.bounds.max.y;
+    const double height_m = scattered->max.y - level.bounds.max.y;
     level.error_m = std::max(level.error_m,
                              kMergedErrorPerHeight * std::ldexp(height_m, static_cast<int>(k) - 1));
   }
+  count_placed(world, levels);
   return levels;
+}
+
+void count_placed(const world::World& world, std::span<NodeLevel> levels) {
+  for (std::size_t k = 1; k < levels.size(); ++k)
+    levels[k].placed_error_m = world::placed_error_m(world, static_cast<int>(k));
 }
 
 void split_distances(std::span<const NodeLevel> levels, const SceneSettings& settings,
@@ -144,7 +150,7 @@ void split_distances(std::span<const NodeLevel> levels, const SceneSettings& set
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const bool leaves_out = k == world::kMaxMergedLevel + 1 && levels[k - 1].merged;
     const double least = leaves_out ? kForestsSeenM * error_pixels / pixels_per_radian : 0.0;
-    errors.push_back(std::max(levels[k].error_m, least));
+    errors.push_back(std::max({levels[k].error_m, levels[k].placed_error_m, least}));
   }
   visibility::SplitSettings split;
   split.block_size_m = levels[0].size_m;

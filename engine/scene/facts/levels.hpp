@@ -21,11 +21,12 @@ struct NodeLevel {
   double ground_error_m = 0;  // error of the drawn ground (blocks: when not near), in nearly all
                               // places (measured_ground_error_m)
   double ground_bound_m = 0;  // maximum of that error over all nodes
-  double error_m = 0;         // including models
+  double error_m = 0;         // including scattered models
+  double placed_error_m = 0;  // of placed models (count_placed)
   float skirt_m = 0;          // height of the skirts at its borders
   std::uint16_t mesh_level =
       0;                // level of the terrain type that its nodes draw (blocks: when not near)
-  bool merged = false;  // its nodes have merged meshes
+  bool merged = false;  // all its nodes have merged meshes, not only those with placed models
   core::Bounds bounds;  // of the ground, relative to the node's corner
 };
 
@@ -35,6 +36,9 @@ struct NodeLevel {
 std::vector<NodeLevel> node_levels(const world::World& world, const models::Registry& registry,
                                    const SceneSettings& settings, const models::ModelType* merged,
                                    std::span<const NodeLevel> before = {});
+
+// Sets NodeLevel::placed_error_m by the models that the file and the edits of the world place.
+void count_placed(const world::World& world, std::span<NodeLevel> levels);
 
 // The number of nodes of a level along an axis of a world with this many blocks. 0 stands for
 // endless.

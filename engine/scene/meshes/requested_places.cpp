@@ -58,7 +58,7 @@ struct Collector {
     NodeView view;
     view.level = node.node.level;
     if (view.level > 0) {
-      if (!s.facts.levels[view.level].merged) return;
+      if (!has_merged(s.facts, node.node)) return;
       const MeshColumns mesh = columns_of(s.facts, block, merged_placement(s.facts, node.node));
       return add(mesh, model_level(choice, view, mesh.detail, 0, node.distance_m, kNoLevel),
                  node.distance_m);

@@ -48,6 +48,7 @@ void edits_system(const Daylight& daylight, PendingEdits& pending, WorldFacts& f
   const world::Edits& edits = pending.edits;
   world::set_edits(facts.world, (own ? edits : fitted(edits, facts.world, facts.registry)).layer());
   work.supply.set_edits(facts.world.layer());
+  count_placed(facts.world, facts.levels);
   facts.models_reach_m = world::with_placed_models(facts.scattered_reach_m, facts.world);
   const LayerChange change(facts.world, before, facts.world.layer());
   std::vector<world::Placement> scratch;

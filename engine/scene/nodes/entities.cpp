@@ -47,6 +47,15 @@ void tell_created(std::span<const ecs::Entity> models, core::BlockCoord block,
   created.emit(events);
 }
 
+// Creates the merged mesh of a node that has one. `added`: by an edit.
+void create_merged(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
+                   std::vector<world::Placement>& scratch, ecs::World& entities, bool added) {
+  if (!has_merged(facts, at)) return;
+  scratch.assign(1, merged_placement(facts, at));
+  entities.set_children(node, create_meshes<MeshParts, ReplacedParts>(
+                                  facts, visibility::corner_block(at), scratch, entities, added));
+}
+
 // Creates the models of a block, or the merged mesh of a coarser node.
 void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
                    std::vector<world::Placement>& scratch, ecs::World& entities,
@@ -57,10 +66,8 @@ void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs
     const std::span<const ecs::Entity> models = create_meshes(facts, block, scratch, entities);
     entities.set_children(node, models);
     tell_created(models, block, scratch, created);
-  } else if (facts.levels[at.level].merged) {
-    scratch.assign(1, merged_placement(facts, at));
-    entities.set_children(node,
-                          create_meshes<MeshParts, ReplacedParts>(facts, block, scratch, entities));
+  } else {
+    create_merged(facts, at, node, scratch, entities, false);
   }
 }
 
@@ -139,6 +146,16 @@ void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& 
   }
   if (removed.has_readers()) removed.emit(events);
   entities.destroy(models);
+}
+
+void destroy_merged(ecs::Entity node, synthesis::MeshSupply& meshes, ecs::World& entities) {
+  const std::span<const ecs::Entity> now = entities.children(node);
+  const std::vector<ecs::Entity> gone(now.begin(), now.end());
+  for (const ecs::Entity mesh : gone)
+    if (entities.get<MeshDemand>(mesh)->drawn_level != kNoLevel)
+      meshes.rank(entities.get<Mesh>(mesh)->handle, synthesis::Rank::unwanted());
+  entities.destroy(gone);
+  entities.set_children(node, {});
 }
 
 // Fits bounds and levels of a node's ground to the world that replaced another one.
@@ -315,6 +332,12 @@ void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity 
   const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
     if (change.models) update_models(facts, block, change, node, scratch, work);
+    return;
+  }
+  const std::span<const ecs::Entity> now = entities.children(node);
+  if (now.empty()) return create_merged(facts, at, node, scratch, entities, !change.world);
+  if (!has_merged(facts, at)) {  // the last placed model is gone
+    destroy_merged(node, work.supply, entities);
     return;
   }
   for (const ecs::Entity model : entities.children(node)) {

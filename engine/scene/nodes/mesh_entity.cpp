@@ -96,6 +96,11 @@ MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
   return columns;
 }
 
+bool has_merged(const WorldFacts& facts, const visibility::NodeCoord& at) {
+  return at.level > 0 &&
+         (facts.levels[at.level].merged || world::has_placed(facts.world, at.coord, at.level));
+}
+
 world::Placement merged_placement(const WorldFacts& facts, const visibility::NodeCoord& at) {
   return {facts.merged_model, kMergedIndex, glm::vec3(0.0F),
           world::merged_parameters(facts.world, at.coord, at.level)};

@@ -41,7 +41,9 @@ MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
                        const world::Placement& placement, int first_level = 0,
                        int last_level = INT_MAX);
 
-// The merged mesh of a node of level 1 or above.
+// True for a node of level 1 or above that has a merged mesh.
+bool has_merged(const WorldFacts& facts, const visibility::NodeCoord& at);
+// Its merged mesh.
 world::Placement merged_placement(const WorldFacts& facts, const visibility::NodeCoord& at);
 
 }  // namespace psygen::scene

@@ -5,9 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
+#include <new>
 #include <optional>
 #include <string_view>
-#include <unordered_map>
 
 #include "engine/core/assert.hpp"
 #include "engine/core/rounding.hpp"
@@ -42,7 +42,7 @@ constexpr ParameterSpec kSchema[kMergedParameterCount] = {
                                              models::HardRange{-0x1.0p31, 0x1.0p31 - 1},
                                              models::SoftRange{-1000, 1000}, "node along z")),
     models::placed(models::integer_parameter(
-        "node_level", "", 1, models::HardRange{1, kMaxMergedLevel},
+        "node_level", "", 1, models::HardRange{1, kMaxPlacedLevel},
         models::SoftRange{1, kMaxMergedLevel}, "the node is 2^node_level blocks wide and long")),
 };
 
@@ -56,7 +56,12 @@ std::shared_ptr<const World> without_edits(std::shared_ptr<const World> world) {
 
 int level_of(const Parameters& p) {
   return static_cast<int>(
-      std::clamp<std::int64_t>(p.integer(kMergedNodeLevel), 1, kMaxMergedLevel));
+      std::clamp<std::int64_t>(p.integer(kMergedNodeLevel), 1, kMaxPlacedLevel));
+}
+
+// True for models that only modelers may make.
+bool is_slow_model(const models::ModelType& type) {
+  return type.is_seen_from_far() && !type.may_run_on_main_thread();
 }
 
 class MergedType final : public models::ModelType {
@@ -68,15 +73,13 @@ class MergedType final : public models::ModelType {
         pictures_(std::move(pictures)),
         identity_(merged_identity(*world_, registry)) {
     if (pictures_) identity_ = core::combine(identity_, pictures_->identity());
-    for (models::ModelIndex i = 0; i < registry.size(); ++i)
-      types_.emplace(registry[i].name(), &registry[i]);
     held_scatters_ = scatters ? std::move(scatters) : far_scatters(world_, registry);
     scatters_ = held_scatters_->all();
-    for (const FarScatter& scatter : scatters_) {
-      may_run_on_main_thread_ =
-          may_run_on_main_thread_ && (scatter.empty() || scatter.type().may_run_on_main_thread());
+    for (models::ModelIndex i = 0; i < registry.size(); ++i) {
+      if (registry[i].is_seen_from_far()) types_.emplace(registry[i].name(), &registry[i]);
+      may_run_on_main_thread_ = may_run_on_main_thread_ && !is_slow_model(registry[i]);
     }
-    for (int level = 1; level <= kMaxMergedLevel; ++level)
+    for (int level = 1; level <= kMaxPlacedLevel; ++level)
       make_plans(level);
   }
 
@@ -92,7 +95,10 @@ class MergedType final : public models::ModelType {
   double level_error_m(const Parameters& p, int level) const override {
     const double relief_m = world_->terrain.real(models::kTerrainReliefM);
     const double height_m = plan(p, 0).box.max.y - relief_m;
-    return level == 0 ? 0 : kNextFormsError * std::ldexp(height_m, level_of(p) - 1);
+    if (level == 0) return 0;
+    const double placed_m = std::min(static_cast<double>(extent_m(placed_on(p).reach_m)),
+                                     form_error_m(*world_, plan(p, 1).form_level));
+    return std::max(kNextFormsError * std::ldexp(height_m, level_of(p) - 1), placed_m);
   }
   core::Bounds bounds(const Parameters& p) const override {
     return with_reach(plan(p, 0).box, placed_on(p).reach_m);
@@ -100,8 +106,10 @@ class MergedType final : public models::ModelType {
   MeshSize mesh_size(const Parameters& p, int level) const override {
     const LevelPlan& made = plan(p, level);
     const PlacedPlan placed = placed_plan(p, made);
-    return {static_cast<std::uint32_t>(made.vertices + placed.vertices()),
-            static_cast<std::uint32_t>(3 * (made.triangles + placed.triangles())), 0,
+    // Placed models that are too small leave a degenerate triangle.
+    const std::uint64_t min = placed_on(p).placed > 0 ? 1 : 0;
+    return {static_cast<std::uint32_t>(std::max(made.vertices + placed.vertices, min)),
+            static_cast<std::uint32_t>(3 * std::max(made.triangles + placed.triangles, min)), 0,
             core::VertexLayout::kModel};
   }
   double step_seconds() const override { return 350e-9; }
@@ -111,6 +119,10 @@ class MergedType final : public models::ModelType {
   }
   double log2_cost(const Parameters& p) const override {
     return std::log2(static_cast<double>(std::max<std::uint64_t>(plan(p, 0).triangles, 1)));
+  }
+  std::optional<core::Bounds> scattered_bounds(int level) const {
+    const LevelPlan& own = plans_[static_cast<std::size_t>(level)][0];
+    return own.vertices > 0 ? std::optional(own.box) : std::nullopt;
   }
   core::Bounds synthesise(const Parameters& p, int level, const MeshView& out) const override;
   std::uint64_t identity() const override { return identity_; }
@@ -125,16 +137,20 @@ class MergedType final : public models::ModelType {
 
   void make_plans(int level) {
     auto& [own, next] = plans_[static_cast<std::size_t>(level)];
-    own = plan_level(*world_, scatters_, pictures_.get(), level, level);
-    next = plan_level(*world_, scatters_, pictures_.get(), level, level + 1);
+    const auto scatters = level <= kMaxMergedLevel ? scatters_ : std::span<const FarScatter>{};
+    own = plan_level(*world_, scatters, pictures_.get(), level, level);
+    next = plan_level(*world_, scatters, pictures_.get(), level, level + 1);
     if (next.vertices == 0) next = own;  // all models too small: keep the finer forms
     own.box = next.box = core::united(own.box, next.box);
   }
-  // The number of models that edits and the file have placed on the blocks of a node.
-  models::BlockEdits::Summary placed_on(const Parameters& p) const {
+  static models::QuadCoord node_of(const Parameters& p) {
     const core::BlockCoord node{static_cast<std::int32_t>(p.integer(kMergedBlockX)),
                                 static_cast<std::int32_t>(p.integer(kMergedBlockZ))};
-    const auto at = models::QuadCoord::of(node, static_cast<std::uint32_t>(level_of(p)));
+    return models::QuadCoord::of(node, static_cast<std::uint32_t>(level_of(p)));
+  }
+  // The number of models that edits and the file have placed on the blocks of a node.
+  models::BlockEdits::Summary placed_on(const Parameters& p) const {
+    const models::QuadCoord at = node_of(p);
     models::BlockEdits::Summary sum;
     for (const models::EditLayer* layer : {p.edits(), world_->places.by_block.get()}) {
       const auto* cell = layer != nullptr ? layer->blocks.at_or_below(at) : nullptr;
@@ -143,9 +159,11 @@ class MergedType final : public models::ModelType {
     return sum;
   }
   PlacedPlan placed_plan(const Parameters& p, const LevelPlan& made) const {
-    return {made.form_level, placed_on(p).placed, made.vertices};
+    const models::EditLayer* const layers[] = {p.edits(), world_->places.by_block.get()};
+    return {*world_, types_, layers, node_of(p), made.form_level, made.vertices};
   }
-  void add_placed(const models::BlockEdits& edits, const NodeBlock& block, Making& making) const;
+  void add_scattered(const NodeWalk& walk, const models::EditLayer* edits, Making& making) const;
+  void add_placed(const PlacedForm& form, std::uint64_t together, Making& making) const;
   const LevelPlan& plan(const Parameters& p, int level) const {
     return plans_[static_cast<std::size_t>(level_of(p))][static_cast<std::size_t>(level)];
   }
@@ -156,14 +174,13 @@ class MergedType final : public models::ModelType {
   std::shared_ptr<const World> world_;
   std::shared_ptr<const ImpostorSet> pictures_;  // null: none
   std::uint64_t identity_;
-  // The registry's types by name, for placed models.
-  std::unordered_map<std::string_view, const models::ModelType*> types_;
+  TypesByName types_;  // of the registry, if they are seen from far
   std::shared_ptr<const FarScatters> held_scatters_;
   std::span<const FarScatter> scatters_;  // of these
-  bool may_run_on_main_thread_ = true;    // true if true for all scattered types
+  bool may_run_on_main_thread_ = true;
   // Indexed by node level (0 is unused) and level of detail. Plans of one node level have equal
   // boxes.
-  std::array<std::array<LevelPlan, kDetails>, kMaxMergedLevel + 1> plans_;
+  std::array<std::array<LevelPlan, kDetails>, kMaxPlacedLevel + 1> plans_;
 };
 
 struct MergedType::Making {
@@ -175,8 +192,6 @@ struct MergedType::Making {
   std::optional<models::BlockGround> ground;  // ground of the current tile, for slopes and heights
   SampleMesh mesh;
   ProxyMesh form;
-  PlacedPlan placed;
-  std::uint64_t placed_count = 0;             // number of placed models so far
   const models::BlockEdits* edits = nullptr;  // edits of the current block; may be null
 };
 
@@ -238,6 +253,15 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   instance.place.y =
       static_cast<float>(making.node_ground.at(in_node, making.drawn_stride).height_m);
   const Parameters p = scattering.parameters(instance.index);
+  const glm::vec3 foot = instance.place + glm::vec3(block.in_node_m.x, 0, block.in_node_m.y);
+  const bool sways = making.plan.form_level == 1;
+  if (how.mesh != nullptr) {
+    making.mesh.make(far.type(), p, how.mesh->level);
+    if (making.mesh.vertices().size() == how.mesh->vertices * sizeof(core::ModelVertex))
+      making.writer.add(making.mesh.vertices(), making.mesh.indices(far.type()), making.mesh.box(),
+                        foot, sways);
+    return;
+  }
   if (how.each_is_synthesised) {
     making.mesh.make(far.type(), p);
     const auto outline = making.mesh.outline();
@@ -247,9 +271,7 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   } else {
     make_from_like(instance, p, making);
   }
-  const glm::vec3 corner{static_cast<float>(block.in_node_m.x), 0,
-                         static_cast<float>(block.in_node_m.y)};
-  making.writer.add(how.form, making.form, corner + instance.place, making.plan.form_level == 1);
+  making.writer.add(how.form, making.form, foot, sways);
 }
 
 // Numbers the instances of the whole node block by block. Every `together` consecutive instances
@@ -276,29 +298,48 @@ void MergedType::add_scatter(std::size_t s, const NodeBlock& block, Making& maki
   }
 }
 
-void MergedType::add_placed(const models::BlockEdits& edits, const NodeBlock& block,
-                            Making& making) const {
-  for (const models::PlacedModel& model : edits.placed) {
-    if (making.placed_count++ % making.placed.together != 0) continue;
-    const auto found = types_.find(model.type);
-    if (found == types_.end() || !models::is_bound(model, *found->second)) continue;
-    const models::ModelType* type = found->second;
-    if (!type->may_run_on_main_thread() || !type->is_seen_from_far()) continue;
-    const auto form = make_placed_proxy(*type, model.parameters, making.placed, making.mesh,
-                                        direction_of(core::mix64(model.id)), making.form);
-    if (!form) continue;
-    const glm::dvec2 in_node = block.in_node_m + glm::dvec2(model.local_m);
-    const double ground_m = making.node_ground.at(in_node, making.drawn_stride).height_m;
-    making.writer.add(*form, making.form,
-                      {static_cast<float>(in_node.x), static_cast<float>(ground_m) + model.above_m,
-                       static_cast<float>(in_node.y)},
-                      making.plan.form_level == 1);
+void MergedType::add_scattered(const NodeWalk& walk, const models::EditLayer* edits,
+                               Making& making) const {
+  for (std::uint32_t i = 0; i < walk.block_count(); ++i) {
+    if (walk.starts_tile(i)) making.ground.reset();
+    const NodeBlock block = walk.block(i);
+    if (!world_->contains(block.coord)) continue;
+    if (!making.ground) walk.make_ground(i, making.ground);
+    making.edits = edits != nullptr ? edits->block(block.coord) : nullptr;
+    for (std::size_t s = 0; s < scatters_.size(); ++s)
+      add_scatter(s, block, making);
   }
+}
+
+// `together`: models that the form stands for.
+void MergedType::add_placed(const PlacedForm& placed, std::uint64_t together,
+                            Making& making) const {
+  const models::PlacedModel& model = *placed.model;
+  const double ground_m = making.node_ground.at(placed.in_node_m, making.drawn_stride).height_m;
+  const glm::vec3 foot{placed.in_node_m.x, static_cast<float>(ground_m) + model.above_m,
+                       placed.in_node_m.y};
+  const bool sways = making.plan.form_level == 1;
+  if (placed.mesh_level == PlacedForm::kProxy) {
+    const auto form = make_placed_proxy(placed, making.plan.form_level, together, making.mesh,
+                                        direction_of(core::mix64(model.id)), making.form);
+    if (form) making.writer.add(*form, making.form, foot, sways);
+    return;
+  }
+  try {  // user types may throw; our own code throws only when memory is exhausted
+    making.mesh.make(*placed.type, model.parameters, placed.mesh_level);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (...) {
+    return;
+  }
+  making.writer.add(making.mesh.vertices(), making.mesh.indices(*placed.type), making.mesh.box(),
+                    foot, sways);
 }
 
 core::Bounds MergedType::synthesise(const Parameters& p, int level, const MeshView& out) const {
   const core::RoundToNearest rounding;
   const LevelPlan& made = plan(p, level);
+  const PlacedPlan placed = placed_plan(p, made);
   const MeshSize size = mesh_size(p, level);
   PSYGEN_CHECK(out.vertices.size() == size.vertex_count * sizeof(core::ModelVertex) &&
                    out.indices.size() == size.index_count,
@@ -316,21 +357,10 @@ core::Bounds MergedType::synthesise(const Parameters& p, int level, const MeshVi
                 walk.drawn_stride(),
                 std::nullopt,
                 {},
-                {},
-                placed_plan(p, made)};
-  for (std::uint32_t i = 0; size.vertex_count > 0 && i < walk.block_count(); ++i) {
-    if (walk.starts_tile(i)) making.ground.reset();
-    const NodeBlock block = walk.block(i);
-    if (!world_->contains(block.coord)) continue;
-    if (!making.ground) walk.make_ground(i, making.ground);
-    making.edits = p.edits() != nullptr ? p.edits()->block(block.coord) : nullptr;
-    for (std::size_t s = 0; s < scatters_.size(); ++s)
-      add_scatter(s, block, making);
-    if (making.edits != nullptr) add_placed(*making.edits, block, making);
-    if (!world_->places.by_block) continue;
-    if (const models::BlockEdits* of_file = world_->places.by_block->block(block.coord))
-      add_placed(*of_file, block, making);
-  }
+                {}};
+  if (made.vertices > 0) add_scattered(walk, p.edits(), making);
+  for (std::size_t i = 0; i < placed.forms.size(); ++i)
+    add_placed(placed.forms[i], i < placed.shared_from ? 1 : placed.together, making);
   return making.writer.finish();
 }
 
@@ -373,6 +403,10 @@ std::unique_ptr<models::ModelType> make_merged_type(std::shared_ptr<const World>
                                                     std::shared_ptr<const FarScatters> scatters) {
   return std::make_unique<MergedType>(std::move(world), registry, std::move(pictures),
                                       std::move(scatters));
+}
+
+std::optional<core::Bounds> scattered_bounds(const models::ModelType& merged, int node_level) {
+  return static_cast<const MergedType&>(merged).scattered_bounds(node_level);
 }
 
 models::Parameters merged_parameters(core::BlockCoord node, int node_level) {

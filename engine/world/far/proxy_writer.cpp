@@ -15,6 +15,16 @@ void ProxyWriter::add(Form form, const ProxyMesh& mesh, const glm::vec3& foot, b
     write(mesh.corners[i], foot, i < size.solid_vertices ? nullptr : &mesh.aside[i], sways);
 }
 
+void ProxyWriter::add(std::span<const std::byte> vertices, std::span<const std::uint16_t> indices,
+                      const core::Bounds& own, const glm::vec3& foot, bool sways) {
+  for (const std::uint16_t i : indices)
+    out_.indices[indices_++] = static_cast<std::uint16_t>(vertices_ + i);
+  for (core::ModelVertex v : core::vertices_of<core::ModelVertex>(vertices)) {
+    if (!sways) v.sway = 0;
+    write(foot + models::unpack_position(v, own), v);
+  }
+}
+
 core::Bounds ProxyWriter::finish() {
   if (vertices_ == 0) {
     std::fill(out_.vertices.begin(), out_.vertices.end(), std::byte{0});
@@ -43,13 +53,9 @@ glm::vec2 ProxyWriter::limited(glm::vec2 aside, const glm::vec3& axis) const {
 
 void ProxyWriter::write(const Corner& c, const glm::vec3& foot, const glm::vec2* aside,
                         bool sways) {
-  core::ModelVertex v;
-  packer_.pack(foot + c.position, v.position);
-  for (std::size_t k = 0; k < 3; ++k) {
-    low_[k] = std::min(low_[k], v.position[k]);
-    high_[k] = std::max(high_[k], v.position[k]);
+  core::ModelVertex v{};
+  for (std::size_t k = 0; k < 3; ++k)
     v.colour[k] = models::pack_unorm8(c.colour[static_cast<int>(k)]);
-  }
   const glm::vec2 normal = aside != nullptr
                                ? limited(*aside, foot + c.position) / core::kBillboardReachM
                                : models::encode_octahedral(c.normal);
@@ -58,6 +64,15 @@ void ProxyWriter::write(const Corner& c, const glm::vec3& foot, const glm::vec2*
   v.ambient = models::pack_unorm8(c.ambient);
   v.sway = sways ? models::pack_unorm8(c.sway) : std::uint8_t{0};
   v.material = aside != nullptr ? c.material | core::kBillboardBit : c.material;
+  write(foot + c.position, v);
+}
+
+void ProxyWriter::write(const glm::vec3& place, core::ModelVertex v) {
+  packer_.pack(place, v.position);
+  for (std::size_t k = 0; k < 3; ++k) {
+    low_[k] = std::min(low_[k], v.position[k]);
+    high_[k] = std::max(high_[k], v.position[k]);
+  }
   reach_m_ = std::max(reach_m_, core::billboard_reach_m(v));
   std::memcpy(out_.vertices.data() + vertices_++ * sizeof v, &v, sizeof v);
 }

@@ -20,6 +20,9 @@ class ProxyWriter {
   // Appends a form. `foot` is the base point of the model in the frame of the box, in metres.
   // Without `sways` the sway of all vertices is 0.
   void add(Form form, const ProxyMesh& mesh, const glm::vec3& foot, bool sways);
+  // Appends a model's own mesh of core::ModelVertex, packed in `own`.
+  void add(std::span<const std::byte> vertices, std::span<const std::uint16_t> indices,
+           const core::Bounds& own, const glm::vec3& foot, bool sways);
   // Fills the rest of the mesh and returns the bounds of the added forms, in metres; without any
   // form the centre of the whole box. Call it once, last.
   core::Bounds finish();
@@ -27,6 +30,7 @@ class ProxyWriter {
  private:
   glm::vec2 limited(glm::vec2 aside, const glm::vec3& axis) const;
   void write(const Corner& c, const glm::vec3& foot, const glm::vec2* aside, bool sways);
+  void write(const glm::vec3& place, core::ModelVertex v);
 
   core::Bounds box_;
   models::BoxPacker packer_;

@@ -126,6 +126,7 @@ void FarScatter::measure(const World& world) {
     mesh.make(*type_, p);
     const auto outline = mesh.outline();
     if (!outline) continue;
+    if (type_->turn_deg(p)) measure_own_meshes(p);
     vertices += mesh.vertices().size() / sizeof(core::ModelVertex);
     const core::Bounds box = type_->bounds(p);
     reach_ = larger(reach_, reach_of(box));
@@ -139,6 +140,16 @@ void FarScatter::measure(const World& world) {
   const auto count = static_cast<float>(representatives_.size());
   mean_ = {mean_.side_m2 / count, mean_.plan_m2 / count};
   cheap_ = vertices <= kCheapVertices * representatives_.size();
+}
+
+void FarScatter::measure_own_meshes(const models::Parameters& p) {
+  own_meshes_.resize(static_cast<std::size_t>(type_->level_count_of(p)));
+  for (int level = 0; OwnMesh & own : own_meshes_) {
+    const models::MeshSize size = type_->mesh_size(p, level);
+    own = {level, size.vertex_count, size.triangle_count(),
+           std::max(own.error_m, type_->level_error_m(p, level))};
+    ++level;
+  }
 }
 
 void FarScatter::measure_shape() {
@@ -181,6 +192,14 @@ Form FarScatter::form_at(int node_level, double pixels_per_m) const {
   if (node_level >= 3) return Form::kTent;
   if (node_level == 2) return conical_ ? Form::kTent : trunk_ ? Form::kKiteTrunk : Form::kKite;
   return trunk_ ? Form::kSpindleTrunk : Form::kSpindle;
+}
+
+const FarScatter::OwnMesh* FarScatter::own_mesh(double pixels_per_m, double max_error_m) const {
+  if (own_meshes_.empty() || extent_m_ * pixels_per_m < kSmallPixels) return nullptr;
+  const auto coarsest =
+      std::ranges::find_if(own_meshes_.rbegin(), own_meshes_.rend() - 1,
+                           [&](const OwnMesh& m) { return m.error_m <= max_error_m; });
+  return &*coarsest;
 }
 
 Likeness FarScatter::like(float width_m, float height_m, std::uint64_t hash) const {

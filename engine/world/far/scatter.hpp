@@ -74,6 +74,16 @@ class FarScatter {
   // mesh. Not for billboards, which have their own dimensions.
   float width_of(Form form) const { return widths_[static_cast<std::size_t>(form)]; }
 
+  // A level of the scattered meshes, if all instances are one shape (ModelType::turn_deg).
+  struct OwnMesh {
+    int level = 0;
+    std::uint32_t vertices = 0, triangles = 0;
+    double error_m = 0;  // of the largest representative
+  };
+  // The coarsest level within this error; null for other types, and for models so small that forms
+  // look the same. `pixels_per_m` as above.
+  const OwnMesh* own_mesh(double pixels_per_m, double max_error_m) const;
+
   // A representative similar to an instance with bounds of this size. `hash` selects one of those
   // that are similar enough. Requires !empty(); linear in the representatives. The pointer lives as
   // long as this object.
@@ -88,6 +98,7 @@ class FarScatter {
 
  private:
   void measure(const World& world);
+  void measure_own_meshes(const models::Parameters& p);
   void measure_shape();
   void fit_forms();
 
@@ -95,6 +106,7 @@ class FarScatter {
   const Scatter* scatter_;
   std::uint32_t first_;
   std::vector<Representative> representatives_;
+  std::vector<OwnMesh> own_meshes_;  // finest first
   Silhouette mean_;
   Reach reach_;         // extent of the type's bounds
   float extent_m_ = 0;  // mean of the larger of width and height

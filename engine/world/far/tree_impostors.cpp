@@ -154,6 +154,7 @@ class ImpostorType final : public ModelType {
   double steps(const Parameters&, int) const override { return 1; }
   double step_seconds() const override { return 10e-3; }
   double log2_cost(const Parameters&) const override { return 0; }
+  bool is_seen_from_far() const override { return false; }
   core::Bounds synthesise(const Parameters&, int, const MeshView& out) const override {
     std::ranges::fill(out.vertices, std::byte{0});
     std::ranges::fill(out.indices, std::uint16_t{0});

@@ -38,6 +38,14 @@ class FarEdits : public ::testing::Test, protected testing::EditedWorld {
     }
     return near;
   }
+  PlacedPlan plan_of(core::BlockCoord node, std::uint32_t level, std::uint64_t beside) {
+    TypesByName types;
+    for (models::ModelIndex i = 0; i < registry.size(); ++i)
+      types.emplace(registry[i].name(), &registry[i]);
+    const models::EditLayer* const layers[] = {world.layer().get(), nullptr};
+    return {world, types, layers, models::QuadCoord::of(node, level), static_cast<int>(level),
+            beside};
+  }
   // A tree of block (4, 4) with no other model that near.
   Placement lonely_tree() {
     const std::vector<Placement> all = unedited({4, 4});
@@ -125,11 +133,53 @@ TEST_F(FarEdits, ManyPlacedModelsShareForms) {
   const models::Parameters p = merged_parameters(world, {0, 0}, 2);
   const Mesh made = synthesise(*type, p, 0);
   EXPECT_LE(made.size.vertex_count, 65'536u);
-  const PlacedPlan plan(2, 3000, 0);
-  EXPECT_EQ(plan.together, 3u);
-  EXPECT_EQ(plan.forms, 1000u);
-  EXPECT_EQ(PlacedPlan(2, 3000, 65'536).forms, 0u);
-  EXPECT_EQ(PlacedPlan(1, 0, 0).vertices(), 0u);
+  const PlacedPlan plan = plan_of({0, 0}, 2, 0);
+  EXPECT_EQ(plan.together, 2u);
+  EXPECT_EQ(plan.shared_from, 1024u);
+  EXPECT_EQ(plan.forms.size(), 1024u + 988u);
+  EXPECT_TRUE(plan_of({0, 0}, 2, 65'536).forms.empty());
+  EXPECT_EQ(plan_of({9, 9}, 1, 0).vertices, 0u);
+}
+
+// The silhouette of a node with one placed rock, beside that of the rock.
+TEST_F(FarEdits, APlacedModelKeepsItsSilhouetteUntilItIsSmallerThanTheError) {
+  const models::ModelIndex rock = world.scatter[1].model;
+  models::Parameters big = models::default_parameters(registry[rock]);
+  big.set_real(static_cast<std::size_t>(models::parameter_index(registry[rock], "radius_m")), 8);
+  for (const bool by_file : {false, true}) {
+    World bare = function;
+    bare.scatter.clear();
+    Edits one;
+    if (by_file) {
+      bare.places.all = {{rock, big, {330, 330}, 0}};
+      sort_places(bare, registry);
+    } else {
+      ASSERT_TRUE(one.place(bare, registry, {rock, big, {{5, 5}, {15, 0, 15}}, 0}));
+    }
+    const auto merged = make_merged_type(std::make_shared<const World>(bare), registry);
+    if (!by_file) set_edits(bare, one.layer());
+    SampleMesh finest, seen;
+    finest.make(registry[rock], big, 0);
+    const float expected_m2 = finest.silhouette(registry[rock]).plan_m2;
+    for (int level = 1; level <= 8; ++level) {
+      const core::BlockCoord node{5 >> level, 5 >> level};
+      const models::Parameters p = merged_parameters(bare, node, level);
+      const float size_m = registry[rock].bounds(big).max.y - registry[rock].bounds(big).min.y;
+      const bool large = form_error_m(bare, level) < static_cast<double>(size_m) / 3;
+      seen.make(*merged, p, 0);
+      EXPECT_TRUE(!large || has_placed(bare, node, level));
+      EXPECT_GE(placed_error_m(bare, level) + 1e-6, std::min(form_error_m(bare, level), 8.0));
+      if (large) {
+        EXPECT_NEAR(seen.silhouette(*merged).plan_m2, expected_m2, 0.3F * expected_m2);
+      }
+      if (form_error_m(bare, level) > 60) {
+        EXPECT_LT(seen.silhouette(*merged).plan_m2, 1);
+      }
+      EXPECT_FALSE(has_placed(bare, {node.x + 1, node.z}, level));
+    }
+    EXPECT_FALSE(scattered_bounds(*merged, 1));
+  }
+  EXPECT_EQ(placed_error_m(function, 1), 0);
 }
 
 TEST_F(FarEdits, MergedModelsStandOnTheEditedGround) {
