@@ -12,6 +12,8 @@
 #include "editor/shell/camera_memory.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
+#include "editor/view/window_surface.hpp"
+#include "engine/cli/commands.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/program/program.hpp"
@@ -31,9 +33,8 @@ int usage_error(const QString& message) {
   return 2;
 }
 
-// Returns the exit code of an error, or nullopt.
-std::optional<int> read_arguments(const QApplication& app, Arguments& arguments) {
-  QCommandLineParser parser;
+// Sets up the parser, and returns false after errors. Prints help or version and exits if asked to.
+bool parse(QCommandLineParser& parser, const QStringList& arguments) {
   parser.setApplicationDescription("Edits a world while psygen renders it.");
   parser.addHelpOption();
   parser.addVersionOption();
@@ -43,9 +44,28 @@ std::optional<int> read_arguments(const QApplication& app, Arguments& arguments)
                      {"preset", "Quality: low, medium, high, ultra.", "preset"},
                      {"device", "Part of the name of the Vulkan device.", "name"},
                      {"validation", "Enable Vulkan validation."}});
-  if (!parser.parse(app.arguments())) return usage_error(parser.errorText());
+  const bool is_good = parser.parse(arguments);
   if (parser.isSet("help")) parser.showHelp(0);
   if (parser.isSet("version")) parser.showVersion();
+  return is_good;
+}
+
+// Prints help and version, which need no display. Returns the exit code if there is no display.
+std::optional<int> require_display(int argc, char** argv) {
+  {
+    const QCoreApplication app(argc, argv);
+    QCommandLineParser parser;
+    parse(parser, app.arguments());  // may contain options of Qt
+  }
+  if (auto x11 = require_x11({argv, static_cast<std::size_t>(argc)}); !x11)
+    return cli::fail_with(x11.error());
+  return std::nullopt;
+}
+
+// Returns the exit code of an error, or nullopt.
+std::optional<int> read_arguments(const QApplication& app, Arguments& arguments) {
+  QCommandLineParser parser;
+  if (!parse(parser, app.arguments())) return usage_error(parser.errorText());
   if (parser.positionalArguments().size() > 1) return usage_error("give at most one world");
   if (parser.isSet("preset")) {
     const auto preset = render::preset_from(parser.value("preset").toStdString());
@@ -63,10 +83,11 @@ int edit(int argc, char** argv, std::vector<app::Plugin> plugins) {
   // The rendering process of the gallery (pictures/picture_server.hpp).
   if (argc > 1 && std::strcmp(argv[1], kPicturesOption) == 0)
     return render_pictures(std::move(plugins), argc > 2 ? argv[2] : "");
-  QApplication app(argc, argv);
   QApplication::setOrganizationName("psygen");
   QApplication::setApplicationName("psygen-editor");
   QApplication::setApplicationVersion(to_qstring(core::version()));
+  if (const auto code = require_display(argc, argv)) return *code;
+  QApplication app(argc, argv);
   Arguments arguments;
   if (const auto code = read_arguments(app, arguments)) return *code;
   apply_saved_look();

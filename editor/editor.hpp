@@ -9,8 +9,8 @@
 namespace psygen::editor {
 
 // Opens the editor's window and returns the exit code after it is closed: 0, 1 for failures, 2 for
-// usage errors, like psygen's commands. Plugins add model types, components and systems to every
-// session.
+// usage errors, 4 without an X11 display, like psygen's commands. Plugins add model types,
+// components and systems to every session.
 int run(int argc, char** argv, std::vector<app::Plugin> plugins = {});
 
 }  // namespace psygen::editor

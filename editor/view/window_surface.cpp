@@ -8,8 +8,34 @@
 #include <QGuiApplication>
 #include <QWindow>
 #include <bit>
+#include <cstdlib>
+#include <string_view>
 
 namespace psygen::editor {
+
+core::Result<void> require_x11(std::span<const char* const> arguments) {
+  if (qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM")) qputenv("QT_QPA_PLATFORM", "xcb");
+  std::string_view platform = std::getenv("QT_QPA_PLATFORM");
+  const char* display = nullptr;  // $DISPLAY
+  for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
+    const std::string_view option = arguments[i];
+    if (option == "-platform" || option == "--platform") platform = arguments[i + 1];
+    if (option == "-display" || option == "--display") display = arguments[i + 1];
+  }
+  if (!platform.starts_with("xcb"))
+    return core::fail(core::ErrorCode::kNoDevice,
+                      "the editor needs X11, and the chosen Qt platform is \"" +
+                          std::string(platform) + "\"; unset QT_QPA_PLATFORM");
+  xcb_connection_t* connection = xcb_connect(display, nullptr);
+  const bool is_open = xcb_connection_has_error(connection) == 0;
+  xcb_disconnect(connection);
+  if (is_open) return {};
+  if (display == nullptr) display = std::getenv("DISPLAY");
+  return core::fail(core::ErrorCode::kNoDevice,
+                    display == nullptr ? "the editor needs an X11 display, and DISPLAY is not set"
+                                       : "the editor needs an X11 display, and \"" +
+                                             std::string(display) + "\" cannot be opened");
+}
 
 std::vector<std::string> WindowSurface::required_instance_extensions() const {
   return {VK_KHR_SURFACE_EXTENSION_NAME, VK_KHR_XCB_SURFACE_EXTENSION_NAME};
@@ -17,7 +43,7 @@ std::vector<std::string> WindowSurface::required_instance_extensions() const {
 
 core::Result<std::uint64_t> WindowSurface::create_surface(void* instance) {
   const auto* x11 = qGuiApp->nativeInterface<QNativeInterface::QX11Application>();
-  if (x11 == nullptr)
+  if (x11 == nullptr || x11->connection() == nullptr)
     return core::fail(core::ErrorCode::kNoDevice,
                       "the editor needs X11; start it with -platform xcb");
   const auto vulkan = static_cast<VkInstance>(instance);

@@ -2,6 +2,7 @@
 // Vulkan objects. Main thread.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,11 @@
 class QWindow;
 
 namespace psygen::editor {
+
+// Fails with kNoDevice unless Qt will use X11 and the display can be opened: otherwise QApplication
+// aborts, and the view cannot draw. Chooses X11 if the user has chosen no platform. To be called
+// before QApplication, with the arguments of the program.
+core::Result<void> require_x11(std::span<const char* const> arguments);
 
 class WindowSurface final : public core::SurfaceProvider {
  public:
