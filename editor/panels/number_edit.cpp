@@ -14,7 +14,7 @@ namespace {
 constexpr int kSteps = 1000;
 
 // A box that shows as many decimals as its value needs. It handles arrow keys and typed digits;
-// undo and redo go to the window, and so does the wheel unless the box has the focus.
+// undo and redo go to the window.
 class NumberBox final : public QDoubleSpinBox {
  public:
   using QDoubleSpinBox::QDoubleSpinBox;
@@ -47,10 +47,6 @@ class NumberBox final : public QDoubleSpinBox {
       }
     }
     return QDoubleSpinBox::event(event);
-  }
-  void wheelEvent(QWheelEvent* event) override {
-    if (hasFocus()) return QDoubleSpinBox::wheelEvent(event);
-    event->ignore();  // the panel scrolls
   }
 };
 

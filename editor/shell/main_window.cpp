@@ -1,10 +1,15 @@
 #include "editor/shell/main_window.hpp"
 
+#include <QAbstractSpinBox>
+#include <QApplication>
 #include <QCloseEvent>
+#include <QComboBox>
 #include <QDragEnterEvent>
 #include <QMenuBar>
 #include <QMimeData>
+#include <QScrollBar>
 #include <QSettings>
+#include <QSlider>
 #include <QStatusBar>
 #include <QUndoView>
 #include <algorithm>
@@ -31,12 +36,38 @@
 #include "editor/tools/view_tools.hpp"
 
 namespace psygen::editor {
+namespace {
+
+// Rules of all number fields, sliders and combo boxes of the program: the wheel does not focus them
+// and changes only a focused one, so that a panel scrolls past the others. A slider that
+// disappears under the mouse is released.
+class ControlRules final : public QObject {
+ public:
+  using QObject::QObject;
+  bool eventFilter(QObject* object, QEvent* event) override {
+    auto* slider = qobject_cast<QAbstractSlider*>(object);
+    const bool is_control = (slider && !qobject_cast<QScrollBar*>(object)) ||
+                            qobject_cast<QAbstractSpinBox*>(object) ||
+                            qobject_cast<QComboBox*>(object);
+    if (!is_control) return false;
+    auto* control = static_cast<QWidget*>(object);
+    if (event->type() == QEvent::Polish && control->focusPolicy() == Qt::WheelFocus)
+      control->setFocusPolicy(Qt::StrongFocus);
+    if (event->type() == QEvent::Hide && slider != nullptr) slider->setSliderDown(false);
+    if (event->type() != QEvent::Wheel || control->hasFocus()) return false;
+    event->ignore();
+    return true;
+  }
+};
+
+}  // namespace
 
 MainWindow::MainWindow(MainWindowOptions options)
     : options_(std::move(options)),
       document_(options_.document),
       view_(new WorldView(options_.session)) {
   setObjectName("main");
+  qApp->installEventFilter(new ControlRules(this));
   setAcceptDrops(true);
   setDockNestingEnabled(true);
   add_view();

@@ -1,0 +1,82 @@
+// Drags, the wheel and the colour dialog edit the fields that the user means, and no others.
+#include <QtTest/qtestspontaneevent.h>
+
+#include <QAbstractSpinBox>
+#include <QApplication>
+#include <QColorDialog>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QSignalSpy>
+#include <QUndoStack>
+#include <QWheelEvent>
+
+#include "editor/panels/field_row.hpp"
+#include "tests/editor/window/oak_fixture.hpp"
+
+namespace psygen::editor {
+namespace {
+
+const world::TextPath kSky{"sky"}, kAzimuth{"sky", "sun_azimuth_deg"}, kExposure{"sky", "exposure"};
+const world::TextPath kTrees{"scatter", 0}, kCount{"scatter", 0, "count"};
+
+// Once the slider has its place in the window.
+// Turns the wheel over a widget by one notch, towards the user, as the window system reports it.
+void turn_wheel(QWidget& widget) {
+  const QPointF at = widget.rect().center();
+  QWheelEvent event(at, widget.mapToGlobal(at), {}, {0, -120}, Qt::NoButton, Qt::NoModifier,
+                    Qt::NoScrollPhase, false);
+  QSpontaneKeyEvent::setSpontaneous(&event);
+  qApp->notify(&widget, &event);
+}
+
+TEST_F(EditorWindow, TheWheelChangesOnlyAFocusedControl) {
+  window_->activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get(), kMaxMs));
+  auto* search = properties().findChild<QLineEdit*>();
+  const auto value_of = [](const QWidget* widget) {
+    const auto* slider = qobject_cast<const QAbstractSlider*>(widget);
+    const auto* box = qobject_cast<const QAbstractSpinBox*>(widget);
+    const auto* choice = qobject_cast<const QComboBox*>(widget);
+    return slider ? QString::number(slider->value())
+           : box  ? box->text()
+                  : QString::number(choice->currentIndex());
+  };
+  int sliders = 0, boxes = 0, choices = 0;
+  for (const world::TextPath& section : {kSky, kTrees}) {
+    properties().go_to(section);
+    QCoreApplication::processEvents();
+    for (QWidget* widget : window_->findChildren<QWidget*>()) {
+      const bool is_slider = qobject_cast<QSlider*>(widget) != nullptr;
+      const bool is_box = qobject_cast<QAbstractSpinBox*>(widget) != nullptr;
+      const bool is_choice = qobject_cast<QComboBox*>(widget) != nullptr;
+      if (!(is_slider || is_box || is_choice) || !widget->isVisible()) continue;
+      sliders += is_slider, boxes += is_box, choices += is_choice;
+      search->setFocus();
+      const QString before = value_of(widget);
+      turn_wheel(*widget);
+      const std::string name = widget->accessibleName().toStdString();
+      EXPECT_EQ(value_of(widget), before) << name;
+      EXPECT_TRUE(search->hasFocus()) << name;
+    }
+  }
+  EXPECT_TRUE(sliders > 5 && boxes > 5 && choices > 1) << sliders << ' ' << boxes << ' ' << choices;
+  EXPECT_EQ(document().text(), kSmallWorld);
+  // The panel scrolls instead.
+  properties().go_to(kSky);
+  QCoreApplication::processEvents();
+  QScrollBar* bar = properties().findChild<QScrollArea*>()->verticalScrollBar();
+  auto* box = properties().row(kAzimuth)->findChild<QDoubleSpinBox*>();
+  ASSERT_GT(bar->maximum(), 0);
+  turn_wheel(*box);
+  EXPECT_GT(bar->value(), 0);
+  box->setFocus();
+  turn_wheel(*box);
+  EXPECT_EQ(document().undo_stack().count(), 1);
+}
+
+}  // namespace
+}  // namespace psygen::editor
