@@ -154,9 +154,12 @@ class Document : public QObject {
   const handmade::MemoryPicturesPtr& pictures() const { return pictures_; }
 
   // Edits between these two calls are one step: a drag, or several values at once. begin_drag()
-  // returns the number of the drag.
+  // returns the number of the drag. set_text() is always a step of its own.
   int begin_drag();
   void end_drag() { drag_ = 0; }
+  // Restores the text of the start of the drag, or of the last set_text() during it. Leaves no undo
+  // step. The drag continues.
+  core::Result<void> cancel_drag();
   // Continues a drag: further edits extend its step, if that is the last one.
   void resume_drag(int drag) { drag_ = drag; }
   QUndoStack& undo_stack() { return undo_; }
@@ -262,6 +265,7 @@ class Document : public QObject {
   bool was_modified_ = false;
   bool autosave_has_failed_ = false;
   int drag_ = 0, last_drag_ = 0;
+  TextPtr drag_text_;  // at the start of the last drag
   EditGuard guard_;
   std::optional<Edit> proposed_edit_;
   QString confirmation_;

@@ -116,7 +116,10 @@ core::Result<void> Document::apply_proposed_edit() {
 }
 
 core::Result<void> Document::set_text(std::string text, const QString& step) {
-  return push(std::move(text), step, {}, false);
+  const int drag = std::exchange(drag_, 0);
+  auto set = push(std::move(text), step, {}, false);
+  if (drag != 0) begin_drag();
+  return set;
 }
 
 core::Result<void> Document::edit(const QString& step,
@@ -127,7 +130,13 @@ core::Result<void> Document::edit(const QString& step,
 }
 
 int Document::begin_drag() {
+  drag_text_ = text_;
   return drag_ = ++last_drag_;
+}
+
+core::Result<void> Document::cancel_drag() {
+  if (drag_ == 0) return {};
+  return push(*drag_text_, tr("Cancel"), {}, false);
 }
 
 core::Result<void> Document::set_value(const world::TextPath& path, std::string_view toml_value) {

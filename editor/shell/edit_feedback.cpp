@@ -88,8 +88,7 @@ void EditFeedback::set_dragging(bool on) {
 }
 
 void EditFeedback::on_document_changed(Changes what) {
-  // The dragged slider may no longer exist.
-  if (drag_start_ && what.testAnyFlags(Change::kTables | Change::kFile)) set_dragging(false);
+  if (drag_start_ && what.testFlag(Change::kFile)) set_dragging(false);
   context_.properties.show(context_.document.sections());
   // The renderer loads images of the ground only when it is created.
   const auto& images = context_.document.world().palette.images;

@@ -84,8 +84,9 @@ MainWindow::MainWindow(MainWindowOptions options)
   update_title();
 }
 
-// The tools must release the document and the view before either ends.
+// The tools and the drags of controls must release the document and the view before either ends.
 MainWindow::~MainWindow() {
+  hide();
   tools_->leave();
 }
 

@@ -46,7 +46,6 @@ class ToolDrag {
   void begin() {
     active_ = true;
     error_.clear();
-    before_ = host_.document.text();
     host_.set_dragging(true);
   }
   // Records the result of an edit during the drag.
@@ -61,7 +60,7 @@ class ToolDrag {
   // Ends the drag and restores the text of its start. Returns false if no drag was active.
   bool cancel() {
     if (!std::exchange(active_, false)) return false;
-    host_.check(host_.document.set_text(before_, QString()));
+    host_.check(host_.document.cancel_drag());
     host_.set_dragging(false);
     return true;
   }
@@ -69,7 +68,6 @@ class ToolDrag {
  private:
   const ToolHost& host_;
   bool active_ = false;
-  std::string before_;
   QString error_;
 };
 

@@ -105,6 +105,37 @@ TEST(Document, ADragIsOneStepAndNoneIfItEndsAtItsStart) {
   EXPECT_EQ(document.text(), kWorld);
 }
 
+TEST(Document, ACancelledDragRestoresItsStartAndIsNoStep) {
+  Opened opened;
+  Document& document = opened.document;
+  document.begin_drag();
+  EXPECT_TRUE(good(document.set_value({"sky", "exposure"}, "7")));
+  EXPECT_TRUE(good(document.set_value({"sky", "exposure"}, "8")));
+  EXPECT_TRUE(good(document.cancel_drag()));
+  EXPECT_TRUE(good(document.cancel_drag())) << "nothing is left to cancel";
+  document.end_drag();
+  EXPECT_EQ(document.text(), kWorld);
+  EXPECT_EQ(document.undo_stack().count(), 0);
+  EXPECT_TRUE(good(document.set_value({"sky", "exposure"}, "9")));
+  EXPECT_TRUE(good(document.cancel_drag())) << "no drag";
+  EXPECT_EQ(document.undo_stack().count(), 1);
+}
+
+TEST(Document, ATextThatComesDuringADragIsAStepOfItsOwn) {
+  Opened opened;
+  Document& document = opened.document;
+  const std::string reloaded = std::string(kWorld) + "# by another program\n";
+  document.begin_drag();
+  EXPECT_TRUE(good(document.set_value({"sky", "exposure"}, "7")));
+  EXPECT_TRUE(good(document.set_text(reloaded, QStringLiteral("Reload"))));
+  EXPECT_TRUE(good(document.set_value({"sky", "exposure"}, "8")));
+  EXPECT_TRUE(good(document.set_value({"sky", "exposure"}, "9")));
+  EXPECT_EQ(document.undo_stack().count(), 3);
+  EXPECT_TRUE(good(document.cancel_drag()));
+  EXPECT_EQ(document.text(), reloaded);
+  EXPECT_EQ(document.undo_stack().count(), 2);
+}
+
 TEST(Document, ARejectedEditNamesTheFieldAndChangesNothing) {
   Opened opened;
   Document& document = opened.document;

@@ -24,6 +24,12 @@ const world::TextPath kSky{"sky"}, kAzimuth{"sky", "sun_azimuth_deg"}, kExposure
 const world::TextPath kTrees{"scatter", 0}, kCount{"scatter", 0, "count"};
 
 // Once the slider has its place in the window.
+QPoint handle_of(const QSlider& slider) {
+  QCoreApplication::processEvents();
+  const int x = slider.width() * slider.value() / std::max(slider.maximum(), 1);
+  return {std::clamp(x, 6, slider.width() - 8), slider.height() / 2};
+}
+
 // Turns the wheel over a widget by one notch, towards the user, as the window system reports it.
 void turn_wheel(QWidget& widget) {
   const QPointF at = widget.rect().center();
@@ -31,6 +37,41 @@ void turn_wheel(QWidget& widget) {
                     Qt::NoScrollPhase, false);
   QSpontaneKeyEvent::setSpontaneous(&event);
   qApp->notify(&widget, &event);
+}
+
+TEST_F(EditorWindow, ASelectionThatIsFoundAgainLeavesADragAlone) {
+  const QSize size = window_->view().size();
+  QTest::mouseClick(&window_->view(), Qt::LeftButton, {},
+                    QPoint(size.width() / 2, size.height() - 5));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window_->view().selection().has_value(); }, kMaxMs));
+  properties().go_to(kSky);
+  auto* azimuth = properties().row(kAzimuth)->findChild<QSlider*>();
+  const QPoint at = handle_of(*azimuth);
+  QTest::mousePress(azimuth, Qt::LeftButton, {}, at);
+  for (int step = 1; step <= 3; ++step) {
+    QSignalSpy found_again(&window_->view(), &WorldView::selected);
+    QTest::mouseMove(azimuth, at + QPoint(8 * step, 0));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !found_again.isEmpty(); }, kMaxMs));
+    EXPECT_EQ(properties().section(), kSky);
+  }
+  QTest::mouseRelease(azimuth, Qt::LeftButton, {}, at + QPoint(24, 0));
+  EXPECT_EQ(document().undo_stack().count(), 1);
+  drag(*properties().row(kExposure)->findChild<QSlider*>(), 20);
+  EXPECT_EQ(document().undo_stack().count(), 2);
+}
+
+TEST_F(EditorWindow, ADragEndsWhenItsRowDisappears) {
+  properties().go_to(kTrees);
+  auto* count = properties().row(kCount)->findChild<QSlider*>();
+  const QPoint at = handle_of(*count);
+  QTest::mousePress(count, Qt::LeftButton, {}, at);
+  QTest::mouseMove(count, at + QPoint(5, 0));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return document().undo_stack().count() == 1; }, kMaxMs / 10));
+  properties().go_to(kSky);
+  EXPECT_TRUE(document().set_value(kExposure, "2"));
+  EXPECT_TRUE(document().set_value(kExposure, "3"));
+  EXPECT_EQ(document().undo_stack().count(), 3);
+  QTest::mouseRelease(window_.get(), Qt::LeftButton);
 }
 
 TEST_F(EditorWindow, TheWheelChangesOnlyAFocusedControl) {
