@@ -40,19 +40,24 @@ std::size_t count_of(FieldKind kind) {
   }
 }
 
-// Linear components as a display colour (sRGB), and back. Components above 1 become 1.
-QColor shown(const std::vector<double>& linear) {
-  const auto part = [&](std::size_t i) {
-    const double v = std::clamp(i < linear.size() ? linear[i] : 0.0, 0.0, 1.0);
-    return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-  };
-  return QColor::fromRgbF(static_cast<float>(part(0)), static_cast<float>(part(1)),
-                          static_cast<float>(part(2)));
+bool has_roots(const world::WorldField& field) {
+  return field.encoding == world::ColourEncoding::kSquareRoot;
 }
 
-double linear_of(double display) {
+// The colour of a field on the display (sRGB), divided by `strength`. Components above 1 become 1.
+QColor shown(const world::WorldField& field, double strength = 1) {
+  const auto part = [&](std::size_t i) {
+    const double stored = i < field.numbers.size() ? field.numbers[i] / strength : 0.0;
+    const double v = std::clamp(has_roots(field) ? stored * stored : stored, 0.0, 1.0);
+    return static_cast<float>(v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+  };
+  return QColor::fromRgbF(part(0), part(1), part(2));
+}
+
+// A component of a field from one of the display.
+double stored(const world::WorldField& field, double display) {
   const double v = display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
-  return std::round(v * 1e4) / 1e4;
+  return std::round((has_roots(field) ? std::sqrt(v) : v) * 1e4) / 1e4;
 }
 
 QToolButton* small_button(const QString& text, const QString& help) {
@@ -205,7 +210,7 @@ void FieldRow::add_colour(QHBoxLayout& layout) {
   setFocusProxy(button);
   connect(button, &QPushButton::clicked, this, &FieldRow::choose_colour);
   refresh_ = [this, button] {
-    const QColor colour = shown(field_.numbers);
+    const QColor colour = shown(field_);
     const QColor ink = colour.lightnessF() > 0.5F ? Qt::black : Qt::white;
     button->setText(to_qstring(field_.value));
     button->setStyleSheet(QString("QPushButton { background: %1; color: %2; border: 1px solid "
@@ -214,22 +219,33 @@ void FieldRow::add_colour(QHBoxLayout& layout) {
   };
 }
 
+// All colours of the dialog are one drag, which Cancel undoes.
 void FieldRow::choose_colour() {
-  QColorDialog dialog(shown(field_.numbers), this);
-  dialog.setWindowTitle(label_->text());
   // Radiance may be brighter than the display: the dialog sets the hue, the strength stays.
   double strength = 1;
   for (const double part : field_.numbers)
     strength = std::max(strength, part);
+  auto* dialog = new QColorDialog(shown(field_, strength), this);
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setWindowTitle(label_->text());
   host_.set_dragging(true);
-  const std::string before = field_.value;
-  connect(&dialog, &QColorDialog::currentColorChanged, this, [&](const QColor& c) {
-    const double parts[] = {linear_of(c.redF()) * strength, linear_of(c.greenF()) * strength,
-                            linear_of(c.blueF()) * strength};
+  connect(dialog, &QColorDialog::currentColorChanged, this, [this, strength](const QColor& c) {
+    const double parts[] = {stored(field_, c.redF()) * strength,
+                            stored(field_, c.greenF()) * strength,
+                            stored(field_, c.blueF()) * strength};
     set_value(world::toml_vector(parts));
   });
-  if (dialog.exec() != QDialog::Accepted) set_value(before);
-  host_.set_dragging(false);
+  connect(dialog, &QDialog::finished, this, [this](int result) {
+    if (result != QDialog::Accepted) host_.messages.check(host_.document.cancel_drag());
+    host_.set_dragging(false);
+  });
+  dialog->open();
+}
+
+// The panel shows other rows now: the drag of the dialog ends.
+void FieldRow::hideEvent(QHideEvent* event) {
+  auto* dialog = findChild<QColorDialog*>();
+  if (dialog != nullptr && !event->spontaneous()) dialog->accept();
 }
 
 void FieldRow::add_seed(QHBoxLayout& layout) {

@@ -58,6 +58,7 @@ class FieldRow final : public QWidget {
 
  protected:
   void enterEvent(QEnterEvent* event) override;
+  void hideEvent(QHideEvent* event) override;
   void contextMenuEvent(QContextMenuEvent* event) override;
 
  private:

@@ -22,6 +22,7 @@ struct FieldValue {
   std::string toml;
   std::vector<double> numbers;
   std::string plain = {};
+  ColourEncoding encoding = ColourEncoding::kLinear;
 };
 FieldValue value_of(double v) {
   if (!std::isfinite(v)) return {FieldKind::kReal, "", {}};  // a limit that is not set
@@ -33,8 +34,9 @@ FieldValue value_of(std::int64_t v) {
 FieldValue value_of(const glm::vec3& v) {
   return {FieldKind::kColour, toml_vector(v), {v.x, v.y, v.z}};
 }
+// A colour of a species.
 FieldValue value_of(const std::array<double, 3>& v) {
-  return {FieldKind::kColour, toml_vector(v), {v[0], v[1], v[2]}};
+  return {FieldKind::kColour, toml_vector(v), {v[0], v[1], v[2]}, {}, ColourEncoding::kSquareRoot};
 }
 FieldValue value_of(bool v) {
   return {FieldKind::kBoolean, v ? "true" : "false", {v ? 1.0 : 0.0}};
@@ -103,6 +105,7 @@ class SchemaBuilder {
     field.path = to.path.with(key);
     field.label = field_label(key, spec.unit);
     field.kind = now.kind;
+    field.encoding = now.encoding;
     field.unit = spec.unit == "1" ? "" : spec.unit;
     field.doc = spec.doc;
     field.hard_min = spec.hard.min, field.hard_max = spec.hard.max;

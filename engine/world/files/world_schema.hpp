@@ -31,13 +31,18 @@ enum class FieldKind : std::uint8_t {
   kToml,  // several parts, shown and written as TOML
 };
 
+// The meaning of a colour's numbers: linear light (albedo or radiance), or square roots of a linear
+// albedo, as vertices store it.
+enum class ColourEncoding : std::uint8_t { kLinear, kSquareRoot };
+
 // One field.
 struct WorldField {
   TextPath path;
   std::string label;  // "Sun elevation", without the unit
   FieldKind kind = FieldKind::kReal;
-  std::string unit;  // "m", "degrees"; empty: none
-  std::string doc;   // one line
+  ColourEncoding encoding = ColourEncoding::kLinear;  // for kColour
+  std::string unit;                                   // "m", "degrees"; empty: none
+  std::string doc;                                    // one line
   // For each of its numbers: the limits beyond which values are rejected, and the range of a
   // slider. The value and the default may be outside the soft range.
   double hard_min = 0, hard_max = 0, soft_min = 0, soft_max = 0;

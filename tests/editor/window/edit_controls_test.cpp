@@ -119,5 +119,68 @@ TEST_F(EditorWindow, TheWheelChangesOnlyAFocusedControl) {
   EXPECT_EQ(document().undo_stack().count(), 1);
 }
 
+class ColourInWindow : public OakInWindow {
+ protected:
+  // Opens the dialog of a colour.
+  QColorDialog* dialog_of(const world::TextPath& colour) {
+    properties().go_to(colour.parent());
+    FieldRow* row = properties().row(colour);
+    row->findChild<QPushButton*>()->click();
+    return row->findChild<QColorDialog*>();
+  }
+};
+
+TEST_F(ColourInWindow, CancelRestoresTheDocument) {
+  const std::string before = document().text();
+  const int steps = document().undo_stack().count();
+  // One that the text sets, and one that it does not.
+  for (const world::TextPath& colour :
+       {world::TextPath{"species", 0, "colours", "bark"}, world::TextPath{"sky", "haze_colour"}}) {
+    QColorDialog* dialog = dialog_of(colour);
+    ASSERT_NE(dialog, nullptr);
+    dialog->setCurrentColor(Qt::red);
+    dialog->setCurrentColor(Qt::blue);
+    EXPECT_NE(document().text(), before);
+    dialog->reject();
+    EXPECT_EQ(document().text(), before);
+    EXPECT_EQ(document().undo_stack().count(), steps);
+  }
+  QColorDialog* dialog = dialog_of({"sky", "haze_colour"});
+  dialog->setCurrentColor(Qt::red);
+  dialog->setCurrentColor(Qt::blue);
+  properties().go_to(kTrees);  // closes it
+  EXPECT_EQ(document().undo_stack().count(), steps + 1);
+  EXPECT_TRUE(document().set_value(kExposure, "2"));
+  EXPECT_TRUE(document().set_value(kExposure, "3"));
+  EXPECT_EQ(document().undo_stack().count(), steps + 3);
+}
+
+// 0.25 of linear albedo is 0.537 on the display.
+TEST_F(ColourInWindow, ASpeciesShowsItsColoursAsTheyRender) {
+  const world::TextPath bark{"species", 0, "colours", "bark"};
+  ASSERT_TRUE(document().set_value(bark, "[0.5, 0.5, 0.5]"));
+  QColorDialog* dialog = dialog_of(bark);
+  ASSERT_NE(dialog, nullptr);
+  EXPECT_EQ(dialog->currentColor().name(), "#898989");
+  EXPECT_TRUE(properties().row(bark)->findChild<QPushButton*>()->styleSheet().contains("#898989"));
+  dialog->setCurrentColor(QColor("#bcbcbc"));
+  dialog->accept();
+  for (const double part : document().field(bark)->numbers)
+    EXPECT_NEAR(part, std::sqrt(0.5029), 0.001);
+}
+
+// The dialog shows the hue of a radiance above 1, and keeps its strength.
+TEST_F(ColourInWindow, ABrightSunKeepsItsStrength) {
+  const world::TextPath sun{"sky", "sun_colour"};
+  ASSERT_TRUE(document().set_value(sun, "[4.0, 1.0, 0.0]"));
+  QColorDialog* dialog = dialog_of(sun);
+  ASSERT_NE(dialog, nullptr);
+  EXPECT_EQ(dialog->currentColor().name(), "#ff8900");
+  dialog->setCurrentColor(QColor("#ff8901"));
+  dialog->accept();
+  EXPECT_NEAR(document().field(sun)->numbers[0], 4, 0.01);
+  EXPECT_NEAR(document().field(sun)->numbers[1], 1, 0.01);
+}
+
 }  // namespace
 }  // namespace psygen::editor

@@ -131,6 +131,15 @@ TEST(WorldSchema, ShowsValuesAsNumbersWithTheirUnits) {
   EXPECT_EQ(find_field(read.sections, {"sky", "seed"}), nullptr);
 }
 
+TEST(WorldSchema, ColoursOfSpeciesAreSquareRoots) {
+  const Read read = schema_of(testing::shipped_text("worlds/five_species.toml"));
+  for (const char* name : {"bark", "spring"})
+    EXPECT_EQ(find_field(read.sections, {"species", 0, "colours", name})->encoding,
+              ColourEncoding::kSquareRoot);
+  for (const TextPath& path : {TextPath{"sky", "haze_colour"}, TextPath{"palette", "rock"}})
+    EXPECT_EQ(find_field(read.sections, path)->encoding, ColourEncoding::kLinear);
+}
+
 TEST(WorldSchema, AModelTypeOfTheProgramAppearsWithoutFurtherCode) {
   const std::string donor = testing::shipped_text("worlds/five_species.toml");
   Read read = schema_of(donor);
