@@ -35,8 +35,10 @@ count = 20
 
 constexpr int kDiskDelayMs = 100;  // after the last change of the file
 
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  return !a.empty() && !b.empty() && file_key(a) == file_key(b);
+core::Result<void> ships_with_psygen(const std::filesystem::path& file) {
+  return core::fail(
+      core::ErrorCode::kInvalidArgument,
+      fmt::format("{}: this world comes with psygen; save it as another file", file.string()));
 }
 
 }  // namespace
@@ -79,6 +81,16 @@ core::Result<ParsedWorldPtr> Document::parse(const std::string& text) const {
                           handmade::files_with(name(), pictures_).get());
 }
 
+bool Document::is_shipped(const std::filesystem::path& file) const {
+  for (const std::filesystem::path& folder : options_.shipped_folders) {
+    std::error_code error, differ;
+    for (std::filesystem::recursive_directory_iterator it(folder, error), end; !error && it != end;
+         it.increment(error))
+      if (std::filesystem::equivalent(*it, file, differ)) return true;
+  }
+  return false;
+}
+
 core::Result<std::unique_ptr<RecoverySession>> Document::session_of(
     const std::filesystem::path& file, bool share) {
   if (session_ && same_file(file, file_)) return std::move(session_);
@@ -90,7 +102,7 @@ core::Result<void> Document::open(const std::filesystem::path& file, bool share)
   if (!text) return tl::unexpected(std::move(text.error()));
   auto parsed = parse_world_text(*text, file.string(), options_.register_models);
   if (!parsed) return tl::unexpected(std::move(parsed.error()));
-  auto session = session_of(file, share);
+  auto session = session_of(file, share || is_shipped(file));
   if (!session) return tl::unexpected(std::move(session.error()));
   set_document_text(file, *std::move(text), *std::move(parsed), *std::move(session));
   return {};
@@ -116,6 +128,7 @@ void Document::set_document_text(const std::filesystem::path& file, std::string 
   session_ = std::move(session);
   session_->clear();
   file_ = file;
+  is_template_ = is_shipped(file);
   locks_ = kept_locks_ =
       file_.empty() ? FieldLocks() : FieldLocks::load(options_.state_folder, file_);
   drag_ = 0;
@@ -171,6 +184,7 @@ core::Result<void> Document::require_known_disk() const {
 core::Result<void> Document::save() {
   if (file_.empty())
     return core::fail(core::ErrorCode::kInvalidArgument, "this world has no file yet");
+  if (is_template_) return ships_with_psygen(file_);
   if (auto known = require_known_disk(); !known) return known;
   if (auto known = require_known_pictures(file_); !known) return known;
   if (auto written = write_all(file_); !written) return written;
@@ -191,6 +205,7 @@ core::Result<std::vector<std::string>> Document::save_as(const std::filesystem::
                                                          bool share) {
   std::vector<std::string> copied;
   if (file.empty()) return core::fail(core::ErrorCode::kInvalidArgument, "the file has no name");
+  if (is_shipped(file)) return tl::unexpected(ships_with_psygen(file).error());
   if (auto known = require_known_pictures(file); !known)
     return tl::unexpected(std::move(known.error()));
   if (same_file(file, file_)) {
@@ -210,6 +225,7 @@ core::Result<std::vector<std::string>> Document::save_as(const std::filesystem::
     copied = *std::move(taken);
     session_ = *std::move(session);
     file_ = file;
+    is_template_ = false;
     Q_EMIT file_changed();
   }
   note_saved(*text_);
@@ -228,7 +244,7 @@ core::Result<void> Document::revert() {
 }
 
 bool Document::is_read_only() const {
-  if (file_.empty()) return false;
+  if (file_.empty() || is_template_) return false;
   const std::filesystem::path folder = file_.parent_path();
   return access(file_.c_str(), W_OK) != 0 ||
          access(folder.empty() ? "." : folder.c_str(), W_OK) != 0;
@@ -332,13 +348,15 @@ void Document::save_locks() const {
 }
 
 core::Result<void> Document::recover(const Recovery& recovery) {
+  // The name by which the document has the file: its resources lie beside it.
+  const std::filesystem::path file =
+      same_file(recovery.world_file, file_) ? file_ : recovery.world_file;
   const auto pictures = std::make_shared<const handmade::InMemoryImages>(
       handmade::InMemoryImages{recovery.pictures, recovery.pictures});
-  const auto parsed =
-      parse_world_text(recovery.text, recovery.world_file.string(), options_.register_models,
-                       handmade::files_with(recovery.world_file, pictures).get());
+  const auto parsed = parse_world_text(recovery.text, file.string(), options_.register_models,
+                                       handmade::files_with(file, pictures).get());
   if (!parsed) return tl::unexpected(parsed.error());
-  if (recovery.world_file.empty() || !open(recovery.world_file)) {
+  if (file.empty() || !open(file)) {
     if (auto made = make_new(recovery.text, pictures); !made) return made;
     saved_ = recovery.world_file.empty() ? recovery.saved_text : "";
     note_modified();

@@ -85,6 +85,19 @@ std::vector<DiffLine> line_diff(std::string_view before, std::string_view after)
   return out;
 }
 
+std::size_t changed_lines(std::string_view before, std::string_view after) {
+  std::size_t total = 0, removed = 0, added = 0;
+  for (const DiffLine& line : line_diff(before, after)) {
+    if (line.kind == DiffLine::Kind::kSame) {
+      total += std::max(removed, added);
+      removed = added = 0;
+    }
+    removed += line.kind == DiffLine::Kind::kRemoved;
+    added += line.kind == DiffLine::Kind::kAdded;
+  }
+  return total + std::max(removed, added);
+}
+
 std::string unified_diff(std::string_view before, std::string_view after,
                          std::string_view before_name, std::string_view after_name,
                          std::size_t context) {

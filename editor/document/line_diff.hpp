@@ -23,6 +23,9 @@ struct DiffLine {
 // All lines of both texts, in order; removed ones before added ones.
 std::vector<DiffLine> line_diff(std::string_view before, std::string_view after);
 
+// The number of changed lines; a line replaced by another one counts once.
+std::size_t changed_lines(std::string_view before, std::string_view after);
+
 // "--- BEFORE", "+++ AFTER" and the hunks, each with `context` lines around it. Empty if the texts
 // are equal. A missing line break at the end is not shown.
 std::string unified_diff(std::string_view before, std::string_view after,

@@ -25,6 +25,16 @@ constexpr std::uint64_t kMaxBytes = std::uint64_t{16} << 20;
 constexpr const char* kEnding = ".recovery";
 constexpr const char* kPictureEnding = ".png";
 
+// The path of a file without links; it need not exist. Empty for an empty path.
+std::filesystem::path without_links(const std::filesystem::path& file) {
+  if (file.empty()) return {};
+  std::error_code error;
+  const auto whole = std::filesystem::absolute(file, error);
+  if (error) return file;
+  const auto found = std::filesystem::weakly_canonical(whole, error);
+  return error ? whole : found;
+}
+
 // The image files of a recovery file: ID.HASH.png.
 std::filesystem::path picture_file(const std::filesystem::path& recovery_file,
                                    const world::GreyPicture& picture) {
@@ -91,6 +101,8 @@ std::optional<Recovery> read_recovery(const std::filesystem::path& file) {
   if (read["format"].toInt() != kRecoveryFormat) return {};
   Recovery recovery;
   recovery.world_file = read["world_file"].toString().toStdString();
+  // Relative to an unknown folder, in files of earlier editors.
+  if (recovery.world_file.is_relative()) recovery.world_file.clear();
   recovery.text = read["text"].toString().toStdString();
   recovery.saved_text = read["saved_text"].toString().toStdString();
   recovery.undo_index = read["undo_index"].toInt();
@@ -109,13 +121,13 @@ std::filesystem::path default_state_folder() {
 }
 
 QString file_key(const std::filesystem::path& world_file) {
-  std::error_code error;
-  const auto whole = std::filesystem::weakly_canonical(world_file, error);
-  const std::string name = (error ? std::filesystem::absolute(world_file, error) : whole).string();
+  const QByteArray name = QByteArray::fromStdString(without_links(world_file).string());
   return QString::fromLatin1(
-      QCryptographicHash::hash(QByteArray::fromStdString(name), QCryptographicHash::Sha1)
-          .toHex()
-          .left(20));
+      QCryptographicHash::hash(name, QCryptographicHash::Sha1).toHex().left(20));
+}
+
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  return !a.empty() && !b.empty() && without_links(a) == without_links(b);
 }
 
 core::Result<std::unique_ptr<RecoverySession>> RecoverySession::start(
@@ -149,7 +161,7 @@ core::Result<void> RecoverySession::write(const Recovery& recovery) const {
     if (auto written = write_picture_file(file, *picture); !written) return written;
   }
   const QJsonObject object{{"format", kRecoveryFormat},
-                           {"world_file", to_qstring(recovery.world_file.string())},
+                           {"world_file", to_qstring(without_links(recovery.world_file).string())},
                            {"text", to_qstring(recovery.text)},
                            {"saved_text", to_qstring(recovery.saved_text)},
                            {"undo_index", recovery.undo_index},

@@ -18,7 +18,7 @@ namespace psygen::editor {
 
 // An unsaved text.
 struct Recovery {
-  std::filesystem::path world_file;       // empty: the world was never saved
+  std::filesystem::path world_file;       // canonical; empty: the world was never saved
   std::string text;                       // with the unsaved changes
   std::string saved_text;                 // contents of the world file
   int undo_index = 0;                     // number of undo steps
@@ -33,6 +33,8 @@ std::filesystem::path default_state_folder();
 // The key of a world file in file names of the state folder. All paths of one file have the same
 // key.
 QString file_key(const std::filesystem::path& world_file);
+// True if both paths name one file; false if one is empty.
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
 // The recovery file and the locks of one open document.
 class RecoverySession {

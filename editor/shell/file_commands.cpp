@@ -12,6 +12,7 @@
 #include <QSettings>
 #include <QVBoxLayout>
 
+#include "editor/document/line_diff.hpp"
 #include "editor/document/qt_text.hpp"
 #include "editor/document/recent_files.hpp"
 
@@ -34,7 +35,7 @@ FileCommands::FileCommands(const EditorContext& context)
 
 void FileCommands::add_to_menu(QMenu& menu) {
   menu.addAction(tr("&New world"), QKeySequence(QKeySequence::New), this, [this] {
-    if (may_discard()) context_.messages.check(context_.document.make_new());
+    if (may_discard() && context_.messages.check(context_.document.make_new())) offer_recovery();
   });
   menu.addAction(tr("&Open …"), QKeySequence::Open, this, &FileCommands::choose_file);
   menu.addMenu(recent_menu_);
@@ -159,20 +160,38 @@ void FileCommands::on_disk_changed(DiskState state, bool conflict) {
   }
 }
 
+// A file gets its own recoveries. A new world gets those of worlds without a file, and of files
+// that are gone: these become the document only by a choice that is not the default.
 void FileCommands::offer_recovery() {
+  const std::filesystem::path& file = context_.document.file();
   for (const Recovery& recovery : context_.document.recoveries()) {
-    if (recovery.world_file != context_.document.file() && !recovery.world_file.empty()) continue;
-    const QString name = recovery.world_file.empty()
-                             ? tr("an unnamed world")
-                             : to_qstring(recovery.world_file.filename().string());
-    QMessageBox box(QMessageBox::Question, tr("Recover unsaved changes?"),
-                    tr("psygen closed unexpectedly. Recover your changes to %1, last saved "
-                       "automatically on %2?")
-                        .arg(name, kEnglish.toString(recovery.time)),
-                    QMessageBox::NoButton, &context_.window);
-    QAbstractButton* recover = box.addButton(tr("Recover"), QMessageBox::AcceptRole);
-    QAbstractButton* discard = box.addButton(tr("Discard"), QMessageBox::DestructiveRole);
-    box.addButton(tr("Ask again later"), QMessageBox::RejectRole);
+    std::error_code error;
+    const bool has_file = std::filesystem::exists(recovery.world_file, error);
+    if (file.empty() ? has_file : !same_file(recovery.world_file, file)) {
+      if (recovery.world_file.empty())
+        context_.messages.show_message(
+            tr("Unsaved changes to a new world are kept. \"New world\" offers them."));
+      continue;
+    }
+    const bool is_current = context_.document.text() == recovery.saved_text;
+    QMessageBox box(
+        QMessageBox::Question, tr("Recover unsaved changes?"),
+        tr("psygen closed unexpectedly. Recover your changes to %1?")
+            .arg(recovery.world_file.empty() ? tr("a new world")
+                                             : to_qstring(recovery.world_file.string())),
+        QMessageBox::NoButton, &context_.window);
+    QString about = tr("Last saved automatically on %1. Changed lines: %2. Painted masks: %3.")
+                        .arg(kEnglish.toString(recovery.time.toLocalTime()))
+                        .arg(changed_lines(recovery.saved_text, recovery.text))
+                        .arg(recovery.pictures.size());
+    if (has_file && !is_current) about += " " + tr("The file has changed since then.");
+    if (!has_file) about += " " + tr("They replace the new world in this window.");
+    box.setInformativeText(about);
+    QPushButton* recover = box.addButton(tr("Recover"), QMessageBox::AcceptRole);
+    QPushButton* discard = box.addButton(tr("Discard"), QMessageBox::DestructiveRole);
+    QPushButton* later = box.addButton(tr("Ask again later"), QMessageBox::RejectRole);
+    box.setDefaultButton(has_file && is_current ? recover : later);
+    box.setEscapeButton(later);
     box.exec();
     if (box.clickedButton() == recover) {
       context_.messages.check(context_.document.recover(recovery));

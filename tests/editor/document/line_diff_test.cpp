@@ -39,6 +39,13 @@ TEST(LineDiff, TransformsOneTextIntoTheOther) {
   }
 }
 
+TEST(LineDiff, CountsAReplacedLineOnce) {
+  EXPECT_EQ(changed_lines("a\nb\nc\n", "a\nb\nc\n"), 0U);
+  EXPECT_EQ(changed_lines("a\nb\nc\n", "a\nx\nc\n"), 1U);
+  EXPECT_EQ(changed_lines("a\nb\nc\n", "b\nc\nd\n"), 2U);
+  EXPECT_EQ(changed_lines("", "a\nb\n"), 2U);
+}
+
 TEST(LineDiff, LargeTextsAreShownAsOneBlock) {
   std::string before = "same\n", after = before;
   for (int i = 0; i < 5000; ++i) {

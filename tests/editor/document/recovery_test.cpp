@@ -54,6 +54,44 @@ TEST(Recovery, UnsavedChangesOfAKilledEditorReturnAsAStep) {
   EXPECT_EQ(document.text(), kWorld);
 }
 
+// A relative path, an absolute one and a link name one file; a file of the same name does not.
+TEST(Recovery, KnowsItsFileByAnyPath) {
+  const Place place;
+  const std::filesystem::path other = place.folder / "other";
+  std::filesystem::create_directory(other);
+  testing::write(other / "world.toml", kWorld);
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(place.folder.path());
+  killed_after(place, [](Document& document) {
+    return document.open("world.toml") && document.set_value({"world", "seed"}, "6") &&
+           document.write_recovery();
+  });
+  std::filesystem::current_path(other);
+  Document document(place.options());
+  const auto left = document.recoveries();
+  ASSERT_EQ(left.size(), 1U);
+  EXPECT_TRUE(left[0].world_file.is_absolute());
+  EXPECT_TRUE(same_file(left[0].world_file, place.file));
+  EXPECT_FALSE(same_file(left[0].world_file, "world.toml"));
+  EXPECT_FALSE(same_file(left[0].world_file, {}));
+  std::filesystem::create_symlink(place.file, other / "link.toml");
+  EXPECT_TRUE(good(document.open("link.toml")));
+  EXPECT_TRUE(same_file(left[0].world_file, document.file()));
+  EXPECT_TRUE(good(document.recover(left[0])));
+  EXPECT_EQ(document.file(), "link.toml");
+  EXPECT_EQ(document.undo_stack().count(), 1);
+  std::filesystem::current_path(before);
+}
+
+TEST(Recovery, OfAnEarlierEditorWithARelativePathHasNoFile) {
+  const Place place;
+  Document document(place.options());
+  testing::write(place.state / "a.recovery",
+                 R"({"format": 1, "world_file": "world.toml", "text": "format = 1"})");
+  ASSERT_EQ(document.recoveries().size(), 1U);
+  EXPECT_TRUE(document.recoveries()[0].world_file.empty());
+}
+
 TEST(Recovery, AWorldWithoutAFileReturnsToo) {
   const Place place;
   std::string text;

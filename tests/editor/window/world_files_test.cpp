@@ -15,6 +15,104 @@
 namespace psygen::editor {
 namespace {
 
+// Answers modal dialogs while it exists.
+template <class Dialog>
+class Answers {
+ public:
+  explicit Answers(std::function<void(Dialog&)> answer) : answer_(std::move(answer)) {
+    QObject::connect(&timer_, &QTimer::timeout, &timer_, [this] {
+      auto* dialog = qobject_cast<Dialog*>(QApplication::activeModalWidget());
+      if (dialog == nullptr || dialog == last_) return;
+      last_ = dialog;
+      ++count_;
+      answer_(*dialog);
+    });
+    timer_.start(10);
+  }
+  int count() const { return count_; }
+
+ private:
+  std::function<void(Dialog&)> answer_;
+  QTimer timer_;
+  Dialog* last_ = nullptr;
+  int count_ = 0;
+};
+
+class RecoveryInWindow : public EditorWindow {
+ protected:
+  // Leaves the recovery that an editor leaves when it is killed.
+  void leave(const std::string& id, const std::filesystem::path& world_file) {
+    const auto state = folder_.path() / "state";
+    const auto session = RecoverySession::start(state, {}).value();
+    std::string text = kSmallWorld;
+    text.replace(text.find("seed = 5"), 8, "seed = 6");
+    ASSERT_TRUE(session->write({.world_file = world_file,
+                                .text = text,
+                                .saved_text = kSmallWorld,
+                                .time = {},
+                                .file = {}}));
+    std::filesystem::copy_file(session->file(), state / (id + ".recovery"));
+  }
+};
+
+TEST_F(RecoveryInWindow, AWorldGetsOnlyItsOwnChanges) {
+  const auto other = folder_.path() / "other" / "small.toml";
+  std::filesystem::create_directory(other.parent_path());
+  std::filesystem::copy_file(file_, other);
+  leave("a", other);
+  leave("b", {});
+  QString text, about, usual;
+  const Answers<QMessageBox> answers([&](QMessageBox& box) {
+    text = box.text();
+    about = box.informativeText();
+    usual = box.defaultButton()->text();
+    box.defaultButton()->click();
+  });
+  ASSERT_TRUE(window_->open_file(file_));
+  EXPECT_EQ(answers.count(), 0);
+  leave("c", folder_.path() / "other" / ".." / "small.toml");
+  ASSERT_TRUE(window_->open_file(file_));
+  EXPECT_EQ(answers.count(), 1);
+  EXPECT_TRUE(text.contains(to_qstring(file_.string()))) << text.toStdString();
+  EXPECT_TRUE(about.contains("Changed lines: 1.")) << about.toStdString();
+  EXPECT_EQ(usual, "Recover");
+  EXPECT_EQ(document().file(), file_);
+  EXPECT_EQ(document().undo_stack().count(), 1);
+  EXPECT_EQ(document().world().seed, 6U);
+  document().undo_stack().undo();
+}
+
+TEST_F(RecoveryInWindow, ANewWorldIsNotReplacedByDefault) {
+  leave("a", file_);
+  leave("b", {});
+  QString text;
+  const Answers<QMessageBox> answers([&](QMessageBox& box) {
+    text = box.text();
+    EXPECT_EQ(box.defaultButton()->text(), "Ask again later");
+    box.defaultButton()->click();
+  });
+  command("New world");
+  EXPECT_EQ(answers.count(), 1);
+  EXPECT_TRUE(text.contains("a new world")) << text.toStdString();
+  EXPECT_TRUE(document().file().empty());
+  EXPECT_FALSE(document().is_modified());
+  EXPECT_EQ(document().recoveries().size(), 2U);
+}
+
+// A file that has changed since then is not replaced by default either.
+TEST_F(RecoveryInWindow, AChangedFileIsNotReplacedByDefault) {
+  leave("a", file_);
+  std::ofstream(file_) << kSmallWorld << "# more\n";
+  const Answers<QMessageBox> answers([&](QMessageBox& box) {
+    EXPECT_TRUE(box.informativeText().contains("The file has changed since then."));
+    EXPECT_EQ(box.defaultButton()->text(), "Ask again later");
+    box.defaultButton()->click();
+  });
+  ASSERT_TRUE(window_->open_file(file_));
+  EXPECT_EQ(answers.count(), 1);
+  EXPECT_EQ(document().world().seed, 5U);
+}
+
 // Runs the editor without the variables of a display, but with these.
 struct Ended {
   int code = -1;
