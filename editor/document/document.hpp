@@ -24,6 +24,7 @@
 #include "editor/document/parsed_world.hpp"
 #include "editor/document/recovery.hpp"
 #include "editor/document/variation.hpp"
+#include "engine/core/data_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/world/files/world_schema.hpp"
@@ -34,6 +35,8 @@ struct DocumentOptions {
   RegisterModels register_models = {};      // the model types of a program
   std::filesystem::path state_folder = {};  // empty: default_state_folder()
   int autosave_ms = 3000;                   // after a change
+  // Worlds in these folders or below come with psygen: they are templates.
+  std::vector<std::filesystem::path> shipped_folders = core::installed_folders("worlds");
 };
 
 // Called before an edit takes effect. Returns the question for the user's confirmation, or an empty
@@ -65,25 +68,29 @@ class Document : public QObject {
   // --- The file. A function that fails leaves the document unchanged. Messages name the file.
 
   // Opens a world file and clears the undo steps. Fails like world::load_world(), and with
-  // kInvalidArgument if another editor has it open, unless `share`.
+  // kInvalidArgument if another editor has it open, unless `share`. A world that comes with psygen
+  // opens as a template.
   core::Result<void> open(const std::filesystem::path& file, bool share = false);
   // Replaces the document by a new world without a file: the text with its images, or a small one.
   core::Result<void> make_new(std::string text = {}, handmade::MemoryPicturesPtr pictures = {});
   // Writes the file atomically: after a crash or on a full disk it is the old or the new one. Fails
-  // with kIo, and with kInvalidArgument if the document has no file or if another program changed
-  // it since the last read (reload(), or keep_editor_version() and save again).
+  // with kIo, and with kInvalidArgument if the document has no file, is a template, or if another
+  // program changed it since the last read (reload(), or keep_editor_version() and save again).
   core::Result<void> save();
   // Writes another file, replaces an existing one, and makes it the document's file. Into another
   // folder it first copies the files that the world references (handmade::files_named_by) and
   // returns their names. Fails like save() and files_named_by(), and with kInvalidArgument if other
-  // files of these names exist (save again to replace them). After a failure no new files are left.
+  // files of these names exist (save again to replace them), or if the file comes with psygen.
+  // After a failure no new files are left.
   core::Result<std::vector<std::string>> save_as(const std::filesystem::path& file,
                                                  bool share = false);
   // Restores the text of the last read or save, as an undo step.
   core::Result<void> revert();
   // The file; empty: none.
   const std::filesystem::path& file() const { return file_; }
-  // True if the file or its folder is not writable.
+  // True if the file comes with psygen, links resolved: it is never written.
+  bool is_template() const { return is_template_; }
+  // True if the file or its folder is not writable, except for a template.
   bool is_read_only() const;
   // True if the text differs from the last read or save, or a painted image is unsaved.
   bool is_modified() const { return *text_ != saved_ || !unsaved_pictures().empty(); }
@@ -205,6 +212,7 @@ class Document : public QObject {
   void autosave_failed(const QString& message);
 
  private:
+  bool is_shipped(const std::filesystem::path& file) const;
   // Locks a file; returns the present session if it is the same file.
   core::Result<std::unique_ptr<RecoverySession>> session_of(const std::filesystem::path& file,
                                                             bool share);
@@ -262,6 +270,7 @@ class Document : public QObject {
   std::map<std::string, std::uint64_t> disk_pictures_;
   // State of the files that saving has refused to replace, by path.
   std::map<std::string, std::uint64_t> refused_files_;
+  bool is_template_ = false;
   bool was_modified_ = false;
   bool autosave_has_failed_ = false;
   int drag_ = 0, last_drag_ = 0;

@@ -10,6 +10,7 @@
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QSettings>
+#include <QStandardPaths>
 #include <QVBoxLayout>
 
 #include "editor/document/line_diff.hpp"
@@ -55,6 +56,10 @@ core::Result<void> FileCommands::open(const std::filesystem::path& file) {
 
 void FileCommands::on_file_changed() {
   if (context_.document.file().empty()) return;
+  if (context_.document.is_template())
+    context_.messages.show_message(
+        tr("%1 comes with psygen and stays as it is. The first save asks for a file of your own.")
+            .arg(to_qstring(context_.document.file().filename().string())));
   if (context_.document.is_read_only())
     context_.messages.show_message(
         tr("%1 or its folder is read-only. Save your changes in another folder.")
@@ -84,7 +89,7 @@ void FileCommands::choose_file() {
 }
 
 bool FileCommands::save() {
-  if (context_.document.file().empty()) return save_as();
+  if (context_.document.file().empty() || context_.document.is_template()) return save_as();
   const bool saved = context_.messages.check(context_.document.save());
   if (saved)
     context_.messages.show_message(
@@ -93,9 +98,12 @@ bool FileCommands::save() {
 }
 
 bool FileCommands::save_as() {
+  QString suggested = to_qstring(context_.document.file().string());
+  if (context_.document.is_template())
+    suggested = QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation) + "/" +
+                to_qstring(context_.document.file().filename().string());
   const QString file =
-      QFileDialog::getSaveFileName(&context_.window, tr("Save the world as"),
-                                   to_qstring(context_.document.file().string()), kFilter);
+      QFileDialog::getSaveFileName(&context_.window, tr("Save the world as"), suggested, kFilter);
   if (file.isEmpty()) return false;
   const auto copied = context_.document.save_as(file.toStdString());
   if (!copied) return context_.messages.check(tl::unexpected(copied.error()));

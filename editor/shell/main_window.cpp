@@ -280,7 +280,9 @@ void MainWindow::use_first_pose() {
 void MainWindow::update_title() {
   const QString name =
       document_.file().empty() ? tr("new world") : to_qstring(document_.file().filename().string());
-  const QString shown = document_.is_read_only() ? tr("%1 (read-only)").arg(name) : name;
+  const QString shown = document_.is_template()    ? tr("%1 (template)").arg(name)
+                        : document_.is_read_only() ? tr("%1 (read-only)").arg(name)
+                                                   : name;
   setWindowTitle(tr("%1[*] – psygen editor").arg(shown));
   setWindowModified(document_.is_modified());
 }

@@ -30,12 +30,7 @@ void add_variable(std::vector<fs::path>& folders) {
   }
 }
 
-}  // namespace
-
-std::vector<fs::path> data_folders(const fs::path& given, const fs::path& built_with) {
-  std::vector<fs::path> folders;
-  add(folders, given);
-  add_variable(folders);
+void add_installed(std::vector<fs::path>& folders, const fs::path& built_with) {
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
@@ -43,6 +38,23 @@ std::vector<fs::path> data_folders(const fs::path& given, const fs::path& built_
     add(folders, executable.parent_path() / PSYGEN_DATA_FROM_EXECUTABLE);
   }
   add(folders, built_with);
+}
+
+}  // namespace
+
+std::vector<fs::path> data_folders(const fs::path& given, const fs::path& built_with) {
+  std::vector<fs::path> folders;
+  add(folders, given);
+  add_variable(folders);
+  add_installed(folders, built_with);
+  return folders;
+}
+
+std::vector<fs::path> installed_folders(const fs::path& name, const fs::path& built_with) {
+  std::vector<fs::path> folders;
+  add_installed(folders, built_with);
+  for (fs::path& folder : folders)
+    folder /= name;
   return folders;
 }
 

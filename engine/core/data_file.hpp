@@ -30,6 +30,11 @@ std::vector<std::filesystem::path> data_folders(
     const std::filesystem::path& given = {},
     const std::filesystem::path& built_with = PSYGEN_DATA_FOLDER);
 
+// The folders `name` ("worlds") in the folders 3 to 5, of an installation or a build.
+std::vector<std::filesystem::path> installed_folders(
+    const std::filesystem::path& name,
+    const std::filesystem::path& built_with = PSYGEN_DATA_FOLDER);
+
 // Returns the file `name` ("worlds/paper.toml") in the first folder that has it. Fails with
 // kInvalidArgument if `name` is empty, absolute or has a "..". Fails with kIo and a message that
 // lists all folders if no folder has a file of this name.

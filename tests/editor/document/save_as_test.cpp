@@ -174,5 +174,34 @@ TEST(SaveAs, PaintedPicturesAreUnsavedUntilTheTextIsWritten) {
   EXPECT_EQ(image::read_grey(bench.from / "balls.png")->grey[0], 4000);
 }
 
+TEST(SaveAs, AWorldThatComesWithPsygenIsATemplate) {
+  const Place place;
+  const std::filesystem::path shipped = place.folder / "shipped/worlds/small.toml";
+  std::filesystem::create_directories(shipped.parent_path());
+  testing::write(shipped, kWorld);
+  std::filesystem::create_directory_symlink(place.folder / "shipped", place.folder / "built");
+  std::filesystem::create_symlink(shipped, place.folder / "link.toml");
+  DocumentOptions options = place.options();
+  options.shipped_folders = {place.folder / "none", place.folder / "built/worlds"};
+  for (const auto& name : {shipped, place.folder / "link.toml"}) {
+    Document document(options), second(options);
+    EXPECT_TRUE(good(document.open(name)));
+    EXPECT_TRUE(document.is_template());
+    EXPECT_TRUE(good(second.open(shipped))) << "nobody writes it";
+    EXPECT_TRUE(good(document.set_value({"world", "seed"}, "6")));
+    EXPECT_FALSE(document.save());
+    EXPECT_FALSE(document.save_as(name));
+    EXPECT_FALSE(document.save_as(shipped));
+    EXPECT_TRUE(document.is_template() && document.is_modified());
+    EXPECT_TRUE(good(document.save_as(place.folder / "mine.toml")));
+    EXPECT_FALSE(document.is_template());
+    EXPECT_TRUE(good(document.set_value({"world", "seed"}, "7")));
+    EXPECT_TRUE(good(document.save()));
+    EXPECT_EQ(testing::read(shipped), kWorld);
+    EXPECT_TRUE(good(document.open(place.file)));
+    EXPECT_FALSE(document.is_template());
+  }
+}
+
 }  // namespace
 }  // namespace psygen::editor

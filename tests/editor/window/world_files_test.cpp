@@ -113,6 +113,47 @@ TEST_F(RecoveryInWindow, AChangedFileIsNotReplacedByDefault) {
   EXPECT_EQ(document().world().seed, 5U);
 }
 
+class TemplateInWindow : public EditorWindow {
+ protected:
+  void adjust(MainWindowOptions& options) override {
+    const auto shipped = folder_.path() / "shipped";
+    std::filesystem::create_directory(shipped);
+    std::filesystem::create_symlink(file_, shipped / "small.toml");
+    options.document.shipped_folders = {shipped};
+  }
+};
+
+TEST_F(TemplateInWindow, TheFirstSaveAsksForAFile) {
+  EXPECT_TRUE(window_->windowTitle().contains("small.toml (template)"));
+  ASSERT_TRUE(document().set_value({"world", "seed"}, "6"));
+  const std::filesystem::path mine = folder_.path() / "mine.toml";
+  QString suggested;
+  {
+    const Answers<QFileDialog> answers([&](QFileDialog& dialog) {
+      suggested = dialog.selectedFiles().value(0);
+      dialog.reject();
+    });
+    QTest::keyClick(window_.get(), Qt::Key_S, Qt::ControlModifier);
+    EXPECT_EQ(answers.count(), 1);
+  }
+  EXPECT_FALSE(suggested.startsWith(to_qstring(folder_.path().string())));
+  EXPECT_TRUE(suggested.endsWith("/small.toml")) << suggested.toStdString();
+  EXPECT_TRUE(document().is_modified());
+  {
+    const Answers<QFileDialog> answers([&](QFileDialog& dialog) {
+      dialog.selectFile(to_qstring(mine.string()));
+      QMetaObject::invokeMethod(&dialog, "accept");
+    });
+    QTest::keyClick(window_.get(), Qt::Key_S, Qt::ControlModifier);
+  }
+  EXPECT_EQ(document().file(), mine);
+  EXPECT_FALSE(document().is_modified());
+  EXPECT_TRUE(window_->windowTitle().startsWith("mine.toml"))
+      << window_->windowTitle().toStdString();
+  std::ifstream in(file_);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), kSmallWorld);
+}
+
 // Runs the editor without the variables of a display, but with these.
 struct Ended {
   int code = -1;

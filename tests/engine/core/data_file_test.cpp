@@ -56,6 +56,15 @@ TEST(DataFile, SearchesTheGivenFolderTheVariablesTheExecutablesAndThePackages) {
                   (own_folder() / PSYGEN_DATA_FROM_EXECUTABLE).lexically_normal(), "/package"));
 }
 
+TEST(DataFile, FoldersOfTheVariableAreNotInstalled) {
+  const Variable variable("PSYGEN_DATA", "/first");
+  EXPECT_THAT(
+      installed_folders("worlds", "/package"),
+      ElementsAre(own_folder() / "worlds",
+                  (own_folder() / PSYGEN_DATA_FROM_EXECUTABLE).lexically_normal() / "worlds",
+                  "/package/worlds"));
+}
+
 TEST(DataFile, SkipsEmptyAndRepeatedFolders) {
   const Variable variable("PSYGEN_DATA", "::/given::/given");
   EXPECT_THAT(data_folders("/given", ""),
