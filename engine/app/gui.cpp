@@ -177,11 +177,10 @@ __attribute__((format(printf, 2, 3))) void note_missing(void* first, const char*
   if (missing.starts_with(kBefore)) missing.erase(0, kBefore.size());
 }
 
-// Closes all that is open in the frame, except its own fallback window. Returns the first missing
-// call; empty: none.
-std::string close_all() {
+// Closes all that is open in the frame, except its own fallback window. Sets `missing`, which the
+// caller of survives() owns, to the first missing call; empty: none.
+void close_all(std::string& missing) {
   ImGuiContext& g = *ImGui::GetCurrentContext();
-  std::string missing;
   while (g.WithinFrameScope && g.CurrentWindowStack.Size > 0) {
     const char* const name = g.CurrentWindow->Name;
     ImGui::ErrorCheckEndWindowRecover(note_missing, &missing);
@@ -194,13 +193,13 @@ std::string close_all() {
     note_missing(&missing, "missing %s() for '%s'", child ? "EndChild" : "End", name);
     child ? ImGui::EndChild() : ImGui::End();
   }
-  return missing;
 }
 
 // Ends a frame that failed.
 void abandon_frame() {
-  survives([] {
-    close_all();
+  std::string missing;
+  survives([&missing] {
+    close_all(missing);
     ImGui::EndFrame();
   });
   ImGui::GetIO().Fonts->Locked = false;
@@ -220,7 +219,7 @@ core::Result<void> Gui::draw(const std::function<void()>& code) {
     throw;
   }
   ImGui::SetCurrentContext(context_);
-  whole = whole && survives([&missing] { missing = close_all(); });
+  whole = whole && survives([&missing] { close_all(missing); });
   if (whole && missing.empty()) return {};
   abandon_frame();
   return core::fail(core::ErrorCode::kInternal,
