@@ -35,7 +35,7 @@ void expect_each_once(const SystemInfo& system) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (all[i].type != all[k].type || all[i].is_component) continue;
-      if (all[i].is_reader || all[k].is_reader) continue;
+      if (all[i].is_reader != all[k].is_reader) continue;
       throw detail::Refusal{"the system '" + system.name + "' takes " + all[i].name + " twice, " +
                             source(all[k]) + " and " + source(all[i])};
     }
