@@ -17,6 +17,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
+#include "engine/core/replace_file.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/platform/window.hpp"
@@ -80,7 +81,7 @@ core::Result<void> Flight::open() {
     if (!folder) return tl::unexpected(folder.error());
     out_.emplace(std::move(*folder));
     for (const char* name : kFiles) {
-      if (auto ok = telemetry::check_output_file(options_.out_folder / name); !ok) return ok;
+      if (auto ok = core::check_replaceable(options_.out_folder / name); !ok) return ok;
     }
   }
   if (!options_.path_file.empty()) {

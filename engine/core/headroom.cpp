@@ -31,7 +31,6 @@ bool can_map(std::uint64_t bytes, int protection) {
   return true;
 }
 
-// Of the default size.
 std::mutex& stacks_mutex() {
   static std::mutex mutex;
   return mutex;

@@ -45,10 +45,26 @@ std::filesystem::path without_links(std::filesystem::path path) {
   return path;
 }
 
-// Returns false, with errno, if there is no such file.
-bool look_at(const std::filesystem::path& path, struct statx& status) {
-  return statx(AT_FDCWD, path.c_str(), 0, STATX_TYPE | STATX_MODE | STATX_UID | STATX_GID,
-               &status) == 0;
+// A file as it is before its replacement.
+struct Existing {
+  bool exists = false;
+  struct statx status {};
+  const char* refusal = nullptr;  // the reason not to replace it; null: none
+};
+
+Existing look_at(const std::filesystem::path& target) {
+  Existing file;
+  file.exists = statx(AT_FDCWD, target.c_str(), 0, STATX_TYPE | STATX_MODE | STATX_UID | STATX_GID,
+                      &file.status) == 0;
+  if (!file.exists)
+    file.refusal = errno == ELOOP ? std::strerror(ELOOP) : nullptr;
+  else if (!S_ISREG(file.status.stx_mode))
+    file.refusal = "is not a regular file, and is not replaced";
+  else if ((file.status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0)
+    file.refusal = "is a mount point, and cannot be replaced";
+  else if (access(target.c_str(), W_OK) != 0)
+    file.refusal = "the file is read-only";
+  return file;
 }
 
 // Opens a new file next to `path` and stores its name; returns -1 and sets errno if that fails.
@@ -130,28 +146,16 @@ void remove_partials_of(const std::filesystem::path& folder,
 }
 
 Result<void> check_replaceable(const std::filesystem::path& path) {
-  const auto refuse = [&](const char* reason) {
-    return fail(ErrorCode::kIo, fmt::format("{}: {}", path.string(), reason));
-  };
-  struct statx status {};
-  const std::filesystem::path target = without_links(path);
-  if (!look_at(target, status)) {
-    if (errno == ELOOP) return refuse(std::strerror(ELOOP));
-    return {};
-  }
-  if (!S_ISREG(status.stx_mode)) return refuse("is not a regular file, and is not replaced");
-  if ((status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0)
-    return refuse("is a mount point, and cannot be replaced");
-  if (access(target.c_str(), W_OK) != 0) return refuse("the file is read-only");
-  return {};
+  const char* const refusal = look_at(without_links(path)).refusal;
+  if (refusal == nullptr) return {};
+  return fail(ErrorCode::kIo, fmt::format("{}: {}", path.string(), refusal));
 }
 
 FileReplacement::FileReplacement(std::filesystem::path path)
     : path_(std::move(path)), target_(without_links(path_)) {
-  struct statx status {};
-  const bool exists = look_at(target_, status);
-  if (auto ok = check_replaceable(path_); !ok) {
-    failure_ = ok.error().message;
+  const Existing before = look_at(target_);
+  if (before.refusal != nullptr) {
+    failure_ = fmt::format("{}: {}", path_.string(), before.refusal);
     return;
   }
   file_ = open_temporary(target_, temporary_);
@@ -159,10 +163,10 @@ FileReplacement::FileReplacement(std::filesystem::path path)
     fail_with(errno == ENOENT ? "its folder is missing" : "cannot create a file in its folder",
               errno);
     temporary_.clear();
-  } else if (exists) {
+  } else if (before.exists) {
     // The owner first, because a change of owner clears bits of the mode. Only root may change it.
-    (void)!fchown(file_, status.stx_uid, status.stx_gid);
-    (void)fchmod(file_, status.stx_mode & 07777U);
+    (void)!fchown(file_, before.status.stx_uid, before.status.stx_gid);
+    (void)fchmod(file_, before.status.stx_mode & 07777U);
   }
 }
 
