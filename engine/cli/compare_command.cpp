@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -109,7 +110,8 @@ core::Result<std::vector<std::string>> words_of(const std::string& command) {
 int status_of(pid_t child, const std::atomic<bool>& stop) {
   constexpr int kPollMs = 50, kPatienceMs = 5000;
   int status = 0, waited_ms = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
+  for (pid_t ended = 0; (ended = waitpid(child, &status, WNOHANG)) != child;) {
+    if (ended < 0 && errno != EINTR) return W_EXITCODE(127, 0);  // the system keeps no statuses
     poll(nullptr, 0, kPollMs);
     if (!stop) continue;
     if (waited_ms == 0) kill(-child, SIGTERM);
@@ -218,8 +220,7 @@ core::Result<Counted> count(const std::string& command, const std::filesystem::p
                                   *code, log.string()));
   const auto instructions = compare::instructions_in(whole_text(profile), profile.string());
   if (!instructions) return tl::unexpected(instructions.error());
-  const std::string output = whole_text(log);
-  const std::string hash(compare::hash_in(output));
+  const std::string output = whole_text(log), hash(compare::hash_in(output));
   if (hash.empty())
     return core::invalid_argument(
         fmt::format("{}: prints no hash, so its result cannot be compared; its output is in {}",
