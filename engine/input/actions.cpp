@@ -57,7 +57,8 @@ constexpr double kOuterZone = 0.05;
 // 1 for a vector along the axis that reaches the outer zone.
 double beyond_dead_zone(double value, double length, double dead_zone) {
   if (length <= dead_zone) return 0;
-  const double reach = std::min(1.0, (length - dead_zone) / (1 - kOuterZone - dead_zone));
+  const double end = std::max(1 - kOuterZone, dead_zone + 0.01);  // also beyond wide dead zones
+  const double reach = std::min(1.0, (length - dead_zone) / (end - dead_zone));
   return value / length * reach;
 }
 
