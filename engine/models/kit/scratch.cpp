@@ -47,7 +47,6 @@ ScratchMemory::ScratchMemory(std::size_t bytes)
     memory_ = std::exchange(first != nullptr ? first : second, nullptr);
   }
   if (memory_ != nullptr) return;
-  keeper.begun = true;
   memory_ = ::operator new(bytes_, std::align_val_t(kAlignment));
 }
 
@@ -57,6 +56,7 @@ ScratchMemory::~ScratchMemory() {
     auto& [first, second] = *blocks;
     void*& place = first == nullptr ? first : second;
     if (place == nullptr) {
+      keeper.begun = true;  // also in a thread that only ends leases
       place = memory_;
       return;
     }
