@@ -142,7 +142,6 @@ class CairnType final : public models::ModelType {
   int level_count() const override { return 3; }
   core::SurfaceKind surface() const override { return core::SurfaceKind::kStone; }
   bool may_run_on_main_thread() const override { return true; }
-  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {}
   double level_error_m(const models::Parameters& p, int level) const override {
     constexpr std::array<double, 3> kShares{0, 0.03, 0.09};
     return kShares[static_cast<std::size_t>(level)] * p.real(kCairnWidthM);

@@ -61,7 +61,6 @@ class ObjectType final : public models::ModelType {
   double log2_cost(const models::Parameters&) const override { return 0; }
   bool is_seen_from_far() const override { return false; }
   bool may_run_on_main_thread() const override { return copied_; }
-  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {}
 
   core::Bounds synthesise(const models::Parameters& p, int level,
                           const models::MeshView& out) const override {

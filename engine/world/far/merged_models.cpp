@@ -105,12 +105,7 @@ class MergedType final : public models::ModelType {
   }
   MeshSize mesh_size(const Parameters& p, int level) const override {
     const LevelPlan& made = plan(p, level);
-    const PlacedPlan placed = placed_plan(p, made);
-    // Placed models that are too small leave a degenerate triangle.
-    const std::uint64_t min = placed_on(p).placed > 0 ? 1 : 0;
-    return {static_cast<std::uint32_t>(std::max(made.vertices + placed.vertices, min)),
-            static_cast<std::uint32_t>(3 * std::max(made.triangles + placed.triangles, min)), 0,
-            core::VertexLayout::kModel};
+    return size_of(p, made, placed_plan(p, made));
   }
   double step_seconds() const override { return 350e-9; }
   double complexity(const Parameters& p, int level) const override {
@@ -127,9 +122,6 @@ class MergedType final : public models::ModelType {
   core::Bounds synthesise(const Parameters& p, int level, const MeshView& out) const override;
   std::uint64_t identity() const override { return identity_; }
   bool may_run_on_main_thread() const override { return may_run_on_main_thread_; }
-  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
-    PSYGEN_CHECK(false, "vegetation shares no indices");
-  }
 
  private:
   struct Making;    // state of one call of synthesise()
@@ -157,6 +149,13 @@ class MergedType final : public models::ModelType {
       if (cell != nullptr) sum.add(cell->summary);
     }
     return sum;
+  }
+  MeshSize size_of(const Parameters& p, const LevelPlan& made, const PlacedPlan& placed) const {
+    // Placed models that are too small leave a degenerate triangle.
+    const std::uint64_t min = placed_on(p).placed > 0 ? 1 : 0;
+    return {static_cast<std::uint32_t>(std::max(made.vertices + placed.vertices, min)),
+            static_cast<std::uint32_t>(3 * std::max(made.triangles + placed.triangles, min)), 0,
+            core::VertexLayout::kModel};
   }
   PlacedPlan placed_plan(const Parameters& p, const LevelPlan& made) const {
     const models::EditLayer* const layers[] = {p.edits(), world_->places.by_block.get()};
@@ -340,7 +339,7 @@ core::Bounds MergedType::synthesise(const Parameters& p, int level, const MeshVi
   const core::RoundToNearest rounding;
   const LevelPlan& made = plan(p, level);
   const PlacedPlan placed = placed_plan(p, made);
-  const MeshSize size = mesh_size(p, level);
+  const MeshSize size = size_of(p, made, placed);
   PSYGEN_CHECK(out.vertices.size() == size.vertex_count * sizeof(core::ModelVertex) &&
                    out.indices.size() == size.index_count,
                "the destination must have exactly the size of the mesh");

@@ -160,9 +160,6 @@ class ImpostorType final : public ModelType {
     std::ranges::fill(out.indices, std::uint16_t{0});
     return {glm::vec3(0.5F), glm::vec3(0.5F)};
   }
-  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
-    PSYGEN_CHECK(false, "impostors share no indices");
-  }
 };
 
 class QuadType final : public ModelType {
@@ -204,9 +201,6 @@ class QuadType final : public ModelType {
     ProxyWriter writer(bounds(p), out);
     writer.add(Form::kPicture, quad, glm::vec3(0.0F), true);
     return writer.finish();
-  }
-  void write_shared_indices(std::uint32_t, std::span<std::uint16_t>) const override {
-    PSYGEN_CHECK(false, "impostors share no indices");
   }
 
  private:
