@@ -224,7 +224,7 @@ Result<void> RendererImpl::write_frame(FrameSlot& slot) {
   });
   if (!written || !culling_) return written;
   return culling_->write(*device_, number).map([&] {
-    slot.use_draws(*device_, looks_.sets, culling_->draw_data(number));
+    looks_.sets.write_draws(*device_, number, culling_->draw_data(number));
   });
 }
 

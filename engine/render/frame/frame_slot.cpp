@@ -37,13 +37,6 @@ Result<void> FrameSlot::create(const Device& device, std::size_t number) {
 
 void FrameSlot::use(const Device& device, const FrameSets& sets) {
   sets.write(device, number_, {frame_, draws_, shade_});
-  named_draws_ = draws_.buffer.get();
-}
-
-void FrameSlot::use_draws(const Device& device, const FrameSets& sets, const Buffer& draws) {
-  if (named_draws_ == draws.buffer.get()) return;
-  sets.write_draws(device, number_, draws);
-  named_draws_ = draws.buffer.get();
 }
 
 Result<void> FrameSlot::write(const Device& device, const FrameSets& sets,

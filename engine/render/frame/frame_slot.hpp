@@ -21,9 +21,6 @@ class FrameSlot {
   // Names the slot's buffers in its set. Call it for new sets.
   void use(const Device& device, const FrameSets& sets);
 
-  // Names another buffer with the data of draws, until use(); does nothing if the set names it.
-  void use_draws(const Device& device, const FrameSets& sets, const Buffer& draws);
-
   // Copies a frame's data into the slot's buffers. They grow if needed, which can fail with
   // kOutOfMemory.
   core::Result<void> write(const Device& device, const FrameSets& sets,
@@ -46,7 +43,6 @@ class FrameSlot {
  private:
   Commands commands_;
   Buffer frame_, draws_, shade_;
-  VkBuffer named_draws_ = VK_NULL_HANDLE;  // in the slot's set
   std::size_t number_ = 0;
   UniqueSemaphore acquired_;
   GpuTimer timer_;
