@@ -258,8 +258,9 @@ bool Game::save_and_leave() {
 }
 
 bool Game::may_end(app::Session& session) {
-  if (session.stopped() || session.window() == nullptr || abandoned_ || save_and_leave())
-    return true;
+  if (session.stopped() || session.window() == nullptr || is_settled_) return true;
+  is_settled_ = save_and_leave();
+  if (is_settled_) return true;
   const std::string message = menu_.message;
   if (menu_.page != Page::kPause) open_page(session, Page::kPause);
   menu_.message = message;
@@ -281,9 +282,9 @@ void Game::choose(app::Session& session, Choice choice) {
     hud_.say("Saved.");
     open_page(session, Page::kNone);
   }
-  if (choice == Choice::kQuit && save_and_leave()) session.close();
+  if (choice == Choice::kQuit) session.close();  // may_end() saves
   if (choice == Choice::kAbandon) {
-    abandoned_ = true;
+    is_settled_ = true;
     session.close();
   }
   if (choice == Choice::kToTitle && save_and_leave()) {
@@ -423,7 +424,7 @@ core::CameraPose Game::playing(app::Session& session, double dt_s) {
 }
 
 core::Result<void> Game::end() {
-  auto kept = abandoned_ ? core::Result<void>() : save_now();
+  auto kept = is_settled_ ? core::Result<void>() : save_now();
   if (!kept)
     kept.error().message += fmt::format("; the last {:.0f} s of the game are lost", unsaved_s_);
   if (recording_) {

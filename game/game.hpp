@@ -98,7 +98,8 @@ class Game {
   double until_save_s_ = 0, title_s_ = 0, title_height_m_ = 0;
   int picture_in_ = 0;   // frames until a screenshot is saved; 0: none pending
   int quiet_steps_ = 0;  // steps that ignore presses, because they closed a page
-  bool zoom_ = false, settings_broken_ = false, abandoned_ = false;
+  bool zoom_ = false, settings_broken_ = false;
+  bool is_settled_ = false;  // the game is saved for the end, or given up
   glm::dvec2 photo_turn_{0.0};
   std::optional<query::World> title_query_;  // of the land behind the title screen
   core::WorldPosition title_place_;
