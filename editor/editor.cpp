@@ -2,10 +2,13 @@
 
 #include <QApplication>
 #include <QCommandLineParser>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <glm/trigonometric.hpp>
+#include <iterator>
+#include <string_view>
 
 #include "editor/document/qt_text.hpp"
 #include "editor/pictures/picture_server.hpp"
@@ -52,10 +55,15 @@ bool parse(QCommandLineParser& parser, const QStringList& arguments) {
 
 // Prints help and version, which need no display. Returns the exit code if there is no display.
 std::optional<int> require_display(int argc, char** argv) {
-  {
+  // Only these words: options of Qt such as -reverse look like short options.
+  const auto asks = [](const char* argument) {
+    constexpr std::string_view kQuestions[] = {"-h", "--help", "--help-all", "-v", "--version"};
+    return std::ranges::find(kQuestions, std::string_view(argument)) != std::end(kQuestions);
+  };
+  if (std::any_of(argv + 1, argv + argc, asks)) {
     const QCoreApplication app(argc, argv);
     QCommandLineParser parser;
-    parse(parser, app.arguments());  // may contain options of Qt
+    parse(parser, app.arguments());
   }
   if (auto x11 = require_x11({argv, static_cast<std::size_t>(argc)}); !x11)
     return cli::fail_with(x11.error());

@@ -82,10 +82,11 @@ core::Result<ParsedWorldPtr> Document::parse(const std::string& text) const {
 }
 
 bool Document::is_shipped(const std::filesystem::path& file) const {
+  constexpr auto kSkip = std::filesystem::directory_options::skip_permission_denied;
   for (const std::filesystem::path& folder : options_.shipped_folders) {
     std::error_code error, differ;
-    for (std::filesystem::recursive_directory_iterator it(folder, error), end; !error && it != end;
-         it.increment(error))
+    std::filesystem::recursive_directory_iterator it(folder, kSkip, error);
+    for (; !error && it != end(it); it.increment(error))
       if (std::filesystem::equivalent(*it, file, differ)) return true;
   }
   return false;

@@ -117,8 +117,12 @@ core::Result<void> Document::apply_proposed_edit() {
 
 core::Result<void> Document::set_text(std::string text, const QString& step) {
   const int drag = std::exchange(drag_, 0);
+  const auto before = text_;
   auto set = push(std::move(text), step, {}, false);
-  if (drag != 0) begin_drag();
+  if (drag != 0 && text_ != before)
+    begin_drag();
+  else
+    drag_ = drag;
   return set;
 }
 

@@ -31,6 +31,7 @@ CameraMemory::CameraMemory(const EditorContext& context)
 }
 
 void CameraMemory::restore() {
+  const bool first = std::exchange(use_first_pose_, false);
   const QSettings settings;
   const QVariantList kept = settings.value("places/" + file_key(context_.document.file())).toList();
   ViewCamera& camera = context_.view.camera();
@@ -43,7 +44,7 @@ void CameraMemory::restore() {
     return camera.set_pose(pose);
   }
   context_.view.focus();
-  if (std::exchange(use_first_pose_, false)) camera.set_pose(first_pose(context_.document.world()));
+  if (first) camera.set_pose(first_pose(context_.document.world()));
 }
 
 void CameraMemory::save() const {

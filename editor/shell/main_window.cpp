@@ -45,16 +45,18 @@ class ControlRules final : public QObject {
  public:
   using QObject::QObject;
   bool eventFilter(QObject* object, QEvent* event) override {
+    const QEvent::Type type = event->type();
+    if (type != QEvent::Polish && type != QEvent::Hide && type != QEvent::Wheel) return false;
     auto* slider = qobject_cast<QAbstractSlider*>(object);
     const bool is_control = (slider && !qobject_cast<QScrollBar*>(object)) ||
                             qobject_cast<QAbstractSpinBox*>(object) ||
                             qobject_cast<QComboBox*>(object);
     if (!is_control) return false;
     auto* control = static_cast<QWidget*>(object);
-    if (event->type() == QEvent::Polish && control->focusPolicy() == Qt::WheelFocus)
+    if (type == QEvent::Polish && control->focusPolicy() == Qt::WheelFocus)
       control->setFocusPolicy(Qt::StrongFocus);
-    if (event->type() == QEvent::Hide && slider != nullptr) slider->setSliderDown(false);
-    if (event->type() != QEvent::Wheel || control->hasFocus()) return false;
+    if (type == QEvent::Hide && slider != nullptr) slider->setSliderDown(false);
+    if (type != QEvent::Wheel || control->hasFocus()) return false;
     event->ignore();
     return true;
   }

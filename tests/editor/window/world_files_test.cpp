@@ -182,6 +182,8 @@ TEST(StartOfTheEditor, HelpAndVersionNeedNoDisplay) {
       EXPECT_NE(editor.out.find("psygen-editor"), std::string::npos) << editor.out;
     }
   }
+  // An option of Qt, which is no combination of short options.
+  EXPECT_EQ(ended({"-reverse"}, {{"QT_QPA_PLATFORM", "offscreen"}}).code, 4);
 }
 
 TEST(StartOfTheEditor, WithoutX11ItEndsWithASentence) {
