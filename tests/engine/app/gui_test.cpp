@@ -159,9 +159,9 @@ TEST_F(GuiOfAPerson, ClosesWhatDrawingCodeLeavesOpenAndNamesIt) {
       {[] { ImGui::Begin("a"), ImGui::BeginGroup(); }, "missing EndGroup() in 'a'"},
       {[] { ImGui::Begin("a"), ImGui::BeginTable("t", 2); }, "missing EndTable() in 'a'"},
       {[] { ImGui::Begin("a"), ImGui::BeginTabBar("t"); }, "missing EndTabBar() in 'a'"},
-      {[] { ImGui::Begin("a"), ImGui::TreePush("t"); }, "missing "},
+      {[] { ImGui::Begin("a"), ImGui::TreePush("t"); }, "missing TreePop() in 'a'"},
       {[] { ImGui::BeginTooltip(); }, "missing End() for '##Tooltip"},
-      {[] { ImGui::BeginMainMenuBar(); }, "missing "},
+      {[] { ImGui::BeginMainMenuBar(); }, "missing EndGroup() in '##MainMenuBar'"},
       {[] { ImGui::OpenPopup("p"), ImGui::BeginPopup("p"); }, "missing End() for '##Popup"}};
   for (const auto& [code, missing] : cases) {
     for (const bool throws : {false, true}) {
