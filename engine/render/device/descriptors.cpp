@@ -15,15 +15,14 @@ Result<void> DescriptorSets::create(const Device& device, std::span<const SetBin
     sizes.push_back({binding.type, sets});
     types_.push_back(binding.type);
   }
-  VkDescriptorSetLayoutCreateInfo layout{};
-  layout.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  layout.bindingCount = static_cast<std::uint32_t>(all.size());
-  layout.pBindings = all.data();
-  VkDescriptorPoolCreateInfo pool{};
-  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  pool.maxSets = sets;
-  pool.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
-  pool.pPoolSizes = sizes.data();
+  const VkDescriptorSetLayoutCreateInfo layout{
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+      .bindingCount = static_cast<std::uint32_t>(all.size()),
+      .pBindings = all.data()};
+  const VkDescriptorPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                        .maxSets = sets,
+                                        .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
+                                        .pPoolSizes = sizes.data()};
   const Result<void> made =
       device
           .make<UniqueSetLayout>(&VolkDeviceTable::vkCreateDescriptorSetLayout, layout,
@@ -37,11 +36,10 @@ Result<void> DescriptorSets::create(const Device& device, std::span<const SetBin
   if (!made) return made;
   const std::vector<VkDescriptorSetLayout> layouts(count, layout_.get());
   std::vector<VkDescriptorSet> allocated(count);
-  VkDescriptorSetAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  info.descriptorPool = pool_.get();
-  info.descriptorSetCount = sets;
-  info.pSetLayouts = layouts.data();
+  const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                         .descriptorPool = pool_.get(),
+                                         .descriptorSetCount = sets,
+                                         .pSetLayouts = layouts.data()};
   const VkResult result =
       device.vk.vkAllocateDescriptorSets(device.handle, &info, allocated.data());
   if (result != VK_SUCCESS) return vulkan_failure(result, "allocating descriptor sets");
@@ -52,16 +50,12 @@ Result<void> DescriptorSets::create(const Device& device, std::span<const SetBin
 void DescriptorSets::write(const Device& device, std::size_t set, std::uint32_t binding,
                            VkBuffer buffer, VkDeviceSize bytes) const {
   const VkDescriptorBufferInfo info{buffer, 0, bytes};
-  VkWriteDescriptorSet named{};
-  named.pBufferInfo = &info;
-  write(device, set, binding, named);
+  write(device, set, binding, VkWriteDescriptorSet{.pBufferInfo = &info});
 }
 
 void DescriptorSets::write(const Device& device, std::size_t set, std::uint32_t binding,
                            const VkDescriptorImageInfo& image) const {
-  VkWriteDescriptorSet named{};
-  named.pImageInfo = &image;
-  write(device, set, binding, named);
+  write(device, set, binding, VkWriteDescriptorSet{.pImageInfo = &image});
 }
 
 void DescriptorSets::write(const Device& device, std::size_t set, std::uint32_t binding,
@@ -77,12 +71,11 @@ void DescriptorSets::write(const Device& device, std::size_t set, std::uint32_t 
 Result<UniquePipelineLayout> make_pipeline_layout(const Device& device,
                                                   std::span<const VkDescriptorSetLayout> sets,
                                                   const VkPushConstantRange& push) {
-  VkPipelineLayoutCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
-  info.pSetLayouts = sets.data();
-  info.pushConstantRangeCount = 1;
-  info.pPushConstantRanges = &push;
+  const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                        .setLayoutCount = static_cast<std::uint32_t>(sets.size()),
+                                        .pSetLayouts = sets.data(),
+                                        .pushConstantRangeCount = 1,
+                                        .pPushConstantRanges = &push};
   return device.make<UniquePipelineLayout>(&VolkDeviceTable::vkCreatePipelineLayout, info,
                                            "creating a pipeline layout");
 }

@@ -23,22 +23,18 @@ bool has_extension(VkPhysicalDevice physical, const char* name) {
 
 // The features that the renderer needs, chained for a query or for creation. Not movable.
 struct FeatureChain {
-  VkPhysicalDeviceFeatures2 base{};
-  VkPhysicalDeviceVulkan11Features v11{};
-  VkPhysicalDeviceVulkan12Features v12{};
-  VkPhysicalDeviceVulkan13Features v13{};
-  VkPhysicalDeviceMultiDrawFeaturesEXT multi_draw{};
+  VkPhysicalDeviceMultiDrawFeaturesEXT multi_draw{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_FEATURES_EXT};
+  VkPhysicalDeviceVulkan13Features v13{.sType =
+                                           VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  VkPhysicalDeviceVulkan12Features v12{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, .pNext = &v13};
+  VkPhysicalDeviceVulkan11Features v11{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES, .pNext = &v12};
+  VkPhysicalDeviceFeatures2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                 .pNext = &v11};
 
-  FeatureChain() {
-    base.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-    v11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
-    v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-    multi_draw.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_FEATURES_EXT;
-    base.pNext = &v11;
-    v11.pNext = &v12;
-    v12.pNext = &v13;
-  }
+  FeatureChain() = default;
   FeatureChain(const FeatureChain&) = delete;
   FeatureChain& operator=(const FeatureChain&) = delete;
 
@@ -119,9 +115,8 @@ std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevic
                                        VkSurfaceKHR surface) {
   VkPhysicalDeviceDriverProperties driver{};
   driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
-  VkPhysicalDeviceProperties2 properties{};
-  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-  properties.pNext = &driver;
+  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                         .pNext = &driver};
   vkGetPhysicalDeviceProperties2(physical, &properties);
   const VkPhysicalDeviceProperties& p = properties.properties;
   if (p.apiVersion < VK_API_VERSION_1_3) return std::nullopt;
@@ -173,9 +168,8 @@ void enable(const DeviceInfo& info, FeatureChain& features, std::vector<const ch
 void read_limits(Device& device) {
   VkPhysicalDeviceMultiDrawPropertiesEXT multi_draw{};
   multi_draw.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_PROPERTIES_EXT;
-  VkPhysicalDeviceProperties2 properties{};
-  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-  properties.pNext = device.info.multi_draw ? &multi_draw : nullptr;
+  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                         .pNext = device.info.multi_draw ? &multi_draw : nullptr};
   vkGetPhysicalDeviceProperties2(device.physical, &properties);
   const VkPhysicalDeviceLimits& limits = properties.properties.limits;
   device.max_image_side = limits.maxImageDimension2D;
@@ -216,12 +210,10 @@ core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& 
 
 VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
                                      VkPipelineStageFlags2 stage) {
-  VkSemaphoreSubmitInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
-  info.semaphore = semaphore;
-  info.value = value;
-  info.stageMask = stage;
-  return info;
+  return {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+          .semaphore = semaphore,
+          .value = value,
+          .stageMask = stage};
 }
 
 core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& candidate,
@@ -239,21 +231,19 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   if (options.windowed) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   enable(candidate.info, features, extensions);
   const float priority = 1.0F;
-  VkDeviceQueueCreateInfo queue{};
-  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-  queue.queueFamilyIndex = self->queue_family;
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
+  VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                .queueFamilyIndex = self->queue_family,
+                                .queueCount = 1,
+                                .pQueuePriorities = &priority};
   std::vector<VkDeviceQueueCreateInfo> queues{queue};
   queue.queueFamilyIndex = self->transfer_family;
   if (self->transfer_family != self->queue_family) queues.push_back(queue);
-  VkDeviceCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-  info.pNext = &features.base;
-  info.queueCreateInfoCount = static_cast<std::uint32_t>(queues.size());
-  info.pQueueCreateInfos = queues.data();
-  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
-  info.ppEnabledExtensionNames = extensions.data();
+  VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                          .pNext = &features.base,
+                          .queueCreateInfoCount = static_cast<std::uint32_t>(queues.size()),
+                          .pQueueCreateInfos = queues.data(),
+                          .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                          .ppEnabledExtensionNames = extensions.data()};
   const VkResult result = vkCreateDevice(self->physical, &info, nullptr, &self->handle);
   if (result != VK_SUCCESS) return vulkan_failure(result, "creating the Vulkan device");
   volkLoadDeviceTable(&self->vk, self->handle);
@@ -269,11 +259,10 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
 
 core::Result<void> Device::wait(VkSemaphore semaphore, std::uint64_t value,
                                 const char* what) const {
-  VkSemaphoreWaitInfo waited{};
-  waited.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
-  waited.semaphoreCount = 1;
-  waited.pSemaphores = &semaphore;
-  waited.pValues = &value;
+  const VkSemaphoreWaitInfo waited{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                   .semaphoreCount = 1,
+                                   .pSemaphores = &semaphore,
+                                   .pValues = &value};
   const VkResult result = vk.vkWaitSemaphores(handle, &waited, timeout_ns_);
   if (result == VK_SUCCESS) return {};
   vk.hangs = vk.hangs || result == VK_TIMEOUT;
@@ -284,17 +273,15 @@ core::Result<void> Device::submit(VkQueue to, VkCommandBuffer commands,
                                   std::span<const VkSemaphoreSubmitInfo> waits,
                                   std::span<const VkSemaphoreSubmitInfo> signals,
                                   const char* what) const {
-  VkCommandBufferSubmitInfo buffer{};
-  buffer.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
-  buffer.commandBuffer = commands;
-  VkSubmitInfo2 work{};
-  work.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-  work.waitSemaphoreInfoCount = static_cast<std::uint32_t>(waits.size());
-  work.pWaitSemaphoreInfos = waits.data();
-  work.commandBufferInfoCount = 1;
-  work.pCommandBufferInfos = &buffer;
-  work.signalSemaphoreInfoCount = static_cast<std::uint32_t>(signals.size());
-  work.pSignalSemaphoreInfos = signals.data();
+  const VkCommandBufferSubmitInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                         .commandBuffer = commands};
+  const VkSubmitInfo2 work{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+                           .waitSemaphoreInfoCount = static_cast<std::uint32_t>(waits.size()),
+                           .pWaitSemaphoreInfos = waits.data(),
+                           .commandBufferInfoCount = 1,
+                           .pCommandBufferInfos = &buffer,
+                           .signalSemaphoreInfoCount = static_cast<std::uint32_t>(signals.size()),
+                           .pSignalSemaphoreInfos = signals.data()};
   const std::scoped_lock lock(queues_);
   const VkResult result = vk.vkQueueSubmit2(to, 1, &work, VK_NULL_HANDLE);
   return result == VK_SUCCESS ? core::Result<void>{} : vulkan_failure(result, what);

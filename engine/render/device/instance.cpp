@@ -29,14 +29,12 @@ bool has_validation_layer() {
 }
 
 VkDebugUtilsMessengerCreateInfoEXT messenger_info(Instance* instance) {
-  VkDebugUtilsMessengerCreateInfoEXT info{};
-  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-  info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
-                         VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-  info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-  info.pfnUserCallback = collect;
-  info.pUserData = instance;
-  return info;
+  return {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+          .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                             VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+          .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+          .pfnUserCallback = collect,
+          .pUserData = instance};
 }
 
 core::Result<void> check_loader(bool validation) {
@@ -103,29 +101,27 @@ core::Result<std::unique_ptr<Instance>> Instance::create(const std::string& appl
   for (const std::string& name : names)
     extensions.push_back(name.c_str());
 
-  VkApplicationInfo application{};
-  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-  application.pApplicationName = application_name.c_str();
-  application.pEngineName = "psygen";
-  application.apiVersion = VK_API_VERSION_1_3;
+  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                      .pApplicationName = application_name.c_str(),
+                                      .pEngineName = "psygen",
+                                      .apiVersion = VK_API_VERSION_1_3};
 
   const VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(self.get());
   const VkValidationFeatureEnableEXT enabled =
       VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
-  VkValidationFeaturesEXT features{};
-  features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
-  features.pNext = &messenger;
-  features.enabledValidationFeatureCount = 1;
-  features.pEnabledValidationFeatures = &enabled;
+  const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                         .pNext = &messenger,
+                                         .enabledValidationFeatureCount = 1,
+                                         .pEnabledValidationFeatures = &enabled};
 
-  VkInstanceCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-  info.pNext = validation ? &features : nullptr;
-  info.pApplicationInfo = &application;
-  info.enabledLayerCount = validation ? 1 : 0;
-  info.ppEnabledLayerNames = &kValidationLayer;
-  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
-  info.ppEnabledExtensionNames = extensions.data();
+  const VkInstanceCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+      .pNext = validation ? &features : nullptr,
+      .pApplicationInfo = &application,
+      .enabledLayerCount = validation ? 1U : 0U,
+      .ppEnabledLayerNames = &kValidationLayer,
+      .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+      .ppEnabledExtensionNames = extensions.data()};
   const VkResult result = vkCreateInstance(&info, nullptr, &self->instance_);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
     return core::fail(ErrorCode::kNoDevice, "there is no Vulkan driver on this machine");

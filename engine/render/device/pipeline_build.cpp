@@ -61,27 +61,23 @@ struct VertexInput {
 };
 
 VkPipelineRasterizationStateCreateInfo raster_of(const PipelineShape& shape) {
-  VkPipelineRasterizationStateCreateInfo raster{};
-  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-  raster.polygonMode = shape.wireframe ? VK_POLYGON_MODE_LINE : VK_POLYGON_MODE_FILL;
   // Leaves and objects are two-sided.
-  raster.cullMode =
-      shape.vertices == core::VertexLayout::kTerrain ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
-  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-  raster.lineWidth = 1.0F;
-  return raster;
+  const bool one_sided = shape.vertices == core::VertexLayout::kTerrain;
+  return {.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+          .polygonMode = shape.wireframe ? VK_POLYGON_MODE_LINE : VK_POLYGON_MODE_FILL,
+          .cullMode = one_sided ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE,
+          .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
+          .lineWidth = 1.0F};
 }
 
 VkPipelineDepthStencilStateCreateInfo depth_of(const PipelineShape& shape) {
   const bool writes = shape.depth == DepthUse::kWrite;
-  VkPipelineDepthStencilStateCreateInfo depth{};
-  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-  depth.depthTestEnable = shape.depth != DepthUse::kNone;
-  depth.depthWriteEnable = writes;
-  depth.depthCompareOp = shape.target == DrawTarget::kShadowMap ? VK_COMPARE_OP_LESS
-                         : writes                               ? VK_COMPARE_OP_GREATER
-                                                                : VK_COMPARE_OP_GREATER_OR_EQUAL;
-  return depth;
+  return {.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+          .depthTestEnable = shape.depth != DepthUse::kNone,
+          .depthWriteEnable = writes,
+          .depthCompareOp = shape.target == DrawTarget::kShadowMap ? VK_COMPARE_OP_LESS
+                            : writes                               ? VK_COMPARE_OP_GREATER
+                                     : VK_COMPARE_OP_GREATER_OR_EQUAL};
 }
 
 // The map entries of all specialisation constants.
@@ -110,50 +106,50 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
 
   const bool has_colour = shape.target != DrawTarget::kShadowMap;
   const VertexInput vertices(shape.vertices);
-  VkPipelineInputAssemblyStateCreateInfo assembly{};
-  assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-  assembly.topology = shape.topology;
-  VkPipelineViewportStateCreateInfo viewport{};
-  viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-  viewport.viewportCount = 1;
-  viewport.scissorCount = 1;
+  const VkPipelineInputAssemblyStateCreateInfo assembly{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+      .topology = shape.topology};
+  const VkPipelineViewportStateCreateInfo viewport{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+      .viewportCount = 1,
+      .scissorCount = 1};
   const VkPipelineRasterizationStateCreateInfo raster = raster_of(shape);
-  VkPipelineMultisampleStateCreateInfo samples{};
-  samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-  samples.rasterizationSamples =
-      shape.target == DrawTarget::kLandscape ? targets.samples : VK_SAMPLE_COUNT_1_BIT;
+  const VkPipelineMultisampleStateCreateInfo samples{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+      .rasterizationSamples =
+          shape.target == DrawTarget::kLandscape ? targets.samples : VK_SAMPLE_COUNT_1_BIT};
   const VkPipelineDepthStencilStateCreateInfo depth = depth_of(shape);
   const VkPipelineColorBlendAttachmentState attachment = blend_of(shape);
-  VkPipelineColorBlendStateCreateInfo blend{};
-  blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-  blend.attachmentCount = has_colour ? 1 : 0;
-  blend.pAttachments = &attachment;
+  const VkPipelineColorBlendStateCreateInfo blend{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+      .attachmentCount = has_colour ? 1U : 0U,
+      .pAttachments = &attachment};
   const std::array dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  VkPipelineDynamicStateCreateInfo dynamic{};
-  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-  dynamic.dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size());
-  dynamic.pDynamicStates = dynamic_states.data();
-  VkPipelineRenderingCreateInfo rendering{};
-  rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-  rendering.colorAttachmentCount = has_colour ? 1 : 0;
-  rendering.pColorAttachmentFormats = &targets.colour_format;
-  rendering.depthAttachmentFormat =
-      shape.target == DrawTarget::kPicture ? VK_FORMAT_UNDEFINED : kDepthFormat;
+  const VkPipelineDynamicStateCreateInfo dynamic{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+      .dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size()),
+      .pDynamicStates = dynamic_states.data()};
+  const VkPipelineRenderingCreateInfo rendering{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+      .colorAttachmentCount = has_colour ? 1U : 0U,
+      .pColorAttachmentFormats = &targets.colour_format,
+      .depthAttachmentFormat =
+          shape.target == DrawTarget::kPicture ? VK_FORMAT_UNDEFINED : kDepthFormat};
 
-  VkGraphicsPipelineCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-  info.pNext = &rendering;
-  info.stageCount = shape.frag ? static_cast<std::uint32_t>(stages.size()) : 1;
-  info.pStages = stages.data();
-  info.pVertexInputState = &vertices.info;
-  info.pInputAssemblyState = &assembly;
-  info.pViewportState = &viewport;
-  info.pRasterizationState = &raster;
-  info.pMultisampleState = &samples;
-  info.pDepthStencilState = &depth;
-  info.pColorBlendState = &blend;
-  info.pDynamicState = &dynamic;
-  info.layout = layout;
+  const VkGraphicsPipelineCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+      .pNext = &rendering,
+      .stageCount = shape.frag ? static_cast<std::uint32_t>(stages.size()) : 1,
+      .pStages = stages.data(),
+      .pVertexInputState = &vertices.info,
+      .pInputAssemblyState = &assembly,
+      .pViewportState = &viewport,
+      .pRasterizationState = &raster,
+      .pMultisampleState = &samples,
+      .pDepthStencilState = &depth,
+      .pColorBlendState = &blend,
+      .pDynamicState = &dynamic,
+      .layout = layout};
   VkPipeline pipeline = VK_NULL_HANDLE;
   const VkResult result = device.vk.vkCreateGraphicsPipelines(device.handle, VK_NULL_HANDLE, 1,
                                                               &info, nullptr, &pipeline);
@@ -165,21 +161,18 @@ Result<UniquePipeline> make_pipeline(const Device& device, VkPipelineLayout layo
 
 Result<UniqueShaderModule> make_module(const Device& device, Shader shader) {
   const ShaderCode code = kShaders[static_cast<std::size_t>(shader)];
-  VkShaderModuleCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  info.codeSize = code.size_bytes();
-  info.pCode = code.data();
+  const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                      .codeSize = code.size_bytes(),
+                                      .pCode = code.data()};
   return device.make<UniqueShaderModule>(&VolkDeviceTable::vkCreateShaderModule, info,
                                          "creating a shader");
 }
 
 VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits stage, VkShaderModule shader) {
-  VkPipelineShaderStageCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-  info.stage = stage;
-  info.module = shader;
-  info.pName = "main";
-  return info;
+  return {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+          .stage = stage,
+          .module = shader,
+          .pName = "main"};
 }
 
 Result<void> PipelineMaker::make(VkPipelineLayout layout, const PipelineShape& shape,

@@ -13,18 +13,6 @@ namespace psygen::render {
 
 using core::Result;
 
-namespace {
-
-Result<void> make_plain_sampler(const Device& device, VkFilter filter, VkSamplerAddressMode mode,
-                                UniqueSampler& out) {
-  VkSamplerCreateInfo info{};
-  info.magFilter = info.minFilter = filter;
-  info.addressModeU = info.addressModeV = info.addressModeW = mode;
-  return make_sampler(device, info).map(into(out));
-}
-
-}  // namespace
-
 VkPushConstantRange push_range() {
   return {VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(shaders::DrawData) + sizeof(std::uint32_t)};
 }
@@ -60,27 +48,25 @@ Result<void> FrameSets::create(const Device& device, std::size_t slots,
 
 Result<void> FrameSets::create_samplers(const Device& device) {
   constexpr VkSamplerAddressMode kClamp = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  return make_plain_sampler(device, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT,
-                            cloud_sampler_)
-      .and_then(
-          [&] { return make_plain_sampler(device, VK_FILTER_LINEAR, kClamp, smooth_sampler_); })
-      .and_then(
-          [&] { return make_plain_sampler(device, VK_FILTER_NEAREST, kClamp, nearest_sampler_); });
+  return make_sampler(device, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT)
+      .map(into(cloud_sampler_))
+      .and_then([&] { return make_sampler(device, VK_FILTER_LINEAR, kClamp); })
+      .map(into(smooth_sampler_))
+      .and_then([&] { return make_sampler(device, VK_FILTER_NEAREST, kClamp); })
+      .map(into(nearest_sampler_));
 }
 
 // The textures of the ground: for presets with light per pixel all of them as layers, else those of
 // brightness.
 Result<void> FrameSets::create_ground(const Device& device, const FrameSetsInput& input) {
-  VkSamplerCreateInfo info{};
-  info.magFilter = info.minFilter = VK_FILTER_LINEAR;
   // Two levels at once would cost software devices twice as much.
-  info.mipmapMode =
+  const VkSamplerMipmapMode between =
       input.traits.fine_grain ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
-  info.maxLod = VK_LOD_CLAMP_NONE;
   const GroundLevels levels = input.traits.pixel_light ? make_ground_layers(input.ground)
                                                        : make_ground_detail(input.ground);
   const std::uint32_t layers = input.traits.pixel_light ? kGroundLayers : kDetailLayers;
-  return make_sampler(device, info)
+  return make_sampler(device, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                      {.mipmapMode = between, .maxLod = VK_LOD_CLAMP_NONE})
       .map(into(ground_sampler_))
       .and_then([&] {
         return make_image(

@@ -14,10 +14,9 @@ using Ticks = std::array<std::uint64_t, kMarks>;
 
 Result<void> GpuTimer::create(const Device& device) {
   if (device.timestamp_mask == 0) return {};
-  VkQueryPoolCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-  info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-  info.queryCount = kMarks;
+  const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                   .queryCount = kMarks};
   return device
       .make<UniqueQueryPool>(&VolkDeviceTable::vkCreateQueryPool, info, "creating a query pool")
       .map(into(queries_))

@@ -11,16 +11,13 @@ using core::Result;
 namespace {
 
 Result<UniqueSampler> make_comparing_sampler(const Device& device) {
-  VkSamplerCreateInfo info{};
-  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  info.compareEnable = VK_TRUE;
-  info.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
   VkFormatProperties format{};
   vkGetPhysicalDeviceFormatProperties(device.physical, kDepthFormat, &format);
-  if ((format.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0) {
-    info.magFilter = info.minFilter = VK_FILTER_LINEAR;
-  }
-  return make_sampler(device, info);
+  const bool smooth =
+      (format.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0;
+  return make_sampler(device, smooth ? VK_FILTER_LINEAR : VK_FILTER_NEAREST,
+                      VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                      {.compareEnable = VK_TRUE, .compareOp = VK_COMPARE_OP_LESS_OR_EQUAL});
 }
 
 }  // namespace
@@ -62,18 +59,16 @@ void ShadowMaps::record(const Device& device, VkCommandBuffer commands,
   const VkViewport viewport{0.0F, 0.0F, static_cast<float>(size_), static_cast<float>(size_),
                             0.0F, 1.0F};
   for (std::uint32_t i = 0; i < cascades_ && draw; ++i) {
-    VkRenderingAttachmentInfo depth{};
-    depth.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-    depth.imageView = layers_[i].get();
-    depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-    depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                    .imageView = layers_[i].get(),
+                                    .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                    .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                    .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
     depth.clearValue.depthStencil.depth = 1.0F;
-    VkRenderingInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-    info.renderArea = area;
-    info.layerCount = 1;
-    info.pDepthAttachment = &depth;
+    const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                               .renderArea = area,
+                               .layerCount = 1,
+                               .pDepthAttachment = &depth};
     device.vk.vkCmdBeginRendering(commands, &info);
     device.vk.vkCmdSetViewport(commands, 0, 1, &viewport);
     device.vk.vkCmdSetScissor(commands, 0, 1, &area);

@@ -42,10 +42,9 @@ VkPresentModeKHR choose_mode(const Device& device, const UniqueSurface& surface,
 
 VkSwapchainCreateInfoKHR swapchain_info(const VkSurfaceCapabilitiesKHR& able, VkSurfaceKHR surface,
                                         VkSurfaceFormatKHR format, core::Extent extent) {
-  VkSwapchainCreateInfoKHR info{};
-  info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
-  info.surface = surface;
-  info.minImageCount = able.minImageCount + 1;
+  VkSwapchainCreateInfoKHR info{.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
+                                .surface = surface,
+                                .minImageCount = able.minImageCount + 1};
   if (able.maxImageCount != 0)
     info.minImageCount = std::min(info.minImageCount, able.maxImageCount);
   info.imageFormat = format.format;
@@ -150,13 +149,12 @@ Result<SwapchainState> Swapchain::acquire(const Device& device, VkSemaphore read
 Result<SwapchainState> Swapchain::present(const Device& device) {
   const VkSemaphore wait = finished();
   const VkSwapchainKHR swapchain = swapchain_.get();
-  VkPresentInfoKHR info{};
-  info.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
-  info.waitSemaphoreCount = 1;
-  info.pWaitSemaphores = &wait;
-  info.swapchainCount = 1;
-  info.pSwapchains = &swapchain;
-  info.pImageIndices = &current_;
+  const VkPresentInfoKHR info{.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR,
+                              .waitSemaphoreCount = 1,
+                              .pWaitSemaphores = &wait,
+                              .swapchainCount = 1,
+                              .pSwapchains = &swapchain,
+                              .pImageIndices = &current_};
   return state_after(device.present(info), "presenting a picture");
 }
 

@@ -114,10 +114,9 @@ void to_scaling_up(const Device& device, VkCommandBuffer commands, Targets& targ
 
 VkRenderingAttachmentInfo colour_of(const Targets& targets, RenderingPart part) {
   const bool loads = part == RenderingPart::kSecond || part == RenderingPart::kWater;
-  VkRenderingAttachmentInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  info.imageView = landscape_of(targets).view.get();
-  info.imageLayout = landscape_layout(targets);
+  VkRenderingAttachmentInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                 .imageView = landscape_of(targets).view.get(),
+                                 .imageLayout = landscape_layout(targets)};
   // Before the first rendering nothing is kept: the sky covers all other pixels.
   info.loadOp = loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
@@ -138,10 +137,9 @@ VkRenderingAttachmentInfo colour_of(const Targets& targets, RenderingPart part) 
 VkRenderingAttachmentInfo depth_of(const Targets& targets, RenderingPart part) {
   const bool loads = part == RenderingPart::kSecond || part == RenderingPart::kWater;
   const bool reflected = is_reflected(targets, part);
-  VkRenderingAttachmentInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  info.imageView = targets.depth.view.get();
-  info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  VkRenderingAttachmentInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                 .imageView = targets.depth.view.get(),
+                                 .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
   // Cleared to 0, infinitely far.
   info.loadOp = loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR;
   const bool read_later = reflected || part == RenderingPart::kFirst || targets.in_parts;
@@ -156,13 +154,12 @@ VkRenderingAttachmentInfo depth_of(const Targets& targets, RenderingPart part) {
 // Begins a rendering on `extent` pixels in the corner of attachments. `depth` may be null.
 void begin_on(const Device& device, VkCommandBuffer commands, core::Extent extent,
               const VkRenderingAttachmentInfo& colour, const VkRenderingAttachmentInfo* depth) {
-  VkRenderingInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-  info.renderArea = {{0, 0}, {extent.width, extent.height}};
-  info.layerCount = 1;
-  info.colorAttachmentCount = 1;
-  info.pColorAttachments = &colour;
-  info.pDepthAttachment = depth;
+  const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                             .renderArea = {{0, 0}, {extent.width, extent.height}},
+                             .layerCount = 1,
+                             .colorAttachmentCount = 1,
+                             .pColorAttachments = &colour,
+                             .pDepthAttachment = depth};
   device.vk.vkCmdBeginRendering(commands, &info);
   const VkViewport viewport{
       0.0F, 0.0F, static_cast<float>(extent.width), static_cast<float>(extent.height), 0.0F, 1.0F};
@@ -231,10 +228,8 @@ void begin_rendering(const Device& device, VkCommandBuffer commands, Targets& ta
 void split_rendering(const Device& device, VkCommandBuffer commands, const Targets& targets) {
   device.vk.vkCmdEndRendering(commands);
   // lavapipe would take a rendering on the same images for the same rendering.
-  VkRenderingInfo other{};
-  other.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-  other.renderArea = {{0, 0}, {1, 1}};
-  other.layerCount = 1;
+  const VkRenderingInfo other{
+      .sType = VK_STRUCTURE_TYPE_RENDERING_INFO, .renderArea = {{0, 0}, {1, 1}}, .layerCount = 1};
   device.vk.vkCmdBeginRendering(commands, &other);
   device.vk.vkCmdEndRendering(commands);
   VkRenderingAttachmentInfo colour = colour_of(targets, RenderingPart::kWhole);
@@ -245,12 +240,11 @@ void split_rendering(const Device& device, VkCommandBuffer commands, const Targe
 
 void begin_upscale_rendering(const Device& device, VkCommandBuffer commands, Targets& targets) {
   to_scaling_up(device, commands, targets);
-  VkRenderingAttachmentInfo colour{};
-  colour.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  colour.imageView = targets.colour.view.get();
-  colour.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  colour.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-  colour.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  const VkRenderingAttachmentInfo colour{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                         .imageView = targets.colour.view.get(),
+                                         .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                         .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                         .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
   begin_on(device, commands, targets.extent, colour, nullptr);
 }
 
@@ -264,11 +258,10 @@ void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targe
       kShown{VK_PIPELINE_STAGE_2_NONE, VK_ACCESS_2_NONE, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR};
   image_barrier(device, commands,
                 barrier_of(window, VK_IMAGE_ASPECT_COLOR_BIT, kAcquired, kCopied));
-  VkImageCopy copy{};
-  copy.srcSubresource = kColourLayer;
-  copy.dstSubresource = kColourLayer;
-  copy.extent = {std::min(targets.extent.width, window_extent.width),
-                 std::min(targets.extent.height, window_extent.height), 1};
+  VkImageCopy copy{.srcSubresource = kColourLayer,
+                   .dstSubresource = kColourLayer,
+                   .extent = {std::min(targets.extent.width, window_extent.width),
+                              std::min(targets.extent.height, window_extent.height), 1}};
   device.vk.vkCmdCopyImage(commands, targets.colour.image.get(),
                            VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, window,
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
@@ -278,9 +271,8 @@ void record_copy_to_window(const Device& device, VkCommandBuffer commands, Targe
 void record_copy_to_buffer(const Device& device, VkCommandBuffer commands, Targets& targets,
                            VkBuffer buffer) {
   to_copy_source(device, commands, targets);
-  VkBufferImageCopy copy{};
-  copy.imageSubresource = kColourLayer;
-  copy.imageExtent = {targets.extent.width, targets.extent.height, 1};
+  VkBufferImageCopy copy{.imageSubresource = kColourLayer,
+                         .imageExtent = {targets.extent.width, targets.extent.height, 1}};
   device.vk.vkCmdCopyImageToBuffer(commands, targets.colour.image.get(),
                                    VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &copy);
   memory_barrier(device, commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,

@@ -25,10 +25,9 @@ Result<UniqueMemory> allocate(const Device& device, const VkMemoryRequirements& 
       const VkMemoryType& type = device.memory.memoryTypes[i];
       if ((needs.memoryTypeBits >> i & 1u) == 0 || (type.propertyFlags & wish) != wish) continue;
       if (device.memory.memoryHeaps[type.heapIndex].size / 4 < needs.size) continue;
-      VkMemoryAllocateInfo info{};
-      info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-      info.allocationSize = needs.size;
-      info.memoryTypeIndex = i;
+      const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                      .allocationSize = needs.size,
+                                      .memoryTypeIndex = i};
       VkDeviceMemory memory = VK_NULL_HANDLE;
       result = device.vk.vkAllocateMemory(device.handle, &info, nullptr, &memory);
       if (result == VK_SUCCESS) return UniqueMemory(device.vk, device.handle, memory);
@@ -45,10 +44,8 @@ constexpr VkMemoryPropertyFlags kMapped =
 
 Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes, VkBufferUsageFlags usage,
                            MemoryUse use) {
-  VkBufferCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-  info.size = bytes;
-  info.usage = usage;
+  const VkBufferCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = bytes, .usage = usage};
   Result<UniqueBuffer> buffer =
       device.make<UniqueBuffer>(&VolkDeviceTable::vkCreateBuffer, info, "creating a buffer");
   if (!buffer) return tl::unexpected(buffer.error());
@@ -86,16 +83,15 @@ Result<bool> grow(const Device& device, Buffer& buffer, std::uint64_t bytes,
 Result<Image> make_image(const Device& device, core::Extent size, VkFormat format,
                          VkImageUsageFlags usage, VkImageAspectFlags aspect,
                          const ImageShape& shape) {
-  VkImageCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-  info.imageType = VK_IMAGE_TYPE_2D;
-  info.format = format;
-  info.extent = {size.width, size.height, 1};
-  info.mipLevels = shape.mips;
-  info.arrayLayers = shape.layers;
-  info.samples = shape.samples;
-  info.tiling = VK_IMAGE_TILING_OPTIMAL;
-  info.usage = usage;
+  const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                               .imageType = VK_IMAGE_TYPE_2D,
+                               .format = format,
+                               .extent = {size.width, size.height, 1},
+                               .mipLevels = shape.mips,
+                               .arrayLayers = shape.layers,
+                               .samples = shape.samples,
+                               .tiling = VK_IMAGE_TILING_OPTIMAL,
+                               .usage = usage};
   Result<UniqueImage> image =
       device.make<UniqueImage>(&VolkDeviceTable::vkCreateImage, info, "creating an image");
   if (!image) return tl::unexpected(image.error());
@@ -117,39 +113,37 @@ Result<Image> make_image(const Device& device, core::Extent size, VkFormat forma
 
 Result<UniqueImageView> make_view(const Device& device, VkImage image, VkFormat format,
                                   const VkImageSubresourceRange& part, bool array) {
-  VkImageViewCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-  info.image = image;
-  info.viewType = array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
-  info.format = format;
-  info.subresourceRange = part;
+  const VkImageViewCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+      .image = image,
+      .viewType = array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
+      .format = format,
+      .subresourceRange = part};
   return device.make<UniqueImageView>(&VolkDeviceTable::vkCreateImageView, info,
                                       "creating an image view");
 }
 
 VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect, const ImageUse& from,
                                  const ImageUse& to) {
-  VkImageMemoryBarrier2 barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
-  barrier.srcStageMask = from.stages;
-  barrier.srcAccessMask = from.access;
-  barrier.dstStageMask = to.stages;
-  barrier.dstAccessMask = to.access;
-  barrier.oldLayout = from.layout;
-  barrier.newLayout = to.layout;
-  barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = image;
-  barrier.subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
-  return barrier;
+  return {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+          .srcStageMask = from.stages,
+          .srcAccessMask = from.access,
+          .dstStageMask = to.stages,
+          .dstAccessMask = to.access,
+          .oldLayout = from.layout,
+          .newLayout = to.layout,
+          .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+          .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+          .image = image,
+          .subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS}};
 }
 
 void image_barriers(const Device& device, VkCommandBuffer commands,
                     std::span<const VkImageMemoryBarrier2> barriers) {
-  VkDependencyInfo dependency{};
-  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  dependency.imageMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size());
-  dependency.pImageMemoryBarriers = barriers.data();
+  const VkDependencyInfo dependency{
+      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+      .imageMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size()),
+      .pImageMemoryBarriers = barriers.data()};
   device.vk.vkCmdPipelineBarrier2(commands, &dependency);
 }
 
@@ -161,28 +155,24 @@ void image_barrier(const Device& device, VkCommandBuffer commands,
 void memory_barrier(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 from,
                     VkAccessFlags2 from_access, VkPipelineStageFlags2 to,
                     VkAccessFlags2 to_access) {
-  VkMemoryBarrier2 barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-  barrier.srcStageMask = from;
-  barrier.srcAccessMask = from_access;
-  barrier.dstStageMask = to;
-  barrier.dstAccessMask = to_access;
-  VkDependencyInfo dependency{};
-  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  dependency.memoryBarrierCount = 1;
-  dependency.pMemoryBarriers = &barrier;
+  const VkMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                 .srcStageMask = from,
+                                 .srcAccessMask = from_access,
+                                 .dstStageMask = to,
+                                 .dstAccessMask = to_access};
+  const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                    .memoryBarrierCount = 1,
+                                    .pMemoryBarriers = &barrier};
   device.vk.vkCmdPipelineBarrier2(commands, &dependency);
 }
 
 namespace {
 
 Result<UniqueSemaphore> make_semaphore(const Device& device, VkSemaphoreType kind) {
-  VkSemaphoreTypeCreateInfo type{};
-  type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
-  type.semaphoreType = kind;
-  VkSemaphoreCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-  info.pNext = &type;
+  VkSemaphoreTypeCreateInfo type{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                 .semaphoreType = kind};
+  const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
+                                   .pNext = &type};
   return device.make<UniqueSemaphore>(&VolkDeviceTable::vkCreateSemaphore, info,
                                       "creating a semaphore");
 }
@@ -198,19 +188,17 @@ Result<UniqueSemaphore> make_semaphore(const Device& device) {
 }
 
 Result<void> Commands::create(const Device& device, std::uint32_t queue_family) {
-  VkCommandPoolCreateInfo pool{};
-  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-  pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
-  pool.queueFamilyIndex = queue_family;
+  const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                     .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+                                     .queueFamilyIndex = queue_family};
   const Result<void> made = device
                                 .make<UniqueCommandPool>(&VolkDeviceTable::vkCreateCommandPool,
                                                          pool, "creating a command pool")
                                 .map(into(pool_));
   if (!made) return made;
-  VkCommandBufferAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  info.commandPool = pool_.get();
-  info.commandBufferCount = 1;
+  const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                         .commandPool = pool_.get(),
+                                         .commandBufferCount = 1};
   const VkResult result = device.vk.vkAllocateCommandBuffers(device.handle, &info, &commands_);
   if (result != VK_SUCCESS) return vulkan_failure(result, "allocating a command buffer");
   return {};
@@ -219,9 +207,8 @@ Result<void> Commands::create(const Device& device, std::uint32_t queue_family) 
 Result<void> Commands::begin(const Device& device) {
   VkResult result = device.vk.vkResetCommandPool(device.handle, pool_.get(), 0);
   if (result != VK_SUCCESS) return vulkan_failure(result, "resetting a command pool");
-  VkCommandBufferBeginInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   result = device.vk.vkBeginCommandBuffer(commands_, &info);
   if (result != VK_SUCCESS) return vulkan_failure(result, "beginning a command buffer");
   return {};
@@ -252,8 +239,11 @@ Result<void> run_once(const Device& device, const std::function<void(VkCommandBu
       .and_then([&] { return device.wait(done.get(), 1, "waiting for the device"); });
 }
 
-Result<UniqueSampler> make_sampler(const Device& device, VkSamplerCreateInfo info) {
+Result<UniqueSampler> make_sampler(const Device& device, VkFilter filter, VkSamplerAddressMode mode,
+                                   VkSamplerCreateInfo info) {
   info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+  info.magFilter = info.minFilter = filter;
+  info.addressModeU = info.addressModeV = info.addressModeW = mode;
   return device.make<UniqueSampler>(&VolkDeviceTable::vkCreateSampler, info, "creating a sampler");
 }
 
@@ -270,10 +260,10 @@ Result<void> upload_image(const Device& device, const Image& image, core::Extent
   std::size_t at = 0;
   for (std::uint32_t i = 0; i < levels.size(); ++i) {
     std::memcpy(staging->mapped + at, levels[i].data(), levels[i].size());
-    VkBufferImageCopy copy{};
-    copy.bufferOffset = at;
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, i, first_layer, layers};
-    copy.imageExtent = {std::max(size.width >> i, 1U), std::max(size.height >> i, 1U), 1};
+    VkBufferImageCopy copy{
+        .bufferOffset = at,
+        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, i, first_layer, layers},
+        .imageExtent = {std::max(size.width >> i, 1U), std::max(size.height >> i, 1U), 1}};
     copies.push_back(copy);
     at += levels[i].size();
   }

@@ -59,8 +59,10 @@ core::Result<Image> make_image(const Device& device, core::Extent size, VkFormat
 core::Result<UniqueImageView> make_view(const Device& device, VkImage image, VkFormat format,
                                         const VkImageSubresourceRange& part, bool array = false);
 
-// A sampler; `info` without its type. Fails with kOutOfMemory or kDeviceLost.
-core::Result<UniqueSampler> make_sampler(const Device& device, VkSamplerCreateInfo info);
+// A sampler with one filter, and one address mode for all directions. `info` has what else differs
+// from 0. Fails with kOutOfMemory or kDeviceLost.
+core::Result<UniqueSampler> make_sampler(const Device& device, VkFilter filter,
+                                         VkSamplerAddressMode mode, VkSamplerCreateInfo info = {});
 
 // Fills an image with usage TRANSFER_DST and SAMPLED, and makes it readable by fragment shaders.
 // `levels` are its mip levels, the first of `size`: layer by layer, rows without padding. Fills

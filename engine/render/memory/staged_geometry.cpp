@@ -16,23 +16,21 @@ namespace {
 // Records barriers that release buffer ranges to another queue family, or acquire them.
 void hand_over(const Device& device, VkCommandBuffer commands,
                std::span<const VkBufferMemoryBarrier2> barriers) {
-  VkDependencyInfo dependency{};
-  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  dependency.bufferMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size());
-  dependency.pBufferMemoryBarriers = barriers.data();
+  const VkDependencyInfo dependency{
+      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+      .bufferMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size()),
+      .pBufferMemoryBarriers = barriers.data()};
   device.vk.vkCmdPipelineBarrier2(commands, &dependency);
 }
 
 VkBufferMemoryBarrier2 ownership_of(const Device& device, VkBuffer buffer, std::uint64_t offset,
                                     std::uint64_t bytes) {
-  VkBufferMemoryBarrier2 barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
-  barrier.srcQueueFamilyIndex = device.transfer_family;
-  barrier.dstQueueFamilyIndex = device.queue_family;
-  barrier.buffer = buffer;
-  barrier.offset = offset;
-  barrier.size = bytes;
-  return barrier;
+  return {.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
+          .srcQueueFamilyIndex = device.transfer_family,
+          .dstQueueFamilyIndex = device.queue_family,
+          .buffer = buffer,
+          .offset = offset,
+          .size = bytes};
 }
 
 }  // namespace

@@ -31,11 +31,8 @@ Result<void> DepthPyramid::create(const Device& device, VkSampleCountFlagBits sa
   const VkDescriptorType from_level[] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, target};
   const Shader first = samples == VK_SAMPLE_COUNT_1_BIT ? Shader::kDepthPyramidFromDepthComp
                                                         : Shader::kDepthPyramidSamplesComp;
-  VkSamplerCreateInfo nearest{};
-  nearest.addressModeU = nearest.addressModeV = nearest.addressModeW =
-      VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  nearest.maxLod = VK_LOD_CLAMP_NONE;
-  return make_sampler(device, nearest)
+  return make_sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                      {.maxLod = VK_LOD_CLAMP_NONE})
       .map(into(sampler_))
       .and_then([&] { return first_.create(device, first, from_depth, sizeof(glm::ivec2), 1); })
       .and_then([&] {

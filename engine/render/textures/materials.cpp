@@ -84,14 +84,14 @@ std::vector<std::vector<std::uint8_t>> mip_levels(const TexturePixels& pixels) {
 
 Result<void> MaterialTable::create(const Device& device, std::uint64_t texture_budget_bytes) {
   texture_budget_bytes_ = texture_budget_bytes;
-  VkSamplerCreateInfo smooth{};
-  smooth.magFilter = smooth.minFilter = VK_FILTER_LINEAR;
-  smooth.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
-  smooth.maxLod = VK_LOD_CLAMP_NONE;
   return make_buffer(device, PSYGEN_MAX_MATERIALS * sizeof(shaders::MaterialData),
                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::kWrite)
       .map(into(buffer_))
-      .and_then([&] { return make_sampler(device, smooth); })
+      .and_then([&] {
+        return make_sampler(
+            device, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT,
+            {.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR, .maxLod = VK_LOD_CLAMP_NONE});
+      })
       .map(into(sampler_))
       .and_then([&] { return add_sets(device); })
       .and_then([&] {

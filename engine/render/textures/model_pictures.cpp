@@ -25,15 +25,14 @@ Result<void> ImpostorTextures::create(const Device& device,
                                       std::span<const core::ImpostorTexture> pictures) {
   PSYGEN_CHECK(pictures.size() <= core::kMaxImpostors, "a byte names the picture");
   if (!sampler_.exists()) {
-    VkSamplerCreateInfo info{};
-    info.magFilter = info.minFilter = VK_FILTER_LINEAR;
     // Two levels at once would cost software devices twice as much.
-    info.mipmapMode =
+    const VkSamplerMipmapMode between =
         device.info.software ? VK_SAMPLER_MIPMAP_MODE_NEAREST : VK_SAMPLER_MIPMAP_MODE_LINEAR;
-    info.addressModeU = info.addressModeV = info.addressModeW =
-        VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    info.maxLod = VK_LOD_CLAMP_NONE;
-    if (Result<void> made = make_sampler(device, info).map(into(sampler_)); !made) return made;
+    const Result<void> made =
+        make_sampler(device, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                     {.mipmapMode = between, .maxLod = VK_LOD_CLAMP_NONE})
+            .map(into(sampler_));
+    if (!made) return made;
   }
   const auto layers = static_cast<std::uint32_t>(1 + pictures.size() * core::kImpostorViews);
   Result<Image> image = make_image(
