@@ -17,7 +17,7 @@
 #include "engine/render/memory/staged_geometry.hpp"
 #include "engine/render/meshes/contact_shadow_map.hpp"
 #include "engine/render/passes/gpu_culling.hpp"
-#include "engine/render/passes/record.hpp"
+#include "engine/render/passes/passes.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/render/text/overlay_layout.hpp"
 #include "engine/render/textures/model_pictures.hpp"

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 
 #include "engine/core/error.hpp"
 #include "engine/core/vertex_layout.hpp"
+#include "engine/render/device/descriptors.hpp"
 #include "engine/render/device/device.hpp"
 #include "engine/render/types.hpp"
 #include "shader_list.h"
@@ -102,5 +105,31 @@ inline core::Result<void> go_on(const Progress& progress, double fraction) {
   if (!progress || progress(fraction)) return {};
   return core::fail(core::ErrorCode::kInterrupted, "the renderer was given up while it was made");
 }
+
+// A compute shader with the layout of its one descriptor set, and a fixed number of such sets. Owns
+// its Vulkan objects and records no barriers. Empty until create(). The device must outlive it.
+class ComputePipeline {
+ public:
+  // Creates everything. Binding i of the set has the type types[i]. Push constants have
+  // `push_bytes` from offset 0. The sets are numbered 0 … sets − 1. Fails as vulkan_error() says.
+  core::Result<void> create(const Device& device, Shader shader,
+                            std::span<const VkDescriptorType> types, std::uint32_t push_bytes,
+                            std::size_t sets);
+  // The sets, to name buffers and images in.
+  const DescriptorSets& sets() const { return sets_; }
+
+  // Records the binding of the pipeline and a set.
+  void bind(const Device& device, VkCommandBuffer commands, std::size_t set) const;
+  // Records a dispatch of groups_x · groups_y workgroups. `push` points to push_bytes; requires
+  // bind() before.
+  void dispatch(const Device& device, VkCommandBuffer commands, const void* push,
+                std::uint32_t groups_x, std::uint32_t groups_y) const;
+
+ private:
+  DescriptorSets sets_;
+  UniquePipelineLayout layout_;
+  UniquePipeline pipeline_;
+  std::uint32_t push_bytes_ = 0;
+};
 
 }  // namespace psygen::render

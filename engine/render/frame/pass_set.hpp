@@ -9,7 +9,7 @@
 
 #include "engine/render/device/pipeline_build.hpp"
 #include "engine/render/frame/frame_sets.hpp"
-#include "engine/render/memory/slot_buffer.hpp"
+#include "engine/render/memory/memory.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/text/overlay_layout.hpp"
 

@@ -1,6 +1,6 @@
 // The depth image of the sun's shadow, one layer per cascade, and the renderings on it. Without
-// cascades it is one texel that nothing reads. It knows neither meshes (passes/shadows.hpp) nor the
-// places of cascades (frame_data.hpp). Main thread. Private to engine/render.
+// cascades it is one texel that nothing reads. It knows neither meshes (passes/landscape.hpp) nor
+// the places of cascades (frame_data.hpp). Main thread. Private to engine/render.
 #pragma once
 
 #include <functional>

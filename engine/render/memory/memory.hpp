@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "engine/core/surface_provider.hpp"
 #include "engine/render/device/device.hpp"
@@ -121,5 +122,23 @@ void image_barriers(const Device& device, VkCommandBuffer commands,
                     std::span<const VkImageMemoryBarrier2> barriers);
 void image_barrier(const Device& device, VkCommandBuffer commands,
                    const VkImageMemoryBarrier2& barrier);
+
+// A buffer that the CPU writes anew for each frame, one for each frame in flight. Empty until
+// create(). The device must outlive it.
+class SlotBuffer {
+ public:
+  // Creates `slots` buffers of `bytes` zero bytes each. Fails like make_buffer().
+  core::Result<void> create(const Device& device, std::size_t slots, std::uint64_t bytes,
+                            VkBufferUsageFlags usage);
+  // Copies `bytes` to the start of a slot's buffer, whose last frame has finished. Returns true if
+  // the buffer was too small and was replaced: the sets that name it must be written again.
+  core::Result<bool> write(const Device& device, std::size_t slot,
+                           std::span<const std::byte> bytes);
+  const Buffer& at(std::size_t slot) const { return buffers_[slot]; }
+
+ private:
+  std::vector<Buffer> buffers_;
+  VkBufferUsageFlags usage_ = 0;
+};
 
 }  // namespace psygen::render

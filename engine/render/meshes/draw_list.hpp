@@ -11,10 +11,8 @@
 
 #include "engine/core/vertex_layout.hpp"
 #include "engine/render/memory/shared_index_lists.hpp"
+#include "engine/render/meshes/layouts.hpp"
 #include "engine/render/meshes/mesh_tables.hpp"
-#include "engine/render/meshes/models.hpp"
-#include "engine/render/meshes/objects.hpp"
-#include "engine/render/meshes/terrain.hpp"
 #include "engine/render/textures/materials.hpp"
 #include "engine/render/types.hpp"
 #include "shaders/shared.h"

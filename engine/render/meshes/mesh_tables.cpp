@@ -2,9 +2,7 @@
 
 #include <utility>
 
-#include "engine/render/meshes/models.hpp"
-#include "engine/render/meshes/objects.hpp"
-#include "engine/render/meshes/terrain.hpp"
+#include "engine/render/meshes/layouts.hpp"
 
 namespace psygen::render {
 

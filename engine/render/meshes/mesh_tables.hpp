@@ -1,6 +1,5 @@
-// The pipelines of meshes, as tables: a lookup is one load. A vertex layout (terrain.hpp,
-// models.hpp, objects.hpp) creates its pipelines and decides in which entries they stand. Main
-// thread. Private to engine/render.
+// The pipelines of meshes, as tables: a lookup is one load. A vertex layout (layouts.hpp) creates
+// its pipelines and decides in which entries they stand. Main thread. Private to engine/render.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-#include "engine/render/meshes/models.hpp"
-
 #include <cmath>
+
+#include "engine/render/meshes/layouts.hpp"
 
 namespace psygen::render {
 

@@ -1,8 +1,8 @@
-#include "engine/render/meshes/objects.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+
+#include "engine/render/meshes/layouts.hpp"
 
 namespace psygen::render {
 

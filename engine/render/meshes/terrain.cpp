@@ -1,4 +1,4 @@
-#include "engine/render/meshes/terrain.hpp"
+#include "engine/render/meshes/layouts.hpp"
 
 namespace psygen::render {
 

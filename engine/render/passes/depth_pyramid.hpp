@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "engine/render/device/compute_pipeline.hpp"
+#include "engine/render/device/pipeline_build.hpp"
 #include "engine/render/memory/memory.hpp"
 
 namespace psygen::render {

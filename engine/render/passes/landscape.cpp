@@ -1,11 +1,80 @@
 #include "engine/render/passes/landscape.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 #include "engine/render/passes/gpu_culling.hpp"
-#include "engine/render/passes/mesh_draws.hpp"
 
 namespace psygen::render {
 
 namespace {
+
+static_assert(sizeof(IndexedDraw) == sizeof(VkMultiDrawIndexedInfoEXT));
+static_assert(offsetof(IndexedDraw, index_count) ==
+              offsetof(VkMultiDrawIndexedInfoEXT, indexCount));
+static_assert(offsetof(IndexedDraw, vertex_offset) ==
+              offsetof(VkMultiDrawIndexedInfoEXT, vertexOffset));
+
+// Binds what draws from these buffers need, unless it is bound.
+class MeshBinder {
+ public:
+  explicit MeshBinder(const Recording& to) : to_(to), textures_(to) {}
+  // `Draws`: a run or a group.
+  template <class Draws>
+  void bind(VkPipeline pipeline, const Draws& draws) {
+    const VkBuffer vertices = to_.buffers.pool_blocks[draws.pool_block].buffer.get();
+    const VkBuffer indices = draws.shared ? to_.buffers.shared_indices : vertices;
+    if (pipeline != pipeline_) to_.bind_pipeline(pipeline);
+    if (vertices != vertices_) {
+      const VkDeviceSize zero = 0;
+      to_.device.vk.vkCmdBindVertexBuffers(to_.commands(), 0, 1, &vertices, &zero);
+    }
+    if (indices != indices_) {
+      to_.device.vk.vkCmdBindIndexBuffer(to_.commands(), indices, 0, VK_INDEX_TYPE_UINT16);
+    }
+    textures_.bind(draws.textures);
+    pipeline_ = pipeline;
+    vertices_ = vertices;
+    indices_ = indices;
+  }
+
+ private:
+  const Recording& to_;
+  TextureBinder textures_;
+  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  VkBuffer vertices_ = VK_NULL_HANDLE, indices_ = VK_NULL_HANDLE;
+};
+
+// Draws one run, whose buffers are bound.
+void draw_run(const Recording& to, const DrawRun& run) {
+  const VkCommandBuffer commands = to.commands();
+  const IndexedDraw* const draws = to.list.draws().data();
+  for (std::uint32_t i = run.first; run.pushed && i < run.first + run.count; ++i) {
+    to.device.vk.vkCmdPushConstants(commands, to.sets.layout(), VK_SHADER_STAGE_VERTEX_BIT, 0,
+                                    sizeof(shaders::DrawData), &to.list.data()[i]);
+    to.device.vk.vkCmdDrawIndexed(commands, draws[i].index_count, 1, draws[i].first_index,
+                                  draws[i].vertex_offset, 0);
+  }
+  const std::uint32_t most = to.device.max_multi_draw;
+  for (std::uint32_t done = 0; !run.pushed && done < run.count; done += most) {
+    const std::uint32_t first = run.first + done;
+    to.device.vk.vkCmdDrawMultiIndexedEXT(
+        commands, std::min(run.count - done, most),
+        reinterpret_cast<const VkMultiDrawIndexedInfoEXT*>(draws + first), 1, first,
+        sizeof(IndexedDraw), nullptr);
+  }
+}
+
+// Draws all runs with the pipelines of a use. Calls drawn(run) after each.
+template <class Drawn>
+void draw_list(const Recording& to, MeshUse use, const Drawn& drawn) {
+  MeshBinder binder(to);
+  for (const DrawRun& run : to.list.runs()) {
+    binder.bind(to.meshes.find(run.layout, use, run.variant()), run);
+    draw_run(to, run);
+    drawn(run);
+  }
+}
 
 constexpr std::uint64_t kTrianglesOfPart = 12'000;
 
@@ -80,6 +149,16 @@ void Landscape::warm_up(const Recording& to, const WarmUpStep& step) const {
     draw(core::VertexLayout::kModel, {.coverage = Coverage::kPart});
     draw(core::VertexLayout::kModel, {.coverage = Coverage::kPictured});
   }
+}
+
+void Shadows::record(const Recording& to) const {
+  if (!active_) return;
+  to.sets.shadows().record(to.device, to.commands(), [&](std::uint32_t cascade) {
+    to.device.vk.vkCmdPushConstants(to.commands(), to.sets.layout(), VK_SHADER_STAGE_VERTEX_BIT,
+                                    sizeof(shaders::DrawData), sizeof(cascade), &cascade);
+    draw_list(to, MeshUse::kShadow, [](const DrawRun&) {});
+  });
+  to.slot.timer().mark(to.device, to.commands(), GpuTimer::Mark::kShadows);
 }
 
 }  // namespace psygen::render

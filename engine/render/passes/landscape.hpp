@@ -1,4 +1,5 @@
-// Ground, models and objects: from a list of the CPU, or chosen by the device (gpu_culling.hpp).
+// Ground, models and objects: from a list of the CPU, or chosen by the device (gpu_culling.hpp);
+// and the sun's shadows of the same meshes. The pipelines of both passes are those of MeshTables.
 // Private to engine/render.
 #pragma once
 
@@ -7,8 +8,7 @@
 namespace psygen::render {
 
 // It begins the renderings of the landscape itself: the device culls between two of them, and
-// software devices split one into parts. It leaves the last one open for what follows. Its
-// pipelines are those of MeshTables.
+// software devices split one into parts. It leaves the last one open for what follows.
 class Landscape {
  public:
   // The functions of Pass (pass.hpp).
@@ -21,5 +21,19 @@ class Landscape {
   void warm_up(const Recording& to, const WarmUpStep& step) const;
 };
 static_assert(Pass<Landscape>);
+
+// The sun's shadows: the meshes of the frame, drawn into each cascade. Images and renderings are
+// those of FrameSets::shadows().
+class Shadows {
+ public:
+  // The functions of Pass (pass.hpp).
+  static constexpr Stage kStage = Stage::kBefore;
+  void list(const FrameInput&, const FrameFacts& facts) { active_ = facts.frame.shadow.y > 0; }
+  void record(const Recording& to) const;
+
+ private:
+  bool active_ = false;  // the preset has cascades, and the sun shines
+};
+static_assert(Pass<Shadows>);
 
 }  // namespace psygen::render

@@ -1,5 +1,6 @@
-// All passes, in the order of a frame. A new pass is its include and one line here. Private to
-// engine/render.
+// All passes, in the order of a frame, and their recording: Vulkan's renderings begin and end
+// between the stages of the passes. A new pass is its include and one line here. It submits
+// nothing. Main thread. Private to engine/render.
 #pragma once
 
 #include <tuple>
@@ -9,7 +10,6 @@
 #include "engine/render/passes/overlay.hpp"
 #include "engine/render/passes/particles.hpp"
 #include "engine/render/passes/scale_up.hpp"
-#include "engine/render/passes/shadows.hpp"
 #include "engine/render/passes/sky.hpp"
 #include "engine/render/passes/water.hpp"
 
@@ -45,5 +45,19 @@ static_assert(
       return ((P::kStage >= last && (last = P::kStage, true)) && ...);
     }(std::type_identity<Passes>{}),
     "passes are listed in the order of their stages");
+
+// Records a whole frame, between slot.begin() and slot.end(). Afterwards the colour target is in
+// the layout of an attachment.
+void record_frame(const Passes& passes, const Recording& to);
+
+// Records a frame with only text and its background.
+void record_text(const Passes& passes, const Recording& to);
+
+// Number of submissions that draw all pipelines of a feature once.
+int warm_up_steps(const Passes& passes, Feature feature);
+// Records submission step.number, 0 … warm_up_steps(passes, step.feature) − 1.
+// `textures`: a set with textures of a material, or null if no shader of the feature reads one.
+void record_warm_up(const Passes& passes, const Recording& to, WarmUpStep step,
+                    VkDescriptorSet textures);
 
 }  // namespace psygen::render

@@ -1,6 +1,5 @@
-#include "engine/render/passes/record.hpp"
-
 #include "engine/render/passes/gpu_culling.hpp"
+#include "engine/render/passes/passes.hpp"
 
 namespace psygen::render {
 

@@ -5,9 +5,7 @@
 #include <random>
 
 #include "engine/core/camera.hpp"
-#include "engine/render/meshes/models.hpp"
-#include "engine/render/meshes/objects.hpp"
-#include "engine/render/meshes/terrain.hpp"
+#include "engine/render/meshes/layouts.hpp"
 #include "engine/visibility/frustum.hpp"
 
 namespace psygen::render {

@@ -7,8 +7,7 @@
 #include <random>
 #include <tuple>
 
-#include "engine/render/meshes/models.hpp"
-#include "engine/render/meshes/terrain.hpp"
+#include "engine/render/meshes/layouts.hpp"
 #include "engine/render/meshes/view_volume.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
