@@ -7,7 +7,6 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "engine/audio/output.hpp"
 #include "engine/audio/voice.hpp"
 #include "engine/core/log.hpp"
 

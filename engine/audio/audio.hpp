@@ -13,7 +13,6 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "engine/audio/clip.hpp"

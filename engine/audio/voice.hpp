@@ -1,16 +1,21 @@
-// A playing sound, and its voice: the OpenAL source that it has while it is audible. Free functions
-// on the values of one sound; Audio decides which sounds have voices. Private to engine/audio. Main
-// thread, with the context of the output in use.
+// A playing sound, its voice (the OpenAL source that it has while it is audible), and the device
+// that plays it. Free functions on the values of one sound; Audio decides which sounds have voices.
+// Private to engine/audio. Main thread, with the context of the output in use.
 #pragma once
 
 #include <AL/al.h>
+#include <AL/alc.h>
 
 #include <cstddef>
 #include <deque>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "engine/audio/audio.hpp"
+#include "engine/audio/clip.hpp"
 #include "engine/audio/sound_file.hpp"
 
 namespace psygen::audio {
@@ -52,5 +57,35 @@ void set_source(const Sound& sound, const glm::vec3& place);
 void follow(Sound& sound);
 // Advances a sound without a voice. 0 <= dt_s, finite.
 void pass_silently(Sound& sound, double dt_s);
+
+// A device of OpenAL with its context and listener.
+inline constexpr int kRenderRate = 48'000;  // rate of a rendered output in Hz
+
+class Output {
+ public:
+  // Null if there is no device, or no device that can render.
+  static std::unique_ptr<Output> open(bool rendered);
+  ~Output();
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  // Makes this output the target of the calls below and of all calls of OpenAL.
+  void use();
+  // False after the device was unplugged.
+  bool connected() const;
+  // The orientation of the listener, who is at the origin, as unit vectors.
+  void set_listener(const glm::vec3& forward, const glm::vec3& up);
+  std::vector<float> render(std::size_t frames);
+
+ private:
+  Output(ALCdevice* device, ALCcontext* context, bool rendered);
+  ALCdevice* device_;
+  ALCcontext* context_;
+  bool rendered_;
+};
+
+// A buffer with these samples; 0 if out of memory.
+ALuint make_buffer(std::span<const std::int16_t> samples, std::uint32_t channels,
+                   std::uint32_t rate_hz);
 
 }  // namespace psygen::audio
