@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "engine/core/error.hpp"
 
@@ -56,6 +57,21 @@ Result<std::thread> start_thread(Work&& work) {
         ErrorCode::kInternal,
         std::string("the system gives no more threads, or no memory for one (") + e.what() + ")");
   }
+}
+
+// Runs `work` on this thread and on `threads` - 1 further ones, or as many as the system grants,
+// and waits for all of them. `work` throws nothing.
+template <class Work>
+void run_in_threads(std::size_t threads, const Work& work) {
+  std::vector<std::thread> helpers;
+  for (std::size_t i = 1; i < threads; ++i) {
+    auto helper = start_thread(work);
+    if (!helper) break;
+    helpers.push_back(std::move(*helper));
+  }
+  work();
+  for (std::thread& helper : helpers)
+    helper.join();
 }
 
 // Sets nice 19 for the calling thread alone (Linux): it uses processor time that no other thread

@@ -13,14 +13,14 @@ constexpr double kMaxLight = 1e6;
 // Maps the number of an image in the file to its number in Model::images.
 using Pictures = std::map<std::uint32_t, std::uint32_t>;
 
-core::Result<image::Image> decode(const Reading& reading, std::uint32_t number) {
+core::Result<image::ImagePtr> decode(const Reading& reading, std::uint32_t number) {
   const tinygltf::Image& described = reading.file.images[number];
   const std::string name = fmt::format("images[{}]", number);
   if (described.bufferView < 0)
-    return image::decode_image(described.image, name, reading.limits.images);
+    return reading.shared.decode(described.image, name, reading.limits.images);
   return bytes_of_view(reading.file, described.bufferView, name)
       .and_then([&](std::span<const std::uint8_t> bytes) {
-        return image::decode_image(bytes, name, reading.limits.images);
+        return reading.shared.decode(bytes, name, reading.limits.images);
       });
 }
 
@@ -38,7 +38,7 @@ core::Result<std::uint32_t> picture_of(Reading& reading, Pictures& pictures, int
   if (!is_new) return at->second;
   auto picture = decode(reading, *number);
   if (!picture) return tl::unexpected(picture.error());
-  if (auto ok = add_within_limit(reading.pixel_bytes, picture->rgba.size(),
+  if (auto ok = add_within_limit(reading.pixel_bytes, (*picture)->rgba.size(),
                                  reading.limits.pixel_bytes, "bytes of pixels");
       !ok)
     return tl::unexpected(ok.error());

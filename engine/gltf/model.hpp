@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/core/mesh_data.hpp"
-#include "engine/image/image.hpp"
+#include "engine/image/image_cache.hpp"
 
 namespace psygen::gltf {
 
@@ -79,7 +79,7 @@ struct Model {
   std::string name;  // file name without its folder
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
-  std::vector<image::Image> images;
+  std::vector<image::ImagePtr> images;  // not null; other models may share them
   std::vector<Node> nodes;  // the nodes of the file's scene, parents before their children
   std::vector<Animation> animations;
   // Features of the file that the engine does not support, one sentence each: skins, morph targets,

@@ -216,10 +216,16 @@ core::Result<tinygltf::Model> parse(const std::filesystem::path& path, const Byt
 }
 
 core::Result<Model> read_parsed(const std::filesystem::path& path, const tinygltf::Model& file,
-                                const Limits& limits) {
+                                const Limits& limits, image::ImageCache* shared) {
   Model model;
   model.name = path.filename().string();
-  Reading reading{.file = file, .limits = limits, .out = model, .uv_sets = {}, .node_numbers = {}};
+  image::ImageCache own(0);
+  Reading reading{.file = file,
+                  .limits = limits,
+                  .out = model,
+                  .shared = shared != nullptr ? *shared : own,
+                  .uv_sets = {},
+                  .node_numbers = {}};
   for (const std::string& name : file.extensionsUsed) {
     if (!is_supported(name))
       reading.note(
@@ -241,13 +247,14 @@ core::Result<Model> read_parsed(const std::filesystem::path& path, const tinyglt
 
 }  // namespace
 
-core::Result<Model> read_file(const std::filesystem::path& path, const Limits& limits) {
+core::Result<Model> read_file(const std::filesystem::path& path, const Limits& limits,
+                              image::ImageCache* shared) {
   try {
     std::vector<std::filesystem::path> named;
     const auto bytes = core::read_file(path, max_bytes_of(limits));
     if (!bytes) return tl::unexpected(bytes.error());
     auto model = parse(path, *bytes, limits, named).and_then([&](const tinygltf::Model& file) {
-      return read_parsed(path, file, limits);
+      return read_parsed(path, file, limits, shared);
     });
     if (!model)
       return core::fail(model.error().code,

@@ -29,7 +29,8 @@ struct Limits {
 // it names cannot be read), kParse (damaged, not glTF 2.0, or out of range), kInvalidArgument (a
 // required extension that is not supported, sparse accessors, names of files outside its folder),
 // kOverBudget (larger than the limits) or kOutOfMemory. The message starts with the path and names
-// the faulty part.
-core::Result<Model> read_file(const std::filesystem::path& path, const Limits& limits = {});
+// the faulty part. Images that `shared` knows are not decoded again; null: it knows none.
+core::Result<Model> read_file(const std::filesystem::path& path, const Limits& limits = {},
+                              image::ImageCache* shared = nullptr);
 
 }  // namespace psygen::gltf

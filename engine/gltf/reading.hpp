@@ -18,6 +18,7 @@ struct Reading {
   const tinygltf::Model& file;
   const Limits& limits;
   Model& out;
+  image::ImageCache& shared;
   std::vector<int> uv_sets;                 // for each material: its set of texture coordinates
   std::vector<std::uint32_t> node_numbers;  // for each node of the file: its index in Model::nodes
   std::uint64_t vertices = 0, indices = 0, keys = 0, pixel_bytes = 0;  // sums so far

@@ -3,20 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <iterator>
 #include <map>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <span>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "engine/core/hash.hpp"
+#include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/out_of_memory.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/gltf/read_file.hpp"
 #include "engine/handmade/handmade_type.hpp"
 #include "engine/handmade/triangles.hpp"
+#include "engine/image/image_cache.hpp"
 #include "engine/image/image_io.hpp"
 
 namespace psygen::handmade {
@@ -35,16 +42,21 @@ struct Read {
   std::vector<fs::path> named;
 };
 
-core::Result<Read<Shape>> read_shape(const fs::path& file, const world::HandmadeModel& how) {
-  const auto model = gltf::read_file(file, gltf_limits());
-  if (!model) return tl::unexpected(model.error());
-  auto shape = shape_of(*model, how);
-  if (!shape)
-    return core::fail(shape.error().code,
-                      fmt::format("{}: {}", file.string(), shape.error().message));
-  for (const std::string& note : model->notes)
-    core::log_warning(note);
-  return Read<Shape>{*std::move(shape), model->files};
+// Appends what the file has and the engine does not support to `notes`.
+core::Result<Read<Shape>> read_shape(const world::ModelFile& wanted, image::ImageCache& shared,
+                                     std::vector<std::string>& notes) {
+  try {
+    auto model = gltf::read_file(wanted.path, gltf_limits(), &shared);
+    if (!model) return tl::unexpected(model.error());
+    auto shape = shape_of(*model, *wanted.model);
+    if (!shape)
+      return core::fail(shape.error().code,
+                        fmt::format("{}: {}", wanted.path.string(), shape.error().message));
+    std::ranges::move(model->notes, std::back_inserter(notes));
+    return Read<Shape>{*std::move(shape), std::move(model->files)};
+  } catch (const std::bad_alloc&) {
+    return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory(wanted.path.string()));
+  }
 }
 
 using PicturePtr = std::shared_ptr<const world::GreyPicture>;
@@ -116,14 +128,23 @@ class InUse {
 
 class Files final : public world::ResourceLoader {
  public:
-  core::Result<std::unique_ptr<models::ModelType>> read_model(
-      const fs::path& file, const world::HandmadeModel& model) const override {
-    const auto shape = shape_from(file, model);
-    if (!shape) return tl::unexpected(shape.error());
-    return make_handmade_type(model.name,
-                              fmt::format("handmade: {}, {} triangles", model.file,
-                                          (*shape)->levels.front().indices.size() / 3),
-                              *shape);
+  world::ModelTypes read_models(std::span<const world::ModelFile> wanted) const override {
+    world::ModelTypes types;
+    const std::vector<Loaded> loaded = load(wanted);
+    for (std::size_t i = 0; i < loaded.size(); ++i) {
+      const auto& [shape, notes] = loaded[i];
+      for (const std::string& note : notes)
+        core::log_warning(note);
+      types.push_back(shape.map([&](const ShapePtr& made) {
+        const world::HandmadeModel& model = *wanted[i].model;
+        return make_handmade_type(model.name,
+                                  fmt::format("handmade: {}, {} triangles", model.file,
+                                              made->levels.front().indices.size() / 3),
+                                  made);
+      }));
+      if (!shape) break;
+    }
+    return types;
   }
 
   core::Result<PicturePtr> read_grey(const fs::path& file) const override {
@@ -134,11 +155,38 @@ class Files final : public world::ResourceLoader {
   using ShapeKey =
       std::tuple<FileState, double, double, double, std::int64_t, std::string>;  // with settings
 
-  core::Result<ShapePtr> shape_from(const fs::path& file, const world::HandmadeModel& how) const {
+  struct Loaded {
+    core::Result<ShapePtr> shape;
+    std::vector<std::string> notes;
+  };
+
+  // The shapes of all files, or of all up to the first that fails; the rest is null. Several
+  // threads; the result does not depend on their number.
+  std::vector<Loaded> load(std::span<const world::ModelFile> wanted) const {
+    std::vector<Loaded> loaded(wanted.size());
+    image::ImageCache shared;
+    std::atomic<std::size_t> next = 0, failed = wanted.size();
+    const auto work = [&] {
+      for (std::size_t i = next++; i < failed; i = next++) {
+        loaded[i].shape = shape_from(wanted[i], shared, loaded[i].notes);
+        if (loaded[i].shape) continue;
+        std::size_t before = failed;
+        while (i < before && !failed.compare_exchange_weak(before, i)) {
+        }
+      }
+    };
+    const std::size_t most = std::max(std::thread::hardware_concurrency(), 1U);
+    core::run_in_threads(std::min(most, wanted.size()), work);
+    return loaded;
+  }
+
+  core::Result<ShapePtr> shape_from(const world::ModelFile& wanted, image::ImageCache& shared,
+                                    std::vector<std::string>& notes) const {
+    const world::HandmadeModel& how = *wanted.model;
     std::optional<ShapeKey> key;
-    if (auto state = state_of(file))
+    if (auto state = state_of(wanted.path))
       key = {*std::move(state), how.size_m, how.scale, how.sink_m, how.levels, how.collider};
-    return shapes_.find_or(key, [&] { return read_shape(file, how); });
+    return shapes_.find_or(key, [&] { return read_shape(wanted, shared, notes); });
   }
 
   mutable InUse<ShapeKey, Shape> shapes_;
@@ -150,9 +198,8 @@ class FilesWithPictures final : public world::ResourceLoader {
   FilesWithPictures(const fs::path& world_file, MemoryPicturesPtr pictures)
       : folder_(world_file.parent_path()), pictures_(std::move(pictures)) {}
 
-  core::Result<std::unique_ptr<models::ModelType>> read_model(
-      const fs::path& file, const world::HandmadeModel& model) const override {
-    return files().read_model(file, model);
+  world::ModelTypes read_models(std::span<const world::ModelFile> wanted) const override {
+    return files().read_models(wanted);
   }
   core::Result<PicturePtr> read_grey(const fs::path& file) const override {
     if (auto found = find(pictures_->in_place, file)) return found;
@@ -192,10 +239,11 @@ core::Result<std::vector<fs::path>> files_named_by(const world::World& world,
   const auto note = [&names](const fs::path& name) {
     if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
+  image::ImageCache shared;
   for (const world::HandmadeModel& model : world.models) {
     note(model.file);
     const fs::path file = world_file.parent_path() / model.file;
-    const auto read = gltf::read_file(file, gltf_limits());
+    const auto read = gltf::read_file(file, gltf_limits(), &shared);
     if (!read) return tl::unexpected(read.error());
     for (const fs::path& named : read->files)
       note(fs::path(model.file).parent_path() / named.lexically_relative(file.parent_path()));

@@ -1,10 +1,12 @@
 #include "engine/handmade/shape.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -65,17 +67,34 @@ std::vector<glm::vec3> corners_of(const core::Bounds& box) {
 // The extreme points in the directions of the surface of a lattice of 5 x 5 x 5 points. Of equal
 // points the first in the mesh, so that the result does not depend on a sort.
 std::vector<glm::vec3> extremes_of(const Triangles& triangles) {
-  std::vector<glm::vec3> points;
+  constexpr std::size_t kDirections = 98;
+  std::array<float, kDirections> x{}, y{}, z{}, most{};
+  std::array<std::uint32_t, kDirections> best{};
+  std::size_t directions = 0;
   for (int i = 0; i < 125; ++i) {
     const glm::ivec3 at = glm::ivec3(i % 5, i / 5 % 5, i / 25) - 2;
     if (std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) < 2) continue;
-    const glm::vec3 direction(at);
-    glm::vec3 best = triangles.vertices[triangles.indices.front()].position;
-    for (const std::uint32_t k : triangles.indices) {
-      const glm::vec3& p = triangles.vertices[k].position;
-      if (glm::dot(p, direction) > glm::dot(best, direction)) best = p;
+    x[directions] = static_cast<float>(at.x);
+    y[directions] = static_cast<float>(at.y);
+    z[directions++] = static_cast<float>(at.z);
+  }
+  best.fill(triangles.indices.front());
+  most.fill(-std::numeric_limits<float>::infinity());
+  std::vector<bool> seen(triangles.vertices.size());
+  for (const std::uint32_t k : triangles.indices) {
+    if (seen[k]) continue;
+    seen[k] = true;
+    const glm::vec3 p = triangles.vertices[k].position;
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      const float along = p.x * x[d] + p.y * y[d] + p.z * z[d];
+      best[d] = along > most[d] ? k : best[d];
+      most[d] = along > most[d] ? along : most[d];
     }
-    if (std::ranges::find(points, best) == points.end()) points.push_back(best);
+  }
+  std::vector<glm::vec3> points;
+  for (const std::uint32_t k : best) {
+    const glm::vec3& p = triangles.vertices[k].position;
+    if (std::ranges::find(points, p) == points.end()) points.push_back(p);
   }
   return points;
 }

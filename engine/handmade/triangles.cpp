@@ -39,7 +39,7 @@ std::vector<glm::vec3> colours_of(const gltf::Model& model, const gltf::Primitiv
   if (primitive.material != gltf::kNone) {
     const gltf::Material& material = model.materials[primitive.material];
     if (material.base_texture != gltf::kNone && !mesh.uvs.empty())
-      colours = texture_colours(mesh, model.images[material.base_texture], material.min_opacity);
+      colours = texture_colours(mesh, *model.images[material.base_texture], material.min_opacity);
     for (glm::vec3& colour : colours)
       colour *= material.base_colour;
   }
@@ -59,8 +59,8 @@ Drawn drawn_of(const gltf::Model& model, const gltf::Primitive& primitive, int d
   Drawn drawn{primitive.mesh, {}};
   if (is_cut(model, primitive)) {
     const gltf::Material& material = model.materials[primitive.material];
-    drawn.mesh = alpha_cutout(primitive.mesh, model.images[material.base_texture], material.opacity,
-                              material.min_opacity, depth);
+    drawn.mesh = alpha_cutout(primitive.mesh, *model.images[material.base_texture],
+                              material.opacity, material.min_opacity, depth);
   }
   drawn.colours = colours_of(model, primitive, drawn.mesh);
   return drawn;

@@ -47,7 +47,7 @@ class Adder {
     if (image == gltf::kNone) return render::kNoTexture;
     const auto [at, is_new] = textures_.try_emplace({image, colours}, render::kNoTexture);
     if (!is_new) return at->second;
-    const auto texture = assets_.add_texture(model_.images[image], colours);
+    const auto texture = assets_.add_texture(*model_.images[image], colours);
     if (texture) at->second = *texture;
     return texture;
   }

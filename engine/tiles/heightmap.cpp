@@ -6,7 +6,6 @@
 #include <array>
 #include <atomic>
 #include <new>
-#include <thread>
 #include <vector>
 
 #include "engine/core/headroom.hpp"
@@ -103,15 +102,7 @@ core::Result<void> paint_all(const Painter& painter, const amplify::Region& regi
       paint(i);
     }
   };
-  std::vector<std::thread> helpers;
-  for (unsigned i = 1; i < threads; ++i) {
-    auto helper = core::start_thread(work);
-    if (!helper) break;
-    helpers.push_back(std::move(*helper));
-  }
-  work();
-  for (std::thread& helper : helpers)
-    helper.join();
+  core::run_in_threads(threads, work);
   if (lacks_memory)
     return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory("the ground of a block"));
   if (next.load() < region.block_count())

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "engine/core/headroom.hpp"
@@ -151,15 +150,8 @@ class Writer {
 
   core::Result<void> write_contents(Grid& grid) {
     next_.store(0, std::memory_order_relaxed);
-    std::vector<std::thread> helpers;
-    for (unsigned i = 1; i < options_.threads && i < grid.count(); ++i) {
-      auto helper = core::start_thread([this, &grid] { work(grid); });
-      if (!helper) break;
-      helpers.push_back(std::move(*helper));
-    }
-    work(grid);
-    for (std::thread& helper : helpers)
-      helper.join();
+    core::run_in_threads(std::min<std::size_t>(options_.threads, grid.count()),
+                         [this, &grid] { work(grid); });
     if (error_) return tl::unexpected(*error_);
     if (options_.progress)
       options_.progress(static_cast<double>(report_.contents) / static_cast<double>(total_));

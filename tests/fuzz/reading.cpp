@@ -52,9 +52,11 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 class ExampleBeside final : public world::ResourceLoader {
  public:
   ExampleBeside() { file_.write(example_gltf()); }
-  core::Result<std::unique_ptr<models::ModelType>> read_model(
-      const std::filesystem::path&, const world::HandmadeModel& model) const override {
-    return handmade::files().read_model(file_.path(), model);
+  world::ModelTypes read_models(std::span<const world::ModelFile> files) const override {
+    std::vector<world::ModelFile> examples(files.begin(), files.end());
+    for (world::ModelFile& example : examples)
+      example.path = file_.path();
+    return handmade::files().read_models(examples);
   }
   core::Result<std::shared_ptr<const world::GreyPicture>> read_grey(
       const std::filesystem::path&) const override {
@@ -214,7 +216,8 @@ bool read_as_recording(std::string_view text, const std::filesystem::path& file)
 bool read_as_gltf(const std::filesystem::path& file) {
   world::HandmadeModel how;
   how.name = "fuzzed", how.file = file.string();
-  if (const auto type = handmade::files().read_model(file, how)) {
+  const world::ModelFile one{file, &how};
+  if (const auto type = std::move(handmade::files().read_models({&one, 1}).front())) {
     const models::Parameters p = models::default_parameters(**type);
     PSYGEN_CHECK((*type)->mesh_size(p, 0).triangle_count() > 0, "a model has triangles");
     PSYGEN_CHECK(core::is_finite((*type)->bounds(p).max), "a model has an end");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <span>
 
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/toml_values.hpp"
@@ -32,9 +33,9 @@ std::uint32_t corner_count(const ModelFields& fields) {
                                      [](const ParameterRange& r) { return r.low != r.high; });
 }
 
-// Reads a table, except its file. Returns false after a problem.
-bool read_table(TableReader& reader, HandmadeModel& model) {
-  bool sound = reader.read("name", model.name, 64, Presence::kRequired);
+// Reads a table, except its file.
+void read_table(TableReader& reader, HandmadeModel& model) {
+  reader.read("name", model.name, 64, Presence::kRequired);
   read_name_beside(reader, "file", model.file, Presence::kRequired);
   visit_handmade(model, FieldReader{reader});
   if (reader.read("collider", model.collider, 16) &&
@@ -45,19 +46,31 @@ bool read_table(TableReader& reader, HandmadeModel& model) {
     reader.problem("scale",
                    "size_m already sets the height of the model; give only one of the two");
   reader.finish();
-  return sound;
 }
 
-void register_model(const HandmadeModel& model, const HandmadeSource& source, TableReader& reader) {
+// Reads the files of all tables and registers their types, up to the first problem.
+void register_models(const std::vector<HandmadeModel>& models, const HandmadeSource& source,
+                     std::span<TableReader> readers) {
   if (source.beside.files == nullptr)
-    return reader.problem("file", "this program cannot read glTF models (engine/handmade)",
-                          core::ErrorCode::kInvalidArgument);
-  auto type = source.beside.path_of(model.file).and_then([&](const std::filesystem::path& file) {
-    return source.beside.files->read_model(file, model);
-  });
-  if (!type) return reader.problem("file", type.error().message, type.error().code);
-  if (const auto refused = register_type(std::move(*type), source.registry, source.grown))
-    reader.problem("name", *refused);
+    return readers.front().problem("file", "this program cannot read glTF models (engine/handmade)",
+                                   core::ErrorCode::kInvalidArgument);
+  std::vector<ModelFile> files;
+  std::optional<core::Error> leads_out;
+  for (const HandmadeModel& model : models) {
+    auto path = source.beside.path_of(model.file);
+    if (!path) leads_out = path.error();
+    if (!path) break;
+    files.push_back({*std::move(path), &model});
+  }
+  ModelTypes types = source.beside.files->read_models(files);
+  if (leads_out && types.size() == files.size())
+    types.emplace_back(tl::unexpected(*std::move(leads_out)));
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    TableReader& reader = readers[i];
+    if (!types[i]) return reader.problem("file", types[i].error().message, types[i].error().code);
+    if (const auto refused = register_type(*std::move(types[i]), source.registry, source.grown))
+      return reader.problem("name", *refused);
+  }
 }
 
 }  // namespace
@@ -145,10 +158,10 @@ bool read_name_beside(TableReader& reader, std::string_view key, std::string& na
 
 std::vector<HandmadeModel> read_handmade(TableReader& root, const HandmadeSource& source) {
   std::vector<HandmadeModel> models;
-  for (TableReader& reader : root.tables("model", kMaxHandmadeModels)) {
-    const bool sound = read_table(reader, models.emplace_back());
-    if (sound && !root.problems().any()) register_model(models.back(), source, reader);
-  }
+  std::vector<TableReader> readers = root.tables("model", kMaxHandmadeModels);
+  for (TableReader& reader : readers)
+    read_table(reader, models.emplace_back());
+  if (!models.empty() && !root.problems().any()) register_models(models, source, readers);
   return models;
 }
 

@@ -46,7 +46,7 @@ bool check_model(const ModelFields& fields, Problems& problems);
 // log2 of the largest number of triangles of any corner, allowed or rejected.
 double log2_cost(const ModelFields& fields);
 
-inline constexpr std::size_t kMaxHandmadeModels = 64;  // per file
+inline constexpr std::size_t kMaxHandmadeModels = 4096;  // per file
 
 // The inputs for reading handmade models.
 struct HandmadeSource {

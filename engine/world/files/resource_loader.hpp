@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "engine/core/error.hpp"
 #include "engine/models/model_type.hpp"
@@ -12,13 +14,22 @@
 
 namespace psygen::world {
 
+// A [[model]] and the path of its file.
+struct ModelFile {
+  std::filesystem::path path;
+  const HandmadeModel* model;
+};
+
+// The model types of [[model]] tables, in their order. After a failure, which is the last element,
+// no more are read.
+using ModelTypes = std::vector<core::Result<std::unique_ptr<models::ModelType>>>;
+
 class ResourceLoader {
  public:
   virtual ~ResourceLoader() = default;
-  // The model type of a [[model]] with this file. Equal files and settings give types of equal
-  // identity(). Error messages name the file; error codes are those of gltf::read_file().
-  virtual core::Result<std::unique_ptr<models::ModelType>> read_model(
-      const std::filesystem::path& file, const HandmadeModel& model) const = 0;
+  // The model types of [[model]] tables. Equal files and settings give types of equal identity().
+  // Error messages name the file; error codes are those of gltf::read_file().
+  virtual ModelTypes read_models(std::span<const ModelFile> files) const = 0;
   // An image of at most 4096 × 4096 pixels as grey values. Same errors.
   virtual core::Result<std::shared_ptr<const GreyPicture>> read_grey(
       const std::filesystem::path& file) const = 0;

@@ -86,7 +86,7 @@ TEST_F(ReadFile, DecodesImagesInBuffersAndNextToTheFile) {
   sample.json["materials"][0]["emissiveTexture"]["index"] = 0;
   const Model model = read(sample);
   ASSERT_EQ(model.images.size(), 2u) << "a picture is decoded once";
-  EXPECT_EQ(model.images[1], image::make_image(4, 2, 9, 8, 7, 255));
+  EXPECT_EQ(*model.images[1], image::make_image(4, 2, 9, 8, 7, 255));
   EXPECT_EQ(model.materials[0].base_texture, model.materials[0].emissive_texture);
   EXPECT_NE(model.materials[0].base_texture, model.materials[0].normal_texture);
   EXPECT_EQ(model.materials[0].normal_strength, 0.5F);

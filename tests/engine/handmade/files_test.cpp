@@ -100,6 +100,51 @@ TEST(HandmadeFiles, ReadBackEqual) {
   EXPECT_EQ(other[4].identity(), w.registry[4].identity());
 }
 
+// The models of a pack, each with an image in a copy of its own.
+TEST(HandmadeFiles, ReadThePackInThreadsAsOneByOne) {
+  World w;
+  constexpr int kModels = 70;
+  ASSERT_TRUE(image::write_png(w.folder / "things/a.png", image::make_image(9, 9, 250, 9, 9)));
+  std::vector<std::string> tables;
+  for (int i = 0; i < kModels; ++i) {
+    gltf::Sample sample = ball(4 + i % 7, 5 + i);
+    const std::string image = fmt::format("{}.png", i);
+    std::filesystem::copy(w.folder / "things/a.png", w.folder / "things" / image);
+    sample.json["images"][0]["uri"] = image;
+    sample.json["textures"][0]["source"] = 0;
+    sample.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+    const std::string name = fmt::format("m{}", i);
+    gltf::write_bytes(w.folder / "things" / (name + ".glb"), sample.glb());
+    tables.push_back(
+        fmt::format("[[model]]\nname = \"{0}\"\nfile = \"things/{0}.glb\"\nsize_m = 2\n", name));
+  }
+  std::vector<std::uint64_t> alone;
+  for (const std::string& table : tables) {
+    models::Registry one = models::make_standard_registry();
+    const auto world = world::parse_world(kHead + table, w.file(), one, &files());
+    ASSERT_TRUE(world) << world.error().message;
+    alone.push_back(one[4].identity());
+  }
+  std::string text = kHead;
+  for (const std::string& table : tables)
+    text += table;
+  const auto world = w.read(text);
+  ASSERT_TRUE(world) << world.error().message;
+  for (int i = 0; i < kModels; ++i) {
+    const models::ModelType& type = w.registry[static_cast<models::ModelIndex>(4 + i)];
+    EXPECT_EQ(type.name(), fmt::format("m{}", i));
+    EXPECT_EQ(type.identity(), alone[static_cast<std::size_t>(i)]);
+  }
+  // The first of several faulty files is named, and no model is kept.
+  for (const int i : {66, 31, 48})
+    gltf::write_bytes(w.folder / "things" / fmt::format("m{}.glb", i), "broken");
+  models::Registry fresh = models::make_standard_registry();
+  const auto refused = world::parse_world(text, w.file(), fresh, &files());
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("model[31].file"));
+  EXPECT_EQ(fresh.size(), 4U);
+}
+
 TEST(HandmadeFiles, KeepOneTypeForEqualModelsAndRejectOthersWithItsName) {
   World w;
   const std::string text = std::string(kHead) + kBall + kScatter;
@@ -258,9 +303,9 @@ TEST(HandmadeFiles, RejectEveryTruncatedFile) {
 TEST(HandmadeFiles, RejectModelsAboveTheirBudget) {
   World w;
   std::string text = kHead;
-  for (int i = 0; i < 65; ++i)
+  for (int i = 0; i < 4097; ++i)
     text += fmt::format("[[model]]\nname = \"m{}\"\nfile = \"things/ball.glb\"\n", i);
-  EXPECT_THAT(w.error_of(text), HasSubstr("model"));
+  EXPECT_THAT(w.error_of(text), HasSubstr("at most 4096 tables"));
   gltf::write_bytes(w.folder / "things/ball.glb", ball(60, 90).glb());  // 10,800 triangles
   EXPECT_THAT(w.error_with("count = 6", "count = 16384"), HasSubstr("too large"));
 }

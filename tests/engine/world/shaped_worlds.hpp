@@ -18,9 +18,12 @@ namespace psygen::world::testing {
 // Reads only images, no models.
 class PicturesAlone : public ResourceLoader {
  public:
-  core::Result<std::unique_ptr<models::ModelType>> read_model(const std::filesystem::path& file,
-                                                              const HandmadeModel&) const final {
-    return core::fail(core::ErrorCode::kIo, file.string() + ": no models");
+  ModelTypes read_models(std::span<const ModelFile> files) const final {
+    ModelTypes types;
+    if (!files.empty())
+      types.emplace_back(
+          core::fail(core::ErrorCode::kIo, files.front().path.string() + ": no models"));
+    return types;
   }
 };
 
