@@ -44,9 +44,9 @@ void edits_system(const Daylight& daylight, PendingEdits& pending, WorldFacts& f
   // Lives until no entity of the scene refers to it.
   const std::shared_ptr<const models::EditLayer> before = facts.world.layer();
   // Edits of a replaced world may have types and blocks that this one lacks.
-  const bool own = facts.world.revision.number == 0;
-  const world::Edits& edits = pending.edits;
-  world::set_edits(facts.world, (own ? edits : fitted(edits, facts.world, facts.registry)).layer());
+  world::set_edits(
+      facts.world,
+      fitted(pending.edits, facts.world, facts.registry, facts.world.edits.get()).layer());
   work.supply.set_edits(facts.world.layer());
   count_placed(facts.world, facts.levels);
   facts.models_reach_m = world::with_placed_models(facts.scattered_reach_m, facts.world);

@@ -80,7 +80,8 @@ EditLayer resized(const EditLayer& layer, double block_m) {
 
 }  // namespace
 
-Edits fitted(const Edits& edits, const World& world, const models::Registry& registry) {
+Edits fitted(const Edits& edits, const World& world, const models::Registry& registry,
+             const EditLayer* fitting) {
   Edits resized = edits;
   resized.resize_blocks(world);
   if (resized.empty()) return resized;
@@ -92,7 +93,7 @@ Edits fitted(const Edits& edits, const World& world, const models::Registry& reg
       const auto model = type(placed);
       return model && registry[*model].identity() == placed.identity;
     };
-    if (std::ranges::all_of(of_block->placed, is_same)) return;
+    if (of_block == nullptr || std::ranges::all_of(of_block->placed, is_same)) return;
     BlockEdits here = *of_block;
     std::erase_if(here.placed, [&](const PlacedModel& placed) { return !type(placed); });
     for (PlacedModel& placed : here.placed)
@@ -100,7 +101,9 @@ Edits fitted(const Edits& edits, const World& world, const models::Registry& reg
     blocks.set(at, std::move(here));
     changed = true;
   };
-  models::QuadMap<BlockEdits>::each_difference({}, resized.layer()->blocks, fit);
+  const models::QuadMap<BlockEdits> none;
+  models::QuadMap<BlockEdits>::each_difference(fitting != nullptr ? fitting->blocks : none,
+                                               resized.layer()->blocks, fit);
   if (!changed) return resized;
   if (blocks.empty()) return {};
   EditLayer layer = *resized.layer();

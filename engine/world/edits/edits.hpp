@@ -102,7 +102,8 @@ class Edits {
 
  private:
   core::Result<std::uint32_t> next_id() const;
-  friend Edits fitted(const Edits&, const World&, const models::Registry&);
+  friend Edits fitted(const Edits&, const World&, const models::Registry&,
+                      const models::EditLayer*);
   // Moves the edits into blocks of the world's size.
   void resize_blocks(const World& world);
   // Copies to be changed: of all edits, and of the edits of a block.
@@ -117,10 +118,12 @@ class Edits {
 // The edits as they hold in a world that replaces the one they were made for: placed models get the
 // types of the same names in `registry`, and are left out where none allows their parameters. With
 // blocks of another size all edits keep their places, and no instance of the world's function is
-// removed. Keep `edits` themselves: they hold again when the old world returns. O(edits); the same
-// layer if nothing differs. A change of edits by functions that get a world with blocks of another
-// size keeps what fitted() keeps.
-Edits fitted(const Edits& edits, const World& world, const models::Registry& registry);
+// removed. Keep `edits` themselves: they hold again when the old world returns. The same layer if
+// nothing differs. `fitting` is a layer that holds in the world, null: none; only blocks that
+// differ from it are looked at. A change of edits by functions that get a world with blocks of
+// another size keeps what fitted() keeps.
+Edits fitted(const Edits& edits, const World& world, const models::Registry& registry,
+             const models::EditLayer* fitting = nullptr);
 
 // The blocks whose edits differ, in no particular order: the blocks to store again. O(differences ·
 // log n).

@@ -248,6 +248,26 @@ TEST(FittedEdits, PlacedModelsKeepTheirTypesUnderAnotherRegistry) {
   EXPECT_EQ(fitted(edits, before.world, before.registry).layer(), edits.layer());
 }
 
+TEST(FittedEdits, AreTheSameAfterALayerThatFits) {
+  Planted before({"ash", "oak"}), after({"oak"});
+  Edits edits;
+  const auto place = [&](const char* name, core::BlockCoord block) {
+    ASSERT_TRUE(edits.place(before.world, before.registry, before.model(name, {block, {9, 0, 9}})));
+  };
+  place("ash", {2, 3});
+  place("oak", {2, 3});
+  place("oak", {5, 5});
+  const Edits first = fitted(edits, after.world, after.registry);
+  ASSERT_EQ(first.counts().placed, 2U);
+  place("ash", {5, 5});
+  place("ash", {7, 7});
+  ASSERT_TRUE(edits.remove_placed({{2, 3}, 2}));
+  const Edits next = fitted(edits, after.world, after.registry, first.layer().get());
+  EXPECT_EQ(next.counts().placed, 1U);
+  EXPECT_EQ(next.layer()->blocks.root()->hash,
+            fitted(edits, after.world, after.registry).layer()->blocks.root()->hash);
+}
+
 TEST(FittedEdits, KeepTheirPlacesInBlocksOfAnotherSize) {
   Planted before({"oak"}, 64), after({"oak"}, 32);
   Edits edits;
