@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/core/hash.hpp"
+#include "engine/core/rounding.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -75,6 +76,7 @@ void BlockCache::charge(Block& block, std::size_t bytes) {
 const GroundGrid& BlockCache::ground(core::BlockCoord at) {
   Block& block = touch(at);
   if (!block.ground) {
+    const core::RoundToNearest rounding;
     block.ground.emplace(ground_of_block(world_, at), world_.cell_m(),
                          world_.terrain.real(models::kTerrainReliefM));
     charge(block, block.ground->bytes());
@@ -85,6 +87,7 @@ const GroundGrid& BlockCache::ground(core::BlockCoord at) {
 std::span<const world::Placement> BlockCache::models(core::BlockCoord at) {
   Block& block = touch(at);
   if (!block.models) {
+    const core::RoundToNearest rounding;
     block.models = models_of_block(world_, registry_, at);
     charge(block, block.models->capacity() * sizeof(world::Placement));
   }
@@ -95,6 +98,7 @@ BlockSolids& BlockCache::solids(core::BlockCoord at) {
   const std::span<const world::Placement> models = this->models(at);
   Block& block = touch(at);
   if (!block.solids) {
+    const core::RoundToNearest rounding;
     block.solids.emplace();
     std::size_t bytes = 0;
     for (std::size_t i = 0; i < models.size(); ++i) {

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <tuple>
 
+#include "engine/core/rounding.hpp"
 #include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::query {
@@ -48,11 +49,13 @@ World::World(const world::World& world, const models::Registry& registry, std::s
       cache_(world, registry, cache_bytes) {}
 
 World::Derived World::derived_from(const world::World& world, const models::Registry& registry) {
+  const core::RoundToNearest rounding;
   return {world.revision.number, world.block_size_m(), world.terrain.real(models::kTerrainReliefM),
           world::models_reach_m(world, registry), world::drawn_palette(world)};
 }
 
 core::Result<Ground> World::ground(const core::WorldPosition& position) {
+  const core::RoundToNearest rounding;
   follow_world();
   const auto at = checked(position, derived_.block_m);
   if (!at) return tl::unexpected(at.error());
@@ -83,6 +86,7 @@ struct World::Course {
 };
 
 core::Result<Hit> World::cast(const Ray& ray) {
+  const core::RoundToNearest rounding;
   follow_world();
   const auto origin = checked(ray.origin, derived_.block_m);
   if (!origin) return tl::unexpected(origin.error());
@@ -264,6 +268,7 @@ void World::each_model(const BlockAround& b, const core::WorldPosition& at,
 core::Result<void> World::models_within(const core::WorldPosition& position, double radius_m,
                                         std::vector<NearbyModel>& out,
                                         std::span<const models::ModelIndex> only) {
+  const core::RoundToNearest rounding;
   out.clear();
   follow_world();
   const auto at = checked(position, derived_.block_m);
@@ -281,6 +286,7 @@ core::Result<void> World::models_within(const core::WorldPosition& position, dou
 core::Result<std::optional<NearbyModel>> World::nearest(const core::WorldPosition& position,
                                                         double radius_m,
                                                         std::span<const models::ModelIndex> only) {
+  const core::RoundToNearest rounding;
   follow_world();
   const auto at = checked(position, derived_.block_m);
   if (!at) return tl::unexpected(at.error());

@@ -93,6 +93,7 @@ BlockGround::Corners BlockGround::corners_of(double x, double z, int step) const
 void BlockGround::heights(std::span<std::uint16_t> out) const {
   PSYGEN_CHECK(vertices_ > 0 && out.size() == vertices_ * vertices_,
                "all heights are known, and there is room for each");
+  const core::RoundToNearest rounding;
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = mesh_.empty() ? shape_.quantise(noise_[i]) : height_in_mesh(mesh_, i);
 }

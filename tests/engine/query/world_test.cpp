@@ -1,5 +1,6 @@
 #include "engine/query/world.hpp"
 
+#include <cfenv>
 #include <cmath>
 #include <future>
 #include <glm/geometric.hpp>
@@ -73,6 +74,35 @@ TEST(QueryWorld, GroundIsTheTrianglesOfTheFinestMesh) {
       });
     }
   }
+}
+
+TEST(QueryWorld, AnswersAreTheSameInEveryRoundingModeOfTheProgram) {
+  const Loaded loaded = Loaded::shipped("lakes");
+  const auto answers = [&](int mode) {
+    World query(loaded.world, loaded.registry);
+    core::RandomStream random(3, 0, 0, 0, core::Purpose::kPosition);
+    std::vector<double> all;
+    for (int i = 0; i < 300; ++i) {
+      const core::WorldPosition at{{5, -2}, {random.next_real(0, 63), 90, random.next_real(0, 63)}};
+      const glm::dvec3 down{random.next_real(-1, 1), -1, random.next_real(-1, 1)};
+      std::fesetround(mode);
+      const auto ground = query.ground(at);
+      const auto hit = query.cast({.origin = at, .direction = down});
+      const auto tree = query.nearest(at, 80);
+      std::fesetround(FE_TONEAREST);
+      if (!ground || !hit || !tree) return all;
+      const glm::vec3 normal = ground->normal;
+      all.insert(all.end(),
+                 std::initializer_list<double>{ground->height_m, ground->water_depth_m, normal.x,
+                                               normal.y, hit->distance_m, hit->position.local.y,
+                                               *tree ? (*tree)->distance_m : -1});
+    }
+    return all;
+  };
+  const auto expected = answers(FE_TONEAREST);
+  ASSERT_EQ(expected.size(), 2100U);
+  for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO})
+    EXPECT_EQ(answers(mode), expected) << mode;
 }
 
 TEST(QueryWorld, NeighbouringBlocksAgreeAtTheirBorder) {
