@@ -135,8 +135,7 @@ thread_local sigjmp_buf* way_out = nullptr;
 // as always.
 class AbortTrap {
  public:
-  explicit AbortTrap(sigjmp_buf& target) {
-    way_out = &target;
+  explicit AbortTrap(sigjmp_buf& target) : outer_(std::exchange(way_out, &target)) {
     struct sigaction jump = {};
     jump.sa_handler = [](int) {
       if (way_out != nullptr) siglongjmp(*way_out, 1);
@@ -145,12 +144,13 @@ class AbortTrap {
   }
   ~AbortTrap() {
     sigaction(SIGABRT, &before_, nullptr);
-    way_out = nullptr;
+    way_out = outer_;
   }
   AbortTrap(const AbortTrap&) = delete;
   AbortTrap& operator=(const AbortTrap&) = delete;
 
  private:
+  sigjmp_buf* outer_;  // of a trap around this one; null: none
   struct sigaction before_ = {};
 };
 
