@@ -41,8 +41,11 @@ core::Result<std::vector<Endpoint>> endpoints(const std::filesystem::path& folde
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(kSocketPrefix) || !name.ends_with(kSocketSuffix)) continue;
     int pid = 0;  // psygen-PID.inspect, psygen-PID-2.inspect
-    std::from_chars(name.data() + kSocketPrefix.size(), name.data() + name.size(), pid);
-    if (pid > 0 && is_served(entry.path())) found.push_back({entry.path(), pid, command_of(pid)});
+    const char* const end =
+        std::from_chars(name.data() + kSocketPrefix.size(), name.data() + name.size(), pid).ptr;
+    const bool is_name = *end == '-' || end == name.data() + name.size() - kSocketSuffix.size();
+    if (is_name && pid > 0 && is_served(entry.path()))
+      found.push_back({entry.path(), pid, command_of(pid)});
   }
   std::ranges::sort(found, {}, [](const Endpoint& e) { return std::pair(e.pid, e.socket); });
   return found;
