@@ -84,7 +84,8 @@ class Loader {
       });
       if (known == storage_.records().end()) {
         return in_.refuse(Status::kUnknownComponent,
-                          "this world does not know the component '" + component.name + "'");
+                          "this world does not know the component '" + component.name +
+                              "'; call World::declare<…>() with its type before loading");
       }
       component.id = static_cast<ComponentId>(known - storage_.records().begin());
       if (std::ranges::find(components_, component.id, &SavedComponent::id) != components_.end()) {
