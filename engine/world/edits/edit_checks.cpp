@@ -130,17 +130,20 @@ core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
   return core::invalid_argument("this type of ground edit does not exist");
 }
 
+core::Result<void> check_above(double above_m) {
+  constexpr double kHighest = 1000;
+  if (std::abs(above_m) <= kHighest) return {};
+  return core::invalid_argument(
+      fmt::format("{:g} m above the ground is not allowed: it must be {:g} to {:g} m", above_m,
+                  -kHighest, kHighest));
+}
+
 core::Result<void> check_model(const models::Registry& registry, models::ModelIndex model,
                                const models::Parameters& parameters, double above_m) {
   if (model >= registry.size())
     return core::invalid_argument(
         fmt::format("there is no model type {}: there are {}", model, registry.size()));
-  constexpr double kHighest = 1000;
-  if (!(std::abs(above_m) <= kHighest)) {
-    return core::invalid_argument(
-        fmt::format("{:g} m above the ground is not allowed: it must be {:g} to {:g} m", above_m,
-                    -kHighest, kHighest));
-  }
+  if (auto ok = check_above(above_m); !ok) return ok;
   const models::ModelType& type = registry[model];
   if (auto ok = models::validate(type, parameters); !ok) return ok;
   if (type.mesh_size(parameters, 0).layout != core::VertexLayout::kModel)

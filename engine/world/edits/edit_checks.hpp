@@ -27,6 +27,8 @@ core::Result<void> check_removed(const World& world, core::BlockCoord block, std
 core::Result<core::WorldPosition> check_place(const World& world, const core::WorldPosition& at);
 // Fails for an edit of the ground that is not legal. O(heights) for a stamp.
 core::Result<void> check_ground(const World& world, const models::GroundEdit& edit);
+// Fails for a height above the ground that no placed model has.
+core::Result<void> check_above(double above_m);
 // Fails for a model that cannot be placed at this height above the ground.
 core::Result<void> check_model(const models::Registry& registry, models::ModelIndex model,
                                const models::Parameters& parameters, double above_m);

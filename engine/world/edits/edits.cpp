@@ -317,6 +317,19 @@ core::Result<void> Edits::replace_block(const World& world, core::BlockCoord blo
   return {};
 }
 
+std::vector<EditName> hidden_models(const Edits& edits, const models::Registry& registry) {
+  std::vector<EditName> hidden;
+  if (edits.empty()) return hidden;
+  models::QuadMap<BlockEdits>::each_difference(
+      {}, edits.layer()->blocks,
+      [&](const QuadCoord& at, const BlockEdits*, const BlockEdits* of_block) {
+        for (const PlacedModel& placed : of_block->placed) {
+          if (!type_of(placed, registry)) hidden.push_back({at.corner(), placed.id});
+        }
+      });
+  return hidden;
+}
+
 std::vector<core::BlockCoord> changed_blocks(const Edits& before, const Edits& after) {
   const EditLayer none;
   const EditLayer& a = before.layer() ? *before.layer() : none;

@@ -125,6 +125,10 @@ class Edits {
 Edits fitted(const Edits& edits, const World& world, const models::Registry& registry,
              const models::EditLayer* fitting = nullptr);
 
+// The placed models that no type of the registry shows, in no particular order. The edits keep
+// them, and stored bytes too: they stand again when a type of their name allows them. O(edits).
+std::vector<EditName> hidden_models(const Edits& edits, const models::Registry& registry);
+
 // The blocks whose edits differ, in no particular order: the blocks to store again. O(differences ·
 // log n).
 std::vector<core::BlockCoord> changed_blocks(const Edits& before, const Edits& after);

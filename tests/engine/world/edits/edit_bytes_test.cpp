@@ -8,6 +8,7 @@
 #include <random>
 #include <span>
 
+#include "engine/models/terrain/terrain.hpp"
 #include "tests/engine/world/edits/edited_world.hpp"
 
 namespace psygen::world {
@@ -101,16 +102,75 @@ TEST_F(EditBytes, AParameterThatAnOlderVersionLackedHasItsDefault) {
     EXPECT_EQ(found.integer(i), moved.parameters.integer(i));
 }
 
-TEST_F(EditBytes, MoreParametersThanTheTypeHasAreRejected) {
+// Bytes of the block with another name for the type of the moved model.
+std::vector<std::byte> renamed(std::vector<std::byte> bytes, std::string_view from,
+                               std::string_view to) {
+  const auto name = std::ranges::search(bytes, std::as_bytes(std::span(from)));
+  std::ranges::copy(std::as_bytes(std::span(to)), name.begin());
+  return bytes;
+}
+
+TEST_F(EditBytes, AModelOfAMissingTypeIsKeptHiddenAndStoredAgain) {
+  const std::string type = edits.layer()->block({2, 3})->placed.front().type;
+  const std::vector<std::byte> whole = encode_block(edits, registry, {2, 3});
+  const std::vector<std::byte> foreign = renamed(whole, type, std::string(type.size(), 'q'));
+  Edits loaded;
+  const auto ok = load_block(loaded, world, registry, {2, 3}, foreign);
+  ASSERT_TRUE(ok) << ok.error().message;
+  EXPECT_EQ(hidden_models(loaded, registry),
+            (std::vector<EditName>{{{2, 3}, edits.layer()->block({2, 3})->placed.front().id}}));
+  EXPECT_EQ(encode_block(loaded, registry, {2, 3}), foreign);
+  EXPECT_EQ(loaded.counts().removed, 3u) << "the other edits hold";
+  apply();
+  const std::size_t with_model = placements({2, 3}).size();
+  set_edits(world, loaded.layer());
+  EXPECT_EQ(placements({2, 3}).size() + 1, with_model);
+  EXPECT_TRUE(hidden_models(edits, registry).empty());
+  auto decoded = *decode_block({2, 3}, foreign);
+  const auto unfit = unfit_edits(decoded, world, registry, {2, 3});
+  ASSERT_EQ(unfit.size(), 1u);
+  EXPECT_TRUE(unfit[0].kind == EditKind::kPlaced && unfit[0].hidden);
+  EXPECT_EQ(unfit[0].reason, "there is no model type \"" + std::string(type.size(), 'q') + "\"");
+}
+
+TEST_F(EditBytes, AModelThatItsTypeDoesNotAllowIsKeptHidden) {
   const models::PlacedModel& moved = edits.layer()->block({2, 3})->placed.front();
   const models::ModelType& type = registry[*type_of(moved, registry)];
   std::vector<std::byte> bytes = encode_block(edits, registry, {2, 3});
   const auto name = std::ranges::search(bytes, std::as_bytes(std::span(type.name())));
-  *name.end() = std::byte(type.parameters().size() + 1);
+  const std::size_t count = type.parameters().size();
+  *name.end() = std::byte(count + 1);  // as if the type had lost a parameter
+  const auto value = name.end() + 1 + static_cast<std::ptrdiff_t>(8 * count);
+  bytes.insert(value, 8, std::byte{1});
   Edits loaded;
   const auto ok = load_block(loaded, world, registry, {2, 3}, bytes);
-  ASSERT_FALSE(ok);
-  EXPECT_THAT(ok.error().message, HasSubstr(" parameters, but these edits store "));
+  ASSERT_TRUE(ok) << ok.error().message;
+  EXPECT_EQ(hidden_models(loaded, registry).size(), 1u);
+  EXPECT_EQ(encode_block(loaded, registry, {2, 3}), bytes);
+  *name.end() = std::byte{200};
+  const auto absurd = load_block(loaded, world, registry, {2, 3}, bytes);
+  ASSERT_FALSE(absurd);
+  EXPECT_THAT(absurd.error().message, HasSubstr("200 parameters, but the maximum is 24"));
+}
+
+TEST_F(EditBytes, EditsThatAWorldDoesNotAllowAreListedByKindAndId) {
+  const std::vector<std::byte> whole = encode_block(edits, registry, {2, 3});
+  World flat = function;
+  flat.scatter.clear();
+  flat.terrain.set_real(models::kTerrainReliefM, 20);
+  auto decoded = *decode_block({2, 3}, whole);
+  const auto unfit = unfit_edits(decoded, flat, registry, {2, 3});
+  std::vector<std::pair<EditKind, std::uint32_t>> found;
+  for (const UnfitEdit& edit : unfit)
+    found.emplace_back(edit.kind, edit.id);
+  const auto& here = *edits.layer()->block({2, 3});
+  EXPECT_EQ(found, (std::vector<std::pair<EditKind, std::uint32_t>>{
+                       {EditKind::kRemoved, here.removed[0].index},
+                       {EditKind::kRemoved, here.removed[1].index},
+                       {EditKind::kRemoved, here.removed[2].index},
+                       {EditKind::kGround, here.ground[1]->id}}));
+  EXPECT_THAT(unfit.back().reason, HasSubstr("ground at 30 m is not allowed"));
+  EXPECT_EQ(encode_block(decoded), whole) << "listing changes no edit";
 }
 
 TEST_F(EditBytes, ANewerVersionIsRejectedByItsNumber) {
