@@ -27,10 +27,16 @@ class GameTables {
                            const std::vector<Value>& values) const;
   // Opens a transaction, unless one is open, and repeats in it everything executed since forget().
   core::Result<void> begin(Database& database) const;
+  // Keeps everything executed so far at rewind(), which forgets what was executed later.
+  void keep() { kept_ = log_.size(); }
+  void rewind() { log_.resize(kept_); }
   // True if anything was executed since forget().
   bool has_changes() const { return !log_.empty(); }
   // Clears the log, after the changes were saved or discarded.
-  void forget() { log_.clear(); }
+  void forget() {
+    log_.clear();
+    kept_ = 0;
+  }
 
  private:
   struct Change {
@@ -38,6 +44,7 @@ class GameTables {
     std::vector<Value> values;
   };
   std::vector<Change> log_;
+  std::size_t kept_ = 0;
 };
 
 }  // namespace psygen::save

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstring>
 
+#include "engine/core/bytes.hpp"
 #include "engine/core/data_file.hpp"
+#include "engine/core/hash.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/save/game_tables.hpp"
@@ -22,6 +25,7 @@ namespace {
 struct Table {
   std::string_view name;
   std::string_view sql;  // exactly as in sqlite_schema
+  std::uint32_t since_format = 1;
 };
 constexpr std::array kTables{
     Table{"psygen_facts", "CREATE TABLE psygen_facts(name TEXT PRIMARY KEY, value ANY) STRICT"},
@@ -32,7 +36,17 @@ constexpr std::array kTables{
     Table{"psygen_values",
           "CREATE TABLE psygen_values(name TEXT PRIMARY KEY, checksum INTEGER NOT NULL, value ANY "
           "NOT NULL) STRICT, WITHOUT ROWID"},
+    Table{"psygen_surfaces",
+          "CREATE TABLE psygen_surfaces(x INTEGER NOT NULL, z INTEGER NOT NULL, hash INTEGER NOT "
+          "NULL, PRIMARY KEY(x, z)) STRICT, WITHOUT ROWID",
+          2},
+    Table{"psygen_kept",
+          "CREATE TABLE psygen_kept(x INTEGER NOT NULL, z INTEGER NOT NULL, world INTEGER NOT "
+          "NULL, parts BLOB NOT NULL, version INTEGER NOT NULL, checksum INTEGER NOT NULL, bytes "
+          "BLOB NOT NULL) STRICT",
+          2},
 };
+constexpr std::size_t kMaxParts = 4096;
 
 tl::unexpected<core::Error> refuse(const std::filesystem::path& file, std::string_view reason) {
   return core::fail(core::ErrorCode::kParse, fmt::format("{}: {}", file.string(), reason));
@@ -48,7 +62,7 @@ core::Result<void> put_fact(Database& database, std::string_view name, const Val
 }
 
 // The bytes of an empty save.
-core::Result<std::string> empty_save(const WorldIdentity& world) {
+core::Result<std::string> empty_save(const WorldIdentity& world, std::uint32_t version) {
   auto database = Database::in_memory();
   if (!database) return tl::unexpected(database.error());
   std::string sql = fmt::format("PRAGMA application_id={}; PRAGMA user_version={}; BEGIN;",
@@ -60,6 +74,8 @@ core::Result<std::string> empty_save(const WorldIdentity& world) {
   if (made) made = put_fact(*database, "world name", Value(world.name));
   const auto hash = static_cast<std::int64_t>(world.hash);
   if (made) made = put_fact(*database, "world hash", Value(hash));
+  if (made) made = put_fact(*database, "world parts", Value(encode_parts(world.parts)));
+  if (made) made = put_fact(*database, kVersionFact, Value(std::int64_t{version}));
   if (!made) return tl::unexpected(made.error());
   sqlite3_int64 size = 0;
   const std::unique_ptr<unsigned char, void (*)(void*)> bytes(
@@ -228,13 +244,14 @@ int rename_without_replacing(const char* from, const char* to) {
 
 }  // namespace
 
-core::Result<bool> create_file(const std::filesystem::path& file, const WorldIdentity& world) {
+core::Result<bool> create_file(const std::filesystem::path& file, const WorldIdentity& world,
+                               std::uint32_t version) {
   const auto path = absolute_path(file);
   if (!path) return tl::unexpected(path.error());
   const std::filesystem::path folder = path->parent_path();
   if (auto ok = check_folder(file, folder); !ok) return tl::unexpected(ok.error());
   core::remove_stale_partials(folder);
-  const auto bytes = empty_save(world);
+  const auto bytes = empty_save(world, version);
   if (!bytes) return tl::unexpected(bytes.error());
   const std::filesystem::path fresh =
       folder / fmt::format(".{}.{}-new.partial", file.filename().string(), getpid());
@@ -292,7 +309,21 @@ void close_file(Database& database) {
       "cannot be closed");
 }
 
+std::uint32_t format_of(const Database& database) {
+  Header header{};
+  return read_header(database, header) == SQLITE_OK ? big_endian(&header[60]) : 0;
+}
+
+core::Result<void> upgrade_format(Database& database) {
+  const std::uint32_t format = format_of(database);
+  std::string sql = fmt::format("PRAGMA user_version={};", kSaveFormat);
+  for (const Table& table : kTables)
+    if (table.since_format > format) sql += fmt::format("{};", table.sql);
+  return database.run(sql.c_str(), "cannot be saved");
+}
+
 core::Result<void> check_tables(const Database& database) {
+  const std::uint32_t format = format_of(database);
   auto list =
       database.prepare("SELECT type, tbl_name, name, sql FROM sqlite_schema", "cannot be read");
   if (!list) return tl::unexpected(list.error());
@@ -306,7 +337,7 @@ core::Result<void> check_tables(const Database& database) {
     if (type == "table" && name == "sqlite_sequence") known = true;
     if (type == "index" && name.starts_with("sqlite_autoindex_psygen_facts")) known = true;
     for (const Table& own : kTables) {
-      if (type != "table" || name != own.name) continue;
+      if (type != "table" || name != own.name || own.since_format > format) continue;
       known = list->text(3) == own.sql;
       found += known ? 1 : 0;
     }
@@ -315,21 +346,65 @@ core::Result<void> check_tables(const Database& database) {
                                                  core::shown(type, 20), core::shown(name, 60)));
   }
   if (code != SQLITE_DONE) return database.error("cannot be read");
-  if (found != kTables.size()) return refuse(database.file(), "lacks a table; the file is damaged");
+  const auto needed =
+      std::ranges::count_if(kTables, [&](const Table& own) { return own.since_format <= format; });
+  if (found != static_cast<std::size_t>(needed))
+    return refuse(database.file(), "lacks a table; the file is damaged");
   return {};
 }
 
 core::Result<WorldIdentity> read_world(const Database& database) {
   auto select = database.prepare(
       "SELECT (SELECT value FROM psygen_facts WHERE name = 'world name'),"
-      "(SELECT value FROM psygen_facts WHERE name = 'world hash')",
+      "(SELECT value FROM psygen_facts WHERE name = 'world hash'),"
+      "(SELECT value FROM psygen_facts WHERE name = 'world parts')",
       "cannot be read");
   if (!select) return tl::unexpected(select.error());
   if (select->step() != SQLITE_ROW) return database.error("cannot be read");
   if (!select->is(0, SQLITE_TEXT) || !select->is(1, SQLITE_INTEGER))
     return refuse(database.file(), "does not name its world; the file is damaged");
-  return WorldIdentity{std::string(select->text(0)),
-                       static_cast<std::uint64_t>(select->integer(1))};
+  WorldIdentity world{std::string(select->text(0)), static_cast<std::uint64_t>(select->integer(1))};
+  if (select->is(2, SQLITE_NULL)) return world;  // of format 1
+  auto parts = decode_parts(select->bytes(2));
+  if (!parts) return refuse(database.file(), parts.error().message + "; the file is damaged");
+  world.parts = std::move(*parts);
+  return world;
+}
+
+Bytes encode_parts(const std::vector<WorldPart>& parts) {
+  Bytes out;
+  core::put(out, static_cast<std::uint32_t>(parts.size()));
+  for (const WorldPart& part : parts) {
+    core::put(out, part.kind, part.hash, part.count, static_cast<std::uint32_t>(part.name.size()));
+    core::put_all(out, std::span<const char>(part.name));
+  }
+  core::put(out, core::hash_bytes(out));
+  return out;
+}
+
+core::Result<std::vector<WorldPart>> decode_parts(std::span<const std::byte> bytes) {
+  const auto broken = [](std::string_view why) {
+    return core::fail(core::ErrorCode::kParse,
+                      fmt::format("the parts of its world cannot be read: {}", why));
+  };
+  if (bytes.size() < 12) return broken("they end too early");
+  const auto content = bytes.first(bytes.size() - 8);
+  if (core::ByteReader(bytes.subspan(content.size())).get<std::uint64_t>() !=
+      core::hash_bytes(content))
+    return broken("they do not match their checksum");
+  core::ByteReader in(content);
+  const std::size_t count = in.get_count(17);
+  if (count > kMaxParts)
+    return broken(fmt::format("they are {}; at most {} are allowed", count, kMaxParts));
+  std::vector<WorldPart> parts(count);
+  for (WorldPart& part : parts) {
+    in.read(part.kind, part.hash, part.count);
+    part.name = in.get_text(in.get_count(1));
+    if (part.kind > PartKind::kLooks) return broken("one is of an unknown kind");
+  }
+  if (in.failed()) return broken("they end too early");
+  if (in.left() > 0) return broken("there are extra bytes at the end");
+  return parts;
 }
 
 }  // namespace psygen::save

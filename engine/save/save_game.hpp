@@ -1,6 +1,6 @@
 // A saved game: one SQLite file with the edits of a world, the game's entities, and values of the
-// game. Changes are collected in memory; save() writes all of them at once. It does not interpret
-// edits (their encoder does) and does not store the world, which has its own file.
+// game. Changes are collected in memory; save() writes all of them at once. It does not store the
+// world, which has its own file. It interprets edits only when the world has changed since.
 //
 // Safety. save() is one transaction with a rollback journal: the old contents of changed pages are
 // copied to FILE-journal and flushed (fsync) before the first page is overwritten; the new pages
@@ -19,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,10 +29,13 @@
 #include "engine/core/error.hpp"
 #include "engine/save/value.hpp"
 #include "engine/save/world_identity.hpp"
+#include "engine/world/edits/edit_bytes.hpp"
 
 namespace psygen::save {
 
-inline constexpr std::uint32_t kSaveFormat = 1;                      // version of the file format
+// Version of the file format. Files of format 1, which name no parts of their world, are read too;
+// the next save() makes them files of this format.
+inline constexpr std::uint32_t kSaveFormat = 2;
 inline constexpr std::size_t kMaxEditBytes = std::size_t{16} << 20;  // edits of one block
 inline constexpr std::size_t kMaxSnapshotBytes = std::size_t{900}
                                                  << 20;  // snapshot of the entities
@@ -46,17 +50,59 @@ struct BlockEdits {
   Bytes bytes;
 };
 
+// The worlds in which open() accepts a save whose edits depend on parts that have changed since.
+enum class Accept : std::uint8_t {
+  kSameWorld,     // none: changes that touch edits are an error
+  kChangedWorld,  // the same seed
+  kAnyWorld
+};
+
+// Edits of one block that do not fit into the world, for one reason.
+struct Misfit {
+  core::BlockCoord block;
+  std::optional<world::EditKind> kind;  // nothing: a block that this program cannot read
+  std::uint32_t count = 1;
+  std::string reason;
+};
+
+class SaveGame;
+struct CurrentWorld;  // private (adaptation.hpp)
+
+// Changes entities, values and tables of an older version of the game, which it gets, into those of
+// this version. An error is the error of open().
+using Migration = std::function<core::Result<void>(SaveGame&, std::uint32_t)>;
+
+struct OpenOptions {
+  OpenMode mode = OpenMode::kOpenOrCreate;
+  Accept accept = Accept::kSameWorld;
+  std::uint32_t version = 0;  // of the game's own data; new saves get it
+  Migration migrate = {};     // called if the save has an older version
+};
+
 // Called with a block, the version of its encoding, and its bytes, which are valid during the call.
 using EditVisitor =
     std::function<void(core::BlockCoord, std::uint32_t, std::span<const std::byte>)>;
 
 class SaveGame {
  public:
-  // Opens a save of this world (equal hash), or creates an empty one. Rolls back an unfinished
-  // transaction after a crash, and checks the whole file. Fails with a message and leaves the file
-  // unchanged: kParse (not a save, damaged, or of a newer version), kInvalidArgument (of another
-  // world), kIo (missing folder or file, read-only, in use by another process, already existing
-  // with kCreateNew), kOutOfMemory. O(bytes of the file).
+  // Opens a save of this world, or creates an empty one. Rolls back an unfinished transaction after
+  // a crash, and checks the whole file. A world may have changed in parts on which no edit in the
+  // file depends (docs/saves.md): the next save() stores its new identity. Fails with a message and
+  // leaves the file unchanged: kParse (not a save, damaged, or of a newer version),
+  // kInvalidArgument (other changes, which it names), kIo (missing folder or file, read-only, in
+  // use by another process, already existing with kCreateNew), kOutOfMemory. O(bytes of the file).
+  //
+  // OpenOptions::accept allows the other changes. Edits that do not fit are then listed in
+  // misfits() and taken out of edits(); the next save() keeps them aside in the file. When a later
+  // world has what they need, open() returns them to their blocks. Placed models of missing types
+  // stay in edits(), because world::load_block() keeps them hidden.
+  //
+  // A save has the version of the options with which it was last saved, or 0. open() fails with
+  // kParse for a newer one.
+  static core::Result<SaveGame> open(const std::filesystem::path& file, const world::World& world,
+                                     const models::Registry& registry, OpenOptions options = {});
+  // The same for edits that the engine does not read, or without a world: judges the ground as a
+  // whole, accepts no changes that touch edits, and ignores versions.
   static core::Result<SaveGame> open(const std::filesystem::path& file, const WorldIdentity& world,
                                      OpenMode mode = OpenMode::kOpenOrCreate);
   // Releases the lock. Unsaved changes are lost.
@@ -76,6 +122,21 @@ class SaveGame {
   // Visits all blocks with edits, in no particular order. The visitor must not use this object.
   // Fails like edits(), perhaps after some visits.
   core::Result<void> for_each_edits(const EditVisitor& visit) const;
+
+  // All edits, in memory. Fails like for_each_edits() and world::load_block().
+  core::Result<world::Edits> load_edits(const world::World& world,
+                                        const models::Registry& registry) const;
+  // Puts the edits of the blocks in which `now` differs from `before`. Fails like put_edits().
+  core::Result<void> put_changes(const world::Edits& before, const world::Edits& now);
+
+  // The parts in which the world differs from that of the last save, also harmless ones; and the
+  // edits that do not fit into it. As open() found them.
+  const std::vector<PartChange>& world_changes() const;
+  const std::vector<Misfit>& misfits() const;
+  // The blocks with edits that are kept aside, in no particular order. Fails like edits().
+  core::Result<std::vector<core::BlockCoord>> kept_blocks() const;
+  // Removes all edits that are kept aside, at the next save().
+  void forget_kept();
 
   // Takes a snapshot of the world's entities (ecs/snapshot.hpp) for the next save(). Fails with
   // kOverBudget above kMaxSnapshotBytes.
@@ -112,7 +173,7 @@ class SaveGame {
   // error the file has the last save, no unsaved change is lost, and save() may be called again.
   // Fails with kIo (such as a full disk), kParse or kOutOfMemory. O(changes).
   core::Result<void> save();
-  // Discards everything since the last save().
+  // Discards everything since the last save(), or since open().
   void discard();
   // True if there is anything to save.
   bool has_unsaved() const;
@@ -123,6 +184,8 @@ class SaveGame {
  private:
   struct State;
   explicit SaveGame(std::unique_ptr<State> state);
+  static core::Result<SaveGame> open(const std::filesystem::path& file, CurrentWorld world,
+                                     const OpenOptions& options);
   core::Result<void> put_snapshot(Bytes bytes);
   // Calls f with the snapshot, if there is one.
   core::Result<bool> with_snapshot(

@@ -11,36 +11,16 @@
 #include "engine/save/save_game.hpp"
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/scene.hpp"
-#include "engine/world/edits/edit_bytes.hpp"
 #include "engine/world/edits/edits.hpp"
 
 using namespace psygen;
 
 namespace {
 
-// Loads the edits of the world from the save.
-core::Result<world::Edits> load_edits(const save::SaveGame& save, const scene::WorldFacts& facts) {
-  world::Edits edits;
-  core::Result<void> loaded;
-  auto visited = save.for_each_edits([&](core::BlockCoord block, std::uint32_t, auto bytes) {
-    if (loaded) loaded = world::load_block(edits, facts.world, facts.registry, block, bytes);
-  });
-  if (!visited) return tl::unexpected(visited.error());
-  if (!loaded) return tl::unexpected(loaded.error());
-  return edits;
-}
-
 // Saves the changed blocks and the number of felled trees in one transaction.
-core::Result<void> store(save::SaveGame& save, const scene::WorldFacts& facts,
-                         const world::Edits& before, const world::Edits& now) {
-  for (const core::BlockCoord block : world::changed_blocks(before, now)) {
-    const auto bytes = world::encode_block(now, facts.registry, block);
-    if (bytes.empty()) {
-      save.erase_edits(block);
-    } else if (auto ok = save.put_edits(block, world::kEditFormat, bytes); !ok) {
-      return ok;
-    }
-  }
+core::Result<void> store(save::SaveGame& save, const world::Edits& before,
+                         const world::Edits& now) {
+  if (auto ok = save.put_changes(before, now); !ok) return ok;
   const auto count = static_cast<std::int64_t>(now.counts().removed);
   return save.put_value("felled", count).and_then([&] { return save.save(); });
 }
@@ -55,9 +35,14 @@ core::Result<void> fell(const char* save_file, const char* picture) {
   if (!session) return tl::unexpected(session.error());
   const scene::WorldFacts& facts = (*session)->scene().facts();
 
-  auto save = save::SaveGame::open(save_file, save::identity_of(facts.world, facts.registry));
+  // A later version of the world may have changed: trees that no longer exist are kept aside.
+  auto save = save::SaveGame::open(save_file, facts.world, facts.registry,
+                                   {.accept = save::Accept::kChangedWorld});
   if (!save) return tl::unexpected(save.error());
-  const auto before = load_edits(*save, facts);
+  for (const save::Misfit& misfit : save->misfits())
+    std::printf("block %d, %d: %u edits no longer fit: %s\n", misfit.block.x, misfit.block.z,
+                misfit.count, misfit.reason.c_str());
+  const auto before = save->load_edits(facts.world, facts.registry);
   if (!before) return tl::unexpected(before.error());
   (*session)->scene().edit(*before);
 
@@ -76,7 +61,7 @@ core::Result<void> fell(const char* save_file, const char* picture) {
   world::Edits now = *before;
   if (auto ok = now.remove(facts.world, {(*tree)->block, (*tree)->index}); !ok) return ok;
   (*session)->scene().edit(now);
-  if (auto ok = store(*save, facts, *before, now); !ok) return ok;
+  if (auto ok = store(*save, *before, now); !ok) return ok;
   std::printf("felled oak %u of block %d, %d at %.1f m; %llu oaks in all\n", (*tree)->index,
               (*tree)->block.x, (*tree)->block.z, (*tree)->distance_m,
               static_cast<unsigned long long>(now.counts().removed));

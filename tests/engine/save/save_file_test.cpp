@@ -150,9 +150,9 @@ TEST(SaveFile, NamesThatLeadNowhereAreErrors) {
 TEST(SaveFile, NewerFormatsAreRejected) {
   const TemporaryFolder folder;
   make_save(folder / "game.save");
-  tamper(folder / "game.save", "PRAGMA user_version=2");
+  tamper(folder / "game.save", "PRAGMA user_version=3");
   EXPECT_EQ(refusal(folder, core::ErrorCode::kParse),
-            fmt::format("has format 2 of a newer version; psygen {} reads up to format 1",
+            fmt::format("has format 3 of a newer version; psygen {} reads up to format 2",
                         core::version()));
 }
 
@@ -400,9 +400,9 @@ TEST(SaveFile, TheWorldOfAnotherFileIsAnError) {
          "value");
   EXPECT_EQ(sentence("view"), "has a view 'psygen_facts' that this program did not make");
   make_save(folder / "newer");
-  tamper(folder / "newer", "PRAGMA user_version=2");
+  tamper(folder / "newer", "PRAGMA user_version=3");
   EXPECT_EQ(sentence("newer"),
-            fmt::format("has format 2 of a newer version; psygen {} reads up to format 1",
+            fmt::format("has format 3 of a newer version; psygen {} reads up to format 2",
                         core::version()));
 }
 
