@@ -155,7 +155,9 @@ core::Result<void> Game::begin(app::Session& session, Loaded loaded) {
   // Fill the cache first, so that the player never sees a half-built land.
   const core::CameraPose eyes = frame(session, 0);
   if (auto ok = session.prepare(eyes); !ok) return ok;
-  if (lands_->play->progress().time_s < 1)
+  if (saved_ && saved_->notice())
+    hud_.say(saved_->notice()->line, saved_->notice()->help, 8);
+  else if (lands_->play->progress().time_s < 1)
     hud_.say("Twelve cairns stand in this land.", "The mark on the compass points to the next one.",
              8);
   return {};

@@ -136,7 +136,7 @@ class StoneWriter {
 
 class CairnType final : public models::ModelType {
  public:
-  std::string_view name() const override { return "cairn"; }
+  std::string_view name() const override { return kCairnType; }
   std::string_view doc() const override { return "A stack of stones that marks a place"; }
   std::span<const models::ParameterSpec> parameters() const override { return kSchema; }
   int level_count() const override { return 3; }

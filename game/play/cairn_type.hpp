@@ -14,7 +14,8 @@ using namespace psygen;
 // Parameter indices, in the order of the schema.
 enum CairnParameter : std::size_t { kCairnSeed, kCairnStones, kCairnWidthM };
 
-// Returns the type, which is called "cairn".
+inline constexpr const char* kCairnType = "cairn";
+// Returns the type of this name.
 std::unique_ptr<models::ModelType> make_cairn_type();
 
 }  // namespace cairns

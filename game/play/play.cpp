@@ -1,5 +1,6 @@
 #include "game/play/play.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -15,6 +16,7 @@ constexpr double kLargestStoneM = 0.65;  // largest radius that the player can c
 constexpr double kFellS = 2.2, kAxeS = 0.7;
 constexpr double kFireS = 420, kFireReachM = 5, kAheadM = 1.8;
 constexpr double kMorningHour = 7;
+constexpr double kBuriedM = 0.5, kSameM = 0.01;
 constexpr int kTargetSteps = 6, kSeenSteps = 30;
 
 }  // namespace
@@ -35,9 +37,7 @@ core::Result<void> Play::begin() {
   const auto route = find_route(query_);
   if (!route) return tl::unexpected(route.error());
   route_ = *route;
-  for (const core::WorldPosition& at : route_.cairns) {
-    if (auto ok = place_cairn(at, kHiddenStones, kHiddenWidthM); !ok) return ok;
-  }
+  if (auto ok = stand_cairns(); !ok) return ok;
   auto physics = physics::World::create(query_);
   if (!physics) return tl::unexpected(physics.error());
   physics_.emplace(std::move(*physics));
@@ -52,9 +52,46 @@ core::Result<void> Play::begin() {
 }
 
 core::Result<void> Play::resume(Progress progress, world::Edits edits) {
-  if (auto ok = walker_->put(progress.feet, progress.yaw); !ok) return ok;
-  progress_ = std::move(progress);
+  const world::Edits before = edits_;
   take_edits(std::move(edits));
+  auto ok = stand_cairns();
+  const auto ground = query_.ground(progress.feet);
+  if (ground && ground->height_m > progress.feet.local.y + kBuriedM)
+    progress.feet.local.y = ground->height_m;
+  if (ok) ok = walker_->put(progress.feet, progress.yaw);
+  if (!ok) {
+    take_edits(before);
+    return ok;
+  }
+  progress_ = std::move(progress);
+  return {};
+}
+
+// Places the cairns of the route, and removes those of the route that the land had before.
+core::Result<void> Play::stand_cairns() {
+  std::bitset<kCairns> standing;
+  world::Edits next = edits_;
+  for (const core::BlockCoord block : world::changed_blocks({}, edits_)) {
+    for (const models::PlacedModel& model : edits_.layer()->block(block)->placed) {
+      if (model.type != kCairnType || model.parameters.integer(kCairnStones) != kHiddenStones)
+        continue;
+      const core::WorldPosition at{block, {model.local_m.x, 0, model.local_m.y}};
+      const auto is_here = [&](const core::WorldPosition& cairn) {
+        return distance_m(at, cairn, block_m()) < kSameM;
+      };
+      const auto cairn = std::ranges::find_if(route_.cairns, is_here);
+      if (cairn != route_.cairns.end()) {
+        standing.set(static_cast<std::size_t>(cairn - route_.cairns.begin()));
+      } else if (auto ok = next.remove_placed({block, model.id}); !ok) {
+        return ok;
+      }
+    }
+  }
+  take_edits(std::move(next));
+  for (std::size_t i = 0; i < kCairns; ++i) {
+    if (standing[i]) continue;
+    if (auto ok = place_cairn(route_.cairns[i], kHiddenStones, kHiddenWidthM); !ok) return ok;
+  }
   return {};
 }
 
@@ -65,7 +102,7 @@ void Play::take_edits(world::Edits edits) {
 
 core::Result<void> Play::place_cairn(const core::WorldPosition& at, int stones, double width_m) {
   world::NewModel model;
-  const int type = registry_->find("cairn");
+  const int type = registry_->find(kCairnType);
   if (type < 0)
     return core::fail(core::ErrorCode::kInternal, "the registry has no model type \"cairn\"");
   model.model = static_cast<models::ModelIndex>(type);

@@ -88,7 +88,9 @@ class Play {
   // Returns the events since the last call.
   std::vector<Happening> take_happenings() { return std::exchange(happenings_, {}); }
 
-  // Resumes from a save. Fails like physics::World::set_feet(), and then changes nothing.
+  // Resumes from a save. In a land that has changed since, the hidden cairns move to their new
+  // places, and ground lifts a player whom it would bury. Fails like physics::World::set_feet() and
+  // world::Edits::place(), and then changes nothing.
   core::Result<void> resume(Progress progress, world::Edits edits);
 
   const Progress& progress() const { return progress_; }
@@ -118,6 +120,7 @@ class Play {
  private:
   Play(const world::World& world, const models::Registry& registry);
   core::Result<void> begin();
+  core::Result<void> stand_cairns();
   core::Result<void> place_cairn(const core::WorldPosition& at, int stones, double width_m);
   void take_edits(world::Edits edits);
   void look_for_target();

@@ -7,7 +7,6 @@
 
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
-#include "engine/world/edits/edit_bytes.hpp"
 
 namespace cairns {
 namespace {
@@ -142,7 +141,8 @@ std::optional<std::uint64_t> last_seed(const std::filesystem::path& folder) {
 }
 
 core::Result<Saved> Saved::open(const std::filesystem::path& file, Play& play) {
-  auto save = save::SaveGame::open(file, save::identity_of(play.world(), play.registry()));
+  auto save = save::SaveGame::open(file, play.world(), play.registry(),
+                                   {.accept = save::Accept::kChangedWorld});
   if (!save) return tl::unexpected(save.error());
   if (auto ok = core::replace_file(file.parent_path() / kLast, file.stem().string()); !ok)
     core::log_warning(ok.error().message);  // "Continue" then opens an older game
@@ -151,35 +151,42 @@ core::Result<Saved> Saved::open(const std::filesystem::path& file, Play& play) {
   if (!format) return tl::unexpected(format.error());
   if (std::holds_alternative<std::monostate>(*format)) return saved;  // a new save
   if (auto ok = saved.resume(play); !ok) return tl::unexpected(ok.error());
+  saved.note_changes();
   return saved;
+}
+
+void Saved::note_changes() {
+  std::size_t count = 0;
+  for (const save::Misfit& misfit : save_->misfits()) {
+    count += misfit.count;
+    core::log_warning(save_->file().string() + ": " + std::to_string(misfit.count) +
+                      " of your changes in block (" + std::to_string(misfit.block.x) + ", " +
+                      std::to_string(misfit.block.z) + ") no longer fit: " + misfit.reason);
+  }
+  const auto is_visible = [](const save::PartChange& change) {
+    return change.kind != save::PartKind::kLooks;
+  };
+  if (count == 0 && std::ranges::none_of(save_->world_changes(), is_visible)) return;
+  notice_ = {"The land has changed since your last visit.",
+             count == 0
+                 ? "Everything that you changed is still here."
+                 : std::to_string(count) + " of your changes no longer fit. The save keeps them."};
 }
 
 core::Result<void> Saved::resume(Play& play) {
   Reader in(*save_);
   Progress progress = read_progress(in);
   if (in.error()) return tl::unexpected(*in.error());
-  world::Edits edits;
-  core::Result<void> loaded;
-  auto visited = save_->for_each_edits([&](core::BlockCoord block, std::uint32_t, auto bytes) {
-    if (loaded) loaded = world::load_block(edits, play.world(), play.registry(), block, bytes);
-  });
-  if (!visited) return visited;
-  if (!loaded) return loaded;
-  stored_ = edits;
-  return play.resume(std::move(progress), std::move(edits));
+  const auto edits = save_->load_edits(play.world(), play.registry());
+  if (!edits) return tl::unexpected(edits.error());
+  stored_ = *edits;
+  return play.resume(std::move(progress), *edits);
 }
 
 core::Result<void> Saved::put(const Play& play) {
   (void)wait();  // this put() also writes what a failed write left out
   const world::Edits& now = play.edits();
-  for (const core::BlockCoord block : world::changed_blocks(stored_, now)) {
-    const auto bytes = world::encode_block(now, play.registry(), block);
-    if (bytes.empty()) {
-      save_->erase_edits(block);
-    } else if (auto ok = save_->put_edits(block, world::kEditFormat, bytes); !ok) {
-      return ok;
-    }
-  }
+  if (auto ok = save_->put_changes(stored_, now); !ok) return ok;
   if (auto ok = put_progress(*save_, play.progress()); !ok) return ok;
   stored_ = now;
   writing_ = std::async(std::launch::async, [save = save_.get()] { return save->save(); });

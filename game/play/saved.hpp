@@ -1,5 +1,6 @@
-// A game in a save file: its progress and the edits of the land. Saves of another land, version or
-// program are rejected with an error message (save::SaveGame).
+// A game in a save file: its progress and the edits of the land. A land that a newer version of the
+// game has changed is accepted. Saves of another land, newer version or program are rejected with
+// an error message (save::SaveGame).
 #pragma once
 
 #include <filesystem>
@@ -22,6 +23,12 @@ class Saved {
   // save::SaveGame::open(), or with kParse for impossible values, and then changes nothing.
   static core::Result<Saved> open(const std::filesystem::path& file, Play& play);
 
+  // A sentence and its explanation for the player, if the land has changed since the last visit.
+  struct Notice {
+    std::string line, help;
+  };
+  const std::optional<Notice>& notice() const { return notice_; }
+
   // Copies the state of the game and writes it on another thread. Waits for an unfinished write
   // first, so writes never overtake each other.
   core::Result<void> put(const Play& play);
@@ -34,9 +41,11 @@ class Saved {
  private:
   explicit Saved(save::SaveGame save) : save_(std::make_unique<save::SaveGame>(std::move(save))) {}
   core::Result<void> resume(Play& play);
+  void note_changes();
 
   std::unique_ptr<save::SaveGame> save_;  // stable address, because another thread writes
   world::Edits stored_;
+  std::optional<Notice> notice_;
   std::future<core::Result<void>> writing_;
 };
 

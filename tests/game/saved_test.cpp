@@ -5,11 +5,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 
+#include "engine/models/terrain/terrain.hpp"
 #include "engine/world/edits/edit_bytes.hpp"
 #include "game/pilot/pilot.hpp"
+#include "game/play/cairn_type.hpp"
 #include "tests/game/saves_fixture.hpp"
 
 namespace cairns {
@@ -112,6 +115,80 @@ TEST_F(Saves, AreRejectedWithAMessageAndStayUnchanged) {
     EXPECT_FALSE(opened) << cut;
     EXPECT_EQ(play->progress().feet.local, feet.local);
   }
+}
+
+// Plays four minutes and saves them.
+void play_and_save(const std::filesystem::path& file, Play& play) {
+  auto saved = Saved::open(file, play);
+  ASSERT_TRUE(saved) << saved.error().message;
+  EXPECT_FALSE(saved->notice());
+  Pilot pilot(play);
+  for (int k = 0; k < 240 * 60; ++k)
+    play.step(pilot.steer(kSavedStep), kSavedStep);
+  ASSERT_TRUE(saved->put(play));
+  ASSERT_TRUE(saved->wait());
+}
+
+TEST_F(Saves, AChangedLandKeepsTheGameAndSaysSo) {
+  auto play = begin();
+  play_and_save(file(), *play);
+  const auto removed = play->edits().counts().removed;
+  ASSERT_GT(removed, 0U);
+  // A newer version without boulders, in which small stones have other indices.
+  const auto land = *Land::load(3);
+  auto& scatter = land->world.scatter;
+  ASSERT_EQ(scatter.size(), 10U);
+  scatter.erase(scatter.begin() + 6);
+  {
+    auto again = *Play::create(land->world, land->registry);
+    auto saved = Saved::open(file(), *again);
+    ASSERT_TRUE(saved) << saved.error().message;
+    ASSERT_TRUE(saved->notice());
+    EXPECT_EQ(saved->notice()->line, "The land has changed since your last visit.");
+    const auto lost = removed - again->edits().counts().removed;
+    EXPECT_GT(lost, 0U);
+    EXPECT_EQ(saved->notice()->help,
+              std::to_string(lost) + " of your changes no longer fit. The save keeps them.");
+    EXPECT_EQ(again->progress().found, play->progress().found);
+    EXPECT_EQ(again->progress().stock.stones, play->progress().stock.stones);
+    EXPECT_EQ(again->edits().counts().placed, play->edits().counts().placed);
+    ASSERT_TRUE(saved->put(*again));
+    ASSERT_TRUE(saved->wait());
+  }
+  // The old version has everything again.
+  auto before = begin();
+  const auto saved = Saved::open(file(), *before);
+  ASSERT_TRUE(saved) << saved.error().message;
+  EXPECT_EQ(before->edits().counts().removed, removed);
+  ASSERT_TRUE(saved->notice());
+  EXPECT_EQ(saved->notice()->help, "Everything that you changed is still here.");
+}
+
+TEST_F(Saves, OnRisenGroundThePlayerStandsOnItAndTheHiddenCairnsMove) {
+  auto play = begin();
+  play_and_save(file(), *play);
+  const auto land = *Land::load(3);
+  land->world.terrain.set_real(models::kTerrainReliefM, 300);
+  auto again = *Play::create(land->world, land->registry);
+  const auto saved = Saved::open(file(), *again);
+  ASSERT_TRUE(saved) << saved.error().message;
+  ASSERT_TRUE(saved->notice());
+  const core::WorldPosition feet = again->progress().feet;
+  EXPECT_GT(feet.local.y, play->progress().feet.local.y + 1);
+  EXPECT_GE(feet.local.y, again->query().ground(feet)->height_m - 0.5);
+  EXPECT_GT(distance_m(again->route().cairns[11], play->route().cairns[11], again->block_m()), 1);
+  std::size_t hidden = 0;
+  for (const core::BlockCoord block : world::changed_blocks({}, again->edits())) {
+    for (const models::PlacedModel& model : again->edits().layer()->block(block)->placed) {
+      if (model.parameters.integer(kCairnStones) != 11) continue;
+      ++hidden;
+      const core::WorldPosition at{block, {model.local_m.x, 0, model.local_m.y}};
+      EXPECT_TRUE(std::ranges::any_of(again->route().cairns, [&](const auto& cairn) {
+        return distance_m(at, cairn, again->block_m()) < 0.01;
+      }));
+    }
+  }
+  EXPECT_EQ(hidden, kCairns);
 }
 
 TEST_F(Saves, OfANewerFormatOrWithInvalidNumbersAreRejected) {
