@@ -10,7 +10,7 @@ packages=(
   libglfw3-dev libglm-dev libvulkan-dev libvulkan-volk-dev vulkan-validationlayers
   mesa-vulkan-drivers glslc spirv-tools libopenimageio-dev libexpected-dev libcli11-dev
   libtomlplusplus-dev nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev
-  libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev libtinygltf-dev libmeshoptimizer-dev libsqlite3-dev
+  libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev libsqlite3-dev
   libopenal-dev libsndfile1-dev libbullet-dev qt6-base-dev libxcb1-dev libopenmpi-dev openmpi-bin
   slurm-wlm munge
   libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind gdb

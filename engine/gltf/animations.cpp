@@ -14,7 +14,7 @@ constexpr float kMaxSeconds = 1e6F, kMaxValue = 1e6F;
 
 core::Result<std::vector<float>> read_times(Reading& reading, int accessor,
                                             const std::string& what) {
-  const auto elements = elements_of(reading.file, accessor, what);
+  const auto elements = elements_of(reading, accessor, what);
   if (!elements) return tl::unexpected(elements.error());
   if (elements->width != 1 || elements->count == 0) return wrong(what + " has no times");
   if (auto ok = add_within_limit(reading.keys, elements->count, reading.limits.keys, "keys"); !ok)
@@ -33,7 +33,7 @@ core::Result<std::vector<float>> read_times(Reading& reading, int accessor,
 
 core::Result<std::vector<glm::vec4>> read_values(Reading& reading, int accessor, std::size_t count,
                                                  int width, const std::string& what) {
-  const auto elements = elements_of(reading.file, accessor, what);
+  const auto elements = elements_of(reading, accessor, what);
   if (!elements) return tl::unexpected(elements.error());
   if (elements->width != width || elements->count != count)
     return wrong(fmt::format("{} has {} values of {} numbers; {} of {} are needed", what,
@@ -60,25 +60,31 @@ std::optional<Property> property_of(const std::string& path) {
 }
 
 // Reads one channel. Returns nothing if it moves no node of the scene.
-core::Result<std::optional<Channel>> read_channel(Reading& reading,
-                                                  const tinygltf::Animation& animation,
+core::Result<std::optional<Channel>> read_channel(Reading& reading, const AnimationJson& animation,
                                                   std::size_t index, const std::string& name) {
-  const tinygltf::AnimationChannel& described = animation.channels[index];
+  const ChannelJson& described = animation.channels[index];
   const std::string what = fmt::format("{}.channels[{}]", name, index);
-  const auto sampler_number =
-      index_in(described.sampler, animation.samplers.size(), what + ".sampler");
-  if (!sampler_number) return tl::unexpected(sampler_number.error());
-  const auto node = index_in(described.target_node, reading.node_numbers.size(), what + ".node");
+  if (described.is_pointer || described.node == kAbsent) {
+    reading.note(
+        described.is_pointer
+            ? "has animations by the extension \"KHR_animation_pointer\", which are left out"
+            : "has animation channels without a node, which are left out");
+    return std::optional<Channel>{};
+  }
+  const auto node = index_in(described.node, reading.node_numbers.size(), what + ".node");
   if (!node) return tl::unexpected(node.error());
-  if (described.target_path == "weights") {
+  if (described.path == "weights") {
     reading.note("has morph targets, which are not supported; it keeps its base shape");
     return std::optional<Channel>{};
   }
-  const auto property = property_of(described.target_path);
+  const auto property = property_of(described.path);
   if (!property) return wrong(what + ".path must be translation, rotation, scale or weights");
   if (reading.node_numbers[*node] == kNone) return std::optional<Channel>{};
 
-  const tinygltf::AnimationSampler& sampler = animation.samplers[*sampler_number];
+  const auto sampler_number =
+      index_in(described.sampler, animation.samplers.size(), what + ".sampler");
+  if (!sampler_number) return tl::unexpected(sampler_number.error());
+  const SamplerJson& sampler = animation.samplers[*sampler_number];
   const std::string source = fmt::format("{}.samplers[{}]", name, *sampler_number);
   Channel channel;
   channel.node = reading.node_numbers[*node];
@@ -106,7 +112,7 @@ core::Result<std::optional<Channel>> read_channel(Reading& reading,
 
 core::Result<void> read_animations(Reading& reading) {
   for (std::size_t i = 0; i < reading.file.animations.size(); ++i) {
-    const tinygltf::Animation& described = reading.file.animations[i];
+    const AnimationJson& described = reading.file.animations[i];
     const std::string name = fmt::format("animations[{}]", i);
     Animation animation;
     animation.name = described.name.empty() ? fmt::format("animation_{}", i) : described.name;

@@ -1,8 +1,11 @@
 // Materials, and the images that they use as colours, normals or light.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
+#include <optional>
 
+#include "engine/core/utf8.hpp"
 #include "engine/gltf/reading.hpp"
 
 namespace psygen::gltf {
@@ -10,40 +13,65 @@ namespace {
 
 constexpr double kMaxLight = 1e6;
 
-// Maps the number of an image in the file to its number in Model::images.
-using Pictures = std::map<std::uint32_t, std::uint32_t>;
+// Maps the number of an image in the file to its number in Model::images, or to its error.
+using Pictures = std::map<std::uint32_t, core::Result<std::uint32_t>>;
 
-core::Result<image::ImagePtr> decode(const Reading& reading, std::uint32_t number) {
-  const tinygltf::Image& described = reading.file.images[number];
+core::Result<image::ImagePtr> decode(Reading& reading, std::uint32_t number) {
+  const ImageJson& described = reading.file.images[number];
   const std::string name = fmt::format("images[{}]", number);
-  if (described.bufferView < 0)
-    return reading.shared.decode(described.image, name, reading.limits.images);
-  return bytes_of_view(reading.file, described.bufferView, name)
-      .and_then([&](std::span<const std::uint8_t> bytes) {
-        return reading.shared.decode(bytes, name, reading.limits.images);
-      });
+  if (described.view == kAbsent && described.uri.empty())
+    return wrong(name + " has neither a bufferView nor a uri");
+  if (described.view == kAbsent)
+    return reading.source.of_uri(described.uri).and_then([&](const Source::Bytes& bytes) {
+      return reading.shared.decode(bytes, name, reading.limits.images);
+    });
+  return reading.source.of_view(described.view, name).and_then([&](Source::View bytes) {
+    return reading.shared.decode(bytes, name, reading.limits.images);
+  });
 }
 
-// The number of a texture's image in Model::images. Decodes the image at its first use.
+// The number of an image in Model::images. Decodes the image at its first use.
+core::Result<std::uint32_t> image_of(Reading& reading, Pictures& pictures, int source,
+                                     const std::string& texture) {
+  const auto number = index_in(source, reading.file.images.size(), "source of " + texture);
+  if (!number) return number;
+  if (const auto known = pictures.find(*number); known != pictures.end()) return known->second;
+  const auto add = [&](image::ImagePtr picture) -> core::Result<std::uint32_t> {
+    if (auto ok = add_within_limit(reading.pixel_bytes, picture->rgba.size(),
+                                   reading.limits.pixel_bytes, "bytes of pixels");
+        !ok)
+      return tl::unexpected(ok.error());
+    reading.out.images.push_back(std::move(picture));
+    return static_cast<std::uint32_t>(reading.out.images.size() - 1);
+  };
+  return pictures.emplace(*number, decode(reading, *number).and_then(add)).first->second;
+}
+
+// The number of a texture's image in Model::images; kNone if there is none, or its file does not
+// exist. `user` names the material.
 core::Result<std::uint32_t> picture_of(Reading& reading, Pictures& pictures, int texture,
-                                       const std::string& what) {
-  if (texture == -1) return kNone;
+                                       const std::string& what, const std::string& user) {
+  if (texture == kAbsent) return kNone;
   const auto index = index_in(texture, reading.file.textures.size(), what);
   if (!index) return index;
-  const auto number = index_in(reading.file.textures[*index].source, reading.file.images.size(),
-                               fmt::format("source of textures[{}]", *index));
-  if (!number) return number;
-  const auto [at, is_new] =
-      pictures.try_emplace(*number, static_cast<std::uint32_t>(reading.out.images.size()));
-  if (!is_new) return at->second;
-  auto picture = decode(reading, *number);
-  if (!picture) return tl::unexpected(picture.error());
-  if (auto ok = add_within_limit(reading.pixel_bytes, (*picture)->rgba.size(),
-                                 reading.limits.pixel_bytes, "bytes of pixels");
-      !ok)
-    return tl::unexpected(ok.error());
-  reading.out.images.push_back(std::move(*picture));
-  return at->second;
+  const TextureJson& described = reading.file.textures[*index];
+  const std::string name = fmt::format("textures[{}]", *index);
+  std::string reason = name + " has no image";
+  if (!described.other_extension.empty())
+    reason = fmt::format("{} has its image in the extension \"{}\", which is not supported", name,
+                         core::shown(described.other_extension, 100));
+  for (const bool webp : {true, false}) {
+    const int source = webp ? described.webp : described.source;
+    if (source == kAbsent) continue;
+    const auto picture = image_of(reading, pictures, source, name);
+    if (picture) return picture;
+    const auto [code, message] = picture.error();
+    const bool is_optional = webp && code == core::ErrorCode::kParse;
+    if (code != core::ErrorCode::kIo && !is_optional) return picture;
+    reason = webp ? "EXT_texture_webp: " + message : message;
+  }
+  reading.note(fmt::format("{} is drawn without an image: {}", user, reason));
+  return kNone;
 }
 
 core::Result<void> read_number(double value, double most, const std::string& what, float& out) {
@@ -53,25 +81,42 @@ core::Result<void> read_number(double value, double most, const std::string& wha
   return {};
 }
 
+// `out` keeps its value if the file has none.
 core::Result<void> read_colour(const std::vector<double>& from, const std::string& what,
                                glm::vec3& out) {
+  if (from.empty()) return {};
   if (from.size() < 3) return wrong(what + " has fewer than three numbers");
   for (int i = 0; i < 3; ++i)
     if (auto ok = read_number(from[static_cast<std::size_t>(i)], 1, what, out[i]); !ok) return ok;
   return {};
 }
 
-double emissive_strength(const tinygltf::Material& described) {
-  const auto found = described.extensions.find("KHR_materials_emissive_strength");
-  if (found == described.extensions.end() || !found->second.Has("emissiveStrength")) return 1;
-  const tinygltf::Value& strength = found->second.Get("emissiveStrength");
-  return strength.IsNumber() ? strength.GetNumberAsDouble() : 1;
+constexpr double kMaxOfTransform = 1e6;
+
+// KHR_texture_transform as a matrix: scale, then rotation, then offset. A positive rotation turns
+// counter-clockwise, with v down.
+core::Result<Coordinates> coordinates_of(const TextureUseJson& use, const std::string& what) {
+  double offset[2] = {0, 0}, scale[2] = {1, 1};
+  const auto read = [&](const std::vector<double>& from, double(&to)[2]) {
+    if (from.empty()) return true;
+    if (from.size() != 2) return false;
+    to[0] = from[0], to[1] = from[1];
+    return std::abs(to[0]) <= kMaxOfTransform && std::abs(to[1]) <= kMaxOfTransform;
+  };
+  if (use.set < 0) return wrong(fmt::format("{}.texCoord is {}", what, use.set));
+  if (!read(use.offset, offset) || !read(use.scale, scale) ||
+      !(std::abs(use.rotation) <= kMaxOfTransform))
+    return wrong(fmt::format("KHR_texture_transform of {} needs pairs of numbers of at most {}",
+                             what, kMaxOfTransform));
+  const double c = std::cos(use.rotation), s = std::sin(use.rotation);
+  return Coordinates{use.set, glm::mat3x2(c * scale[0], -s * scale[0], s * scale[1], c * scale[1],
+                                          offset[0], offset[1])};
 }
 
-core::Result<void> read_numbers(const tinygltf::Material& described, const std::string& name,
+core::Result<void> read_numbers(const MaterialJson& described, const std::string& name,
                                 Reading& reading, Material& out) {
-  const std::vector<double>& base = described.pbrMetallicRoughness.baseColorFactor;
-  const double normals = described.normalTexture.scale;
+  const std::vector<double>& base = described.base_colour;
+  const double normals = described.normal.strength;
   float opacity = 1, strength = 1;
   const auto ok =
       read_colour(base, name + ".baseColorFactor", out.base_colour)
@@ -80,10 +125,10 @@ core::Result<void> read_numbers(const tinygltf::Material& described, const std::
             return read_number(last, 1, name + ".baseColorFactor", opacity);
           })
           .and_then([&] {
-            return read_colour(described.emissiveFactor, name + ".emissiveFactor", out.emissive);
+            return read_colour(described.emissive, name + ".emissiveFactor", out.emissive);
           })
           .and_then([&] {
-            return read_number(emissive_strength(described), kMaxLight, name + ".emissiveStrength",
+            return read_number(described.emissive_strength, kMaxLight, name + ".emissiveStrength",
                                strength);
           })
           .and_then([&] {
@@ -93,17 +138,17 @@ core::Result<void> read_numbers(const tinygltf::Material& described, const std::
   if (!ok) return ok;
   out.emissive *= strength;
   out.normal_strength = static_cast<float>(normals);
-  out.two_sided = described.doubleSided;
-  if (described.alphaMode == "MASK") {
+  out.two_sided = described.two_sided;
+  if (described.alpha_mode == "MASK") {
     out.opacity = opacity;
-    return read_number(described.alphaCutoff, kMaxLight, name + ".alphaCutoff", out.min_opacity);
+    return read_number(described.alpha_cutoff, kMaxLight, name + ".alphaCutoff", out.min_opacity);
   }
-  if (described.alphaMode == "BLEND") {
+  if (described.alpha_mode == "BLEND") {
     reading.note(
         "has blended materials, which are drawn opaque where their opacity is at least one half");
     out.min_opacity = 0.5F;
     out.opacity = opacity;
-  } else if (described.alphaMode != "OPAQUE") {
+  } else if (described.alpha_mode != "OPAQUE") {
     return wrong(fmt::format("{}.alphaMode must be OPAQUE, MASK or BLEND", name));
   }
   return {};
@@ -114,39 +159,39 @@ core::Result<void> read_numbers(const tinygltf::Material& described, const std::
 core::Result<void> read_materials(Reading& reading) {
   Pictures pictures;
   for (std::size_t i = 0; i < reading.file.materials.size(); ++i) {
-    const tinygltf::Material& described = reading.file.materials[i];
+    const MaterialJson& described = reading.file.materials[i];
     const std::string name = fmt::format("materials[{}]", i);
+    const std::string user = described.name.empty()
+                                 ? name
+                                 : fmt::format("{} \"{}\"", name, core::shown(described.name, 100));
     Material material;
     material.name = described.name;
     if (auto ok = read_numbers(described, name, reading, material); !ok) return ok;
-    const tinygltf::TextureInfo& base = described.pbrMetallicRoughness.baseColorTexture;
-    const tinygltf::NormalTextureInfo& normal = described.normalTexture;
-    const tinygltf::TextureInfo& light = described.emissiveTexture;
-    int set = -1;
-    const auto use = [&](int texture, int coordinates, const char* what,
+    std::optional<Coordinates> first;
+    const auto use = [&](const TextureUseJson& of, const char* what,
                          std::uint32_t& out) -> core::Result<void> {
-      const auto picture = picture_of(reading, pictures, texture, name + what);
+      const auto picture = picture_of(reading, pictures, of.texture, name + what, user);
       if (!picture) return tl::unexpected(picture.error());
       out = *picture;
       if (out == kNone) return {};
-      if (set >= 0 && set != coordinates)
+      const auto own = coordinates_of(of, name + what);
+      if (!own) return tl::unexpected(own.error());
+      if (first && *first != *own)
         reading.note(
             "has a material whose textures use different coordinates; all of them use "
             "those of its first texture");
-      if (set < 0) set = coordinates;
+      if (!first) first = *own;
       return {};
     };
     const auto ok =
-        use(base.index, base.texCoord, ".baseColorTexture", material.base_texture)
+        use(described.base, ".baseColorTexture", material.base_texture)
+            .and_then(
+                [&] { return use(described.normal, ".normalTexture", material.normal_texture); })
             .and_then([&] {
-              return use(normal.index, normal.texCoord, ".normalTexture", material.normal_texture);
-            })
-            .and_then([&] {
-              return use(light.index, light.texCoord, ".emissiveTexture",
-                         material.emissive_texture);
+              return use(described.light, ".emissiveTexture", material.emissive_texture);
             });
     if (!ok) return ok;
-    reading.uv_sets.push_back(std::max(set, 0));
+    reading.coordinates.push_back(first.value_or(Coordinates{}));
     reading.out.materials.push_back(std::move(material));
   }
   return {};

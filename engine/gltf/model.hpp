@@ -85,8 +85,10 @@ struct Model {
   // Features of the file that the engine does not support, one sentence each: skins, morph targets,
   // blending, points and lines, extensions. Each begins with the file's path.
   std::vector<std::string> notes;
-  // The files that this file names, in its folder or below: buffers and images.
+  // The files that this file names and uses, in its folder or below: buffers and images.
   std::vector<std::filesystem::path> files;
+  // Images that it uses and that do not exist; materials are drawn without them.
+  std::vector<std::filesystem::path> missing;
 };
 
 }  // namespace psygen::gltf

@@ -56,7 +56,7 @@ core::Result<Pose> pose_of_matrix(const std::vector<double>& matrix, const std::
   return pose;
 }
 
-core::Result<Pose> pose_of(const tinygltf::Node& node, const std::string& name) {
+core::Result<Pose> pose_of(const NodeJson& node, const std::string& name) {
   if (!node.matrix.empty()) return pose_of_matrix(node.matrix, name + ".matrix");
   Pose pose;
   glm::vec4 turn(0, 0, 0, 1);
@@ -72,7 +72,7 @@ core::Result<Pose> pose_of(const tinygltf::Node& node, const std::string& name) 
 }
 
 // The parents of all nodes. Fails for a node with two parents and for a cycle.
-core::Result<std::vector<std::uint32_t>> parents_of(const tinygltf::Model& file) {
+core::Result<std::vector<std::uint32_t>> parents_of(const Document& file) {
   const std::size_t count = file.nodes.size();
   std::vector<std::uint32_t> parents(count, kNone);
   for (std::size_t i = 0; i < count; ++i) {
@@ -99,7 +99,7 @@ core::Result<std::vector<std::uint32_t>> parents_of(const tinygltf::Model& file)
   return parents;
 }
 
-core::Result<std::vector<std::uint32_t>> roots_of(const tinygltf::Model& file,
+core::Result<std::vector<std::uint32_t>> roots_of(const Document& file,
                                                   const std::vector<std::uint32_t>& parents) {
   std::vector<std::uint32_t> roots;
   if (file.scenes.empty()) {
@@ -108,11 +108,11 @@ core::Result<std::vector<std::uint32_t>> roots_of(const tinygltf::Model& file,
     }
     return roots;
   }
-  const int number = file.defaultScene == -1 ? 0 : file.defaultScene;
+  const int number = file.scene == kAbsent ? 0 : file.scene;
   const auto scene = index_in(number, file.scenes.size(), "scene");
   if (!scene) return tl::unexpected(scene.error());
   std::vector<bool> listed(parents.size());
-  for (const int root : file.scenes[*scene].nodes) {
+  for (const int root : file.scenes[*scene]) {
     const auto index = index_in(root, parents.size(), fmt::format("a node of scenes[{}]", *scene));
     if (!index) return tl::unexpected(index.error());
     if (parents[*index] != kNone || listed[*index])
@@ -125,7 +125,7 @@ core::Result<std::vector<std::uint32_t>> roots_of(const tinygltf::Model& file,
 }
 
 core::Result<void> add_node(Reading& reading, std::uint32_t number, std::uint32_t parent) {
-  const tinygltf::Node& described = reading.file.nodes[number];
+  const NodeJson& described = reading.file.nodes[number];
   const std::string name = fmt::format("nodes[{}]", number);
   Node node;
   node.name = described.name;
@@ -133,12 +133,12 @@ core::Result<void> add_node(Reading& reading, std::uint32_t number, std::uint32_
   auto pose = pose_of(described, name);
   if (!pose) return tl::unexpected(pose.error());
   node.rest = *pose;
-  if (described.mesh != -1) {
+  if (described.mesh != kAbsent) {
     const auto mesh = index_in(described.mesh, reading.out.meshes.size(), name + ".mesh");
     if (!mesh) return tl::unexpected(mesh.error());
     node.mesh = *mesh;
   }
-  if (described.skin != -1)
+  if (described.skin != kAbsent)
     reading.note("has skins, which are not supported; skinned meshes keep their rest pose");
   reading.node_numbers[number] = static_cast<std::uint32_t>(reading.out.nodes.size());
   reading.out.nodes.push_back(std::move(node));
@@ -148,7 +148,7 @@ core::Result<void> add_node(Reading& reading, std::uint32_t number, std::uint32_
 }  // namespace
 
 core::Result<void> read_nodes(Reading& reading) {
-  const tinygltf::Model& file = reading.file;
+  const Document& file = reading.file;
   std::uint64_t count = 0;
   if (auto ok = add_within_limit(count, file.nodes.size(), reading.limits.nodes, "nodes"); !ok)
     return ok;

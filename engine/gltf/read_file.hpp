@@ -1,7 +1,7 @@
 // Reads glTF 2.0: .gltf with its buffers and images, and .glb. Files are not trusted: sizes and
 // numbers are checked before any allocation for them, and only files in the file's folder or below
-// are read. TinyGLTF parses the JSON and is used only here; psygen::image decodes images. Any
-// thread; too slow for the tick.
+// are read, and only those in use. psygen::image decodes images. Any thread; too slow for the
+// tick.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +25,10 @@ struct Limits {
   std::uint64_t pixel_bytes = std::uint64_t{256} << 20;  // of all images together, 4 per pixel
 };
 
-// The content of a file. Strips and fans become triangles. Fails with kIo (the file or a file that
-// it names cannot be read), kParse (damaged, not glTF 2.0, or out of range), kInvalidArgument (a
-// required extension that is not supported, sparse accessors, names of files outside its folder),
+// The content of a file. Strips and fans become triangles, compressed meshes (meshopt, Draco) plain
+// ones; texture coordinates are transformed (KHR_texture_transform). Fails with kIo (the file or a
+// buffer that it uses cannot be read), kParse (damaged, not glTF 2.0, or out of range),
+// kInvalidArgument (a required extension that is not supported, names of files outside its folder),
 // kOverBudget (larger than the limits) or kOutOfMemory. The message starts with the path and names
 // the faulty part. Images that `shared` knows are not decoded again; null: it knows none.
 core::Result<Model> read_file(const std::filesystem::path& path, const Limits& limits = {},

@@ -35,7 +35,7 @@ constexpr std::uint64_t kMaxHashedBytes = std::uint64_t{1} << 30;
 
 using ShapePtr = std::shared_ptr<const Shape>;
 
-// The result of reading a file, and the other files that it names.
+// The result of reading a file, and the other files that it uses, existing or not.
 template <class Made>
 struct Read {
   std::shared_ptr<const Made> made;
@@ -53,6 +53,7 @@ core::Result<Read<Shape>> read_shape(const world::ModelFile& wanted, image::Imag
       return core::fail(shape.error().code,
                         fmt::format("{}: {}", wanted.path.string(), shape.error().message));
     std::ranges::move(model->notes, std::back_inserter(notes));
+    std::ranges::move(model->missing, std::back_inserter(model->files));
     return Read<Shape>{*std::move(shape), std::move(model->files)};
   } catch (const std::bad_alloc&) {
     return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory(wanted.path.string()));

@@ -16,6 +16,7 @@
 
 namespace psygen::image {
 
+// A decoded image that several owners share.
 using ImagePtr = std::shared_ptr<const Image>;
 
 class ImageCache {

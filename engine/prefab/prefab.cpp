@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
 #include <span>
@@ -132,6 +133,45 @@ void decompose(const glm::mat3& basis, Transform& out) {
   out.rotation = glm::quat_cast(glm::mat3(x, glm::cross(z, x), z));
 }
 
+// True if scale and rotation alone do not give these axes.
+bool is_sheared(const glm::mat3& basis) {
+  constexpr float kSkew = 1e-3F;
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::vec3 &a = basis[axis], &b = basis[(axis + 1) % 3];
+    if (std::abs(glm::dot(a, b)) > kSkew * glm::length(a) * glm::length(b)) return true;
+  }
+  return false;
+}
+
+// A warning that names a node whose shape the system "poses" cannot draw, in its rest pose or at a
+// key of its rotation; empty: there is none.
+std::string shear_of(const gltf::Model& model) {
+  std::uint32_t sheared = gltf::kNone;
+  std::vector<glm::mat3> parents, bases;
+  for (std::uint32_t i = 0; i < model.nodes.size(); ++i) {
+    const gltf::Node& node = model.nodes[i];
+    parents.push_back(node.parent == gltf::kNone ? glm::mat3(1.0F) : bases[node.parent]);
+    bases.push_back(parents[i] * scaled(node.rest.rotation, node.rest.scale));
+    if (is_sheared(bases[i])) sheared = std::min(sheared, i);
+  }
+  for (const gltf::Animation& animation : model.animations) {
+    for (const gltf::Channel& channel : animation.channels) {
+      if (channel.property != gltf::Property::kRotation) continue;
+      gltf::Pose pose = model.nodes[channel.node].rest;
+      for (const float time_s : channel.times_s) {
+        apply(channel, time_s, pose);
+        if (is_sheared(parents[channel.node] * scaled(pose.rotation, pose.scale)))
+          sheared = std::min(sheared, channel.node);
+      }
+    }
+  }
+  if (sheared == gltf::kNone) return {};
+  return fmt::format(
+      "{}: node {} \"{}\" is turned below a parent with different scales per axis, which shears "
+      "it; a prefab draws it without the shear (apply the scale in the modeler)",
+      model.name, sheared, model.nodes[sheared].name);
+}
+
 class Composer {
  public:
   Composer(const PoseQuery& entities, std::uint32_t tick)
@@ -205,6 +245,7 @@ core::Result<void> Library::add_systems(scene::Systems& systems) {
 }
 
 core::Result<PrefabId> Library::add(scene::Assets& assets, const gltf::Model& model) {
+  if (const std::string warning = shear_of(model); !warning.empty()) core::log_warning(warning);
   auto prefab = Adder(model, assets).add();
   if (!prefab) {
     return core::fail(prefab.error().code,

@@ -154,9 +154,6 @@ TEST_F(BadGltf, WithAccessorsOutOfTheirBufferIsRejected) {
   accessor_of(sample, "POSITION")["bufferView"] = 99;
   refuse(sample, "bufferView of accessors[0]");
   sample = square();
-  accessor_of(sample, "POSITION").erase("bufferView");
-  refuse(sample, "bufferView of accessors[0]");
-  sample = square();
   sample.json["bufferViews"][0]["buffer"] = -3;
   refuse(sample, "buffer of bufferViews[0] is -3");
   sample = square();
@@ -266,13 +263,11 @@ TEST_F(BadGltf, OfADepthOf100000IsRejectedOrReadWithoutRecursion) {
 
 TEST_F(BadGltf, ThatRequiresUnsupportedFeaturesIsRejected) {
   Sample sample = square();
-  sample.json["extensionsRequired"][0] = "KHR_draco_mesh_compression";
-  refuse(sample, "KHR_draco_mesh_compression", ErrorCode::kInvalidArgument);
+  sample.json["extensionsRequired"][0] = "KHR_texture_basisu";
+  refuse(sample, "KHR_texture_basisu", ErrorCode::kInvalidArgument);
   sample = square();
-  accessor_of(sample, "POSITION")["sparse"] =
-      parsed(R"({"count": 1, "indices": {"bufferView": 0, "componentType": 5123},
-                 "values": {"bufferView": 0}})");
-  refuse(sample, "sparse", ErrorCode::kInvalidArgument);
+  sample.json["asset"]["minVersion"] = "2.1";
+  refuse(sample, "version \"2.1\"");
 }
 
 TEST_F(BadGltf, ThatNamesFilesOutsideOfItsFolderIsRejected) {
@@ -295,21 +290,21 @@ TEST_F(BadGltf, ThatNamesFilesOutsideOfItsFolderIsRejected) {
 TEST_F(BadGltf, WithoutItsBufferOrPictureIsRejected) {
   Sample sample = square();
   refuse_bytes(sample.text("missing.bin"), "missing.bin", ErrorCode::kIo);
-  refuse_bytes(sample.text(), "uri");
+  refuse_bytes(sample.text(), "no uri");
   write_bytes(folder_ / "short.bin", "abc");
   refuse_bytes(sample.text("short.bin"), "short.bin");
-  sample.json["images"][0]["uri"] = "missing.png";
   sample.json["textures"][0]["source"] = 0;
   sample.json["materials"][0]["normalTexture"]["index"] = 0;
-  refuse(sample, "missing.png", ErrorCode::kIo);
   write_bytes(folder_ / "text.png", "no picture");
   sample.json["images"][0]["uri"] = "text.png";
   refuse(sample, "images[0]: is not a PNG or JPEG image");
   sample.json["images"][0] = {{"bufferView", 99}, {"mimeType", "image/png"}};
   EXPECT_FALSE(read(sample.glb()));
-  sample.json["textures"][0].erase("source");
-  sample.json["images"][0] = {{"bufferView", 0}, {"mimeType", "image/png"}};
-  refuse(sample, "source of textures[0] is -1");
+  sample.json["textures"][0]["source"] = -2;
+  refuse(sample, "source of textures[0] is -2");
+  sample.json["textures"][0]["source"] = 0;
+  sample.json["images"][0] = nlohmann::json::object();
+  refuse(sample, "images[0] has neither");
 }
 
 TEST_F(BadGltf, WithTexturesOfAbsurdSizeIsRejected) {

@@ -164,6 +164,30 @@ TEST_F(Prefabs, SplitMeshesThatAreTooLarge) {
   EXPECT_EQ(library_[*added].parts.size(), 10u);
 }
 
+TEST_F(Prefabs, WarnOfNodesThatTheirParentsShear) {
+  const auto warning_of = [&](const gltf::Model& model) {
+    testing::internal::CaptureStderr();
+    EXPECT_TRUE(library_.add(scene_->assets(), model));
+    return testing::internal::GetCapturedStderr();
+  };
+  gltf::Model model = two_nodes();
+  model.nodes[0].rest.scale = {1, 3, 1};
+  EXPECT_EQ(warning_of(model), "") << "a scale alone shears nothing";
+  model.nodes[1].rest.rotation = glm::angleAxis(0.5F, glm::vec3(0, 1, 0));
+  EXPECT_EQ(warning_of(model), "") << "nor does a turn about the axis of the scale";
+  model.nodes[1].rest.rotation = glm::angleAxis(0.5F, glm::vec3(0, 0, 1));
+  EXPECT_THAT(warning_of(model), testing::HasSubstr("arm.glb: node 1 \"hand\" is turned below"));
+  model.nodes[0].rest.scale = {3, 3, 3};
+  EXPECT_EQ(warning_of(model), "") << "nor does an equal scale";
+  model.nodes[0].rest.scale = {3, 1, 1};
+  model.nodes[1].rest.rotation = glm::quat(1, 0, 0, 0);
+  gltf::Channel& channel = model.animations[0].channels[0];
+  channel.node = 1;
+  channel.property = gltf::Property::kRotation;
+  channel.values = {{0, 0, 0, 1}, {0, 0, 0.6F, 0.8F}};
+  EXPECT_THAT(warning_of(model), testing::HasSubstr("node 1 \"hand\""));
+}
+
 // A save contains complete instances: positions, animations and attachments.
 TEST(PrefabSnapshots, ContainObjectsAndInstancesWithTheirParts) {
   ecs::World world;
