@@ -366,7 +366,7 @@ core::Result<WorldIdentity> read_world(const Database& database) {
   WorldIdentity world{std::string(select->text(0)), static_cast<std::uint64_t>(select->integer(1))};
   if (select->is(2, SQLITE_NULL)) return world;  // of format 1
   auto parts = decode_parts(select->bytes(2));
-  if (!parts) return refuse(database.file(), parts.error().message + "; the file is damaged");
+  if (!parts) return refuse(database.file(), parts.error().message);
   world.parts = std::move(*parts);
   return world;
 }
@@ -384,8 +384,9 @@ Bytes encode_parts(const std::vector<WorldPart>& parts) {
 
 core::Result<std::vector<WorldPart>> decode_parts(std::span<const std::byte> bytes) {
   const auto broken = [](std::string_view why) {
-    return core::fail(core::ErrorCode::kParse,
-                      fmt::format("the parts of its world cannot be read: {}", why));
+    return core::fail(
+        core::ErrorCode::kParse,
+        fmt::format("the parts of its world cannot be read: {}; the file is damaged", why));
   };
   if (bytes.size() < 12) return broken("they end too early");
   const auto content = bytes.first(bytes.size() - 8);
@@ -400,7 +401,10 @@ core::Result<std::vector<WorldPart>> decode_parts(std::span<const std::byte> byt
   for (WorldPart& part : parts) {
     in.read(part.kind, part.hash, part.count);
     part.name = in.get_text(in.get_count(1));
-    if (part.kind > PartKind::kLooks) return broken("one is of an unknown kind");
+    if (part.kind > PartKind::kLooks)
+      return core::fail(core::ErrorCode::kParse,
+                        fmt::format("its world has a part of a kind that psygen {} does not know",
+                                    core::version()));
   }
   if (in.failed()) return broken("they end too early");
   if (in.left() > 0) return broken("there are extra bytes at the end");

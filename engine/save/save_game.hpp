@@ -101,8 +101,8 @@ class SaveGame {
   // kParse for a newer one.
   static core::Result<SaveGame> open(const std::filesystem::path& file, const world::World& world,
                                      const models::Registry& registry, OpenOptions options = {});
-  // The same for edits that the engine does not read, or without a world: judges the ground as a
-  // whole, accepts no changes that touch edits, and ignores versions.
+  // The same for edits that the engine does not read, or without a world: judges ground, water
+  // and extent as a whole, accepts no changes that touch edits, and ignores versions.
   static core::Result<SaveGame> open(const std::filesystem::path& file, const WorldIdentity& world,
                                      OpenMode mode = OpenMode::kOpenOrCreate);
   // Releases the lock. Unsaved changes are lost.

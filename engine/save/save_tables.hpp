@@ -37,6 +37,7 @@ class SaveTables {
   SaveTables(const SaveTables&) = delete;
   SaveTables& operator=(const SaveTables&) = delete;
 
+  // The file; and the preparation of all statements.
   Database& database() { return database_; }
   core::Result<void> prepare();
 

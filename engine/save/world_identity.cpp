@@ -154,6 +154,8 @@ std::uint64_t hash_of(const Add& add) {
   return facts.hash();
 }
 
+// Saves of older programs stay valid only if a feature that their worlds lack adds nothing: a new
+// shape of the ground, say, is added to kGround if the world has one.
 std::vector<WorldPart> parts_of(const world::World& world, const models::Registry& registry) {
   using enum PartKind;
   std::vector<WorldPart> parts;

@@ -398,9 +398,10 @@ TEST_F(ChangedWorld, HostilePartsAreAClearError) {
     EXPECT_FALSE(decode_parts(std::span(parts).first(length))) << length;
   const std::vector<WorldPart> many(5000);
   EXPECT_EQ(decode_parts(encode_parts(many)).error().message,
-            "the parts of its world cannot be read: they are 5000; at most 4096 are allowed");
+            "the parts of its world cannot be read: they are 5000; at most 4096 are allowed; "
+            "the file is damaged");
   EXPECT_THAT(decode_parts(encode_parts({{static_cast<PartKind>(77), "x", 1, 2}})).error().message,
-              HasSubstr("one is of an unknown kind"));
+              HasSubstr("its world has a part of a kind that psygen "));
   for (const char* value :
        {"zeroblob(0)", "zeroblob(300000)", "x'ffffffff0000000000000000'", "7"}) {
     tamper(fmt::format("UPDATE psygen_facts SET value = {} WHERE name = 'world parts'", value));
