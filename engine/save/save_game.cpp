@@ -22,6 +22,21 @@ tl::unexpected<core::Error> already_there(const std::filesystem::path& file) {
   return core::fail(ErrorCode::kIo, fmt::format("{}: already exists", file.string()));
 }
 
+// The parts of the world before scatters and species were added at its end, if it then had this
+// hash; else none. For saves of format 1. O(scatters · species · size of the world).
+std::vector<WorldPart> parts_before_growth(world::World world, const models::Registry& registry,
+                                           std::uint64_t hash) {
+  for (const std::vector<models::Species> species = world.species;; world.scatter.pop_back()) {
+    world.species = species;
+    for (;; world.species.pop_back()) {
+      WorldIdentity earlier = identity_of(world, registry);
+      if (earlier.hash == hash) return std::move(earlier.parts);
+      if (world.species.empty()) break;
+    }
+    if (world.scatter.empty()) return {};
+  }
+}
+
 }  // namespace
 
 struct SaveGame::State {
@@ -52,11 +67,13 @@ struct SaveGame::State {
 
 // Notes the changes of the world since the last save.
 core::Result<void> SaveGame::State::adapt_to_world(Accept accept) {
-  const auto found = read_world(tables.database());
+  auto found = read_world(tables.database());
   if (!found) return tl::unexpected(found.error());
   WorldIdentity& now = world.identity;
   if (now.hash == found->hash && now.parts.empty()) now.parts = found->parts;
   if (*found == now) return {};
+  if (found->parts.empty() && world.world)
+    found->parts = parts_before_growth(*world.world, *world.registry, found->hash);
   changes = changes_between(*found, now);
   unsaved.world = true;
   if (found->hash == now.hash) return {};

@@ -330,9 +330,12 @@ TEST_F(ChangedWorld, ASaveOfFormat1OpensAndIsUpgradedAtTheNextSave) {
     EXPECT_THAT(*save->kept_blocks(), IsEmpty());
   }
   EXPECT_TRUE(file_content(file_) == old);
-  const world::World more = parsed(std::string(kSmallWorld) + kFern);
-  EXPECT_THAT(refusal(more), HasSubstr("saves of its format do not tell which parts differ"));
-  EXPECT_EQ(list(*open(more, Accept::kChangedWorld), more), kAll);
+  const world::World other = parsed(replaced(kSmallWorld, "octaves = 4", "octaves = 5"));
+  EXPECT_THAT(refusal(other), HasSubstr("saves of its format do not tell which parts differ"));
+  EXPECT_EQ(list(*open(other, Accept::kChangedWorld), other), kAll);
+  const world::World more = parsed(std::string(kSmallWorld) + kFern + kFern);
+  ASSERT_TRUE(open(more)) << "it only grew at its end";
+  EXPECT_EQ(open(more)->world_changes()[0].text, "scatter 3 of 4 'grass' is new");
   ASSERT_TRUE(open(small_)->save());
   EXPECT_EQ(*world_of(file_), identity_of(small_, registry()));
   EXPECT_TRUE(open(more)) << "now the parts are known";
