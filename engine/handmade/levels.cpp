@@ -10,10 +10,13 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "engine/core/hash.hpp"
+#include "engine/handmade/appearance.hpp"
+#include "engine/handmade/simplifier.hpp"
 #include "engine/models/kit/packing.hpp"
 
 namespace psygen::handmade {
@@ -26,8 +29,6 @@ constexpr std::size_t kStep = 4;      // ratio of the triangles of two successiv
 constexpr float kMaxError = 0.5F;     // relative to the extent
 constexpr float kNearlyThere = 1.3F;  // accepted ratio of triangles to the target
 constexpr float kMinGain = 0.8F;      // a level with a larger ratio to the previous one is dropped
-
-using Indices = std::vector<std::uint32_t>;
 
 constexpr float kMaxReach = 0.5F;  // extent of a piece relative to the extent of all
 
@@ -180,53 +181,10 @@ struct Key {
 };
 static_assert(sizeof(Key) == 20);
 
-enum class Keep : std::uint8_t { kAll, kColours, kPositions };
-
-Key key_of(const Vertex& v, Keep keep) {
-  Key key{v.position + 0.0F, {0, 0}, {0, 0, 0, v.leaf}};  // −0 is 0
-  if (keep == Keep::kAll) {
-    const glm::vec2 n = models::encode_octahedral(v.normal);
-    key.normal = {models::pack_snorm16(n.x), models::pack_snorm16(n.y)};
-  }
-  for (std::size_t c = 0; c < 3 && keep != Keep::kPositions; ++c)
-    key.colour[c] = keep == Keep::kAll ? v.colour[c] : static_cast<std::uint8_t>(v.colour[c] >> 4);
-  return key;
-}
-
 struct Mesh {
   std::vector<Vertex> vertices;
   Indices indices;
 };
-
-// The mesh with equal vertices merged; the colour is their mean. `remap` gets the new indices of
-// vertices, and ~0 for unused ones.
-Mesh welded(const std::vector<Vertex>& vertices, const Indices& indices, Keep keep,
-            std::vector<unsigned>& remap) {
-  std::vector<Key> keys;
-  keys.reserve(vertices.size());
-  for (const Vertex& v : vertices)
-    keys.push_back(key_of(v, keep));
-  remap.resize(vertices.size());
-  const std::size_t count = meshopt_generateVertexRemap(
-      remap.data(), indices.data(), indices.size(), keys.data(), keys.size(), sizeof(Key));
-  Mesh mesh;
-  mesh.vertices.resize(count);
-  std::vector<std::array<std::uint32_t, 4>> sums(count);
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (remap[i] == ~0U) continue;  // no triangle uses it
-    auto& sum = sums[remap[i]];
-    if (sum[3]++ == 0) mesh.vertices[remap[i]] = vertices[i];
-    for (std::size_t c = 0; c < 3; ++c)
-      sum[c] += vertices[i].colour[c];
-  }
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      mesh.vertices[i].colour[c] =
-          static_cast<std::uint8_t>((sums[i][c] + sums[i][3] / 2) / std::max(sums[i][3], 1U));
-  for (const std::uint32_t i : indices)
-    mesh.indices.push_back(remap[i]);
-  return mesh;
-}
 
 // Triangles thinner than a millionth of their length cover no pixel, and their normals are
 // meaningless.
@@ -244,107 +202,99 @@ Indices without_slivers(const std::vector<Vertex>& vertices, const Indices& indi
   return kept;
 }
 
-// The input of simplification, and the normals that the finest mesh has at each of its vertices:
-// normals[first[i] … first[i + 1] − 1].
-struct Source {
-  Mesh mesh;
-  std::vector<std::uint32_t> first;
-  std::vector<glm::vec3> normals;
-};
-
-Source source_of(const Mesh& finest, Keep keep) {
-  std::vector<unsigned> remap;
-  Source source{welded(finest.vertices, finest.indices, keep, remap), {}, {}};
-  source.first.resize(source.mesh.vertices.size() + 1);
-  for (const unsigned to : remap)
-    ++source.first[to + 1];
-  for (std::size_t i = 1; i < source.first.size(); ++i)
-    source.first[i] += source.first[i - 1];
-  source.normals.resize(remap.size());
-  std::vector<std::uint32_t> next(source.first.begin(), source.first.end() - 1);
-  for (std::size_t i = 0; i < remap.size(); ++i)
-    source.normals[next[remap[i]]++] = finest.vertices[i].normal;
-  return source;
-}
-
-// The mesh of some triangles of a source. Each corner gets the normal of the finest mesh there that
-// fits its triangle best, so smooth parts stay smooth and edges stay hard.
-Mesh with_normals(const Source& source, const Indices& indices) {
-  constexpr std::uint32_t kMaxNormals = 64;  // normals compared per vertex
-  Mesh out;
-  for (std::size_t k = 0; k < indices.size(); ++k) {
-    const std::uint32_t* triangle = &indices[k / 3 * 3];
-    const auto at = [&](int i) { return source.mesh.vertices[triangle[i]].position; };
-    const glm::vec3 across = glm::cross(at(1) - at(0), at(2) - at(0));
-    Vertex v = source.mesh.vertices[indices[k]];
-    const std::uint32_t first = source.first[indices[k]], end = source.first[indices[k] + 1];
-    for (std::uint32_t n = first; n < std::min(end, first + kMaxNormals); ++n) {
-      if (glm::dot(source.normals[n], across) > glm::dot(v.normal, across))
-        v.normal = source.normals[n];
-    }
-    out.vertices.push_back(v);
-    out.indices.push_back(static_cast<std::uint32_t>(k));
+// The mesh without equal and unused vertices and slivers.
+Mesh cleaned(const std::vector<Vertex>& vertices, const Indices& indices) {
+  std::vector<Key> keys;
+  keys.reserve(vertices.size());
+  for (const Vertex& v : vertices) {
+    const glm::vec2 n = models::encode_octahedral(v.normal);
+    keys.push_back({v.position + 0.0F,  // −0 is 0
+                    {models::pack_snorm16(n.x), models::pack_snorm16(n.y)},
+                    {v.colour[0], v.colour[1], v.colour[2], v.leaf}});
   }
-  std::vector<unsigned> remap;
-  return welded(out.vertices, out.indices, Keep::kAll, remap);
+  Mesh mesh{{}, without_slivers(vertices, indices)};
+  if (mesh.indices.empty()) return {};
+  Indices remap(vertices.size());
+  mesh.vertices.resize(meshopt_generateVertexRemap(remap.data(), mesh.indices.data(),
+                                                   mesh.indices.size(), keys.data(), keys.size(),
+                                                   sizeof(Key)));
+  meshopt_remapVertexBuffer(mesh.vertices.data(), vertices.data(), vertices.size(), sizeof(Vertex),
+                            remap.data());
+  meshopt_remapIndexBuffer(mesh.indices.data(), mesh.indices.data(), mesh.indices.size(),
+                           remap.data());
+  return mesh;
 }
 
-// Fewer triangles over some of the same vertices, and their distance from all triangles.
-struct Simplified {
-  Indices indices;
+// The mesh as a level, in an order that suits the caches of GPUs.
+Level packed(const Mesh& mesh, double error_m) {
+  Level level;
+  level.error_m = error_m;
+  Indices indices(mesh.indices.size());
+  meshopt_optimizeVertexCache(indices.data(), mesh.indices.data(), indices.size(),
+                              mesh.vertices.size());
+  level.vertices.resize(mesh.vertices.size());
+  level.vertices.resize(meshopt_optimizeVertexFetch(level.vertices.data(), indices.data(),
+                                                    indices.size(), mesh.vertices.data(),
+                                                    mesh.vertices.size(), sizeof(Vertex)));
+  level.indices.assign(indices.begin(), indices.end());
+  return level;
+}
+
+// A coarser mesh and its distance from the finest.
+struct Coarse {
+  Mesh mesh;
   double error_m = 0;
 };
 
-Simplified simplified(const Mesh& mesh, std::size_t triangles, bool sloppily) {
-  const float* const places = &mesh.vertices.front().position.x;
-  const std::size_t count = mesh.vertices.size(), stride = sizeof(Vertex);
-  const std::size_t target = std::min(3 * triangles, mesh.indices.size());
-  Simplified result{Indices(mesh.indices.size()), 0};
-  float error = 0;
-  const std::size_t left =
-      sloppily
-          ? meshopt_simplifySloppy(result.indices.data(), mesh.indices.data(), mesh.indices.size(),
-                                   places, count, stride, target, kMaxError, &error)
-          : meshopt_simplify(result.indices.data(), mesh.indices.data(), mesh.indices.size(),
-                             places, count, stride, target, kMaxError, 0, &error);
-  result.indices.resize(left);
-  result.error_m = static_cast<double>(error * meshopt_simplifyScale(places, count, stride));
-  return result;
-}
+// Simplifies connected parts.
+class Solid {
+ public:
+  explicit Solid(const Mesh& finest)
+      : finest_(finest),
+        appearance_(finest_.vertices, finest_.indices),
+        simplifier_(finest_.vertices, finest_.indices) {}
 
-// The sources of all levels: with vertices of different colour kept apart, and with them merged.
-struct Sources {
-  Source coloured, plain;
-};
-
-// A mesh with about as many triangles as requested, and its error.
-std::pair<Mesh, double> coarser(const Sources& sources, std::size_t triangles) {
-  const float most = kNearlyThere * static_cast<float>(3 * triangles);
-  for (const bool sloppily : {false, true}) {
-    for (const Source* source : {&sources.coloured, &sources.plain}) {
-      if (sloppily && source == &sources.coloured) continue;
-      const Simplified found = simplified(source->mesh, triangles, sloppily);
-      if (found.indices.empty() || (!sloppily && static_cast<float>(found.indices.size()) > most))
-        continue;
-      return {with_normals(*source, found.indices), found.error_m};
-    }
+  std::size_t triangle_count() const { return finest_.indices.size() / 3; }
+  // About as many triangles as requested, which must be no more than the last time.
+  Coarse coarse(std::size_t triangles) {
+    simplifier_.reduce_to(triangles);
+    const std::size_t left = simplifier_.triangle_count();
+    if (left == 0) return {};
+    if (static_cast<float>(left) > kNearlyThere * static_cast<float>(triangles))
+      return clustered(triangles);
+    Coarse coarse{{finest_.vertices, simplifier_.indices()}, 0};
+    coarse.error_m = appearance_.fit(coarse.mesh.vertices, simplifier_);
+    return coarse;
   }
-  return {};
-}
 
-Level packed(Mesh mesh, double error_m) {
-  meshopt_optimizeVertexCache(mesh.indices.data(), mesh.indices.data(), mesh.indices.size(),
-                              mesh.vertices.size());
-  Level level;
-  level.vertices.resize(mesh.vertices.size());
-  level.vertices.resize(meshopt_optimizeVertexFetch(level.vertices.data(), mesh.indices.data(),
-                                                    mesh.indices.size(), mesh.vertices.data(),
-                                                    mesh.vertices.size(), sizeof(Vertex)));
-  for (const std::uint32_t i : mesh.indices)
-    level.indices.push_back(static_cast<std::uint16_t>(i));
-  level.error_m = error_m;
-  return level;
-}
+ private:
+  // The outline of loose parts, which have no edges to collapse. Each corner gets the normal that
+  // fits its triangle best.
+  Coarse clustered(std::size_t triangles) const {
+    const float* const places = &finest_.vertices.front().position.x;
+    const std::size_t count = finest_.vertices.size(), all = finest_.indices.size();
+    Indices indices(all);
+    float error = 0;
+    indices.resize(meshopt_simplifySloppy(indices.data(), finest_.indices.data(), all, places,
+                                          count, sizeof(Vertex), std::min(3 * triangles, all),
+                                          kMaxError, &error));
+    float side_m = 0;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+      const auto at = [&](std::size_t k) { return finest_.vertices[indices[i + k]].position; };
+      const glm::vec3 ab = at(1) - at(0), ac = at(2) - at(0), across = glm::cross(ab, ac);
+      side_m = std::max({side_m, glm::length(ab), glm::length(ac), glm::length(ac - ab)});
+      for (std::size_t k = 0; k < 3; ++k)
+        indices[i + k] = simplifier_.fitting(indices[i + k], across);
+    }
+    error *= meshopt_simplifyScale(places, count, sizeof(Vertex));
+    // A cluster has one colour, whatever its parts have.
+    return {{finest_.vertices, std::move(indices)}, static_cast<double>(std::max(error, side_m))};
+  }
+
+  Mesh finest_;
+  Appearance appearance_;
+  Simplifier simplifier_;
+};
 
 // The input of coarser levels: loose leaves are kept apart if there are many.
 class Parts {
@@ -353,24 +303,22 @@ class Parts {
       : leaves_(indices_of(finest, true)), foliage_(finest.vertices, leaves_) {
     is_loose_ = foliage_.piece_count() >= kManyPieces;
     Mesh rest{finest.vertices, is_loose_ ? indices_of(finest, false) : finest.indices};
-    if (rest.indices.empty()) return;
-    triangles_ = rest.indices.size() / 3;
-    std::vector<unsigned> remap;
-    rest = welded(rest.vertices, rest.indices, Keep::kAll, remap);
-    sources_ = {source_of(rest, Keep::kColours), source_of(rest, Keep::kPositions)};
+    if (!rest.indices.empty()) solid_.emplace(cleaned(rest.vertices, rest.indices));
   }
 
-  // About as many triangles as wanted, and their distance from the finest ones.
-  std::pair<Mesh, double> coarse(std::size_t wanted) const {
-    if (!is_loose_) return coarser(sources_, wanted);
-    const std::size_t leaves = leaves_.size() / 3;
-    const std::size_t solid =
-        std::min(triangles_, std::max(wanted * triangles_ / (triangles_ + leaves), kMinSolid));
-    std::pair<Mesh, double> made;
-    if (solid > 0) made = coarser(sources_, solid);
+  // About as many triangles as wanted, which must be no more than the last time.
+  Coarse coarse(std::size_t wanted) {
+    if (!is_loose_) return solid_->coarse(wanted);
+    Coarse made;
+    std::size_t solid = 0;
+    if (solid_) {
+      const std::size_t triangles = solid_->triangle_count(), leaves = leaves_.size() / 3;
+      solid = std::min(triangles, std::max(wanted * triangles / (triangles + leaves), kMinSolid));
+      made = solid_->coarse(solid);
+    }
     const double error_m =
-        foliage_.add(wanted - std::min(wanted, solid), made.first.vertices, made.first.indices);
-    made.second = std::max(made.second, error_m);
+        foliage_.add(wanted - std::min(wanted, solid), made.mesh.vertices, made.mesh.indices);
+    made.error_m = std::max(made.error_m, error_m);
     return made;
   }
 
@@ -387,36 +335,32 @@ class Parts {
   Indices leaves_;
   Foliage foliage_;
   bool is_loose_ = false;
-  std::size_t triangles_ = 0;  // of the parts that are not leaves
-  Sources sources_;
+  std::optional<Solid> solid_;  // what is not leaves, if there is any
 };
 
 }  // namespace
 
 std::vector<Level> levels_of(const Triangles& triangles, int most) {
-  const Indices sound = without_slivers(triangles.vertices, triangles.indices);
-  if (sound.empty()) return {};
-  std::vector<unsigned> remap;
-  Mesh finest = welded(triangles.vertices, sound, Keep::kAll, remap);
-  const Parts parts(finest);
-  std::vector<Level> levels;
+  Mesh finest = cleaned(triangles.vertices, triangles.indices);
+  if (finest.indices.empty()) return {};
+  Parts parts(finest);
   std::size_t wanted = finest.indices.size() / 3;
   while (finest.vertices.size() > kMaxLevelVertices) {
-    wanted = std::min(wanted * 9 / 10, wanted * kMaxLevelVertices / finest.vertices.size());
-    finest = parts.coarse(wanted).first;
+    wanted = std::min(wanted * 19 / 20, wanted * kMaxLevelVertices / finest.vertices.size());
+    const Mesh fewer = parts.coarse(wanted).mesh;
+    finest = cleaned(fewer.vertices, fewer.indices);
     if (finest.indices.empty()) return {};
   }
   wanted = finest.indices.size() / 3;
-  levels.push_back(packed(std::move(finest), 0));
+  std::vector<Level> levels{packed(finest, 0)};
   while (static_cast<int>(levels.size()) < most && wanted > kMinTriangles) {
     wanted = std::max(wanted / kStep, kMinTriangles);
-    auto [mesh, error_m] = parts.coarse(wanted);
+    const auto [mesh, error_m] = parts.coarse(wanted);
     const float before = static_cast<float>(levels.back().indices.size());
-    if (mesh.indices.empty() || static_cast<float>(mesh.indices.size()) > kMinGain * before ||
-        mesh.vertices.size() > kMaxLevelVertices)
-      break;
-    error_m = std::max(error_m, 1.01 * levels.back().error_m);
-    levels.push_back(packed(std::move(mesh), std::max(error_m, 1e-4)));
+    if (mesh.indices.empty() || static_cast<float>(mesh.indices.size()) > kMinGain * before) break;
+    Mesh level = cleaned(mesh.vertices, mesh.indices);
+    if (level.indices.empty() || level.vertices.size() > kMaxLevelVertices) break;
+    levels.push_back(packed(level, std::max({error_m, 1.01 * levels.back().error_m, 1e-4})));
   }
   return levels;
 }

@@ -16,7 +16,7 @@
 namespace psygen::handmade {
 namespace {
 
-constexpr std::uint64_t kShapeEdition = 2;  // version of the level generation
+constexpr std::uint64_t kShapeEdition = 3;  // version of the level generation
 
 // A hash of the file and the settings, independent of the simplifier.
 std::uint64_t identity_of(const Triangles& triangles, const world::HandmadeModel& how) {

@@ -71,6 +71,48 @@ inline Triangles sphere(int rows, int columns) {
   return t;
 }
 
+// A flat wall of 3 m by 3 m, which faces +Z, with 2 · cells² triangles; `paint` changes vertices.
+template <class Paint>
+Triangles wall(std::uint32_t cells, const Paint& paint) {
+  Triangles t;
+  for (std::uint32_t y = 0; y <= cells; ++y) {
+    for (std::uint32_t x = 0; x <= cells; ++x) {
+      Vertex v{
+          3.0F / static_cast<float>(cells) * glm::vec3(x, y, 0), {0, 0, 1}, {150, 150, 150}, 0};
+      paint(v);
+      t.vertices.push_back(v);
+      const std::uint32_t a = y * (cells + 1) + x, b = a + cells + 1;
+      if (x < cells && y < cells) t.indices.insert(t.indices.end(), {a, a + 1, b, a + 1, b + 1, b});
+    }
+  }
+  t.box = {glm::vec3(0), glm::vec3(3, 3, 0)};
+  return t;
+}
+
+// A disc of this many triangles around one vertex, with a radius of 1 m. It faces +Y.
+inline Triangles fan(std::uint32_t triangles) {
+  Triangles t;
+  t.vertices.push_back({});
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    const double angle = 2 * std::numbers::pi * i / triangles;
+    t.vertices.push_back({{std::cos(angle), 0, std::sin(angle)}});
+    t.indices.insert(t.indices.end(), {0, 1 + (i + 1) % triangles, 1 + i});
+  }
+  return t;
+}
+
+// Triangles of random ones of a few vertices.
+inline Triangles tangle(std::size_t triangles, std::uint32_t vertices) {
+  Triangles t;
+  std::uint32_t state = 7;
+  const auto random = [&state] { return (state = state * 1664525U + 1013904223U) >> 8; };
+  for (std::uint32_t i = 0; i < vertices; ++i)
+    t.vertices.push_back({0.001F * glm::vec3(random() % 1000, random() % 1000, random() % 1000)});
+  while (t.indices.size() < 3 * triangles)
+    t.indices.push_back(random() % vertices);
+  return t;
+}
+
 // An image of a few leaves side by side: green inside, transparent magenta around them.
 inline image::Image leaf_picture(std::uint32_t side = 64) {
   image::Image image = image::make_image(side, side, 255, 0, 255, 0);

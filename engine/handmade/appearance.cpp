@@ -1,0 +1,165 @@
+#include "engine/handmade/appearance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+#include <unordered_map>
+
+#include "engine/core/hash.hpp"
+
+namespace psygen::handmade {
+namespace {
+
+constexpr std::size_t kPoints = 4096, kFewTriangles = 256;
+// Wrong means of a region: of stored colours, and of unit normals, which change light less.
+constexpr float kWrongColour = 0.05F, kWrongNormal = 0.25F;
+constexpr float kFilled = 0.5F;     // part of a region's square that is surface
+constexpr float kClearGain = 0.7F;  // of errors, for new colours
+constexpr int kTurns = 8;           // of the fit of colours
+constexpr float kGrowth = 1.5F;     // ratio of two sizes of regions
+
+glm::vec3 colour_of(const Vertex& v) {
+  return glm::vec3(v.colour[0], v.colour[1], v.colour[2]) / 255.0F;
+}
+
+glm::vec3 unit_or_zero(const glm::vec3& v) {
+  const float length = glm::length(v);
+  return length > 0 ? v / length : v;
+}
+
+}  // namespace
+
+void Appearance::Difference::add(const Difference& other) {
+  colour += other.colour, normal += other.normal, area_m2 += other.area_m2;
+}
+
+bool Appearance::Difference::is_wrong() const {
+  return glm::length(colour) > kWrongColour * area_m2 ||
+         glm::length(normal) > kWrongNormal * area_m2;
+}
+
+Appearance::Appearance(const std::vector<Vertex>& vertices, const Indices& indices) {
+  // Few triangles have several points each, and of many triangles some have one.
+  constexpr std::array<glm::vec3, 4> kInside{
+      {glm::vec3(1.0F / 3), {0.7F, 0.15F, 0.15F}, {0.15F, 0.7F, 0.15F}, {0.15F, 0.15F, 0.7F}}};
+  const std::size_t triangles = indices.size() / 3;
+  const std::size_t each = triangles <= kFewTriangles ? kInside.size() : 1;
+  const std::size_t step = (each * triangles + kPoints - 1) / kPoints;
+  glm::vec3 low(1e30F), high(-1e30F);
+  float area_m2 = 0;
+  for (std::size_t t = 0; t < triangles; t += step) {
+    const std::array<const Vertex*, 3> v{&vertices[indices[3 * t]], &vertices[indices[3 * t + 1]],
+                                         &vertices[indices[3 * t + 2]]};
+    for (std::size_t k = 0; k < each; ++k) {
+      Point p;
+      p.triangle = static_cast<std::uint32_t>(t);
+      p.goal.facing = glm::cross(v[1]->position - v[0]->position, v[2]->position - v[0]->position);
+      for (int i = 0; i < 3; ++i) {
+        const Vertex& corner = *v[static_cast<std::size_t>(i)];
+        p.goal.position += kInside[k][i] * corner.position;
+        p.normal += kInside[k][i] * corner.normal;
+        p.colour += kInside[k][i] * colour_of(corner);
+      }
+      p.area_m2 =
+          0.5F * glm::length(p.goal.facing) * static_cast<float>(step) / static_cast<float>(each);
+      area_m2 += p.area_m2;
+      darkest_ = glm::min(darkest_, p.colour), brightest_ = glm::max(brightest_, p.colour);
+      low = glm::min(low, p.goal.position), high = glm::max(high, p.goal.position);
+      points_.push_back(p);
+    }
+  }
+  if (points_.empty()) return;
+  extent_m_ = glm::length(high - low);
+  spacing_m_ = std::sqrt(area_m2 / static_cast<float>(points_.size()));
+}
+
+std::vector<Appearance::Difference> Appearance::differences(
+    const std::vector<Vertex>& vertices, const std::vector<Match>& matches) const {
+  std::vector<Difference> found(points_.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!matches[i].is_found) continue;
+    const Point& p = points_[i];
+    glm::vec3 colour(0.0F), normal(0.0F);
+    for (int k = 0; k < 3; ++k) {
+      const Vertex& v = vertices[matches[i].corners[static_cast<std::size_t>(k)]];
+      colour += matches[i].weights[k] * colour_of(v);
+      normal += matches[i].weights[k] * v.normal;
+    }
+    found[i] = {p.area_m2 * (p.colour - colour), p.area_m2 * (p.normal - unit_or_zero(normal)),
+                p.area_m2};
+  }
+  return found;
+}
+
+double Appearance::fit(std::vector<Vertex>& vertices, Simplifier& simplifier) const {
+  double error_m = simplifier.error_m();
+  std::vector<Match> matches;
+  matches.reserve(points_.size());
+  for (const Point& p : points_) {
+    const Simplifier::Match match = simplifier.nearest(p.triangle, p.goal);
+    const std::uint32_t* const c = simplifier.corners(match.triangle);
+    matches.push_back({{c[0], c[1], c[2]}, match.weights, match.is_found});
+    if (match.is_found) error_m = std::max(error_m, static_cast<double>(match.distance_m));
+  }
+  float wrong_m = wrong_size_m(differences(vertices, matches));
+  if (wrong_m > 0) {
+    const std::vector<Vertex> fitted = with_fitted_colours(vertices, matches);
+    const float left_m = wrong_size_m(differences(fitted, matches));
+    if (left_m < kClearGain * wrong_m) wrong_m = left_m, vertices = fitted;
+  }
+  return std::max(error_m, static_cast<double>(wrong_m));
+}
+
+// Each turn adds to the colour of a vertex the mean of what is missing around it, which tends to
+// the least squares.
+std::vector<Vertex> Appearance::with_fitted_colours(const std::vector<Vertex>& vertices,
+                                                    const std::vector<Match>& matches) const {
+  std::vector<Vertex> fitted = vertices;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    std::vector<glm::vec4> missing(vertices.size(), glm::vec4(0.0F));  // weighted; weight
+    const std::vector<Difference> now = differences(fitted, matches);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      for (int k = 0; k < 3 && matches[i].is_found; ++k)
+        missing[matches[i].corners[static_cast<std::size_t>(k)]] +=
+            matches[i].weights[k] * glm::vec4(now[i].colour, now[i].area_m2);
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+      if (!(missing[i].w > 0)) continue;
+      const glm::vec3 colour = colour_of(fitted[i]) + glm::vec3(missing[i]) / missing[i].w;
+      for (int k = 0; k < 3; ++k)
+        fitted[i].colour[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(
+            255 * std::clamp(colour[k], darkest_[k], brightest_[k]) + 0.5F);
+    }
+  }
+  return fitted;
+}
+
+// The size of the smallest squares whose mean differences are all right; 0 if all points are right.
+float Appearance::wrong_size_m(const std::vector<Difference>& differences) const {
+  if (std::ranges::none_of(differences, &Difference::is_wrong)) return 0;
+  float size_m = spacing_m_;
+  // The sides of thin parts are kept apart by their directions.
+  const auto key_of = [&](const Point& p) {
+    const glm::vec3 n = glm::abs(p.goal.facing);
+    const int axis = n.x > n.y && n.x > n.z ? 0 : n.y > n.z ? 1 : 2;
+    std::uint64_t key = static_cast<std::uint64_t>(2 * axis + (p.goal.facing[axis] > 0 ? 1 : 0));
+    for (int k = 0; k < 3; ++k)
+      key = core::combine(key, static_cast<std::uint64_t>(static_cast<std::int64_t>(
+                                   std::floor(p.goal.position[k] / size_m))));
+    return key;
+  };
+  for (; size_m < extent_m_; size_m *= kGrowth) {
+    std::unordered_map<std::uint64_t, Difference> regions;
+    for (std::size_t i = 0; i < differences.size(); ++i)
+      regions[key_of(points_[i])].add(differences[i]);
+    if (std::ranges::none_of(regions, [&](const auto& region) {
+          return region.second.area_m2 > kFilled * size_m * size_m && region.second.is_wrong();
+        }))
+      break;
+  }
+  return std::min(size_m, extent_m_);
+}
+
+}  // namespace psygen::handmade
