@@ -30,7 +30,9 @@ constexpr float kMaxError = 0.5F;     // relative to the extent
 constexpr float kNearlyThere = 1.3F;  // accepted ratio of triangles to the target
 constexpr float kMinGain = 0.8F;      // a level with a larger ratio to the previous one is dropped
 
-constexpr float kMaxReach = 0.5F;  // extent of a piece relative to the extent of all
+constexpr std::size_t kManyTriangles = 256;  // of a vertex
+constexpr unsigned kCacheSize = 16;          // vertices
+constexpr float kMaxReach = 0.5F;            // extent of a piece relative to the extent of all
 
 // Groups vertices into connected sets.
 class Sets {
@@ -202,7 +204,27 @@ Indices without_slivers(const std::vector<Vertex>& vertices, const Indices& indi
   return kept;
 }
 
-// The mesh without equal and unused vertices and slivers.
+// The triangles without further ones of the same three vertices in the same direction.
+Indices without_copies(const Indices& indices) {
+  std::vector<std::array<std::uint32_t, 3>> keys;
+  keys.reserve(indices.size() / 3);
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    std::array<std::uint32_t, 3> key{indices[i], indices[i + 1], indices[i + 2]};
+    std::ranges::rotate(key, std::ranges::min_element(key));
+    keys.push_back(key);
+  }
+  Indices numbers(keys.size()), kept;
+  meshopt_generateVertexRemap(numbers.data(), nullptr, keys.size(), keys.data(), keys.size(),
+                              sizeof(keys[0]));
+  for (std::size_t t = 0, known = 0; t < keys.size(); ++t) {
+    if (numbers[t] < known) continue;
+    ++known;
+    kept.insert(kept.end(), &indices[3 * t], &indices[3 * t] + 3);
+  }
+  return kept;
+}
+
+// The mesh without equal and unused vertices, equal triangles and slivers.
 Mesh cleaned(const std::vector<Vertex>& vertices, const Indices& indices) {
   std::vector<Key> keys;
   keys.reserve(vertices.size());
@@ -222,7 +244,15 @@ Mesh cleaned(const std::vector<Vertex>& vertices, const Indices& indices) {
                             remap.data());
   meshopt_remapIndexBuffer(mesh.indices.data(), mesh.indices.data(), mesh.indices.size(),
                            remap.data());
+  mesh.indices = without_copies(mesh.indices);
   return mesh;
+}
+
+std::uint32_t max_triangles_of_a_vertex(const Mesh& mesh) {
+  std::vector<std::uint32_t> triangles(mesh.vertices.size());
+  for (const std::uint32_t i : mesh.indices)
+    ++triangles[i];
+  return *std::ranges::max_element(triangles);
 }
 
 // The mesh as a level, in an order that suits the caches of GPUs.
@@ -230,8 +260,13 @@ Level packed(const Mesh& mesh, double error_m) {
   Level level;
   level.error_m = error_m;
   Indices indices(mesh.indices.size());
-  meshopt_optimizeVertexCache(indices.data(), mesh.indices.data(), indices.size(),
-                              mesh.vertices.size());
+  // The better order takes time with the square of the triangles of a vertex.
+  if (max_triangles_of_a_vertex(mesh) <= kManyTriangles)
+    meshopt_optimizeVertexCache(indices.data(), mesh.indices.data(), indices.size(),
+                                mesh.vertices.size());
+  else
+    meshopt_optimizeVertexCacheFifo(indices.data(), mesh.indices.data(), indices.size(),
+                                    mesh.vertices.size(), kCacheSize);
   level.vertices.resize(mesh.vertices.size());
   level.vertices.resize(meshopt_optimizeVertexFetch(level.vertices.data(), indices.data(),
                                                     indices.size(), mesh.vertices.data(),

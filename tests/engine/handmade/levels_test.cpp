@@ -277,5 +277,25 @@ TEST(Levels, KeepVerticesOfDifferentNormalsApartWithinTheirErrors) {
   EXPECT_GT(levels.back().error_m, 0.3);
 }
 
+TEST(Levels, DropTrianglesThatAreThereTwice) {
+  Triangles t;
+  t.vertices = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
+  for (int i = 0; i < 40'000; ++i)
+    t.indices.insert(t.indices.end(), {0, 1, 2});
+  t.indices.insert(t.indices.end(), {1, 2, 0, 0, 2, 1});
+  const std::vector<Level> levels = levels_of(t, 8);
+  ASSERT_EQ(levels.size(), 1U);
+  EXPECT_EQ(levels[0].indices.size(), 6U) << "both sides";
+}
+
+// A vertex of so many triangles must not cost the square of them.
+TEST(Levels, OfTrianglesAroundOneVertexCloseUpToADisc) {
+  const std::vector<Level> levels = levels_of(fan(60'000), 8);
+  ASSERT_GE(levels.size(), 6U);
+  EXPECT_EQ(levels[0].indices.size(), 3 * 60'000U);
+  EXPECT_LE(levels.back().indices.size(), 3 * 16U);
+  EXPECT_LT(levels.back().error_m, 0.1);
+}
+
 }  // namespace
 }  // namespace psygen::handmade
