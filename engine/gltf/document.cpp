@@ -190,7 +190,7 @@ AccessorJson read_accessor(const Object& from) {
 }
 
 TextureJson read_texture(const Object& from) {
-  TextureJson texture{from.index("source"), kAbsent, ""};
+  TextureJson texture{from.index("source"), kAbsent, from.index("sampler"), ""};
   if (const auto all = from.object("extensions")) {
     for (const auto& [name, value] : all->value().items())
       if (name != "EXT_texture_webp") texture.other_extension = name;
@@ -320,6 +320,10 @@ core::Result<Document> parse_document(std::string_view text) {
     return ImageJson{one.text("uri"), one.index("bufferView")};
   });
   read_list(root, "textures", out.textures, read_texture);
+  read_list(root, "samplers", out.samplers, [](const Object& one) {
+    constexpr int kRepeat = 10497;
+    return one.index("wrapS", kRepeat) == kRepeat && one.index("wrapT", kRepeat) == kRepeat;
+  });
   read_list(root, "materials", out.materials, read_material);
   read_list(root, "meshes", out.meshes, [](const Object& one) {
     MeshJson mesh{one.text("name"), {}};

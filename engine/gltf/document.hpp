@@ -57,7 +57,7 @@ struct ImageJson {
 };
 // Images by extension: the core's is "".
 struct TextureJson {
-  int source = kAbsent, webp = kAbsent;
+  int source = kAbsent, webp = kAbsent, sampler = kAbsent;
   std::string other_extension;  // the last of its other extensions
 };
 // A texture of a material, with KHR_texture_transform.
@@ -118,6 +118,7 @@ struct Document {
   std::vector<AccessorJson> accessors;
   std::vector<ImageJson> images;
   std::vector<TextureJson> textures;
+  std::vector<bool> samplers;  // true: they repeat the image both ways
   std::vector<MaterialJson> materials;
   std::vector<MeshJson> meshes;
   std::vector<NodeJson> nodes;

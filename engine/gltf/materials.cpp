@@ -95,7 +95,8 @@ constexpr double kMaxOfTransform = 1e6;
 
 // KHR_texture_transform as a matrix: scale, then rotation, then offset. A positive rotation turns
 // counter-clockwise, with v down.
-core::Result<Coordinates> coordinates_of(const TextureUseJson& use, const std::string& what) {
+core::Result<Coordinates> coordinates_of(const Document& file, const TextureUseJson& use,
+                                         const std::string& what) {
   double offset[2] = {0, 0}, scale[2] = {1, 1};
   const auto read = [&](const std::vector<double>& from, double(&to)[2]) {
     if (from.empty()) return true;
@@ -109,8 +110,14 @@ core::Result<Coordinates> coordinates_of(const TextureUseJson& use, const std::s
     return wrong(fmt::format("KHR_texture_transform of {} needs pairs of numbers of at most {}",
                              what, kMaxOfTransform));
   const double c = std::cos(use.rotation), s = std::sin(use.rotation);
-  return Coordinates{use.set, glm::mat3x2(c * scale[0], -s * scale[0], s * scale[1], c * scale[1],
-                                          offset[0], offset[1])};
+  Coordinates out{use.set, glm::mat3x2(c * scale[0], -s * scale[0], s * scale[1], c * scale[1],
+                                       offset[0], offset[1])};
+  const int sampler = file.textures[static_cast<std::size_t>(use.texture)].sampler;
+  if (sampler == kAbsent) return out;
+  const auto index = index_in(sampler, file.samplers.size(), "sampler of " + what);
+  if (!index) return tl::unexpected(index.error());
+  out.repeats = file.samplers[*index];
+  return out;
 }
 
 core::Result<void> read_numbers(const MaterialJson& described, const std::string& name,
@@ -174,9 +181,9 @@ core::Result<void> read_materials(Reading& reading) {
       if (!picture) return tl::unexpected(picture.error());
       out = *picture;
       if (out == kNone) return {};
-      const auto own = coordinates_of(of, name + what);
+      const auto own = coordinates_of(reading.file, of, name + what);
       if (!own) return tl::unexpected(own.error());
-      if (first && *first != *own)
+      if (first && (first->set != own->set || first->transform != own->transform))
         reading.note(
             "has a material whose textures use different coordinates; all of them use "
             "those of its first texture");

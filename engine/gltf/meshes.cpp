@@ -71,6 +71,12 @@ core::Result<void> read_vertices(const Part& part, MeshData& mesh) {
     for (glm::vec2& uv : mesh.uvs)
       uv = coordinates.transform * glm::vec3(uv, 1.0F);
   }
+  constexpr float kRounding = 1e-3F;
+  const auto is_inside = [](const glm::vec2& uv) {
+    return std::max(std::abs(uv.x - 0.5F), std::abs(uv.y - 0.5F)) <= 0.5F + kRounding;
+  };
+  if (!coordinates.repeats && !std::ranges::all_of(mesh.uvs, is_inside))
+    reading.note("has textures that are clamped or mirrored, which are repeated instead");
   return ok;
 }
 

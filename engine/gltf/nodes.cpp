@@ -44,10 +44,14 @@ core::Result<Pose> pose_of_matrix(const std::vector<double>& matrix, const std::
     pose.scale[c] = glm::length(columns[c]);
   if (glm::determinant(columns) < 0) pose.scale.x = -pose.scale.x;
   constexpr float kSkew = 1e-3F;
+  int flat = -1, flat_count = 0;  // an axis of scale 0, and their number
   for (int c = 0; c < 3; ++c) {
-    if (pose.scale[c] == 0) return wrong(what + " has a scale of 0");
-    columns[c] /= pose.scale[c];
+    if (pose.scale[c] == 0) flat = c;
+    flat_count += pose.scale[c] == 0 ? 1 : 0;
+    if (pose.scale[c] != 0) columns[c] /= pose.scale[c];
   }
+  if (flat_count > 1) return pose;  // nothing of it has an area
+  if (flat_count == 1) columns[flat] = glm::cross(columns[(flat + 1) % 3], columns[(flat + 2) % 3]);
   for (int c = 0; c < 3; ++c) {
     if (std::abs(glm::dot(columns[c], columns[(c + 1) % 3])) > kSkew)
       return wrong(what + " is skewed; it must consist of a translation, rotation and scale");

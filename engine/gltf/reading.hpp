@@ -17,11 +17,12 @@ namespace psygen::gltf {
 
 inline constexpr std::size_t kMaxMessage = 300;  // characters of the file's text in a message
 
-// The texture coordinates of a material: their set, and KHR_texture_transform.
+// The texture coordinates of a material: their set, and KHR_texture_transform. `repeats` is false
+// if the file wants no repetition beyond 0 to 1.
 struct Coordinates {
   int set = 0;
   glm::mat3x2 transform{1.0F};
-  friend bool operator==(const Coordinates&, const Coordinates&) = default;
+  bool repeats = true;
 };
 
 struct Reading {

@@ -27,10 +27,11 @@ core::Result<PictureHeader> checked_header(const std::filesystem::path& path,
                                            std::span<const std::uint8_t> bytes,
                                            const ImageLimits& limits, bool may_be_exr = false) {
   const auto header = read_picture_header(bytes);
-  if (!header || (header->format == PictureFormat::kExr && !may_be_exr))
-    return fail_at(
-        ErrorCode::kParse, path,
-        may_be_exr ? "is not a PNG, JPEG or OpenEXR image" : "is not a PNG or JPEG image");
+  const PictureFormat other = may_be_exr ? PictureFormat::kWebp : PictureFormat::kExr;
+  if (!header || header->format == other)
+    return fail_at(ErrorCode::kParse, path,
+                   may_be_exr ? "is not a PNG, JPEG or OpenEXR image"
+                              : "is not a PNG or JPEG image, nor a WebP one");
   const std::uint64_t pixels = std::uint64_t{header->width} * header->height;
   if (pixels == 0) return fail_at(ErrorCode::kParse, path, "the image has no pixels");
   if (header->width > limits.max_width || header->height > limits.max_height ||

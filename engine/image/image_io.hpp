@@ -1,7 +1,7 @@
-// Reads and writes images in files. Reads PNG and JPEG (recognised by their first bytes, not by the
-// name); writes PNG. Files are not trusted: sizes are checked before any allocation for them, and
-// errors of the decoder become errors. OpenImageIO is used only here. Any thread; too slow for the
-// tick.
+// Reads and writes images in files. Reads PNG, JPEG and WebP (recognised by their first bytes, not
+// by the name); writes PNG. Files are not trusted: sizes are checked before any allocation for
+// them, and errors of the decoder become errors. OpenImageIO is used only here. Any thread; too
+// slow for the tick.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +25,9 @@ struct ImageLimits {
 // them. Fails with kOutOfMemory or kInternal.
 core::Result<void> load_picture_libraries();
 
-// Reads any PNG or JPEG as four channels: grey is repeated, a missing alpha is 255, 16 bits become
-// 8. Fails with kIo (not readable), kParse (not an image, truncated, damaged), kOverBudget (larger
-// than the limits) or kOutOfMemory; the message starts with the path. Also fails like
+// Reads any PNG, JPEG or WebP as four channels: grey is repeated, a missing alpha is 255, 16 bits
+// become 8. Fails with kIo (not readable), kParse (not an image, truncated, damaged), kOverBudget
+// (larger than the limits) or kOutOfMemory; the message starts with the path. Also fails like
 // load_picture_libraries().
 core::Result<Image> read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
 // The same for the bytes of such a file; messages call it `name`.

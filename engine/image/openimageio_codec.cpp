@@ -2,6 +2,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -31,17 +32,30 @@ template <class Channel>
 struct Decoded {
   std::size_t channels = 0;
   std::vector<Channel> values;
+  bool is_premultiplied = false;  // OpenImageIO's WebP ignores a request for plain colours
 };
+
+// Divides colours by their opacity.
+void unmultiply(Bytes& rgba) {
+  for (std::size_t i = 0; i < rgba.size(); ++i) {
+    const unsigned alpha = rgba[i / 4 * 4 + 3];
+    if (i % 4 == 3 || alpha == 0) continue;
+    rgba[i] = static_cast<std::uint8_t>(std::min((rgba[i] * 255U + alpha / 2) / alpha, 255U));
+  }
+}
 
 template <class Channel>
 core::Result<Decoded<Channel>> decode_channels(std::span<const std::uint8_t> bytes,
                                                const PictureHeader& header,
                                                OIIO::TypeDesc::BASETYPE type) {
   OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
-  const char* format = header.format == PictureFormat::kPng   ? "png"
-                       : header.format == PictureFormat::kExr ? "openexr"
-                                                              : "jpeg";
+  const char* format = header.format == PictureFormat::kPng    ? "png"
+                       : header.format == PictureFormat::kExr  ? "openexr"
+                       : header.format == PictureFormat::kWebp ? "webp"
+                                                               : "jpeg";
   const auto input = OIIO::ImageInput::create(format);
+  if (!input && header.format == PictureFormat::kWebp)
+    return core::fail(ErrorCode::kParse, "is WebP, which this OpenImageIO cannot read");
   if (!input) return core::fail(ErrorCode::kInternal, OIIO::geterror());
   input->threads(1);
   OIIO::ImageSpec spec;
@@ -57,6 +71,8 @@ core::Result<Decoded<Channel>> decode_channels(std::span<const std::uint8_t> byt
   }
   const std::size_t pixels = std::size_t{header.width} * header.height;
   Decoded<Channel> decoded{channels, std::vector<Channel>(pixels * channels)};
+  decoded.is_premultiplied = header.format == PictureFormat::kWebp &&
+                             spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
   if (!input->read_image(0, 0, 0, spec.nchannels, type, decoded.values.data())) {
     return core::fail(ErrorCode::kParse, "cannot be decoded: " + input->geterror());
   }
@@ -68,6 +84,7 @@ core::Result<Image> decode(std::span<const std::uint8_t> bytes, const PictureHea
   if (!decoded) return tl::unexpected(decoded.error());
   Image image{header.width, header.height, Bytes(std::size_t{header.width} * header.height * 4)};
   expand_channels(decoded->values, decoded->channels, image.rgba);
+  if (decoded->is_premultiplied) unmultiply(image.rgba);
   return image;
 }
 

@@ -120,6 +120,30 @@ std::optional<PictureHeader> exr_header(Bytes bytes) {
   return std::nullopt;
 }
 
+constexpr std::array<std::uint8_t, 4> kRiffSignature{'R', 'I', 'F', 'F'};
+
+// A RIFF file whose first chunk has the size: that of a lossy or lossless image, or of the canvas
+// of an extended one, which may also be animated (RFC 9649, sections 2.5 to 2.7).
+std::optional<PictureHeader> webp_header(Bytes bytes) {
+  constexpr std::array<std::uint8_t, 7> kType{'W', 'E', 'B', 'P', 'V', 'P', '8'};
+  constexpr std::uint8_t kAnimated = 2, kLossless = 0x2F;
+  constexpr std::uint32_t kSide = 0x3FFF, kCanvas = 0xFFFFFF;  // 14 and 24 bits
+  if (bytes.size() < 25 || !starts_with(bytes.subspan(8), kType)) return std::nullopt;
+  const auto of = [](std::uint32_t width, std::uint32_t height) {
+    return PictureHeader{PictureFormat::kWebp, width, height};
+  };
+  if (bytes[15] == 'L' && bytes[20] == kLossless) {
+    const std::uint32_t sides = little_endian(bytes.subspan(21));
+    return of((sides & kSide) + 1, (sides >> 14 & kSide) + 1);
+  }
+  if (bytes.size() < 30) return std::nullopt;
+  const std::uint32_t last = little_endian(bytes.subspan(26));
+  if (bytes[15] == ' ') return of(last & kSide, last >> 16 & kSide);
+  if (bytes[15] == 'X' && (bytes[20] & kAnimated) == 0)
+    return of((little_endian(bytes.subspan(24)) & kCanvas) + 1, (last >> 8) + 1);
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool png_is_whole(Bytes bytes) {
@@ -142,6 +166,7 @@ std::optional<PictureHeader> read_picture_header(std::span<const std::uint8_t> b
   if (starts_with(bytes, kPngSignature)) return png_header(bytes);
   if (starts_with(bytes, kJpegSignature)) return jpeg_header(bytes);
   if (starts_with(bytes, kExrSignature)) return exr_header(bytes);
+  if (starts_with(bytes, kRiffSignature)) return webp_header(bytes);
   return std::nullopt;
 }
 

@@ -1,6 +1,6 @@
-// Reads the stated size of a PNG, JPEG or OpenEXR file from its first markers, without a decoder
-// and without allocating, so that sizes can be rejected before any allocation for them. Not a
-// validation: the rest of the file may be damaged. Pure; any thread.
+// Reads the stated size of a PNG, JPEG, WebP or OpenEXR file from its first markers, without a
+// decoder and without allocating, so that sizes can be rejected before any allocation for them. Not
+// a validation: the rest of the file may be damaged. Pure; any thread.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace psygen::image {
 
-// The formats that can be read; kExr as grey values only.
-enum class PictureFormat : std::uint8_t { kPng, kJpeg, kExr };
+// The formats that can be read; kExr as grey values only, kWebp in colour only.
+enum class PictureFormat : std::uint8_t { kPng, kJpeg, kExr, kWebp };
 
 // The stated properties of a file. Sizes in pixels, not checked against any limit.
 struct PictureHeader {

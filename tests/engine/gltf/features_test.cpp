@@ -112,6 +112,34 @@ TEST_F(Features, TextureTransformsWithoutFiniteNumbersAreRejected) {
   }
 }
 
+TEST_F(Features, TexturesThatDoNotRepeatAreNotedWhereItShows) {
+  Sample sample = textured();
+  sample.json["textures"][0]["sampler"] = 0;
+  for (const int mode : {33071, 33648, 10497}) {
+    sample.json["samplers"][0] = {{"wrapT", mode}, {"magFilter", 9728}};
+    base_of(sample).erase("extensions");
+    EXPECT_THAT(read(sample).notes, IsEmpty()) << "all coordinates are within the image";
+    base_of(sample)["extensions"]["KHR_texture_transform"]["scale"] = {1, 2};
+    EXPECT_EQ(read(sample).notes.size(), mode == 10497 ? 0u : 1u);
+  }
+  sample.json["textures"][0]["sampler"] = 7;
+  EXPECT_THAT(error_of(sample), HasSubstr("sampler of materials[0].baseColorTexture is 7"));
+}
+
+TEST_F(Features, MatricesOfAScaleOfZeroAreRead) {
+  Sample sample = square();
+  sample.json["animations"].clear();
+  sample.json["nodes"][0] = {{"mesh", 0},
+                             {"matrix", {0, 0, -2, 0, 0, 0, 0, 0, 3, 0, 0, 0, 4, 5, 6, 1}}};
+  const Pose pose = read(sample).nodes[0].rest;
+  EXPECT_EQ(pose.scale, glm::vec3(2, 0, 3));
+  EXPECT_EQ(pose.translation, glm::vec3(4, 5, 6));
+  EXPECT_LT(glm::length(pose.rotation * glm::vec3(1, 0, 0) - glm::vec3(0, 0, -1)), 1e-6F);
+  EXPECT_LT(glm::length(pose.rotation * glm::vec3(0, 0, 1) - glm::vec3(1, 0, 0)), 1e-6F);
+  sample.json["nodes"][0]["matrix"] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+  EXPECT_EQ(read(sample).nodes[0].rest.scale, glm::vec3(0));
+}
+
 TEST_F(Features, ChannelsWithoutANodeAreLeftOut) {
   for (const bool is_pointer : {false, true}) {
     Sample sample = square();
@@ -230,6 +258,24 @@ TEST_F(Features, WebpThatCannotBeReadLeavesTheCoresImageOrNone) {
   EXPECT_THAT(model.notes, ElementsAre(AllOf(HasSubstr("materials[0] \"red\""),
                                              HasSubstr("EXT_texture_webp: images[1]"))));
   EXPECT_THAT(model.images, IsEmpty());
+}
+
+// 8 x 4 pixels of one colour, written by libwebp without loss.
+constexpr std::string_view kWebp(
+    "RIFF\036\0\0\0WEBPVP8L\021\0\0\0/\007\300\0\020\007P\262\"W\246\200\201\210\350\177\0\0", 38);
+
+TEST_F(Features, WebpIsReadInsteadOfTheCoresImage) {
+  Sample sample = textured();
+  sample.json["extensionsUsed"][0] = sample.json["extensionsRequired"][0] = "EXT_texture_webp";
+  const int view = sample.view(kWebp);
+  sample.json["images"][1] = {{"bufferView", view}, {"mimeType", "image/webp"}};
+  sample.json["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 1;
+  const Model model = read(sample);
+  ASSERT_EQ(model.images.size(), 1u);
+  EXPECT_EQ(model.images[0]->width, 8u);
+  EXPECT_NEAR(model.images[0]->rgba[0], 200, 1);
+  EXPECT_EQ(model.images[0]->rgba[3], 128);
+  EXPECT_THAT(model.notes, IsEmpty());
 }
 
 TEST_F(Features, ThousandsOfNotesAreCutOff) {

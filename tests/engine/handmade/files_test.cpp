@@ -243,6 +243,30 @@ TEST(HandmadeFiles, ReadModelsAgainWhenAFileThatTheyNameChanges) {
   EXPECT_NE(identity(other), before);
 }
 
+TEST(HandmadeFiles, ReadModelsAgainWhenAnImageThatTheyLackedAppears) {
+  World w;
+  gltf::Sample sample = ball(24, 40);
+  const int uvs = sample.add("accessors",
+                             {{"componentType", gltf::kFloats}, {"count", 1000}, {"type", "VEC2"}});
+  sample.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = uvs;  // all zero
+  sample.json["images"][0]["uri"] = "late.png";
+  sample.json["textures"][0]["source"] = 0;
+  sample.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+  gltf::write_bytes(w.folder / "things/ball.glb", sample.glb());
+  const auto identity = [&](models::Registry& registry) {
+    const auto world = world::parse_world(std::string(kHead) + kBall, w.file(), registry, &files());
+    EXPECT_TRUE(world) << world.error().message;
+    return registry[4].identity();
+  };
+  models::Registry first = models::make_standard_registry(),
+                   same = models::make_standard_registry(),
+                   other = models::make_standard_registry();
+  const std::uint64_t before = identity(first);
+  EXPECT_EQ(identity(same), before);
+  ASSERT_TRUE(image::write_png(w.folder / "things/late.png", image::make_image(2, 2, 9, 99, 9)));
+  EXPECT_NE(identity(other), before);
+}
+
 TEST(HandmadeFiles, RejectBadMasks) {
   World w;
   const auto error = [&] { return w.error_of(std::string(kHead) + kMask); };

@@ -176,6 +176,26 @@ TEST(ImageIo, ReadsAJpegWithAnyFileName) {
   EXPECT_EQ(read->pixel(2, 8)[3], 255);
 }
 
+// 8 x 4 pixels of one colour, written by libwebp without loss.
+constexpr std::string_view kWebp(
+    "RIFF\036\0\0\0WEBPVP8L\021\0\0\0/\007\300\0\020\007P\262\"W\246\200\201\210\350\177\0\0", 38);
+
+TEST(ImageIo, ReadsAWebpWithItsAlphaInColourOnly) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint8_t> bytes(kWebp.begin(), kWebp.end());
+  const auto image = decode_image(bytes, "a.webp");
+  ASSERT_TRUE(image) << image.error().message;
+  const Image wanted = make_image(8, 4, 200, 100, 50, 128);
+  ASSERT_EQ(image->rgba.size(), wanted.rgba.size());
+  for (std::size_t i = 0; i < wanted.rgba.size(); ++i)
+    EXPECT_NEAR(image->rgba[i], wanted.rgba[i], 1) << "OpenImageIO multiplies it by the alpha";
+  write_bytes(folder / "a.webp", bytes);
+  EXPECT_TRUE(read_image(folder / "a.webp"));
+  EXPECT_FALSE(read_grey(folder / "a.webp"));
+  for (std::size_t size = 0; size < bytes.size() - 2; ++size)
+    EXPECT_FALSE(decode_image(std::span(bytes).first(size), "a.webp")) << size;
+}
+
 TEST(ImageIo, RejectsAHugeHeaderInASmallFileBeforeAllocating) {
   const TemporaryFolder folder;
   std::vector<std::uint8_t> bytes = png_that_claims(folder / "a.png", 65536, 65536);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/core/hash.hpp"
@@ -28,6 +30,28 @@ TEST(PictureHeader, ReadsTheSizeOfAPng) {
   EXPECT_EQ(header->format, PictureFormat::kPng);
   EXPECT_EQ(header->width, 258U);
   EXPECT_EQ(header->height, 3U);
+}
+
+TEST(PictureHeader, ReadsTheSizeOfALossyALosslessAndAnExtendedWebp) {
+  const auto lossy = "RIFF\x20\0\0\0WEBPVP8 \x0C\0\0\0\0\0\0\x9D\x01\x2A\x02\x41\x03\x80"sv;
+  const auto lossless = "RIFF\x20\0\0\0WEBPVP8L\x05\0\0\0\x2F\x01\xC1\0\0"sv;
+  const auto extended = "RIFF\x20\0\0\0WEBPVP8X\x0A\0\0\0\x10\0\0\0\x01\0\x01\x02\0\0"sv;
+  const auto size_of = [](std::string_view text) {
+    const auto header = read_picture_header(bytes_of(text));
+    return header && header->format == PictureFormat::kWebp
+               ? std::pair(header->width, header->height)
+               : std::pair(0U, 0U);
+  };
+  EXPECT_EQ(size_of(lossy), std::pair(258U, 3U));
+  EXPECT_EQ(size_of(lossless), std::pair(258U, 4U));
+  EXPECT_EQ(size_of(extended), std::pair(65'538U, 3U));
+  std::string animated(extended);
+  animated[20] = 2;
+  EXPECT_EQ(size_of(animated), std::pair(0U, 0U));
+  for (const std::string_view whole : {lossy, lossless, extended}) {
+    for (std::size_t size = 0; size < whole.size(); ++size)
+      EXPECT_EQ(size_of(whole.substr(0, size)), std::pair(0U, 0U)) << size;
+  }
 }
 
 TEST(PictureHeader, SkipsSegmentsAndFillBytesOfAJpegUntilItsFrame) {
