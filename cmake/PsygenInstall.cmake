@@ -20,7 +20,7 @@ write_basic_package_version_file(psygen-config-version.cmake COMPATIBILITY SameM
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/psygen-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/psygen-config-version.cmake
         DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
-install(FILES cmake/PsygenFrameTest.cmake DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
+install(FILES cmake/PsygenFrameTest.cmake cmake/PsygenRevision.cmake DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
 install(DIRECTORY cmake/modules DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)
 install(FILES tools/gdb/psygen.py DESTINATION ${CMAKE_INSTALL_DATADIR}/psygen/gdb COMPONENT psygen_data)

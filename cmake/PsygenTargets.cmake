@@ -5,6 +5,7 @@
 # time. Files that repeat private names of others are compiled alone (cmake/PsygenUnity.cmake). All settings
 # apply to this project's targets only. Projects that use or contain this one keep theirs.
 include(GNUInstallDirs)
+include(PsygenRevision)
 include(PsygenUnity)
 
 set(CMAKE_CXX_STANDARD 20)

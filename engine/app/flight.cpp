@@ -290,6 +290,7 @@ core::Result<FlightReport> Flight::run() {
   if (!prepared) return tl::unexpected(prepared.error());
   session_->set_now(0);
   recorded_ = true;
+  load_.emplace();
   const auto flown = core::catch_out_of_memory("the flight", [this] { return loop(); });
   FlightReport report = land(flown.has_value());
   if (!flown) {

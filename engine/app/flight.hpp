@@ -76,6 +76,7 @@ class Flight {
   std::unique_ptr<Session> session_;
   std::optional<world::CameraPath> path_;
   std::unique_ptr<telemetry::FrameLog> log_;
+  std::optional<telemetry::LoadMeter> load_;  // of the recorded flight
   platform::FlyCamera fly_camera_;
   core::CameraPose pose_;
   std::uint64_t frames_ = 0;

@@ -64,6 +64,15 @@ telemetry::Figure floor_ratio(const telemetry::FrameLog& log, render::Renderer& 
   return last[kFloorFrames / 2] / *floor_ms;
 }
 
+std::uint64_t hash_of_types(const models::Registry& registry) {
+  std::uint64_t hash = 0;
+  for (models::ModelIndex i = 0; i < registry.size(); ++i)
+    hash = core::combine(
+        core::combine(hash, core::hash_bytes(std::as_bytes(std::span(registry[i].name())))),
+        registry[i].identity());
+  return hash;
+}
+
 telemetry::Count sample_hash(const scene::Scene& scene, core::BlockCoord block) {
   const auto hash = amplify::sample_world_hash(scene.world(), scene.registry(), block);
   return hash ? telemetry::Count(*hash) : telemetry::Count::missing("a model there failed");
@@ -95,6 +104,9 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   const double target_ms = session.scene.target_frame_ms;
   facts.run.target_fps = target_ms > 0 ? telemetry::Figure(1000 / target_ms)
                                        : telemetry::Figure::missing("no target frame rate");
+  facts.machine = telemetry::machine_facts();
+  facts.build = telemetry::build_facts();
+  facts.load = load_ ? load_->facts() : telemetry::LoadFacts{};
   facts.run.command = telemetry::process_command();
   facts.run.preset = render::to_string(session_->renderer().preset());
   facts.run.view_distance_m = session.scene.view_distance_m;
@@ -122,6 +134,7 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   facts.world_hash = !options_.hash_world ? telemetry::Count::missing("switched off")
                      : whole              ? sample_hash(scene, session_->home().position.block)
                                           : telemetry::Count::missing("the flight failed");
+  facts.types_hash = hash_of_types(scene.registry());
   facts.path_hash =
       path_ ? telemetry::Count(path_->hash()) : telemetry::Count::missing("the run had no path");
   facts.images_hash = pictures_failed_ ? telemetry::Count::missing("an image was not written")

@@ -43,6 +43,9 @@ class CompareCommand final : public Command {
 
  private:
   std::string misuse() const;
+  compare::Conditions conditions() const {
+    return anyway_ ? compare::Conditions::kAcceptOthers : compare::Conditions::kMustBeEqual;
+  }
   core::Result<void> collect();
   core::Result<void> record_batch(int batch);
   core::Result<compare::RecordedRun> record(const std::string& command,
@@ -53,7 +56,7 @@ class CompareCommand final : public Command {
   std::string a_, b_, test_;  // commands or folders; a bare program may count instructions
   std::filesystem::path out_;
   std::size_t pairs_ = 8, aa_ = 0;
-  bool json_ = false, instructions_ = false;
+  bool json_ = false, instructions_ = false, anyway_ = false;
   std::vector<compare::RecordedRun> runs_a_, runs_b_;
 };
 
@@ -247,6 +250,8 @@ CompareCommand::CompareCommand(CLI::App& cli)
   c.add_flag("--instructions", instructions_,
              "Compare two commands by their executed instructions, counted by callgrind")
       ->excludes("--test", "--pairs", "--aa");
+  c.add_flag("--anyway", anyway_,
+             "Compare runs of different machines, devices, presets, sizes or worlds, and say so");
   c.add_flag("--json", json_, "Print the result as JSON");
 }
 
@@ -297,7 +302,7 @@ core::Result<void> CompareCommand::collect() {
     return {};
   }
   if (auto ok = record_batch(1); !ok) return ok;
-  const auto first = compare::compare(runs_a_, runs_b_);
+  const auto first = compare::compare(runs_a_, runs_b_, conditions());
   if (!first) return tl::unexpected(first.error());
   const bool sure = first->exact || first->verdict == compare::Verdict::kSame;
   return sure ? core::Result<void>{} : record_batch(2);
@@ -325,7 +330,8 @@ int CompareCommand::run() {
     core::log_error(sentence);
     return kUsage;
   }
-  const auto result = collect().and_then([this] { return compare::compare(runs_a_, runs_b_); });
+  const auto result =
+      collect().and_then([this] { return compare::compare(runs_a_, runs_b_, conditions()); });
   core::Result<compare::FalseAlarms> alarms = compare::FalseAlarms{};
   if (result && aa_ > 0) alarms = compare::measure_false_alarms(runs_a_, aa_, 1);
   if (!result || !alarms) {

@@ -1,6 +1,7 @@
 #include "engine/compare/compare.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -21,14 +22,8 @@ std::string difference(const RecordedRun& first, const RecordedRun& other) {
     return fmt::format("{} and {} have different {}: {} and {}", first.folder, other.folder, what,
                        one, two);
   };
-  if (first.world_hash != other.world_hash)
-    return differ("world hashes, so their images and times are not comparable", first.world_hash,
-                  other.world_hash);
   if (first.path_hash != other.path_hash && !first.path_hash.empty() && !other.path_hash.empty())
     return differ("paths", first.path_hash, other.path_hash);
-  if (first.width != other.width || first.height != other.height)
-    return differ("sizes", fmt::format("{}x{}", first.width, first.height),
-                  fmt::format("{}x{}", other.width, other.height));
   if (first.virtual_clock != other.virtual_clock)
     return fmt::format("{} and {} have different clocks", first.folder, other.folder);
   if (first.fixed_step != other.fixed_step)
@@ -43,7 +38,34 @@ std::string difference(const RecordedRun& first, const RecordedRun& other) {
   return {};
 }
 
-core::Result<void> check(Runs a, Runs b) {
+// The conditions in which two runs differ.
+std::vector<std::string> differences(const RecordedRun& first, const RecordedRun& other) {
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < std::min(first.required.size(), other.required.size()); ++i) {
+    const NamedText &one = first.required[i], &two = other.required[i];
+    if (one != two)
+      sentences.push_back(fmt::format("different {}: {} and {}", one.name, one.text, two.text));
+  }
+  return sentences;
+}
+
+// Adds a side's conditions that are only shown: each with all its values.
+std::vector<NamedText> shown_of(Runs runs) {
+  std::vector<NamedText> shown = runs.front().shown;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    std::vector<std::string> values;
+    for (const RecordedRun& run : runs)
+      if (i < run.shown.size()) values.push_back(run.shown[i].text);
+    std::ranges::sort(values);
+    const auto [first, last] = std::ranges::unique(values);
+    values.erase(first, last);
+    shown[i].text = values.size() > 2 ? fmt::format("{} … {}", values.front(), values.back())
+                                      : fmt::format("{}", fmt::join(values, ", "));
+  }
+  return shown;
+}
+
+core::Result<void> check(Runs a, Runs b, Conditions conditions) {
   if (a.empty() || a.size() != b.size())
     return core::invalid_argument(
         fmt::format("a comparison needs pairs of runs; A has {} and B has {}", a.size(), b.size()));
@@ -52,6 +74,14 @@ core::Result<void> check(Runs a, Runs b) {
     for (const RecordedRun& run : runs)
       if (std::string why = difference(first, run); !why.empty())
         return core::invalid_argument(std::move(why));
+  }
+  for (const Runs runs : {a, b}) {
+    for (const RecordedRun& run : runs)
+      if (const auto differ = differences(first, run);
+          !differ.empty() && conditions == Conditions::kMustBeEqual)
+        return core::invalid_argument(
+            fmt::format("{} and {} are not comparable: {}; --anyway compares them", first.folder,
+                        run.folder, fmt::join(differ, ", ")));
   }
   if (first.frame_ms.size() < kFewestFrames)
     return core::invalid_argument(
@@ -343,8 +373,8 @@ std::string_view name_of(Verdict verdict) {
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
-core::Result<Comparison> compare(Runs a, Runs b) {
-  if (auto ok = check(a, b); !ok) return tl::unexpected(ok.error());
+core::Result<Comparison> compare(Runs a, Runs b, Conditions conditions) {
+  if (auto ok = check(a, b, conditions); !ok) return tl::unexpected(ok.error());
   core::Result<Comparison> result = Comparison{};
   if (a.front().virtual_clock) {
     result = compare_exactly(a, b);
@@ -363,6 +393,14 @@ core::Result<Comparison> compare(Runs a, Runs b) {
       result->noise_percent =
           std::max(result->noise_percent, 50 * (last.cpu->high - last.cpu->low));
     conclude(*result);
+  }
+  if (result) {
+    for (const Runs runs : {a, b})
+      for (const RecordedRun& run : runs)
+        for (std::string& sentence : differences(a.front(), run))
+          if (std::ranges::find(result->differences, sentence) == result->differences.end())
+            result->differences.push_back(std::move(sentence));
+    result->shown = {shown_of(a), shown_of(b)};
   }
   if (!result || !pictures_differ(a, b)) return result;
   result->reasons.push_back("the images differ: inspect them");

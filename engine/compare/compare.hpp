@@ -3,6 +3,7 @@
 // runs in recorded_run.hpp. Pure.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -49,6 +50,10 @@ struct Batch {
 struct Comparison {
   Verdict verdict = Verdict::kInconclusive;
   std::vector<std::string> reasons;  // sentences
+  // Conditions in which the runs differ although they were compared: "different CPU: X and Y".
+  std::vector<std::string> differences;
+  // Conditions that are only shown, of each side: revision, compiler, load.
+  std::array<std::vector<NamedText>, 2> shown;
   // Half of the ratio's confidence interval in the last batch, for frame time or processor time,
   // whichever is wider.
   double noise_percent = 0;
@@ -65,8 +70,11 @@ struct Comparison {
 // the first; with fewer than twice kFewestPairs pairs a difference is unconfirmed, and the verdict
 // inconclusive. Runs of one set on the virtual clock must be equal; one of each is enough. Fails
 // with kInvalidArgument for sets that are not comparable: other worlds, sizes, steps or lengths,
-// too few pairs or frames.
-core::Result<Comparison> compare(std::span<const RecordedRun> a, std::span<const RecordedRun> b);
+// too few pairs or frames. Also fails for runs under other conditions (RecordedRun::required),
+// which the message names, unless others are accepted; then `differences` has them.
+enum class Conditions : std::uint8_t { kMustBeEqual, kAcceptOthers };
+core::Result<Comparison> compare(std::span<const RecordedRun> a, std::span<const RecordedRun> b,
+                                 Conditions conditions = Conditions::kMustBeEqual);
 
 // False alarm rate: verdicts "worse" and "better" of comparisons of a set with itself.
 struct FalseAlarms {

@@ -182,14 +182,26 @@ std::string_view class_of(Verdict verdict) {
 std::string verdict_section(const Comparison& comparison, const FalseAlarms* alarms) {
   std::string html = fmt::format("<section class=\"verdict {}\"><b>{}</b>\n",
                                  class_of(comparison.verdict), headline(comparison));
-  for (const std::string& reason : comparison.reasons)
-    html += fmt::format("<p>{}</p>\n", escaped(reason));
+  for (const auto& sentences : {comparison.differences, comparison.reasons})
+    for (const std::string& sentence : sentences)
+      html += fmt::format("<p>{}</p>\n", escaped(sentence));
   if (alarms != nullptr)
     html += fmt::format(
         "<p class=\"advice\">A compared with itself {} times: {} worse, {} better, {} "
         "inconclusive. This is the false alarm rate on this machine.</p>\n",
         alarms->comparisons, alarms->worse, alarms->better, alarms->inconclusive);
   return html + "</section>\n";
+}
+
+// The conditions that are only shown, of both sides.
+std::string conditions_section(const Comparison& comparison) {
+  const auto& [a, b] = comparison.shown;
+  std::string html;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    html += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td></tr>\n", escaped(a[i].name),
+                        escaped(a[i].text), escaped(b[i].text));
+  if (html.empty()) return {};
+  return "<section><table><tr><th></th><th>A</th><th>B</th></tr>\n" + html + "</table></section>\n";
 }
 
 constexpr std::string_view kStyle =
@@ -243,7 +255,7 @@ std::string to_html(const Comparison& comparison, Runs a, Runs b, const Sides& s
   html += verdict_section(comparison, alarms) + "<div class=\"effects\">\n";
   for (std::size_t i = comparison.batches.size(); i-- > 0;)
     html += batch_section(comparison, i);
-  html += "</div>\n" + plots(a, b);
+  html += conditions_section(comparison) + "</div>\n" + plots(a, b);
   html += fmt::format("</main><script>{}</script></body></html>\n", telemetry::page_script());
   return html;
 }

@@ -43,7 +43,10 @@ std::string to_text(const Comparison& comparison, const FalseAlarms* alarms) {
   std::string text = fmt::format("verdict: {}", name_of(comparison.verdict));
   if (comparison.verdict == Verdict::kInconclusive && comparison.noise_percent > 0)
     text += fmt::format(" (noise ±{:.1f} %)", comparison.noise_percent);
+  if (!comparison.differences.empty()) text += ", although the runs are not comparable";
   text += "\n";
+  for (const std::string& difference : comparison.differences)
+    text += fmt::format("  {}\n", difference);
   for (const std::string& reason : comparison.reasons)
     text += fmt::format("  {}\n", reason);
   for (const Batch& b : comparison.batches) {
@@ -66,6 +69,12 @@ std::string to_text(const Comparison& comparison, const FalseAlarms* alarms) {
         "all pairs: the 1 % of frames that changed most {:.3f}, the slowest frames take {:.2f} and "
         "{:.2f} times their typical time\n",
         comparison.tail.ratio, comparison.rare.a, comparison.rare.b);
+  for (std::size_t side = 0; side < comparison.shown.size(); ++side) {
+    std::string line;
+    for (const NamedText& each : comparison.shown[side])
+      line += fmt::format("{}{} {}", line.empty() ? "" : ", ", each.name, each.text);
+    if (!line.empty()) text += fmt::format("{}: {}\n", side == 0 ? "A" : "B", line);
+  }
   if (alarms != nullptr)
     text += fmt::format("A against itself, {} comparisons: {} worse, {} better, {} inconclusive\n",
                         alarms->comparisons, alarms->worse, alarms->better, alarms->inconclusive);
@@ -77,6 +86,12 @@ std::string to_json(const Comparison& comparison, const FalseAlarms* alarms) {
   json["schema"] = "psygen.compare/1";
   json["verdict"] = name_of(comparison.verdict);
   json["reasons"] = comparison.reasons;
+  json["differences"] = comparison.differences;
+  for (std::size_t side = 0; side < comparison.shown.size(); ++side) {
+    Json& facts = json["conditions"][side == 0 ? "a" : "b"] = Json::object();
+    for (const NamedText& each : comparison.shown[side])
+      facts[each.name] = each.text;
+  }
   json["noise_percent"] = finite(comparison.noise_percent);
   json["exact"] = comparison.exact;
   json["tail"] = {{"ratio", finite(comparison.tail.ratio)}, {"p", comparison.tail.p}};

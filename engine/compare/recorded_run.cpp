@@ -8,6 +8,7 @@
 
 #include "engine/compare/csv_rows.hpp"
 #include "engine/core/read_file.hpp"
+#include "engine/core/utf8.hpp"
 
 namespace psygen::compare {
 namespace {
@@ -144,6 +145,39 @@ std::optional<T> member(const Parsed& json, const char* path) {
   return value.get<T>();
 }
 
+// "GCC 12.2.0" for a text, "1.5" for a number, "true" for a boolean; "unknown" if there is none.
+std::string text_at(const Parsed& json, const char* path) {
+  const Parsed::json_pointer pointer(path);
+  if (!json.contains(pointer) || json[pointer].is_null()) return "unknown";
+  const Parsed& value = json[pointer];
+  if (value.is_string()) return core::shown(value.get<std::string>(), 200);
+  return value.is_number_float() ? fmt::format("{:.3g}", value.get<double>()) : value.dump();
+}
+
+void add_conditions(const Parsed& json, RecordedRun& run) {
+  const auto add = [&json](std::vector<NamedText>& to, const char* name, const char* path) {
+    to.push_back({name, text_at(json, path)});
+  };
+  add(run.required, "world hash", "/hash/world");
+  run.required.push_back({"size", fmt::format("{}x{}", run.width, run.height)});
+  if (!run.virtual_clock) {
+    add(run.required, "CPU", "/machine/cpu");
+    add(run.required, "cores", "/machine/cores");
+    add(run.required, "quota of cores", "/machine/quota_cores");
+    add(run.required, "device", "/device/name");
+    add(run.required, "driver", "/device/driver");
+    add(run.required, "preset", "/run/preset");
+  }
+  add(run.shown, "revision", "/build/revision");
+  add(run.shown, "no changed files", "/build/clean");
+  add(run.shown, "compiler", "/build/compiler");
+  add(run.shown, "build type", "/build/type");
+  if (run.virtual_clock) return;
+  add(run.shown, "load before", "/load/before");
+  add(run.shown, "processors used by others", "/load/others_cores");
+  add(run.shown, "stolen time in percent", "/load/steal_percent");
+}
+
 // More than a flight of a day.
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
 
@@ -164,7 +198,6 @@ core::Result<RecordedRun> parse_run(std::string_view frames_csv, std::string_vie
     return refuse_file(file, "schema: it must be \"psygen.summary/1\"");
   RecordedRun run;
   run.folder = folder;
-  run.world_hash = member<std::string>(json, "/hash/world").value_or("");
   run.path_hash = member<std::string>(json, "/hash/path").value_or("");
   run.images_hash = member<std::string>(json, "/hash/images").value_or("");
   const auto pixels = [&json](const char* path) {
@@ -175,6 +208,7 @@ core::Result<RecordedRun> parse_run(std::string_view frames_csv, std::string_vie
   run.fixed_step = member<double>(json, "/run/fixed_step");
   const double warmup_s = member<double>(json, "/run/warmup_seconds").value_or(0);
   if (auto ok = parse_frames(frames_csv, warmup_s, run); !ok) return tl::unexpected(ok.error());
+  add_conditions(json, run);
   return run;
 }
 

@@ -16,22 +16,31 @@ namespace psygen::compare {
 // A frame longer than 5 s and 20 times the median: the machine was suspended or stalled.
 inline constexpr double kSuspendedMs = 5000, kSuspendedRatio = 20;
 
+// A named text, such as "CPU" and its model name.
+struct NamedText {
+  std::string name, text;
+  friend bool operator==(const NamedText&, const NamedText&) = default;
+};
+
 struct RecordedRun {
   std::string folder;
   // For every frame after the warm-up.
   std::vector<double> time_s, frame_ms;
-  std::vector<double> cpu_ms;          // of the main thread; empty on the virtual clock
-  std::vector<double> lacking, error;  // percent of the image missing or too coarse; pixels
-  std::vector<bool> left_out;          // excluded in frames.csv, or suspended
-  std::size_t suspended = 0;           // number of suspended frames
-  double missing_percent = 0;          // of the image, mean over the frames
-  double coarse_percent = 0;           // same mean: drawn with over twice the requested error
-  double error_pixels = 0;             // mean error of LODs ÷ render scale
-  std::uint64_t holes = 0;             // sum over the frames
-  bool virtual_clock = false;          // times are fixed costs (docs/frame-tests.md)
-  std::string world_hash, path_hash, images_hash;  // empty: none
-  std::uint64_t width = 0, height = 0;             // pixels
-  std::optional<double> fixed_step;                // Hz
+  std::vector<double> cpu_ms;           // of the main thread; empty on the virtual clock
+  std::vector<double> lacking, error;   // percent of the image missing or too coarse; pixels
+  std::vector<bool> left_out;           // excluded in frames.csv, or suspended
+  std::size_t suspended = 0;            // number of suspended frames
+  double missing_percent = 0;           // of the image, mean over the frames
+  double coarse_percent = 0;            // same mean: drawn with over twice the requested error
+  double error_pixels = 0;              // mean error of LODs ÷ render scale
+  std::uint64_t holes = 0;              // sum over the frames
+  bool virtual_clock = false;           // times are fixed costs (docs/frame-tests.md)
+  std::string path_hash, images_hash;   // empty: none
+  std::uint64_t width = 0, height = 0;  // pixels
+  // Conditions that comparable runs share: world, size, and on the wall clock CPU, device, driver,
+  // preset. Then those that are only shown: revision, compiler, load. "unknown" in older runs.
+  std::vector<NamedText> required, shown;
+  std::optional<double> fixed_step;  // Hz
 };
 
 // Texts of the files of a run.

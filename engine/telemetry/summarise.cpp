@@ -243,6 +243,9 @@ Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   Summary s;
   s.world = facts.world;
   s.device = facts.device;
+  s.machine = facts.machine;
+  s.build = facts.build;
+  s.load = facts.load;
   static_cast<RunSettings&>(s.run) = facts.run;
   s.run.warmup_seconds = warmup_s;
   summarise_run(s, frames, log);
@@ -256,6 +259,7 @@ Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   s.draw.floor_ratio = facts.floor_ratio;
   s.memory.peak_rss_bytes = facts.peak_rss_bytes;
   s.hash.world = facts.world_hash;
+  s.hash.types = facts.types_hash;
   s.hash.path = facts.path_hash;
   s.hash.images = facts.images_hash;
   return s;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/telemetry/frame_log.hpp"
+#include "engine/telemetry/machine.hpp"
 #include "engine/telemetry/statistics.hpp"
 
 namespace psygen::telemetry {
@@ -59,9 +60,9 @@ struct RunSettings {
   Figure fixed_step;        // Hz; missing when the flight follows the wall clock
   double error_pixels = 0;  // requested error of LODs
   Figure target_fps;        // held by raising the error; missing if none is held
-  // Only for the report: the program with its arguments, the quality preset by name, and the view
-  // distance (0: unknown).
-  std::string command = {}, preset = {};
+  // Only for the report: the program with its arguments, and the view distance (0: unknown).
+  std::string command = {};
+  std::string preset = {};  // quality preset by name
   double view_distance_m = 0;
 };
 
@@ -69,6 +70,9 @@ struct RunSettings {
 struct RunFacts {
   WorldFacts world;
   DeviceFacts device;
+  MachineFacts machine;
+  BuildFacts build;
+  LoadFacts load;
   RunSettings run;
   std::uint64_t cache_budget_bytes = 0;
   Count cache_peak_bytes;       // if missing: the largest cache_bytes of the log
@@ -77,6 +81,7 @@ struct RunFacts {
   Figure floor_ratio;  // median frame ÷ the same draw lists replayed alone
   Count peak_rss_bytes;
   Count world_hash;
+  Count types_hash;  // of all model types
   Count path_hash;
   Count images_hash;
 };
@@ -105,6 +110,9 @@ inline constexpr double kCoarsePercent = 1.0;
 struct Summary {
   WorldFacts world;
   DeviceFacts device;
+  MachineFacts machine;
+  BuildFacts build;
+  LoadFacts load;
   struct : RunSettings {
     std::uint64_t frames = 0;           // of the whole run
     double seconds = 0;                 // of the whole run, on the flight's clock
@@ -174,7 +182,7 @@ struct Summary {
     Count peak_rss_bytes;
   } memory;
   struct {
-    Count world, path, images;
+    Count world, types, path, images;
   } hash;
 };
 

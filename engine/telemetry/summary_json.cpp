@@ -34,8 +34,6 @@ void to_json(Json& json, const Spread& spread) {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using MeasuredText = Measured<std::string>;
-
 MeasuredText hash_text(const Count& hash) {
   return hash.has_value() ? MeasuredText(fmt::format("{:016x}", *hash))
                           : MeasuredText::missing(hash.reason);
@@ -69,6 +67,31 @@ Json world_json(const WorldFacts& world) {
             {"bytes", Figure(world.block_bytes)}}}};
 }
 
+Json machine_json(const MachineFacts& m) {
+  return {{"cpu", m.cpu},
+          {"cpu_features", m.cpu_features},
+          {"cores", m.cores},
+          {"quota_cores", m.quota_cores},
+          {"memory_bytes", m.memory_bytes},
+          {"governor", m.governor},
+          {"kernel", m.kernel}};
+}
+
+Json build_json(const BuildFacts& b) {
+  return {{"version", b.version},
+          {"compiler", b.compiler},
+          {"type", b.type},
+          {"revision", b.revision},
+          {"clean", b.clean}};
+}
+
+Json load_json(const LoadFacts& l) {
+  return {{"before", l.before},
+          {"others_cores", l.others_cores},
+          {"steal_percent", l.steal_percent},
+          {"cpu_seconds", l.cpu_seconds}};
+}
+
 Json picture_json(const Summary& s) {
   const Verdict verdict = judge_quality(s);
   return {{"grade", name_of(verdict.grade)},
@@ -85,6 +108,7 @@ Json run_json(const Summary& s) {
                                       : MeasuredText(s.run.path)},
           {"paradigm", s.run.paradigm},
           {"policy", s.run.policy},
+          {"preset", s.run.preset},
           {"modelers", s.run.modelers},
           {"width", s.run.width},
           {"height", s.run.height},
@@ -189,6 +213,9 @@ std::string to_json(const Summary& s) {
       {"schema", kSummarySchema},
       {"world", world_json(s.world)},
       {"device", {{"name", s.device.name}, {"driver", s.device.driver}, {"api", s.device.api}}},
+      {"machine", machine_json(s.machine)},
+      {"build", build_json(s.build)},
+      {"load", load_json(s.load)},
       {"run", run_json(s)},
       {"frame_ms",
        {{"mean", t.mean},
@@ -220,6 +247,7 @@ std::string to_json(const Summary& s) {
       {"memory", {{"peak_rss_bytes", s.memory.peak_rss_bytes}}},
       {"hash",
        {{"world", hash_text(s.hash.world)},
+        {"types", hash_text(s.hash.types)},
         {"path", hash_text(s.hash.path)},
         {"images", hash_text(s.hash.images)}}}};
   Json reasons = Json::object();

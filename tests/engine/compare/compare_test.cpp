@@ -113,14 +113,36 @@ TEST(Compare, OnTheVirtualClockEveryDifferenceCounts) {
   EXPECT_EQ(exact(0.5, 0.001), Verdict::kWorse);
 }
 
+TEST(Compare, RunsUnderOtherConditionsAreComparedOnRequestAndTheVerdictSaysSo) {
+  const Sets sets = make_sets(8, [](RecordedRun& run, std::mt19937&) {
+    run.required[1].text = "320x180";
+    run.required[2].text = "new";
+    run.shown[0].text = "5678";
+  });
+  EXPECT_THAT(refusal(sets),
+              HasSubstr("different size: 640x360 and 320x180, different CPU: old and new"));
+  const auto forced = compare(sets.a, sets.b, Conditions::kAcceptOthers);
+  ASSERT_TRUE(forced) << forced.error().message;
+  EXPECT_THAT(forced->differences, testing::ElementsAre("different size: 640x360 and 320x180",
+                                                        "different CPU: old and new"));
+  const std::string text = to_text(*forced, nullptr), json = to_json(*forced, nullptr);
+  EXPECT_THAT(text, HasSubstr(", although the runs are not comparable\n  different size"));
+  EXPECT_THAT(text, HasSubstr("A: revision 1234, load before 0.5\nB: revision 5678"));
+  EXPECT_THAT(json, HasSubstr("\"different CPU: old and new\""));
+  const auto equal = compare(sets.a, sets.a);
+  ASSERT_TRUE(equal);
+  EXPECT_THAT(equal->differences, testing::IsEmpty());
+  EXPECT_EQ(to_text(*equal, nullptr).find("although"), std::string::npos);
+}
+
 TEST(Compare, RejectsRunsThatCannotBeCompared) {
   const auto changed = [](auto change) {
     return make_sets(8, [change](RecordedRun& run, std::mt19937&) { change(run); });
   };
-  EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.world_hash = "00ac"; })),
-              HasSubstr("world hashes"));
-  EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.width = 320; })),
-              HasSubstr("sizes: 640x360 and 320x360"));
+  EXPECT_EQ(
+      refusal(changed([](RecordedRun& r) { r.required[0].text = "00ac"; })),
+      "run and run are not comparable: different world hash: 00ab and 00ac; --anyway compares "
+      "them");
   EXPECT_EQ(refusal(changed([](RecordedRun& r) { r.path_hash = "01"; })), "taken") << "older A";
   EXPECT_THAT(refusal(changed([](RecordedRun& r) { r.fixed_step = 60; })),
               HasSubstr("steps: 30 and 60"));

@@ -16,7 +16,8 @@ using Runs = std::vector<RecordedRun>;
 inline RecordedRun make_run(std::mt19937& random, double factor = 1, double noise = 0.3) {
   RecordedRun run;
   run.folder = "run";
-  run.world_hash = "00ab";
+  run.required = {{"world hash", "00ab"}, {"size", "640x360"}, {"CPU", "old"}};
+  run.shown = {{"revision", "1234"}, {"load before", "0.5"}};
   run.fixed_step = 30;
   run.width = 640;
   run.height = 360;

@@ -29,9 +29,32 @@ TEST(RecordedRun, HoldsTheFramesAfterTheWarmUp) {
   EXPECT_DOUBLE_EQ(run->error_pixels, 5);
   EXPECT_EQ(run->holes, 1u);
   EXPECT_THAT(run->cpu_ms, testing::ElementsAre(1, 1, 1));
-  EXPECT_EQ(run->world_hash, "00ab");
   EXPECT_EQ(run->fixed_step, 30);
   EXPECT_FALSE(run->virtual_clock);
+}
+
+TEST(RecordedRun, HasTheConditionsThatItsClockNeeds) {
+  std::string summary = kRunSummary;
+  summary.insert(
+      summary.find('{') + 1,
+      R"("machine":{"cpu":"EPYC","cores":2,"quota_cores":1.5},"device":{"name":"llvmpipe",)"
+      R"("driver":"Mesa 22"},"build":{"revision":"12ab","clean":false},"load":{"before":0.25},)");
+  const auto run = parse_run(kHeader + kRows, summary, "dir");
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(run->required, (std::vector<NamedText>{{"world hash", "00ab"},
+                                                   {"size", "640x360"},
+                                                   {"CPU", "EPYC"},
+                                                   {"cores", "2"},
+                                                   {"quota of cores", "1.5"},
+                                                   {"device", "llvmpipe"},
+                                                   {"driver", "Mesa 22"},
+                                                   {"preset", "unknown"}}));
+  EXPECT_EQ(run->shown[0], (NamedText{"revision", "12ab"}));
+  EXPECT_EQ(run->shown[1], (NamedText{"no changed files", "false"}));
+  EXPECT_EQ(run->shown[4], (NamedText{"load before", "0.25"}));
+  const auto exact = parse_run(kHeader + "0,0.1,10,,,4,0,0,0\n", summary, "dir");
+  ASSERT_TRUE(exact) << exact.error().message;
+  EXPECT_EQ(exact->required.size(), 2U) << "on the virtual clock the machine does not matter";
 }
 
 TEST(RecordedRun, ALowerRenderScaleHasALargerError) {
