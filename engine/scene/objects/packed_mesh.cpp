@@ -53,6 +53,19 @@ constexpr std::size_t kFewestIndices = 3 * 48;  // minimum for a mesh with a coa
 constexpr std::size_t kMinIndices = 3 * 8;      // of any level
 constexpr double kMinArea = 0.5;  // of any level, as a fraction of the finest level's surface
 
+// Simplification takes time with the square of the triangles of a vertex.
+constexpr std::uint64_t kMaxSquares = 50'000'000;  // usual meshes: 36 for each vertex
+
+bool is_tangled(const std::vector<std::uint16_t>& indices, std::size_t vertices) {
+  std::vector<std::uint64_t> triangles(vertices, 0);
+  for (const std::uint16_t index : indices)
+    ++triangles[index];
+  std::uint64_t squares = 0;
+  for (const std::uint64_t count : triangles)
+    squares += count * count;
+  return squares > kMaxSquares;
+}
+
 // Of the surface of all triangles. Simplifying loose triangles removes them one by one instead of
 // making a surface coarser, so the total shrinks.
 double area_m2(const core::MeshData& mesh, const std::vector<std::uint16_t>& indices) {
@@ -109,6 +122,7 @@ std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh fi
                                        std::size_t most) {
   std::vector<ObjectLevel> levels;
   levels.push_back({std::move(finest), 0});
+  if (is_tangled(levels[0].mesh.indices, mesh.positions.size())) return levels;
   const float* const places = &mesh.positions.front().x;
   const std::size_t count = mesh.positions.size(), stride = sizeof(glm::vec3);
   const auto scale = static_cast<double>(meshopt_simplifyScale(places, count, stride));

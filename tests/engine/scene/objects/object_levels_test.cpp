@@ -68,6 +68,24 @@ TEST(ObjectLevels, UseOnlyVerticesOfTheFinest) {
   }
 }
 
+// A lid of 2 m, all of whose triangles meet in one vertex.
+core::MeshData lid(std::uint32_t triangles) {
+  core::MeshData mesh;
+  mesh.positions.assign(1, {0, 0, 0});
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    const double turn = 2 * std::numbers::pi * i / triangles;
+    mesh.positions.emplace_back(std::cos(turn), 0, std::sin(turn));
+    for (const std::uint32_t corner : {0U, i + 1, (i + 1) % triangles + 1})
+      mesh.indices.push_back(corner);
+  }
+  return mesh;
+}
+
+TEST(ObjectLevels, MeshesWithTooManyTrianglesAtAVertexHaveOneLevel) {
+  EXPECT_GT(levels_of(lid(2'000), 8).size(), 1U);
+  EXPECT_EQ(levels_of(lid(60'000), 8).size(), 1U);
+}
+
 TEST(ObjectLevels, AreAtMostAsManyAsWantedAndOneForSmallMeshes) {
   EXPECT_EQ(levels_of(sphere(24), 1).size(), 1U);
   EXPECT_EQ(levels_of(sphere(24), 2).size(), 2U);
