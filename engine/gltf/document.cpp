@@ -308,6 +308,7 @@ core::Result<Document> parse_document(std::string_view text) {
   } else if (!error) {
     error = "is not glTF that can be read: it has no \"asset\"";
   }
+  if (!error && !out.version.starts_with("2.")) return out;
   out.extensions_used = root.texts("extensionsUsed");
   out.extensions_required = root.texts("extensionsRequired");
   out.scene = root.index("scene");

@@ -127,8 +127,9 @@ struct Document {
   int scene = kAbsent;
 };
 
-// Fails with kParse, naming the place, for values of a wrong kind; the message does not name the
-// file. Throws nlohmann::json's exceptions for texts that are not JSON.
+// Of other versions than 2, only the version is read. Fails with kParse, naming the place, for
+// values of a wrong kind; the message does not name the file. Throws nlohmann::json's exceptions
+// for texts that are not JSON.
 core::Result<Document> parse_document(std::string_view json);
 
 // The bytes of a "data:" URI in base64; nothing if it is none. Fails with kParse.

@@ -88,6 +88,7 @@ TEST_F(BadGltf, OfOtherKindsIsRejected) {
   refuse_bytes("[1, 2, 3]", "not glTF");
   Sample sample = square();
   sample.json["asset"]["version"] = "1.0";
+  sample.json["scene"] = "the names of version 1";
   refuse(sample, "version \"1.0\"");
   sample = square();
   sample.json["scenes"][0]["nodes"] = nlohmann::json::array();
