@@ -41,7 +41,6 @@ add_library(psygen_settings INTERFACE)
 add_library(psygen::settings ALIAS psygen_settings)
 # Same bits everywhere: no fused multiply-add unless the source asks for it (docs/models.md).
 target_compile_options(psygen_settings INTERFACE -ffp-contract=off)
-target_compile_definitions(psygen_settings INTERFACE GLM_FORCE_XYZW_ONLY)
 
 add_library(psygen_warnings INTERFACE)
 target_compile_options(psygen_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow

@@ -5,14 +5,30 @@
 
 #include <cmath>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <glm/common.hpp>
+#include <glm/ext/quaternion_float.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "engine/core/hash.hpp"
 
 namespace psygen::core {
+
+// The libraries and the programs that use them must have the same layout of GLM's types. All public
+// headers with such types include this one.
+static_assert(alignof(glm::vec2) == 4 && alignof(glm::vec3) == 4 && alignof(glm::vec4) == 4 &&
+                  sizeof(glm::vec3) == 12 && sizeof(glm::dvec3) == 24 &&
+                  alignof(glm::dvec3) == alignof(double) && alignof(glm::mat4) == 4,
+              "psygen needs GLM's packed vectors: compile without "
+              "GLM_FORCE_DEFAULT_ALIGNED_GENTYPES");
+static_assert(offsetof(glm::quat, x) == 0 && offsetof(glm::quat, w) == 12,
+              "psygen needs quaternions in the order x, y, z, w: compile without "
+              "GLM_FORCE_QUAT_DATA_WXYZ");
 
 // A block of the ground, in blocks east (+X) and south (+Z) of block (0, 0). Both wrap at 2^32.
 struct BlockCoord {

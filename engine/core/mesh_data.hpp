@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
 
 namespace psygen::core {

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/coordinates.hpp"
+
 namespace psygen::exchange {
 
 // Materials: core::ModelVertex::material, or kGround for terrain.

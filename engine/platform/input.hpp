@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/core/coordinates.hpp"
 #include "engine/platform/keys.hpp"
 
 namespace psygen::platform {

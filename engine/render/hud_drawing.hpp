@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/coordinates.hpp"
+
 namespace psygen::render {
 
 // Where something is: share of the picture (0, 0 the upper left corner, 1, 1 the lower right one)

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/coordinates.hpp"
+
 namespace psygen::world {
 
 // A greyscale image: values 0 … 65535, row by row from the top.

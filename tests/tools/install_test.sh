@@ -40,7 +40,19 @@ grep -q "set(PACKAGE_VERSION \"$("$folder/psygen/bin/psygen" --version | cut -d'
 configure only_ecs
 cmake --build "$folder/build/only_ecs" >/dev/null
 "$folder/build/only_ecs/only_ecs"
-configure parent -DPSYGEN_SOURCE="$source"
+# One definition of GLM's types in a program that is optimised when it is linked, and one layout in any program.
+configure parent -DPSYGEN_SOURCE="$source" -DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON -DCMAKE_UNITY_BUILD=ON
+cmake --build "$folder/build/parent" --target layout >"$folder/log.txt" 2>&1 || { cat "$folder/log.txt"; exit 1; }
+if grep -e -Wodr "$folder/log.txt"; then echo "types have two definitions"; exit 1; fi
+"$(find "$folder/build/parent" -name layout -type f)"
+for refused in "packed vectors:-DGLM_FORCE_INTRINSICS -DGLM_FORCE_DEFAULT_ALIGNED_GENTYPES" \
+               "quaternions in the order x, y, z, w:-DGLM_FORCE_QUAT_DATA_WXYZ"; do
+  read -ra options <<<"${refused##*:}"
+  if c++ -std=c++20 -fsyntax-only -I "$folder/psygen/include/psygen" "${options[@]}" "$consumers/layout.cpp" \
+    2>"$folder/log.txt"; then echo "${options[*]} is accepted"; exit 1; fi
+  grep -q "psygen needs .*${refused%%:*}: compile without ${options[-1]#-D}" "$folder/log.txt" ||
+    { cat "$folder/log.txt"; exit 1; }
+done
 
 configure .
 cmake --build "$folder/build" >/dev/null

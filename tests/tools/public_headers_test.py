@@ -2,7 +2,8 @@
 """Holds the lists of public headers together: every header under HEADERS of a folder's CMakeLists.txt is
 there, and includes only public headers; otherwise the installed package would not compile. And each of
 its functions has a comment: above it, behind it, or above the group of lines that it stands in. The game,
-which is written as games outside of this project are, includes only public headers of the engine.
+which is written as games outside of this project are, includes only public headers of the engine. Public
+headers with GLM's types include engine/core/coordinates.hpp, which checks their layout.
 
 usage: public_headers_test.py SOURCE_DIR
        public_headers_test.py --self-test
@@ -13,6 +14,7 @@ import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
 
+LAYOUT = "engine/core/coordinates.hpp"
 PRIVATE = re.compile(r"^ *private:.*?^(?=\};)", re.S | re.M)
 GROUPS = re.compile(r"\n[ \t]*\n")
 FUNCTION = re.compile(r"^\s*[\w:<>,&*\[\] ]+\s\W?\w+\([^;{]*\)[^;{()]*[;{][^\n]*$", re.M)
@@ -31,6 +33,16 @@ def listed(folder, cmake):
     return [f"{folder}/{name}" for name in match[1].split()] if match else []
 
 
+def reached(header, text_of, found=None):
+    """The headers that a header includes, and those that they include."""
+    found = set() if found is None else found
+    for name in INCLUDE.findall(text_of(header) or ""):
+        if name not in found:
+            found.add(name)
+            reached(name, text_of, found)
+    return found
+
+
 def violations(public, text_of):
     """Violations of the public headers; text_of returns a header's text, or None."""
     for header in sorted(public):
@@ -41,6 +53,8 @@ def violations(public, text_of):
         for name in INCLUDE.findall(text):
             if name not in public and not name.startswith("../"):
                 yield f"{header} is public and includes {name}, which is not under HEADERS"
+        if "#include <glm/" in text and LAYOUT not in {header, *reached(header, text_of)}:
+            yield f"{header} is public, has types of GLM and does not include {LAYOUT}"
         if header.startswith("engine/"):  # the rooms of ecs/ are templates with their bodies
             for line in without_comment(text):
                 yield f"{header} has functions without a comment: {line}"
@@ -61,6 +75,8 @@ def self_test():
     assert not list(violations({"a/b.hpp", "a/c.hpp"}, texts.get))
     assert len(list(violations({"a/b.hpp"}, texts.get))) == 1
     assert len(list(violations({"a/gone.hpp"}, texts.get))) == 1
+    glm = {"b.hpp": '#include "c.hpp"\n#include <glm/vec2.hpp>\n', "c.hpp": f'#include "{LAYOUT}"\n', "d.hpp": "#include <glm/vec2.hpp>\n"}
+    assert [v[:5] for v in violations({*glm, LAYOUT}, {LAYOUT: "#include <glm/vec3.hpp>\n", **glm}.get)] == ["d.hpp"]
     assert len(list(beyond_the_package({"engine/a/b.hpp"}, {
         "x": '#include "engine/a/b.hpp"\n#include "game/c.hpp"\n#include "engine/a/c.hpp"\n'}))) == 1
     assert list(without_comment("// File.\n\nint f(int a);\n")) == ["int f(int a);"]

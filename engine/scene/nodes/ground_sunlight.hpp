@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <span>
 
+#include "engine/core/coordinates.hpp"
 #include "engine/core/vertex_layout.hpp"
 
 namespace psygen::scene {

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "engine/core/coordinates.hpp"
+
 namespace psygen::world {
 
 // A number. Whole reals have no decimal point, which readers of world files accept: 3, 0.25, 1e+20.
