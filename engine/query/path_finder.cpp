@@ -15,10 +15,11 @@ constexpr double kGentle = 0.3;  // … unless the path leads down
 constexpr double kNoWay = std::numeric_limits<double>::infinity();
 
 struct Cell {
-  std::int32_t x = 0, z = 0;
+  std::int64_t x = 0, z = 0;
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
+// Cells 2^32 apart along an axis share a name; no search reaches both.
 std::uint64_t name_of(Cell c) {
   return std::uint64_t{static_cast<std::uint32_t>(c.x)} << 32 | static_cast<std::uint32_t>(c.z);
 }
@@ -26,7 +27,7 @@ std::uint64_t name_of(Cell c) {
 // Returns the cell at metres from the corner of block (0, 0).
 Cell cell_at(double x_m, double z_m) {
   const auto number = [](double m) {
-    return static_cast<std::int32_t>(std::floor(m / PathFinder::kCellM));
+    return static_cast<std::int64_t>(std::floor(m / PathFinder::kCellM));
   };
   return {number(x_m), number(z_m)};
 }
@@ -49,9 +50,12 @@ class PathFinder::Search {
         avoided_(finder.avoided_),
         start_(from),
         end_(to),
-        to_(cell_at(to, query_.world().block_size_m())),
-        best_(cell_at(from, query_.world().block_size_m())),
         solids_(solids) {
+    const double block_m = query_.world().block_size_m();
+    if (!checked(from, block_m) || !checked(to, block_m)) return;
+    is_sound_ = true;
+    to_ = cell_at(to, block_m);
+    best_ = cell_at(from, block_m);
     open(best_, 0, best_);
   }
 
@@ -75,13 +79,14 @@ class PathFinder::Search {
     return false;
   }
 
-  bool has_arrived() const { return best_ == to_; }
+  bool has_arrived() const { return is_sound_ && best_ == to_; }
   const core::WorldPosition& start() const { return start_; }
   const core::WorldPosition& end() const { return end_; }
 
   // Returns the path to the reached cell that is nearest to the destination.
   std::vector<core::WorldPosition> way() {
     std::vector<core::WorldPosition> points{start_};
+    if (!is_sound_) return points;
     for (const Cell c : trace()) {
       points.push_back(middle(c));
       points.back().local.y = ground(c).height_m;
@@ -112,12 +117,14 @@ class PathFinder::Search {
   };
 
   core::WorldPosition middle(Cell c) const {
-    const glm::dvec3 m((c.x + 0.5) * PathFinder::kCellM, 0, (c.z + 0.5) * PathFinder::kCellM);
+    const glm::dvec3 m((static_cast<double>(c.x) + 0.5) * PathFinder::kCellM, 0,
+                       (static_cast<double>(c.z) + 0.5) * PathFinder::kCellM);
     return core::normalised({{}, m}, query_.world().block_size_m());
   }
 
   double estimate(Cell c) const {
-    return PathFinder::kCellM * std::hypot(c.x - to_.x, c.z - to_.z);
+    return PathFinder::kCellM *
+           std::hypot(static_cast<double>(c.x - to_.x), static_cast<double>(c.z - to_.z));
   }
 
   const Ground& ground(Cell c) {
@@ -145,8 +152,8 @@ class PathFinder::Search {
     const glm::dvec3 low = corner + glm::dvec3(box.min) - settings_.aside_m;
     const glm::dvec3 high = corner + glm::dvec3(box.max) + settings_.aside_m;
     const Cell first = cell_at(low.x, low.z), last = cell_at(high.x, high.z);
-    for (std::int32_t z = first.z; z <= last.z; ++z) {
-      for (std::int32_t x = first.x; x <= last.x; ++x)
+    for (std::int64_t z = first.z; z <= last.z; ++z) {
+      for (std::int64_t x = first.x; x <= last.x; ++x)
         narrow_.insert(name_of({x, z}));
     }
   }
@@ -155,7 +162,8 @@ class PathFinder::Search {
   double cost(Cell a, Cell b) {
     const Ground from = ground(a), to = ground(b);
     if (!to.exists || (avoided_.contains(name_of(b)) && b != to_)) return kNoWay;
-    double run = PathFinder::kCellM * std::hypot(a.x - b.x, a.z - b.z);
+    double run = PathFinder::kCellM *
+                 std::hypot(static_cast<double>(a.x - b.x), static_cast<double>(a.z - b.z));
     // In deep water, the walker moves at the surface.
     const auto level_m = [&](const Ground& g) {
       return g.height_m + std::max(g.depth_m - settings_.wade_m, 0.0);
@@ -205,7 +213,7 @@ class PathFinder::Search {
   std::unordered_set<std::uint64_t> avoided_;
   core::WorldPosition start_, end_;
   Cell to_, best_;
-  bool solids_;
+  bool solids_, is_sound_ = false;
   double best_rest_ = kNoWay;
   std::unordered_map<std::uint64_t, Node> nodes_;
   std::unordered_map<std::uint64_t, Ground> grounds_;
@@ -236,7 +244,9 @@ void PathFinder::follow_world() {
 
 void PathFinder::avoid(const core::WorldPosition& at) {
   follow_world();
-  const Cell middle = cell_at(at, query_->world().block_size_m());
+  const double block_m = query_->world().block_size_m();
+  if (!checked(at, block_m)) return;
+  const Cell middle = cell_at(at, block_m);
   for (std::int32_t z = -1; z <= 1; ++z) {
     for (std::int32_t x = -1; x <= 1; ++x)
       avoided_.insert(name_of({middle.x + x, middle.z + z}));

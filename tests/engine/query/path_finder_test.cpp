@@ -113,6 +113,28 @@ TEST_F(Ways, EndAtTheNearestReachablePoint) {
   EXPECT_EQ(none.find(from, to).size(), 1U);
 }
 
+TEST_F(Ways, EndSoonFarFromTheOriginAndBeyondAllPositions) {
+  Loaded endless = Loaded::shipped("endless");
+  World query(endless.world, endless.registry);
+  PathFinder finder(query, {.max_cells = 500});
+  const double block_m = endless.world.block_size_m();
+  const auto cells =
+      static_cast<std::int64_t>((std::int64_t{1} << 31) * PathFinder::kCellM / block_m);
+  for (const std::int64_t east : {cells, std::int64_t{INT32_MAX}, std::int64_t{INT32_MIN}}) {
+    const core::WorldPosition from{core::moved({}, east, -east), {0, 0, 0}};
+    const core::WorldPosition to{from.block, {20, 0, 20}};
+    EXPECT_LE(finder.find(from, to).size(), 500U);
+    EXPECT_LE(finder.find({}, to).size(), 500U);
+    finder.avoid(to);
+  }
+  for (const double wrong : {1e300, -2e9, std::nan("")}) {
+    const core::WorldPosition beyond{{0, 0}, {0, 0, wrong}};
+    EXPECT_EQ(finder.find({}, beyond).size(), 1U);
+    EXPECT_FALSE(finder.reaches(beyond, beyond));
+    finder.avoid(beyond);
+  }
+}
+
 TEST_F(Ways, GoAroundWaterIfSwimmingCostsMuch) {
   double swum[2] = {0, 0};
   int which = 0;
