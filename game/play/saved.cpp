@@ -7,12 +7,19 @@
 
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
+#include "game/play/land.hpp"
 
 namespace cairns {
 namespace {
 
 constexpr std::int64_t kFormat = 1;  // version of the values below
 constexpr const char* kSuffix = ".cairns";
+constexpr const char* kInvalid = "the save contains invalid numbers";
+constexpr double kFarthestM = 1e9;  // grids of the game have 32-bit indices
+constexpr const char* kTooFar =
+    "a position in the save is not finite or farther than 1e9 m from the world's origin";
+constexpr double kLongestS = 1e9;  // of a game and its fires
+constexpr std::int64_t kMaxCarried = 1'000'000;
 constexpr const char* kLast = "last.txt";  // holds the seed of the last opened save
 
 // Returns plain numbers as the bytes of one value.
@@ -34,10 +41,6 @@ static_assert(std::is_trivially_copyable_v<Place> && sizeof(Place) == 40);
 
 Place stored(const core::WorldPosition& at, double until_s = 0) {
   return {at.block.x, at.block.z, at.local.x, at.local.y, at.local.z, until_s};
-}
-
-core::WorldPosition position(const Place& place) {
-  return {{place.block_x, place.block_z}, {place.x, place.y, place.z}};
 }
 
 // Reads values by name, and keeps the first error.
@@ -71,7 +74,14 @@ class Reader {
   std::optional<core::Error> error_;
 };
 
-Progress read_progress(Reader& in) {
+Progress read_progress(Reader& in, double block_m) {
+  const auto position = [&](const Place& place) {
+    const core::WorldPosition at{{place.block_x, place.block_z}, {place.x, place.y, place.z}};
+    const glm::dvec3 way = way_m({}, at, block_m);
+    const auto is_near = [](double m) { return std::abs(m) <= kFarthestM; };  // false for NaN
+    if (!is_near(way.x) || !is_near(way.y) || !is_near(way.z)) in.refuse(kTooFar);
+    return at;
+  };
   Progress p;
   if (in.get<std::int64_t>("format") > kFormat)
     in.refuse("a newer version of the game wrote this save");
@@ -82,18 +92,23 @@ Progress read_progress(Reader& in) {
   p.yaw = in.get<double>("yaw");
   p.time_s = in.get<double>("time_s");
   p.found = std::bitset<kCairns>(static_cast<std::uint64_t>(in.get<std::int64_t>("found")));
-  p.stock.stones = static_cast<int>(in.get<std::int64_t>("stones"));
-  p.stock.wood = static_cast<int>(in.get<std::int64_t>("wood"));
+  const auto count = [&](const char* name) {
+    const auto value = in.get<std::int64_t>(name);
+    if (value < 0 || value > kMaxCarried) in.refuse(kInvalid);
+    return static_cast<int>(value);
+  };
+  p.stock.stones = count("stones");
+  p.stock.wood = count("wood");
   p.lantern = in.get<std::int64_t>("lantern") != 0;
-  for (const Place& fire : fires)
+  for (const Place& fire : fires) {
     p.fires.push_back({position(fire), fire.until_s});
+    if (!(fire.until_s >= 0 && fire.until_s < kLongestS)) in.refuse(kInvalid);
+  }
   for (const Place& mark : waymarks)
     p.waymarks.push_back(position(mark));
   for (const Seen& seen : in.list<Seen>("seen"))
     p.seen[seen.cell] = static_cast<std::uint8_t>(std::min<std::uint64_t>(seen.kind, kMapWater));
-  const bool usable = std::isfinite(p.yaw) && std::isfinite(p.time_s) && p.time_s >= 0 &&
-                      p.time_s < 1e9 && p.stock.stones >= 0 && p.stock.wood >= 0;
-  if (!usable) in.refuse("the save contains invalid numbers");
+  if (!std::isfinite(p.yaw) || !(p.time_s >= 0 && p.time_s < kLongestS)) in.refuse(kInvalid);
   return p;
 }
 
@@ -175,7 +190,7 @@ void Saved::note_changes() {
 
 core::Result<void> Saved::resume(Play& play) {
   Reader in(*save_);
-  Progress progress = read_progress(in);
+  Progress progress = read_progress(in, play.block_m());
   if (in.error()) return tl::unexpected(*in.error());
   const auto edits = save_->load_edits(play.world(), play.registry());
   if (!edits) return tl::unexpected(edits.error());

@@ -192,9 +192,27 @@ TEST_F(Saves, OnRisenGroundThePlayerStandsOnItAndTheHiddenCairnsMove) {
 }
 
 TEST_F(Saves, OfANewerFormatOrWithInvalidNumbersAreRejected) {
+  // A position in a save: a block, metres in it, and a time.
+  const auto place = [](std::int32_t block_x, double x, double until_s) {
+    const std::int32_t block[] = {block_x, 0};
+    const double numbers[] = {x, 0, 0, until_s};
+    save::Bytes bytes(sizeof(block) + sizeof(numbers));
+    std::memcpy(bytes.data(), block, sizeof(block));
+    std::memcpy(bytes.data() + sizeof(block), numbers, sizeof(numbers));
+    return bytes;
+  };
   const std::pair<const char*, save::Value> wrong[] = {
-      {"format", std::int64_t{2}}, {"time_s", -5.0},          {"stones", std::int64_t{-1}},
-      {"feet", save::Bytes(7)},    {"yaw", std::string("n")}, {"found", save::Value()}};
+      {"format", std::int64_t{2}},
+      {"time_s", -5.0},
+      {"stones", std::int64_t{-1}},
+      {"wood", std::int64_t{1} << 40},
+      {"feet", save::Bytes(7)},
+      {"feet", place(68'174'085, 0, 0)},  // 2^31 cells of paths from the origin
+      {"feet", place(0, std::nan(""), 0)},
+      {"waymarks", place(INT32_MIN, 0, 0)},
+      {"fires", place(0, 0, std::nan(""))},
+      {"yaw", std::string("n")},
+      {"found", save::Value()}};
   for (const auto& [name, value] : wrong) {
     std::filesystem::remove(file());
     {
