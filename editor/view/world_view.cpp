@@ -74,7 +74,10 @@ void WorldView::open() {
 
 void WorldView::close() {
   timer_.stop();
-  if (prepared_.valid()) prepared_.wait();  // the preparation uses the session
+  if (prepared_.valid()) {
+    *cancelled_ = true;
+    prepared_.wait();  // the preparation uses the session
+  }
   prepared_ = {};
   ground_.clear();
   has_hung_ = has_hung();
@@ -127,7 +130,8 @@ void WorldView::take_text() {
   since_prepared_ = since_text_;
   session_->set_files(handmade::files_with(session_->options().world_file, pictures_));
   using Task = std::packaged_task<core::Result<scene::PreparedWorld>()>;
-  const auto task = std::make_shared<Task>(session_->prepare_world(text_));
+  cancelled_ = std::make_shared<std::atomic<bool>>(false);
+  const auto task = std::make_shared<Task>(session_->prepare_world(text_, cancelled_));
   prepared_ = task->get_future();
   auto thread = core::start_thread([task] { (*task)(); });
   if (!thread) return (*task)();

@@ -7,6 +7,7 @@
 #include <QElapsedTimer>
 #include <QTimer>
 #include <QWindow>
+#include <atomic>
 #include <bitset>
 #include <cstdint>
 #include <functional>
@@ -147,6 +148,7 @@ class WorldView final : public QWindow {
   std::optional<Selection> selection_;
   // The world that another thread prepares; invalid: none.
   std::future<core::Result<scene::PreparedWorld>> prepared_;
+  std::shared_ptr<std::atomic<bool>> cancelled_;  // of the preparation
   QTimer timer_;
   QElapsedTimer since_tick_, since_lost_;
   QElapsedTimer since_text_;  // since the newest text; invalid: all its meshes are drawn

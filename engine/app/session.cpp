@@ -11,6 +11,7 @@
 #include "engine/app/plugin_call.hpp"
 #include "engine/app/virtual_frame.hpp"
 #include "engine/core/camera.hpp"
+#include "engine/core/cancellation.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
@@ -89,6 +90,7 @@ core::Result<std::unique_ptr<Session>> Session::create(SessionOptions options) {
 }
 
 core::Result<void> Session::open() {
+  const core::CancelScope scope(options_.stop);
   if (auto ok = render::fit_software_rendering_to_threads(); !ok) return ok;
   if (auto ok = scene::Scene::check(options_.scene); !ok) return ok;
   auto registry = make_registry(options_.plugins);
@@ -122,9 +124,12 @@ core::Result<void> Session::set_world(std::string_view text) {
   return show_world(std::move(*prepared));
 }
 
-std::function<core::Result<scene::PreparedWorld>()> Session::prepare_world(std::string text) const {
-  return [this, text = std::move(text), files = options_.files, snapshot = scene_->snapshot()] {
+std::function<core::Result<scene::PreparedWorld>()> Session::prepare_world(
+    std::string text, std::shared_ptr<const std::atomic<bool>> cancelled) const {
+  return [this, text = std::move(text), cancelled = std::move(cancelled), files = options_.files,
+          snapshot = scene_->snapshot()] {
     const core::RoundToNearest rounding;
+    const core::CancelScope scope(cancelled.get());
     return make_registry(options_.plugins).and_then([&](models::Registry registry) {
       return read_world(text, registry, files.get()).and_then([&](world::World world) {
         return scene::prepare_world(std::move(world), std::move(registry), snapshot);

@@ -5,6 +5,7 @@
 // path and measurements. Main thread only.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -119,8 +120,10 @@ class Session {
   core::Result<void> set_world(std::string_view text);
   // Replaces the world in two steps: any thread may call the returned function while the session
   // lives, which includes the plugins' register_models; then the main thread calls show_world()
-  // with its result.
-  std::function<core::Result<scene::PreparedWorld>()> prepare_world(std::string text) const;
+  // with its result. The function fails with kInterrupted soon after `cancelled` (may be null) is
+  // set.
+  std::function<core::Result<scene::PreparedWorld>()> prepare_world(
+      std::string text, std::shared_ptr<const std::atomic<bool>> cancelled = nullptr) const;
   // Sets the loader of external resources for later worlds (SessionOptions::files).
   void set_files(std::shared_ptr<const world::ResourceLoader> files) {
     options_.files = std::move(files);

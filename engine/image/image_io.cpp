@@ -6,6 +6,7 @@
 #include <new>
 #include <string>
 
+#include "engine/core/cancellation.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
@@ -57,6 +58,7 @@ core::Result<T> with_path(const std::filesystem::path& path, core::Result<T> res
 template <class Function>
 auto without_exceptions(const std::filesystem::path& path, ErrorCode code, const Function& function)
     -> decltype(function()) {
+  if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
   try {
     return function();
   } catch (const std::bad_alloc&) {

@@ -30,7 +30,10 @@ struct Desk {
     if (is_left) return;
     if (!server->attached()) {
       if (!server->accept()) return;
-      visit.begin();
+      visit.begin([server = server.get()] {
+        server->receive();
+        return server->attached();
+      });
     }
     visit.note_frame(session.scene());
     server->receive();

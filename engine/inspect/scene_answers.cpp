@@ -218,8 +218,8 @@ Json pose_json(const core::CameraPose& pose) {
 
 core::Result<core::CameraPose> pose_from(const Json& json, double block_m) {
   const auto wrong = core::invalid_argument(
-      "a pose has block [x, z], local_m [x, y, z], yaw and pitch, all "
-      "finite numbers");
+      "a pose has block [x, z] of at most 2147483647, local_m [x, y, z] of at most 1e12 m (y: 1e7 "
+      "m), yaw and pitch of at most 1e9, up or down");
   const auto numbers = [&](const char* key, std::size_t count) {
     const auto found = json.find(key);
     return found != json.end() && found->is_array() && found->size() == count &&

@@ -44,6 +44,7 @@ std::string written_world(const app::Session& session) {
 
 constexpr int kMaxMarks = 64, kMaxDepth = 4;
 constexpr std::size_t kMaxOutside = 4096;  // bytes outside strings: numbers, blanks
+constexpr std::chrono::milliseconds kLookedAfter{10};
 
 }  // namespace
 
@@ -104,7 +105,7 @@ core::Result<void> Visit::set_world(app::Session& session, const Json& request) 
   if (text == request.end() || !text->is_string())
     return invalid_argument("set_world needs \"text\", a text");
   before_change_ = world_before_ ? std::string() : world_text(session);
-  change_.start(session, text->get<std::string>());
+  change_.start(session, text->get<std::string>(), is_attached_);
   return {};
 }
 
@@ -155,7 +156,7 @@ bool Visit::end(app::Session& session) {
     if (!keep_ && paused_before_ && session.paused() == paused_set_)
       session.set_paused(*paused_before_);
     if (!keep_ && world_before_ && written_world(session) == world_set_)
-      change_.start(session, *world_before_);
+      change_.start(session, *world_before_, [] { return true; });
   }
   if (const auto done = change_.finish(session); done && !*done)
     core::log_warning(fmt::format("cannot restore the original world: {}", done->error().message));
@@ -184,19 +185,30 @@ bool is_small_json(std::string_view text) {
 }
 
 WorldChange& WorldChange::operator=(WorldChange&& other) noexcept {
-  wait();
+  cancel();
+  cancelled_ = std::move(other.cancelled_);
   prepared_ = std::move(other.prepared_);
   return *this;
 }
 
-void WorldChange::start(app::Session& session, std::string text) {
+void WorldChange::start(app::Session& session, std::string text, const IsWanted& is_wanted) {
   using Task = std::packaged_task<core::Result<scene::PreparedWorld>()>;
-  const auto task = std::make_shared<Task>(session.prepare_world(std::move(text)));
+  cancelled_ = std::make_shared<std::atomic<bool>>(false);
+  const auto task = std::make_shared<Task>(session.prepare_world(std::move(text), cancelled_));
   prepared_ = task->get_future();
   auto thread = core::start_thread([task] { (*task)(); });
   if (!thread) return (*task)();
   thread->detach();
-  if (session.scene().settings().virtual_time) wait();
+  if (!session.scene().settings().virtual_time) return;
+  while (prepared_.wait_for(kLookedAfter) != std::future_status::ready) {
+    if (session.stopped() || !is_wanted()) *cancelled_ = true;
+  }
+}
+
+void WorldChange::cancel() {
+  if (!prepared_.valid()) return;
+  *cancelled_ = true;
+  prepared_.wait();
 }
 
 bool WorldChange::is_ready() const {
@@ -212,6 +224,7 @@ std::optional<core::Result<void>> WorldChange::finish(app::Session& session) {
 }
 
 bool WorldChange::drop() {
+  if (is_under_way()) *cancelled_ = true;
   if (is_ready()) prepared_ = {};
   return !is_under_way();
 }

@@ -2,7 +2,10 @@
 // leaves. Independent of sockets. Main thread.
 #pragma once
 
+#include <atomic>
+#include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,10 +21,6 @@ namespace psygen::app {
 class Session;
 }
 
-namespace psygen::app {
-class Session;
-}
-
 namespace psygen::inspect {
 
 // Screens a request before it is parsed as JSON: other texts could take any amount of memory and
@@ -30,37 +29,46 @@ namespace psygen::inspect {
 bool is_small_json(std::string_view text);
 
 // Replaces a session's world, prepared by another thread while the session continues. On a virtual
-// clock the session waits for it, so that a flight stays reproducible.
+// clock the session waits for it, so that a flight stays reproducible. A change that nobody wants
+// any more is cancelled, which takes some milliseconds.
 class WorldChange {
  public:
+  // False if the change is not wanted any more.
+  using IsWanted = std::function<bool()>;
+
   WorldChange() = default;
-  // Waits for the thread, which uses the session.
-  ~WorldChange() { wait(); }
+  // Cancels the change and waits for its thread, which uses the session.
+  ~WorldChange() { cancel(); }
   WorldChange(WorldChange&&) = default;
   WorldChange& operator=(WorldChange&& other) noexcept;
 
-  // Starts to prepare the world of a text. Requires that no change is under way.
-  void start(app::Session& session, std::string text);
+  // Starts to prepare the world of a text. Requires that no change is under way. While the session
+  // waits for it, calls `is_wanted` every 10 ms.
+  void start(app::Session& session, std::string text, const IsWanted& is_wanted);
   bool is_under_way() const { return prepared_.valid(); }
   // Shows the world once it is prepared and returns the result of Session::set_world(). Returns
   // nullopt before that, and without a change.
   std::optional<core::Result<void>> finish(app::Session& session);
-  // Discards the world once it is prepared, without showing it. Returns true if no change is left.
+  // Cancels the change, and discards the world once its thread has ended. Returns true if no change
+  // is left.
   bool drop();
 
  private:
   bool is_ready() const;
-  void wait() const {
-    if (prepared_.valid()) prepared_.wait();
-  }
+  void cancel();
 
+  std::shared_ptr<std::atomic<bool>> cancelled_;  // of the change under way
   std::future<core::Result<scene::PreparedWorld>> prepared_;
 };
 
 class Visit {
  public:
   // Begins a new connection without changes. Requires that the previous one has ended.
-  void begin() { *this = Visit(); }
+  // `is_attached` tells whether its client is still there.
+  void begin(std::function<bool()> is_attached) {
+    *this = Visit();
+    is_attached_ = std::move(is_attached);
+  }
   // The client is gone: restores the world, the pause and the camera, unless the client asked to
   // keep its changes or the game has changed them since. Another thread prepares the world, so call
   // this once a frame until it returns true.
@@ -90,6 +98,7 @@ class Visit {
   Reply detach(const Json& request);
 
   bool greeted_ = false, over_ = false, keep_ = false;
+  std::function<bool()> is_attached_ = [] { return true; };
   FrameNotes frames_;
   WorldChange change_;
   Json change_id_;                           // id of its request

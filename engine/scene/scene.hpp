@@ -64,8 +64,7 @@ struct Systems;
 struct WorldFacts;
 
 // Reports the progress of long work: a label and a fraction in [0, 1], often enough for a window to
-// stay responsive. Return false to stop filling the cache early; creating a scene cannot be
-// stopped.
+// stay responsive. Return false to stop filling the cache early.
 using Progress = std::function<bool(std::string_view, double)>;
 
 // Does the slow part of Scene::set_world() (facts/world_facts.hpp). Any thread. Fails as

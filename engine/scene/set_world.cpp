@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "engine/core/cancellation.hpp"
 #include "engine/scene/facts/derive.hpp"
 #include "engine/scene/facts/lighting.hpp"
 #include "engine/scene/facts/world_facts.hpp"
@@ -199,12 +200,15 @@ core::Result<PreparedWorld> prepare_world(world::World world, models::Registry r
   prepared.before = snapshot.derived;
   if (auto ok = derive(snapshot.settings, true, facts, prepared.before.get()); !ok)
     return tl::unexpected(ok.error());
+  if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
   facts.typical_bounds = typical_bounds(facts.registry, models_on(facts, {}));
   const std::vector<bool> wanted =
       prepared.before ? KeptModels{stays_of(*prepared.before, facts), {}, {}}.wanted()
                       : std::vector<bool>(facts.world.scatter.size(), true);
-  for (const core::BlockCoord block : snapshot.blocks)
+  for (const core::BlockCoord block : snapshot.blocks) {
+    if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
     world::place_models(facts.world, facts.registry, block, wanted, prepared.models[block]);
+  }
   return prepared;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/cancellation.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/kit/exact_math.hpp"
 #include "engine/models/terrain/ground.hpp"
@@ -141,6 +142,7 @@ class Shaper {
   }
 
   Shaped add(GroundEdit edit, std::string_view key) {
+    if (auto ok = core::check_cancelled(); !ok) return refused(key, ok.error());
     edit.id = layer_.next_id++;
     seal(edit);
     if (layer_.ground.add(std::make_shared<const GroundEdit>(std::move(edit)), block_m_)) return {};

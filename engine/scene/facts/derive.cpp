@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "engine/core/cancellation.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/scene/facts/levels.hpp"
@@ -206,6 +207,7 @@ core::Result<void> derive(const SceneSettings& settings, bool pictures, WorldFac
     const world::ImpostorSet* known = before != nullptr ? before->pictures.get() : nullptr;
     if (auto ok = find_pictures(settings, facts, known); !ok) return ok;
   }
+  if (auto ok = core::check_cancelled(); !ok) return ok;
   if (auto ok = find_levels(settings, facts, before); !ok) return ok;
   return check_size(world, facts.levels, settings);
 }

@@ -13,6 +13,7 @@
 
 #include "engine/app/session.hpp"
 #include "engine/core/camera.hpp"
+#include "engine/core/cancellation.hpp"
 #include "engine/inspect/client.hpp"
 #include "engine/query/world.hpp"
 #include "engine/render/renderer.hpp"
@@ -252,6 +253,62 @@ TEST_F(InspectTest, FramesContinueWhileAnotherThreadPreparesAWorld) {
     tick();
   closed.unlock();
   session_.reset();
+}
+
+// Model types whose preparation for a second world lasts until it is cancelled.
+struct EndlessTypes {
+  std::atomic<int> calls{0}, cancelled{0};
+  std::function<void()> meanwhile = [] {};
+  app::Plugin plugin() {
+    app::Plugin plugin;
+    plugin.name = "endless";
+    plugin.register_models = [this](models::Registry&) -> core::Result<void> {
+      if (calls++ == 0) return {};
+      meanwhile();
+      while (!core::is_cancelled())
+        std::this_thread::yield();
+      ++cancelled;
+      return core::check_cancelled();
+    };
+    return plugin;
+  }
+};
+
+TEST_F(InspectTest, AChangeEndsWithItsClientAndWithTheSession) {
+  EndlessTypes endless;
+  virtual_time_ = false;
+  plugins_.push_back(endless.plugin());
+  open();
+  greet();
+  const std::string before = written();
+  const json change = {{"do", "set_world"}, {"text", changed_text()}};
+  client_->ask(change.dump());
+  while (endless.calls < 2)
+    tick();
+  client_.reset();
+  while (endless.cancelled == 0)
+    tick();
+  greet();
+  EXPECT_EQ(written(), before);
+  client_->ask(change.dump());
+  while (endless.calls < 3)
+    tick();
+  session_.reset();
+  EXPECT_EQ(endless.cancelled, 2);
+}
+
+TEST_F(InspectTest, AChangeEndsWithItsClientOnAVirtualClockToo) {
+  EndlessTypes endless;
+  endless.meanwhile = [&] { client_.reset(); };
+  plugins_.push_back(endless.plugin());
+  open();
+  greet();
+  const std::string before = written();
+  client_->ask(json({{"do", "set_world"}, {"text", changed_text()}}).dump());
+  while (endless.cancelled == 0)
+    tick();
+  EXPECT_EQ(written(), before);
+  greet();
 }
 
 TEST_F(InspectTest, DoesNotUndoLaterChangesOfTheGame) {

@@ -1,0 +1,41 @@
+// Cancellation of a thread's work.
+#include "engine/core/cancellation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace psygen::core {
+namespace {
+
+TEST(Cancellation, EndsTheWorkOfTheThreadThatBoundTheFlag) {
+  std::atomic<bool> flag{false};
+  EXPECT_EQ(cancel_flag(), nullptr);
+  {
+    const CancelScope scope(&flag);
+    EXPECT_EQ(cancel_flag(), &flag);
+    EXPECT_TRUE(check_cancelled());
+    flag = true;
+    EXPECT_TRUE(is_cancelled());
+    EXPECT_EQ(check_cancelled().error().code, ErrorCode::kInterrupted);
+    bool elsewhere = true;
+    std::thread([&] { elsewhere = is_cancelled(); }).join();
+    EXPECT_FALSE(elsewhere);
+  }
+  EXPECT_FALSE(is_cancelled());
+}
+
+TEST(Cancellation, KeepsTheOuterFlagInScopesWithoutOne) {
+  std::atomic<bool> outer{true}, inner{false};
+  const CancelScope scope(&outer);
+  {
+    const CancelScope none(nullptr);
+    EXPECT_TRUE(is_cancelled());
+    const CancelScope other(&inner);
+    EXPECT_FALSE(is_cancelled());
+  }
+  EXPECT_TRUE(is_cancelled());
+}
+
+}  // namespace
+}  // namespace psygen::core
