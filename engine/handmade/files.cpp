@@ -31,6 +31,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uint32_t kMaxGreySide = 4096;                      // pixels
+constexpr std::uint64_t kMaxGreyBytes = std::uint64_t{64} << 20;  // of a file, and decoded
 constexpr std::uint64_t kMaxHashedBytes = std::uint64_t{1} << 30;
 
 using ShapePtr = std::shared_ptr<const Shape>;
@@ -63,7 +65,7 @@ core::Result<Read<Shape>> read_shape(const world::ModelFile& wanted, image::Imag
 using PicturePtr = std::shared_ptr<const world::GreyPicture>;
 
 core::Result<Read<world::GreyPicture>> read_picture(const fs::path& file) {
-  const image::ImageLimits most{4096, 4096, std::uint64_t{64} << 20, std::uint64_t{64} << 20};
+  const image::ImageLimits most{kMaxGreySide, kMaxGreySide, kMaxGreyBytes, kMaxGreyBytes};
   auto image = image::read_grey(file, most);
   if (!image) return tl::unexpected(image.error());
   auto picture = std::make_shared<world::GreyPicture>();

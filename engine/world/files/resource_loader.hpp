@@ -2,6 +2,7 @@
 // engine/handmade implements it; callers of parse_world() pass it. One virtual seam; any thread.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -35,15 +36,28 @@ class ResourceLoader {
       const std::filesystem::path& file) const = 0;
 };
 
+// The most memory of all masks and stamps of one world file together, in bytes: 2 for each pixel of
+// each picture, and 4 more for each pixel of each stamp, which keeps heights.
+inline constexpr std::uint64_t kMaxPictureBytes = std::uint64_t{512} << 20;
+
+// The pictures of one world file so far.
+struct PictureSum {
+  std::uint64_t bytes = 0;
+  std::vector<std::shared_ptr<const GreyPicture>> pictures;  // each once
+};
+
 // The files that one world file names.
 struct Beside {
   std::string_view world_file;  // names are relative to its folder
   const ResourceLoader* files;  // null: this program cannot read any
+  PictureSum* sum = nullptr;    // null: pictures have no limit together
 
   // The path of a name. Fails with kInvalidArgument if links lead out of the folder.
   core::Result<std::filesystem::path> path_of(std::string_view name) const;
-  // The image with this name. Also fails with kInvalidArgument if `files` is null.
-  core::Result<std::shared_ptr<const GreyPicture>> read_grey(std::string_view name) const;
+  // The image with this name, of which the caller keeps `kept_bytes` more for each pixel. Also
+  // fails with kInvalidArgument if `files` is null, and with kOverBudget above kMaxPictureBytes.
+  core::Result<std::shared_ptr<const GreyPicture>> read_grey(std::string_view name,
+                                                             std::uint64_t kept_bytes) const;
 };
 
 // True if a file, after following all links, is in the folder or below. Also true for files that do

@@ -27,7 +27,8 @@ Stamp read_stamp(TableReader& reader, const Beside& beside) {
     reader.problem("border_m",
                    fmt::format("{:g} is not allowed: it must be at most half of size_m, {:g}",
                                stamp.border_m, stamp.size_m / 2));
-  auto picture = read_picture(reader, "image", beside, stamp.image, Presence::kRequired);
+  auto picture = read_picture(reader, "image", beside, stamp.image, Presence::kRequired,
+                              sizeof(models::Heightmap::heights_m[0]));
   if (picture && (picture->width < 2 || picture->height < 2))
     reader.problem("image",
                    fmt::format("the image has {} x {} pixels; a stamp needs at least 2 x 2",

@@ -25,6 +25,13 @@ core::Result<std::string> read_text_file(const std::filesystem::path& file,
   if (status.type() == std::filesystem::file_type::not_found) return fail("there is no such file");
   if (error) return fail(fmt::format("cannot be read ({})", error.message()));
   if (status.type() != std::filesystem::file_type::regular) return fail("this is not a file");
+  const auto too_large = [&] {
+    return core::fail(
+        core::ErrorCode::kOverBudget,
+        fmt::format("{}: the file is too large (allowed: {} bytes)", file.string(), limit_bytes));
+  };
+  if (const auto bytes = std::filesystem::file_size(file, error); !error && bytes > limit_bytes)
+    return too_large();
   const auto close = [](std::FILE* f) { std::fclose(f); };
   const std::unique_ptr<std::FILE, decltype(close)> stream(std::fopen(file.c_str(), "rb"), close);
   if (!stream) return fail(fmt::format("cannot be opened ({})", std::strerror(errno)));
@@ -38,10 +45,7 @@ core::Result<std::string> read_text_file(const std::filesystem::path& file,
   text.resize(read);
   if (std::ferror(stream.get()) != 0)
     return fail(fmt::format("cannot be read ({})", std::strerror(errno)));
-  if (text.size() > limit_bytes)
-    return core::fail(
-        core::ErrorCode::kOverBudget,
-        fmt::format("{}: the file is too large (allowed: {} bytes)", file.string(), limit_bytes));
+  if (text.size() > limit_bytes) return too_large();
   return text;
 }
 

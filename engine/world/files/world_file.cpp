@@ -153,13 +153,15 @@ core::Result<World> read_world(std::string_view text, std::string_view file_name
   if (of_types.any()) return tl::unexpected(problems.any() ? problems.first() : of_types.first());
   for (const char* key : {"species", "model"})
     (void)root.find(key);  // finish() must know them
-  read_scatters(root, registry, {file_name, beside}, world);
+  PictureSum pictures;
+  const Beside files{file_name, beside, &pictures};
+  read_scatters(root, registry, files, world);
   world.sky = usual_sky(*document);
   read_fields(root, "sky", world.sky, visit_sky);
   read_fields(root, "water", world.water, visit_water);
   read_palette(root, world.palette);
   world.places.all = read_places(root, registry, world);
-  world.shaped = read_shaped(root, {file_name, beside});
+  world.shaped = read_shaped(root, files);
   root.finish();
   if (problems.any()) return tl::unexpected(problems.first());
   world.terrain = terrain_parameters(world, {0, 0});
