@@ -72,14 +72,15 @@ void check_order(const PathPoint& before, const PathPoint& point, TableReader& r
                                way_m, dt, kMaxSpeed_m_s));
 }
 
+// After a problem, others that it causes would hide it.
 std::vector<PathPoint> read_points(TableReader& root) {
   std::vector<PathPoint> points;
   for (TableReader& reader : root.tables("point", kMaxPoints)) {
     const PathPoint point = read_point(reader, points.empty());
-    if (!points.empty()) check_order(points.back(), point, reader);
+    if (!points.empty() && !reader.problems().any()) check_order(points.back(), point, reader);
     points.push_back(point);
   }
-  if (points.empty())
+  if (points.empty() && !root.problems().any())
     root.problem(root.line(), "point", "a path needs at least one point, [[point]]");
   return points;
 }
