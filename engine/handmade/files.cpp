@@ -9,12 +9,14 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <set>
 #include <span>
 #include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "engine/core/cancellation.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
@@ -31,8 +33,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint32_t kMaxGreySide = 4096;                      // pixels
-constexpr std::uint64_t kMaxGreyBytes = std::uint64_t{64} << 20;  // of a file, and decoded
+constexpr std::uint32_t kMaxGreySide = 4096;                        // pixels
+constexpr std::uint64_t kMaxGreyBytes = std::uint64_t{64} << 20;    // of a file, and decoded
+constexpr std::uint64_t kMaxShapeBytes = std::uint64_t{512} << 20;  // of all models of a world
+constexpr unsigned kMaxReaders = 4;  // threads; each may need some hundred megabytes
 constexpr std::uint64_t kMaxHashedBytes = std::uint64_t{1} << 30;
 
 using ShapePtr = std::shared_ptr<const Shape>;
@@ -47,6 +51,7 @@ struct Read {
 // Appends what the file has and the engine does not support to `notes`.
 core::Result<Read<Shape>> read_shape(const world::ModelFile& wanted, image::ImageCache& shared,
                                      std::vector<std::string>& notes) {
+  if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
   try {
     auto model = gltf::read_file(wanted.path, gltf_limits(), &shared);
     if (!model) return tl::unexpected(model.error());
@@ -129,13 +134,35 @@ class InUse {
   std::map<Key, Entry> made_;
 };
 
+// The memory of the shapes of one world, each counted once.
+class ShapeSum {
+ public:
+  // Counts a shape. Returns true while the sum is allowed.
+  bool add(const ShapePtr& shape) {
+    const std::lock_guard lock(mutex_);
+    if (counted_.insert(shape).second) {
+      for (const Level& level : shape->levels)
+        bytes_ += level.vertices.size() * sizeof(Vertex) +
+                  level.indices.size() * sizeof(level.indices[0]);
+    }
+    return bytes_ <= kMaxShapeBytes;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<ShapePtr> counted_;
+  std::uint64_t bytes_ = 0;
+};
+
 class Files final : public world::ResourceLoader {
  public:
   world::ModelTypes read_models(std::span<const world::ModelFile> wanted) const override {
     world::ModelTypes types;
-    const std::vector<Loaded> loaded = load(wanted);
+    std::vector<Loaded> loaded = load(wanted);
+    ShapeSum sum;
     for (std::size_t i = 0; i < loaded.size(); ++i) {
-      const auto& [shape, notes] = loaded[i];
+      auto& [shape, notes] = loaded[i];
+      if (shape && !sum.add(*shape)) shape = too_large(wanted[i].path);
       for (const std::string& note : notes)
         core::log_warning(note);
       types.push_back(shape.map([&](const ShapePtr& made) {
@@ -163,22 +190,32 @@ class Files final : public world::ResourceLoader {
     std::vector<std::string> notes;
   };
 
-  // The shapes of all files, or of all up to the first that fails; the rest is null. Several
-  // threads; the result does not depend on their number.
+  static core::Result<ShapePtr> too_large(const fs::path& file) {
+    return core::fail(
+        core::ErrorCode::kOverBudget,
+        fmt::format("{}: the models up to this one together need more than the allowed {} MiB",
+                    file.string(), kMaxShapeBytes >> 20));
+  }
+
+  // The shapes of all files, or of all up to the first that fails or exceeds kMaxShapeBytes; the
+  // rest is null. Several threads; the result does not depend on their number.
   std::vector<Loaded> load(std::span<const world::ModelFile> wanted) const {
     std::vector<Loaded> loaded(wanted.size());
     image::ImageCache shared;
     std::atomic<std::size_t> next = 0, failed = wanted.size();
+    ShapeSum sum;
+    const std::atomic<bool>* const cancelled = core::cancel_flag();
     const auto work = [&] {
+      const core::CancelScope scope(cancelled);
       for (std::size_t i = next++; i < failed; i = next++) {
         loaded[i].shape = shape_from(wanted[i], shared, loaded[i].notes);
-        if (loaded[i].shape) continue;
+        if (loaded[i].shape && sum.add(*loaded[i].shape)) continue;
         std::size_t before = failed;
         while (i < before && !failed.compare_exchange_weak(before, i)) {
         }
       }
     };
-    const std::size_t most = std::max(std::thread::hardware_concurrency(), 1U);
+    const std::size_t most = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxReaders);
     core::run_in_threads(std::min(most, wanted.size()), work);
     return loaded;
   }

@@ -14,6 +14,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/core/cancellation.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/handmade/appearance.hpp"
 #include "engine/handmade/simplifier.hpp"
@@ -384,11 +385,12 @@ std::vector<Level> levels_of(const Triangles& triangles, int most) {
     wanted = std::min(wanted * 19 / 20, wanted * kMaxLevelVertices / finest.vertices.size());
     const Mesh fewer = parts.coarse(wanted).mesh;
     finest = cleaned(fewer.vertices, fewer.indices);
-    if (finest.indices.empty()) return {};
+    if (finest.indices.empty() || core::is_cancelled()) return {};
   }
   wanted = finest.indices.size() / 3;
   std::vector<Level> levels{packed(finest, 0)};
-  while (static_cast<int>(levels.size()) < most && wanted > kMinTriangles) {
+  while (static_cast<int>(levels.size()) < most && wanted > kMinTriangles &&
+         !core::is_cancelled()) {
     wanted = std::max(wanted / kStep, kMinTriangles);
     const auto [mesh, error_m] = parts.coarse(wanted);
     const float before = static_cast<float>(levels.back().indices.size());

@@ -10,6 +10,7 @@
 #include <span>
 #include <string_view>
 
+#include "engine/core/cancellation.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/handmade/triangles.hpp"
 
@@ -118,6 +119,7 @@ core::Result<std::shared_ptr<const Shape>> shape_of(const gltf::Model& model,
   if (!triangles) return tl::unexpected(triangles.error());
   auto shape = std::make_shared<Shape>();
   shape->levels = levels_of(*triangles, static_cast<int>(how.levels));
+  if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
   if (shape->levels.empty())
     return core::fail(core::ErrorCode::kParse, "all of its triangles have no area");
   shape->solid = solid_points(*triangles, how.collider);

@@ -83,7 +83,8 @@ constexpr const char* kHead =
 constexpr const char* kGrass = "[[scatter]]\nmodel = \"grass\"\ncount = 1\n";
 constexpr const char* kSpecies =
     "[[species]]\nname = \"s#\"\naxiom = \"T\"\niterations = 1\n"
-    "[[species.kind]]\nsymbol = \"T\"\n[[species.rule]]\nfrom = \"T\"\nto = \"T\"\n";
+    "[[species.kind]]\nsymbol = \"T\"\n";
+constexpr const char* kRule = "[[species.rule]]\nfrom = \"T\"\nto = \"T\"\n";
 
 Outcome load_world(const fs::path& folder, const std::string& text) {
   write(folder / "w.toml", text);
@@ -159,7 +160,32 @@ gltf::Sample soup(Count vertices, Count indices) {
   for (Count i = 0; i < indices; ++i)
     corners[i] = static_cast<std::uint32_t>(i % 3);
   nlohmann::json primitive = {{"indices", s.accessor(corners, "SCALAR", gltf::kInts)}};
-  primitive["attributes"] = {{"POSITION", s.accessor(positions, "VEC3", gltf::kFloats)}};
+  const std::vector<glm::vec3> normals(vertices, glm::vec3(0, 1, 0));
+  primitive["attributes"] = {{"POSITION", s.accessor(positions, "VEC3", gltf::kFloats)},
+                             {"NORMAL", s.accessor(normals, "VEC3", gltf::kFloats)}};
+  s.add("meshes", {{"primitives", gltf::list(primitive)}});
+  s.add("nodes", gltf::parsed(R"({"mesh": 0})"));
+  s.add("scenes", gltf::parsed(R"({"nodes": [0]})"));
+  return s;
+}
+
+constexpr Count kGridSide = 256;
+// A surface of kGridSide² vertices.
+gltf::Sample surface() {
+  gltf::Sample s;
+  std::vector<glm::vec3> positions;
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t i = 0; i < kGridSide * kGridSide; ++i) {
+    const std::uint32_t x = i % kGridSide, z = i / kGridSide;
+    positions.emplace_back(x, (x * z) % 7, z);
+    if (x + 1 == kGridSide || z + 1 == kGridSide) continue;
+    const std::uint32_t side = kGridSide;
+    corners.insert(corners.end(), {i, i + side, i + 1, i + 1, i + side, i + side + 1});
+  }
+  const std::vector<glm::vec3> normals(positions.size(), glm::vec3(0, 1, 0));
+  nlohmann::json primitive = {{"indices", s.accessor(corners, "SCALAR", gltf::kInts)}};
+  primitive["attributes"] = {{"POSITION", s.accessor(positions, "VEC3", gltf::kFloats)},
+                             {"NORMAL", s.accessor(normals, "VEC3", gltf::kFloats)}};
   s.add("meshes", {{"primitives", gltf::list(primitive)}});
   s.add("nodes", gltf::parsed(R"({"mesh": 0})"));
   s.add("scenes", gltf::parsed(R"({"nodes": [0]})"));
@@ -271,7 +297,8 @@ Outcome add_edits(Count count) {
 }
 
 std::string frame_test(const std::string& name) {
-  return "format = 1\nname = \"" + name + "\"\n[flight]\nseconds = 1\n[most]\nframe_ms.p99 = 5\n";
+  return "format = 1\nname = \"" + name +
+         "\"\n[flight]\nseconds = 1\n[at_most]\nframe_ms.p99 = 5\n";
 }
 
 #if defined(PSYGEN_LIMITS_OF_SOUNDS)
@@ -322,7 +349,7 @@ const std::vector<Case>& cases() {
          }},
         {"`[[species]]` of a world",
          [](const fs::path& folder, double n) {
-           return load_tables(folder, numbered(whole(n), kSpecies));
+           return load_tables(folder, numbered(whole(n), std::string(kSpecies) + kRule));
          }},
         {"`[[species.kind]]` of a species",
          [](const fs::path& folder, double n) {
@@ -330,16 +357,12 @@ const std::vector<Case>& cases() {
            for (Count i = 1; i < whole(n); ++i)
              kinds +=
                  std::string("[[species.kind]]\nsymbol = \"") + static_cast<char>('A' + i) + "\"\n";
-           return load_tables(folder, numbered(1, kSpecies) +
-                                          std::regex_replace(kinds, std::regex("\"T\""), "\"Z\""));
+           return load_tables(folder, numbered(1, kSpecies) + kinds + kRule);
          }},
         {"`[[species.rule]]` of a species",
          [](const fs::path& folder, double n) {
-           return load_tables(
-               folder,
-               numbered(1, kSpecies) +
-                   repeated(whole(n) - 1,
-                            "[[species.rule]]\nfrom = \"T\"\nto = \"T\"\nprobability = 0.01\n"));
+           const std::string rule = std::string(kRule) + "probability = 0.0625\n";
+           return load_tables(folder, numbered(1, kSpecies) + repeated(whole(n), rule));
          }},
         {"`[[model]]` of a world",
          [](const fs::path& folder, double n) {
@@ -458,6 +481,17 @@ const std::vector<Case>& cases() {
                                 return handmade::triangles_of(model, world::HandmadeModel{});
                               }));
          }},
+        {"memory of all models of a world",
+         [](const fs::path& folder, double n) {
+           write(folder / "m.glb", surface().glb());
+           const Count each = kGridSide * kGridSide * sizeof(handmade::Vertex) +
+                              6 * (kGridSide - 1) * (kGridSide - 1) * sizeof(std::uint16_t);
+           return load_tables(folder,
+                              numbered(whole(n) / each + 1,
+                                       "[[model]]\nname = \"m#\"\nfile = \"m.glb\"\nsize_m = 1.#5\n"
+                                       "levels = 1\ncollider = \"none\"\n"));
+         },
+         1, true},
         // Camera paths
         {"points of a camera path",
          [](const fs::path&, double n) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <span>
 
+#include "engine/core/cancellation.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/world/far/tree_impostors.hpp"
@@ -98,6 +99,20 @@ TEST(HandmadeFiles, ReadBackEqual) {
   ASSERT_TRUE(again.has_value()) << again.error().message;
   EXPECT_EQ(*again, *world);
   EXPECT_EQ(other[4].identity(), w.registry[4].identity());
+}
+
+TEST(HandmadeFiles, StopBetweenFilesAndLevelsOnceNobodyWantsThem) {
+  World w;
+  const std::string text = std::string(kHead) + kBall + kScatter;
+  std::atomic<bool> cancelled{true};
+  {
+    const core::CancelScope scope(&cancelled);
+    const auto world = w.read(text);
+    ASSERT_FALSE(world);
+    EXPECT_EQ(world.error().code, core::ErrorCode::kInterrupted);
+    EXPECT_TRUE(levels_of(sphere(20, 20), 5).size() <= 1);
+  }
+  EXPECT_TRUE(w.read(text));
 }
 
 // The models of a pack, each with an image in a copy of its own.
