@@ -28,8 +28,9 @@ inline std::string read(const std::filesystem::path& file) {
 }
 
 // `environment` precedes the command; `folder` is its working directory; `redirection` follows it.
-// Leak detection is off here: the tests of the libraries check for leaks and keep drivers loaded,
-// so that reports have symbol names.
+// Leak detection is off here. psygen unloads the Vulkan drivers before the leak checker looks, so
+// that tools/lsan.supp cannot tell their leaks from psygen's. The tests of the libraries check for
+// leaks, and keep the drivers loaded.
 inline Outcome run_psygen(const std::string& arguments, const std::string& environment = "",
                           const std::filesystem::path& folder = source_file(""),
                           const std::string& redirection = "") {
