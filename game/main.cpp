@@ -15,6 +15,7 @@
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/synthesis/cost_model.hpp"
 #include "game/game.hpp"
 
 namespace cairns {
@@ -72,12 +73,8 @@ std::optional<int> read(int argc, char** argv, Arguments& a) {
 // The median and the 99th percentile of frame times in milliseconds.
 std::string frame_times(std::vector<double> frame_ms) {
   if (frame_ms.empty()) return {};
-  std::ranges::sort(frame_ms);
-  const auto at = [&](double share) {
-    return frame_ms[static_cast<std::size_t>(share * static_cast<double>(frame_ms.size() - 1))];
-  };
   return fmt::format("{} frames: median {:.1f} ms, 99th percentile {:.1f} ms\n", frame_ms.size(),
-                     at(0.5), at(0.99));
+                     synthesis::quantile(frame_ms, 0.5), synthesis::quantile(frame_ms, 0.99));
 }
 
 std::string progress_of(const Play* play) {

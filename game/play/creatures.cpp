@@ -16,11 +16,6 @@ constexpr double kDeerWalk = 0.7, kDeerRun = 9, kBirdPace = 8, kFishPace = 0.5, 
 constexpr double kCalmS = 6;  // seconds until fear has faded
 constexpr core::Purpose kHabitat = core::Purpose::kPosition;
 
-// Returns the smallest rotation from one yaw to another, in radians.
-double turn_to(double from, double to) {
-  return std::remainder(to - from, 2 * std::numbers::pi);
-}
-
 double yaw_of(const glm::dvec3& way) {
   return std::atan2(way.x, -way.z);
 }
@@ -31,8 +26,9 @@ double whim(const Creature& c, double time_s, double period_s) {
   return static_cast<double>(core::combine(c.seed, turn) >> 11) * 0x1.0p-53;
 }
 
+// Turns a creature the shorter way towards a yaw, by at most `most` radians.
 void turn_by(Creature& c, double wanted, double most) {
-  c.yaw += std::clamp(turn_to(c.yaw, wanted), -most, most);
+  c.yaw += std::clamp(std::remainder(wanted - c.yaw, 2 * std::numbers::pi), -most, most);
 }
 
 }  // namespace

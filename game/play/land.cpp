@@ -43,9 +43,7 @@ std::uint64_t seed_of(std::string_view typed) {
 }
 
 core::Result<std::string> land_file() {
-  const auto file = core::data_file(kFile);
-  if (!file) return tl::unexpected(file.error());
-  return file->string();
+  return core::data_file(kFile).map([](const auto& file) { return file.string(); });
 }
 
 core::Result<std::string> land_text(std::uint64_t seed) {
@@ -65,9 +63,7 @@ core::Result<std::string> land_text(std::uint64_t seed) {
 }
 
 core::Result<void> add_types(models::Registry& registry) {
-  const auto added = registry.add(make_cairn_type());
-  if (!added) return tl::unexpected(added.error());
-  return {};
+  return registry.add(make_cairn_type()).map([](models::ModelIndex) {});
 }
 
 core::Result<std::unique_ptr<Land>> Land::load(std::uint64_t seed) {

@@ -129,18 +129,14 @@ void Play::step(const Intent& intent, double dt) {
   progress_.yaw = walker_->yaw();
   const glm::dvec3& v = walker_->velocity();
   creatures_.step(progress_.feet, std::hypot(v.x, v.z), hour(), dt);
-  tell_of_walker();
+  if (walker_->stepped()) happen(Happening::Kind::kStepped, progress_.feet);
+  if (walker_->landed()) happen(Happening::Kind::kLanded, progress_.feet);
+  if (walker_->splashed()) happen(Happening::Kind::kSplashed, progress_.feet);
   if (steps_ % kTargetSteps == 0) look_for_target();
   if (steps_ % kSeenSteps == 0) see_around();
   ++steps_;
   act(intent, dt);
   find_cairns();
-}
-
-void Play::tell_of_walker() {
-  if (walker_->stepped()) happen(Happening::Kind::kStepped, progress_.feet);
-  if (walker_->landed()) happen(Happening::Kind::kLanded, progress_.feet);
-  if (walker_->splashed()) happen(Happening::Kind::kSplashed, progress_.feet);
 }
 
 double Play::hour() const {

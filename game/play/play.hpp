@@ -133,7 +133,6 @@ class Play {
   void find_cairns();
   void see_around();
   void see(std::int32_t x, std::int32_t z);
-  void tell_of_walker();
   void refuse(const char* why);
   void happen(Happening::Kind kind, const core::WorldPosition& at) {
     happenings_.push_back({.kind = kind, .at = at});

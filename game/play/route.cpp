@@ -80,15 +80,6 @@ std::vector<Candidate> candidates(query::World& query, const core::WorldPosition
   return found;
 }
 
-// Returns the first site that the player can walk or swim to, or null.
-const Candidate* first_reached(query::PathFinder& finder, const core::WorldPosition& from,
-                               const std::vector<Candidate>& found) {
-  for (const Candidate& candidate : found) {
-    if (finder.reaches(from, candidate.at)) return &candidate;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 core::Result<Route> find_route(query::World& query) {
@@ -111,7 +102,9 @@ core::Result<Route> find_route(query::World& query) {
     for (int turn = 0; turn < kTurns && !next; ++turn) {
       const double ahead = heading + turn * 2 * std::numbers::pi / kTurns;
       const auto found = candidates(query, from, ahead, random);
-      if (const Candidate* best = first_reached(finder, from, found)) next = *best;
+      const auto best = std::ranges::find_if(
+          found, [&](const Candidate& site) { return finder.reaches(from, site.at); });
+      if (best != found.end()) next = *best;
     }
     if (!next) return fail();
     route.cairns[i] = from = next->at;

@@ -1,6 +1,7 @@
 #include "game/show/controls.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace cairns {
 namespace {

@@ -1,7 +1,6 @@
 // The actions of the game, their default keys, and their effect on a step.
 #pragma once
 
-#include <array>
 #include <string>
 
 #include "engine/input/actions.hpp"

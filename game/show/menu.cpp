@@ -190,17 +190,18 @@ void Menu::draw_map(const Play& play, const app::Session& session) {
                          kMapColours[seen->second]);
     }
   }
-  const auto mark = [&](const core::WorldPosition& there, ImU32 colour) {
-    const glm::vec2 p = place(there);
-    if (std::abs(p.x - middle.x) > half || std::abs(p.y - middle.y) > half) return;
-    list.AddTriangleFilled({p.x, p.y - 8}, {p.x - 6, p.y + 5}, {p.x + 6, p.y + 5}, colour);
+  const auto is_on_map = [&](glm::vec2 p) {
+    return std::abs(p.x - middle.x) <= half && std::abs(p.y - middle.y) <= half;
   };
   for (std::size_t i = 0; i < kCairns; ++i) {
-    if (play.progress().found[i]) mark(play.route().cairns[i], IM_COL32(255, 196, 92, 255));
+    const glm::vec2 p = place(play.route().cairns[i]);
+    if (play.progress().found[i] && is_on_map(p))
+      list.AddTriangleFilled({p.x, p.y - 8}, {p.x - 6, p.y + 5}, {p.x + 6, p.y + 5},
+                             IM_COL32(255, 196, 92, 255));
   }
   for (const core::WorldPosition& waymark : play.progress().waymarks) {
     const glm::vec2 p = place(waymark);
-    if (std::abs(p.x - middle.x) <= half && std::abs(p.y - middle.y) <= half)
+    if (is_on_map(p))
       list.AddRectFilled({p.x - 4, p.y - 4}, {p.x + 4, p.y + 4}, IM_COL32(240, 240, 240, 255));
   }
   const double yaw = play.walker().yaw();

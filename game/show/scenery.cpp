@@ -164,7 +164,7 @@ void Scenery::update_creatures(scene::Scene& scene, const Play& play, double sha
   ecs::World& world = scene.entities();
   for (const Creature& c : play.creatures().all()) {
     const auto kind = static_cast<std::size_t>(c.kind);
-    Shown& shown = shown_[c.seed];
+    Shown& shown = creatures_[c.seed];
     const bool is_new = std::exchange(shown.frame, frame_) == 0;
     const core::WorldPosition at =
         position_at_offset(c.before, way_m(c.before, c.at, play.block_m()) * share, play.block_m());
@@ -185,7 +185,12 @@ void Scenery::update_creatures(scene::Scene& scene, const Play& play, double sha
       }
     }
   }
-  std::erase_if(shown_, [&](const auto& entry) {
+  remove_gone(creatures_, world);
+}
+
+// Removes those that are not in this frame.
+void Scenery::remove_gone(ShownByKey& shown, ecs::World& world) const {
+  std::erase_if(shown, [&](const auto& entry) {
     const bool gone = entry.second.frame != frame_;
     if (gone) world.destroy(entry.second.parts);
     return gone;
@@ -197,26 +202,21 @@ void Scenery::update_fires(scene::Scene& scene, const Play& play) {
   const double time_s = play.progress().time_s;
   for (const Fire& fire : play.progress().fires) {
     if (fire.until_s < time_s) continue;
-    Flame& flame = flames_[name_of_place(fire.at)];
-    if (std::exchange(flame.frame, frame_) == 0) {
-      flame.fire = scene::spawn_emitter(world, {.kind = scene::fire()}, {.position = fire.at});
-      flame.smoke =
-          scene::spawn_emitter(world, {.kind = scene::smoke()}, {.position = raised(fire.at, 0.6)});
-      flame.light = scene::spawn_light(world, {.colour = kEmber, .intensity = 5, .range_m = 22},
-                                       {.position = raised(fire.at, 0.7)});
+    Shown& shown = fires_[name_of_place(fire.at)];
+    if (std::exchange(shown.frame, frame_) == 0) {
+      shown.parts = {
+          scene::spawn_emitter(world, {.kind = scene::fire()}, {.position = fire.at}),
+          scene::spawn_emitter(world, {.kind = scene::smoke()}, {.position = raised(fire.at, 0.6)}),
+          scene::spawn_light(world, {.colour = kEmber, .intensity = 5, .range_m = 22},
+                             {.position = raised(fire.at, 0.7)})};
     }
     // The fire flickers, and dims in its last seconds.
     const auto left = static_cast<float>(std::clamp((fire.until_s - time_s) / 30, 0.2, 1.0));
     const auto flicker =
         static_cast<float>(0.85 + 0.15 * std::sin(time_s * 11) * std::sin(time_s * 7.3));
-    world.get<scene::PointLight>(flame.light)->intensity = 5 * left * flicker;
+    world.get<scene::PointLight>(shown.parts[2])->intensity = 5 * left * flicker;
   }
-  std::erase_if(flames_, [&](const auto& entry) {
-    const Flame& flame = entry.second;
-    const bool out = flame.frame != frame_;
-    if (out) world.destroy(std::array{flame.fire, flame.smoke, flame.light});
-    return out;
-  });
+  remove_gone(fires_, world);
 }
 
 // Marks the next cairn with smoke by day and light by night.
@@ -297,10 +297,9 @@ void Scenery::tell(app::Session& session, const Happening& happening, const Play
 
 void Scenery::clear(app::Session& session) {
   ecs::World& world = session.scene().entities();
-  for (const auto& [seed, shown] : shown_)
-    world.destroy(shown.parts);
-  for (const auto& [place, flame] : flames_)
-    world.destroy(std::array{flame.fire, flame.smoke, flame.light});
+  ++frame_;
+  remove_gone(creatures_, world);
+  remove_gone(fires_, world);
   for (const Falling& tree : falling_)
     take_away(tree, session.scene());
   for (const ecs::Entity entity : {smoke_, glow_, rain_, snow_})
@@ -308,8 +307,6 @@ void Scenery::clear(app::Session& session) {
   for (const ecs::Entity entity : {beacon_light_, lantern_})
     world.get<scene::PointLight>(entity)->visible = false;
   (void)session.scene().set_sky(clear_sky_);
-  shown_.clear();
-  flames_.clear();
   falling_.clear();
 }
 

@@ -39,14 +39,12 @@ class Scenery {
   void clear(app::Session& session);
 
  private:
+  // The parts of a creature; or the fire, smoke and light of a fire.
   struct Shown {
     std::array<ecs::Entity, kParts> parts;
-    std::uint64_t frame = 0;
+    std::uint64_t frame = 0;  // the last one with it
   };
-  struct Flame {
-    ecs::Entity fire, smoke, light;
-    std::uint64_t frame = 0;
-  };
+  using ShownByKey = std::unordered_map<std::uint64_t, Shown>;
   struct Falling {
     ecs::Entity entity;
     scene::MeshId mesh;
@@ -57,12 +55,13 @@ class Scenery {
   void update_beacon(scene::Scene& scene, const Play& play);
   void update_weather(app::Session& session, const Play& play, double hour);
   void update_falling(scene::Scene& scene, const Play& play);
+  void remove_gone(ShownByKey& shown, ecs::World& world) const;
   static void take_away(const Falling& tree, scene::Scene& scene);
 
   std::array<std::array<Part, kParts>, kKinds> shapes_;
   std::array<std::array<scene::MeshId, kParts>, kKinds> meshes_;
-  std::unordered_map<std::uint64_t, Shown> shown_;   // key: Creature::seed
-  std::unordered_map<std::uint64_t, Flame> flames_;  // key: position of the fire
+  ShownByKey creatures_;  // key: Creature::seed
+  ShownByKey fires_;      // key: position of the fire
   std::vector<Falling> falling_;
   ecs::Entity smoke_, glow_, beacon_light_, rain_, snow_, lantern_;
   world::Sky clear_sky_;  // of the world file

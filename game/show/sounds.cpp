@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <span>
 
@@ -23,27 +24,13 @@ ClipPtr clip(std::span<const float> left, std::span<const float> right = {}) {
   return std::make_shared<const audio::Clip>(audio::clip_of(left, right));
 }
 
-ClipPtr wind_sound() {
-  Samples out = noise(11, 60, 480, 1);
-  shape(out, [](float t) { return 2.2F + 0.9F * std::sin(0.9F * t) * std::sin(0.57F * t + 1); });
-  return clip(looped(out, 1.5));
-}
-
-ClipPtr rain_sound() {
-  Samples out = noise(5, 900, 7000, 2);
-  shape(out, [](float) { return 0.8F; });
-  return clip(looped(out, 0.6));
-}
-
-ClipPtr water_sound() {
-  Samples out = noise(7, 150, 900, 3);
-  shape(out, [](float t) { return 1.0F + 0.8F * std::sin(1.8F * t) * std::sin(1.1F * t); });
-  return clip(looped(out, 1));
+Samples shaped(Samples samples, const std::function<float(float)>& gain) {
+  shape(samples, gain);
+  return samples;
 }
 
 ClipPtr fire_sound() {
-  Samples out = noise(4, 80, 700, 4);
-  shape(out, [](float) { return 0.5F; });
+  Samples out = shaped(noise(4, 80, 700, 4), [](float) { return 0.5F; });
   core::RandomStream random(5, 0, 0, 0, core::Purpose::kStructure);
   for (int i = 0; i < 60; ++i) {
     const Samples crack = noise(0.02, 800, 6000, 100 + static_cast<std::uint64_t>(i));
@@ -83,31 +70,13 @@ ClipPtr music_sound(std::uint64_t seed) {
 
 // `hardness` is 0 (snow) to 1 (rock).
 ClipPtr step_sound(float hardness) {
-  Samples out = noise(0.16, 120 + 500 * hardness, 900 + 3500 * hardness, 7);
-  shape(out, [&](float t) { return 2.2F * std::exp(-t * (22 + 30 * hardness)); });
-  return clip(out);
-}
-
-ClipPtr splash_sound() {
-  Samples out = noise(0.9, 250, 3500, 8);
-  shape(out, [](float t) { return 1.4F * std::min(t * 40, 1.0F) * std::exp(-4 * t); });
-  return clip(out);
+  return clip(shaped(noise(0.16, 120 + 500 * hardness, 900 + 3500 * hardness, 7),
+                     [&](float t) { return 2.2F * std::exp(-t * (22 + 30 * hardness)); }));
 }
 
 ClipPtr chop_sound() {
-  Samples out = noise(0.22, 200, 2500, 9);
-  shape(out, [](float t) { return 1.1F * std::exp(-38 * t); });
+  Samples out = shaped(noise(0.22, 200, 2500, 9), [](float t) { return 1.1F * std::exp(-38 * t); });
   add_tone(out, 0, 190, 0.7F, 0.035, {0.5F, 0.3F});
-  return clip(out);
-}
-
-// A falling tree.
-ClipPtr fall_sound() {
-  Samples out = noise(2.2, 70, 1600, 10);
-  shape(out, [](float t) {
-    const float creak = t < 1.5F ? 0.3F * t * (0.6F + 0.4F * std::sin(70 * t)) : 0;
-    return creak + (t > 1.5F ? 2.6F * std::exp(-5 * (t - 1.5F)) : 0);
-  });
   return clip(out);
 }
 
@@ -148,18 +117,28 @@ ClipPtr chime_sound() {
 }  // namespace
 
 Clips make_clips() {
-  Clips made{wind_sound(),
-             rain_sound(),
-             water_sound(),
-             fire_sound(),
-             music_sound(1),
-             splash_sound(),
-             chop_sound(),
-             fall_sound(),
-             stone_sound(),
-             chime_sound(),
-             {},
-             {}};
+  Clips made;
+  const auto swelling = [](float t) {
+    return 2.2F + 0.9F * std::sin(0.9F * t) * std::sin(0.57F * t + 1);
+  };
+  made.wind = clip(looped(shaped(noise(11, 60, 480, 1), swelling), 1.5));
+  made.rain = clip(looped(shaped(noise(5, 900, 7000, 2), [](float) { return 0.8F; }), 0.6));
+  const auto lapping = [](float t) {
+    return 1.0F + 0.8F * std::sin(1.8F * t) * std::sin(1.1F * t);
+  };
+  made.water = clip(looped(shaped(noise(7, 150, 900, 3), lapping), 1));
+  made.fire = fire_sound();
+  made.music = music_sound(1);
+  made.splash = clip(shaped(noise(0.9, 250, 3500, 8), [](float t) {
+    return 1.4F * std::min(t * 40, 1.0F) * std::exp(-4 * t);
+  }));
+  made.chop = chop_sound();
+  made.fall = clip(shaped(noise(2.2, 70, 1600, 10), [](float t) {
+    const float creak = t < 1.5F ? 0.3F * t * (0.6F + 0.4F * std::sin(70 * t)) : 0;
+    return creak + (t > 1.5F ? 2.6F * std::exp(-5 * (t - 1.5F)) : 0);
+  }));
+  made.stone = stone_sound();
+  made.chime = chime_sound();
   for (int i = 0; i < 3; ++i) {
     made.steps[static_cast<std::size_t>(i)] = step_sound(0.5F * static_cast<float>(i));
     made.birds[static_cast<std::size_t>(i)] = bird_sound(i);
