@@ -12,7 +12,6 @@
 
 #include "editor/document/qt_text.hpp"
 #include "editor/pictures/picture_server.hpp"
-#include "editor/shell/camera_memory.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
 #include "editor/view/window_surface.hpp"

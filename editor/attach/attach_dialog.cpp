@@ -27,8 +27,13 @@ QString command_text(const std::string& command) {
 class AttachDialog final : public QDialog {
  public:
   explicit AttachDialog(QWidget* parent);
+
   // The chosen program, after the dialog was accepted.
-  std::optional<inspect::Endpoint> chosen() const;
+  std::optional<inspect::Endpoint> chosen() const {
+    const int row = list_->currentRow();
+    if (row < 0 || row >= static_cast<int>(endpoints_.size())) return std::nullopt;
+    return endpoints_[static_cast<std::size_t>(row)];
+  }
 
  private:
   void list();
@@ -86,12 +91,6 @@ void AttachDialog::list() {
                           "--inspect</b>, or a game with the plugin inspect.")
                      : tr("The attached program gets your changes. Detaching restores its original "
                           "state."));
-}
-
-std::optional<inspect::Endpoint> AttachDialog::chosen() const {
-  const int row = list_->currentRow();
-  if (row < 0 || row >= static_cast<int>(endpoints_.size())) return std::nullopt;
-  return endpoints_[static_cast<std::size_t>(row)];
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include <QToolTip>
 #include <QVBoxLayout>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "editor/document/qt_text.hpp"
@@ -69,39 +68,29 @@ class SystemBars final : public QWidget {
     double mean_ms = 0, max_ms = 0;
     QString tool_tip = {};
   };
-  SystemBars();
-  void show_bars(std::vector<Bar> bars);
-  QSize sizeHint() const override;
+  SystemBars() {
+    setAccessibleName(tr("System times"));
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    setToolTip(" ");
+  }
+  void show_bars(std::vector<Bar> bars) {
+    const bool other = bars.size() != bars_.size();
+    bars_ = std::move(bars);
+    if (other) updateGeometry();
+    update();
+  }
+  QSize sizeHint() const override {
+    return {240, row_height() * std::max(1, static_cast<int>(bars_.size())) + 4};
+  }
 
  protected:
   void paintEvent(QPaintEvent* event) override;
   bool event(QEvent* event) override;
 
  private:
-  int row_height() const;
+  int row_height() const { return fontMetrics().height() + 3; }
   std::vector<Bar> bars_;
 };
-
-SystemBars::SystemBars() {
-  setAccessibleName(tr("System times"));
-  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-  setToolTip(" ");
-}
-
-int SystemBars::row_height() const {
-  return fontMetrics().height() + 3;
-}
-
-QSize SystemBars::sizeHint() const {
-  return {240, row_height() * std::max(1, static_cast<int>(bars_.size())) + 4};
-}
-
-void SystemBars::show_bars(std::vector<Bar> bars) {
-  const bool other = bars.size() != bars_.size();
-  bars_ = std::move(bars);
-  if (other) updateGeometry();
-  update();
-}
 
 void SystemBars::paintEvent(QPaintEvent*) {
   QPainter painter(this);

@@ -4,7 +4,6 @@
 
 #include <QJsonObject>
 #include <QWidget>
-#include <functional>
 
 #include "editor/attach/remote_session.hpp"
 

@@ -1,24 +1,29 @@
 #include "editor/cost/block_cost.hpp"
 
-#include <QLocale>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string_view>
 
-#include "editor/cost/block_survey.hpp"
 #include "editor/document/scale.hpp"
+#include "engine/core/clock.hpp"
+#include "engine/core/hash.hpp"
 #include "engine/synthesis/synthesise.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
+#include "engine/world/placement.hpp"
+#include "engine/world/world_parts.hpp"
 
 namespace psygen::editor {
 namespace {
 
 using world::FieldKind;
 
-constexpr int kPoints = 24;        // of a curve of reals
-constexpr int kMeasuredEvery = 6;  // points
+constexpr int kPoints = 24;               // of a curve of reals
+constexpr int kMeasuredEvery = 6;         // points
+constexpr int kBlocks = 4;                // in the mean
+constexpr double kMaxMeasuredS = 0.0125;  // predicted, of the synthesised block
 
 std::string toml_of(const world::WorldField& field, double value) {
   const bool integer = is_whole(field.kind);
@@ -62,6 +67,54 @@ std::vector<double> values_of(const world::WorldField& field) {
   return values;
 }
 
+// Processor seconds to synthesise a mesh; nullopt if that fails.
+std::optional<double> make_mesh(const models::ModelType& type, const models::Parameters& p) {
+  const auto memory = synthesis::HeapDestination::make(type, p, 0);
+  if (!memory) return std::nullopt;
+  const double start_s = core::thread_cpu_seconds();
+  if (!synthesis::synthesise_guarded(type, p, 0, memory->view()).ok) return std::nullopt;
+  return core::thread_cpu_seconds() - start_s;
+}
+
+// Hashes of the inputs of each scatter, and last of the ground.
+std::vector<std::uint64_t> keys_of(const ParsedWorld& parsed) {
+  const world::WorldParts parts = world::parts_of(parsed.world, parsed.registry);
+  std::vector<std::uint64_t> keys;
+  for (std::size_t s = 0; s < parts.places.size(); ++s)
+    keys.push_back(core::combine(parts.places[s], parts.models[s]));
+  keys.push_back(parts.ground);
+  return keys;
+}
+
+std::size_t scatter_of(const world::World& world, std::uint32_t index) {
+  std::size_t scatter = 0;
+  for (std::uint32_t first = 0; index - first >= world.scatter[scatter].count; ++scatter)
+    first += world.scatter[scatter].count;
+  return scatter;
+}
+
+void add(BlockCost& sum, const MeshCost& mesh) {
+  sum.triangles += mesh.triangles;
+  sum.bytes += mesh.bytes;
+  sum.seconds += mesh.seconds;
+}
+
+// Ratio of measured to predicted synthesis time of a block; 0 if the block is not synthesised.
+double measured_factor(const ParsedWorld& parsed, const synthesis::CostModel& costs,
+                       core::BlockCoord block) {
+  std::vector<world::Placement> placements;
+  world::place_models(parsed.world, parsed.registry, block, placements);
+  placements.push_back({parsed.world.terrain_model, world::kTerrainIndex, glm::vec3(0),
+                        world::terrain_parameters(parsed.world, block)});
+  double predicted_s = 0, measured_s = 0;
+  for (const world::Placement& placed : placements)
+    predicted_s += costs.predict(placed.model, placed.parameters, 0);
+  if (predicted_s <= 0 || predicted_s > kMaxMeasuredS) return 0;
+  for (const world::Placement& placed : placements)
+    measured_s += make_mesh(parsed.registry[placed.model], placed.parameters).value_or(0);
+  return measured_s / predicted_s;
+}
+
 }  // namespace
 
 core::BlockCoord block_near(const world::World& world, core::BlockCoord around, int number) {
@@ -96,6 +149,56 @@ bool has_cost_curve(const world::WorldField& field) {
   const std::string& table = field.path.empty() ? std::string() : field.path.steps[0].key;
   return number && !field.numbers.empty() && table != "sky" && table != "palette" &&
          table != "water";
+}
+
+// Adds unknown parts to known_. Returns the sum of the models placed by hand.
+BlockCost BlockSurvey::add_unknown_parts(const ParsedWorld& parsed,
+                                         const synthesis::CostModel& costs,
+                                         const std::vector<std::uint64_t>& keys) {
+  const world::World& world = parsed.world;
+  std::vector<bool> is_unknown;
+  for (std::size_t s = 0; s < world.scatter.size(); ++s)
+    is_unknown.push_back(!known_.contains(keys[s]));
+  const bool ground = !known_.contains(keys.back());
+  for (const std::uint64_t key : keys)
+    known_[key];
+  BlockCost by_hand;
+  std::vector<world::Placement> placements;
+  for (int i = 0; i < kBlocks; ++i) {
+    const core::BlockCoord block = block_near(world, around_, i);
+    if (ground)
+      add(known_[keys.back()],
+          mesh_cost(parsed, world.terrain_model, world::terrain_parameters(world, block), costs));
+    world::place_models(world, parsed.registry, block, is_unknown, placements);
+    for (const world::Placement& placed : placements) {
+      BlockCost& part = placed.index >= world::kPlacedIndex
+                            ? by_hand
+                            : known_[keys[scatter_of(world, placed.index)]];
+      ++part.models;
+      add(part, mesh_cost(parsed, placed.model, placed.parameters, costs));
+    }
+  }
+  return by_hand;
+}
+
+BlockCost BlockSurvey::cost(const ParsedWorld& parsed, bool measure) {
+  synthesis::CostModel costs(parsed.registry);
+  if (learnt_ != nullptr) costs.learn_from(*learnt_);
+  const std::vector<std::uint64_t> keys = keys_of(parsed);
+  BlockCost all = add_unknown_parts(parsed, costs, keys);
+  const std::set<std::uint64_t> present(keys.begin(), keys.end());
+  std::erase_if(known_, [&](const auto& entry) { return !present.contains(entry.first); });
+  for (const auto& [key, part] : known_) {
+    all.models += part.models;
+    add(all, {part.triangles, part.bytes, part.seconds});
+  }
+  for (double BlockCost::*of :
+       {&BlockCost::models, &BlockCost::triangles, &BlockCost::bytes, &BlockCost::seconds})
+    all.*of /= kBlocks;
+  const core::BlockCoord first = block_near(parsed.world, around_, 0);
+  if (const double factor = measure ? measured_factor(parsed, costs, first) : 0; factor > 0)
+    all.measured_seconds = factor * all.seconds;
+  return all;
 }
 
 BlockCost block_cost(const ParsedWorld& parsed, core::BlockCoord around,

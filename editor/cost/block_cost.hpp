@@ -3,6 +3,8 @@
 // its own parsed world and cost model.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +20,28 @@ struct BlockCost {
   double models = 0, triangles = 0, bytes = 0;
   double seconds = 0;                           // on one core, predicted
   std::optional<double> measured_seconds = {};  // on one core, if blocks were synthesised
+};
+
+// Block costs of a series of similar worlds, such as the values of a slider. Keeps the costs of the
+// ground and of the scatters that a world has in common with the previous one. One thread.
+class BlockSurvey {
+ public:
+  // Surveys blocks around a block. `learnt` as in block_cost(); it outlives the survey.
+  BlockSurvey(core::BlockCoord around, const synthesis::CostModel* learnt)
+      : around_(around), learnt_(learnt) {}
+
+  // As block_cost().
+  BlockCost cost(const ParsedWorld& parsed, bool measure);
+
+ private:
+  BlockCost add_unknown_parts(const ParsedWorld& parsed, const synthesis::CostModel& costs,
+                              const std::vector<std::uint64_t>& keys);
+
+  core::BlockCoord around_;
+  const synthesis::CostModel* learnt_;
+  // Sums over all blocks for the ground and for each scatter of the previous world, by a hash of
+  // their inputs.
+  std::map<std::uint64_t, BlockCost> known_;
 };
 
 // The mean cost of blocks around a block. `learnt`: a cost model of the same program whose

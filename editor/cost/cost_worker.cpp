@@ -116,7 +116,7 @@ void CostWorker::compute_curves(const CurveRequest& request, std::uint64_t numbe
                               .files = request.files.get()},
                              is_newest);
     if (points.empty()) continue;
-    QMetaObject::invokeMethod(this, [this, path = field.path.text(), points = std::move(points)] {
+    QMetaObject::invokeMethod(this, [this, path = field.path, points = std::move(points)] {
       Q_EMIT curve(path, points);
     });
   }

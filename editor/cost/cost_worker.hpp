@@ -6,7 +6,6 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -50,9 +49,10 @@ class CostWorker final : public QObject {
   void resume() { rest(std::chrono::milliseconds(0)); }
 
  Q_SIGNALS:
-  // Results of the newest requests. `path`: of the field, as TextPath::text() writes it.
+  // Results of the newest requests. `path`: of the field.
   void world_cost(const psygen::editor::BlockCost& cost);
-  void curve(const std::string& path, const std::vector<psygen::editor::CostPoint>& points);
+  void curve(const psygen::world::TextPath& path,
+             const std::vector<psygen::editor::CostPoint>& points);
   void impact(const psygen::editor::WorldImpact& impact);
 
  private:

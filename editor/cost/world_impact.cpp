@@ -1,7 +1,6 @@
 #include "editor/cost/world_impact.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <unordered_map>
 

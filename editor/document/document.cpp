@@ -33,6 +33,11 @@ model = "rock"
 count = 20
 )";
 
+bool same_ground(const world::World& a, const world::World& b) {
+  return a.seed == b.seed && a.blocks_x == b.blocks_x && a.blocks_z == b.blocks_z &&
+         a.terrain == b.terrain && a.water == b.water;
+}
+
 constexpr int kDiskDelayMs = 100;  // after the last change of the file
 
 core::Result<void> ships_with_psygen(const std::filesystem::path& file) {
@@ -72,13 +77,14 @@ std::string Document::name() const {
   return file_.empty() ? "the new world" : file_.string();
 }
 
-core::Result<ParsedWorldPtr> Document::parse(const std::string& text) const {
+core::Result<ParsedWorldPtr> Document::parse(const std::string& text,
+                                             const handmade::MemoryPicturesPtr& pictures) const {
   if (text.size() > world::kMaxFileBytes)
     return core::fail(core::ErrorCode::kOverBudget,
                       fmt::format("{}: the file would be too large (allowed: {} bytes)", name(),
                                   world::kMaxFileBytes));
   return parse_world_text(text, name(), options_.register_models,
-                          handmade::files_with(name(), pictures_).get());
+                          handmade::files_with(name(), pictures).get());
 }
 
 bool Document::is_shipped(const std::filesystem::path& file) const {
@@ -145,7 +151,7 @@ void Document::set_document_text(const std::filesystem::path& file, std::string 
   watch_disk();
   note_saved(*text_);
   Q_EMIT file_changed();
-  Q_EMIT changed(Change::kAll);
+  Q_EMIT changed(Change::kFile);
 }
 
 void Document::watch_disk() {
@@ -189,11 +195,15 @@ core::Result<void> Document::save() {
   if (auto known = require_known_disk(); !known) return known;
   if (auto known = require_known_pictures(file_); !known) return known;
   if (auto written = write_all(file_); !written) return written;
+  note_written();
+  return {};
+}
+
+void Document::note_written() {
   note_saved(*text_);
   autosave();
   save_locks();
   watch_disk();
-  return {};
 }
 
 core::Result<void> Document::write_all(const std::filesystem::path& file) {
@@ -229,10 +239,7 @@ core::Result<std::vector<std::string>> Document::save_as(const std::filesystem::
     is_template_ = false;
     Q_EMIT file_changed();
   }
-  note_saved(*text_);
-  autosave();
-  save_locks();
-  watch_disk();
+  note_written();
   return copied;
 }
 
@@ -317,7 +324,7 @@ void Document::show(const ShownText& shown) {
   text_ = shown.text;
   sections_.reset();
   discard_proposed_edit();
-  Q_EMIT changed(Change::kText | changes_between(*before, *parsed_));
+  Q_EMIT changed(same_ground(before->world, world()) ? Change::kText : Change::kGround);
   note_modified();
   if (!autosave_timer_.isActive()) autosave_timer_.start();
 }
@@ -330,7 +337,6 @@ core::Result<void> Document::write_recovery() {
   return session_->write({.world_file = file_,
                           .text = *text_,
                           .saved_text = saved_,
-                          .undo_index = undo_.index(),
                           .time = {},
                           .file = {},
                           .pictures = pictures_ ? pictures_->in_place : handmade::NamedPictures()});

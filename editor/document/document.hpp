@@ -200,7 +200,7 @@ class Document : public QObject {
 
  Q_SIGNALS:
   // The text changed by an edit, undo, redo or another file.
-  void changed(psygen::editor::Changes what);
+  void changed(psygen::editor::Change what);
   void modified_changed(bool modified);
   void file_changed();
   // The proposed edit changed; an empty confirmation: there is none.
@@ -222,8 +222,14 @@ class Document : public QObject {
   // Watches the file on the disk, also for its replacement, removal and creation.
   void watch_disk();
   void note_saved(std::string text);
+  void note_written();
   core::Result<void> require_known_disk() const;
-  core::Result<ParsedWorldPtr> parse(const std::string& text) const;
+  // With painted images, by default those of the document.
+  core::Result<ParsedWorldPtr> parse(const std::string& text,
+                                     const handmade::MemoryPicturesPtr& pictures) const;
+  core::Result<ParsedWorldPtr> parse(const std::string& text) const {
+    return parse(text, pictures_);
+  }
   std::string name() const;  // for messages
   // An edit with a valid text.
   struct Edit {
@@ -233,7 +239,8 @@ class Document : public QObject {
     int drag = 0;
     std::vector<PaintChange> paint = {};
   };
-  core::Result<void> push(std::string text, const QString& step,
+  // Fails with the error of the text, or like parse().
+  core::Result<void> push(core::Result<std::string> text, const QString& step,
                           std::optional<FieldLocks> locks = {}, bool guarded = true);
   void apply_edit(Edit edit, ParsedWorldPtr parsed);
   void propose_edit(std::optional<Edit> edit, const QString& confirmation);
@@ -242,8 +249,6 @@ class Document : public QObject {
   std::vector<std::string> unsaved_pictures() const;  // by name
   handmade::MemoryPicturesPtr with_picture(const std::string& name,
                                            const PicturePtr& picture) const;
-  // Parses the next world, from a text with its images.
-  core::Result<void> show_pictures(handmade::MemoryPicturesPtr pictures, const std::string& text);
   void note_on_disk(const std::string& name);
   void apply_paint(const std::vector<PaintChange>& changes, bool done);
   void end_preview();

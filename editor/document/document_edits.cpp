@@ -65,12 +65,13 @@ class TextCommand : public QUndoCommand {
 
 }  // namespace
 
-core::Result<void> Document::push(std::string text, const QString& step,
-                                  std::optional<FieldLocks> locks, bool guarded) {
-  if (text == *text_) return discard_proposed_edit(), core::Result<void>{};
-  auto parsed = parse(text);
+core::Result<void> Document::push(Text text, const QString& step, std::optional<FieldLocks> locks,
+                                  bool guarded) {
+  if (!text) return tl::unexpected(std::move(text.error()));
+  if (*text == *text_) return discard_proposed_edit(), core::Result<void>{};
+  auto parsed = parse(*text);
   if (!parsed) return tl::unexpected(std::move(parsed.error()));
-  Edit edit{.text = std::move(text), .step = step, .locks = std::move(locks), .drag = drag_};
+  Edit edit{.text = *std::move(text), .step = step, .locks = std::move(locks), .drag = drag_};
   if (guarded && guard_) {
     const QString confirmation = guard_(*parsed_, **parsed);
     if (!confirmation.isEmpty())
@@ -128,9 +129,7 @@ core::Result<void> Document::set_text(std::string text, const QString& step) {
 
 core::Result<void> Document::edit(const QString& step,
                                   const std::function<Text(std::string_view)>& change) {
-  auto text = change(*text_);
-  if (!text) return tl::unexpected(std::move(text.error()));
-  return push(*std::move(text), step);
+  return push(change(*text_), step);
 }
 
 int Document::begin_drag() {
@@ -161,11 +160,10 @@ core::Result<void> Document::append_table(const world::TextPath& array, std::str
 }
 
 core::Result<void> Document::remove_table(const world::TextPath& path) {
-  auto text = world::without_table(*text_, path);
-  if (!text) return tl::unexpected(std::move(text.error()));
   FieldLocks locks = locks_;
   if (!path.empty() && path.back().is_index) locks.note_removed(path);
-  return push(*std::move(text), tr("Remove %1").arg(to_qstring(path.text())), std::move(locks));
+  return push(world::without_table(*text_, path), tr("Remove %1").arg(to_qstring(path.text())),
+              std::move(locks));
 }
 
 core::Result<void> Document::move_table(const world::TextPath& item, std::size_t to) {
@@ -173,7 +171,7 @@ core::Result<void> Document::move_table(const world::TextPath& item, std::size_t
   if (!text) return tl::unexpected(std::move(text.error()));
   FieldLocks locks = locks_;
   locks.note_moved(item, to);
-  return push(*std::move(text), tr("Move %1").arg(to_qstring(item.text())), std::move(locks));
+  return push(std::move(text), tr("Move %1").arg(to_qstring(item.text())), std::move(locks));
 }
 
 core::Result<void> Document::duplicate_table(const world::TextPath& item) {
@@ -187,11 +185,10 @@ core::Result<void> Document::duplicate_table(const world::TextPath& item) {
       ++number;
     text = world::with_value(*text, copy.with("name"),
                              world::toml_string(fmt::format("{}_{}", name, number)));
-    if (!text) return tl::unexpected(std::move(text.error()));
   }
   FieldLocks locks = locks_;
   locks.note_inserted(copy);
-  return push(*std::move(text), tr("Duplicate %1").arg(to_qstring(item.text())), std::move(locks));
+  return push(std::move(text), tr("Duplicate %1").arg(to_qstring(item.text())), std::move(locks));
 }
 
 core::Result<std::string> Document::copy(const world::TextPath& path) const {
@@ -205,16 +202,15 @@ core::Result<void> Document::paste(const world::TextPath& path, std::string_view
 
 core::Result<void> Document::save_preset(const world::TextPath& path,
                                          const std::filesystem::path& preset) const {
-  const auto snippet = copy(path);
-  if (!snippet) return tl::unexpected(snippet.error());
-  return core::replace_file(preset, world::preset_text(*snippet));
+  return copy(path).and_then([&](const std::string& snippet) {
+    return core::replace_file(preset, world::preset_text(snippet));
+  });
 }
 
 core::Result<void> Document::apply_preset(const world::TextPath& path,
                                           const std::filesystem::path& preset) {
-  const auto text = world::read_text_file(preset);
-  if (!text) return tl::unexpected(text.error());
-  const auto snippet = world::read_preset(*text, preset.string());
+  const auto snippet = world::read_text_file(preset).and_then(
+      [&](const std::string& text) { return world::read_preset(text, preset.string()); });
   if (!snippet) return tl::unexpected(snippet.error());
   return edit(tr("Apply %1").arg(to_qstring(preset.stem().string())),
               [&](std::string_view before) { return world::with_snippet(before, path, *snippet); });

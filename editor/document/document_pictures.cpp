@@ -65,16 +65,6 @@ handmade::MemoryPicturesPtr Document::with_picture(const std::string& name,
   return next;
 }
 
-core::Result<void> Document::show_pictures(handmade::MemoryPicturesPtr pictures,
-                                           const std::string& text) {
-  auto parsed = parse_world_text(text, name(), options_.register_models,
-                                 handmade::files_with(name(), pictures).get());
-  if (!parsed) return tl::unexpected(std::move(parsed.error()));
-  next_parsed_ = *std::move(parsed);
-  pictures_ = std::move(pictures);
-  return {};
-}
-
 void Document::note_on_disk(const std::string& name) {
   const bool is_painted = pictures_ && pictures_->in_place.contains(name);
   if (const PicturePtr now = picture(name); now && !is_painted) disk_pictures_[name] = now->hash;
@@ -82,9 +72,12 @@ void Document::note_on_disk(const std::string& name) {
 
 core::Result<void> Document::preview_picture(const std::string& name, const PicturePtr& picture) {
   note_on_disk(name);
-  const handmade::MemoryPicturesPtr before = pictures_;
-  if (auto shown = show_pictures(with_picture(name, picture), *text_); !shown) return shown;
-  if (!before_preview_) before_preview_ = before;
+  const handmade::MemoryPicturesPtr next = with_picture(name, picture);
+  auto parsed = parse(*text_, next);
+  if (!parsed) return tl::unexpected(std::move(parsed.error()));
+  next_parsed_ = *std::move(parsed);
+  if (!before_preview_) before_preview_ = pictures_;
+  pictures_ = next;
   show({text_, parsed_});
   return {};
 }
@@ -96,11 +89,11 @@ core::Result<void> Document::paint(const QString& step, std::vector<PaintChange>
     note_on_disk(change.name());
     pictures_ = with_picture(change.name(), change.applied(picture(change.name()), true));
   }
-  auto shown = show_pictures(pictures_, text);
+  auto parsed = parse(text);
   pictures_ = before;
-  if (!shown) return shown;
+  if (!parsed) return tl::unexpected(std::move(parsed.error()));
   Edit edit{.text = std::move(text), .step = step, .locks = {}, .paint = std::move(changes)};
-  apply_edit(std::move(edit), std::exchange(next_parsed_, nullptr));
+  apply_edit(std::move(edit), *std::move(parsed));
   return {};
 }
 
@@ -116,17 +109,16 @@ void Document::apply_paint(const std::vector<PaintChange>& changes, bool done) {
 }
 
 core::Result<void> Document::require_known_pictures(const std::filesystem::path& file) {
-  if (!pictures_) return {};
   const handmade::FilesPtr disk = handmade::files_with(file, nullptr);
   std::error_code error;
-  for (const auto& [name, painted] : pictures_->in_place) {
+  for (const std::string& name : unsaved_pictures()) {
     const std::filesystem::path at = file.parent_path() / name;
-    if (picture_of(world(), name) == nullptr || !std::filesystem::exists(at, error)) continue;
+    if (!std::filesystem::exists(at, error)) continue;
     const auto now = disk->read_grey(at);
     const std::uint64_t hash = now ? (*now)->hash : 0;  // 0: a file that is no image
     const auto known = disk_pictures_.find(name);
     const bool is_known = known != disk_pictures_.end() && known->second == hash;
-    if (is_known || (now && hash == painted->hash)) continue;
+    if (is_known || (now && hash == picture(name)->hash)) continue;
     const auto refused = refused_files_.find(at.string());
     if (refused != refused_files_.end() && refused->second == hash) continue;
     refused_files_[at.string()] = hash;
@@ -183,11 +175,8 @@ core::Result<std::vector<std::string>> Document::copy_referenced_files(
 }
 
 core::Result<void> Document::write_pictures(const std::filesystem::path& file) const {
-  if (!pictures_) return {};
-  for (const auto& [name, painted] : pictures_->in_place) {
-    if (picture_of(world(), name) == nullptr) continue;
-    if (auto ok = write_picture(file.parent_path() / name, *painted); !ok) return ok;
-  }
+  for (const std::string& name : unsaved_pictures())
+    if (auto ok = write_picture(file.parent_path() / name, *picture(name)); !ok) return ok;
   return {};
 }
 
@@ -195,9 +184,8 @@ void Document::note_pictures_written() {
   refused_files_.clear();
   if (!pictures_) return;
   auto written = std::make_shared<handmade::InMemoryImages>(*pictures_);
-  for (const auto& [name, painted] : pictures_->in_place) {
-    if (picture_of(world(), name) == nullptr) continue;
-    disk_pictures_[name] = painted->hash;
+  for (const std::string& name : unsaved_pictures()) {
+    disk_pictures_[name] = picture(name)->hash;
     written->in_place.erase(name);
   }
   pictures_ = std::move(written);

@@ -1,9 +1,7 @@
 // A parsed world text: the world, and the registry that its model indices refer to. Immutable and
-// shared, so that views can keep it while the text changes. Uses only flags of Qt. Any thread may
-// read.
+// shared, so that views can keep it while the text changes. Knows no Qt. Any thread may read.
 #pragma once
 
-#include <QFlags>
 #include <functional>
 #include <memory>
 #include <string>
@@ -32,24 +30,11 @@ core::Result<ParsedWorldPtr> parse_world_text(const std::string& text, const std
                                               const RegisterModels& register_models,
                                               const world::ResourceLoader* files = nullptr);
 
-// Parts in which two texts and their worlds differ.
-enum class Change : unsigned {
-  kText = 1,     // any byte; alone: comments, or the same values in another notation
-  kWorld = 2,    // name, seed, number of blocks
-  kTerrain = 4,  // parameters of the ground, with cell_m and block_vertices
-  kSky = 8,
-  kWater = 16,
-  kPalette = 32,
-  kSpecies = 64,
-  kScatter = 128,  // also models from files
-  kTables = 256,   // number of tables, or the model type of one: controls must be recreated
-  kFile = 512,     // another file was opened
-  kAll = 1023,     // all of the above, after opening another file
+// The extent of a change of a document.
+enum class Change {
+  kText,    // values, tables or comments
+  kGround,  // also the height of the ground or of the water somewhere
+  kFile,    // another file
 };
-Q_DECLARE_FLAGS(Changes, Change)
-Q_DECLARE_OPERATORS_FOR_FLAGS(Changes)
-
-// The differences except kText and kFile.
-Changes changes_between(const ParsedWorld& before, const ParsedWorld& after);
 
 }  // namespace psygen::editor

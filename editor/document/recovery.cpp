@@ -14,8 +14,8 @@
 
 #include "editor/document/paint_change.hpp"
 #include "editor/document/qt_text.hpp"
-#include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/world/files/text_file.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -92,12 +92,9 @@ core::Error open_elsewhere(const QLockFile& lock, const std::filesystem::path& w
 
 // Returns nullopt if the file is damaged or of a newer version.
 std::optional<Recovery> read_recovery(const std::filesystem::path& file) {
-  const auto bytes = core::read_file(file, kMaxBytes);
-  if (!bytes) return {};
-  const QJsonObject read =
-      QJsonDocument::fromJson(QByteArray::fromRawData(reinterpret_cast<const char*>(bytes->data()),
-                                                      static_cast<qsizetype>(bytes->size())))
-          .object();
+  const auto text = world::read_text_file(file, kMaxBytes);
+  if (!text) return {};
+  const QJsonObject read = QJsonDocument::fromJson(QByteArray::fromStdString(*text)).object();
   if (read["format"].toInt() != kRecoveryFormat) return {};
   Recovery recovery;
   recovery.world_file = read["world_file"].toString().toStdString();
@@ -105,7 +102,6 @@ std::optional<Recovery> read_recovery(const std::filesystem::path& file) {
   if (recovery.world_file.is_relative()) recovery.world_file.clear();
   recovery.text = read["text"].toString().toStdString();
   recovery.saved_text = read["saved_text"].toString().toStdString();
-  recovery.undo_index = read["undo_index"].toInt();
   recovery.time = QDateTime::fromString(read["time"].toString(), Qt::ISODateWithMs);
   recovery.file = file;
   recovery.pictures = read_pictures(file.parent_path(), read["pictures"].toObject());
@@ -164,7 +160,6 @@ core::Result<void> RecoverySession::write(const Recovery& recovery) const {
                            {"world_file", to_qstring(without_links(recovery.world_file).string())},
                            {"text", to_qstring(recovery.text)},
                            {"saved_text", to_qstring(recovery.saved_text)},
-                           {"undo_index", recovery.undo_index},
                            {"pictures", names},
                            {"time", QDateTime::currentDateTimeUtc().toString(Qt::ISODateWithMs)}};
   const QByteArray bytes = QJsonDocument(object).toJson(QJsonDocument::Compact);

@@ -21,7 +21,6 @@ struct Recovery {
   std::filesystem::path world_file;       // canonical; empty: the world was never saved
   std::string text;                       // with the unsaved changes
   std::string saved_text;                 // contents of the world file
-  int undo_index = 0;                     // number of undo steps
   QDateTime time;                         // of writing the recovery file
   std::filesystem::path file;             // the recovery file
   handmade::NamedPictures pictures = {};  // painted and unsaved

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <vector>
+#include <sstream>
 
 #include "editor/document/recovery.hpp"
 #include "editor/document/scale.hpp"
-#include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/world/files/text_file.hpp"
 #include "engine/world/files/text_path.hpp"
 #include "engine/world/files/toml_values.hpp"
 
@@ -180,17 +180,11 @@ void FieldLocks::renumber(const world::TextPath& array,
 FieldLocks FieldLocks::load(const std::filesystem::path& state_folder,
                             const std::filesystem::path& world_file) {
   FieldLocks locks;
-  const auto bytes = core::read_file(locks_file(state_folder, world_file), kMaxLockBytes);
-  if (!bytes) return locks;
-  std::string line;
-  for (const std::uint8_t byte : *bytes) {
-    if (byte != '\n') {
-      line += static_cast<char>(byte);
-      continue;
-    }
+  const auto text = world::read_text_file(locks_file(state_folder, world_file), kMaxLockBytes);
+  std::istringstream lines(text.value_or(""));
+  for (std::string line; std::getline(lines, line);) {
     if (const auto path = world::parse_text_path(line); path && !path->empty())
       locks.set_locked(*path, true);
-    line.clear();
   }
   return locks;
 }

@@ -4,9 +4,7 @@
 
 #include <QJsonDocument>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <limits>
 

@@ -17,6 +17,7 @@
 #include "editor/document/qt_text.hpp"
 #include "editor/flights/timeline_plot.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/render/renderer.hpp"
 #include "engine/world/files/path_file.hpp"
 
 namespace psygen::editor {
@@ -50,9 +51,10 @@ bool has_pictures(const world::World& world) {
 
 }  // namespace
 
-TimelinePanel::TimelinePanel(TimelineHost host, QWidget* parent)
-    : QWidget(parent),
-      host_(std::move(host)),
+TimelinePanel::TimelinePanel(Document& document, WorldView& view, std::filesystem::path folder)
+    : document_(document),
+      view_(view),
+      folder_(std::move(folder)),
       plot_(new TimelinePlot),
       record_(new QPushButton(tr("Record"))),
       play_(new QPushButton(tr("Play"))),
@@ -126,6 +128,7 @@ TimelinePanel::TimelinePanel(TimelineHost host, QWidget* parent)
     play_->setChecked(false);
     scrub(time_s);
   });
+  connect(&view_, &WorldView::drawn, this, &TimelinePanel::on_frame_drawn);
   connect(&process_, &FlightProcess::flown, this, &TimelinePanel::show_run);
   connect(&process_, &FlightProcess::failed, this, [this](const QString& error) {
     state_->setText(error);
@@ -134,8 +137,6 @@ TimelinePanel::TimelinePanel(TimelineHost host, QWidget* parent)
   });
   update_buttons();
 }
-
-TimelinePanel::~TimelinePanel() = default;
 
 void TimelinePanel::update_buttons() {
   const bool flying = process_.is_flying();
@@ -147,7 +148,8 @@ void TimelinePanel::update_buttons() {
   save_path_->setEnabled(path_.has_value());
   open_->setEnabled(!is_recording() && !flying);
   record_->setEnabled(!flying);
-  Q_EMIT needs_processors(flying && !playing_.isValid());
+  // The panel moves the camera itself while it plays.
+  view_.set_background_work(BackgroundWork::kFlight, flying && !playing_.isValid());
   record_->setText(is_recording() ? tr("Stop") : tr("Record"));
 }
 
@@ -179,7 +181,7 @@ void TimelinePanel::set_recording(bool on) {
       state_->setText(tr("The recording was too short."));
     } else {
       const QString name = QDateTime::currentDateTime().toString("yyyy-MM-dd HH.mm.ss");
-      show_path(world::recorded_path(name.toStdString(), poses_, host_.world()));
+      show_path(world::recorded_path(name.toStdString(), poses_, document_.world()));
       fly();
     }
   }
@@ -198,7 +200,7 @@ void TimelinePanel::on_frame_drawn() {
   if (is_recording()) {
     const double now_s = static_cast<double>(recording_.nsecsElapsed()) * 1e-9;
     if (!poses_.empty() && now_s < poses_.back().time_s + kSampleS) return;
-    poses_.push_back({now_s, host_.pose()});
+    poses_.push_back({now_s, view_.camera().pose()});
     state_->setText(tr("Recording: %1 s. Press Ctrl+Shift+R to stop.").arg(now_s, 0, 'f', 1));
     if (poses_.size() == world::kMaxRecordedPoses) set_recording(false);
   }
@@ -225,7 +227,7 @@ void TimelinePanel::play(bool on) {
 
 void TimelinePanel::scrub(double time_s) {
   if (!path_) return;
-  host_.set_pose(path_->pose_at(time_s, host_.world()));
+  Q_EMIT pose_requested(path_->pose_at(time_s, document_.world()));
   if (!process_.is_flying() && !is_recording())
     state_->setText(
         tr("%1 s of %2 s").arg(time_s, 0, 'f', 2).arg(path_->duration_seconds(), 0, 'f', 1));
@@ -235,7 +237,7 @@ void TimelinePanel::show_path(world::CameraPath path) {
   path_ = std::move(path);
   runs_.clear();
   plot_->set_runs({});
-  plot_->set_path(path_->duration_seconds(), speeds_of(*path_, host_.world()));
+  plot_->set_path(path_->duration_seconds(), speeds_of(*path_, document_.world()));
   plot_->set_cursor(0);
   update_legend();
   update_buttons();
@@ -249,9 +251,11 @@ FlightSettings TimelinePanel::settings() const {
   settings.error_pixels = error_->value();
   settings.policy = synthesis::policy_from(policy_->currentText().toStdString())
                         .value_or(synthesis::Policy::kDeadline);
-  settings.size = host_.size();
-  if (settings.size.width == 0 || settings.size.height == 0) settings.size = {640, 360};
-  settings.preset = host_.preset();
+  if (app::Session* session = view_.session()) {
+    settings.preset = session->renderer().preset();
+    const core::Extent size = session->picture_size();
+    if (size.width > 0 && size.height > 0) settings.size = size;
+  }
   settings.warmup_s = path_ ? std::min(1.0, path_->duration_seconds() / 4) : 1.0;
   return settings;
 }
@@ -259,7 +263,7 @@ FlightSettings TimelinePanel::settings() const {
 void TimelinePanel::fly() {
   if (!path_ || process_.is_flying()) return;
   const QString time = QDateTime::currentDateTime().toString("yyyyMMdd-HHmmss");
-  const auto folder = host_.folder / fmt::format("{}-{}", time.toStdString(), ++number_);
+  const auto folder = folder_ / fmt::format("{}-{}", time.toStdString(), ++number_);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   const auto path_file = folder / "path.toml";
@@ -267,10 +271,9 @@ void TimelinePanel::fly() {
   const auto world_file = write_world(folder);
   if (written && !world_file) written = tl::unexpected(world_file.error());
   if (!written) return Q_EMIT message_posted(to_qstring(written.error().message));
-  path_file_ = path_file;
   world_file_ = *world_file;
-  run_world_ = host_.world_text();
-  process_.fly(settings(), world_file_, path_file_, folder / "run");
+  run_world_ = document_.text();
+  process_.fly(settings(), world_file_, path_file, folder / "run");
   flying_.start();
   show_progress();
   update_buttons();
@@ -290,11 +293,9 @@ void TimelinePanel::show_run(const FlightRun& run) {
 // Writes the present world. It copies no ground images: a saved world uses its own file.
 core::Result<std::filesystem::path> TimelinePanel::write_world(
     const std::filesystem::path& folder) const {
-  if (auto saved = host_.saved_world(); !saved.empty()) return saved;
+  if (!document_.is_modified() && !document_.file().empty()) return document_.file();
   const auto file = folder / "world.toml";
-  if (auto ok = core::replace_file(file, host_.world_text()); !ok)
-    return tl::unexpected(ok.error());
-  return file;
+  return core::replace_file(file, document_.text()).map([&] { return file; });
 }
 
 void TimelinePanel::save_test() {
@@ -310,7 +311,7 @@ void TimelinePanel::save_test() {
   };
   core::Result<void> ok = core::replace_file(file_of("path"), world::write_camera_path(*path_));
   std::string world = file_of("world").filename().string();
-  if (has_pictures(host_.world())) {
+  if (has_pictures(document_.world())) {
     world = world_file_.string();
   } else if (ok) {
     ok = core::replace_file(file_of("world"), run_world_);

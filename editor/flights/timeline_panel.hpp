@@ -5,12 +5,12 @@
 #include <QElapsedTimer>
 #include <QWidget>
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <vector>
 
+#include "editor/document/document.hpp"
 #include "editor/flights/flight_process.hpp"
+#include "editor/view/world_view.hpp"
 #include "engine/world/camera_path.hpp"
 
 class QComboBox;
@@ -23,27 +23,13 @@ namespace psygen::editor {
 
 class TimelinePlot;
 
-// Functions that give the panel access to the rest of the editor.
-struct TimelineHost {
-  std::function<const world::World&()> world;
-  std::function<std::string()> world_text;
-  // The file of the world if it has the same text, else empty.
-  std::function<std::filesystem::path()> saved_world;
-  std::function<core::CameraPose()> pose;
-  std::function<void(const core::CameraPose&)> set_pose;
-  std::function<core::Extent()> size;
-  std::function<render::Preset()> preset;
-  std::filesystem::path folder;  // for recordings and runs
-};
-
 // One path, and at most two runs of it.
 class TimelinePanel final : public QWidget {
   Q_OBJECT
 
  public:
-  // The objects behind the host's functions outlive the panel.
-  explicit TimelinePanel(TimelineHost host, QWidget* parent = nullptr);
-  ~TimelinePanel() override;
+  // `folder`: for recordings and runs. Document and view outlive the panel.
+  TimelinePanel(Document& document, WorldView& view, std::filesystem::path folder);
 
   bool is_recording() const { return recording_.isValid(); }
   void set_recording(bool on);
@@ -54,16 +40,16 @@ class TimelinePanel final : public QWidget {
   void open_path();
   // Opens a path file; posts a message on failure.
   void open_path_file(const std::filesystem::path& file);
-  // To be called after every frame of the view: records the camera, or moves it along the path.
-  void on_frame_drawn();
 
  Q_SIGNALS:
   void message_posted(const QString& message);
   void recording_changed(bool on);
-  // A flight in the background starts or stops to need the processors while the view is still.
-  void needs_processors(bool on);
+  // The view's camera should move to a pose of the path.
+  void pose_requested(const psygen::core::CameraPose& pose);
 
  private:
+  // Records the camera of a frame, or moves it along the path.
+  void on_frame_drawn();
   void show_path(world::CameraPath path);
   void show_run(const FlightRun& run);
   void scrub(double time_s);
@@ -73,11 +59,13 @@ class TimelinePanel final : public QWidget {
   FlightSettings settings() const;
   core::Result<std::filesystem::path> write_world(const std::filesystem::path& folder) const;
 
-  TimelineHost host_;
+  Document& document_;
+  WorldView& view_;
+  std::filesystem::path folder_;
   FlightProcess process_;
   std::optional<world::CameraPath> path_;
-  std::filesystem::path path_file_, world_file_;  // of the runs
-  std::string run_world_;                         // world text of the runs
+  std::filesystem::path world_file_;  // of the runs
+  std::string run_world_;             // its text
   std::vector<FlightRun> runs_;
   QElapsedTimer recording_, playing_, flying_;
   std::vector<world::TimedPose> poses_;

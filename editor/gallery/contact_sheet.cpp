@@ -1,10 +1,13 @@
 #include "editor/gallery/contact_sheet.hpp"
 
+#include <QAbstractButton>
 #include <QComboBox>
 #include <QCompleter>
 #include <QGridLayout>
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QLabel>
+#include <QPainter>
 #include <QPushButton>
 #include <QSettings>
 #include <QSpinBox>
@@ -12,7 +15,6 @@
 
 #include "editor/document/field_value.hpp"
 #include "editor/document/qt_text.hpp"
-#include "editor/gallery/picture_cell.hpp"
 #include "editor/panels/message_log.hpp"
 #include "editor/pictures/model_world.hpp"
 #include "editor/pictures/picture_service.hpp"
@@ -22,13 +24,10 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kMaxSide = 8;  // cells per side
+constexpr int kCellMargin = 4;
 constexpr std::uint32_t kSheetWidth = 320;
 constexpr double kMaxSmaller = 5;  // maximum ratio of a model's size to its size in the image
 constexpr const char* kGeometryKey = "contact_sheet/geometry";
-
-QString cost_text(const BlockCost& cost) {
-  return tr("%1 ms").arg(cost.seconds * 1000, 0, 'g', 3);
-}
 
 QString shown_value(const std::string& toml) {
   QString text = to_qstring(toml);
@@ -44,13 +43,90 @@ QString caption_of(const SweepCell& cell) {
   return values.join(" · ");
 }
 
-// True for paths inside a species or a scatter.
-bool is_of_model(const world::TextPath& path) {
-  return path.size() > 2 && path.steps[1].is_index &&
-         (path.steps[0].key == "species" || path.steps[0].key == "scatter");
-}
-
 }  // namespace
+
+// A small image with a caption, which the user can click. Shows a placeholder, the image or an
+// error.
+class PictureCell final : public QAbstractButton {
+ public:
+  PictureCell() {
+    setFocusPolicy(Qt::StrongFocus);
+    setAttribute(Qt::WA_Hover);
+    setCursor(Qt::PointingHandCursor);
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
+  }
+
+  // The caption below the image: the value and its cost.
+  void set_caption(const QString& value, const QString& cost) {
+    value_ = value;
+    cost_ = cost;
+    setAccessibleName(value + (cost.isEmpty() ? "" : ", " + cost));
+    update();
+  }
+  void set_image(const QImage& image) {
+    image_ = image;
+    error_.clear();
+    setToolTip({});
+    update();
+  }
+  void set_error(const QString& error) {
+    error_ = error;
+    setToolTip(value_ + ": " + error);
+    update();
+  }
+  // Highlights the cell with the values of the present world.
+  void set_present(bool present) {
+    if (std::exchange(present_, present) != present) update();
+  }
+  QRect picture_area() const {
+    const int lines = fontMetrics().height() + kCellMargin;
+    return rect().adjusted(kCellMargin, kCellMargin, -kCellMargin, -kCellMargin - lines);
+  }
+  QSize sizeHint() const override { return {192, 150}; }
+  QSize minimumSizeHint() const override { return {96, 84}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override {
+    if (event->key() == Qt::Key_Return) return click();
+    QAbstractButton::keyPressEvent(event);
+  }
+
+ private:
+  QImage image_;
+  QString value_, cost_, error_;
+  bool present_ = false;
+};
+
+void PictureCell::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::SmoothPixmapTransform);
+  const QPalette& colours = palette();
+  const bool light = underMouse() || hasFocus();
+  if (present_ || light) {
+    QColor colour = colours.color(QPalette::Highlight);
+    if (!present_) colour.setAlpha(70);
+    painter.fillRect(rect(), colour);
+  }
+  const QRect area = picture_area();
+  if (image_.isNull()) {
+    painter.fillRect(area, colours.color(QPalette::AlternateBase));
+    painter.setPen(colours.color(QPalette::PlaceholderText));
+    painter.drawText(area.adjusted(6, 4, -6, -4), Qt::AlignCenter | Qt::TextWordWrap,
+                     error_.isEmpty() ? tr("…") : error_);
+  } else {
+    const QSize scaled = image_.size().scaled(area.size(), Qt::KeepAspectRatio);
+    painter.drawImage(
+        QRect(area.center() - QPoint(scaled.width() / 2, scaled.height() / 2), scaled), image_);
+  }
+  const QRect line(area.left(), area.bottom() + 1, area.width(), height() - area.bottom() - 2);
+  painter.setPen(colours.color(present_ ? QPalette::HighlightedText : QPalette::WindowText));
+  const int cost_width = cost_.isEmpty() ? 0 : fontMetrics().horizontalAdvance(cost_) + 6;
+  painter.drawText(line.adjusted(2, 0, -cost_width, 0), Qt::AlignLeft | Qt::AlignVCenter,
+                   fontMetrics().elidedText(value_, Qt::ElideRight, line.width() - cost_width));
+  if (!present_) painter.setPen(colours.color(QPalette::PlaceholderText));
+  painter.drawText(line.adjusted(0, 0, -2, 0), Qt::AlignRight | Qt::AlignVCenter, cost_);
+}
 
 ContactSheet::ContactSheet(Document& document, PictureService& service, MessageLog& messages,
                            AskView ask_view, QWidget* parent)
@@ -123,9 +199,9 @@ ContactSheet::ContactSheet(Document& document, PictureService& service, MessageL
   layout->addLayout(below);
   resize(880, 680);
   restoreGeometry(QSettings().value(kGeometryKey).toByteArray());
-  connect(&document_, &Document::changed, this, [this](Changes what) {
+  connect(&document_, &Document::changed, this, [this](Change what) {
     if (!isVisible()) return;
-    if (what.testFlag(Change::kFile)) return close(), void();
+    if (what == Change::kFile) return close(), void();
     list_fields();
     mark_present();
   });
@@ -175,18 +251,14 @@ void ContactSheet::choose(const world::TextPath& first) {
   const int index = first_->findData(to_qstring(first.text()));
   if (index >= 0) first_->setCurrentIndex(index);
   second_->setCurrentIndex(0);
-  subject_->setCurrentIndex(is_of_model(first) ? 1 : 0);
-}
-
-const world::WorldField* ContactSheet::field_of(const QComboBox& box) const {
-  const auto path = world::parse_text_path(box.currentData().toString().toStdString());
-  return path && !path->empty() ? document_.field(*path) : nullptr;
+  subject_->setCurrentIndex(subject_of(first) ? 1 : 0);
 }
 
 std::vector<world::WorldField> ContactSheet::fields() const {
   std::vector<world::WorldField> fields;
   for (const QComboBox* box : {first_, second_}) {
-    const world::WorldField* field = field_of(*box);
+    const auto path = world::parse_text_path(box->currentData().toString().toStdString());
+    const world::WorldField* field = path && !path->empty() ? document_.field(*path) : nullptr;
     if (field != nullptr && (fields.empty() || !(fields[0].path == field->path)))
       fields.push_back(*field);
   }
@@ -196,7 +268,7 @@ std::vector<world::WorldField> ContactSheet::fields() const {
 void ContactSheet::fill() {
   service_.cancel(this);
   swept_ = fields();
-  const bool of_model = !swept_.empty() && is_of_model(swept_[0].path);
+  const bool of_model = !swept_.empty() && subject_of(swept_[0].path).has_value();
   subject_->setEnabled(of_model);
   if (!of_model) subject_->setCurrentIndex(0);
   more_->setVisible(std::ranges::any_of(
@@ -216,7 +288,7 @@ void ContactSheet::fill() {
     widget->set_caption(caption_of((*cells)[i]), {});
     connect(widget, &PictureCell::clicked, this, [this, i] { apply(i); });
     grid_->addWidget(widget, static_cast<int>(i / wide), static_cast<int>(i % wide));
-    shown_.push_back({.cell = std::move((*cells)[i]), .widget = widget, .seconds = {}});
+    shown_.push_back({.cell = std::move((*cells)[i]), .widget = widget});
   }
   mark_present();
   ask_costs();
@@ -227,15 +299,14 @@ core::Result<PictureRequest> ContactSheet::request_of(const SweepCell& cell) con
   request.file = document_.file().string();
   request.text = cell.text;
   const auto view = ask_view_();
-  const QSize place = shown_.front().widget->picture_size();
+  const QSize place = shown_.front().widget->picture_area().size();
   request.size = {kSheetWidth,
                   std::clamp(kSheetWidth * static_cast<std::uint32_t>(std::max(place.height(), 1)) /
                                  static_cast<std::uint32_t>(std::max(place.width(), 1)),
                              kSheetWidth / 4, kSheetWidth * 2)};
-  if (subject_->currentIndex() == 1 && is_of_model(swept_[0].path)) {
-    const std::size_t index = swept_[0].path.steps[1].index;
-    auto text = swept_[0].path.steps[0].key == "species" ? species_portrait(cell.text, index)
-                                                         : scatter_portrait(cell.text, index);
+  const auto model = subject_of(swept_[0].path);
+  if (subject_->currentIndex() == 1 && model) {
+    auto text = portrait_of(cell.text, *model);
     if (!text) return tl::unexpected(text.error());
     request.kind = PictureKind::kPortrait;
     request.text = *std::move(text);
@@ -262,20 +333,19 @@ void ContactSheet::ask_costs() {
     request.file = document_.file().string();
     if (view) request.place = view->place;
     service_.ask(std::move(request), batch_, static_cast<double>(i), this,
-                 [this, i](const PictureReply& reply) { note_cost(i, reply); });
+                 [this, i](const PictureReply& reply) {
+                   Shown& shown = shown_[i];
+                   if (reply.cost) {
+                     shown.seconds = reply.cost->seconds;
+                     shown.widget->set_caption(caption_of(shown.cell),
+                                               tr("%1 ms").arg(shown.seconds * 1000, 0, 'g', 3));
+                   } else {
+                     fail(i, to_qstring(reply.error));
+                   }
+                   if (--costs_left_ == 0) ask_distances();
+                 });
   }
   update_status();
-}
-
-void ContactSheet::note_cost(std::size_t i, const PictureReply& reply) {
-  Shown& shown = shown_[i];
-  if (reply.cost) {
-    shown.seconds = reply.cost->seconds;
-    shown.widget->set_caption(caption_of(shown.cell), cost_text(*reply.cost));
-  } else {
-    fail(i, to_qstring(reply.error));
-  }
-  if (--costs_left_ == 0) ask_distances();
 }
 
 // All models of a sheet have the same distance, so that their sizes are comparable.
@@ -296,14 +366,12 @@ void ContactSheet::ask_distances() {
   if (distances_left_ == 0) ask_pictures();
 }
 
+// The cheapest cell comes first.
 void ContactSheet::ask_pictures() {
-  std::vector<std::optional<double>> costs;
-  for (const Shown& shown : shown_)
-    costs.push_back(shown.seconds);
-  double rank = 0, farthest_m = 0;
+  double farthest_m = 0;
   for (const Shown& shown : shown_)
     farthest_m = std::max(farthest_m, shown.distance_m);
-  for (const std::size_t i : cheapest_first(costs)) {
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
     if (shown_[i].failed) continue;
     auto request = request_of(shown_[i].cell);
     if (!request) {
@@ -311,19 +379,17 @@ void ContactSheet::ask_pictures() {
       continue;
     }
     request->distance_m = std::min(farthest_m, kMaxSmaller * shown_[i].distance_m);
-    service_.ask(*std::move(request), batch_, rank++, this,
-                 [this, i](const PictureReply& reply) { note_picture(i, reply); });
+    service_.ask(*std::move(request), batch_, shown_[i].seconds, this,
+                 [this, i](const PictureReply& reply) {
+                   if (reply.error.empty() && !reply.image.isNull()) {
+                     shown_[i].widget->set_image(reply.image);
+                   } else {
+                     fail(i, reply.error.empty() ? tr("no image") : to_qstring(reply.error));
+                   }
+                   ++drawn_;
+                   update_status();
+                 });
   }
-  update_status();
-}
-
-void ContactSheet::note_picture(std::size_t i, const PictureReply& reply) {
-  if (reply.error.empty() && !reply.image.isNull()) {
-    shown_[i].widget->set_image(reply.image);
-  } else {
-    fail(i, reply.error.empty() ? tr("no image") : to_qstring(reply.error));
-  }
-  ++drawn_;
   update_status();
 }
 

@@ -46,20 +46,17 @@ class ContactSheet final : public QDialog {
   struct Shown {
     SweepCell cell;
     PictureCell* widget = nullptr;
-    std::optional<double> seconds;
+    double seconds = 0;     // cost of a block
     double distance_m = 0;  // at which a portrait shows the whole model
     bool failed = false;
   };
   void list_fields();
   void choose(const world::TextPath& first);
-  const world::WorldField* field_of(const QComboBox& box) const;
   std::vector<world::WorldField> fields() const;
   void fill();
   void ask_costs();
-  void note_cost(std::size_t i, const PictureReply& reply);
   void ask_distances();
   void ask_pictures();
-  void note_picture(std::size_t i, const PictureReply& reply);
   core::Result<PictureRequest> request_of(const SweepCell& cell) const;
   void fail(std::size_t i, const QString& error);
   void apply(std::size_t i);
@@ -81,7 +78,6 @@ class ContactSheet final : public QDialog {
   int batch_ = 0;
   std::uint64_t page_ = 0;
   std::size_t costs_left_ = 0, distances_left_ = 0, drawn_ = 0;
-  bool listing_ = false;
 };
 
 }  // namespace psygen::editor

@@ -16,14 +16,6 @@
 namespace psygen::editor {
 namespace {
 
-// The path of the species or scatter that contains a path; nullopt for other paths.
-std::optional<world::TextPath> subject_of(const world::TextPath& path) {
-  if (path.size() < 2 || !path.steps[1].is_index) return std::nullopt;
-  const std::string& table = path.steps[0].key;
-  if (table != "species" && table != "scatter") return std::nullopt;
-  return path.first(2);
-}
-
 // A placement in front of the model of a portrait world. With `before`, the camera keeps its
 // direction and distance.
 std::optional<WorldView::CameraPlacement> placement_of(
@@ -53,9 +45,7 @@ ModelView::ModelView(Document& document, WorldView& view, MessageLog& messages, 
     : QObject(parent), document_(document), view_(view), messages_(messages) {}
 
 core::Result<std::string> ModelView::portrait() const {
-  const std::size_t index = subject_->steps[1].index;
-  auto text = subject_->steps[0].key == "species" ? species_portrait(document_.text(), index)
-                                                  : scatter_portrait(document_.text(), index);
+  auto text = portrait_of(document_.text(), *subject_);
   if (text) text = world::with_value(*text, {"world", "seed"}, world::toml_seed(seed_));
   // The renderer loads images of the ground only when it is created.
   const auto& images = document_.world().palette.images;
@@ -127,10 +117,6 @@ void ModelView::frame_model(bool keep_direction) {
   if (keep_direction) before = {view_.camera().pose(), view_.camera().pivot()};
   view_.place_camera_on_load(
       [before](const scene::Scene& scene) { return placement_of(scene, before); });
-}
-
-core::CameraPose ModelView::world_pose() const {
-  return world_pose_ ? *world_pose_ : view_.camera().pose();
 }
 
 QString ModelView::title() const {

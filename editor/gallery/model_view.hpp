@@ -38,7 +38,7 @@ class ModelView final : public QObject {
   std::uint64_t seed() const { return seed_; }
   void set_seed(std::uint64_t seed);
   // The camera's pose in the world, also while a model is shown.
-  core::CameraPose world_pose() const;
+  core::CameraPose world_pose() const { return world_pose_.value_or(view_.camera().pose()); }
   // Name of the shown model.
   QString title() const;
 

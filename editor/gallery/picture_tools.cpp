@@ -27,12 +27,6 @@ constexpr std::uint32_t kLargeWidth = 3840;
 constexpr double kMinEyeOverGroundM = 1;
 constexpr int kFocusDelayMs = 400;  // ignores fields that the pointer only passes
 
-QStringList server_arguments(const QString& device) {
-  QStringList arguments{kPicturesOption};
-  if (!device.isEmpty()) arguments += device;
-  return arguments;
-}
-
 }  // namespace
 
 PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& view,
@@ -42,14 +36,13 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
       document_(document),
       view_(view),
       messages_(messages),
-      service_(QCoreApplication::applicationFilePath(), server_arguments(device)),
+      service_(QCoreApplication::applicationFilePath(), device.isEmpty()
+                                                            ? QStringList{kPicturesOption}
+                                                            : QStringList{kPicturesOption, device}),
       library_(new LibraryPanel(document, service_, messages)),
       label_(new QLabel) {
   focus_delay_.setSingleShot(true);
-  connect(&focus_delay_, &QTimer::timeout, this, [this] {
-    focused_field_ = field_under_pointer_;
-    if (sheet_ != nullptr) sheet_->suggest(focused_field_);
-  });
+  connect(&focus_delay_, &QTimer::timeout, this, [this] { focused_field_ = field_under_pointer_; });
   label_->setVisible(false);
   window_.statusBar()->addPermanentWidget(label_);
   service_.set_pictures([this] { return document_.pictures(); });
@@ -58,16 +51,15 @@ PictureTools::PictureTools(QMainWindow& window, Document& document, WorldView& v
     view_.set_background_work(BackgroundWork::kPictures, service_.waiting() > 0);
     service_.set_busy(scene.statistics().drawn.awaited > 0 || scene.meshes().outstanding() > 0);
   });
-  connect(&document_, &Document::changed, this, [this](Changes what) {
+  connect(&document_, &Document::changed, this, [this](Change what) {
     // The view shows the document's text again.
     shows_marked_ = false;
-    if (what.testFlag(Change::kFile)) {
+    if (what == Change::kFile) {
       marked_.reset();
       if (compare_ != nullptr) compare_->hide();
     }
     // The new ground may be above the camera.
-    if (what.testAnyFlags(Change::kTerrain | Change::kWorld | Change::kWater) &&
-        !what.testFlag(Change::kFile) && on_world_) {
+    if (what == Change::kGround && on_world_) {
       const core::WorldPosition& at = view_.camera().pose().position;
       if (at.local.y < world::surface_height_m(document_.world(), at) + kMinEyeOverGroundM)
         set_camera_height(kMinEyeOverGroundM);
@@ -120,15 +112,11 @@ void PictureTools::open_sheet() {
     sheet_ = new ContactSheet(
         document_, service_, messages_, [this] { return view_state(); }, &window_);
     connect(sheet_, &ContactSheet::value_applied, this, &PictureTools::set_camera_height);
-    if (!focused_field_.empty()) sheet_->suggest(focused_field_);
   }
+  if (!focused_field_.empty()) sheet_->suggest(focused_field_);
   sheet_->show();
   sheet_->raise();
   sheet_->activateWindow();
-}
-
-void PictureTools::add_to_world_menu(QMenu& menu) {
-  menu.addAction(tr("&Contact sheet …"), tr("Ctrl+K"), this, &PictureTools::open_sheet);
 }
 
 // --- Files

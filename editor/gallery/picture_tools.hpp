@@ -4,10 +4,8 @@
 #pragma once
 
 #include <QObject>
-#include <QPointer>
 #include <QTime>
 #include <QTimer>
-#include <functional>
 #include <optional>
 
 #include "editor/document/document.hpp"
@@ -43,14 +41,14 @@ class PictureTools final : public QObject {
   void set_on_world(bool on);
   void add_to_file_menu(QMenu& menu);
   void add_to_view_menu(QMenu& menu);
-  void add_to_world_menu(QMenu& menu);
+  // Shows the contact sheet, for the focused field.
+  void open_sheet();
 
  private:
   std::optional<ViewState> view_state() const;
   std::optional<std::pair<ComparedState, ComparedState>> states() const;
   // Sets the camera's height above the ground or water of the present text.
   void set_camera_height(double above_m);
-  void open_sheet();
   void export_selection();
   void save_large_picture();
   void mark();
@@ -72,7 +70,6 @@ class PictureTools final : public QObject {
   QTimer focus_delay_;
   std::optional<std::string> marked_;  // the text A
   handmade::MemoryPicturesPtr marked_pictures_;
-  std::filesystem::path marked_file_;
   QTime marked_at_;
   bool shows_marked_ = false, on_world_ = true;
 };

@@ -37,16 +37,20 @@ std::vector<double> mean_seconds(const scene::Scene& scene) {
 
 }  // namespace
 
-std::vector<TypeContents> contents_by_type(const scene::Scene& scene) {
-  std::vector<TypeContents> held(scene.registry().size());
+std::map<std::string, TypeContents> contents_by_type(const scene::Scene& scene) {
+  std::vector<TypeContents> types(scene.registry().size());
   for (const synthesis::MeshRecord& record : scene.meshes().records()) {
-    if (record.state != synthesis::MeshState::kReady || record.key.model >= held.size()) continue;
-    TypeContents& of = held[record.key.model];
+    if (record.state != synthesis::MeshState::kReady || record.key.model >= types.size()) continue;
+    TypeContents& of = types[record.key.model];
+    of.model = record.key.model;
     ++of.meshes;
     of.triangles += record.size.triangle_count();
     of.vertices += record.size.vertex_count;
     of.bytes += record.range.bytes;
   }
+  std::map<std::string, TypeContents> held;
+  for (const TypeContents& of : types)
+    if (of.meshes > 0) held.emplace(scene.registry()[of.model].name(), of);
   return held;
 }
 
@@ -57,18 +61,16 @@ CacheContents contents_of(const scene::Scene& scene) {
   contents.modelers =
       std::max(static_cast<unsigned>(scene.meshes().modeler_stats().modelers.size()), 1U);
   const scene::WorldFacts& facts = scene.facts();
-  const std::vector<TypeContents> of_type = contents_by_type(scene);
   const std::vector<double> seconds = mean_seconds(scene);
-  for (models::ModelIndex i = 0; i < of_type.size(); ++i) {
-    if (of_type[i].meshes == 0) continue;
+  for (const auto& [name, of] : contents_by_type(scene)) {
     HeldMeshes held;
-    held.type = facts.registry[i].name();
-    held.kind = i == facts.world.terrain_model ? Kind::kGround
-                : i >= facts.given_types       ? Kind::kDerived
-                                               : Kind::kModel;
-    held.meshes = of_type[i].meshes;
-    held.bytes = static_cast<double>(of_type[i].bytes);
-    held.seconds = seconds[i] * static_cast<double>(held.meshes);
+    held.type = name;
+    held.kind = of.model == facts.world.terrain_model ? Kind::kGround
+                : of.model >= facts.given_types       ? Kind::kDerived
+                                                      : Kind::kModel;
+    held.meshes = of.meshes;
+    held.bytes = static_cast<double>(of.bytes);
+    held.seconds = seconds[of.model] * static_cast<double>(held.meshes);
     contents.held.push_back(std::move(held));
   }
   return contents;

@@ -12,7 +12,6 @@
 namespace psygen::editor {
 namespace {
 
-constexpr int kHeight = 22;
 constexpr double kSideMargin = 7;  // half of a slider's handle
 const QColor kRejected(200, 60, 50, 70);
 const QColor kMeasured(230, 150, 40);
@@ -31,10 +30,6 @@ QString cost_text(const BlockCost& cost) {
 CostStrip::CostStrip(QWidget* parent) : QWidget(parent) {
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   setAccessibleName(tr("Predicted cost of each value"));
-}
-
-QSize CostStrip::sizeHint() const {
-  return {80, kHeight};
 }
 
 void CostStrip::set_points(std::vector<CostPoint> points) {

@@ -19,7 +19,7 @@ class CostStrip final : public QWidget {
   void set_points(std::vector<CostPoint> points);
   // The present value of the slider.
   void set_value(double value);
-  QSize sizeHint() const override;
+  QSize sizeHint() const override { return {80, 22}; }
 
  protected:
   void paintEvent(QPaintEvent* event) override;

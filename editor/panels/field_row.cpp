@@ -6,12 +6,15 @@
 #include <QColorDialog>
 #include <QComboBox>
 #include <QContextMenuEvent>
+#include <QDoubleSpinBox>
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenu>
 #include <QPushButton>
 #include <QSignalBlocker>
+#include <QSlider>
 #include <QToolButton>
 #include <algorithm>
 #include <cmath>
@@ -19,7 +22,6 @@
 #include "editor/document/qt_text.hpp"
 #include "editor/panels/cost_strip.hpp"
 #include "editor/panels/message_log.hpp"
-#include "editor/panels/number_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
 
 namespace psygen::editor {
@@ -27,7 +29,54 @@ namespace {
 
 using world::FieldKind;
 
-constexpr int kLabelWidth = 116;
+constexpr int kLabelWidth = 116, kSliderSteps = 1000;
+
+// A box that shows as many decimals as its value needs. It handles arrow keys and typed digits;
+// undo and redo go to the window.
+class NumberBox final : public QDoubleSpinBox {
+ public:
+  using QDoubleSpinBox::QDoubleSpinBox;
+
+  QString textFromValue(double value) const override {
+    return QLocale::c().toString(value, 'g', 7);
+  }
+  double valueFromText(const QString& text) const override { return number_in(text).value_or(0); }
+  QValidator::State validate(QString& text, int&) const override {
+    const auto value = number_in(text);
+    return value && *value >= minimum() && *value <= maximum() ? QValidator::Acceptable
+                                                               : QValidator::Intermediate;
+  }
+
+ protected:
+  bool event(QEvent* event) override {
+    if (event->type() == QEvent::ShortcutOverride) {
+      const auto* key = static_cast<QKeyEvent*>(event);
+      if (key->matches(QKeySequence::Undo) || key->matches(QKeySequence::Redo)) {
+        event->ignore();
+        return false;
+      }
+    }
+    return QDoubleSpinBox::event(event);
+  }
+
+ private:
+  std::optional<double> number_in(QString text) const {
+    bool ok = false;
+    const double value = QLocale::c().toDouble(text.remove(suffix()).trimmed(), &ok);
+    return ok ? std::optional(value) : std::nullopt;
+  }
+};
+
+// The step of a box: about a hundredth of the soft range, rounded to a power of ten.
+double step_of(const Scale& scale) {
+  if (scale.whole) return 1;
+  return std::pow(10.0, std::floor(std::log10(std::max(scale.high - scale.low, 1e-9) / 50)));
+}
+
+QString suffix_of(const std::string& unit) {
+  if (unit == "degrees") return QStringLiteral("°");
+  return unit.empty() || unit == "1" ? QString() : " " + to_qstring(unit);
+}
 
 std::size_t count_of(FieldKind kind) {
   switch (kind) {
@@ -72,7 +121,7 @@ QToolButton* small_button(const QString& text, const QString& help) {
 }  // namespace
 
 FieldRow::FieldRow(FieldHost& host, const world::WorldField& field)
-    : host_(host), field_(field), label_(new QLabel), reset_(nullptr) {
+    : host_(host), field_(field), scale_(scale_of(field)), label_(new QLabel), reset_(nullptr) {
   const QString name = to_qstring(field.label);
   setObjectName(to_qstring(field.path.text()));
   label_->setText(name);
@@ -120,38 +169,76 @@ void FieldRow::build(QHBoxLayout& layout) {
       break;
   }
   const QString name = to_qstring(field_.label);
-  column_ = new QVBoxLayout;
-  column_->setSpacing(0);
+  auto* column = new QVBoxLayout;
+  column->setSpacing(0);
   const std::size_t count = count_of(field_.kind);
   for (std::size_t i = 0; i < count; ++i) {
     const bool pair = field_.kind == FieldKind::kIntegerPair;
     const QString part =
         i == 0 ? (pair ? tr("along x") : tr("minimum")) : (pair ? tr("along z") : tr("maximum"));
     auto* line = new QHBoxLayout;
+    line->setSpacing(layout.spacing());
     add_number(*line, count == 1 ? name : name + ", " + part);
-    column_->addLayout(line);
+    column->addLayout(line);
   }
-  layout.addLayout(column_, 1);
-  if (has_cost_curve(field_)) add_cost();
+  layout.addLayout(column, 1);
+  if (!has_cost_curve(field_)) return;
+  // The strip is as wide as the slider above it. It exists before its costs are known, so that rows
+  // keep their place.
+  auto* line = new QHBoxLayout;
+  cost_ = new CostStrip;
+  line->addWidget(cost_, 1);
+  line->addSpacing(numbers_.front().box->width() + layout.spacing());
+  column->addLayout(line);
 }
 
-void FieldRow::add_number(QHBoxLayout& layout, const QString& name) {
-  NumberEdit::Range range{field_.hard_min, field_.hard_max, scale_of(field_),
-                          to_qstring(field_.unit == "1" ? "" : field_.unit)};
-  auto* edit = new NumberEdit(range, name);
+void FieldRow::add_number(QHBoxLayout& line, const QString& name) {
+  auto* slider = new QSlider(Qt::Horizontal);
+  const double span = scale_.high - scale_.low;
+  slider->setRange(0, scale_.whole && span < kSliderSteps ? static_cast<int>(span) : kSliderSteps);
+  slider->setAccessibleName(name);
+  slider->setFocusPolicy(Qt::StrongFocus);
+  auto* box = new NumberBox;
+  box->setDecimals(scale_.whole ? 0 : 10);
+  box->setRange(field_.hard_min, field_.hard_max);
+  box->setSingleStep(step_of(scale_));
+  box->setKeyboardTracking(false);
+  box->setAccessibleName(name);
+  // Equally wide for all short units, so that rows are aligned.
+  const QString suffix = suffix_of(field_.unit);
+  const auto width_of = [box](const QString& text) {
+    return box->fontMetrics().horizontalAdvance(text);
+  };
+  box->setFixedWidth(width_of("0000000000") + std::max(width_of(suffix), width_of(" m")));
+  box->setSuffix(suffix);
+  line.addWidget(slider, 1);
+  line.addWidget(box);
   const std::size_t at = numbers_.size();
-  numbers_.push_back(edit);
-  layout.addWidget(edit, 1);
-  setFocusProxy(numbers_.front());
-  connect(edit, &NumberEdit::change_requested, this, [this, at] { want_numbers(at); });
-  connect(edit, &NumberEdit::dragged, this, [this](bool on) { host_.set_dragging(on); });
+  numbers_.push_back({slider, box});
+  setFocusProxy(numbers_.front().slider);
+  connect(slider, &QSlider::sliderPressed, this, [this] { host_.set_dragging(true); });
+  connect(slider, &QSlider::sliderReleased, this, [this] { host_.set_dragging(false); });
+  connect(slider, &QSlider::valueChanged, this, [this, slider, box, at](int position) {
+    const QSignalBlocker quiet(box);
+    box->setValue(scale_.at(static_cast<double>(position) / std::max(slider->maximum(), 1)));
+    want_numbers(at);
+  });
+  connect(box, &QDoubleSpinBox::valueChanged, this, [this, slider, at](double value) {
+    const QSignalBlocker quiet(slider);
+    slider->setValue(position_of(value, *slider));
+    want_numbers(at);
+  });
+}
+
+int FieldRow::position_of(double value, const QSlider& slider) const {
+  return static_cast<int>(std::lround(scale_.fraction_of(value) * slider.maximum()));
 }
 
 // Moving one end of a range past the other moves both.
 void FieldRow::want_numbers(std::size_t changed) {
   std::vector<double> values;
-  for (const NumberEdit* edit : numbers_)
-    values.push_back(edit->value());
+  for (const Number& number : numbers_)
+    values.push_back(number.box->value());
   const bool range =
       field_.kind == FieldKind::kIntegerRange || field_.kind == FieldKind::kRealRange;
   if (range && values[0] > values[1]) values[1 - changed] = values[changed];
@@ -306,8 +393,13 @@ void FieldRow::contextMenuEvent(QContextMenuEvent* event) {
 
 void FieldRow::show(const world::WorldField& field) {
   field_ = field;
-  for (std::size_t i = 0; i < numbers_.size() && !field_.numbers.empty(); ++i)
-    numbers_[i]->set_value(field_.numbers[std::min(i, field_.numbers.size() - 1)]);
+  for (std::size_t i = 0; i < numbers_.size() && !field_.numbers.empty(); ++i) {
+    const auto [slider, box] = numbers_[i];
+    const double value = field_.numbers[std::min(i, field_.numbers.size() - 1)];
+    const QSignalBlocker quiet_slider(slider), quiet_box(box);
+    slider->setValue(position_of(value, *slider));
+    box->setValue(value);
+  }
   if (refresh_) refresh_();
   if (cost_ != nullptr && !field_.numbers.empty()) cost_->set_value(field_.numbers.back());
   // A field that the text sets is bold and can be reset.
@@ -315,16 +407,6 @@ void FieldRow::show(const world::WorldField& field) {
   font.setBold(field_.is_set);
   label_->setFont(font);
   reset_->setEnabled(field_.is_set && !field_.required);
-}
-
-// The strip is as wide as the slider above it. It exists before its costs are known, so that rows
-// keep their place.
-void FieldRow::add_cost() {
-  auto* line = new QHBoxLayout;
-  cost_ = new CostStrip;
-  line->addWidget(cost_, 1);
-  line->addSpacing(numbers_.front()->box_width() + layout()->spacing());
-  column_->addLayout(line);
 }
 
 void FieldRow::show_cost(std::vector<CostPoint> points) {

@@ -10,18 +10,19 @@
 
 #include "editor/cost/block_cost.hpp"
 #include "editor/document/document.hpp"
+#include "editor/document/scale.hpp"
 #include "engine/world/files/world_schema.hpp"
 
+class QDoubleSpinBox;
 class QHBoxLayout;
 class QLabel;
+class QSlider;
 class QToolButton;
-class QVBoxLayout;
 
 namespace psygen::editor {
 
 class CostStrip;
 class MessageLog;
-class NumberEdit;
 
 // The objects that the controls edit with. They outlive the controls.
 struct FieldHost {
@@ -62,14 +63,19 @@ class FieldRow final : public QWidget {
   void contextMenuEvent(QContextMenuEvent* event) override;
 
  private:
+  // The slider has the soft range, the box the hard range. Both always show the same value.
+  struct Number {
+    QSlider* slider;
+    QDoubleSpinBox* box;
+  };
   void build(QHBoxLayout& layout);
-  void add_number(QHBoxLayout& layout, const QString& name);
+  void add_number(QHBoxLayout& line, const QString& name);
+  int position_of(double value, const QSlider& slider) const;
   void add_choice(QHBoxLayout& layout);
   void add_text(QHBoxLayout& layout);
   void add_switch(QHBoxLayout& layout);
   void add_colour(QHBoxLayout& layout);
   void add_seed(QHBoxLayout& layout);
-  void add_cost();
   void want_numbers(std::size_t changed);
   void choose_colour();
   void reset();
@@ -77,11 +83,11 @@ class FieldRow final : public QWidget {
 
   FieldHost& host_;
   world::WorldField field_;
+  const Scale scale_;  // of the sliders
   QLabel* label_;
   QToolButton* reset_;
   CostStrip* cost_ = nullptr;  // null: costs do not depend on the field
-  QVBoxLayout* column_ = nullptr;
-  std::vector<NumberEdit*> numbers_;
+  std::vector<Number> numbers_;
   std::function<void()> refresh_;  // of the other kinds of controls
 };
 

@@ -1,9 +1,11 @@
 #include "editor/panels/properties_panel.hpp"
 
+#include <QAccessible>
 #include <QApplication>
 #include <QClipboard>
 #include <QLabel>
 #include <QLineEdit>
+#include <QPushButton>
 #include <QScrollArea>
 #include <QSplitter>
 #include <QToolButton>
@@ -13,7 +15,6 @@
 #include <functional>
 
 #include "editor/document/qt_text.hpp"
-#include "editor/panels/impact_bar.hpp"
 #include "editor/panels/message_log.hpp"
 
 namespace psygen::editor {
@@ -34,9 +35,8 @@ bool same_fields(const world::WorldSection& a, const world::WorldSection& b) {
     return x.path == y.path && x.kind == y.kind && x.choices == y.choices;
   };
   return a.path == b.path && a.title == b.title &&
-         std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), b.fields.end(),
-                    same_field) &&
-         std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), same_fields);
+         std::ranges::equal(a.fields, b.fields, same_field) &&
+         std::ranges::equal(a.parts, b.parts, same_fields);
 }
 
 // True if the text sets a field with a default, in the section or in its parts.
@@ -56,7 +56,7 @@ PropertiesPanel::PropertiesPanel(FieldHost host)
       tree_(new QTreeWidget),
       heading_(make_heading()),
       scroll_(new QScrollArea),
-      impact_(new ImpactBar) {
+      impact_(make_impact()) {
   search_->setPlaceholderText(tr("Search all fields"));
   search_->setClearButtonEnabled(true);
   search_->setAccessibleName(tr("Search all fields"));
@@ -82,13 +82,14 @@ PropertiesPanel::PropertiesPanel(FieldHost host)
   layout->addWidget(search_);
   layout->addWidget(splitter, 1);
   layout->addWidget(impact_);
+  show_impact(tr("The cost of your last change appears here."));
   connect(search_, &QLineEdit::textChanged, this, &PropertiesPanel::search);
   connect(tree_, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
     if (item == nullptr || item->data(0, kPathRole).isNull()) return;
     const auto path = world::parse_text_path(item->data(0, kPathRole).toString().toStdString());
     if (path) chosen_ = *path;
     search_->clear();
-    show_section();
+    search({});
     Q_EMIT section_chosen(chosen_);
   });
   connect(tree_, &QTreeWidget::customContextMenuRequested, this, [this](const QPoint& at) {
@@ -121,6 +122,60 @@ QWidget* PropertiesPanel::make_heading() {
   return heading;
 }
 
+// The height is constant, so that the fields keep their place.
+QFrame* PropertiesPanel::make_impact() {
+  auto* frame = new QFrame;
+  frame->setObjectName("impact");
+  impact_label_ = new QLabel;
+  impact_label_->setWordWrap(true);
+  impact_label_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
+  impact_label_->setAccessibleName(tr("Impact of the last change"));
+  impact_label_->setMinimumHeight(3 * impact_label_->fontMetrics().lineSpacing());
+  apply_ = new QPushButton(tr("&Apply anyway"));
+  discard_ = new QPushButton(tr("&Keep the old value"));
+  auto* buttons = new QHBoxLayout;
+  for (QPushButton* button : {apply_, discard_}) {
+    QSizePolicy policy = button->sizePolicy();
+    policy.setRetainSizeWhenHidden(true);
+    button->setSizePolicy(policy);
+    buttons->addWidget(button);
+  }
+  buttons->addStretch(1);
+  auto* layout = new QVBoxLayout(frame);
+  layout->setContentsMargins(6, 4, 6, 4);
+  layout->setSpacing(2);
+  layout->addWidget(impact_label_);
+  layout->addLayout(buttons);
+  connect(apply_, &QPushButton::clicked, this,
+          [this] { host_.messages.check(host_.document.apply_proposed_edit()); });
+  connect(discard_, &QPushButton::clicked, this, [this] {
+    host_.document.discard_proposed_edit();
+    show(host_.document.sections());
+  });
+  connect(&host_.document, &Document::edit_proposed, this, [this](const QString& question) {
+    update_impact();
+    if (question.isEmpty()) return;
+    QAccessibleEvent alert(impact_label_, QAccessible::Alert);
+    QAccessible::updateAccessibility(&alert);
+  });
+  return frame;
+}
+
+void PropertiesPanel::show_impact(const QString& impact) {
+  impact_text_ = impact;
+  update_impact();
+}
+
+void PropertiesPanel::update_impact() {
+  const QString& question = host_.document.confirmation();
+  const bool asks = !question.isEmpty();
+  impact_label_->setText(asks ? question : impact_text_);
+  apply_->setVisible(asks);
+  discard_->setVisible(asks);
+  impact_->setStyleSheet(
+      QString("#impact { border: 2px solid palette(%1); }").arg(asks ? "highlight" : "midlight"));
+}
+
 // Null hides the heading, for a list of fields from several sections.
 void PropertiesPanel::show_heading(const world::WorldSection* section) {
   heading_->setVisible(section != nullptr);
@@ -150,7 +205,7 @@ void PropertiesPanel::paste() {
 }
 
 void PropertiesPanel::show(const std::vector<world::WorldSection>& sections) {
-  const bool same = same_shape(sections);
+  const bool same = std::ranges::equal(sections, sections_, same_fields);
   sections_ = sections;
   if (!same) return list(sections);
   mark(sections);
@@ -159,11 +214,6 @@ void PropertiesPanel::show(const std::vector<world::WorldSection>& sections) {
     if (const world::WorldField* field = find_field(sections_, row->field().path))
       row->show(*field);
   }
-}
-
-bool PropertiesPanel::same_shape(const std::vector<world::WorldSection>& sections) const {
-  return std::equal(sections.begin(), sections.end(), sections_.begin(), sections_.end(),
-                    same_fields);
 }
 
 void PropertiesPanel::list(const std::vector<world::WorldSection>& sections) {
@@ -245,15 +295,11 @@ void PropertiesPanel::add_row(const world::WorldField& field) {
   connect(row, &FieldRow::field_focused, this, &PropertiesPanel::field_focused);
 }
 
-void PropertiesPanel::show_section() {
-  search(search_->text());
-}
-
 // Shows the fields of the chosen section, or all fields that contain the text.
 void PropertiesPanel::search(const QString& text) {
   rows_.clear();
-  form_ = new QWidget;
-  lines_ = new QVBoxLayout(form_);
+  auto* form = new QWidget;
+  lines_ = new QVBoxLayout(form);
   lines_->setSpacing(1);
   if (text.isEmpty()) {
     const world::WorldSection* section = chosen();
@@ -280,7 +326,7 @@ void PropertiesPanel::search(const QString& text) {
   lines_->addStretch(1);
   // A row of the previous form may be in the middle of its signal.
   if (QWidget* previous = scroll_->takeWidget()) previous->deleteLater();
-  scroll_->setWidget(form_);
+  scroll_->setWidget(form);
 }
 
 std::vector<world::WorldField> PropertiesPanel::shown_fields() const {

@@ -1,6 +1,7 @@
 // The panel "Properties": an outline of the world's sections, the fields of the chosen section, and
 // a search over all fields. It recreates its controls only when the sections change, so that a
-// dragged slider stays under the pointer. Main thread.
+// dragged slider stays under the pointer. Below the fields it shows the impact of the last change,
+// or asks for confirmation of a costly edit. Main thread.
 #pragma once
 
 #include <QWidget>
@@ -8,8 +9,10 @@
 
 #include "editor/panels/field_row.hpp"
 
+class QFrame;
 class QLabel;
 class QLineEdit;
+class QPushButton;
 class QScrollArea;
 class QToolButton;
 class QTreeWidget;
@@ -17,8 +20,6 @@ class QTreeWidgetItem;
 class QVBoxLayout;
 
 namespace psygen::editor {
-
-class ImpactBar;
 
 // Edits the document; show() sets the sections that it shows.
 class PropertiesPanel final : public QWidget {
@@ -37,8 +38,8 @@ class PropertiesPanel final : public QWidget {
   const world::TextPath& section() const { return chosen_; }
   // The control of a field; null if its section is not shown.
   FieldRow* row(const world::TextPath& path) const;
-  // The impact of the last change, and the question before costly edits.
-  ImpactBar& impact() { return *impact_; }
+  // Shows the impact of the last change, after the answer to the present question.
+  void show_impact(const QString& impact);
 
   // Act on the chosen section: random values, defaults, and its text in the clipboard.
   void randomise();
@@ -56,13 +57,13 @@ class PropertiesPanel final : public QWidget {
 
  private:
   QWidget* make_heading();
+  QFrame* make_impact();
+  void update_impact();
   void show_heading(const world::WorldSection* section);
-  bool same_shape(const std::vector<world::WorldSection>& sections) const;
   void list(const std::vector<world::WorldSection>& sections);
   QTreeWidgetItem* group_of(world::SectionKind kind);
   void add_item(const world::WorldSection& section, QTreeWidgetItem* parent);
   void mark(const std::vector<world::WorldSection>& sections);
-  void show_section();
   void search(const QString& text);
   void add_row(const world::WorldField& field);
   const world::WorldSection* chosen() const;
@@ -76,8 +77,10 @@ class PropertiesPanel final : public QWidget {
   QLabel* title_;
   QToolButton* reset_;
   QScrollArea* scroll_;
-  ImpactBar* impact_;
-  QWidget* form_ = nullptr;
+  QFrame* impact_;  // below the fields
+  QLabel* impact_label_;
+  QPushButton *apply_, *discard_;  // answers to a question
+  QString impact_text_;
   QVBoxLayout* lines_ = nullptr;
   std::vector<FieldRow*> rows_;
 };

@@ -5,7 +5,6 @@
 #include <QTableWidget>
 #include <QVBoxLayout>
 #include <algorithm>
-#include <cmath>
 
 #include "editor/document/qt_text.hpp"
 #include "editor/panels/cache_contents.hpp"
@@ -21,16 +20,6 @@ namespace {
 
 constexpr std::size_t kSamples = 512;
 constexpr int kTableUpdateMs = 250;
-
-// Contents of the types with cached meshes, by name.
-std::map<std::string, TypeContents> contents_by_name(const scene::Scene& scene) {
-  const std::vector<TypeContents> of_type = contents_by_type(scene);
-  std::map<std::string, TypeContents> held;
-  for (models::ModelIndex i = 0; i < of_type.size(); ++i) {
-    if (of_type[i].meshes > 0) held[std::string(scene.registry()[i].name())] = of_type[i];
-  }
-  return held;
-}
 
 QString percentile(std::vector<double> ms, double share) {
   if (ms.empty()) return "–";
@@ -95,7 +84,7 @@ void StatisticsPanel::show(const scene::Scene& scene) {
                       .arg(bytes_text(stats.bytes), bytes_text(stats.budget_bytes),
                            count_text(stats.ready), bytes_text(stats.visible_bytes),
                            count_text(stats.evictions), count_text(scene.meshes().outstanding())));
-  const auto held = contents_by_name(scene);
+  const auto held = contents_by_type(scene);
   table_->setRowCount(static_cast<int>(held.size()));
   int row = 0;
   bool changed = false;

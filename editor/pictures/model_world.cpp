@@ -88,11 +88,6 @@ constexpr double kPitch = -0.09;     // slightly from above
 constexpr double kMargin = 1.12;     // factor around the model
 constexpr double kMinHeight = 0.25;  // of the camera above ground, in heights of the model
 
-tl::unexpected<core::Error> no_such(std::string_view array, std::size_t index) {
-  return core::fail(core::ErrorCode::kInvalidArgument,
-                    fmt::format("{}[{}]: there is no such table", array, index));
-}
-
 // The text with its only scatter without limits of the ground, and with one instance per block.
 core::Result<std::string> alone(core::Result<std::string> text) {
   for (const char* limit : {"min_height_m", "max_height_m", "max_slope_deg", "on_ground",
@@ -107,10 +102,6 @@ core::Result<std::string> appended(core::Result<std::string> to, const char* arr
                                    const std::string& table) {
   if (!to) return to;
   return world::with_table_appended(*to, {array}, table);
-}
-
-std::string named_scatter(std::string_view species_name_toml) {
-  return fmt::format("model = {}\ncount = 1\n", species_name_toml);
 }
 
 // The table of an array with this name in quotes, if the text has one.
@@ -152,24 +143,29 @@ std::optional<std::string> name_of_table(std::string_view snippet) {
 
 }  // namespace
 
-core::Result<std::string> scatter_portrait(std::string_view text, std::size_t scatter) {
-  const auto table = world::table_text(text, {"scatter", scatter});
-  if (!table) return no_such("scatter", scatter);
+std::optional<world::TextPath> subject_of(const world::TextPath& path) {
+  if (path.size() < 2 || !path.steps[1].is_index) return std::nullopt;
+  const std::string& table = path.steps[0].key;
+  if (table != "species" && table != "scatter") return std::nullopt;
+  return path.first(2);
+}
+
+core::Result<std::string> portrait_of(std::string_view text, const world::TextPath& subject) {
+  const bool is_species = subject.steps[0].key == "species";
+  const auto table = world::table_text(text, subject);
+  const auto model = world::value_text(text, subject.with(is_species ? "name" : "model"));
+  if (!table || (is_species && !model))
+    return core::fail(core::ErrorCode::kInvalidArgument,
+                      fmt::format("{}: there is no such table", subject.text()));
   core::Result<std::string> studio{std::string(kStudio)};
-  const auto model = world::value_text(text, {"scatter", scatter, "model"});
+  if (is_species)
+    return appended(appended(std::move(studio), "species", *table), "scatter",
+                    fmt::format("model = {}\ncount = 1\n", *model));
   for (const char* array : {"species", "model"}) {
     if (const auto type = model ? table_named(text, array, *model) : std::nullopt)
       studio = appended(std::move(studio), array, *type);
   }
   return alone(appended(std::move(studio), "scatter", *table));
-}
-
-core::Result<std::string> species_portrait(std::string_view text, std::size_t species) {
-  const auto table = world::table_text(text, {"species", species});
-  const auto name = world::value_text(text, {"species", species, "name"});
-  if (!table || !name) return no_such("species", species);
-  return appended(appended(std::string(kStudio), "species", *table), "scatter",
-                  named_scatter(*name));
 }
 
 PicturePlace landscape_viewpoint(std::string_view snippet) {
@@ -189,7 +185,9 @@ core::Result<std::string> snippet_world(std::string_view snippet) {
   const std::string table = name_of_table(snippet).value_or("");
   if (table == "species")
     return appended(std::string(kStudio), "species", std::string(snippet))
-        .and_then([](const std::string& text) { return species_portrait(text, 0); });
+        .and_then([](const std::string& text) {
+          return portrait_of(text, {"species", 0});
+        });
   if (table == "scatter")
     return alone(appended(std::string(kStudio), "scatter", std::string(snippet)));
   if (table == "terrain") return landscape_with(snippet);

@@ -2,7 +2,6 @@
 // Makes texts of world files; draws nothing. Pure functions; any thread.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,15 +9,16 @@
 #include "editor/document/parsed_world.hpp"
 #include "editor/pictures/picture_request.hpp"
 #include "engine/core/camera.hpp"
+#include "engine/world/files/text_path.hpp"
 
 namespace psygen::editor {
 
-// Returns a world with one model per block of some kilometres: that of scatter number `scatter` of
-// a world text, with its values. Fails with kInvalidArgument if there is no such scatter, and with
-// kParse if the text is not TOML.
-core::Result<std::string> scatter_portrait(std::string_view text, std::size_t scatter);
-// Like scatter_portrait(), for species number `species` with its default values.
-core::Result<std::string> species_portrait(std::string_view text, std::size_t species);
+// Returns the species or scatter that contains a path; nullopt for other paths.
+std::optional<world::TextPath> subject_of(const world::TextPath& path);
+// Returns a world with one model per block of some kilometres: that of a scatter of a world text,
+// with its values, or of a species with its default values. `subject` as from subject_of(). Fails
+// with kInvalidArgument if the text has no such table, and with kParse if it is not TOML.
+core::Result<std::string> portrait_of(std::string_view text, const world::TextPath& subject);
 // Returns a small world with this snippet (text_snippet.hpp) of a species, scatter, terrain or sky.
 // Fails with kInvalidArgument for snippets of other tables.
 core::Result<std::string> snippet_world(std::string_view snippet);

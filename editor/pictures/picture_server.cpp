@@ -8,7 +8,6 @@
 
 #include <QCoreApplication>
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -129,11 +128,7 @@ class PictureServer {
           request.kind == PictureKind::kExportBlock
               ? export_block(**parsed, block, request.level, request.out)
               : export_model(**parsed, block, request.index, request.level, request.out);
-      if (note) {
-        reply.note = *note;
-      } else {
-        done = tl::unexpected(note.error());
-      }
+      done = note.map([&](const std::string& text) { reply.note = text; });
     } else {
       done = draw(request, **parsed, reply);
     }

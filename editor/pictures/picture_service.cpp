@@ -154,36 +154,27 @@ void PictureService::read() {
   while (true) {
     const qsizetype end = input_.indexOf('\n');
     if (end < 0) return;
-    const auto reply = reply_from(input_.left(end));
+    auto reply = reply_from(input_.left(end));
     input_.remove(0, end + 1);
     if (!reply) continue;
     --unanswered_;
-    take(*reply);
+    take(*std::move(reply));
   }
 }
 
-void PictureService::take(const PictureReply& reply) {
+void PictureService::take(PictureReply reply) {
   // Ignores replies to replaced requests.
   if (!current_ || current_->request.id != reply.id) return;
   Job job = std::move(*current_);
   current_.reset();
   limit_.stop();
-  PictureReply result = reply;
   if (is_picture(job.request)) {
     const QString file = to_qstring(job.request.out);
-    if (result.error.empty() && !result.dropped && !job.cancelled) result.image.load(file);
+    if (reply.error.empty() && !reply.dropped && !job.cancelled) reply.image.load(file);
     if (file.startsWith(folder_.path())) QFile::remove(file);
   }
-  if (!job.cancelled && job.owner && !result.dropped) job.done(result);
+  if (!job.cancelled && job.owner && !reply.dropped) job.done(reply);
   send_next();
-}
-
-void PictureService::fail(const QString& error) {
-  if (!current_) return;
-  PictureReply reply;
-  reply.id = current_->request.id;
-  reply.error = error.toStdString();
-  take(reply);
 }
 
 void PictureService::ended() {
@@ -202,9 +193,13 @@ void PictureService::ended() {
   unanswered_ = 0;
   limit_.stop();
   if (!current_) return send_next();
-  fail(!started ? tr("the rendering process cannot be started")
-       : killed ? tr("rendering took more than %1 s").arg(limit_ms_ / 1000)
-                : tr("the rendering process crashed (%1)").arg(how));
+  const QString error = !started ? tr("the rendering process cannot be started")
+                        : killed ? tr("rendering took more than %1 s").arg(limit_ms_ / 1000)
+                                 : tr("the rendering process crashed (%1)").arg(how);
+  PictureReply reply;
+  reply.id = current_->request.id;
+  reply.error = error.toStdString();
+  take(std::move(reply));
 }
 
 }  // namespace psygen::editor

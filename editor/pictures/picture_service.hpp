@@ -65,8 +65,7 @@ class PictureService final : public QObject {
   void send_next();
   void start();
   void read();
-  void take(const PictureReply& reply);
-  void fail(const QString& error);
+  void take(PictureReply reply);
   void ended();
 
   QString program_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "editor/document/field_value.hpp"
 #include "editor/document/scale.hpp"
@@ -90,12 +89,11 @@ core::Result<std::vector<SweepCell>> sweep_cells(const std::string& text, const 
                                                  std::uint64_t page) {
   std::vector<SweepCell> cells;
   const auto add = [&](std::vector<std::string> values) -> core::Result<void> {
-    SweepCell cell{.values = std::move(values), .text = text, .is_present = true};
+    SweepCell cell{.values = std::move(values), .text = text};
     for (std::size_t i = 0; i < fields.size(); ++i) {
       auto changed = with_field_value(cell.text, world, fields[i].path, cell.values[i]);
       if (!changed) return tl::unexpected(changed.error());
       cell.text = *std::move(changed);
-      cell.is_present = cell.is_present && cell.values[i] == fields[i].value;
     }
     cells.push_back(std::move(cell));
     return {};
@@ -111,16 +109,6 @@ core::Result<std::vector<SweepCell>> sweep_cells(const std::string& text, const 
     }
   }
   return cells;
-}
-
-std::vector<std::size_t> cheapest_first(const std::vector<std::optional<double>>& costs) {
-  std::vector<std::size_t> order(costs.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
-    if (!costs[a] || !costs[b]) return costs[a].has_value() && !costs[b].has_value();
-    return *costs[a] < *costs[b];
-  });
-  return order;
 }
 
 }  // namespace psygen::editor

@@ -1,9 +1,8 @@
-// The cells of a contact sheet: a world with other values of one or two fields, and the order of
-// rendering. It draws nothing. Pure functions; any thread.
+// The cells of a contact sheet: a world with other values of one or two fields. It draws nothing.
+// Pure functions; any thread.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +25,6 @@ std::vector<std::string> sweep_values(const world::WorldField& field, std::size_
 struct SweepCell {
   std::vector<std::string> values;  // one per field, TOML
   std::string text;                 // the world with these values
-  bool is_present = false;          // the values are those of the present world
 };
 
 // The sheet of a world text; `world` is its world. One field fills it row by row; of two fields,
@@ -35,8 +33,5 @@ core::Result<std::vector<SweepCell>> sweep_cells(const std::string& text, const 
                                                  const std::vector<world::WorldField>& fields,
                                                  std::size_t rows, std::size_t columns,
                                                  std::uint64_t page = 0);
-
-// The order of rendering: cheapest cells first, cells of unknown cost last; stable.
-std::vector<std::size_t> cheapest_first(const std::vector<std::optional<double>>& costs);
 
 }  // namespace psygen::editor

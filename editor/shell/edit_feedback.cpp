@@ -5,7 +5,6 @@
 #include "editor/cost/cost_worker.hpp"
 #include "editor/panels/cache_contents.hpp"
 #include "editor/panels/field_row.hpp"
-#include "editor/panels/impact_bar.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
 
@@ -30,26 +29,11 @@ EditFeedback::EditFeedback(const EditorContext& context, RegisterModels register
     return confirmation_for(before, after);
   });
   connect(&context_.document, &Document::changed, this, &EditFeedback::on_document_changed);
-  ImpactBar& impact = context_.properties.impact();
-  connect(&context_.document, &Document::edit_proposed, &impact, &ImpactBar::ask);
-  connect(&impact, &ImpactBar::apply_requested, this, [this, &messages = context.messages] {
-    messages.check(context_.document.apply_proposed_edit());
-  });
-  connect(&impact, &ImpactBar::discard_requested, this, [this] {
-    context_.document.discard_proposed_edit();
-    context_.properties.show(context_.document.sections());
-  });
   connect(&context_.properties, &PropertiesPanel::section_chosen, this,
           &EditFeedback::request_costs);
-  connect_costs();
-}
-
-void EditFeedback::connect_costs() {
   connect(worker_, &CostWorker::curve, this,
-          [this](const std::string& path, const std::vector<CostPoint>& points) {
-            const auto at = world::parse_text_path(path);
-            FieldRow* row = at ? context_.properties.row(*at) : nullptr;
-            if (row != nullptr) row->show_cost(points);
+          [this](const world::TextPath& path, const std::vector<CostPoint>& points) {
+            if (FieldRow* row = context_.properties.row(path)) row->show_cost(points);
           });
   connect(worker_, &CostWorker::world_cost, this, [this](const BlockCost& cost) {
     const world::World& world = context_.document.world();
@@ -57,7 +41,7 @@ void EditFeedback::connect_costs() {
         cost, static_cast<double>(world.blocks_x) * static_cast<double>(world.blocks_z));
   });
   connect(worker_, &CostWorker::impact, this, [this](const WorldImpact& impact) {
-    context_.properties.impact().show_impact(impact_text(impact));
+    context_.properties.show_impact(impact_text(impact));
   });
   delay_.setSingleShot(true);
   connect(&delay_, &QTimer::timeout, this, &EditFeedback::request_costs);
@@ -87,18 +71,18 @@ void EditFeedback::set_dragging(bool on) {
   }
 }
 
-void EditFeedback::on_document_changed(Changes what) {
-  if (drag_start_ && what.testFlag(Change::kFile)) set_dragging(false);
+void EditFeedback::on_document_changed(Change what) {
+  if (drag_start_ && what == Change::kFile) set_dragging(false);
   context_.properties.show(context_.document.sections());
   // The renderer loads images of the ground only when it is created.
   const auto& images = context_.document.world().palette.images;
-  context_.model.show(what.testFlag(Change::kFile) || images != shown_images_);
+  context_.model.show(what == Change::kFile || images != shown_images_);
   shown_images_ = images;
   delay_.start(kDelayMs);
   delay_count_ = 0;
   const ParsedWorldPtr before = drag_start_ ? drag_start_ : last_parsed_;
   last_parsed_ = context_.document.parsed();
-  if (what.testFlag(Change::kFile) || context_.view.session() == nullptr || !before) return;
+  if (what == Change::kFile || context_.view.session() == nullptr || !before) return;
   read_scene();
   worker_->rest(kMaxRest);
   worker_->request_impact({.before = before,

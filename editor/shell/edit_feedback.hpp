@@ -32,9 +32,8 @@ class EditFeedback final : public QObject {
   void block_cost_changed(const psygen::editor::BlockCost& cost, double blocks);
 
  private:
-  void connect_costs();
   QString confirmation_for(const ParsedWorld& before, const ParsedWorld& after);
-  void on_document_changed(Changes what);
+  void on_document_changed(Change what);
   void read_scene();
   void request_costs();
 

@@ -15,12 +15,13 @@
 
 #include "editor/document/line_diff.hpp"
 #include "editor/document/qt_text.hpp"
-#include "editor/document/recent_files.hpp"
 
 namespace psygen::editor {
 namespace {
 
 const char* const kFilter = "Worlds (*.toml);;All files (*)";
+const char* const kRecentKey = "recent_files";
+constexpr qsizetype kMaxRecentFiles = 12;
 
 }  // namespace
 
@@ -64,17 +65,24 @@ void FileCommands::on_file_changed() {
     context_.messages.show_message(
         tr("%1 or its folder is read-only. Save your changes in another folder.")
             .arg(to_qstring(context_.document.file().string())));
+  std::error_code error;
+  const auto whole = std::filesystem::absolute(context_.document.file(), error);
+  const QString name =
+      to_qstring((error ? context_.document.file() : whole.lexically_normal()).string());
   QSettings settings;
-  note_recent_file(settings, context_.document.file());
+  QStringList names = settings.value(kRecentKey).toStringList();
+  names.removeAll(name);
+  names.prepend(name);
+  settings.setValue(kRecentKey, names.mid(0, kMaxRecentFiles));
   fill_recent_files();
 }
 
 void FileCommands::fill_recent_files() {
   recent_menu_->clear();
-  const QSettings settings;
-  for (const std::filesystem::path& file : recent_files(settings)) {
-    recent_menu_->addAction(to_qstring(file.string()), this, [this, file] {
-      if (may_discard()) open(file);
+  // Missing files stay in the list, because a disk may be mounted again.
+  for (const QString& file : QSettings().value(kRecentKey).toStringList()) {
+    recent_menu_->addAction(file, this, [this, file] {
+      if (may_discard()) open(file.toStdString());
     });
   }
   recent_menu_->setEnabled(!recent_menu_->isEmpty());

@@ -13,6 +13,7 @@
 #include <QStatusBar>
 #include <QUndoView>
 #include <algorithm>
+#include <glm/trigonometric.hpp>
 
 #include "editor/attach/remote_panel.hpp"
 #include "editor/document/qt_text.hpp"
@@ -22,11 +23,9 @@
 #include "editor/panels/cache_map.hpp"
 #include "editor/panels/selection_panel.hpp"
 #include "editor/panels/statistics_panel.hpp"
-#include "editor/shell/camera_memory.hpp"
 #include "editor/shell/command_palette.hpp"
 #include "editor/shell/edit_feedback.hpp"
 #include "editor/shell/file_commands.hpp"
-#include "editor/shell/flight_commands.hpp"
 #include "editor/shell/frame_status.hpp"
 #include "editor/shell/remote_commands.hpp"
 #include "editor/shell/section_commands.hpp"
@@ -34,9 +33,22 @@
 #include "editor/shell/view_bars.hpp"
 #include "editor/shell/view_commands.hpp"
 #include "editor/tools/view_tools.hpp"
+#include "engine/core/camera.hpp"
+#include "engine/world/world.hpp"
 
 namespace psygen::editor {
 namespace {
+
+constexpr double kEyeHeightM = 24;  // of the first pose, above the ground
+
+core::CameraPose first_pose(const world::World& world) {
+  core::CameraPose pose;
+  pose.position = core::normalised({{}, {-1257, 0, 3978}}, world.block_size_m());
+  pose.position.local.y = kEyeHeightM + world::surface_height_m(world, pose.position);
+  pose.yaw = glm::radians(110.0);
+  pose.pitch = glm::radians(-10.0);
+  return pose;
+}
 
 // Rules of all number fields, sliders and combo boxes of the program: the wheel does not focus them
 // and changes only a focused one, so that a panel scrolls past the others. A slider that
@@ -61,6 +73,22 @@ class ControlRules final : public QObject {
     return true;
   }
 };
+
+void add_flight_commands(QMenu& menu, TimelinePanel& timeline) {
+  QAction* record = menu.addAction(tr("&Record the camera"), tr("Ctrl+Shift+R"), &timeline,
+                                   &TimelinePanel::set_recording);
+  record->setCheckable(true);
+  QObject::connect(&timeline, &TimelinePanel::recording_changed, record, &QAction::setChecked);
+  menu.addAction(tr("&Play from here"), &timeline, [&timeline] { timeline.play(true); });
+  menu.addAction(tr("Re-run with the timeline's &settings"), &timeline, &TimelinePanel::fly);
+  menu.addSeparator();
+  menu.addAction(tr("&Open a path …"), &timeline, [&timeline] {
+    show_panel(timeline);
+    timeline.open_path();
+  });
+  menu.addAction(tr("Save the pat&h …"), &timeline, &TimelinePanel::save_path);
+  menu.addAction(tr("Save as frame &test …"), &timeline, &TimelinePanel::save_test);
+}
 
 }  // namespace
 
@@ -119,13 +147,22 @@ void MainWindow::add_commands() {
                                to_qstring(options_.session.device_name));
   files_ = new FileCommands(context);
   const auto& state_folder = options_.document.state_folder;
-  flights_ = make_timeline(
-      context, (state_folder.empty() ? default_state_folder() : state_folder) / "flights");
+  flights_ =
+      new TimelinePanel(document_, *view_,
+                        (state_folder.empty() ? default_state_folder() : state_folder) / "flights");
+  connect(flights_, &TimelinePanel::message_posted, messages_, &MessageLog::show_message);
+  connect(flights_, &TimelinePanel::pose_requested, model_, &ModelView::go_to_world);
+  connect(flights_, &TimelinePanel::recording_changed, this, [this] {
+    model_->close();
+    show_panel(*flights_);
+  });
   remote_ = new RemoteCommands(context, *files_);
   bars_ = new ViewBars(context, set_dragging);
   tools_ = new ViewTools(*this, document_, *view_, set_dragging);
   connect_sections(context);
-  camera_ = new CameraMemory(context);
+  connect(view_, &WorldView::opened, this, [this](const QString& error) {
+    if (error.isEmpty()) restore_camera();
+  });
   CostLimits limits = options_.limits;
   limits.cache_bytes =
       std::min(limits.cache_bytes, static_cast<double>(options_.session.scene.budget_bytes));
@@ -214,14 +251,14 @@ void MainWindow::add_menus() {
   add_image_commands(*file, context());
   pictures_->add_to_file_menu(*file);
   file->addSeparator();
-  remote_->add_to_file_menu(*file);
+  file->addAction(tr("A&ttach …"), remote_, &RemoteCommands::attach);
   file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
   add_edit_menu();
   add_view_menu();
   QMenu* world = menuBar()->addMenu(tr("&World"));
   add_world_commands(*world, context(), pictures_->library());
   world->addSeparator();
-  pictures_->add_to_world_menu(*world);
+  world->addAction(tr("&Contact sheet …"), tr("Ctrl+K"), pictures_, &PictureTools::open_sheet);
   add_pause_command(*world, context(), options_.safe);
   tools_->add_to_menu(*menuBar()->addMenu(tr("&Tools")));
   add_flight_commands(*menuBar()->addMenu(tr("F&light")), *flights_);
@@ -275,8 +312,25 @@ core::Result<void> MainWindow::open_file(const std::filesystem::path& file) {
   return files_->open(file);
 }
 
-void MainWindow::use_first_pose() {
-  camera_->use_first_pose();
+QString MainWindow::camera_key() const {
+  return "places/" + file_key(document_.file());
+}
+
+// Gives a newly opened world the pose of the last visit, else the first pose or the world's home.
+void MainWindow::restore_camera() {
+  const bool first = std::exchange(use_first_pose_, false);
+  const QVariantList kept = QSettings().value(camera_key()).toList();
+  ViewCamera& camera = view_->camera();
+  if (kept.size() == 7) {
+    core::CameraPose pose;
+    pose.position.block = {kept[0].toInt(), kept[1].toInt()};
+    pose.position.local = {kept[2].toDouble(), kept[3].toDouble(), kept[4].toDouble()};
+    pose.yaw = kept[5].toDouble();
+    pose.pitch = kept[6].toDouble();
+    return camera.set_pose(pose);
+  }
+  view_->focus();
+  if (first) camera.set_pose(first_pose(document_.world()));
 }
 
 void MainWindow::update_title() {
@@ -313,7 +367,12 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   QSettings settings;
   settings.setValue("geometry", saveGeometry());
   settings.setValue("layout", saveState());
-  camera_->save();
+  if (view_->session() != nullptr && !document_.file().empty()) {
+    const core::CameraPose pose = model_->world_pose();
+    const core::WorldPosition& at = pose.position;
+    settings.setValue(camera_key(), QVariantList{at.block.x, at.block.z, at.local.x, at.local.y,
+                                                 at.local.z, pose.yaw, pose.pitch});
+  }
   event->accept();
 }
 

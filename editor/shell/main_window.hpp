@@ -14,7 +14,6 @@
 
 namespace psygen::editor {
 
-class CameraMemory;
 class CommandPalette;
 class EditFeedback;
 class FileCommands;
@@ -23,6 +22,9 @@ class RemoteCommands;
 class TimelinePanel;
 class ViewBars;
 class ViewTools;
+
+// The world that the editor opens without a file: the valley of the README.
+inline constexpr const char* kFirstWorld = "silver_combe";
 
 // The objects of a window that its commands work with. MainWindow owns them all.
 struct EditorContext {
@@ -53,8 +55,8 @@ class MainWindow final : public QMainWindow {
 
   // Opens a world file. Fails like Document::open(); the error also becomes a message.
   core::Result<void> open_file(const std::filesystem::path& file);
-  // As CameraMemory::use_first_pose().
-  void use_first_pose();
+  // Gives the next opened world the pose for kFirstWorld, unless the user has visited it before.
+  void use_first_pose() { use_first_pose_ = true; }
   Document& document() { return document_; }
   WorldView& view() { return *view_; }
 
@@ -73,6 +75,8 @@ class MainWindow final : public QMainWindow {
   void add_view_menu();
   void add_edit_menu();
   void connect_messages();
+  void restore_camera();
+  QString camera_key() const;
   void restore_layout(const QByteArray& layout);
   void update_title();
 
@@ -90,10 +94,10 @@ class MainWindow final : public QMainWindow {
   EditFeedback* feedback_ = nullptr;
   ViewBars* bars_ = nullptr;
   ViewTools* tools_ = nullptr;
-  CameraMemory* camera_ = nullptr;
   CommandPalette* palette_ = nullptr;
   std::vector<QAction*> panel_commands_;
   QByteArray first_layout_;
+  bool use_first_pose_ = false;
 };
 
 }  // namespace psygen::editor

@@ -1,7 +1,6 @@
 #include "editor/shell/remote_commands.hpp"
 
 #include <QDockWidget>
-#include <QMenu>
 
 #include "editor/attach/attach_dialog.hpp"
 #include "editor/attach/remote_panel.hpp"
@@ -23,7 +22,11 @@ RemoteCommands::RemoteCommands(const EditorContext& context, FileCommands& files
       files_(files),
       remote_(new RemoteSession(&context.window)),
       panel_(new RemotePanel(*remote_)) {
-  connect_panel();
+  connect(panel_, &RemotePanel::go_to_requested, &context_.model, &ModelView::go_to_world);
+  connect(panel_, &RemotePanel::sync_camera_requested, this, [this](bool on) {
+    follows_ = on && remote_->is_attached();
+    if (!on && remote_->is_attached()) remote_->set_pose(std::nullopt);
+  });
   connect(remote_, &RemoteSession::attached, this,
           [this](const QJsonObject&, const std::string& text) { on_attached(text); });
   connect(remote_, &RemoteSession::message_posted, this, [this](const QString& message) {
@@ -39,15 +42,6 @@ RemoteCommands::RemoteCommands(const EditorContext& context, FileCommands& files
   });
 }
 
-void RemoteCommands::connect_panel() {
-  connect(panel_, &RemotePanel::go_to_requested, this,
-          [this](const core::CameraPose& pose) { context_.model.go_to_world(pose); });
-  connect(panel_, &RemotePanel::sync_camera_requested, this, [this](bool on) {
-    follows_ = on && remote_->is_attached();
-    if (!on && remote_->is_attached()) remote_->set_pose(std::nullopt);
-  });
-}
-
 void RemoteCommands::on_attached(const std::string& world_text) {
   show_panel(*panel_);
   context_.window.resizeDocks({&dock_of(context_.properties), &dock_of(*panel_)},
@@ -59,10 +53,6 @@ void RemoteCommands::on_attached(const std::string& world_text) {
   sent_world_ = context_.document.text();
   context_.messages.show_message(
       tr("Attached to process %1. It gets your changes at once.").arg(remote_->endpoint().pid));
-}
-
-void RemoteCommands::add_to_file_menu(QMenu& menu) {
-  menu.addAction(tr("A&ttach …"), this, &RemoteCommands::attach);
 }
 
 void RemoteCommands::attach() {

@@ -7,8 +7,6 @@
 
 #include "editor/shell/main_window.hpp"
 
-class QMenu;
-
 namespace psygen::editor {
 
 class FileCommands;
@@ -25,12 +23,11 @@ class RemoteCommands final : public QObject {
 
   // The panel "Attached".
   RemotePanel& panel() { return *panel_; }
-  void add_to_file_menu(QMenu& menu);
+  // Asks for a program and attaches to it.
+  void attach();
 
  private:
-  void connect_panel();
   void on_attached(const std::string& world_text);
-  void attach();
   void send_world();
 
   const EditorContext context_;

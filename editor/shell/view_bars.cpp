@@ -38,8 +38,9 @@ ViewBars::ViewBars(const EditorContext& context, std::function<void(bool)> set_d
   add_quality(*bar);
   bar->addSeparator();
   add_hour(*bar);
-  add_weather(*bar, {tr("Clouds"), tr("Clouds: from clear to overcast")}, {"sky", "cloud_cover"});
-  add_weather(*bar, {tr("Visibility"), tr("Visibility: from fog to clear air")},
+  add_weather(*add_slider(*bar, tr("Clouds"), tr("Clouds: from clear to overcast")),
+              {"sky", "cloud_cover"});
+  add_weather(*add_slider(*bar, tr("Visibility"), tr("Visibility: from fog to clear air")),
               {"sky", "visibility_m"});
   add_model_bar(context.window);
 }
@@ -92,25 +93,24 @@ void ViewBars::add_hour(QToolBar& bar) {
   update();
 }
 
-// A second control for a field of the sky.
-void ViewBars::add_weather(QToolBar& bar, const SliderText& text, const world::TextPath& path) {
-  QSlider* slider = add_slider(bar, text.label, text.help);
-  slider->setRange(0, kSliderSteps);
-  slider->setMaximumWidth(kWeatherPx);
-  connect(slider, &QSlider::sliderPressed, this, [this] { set_dragging_(true); });
-  connect(slider, &QSlider::sliderReleased, this, [this] { set_dragging_(false); });
-  connect(slider, &QSlider::valueChanged, this, [this, path](int position) {
+// Makes a slider the second control for a field of the sky.
+void ViewBars::add_weather(QSlider& slider, const world::TextPath& path) {
+  slider.setRange(0, kSliderSteps);
+  slider.setMaximumWidth(kWeatherPx);
+  connect(&slider, &QSlider::sliderPressed, this, [this] { set_dragging_(true); });
+  connect(&slider, &QSlider::sliderReleased, this, [this] { set_dragging_(false); });
+  connect(&slider, &QSlider::valueChanged, this, [this, path](int position) {
     const world::WorldField* field = context_.document.field(path);
     if (field == nullptr) return;
     const double value = scale_of(*field).at(static_cast<double>(position) / kSliderSteps);
     context_.messages.check(context_.document.set_value(path, world::toml_number(value)));
   });
-  const auto update = [this, slider, path] {
+  const auto update = [this, &slider, path] {
     const world::WorldField* field = context_.document.field(path);
-    slider->setEnabled(field != nullptr && !field->numbers.empty());
-    if (!slider->isEnabled() || slider->isSliderDown()) return;
-    const QSignalBlocker blocker(slider);
-    slider->setValue(static_cast<int>(
+    slider.setEnabled(field != nullptr && !field->numbers.empty());
+    if (!slider.isEnabled() || slider.isSliderDown()) return;
+    const QSignalBlocker blocker(&slider);
+    slider.setValue(static_cast<int>(
         std::lround(scale_of(*field).fraction_of(field->numbers[0]) * kSliderSteps)));
   };
   connect(&context_.document, &Document::changed, this, update);

@@ -6,6 +6,7 @@
 
 #include "editor/shell/main_window.hpp"
 
+class QSlider;
 class QToolBar;
 
 namespace psygen::editor {
@@ -23,13 +24,9 @@ class ViewBars final : public QObject {
   void update_model_bar();
 
  private:
-  // Label and tool tip of a slider.
-  struct SliderText {
-    QString label, help;
-  };
   void add_quality(QToolBar& bar);
   void add_hour(QToolBar& bar);
-  void add_weather(QToolBar& bar, const SliderText& text, const world::TextPath& path);
+  void add_weather(QSlider& slider, const world::TextPath& path);
   void add_model_bar(QMainWindow& window);
 
   const EditorContext context_;

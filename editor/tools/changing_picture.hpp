@@ -4,7 +4,6 @@
 // many states are in use. Any thread may release a state; all other calls come from one thread.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "editor/document/qt_text.hpp"
 #include "editor/tools/tool_host.hpp"

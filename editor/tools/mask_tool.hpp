@@ -5,7 +5,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "editor/tools/mask_stroke.hpp"
 #include "editor/tools/new_mask.hpp"

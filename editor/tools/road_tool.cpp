@@ -111,10 +111,6 @@ void RoadTool::drag(const ToolPoint& at) {
   drag_.note(set_points(now, tr("Move a point of road %1")));
 }
 
-void RoadTool::release() {
-  drag_.end();
-}
-
 bool RoadTool::cancel() {
   const bool begun = std::exchange(begun_, std::nullopt).has_value();
   return drag_.cancel() || begun;

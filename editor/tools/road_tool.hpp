@@ -26,7 +26,7 @@ class RoadTool final : public ViewTool {
 
   void press(const ToolPoint& at) override;
   void drag(const ToolPoint& at) override;
-  void release() override;
+  void release() override { drag_.end(); }
   // Removes the point under the pointer.
   void click_right(const ToolPoint& at) override;
   bool cancel() override;

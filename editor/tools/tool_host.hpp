@@ -7,7 +7,6 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <numbers>
-#include <string>
 #include <utility>
 
 #include "editor/document/document.hpp"

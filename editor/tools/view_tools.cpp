@@ -4,6 +4,7 @@
 #include <QActionGroup>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QHBoxLayout>
 #include <QLabel>
 #include <QMainWindow>
 #include <QMenu>
@@ -13,12 +14,12 @@
 #include <utility>
 
 #include "editor/document/qt_text.hpp"
-#include "editor/tools/new_mask_bar.hpp"
 
 namespace psygen::editor {
 namespace {
 
 constexpr int kStrengthSteps = 20, kStrengthPx = 90;
+enum Area { kAroundView, kWholeWorld };   // of a new mask
 constexpr double kGrowth = 1.25;          // of the brush, per key
 constexpr double kAheadFraction = 0.375;  // of a new mask's side: maximum distance of its middle
 
@@ -60,8 +61,8 @@ ViewTools::ViewTools(QMainWindow& window, Document& document, WorldView& view,
   add_places();
   add_masks();
   add_commands(window);
-  connect(&document_, &Document::changed, this, [this](Changes what) {
-    if (what.testFlag(Change::kFile)) {
+  connect(&document_, &Document::changed, this, [this](Change what) {
+    if (what == Change::kFile) {
       leave();
       road_.choose(std::nullopt);
       place_.choose(std::nullopt);
@@ -144,13 +145,45 @@ void ViewTools::add_masks() {
   brush_parts_.push_back(add_of_tool(new QLabel(tr("  Drag to paint, Shift+drag to erase.  "))));
 }
 
+// The area and the pixels of a new mask, with the resulting image size or the error.
 void ViewTools::add_new_mask() {
-  new_mask_bar_ = new NewMaskBar;
-  connect(new_mask_bar_, &NewMaskBar::edited, this, [this](const NewMask& mask) {
-    mask_.set_new_mask(mask);
+  auto* bar = new QWidget;
+  bar->setObjectName("new_mask");
+  auto* layout = new QHBoxLayout(bar);
+  layout->setContentsMargins(6, 0, 6, 0);
+  new_area_ = new QComboBox;
+  new_area_->setAccessibleName(tr("Area of the new mask"));
+  new_area_->setToolTip(tr("Area of the new mask: the blue border in the view"));
+  new_area_->addItem(tr("Around the view"));
+  layout->addWidget(new_area_);
+  const auto add_metres = [layout](const QString& label, const QString& name) {
+    auto* edit = new QDoubleSpinBox;
+    edit->setAccessibleName(name);
+    edit->setToolTip(name);
+    edit->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
+    edit->setGroupSeparatorShown(true);
+    edit->setSuffix(tr(" m"));
+    layout->addWidget(new QLabel(label));
+    layout->addWidget(edit);
+    return edit;
+  };
+  new_side_ = add_metres(tr("Side"), tr("Side of the new mask in metres"));
+  new_side_->setRange(NewMask::kMinSideM, NewMask::kMaxSideM);
+  new_side_->setDecimals(0);
+  new_pixel_ = add_metres(tr("Pixel"), tr("Size of a pixel of the new mask in metres"));
+  new_pixel_->setRange(NewMask::kMinPixelM, NewMask::kMaxPixelM);
+  new_pixel_->setDecimals(1);
+  layout->addWidget(new_size_ = new QLabel);
+  const auto changed = [this] {
+    mask_.set_new_mask(NewMask{.whole_world = new_area_->currentIndex() == kWholeWorld,
+                               .side_m = new_side_->value(),
+                               .pixel_m = new_pixel_->value()});
     show_new_mask();
-  });
-  QAction* const controls = add_of_tool(new_mask_bar_);
+  };
+  connect(new_area_, &QComboBox::activated, this, changed);
+  connect(new_side_, &QDoubleSpinBox::valueChanged, this, changed);
+  connect(new_pixel_, &QDoubleSpinBox::valueChanged, this, changed);
+  QAction* const controls = add_of_tool(bar);
   new_mask_ = bar_->addAction(tr("New mask"), this, [this] { mask_.make_mask(); });
   new_mask_->setToolTip(tr("Create a mask of this area"));
   of_tools_.push_back({&mask_, new_mask_});
@@ -199,7 +232,7 @@ QAction* ViewTools::add_command(QMainWindow& window, const QString& name, const 
 void ViewTools::add_commands(QMainWindow& window) {
   const auto turn = [this](double degrees) { return [this, degrees] { place_.turn(degrees); }; };
   const auto scale = [this](double factor) {
-    return [this, factor] { set_radius(mask_.brush().radius_m * factor); };
+    return [this, factor] { radius_->setValue(mask_.brush().radius_m * factor); };
   };
   const double degrees = PlaceTool::kTurnDeg;
   commands_ = {
@@ -295,11 +328,24 @@ void ViewTools::show_new_mask() {
   for (QAction* part : brush_parts_)
     part->setVisible(!none);
   new_mask_->setEnabled(none);
-  if (none) new_mask_bar_->show_plan(mask_.new_mask(), document_.world());
-}
-
-void ViewTools::set_radius(double radius_m) {
-  radius_->setValue(radius_m);
+  if (!none) return;
+  const NewMask mask = mask_.new_mask();
+  const bool is_endless = document_.world().is_endless();
+  const QSignalBlocker quiet[] = {QSignalBlocker(new_area_), QSignalBlocker(new_side_),
+                                  QSignalBlocker(new_pixel_)};
+  if (is_endless && new_area_->count() > kWholeWorld) new_area_->removeItem(kWholeWorld);
+  if (!is_endless && new_area_->count() == kWholeWorld) new_area_->addItem(tr("The whole world"));
+  const bool whole = mask.whole_world && !is_endless;
+  new_area_->setCurrentIndex(whole ? kWholeWorld : kAroundView);
+  new_side_->setEnabled(!whole);
+  // Does not replace a value while the user types it.
+  if (new_side_->value() != mask.side_m) new_side_->setValue(mask.side_m);
+  if (new_pixel_->value() != mask.pixel_m) new_pixel_->setValue(mask.pixel_m);
+  const auto plan = plan_of(mask, document_.world(), {0, 0});
+  new_size_->setText(
+      plan ? tr("%1 × %2 pixels").arg(count_text(plan->width), count_text(plan->height))
+           : tr("<b>too many pixels</b>"));
+  new_size_->setToolTip(plan ? QString() : to_qstring(plan.error().message));
 }
 
 }  // namespace psygen::editor

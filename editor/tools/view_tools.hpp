@@ -25,8 +25,6 @@ class QWidget;
 
 namespace psygen::editor {
 
-class NewMaskBar;
-
 // One per window.
 class ViewTools final : public QObject {
   Q_OBJECT
@@ -71,7 +69,6 @@ class ViewTools final : public QObject {
   void fill_types();
   void fill_masks();
   void show_new_mask();
-  void set_radius(double radius_m);
 
   Document& document_;
   WorldView& view_;
@@ -93,7 +90,9 @@ class ViewTools final : public QObject {
   MaskTool mask_;
   QComboBox* masks_ = nullptr;
   QAction* new_mask_ = nullptr;
-  NewMaskBar* new_mask_bar_ = nullptr;
+  QComboBox* new_area_ = nullptr;
+  QDoubleSpinBox *new_side_ = nullptr, *new_pixel_ = nullptr;
+  QLabel* new_size_ = nullptr;
   std::vector<QAction*> new_mask_parts_, brush_parts_;  // of the bar; only one group is visible
   QDoubleSpinBox* radius_ = nullptr;
   QAction* erase_ = nullptr;

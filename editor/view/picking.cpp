@@ -91,23 +91,21 @@ std::optional<Selection> pick(const scene::Scene& scene, const core::CameraPose&
   ray.longest_m = kFarM;
   const auto hit = queries.cast(ray);
   if (!hit) return std::nullopt;
-  const bool model = hit->kind == query::HitKind::kModel;
-  std::optional<Crown> crown;
-  if (!model) crown = crown_on(ray, hit->distance_m, scene);
-  if (!model && !crown && hit->kind == query::HitKind::kNothing) return std::nullopt;
-  if (model || crown) {
-    Selection selection;
-    selection.kind = query::HitKind::kModel;
-    selection.block = crown ? crown->block : hit->block;
-    selection.index = crown ? crown->index : hit->index;
-    selection.distance_m = crown ? crown->distance_m : hit->distance_m;
-    return relocate_selection(selection, scene);
-  }
   Selection selection;
-  selection.kind = query::HitKind::kGround;
+  selection.kind = hit->kind;
   selection.block = hit->block;
+  selection.index = hit->index;
   selection.at = hit->position;
   selection.distance_m = hit->distance_m;
+  if (hit->kind != query::HitKind::kModel) {
+    if (const auto crown = crown_on(ray, hit->distance_m, scene)) {
+      selection.kind = query::HitKind::kModel;
+      selection.block = crown->block;
+      selection.index = crown->index;
+      selection.distance_m = crown->distance_m;
+    }
+  }
+  if (selection.kind == query::HitKind::kNothing) return std::nullopt;
   return relocate_selection(selection, scene);
 }
 

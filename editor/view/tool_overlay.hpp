@@ -6,7 +6,6 @@
 #include <QPointF>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <span>
 #include <vector>
 
 #include "editor/view/surface_shape.hpp"

@@ -37,7 +37,8 @@ std::optional<MouseButton> button_of(Qt::MouseButton button) {
 
 }  // namespace
 
-bool ViewInput::take(const QEvent& event, double pixel_ratio) {
+bool ViewInput::take(const QEvent& event, double pixel_ratio, bool has_tool) {
+  if (has_tool && take_for_tool(event, pixel_ratio)) return true;
   switch (event.type()) {
     case QEvent::KeyPress:
     case QEvent::KeyRelease:
@@ -56,6 +57,57 @@ bool ViewInput::take(const QEvent& event, double pixel_ratio) {
     default:
       return false;
   }
+}
+
+// Queues an event. Returns true if only the tool gets it.
+bool ViewInput::take_for_tool(const QEvent& event, double pixel_ratio) {
+  using Kind = ToolEvent::Kind;
+  switch (event.type()) {
+    case QEvent::MouseButtonPress:
+    case QEvent::MouseButtonDblClick:
+    case QEvent::MouseButtonRelease:
+    case QEvent::MouseMove: {
+      const auto& mouse = static_cast<const QMouseEvent&>(event);
+      const bool down = event.type() != QEvent::MouseButtonRelease;
+      const bool fine = (mouse.modifiers() & Qt::ShiftModifier) != 0;
+      const QPointF at = mouse.position() * pixel_ratio;
+      if (event.type() == QEvent::MouseMove) {
+        const bool follows = !tool_events_.empty() && tool_events_.back().kind == Kind::kMove;
+        if (follows) tool_events_.pop_back();
+        tool_events_.push_back({Kind::kMove, at, tool_holds_, fine});
+        return tool_holds_;  // else the camera turns
+      }
+      if (mouse.button() == Qt::LeftButton) {
+        tool_holds_ = down;
+        tool_events_.push_back({down ? Kind::kPress : Kind::kRelease, at, down, fine});
+        return true;
+      }
+      if (mouse.button() == Qt::RightButton && !down &&
+          (at - pressed_at_).manhattanLength() < kClickPx)
+        tool_events_.push_back({Kind::kClickRight, at, false, fine});
+      return false;
+    }
+    case QEvent::Wheel: {
+      const auto& wheel = static_cast<const QWheelEvent&>(event);
+      const bool fine = (wheel.modifiers() & Qt::ShiftModifier) != 0;
+      // Some systems make Shift+wheel a horizontal scroll.
+      const QPoint turned = wheel.angleDelta();
+      const double units = turned.y() != 0 ? turned.y() : turned.x();
+      tool_events_.push_back(
+          {Kind::kWheel, wheel.position() * pixel_ratio, tool_holds_, fine, units / kWheelUnits});
+      return true;
+    }
+    case QEvent::Leave:
+      tool_events_.push_back({.kind = Kind::kLeave});
+      return false;
+    default:
+      return false;
+  }
+}
+
+void ViewInput::forget_tool() {
+  tool_events_.clear();
+  tool_holds_ = false;
 }
 
 void ViewInput::key(const QEvent& event) {

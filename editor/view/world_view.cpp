@@ -4,7 +4,6 @@
 #include <QPlatformSurfaceEvent>
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "engine/core/headroom.hpp"
@@ -86,8 +85,7 @@ void WorldView::close() {
 }
 
 bool WorldView::event(QEvent* event) {
-  if (tool_ != nullptr && tool_input_.take(*event, devicePixelRatio())) return true;
-  if (input_.take(*event, devicePixelRatio())) return true;
+  if (input_.take(*event, devicePixelRatio(), tool_ != nullptr)) return true;
   switch (event->type()) {
     case QEvent::Expose:
       // After the event, because opening a session is slow.
@@ -196,7 +194,7 @@ void WorldView::tick() {
   note_answered();
   note_settled();
   const bool in_front = QGuiApplication::applicationState() == Qt::ApplicationActive;
-  const bool busy = input_.busy() || tool_input_.held();
+  const bool busy = input_.busy();
   const bool yields = background_work_.any() && !moved && !busy && !since_text_.isValid();
   timer_.setInterval(yields                                      ? kBackgroundWorkMs
                      : in_front || busy || since_text_.isValid() ? kBusyMs
@@ -302,7 +300,7 @@ void WorldView::set_tool(ViewTool* tool) {
     tool_->leave();
   }
   tool_ = tool;
-  tool_input_.forget();
+  input_.forget_tool();
   if (tool_ != nullptr) select(std::nullopt);
 }
 
@@ -335,7 +333,7 @@ ToolPoint WorldView::point_at(const ToolEvent& event) {
 void WorldView::serve_tool() {
   if (tool_ == nullptr) return;
   using Kind = ToolEvent::Kind;
-  for (const ToolEvent& event : tool_input_.take_all()) {
+  for (const ToolEvent& event : input_.take_tool_events()) {
     if (tool_ == nullptr) return;  // an event may exit the tool
     switch (event.kind) {
       case Kind::kPress:

@@ -18,7 +18,6 @@
 
 #include "editor/view/grid_overlay.hpp"
 #include "editor/view/picking.hpp"
-#include "editor/view/tool_input.hpp"
 #include "editor/view/tool_overlay.hpp"
 #include "editor/view/view_camera.hpp"
 #include "editor/view/view_input.hpp"
@@ -141,7 +140,6 @@ class WorldView final : public QWindow {
   ViewCamera camera_;
   ViewInput input_;
   ViewTool* tool_ = nullptr;
-  ToolInput tool_input_;
   ToolOverlay overlay_;
   GroundRays ground_;
   std::vector<render::Line> lines_;  // drawn over the image

@@ -10,7 +10,6 @@
 #include <string>
 
 #include "editor/pictures/picture_server.hpp"
-#include "editor/shell/camera_memory.hpp"
 #include "editor/shell/edit_feedback.hpp"
 #include "editor/shell/main_window.hpp"
 #include "engine/scene/scene.hpp"

@@ -8,14 +8,12 @@
 #include <csignal>
 
 #include "editor/document/document.hpp"
-#include "editor/document/recent_files.hpp"
 #include "tests/editor/document/support.hpp"
 #include "tests/faults.hpp"
 
 namespace psygen::editor {
 namespace {
 
-using ::testing::ElementsAre;
 using testing::good;
 using ::testing::HasSubstr;
 using testing::kWorld;
@@ -181,20 +179,6 @@ TEST(DocumentFile, AfterAKillDuringSavingItIsTheOldOrTheNewOne) {
     const std::string left = testing::read(place.file);
     EXPECT_TRUE(left == one || left == two) << "kill " << kills << ":\n" << left;
   }
-}
-
-TEST(RecentFiles, AreUniqueAndNewestFirst) {
-  const TemporaryFolder folder;
-  QSettings settings(QString::fromStdString((folder / "settings.ini").string()),
-                     QSettings::IniFormat);
-  note_recent_file(settings, "/a/one.toml");
-  note_recent_file(settings, "/a/two.toml");
-  note_recent_file(settings, "/a/../a/one.toml");
-  EXPECT_THAT(recent_files(settings), ElementsAre("/a/one.toml", "/a/two.toml"));
-  for (int i = 0; i < 30; ++i)
-    note_recent_file(settings, "/" + std::to_string(i));
-  EXPECT_EQ(recent_files(settings).size(), kMaxRecentFiles);
-  EXPECT_EQ(recent_files(settings).front(), "/29");
 }
 
 }  // namespace

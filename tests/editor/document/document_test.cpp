@@ -22,11 +22,11 @@ using testing::replaced;
 struct Opened {
   Place place;
   Document document;
-  Changes told;
+  std::optional<Change> told;
   int times = 0;
   explicit Opened(const std::string& text = kWorld) : place(text), document(place.options()) {
     EXPECT_TRUE(good(document.open(place.file)));
-    QObject::connect(&document, &Document::changed, [this](Changes what) {
+    QObject::connect(&document, &Document::changed, [this](Change what) {
       told = what;
       ++times;
     });
@@ -42,19 +42,24 @@ TEST(Document, ANewOneIsAValidWorldWithoutAFile) {
   EXPECT_EQ(document.save().error().message, "this world has no file yet");
 }
 
-TEST(Document, AnEditChangesTheTextAndReportsItsSection) {
+TEST(Document, AnEditChangesTheTextAndReportsItsExtent) {
   Opened opened;
   Document& document = opened.document;
   EXPECT_TRUE(good(document.set_value({"sky", "exposure"}, "2")));
   EXPECT_EQ(document.text(), std::string(kWorld) + "\n[sky]\nexposure = 2\n");
   EXPECT_EQ(document.world().sky.exposure, 2);
-  EXPECT_EQ(opened.told, Change::kText | Change::kSky);
+  EXPECT_EQ(opened.told, Change::kText);
   EXPECT_TRUE(good(document.set_value({"scatter", 1, "count"}, "6")));
-  EXPECT_EQ(opened.told, Change::kText | Change::kScatter);
+  EXPECT_EQ(opened.told, Change::kText);
   EXPECT_TRUE(good(document.append_table({"scatter"}, "model = \"grass\"\ncount = 1\n")));
-  EXPECT_EQ(opened.told, Change::kText | Change::kScatter | Change::kTables);
+  EXPECT_EQ(opened.told, Change::kText);
   EXPECT_TRUE(good(document.set_text(document.text() + "# more\n", QStringLiteral("Comment"))));
-  EXPECT_EQ(opened.told, Changes(Change::kText));
+  EXPECT_EQ(opened.told, Change::kText);
+  EXPECT_TRUE(good(document.set_value({"terrain", "relief_m"}, "150")));
+  EXPECT_EQ(opened.told, Change::kGround);
+  EXPECT_TRUE(good(document.open(opened.place.file)));
+  EXPECT_EQ(opened.told, Change::kFile);
+  EXPECT_TRUE(good(document.set_value({"sky", "exposure"}, "2")));
   EXPECT_EQ(document.field({"sky", "exposure"})->numbers.front(), 2);
   EXPECT_TRUE(good(document.reset_value({"sky", "exposure"})));
   EXPECT_FALSE(document.field({"sky", "exposure"})->is_set);

@@ -33,10 +33,8 @@
 #include "editor/gallery/compare_window.hpp"
 #include "editor/gallery/contact_sheet.hpp"
 #include "editor/gallery/library_panel.hpp"
-#include "editor/panels/impact_bar.hpp"
 #include "editor/panels/properties_panel.hpp"
 #include "editor/pictures/picture_server.hpp"
-#include "editor/shell/camera_memory.hpp"
 #include "editor/shell/command_palette.hpp"
 #include "editor/shell/main_window.hpp"
 #include "editor/shell/theme.hpp"
@@ -156,8 +154,8 @@ void take_window(Photographer& take) {
   rest(6000);  // curves of costs
   const world::TextPath size = oaks.with("size_m");
   take.settle([&] { take.set(size, "[2.4, 3.9]"); });
-  ImpactBar& impact = take.properties().impact();
-  if (!wait_until([&] { return impact.findChild<QLabel*>()->text().contains("Rebuilds"); },
+  const auto* impact = take.properties().findChild<QWidget*>("impact");
+  if (!wait_until([&] { return impact->findChild<QLabel*>()->text().contains("Rebuilds"); },
                   kLongestMs))
     take.fail("the impact of a change does not come");
   rest(6000);
@@ -167,10 +165,9 @@ void take_window(Photographer& take) {
 void take_fields(Photographer& take) {
   take.panel("properties", "properties");
   const world::TextPath oaks = section_called(take.document(), "scatter", "oak");
-  ImpactBar& impact = take.properties().impact();
   take.set(oaks.with("count"), "400");
-  if (!impact.asks()) take.fail("a costly value does not ask");
-  take.widget("question", impact);
+  if (take.document().confirmation().isEmpty()) take.fail("a costly value does not ask");
+  take.widget("question", *take.properties().findChild<QWidget*>("impact"));
   take.document().discard_proposed_edit();
   take.properties().show(take.document().sections());
 }

@@ -15,7 +15,7 @@ TEST(ModelWorld, EveryModelOfTheShippedWorldsCanBePortrayed) {
     ASSERT_TRUE(parsed.has_value());
     for (std::size_t i = 0; i < (*parsed)->world.scatter.size(); ++i) {
       SCOPED_TRACE(name + " scatter " + std::to_string(i));
-      const auto portrait = scatter_portrait(text, i);
+      const auto portrait = portrait_of(text, {"scatter", i});
       ASSERT_TRUE(portrait.has_value()) << portrait.error().message;
       const auto alone = parse_world_text(*portrait, name, {});
       ASSERT_TRUE(alone.has_value()) << alone.error().message << *portrait;
@@ -26,7 +26,7 @@ TEST(ModelWorld, EveryModelOfTheShippedWorldsCanBePortrayed) {
       EXPECT_EQ((*alone)->world.scatter[0].ranges, (*parsed)->world.scatter[i].ranges);
     }
     for (std::size_t i = 0; i < (*parsed)->world.species.size(); ++i) {
-      const auto portrait = species_portrait(text, i);
+      const auto portrait = portrait_of(text, {"species", i});
       ASSERT_TRUE(portrait.has_value()) << portrait.error().message;
       EXPECT_TRUE(parse_world_text(*portrait, name, {}).has_value());
     }
@@ -36,7 +36,7 @@ TEST(ModelWorld, EveryModelOfTheShippedWorldsCanBePortrayed) {
 TEST(ModelWorld, TheImageShowsTheWholeModel) {
   const std::string text = testing::world_text("silver_combe");
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto parsed = parse_world_text(*scatter_portrait(text, i), "", {});
+    const auto parsed = parse_world_text(*portrait_of(text, {"scatter", i}), "", {});
     ASSERT_TRUE(parsed.has_value());
     const core::Projection projection{0.9F, 1.4F, 0.2F};
     const auto pose = portrait_pose(**parsed, projection);
@@ -53,8 +53,8 @@ TEST(ModelWorld, TheImageShowsTheWholeModel) {
 }
 
 TEST(ModelWorld, MissingScattersAndSpeciesAreErrors) {
-  EXPECT_FALSE(scatter_portrait(testing::world_text("silver_combe"), 99).has_value());
-  EXPECT_FALSE(species_portrait(testing::world_text("endless"), 0).has_value());
+  EXPECT_FALSE(portrait_of(testing::world_text("silver_combe"), {"scatter", 99}).has_value());
+  EXPECT_FALSE(portrait_of(testing::world_text("endless"), {"species", 0}).has_value());
   EXPECT_FALSE(snippet_world("[palette]\ngrass = [0, 0, 0]\n").has_value());
   EXPECT_FALSE(snippet_world("not toml [").has_value());
 }

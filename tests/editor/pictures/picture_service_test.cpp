@@ -86,8 +86,8 @@ TEST(PictureService, RendersWorldsAndModelsWithTheirCosts) {
   ASSERT_TRUE(world.cost.has_value());
   EXPECT_GT(world.cost->triangles, 0);
 
-  PictureRequest portrait =
-      picture_of(*scatter_portrait(testing::world_text("lakes"), 1), PictureKind::kPortrait);
+  PictureRequest portrait = picture_of(*portrait_of(testing::world_text("lakes"), {"scatter", 1}),
+                                       PictureKind::kPortrait);
   portrait.size = {80, 80};
   const PictureReply model = s.answer(portrait);
   EXPECT_EQ(model.error, "");

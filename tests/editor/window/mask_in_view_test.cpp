@@ -4,7 +4,6 @@
 #include <QLabel>
 #include <glm/geometric.hpp>
 
-#include "editor/tools/new_mask_bar.hpp"
 #include "editor/tools/view_tools.hpp"
 #include "engine/image/image_io.hpp"
 #include "tests/editor/window/tool_fixture.hpp"
@@ -56,7 +55,7 @@ TEST_F(MaskInView, ANewMaskHasTheAreaAndPixelsOfTheBar) {
   window_->resize(1280, 800);  // the whole toolbar is visible
   command("Paint masks");
   mask().choose(1);
-  auto* bar = window_->findChild<NewMaskBar*>();
+  auto* bar = window_->findChild<QWidget*>("new_mask");
   ASSERT_NE(bar, nullptr);
   draw();
   ASSERT_TRUE(bar->isVisible());

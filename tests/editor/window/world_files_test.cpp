@@ -2,8 +2,11 @@
 // stay as they are. It needs a display, and says so.
 #include <QApplication>
 #include <QFileDialog>
+#include <QMenu>
 #include <QMessageBox>
 #include <QProcess>
+#include <QPushButton>
+#include <QSettings>
 #include <QTimer>
 #include <QUndoStack>
 #include <map>
@@ -203,6 +206,25 @@ TEST(StartOfTheEditor, WithoutX11ItEndsWithASentence) {
     EXPECT_EQ(editor.code, 4) << word;
     EXPECT_NE(editor.err.find(word), std::string::npos) << editor.err;
   }
+}
+
+TEST_F(EditorWindow, RecentFilesAreUniqueAndNewestFirst) {
+  const QString file = to_qstring(file_.string());
+  QStringList kept;
+  for (int i = 0; i < 20; ++i)
+    kept += QString("/%1.toml").arg(i);
+  kept.insert(5, file);
+  QSettings().setValue("recent_files", kept);
+  ASSERT_TRUE(window_->open_file(folder_.path() / "state" / ".." / "small.toml"));
+  QStringList listed;
+  for (const QMenu* menu : window_->findChildren<QMenu*>()) {
+    if (menu->title() != "Open &recent") continue;
+    for (const QAction* action : menu->actions())
+      listed += action->text();
+  }
+  kept.removeOne(file);
+  kept.prepend(file);
+  EXPECT_EQ(listed, kept.mid(0, 12));
 }
 
 }  // namespace

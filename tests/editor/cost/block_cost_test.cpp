@@ -1,4 +1,4 @@
-#include "editor/cost/block_survey.hpp"
+#include "editor/cost/block_cost.hpp"
 
 #include <cmath>
 #include <set>
