@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -28,6 +29,7 @@
 #include "engine/compare/compare.hpp"
 #include "engine/compare/compare_page.hpp"
 #include "engine/compare/instructions.hpp"
+#include "engine/compare/times.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/frametest/run.hpp"
@@ -42,10 +44,13 @@ class CompareCommand final : public Command {
   int run() override;
 
  private:
+  bool is_recorded(const std::string& side) const;
   std::string misuse() const;
   compare::Conditions conditions() const {
     return anyway_ ? compare::Conditions::kAcceptOthers : compare::Conditions::kMustBeEqual;
   }
+  int compare_times() const;
+  core::Result<void> write(const std::string& json, const std::string& page) const;
   core::Result<void> collect();
   core::Result<void> record_batch(int batch);
   core::Result<compare::RecordedRun> record(const std::string& command,
@@ -236,9 +241,11 @@ core::Result<Counted> count(const std::string& command, const std::filesystem::p
 CompareCommand::CompareCommand(CLI::App& cli)
     : Command(cli, "compare", "Compare frame times and content of two builds") {
   CLI::App& c = *command_;
-  c.add_option("A", a_, "Baseline: a folder of runs, or a command like \"old/psygen test\"")
+  c.add_option("A", a_,
+               "Baseline: a folder of runs or captures, a capture, or a command like \"old/psygen "
+               "test\"")
       ->required();
-  c.add_option("B", b_, "Candidate: a folder or a command")->required();
+  c.add_option("B", b_, "Candidate: the same")->required();
   c.add_option("--test", test_, "Frame test that both commands run");
   c.add_option("--out", out_, "Folder for the runs, compare.json and compare.html");
   c.add_option("--pairs", pairs_, "Pairs of runs in a batch")
@@ -308,10 +315,23 @@ core::Result<void> CompareCommand::collect() {
   return sure ? core::Result<void>{} : record_batch(2);
 }
 
+// A folder, or a file that is no program.
+bool CompareCommand::is_recorded(const std::string& side) const {
+  std::error_code error;
+  if (is_folder(side)) return true;
+  if (!test_.empty() || !std::filesystem::is_regular_file(side, error)) return false;
+  std::array<char, 4> start{};
+  std::ifstream(side, std::ios::binary).read(start.data(), start.size());
+  const std::string_view begins(start.data(), start.size());
+  return !begins.starts_with("#!") && begins !=
+                                          "\x7f"
+                                          "ELF";
+}
+
 // Returns a usage error, or nothing: requires two folders with runs, or two commands with a test
 // and an output folder.
 std::string CompareCommand::misuse() const {
-  if (is_folder(a_) && is_folder(b_)) return {};
+  if (is_recorded(a_) && is_recorded(b_)) return {};
   if (!test_.empty() && !out_.empty()) return {};
   std::error_code ignored;
   for (const std::string& side : {a_, b_}) {
@@ -321,7 +341,7 @@ std::string CompareCommand::misuse() const {
     if (is_path && !std::filesystem::exists(words->front(), ignored))
       return side + ": no such folder or program";
   }
-  return "two commands need --test and --out; recorded runs need two folders";
+  return "two commands need --test and --out; recorded runs need two folders or captures";
 }
 
 int CompareCommand::run() {
@@ -330,6 +350,9 @@ int CompareCommand::run() {
     core::log_error(sentence);
     return kUsage;
   }
+  if (is_recorded(a_) && is_recorded(b_) &&
+      (compare::holds_captures(a_) || compare::holds_captures(b_)))
+    return compare_times();
   const auto result =
       collect().and_then([this] { return compare::compare(runs_a_, runs_b_, conditions()); });
   core::Result<compare::FalseAlarms> alarms = compare::FalseAlarms{};
@@ -342,19 +365,40 @@ int CompareCommand::run() {
   const std::string json = compare::to_json(*result, measured);
   if (!out_.empty()) {
     const std::string page = compare::to_html(*result, runs_a_, runs_b_, {a_, b_, test_}, measured);
-    const auto written =
-        telemetry::create_output_folder(out_)
-            .and_then([&] { return core::replace_file(out_ / "compare.json", json); })
-            .and_then([&] { return core::replace_file(out_ / "compare.html", page); });
-    if (!written) {
-      core::log_error(written.error().message);
-      return kFailed;
-    }
+    if (auto ok = write(json, page); !ok) return fail_with(ok.error());
   }
   const int printed = print(json_ ? json : compare::to_text(*result, measured));
   return printed != kOk                                ? printed
          : result->verdict == compare::Verdict::kWorse ? int{frametest::kMissed}
                                                        : kOk;
+}
+
+// Writes compare.json and compare.html to --out.
+core::Result<void> CompareCommand::write(const std::string& json, const std::string& page) const {
+  return telemetry::create_output_folder(out_)
+      .and_then([&] { return core::replace_file(out_ / "compare.json", json); })
+      .and_then([&] { return core::replace_file(out_ / "compare.html", page); });
+}
+
+// Compares captures of other tools, and runs by their times alone.
+int CompareCommand::compare_times() const {
+  if (aa_ > 0) {
+    core::log_error("--aa needs folders of psygen's runs, not captures");
+    return kUsage;
+  }
+  auto a = compare::read_times(a_);
+  if (!a) return fail_with(a.error());
+  auto b = compare::read_times(b_);
+  if (!b) return fail_with(b.error());
+  const auto result = compare::compare_times(std::move(*a), std::move(*b));
+  if (!result) return fail_with(result.error());
+  const std::string json = compare::to_json(*result);
+  if (!out_.empty()) {
+    if (auto ok = write(json, compare::to_html(*result)); !ok) return fail_with(ok.error());
+  }
+  const int printed = print(json_ ? json : compare::to_text(*result));
+  if (printed != kOk) return printed;
+  return result->verdict == compare::Verdict::kWorse ? int{frametest::kMissed} : kOk;
 }
 
 core::Result<compare::Instructions> CompareCommand::count_instructions() const {

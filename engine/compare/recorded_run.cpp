@@ -6,6 +6,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "engine/captures/capture.hpp"
 #include "engine/compare/csv_rows.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/core/utf8.hpp"
@@ -91,9 +92,7 @@ core::Result<void> add_row(CsvCells cells, std::span<const std::size_t> columns,
 }
 
 void leave_out_suspended(RecordedRun& run) {
-  std::vector<double> sorted = run.frame_ms;
-  std::ranges::nth_element(sorted, sorted.begin() + std::ssize(sorted) / 2);
-  const double limit = std::max(kSuspendedMs, kSuspendedRatio * sorted[sorted.size() / 2]);
+  const double limit = captures::suspended_limit_ms(run.frame_ms);
   for (std::size_t i = 0; i < run.frame_ms.size(); ++i) {
     if (run.virtual_clock || run.frame_ms[i] <= limit) continue;
     run.left_out[i] = true;

@@ -13,9 +13,6 @@
 
 namespace psygen::compare {
 
-// A frame longer than 5 s and 20 times the median: the machine was suspended or stalled.
-inline constexpr double kSuspendedMs = 5000, kSuspendedRatio = 20;
-
 // A named text, such as "CPU" and its model name.
 struct NamedText {
   std::string name, text;

@@ -212,4 +212,25 @@ double fisher_more(std::uint64_t a_hits, std::uint64_t a_all, std::uint64_t b_hi
   return std::min(p, 1.0);
 }
 
+double mann_whitney(std::span<const double> a, std::span<const double> b) {
+  PSYGEN_ASSERT(!a.empty() && !b.empty() && std::max(a.size(), b.size()) <= 100, "values");
+  double above = 0;  // pairs in which b is larger, ties half
+  for (const double x : a)
+    for (const double y : b)
+      above += y > x ? 1 : y == x ? 0.5 : 0;
+  const auto pairs = static_cast<double>(a.size() * b.size());
+  const auto seen = static_cast<std::size_t>(std::ceil(std::min(above, pairs - above)));
+  // counts[m][u]: orders of n values of A and m of B with u such pairs. The last value of an order
+  // is one of B, above all n, or one of A.
+  std::vector<std::vector<double>> counts(b.size() + 1, std::vector<double>(seen + 1, 0.0));
+  for (auto& of_m : counts)
+    of_m[0] = 1;
+  for (std::size_t n = 1; n <= a.size(); ++n)
+    for (std::size_t m = 1; m <= b.size(); ++m)
+      for (std::size_t u = n; u <= seen; ++u)
+        counts[m][u] += counts[m - 1][u - n];
+  const double all = std::exp(log_choose(a.size() + b.size(), a.size()));
+  return std::min(1.0, 2 * std::accumulate(counts.back().begin(), counts.back().end(), 0.0) / all);
+}
+
 }  // namespace psygen::compare

@@ -54,4 +54,9 @@ std::vector<double> rare_frames(const Times& runs);
 double fisher_more(std::uint64_t a_hits, std::uint64_t a_all, std::uint64_t b_hits,
                    std::uint64_t b_all);
 
+// Exact two-sided test of Mann and Whitney for values that are no pairs: p of values of one set
+// standing as often above those of the other. Ties count against a difference. Requires 1 to 100
+// values each. O(n² m²) for n and m values.
+double mann_whitney(std::span<const double> a, std::span<const double> b);
+
 }  // namespace psygen::compare

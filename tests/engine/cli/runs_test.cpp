@@ -144,5 +144,40 @@ TEST(Compare, WithoutATestOrWithAMissingFolderIsAUsageError) {
   EXPECT_TRUE(mentions(folder.err, "/nowhere/a: no such folder or program")) << folder.err;
 }
 
+// A capture of 120 frames of `ms`.
+std::string write_capture(const std::filesystem::path& file, double ms) {
+  std::filesystem::create_directories(file.parent_path());
+  std::ofstream stream(file);
+  stream << "Application,ProcessID,MsBetweenPresents\n";
+  for (int i = 0; i < 120; ++i)
+    stream << "hill.exe,1," << ms + 0.01 * (i % 10) << "\n";
+  return file.string();
+}
+
+TEST(Compare, JudgesCapturesByTheirTimesAlone) {
+  const TemporaryFolder folder;
+  const std::string a = write_capture(folder / "a/0.csv", 10),
+                    b = write_capture(folder / "b/0.csv", 13), out = (folder / "out").string();
+  const Outcome one = run_psygen("compare " + a + " " + b + " --out " + out);
+  EXPECT_EQ(one.code, 0) << one.err;
+  EXPECT_TRUE(mentions(one.out, "verdict: inconclusive")) << one.out;
+  EXPECT_TRUE(mentions(one.out, "Only frame times are compared")) << one.out;
+  EXPECT_TRUE(mentions(read(folder / "out/compare.json"), "\"verdict\": \"inconclusive\""));
+  EXPECT_TRUE(mentions(read(folder / "out/compare.html"), "Comparison of captures"));
+  for (int i = 1; i < 5; ++i) {
+    write_capture(folder.path() / "a" / (std::to_string(i) + ".csv"), 10 + 0.01 * i);
+    write_capture(folder.path() / "b" / (std::to_string(i) + ".csv"), 13 + 0.01 * i);
+  }
+  const std::string sides = (folder / "a").string() + " " + (folder / "b").string();
+  const Outcome worse = run_psygen("compare " + sides);
+  EXPECT_EQ(worse.code, 3) << worse.err;
+  EXPECT_TRUE(mentions(worse.out, "p50 takes 29.8 % more")) << worse.out;
+  EXPECT_EQ(run_psygen("compare " + sides + " --aa 3").code, 2);
+  std::ofstream(folder / "a/0.csv") << "fps=60\n";
+  const Outcome refused = run_psygen("compare " + a + " " + b);
+  EXPECT_NE(refused.code, 0);
+  EXPECT_TRUE(mentions(refused.err, "log with mangoapp")) << refused.err;
+}
+
 }  // namespace
 }  // namespace psygen::cli

@@ -79,5 +79,30 @@ TEST(MinimaTest, TheIntervalHoldsAKnownRatioAndShrinksWithTheNoise) {
   EXPECT_GT(loud.high - loud.low, quiet.high - quiet.low);
 }
 
+TEST(MannWhitney, IsExact) {
+  const std::vector<double> low = {1, 2, 3, 4, 5}, high = {6, 7, 8, 9, 10},
+                            mixed = {0, 2.5, 7, 8, 9};
+  EXPECT_NEAR(mann_whitney(low, high), 2.0 / 252, 1e-12);
+  EXPECT_EQ(mann_whitney(low, high), mann_whitney(high, low));
+  EXPECT_NEAR(mann_whitney(low, std::vector<double>{0.5}), 2.0 / 6, 1e-12);
+  EXPECT_EQ(mann_whitney(low, low), 1);
+  // Counts the orders of both sets: 10 values choose 5, with at most the 8 pairs of this one.
+  int few = 0;
+  for (unsigned order = 0; order < 1024; ++order) {
+    int pairs = 0, seen_a = 0, seen_b = 0;
+    for (unsigned i = 0; i < 10; ++i)
+      (order >> i & 1) != 0 ? ++seen_b, pairs += seen_a : ++seen_a;
+    few += seen_b == 5 && pairs <= 8 ? 1 : 0;
+  }
+  EXPECT_NEAR(mann_whitney(low, mixed), 2 * few / 252.0, 1e-12);
+}
+
+TEST(MannWhitney, CountsTiesAgainstADifference) {
+  const std::vector<double> a = {1, 2, 3, 4, 5}, b = {5, 6, 7, 8, 9};
+  EXPECT_NEAR(mann_whitney(a, b), 2 * 2 / 252.0, 1e-12) << "half a pair counts as one";
+  const std::vector<double> many_a(100, 1.0), many_b(100, 2.0);
+  EXPECT_LT(mann_whitney(many_a, many_b), 1e-50);
+}
+
 }  // namespace
 }  // namespace psygen::compare
