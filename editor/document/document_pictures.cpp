@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "editor/document/document.hpp"
 #include "editor/document/paint_change.hpp"
 #include "engine/handmade/files.hpp"
@@ -10,13 +12,17 @@
 namespace psygen::editor {
 namespace {
 
-// The image that a world has under a name; null: none.
+// The mask that a world has under a name; null: none.
 PicturePtr picture_of(const world::World& world, const std::string& name) {
   for (const world::Scatter& scatter : world.scatter)
     if (scatter.mask.image == name) return scatter.mask.picture;
-  for (const world::Stamp& stamp : world.shaped.stamps)
-    if (stamp.image == name) return stamp.picture;
   return nullptr;
+}
+
+bool is_named(const world::World& world, const std::string& name) {
+  const auto& stamps = world.shaped.stamps;
+  return picture_of(world, name) != nullptr ||
+         std::ranges::find(stamps, name, &world::Stamp::image) != stamps.end();
 }
 
 core::Result<void> write_picture(const std::filesystem::path& file,
@@ -46,7 +52,7 @@ std::vector<std::string> Document::unsaved_pictures() const {
   std::vector<std::string> names;
   if (!pictures_) return names;
   for (const auto& [name, painted] : pictures_->in_place)
-    if (picture_of(world(), name) != nullptr) names.push_back(name);
+    if (is_named(world(), name)) names.push_back(name);
   return names;
 }
 

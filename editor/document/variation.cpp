@@ -85,6 +85,10 @@ std::optional<std::string> random_value(const WorldField& field, std::mt19937_64
       const double a = drawn(field, random), b = drawn(field, random);
       return world::toml_range(std::min(a, b), std::max(a, b), is_whole(field.kind));
     }
+    case FieldKind::kRealPair: {
+      const double x = drawn(field, random);
+      return world::toml_range(x, drawn(field, random));
+    }
     case FieldKind::kInteger:
     case FieldKind::kReal: {
       const double value = drawn(field, random);
@@ -111,6 +115,7 @@ std::optional<std::string> stepped_value(const WorldField& field, int steps) {
     case FieldKind::kReal:
     case FieldKind::kIntegerRange:
     case FieldKind::kRealRange:
+    case FieldKind::kRealPair:
       if (field.numbers.empty()) return {};
       return world::toml_range(stepped(field, field.numbers.front(), steps),
                                stepped(field, field.numbers.back(), steps), is_whole(field.kind));

@@ -83,6 +83,7 @@ std::size_t count_of(FieldKind kind) {
     case FieldKind::kIntegerRange:
     case FieldKind::kRealRange:
     case FieldKind::kIntegerPair:
+    case FieldKind::kRealPair:
       return 2;
     default:
       return 1;
@@ -173,7 +174,7 @@ void FieldRow::build(QHBoxLayout& layout) {
   column->setSpacing(0);
   const std::size_t count = count_of(field_.kind);
   for (std::size_t i = 0; i < count; ++i) {
-    const bool pair = field_.kind == FieldKind::kIntegerPair;
+    const bool pair = field_.kind == FieldKind::kIntegerPair || field_.kind == FieldKind::kRealPair;
     const QString part =
         i == 0 ? (pair ? tr("along x") : tr("minimum")) : (pair ? tr("along z") : tr("maximum"));
     auto* line = new QHBoxLayout;
@@ -243,7 +244,8 @@ void FieldRow::want_numbers(std::size_t changed) {
       field_.kind == FieldKind::kIntegerRange || field_.kind == FieldKind::kRealRange;
   if (range && values[0] > values[1]) values[1 - changed] = values[changed];
   const auto whole = [](double v) { return static_cast<std::int64_t>(std::llround(v)); };
-  if (range) return set_value(world::toml_range(values[0], values[1], is_whole(field_.kind)));
+  if (range || field_.kind == FieldKind::kRealPair)
+    return set_value(world::toml_range(values[0], values[1], is_whole(field_.kind)));
   if (field_.kind == FieldKind::kIntegerPair) return set_value(world::toml_vector(values));
   set_value(is_whole(field_.kind) ? world::toml_number(whole(values[0]))
                                   : world::toml_number(values[0]));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <new>
@@ -69,13 +70,46 @@ core::Result<Read<Shape>> read_shape(const world::ModelFile& wanted, image::Imag
 
 using PicturePtr = std::shared_ptr<const world::GreyPicture>;
 
-core::Result<Read<world::GreyPicture>> read_picture(const fs::path& file) {
+using HeightsPtr = std::shared_ptr<const world::HeightPicture>;
+
+// `meaning` says what becomes of pixels that are NaN or infinite.
+core::Result<image::NumberImage> read_numbers(const fs::path& file, std::string_view meaning) {
   const image::ImageLimits most{kMaxGreySide, kMaxGreySide, kMaxGreyBytes, kMaxGreyBytes};
-  auto image = image::read_grey(file, most);
+  auto image = image::read_numbers(file, most);
+  if (image && image->not_finite > 0)
+    core::log_warning(fmt::format("{}: {} of {} pixels are NaN or infinite; {}", file.string(),
+                                  image->not_finite, image->values.size(), meaning));
+  return image;
+}
+
+core::Result<Read<world::HeightPicture>> read_height_picture(const fs::path& file) {
+  auto image = read_numbers(file, "the ground stays as it is there");
   if (!image) return tl::unexpected(image.error());
+  for (std::size_t i = 0; i < image->alpha.size(); ++i)
+    if (image->alpha[i] <= 0) image->values[i] = std::numeric_limits<float>::quiet_NaN();
+  auto picture =
+      std::make_shared<world::HeightPicture>(world::finished({.width = image->width,
+                                                              .height = image->height,
+                                                              .values = std::move(image->values),
+                                                              .wholes = {},
+                                                              .white = image->white,
+                                                              .is_coloured = image->is_coloured}));
+  return Read<world::HeightPicture>{std::move(picture), {}};
+}
+
+core::Result<Read<world::GreyPicture>> read_picture(const fs::path& file) {
+  auto image = read_numbers(file, "they count as black");
+  if (!image) return tl::unexpected(image.error());
+  const image::NumberRange range = image::range_of(image->values);
+  if (range.least < 0 || double{range.largest} > image->white)
+    core::log_warning(
+        fmt::format("{}: the numbers are {:g} to {:g}; below 0 they count as black, above {:g} as "
+                    "white",
+                    file.string(), range.least, range.largest, image->white));
+  image::GreyImage grey = image::grey_of(*image);
   auto picture = std::make_shared<world::GreyPicture>();
-  picture->width = image->width, picture->height = image->height;
-  picture->pixels = std::move(image->grey);
+  picture->width = grey.width, picture->height = grey.height;
+  picture->pixels = std::move(grey.grey);
   picture->hash = world::content_hash(*picture);
   return Read<world::GreyPicture>{std::move(picture), {}};
 }
@@ -180,6 +214,9 @@ class Files final : public world::ResourceLoader {
   core::Result<PicturePtr> read_grey(const fs::path& file) const override {
     return pictures_.find_or(state_of(file), [&] { return read_picture(file); });
   }
+  core::Result<HeightsPtr> read_heights(const fs::path& file) const override {
+    return heights_.find_or(state_of(file), [&] { return read_height_picture(file); });
+  }
 
  private:
   using ShapeKey =
@@ -231,6 +268,7 @@ class Files final : public world::ResourceLoader {
 
   mutable InUse<ShapeKey, Shape> shapes_;
   mutable InUse<FileState, world::GreyPicture> pictures_;
+  mutable InUse<FileState, world::HeightPicture> heights_;
 };
 
 class FilesWithPictures final : public world::ResourceLoader {
@@ -247,6 +285,12 @@ class FilesWithPictures final : public world::ResourceLoader {
     if (read) return read;
     if (auto found = find(pictures_->fallbacks, file)) return found;
     return read;
+  }
+  core::Result<HeightsPtr> read_heights(const fs::path& file) const override {
+    const bool in_place = find(pictures_->in_place, file) != nullptr;
+    auto read = in_place ? ResourceLoader::read_heights(file) : files().read_heights(file);
+    const bool is_lost = !read && find(pictures_->fallbacks, file) != nullptr;
+    return is_lost ? ResourceLoader::read_heights(file) : read;
   }
 
  private:

@@ -1,5 +1,9 @@
 #include "engine/image/image.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "engine/core/assert.hpp"
 #include "engine/core/hash.hpp"
 
@@ -19,6 +23,29 @@ std::span<const std::uint8_t, 4> Image::pixel(std::uint32_t x, std::uint32_t y) 
 
 std::span<std::uint8_t, 4> Image::pixel(std::uint32_t x, std::uint32_t y) {
   return std::span<std::uint8_t, 4>(rgba.data() + offset_of(*this, x, y), 4);
+}
+
+NumberRange range_of(std::span<const float> numbers) {
+  constexpr float kEnd = std::numeric_limits<float>::infinity();
+  NumberRange range{kEnd, -kEnd};
+  for (const float number : numbers) {
+    if (std::isnan(number)) continue;
+    range.least = std::min(range.least, number);
+    range.largest = std::max(range.largest, number);
+  }
+  return range;
+}
+
+GreyImage grey_of(const NumberImage& image) {
+  GreyImage grey{image.width, image.height, {}};
+  grey.grey.reserve(image.values.size());
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    double share = double{image.values[i]} / image.white;
+    if (!image.alpha.empty() && !image.is_premultiplied) share *= double{image.alpha[i]};
+    share = share > 0 ? std::min(share, 1.0) : 0;  // NaN is black
+    grey.grey.push_back(static_cast<std::uint16_t>(share * 65535 + 0.5));
+  }
+  return grey;
 }
 
 Image make_image(std::uint32_t width, std::uint32_t height, std::uint8_t red, std::uint8_t green,

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <exception>
+#include <limits>
 #include <new>
 #include <string>
 
@@ -26,13 +28,15 @@ tl::unexpected<core::Error> fail_at(ErrorCode code, const std::filesystem::path&
 
 core::Result<PictureHeader> checked_header(const std::filesystem::path& path,
                                            std::span<const std::uint8_t> bytes,
-                                           const ImageLimits& limits, bool may_be_exr = false) {
+                                           const ImageLimits& limits, bool has_numbers = false) {
   const auto header = read_picture_header(bytes);
-  const PictureFormat other = may_be_exr ? PictureFormat::kWebp : PictureFormat::kExr;
-  if (!header || header->format == other)
-    return fail_at(ErrorCode::kParse, path,
-                   may_be_exr ? "is not a PNG, JPEG or OpenEXR image"
-                              : "is not a PNG or JPEG image, nor a WebP one");
+  const bool in_colour =
+      header && header->format != PictureFormat::kExr && header->format != PictureFormat::kTiff;
+  if (!has_numbers && !in_colour)
+    return fail_at(ErrorCode::kParse, path, "is not a PNG or JPEG image, nor a WebP one");
+  if (!header) return fail_at(ErrorCode::kParse, path, header.error().message);
+  if (has_numbers && header->format == PictureFormat::kWebp)
+    return fail_at(ErrorCode::kParse, path, "is not a PNG, JPEG, OpenEXR or TIFF image");
   const std::uint64_t pixels = std::uint64_t{header->width} * header->height;
   if (pixels == 0) return fail_at(ErrorCode::kParse, path, "the image has no pixels");
   if (header->width > limits.max_width || header->height > limits.max_height ||
@@ -93,16 +97,45 @@ core::Result<Image> read_image(const std::filesystem::path& path, const ImageLim
   });
 }
 
-core::Result<GreyImage> read_grey(const std::filesystem::path& path, const ImageLimits& limits) {
-  return without_exceptions(path, ErrorCode::kParse, [&]() -> core::Result<GreyImage> {
+namespace {
+
+// Replaces infinities, and the number of pixels without data, by NaN.
+void mark_missing(std::optional<double> no_data, NumberImage& image) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  const bool nan_is_no_data = no_data && std::isnan(*no_data);
+  for (float& value : image.values) {
+    if (!std::isfinite(value)) {
+      const bool stated = (nan_is_no_data && std::isnan(value)) ||
+                          (no_data && value == static_cast<float>(*no_data));
+      image.not_finite += stated ? 0 : 1;
+      value = kNone;
+    } else if (no_data && value == static_cast<float>(*no_data)) {
+      value = kNone;
+    }
+  }
+}
+
+}  // namespace
+
+core::Result<NumberImage> read_numbers(const std::filesystem::path& path,
+                                       const ImageLimits& limits) {
+  return without_exceptions(path, ErrorCode::kParse, [&]() -> core::Result<NumberImage> {
     const auto bytes = core::read_file(path, limits.max_file_bytes);
     if (!bytes) return tl::unexpected(bytes.error());
-    return checked_header(path, *bytes, limits, true).and_then([&](const PictureHeader& header) {
-      return with_path(path, picture_codec().and_then([&](const PictureCodec* codec) {
-        return codec->decode_grey(*bytes, header);
-      }));
-    });
+    const auto header = checked_header(path, *bytes, limits, true);
+    if (!header) return tl::unexpected(header.error());
+    return with_path(path, picture_codec().and_then([&](const PictureCodec* codec) {
+             return codec->decode_numbers(*bytes, *header);
+           }))
+        .map([&](NumberImage image) {
+          mark_missing(header->no_data, image);
+          return image;
+        });
   });
+}
+
+core::Result<GreyImage> read_grey(const std::filesystem::path& path, const ImageLimits& limits) {
+  return read_numbers(path, limits).map(grey_of);
 }
 
 namespace {

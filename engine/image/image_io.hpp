@@ -1,7 +1,7 @@
-// Reads and writes images in files. Reads PNG, JPEG and WebP (recognised by their first bytes, not
-// by the name); writes PNG. Files are not trusted: sizes are checked before any allocation for
-// them, and errors of the decoder become errors. OpenImageIO is used only here. Any thread; too
-// slow for the tick.
+// Reads and writes images in files. Reads PNG, JPEG, WebP, OpenEXR and TIFF (recognised by their
+// first bytes, not by the name); writes PNG and OpenEXR. Files are not trusted: sizes are checked
+// before any allocation for them, and errors of the decoder become errors. OpenImageIO is used only
+// here. Any thread; too slow for the tick.
 #pragma once
 
 #include <cstdint>
@@ -26,17 +26,22 @@ struct ImageLimits {
 core::Result<void> load_picture_libraries();
 
 // Reads any PNG, JPEG or WebP as four channels: grey is repeated, a missing alpha is 255, 16 bits
-// become 8. Fails with kIo (not readable), kParse (not an image, truncated, damaged), kOverBudget
-// (larger than the limits) or kOutOfMemory; the message starts with the path. Also fails like
-// load_picture_libraries().
+// become 8. A JPEG is turned as its EXIF data says. Fails with kIo (not readable), kParse (not an
+// image, truncated, damaged), kOverBudget (larger than the limits) or kOutOfMemory; the message
+// starts with the path. Also fails like load_picture_libraries().
 core::Result<Image> read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
 // The same for the bytes of such a file; messages call it `name`.
 core::Result<Image> decode_image(std::span<const std::uint8_t> bytes,
                                  const std::filesystem::path& name, const ImageLimits& limits = {});
 
-// Reads any PNG or JPEG as grey values with 16 bits: colours become their mean, 8 bits are
-// expanded, alpha is ignored. Also reads OpenEXR files of one part: 0 is black, 1 is white, NaN is
-// black. Fails like read_image(), whose limits count 4 bytes per pixel.
+// Reads any PNG, JPEG, OpenEXR file of one part, or TIFF as one number per pixel: as the file
+// stores it, or the mean of its colours. White is 1 for reals and for signed or 32-bit integers,
+// and the largest number of other integers. Images are turned as they say. Pixels with the number
+// that a GeoTIFF states for "no data" are NaN. Fails like read_image(), whose limits count 4 bytes
+// per pixel.
+core::Result<NumberImage> read_numbers(const std::filesystem::path& path,
+                                       const ImageLimits& limits = {});
+// grey_of() of read_numbers().
 core::Result<GreyImage> read_grey(const std::filesystem::path& path,
                                   const ImageLimits& limits = {});
 

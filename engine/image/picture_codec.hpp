@@ -19,9 +19,9 @@ struct PictureCodec {
   // Decodes a file, whose header has been read, to four channels of 8 bits. Fails with kParse, or
   // with kInternal if OpenImageIO lacks the format.
   core::Result<Image> (*decode)(std::span<const std::uint8_t> bytes, const PictureHeader& header);
-  // The same for one grey value of 16 bits.
-  core::Result<GreyImage> (*decode_grey)(std::span<const std::uint8_t> bytes,
-                                         const PictureHeader& header);
+  // The same for one number of each pixel. `not_finite` stays 0.
+  core::Result<NumberImage> (*decode_numbers)(std::span<const std::uint8_t> bytes,
+                                              const PictureHeader& header);
   // Encodes a valid image as a PNG file. Fails with kIo, or with kInternal if OpenImageIO lacks the
   // format.
   core::Result<std::vector<std::uint8_t>> (*encode_png)(const Image& image);

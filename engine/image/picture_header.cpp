@@ -1,8 +1,13 @@
 #include "engine/image/picture_header.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
+
+#include "engine/core/utf8.hpp"
 
 namespace psygen::image {
 namespace {
@@ -85,39 +90,12 @@ std::uint32_t little_endian(Bytes bytes) {
   return value;
 }
 
-// Signature, version, then attributes up to an empty name: name, type, size, value. The size of the
-// image is that of the box "dataWindow": minimum x and y, maximum x and y (OpenEXR file layout).
-std::optional<PictureHeader> exr_header(Bytes bytes) {
-  constexpr std::uint32_t kPlain = 0xFF | 0x200 | 0x400;  // version, tiles, long names
-  if (bytes.size() < 8 || (little_endian(bytes.subspan(4)) & ~kPlain) != 0) return std::nullopt;
-  bytes = bytes.subspan(8);
-  const auto word = [&bytes]() -> std::optional<std::string_view> {
-    const auto end = std::ranges::find(bytes, std::uint8_t{0});
-    if (end == bytes.end()) return std::nullopt;
-    const auto length = static_cast<std::size_t>(end - bytes.begin());
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), length);
-    bytes = bytes.subspan(length + 1);
-    return text;
-  };
-  while (const auto name = word()) {
-    if (name->empty() || !word() || bytes.size() < 4) return std::nullopt;
-    const std::uint32_t size = little_endian(bytes);
-    bytes = bytes.subspan(4);
-    if (size > bytes.size()) return std::nullopt;
-    if (*name == "dataWindow") {
-      if (size != 16) return std::nullopt;
-      const auto side = [&bytes](std::size_t axis) {
-        const auto at = [&bytes](std::size_t i) {
-          return std::int64_t{static_cast<std::int32_t>(little_endian(bytes.subspan(4 * i)))};
-        };
-        const std::int64_t pixels = at(axis + 2) - at(axis) + 1;
-        return static_cast<std::uint32_t>(std::clamp<std::int64_t>(pixels, 0, UINT32_MAX));
-      };
-      return PictureHeader{PictureFormat::kExr, side(0), side(1)};
-    }
-    bytes = bytes.subspan(size);
-  }
-  return std::nullopt;
+// "II" or "MM", then 42 or 43 (BigTIFF) in that byte order.
+bool is_tiff(Bytes bytes) {
+  return std::ranges::any_of(
+      std::array<std::array<std::uint8_t, 4>, 4>{
+          {{'I', 'I', 42, 0}, {'I', 'I', 43, 0}, {'M', 'M', 0, 42}, {'M', 'M', 0, 43}}},
+      [bytes](const auto& signature) { return starts_with(bytes, signature); });
 }
 
 constexpr std::array<std::uint8_t, 4> kRiffSignature{'R', 'I', 'F', 'F'};
@@ -144,6 +122,95 @@ std::optional<PictureHeader> webp_header(Bytes bytes) {
   return std::nullopt;
 }
 
+// The header of an OpenEXR file (OpenEXR file layout): attributes of each part up to an empty name.
+class ExrHeader {
+ public:
+  explicit ExrHeader(Bytes bytes) : bytes_(bytes) {}
+
+  core::Result<PictureHeader> read() {
+    constexpr std::uint32_t kVersion = 2, kDeep = 0x800, kParts = 0x1000;
+    if (bytes_.size() < 8) return unreadable("is a truncated OpenEXR file");
+    const std::uint32_t version = little_endian(bytes_.subspan(4));
+    if ((version & 0xFF) != kVersion)
+      return unreadable(fmt::format("is an OpenEXR file of version {}; version {} can be read",
+                                    version & 0xFF, kVersion));
+    if ((version & kDeep) != 0) return unreadable("is an OpenEXR file with deep pixels");
+    bytes_ = bytes_.subspan(8);
+    if (!read_part() || picture_.width == 0)
+      return unreadable("is a truncated or damaged OpenEXR file");
+    std::size_t parts = 1;
+    while ((version & kParts) != 0 && !bytes_.empty() && bytes_.front() != 0 && read_part())
+      ++parts;
+    if (parts > 1)
+      return unreadable(
+          fmt::format("is an OpenEXR file of {} parts; save one part in a file by itself", parts));
+    if (!subsampled_.empty())
+      return unreadable(
+          fmt::format("stores its channel {} for some pixels only (luminance and chroma); save it "
+                      "as RGB or grey",
+                      subsampled_));
+    return picture_;
+  }
+
+ private:
+  static tl::unexpected<core::Error> unreadable(std::string sentence) {
+    return core::fail(core::ErrorCode::kParse, std::move(sentence));
+  }
+  std::optional<std::string_view> word() {
+    const auto end = std::ranges::find(bytes_, std::uint8_t{0});
+    if (end == bytes_.end()) return std::nullopt;
+    const auto length = static_cast<std::size_t>(end - bytes_.begin());
+    const std::string_view text(reinterpret_cast<const char*>(bytes_.data()), length);
+    bytes_ = bytes_.subspan(length + 1);
+    return text;
+  }
+  // Attributes: name, type, size, value. Returns false if the bytes end before the empty name.
+  bool read_part() {
+    while (const auto name = word()) {
+      if (name->empty()) return true;
+      if (!word() || bytes_.size() < 4) return false;
+      const std::uint32_t size = little_endian(bytes_);
+      bytes_ = bytes_.subspan(4);
+      if (size > bytes_.size()) return false;
+      const Bytes value = bytes_.first(size);
+      if (*name == "channels") note_channels(value);
+      if (*name == "dataWindow" && !note_size(value)) return false;
+      bytes_ = bytes_.subspan(size);
+    }
+    return false;
+  }
+  // Minimum x and y, maximum x and y.
+  bool note_size(Bytes box) {
+    if (box.size() != 16) return false;
+    const auto at = [&box](std::size_t i) {
+      return std::int64_t{static_cast<std::int32_t>(little_endian(box.subspan(4 * i)))};
+    };
+    const auto side = [&at](std::size_t axis) {
+      const std::int64_t pixels = at(axis + 2) - at(axis) + 1;
+      return static_cast<std::uint32_t>(std::clamp<std::int64_t>(pixels, 0, UINT32_MAX));
+    };
+    picture_ = {PictureFormat::kExr, side(0), side(1)};
+    return true;
+  }
+  // Channels up to an empty name: name, type, linearity, distances of samples along x and y.
+  void note_channels(Bytes list) {
+    constexpr std::size_t kAfterName = 16, kDistances = 8;
+    std::swap(bytes_, list);
+    for (auto name = word(); name && !name->empty() && bytes_.size() >= kAfterName; name = word()) {
+      const bool whole = little_endian(bytes_.subspan(kDistances)) == 1 &&
+                         little_endian(bytes_.subspan(kDistances + 4)) == 1;
+      if (!whole && subsampled_.empty()) subsampled_ = core::shown(*name, kMaxNameBytes);
+      bytes_ = bytes_.subspan(kAfterName);
+    }
+    std::swap(bytes_, list);
+  }
+
+  static constexpr std::size_t kMaxNameBytes = 40;
+  Bytes bytes_;
+  PictureHeader picture_{PictureFormat::kExr, 0, 0};
+  std::string subsampled_;  // the name of the first subsampled channel
+};
+
 }  // namespace
 
 bool png_is_whole(Bytes bytes) {
@@ -162,12 +229,15 @@ bool png_is_whole(Bytes bytes) {
   return false;
 }
 
-std::optional<PictureHeader> read_picture_header(std::span<const std::uint8_t> bytes) {
-  if (starts_with(bytes, kPngSignature)) return png_header(bytes);
-  if (starts_with(bytes, kJpegSignature)) return jpeg_header(bytes);
-  if (starts_with(bytes, kExrSignature)) return exr_header(bytes);
-  if (starts_with(bytes, kRiffSignature)) return webp_header(bytes);
-  return std::nullopt;
+core::Result<PictureHeader> read_picture_header(std::span<const std::uint8_t> bytes) {
+  if (starts_with(bytes, kExrSignature)) return ExrHeader(bytes).read();
+  if (is_tiff(bytes)) return read_tiff_header(bytes);
+  const auto header = starts_with(bytes, kPngSignature)    ? png_header(bytes)
+                      : starts_with(bytes, kJpegSignature) ? jpeg_header(bytes)
+                      : starts_with(bytes, kRiffSignature) ? webp_header(bytes)
+                                                           : std::nullopt;
+  if (header) return *header;
+  return core::fail(core::ErrorCode::kParse, "is not a PNG, JPEG, OpenEXR or TIFF image");
 }
 
 }  // namespace psygen::image

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "engine/core/hash.hpp"
 
@@ -80,6 +81,30 @@ std::uint64_t row_hash(const GreyPicture& picture, std::uint32_t row) {
   const std::span<const std::uint16_t> pixels(picture.pixels);
   return core::hash_bytes(
       std::as_bytes(pixels.subspan(std::size_t{row} * picture.width, picture.width)), row);
+}
+
+HeightPicture finished(HeightPicture picture) {
+  const auto is_whole = [](float v) {
+    return v >= 0 && v <= 65'535 && v == std::floor(v) && !std::signbit(v);
+  };
+  if (std::ranges::all_of(picture.values, is_whole)) {
+    for (const float v : std::exchange(picture.values, {}))
+      picture.wholes.push_back(static_cast<std::uint16_t>(v));
+  }
+  std::uint64_t hash = core::combine(picture.width, picture.is_coloured ? 1 : 0);
+  hash = core::combine(hash, std::bit_cast<std::uint64_t>(picture.white));
+  hash = core::combine(hash, picture.height);
+  hash = core::hash_bytes(std::as_bytes(std::span(picture.wholes)), hash);
+  picture.hash = core::hash_bytes(std::as_bytes(std::span(picture.values)), hash);
+  return picture;
+}
+
+HeightPicture heights_of(const GreyPicture& picture) {
+  return finished({.width = picture.width,
+                   .height = picture.height,
+                   .values = {},
+                   .wholes = picture.pixels,
+                   .white = 65535});
 }
 
 bool operator==(const ScatterMask& a, const ScatterMask& b) {

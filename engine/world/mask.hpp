@@ -31,6 +31,25 @@ std::uint64_t content_hash(const GreyPicture& picture);
 // The contribution of one row.
 std::uint64_t row_hash(const GreyPicture& picture, std::uint32_t row);
 
+// The numbers of an image as its file stores them, row by row from the top.
+struct HeightPicture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<float> values;          // NaN: the pixel has no height
+  std::vector<std::uint16_t> wholes;  // instead of `values`, if all are whole, 0 … 65535
+  double white = 1;                   // the number of white; black is 0
+  bool is_coloured = false;           // the colours of some pixel differ
+  std::uint64_t hash = 0;             // of all members above
+
+  std::size_t pixels() const { return values.size() + wholes.size(); }
+  float number(std::size_t pixel) const {
+    return wholes.empty() ? values[pixel] : static_cast<float>(wholes[pixel]);
+  }
+};
+// The picture with its hash, in as little memory as its numbers need.
+HeightPicture finished(HeightPicture picture);
+// The numbers of a greyscale image.
+HeightPicture heights_of(const GreyPicture& picture);
+
 struct ScatterMask {
   std::string image;  // relative to the folder of the world's file; empty: none
   std::shared_ptr<const GreyPicture> picture;

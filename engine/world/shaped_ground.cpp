@@ -69,10 +69,13 @@ class Shaper {
   Shaped add(const Stamp& stamp) {
     const bool sets = stamp.mode == "set";
     const double lowest = sets ? 0 : -relief_m_;
-    for (const double height_m : {stamp.base_m, stamp.base_m + stamp.height_m}) {
+    const bool in_metres = stamp.is_in_metres();
+    const auto [least, largest] = in_metres ? numbers_of(stamp) : std::pair{0.0F, 0.0F};
+    const double high_m = in_metres ? double{largest} : stamp.height_m;
+    for (const double height_m : {stamp.base_m + double{least}, stamp.base_m + high_m}) {
       if (height_m >= lowest && height_m <= relief_m_) continue;
       return refused(
-          "height_m",
+          in_metres ? "image" : "height_m",
           fmt::format("the stamp reaches {:g} m, but must stay within {:g} to {:g} m: the "
                       "height range of the terrain (relief_m)",
                       height_m, lowest, relief_m_));
@@ -83,8 +86,10 @@ class Shaper {
     edit.change = sets ? GroundChange::kStampSet : GroundChange::kStampAdd;
     edit.square = true;
     edit.centre = *centre;
-    edit.radius_m = stamp.size_m / 2;
-    edit.falloff = std::min(stamp.border_m / edit.radius_m, 1.0);
+    const glm::dvec2 half_m = stamp.size_m / 2.0;
+    edit.radius_m = std::max(half_m.x, half_m.y);
+    edit.sides = half_m / edit.radius_m;
+    edit.falloff = std::min({stamp.border_m, half_m.x, half_m.y}) / edit.radius_m;
     edit.map = map_of(stamp);
     if (stamp.turn_deg != 0)
       edit.turn = {models::exact_cos_degrees(stamp.turn_deg),
@@ -134,10 +139,17 @@ class Shaper {
   static std::shared_ptr<const models::Heightmap> map_of(const Stamp& stamp) {
     auto map = std::make_shared<models::Heightmap>();
     map->columns = stamp.picture->width, map->rows = stamp.picture->height;
-    map->heights_m.reserve(stamp.picture->pixels.size());
-    for (const std::uint16_t grey : stamp.picture->pixels)
-      map->heights_m.push_back(
-          static_cast<float>(stamp.base_m + stamp.height_m * (static_cast<double>(grey) / 65535)));
+    map->heights_m.reserve(stamp.picture->pixels());
+    const bool in_metres = stamp.is_in_metres();
+    for (std::size_t i = 0; i < stamp.picture->pixels(); ++i) {
+      const float number = stamp.picture->number(i);
+      const bool is_height = stamp.is_height(number);
+      const double above_m =
+          in_metres ? double{number} : stamp.height_m * (double{number} / stamp.picture->white);
+      map->has_holes = map->has_holes || !is_height;
+      map->heights_m.push_back(is_height ? static_cast<float>(stamp.base_m + above_m)
+                                         : std::numeric_limits<float>::quiet_NaN());
+    }
     return map;
   }
 
@@ -320,7 +332,19 @@ bool operator==(const Stamp& a, const Stamp& b) {
   const auto content = [](const Stamp& s) { return s.picture ? s.picture->hash : 0; };
   return a.image == b.image && content(a) == content(b) && a.centre_m == b.centre_m &&
          a.size_m == b.size_m && a.turn_deg == b.turn_deg && a.base_m == b.base_m &&
-         a.height_m == b.height_m && a.border_m == b.border_m && a.mode == b.mode;
+         a.height_m == b.height_m && a.border_m == b.border_m && a.no_data == b.no_data &&
+         a.mode == b.mode && a.unit == b.unit;
+}
+
+std::pair<float, float> numbers_of(const Stamp& stamp) {
+  constexpr float kEnd = std::numeric_limits<float>::infinity();
+  std::pair range{kEnd, -kEnd};
+  for (std::size_t i = 0; i < stamp.picture->pixels(); ++i) {
+    const float number = stamp.picture->number(i);
+    if (!stamp.is_height(number)) continue;
+    range = {std::min(range.first, number), std::max(range.second, number)};
+  }
+  return range;
 }
 
 tl::expected<void, ShapeError> shape_ground(World& world) {

@@ -5,12 +5,15 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.hpp"
@@ -23,18 +26,29 @@ struct World;
 
 // A stamp adds its heights to the ground, or replaces the ground by them.
 inline constexpr std::array<std::string_view, 2> kStampModes{"add", "set"};
+// The numbers of its image are grey, from black to white, or heights in metres.
+inline constexpr std::array<std::string_view, 2> kStampUnits{"grey", "m"};
 
-// A heightmap on a square of the ground. The outer pixels of its image lie on the border.
+// A heightmap on a rectangle of the ground. The outer pixels of its image lie on the border.
 struct Stamp {
   std::string image;  // relative to the folder of the world's file
-  std::shared_ptr<const GreyPicture> picture;
+  std::shared_ptr<const HeightPicture> picture;
   glm::dvec2 centre_m{0.0};  // x and z in the world
-  double size_m = 200;       // side of the square
+  glm::dvec2 size_m{200.0};  // sides along the image's rows and columns
   double turn_deg = 0;       // about +Y, as for models
-  double base_m = 0;         // height of black
-  double height_m = 20;      // height of white above black
-  double border_m = 40;      // width of the fade inside the square
+  double base_m = 0;         // height of black, or of 0 m
+  double height_m = 20;      // height of white above black; not for metres
+  double border_m = 40;      // width of the fade inside the rectangle
+  double no_data =
+      std::numeric_limits<double>::infinity();  // number without height; infinite: none
   std::string mode{kStampModes[0]};
+  std::string unit{kStampUnits[0]};
+
+  bool is_in_metres() const { return unit == kStampUnits[1]; }
+  // True if a number of the image is a height.
+  bool is_height(float number) const {
+    return !std::isnan(number) && number != static_cast<float>(no_data);
+  }
   // Compares images by content.
   friend bool operator==(const Stamp& a, const Stamp& b);
 };
@@ -80,6 +94,10 @@ tl::expected<void, ShapeError> shape_ground(World& world);
 
 // A hash of all shapes; 0: there are none.
 std::uint64_t shape_hash(const World& world);
+
+// The least and the largest number of a stamp's image that are heights. The least is above the
+// largest if there are none. Requires its picture.
+std::pair<float, float> numbers_of(const Stamp& stamp);
 
 // A point of the centre line of a road.
 struct RoadPoint {

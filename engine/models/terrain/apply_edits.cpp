@@ -23,9 +23,10 @@ double faded(double left, double fades) {
 
 // Returns the weight of an edit at a distance from its centre: smooth from 1 to 0.
 double weight_of(const GroundEdit& edit, double dx, double dz) {
-  const double away =
-      edit.square ? std::max(std::abs(dx), std::abs(dz)) : std::sqrt(dx * dx + dz * dz);
-  return faded(edit.radius_m - away, edit.falloff * edit.radius_m);
+  const double left = edit.square ? std::min(edit.radius_m * edit.sides.x - std::abs(dx),
+                                             edit.radius_m * edit.sides.y - std::abs(dz))
+                                  : edit.radius_m - std::sqrt(dx * dx + dz * dz);
+  return faded(left, edit.falloff * edit.radius_m);
 }
 
 // The nearest point of a segment: its fraction of the length, and the square of its distance.
@@ -41,7 +42,11 @@ Foot foot_of(const RoadSegment& segment, glm::dvec2 place_m) {
   return {share, x * x + z * z};
 }
 
-double height_in(const Heightmap& map, double u, double v) {
+// A height of a heightmap and its weight: 1, falling to 0 at holes.
+struct MapPoint {
+  double height_m = 0, weight = 1;
+};
+MapPoint height_in(const Heightmap& map, double u, double v) {
   const auto place = [](double share, std::uint32_t points) {
     const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(points - 1);
     const double first = std::min(std::floor(at), static_cast<double>(points - 2));
@@ -51,9 +56,23 @@ double height_in(const Heightmap& map, double u, double v) {
   const auto [z, t] = place(v, map.rows);
   const float* const near = &map.heights_m[z * map.columns + x];
   const float* const far = near + map.columns;
+  if (map.has_holes) {
+    MapPoint point{0, 0};
+    const auto add = [&point](float height_m, double share) {
+      if (std::isnan(height_m)) return;
+      point.height_m += share * double{height_m};
+      point.weight += share;
+    };
+    add(near[0], (1 - s) * (1 - t));
+    add(near[1], s * (1 - t));
+    add(far[0], (1 - s) * t);
+    add(far[1], s * t);
+    if (point.weight > 0) point.height_m /= point.weight;
+    return point;
+  }
   const double a = double{near[0]} + s * (double{near[1]} - double{near[0]});
   const double b = double{far[0]} + s * (double{far[1]} - double{far[0]});
-  return a + t * (b - a);
+  return {a + t * (b - a), 1};
 }
 
 // Returns a height of the ground, in metres, after an edit.
@@ -67,19 +86,26 @@ double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
     dz = dx * edit.turn.y + dz * edit.turn.x;
     dx = x;
   }
-  const double weight = weight_of(edit, dx, dz);
+  double weight = weight_of(edit, dx, dz);
   const auto stamp = [&] {
-    return height_in(*edit.map, 0.5 + 0.5 * dx / edit.radius_m, 0.5 + 0.5 * dz / edit.radius_m);
+    const MapPoint point = height_in(*edit.map, 0.5 + 0.5 * dx / (edit.radius_m * edit.sides.x),
+                                     0.5 + 0.5 * dz / (edit.radius_m * edit.sides.y));
+    weight *= point.weight;
+    return point.height_m;
   };
   switch (edit.change) {
     case GroundChange::kRaise:
       return height_m + weight * edit.height_m;
     case GroundChange::kFlatten:
       return height_m + weight * (edit.height_m - height_m);
-    case GroundChange::kStampAdd:
-      return height_m + weight * stamp();
-    case GroundChange::kStampSet:
-      return height_m + weight * (stamp() - height_m);
+    case GroundChange::kStampAdd: {
+      const double added_m = stamp();
+      return height_m + weight * added_m;
+    }
+    case GroundChange::kStampSet: {
+      const double set_m = stamp();
+      return height_m + weight * (set_m - height_m);
+    }
     case GroundChange::kRoad:
       break;
   }

@@ -58,9 +58,11 @@ std::uint64_t content_hash(const GroundEdit& edit) {
     hash = core::combine(hash, (std::uint64_t{edit.map->columns} << 32) | edit.map->rows);
     hash = core::combine(hash, core::hash_bytes(std::as_bytes(std::span(edit.map->heights_m))));
   }
-  if (edit.turn != glm::dvec2(1, 0)) {
-    add(edit.turn.x);
-    add(edit.turn.y);
+  for (const auto& [now, usual] :
+       {std::pair{edit.turn, glm::dvec2(1, 0)}, std::pair{edit.sides, glm::dvec2(1, 1)}}) {
+    if (now == usual) continue;
+    add(now.x);
+    add(now.y);
   }
   if (!edit.road) return hash;
   const RoadPiece& road = *edit.road;
@@ -108,8 +110,8 @@ float steepness_of(const GroundEdit& edit) {
   const double fades_m = edit.road ? edit.road->border_m : edit.falloff * edit.radius_m;
   double slope = kSteepest / std::max(fades_m, 1e-6);
   if (edit.map) {
-    const double points = std::max(edit.map->columns, edit.map->rows);
-    slope += points / edit.radius_m;
+    const double points = std::max(edit.map->columns / edit.sides.x, edit.map->rows / edit.sides.y);
+    slope += (edit.map->has_holes ? 1.5 : 1) * points / edit.radius_m;
   }
   return std::min(edit.max_m, 1e6F) * static_cast<float>(slope);
 }

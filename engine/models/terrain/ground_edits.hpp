@@ -36,6 +36,7 @@ constexpr bool is_stamp(GroundChange change) {
 struct Heightmap {
   std::uint32_t columns = 0, rows = 0;  // at least 2 each
   std::vector<float> heights_m;         // columns · rows
+  bool has_holes = false;               // some are NaN: the ground stays there
 };
 
 // A straight segment of a road's centre line, in metres from the origin of the road, with its
@@ -81,6 +82,7 @@ struct GroundEdit {
   double height_m = 0;
   std::shared_ptr<const Heightmap> map;   // of the two stamps
   glm::dvec2 turn{1, 0};                  // of stamps: cosine and sine of a turn about +Y
+  glm::dvec2 sides{1, 1};                 // of stamps in world files: half sides over the radius
   std::shared_ptr<const RoadPiece> road;  // of kRoad, whose square encloses the piece
   std::uint32_t id = 0;                   // unique in the block of the centre
   // Set by seal():

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <type_traits>
 
 #include "engine/models/model_type.hpp"
@@ -154,14 +155,19 @@ inline constexpr auto visit_placed = [](auto& place, const auto& visit) {
 
 // The numbers of a Stamp.
 inline constexpr auto visit_stamp = [](auto& stamp, const auto& visit) {
-  visit("size_m", stamp.size_m, in("m", {1, 20'000}, {10, 2000}, "side length of the square"));
   visit("turn_deg", stamp.turn_deg, full_turn("rotation about the vertical axis"));
-  visit("base_m", stamp.base_m, in("m", {-1e5, 1e5}, {0, 100}, "height of black pixels"));
+  visit("base_m", stamp.base_m,
+        in("m", {-1e5, 1e5}, {0, 100}, "height of black pixels, or of 0 m"));
   visit("height_m", stamp.height_m,
-        in("m", {-1e5, 1e5}, {0, 100}, "height of white pixels above black ones"));
+        in("m", {-1e5, 1e5}, {0, 100}, "height of white pixels above black ones; not for metres"));
   visit("border_m", stamp.border_m,
-        in("m", {0, 20'000}, {0, 200}, "width of the fade inside the square"));
+        in("m", {0, 20'000}, {0, 200}, "width of the fade inside the rectangle"));
 };
+inline constexpr FieldSpec kStampSize =
+    in("m", {1, 20'000}, {10, 2000}, "side lengths along the image's rows and columns");
+inline constexpr FieldSpec kNoData =
+    in("", {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()},
+       {-32'768, 65'535}, "number in the image that marks pixels without height");
 
 // The numbers of a Road.
 inline constexpr auto visit_road = [](auto& road, const auto& visit) {

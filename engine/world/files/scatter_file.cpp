@@ -247,9 +247,9 @@ void write_places(const World& world, const models::Registry& registry, std::str
 
 std::shared_ptr<const GreyPicture> read_picture(TableReader& reader, std::string_view key,
                                                 const Beside& beside, std::string& name,
-                                                Presence presence, std::uint64_t kept_bytes) {
+                                                Presence presence) {
   if (!read_name_beside(reader, key, name, presence)) return nullptr;
-  auto picture = beside.read_grey(name, kept_bytes);
+  auto picture = beside.read_grey(name);
   if (picture) return std::move(*picture);
   reader.problem(key, picture.error().message, picture.error().code);
   return nullptr;

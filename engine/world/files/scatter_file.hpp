@@ -26,12 +26,11 @@ std::vector<Place> read_places(TableReader& root, const models::Registry& regist
 void write_scatters(const World& world, const models::Registry& registry, std::string& out);
 void write_places(const World& world, const models::Registry& registry, std::string& out);
 
-// Reads the name of an image beside the world file, and the image, of which the world keeps
-// `kept_bytes` more for each pixel. Null if the key is missing or after a problem.
+// Reads the name of an image beside the world file, and the image. Null if the key is missing or
+// after a problem.
 std::shared_ptr<const GreyPicture> read_picture(TableReader& reader, std::string_view key,
                                                 const Beside& beside, std::string& name,
-                                                Presence presence = Presence::kOptional,
-                                                std::uint64_t kept_bytes = 0);
+                                                Presence presence = Presence::kOptional);
 
 // Allowed kinds of ground as TOML: ["grass", "dry"].
 std::string toml_grounds(std::uint32_t grounds);

@@ -16,24 +16,72 @@ namespace {
 
 constexpr Limits kShapePlaces{-kFarthestShapeM, kFarthestShapeM};
 
+// One number for both sides, or [x, z].
+void read_size(TableReader& reader, glm::dvec2& size_m) {
+  const Member* member = reader.find("size_m");
+  const Limits limits{kStampSize.hard.min, kStampSize.hard.max};
+  if (member != nullptr && member->value.kind == Node::Kind::kArray) {
+    reader.read("size_m", size_m, limits);
+  } else if (double side_m = 0; reader.read("size_m", side_m, limits)) {
+    size_m = glm::dvec2(side_m);
+  }
+}
+
+// Reads the name of one of some choices.
+template <std::size_t n>
+void read_choice(TableReader& reader, std::string_view key, std::string& value,
+                 const std::array<std::string_view, n>& choices) {
+  if (reader.read(key, value, 16) && std::ranges::find(choices, value) == choices.end())
+    reader.problem(key, fmt::format("it must be one of {}", fmt::join(choices, ", ")));
+}
+
+// The reason why the image of a stamp cannot be its heights; empty: it can.
+std::string wrong_numbers(const Stamp& stamp) {
+  constexpr double kRounding = 1e-3;  // of black and white
+  const HeightPicture& picture = *stamp.picture;
+  if (picture.width < 2 || picture.height < 2)
+    return fmt::format("the image has {} x {} pixels; a stamp needs at least 2 x 2", picture.width,
+                       picture.height);
+  if (stamp.is_in_metres() && picture.is_coloured)
+    return "the image has colours; heights in metres need one grey channel";
+  const auto [least, largest] = numbers_of(stamp);
+  if (!(least <= largest)) return "no pixel of the image has a height";
+  const double white = picture.white;
+  if (stamp.unit != kStampUnits[0] ||
+      (double{least} >= -kRounding * white && double{largest} <= (1 + kRounding) * white))
+    return {};
+  return fmt::format(
+      "the numbers of the image are {:.7g} to {:.7g}, but grey is 0 (black) to {:g} (white); write "
+      "unit = \"m\" if they are heights in metres, and no_data for a number that marks pixels "
+      "without height",
+      least, largest, white);
+}
+
 Stamp read_stamp(TableReader& reader, const Beside& beside) {
   Stamp stamp;
   reader.read("centre_m", stamp.centre_m, kShapePlaces, Presence::kRequired);
   visit_stamp(stamp, FieldReader{reader});
-  if (reader.read("mode", stamp.mode, 16) &&
-      std::ranges::find(kStampModes, stamp.mode) == kStampModes.end())
-    reader.problem("mode", fmt::format("it must be one of {}", fmt::join(kStampModes, ", ")));
-  if (reader.find("border_m") != nullptr && stamp.border_m > stamp.size_m / 2)
+  read_size(reader, stamp.size_m);
+  reader.read("no_data", stamp.no_data, {kNoData.hard.min, kNoData.hard.max});
+  read_choice(reader, "mode", stamp.mode, kStampModes);
+  read_choice(reader, "unit", stamp.unit, kStampUnits);
+  const double max_m = std::min(stamp.size_m.x, stamp.size_m.y) / 2;
+  if (reader.find("border_m") == nullptr)
+    stamp.border_m = std::min(stamp.border_m, max_m);
+  else if (stamp.border_m > max_m)
     reader.problem("border_m",
                    fmt::format("{:g} is not allowed: it must be at most half of size_m, {:g}",
-                               stamp.border_m, stamp.size_m / 2));
-  auto picture = read_picture(reader, "image", beside, stamp.image, Presence::kRequired,
-                              sizeof(models::Heightmap::heights_m[0]));
-  if (picture && (picture->width < 2 || picture->height < 2))
-    reader.problem("image",
-                   fmt::format("the image has {} x {} pixels; a stamp needs at least 2 x 2",
-                               picture->width, picture->height));
-  stamp.picture = std::move(picture);
+                               stamp.border_m, max_m));
+  if (read_name_beside(reader, "image", stamp.image, Presence::kRequired)) {
+    auto picture = beside.read_heights(stamp.image);
+    if (picture) {
+      stamp.picture = *std::move(picture);
+      if (const std::string wrong = wrong_numbers(stamp); !wrong.empty())
+        reader.problem("image", wrong);
+    } else {
+      reader.problem("image", picture.error().message, picture.error().code);
+    }
+  }
   reader.finish();
   return stamp;
 }
@@ -103,8 +151,11 @@ void write_shaped(const ShapedGround& shaped, std::string& text) {
   for (const Stamp& stamp : shaped.stamps) {
     fmt::format_to(out, "\n[[stamp]]\nimage = {}\ncentre_m = [{}, {}]\n", toml_string(stamp.image),
                    stamp.centre_m.x, stamp.centre_m.y);
+    fmt::format_to(out, "size_m = {}\n", toml_range(stamp.size_m.x, stamp.size_m.y));
     visit_stamp(stamp, FieldWriter{text});
-    fmt::format_to(out, "mode = {}\n", toml_string(stamp.mode));
+    fmt::format_to(out, "mode = {}\nunit = {}\n", toml_string(stamp.mode), toml_string(stamp.unit));
+    if (std::isfinite(stamp.no_data))
+      fmt::format_to(out, "no_data = {}\n", toml_number(stamp.no_data));
   }
   for (const Road& road : shaped.roads) {
     fmt::format_to(out, "\n[[road]]\npoints_m = {}\n", toml_points(road.points_m));

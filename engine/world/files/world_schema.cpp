@@ -319,12 +319,20 @@ class SchemaBuilder {
     const Stamp usual;
     WorldSection made = section(SectionKind::kStamp, path, s.image);
     add_required(made, "image", text_value(s.image, FieldKind::kImage),
-                 without_limits("an image whose grey is the height"));
+                 without_limits("an image whose grey or numbers are heights"));
     add_required(made, "centre_m",
                  {FieldKind::kToml, toml_vector(std::array{s.centre_m.x, s.centre_m.y}), {}},
-                 without_limits("centre of the square: [x, z]", "m"));
+                 without_limits("centre of the rectangle: [x, z]", "m"));
+    add(made, "size_m",
+        {FieldKind::kRealPair, toml_range(s.size_m.x, s.size_m.y), {s.size_m.x, s.size_m.y}},
+        toml_number(usual.size_m.x), kStampSize);
     add_all(made, s, usual, visit_stamp);
     add_choice(made, "mode", s.mode, usual.mode, kStampModes, "adds to the ground, or replaces it");
+    add_choice(made, "unit", s.unit, usual.unit, kStampUnits,
+               "numbers of the image: grey from black to white, or heights in metres");
+    add(made, "no_data",
+        {FieldKind::kToml, std::isfinite(s.no_data) ? toml_number(s.no_data) : "", {}}, "",
+        kNoData);
     return made;
   }
 

@@ -22,6 +22,7 @@ enum class FieldKind : std::uint8_t {
   kIntegerRange,  // one number, or [lowest, highest]
   kRealRange,
   kIntegerPair,  // [x, z]
+  kRealPair,     // one number for both, or [x, z]
   kColour,       // [red, green, blue]
   kSeed,         // 0 to 2^64 - 1; in quotes from 2^63 on
   kText,

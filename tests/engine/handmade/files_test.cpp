@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <span>
 
 #include "engine/core/cancellation.hpp"
@@ -221,13 +223,13 @@ std::size_t rocks_with(World& w) {
 
 TEST(HandmadeFiles, ReadMasksAndReadThemAgainWhenTheyChange) {
   World w;
-  ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(2, 2, 255, 255, 255)));
+  ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(2, 2, 255, 255, 255, 255)));
   EXPECT_EQ(rocks_with(w), 20U);
   const auto kept = w.read(std::string(kHead) + kMask);  // keeps the image in use
   ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(64, 32)));
   EXPECT_EQ(rocks_with(w), 0U);
   // One pixel is an image too.
-  ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(1, 1, 255, 255, 255)));
+  ASSERT_TRUE(image::write_png(w.folder / "m.png", image::make_image(1, 1, 255, 255, 255, 255)));
   EXPECT_EQ(rocks_with(w), 20U);
 }
 
@@ -280,6 +282,58 @@ TEST(HandmadeFiles, ReadModelsAgainWhenAnImageThatTheyLackedAppears) {
   EXPECT_EQ(identity(same), before);
   ASSERT_TRUE(image::write_png(w.folder / "things/late.png", image::make_image(2, 2, 9, 99, 9)));
   EXPECT_NE(identity(other), before);
+}
+
+constexpr const char* kStamp = R"([[stamp]]
+image = "m.exr"
+centre_m = [256, 128]
+size_m = 64
+height_m = 100
+border_m = 0
+mode = "set"
+)";
+
+TEST(HandmadeFiles, GiveStampsTheMetresOfAnImage) {
+  World w;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  ASSERT_TRUE(image::write_exr(w.folder / "m.exr", {2, 2, {12.5F, 13, 14, nan}}));
+  EXPECT_THAT(w.error_of(std::string(kHead) + kStamp),
+              AllOf(StartsWith(w.file() + ":11: stamp[0].image: the numbers of the image are 12.5 "
+                                          "to 14, but grey is 0 (black) to 1"),
+                    HasSubstr("unit = \"m\"")));
+  ::testing::internal::CaptureStderr();
+  const auto world = w.read(std::string(kHead) + kStamp + "unit = \"m\"\n");
+  const std::string notes = ::testing::internal::GetCapturedStderr();
+  ASSERT_TRUE(world.has_value()) << world.error().message;
+  EXPECT_THAT(notes, HasSubstr("m.exr: 1 of 4 pixels are NaN or infinite; the ground stays"));
+  const world::HeightPicture& picture = *world->shaped.stamps[0].picture;
+  EXPECT_EQ(picture.values[0], 12.5F);
+  EXPECT_TRUE(std::isnan(picture.values[3]));
+}
+
+TEST(HandmadeFiles, CountThePixelsOfMasksThatAreNoShares) {
+  World w;
+  const float infinite = std::numeric_limits<float>::infinity();
+  ASSERT_TRUE(image::write_exr(w.folder / "m.exr", {2, 2, {0.5F, 3, -1, infinite}}));
+  ::testing::internal::CaptureStderr();
+  const auto picture = files().read_grey(w.folder / "m.exr");
+  const std::string notes = ::testing::internal::GetCapturedStderr();
+  ASSERT_TRUE(picture.has_value()) << picture.error().message;
+  EXPECT_EQ((*picture)->pixels, (std::vector<std::uint16_t>{32'768, 65'535, 0, 0}));
+  EXPECT_THAT(notes, AllOf(HasSubstr("1 of 4 pixels are NaN or infinite; they count as black"),
+                           HasSubstr("the numbers are -1 to 3; below 0 they count as black")));
+}
+
+TEST(HandmadeFiles, LeaveTheGroundUnderTransparentPixelsOfAStamp) {
+  World w;
+  image::Image image = image::make_image(2, 2, 51, 51, 51, 255);
+  image.pixel(1, 1)[3] = 0;
+  ASSERT_TRUE(image::write_png(w.folder / "m.exr", image));
+  const auto picture = files().read_heights(w.folder / "m.exr");
+  ASSERT_TRUE(picture.has_value()) << picture.error().message;
+  EXPECT_EQ((*picture)->values[0], 51);
+  EXPECT_EQ((*picture)->white, 255);
+  EXPECT_TRUE(std::isnan((*picture)->values[3]));
 }
 
 TEST(HandmadeFiles, RejectBadMasks) {

@@ -62,7 +62,7 @@ TEST(ImageIo, ReadsGreyValuesWithSixteenBits) {
   EXPECT_EQ(ramp->height, 2U);
   EXPECT_EQ(ramp->grey, (std::vector<std::uint16_t>{0, 1, 256, 65535, 1000, 2000, 3000, 40001}));
   const TemporaryFolder folder;
-  ASSERT_TRUE(write_png(folder / "red.png", make_image(3, 1, 255, 0, 0, 0)));
+  ASSERT_TRUE(write_png(folder / "red.png", make_image(3, 1, 255, 0, 0, 255)));
   const auto mean = read_grey(folder / "red.png");
   ASSERT_TRUE(mean) << mean.error().message;
   EXPECT_EQ(mean->grey, std::vector<std::uint16_t>(3, 21845));

@@ -28,7 +28,8 @@ class PicturesAlone : public ResourceLoader {
 };
 
 // Images by name: "ramp.png" has 17 × 17 different values, "white.png" 3 × 3, "dot.png" one
-// pixel; others are missing.
+// pixel; others are missing. "metres.exr" has 5 × 3 numbers, 10 + column + 5 row, and -9999 in
+// column 2 of row 1; "colours.exr" the same in colours.
 class MadePictures final : public PicturesAlone {
  public:
   core::Result<std::shared_ptr<const GreyPicture>> read_grey(
@@ -38,6 +39,17 @@ class MadePictures final : public PicturesAlone {
     if (name == "white.png") return made(3, [](std::uint32_t) { return 65'535; });
     if (name == "dot.png") return made(1, [](std::uint32_t) { return 9; });
     return core::fail(core::ErrorCode::kIo, file.string() + ": there is no such file");
+  }
+  core::Result<std::shared_ptr<const HeightPicture>> read_heights(
+      const std::filesystem::path& file) const override {
+    const std::string name = file.filename().string();
+    const bool coloured = name == "colours.exr";
+    if (name != "metres.exr" && !coloured) return ResourceLoader::read_heights(file);
+    HeightPicture picture{
+        .width = 5, .height = 3, .values = {}, .wholes = {}, .is_coloured = coloured};
+    for (int i = 0; i < 15; ++i)
+      picture.values.push_back(i == 7 ? -9999 : static_cast<float>(10 + i));
+    return std::make_shared<const HeightPicture>(finished(std::move(picture)));
   }
 
  private:

@@ -1,6 +1,7 @@
 // Heightmaps that a world file stamps into its ground.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "tests/engine/world/shaped_worlds.hpp"
@@ -82,6 +83,57 @@ TEST(Stamp, IsTurnedLikeAModel) {
   const World base = parsed(kSmallWorld);
   EXPECT_NE(height_at(corner, 128 + 44, 128), height_at(base, 128 + 44, 128));
   EXPECT_EQ(height_at(corner, 128 + 30, 128 + 30), height_at(base, 128 + 30, 128 + 30));
+}
+
+constexpr const char* kInMetres =
+    "[[stamp]]\nimage = \"metres.exr\"\ncentre_m = [128, 96]\nsize_m = [64, 32]\nunit = \"m\"\n"
+    "no_data = -9999\nborder_m = 0\nbase_m = 5\nmode = \"set\"\n";
+
+TEST(Stamp, HeightsInMetresLieOnARectangle) {
+  const World base = parsed(kSmallWorld), world = shaped_world(kInMetres);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 5; ++column) {
+      const double x = 96 + 16 * column, z = 80 + 16 * row;
+      const bool hole = column == 2 && row == 1;
+      EXPECT_NEAR(height_at(world, x, z), hole ? height_at(base, x, z) : 15 + column + 5 * row,
+                  0.51 * kQuantumM)
+          << column << ' ' << row;
+    }
+  }
+  each_vertex([&](double x, double z) {
+    if (std::abs(x - 128) <= 32 && std::abs(z - 96) <= 16) return;
+    EXPECT_EQ(height_at(world, x, z), height_at(base, x, z)) << x << ' ' << z;
+  });
+}
+
+TEST(Stamp, FadesOutTowardsAPixelWithoutHeight) {
+  const World base = parsed(kSmallWorld), world = shaped_world(kInMetres);
+  // Half-way between pixel (1, 1) and the pixel without height.
+  EXPECT_NEAR(height_at(world, 120, 96), (height_at(base, 120, 96) + 21) / 2, 1.01 * kQuantumM);
+}
+
+TEST(Stamp, OfARectangleFadesAlongAllItsSidesAndTurns) {
+  const World base = parsed(kSmallWorld);
+  const std::string stamp =
+      "[[stamp]]\nimage = \"white.png\"\ncentre_m = [128, 96]\nsize_m = [80, 40]\nheight_m = 8\n"
+      "border_m = 10\n";
+  const World world = shaped_world(stamp), turned = shaped_world(stamp + "turn_deg = 90\n");
+  const auto change = [&](const World& w, double x, double z) {
+    return height_at(w, x, z) - height_at(base, x, z);
+  };
+  for (const auto& [x, z, metres] : {std::array{0.0, 0.0, 8.0},
+                                     {30, 0, 8},
+                                     {0, 10, 8},
+                                     {36, 0, 8 * 0.352},
+                                     {0, -16, 8 * 0.352},
+                                     {-36, 0, 8 * 0.352},
+                                     {40, 0, 0},
+                                     {0, 20, 0},
+                                     {42, 0, 0},
+                                     {0, 22, 0}}) {
+    EXPECT_NEAR(change(world, 128 + x, 96 + z), metres, 1.01 * kQuantumM) << x << ' ' << z;
+    EXPECT_NEAR(change(turned, 128 + z, 96 - x), metres, 1.01 * kQuantumM) << x << ' ' << z;
+  }
 }
 
 }  // namespace

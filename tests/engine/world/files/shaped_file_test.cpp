@@ -30,6 +30,54 @@ TEST(ShapedFile, ReadsBackEqual) {
   EXPECT_EQ(shape_hash(*again), shape_hash(world));
 }
 
+constexpr const char* kMetres =
+    "[[stamp]]\nimage = \"metres.exr\"\ncentre_m = [128, 96]\nsize_m = [64, 32]\nunit = \"m\"\n"
+    "no_data = -9999\n";
+
+TEST(ShapedFile, HeightsInMetresReadBackEqualAndEditorsSeeTheirKeys) {
+  const World world = shaped_world(kMetres);
+  const std::string text = write_world(world, registry());
+  const auto again = read_shaped_world("", text);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(*again, world);
+  EXPECT_EQ(again->shaped.stamps[0].no_data, -9999);
+  EXPECT_EQ(shape_hash(*again), shape_hash(world));
+  EXPECT_NE(shape_hash(shaped_world(replaced(kMetres, "[64, 32]", "64"))), shape_hash(world));
+  const auto sections = world_schema(std::string(kSmallWorld) + kMetres, world, registry());
+  ASSERT_TRUE(sections) << sections.error().message;
+  const auto field = [&](std::string_view key) {
+    return *find_field(*sections, TextPath{"stamp", 0, key});
+  };
+  EXPECT_EQ(field("size_m").value, "[64, 32]");
+  EXPECT_EQ(field("size_m").kind, FieldKind::kRealPair);
+  EXPECT_EQ(field("size_m").label, "Size");
+  EXPECT_EQ(field("unit").plain, "m");
+  EXPECT_EQ(field("unit").choices, (std::vector<std::string>{"grey", "m"}));
+  EXPECT_EQ(field("no_data").value, "-9999");
+  EXPECT_THAT(field("no_data").doc, HasSubstr("marks pixels without height"));
+}
+
+TEST(ShapedFile, NumbersThatAreNoHeightsAreRejectedWithTheirRangeAndTheKey) {
+  const auto error = [](const std::string& from, const std::string& to) {
+    const auto world = read_shaped_world(replaced(kMetres, from, to));
+    return world ? "" : world.error().message;
+  };
+  EXPECT_THAT(error("unit = \"m\"\n", ""),
+              AllOf(HasSubstr("w.toml:25: stamp[0].image: the numbers of the image are 10 to 24"),
+                    HasSubstr("unit = \"m\"")));
+  EXPECT_THAT(
+      error("no_data = -9999\n", ""),
+      AllOf(HasSubstr("stamp[0].image: the stamp reaches -9999 m"), HasSubstr("-60 to 60")));
+  EXPECT_THAT(error("-9999", "3"), HasSubstr("reaches -9999 m"));
+  EXPECT_THAT(error("metres.exr", "colours.exr"), HasSubstr("the image has colours"));
+  EXPECT_THAT(error("\"m\"", "\"ft\""), HasSubstr("stamp[0].unit: it must be one of grey, m"));
+  EXPECT_THAT(error("-9999", "nan"), HasSubstr("stamp[0].no_data"));
+  EXPECT_THAT(error("[64, 32]", "[64, 32]\nborder_m = 17"),
+              HasSubstr("at most half of size_m, 16"));
+  for (const char* size : {"[64]", "[64, 0]", "[64, nan]", "[1, 2, 3]", "\"wide\""})
+    EXPECT_THAT(error("[64, 32]", size), HasSubstr("w.toml:27: stamp[0].size_m")) << size;
+}
+
 TEST(ShapedFile, EditorsSeeItsFields) {
   const std::string text = std::string(kSmallWorld) + kShapes;
   const auto sections = world_schema(text, shaped_world(kShapes), registry());
