@@ -168,10 +168,14 @@ void enable(const DeviceInfo& info, FeatureChain& features, std::vector<const ch
 void read_limits(Device& device) {
   VkPhysicalDeviceMultiDrawPropertiesEXT multi_draw{};
   multi_draw.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_PROPERTIES_EXT;
+  VkPhysicalDeviceMaintenance3Properties sizes{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES,
+      .pNext = device.info.multi_draw ? &multi_draw : nullptr};
   VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
-                                         .pNext = device.info.multi_draw ? &multi_draw : nullptr};
+                                         .pNext = &sizes};
   vkGetPhysicalDeviceProperties2(device.physical, &properties);
   const VkPhysicalDeviceLimits& limits = properties.properties.limits;
+  device.max_allocation_bytes = sizes.maxMemoryAllocationSize;
   device.max_image_side = limits.maxImageDimension2D;
   device.sampled_depth_counts = limits.sampledImageDepthSampleCounts;
   device.sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts;

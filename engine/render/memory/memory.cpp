@@ -7,6 +7,9 @@
 #include <bit>
 #include <cstring>
 #include <initializer_list>
+#include <optional>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace psygen::render {
@@ -15,10 +18,31 @@ using core::Result;
 
 namespace {
 
+// The error for an allocation that no memory type of the driver allows; nothing: it is allowed.
+std::optional<core::Error> too_large(const Device& device, const VkMemoryRequirements& needs) {
+  const auto refuse = [&needs](std::string_view what, std::uint64_t bytes) {
+    return core::Error{core::ErrorCode::kOutOfMemory,
+                       fmt::format("allocating {} bytes of device memory failed: {} {} bytes at "
+                                   "once",
+                                   needs.size, what, bytes)};
+  };
+  if (device.max_allocation_bytes < needs.size)
+    return refuse("the driver allows", device.max_allocation_bytes);
+  std::uint64_t largest = 0;
+  for (std::uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
+    const std::uint32_t heap = device.memory.memoryTypes[i].heapIndex;
+    if ((needs.memoryTypeBits >> i & 1u) != 0)
+      largest = std::max(largest, device.memory.memoryHeaps[heap].size / 4);
+  }
+  if (largest < needs.size) return refuse("a quarter of the driver's largest heap allows", largest);
+  return std::nullopt;
+}
+
 // Allocates memory of the first type with one of the sets of properties in `wishes`, tried in
 // order. Skips heaps that are smaller than four times the allocation.
 Result<UniqueMemory> allocate(const Device& device, const VkMemoryRequirements& needs,
                               std::initializer_list<VkMemoryPropertyFlags> wishes) {
+  if (auto error = too_large(device, needs)) return tl::unexpected(*std::move(error));
   VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
   for (const VkMemoryPropertyFlags wish : wishes) {
     for (std::uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {

@@ -2,8 +2,10 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
-#include "engine/render/device/vulkan.hpp"
+#include "engine/render/device/device.hpp"
+#include "engine/render/memory/memory.hpp"
 #include "engine/render/renderer.hpp"
 #include "tests/faults.hpp"
 
@@ -47,6 +49,23 @@ TEST(RendererFailure, APictureLargerThanMemoryIsRefused) {
   RendererOptions options;
   options.size = {1u << 30, 1u << 30};
   EXPECT_FALSE(Renderer::create(options));
+}
+
+TEST(RendererFailure, AnAllocationThatTheDriverDoesNotAllowNamesTheBytes) {
+  const auto instance = Instance::create("test", false, nullptr);
+  ASSERT_TRUE(instance) << instance.error().message;
+  const auto candidates = find_devices(**instance, VK_NULL_HANDLE);
+  ASSERT_FALSE(candidates.empty());
+  const auto device = Device::create(candidates.front(), {});
+  ASSERT_TRUE(device) << device.error().message;
+  const std::uint64_t most = (*device)->max_allocation_bytes;
+  ASSERT_GT(most, 1U << 20);
+  const auto buffer = make_buffer(**device, most + (1 << 20), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                  MemoryUse::kDevice);
+  ASSERT_FALSE(buffer);
+  EXPECT_EQ(buffer.error().code, core::ErrorCode::kOutOfMemory);
+  const std::string end = "the driver allows " + std::to_string(most) + " bytes at once";
+  EXPECT_NE(buffer.error().message.find(end), std::string::npos) << buffer.error().message;
 }
 
 // In a process of its own: the environment decides which drivers the loader finds.
