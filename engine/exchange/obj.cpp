@@ -36,7 +36,7 @@ std::string mtl_of(const Document& document) {
   }
   std::string text;
   for (const auto& [material, mean] : means) {
-    const glm::vec3 colour = srgb(mean.sum / std::max(mean.count, 1.0F));
+    const glm::vec3 colour = mean.sum / std::max(mean.count, 1.0F);
     fmt::format_to(std::back_inserter(text),
                    "newmtl {}\nKd {:.4f} {:.4f} {:.4f}\nKs 0 0 0\nillum 1\n",
                    material_name(material), colour.x, colour.y, colour.z);

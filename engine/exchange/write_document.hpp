@@ -28,7 +28,8 @@ struct ObjText {
   std::string obj, mtl;
 };
 // The texts of a document. The colour of each vertex follows its coordinates, as sRGB, which other
-// programs expect. The Kd of a material is the mean colour of its vertices.
+// programs expect. The Kd of a material is the mean linear albedo of its vertices, as Blender reads
+// it.
 ObjText obj_text(const Document& document, std::string_view mtl_file_name);
 // The last line of both texts, by which is_cut_short() recognises a whole file. And the first line
 // of an .obj, a comment with the document's name.

@@ -123,6 +123,16 @@ TEST(WriteDocument, AnObjHasOneLineForEveryVertexAndTriangle) {
   EXPECT_NE(text.mtl.find("newmtl leaf"), std::string::npos);
 }
 
+TEST(WriteDocument, AMaterialOfAnObjHasTheMeanLinearAlbedoOfItsVertices) {
+  Part part;
+  part.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  part.normals.assign(4, {0, 0, 1});
+  part.colours = {{0.1F, 0.2F, 0.4F}, {0.1F, 0.2F, 0.4F}, {0.3F, 0.2F, 0}, {0.3F, 0.2F, 0}};
+  part.indices = {0, 1, 2};
+  const ObjText text = obj_text({"two colours", {{"a", {}, {part}}}}, "a.mtl");
+  EXPECT_NE(text.mtl.find("Kd 0.2000 0.2000 0.2000\n"), std::string::npos) << text.mtl;
+}
+
 TEST(WriteDocument, AnEmptyDocumentIsAFileThatOthersRead) {
   const auto bytes = glb_bytes({"nothing", {}});
   ASSERT_TRUE(bytes);
