@@ -41,14 +41,22 @@ void Terrain::set_origin(core::BlockCoord origin) {
   }
 }
 
+bool Terrain::is_across_seam(core::BlockCoord block) const {
+  const auto wraps = [](std::int32_t index, std::int32_t origin) {
+    const std::int64_t away = std::int64_t{index} - origin;
+    return away != static_cast<std::int32_t>(away);
+  };
+  return wraps(block.x, origin_.x) || wraps(block.z, origin_.z);
+}
+
 btVector3 Terrain::inside(const btVector3& at, double margin_m) const {
   const world::World& world = query_.world();
   const double size = world.block_size_m();
   const auto limit = [&](double v, std::int32_t origin, std::int64_t blocks) {
-    if (blocks == 0) return v;
-    const double low = -static_cast<double>(origin) * size;
-    const double high = static_cast<double>(blocks - origin) * size;
-    const double margin = std::min(margin_m, 0.25 * static_cast<double>(blocks) * size);
+    const auto [first, end] = world::World::ends(blocks);
+    const double low = static_cast<double>(first - origin) * size;
+    const double high = static_cast<double>(end - origin) * size;
+    const double margin = std::min(margin_m, 0.25 * static_cast<double>(end - first) * size);
     return std::clamp(v, low + margin, high - margin);
   };
   return {limit(at.x(), origin_.x, world.blocks_x), at.y(),

@@ -64,6 +64,8 @@ class Terrain {
   // Returns the ground under a point in Bullet's coordinates, clamped to a bounded world. Always
   // the present ground of queries, even if Bullet gets it only in the next step.
   models::GroundPoint ground(const btVector3& at);
+  // True if block indices wrap between the origin and a block.
+  bool is_across_seam(core::BlockCoord block) const;
   // Returns the point inside the walls of a bounded world, at least `margin_m` from them.
   btVector3 inside(const btVector3& at, double margin_m) const;
   // Conversions between Bullet's coordinates and the world's.

@@ -61,7 +61,7 @@ World::~World() = default;
 core::Result<CharacterId> World::add(const CharacterSettings& settings) {
   if (auto sound = check(settings); !sound) return tl::unexpected(sound.error());
   if (auto room = impl_->check_room(); !room) return tl::unexpected(room.error());
-  const auto feet = impl_->place(settings.feet);
+  const auto feet = impl_->place(settings.feet, impl_->count());
   if (!feet) return tl::unexpected(feet.error());
   const std::uint32_t number = ++impl_->last_number;
   impl_->characters.try_emplace(number, impl_->bullet, impl_->terrain, settings, *feet, number);
@@ -98,7 +98,7 @@ core::Result<void> World::tell(CharacterId id, const CharacterInput& input) {
 core::Result<void> World::set_feet(CharacterId id, const core::WorldPosition& feet) {
   Character* character = impl_->find(id);
   if (character == nullptr) return no_character(id);
-  const auto at = impl_->place(feet);
+  const auto at = impl_->place(feet, impl_->count() - 1);
   if (!at) return tl::unexpected(at.error());
   character->teleport(*at);
   return {};

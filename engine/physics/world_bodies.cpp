@@ -49,7 +49,7 @@ core::Result<BodyId> World::add(const BodySettings& s) {
   auto shape = make_shape(s.shape);
   if (!shape) return tl::unexpected(shape.error());
   if (auto room = impl_->check_room(); !room) return tl::unexpected(room.error());
-  const auto at = impl_->place(s.position);
+  const auto at = impl_->place(s.position, impl_->count());
   if (!at) return tl::unexpected(at.error());
 
   const std::uint32_t number = ++impl_->last_number;
@@ -109,7 +109,7 @@ core::Result<void> World::set_pose(BodyId id, const core::WorldPosition& positio
   if (body == nullptr) return no_body(id);
   const auto turn = checked_rotation(rotation);
   if (!turn) return tl::unexpected(turn.error());
-  const auto at = impl_->place(position);
+  const auto at = impl_->place(position, impl_->count() - 1);
   if (!at) return tl::unexpected(at.error());
   btRigidBody& rigid = *body->rigid;
   if (!rigid.isActive()) impl_->wake_touching(rigid);

@@ -55,15 +55,22 @@ Character* World::Impl::find(CharacterId id) {
   return found == characters.end() ? nullptr : &found->second;
 }
 
-core::Result<btVector3> World::Impl::place(const core::WorldPosition& at) {
+core::Result<btVector3> World::Impl::place(const core::WorldPosition& at, std::size_t others) {
   follow_world();
   const auto sound = query::checked(at, query.world().block_size_m());
   if (!sound) return tl::unexpected(sound.error());
   if (!query.world().contains(sound->block))
     return core::invalid_argument(
         fmt::format("block ({}, {}) is outside the world", sound->block.x, sound->block.z));
+  const bool across = terrain.is_across_seam(sound->block);
+  if (across && others > 0)
+    return core::invalid_argument(
+        fmt::format("block ({}, {}) lies across the seam of the endless world from the other "
+                    "bodies and characters",
+                    sound->block.x, sound->block.z));
   const btVector3 to = terrain.coordinates(*sound);
-  if (btVector3(to.x(), 0, to.z()).length() <= kMaxFromOriginM || count() > 1) return to;
+  const bool near = btVector3(to.x(), 0, to.z()).length() <= kMaxFromOriginM;
+  if (!across && (near || count() > 1)) return to;
   move_origin(sound->block);
   return terrain.coordinates(*sound);
 }

@@ -34,7 +34,7 @@ struct World::Impl {
 
   // Returns Bullet's coordinates of a position. Moves the origin there if nothing is near the
   // present one. Fails outside a bounded world and for values that are not finite.
-  core::Result<btVector3> place(const core::WorldPosition& at);
+  core::Result<btVector3> place(const core::WorldPosition& at, std::size_t others);
   Body* find(BodyId id);
   Character* find(CharacterId id);
   std::size_t count() const { return bodies.size() + characters.size(); }

@@ -36,6 +36,11 @@ Cell cell_at(const core::WorldPosition& at, double block_m) {
   return cell_at(m.x, m.z);
 }
 
+double apart_m(Cell a, Cell b) {
+  return PathFinder::kCellM *
+         std::hypot(static_cast<double>(a.x - b.x), static_cast<double>(a.z - b.z));
+}
+
 }  // namespace ways
 
 using namespace ways;
@@ -117,19 +122,26 @@ class PathFinder::Search {
   };
 
   core::WorldPosition middle(Cell c) const {
-    const glm::dvec3 m((static_cast<double>(c.x) + 0.5) * PathFinder::kCellM, 0,
-                       (static_cast<double>(c.z) + 0.5) * PathFinder::kCellM);
-    return core::normalised({{}, m}, query_.world().block_size_m());
+    return core::normalised({{}, {middle_m(c.x), 0, middle_m(c.z)}}, query_.world().block_size_m());
+  }
+  static double middle_m(std::int64_t index) {
+    return (static_cast<double>(index) + 0.5) * PathFinder::kCellM;
+  }
+  // True if the cell lies before the world's ends, and before the seam of an endless one.
+  bool is_inside(Cell c) const {
+    const auto along = [&](std::int64_t index, std::int64_t blocks) {
+      const auto [first, end] = world::World::ends(blocks);
+      const double at = middle_m(index) / query_.world().block_size_m();
+      return at >= static_cast<double>(first) && at < static_cast<double>(end);
+    };
+    return along(c.x, query_.world().blocks_x) && along(c.z, query_.world().blocks_z);
   }
 
-  double estimate(Cell c) const {
-    return PathFinder::kCellM *
-           std::hypot(static_cast<double>(c.x - to_.x), static_cast<double>(c.z - to_.z));
-  }
+  double estimate(Cell c) const { return apart_m(c, to_); }
 
   const Ground& ground(Cell c) {
     const auto [it, is_new] = grounds_.try_emplace(name_of(c));
-    if (is_new) {
+    if (is_new && is_inside(c)) {
       const auto found = query_.ground(middle(c));
       if (found) it->second = {found->height_m, found->water_depth_m, found->normal.y, true};
     }
@@ -162,8 +174,7 @@ class PathFinder::Search {
   double cost(Cell a, Cell b) {
     const Ground from = ground(a), to = ground(b);
     if (!to.exists || (avoided_.contains(name_of(b)) && b != to_)) return kNoWay;
-    double run = PathFinder::kCellM *
-                 std::hypot(static_cast<double>(a.x - b.x), static_cast<double>(a.z - b.z));
+    double run = apart_m(a, b);
     // In deep water, the walker moves at the surface.
     const auto level_m = [&](const Ground& g) {
       return g.height_m + std::max(g.depth_m - settings_.wade_m, 0.0);

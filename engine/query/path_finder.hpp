@@ -41,7 +41,8 @@ class PathFinder {
   PathSettings& settings() { return settings_; }
   // Returns points on the ground from `from` to `to`, both included, a cell apart. If there is no
   // path, or the search visits max_cells without finding one, the path ends at the nearest reached
-  // point. It has only `from` if a position is not finite or beyond World::kMaxLocalM.
+  // point. It has only `from` if a position is not finite or beyond World::kMaxLocalM. No path
+  // crosses the seam of an endless world.
   std::vector<core::WorldPosition> find(const core::WorldPosition& from,
                                         const core::WorldPosition& to);
   // Like find(), but in slices for a game's steps. begin() starts a search, replaces one in

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <tuple>
 
 #include "engine/core/rounding.hpp"
@@ -85,6 +86,24 @@ struct World::Course {
   double highest(double from, double to) const { return std::max(height_at(from), height_at(to)); }
 };
 
+// Distance along a ray to the seam of an endless world; infinite: the ray does not cross it.
+double World::seam_m(const Course& course) const {
+  constexpr double kBeforeM = 1e-4;
+  double nearest_m = std::numeric_limits<double>::infinity();
+  const auto check = [&](std::int64_t blocks, std::int32_t block, double local, double step) {
+    if (blocks != 0 || step == 0) return;
+    const auto [first, end] = world::World::ends(blocks);
+    const double away_m =
+        step > 0 ? static_cast<double>(end - block) * derived_.block_m - local - kBeforeM
+                 : static_cast<double>(first - block) * derived_.block_m - local + kBeforeM;
+    nearest_m = std::min(nearest_m, std::max(away_m / step, 0.0));
+  };
+  const auto& [block, local] = course.origin;
+  check(world_->blocks_x, block.x, local.x, course.direction.x);
+  check(world_->blocks_z, block.z, local.z, course.direction.z);
+  return nearest_m;
+}
+
 core::Result<Hit> World::cast(const Ray& ray) {
   const core::RoundToNearest rounding;
   follow_world();
@@ -100,8 +119,9 @@ core::Result<Hit> World::cast(const Ray& ray) {
     return core::invalid_argument(
         fmt::format("the length {} m of the ray is not above 0", ray.longest_m));
   const glm::dvec3 scaled = ray.direction / largest;
-  const Course course{*origin, scaled / std::sqrt(glm::dot(scaled, scaled)),
-                      std::min(ray.longest_m, kMaxLocalM)};
+  Course course{*origin, scaled / std::sqrt(glm::dot(scaled, scaled)),
+                std::min(ray.longest_m, kMaxLocalM)};
+  course.longest_m = std::min(course.longest_m, seam_m(course));
   Hit hit;
   hit.distance_m = course.longest_m;
   if (ray.ground) cast_ground(course, hit);

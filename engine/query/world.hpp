@@ -30,7 +30,7 @@ struct Ground {
 struct Ray {
   core::WorldPosition origin;
   glm::dvec3 direction{0, -1, 0};  // any length above 0
-  double longest_m = 1000;         // above 0; may be infinite
+  double longest_m = 1000;         // above 0; may be infinite; ends at the seam of an endless world
   bool ground = true;              // targets of the ray: the ground, models with a collider,
   bool models = true;
   bool objects = true;  // and objects, of World::meet()
@@ -154,6 +154,7 @@ class World {
   glm::vec2 max_reach_m() const {
     return world::with_placed_models(derived_.scattered_reach_m, *world_);
   }
+  double seam_m(const Course& course) const;
   void cast_ground(const Course& course, Hit& hit);
   void cast_models(const Course& course, Hit& hit);
   void cast_objects(const Course& course, Hit& hit) const;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/core/coordinates.hpp"
@@ -185,6 +186,12 @@ struct World {
   // True if a block exists; true if the world is endless along any axis.
   bool contains(core::BlockCoord block) const;
   bool is_endless() const { return blocks_x == 0 || blocks_z == 0; }
+  // The first block along an axis of `blocks` blocks, and the one behind the last. An endless axis
+  // ends at its seam, where block indices wrap: nothing moves across it.
+  static constexpr std::pair<std::int64_t, std::int64_t> ends(std::int64_t blocks) {
+    constexpr std::int64_t kSeam = std::int64_t{1} << 31;
+    return blocks == 0 ? std::pair{-kSeam, kSeam} : std::pair{std::int64_t{0}, blocks};
+  }
   friend bool operator==(const World&, const World&) = default;
 };
 

@@ -101,6 +101,31 @@ TEST_P(Falls, BodiesThatAreThrownAtTheGroundStayAboveIt) {
   }
 }
 
+TEST(FallsAtTheEdge, ActorsStopBeforeTheSeamOfAnEndlessWorld) {
+  for (const auto& [block, east] : {std::pair{INT32_MAX, 1}, {INT32_MIN, -1}}) {
+    Scene scene(Loaded::shipped("endless"));
+    const double size = scene.loaded.world.block_size_m();
+    const double near_m = east > 0 ? size - 3 : 3, seam_m = east > 0 ? size : 0;
+    const auto id =
+        scene.physics.add(CharacterSettings{.feet = scene.above({block, 7}, near_m, 30, 0)});
+    const auto ball_id = scene.physics.add(
+        {.shape = testing::ball(0.5F), .position = scene.above({block, 7}, near_m, 40, 1)});
+    ASSERT_TRUE(id && ball_id);
+    for (int i = 0; i < 120; ++i) {
+      ASSERT_TRUE(scene.physics.set_velocity(*id, {20.0 * east, 0, 0}));
+      ASSERT_TRUE(scene.physics.set_velocity(*ball_id, {30.0 * east, 0, 0}, {}));
+      scene.steps(1);
+      ASSERT_EQ(scene.physics.state(*id)->feet.block.x, block) << i;
+      ASSERT_EQ(scene.physics.state(*ball_id)->position.block.x, block) << i;
+    }
+    EXPECT_LT(std::abs(scene.physics.state(*id)->feet.local.x - seam_m), 1.0);
+    const core::WorldPosition across = scene.above({INT32_MAX + INT32_MIN - block, 7}, 20, 30, 0);
+    EXPECT_FALSE(scene.physics.add(CharacterSettings{.feet = across}));
+    EXPECT_FALSE(scene.physics.set_feet(*id, across));
+    EXPECT_LT(std::abs(scene.physics.state(*ball_id)->position.local.x - seam_m), 1.0);
+  }
+}
+
 TEST(FallsAtTheEdge, ActorsDoNotLeaveABoundedWorld) {
   Scene scene(Loaded::parsed(kBounded));
   for (const glm::dvec2& way : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}}) {

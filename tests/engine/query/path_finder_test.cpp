@@ -154,5 +154,22 @@ TEST_F(Ways, GoAroundWaterIfSwimmingCostsMuch) {
   EXPECT_LT(swum[1], 0.5 * swum[0]);
 }
 
+TEST(WaysAtTheSeam, StopBeforeItAndAreFoundBesideIt) {
+  const Loaded loaded = Loaded::shipped("endless");
+  World query(loaded.world, loaded.registry);
+  PathFinder finder(query, {.steepest_up = 100, .steepest_down = 100, .max_cells = 4000});
+  const double size = loaded.world.block_size_m();
+  const core::WorldPosition from{{INT32_MAX, 5}, {size - 40, 0, 20}};
+  const core::WorldPosition across{{INT32_MIN, 5}, {20, 0, 20}};
+  EXPECT_FALSE(finder.reaches(from, across));
+  for (const core::WorldPosition& point : finder.find(from, across))
+    EXPECT_GT(point.block.x, 0);
+  const core::WorldPosition beside{{INT32_MAX, 5}, {size - 1, 0, 30}};
+  const auto points = finder.find(from, beside);
+  EXPECT_EQ(points.back().block, beside.block);
+  EXPECT_EQ(points.back().local, beside.local);
+  EXPECT_GT(points.size(), 18U);
+}
+
 }  // namespace
 }  // namespace psygen::query

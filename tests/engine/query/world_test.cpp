@@ -274,6 +274,26 @@ TEST(QueryWorld, RaysAreTheSameFromAnyBlockOfTheirOrigin) {
   }
 }
 
+TEST(QueryWorld, RaysEndAtTheSeamOfAnEndlessWorld) {
+  const Loaded loaded = Loaded::shipped("endless");
+  World query(loaded.world, loaded.registry);
+  const double size = loaded.world.block_size_m();
+  const auto east = query.cast(
+      {.origin = {{INT32_MAX, 4}, {10, 5000, 10}}, .direction = {1, -1, 0}, .longest_m = 9000});
+  const auto north = query.cast(
+      {.origin = {{4, INT32_MIN + 1}, {10, 5000, 10}}, .direction = {0, 0, -3}, .longest_m = 9000});
+  ASSERT_TRUE(east && north);
+  EXPECT_EQ(east->kind, HitKind::kNothing);
+  EXPECT_NEAR(east->distance_m, (size - 10) * std::sqrt(2.0), 1e-3);
+  EXPECT_EQ(east->position.block, (core::BlockCoord{INT32_MAX, 4}));
+  EXPECT_NEAR(north->distance_m, size + 10, 1e-3);
+  EXPECT_EQ(north->position.block, (core::BlockCoord{4, INT32_MIN}));
+  const auto west = query.cast(
+      {.origin = {{INT32_MAX, 4}, {10, 5000, 10}}, .direction = {-1, -1, 0}, .longest_m = 9000});
+  ASSERT_TRUE(west);
+  EXPECT_EQ(west->kind, HitKind::kGround) << "away from the seam";
+}
+
 TEST(QueryWorld, VerticalRaysHitTheGroundFromAboveAndFromBelow) {
   const Loaded loaded = Loaded::shipped("paper");
   World query(loaded.world, loaded.registry);
