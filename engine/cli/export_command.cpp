@@ -56,7 +56,16 @@ class ExportCommand final : public Command {
   std::string format_ = "3dtiles";  // of a region
   std::optional<tiles::NodeLevels> levels_;
   unsigned threads_ = 0;
+  std::optional<tiles::GeoPlace> at_geo_;
+  std::optional<glm::dvec2> range_m_;  // of a heightmap: black and white
 };
+
+core::Result<glm::dvec2> parse_range(const std::string& text) {
+  const auto range = parse_place(text);  // two numbers
+  if (range && range->x < range->y) return range;
+  return core::invalid_argument(
+      fmt::format("'{}' is not LOW,HIGH in metres, LOW below HIGH", core::shown(text, 60)));
+}
 
 constexpr std::size_t kMaxShownBytes = 60;  // of a value
 
@@ -202,6 +211,18 @@ ExportCommand::ExportCommand(CLI::App& cli)
        "from 0 to a single tile")
       ->check(valid_if(tiles::parse_levels, "LEVELS"))
       ->needs(region);
+  c.add_option_function<std::string>(
+       "--at-geo", [this](const std::string& text) { at_geo_ = *tiles::parse_geo_place(text); },
+       "LATITUDE,LONGITUDE[,HEIGHT] of a tileset's north-western corner, in degrees and metres "
+       "(WGS 84); default: none")
+      ->check(valid_if(tiles::parse_geo_place, "PLACE"))
+      ->needs(region);
+  c.add_option_function<std::string>(
+       "--range", [this](const std::string& text) { range_m_ = *parse_range(text); },
+       "LOW,HIGH: heights of black and white in a heightmap's heights.png, in metres; default: the "
+       "region's lowest and highest point")
+      ->check(valid_if(parse_range, "LOW,HIGH"))
+      ->needs(region);
   c.add_option("--threads", threads_, "Threads for a region; default: one per processor")
       ->transform(integer_between(1, amplify::kMaxThreads))
       ->needs(region);
@@ -209,6 +230,10 @@ ExportCommand::ExportCommand(CLI::App& cli)
   c.callback([this] {
     if (model_.empty() && !block_ && !region_)
       throw CLI::RequiredError("psygen export: one of --model, --block and --region");
+    const bool is_heightmap = format_ == "heightmap";
+    if (range_m_ && !is_heightmap)
+      throw CLI::ValidationError("--range", "is for --format heightmap");
+    if (at_geo_ && is_heightmap) throw CLI::ValidationError("--at-geo", "is for --format 3dtiles");
     if (region_) return;
     if (const auto format = format_of(out_); !format)
       throw CLI::ValidationError("--out", format.error().message);
@@ -288,6 +313,7 @@ int ExportCommand::export_region(const world::World& world,
   tiles::TilesetOptions options;
   options.threads = threads;
   options.stop = &stop_at_interrupt();
+  options.at_geo = at_geo_;
   telemetry::ProgressBar bar(telemetry::stderr_terminal(), "tiling " + world.name, 1);
   options.progress = [&bar](double done) { bar.update(done); };
   const auto report = tiles::write_tileset(world, registry, *tree, out_, options);
@@ -295,11 +321,17 @@ int ExportCommand::export_region(const world::World& world,
   core::log_info(fmt::format("wrote {}: {} tiles in {} levels, {} triangles, {}", out_,
                              report->contents, tree->level_count(), report->triangles,
                              telemetry::size_text(static_cast<double>(report->bytes))));
+  if (!at_geo_)
+    core::log_info(
+        "note: the tileset has no place on Earth, so globes show it at the Earth's centre; "
+        "--at-geo LATITUDE,LONGITUDE[,HEIGHT] gives it one");
   return kOk;
 }
 
 int ExportCommand::export_heightmap(const world::World& world, unsigned threads) const {
-  const auto report = tiles::write_heightmap(world, *region_, out_, threads, &stop_at_interrupt());
+  tiles::HeightmapOptions options{.threads = threads, .stop = &stop_at_interrupt()};
+  if (range_m_) options.range_m = std::pair{range_m_->x, range_m_->y};
+  const auto report = tiles::write_heightmap(world, *region_, out_, options);
   if (!report) return fail_with(report.error());
   core::log_info(fmt::format("wrote {}: {} x {} heights from {:.1f} to {:.1f} m", out_,
                              report->width, report->height, report->min_m, report->max_m));

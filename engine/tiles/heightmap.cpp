@@ -111,17 +111,14 @@ core::Result<void> paint_all(const Painter& painter, const amplify::Region& regi
 }
 
 core::Result<void> write_pictures(const Pictures& pictures, const std::filesystem::path& folder,
-                                  HeightmapReport& report) {
+                                  double black_m, double white_m) {
   const std::vector<float>& heights = pictures.heights.values;
-  const auto [least, most] = std::ranges::minmax_element(heights);
-  report.min_m = static_cast<double>(*least);
-  report.max_m = static_cast<double>(*most);
   image::GreyImage spread{pictures.heights.width, pictures.heights.height, {}};
-  const double range_m = std::max(report.max_m - report.min_m, 1e-6);
+  const double range_m = std::max(white_m - black_m, 1e-6);
   spread.grey.reserve(heights.size());
   for (const float height : heights)
     spread.grey.push_back(static_cast<std::uint16_t>(
-        (static_cast<double>(height) - report.min_m) / range_m * 65535 + 0.5));
+        (static_cast<double>(height) - black_m) / range_m * 65535 + 0.5));
   if (auto ok = image::write_exr(folder / "heights.exr", pictures.heights); !ok) return ok;
   if (auto ok = image::write_png(folder / "heights.png", spread); !ok) return ok;
   for (std::size_t kind = 0; kind < world::kGroundKinds; ++kind) {
@@ -135,8 +132,8 @@ core::Result<void> write_pictures(const Pictures& pictures, const std::filesyste
 
 core::Result<HeightmapReport> write_heightmap(const world::World& world,
                                               const amplify::Region& region,
-                                              const std::filesystem::path& folder, unsigned threads,
-                                              const std::atomic<bool>* stop) {
+                                              const std::filesystem::path& folder,
+                                              const HeightmapOptions& options) {
   const auto cells = static_cast<std::uint64_t>(world.terrain.integer(models::kTerrainSize) - 1);
   const auto side = [&](std::int64_t blocks) {
     return static_cast<std::uint64_t>(blocks) * cells + 1;
@@ -150,13 +147,24 @@ core::Result<HeightmapReport> write_heightmap(const world::World& world,
   if (auto ok = telemetry::create_output_folder(folder); !ok) return tl::unexpected(ok.error());
   HeightmapReport report{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
   Pictures pictures(report.width, report.height);
-  if (auto ok = paint_all(Painter(world, region, pictures), region, threads, stop); !ok)
+  if (auto ok = paint_all(Painter(world, region, pictures), region, options.threads, options.stop);
+      !ok)
     return tl::unexpected(ok.error());
-  if (auto ok = write_pictures(pictures, folder, report); !ok) return tl::unexpected(ok.error());
+  const auto [least, most] = std::ranges::minmax_element(pictures.heights.values);
+  report.min_m = static_cast<double>(*least);
+  report.max_m = static_cast<double>(*most);
+  const auto [black_m, white_m] = options.range_m.value_or(std::pair{report.min_m, report.max_m});
+  if (report.min_m < black_m || report.max_m > white_m)
+    return core::invalid_argument(
+        fmt::format("the heights of the region are {:.1f} to {:.1f} m, beyond the range {:g} to "
+                    "{:g} m",
+                    report.min_m, report.max_m, black_m, white_m));
+  if (auto ok = write_pictures(pictures, folder, black_m, white_m); !ok)
+    return tl::unexpected(ok.error());
   const std::string json = fmt::format(
       "{{\"width\":{},\"height\":{},\"cell_m\":{},\"height_of_black_m\":{},"
       "\"height_of_white_m\":{},\"west_m\":{},\"north_m\":{}}}\n",
-      report.width, report.height, world.cell_m(), report.min_m, report.max_m,
+      report.width, report.height, world.cell_m(), black_m, white_m,
       static_cast<double>(region.x0) * world.block_size_m(),
       static_cast<double>(region.z0) * world.block_size_m());
   if (auto ok = core::replace_file(folder / "heightmap.json", json); !ok)

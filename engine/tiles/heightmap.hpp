@@ -6,7 +6,8 @@
 
 #include <atomic>
 #include <filesystem>
-#include <functional>
+#include <optional>
+#include <utility>
 
 #include "engine/amplify/region.hpp"
 #include "engine/world/world.hpp"
@@ -16,6 +17,15 @@ namespace psygen::tiles {
 // The maximum number of pixels along a side.
 inline constexpr std::uint64_t kMaxHeightmapSide = 16384;
 
+// Options for writing.
+struct HeightmapOptions {
+  unsigned threads = 1;
+  const std::atomic<bool>* stop = nullptr;  // true: stop after the blocks in progress
+  // Heights of black and white in heights.png, in metres; default: the lowest and highest point.
+  // Regions with equal ranges join without a step.
+  std::optional<std::pair<double, double>> range_m = {};
+};
+
 struct HeightmapReport {
   std::uint32_t width = 0, height = 0;  // pixels
   double min_m = 0, max_m = 0;          // lowest and highest point
@@ -23,11 +33,11 @@ struct HeightmapReport {
 
 // Writes the images into `folder`, which is created; heightmap.json comes last. Needs 8 bytes of
 // memory for each pixel, and 2 for each kind of ground. Fails with kInvalidArgument for regions
-// with more than kMaxHeightmapSide pixels along a side, with kInterrupted, and like
-// image::write_png().
+// with more than kMaxHeightmapSide pixels along a side or heights beyond the range, with
+// kInterrupted, and like image::write_png().
 core::Result<HeightmapReport> write_heightmap(const world::World& world,
                                               const amplify::Region& region,
-                                              const std::filesystem::path& folder, unsigned threads,
-                                              const std::atomic<bool>* stop);
+                                              const std::filesystem::path& folder,
+                                              const HeightmapOptions& options);
 
 }  // namespace psygen::tiles

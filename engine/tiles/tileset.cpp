@@ -4,13 +4,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <mutex>
+#include <numbers>
 #include <optional>
 #include <vector>
 
 #include "engine/core/headroom.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/core/utf8.hpp"
 #include "engine/exchange/write_document.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/tiles/subtree.hpp"
@@ -29,6 +34,25 @@ TileBox tile_box(const Box& box) {
   TileBox made{centre.x, -centre.z, centre.y};
   made[3] = half.x, made[7] = half.z, made[11] = half.y;
   return made;
+}
+
+// "transform" of the root, column by column: east, north and up at a place of WGS 84, as vectors
+// from the Earth's centre, and the place itself.
+std::string transform_json(const GeoPlace& place) {
+  constexpr double kRadiusM = 6'378'137, kFlattening = 1 / 298.257223563;
+  constexpr double kSquare = kFlattening * (2 - kFlattening);  // of the eccentricity
+  const double latitude = place.latitude_deg * std::numbers::pi / 180;
+  const double longitude = place.longitude_deg * std::numbers::pi / 180;
+  const double s = std::sin(latitude), c = std::cos(latitude);
+  const double t = std::sin(longitude), d = std::cos(longitude);
+  const double normal_m = kRadiusM / std::sqrt(1 - kSquare * s * s);  // down to the Earth's axis
+  const double away_m = (normal_m + place.height_m) * c;
+  const std::array<double, 16> columns{
+      -t,     d, 0,          0,          -s * d,
+      -s * t, c, 0,          c * d,      c * t,
+      s,      0, away_m * d, away_m * t, (normal_m * (1 - kSquare) + place.height_m) * s,
+      1};
+  return fmt::format(R"("transform":[{}],)", fmt::join(columns, ","));
 }
 
 // The existing tiles of a level: a rectangle.
@@ -190,13 +214,13 @@ class Writer {
     const double error_m = maker_.error_m(tree_.node_level({0, 0, 0}));
     return fmt::format(
         R"({{"asset":{{"version":"1.1","generator":"psygen"}},"schema":{},"geometricError":{},)"
-        R"("root":{{"boundingVolume":{{"box":[{}]}},"geometricError":{},"refine":"REPLACE",)"
+        R"("root":{{{}"boundingVolume":{{"box":[{}]}},"geometricError":{},"refine":"REPLACE",)"
         R"("content":{{"uri":"content/{{level}}/{{x}}/{{y}}.glb"}},"implicitTiling":{{)"
         R"("subdivisionScheme":"QUADTREE","availableLevels":{},"subtreeLevels":{},)"
         R"("subtrees":{{"uri":"subtrees/{{level}}/{{x}}/{{y}}.subtree"}}}}}}}})"
         "\n",
-        kSchema, 2 * error_m, fmt::join(tile_box(square), ","), error_m, tree_.level_count(),
-        kSubtreeLevels);
+        kSchema, 2 * error_m, options_.at_geo ? transform_json(*options_.at_geo) : "",
+        fmt::join(tile_box(square), ","), error_m, tree_.level_count(), kSubtreeLevels);
   }
 
   const world::World& world_;
@@ -214,6 +238,31 @@ class Writer {
 };
 
 }  // namespace
+
+core::Result<GeoPlace> parse_geo_place(const std::string& text) {
+  std::array<double, 3> numbers{};
+  std::size_t count = 0;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (; count < numbers.size(); ++count) {
+    const auto parsed = std::from_chars(at, end, numbers[count]);
+    if (parsed.ec != std::errc()) break;
+    at = parsed.ptr;
+    if (at == end || *at != ',') {
+      ++count;
+      break;
+    }
+    ++at;
+  }
+  const auto [latitude, longitude, height_m] = numbers;
+  if (count >= 2 && at == end && text.back() != ',' && std::abs(latitude) <= 90 &&
+      std::abs(longitude) <= 180 && height_m >= -12'000 && height_m <= 1e6)
+    return GeoPlace{latitude, longitude, height_m};
+  return core::invalid_argument(
+      fmt::format("'{}' is not LATITUDE,LONGITUDE[,HEIGHT]: -90 to 90 and -180 to 180 degrees, "
+                  "-12000 to 1000000 m",
+                  core::shown(text, 60)));
+}
 
 core::Result<TilesetReport> write_tileset(const world::World& world,
                                           const models::Registry& registry, const TileTree& tree,

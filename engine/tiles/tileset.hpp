@@ -6,6 +6,8 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <optional>
+#include <string>
 
 #include "engine/models/registry.hpp"
 #include "engine/tiles/tile_tree.hpp"
@@ -13,12 +15,24 @@
 
 namespace psygen::tiles {
 
+// A place on Earth: WGS 84, the height in metres above the ellipsoid.
+struct GeoPlace {
+  double latitude_deg = 0;   // -90 … 90, north positive
+  double longitude_deg = 0;  // -180 … 180, east positive
+  double height_m = 0;       // -12000 … 1e6
+};
+// "LATITUDE,LONGITUDE" or "LATITUDE,LONGITUDE,HEIGHT". Fails with kInvalidArgument.
+core::Result<GeoPlace> parse_geo_place(const std::string& text);
+
 // Options for writing.
 struct TilesetOptions {
   unsigned threads = 1;
   // Called in the calling thread with the finished fraction, 0 … 1.
   std::function<void(double)> progress;
   const std::atomic<bool>* stop = nullptr;  // true: stop after the tiles in progress
+  // The place of the tileset's origin, whose axes then point east, north and up. None: the origin
+  // is the Earth's centre.
+  std::optional<GeoPlace> at_geo = {};
 };
 
 // The result of writing.

@@ -19,7 +19,7 @@ using world::testing::parsed;
 TEST(Heightmap, HasTheHeightsOfTheGround) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
-  const auto report = write_heightmap(world, {2, 1, 5, 3}, folder.path(), 3, nullptr);
+  const auto report = write_heightmap(world, {2, 1, 5, 3}, folder.path(), {.threads = 3});
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->width, 3u * 32 + 1);
   EXPECT_EQ(report->height, 2u * 32 + 1);
@@ -42,10 +42,39 @@ TEST(Heightmap, HasTheHeightsOfTheGround) {
   }
 }
 
+TEST(Heightmap, RegionsWithOneRangeJoinWithoutAStep) {
+  const TemporaryFolder folder;
+  const world::World world = parsed(kSmallWorld);
+  const HeightmapOptions options{.range_m = std::pair{-5.0, 70.0}};
+  ASSERT_TRUE(write_heightmap(world, {0, 0, 1, 1}, folder / "west", options));
+  ASSERT_TRUE(write_heightmap(world, {1, 0, 2, 1}, folder / "east", options));
+  const auto west = image::read_grey(folder / "west/heights.png");
+  const auto east = image::read_grey(folder / "east/heights.png");
+  ASSERT_TRUE(west && east);
+  for (std::size_t z = 0; z < 33; ++z)
+    EXPECT_EQ(west->grey[33 * z + 32], east->grey[33 * z]) << z;
+  const double height =
+      models::ground_height_m(world::terrain_parameters(world, {0, 0}), {0, 0}, 0, 0);
+  EXPECT_NEAR(-5 + west->grey[0] / 65535.0 * 75, height, 75.0 / 65535);
+  const auto json = nlohmann::json::parse(contents_of(folder / "east").at("heightmap.json"));
+  EXPECT_EQ(json["height_of_black_m"], -5);
+  EXPECT_EQ(json["height_of_white_m"], 70);
+}
+
+TEST(Heightmap, RejectsARangeThatLeavesHeightsOut) {
+  const TemporaryFolder folder;
+  const auto written = write_heightmap(parsed(kSmallWorld), {0, 0, 1, 1}, folder / "a",
+                                       {.range_m = std::pair{0.0, 1.0}});
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, core::ErrorCode::kInvalidArgument);
+  EXPECT_NE(written.error().message.find("beyond the range 0 to 1 m"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a/heights.png"));
+}
+
 TEST(Heightmap, MasksAddUpToWhite) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
-  ASSERT_TRUE(write_heightmap(world, {0, 0, 2, 2}, folder.path(), 1, nullptr));
+  ASSERT_TRUE(write_heightmap(world, {0, 0, 2, 2}, folder.path(), {}));
   std::vector<int> sums(65 * 65);
   for (const char* kind : {"grass", "forest", "dry", "sand", "rock", "snow"}) {
     const auto mask = image::read_grey(folder / ("ground_" + std::string(kind) + ".png"));
@@ -71,13 +100,13 @@ TEST(Heightmap, OfFloatsReadsBackEqual) {
 TEST(Heightmap, HasLimitsAndCanBeStopped) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
-  const auto large = write_heightmap(world, {0, 0, 513, 1}, folder / "a", 1, nullptr);
+  const auto large = write_heightmap(world, {0, 0, 513, 1}, folder / "a", {});
   ASSERT_FALSE(large);
   EXPECT_NE(large.error().message.find("at most 16384 per side are allowed (511 blocks"),
             std::string::npos)
       << large.error().message;
   const std::atomic<bool> stop{true};
-  EXPECT_EQ(write_heightmap(world, {0, 0, 1, 1}, folder / "b", 1, &stop).error().code,
+  EXPECT_EQ(write_heightmap(world, {0, 0, 1, 1}, folder / "b", {.stop = &stop}).error().code,
             core::ErrorCode::kInterrupted);
 }
 

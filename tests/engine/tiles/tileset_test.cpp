@@ -70,6 +70,39 @@ TEST(Tileset, BlocksHaveTheirPositionsAndEndInSkirts) {
   EXPECT_EQ(coarse->origin, glm::dvec3(4 * 64, 0, 2 * 64));
 }
 
+TEST(Tileset, HasItsPlaceOnEarthAsTheTransformOfItsRoot) {
+  const TemporaryFolder folder;
+  const world::World world = parsed(kSmallWorld);
+  const auto tree = TileTree::over({0, 0, 1, 1}, {0, 0});
+  const auto transform = [&](const char* place) {
+    TilesetOptions options;
+    options.at_geo = parse_geo_place(place).value();
+    EXPECT_TRUE(write_tileset(world, registry(), *tree, folder.path(), options));
+    const auto json = nlohmann::json::parse(files_in(folder.path()).at("tileset.json"));
+    return json["root"]["transform"].get<std::vector<double>>();
+  };
+  const auto expect_near = [](const std::vector<double>& a, const std::vector<double>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_NEAR(a[i], b[i], 1e-5) << i;
+  };
+  expect_near(transform("0,0,100"),  // east, north, up, the place
+              {0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 6'378'237, 0, 0, 1});
+  expect_near(transform("90,0"), {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 6'356'752.314245, 1});
+  expect_near(transform("0,-90"), {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, -6'378'137, 0, 1});
+  ASSERT_TRUE(write_tileset(world, registry(), *tree, folder.path(), {}));
+  const auto json = nlohmann::json::parse(files_in(folder.path()).at("tileset.json"));
+  EXPECT_FALSE(json["root"].contains("transform"));
+}
+
+TEST(Tileset, PlacesOnEarthAreTwoOrThreeNumbersInTheirRanges) {
+  EXPECT_EQ(parse_geo_place("47.25,-8.5")->longitude_deg, -8.5);
+  EXPECT_EQ(parse_geo_place("47.25,-8.5,-30")->height_m, -30);
+  for (const char* text : {"", "47", "47,", "47,8,", "47,8,1,2", "91,0", "0,181", "nan,0",
+                           "0,0,inf", "47 ,8", "a,b", "47,8,-1e9"})
+    EXPECT_FALSE(parse_geo_place(text)) << text;
+}
+
 TEST(Tileset, BoxesHoldTheirTilesAndThoseBelow) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
