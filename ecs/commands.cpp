@@ -1,20 +1,19 @@
 #include "ecs/commands.hpp"
 
+#include <iterator>
+
 namespace psygen::ecs {
 
 void Commands::apply(World& world) {
-  std::vector<Batch> batches = std::exchange(batches_, {});
-  struct KeepRest {
-    std::vector<Batch>& from;
-    std::vector<Batch>& to;
-    std::size_t done = 0;
-    ~KeepRest() {
-      for (; done < from.size(); ++done)
-        to.push_back(std::move(from[done]));
+  std::vector<std::unique_ptr<List>> lists = std::exchange(lists_, {});
+  for (auto list = lists.begin(); list != lists.end(); ++list) {
+    try {
+      (*list)->apply(world);
+    } catch (...) {
+      lists_.insert(lists_.end(), std::move_iterator(list + 1), std::move_iterator(lists.end()));
+      throw;
     }
-  } rest{batches, batches_};
-  while (rest.done < batches.size())
-    batches[rest.done++].apply(world);
+  }
 }
 
 }  // namespace psygen::ecs

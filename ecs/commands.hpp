@@ -5,9 +5,9 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -27,9 +27,8 @@ class Commands {
   template <Component... Cs>
   void create(Cs... values) {
     static_assert(sizeof...(Cs) > 0, "an entity in a batch needs components");
-    using List = CreateList<Cs...>;
     std::apply([&](auto&... rows) { (rows.push_back(std::move(values)), ...); },
-               list<List>().values);
+               list<CreateList<Cs...>>().values);
   }
   // Records World::destroy of these entities.
   void destroy(Entity entity) { list<DestroyList>().entities.push_back(entity); }
@@ -56,86 +55,62 @@ class Commands {
   }
 
   // True if nothing is recorded.
-  bool empty() const { return batches_.empty(); }
+  bool empty() const { return lists_.empty(); }
   // Applies all changes in order and clears the list. Not while a query of this world is iterated.
-  // If a component's constructor throws, the later batches stay recorded.
+  // If a component's constructor throws, the later lists stay recorded.
   void apply(World& world);
 
  private:
-  struct DestroyList {
+  // Neighbouring commands of one form. `kind` identifies the form.
+  struct List {
+    const void* kind = nullptr;
+    virtual ~List() = default;
+    virtual void apply(World& world) = 0;
+  };
+  struct DestroyList final : List {
     std::vector<Entity> entities;
-    void apply(World& world) { world.destroy(entities); }
+    void apply(World& world) override { world.destroy(entities); }
   };
-  struct FamilyList {
+  struct FamilyList final : List {
     std::vector<Entity> parents;
-    void apply(World& world) { world.destroy_with_children(parents); }
+    void apply(World& world) override { world.destroy_with_children(parents); }
   };
-  struct ChildrenList {
+  struct ChildrenList final : List {
     std::vector<std::pair<Entity, std::vector<Entity>>> lists;
-    void apply(World& world) {
+    void apply(World& world) override {
       for (const auto& [parent, children] : lists)
         world.set_children(parent, children);
     }
   };
   template <class... Cs>
-  struct CreateList {
+  struct CreateList final : List {
     std::tuple<std::vector<Cs>...> values;
-    void apply(World& world);
+    void apply(World& world) override;
   };
   template <class C>
-  struct AddList {
+  struct AddList final : List {
     std::vector<Landing<C>> results;
-    void apply(World& world);
+    void apply(World& world) override;
   };
   template <class C>
-  struct RemoveList {
+  struct RemoveList final : List {
     std::vector<Entity> entities;
-    void apply(World& world) { world.remove<C>(entities); }
+    void apply(World& world) override { world.remove<C>(entities); }
   };
+  template <class L>
+  static constexpr char kKind = 0;
 
-  // Owns one of these lists.
-  class Batch {
-   public:
-    template <class List>
-    explicit Batch(std::type_identity<List>) : list_(new List), verbs_(&kVerbs<List>) {}
-    ~Batch() {
-      if (list_ != nullptr) verbs_->drop(list_);
+  // The last list if it is an L, else a new one.
+  template <class L>
+  L& list() {
+    if (lists_.empty() || lists_.back()->kind != &kKind<L>) {
+      lists_.push_back(std::make_unique<L>());
+      lists_.back()->kind = &kKind<L>;
     }
-    Batch(Batch&& other) noexcept
-        : list_(std::exchange(other.list_, nullptr)), verbs_(other.verbs_) {}
-    Batch& operator=(Batch&& other) noexcept {
-      std::swap(list_, other.list_);
-      std::swap(verbs_, other.verbs_);
-      return *this;
-    }
-    template <class List>
-    List* as() {
-      return verbs_ == &kVerbs<List> ? static_cast<List*>(list_) : nullptr;
-    }
-    void apply(World& world) { verbs_->apply(list_, world); }
-
-   private:
-    struct Verbs {
-      void (*apply)(void* list, World& world);
-      void (*drop)(void* list);
-    };
-    template <class List>
-    static constexpr Verbs kVerbs{
-        [](void* list, World& world) { static_cast<List*>(list)->apply(world); },
-        [](void* list) { delete static_cast<List*>(list); }};
-
-    void* list_;
-    const Verbs* verbs_;
-  };
-
-  template <class List>
-  List& list() {
-    List* last = batches_.empty() ? nullptr : batches_.back().as<List>();
-    if (last != nullptr) return *last;
-    return *batches_.emplace_back(std::type_identity<List>{}).template as<List>();
+    return static_cast<L&>(*lists_.back());
   }
 
-  std::vector<Batch> batches_;
+  std::vector<std::unique_ptr<List>> lists_;
 };
 
 template <class... Cs>

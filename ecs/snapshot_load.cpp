@@ -28,7 +28,13 @@ class Loader {
 
   SnapshotResult load() {
     storage_.expect_no_iteration("load_snapshot");
-    if (header() && components() && check_rest()) fill_rest();
+    if (!header() || !components() || !check_rest()) return in_.take_result();
+    try {
+      fill_rest();
+    } catch (...) {
+      storage_.forget_restored();
+      throw;
+    }
     return in_.take_result();
   }
 
@@ -280,13 +286,6 @@ class Loader {
   // ---- second pass ----------------------------------------------------------------------------
 
   void fill_rest() {
-    struct Undo {
-      Storage& storage;
-      bool done = false;
-      ~Undo() {
-        if (!done) storage.forget_restored();
-      }
-    } undo{storage_};
     in_.go_to(rest_ + sizeof(std::uint32_t) * (2 + generations_.size() + free_.size()));
     storage_.restore_slots(generations_, free_);
     for (std::uint32_t left = in_.length(8); left > 0; --left) {
@@ -304,7 +303,6 @@ class Loader {
       storage_.add_sparse(component.id, rows);
       column(component, rows.size(), storage_.record(component.id).sparse->column());
     }
-    undo.done = true;
   }
 
   static constexpr std::uint64_t kListMemoryFactor = 256;

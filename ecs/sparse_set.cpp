@@ -49,17 +49,14 @@ std::size_t SparseSet::add(std::span<const Entity> entities, const EntitySlots& 
     rows_after[entity.index] = ++end;
   }
 
-  struct Unwind {
-    SparseSet& set;
-    std::uint32_t first, end;
-    ~Unwind() {
-      for (std::uint32_t row = first; row < end; ++row)
-        set.row_after()[set.rows_.entities()[row].index] = 0;
-    }
-  } unwind{*this, first, end};
-  rows_.construct_new_rows(end - first, Signature{});
+  try {
+    rows_.construct_new_rows(end - first, Signature{});
+  } catch (...) {
+    for (std::uint32_t row = first; row < end; ++row)
+      rows_after[members[row].index] = 0;
+    throw;
+  }
   rows_.add_rows(end - first);
-  unwind.end = first;
   return end - first;
 }
 

@@ -30,7 +30,6 @@ Storage::Storage(const WorldLimits& limits)
     : limits_(clamped(limits)), slots_(limits_.max_entities, limits_.first_generation) {
   tables_.emplace_back(nullptr);
   absent_.origin_of_chunk.assign(directory_.chunk_count(), 0);
-  table_index_.assign(64, 0);
   id_index_.fill(kNoComponent);
 }
 
@@ -69,12 +68,9 @@ ComponentId Storage::id_of(const ComponentInfo& info) {
 }
 
 Table& Storage::table_for(const Signature& kind) {
-  const std::size_t mask = table_index_.size() - 1;
-  for (std::size_t i = kind.hash() & mask; table_index_[i] != 0; i = (i + 1) & mask) {
-    Table& table = *tables_[table_index_[i]];
-    if (table.signature() == kind) return table;
-  }
-  return make_table(kind);
+  Table*& table = table_of_[kind];
+  if (table == nullptr) table = &make_table(kind);
+  return *table;
 }
 
 Table& Storage::make_table(const Signature& kind) {
@@ -94,22 +90,7 @@ Table& Storage::make_table(const Signature& kind) {
     for (auto& reader : records_[c]->readers)
       reader->bits_of_table.emplace_back();
   }
-  if (tables_.size() * 2 <= table_index_.size()) {
-    index_table(id);
-  } else {  // at most half full: every table gets a new position
-    table_index_.assign(table_index_.size() * 2, 0);
-    for (std::uint32_t t = 1; t < tables_.size(); ++t)
-      index_table(t);
-  }
   return table;
-}
-
-void Storage::index_table(std::uint32_t id) {
-  const std::size_t mask = table_index_.size() - 1;
-  std::size_t i = tables_[id]->signature().hash() & mask;
-  while (table_index_[i] != 0)
-    i = (i + 1) & mask;
-  table_index_[i] = id;
 }
 
 // Commits memory for `count` more rows and records the addresses of new chunks for every component.

@@ -11,6 +11,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "ecs/children.hpp"
@@ -227,7 +228,6 @@ class Storage {
   [[noreturn]] void structural_change_inside(std::string_view verb) const;
   Table& table_for(const Signature& kind);
   Table& make_table(const Signature& kind);
-  void index_table(std::uint32_t id);
   void make_room(Table& table, std::size_t count);
   void mark_new_rows(const Table& table, std::uint32_t first, std::size_t count,
                      const Signature& which);
@@ -251,7 +251,7 @@ class Storage {
   ChildLists child_lists_;
   ComponentId children_id_ = kNoComponent;
   std::vector<std::unique_ptr<Table>> tables_;
-  std::vector<std::uint32_t> table_index_;  // open addressing by signature; 0 is empty
+  std::unordered_map<Signature, Table*, Signature::Hash> table_of_;
   std::array<ComponentId, 2 * kMaxComponents> id_index_;  // open addressing by ComponentInfo*
   std::vector<Table*> touched_;                           // scratch of the batch verbs
   std::vector<RowMove> moves_;

@@ -10,40 +10,6 @@ namespace {
 
 constexpr std::size_t kFirstRows = 64;
 
-// Destroys the objects built so far if an exception ends construction early.
-class ConstructionGuard {
- public:
-  ConstructionGuard(std::span<Column> columns, std::size_t first, std::size_t count)
-      : columns_(columns), first_(first), count_(count) {}
-  ~ConstructionGuard() {
-    if (done_) return;
-    for (const Column* column : built_) {
-      if (column->info->destroy_range != nullptr) {
-        column->info->destroy_range(column->memory.data(), first_, count_);
-      }
-    }
-  }
-  ConstructionGuard(const ConstructionGuard&) = delete;
-  ConstructionGuard& operator=(const ConstructionGuard&) = delete;
-
-  void run(const Signature& except, bool fresh) {
-    built_.reserve(columns_.size());
-    for (Column& column : columns_) {
-      if (except.contains(column.id)) continue;
-      column.info->construct(column.memory.data(), first_, count_, fresh);
-      built_.push_back(&column);
-    }
-    done_ = true;
-  }
-
- private:
-  std::span<Column> columns_;
-  std::vector<const Column*> built_;
-  std::size_t first_;
-  std::size_t count_;
-  bool done_ = false;
-};
-
 }  // namespace
 
 Table::Table(std::uint32_t id, const Signature& signature, std::vector<Column> columns,
@@ -93,7 +59,22 @@ void Table::reserve_more(std::size_t count) {
 }
 
 void Table::construct_new_rows(std::size_t count, const Signature& except) {
-  ConstructionGuard(columns_, rows_, count).run(except, rows_ == used_rows_);
+  const bool fresh = rows_ == used_rows_;
+  std::vector<const Column*> built;
+  built.reserve(columns_.size());
+  try {
+    for (const Column& column : columns_) {
+      if (except.contains(column.id)) continue;
+      column.info->construct(column.memory.data(), rows_, count, fresh);
+      built.push_back(&column);
+    }
+  } catch (...) {
+    for (const Column* column : built) {
+      if (column->info->destroy_range != nullptr)
+        column->info->destroy_range(column->memory.data(), rows_, count);
+    }
+    throw;
+  }
 }
 
 std::uint32_t Table::add_rows(std::size_t count) {
