@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdarg>
 #include <cstdio>
+#include <exception>
 #include <utility>
 
 namespace psygen::core {
@@ -75,6 +76,22 @@ std::string_view out_of_memory(std::string_view what, std::span<char> buffer) {
 std::string out_of_memory(std::string_view what) {
   std::array<char, 512> buffer;
   return std::string(out_of_memory(what, buffer));
+}
+
+Result<void> catch_exceptions(ErrorCode code, std::string_view subject, std::string_view verb,
+                              const std::function<Result<void>()>& f) {
+  const auto threw = [&](std::string_view what) {
+    return fail(code, std::string(subject).append(" ").append(verb).append(": ").append(what));
+  };
+  try {
+    return f();
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::kOutOfMemory, out_of_memory(subject));
+  } catch (const std::exception& error) {
+    return threw(error.what());
+  } catch (...) {
+    return threw("an exception of unknown type");
+  }
 }
 
 }  // namespace psygen::core

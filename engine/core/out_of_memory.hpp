@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <new>
 #include <span>
 #include <string>
@@ -33,5 +34,11 @@ Result<void> catch_out_of_memory(std::string_view what, const F& f) {
     return fail(ErrorCode::kOutOfMemory, out_of_memory(what));
   }
 }
+
+// Calls code that may throw anything, such as that of users. Returns its result, or an error for an
+// exception: kOutOfMemory with out_of_memory(subject) for std::bad_alloc, else `code` with
+// "<subject> <verb>: <message of the exception>".
+Result<void> catch_exceptions(ErrorCode code, std::string_view subject, std::string_view verb,
+                              const std::function<Result<void>()>& f);
 
 }  // namespace psygen::core

@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <exception>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <new>
 #include <span>
-#include <string_view>
 
 #include "engine/core/out_of_memory.hpp"
 #include "engine/models/kit/packing.hpp"
@@ -164,21 +161,18 @@ core::Result<Object> object_of(const models::ModelType& type, const models::Para
 core::Result<Object> unpack(const models::ModelType& type, const models::Parameters& p, int level,
                             const models::MeshSize& size, const models::MeshView& mesh,
                             const world::Palette& palette, float skirt_m) {
-  const auto fail = [&type, level](std::string_view what) {
-    return core::fail(
-        core::ErrorCode::kSynthesisFailed,
-        fmt::format("{} level {} threw while it was unpacked{}", type.name(), level, what));
-  };
-  try {  // user types may throw; our own code throws only when memory is exhausted
-    return object_of(type, p, level, size, mesh, palette, skirt_m);
-  } catch (const std::bad_alloc&) {
-    return core::fail(core::ErrorCode::kOutOfMemory,
-                      core::out_of_memory(fmt::format("{} level {}", type.name(), level)));
-  } catch (const std::exception& e) {
-    return fail(fmt::format(": {}", e.what()));
-  } catch (...) {
-    return fail("");
-  }
+  Object object;
+  // User types may throw; our own code throws only when memory is exhausted.
+  return core::catch_exceptions(
+             core::ErrorCode::kSynthesisFailed, fmt::format("{} level {}", type.name(), level),
+             "threw while it was unpacked",
+             [&]() -> core::Result<void> {
+               auto made = object_of(type, p, level, size, mesh, palette, skirt_m);
+               if (!made) return tl::unexpected(made.error());
+               object = std::move(*made);
+               return {};
+             })
+      .map([&object] { return std::move(object); });
 }
 
 glm::vec3 ground_albedo(const world::Palette& palette, float height_m, const glm::vec3& normal,
