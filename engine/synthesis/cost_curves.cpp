@@ -2,20 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-
-#include "engine/core/clock.hpp"
 
 namespace psygen::synthesis {
 namespace {
 
 constexpr std::size_t kMaxPoints = 13;
-
-CalibrationOptions with_clocks(CalibrationOptions options) {
-  if (!options.wall_clock) options.wall_clock = core::monotonic_seconds;
-  if (!options.cpu_clock) options.cpu_clock = core::thread_cpu_seconds;
-  return options;
-}
 
 // Returns true if the formula of level 0 depends on this integer.
 bool is_cost_parameter(const models::ModelType& type, std::size_t i) {
@@ -192,9 +183,8 @@ models::Parameters random_parameters(const models::ModelType& type, core::Random
 }  // namespace
 
 std::vector<CostCurve> cost_curves(const models::Registry& registry, const CostModel& cost,
-                                   const CalibrationOptions& given, int seeds,
+                                   const CalibrationOptions& options, int seeds,
                                    const std::function<void(double)>& progress) {
-  const CalibrationOptions options = with_clocks(given);
   const double deadline_s = options.wall_clock() + options.seconds_limit;
   std::vector<CostCurve> curves;
   for (std::size_t m = 0; m < registry.size(); ++m) {
@@ -235,9 +225,8 @@ std::vector<CostSample> random_samples(const models::Registry& registry, std::si
 }
 
 Accuracy accuracy_of(const models::Registry& registry, const CostModel& cost,
-                     std::span<const CostSample> samples, const CalibrationOptions& given,
+                     std::span<const CostSample> samples, const CalibrationOptions& options,
                      const std::function<void(double)>& progress) {
-  const CalibrationOptions options = with_clocks(given);
   const double deadline_s = options.wall_clock() + options.seconds_limit;
   Accuracy accuracy;
   CalibrationReport report;

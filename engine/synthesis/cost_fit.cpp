@@ -1,7 +1,6 @@
 #include "engine/synthesis/cost_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <exception>
 #include <limits>
 
-#include "engine/core/clock.hpp"
 #include "engine/synthesis/synthesise.hpp"
 
 namespace psygen::synthesis {
 namespace {
 // Cost of types before calibration and of unregistered types.
 constexpr CostFit kUnknown{.fixed_s = 0.3e-6, .per_triangle_s = 5e-9, .per_step_s = 10e-9};
-constexpr std::size_t kErrorWindow = 4096;
 
 // Element [model][level], or that of the type's nearest level.
 template <class T>
@@ -95,8 +92,6 @@ void CostModel::learn_from(const CostModel& other) {
     if (at < other.kinds_.size()) cold_by_code_[code] = other.cold_by_code_[at];
   }
   request_s_ = other.request_s_;
-  recent_errors_ = other.recent_errors_;
-  next_error_ = other.next_error_;
 }
 
 const CostFit& CostModel::fit(models::ModelIndex model, int level) const {
@@ -159,7 +154,7 @@ RequestCost CostModel::predict_request(models::ModelIndex model, int level,
 }
 
 void CostModel::observe(models::ModelIndex model, int level, const Work& work, Warmth warmth,
-                        double predicted_seconds, double seconds) {
+                        double seconds) {
   if (model >= fits_.size() || level < 0 ||
       static_cast<std::size_t>(level) >= fits_[model].size() || !(seconds > 0) ||
       !(work.operations > 0)) {
@@ -167,21 +162,6 @@ void CostModel::observe(models::ModelIndex model, int level, const Work& work, W
   }
   corrections_[model][static_cast<std::size_t>(level)].observe(
       request_s_ + predict_from(model, level, work), warmth, seconds, cold_by_code_[codes_[model]]);
-  const auto error = static_cast<float>(std::abs(predicted_seconds - seconds) / seconds * 100);
-  if (recent_errors_.size() < kErrorWindow) {
-    recent_errors_.push_back(error);
-  } else {
-    recent_errors_[next_error_++ % kErrorWindow] = error;
-  }
-}
-
-CostError CostModel::error() const {
-  std::vector<double> errors(recent_errors_.begin(), recent_errors_.end());
-  CostError e;
-  e.count = errors.size();
-  e.p50_percent = quantile(errors, 0.50);
-  e.p95_percent = quantile(errors, 0.95);
-  return e;
 }
 
 std::optional<Measurement> CostModel::measure(const CostSample& sample, int level,
@@ -282,11 +262,8 @@ LevelCalibration CostModel::calibrate_level(models::ModelIndex model, int level,
 }
 
 CalibrationReport CostModel::calibrate(std::span<const CostSample> samples,
-                                       const CalibrationOptions& given,
+                                       const CalibrationOptions& options,
                                        const std::function<void(double)>& progress) {
-  CalibrationOptions options = given;
-  if (!options.wall_clock) options.wall_clock = core::monotonic_seconds;
-  if (!options.cpu_clock) options.cpu_clock = core::thread_cpu_seconds;
   std::vector<CostSample> defaults;
   if (samples.empty()) {
     for (std::size_t m = 0; m < registry_.size(); ++m) {

@@ -1,9 +1,8 @@
 // Predicts the duration of a synthesis with one measured curve over operations, triangles and steps
 // (cost_fit.hpp) per model type and level (paper, sections 5.2 and 6: the constants are computed at
 // start-up). Calibrated in well under a second, then corrected by every finished request, which
-// meets colder caches (cost_fit.hpp). Records the error of its own predictions, so that
-// every number used by a schedule is checked. One thread. Not a profiler. predict() and observe()
-// are O(1) plus the type's complexity(), mesh_size() and steps().
+// meets colder caches (cost_fit.hpp). One thread. Not a profiler. predict() and observe() are O(1)
+// plus the type's complexity(), mesh_size() and steps().
 #pragma once
 
 #include <cstdint>
@@ -14,6 +13,7 @@
 #include <typeindex>
 #include <vector>
 
+#include "engine/core/clock.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/synthesis/cost_fit.hpp"
 
@@ -34,8 +34,8 @@ struct CalibrationOptions {
   double seconds_per_measurement = 20e-6;
   int rounds = 3;  // measurements per sample and level; the shortest counts
   int sweeps = 1;  // passes over all samples of a level; the shortest counts again
-  std::function<double()> wall_clock = {};  // default: core::monotonic_seconds
-  std::function<double()> cpu_clock = {};   // default: core::thread_cpu_seconds
+  std::function<double()> wall_clock = core::monotonic_seconds;
+  std::function<double()> cpu_clock = core::thread_cpu_seconds;
 };
 
 // Calibration result of one level of a type.
@@ -65,9 +65,9 @@ struct CalibrationReport {
   std::vector<std::string> failures;  // "rock level 2 threw: ...": not measured
 };
 
-// Errors of predictions against finished requests.
+// Errors of predictions against measurements.
 struct CostError {
-  std::uint64_t count = 0;  // observations behind the percentiles, at most 4,096
+  std::uint64_t count = 0;  // measurements behind the percentiles
   double p50_percent = 0;   // of |predicted − measured| / measured
   double p95_percent = 0;
 };
@@ -101,9 +101,9 @@ class CostModel {
   // Predicted cost of a request to a modeler, including claiming and timing, corrected by
   // observations.
   RequestCost predict_request(models::ModelIndex model, int level, const Work& work) const;
-  // Records a finished request: predicted and measured seconds of one core.
+  // Records a finished request: measured seconds of one core.
   void observe(models::ModelIndex model, int level, const Work& work, Warmth warmth,
-               double predicted_seconds, double seconds);
+               double seconds);
   // Types that run the same code, and so warm each other's caches, share a number.
   std::size_t code_of(models::ModelIndex model) const;
 
@@ -112,7 +112,6 @@ class CostModel {
   std::optional<Measurement> measure(const CostSample& sample, int level,
                                      const CalibrationOptions& options, double deadline_s,
                                      CalibrationReport& report) const;
-  CostError error() const;
   // Returns true if calibration measured similar work at this level; false before calibration.
   bool covers(models::ModelIndex model, int level, const Work& work) const;
   const CostFit& fit(models::ModelIndex model, int level) const;
@@ -131,9 +130,7 @@ class CostModel {
   std::vector<std::string> names_;                             // [model]
   std::vector<std::type_index> kinds_;                         // [code]
   std::vector<ColdSeconds> cold_by_code_;
-  double request_s_ = 0;              // added by every request to its synthesis
-  std::vector<float> recent_errors_;  // ring, in percent
-  std::size_t next_error_ = 0;
+  double request_s_ = 0;  // added by every request to its synthesis
 };
 
 // The p-quantile (0 … 1) by linear interpolation at h = p(N − 1); 0 for no values. Reorders them.

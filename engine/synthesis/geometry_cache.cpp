@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <exception>
 #include <utility>
+
+#include "engine/synthesis/synthesise.hpp"
 
 namespace psygen::synthesis {
 
@@ -22,8 +23,9 @@ GeometryCache::~GeometryCache() {
 }
 
 MeshHandle GeometryCache::find(const MeshKey& key) const {
-  const Slot slot = index_.find(hash_of(key), [&](Slot s) { return records_[s].key == key; });
-  return slot == kNoSlot ? kNoMesh : MeshHandle{slot, records_[slot].generation};
+  const auto found = index_.find(key);
+  if (found == index_.end()) return kNoMesh;
+  return {found->second, records_[found->second].generation};
 }
 
 MeshHandle GeometryCache::look_up(const MeshKey& key) {
@@ -61,20 +63,7 @@ core::Result<models::MeshSize> GeometryCache::size_of(
                       fmt::format("{} has no level {}, the coarsest is {}", type.name(), key.level,
                                   type.level_count() - 1));
   }
-  try {  // model types of users may throw; the engine's own do not
-    const models::MeshSize size = known ? *known : type.mesh_size(parameters, key.level);
-    if (size.vertex_count <= kMaxVertices && size.index_count <= kMaxIndices) return size;
-    return core::fail(
-        ErrorCode::kSynthesisFailed,
-        fmt::format("{} needs {} vertices and {} indices; the limits are {} and {}", type.name(),
-                    size.vertex_count, size.index_count, kMaxVertices, kMaxIndices));
-  } catch (const std::exception& e) {
-    return core::fail(ErrorCode::kSynthesisFailed,
-                      fmt::format("{} threw in mesh_size(): {}", type.name(), e.what()));
-  } catch (...) {
-    return core::fail(ErrorCode::kSynthesisFailed,
-                      fmt::format("{} threw in mesh_size()", type.name()));
-  }
+  return mesh_size_guarded(type, parameters, key.level, known);
 }
 
 core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
@@ -88,7 +77,7 @@ core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
   const core::Result<models::MeshSize> size = size_of(key, parameters, known);
   if (!size) {
     remember_failure(take_slot(key, owner, rank), size.error().message);
-    return tl::unexpected<core::Error>(size.error());
+    return core::fail(core::ErrorCode::kSynthesisFailed, size.error().message);
   }
   const std::uint64_t hash = hash_of(key);
   // A repeated request.
@@ -247,13 +236,13 @@ Slot GeometryCache::take_slot(const MeshKey& key, std::uint64_t owner, Rank rank
   r.key = key;
   r.owner = owner;
   r.rank = rank;
-  index_.insert(hash_of(key), slot);
+  index_.emplace(key, slot);
   return slot;
 }
 
 void GeometryCache::free_slot(Slot slot) {
   MeshRecord& r = records_[slot];
-  index_.erase(hash_of(r.key), slot);
+  index_.erase(r.key);
   if (r.state == MeshState::kFailed) reasons_.erase(slot);
   const std::uint32_t generation = r.generation;
   r = {};

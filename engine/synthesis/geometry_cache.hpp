@@ -22,7 +22,6 @@
 
 #include "engine/core/geometry_memory.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/synthesis/key_index.hpp"
 #include "engine/synthesis/mesh_key.hpp"
 #include "engine/synthesis/rank.hpp"
 
@@ -133,8 +132,6 @@ class EvictedKeys {
 class GeometryCache {
  public:
   static constexpr std::size_t kMaxFailures = 1u << 16;  // remembered; the oldest are forgotten
-  static constexpr std::uint32_t kMaxVertices = 65536;   // 16-bit indices
-  static constexpr std::uint32_t kMaxIndices = 1u << 26;
 
   // `memory` and `registry` outlive the cache.
   GeometryCache(core::GeometryMemory& memory, const models::Registry& registry,
@@ -243,7 +240,7 @@ class GeometryCache {
   std::vector<std::uint8_t> drawn_;       // per slot: 1 once it was drawn
   std::vector<std::uint64_t> evictable_;  // per slot: eviction_order() if ready, else 0
   std::vector<Slot> free_slots_;
-  KeyIndex index_;
+  std::unordered_map<MeshKey, Slot> index_;
   UnwantedMeshes unwanted_;
   std::vector<Candidate> candidates_;  // the worst ready meshes, worst first
   std::size_t next_candidate_ = 0;

@@ -1,7 +1,6 @@
 #include "engine/synthesis/mesh_supply.hpp"
 
 #include <iterator>
-#include <utility>
 
 #include "engine/core/assert.hpp"
 
@@ -18,7 +17,7 @@ LandingReport land(std::span<Completion> completions, GeometryCache& cache, Cost
       ++report.failed;
     } else {
       if (cost != nullptr && !c.remote) {
-        cost->observe(c.key.model, c.key.level, c.work, c.warmth, c.predicted_seconds, c.seconds);
+        cost->observe(c.key.model, c.key.level, c.work, c.warmth, c.seconds);
       }
       cache.complete(c.handle, c.tight, std::move(c.note));
       const MeshRecord* record = cache.get(c.handle);  // may be evicted or released by now

@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
-#include <new>
-#include <utility>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/headroom.hpp"
@@ -24,24 +21,12 @@ void add(std::atomic<T>& counter, T value) {
 // Calls a function that annotates a mesh. An exception fails the request.
 template <class Work>
 void noting(Completion& c, const Work& work) {
-  try {
-    work();
-  } catch (const std::bad_alloc&) {
-    c.ok = false;
-    c.error = core::out_of_memory("the annotation of a mesh");
-  } catch (const std::exception& e) {
-    c.ok = false;
-    c.error = fmt::format("the annotation of a mesh failed: {}", e.what());
-  } catch (...) {
-    c.ok = false;
-    c.error = "the annotation of a mesh failed";
-  }
-}
-
-// Annotation function for meshes of a type; null if there is none.
-const Annotate* annotate_of(const Workshop& workshop, models::ModelIndex model) {
-  const std::vector<Annotate>& all = workshop.annotate;
-  return model < all.size() && all[model] ? &all[model] : nullptr;
+  const auto noted = core::catch_exceptions(
+      core::ErrorCode::kSynthesisFailed, "the annotation of a mesh", "failed",
+      [&]() -> core::Result<void> { return work(), core::Result<void>{}; });
+  if (noted) return;
+  c.ok = false;
+  c.error = noted.error().message;
 }
 
 // Copies vertices and indices. Both meshes have the same size.
@@ -58,7 +43,7 @@ void Modeler::run(Workshop& workshop) {
   cpu_s_ = core::thread_cpu_seconds();
   while (!workshop.stop.load(std::memory_order_acquire)) {
     if (is_remote() && !place_.modelers->is_usable(place_.number)) break;
-    const std::uint32_t epoch = epoch_of(workshop);
+    const std::uint32_t epoch = workshop.board.epoch(*reader_);
     const bool claimed = claim(workshop);
     // A remote modeler's thread uses hardly any processor time.
     if (!lowered && !is_remote() && workshop.lowest_priority.load(std::memory_order_relaxed)) {
@@ -70,25 +55,16 @@ void Modeler::run(Workshop& workshop) {
     } else {
       wake_waiting(workshop);
       // stop is set before the epoch moves, so that it cannot be missed here.
-      if (!workshop.stop.load(std::memory_order_acquire)) sleep(workshop, epoch);
+      if (!workshop.stop.load(std::memory_order_acquire)) workshop.board.wait(*reader_, epoch);
       cpu_s_ = core::thread_cpu_seconds();
     }
   }
   exited_.store(true, std::memory_order_release);
 }
 
-std::uint32_t Modeler::epoch_of(const Workshop& workshop) const {
-  return is_remote() ? workshop.board.offer_epoch() : workshop.board.epoch();
-}
-
-void Modeler::sleep(const Workshop& workshop, std::uint32_t epoch) const {
-  is_remote() ? workshop.board.wait_for_offer(epoch) : workshop.board.wait(epoch);
-}
-
 bool Modeler::claim(Workshop& workshop) {
   std::uint64_t retries = 0;
-  const bool claimed = is_remote() ? workshop.board.claim_offered(*reader_, current_, retries)
-                                   : workshop.board.claim(*reader_, current_, retries);
+  const bool claimed = workshop.board.claim(*reader_, current_, retries);
   if (retries > 0) add(counters_.retries, retries);
   return claimed;
 }
@@ -136,26 +112,31 @@ Warmth Modeler::warmth_at(double now_s) {
   return warm_.size() == 1 ? Warmth::kAfterSleep : Warmth::kCold;
 }
 
-void Modeler::begin(double now_s) {
-  started_s_.store(now_s, std::memory_order_relaxed);
+// Looks up the type first: once the request can be abandoned, the types may change.
+Modeler::Job Modeler::begin(const Workshop& workshop) {
+  const models::ModelIndex model = current_.key.model;
+  const std::vector<Annotate>& notes = workshop.annotate;
+  const bool noted = model < notes.size() && notes[model];
+  Job job{completion_of(current_, number_), (*workshop.registry)[model],
+          noted ? &notes[model] : nullptr};
+  Completion& c = job.completion;
+  c.remote = is_remote();
+  c.started_s = workshop.clock();
+  c.warmth = is_remote() ? Warmth::kWarm : warmth_at(c.started_s);
+  c.predicted_seconds = current_.cost.of(c.warmth);
+  started_s_.store(c.started_s, std::memory_order_relaxed);
   ++serial_;
   state_.store(serial_ * 4 + kWorking, std::memory_order_release);
+  return job;
 }
 
 bool Modeler::execute(Workshop& workshop) {
-  Completion c = completion_of(current_, number_);
-  c.started_s = workshop.clock();
-  c.warmth = warmth_at(c.started_s);
-  c.predicted_seconds = current_.cost.of(c.warmth);
-  // Look up the type first: once the request can be abandoned, the types may change.
-  const models::ModelIndex model = current_.key.model;
-  const models::ModelType& type = (*workshop.registry)[model];
-  const Annotate* annotate = annotate_of(workshop, model);
-  begin(c.started_s);
-  if (annotate != nullptr) {
-    write_noted_mesh(type, *annotate, c);
+  Job job = begin(workshop);
+  Completion& c = job.completion;
+  if (job.annotate != nullptr) {
+    write_noted_mesh(job.type, *job.annotate, c);
   } else {
-    write_mesh(type, current_.destination, c);
+    write_mesh(job.type, current_.destination, c);
   }
   const double cpu_s = core::thread_cpu_seconds();
   c.seconds = cpu_s - std::exchange(cpu_s_, cpu_s);
@@ -230,21 +211,14 @@ bool Modeler::give_up_if_older(double limit_s, double now_s, Completion& out) {
 // This thread owns the destination only after the mesh has arrived and unless the request was
 // abandoned.
 bool Modeler::execute_there(Workshop& workshop) {
-  Completion c = completion_of(current_, number_);
-  c.remote = true;
-  c.started_s = workshop.clock();
-  c.predicted_seconds = current_.cost.warm_s();
-  // Look up the type first: once the request can be abandoned, the types may change.
-  const models::ModelIndex model = current_.key.model;
-  const models::ModelType& type = (*workshop.registry)[model];
-  const Annotate* annotate = annotate_of(workshop, model);
-  begin(c.started_s);
-  RemoteMesh mesh = place_.modelers->make(place_.number, type, current_);
+  Job job = begin(workshop);
+  Completion& c = job.completion;
+  RemoteMesh mesh = place_.modelers->make(place_.number, job.type, current_);
   std::uint64_t expected = serial_ * 4 + kWorking;
   if (!state_.compare_exchange_strong(expected, serial_ * 4 + kWriting, std::memory_order_acq_rel))
     return false;
   const bool made = mesh.answer != RemoteMesh::Answer::kNone;
-  if (made) write_remote_mesh(workshop, annotate, mesh, c);
+  if (made) write_remote_mesh(workshop, job.annotate, mesh, c);
   c.finished_s = workshop.clock();
   state_.store(serial_ * 4 + kIdle, std::memory_order_release);
   if (made) {

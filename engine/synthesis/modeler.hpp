@@ -165,10 +165,14 @@ class Modeler {
     kWriting = 3,
     kPhaseMask = 3
   };
-  std::uint32_t epoch_of(const Workshop& workshop) const;
-  void sleep(const Workshop& workshop, std::uint32_t epoch) const;
   bool claim(Workshop& workshop);
-  void begin(double now_s);
+  // The current request when it begins. `annotate` is null for types without annotations.
+  struct Job {
+    Completion completion;
+    const models::ModelType& type;
+    const Annotate* annotate;
+  };
+  Job begin(const Workshop& workshop);
   // Returns false if the request was abandoned during execution.
   bool execute(Workshop& workshop);
   bool execute_there(Workshop& workshop);

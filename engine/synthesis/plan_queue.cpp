@@ -7,8 +7,8 @@
 
 namespace psygen::synthesis {
 
-std::shared_ptr<PlanQueue::Reader> PlanQueue::add_reader() {
-  return readers_.emplace_back(std::make_shared<Reader>());
+std::shared_ptr<PlanQueue::Reader> PlanQueue::add_reader(Side side) {
+  return readers_.emplace_back(std::make_shared<Reader>(side));
 }
 
 void PlanQueue::remove_reader(const std::shared_ptr<Reader>& reader) {
@@ -37,13 +37,13 @@ void PlanQueue::publish(std::vector<Request>&& requests, std::vector<std::uint32
   plan->requests = std::move(requests);
   plan->offered = std::move(offered);
   plan->taken = std::vector<std::atomic<bool>>(plan->offered.empty() ? 0 : plan->requests.size());
-  plan->cursor.store(0, std::memory_order_relaxed);
-  plan->remote_cursor.store(0, std::memory_order_relaxed);
+  for (Plan::Cursor& cursor : plan->cursors)
+    cursor.next.store(0, std::memory_order_relaxed);
   const bool offers = !plan->offered.empty();
   current_.store(plan.get(), std::memory_order_seq_cst);
   plans_.push_back(std::move(plan));
-  wake_local();
-  if (offers) wake_remote();
+  wake(Side::kLocal);
+  if (offers) wake(Side::kRemote);
 }
 
 // Takes every remaining request, so that each request is taken exactly once: by a modeler, or here.
@@ -52,8 +52,8 @@ std::size_t PlanQueue::close(std::vector<Request>& unclaimed) {
   if (plan == nullptr) return 0;
   const std::size_t before = unclaimed.size();
   const std::uint64_t passed = std::min<std::uint64_t>(
-      plan->cursor.exchange(kClosed, std::memory_order_acq_rel), plan->requests.size());
-  plan->remote_cursor.store(kClosed, std::memory_order_release);
+      plan->cursors[0].next.exchange(kClosed, std::memory_order_acq_rel), plan->requests.size());
+  plan->cursors[1].next.store(kClosed, std::memory_order_release);
   current_.store(nullptr, std::memory_order_seq_cst);
   for (std::size_t i = passed; i < plan->requests.size(); ++i) {
     if (plan->take(i)) unclaimed.push_back(plan->requests[i]);
@@ -77,45 +77,26 @@ PlanQueue::Plan* PlanQueue::hold_newest(Reader& reader, std::uint64_t& retries) 
 bool PlanQueue::claim(Reader& reader, Request& out, std::uint64_t& retries) {
   Plan* plan = hold_newest(reader, retries);
   bool claimed = false;
-  // Checking first keeps idle modelers from advancing the cursor of an exhausted plan.
-  while (!claimed && plan != nullptr &&
-         plan->cursor.load(std::memory_order_relaxed) < plan->requests.size()) {
-    const std::uint64_t i = plan->cursor.fetch_add(1, std::memory_order_acq_rel);
-    if (i >= plan->requests.size()) break;
-    claimed = plan->take(i);
-    if (claimed) out = plan->requests[i];
+  if (plan != nullptr) {
+    const bool remote = reader.side == Side::kRemote;
+    const std::size_t count = remote ? plan->offered.size() : plan->requests.size();
+    auto& next = plan->cursors[index(reader.side)].next;
+    // Checking first keeps idle modelers from advancing the cursor of an exhausted plan.
+    while (!claimed && next.load(std::memory_order_relaxed) < count) {
+      const std::uint64_t i = next.fetch_add(1, std::memory_order_acq_rel);
+      if (i >= count) break;
+      const std::size_t at = remote ? plan->offered[i] : i;
+      claimed = plan->take(at);
+      if (claimed) out = plan->requests[at];
+    }
   }
   reader.plan.store(nullptr, std::memory_order_release);
   return claimed;
 }
 
-bool PlanQueue::claim_offered(Reader& reader, Request& out, std::uint64_t& retries) {
-  Plan* plan = hold_newest(reader, retries);
-  bool claimed = false;
-  while (!claimed && plan != nullptr &&
-         plan->remote_cursor.load(std::memory_order_relaxed) < plan->offered.size()) {
-    const std::uint64_t i = plan->remote_cursor.fetch_add(1, std::memory_order_acq_rel);
-    if (i >= plan->offered.size()) break;
-    claimed = plan->take(plan->offered[i]);
-    if (claimed) out = plan->requests[plan->offered[i]];
-  }
-  reader.plan.store(nullptr, std::memory_order_release);
-  return claimed;
-}
-
-void PlanQueue::wake_all() {
-  wake_local();
-  wake_remote();
-}
-
-void PlanQueue::wake_local() {
-  epoch_.fetch_add(1, std::memory_order_acq_rel);
-  epoch_.notify_all();
-}
-
-void PlanQueue::wake_remote() {
-  offer_epoch_.fetch_add(1, std::memory_order_acq_rel);
-  offer_epoch_.notify_all();
+void PlanQueue::wake(Side side) {
+  epochs_[index(side)].fetch_add(1, std::memory_order_acq_rel);
+  epochs_[index(side)].notify_all();
 }
 
 }  // namespace psygen::synthesis

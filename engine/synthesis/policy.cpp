@@ -1,16 +1,11 @@
 #include "engine/synthesis/policy.hpp"
 
+#include <algorithm>
 #include <array>
-#include <utility>
 
 namespace psygen::synthesis {
 namespace {
-constexpr std::array<std::pair<Policy, std::string_view>, 5> kNames{
-    {{Policy::kFifo, "fifo"},
-     {Policy::kPlp, "plp"},
-     {Policy::kShortest, "shortest"},
-     {Policy::kLongest, "longest"},
-     {Policy::kDeadline, "deadline"}}};
+constexpr std::array<std::string_view, 5> kNames{"fifo", "plp", "shortest", "longest", "deadline"};
 
 // Compares two values; equal values fall through to the next criterion.
 template <class T>
@@ -24,17 +19,13 @@ int by_deadline(const ScheduleKey& a, const ScheduleKey& b) {
 }  // namespace
 
 std::string_view name_of(Policy policy) {
-  for (const auto& [value, name] : kNames) {
-    if (value == policy) return name;
-  }
-  return "unknown";
+  return kNames[static_cast<std::size_t>(policy)];
 }
 
 std::optional<Policy> policy_from(std::string_view name) {
-  for (const auto& [value, text] : kNames) {
-    if (text == name) return value;
-  }
-  return std::nullopt;
+  const auto found = std::ranges::find(kNames, name);
+  if (found == kNames.end()) return std::nullopt;
+  return static_cast<Policy>(found - kNames.begin());
 }
 
 bool served_before(Policy policy, const ScheduleKey& a, const ScheduleKey& b) {

@@ -61,7 +61,8 @@ SynthesisManager::SynthesisManager(const models::Registry& registry,
 SynthesisManager::~SynthesisManager() {
   close_plan();
   workshop_->stop.store(true, std::memory_order_release);
-  workshop_->board.wake_all();
+  workshop_->board.wake(PlanQueue::Side::kLocal);
+  workshop_->board.wake(PlanQueue::Side::kRemote);
   for (Worker& w : active_)
     leave(w);
   for (Worker& w : retired_)
@@ -90,7 +91,9 @@ void SynthesisManager::leave(Worker& worker) {
 // Requires space for one more in active_.
 core::Result<void> SynthesisManager::start_modeler(RemoteSlot place) {
   Worker worker;
-  worker.modeler = std::make_shared<Modeler>(next_number_, workshop_->board.add_reader(), place);
+  const auto side = place.modelers != nullptr ? PlanQueue::Side::kRemote : PlanQueue::Side::kLocal;
+  worker.modeler =
+      std::make_shared<Modeler>(next_number_, workshop_->board.add_reader(side), place);
   auto thread = core::start_thread(
       [workshop = workshop_, modeler = worker.modeler] { modeler->run(*workshop); });
   if (!thread) {

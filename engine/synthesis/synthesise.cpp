@@ -46,20 +46,26 @@ SynthesisOutcome synthesise_guarded(const models::ModelType& type, const models:
 }
 
 core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
-                                                 const models::Parameters& p, int level) {
+                                                 const models::Parameters& p, int level,
+                                                 const std::optional<models::MeshSize>& known) {
   const core::RoundToNearest rounding;
   models::MeshSize size;
   try {
-    size = type.mesh_size(p, level);
+    size = known ? *known : type.mesh_size(p, level);
+  } catch (const std::exception& e) {
+    return core::fail(core::ErrorCode::kSynthesisFailed,
+                      named(type, level, fmt::format(" threw in mesh_size(): {}", e.what())));
   } catch (...) {
     return core::fail(core::ErrorCode::kSynthesisFailed,
                       named(type, level, " threw in mesh_size()"));
   }
-  if (size.vertex_count > 65536 || size.index_count > (1u << 26)) {
-    return core::fail(core::ErrorCode::kOverBudget,
-                      named(type, level, " is too large for 16-bit indices"));
-  }
-  return size;
+  constexpr std::uint32_t kMaxVertices = 65536, kMaxIndices = 1u << 26;
+  if (size.vertex_count <= kMaxVertices && size.index_count <= kMaxIndices) return size;
+  return core::fail(
+      core::ErrorCode::kOverBudget,
+      named(type, level,
+            fmt::format(" needs {} vertices and {} indices; the limits are {} and {}",
+                        size.vertex_count, size.index_count, kMaxVertices, kMaxIndices)));
 }
 
 core::Result<HeapDestination> HeapDestination::make(const models::ModelType& type,

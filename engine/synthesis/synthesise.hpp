@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "engine/models/model_type.hpp"
@@ -24,10 +25,11 @@ struct SynthesisOutcome {
 SynthesisOutcome synthesise_guarded(const models::ModelType& type, const models::Parameters& p,
                                     int level, const models::MeshView& out);
 
-// Calls type.mesh_size(). Fails with kSynthesisFailed if the type throws, with kOverBudget beyond
-// 16-bit meshes.
+// Calls type.mesh_size(), unless the caller knows the size. Fails with kSynthesisFailed if the type
+// throws, and with kOverBudget beyond 65,536 vertices (16-bit indices) or 2^26 indices.
 core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
-                                                 const models::Parameters& p, int level);
+                                                 const models::Parameters& p, int level,
+                                                 const std::optional<models::MeshSize>& known = {});
 
 // Memory on the heap for one mesh.
 class HeapDestination {

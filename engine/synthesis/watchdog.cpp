@@ -56,7 +56,7 @@ bool SynthesisManager::give_up_remote(const Worker& worker, double now_s) {
   returned_.back().stays_here = true;
   ++reclaimed_;
   worker.modeler->place().modelers->cancel(worker.modeler->place().number, true);
-  workshop_->board.wake_remote();  // other slots of its rank may be lost
+  workshop_->board.wake(PlanQueue::Side::kRemote);  // other slots of its rank may be lost
   core::log_warning(fmt::format("remote modeler {} does not respond: {} {}, made here instead",
                                 c.modeler, (*workshop_->registry)[c.key.model].name(), c.error));
   return true;
@@ -71,7 +71,7 @@ void SynthesisManager::take_returned() {
     request.stays_here = true;
     returned_.push_back(std::move(request));
   }
-  workshop_->board.wake_remote();
+  workshop_->board.wake(PlanQueue::Side::kRemote);
 }
 
 // Publishes requests that remote modelers have returned again, for local modelers. Returns false if

@@ -174,8 +174,8 @@ TEST(CostModel, ObservationsCorrectRequestsAndKeepTheCurve) {
   const double curve = cost.predict(0, p, 0), coarser = cost.predict(0, p, 1);
   EXPECT_EQ(request_of(cost, 0).warm_s(), curve);
   const double truth = curve * 3;
-  for (int i = 0; i < 500; ++i)  // all were predicted long before
-    cost.observe(0, 0, cost.work(0, p, 0), Warmth::kWarm, curve, truth);
+  for (int i = 0; i < 500; ++i)
+    cost.observe(0, 0, cost.work(0, p, 0), Warmth::kWarm, truth);
   EXPECT_NEAR(request_of(cost, 0).warm_s() / truth, 1, 0.01);
   EXPECT_EQ(request_of(cost, 1).warm_s(), coarser);  // other levels keep their predictions
   EXPECT_EQ(cost.predict(0, p, 0), curve);
@@ -191,7 +191,7 @@ TEST(CostModel, TheCostOfColdCachesIsSharedByTypesThatRunTheSameCode) {
   EXPECT_NE(cost.code_of(0), cost.code_of(2));
   const Work work = cost.work(0, parameters_of(1, 100), 0);
   for (int i = 0; i < 100; ++i)
-    cost.observe(0, 0, work, Warmth::kCold, 1, cost.predict_from(0, 0, work) + 20e-6);
+    cost.observe(0, 0, work, Warmth::kCold, cost.predict_from(0, 0, work) + 20e-6);
   const auto added = [&](models::ModelIndex model) {
     const RequestCost request = cost.predict_request(model, 0, work);
     return request.of(Warmth::kCold) - request.warm_s();
@@ -213,30 +213,16 @@ TEST(CostModel, ARequestIncludesReadingTheClock) {
               1e-9);
 }
 
-TEST(CostModel, ErrorPercentilesMatchItsPredictions) {
-  const models::Registry registry = registry_of(std::make_unique<FakeModel>());
-  CostModel cost(registry);
-  EXPECT_EQ(cost.error().count, 0u);
-  for (int percent = 0; percent <= 100; ++percent)
-    cost.observe(0, 0, {100, 0, 0}, Warmth::kWarm, 1.0 + percent / 100.0, 1.0);
-  EXPECT_EQ(cost.error().count, 101u);
-  EXPECT_NEAR(cost.error().p50_percent, 50, 1e-4);
-  EXPECT_NEAR(cost.error().p95_percent, 95, 1e-4);
-  for (int i = 0; i < 5000; ++i)
-    cost.observe(0, 0, {100, 0, 0}, Warmth::kWarm, 1.2, 1.0);
-  EXPECT_EQ(cost.error().count, 4096u);
-  EXPECT_NEAR(cost.error().p50_percent, 20, 1e-4);
-}
-
 TEST(CostModel, InvalidObservationsAreIgnored) {
   const models::Registry registry = registry_of(std::make_unique<FakeModel>());
   CostModel cost(registry);
-  cost.observe(5, 0, {1, 0, 0}, Warmth::kWarm, 1, 1);
-  cost.observe(0, -1, {1, 0, 0}, Warmth::kWarm, 1, 1);
-  cost.observe(0, 99, {1, 0, 0}, Warmth::kWarm, 1, 1);
-  cost.observe(0, 0, {0, 0, 0}, Warmth::kWarm, 1, 1);
-  cost.observe(0, 0, {1, 0, 0}, Warmth::kWarm, 1, std::nan(""));
-  EXPECT_EQ(cost.error().count, 0u);
+  const double before = request_of(cost, 0).warm_s();
+  cost.observe(5, 0, {1, 0, 0}, Warmth::kWarm, 1);
+  cost.observe(0, -1, {1, 0, 0}, Warmth::kWarm, 1);
+  cost.observe(0, 99, {1, 0, 0}, Warmth::kWarm, 1);
+  cost.observe(0, 0, {0, 0, 0}, Warmth::kWarm, 1);
+  cost.observe(0, 0, {1, 0, 0}, Warmth::kWarm, std::nan(""));
+  EXPECT_EQ(request_of(cost, 0).warm_s(), before);
 }
 
 // Reports its own steps; `steps` may be any number.

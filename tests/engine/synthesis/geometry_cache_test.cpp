@@ -36,6 +36,16 @@ class GeometryCacheTest : public ::testing::Test {
   GeometryCache cache{memory, registry, 4 * kMeshBytes};
 };
 
+TEST(MeshKey, KeysThatDifferInOneFieldHaveDifferentHashes) {
+  const MeshKey key{{1, 2}, 3, 4, 5, 6};
+  for (const MeshKey& other :
+       {MeshKey{{2, 2}, 3, 4, 5, 6}, MeshKey{{1, 1}, 3, 4, 5, 6}, MeshKey{{1, 2}, 4, 4, 5, 6},
+        MeshKey{{1, 2}, 3, 5, 5, 6}, MeshKey{{1, 2}, 3, 4, 4, 6}, MeshKey{{1, 2}, 3, 4, 5, 7}}) {
+    EXPECT_NE(hash_of(key), hash_of(other));
+    EXPECT_FALSE(key == other);
+  }
+}
+
 TEST_F(GeometryCacheTest, AMeshGoesFromEmptyToRequestedToReady) {
   EXPECT_FALSE(cache.find(key(1)));
   const MeshHandle handle = reserve(1, hole(1));

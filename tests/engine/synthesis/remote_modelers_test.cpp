@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "engine/core/geometry_memory.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
 #include "engine/synthesis/planner.hpp"
 #include "engine/synthesis/synthesis_manager.hpp"
 #include "engine/synthesis/synthesise.hpp"
@@ -77,13 +78,12 @@ TEST(PlanQueue, EveryRequestIsClaimedOnceFromEitherSideOrReturned) {
   std::vector<std::vector<std::uint32_t>> claimed(4);
   std::vector<std::jthread> claimers;
   for (unsigned i = 0; i < 4; ++i) {
-    claimers.emplace_back([&, i, reader = board.add_reader()] {
+    const auto side = i % 2 == 1 ? PlanQueue::Side::kRemote : PlanQueue::Side::kLocal;
+    claimers.emplace_back([&, i, reader = board.add_reader(side)] {
       Request request;
       std::uint64_t retries = 0;
       while (!stop) {
-        const bool is_remote = i % 2 == 1;
-        if (is_remote ? board.claim_offered(*reader, request, retries)
-                      : board.claim(*reader, request, retries))
+        if (board.claim(*reader, request, retries))
           claimed[i].push_back(request.handle.slot);
         else
           std::this_thread::yield();
@@ -124,25 +124,26 @@ TEST(PlanQueue, EveryRequestIsClaimedOnceFromEitherSideOrReturned) {
 TEST(PlanQueue, RemoteModelersAreWokenOnlyIfSomethingIsOffered) {
   PlanQueue board;
   std::vector<Request> unclaimed;
-  const std::uint32_t before = board.offer_epoch(), plans = board.epoch();
+  const auto here = board.add_reader(), there = board.add_reader(PlanQueue::Side::kRemote);
+  const std::uint32_t before = board.epoch(*there), plans = board.epoch(*here);
   board.publish({request_of(0, 0)});
-  EXPECT_EQ(board.offer_epoch(), before);
-  EXPECT_NE(board.epoch(), plans);
+  EXPECT_EQ(board.epoch(*there), before);
+  EXPECT_NE(board.epoch(*here), plans);
   board.close(unclaimed);
   board.publish({request_of(0, 0)}, {0});
-  const std::uint32_t offered = board.offer_epoch();
+  const std::uint32_t offered = board.epoch(*there);
   EXPECT_NE(offered, before);
-  board.wake_all();
-  EXPECT_NE(board.offer_epoch(), offered) << "as at the end of the manager";
+  board.wake(PlanQueue::Side::kRemote);
+  EXPECT_NE(board.epoch(*there), offered) << "as at the end of the manager";
 }
 
 TEST(PlanQueue, ARemotelyClaimedRequestIsNotReturned) {
   PlanQueue board;
-  const auto here = board.add_reader(), there = board.add_reader();
+  const auto here = board.add_reader(), there = board.add_reader(PlanQueue::Side::kRemote);
   board.publish({request_of(0, 0), request_of(1, 0), request_of(2, 0), request_of(3, 0)}, {1, 3});
   Request request;
   std::uint64_t retries = 0;
-  ASSERT_TRUE(board.claim_offered(*there, request, retries));
+  ASSERT_TRUE(board.claim(*there, request, retries));
   EXPECT_EQ(request.handle.slot, 1u);
   ASSERT_TRUE(board.claim(*here, request, retries));
   EXPECT_EQ(request.handle.slot, 0u);
@@ -152,7 +153,7 @@ TEST(PlanQueue, ARemotelyClaimedRequestIsNotReturned) {
   EXPECT_EQ(board.close(unclaimed), 3u);
   ASSERT_EQ(unclaimed.size(), 1u);
   EXPECT_EQ(unclaimed[0].handle.slot, 3u);
-  EXPECT_FALSE(board.claim_offered(*there, request, retries));
+  EXPECT_FALSE(board.claim(*there, request, retries));
 }
 
 // Wanted meshes of one cache, planned with remote modelers.
@@ -230,10 +231,16 @@ TEST_F(Planned, ReceivedMeshesAreAnnotatedHere) {
 
 TEST_F(Planned, TheCostModelLearnsNothingFromOtherMachines) {
   plan(1);
-  std::uint64_t here = 0;
-  for (const Completion& c : land_all())
-    here += c.remote ? 0 : 1;
-  EXPECT_EQ(cost_.error().count, here);
+  std::vector<Completion> there;
+  EXPECT_TRUE(manager_->wait_all());
+  manager_->collect(there);
+  std::erase_if(there, [](const Completion& c) { return !c.remote; });
+  const auto predicted_s = [&] {
+    return cost_.predict_request(0, 0, cost_.work(0, parameters_[0], 0)).warm_s();
+  };
+  const double before = predicted_s();
+  land(there, cache_, &cost_);
+  EXPECT_EQ(predicted_s(), before);
 }
 
 TEST_F(Planned, WaitingForAllMakesReturnedRequestsHere) {
