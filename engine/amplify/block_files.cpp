@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "engine/core/replace_file.hpp"
-#include "engine/exchange/cut_short.hpp"
 #include "engine/exchange/unpack.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/world/files/text_file.hpp"

@@ -1,10 +1,10 @@
-#include "engine/exchange/cut_short.hpp"
-
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <string>
+
+#include "engine/exchange/write_document.hpp"
 
 namespace psygen::exchange {
 namespace {

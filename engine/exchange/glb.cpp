@@ -5,7 +5,6 @@
 #include <map>
 #include <span>
 #include <sstream>
-#include <string_view>
 
 #include "engine/core/headroom.hpp"
 #include "engine/core/out_of_memory.hpp"

@@ -1,6 +1,6 @@
 // Writes documents as files: binary glTF 2.0 (.glb), or Wavefront OBJ with its materials in a .mtl
 // next to it. Every file is replaced as a whole, so it is never half-written. Any thread, linear in
-// the document. Reads no files.
+// the document.
 #pragma once
 
 #include <filesystem>
@@ -40,5 +40,13 @@ std::string obj_first_line(std::string_view document_name);
 // both, both files stay unchanged. Fails with kIo, and like glb_bytes().
 core::Result<void> write_scene(const std::filesystem::path& path, Format format,
                                const Document& document);
+
+// True if a file that write_scene() wrote for a document of this name is truncated, for example
+// because a disk was full while it was copied: `path` is empty or ends early (a .glb: shorter than
+// its header states), or the .mtl of an .obj is missing or empty. Does not detect damage within a
+// file. False for a whole file, even with additions to it or to its materials, and for a file that
+// starts differently, does not exist or cannot be read. Reads a whole .obj, but only the head of a
+// .glb.
+bool is_cut_short(const std::filesystem::path& path, Format format, std::string_view document_name);
 
 }  // namespace psygen::exchange

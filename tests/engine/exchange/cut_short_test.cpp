@@ -1,9 +1,8 @@
-#include "engine/exchange/cut_short.hpp"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
+#include "engine/exchange/write_document.hpp"
 #include "tests/engine/exchange/synthesised.hpp"
 #include "tests/temporary_folder.hpp"
 
