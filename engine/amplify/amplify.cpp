@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <condition_variable>
-#include <exception>
-#include <mutex>
-#include <new>
-#include <optional>
 #include <thread>
 
+#include "engine/amplify/ledger.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
@@ -17,22 +14,6 @@
 
 namespace psygen::amplify {
 namespace {
-
-// All blocks of a region, one at a time.
-class EveryBlock final : public RunSource {
- public:
-  explicit EveryBlock(std::uint64_t count) : count_(count) {}
-  core::Result<std::optional<BlockRun>> next() override {
-    const std::uint64_t i = next_.fetch_add(1, std::memory_order_relaxed);
-    if (i >= count_) return std::nullopt;
-    return BlockRun{i, i + 1};
-  }
-  core::Result<void> finished(const BlockRun&, const Totals&) override { return {}; }
-
- private:
-  const std::uint64_t count_;
-  alignas(64) std::atomic<std::uint64_t> next_{0};
-};
 
 // State shared by the threads. Each thread takes the lock once, when it ends.
 struct Shared {
@@ -100,15 +81,14 @@ core::Result<void> Worker::make_blocks(Shared& shared) {
   const std::unique_ptr<BlockSink> sink = options.make_sink ? options.make_sink() : nullptr;
   while (!shared.failed.load(std::memory_order_relaxed)) {
     const auto run = shared.source.next();
-    if (!run) return tl::unexpected(run.error());
-    if (!*run || is_over(shared)) break;
+    if (!run || is_over(shared)) break;
     Totals made;
-    const auto whole = make_run(shared, synthesiser, sink.get(), **run, made);
+    const auto whole = make_run(shared, synthesiser, sink.get(), *run, made);
     totals.add(made);
     if (!whole) return tl::unexpected(whole.error());
     if (!*whole) break;
     if (made.failed > 0) continue;
-    if (auto ok = shared.source.finished(**run, made); !ok) return ok;
+    if (auto ok = shared.source.finished(*run, made); !ok) return ok;
   }
   return {};
 }
@@ -116,18 +96,10 @@ core::Result<void> Worker::make_blocks(Shared& shared) {
 void Worker::work(Shared& shared) {
   core::name_this_thread("amplify");
   if (shared.options.lowest_priority) core::lower_priority_of_this_thread();
-  try {  // user types and sinks may throw; our own code throws only when memory is exhausted
-    if (auto ok = make_blocks(shared); !ok) error = ok.error();
-  } catch (const std::bad_alloc&) {
-    error =
-        core::Error{core::ErrorCode::kOutOfMemory, core::out_of_memory("the meshes of a block")};
-  } catch (const std::exception& e) {
-    error =
-        core::Error{core::ErrorCode::kSynthesisFailed, fmt::format("a block failed: {}", e.what())};
-  } catch (...) {
-    error = core::Error{core::ErrorCode::kSynthesisFailed,
-                        "a block failed: an exception that is not a std::exception"};
-  }
+  // User types and sinks may throw; our own code throws only when memory is exhausted.
+  const auto made = core::catch_exceptions(core::ErrorCode::kSynthesisFailed, "a block", "failed",
+                                           [&] { return make_blocks(shared); });
+  if (!made) error = made.error();
   if (error) shared.failed.store(true, std::memory_order_relaxed);
   cpu_seconds = core::thread_cpu_seconds();
   const std::lock_guard lock(shared.mutex);
@@ -199,6 +171,37 @@ core::Result<void> start(Crew& crew) {
 
 }  // namespace
 
+BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads,
+                  std::uint64_t most) {
+  constexpr std::uint64_t kRunsPerThread = 4;  // of the remaining blocks
+  const std::uint64_t left = todo.count() - position;
+  const std::uint64_t wanted =
+      std::clamp<std::uint64_t>(left / (kRunsPerThread * threads), 1, most);
+  const BlockRanges next = todo.sub(position, position + wanted);
+  return next.runs().front();
+}
+
+RunSource::RunSource(BlockRanges todo, unsigned threads, Ledger* ledger, More more)
+    : todo_(std::move(todo)), threads_(threads), ledger_(ledger), more_(std::move(more)) {}
+
+// The thread that finds no block left asks for more while the others wait some microseconds.
+std::optional<BlockRun> RunSource::next() {
+  const std::lock_guard lock(mutex_);
+  while (position_ == todo_.count()) {
+    if (!more_) return std::nullopt;
+    todo_ = more_();
+    position_ = 0;
+    if (todo_.count() == 0) more_ = nullptr;
+  }
+  const BlockRun run = next_run(todo_, position_, threads_);
+  position_ += run.count();
+  return run;
+}
+
+core::Result<void> RunSource::finished(const BlockRun& run, const Totals& totals) {
+  return ledger_ == nullptr ? core::Result<void>{} : ledger_->add({run, totals});
+}
+
 core::Result<Report> amplify(const world::World& world, const models::Registry& registry,
                              const Region& region, const Options& options) {
   const core::RoundToNearest rounding;
@@ -207,8 +210,8 @@ core::Result<Report> amplify(const world::World& world, const models::Registry& 
     return core::invalid_argument(
         fmt::format("the number of threads must be 1 to {}", kMaxThreads));
   }
-  EveryBlock every_block(region.block_count());
-  RunSource& source = options.source != nullptr ? *options.source : every_block;
+  RunSource all(BlockRanges({0, region.block_count()}), options.threads);
+  RunSource& source = options.source != nullptr ? *options.source : all;
   Shared shared{world, registry, region, options, source, region.block_count()};
   Crew crew{shared};
   const std::vector<std::unique_ptr<Worker>>& workers = crew.workers;

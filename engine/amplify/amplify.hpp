@@ -1,13 +1,14 @@
 // Data amplification without a camera: synthesises all blocks of a region at full detail on several
 // threads. Meshes are discarded or passed to a sink, and one hash identifies all of them. The hash
 // does not depend on the number of threads or on their order. Threads share only the source of the
-// next blocks, by default an atomic counter. It draws nothing.
+// next blocks. It draws nothing.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 
 #include "engine/amplify/block_ranges.hpp"
@@ -37,15 +38,37 @@ class BlockSink {
   virtual bool wants(core::BlockCoord block) = 0;
 };
 
-// Hands out the blocks of a region to the threads of a run, which make all calls, several at once.
+// The longest run of blocks: the maximum work that a kill costs a thread.
+inline constexpr std::uint64_t kMaxRun = 64;
+// The next run from `position` of some blocks for one of `threads` threads: 1 to `most`
+// neighbours, fewer towards the end. Requires position < todo.count().
+BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads,
+                  std::uint64_t most = kMaxRun);
+
+class Ledger;
+
+// Hands out blocks to the threads of a run, which make all calls, several at once. Runs become
+// shorter towards the end, so that threads end together. Records finished runs in a ledger.
 class RunSource {
  public:
-  virtual ~RunSource() = default;
-  // The next blocks for the calling thread, or nothing at the end. A failure ends the whole run.
-  virtual core::Result<std::optional<BlockRun>> next() = 0;
+  // Returns further blocks once all are handed out; empty at the end. One call at a time.
+  using More = std::function<BlockRanges()>;
+
+  // `ledger` may be null, and outlives the source.
+  RunSource(BlockRanges todo, unsigned threads, Ledger* ledger = nullptr, More more = {});
+  // The next blocks for the calling thread, or nothing at the end.
+  std::optional<BlockRun> next();
   // Called once for each run of next() whose meshes are all made and whose sink has finished,
   // unless a mesh failed or the run was stopped. A failure ends the whole run.
-  virtual core::Result<void> finished(const BlockRun& run, const Totals& totals) = 0;
+  core::Result<void> finished(const BlockRun& run, const Totals& totals);
+
+ private:
+  BlockRanges todo_;
+  const unsigned threads_;
+  Ledger* const ledger_;
+  More more_;
+  std::mutex mutex_;
+  std::uint64_t position_ = 0;
 };
 
 // Options of a run.

@@ -56,16 +56,6 @@ BlockRanges BlockRanges::without(const BlockRanges& others) const {
   return rest;
 }
 
-BlockRanges BlockRanges::joined(const BlockRanges& others) const {
-  std::vector<BlockRun> all(runs_);
-  all.insert(all.end(), others.runs_.begin(), others.runs_.end());
-  std::ranges::sort(all, {}, &BlockRun::first);
-  BlockRanges sum;
-  for (const BlockRun& run : all)
-    sum.append(run);
-  return sum;
-}
-
 std::string BlockRanges::text() const {
   constexpr std::size_t kMaxShown = 4;
   std::string text;

@@ -35,8 +35,6 @@ class BlockRanges {
   BlockRanges sub(std::uint64_t first, std::uint64_t end) const;
   // These blocks without those of `others`.
   BlockRanges without(const BlockRanges& others) const;
-  // These blocks and those of `others`. The two sets must be disjoint.
-  BlockRanges joined(const BlockRanges& others) const;
   // For messages: "0-7, 12, 20-31", truncated after the first few.
   std::string text() const;
   friend bool operator==(const BlockRanges&, const BlockRanges&) = default;

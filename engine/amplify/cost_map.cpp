@@ -38,12 +38,6 @@ double priced_block(const synthesis::CostModel& model, const world::World& world
 
 }  // namespace
 
-double predicted_block_seconds(const world::World& world, const models::Registry& registry,
-                               core::BlockCoord block, const CostRates& rates) {
-  std::vector<world::Placement> placements;
-  return priced_block(synthesis::CostModel(registry), world, registry, block, rates, placements);
-}
-
 std::uint64_t sample_count(const Region& region) {
   const std::uint64_t blocks = region.block_count();
   return std::min(blocks, std::clamp(blocks / CostMap::kBlocksPerSample, CostMap::kMinSamples,

@@ -34,10 +34,6 @@ struct CostRates {
   }
 };
 
-// The predicted seconds of one core for a block at full detail.
-double predicted_block_seconds(const world::World& world, const models::Registry& registry,
-                               core::BlockCoord block, const CostRates& rates);
-
 // The number of priced blocks of a region, and the prices of the samples first … end − 1. The
 // prices of all parts, concatenated, are the argument of CostMap::from().
 std::uint64_t sample_count(const Region& region);

@@ -10,11 +10,9 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <optional>
 #include <span>
 #include <utility>
 
-#include "engine/amplify/block_synthesiser.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/core/utf8.hpp"

@@ -32,31 +32,6 @@ std::string ledger_name(const Shard& shard) {
   return fmt::format("shard_{}_of_{}{}", shard.index, shard.count, kLedgerExtension);
 }
 
-BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads,
-                  std::uint64_t most) {
-  constexpr std::uint64_t kRunsPerThread = 4;  // of the remaining blocks
-  const std::uint64_t left = todo.count() - position;
-  const std::uint64_t wanted =
-      std::clamp<std::uint64_t>(left / (kRunsPerThread * threads), 1, most);
-  const BlockRanges next = todo.sub(position, position + wanted);
-  return next.runs().front();
-}
-
-LedgerSource::LedgerSource(BlockRanges todo, unsigned threads, Ledger& ledger)
-    : todo_(std::move(todo)), threads_(threads), ledger_(ledger) {}
-
-core::Result<std::optional<BlockRun>> LedgerSource::next() {
-  const std::lock_guard lock(mutex_);
-  if (position_ == todo_.count()) return std::nullopt;
-  const BlockRun run = next_run(todo_, position_, threads_);
-  position_ += run.count();
-  return run;
-}
-
-core::Result<void> LedgerSource::finished(const BlockRun& run, const Totals& totals) {
-  return ledger_.add({run, totals});
-}
-
 std::vector<Finished> with_files(std::vector<Finished> finished, const JobKey& key,
                                  const std::filesystem::path& folder) {
   if (!key.format) return finished;
@@ -88,7 +63,7 @@ core::Result<Report> amplify_shard(const Job& job, const Shard& shard,
     if (auto ok = (*ledger)->rewrite(known); !ok) return tl::unexpected(ok.error());
   const auto done = blocks_of(known);
   if (!done) return tl::unexpected(done.error());
-  LedgerSource source(BlockRanges(share).without(*done), given.threads, **ledger);
+  RunSource source(BlockRanges(share).without(*done), given.threads, ledger->get());
   Options options = given;
   options.source = &source;
   auto report = amplify(job.world, job.registry, job.key.region, options);

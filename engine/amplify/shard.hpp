@@ -1,12 +1,10 @@
 // Shards: shard I of N is the part of a job that one process makes without any other. Shards are
 // cut by predicted cost (cost_map.hpp), recorded in a ledger next to their blocks, resumed after a
 // kill at any moment, and merged at the end. Processes do not communicate, so shards can run
-// anywhere at any time. One thread, except as stated for RunSource.
+// anywhere at any time. One thread.
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,31 +26,6 @@ core::Result<Shard> parse_shard(std::string_view text);
 // "shard 3 of 8"; and the name of its ledger, "shard_3_of_8.ledger".
 std::string text_of(const Shard& shard);
 std::string ledger_name(const Shard& shard);
-
-// Hands out blocks in runs that become shorter towards the end, so that threads end together, and
-// records finished blocks in a ledger. Any thread.
-class LedgerSource final : public RunSource {
- public:
-  // The longest run: the maximum work that a kill costs a thread.
-  static constexpr std::uint64_t kMaxBlocks = 64;
-
-  // `ledger` must outlive it.
-  LedgerSource(BlockRanges todo, unsigned threads, Ledger& ledger);
-  core::Result<std::optional<BlockRun>> next() override;
-  core::Result<void> finished(const BlockRun& run, const Totals& totals) override;
-
- private:
-  const BlockRanges todo_;
-  const unsigned threads_;
-  Ledger& ledger_;
-  std::mutex mutex_;
-  std::uint64_t position_ = 0;
-};
-
-// The next run from `position` of some blocks for one of `threads` threads: 1 to `most`
-// neighbours, fewer towards the end. Requires position < todo.count().
-BlockRun next_run(const BlockRanges& todo, std::uint64_t position, unsigned threads,
-                  std::uint64_t most = LedgerSource::kMaxBlocks);
 
 // The entries of a ledger whose blocks all have whole files in the folder. An entry with a missing
 // file is dropped as a whole.

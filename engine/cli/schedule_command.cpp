@@ -296,7 +296,7 @@ int ScheduleCommand::simulate_cluster() const {
                 o.storage_gb_per_s * 1e9, o.files_per_s,  o.file_latency_ms * 1e-3};
   const double per_thread = static_cast<double>(demand.blocks) / o.ranks / job.threads;
   job.max_blocks_per_run = std::max<std::uint64_t>(
-      amplify::LedgerSource::kMaxBlocks, static_cast<std::uint64_t>(per_thread / kRunsPerThread));
+      amplify::kMaxRun, static_cast<std::uint64_t>(per_thread / kRunsPerThread));
   cluster::PlanOptions options;
   if (o.share != "claims") options.fixed_share = 1;
   const amplify::CostMap planned = o.share == "count" ? amplify::CostMap::flat(demand.blocks)

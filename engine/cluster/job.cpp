@@ -4,7 +4,6 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <mutex>
 #include <sstream>
 #include <thread>
 #include <utility>
@@ -90,48 +89,6 @@ void add_from(const std::string& bytes, JobReport& sum) {
   sum.skipped += part.skipped;
   sum.messages += part.messages;
 }
-
-// Source of the blocks of one rank: first its fixed share, then chunks that it claims one at a
-// time. Threads take runs of blocks. The thread that finds none left claims the next chunk while
-// the others wait some microseconds. Records finished runs in the rank's ledger. Any thread.
-class ClaimSource final : public amplify::RunSource {
- public:
-  // All arguments must outlive the source. A null `ledger` records nothing.
-  ClaimSource(const Plan& plan, Peers& peers, unsigned threads, amplify::Ledger* ledger)
-      : plan_(plan),
-        peers_(peers),
-        threads_(threads),
-        ledger_(ledger),
-        blocks_(plan.own(peers.rank())) {}
-
-  core::Result<std::optional<BlockRun>> next() override {
-    const std::lock_guard lock(mutex_);
-    while (position_ == blocks_.count()) {
-      if (is_over_ || plan_.chunk_count() == 0) return std::nullopt;
-      const std::uint64_t chunk = peers_.claim();
-      is_over_ = chunk >= plan_.chunk_count();
-      if (is_over_) return std::nullopt;
-      blocks_ = plan_.chunk(chunk);
-      position_ = 0;
-    }
-    const BlockRun run = amplify::next_run(blocks_, position_, threads_);
-    position_ += run.count();
-    return run;
-  }
-  core::Result<void> finished(const BlockRun& run, const Totals& totals) override {
-    return ledger_ == nullptr ? core::Result<void>{} : ledger_->add({run, totals});
-  }
-
- private:
-  const Plan& plan_;
-  Peers& peers_;
-  const unsigned threads_;
-  amplify::Ledger* ledger_;
-  std::mutex mutex_;
-  BlockRanges blocks_;
-  std::uint64_t position_ = 0;
-  bool is_over_ = false;
-};
 
 constexpr const char* kWhole = "all blocks";
 
@@ -267,13 +224,17 @@ struct Start {
   }
 };
 
-// Synthesises the blocks of this rank.
+// Synthesises the blocks of this rank: first its fixed share, then chunks that it claims one at a
+// time.
 core::Result<amplify::Report> run_rank(Start& start, const amplify::Options& given) {
   const amplify::Region& region = start.key.region;
   Peers& peers = start.peers;
   const Plan plan(BlockRanges({0, region.block_count()}).without(start.done),
                   shared_costs(start.world, start.registry, start.key, peers), peers.count());
-  ClaimSource source(plan, peers, given.threads, start.mine.get());
+  amplify::RunSource source(plan.own(peers.rank()), given.threads, start.mine.get(), [&] {
+    const std::uint64_t chunk = plan.chunk_count() > 0 ? peers.claim() : 0;
+    return chunk < plan.chunk_count() ? plan.chunk(chunk) : BlockRanges();
+  });
   amplify::Options options = given;
   options.source = &source;
   options.make_sink = nullptr;

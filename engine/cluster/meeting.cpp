@@ -7,7 +7,6 @@
 #include <chrono>
 #include <thread>
 
-#include "engine/amplify/ledger.hpp"
 #include "engine/core/bytes.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/replace_file.hpp"

@@ -4,7 +4,7 @@
 #include <queue>
 #include <utility>
 
-#include "engine/amplify/shard.hpp"
+#include "engine/amplify/amplify.hpp"
 #include "engine/core/assert.hpp"
 
 namespace psygen::cluster {

@@ -50,12 +50,10 @@ TEST(BlockRanges, BehaveLikeSetsOfNumbers) {
       a.insert(random() % 32);
       b.insert(random() % 32);
     }
-    std::set<std::uint64_t> rest, both = b;
+    std::set<std::uint64_t> rest;
     for (const std::uint64_t i : a)
       if (!b.contains(i)) rest.insert(i);
-    both.insert(rest.begin(), rest.end());
     EXPECT_EQ(numbers(from(a).without(from(b))), rest);
-    EXPECT_EQ(numbers(from(b).joined(from(rest))), both);
     const std::uint64_t first = random() % (a.size() + 1),
                         end = first + random() % (a.size() - first + 1);
     const std::set<std::uint64_t> part(std::next(a.begin(), static_cast<std::ptrdiff_t>(first)),

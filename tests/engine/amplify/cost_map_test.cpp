@@ -48,13 +48,17 @@ TEST(CostMap, ShardsHaveEveryBlockOnceAndEqualCosts) {
 TEST(CostMap, OfAForestInTheCornerOfADesertLocatesTheWork) {
   const world::World world = world::testing::forest_in_a_desert();
   const Region region = *whole(world);
-  const double desert = predicted_block_seconds(world, registry(), {10, 10}, {});
-  const double forest = predicted_block_seconds(world, registry(), {1, 1}, {});
+  const auto price_of = [&](core::BlockCoord at) {
+    const Region block{at.x, at.z, at.x + 1, at.z + 1};
+    return prices_of(world, registry(), block, {}, 0, 1).front();
+  };
+  const double desert = price_of({10, 10});
+  const double forest = price_of({1, 1});
   EXPECT_GT(forest, 100 * desert);
   const CostMap map = CostMap::of(world, registry(), region, {});
   double exact = 0;
   for (std::uint64_t i = 0; i < region.block_count(); ++i)
-    exact += predicted_block_seconds(world, registry(), region.block(i), {});
+    exact += price_of(region.block(i));
   EXPECT_NEAR(map.total_s() / exact, 1, 0.2);
   EXPECT_LE(shard_of(map, 1, 2).end, region.block_count() / 8);
 }

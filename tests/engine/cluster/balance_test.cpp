@@ -24,8 +24,11 @@ struct Forest {
   std::vector<double> exact = amplify::prices_of(world, registry(), region, {}, 0, 0);
 
   Forest() {
-    for (std::uint64_t i = 0; i < region.block_count(); ++i)
-      exact.push_back(amplify::predicted_block_seconds(world, registry(), region.block(i), {}));
+    for (std::uint64_t i = 0; i < region.block_count(); ++i) {
+      const core::BlockCoord at = region.block(i);
+      const Region block{at.x, at.z, at.x + 1, at.z + 1};
+      exact.push_back(amplify::prices_of(world, registry(), block, {}, 0, 1).front());
+    }
   }
   // Simulates a job in which each block takes up to the fraction `error` more or less than
   // predicted.

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <vector>
 
 namespace psygen::cluster {
 namespace {
@@ -12,11 +14,18 @@ using amplify::BlockRun;
 using amplify::CostMap;
 
 BlockRanges all_of(const Plan& plan, unsigned ranks) {
-  BlockRanges all;
+  std::vector<BlockRun> runs;
+  const auto add = [&runs](const BlockRanges& part) {
+    runs.insert(runs.end(), part.runs().begin(), part.runs().end());
+  };
   for (unsigned rank = 0; rank < ranks; ++rank)
-    all = all.joined(plan.own(rank));
+    add(plan.own(rank));
   for (std::uint64_t i = 0; i < plan.chunk_count(); ++i)
-    all = all.joined(plan.chunk(i));
+    add(plan.chunk(i));
+  std::ranges::sort(runs, {}, &BlockRun::first);
+  BlockRanges all;  // aborts if two parts have a block in common
+  for (const BlockRun& run : runs)
+    all.append(run);
   return all;
 }
 
