@@ -102,15 +102,9 @@ core::Result<FlightRun> parse_flight_run(const std::string& frames_csv, const st
   std::vector<double>* const curves[] = {&run.time_s,    &run.frame_ms,     &run.queued,
                                          &run.cache_mib, &run.error_pixels, &run.missing_percent,
                                          &made_s};
-  std::vector<std::size_t> columns;
-  const auto header = [&](compare::CsvCells cells, const std::string& where) {
-    auto found = compare::find_columns(cells, kRunColumns, where);
-    if (found) columns = std::move(*found);
-    return found ? core::Result<void>{} : tl::unexpected(found.error());
-  };
   const auto row = [&](compare::CsvCells cells, const std::string& where) -> core::Result<void> {
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const auto value = value_in(cells[columns[i]], where, kRunColumns[i]);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto value = value_in(cells[i], where, kRunColumns[i]);
       if (!value) return tl::unexpected(value.error());
       curves[i]->push_back(*value);
     }
@@ -119,7 +113,7 @@ core::Result<FlightRun> parse_flight_run(const std::string& frames_csv, const st
       return compare::refuse_file(where, "the clock goes backwards");
     return {};
   };
-  if (auto ok = compare::read_csv(frames_csv, "frames.csv", header, row); !ok)
+  if (auto ok = compare::read_csv(frames_csv, "frames.csv", kRunColumns, row); !ok)
     return tl::unexpected(ok.error());
   if (run.time_s.empty()) return compare::refuse_file("frames.csv", "it contains no frame");
   run.summary = QJsonDocument::fromJson(QByteArray::fromStdString(summary)).object();

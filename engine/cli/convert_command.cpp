@@ -20,13 +20,13 @@ class ConvertCommand final : public Command {
     c.add_option("RUN", run_, "Folder of a run, with frames.csv and summary.json")->required();
     c.add_option("--to", viewer_, "Format: mangohud, or capframex (PresentMon 1.x)")
         ->required()
-        ->check(one_of({"mangohud", "capframex"}));
+        ->check(one_of({compare::kViewers.begin(), compare::kViewers.end()}));
     c.add_option("--out", out_, "Output file: .csv")->required();
   }
 
   int run() override {
     const auto written =
-        compare::viewer_csv(*compare::viewer_from(viewer_), std::filesystem::path(run_))
+        compare::viewer_csv(viewer_, std::filesystem::path(run_))
             .and_then([this](const std::string& text) { return core::replace_file(out_, text); });
     if (!written) return fail_with(written.error());
     core::log_info(fmt::format("wrote {}", out_));

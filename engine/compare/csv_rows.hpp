@@ -1,31 +1,27 @@
-// Parses CSV as psygen writes it: a header and rows of cells, without quotes. Stores nothing. Any
-// thread.
+// Parses columns of CSV as psygen writes it: a header and rows of cells, without quotes. Stores
+// nothing. Any thread.
 #pragma once
 
 #include <functional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "engine/core/error.hpp"
 
 namespace psygen::compare {
 
-// The cells of a line, and its location ("file:3").
+// Some cells of a row, and the row's location ("file:3").
 using CsvCells = std::span<const std::string_view>;
-using OnCsvLine = std::function<core::Result<void>(CsvCells cells, const std::string& where)>;
+using OnCsvRow = std::function<core::Result<void>(CsvCells cells, const std::string& where)>;
 
-// Calls `header` with the first line and `row` with every other. Fails with kParse, naming file and
-// line, for a last line without an end and for rows with another number of cells. Returns errors of
-// the callbacks.
-core::Result<void> read_csv(std::string_view text, const std::string& file, const OnCsvLine& header,
-                            const OnCsvLine& row);
-
-// Positions of these columns in a header. Fails with kParse for a missing column.
-core::Result<std::vector<std::size_t>> find_columns(CsvCells header,
-                                                    std::span<const std::string_view> names,
-                                                    const std::string& where);
+// Calls `row` for every line after the header with its cells of the columns `names`, and of the
+// column `optional` if the header has it. Fails with kParse, naming file and line, for a missing
+// column, a last line without an end, and rows with another number of cells. Returns errors of
+// `row`.
+core::Result<void> read_csv(std::string_view text, const std::string& file,
+                            std::span<const std::string_view> names, const OnCsvRow& row,
+                            std::string_view optional = {});
 
 // Parses a cell as a number in [0, 1e15). Fails with kParse, naming the column.
 core::Result<double> number_in(std::string_view cell, const std::string& where,

@@ -43,43 +43,41 @@ struct Sums {
   double missing = 0, coarse = 0, error = 0, holes = 0;
 };
 
-// Its column follows the others in `columns`. Older runs have no such column, and full resolution.
-core::Result<double> resolution_in(CsvCells cells, std::span<const std::size_t> columns,
-                                   const std::string& where) {
-  if (columns.size() == kColumns) return 1.0;
-  const auto value = number_in(cells[columns[kColumns]], where, kResolution);
+// Older runs have no such column, and full resolution.
+core::Result<double> resolution_in(CsvCells cells, const std::string& where) {
+  if (cells.size() == kColumns) return 1.0;
+  const auto value = number_in(cells[kColumns], where, kResolution);
   if (value && !(*value > 0 && *value <= 1))
     return refuse_file(where, "resolution: it must be above 0 and at most 1");
   return value;
 }
 
-core::Result<void> add_row(CsvCells cells, std::span<const std::size_t> columns,
-                           const std::string& where, double warmup_s, RecordedRun& run,
-                           Sums& sums) {
+core::Result<void> add_row(CsvCells cells, const std::string& where, double warmup_s,
+                           RecordedRun& run, Sums& sums) {
   std::array<double, kColumns> values{};
   for (const Column column :
        {kColumnTime, kColumnFrame, kColumnError, kColumnHoles, kColumnMissing, kColumnCoarse}) {
-    const auto value = number_in(cells[columns[column]], where, kNames[column]);
+    const auto value = number_in(cells[column], where, kNames[column]);
     if (!value) return tl::unexpected(value.error());
     values[column] = *value;
   }
   if (!(values[kColumnFrame] > 0)) return refuse_file(where, "frame_ms: it must be above 0");
-  const auto resolution = resolution_in(cells, columns, where);
+  const auto resolution = resolution_in(cells, where);
   if (!resolution) return tl::unexpected(resolution.error());
   if (!run.time_s.empty() && values[kColumnTime] < run.time_s.back())
     return refuse_file(where, fmt::format("time_s: the clock goes backwards, from {} to {}",
                                           run.time_s.back(), values[kColumnTime]));
   if (values[kColumnTime] < warmup_s) return {};
   // On the virtual clock the processor time is empty.
-  run.virtual_clock = cells[columns[kColumnCpu]].empty();
+  run.virtual_clock = cells[kColumnCpu].empty();
   if (!run.virtual_clock) {
-    const auto cpu = number_in(cells[columns[kColumnCpu]], where, kNames[kColumnCpu]);
+    const auto cpu = number_in(cells[kColumnCpu], where, kNames[kColumnCpu]);
     if (!cpu) return tl::unexpected(cpu.error());
     run.cpu_ms.push_back(*cpu);
   }
   run.time_s.push_back(values[kColumnTime]);
   run.frame_ms.push_back(values[kColumnFrame]);
-  run.left_out.push_back(!cells[columns[kColumnApart]].empty());
+  run.left_out.push_back(!cells[kColumnApart].empty());
   run.lacking.push_back(values[kColumnMissing] + values[kColumnCoarse]);
   // Errors are in pixels of the image; at a lower render scale they count for more.
   const double error = values[kColumnError] / *resolution;
@@ -102,21 +100,13 @@ void leave_out_suspended(RecordedRun& run) {
 
 core::Result<void> parse_frames(std::string_view text, double warmup_s, RecordedRun& run) {
   const std::string file = run.folder + "/frames.csv";
-  std::vector<std::size_t> columns;
   Sums sums;
   const auto read = read_csv(
-      text, file,
-      [&](CsvCells header, const std::string& where) -> core::Result<void> {
-        auto found = find_columns(header, kNames, where);
-        if (!found) return tl::unexpected(found.error());
-        columns = std::move(*found);
-        if (const auto at = std::ranges::find(header, kResolution); at != header.end())
-          columns.push_back(static_cast<std::size_t>(at - header.begin()));
-        return {};
-      },
+      text, file, kNames,
       [&](CsvCells cells, const std::string& where) {
-        return add_row(cells, columns, where, warmup_s, run, sums);
-      });
+        return add_row(cells, where, warmup_s, run, sums);
+      },
+      kResolution);
   if (!read) return read;
   if (!run.cpu_ms.empty() && run.cpu_ms.size() != run.frame_ms.size())
     return refuse_file(file, "main_cpu_ms: only some frames have it");

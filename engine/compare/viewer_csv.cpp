@@ -29,40 +29,17 @@ struct ViewerRun {
   std::vector<ViewerRow> rows;
 };
 
-core::Result<ViewerRow> row_of(CsvCells cells, std::span<const std::size_t> columns,
-                               const std::string& where) {
+core::Result<ViewerRow> row_of(CsvCells cells, const std::string& where) {
   std::array<double, kApart> values{};
   for (std::size_t i = 0; i < kApart; ++i) {
-    if (cells[columns[i]].empty() && i != kFrameMs) continue;  // unknown
-    const auto value = number_in(cells[columns[i]], where, kUsedNames[i]);
+    if (cells[i].empty() && i != kFrameMs) continue;  // unknown
+    const auto value = number_in(cells[i], where, kUsedNames[i]);
     if (!value) return tl::unexpected(value.error());
     values[i] = *value;
   }
   if (!(values[kFrameMs] > 0)) return refuse_file(where, "frame_ms: it must be above 0");
   return ViewerRow{values[kFrameMs], values[kPresentMs], values[kGpuMs], values[kCacheBytes],
-                   cells[columns[kApart]] != "not_drawn"};
-}
-
-core::Result<std::vector<ViewerRow>> rows_of(std::string_view text, const std::string& folder) {
-  std::vector<std::size_t> columns;
-  std::vector<ViewerRow> rows;
-  const auto read = read_csv(
-      text, folder + "/frames.csv",
-      [&](CsvCells header, const std::string& where) -> core::Result<void> {
-        auto found = find_columns(header, kUsedNames, where);
-        if (!found) return tl::unexpected(found.error());
-        columns = std::move(*found);
-        return {};
-      },
-      [&](CsvCells cells, const std::string& where) -> core::Result<void> {
-        auto row = row_of(cells, columns, where);
-        if (!row) return tl::unexpected(row.error());
-        row->end_s = (rows.empty() ? 0 : rows.back().end_s) + row->frame_ms * 1e-3;
-        rows.push_back(*row);
-        return {};
-      });
-  if (!read) return tl::unexpected(read.error());
-  return rows;
+                   cells[kApart] != "not_drawn"};
 }
 
 // A name as one cell: viewers parse these formats without quotes, and spreadsheets take cells that
@@ -86,10 +63,20 @@ core::Result<ViewerRun> run_of(std::string_view frames_csv, std::string_view sum
   const auto json = nlohmann::json::parse(summary_json, nullptr, false);
   if (json.is_discarded())
     return refuse_file(folder + "/summary.json", "it is not JSON, or is truncated");
-  auto rows = rows_of(frames_csv, folder);
-  if (!rows) return tl::unexpected(rows.error());
-  return ViewerRun{cell_of(json, "/device/name"), cell_of(json, "/device/driver"),
-                   cell_of(json, "/world/name"), std::move(*rows)};
+  ViewerRun run{cell_of(json, "/device/name"),
+                cell_of(json, "/device/driver"),
+                cell_of(json, "/world/name"),
+                {}};
+  const auto read =
+      read_csv(frames_csv, folder + "/frames.csv", kUsedNames,
+               [&run](CsvCells cells, const std::string& where) {
+                 return row_of(cells, where).map([&run](ViewerRow row) {
+                   row.end_s = (run.rows.empty() ? 0 : run.rows.back().end_s) + row.frame_ms * 1e-3;
+                   run.rows.push_back(row);
+                 });
+               });
+  if (!read) return tl::unexpected(read.error());
+  return run;
 }
 
 // Two lines about the system, then the frames: fps, ms, percent, GiB, ns.
@@ -123,23 +110,19 @@ std::string capframex_of(const ViewerRun& run) {
 
 }  // namespace
 
-std::optional<Viewer> viewer_from(std::string_view name) {
-  if (name == "mangohud") return Viewer::kMangoHud;
-  if (name == "capframex") return Viewer::kCapFrameX;
-  return std::nullopt;
-}
-
-core::Result<std::string> viewer_csv(Viewer viewer, std::string_view frames_csv,
+core::Result<std::string> viewer_csv(std::string_view viewer, std::string_view frames_csv,
                                      std::string_view summary_json, const std::string& folder) {
   const auto run = run_of(frames_csv, summary_json, folder);
   if (!run) return tl::unexpected(run.error());
-  return viewer == Viewer::kMangoHud ? mangohud_of(*run) : capframex_of(*run);
+  if (viewer == kViewers[0]) return mangohud_of(*run);
+  if (viewer == kViewers[1]) return capframex_of(*run);
+  return core::invalid_argument(fmt::format("there is no viewer '{}'", viewer));
 }
 
-core::Result<std::string> viewer_csv(Viewer viewer, const std::filesystem::path& folder) {
-  const auto files = read_run_files(folder);
-  if (!files) return tl::unexpected(files.error());
-  return viewer_csv(viewer, files->frames_csv, files->summary_json, folder.string());
+core::Result<std::string> viewer_csv(std::string_view viewer, const std::filesystem::path& folder) {
+  return read_run_files(folder).and_then([&](const RunFiles& files) {
+    return viewer_csv(viewer, files.frames_csv, files.summary_json, folder.string());
+  });
 }
 
 }  // namespace psygen::compare

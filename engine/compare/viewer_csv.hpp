@@ -3,8 +3,8 @@
 // all of frames.csv, including the warm-up and excluded frames. Pure; any thread.
 #pragma once
 
+#include <array>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,16 +12,14 @@
 
 namespace psygen::compare {
 
-enum class Viewer : std::uint8_t { kMangoHud, kCapFrameX };
-// "mangohud", "capframex".
-std::optional<Viewer> viewer_from(std::string_view name);
+inline constexpr std::array<std::string_view, 2> kViewers{"mangohud", "capframex"};
 
-// Converts the texts of frames.csv and summary.json. Fails with kParse, naming file, line and
-// column; `folder` is for messages.
-core::Result<std::string> viewer_csv(Viewer viewer, std::string_view frames_csv,
+// Converts the texts of frames.csv and summary.json for one of kViewers. Fails with kParse, naming
+// file, line and column; `folder` is for messages.
+core::Result<std::string> viewer_csv(std::string_view viewer, std::string_view frames_csv,
                                      std::string_view summary_json, const std::string& folder);
 
 // Converts a run's folder. Also fails with kIo.
-core::Result<std::string> viewer_csv(Viewer viewer, const std::filesystem::path& folder);
+core::Result<std::string> viewer_csv(std::string_view viewer, const std::filesystem::path& folder);
 
 }  // namespace psygen::compare
