@@ -84,7 +84,7 @@ class Run:
 
 
 def plot(title, unit, note, series, kind="line", small=False, top=0):
-    """A plot for the script of reports: engine/telemetry/report_plot.hpp."""
+    """A plot for the script of reports: engine/telemetry/page.hpp."""
     data = {"title": title, "unit": unit, "kind": kind, "top": top, "zooms": True, "small": small,
             "levels": [], "series": [{"name": name, "colour": colour, "v": values}
                                      for name, colour, values in series]}

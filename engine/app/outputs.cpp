@@ -4,6 +4,7 @@
 #include "engine/amplify/block_synthesiser.hpp"
 #include "engine/app/flight.hpp"
 #include "engine/app/virtual_frame.hpp"
+#include "engine/core/replace_file.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
@@ -155,8 +156,9 @@ void Flight::note_written(const std::filesystem::path& file, const core::Result<
 void Flight::write_outputs(const telemetry::Summary& summary) {
   if (options_.out_folder.empty()) return;
   const auto file = [this](const char* name) { return options_.out_folder / name; };
-  note_written(file("summary.json"), write_summary_json(file("summary.json"), summary));
-  note_written(file("report.html"), write_report_html(file("report.html"), *log_, summary));
+  note_written(file("summary.json"), core::replace_file(file("summary.json"), to_json(summary)));
+  note_written(file("report.html"),
+               core::replace_file(file("report.html"), report_html(*log_, summary)));
   note_written(file("frames.csv"), write_frames_csv(file("frames.csv"), *log_));
   note_written(file("trace.json"), session_->trace()->write(file("trace.json")));
 }

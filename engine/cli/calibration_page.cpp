@@ -12,7 +12,6 @@
 #include "engine/models/tree/species.hpp"
 #include "engine/telemetry/curve_plot.hpp"
 #include "engine/telemetry/page.hpp"
-#include "engine/telemetry/report_plot.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -291,12 +290,9 @@ std::string calibration_json(const Calibration& found, const models::Registry& r
 std::string calibration_page(const Calibration& found, const models::Registry& registry) {
   const std::string title =
       found.world.empty() ? "Cost of synthesis" : "Cost of synthesis: " + found.world;
-  std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
-  html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
-  html += fmt::format("<title>psygen: {}</title><style>\n{}{}</style></head><body><main>\n",
-                      telemetry::escaped(title), telemetry::page_style(), kStyle);
-  html += fmt::format("<h1>{}</h1>\n<p class=\"lead\">{}</p>\n<div class=\"plots\">\n",
-                      telemetry::escaped(title), telemetry::escaped(lead_of(found, registry)));
+  std::string html =
+      fmt::format("<h1>{}</h1>\n<p class=\"lead\">{}</p>\n<div class=\"plots\">\n",
+                  telemetry::escaped(title), telemetry::escaped(lead_of(found, registry)));
   for (const synthesis::CostCurve& curve : found.curves)
     html += plot_of(curve, found, registry);
   html +=
@@ -304,7 +300,7 @@ std::string calibration_page(const Calibration& found, const models::Registry& r
       "<tr><th>type</th><td>predicted time</td><td>p50</td><td>p95</td><td>measured</td></tr>\n";
   for (const synthesis::LevelAccuracy& level : found.held_out.levels)
     html += accuracy_row(level, found, registry);
-  return html + "</table></section></div>\n</main></body></html>\n";
+  return telemetry::page_html("psygen: " + title, kStyle, html + "</table></section></div>\n");
 }
 
 }  // namespace psygen::cli

@@ -240,24 +240,21 @@ std::string headline(const Comparison& comparison) {
 
 std::string to_html(const Comparison& comparison, Runs a, Runs b, const Sides& sides,
                     const FalseAlarms* alarms) {
-  std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
-  html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
-  html += fmt::format(
-      "<title>psygen: B is {} A</title><style>\n{}{}</style></head><body><main>\n"
+  std::string body = fmt::format(
       "<h1>Comparison of two builds</h1>\n<p class=\"lead\">{} of each, at {} × {}{}</p>\n"
       "<p class=\"command\"><span class=\"swatch{} key\">A</span> <code>{}</code><br>"
       "<span class=\"swatch{} key\">B</span> <code>{}</code></p>\n",
-      comparison.verdict == Verdict::kSame ? "the same as" : "compared with",
-      telemetry::page_style(), kStyle,
       a.size() == 1 ? std::string("One run") : fmt::format("{} runs", a.size()), a.front().width,
       a.front().height, sides.test.empty() ? "" : ", test " + escaped(sides.test), kColourA,
       escaped(sides.a), kColourB, escaped(sides.b));
-  html += verdict_section(comparison, alarms) + "<div class=\"effects\">\n";
+  body += verdict_section(comparison, alarms) + "<div class=\"effects\">\n";
   for (std::size_t i = comparison.batches.size(); i-- > 0;)
-    html += batch_section(comparison, i);
-  html += conditions_section(comparison) + "</div>\n" + plots(a, b);
-  html += fmt::format("</main><script>{}</script></body></html>\n", telemetry::page_script());
-  return html;
+    body += batch_section(comparison, i);
+  body += conditions_section(comparison) + "</div>\n" + plots(a, b);
+  const bool same = comparison.verdict == Verdict::kSame;
+  return telemetry::page_html(
+      fmt::format("psygen: B is {} A", same ? "the same as" : "compared with"), kStyle, body,
+      telemetry::page_script());
 }
 
 }  // namespace psygen::compare

@@ -7,6 +7,7 @@
 #include "engine/app/flight.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/core/utf8.hpp"
 #include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/scene/frame/input.hpp"
@@ -132,18 +133,13 @@ std::string budgets_html(const TestResult& result) {
   return html + "</table>\n";
 }
 
-std::string head_html(const FrameTest& test) {
-  constexpr const char* kStyle =
-      ".row{display:flex;flex-wrap:wrap;gap:12px}.row figure{margin:0;flex:1 1 300px}"
-      "img{width:100%;image-rendering:pixelated}td,th{text-align:left;padding:2px 16px 2px 0}";
+std::string lead_html(const FrameTest& test) {
   const bool exact = test.flight.session.scene.virtual_time;
   return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: budgets "
-      "missed</title><style>\n{1}{2}</style></head><body><main>\n<h1>{0}: budgets missed</h1>\n"
-      "<p class=\"lead\">The worst frames as drawn, the same frames with all meshes ready, and "
-      "their "
-      "difference (yellow to red). {3} <a href=\"report.html\">The whole flight</a></p>\n",
-      escaped(test.name), telemetry::page_style(), kStyle,
+      "<h1>{}: budgets missed</h1>\n<p class=\"lead\">The worst frames as drawn, the same frames "
+      "with all meshes ready, and their difference (yellow to red). {} <a href=\"report.html\">The "
+      "whole flight</a></p>\n",
+      escaped(test.name),
       exact ? "The images are bit-identical to those of the judged flight."
             : "The images are from a second flight through the same positions: on the wall clock, "
               "missing meshes differ from flight to flight.");
@@ -167,13 +163,17 @@ core::Result<std::filesystem::path> write_failure(const FrameTest& test, const T
                                                   std::span<const WorstFrame> frames,
                                                   const RunOptions& options, const Hooks& hooks) {
   const std::filesystem::path page = options.out / test.name / kPage;
-  std::string html = head_html(test) + budgets_html(result);
+  constexpr std::string_view kStyle =
+      ".row{display:flex;flex-wrap:wrap;gap:12px}.row figure{margin:0;flex:1 1 300px}"
+      "img{width:100%;image-rendering:pixelated}td,th{text-align:left;padding:2px 16px 2px 0}";
+  std::string html = lead_html(test) + budgets_html(result);
   for (const WorstFrame& frame : frames)
     html += frame_html(frame, fly_to(frame, test, options, hooks));
   if (frames.empty()) html += "<p>The missed budgets are not measured per frame.</p>\n";
-  if (auto ok = core::replace_file(page, html + "</main></body></html>\n"); !ok)
-    return tl::unexpected(ok.error());
-  return page;
+  const std::string title = core::shown(test.name) + ": budgets missed";
+  return core::replace_file(page, telemetry::page_html(title, kStyle, html)).map([&] {
+    return page;
+  });
 }
 
 }  // namespace psygen::frametest

@@ -13,7 +13,7 @@
 #include "engine/core/utf8.hpp"
 #include "engine/frametest/failure.hpp"
 #include "engine/program/program.hpp"
-#include "engine/telemetry/report_plot.hpp"
+#include "engine/telemetry/page.hpp"
 #include "engine/telemetry/summary_fields.hpp"
 
 namespace psygen::frametest {

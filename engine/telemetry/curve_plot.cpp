@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-#include "engine/telemetry/report_plot.hpp"
+#include "engine/telemetry/page.hpp"
 
 namespace psygen::telemetry {
 namespace {
@@ -114,6 +114,13 @@ class Drawing {
 };
 
 }  // namespace
+
+double nice_step(double range, double steps) {
+  const double raw = std::max(range, 1e-12) / steps;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double ratio = raw / power;
+  return power * (ratio <= 1 ? 1 : ratio <= 2 ? 2 : ratio <= 5 ? 5 : 10);
+}
 
 std::string curve_plot_html(const CurvePlot& plot) {
   std::string legend;

@@ -1,6 +1,6 @@
 // A plot of values over a parameter as an SVG image: measured values as points, curves through them
 // as lines, with axes and a legend. In the style of page_style.css. Plots over time are in
-// report_plot.hpp. Pure; linear in the values.
+// page.hpp. Pure; linear in the values.
 #pragma once
 
 #include <string>
@@ -32,6 +32,10 @@ struct CurvePlot {
   std::vector<double> x;  // ascending
   std::vector<Curve> curves;
 };
+
+// Step between the ticks of an axis: 1, 2 or 5 times a power of ten, so that `range` has at most
+// `steps` steps. Ranges below 1e-12 count as 1e-12.
+double nice_step(double range, double steps);
 
 // A <figure> element. All text is escaped.
 std::string curve_plot_html(const CurvePlot& plot);

@@ -1,15 +1,14 @@
-// Pages with plots: style and script as texts to embed, and the data of the rows behind the plots,
-// which are frames of a flight or of a comparison. The script zooms over the rows, shows their
-// values, and one row in detail. Pure; linear in rows.
+// Pages with plots over time: style and script as texts to embed, figures whose data the script
+// draws, and the rows behind the plots, which are frames of a flight or of a comparison. The script
+// zooms over the rows, shows their values, and one row in detail. Pure; linear in rows.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "engine/telemetry/report_plot.hpp"
 
 namespace psygen::telemetry {
 
@@ -17,11 +16,55 @@ namespace psygen::telemetry {
 // for light and dark themes.
 std::string_view page_style();
 
-// page_script.js, for pages with plots over time; put it at the end of the page. Draws the figures
-// of report_plot.hpp over the rows of PageRows, all with one zoom. Shows the values under the
-// pointer, the distribution of the visible frames, and one frame in detail. Plain JavaScript and
-// SVG without external resources.
+// page_script.js, for pages with plots over time. Draws the figures of plot_html() over the rows of
+// PageRows, all with one zoom. Shows the values under the pointer, the distribution of the visible
+// frames, and one frame in detail. Plain JavaScript and SVG without external resources.
 std::string_view page_script();
+
+// A whole page with page_style(). `title` is plain text; `body` is HTML; `style` and `script`,
+// which may be empty, are added as they are.
+std::string page_html(std::string_view title, std::string_view style, std::string_view body,
+                      std::string_view script = {});
+
+// Drawing style of a plot's series. If several rows share a pixel:
+enum class PlotKind : std::uint8_t {
+  kLine,     // their mean, with a band from minimum to maximum
+  kPeaks,    // the maximum, filled
+  kStacked,  // means of the series, stacked
+};
+
+// One quantity over time.
+struct PlotSeries {
+  std::string name;
+  int colour = 0;              // palette index of page_style.css, 1 … 8; 0 and 9 are greys
+  std::vector<double> values;  // one per row of the page; non-finite: missing
+};
+
+// A dashed horizontal line with a label at its right end, just above or below it.
+struct PlotLevel {
+  std::string label;
+  double value = 0;
+  bool label_below = false;
+};
+
+// A plot.
+struct Plot {
+  std::string title = {};
+  std::string unit = {};  // at the axis and after values
+  std::string note = {};  // text below the plot; may be empty
+  PlotKind kind = PlotKind::kLine;
+  std::vector<PlotSeries> series = {};
+  std::vector<PlotLevel> levels = {};
+  double top = 0;      // upper end of the axis, higher values are cut off; 0: from the data
+  bool zooms = true;   // the axis follows the zoomed range; otherwise `top` stays
+  bool small = false;  // half the height of other plots
+};
+
+// A <figure> element. All text is escaped.
+std::string plot_html(const Plot& plot);
+
+// Escapes &, <, >, " and ' as entities.
+std::string escaped(std::string_view text);
 
 // A value of every row that no plot shows.
 struct RowFigure {

@@ -5,10 +5,8 @@
 // are readable, but not the plots. Programs read summary.json. Pure, apart from writing.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
-#include "engine/core/error.hpp"
 #include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/summary.hpp"
 
@@ -16,9 +14,5 @@ namespace psygen::telemetry {
 
 // The page. It contains at most 20,000 frames: of longer flights, the slowest of every n frames.
 std::string report_html(const FrameLog& log, const Summary& summary);
-
-// Writes the page to a file. Fails with kIo and the path.
-core::Result<void> write_report_html(const std::filesystem::path& path, const FrameLog& log,
-                                     const Summary& summary);
 
 }  // namespace psygen::telemetry

@@ -36,6 +36,13 @@ std::vector<double> timed_column(const FrameLog& log, const Field& field) {
   });
 }
 
+std::vector<double> system_column(const FrameLog& log, std::size_t system) {
+  std::vector<double> ms;
+  for (std::size_t frame = 0; frame < log.frames().size(); ++frame)
+    ms.push_back(double{log.system_ms(frame)[system]});
+  return ms;
+}
+
 // Adds a note about the excluded frames.
 void tell_apart(const FrameLog& log, const Summary& s, Plot& plot) {
   if (std::ranges::all_of(log.frames(), [](const auto& r) { return r.apart == Apart::kNo; }))
@@ -86,11 +93,9 @@ std::vector<PlotSeries> system_series(const FrameLog& log) {
   constexpr int kOthersColour = 8;
   std::vector<PlotSeries> all;
   for (std::size_t i = 0; i < log.systems().size(); ++i) {
-    std::vector<double> ms;
-    for (std::size_t frame = 0; frame < log.frames().size(); ++frame) {
-      const bool timed = log.frames()[frame].apart == Apart::kNo;
-      ms.push_back(timed ? double{log.system_ms(frame)[i]} : kNothing);
-    }
+    std::vector<double> ms = system_column(log, i);
+    for (std::size_t frame = 0; frame < ms.size(); ++frame)
+      if (log.frames()[frame].apart != Apart::kNo) ms[frame] = kNothing;
     all.push_back({log.systems()[i], 0, std::move(ms)});
   }
   std::ranges::stable_sort(all, std::greater{},
@@ -287,19 +292,23 @@ double slowness(const FrameRecord& record) {
   return record.apart == Apart::kNo ? record.frame_ms : -1;
 }
 
-// The field of each row's frame.
-template <class Field>
-std::vector<double> column(const FrameLog& log, const ShownFrames& shown, const Field& field) {
+// Reduces values of all frames to those of the rows; a row of peaks has the largest value.
+std::vector<double> thinned(std::vector<double> all, const ShownFrames& shown, bool peaks = false) {
+  if (shown.every <= 1) return all;
   std::vector<double> values;
-  for (const std::size_t frame : shown.frames)
-    values.push_back(static_cast<double>(field(log.frames()[frame])));
+  for (std::size_t row = 0; row < shown.frames.size(); ++row) {
+    values.push_back(all[shown.frames[row]]);
+    const std::size_t end = std::min((row + 1) * shown.every, all.size());
+    for (std::size_t k = row * shown.every; k < end && peaks; ++k)
+      values.back() = std::fmax(values.back(), all[k]);
+  }
   return values;
 }
 
 std::vector<RowFigure> figures(const FrameLog& log, const ShownFrames& shown) {
   std::vector<RowFigure> list;
   const auto add = [&](const char* name, const char* unit, const auto& field) {
-    list.push_back({name, unit, column(log, shown, field)});
+    list.push_back({name, unit, thinned(column(log, field), shown)});
   };
   add("processor time of the main thread", "ms", [](const auto& r) { return r.main_cpu_ms; });
   add("shadows on the GPU", "ms",
@@ -316,16 +325,14 @@ std::vector<RowFigure> figures(const FrameLog& log, const ShownFrames& shown) {
 
 std::vector<RowFigure> parts(const FrameLog& log, const ShownFrames& shown) {
   std::vector<RowFigure> list;
-  for (std::size_t i = 0; i < log.systems().size(); ++i) {
-    std::vector<double> ms;
-    for (const std::size_t frame : shown.frames)
-      ms.push_back(double{log.system_ms(frame)[i]});
-    list.push_back({log.systems()[i], "ms", std::move(ms)});
-  }
-  list.push_back({"waiting for the GPU", "ms",
-                  column(log, shown, [](const auto& r) { return r.device_wait_ms; })});
-  list.push_back({"presenting, waiting for the window", "ms",
-                  column(log, shown, [](const auto& r) { return r.acquire_ms + r.present_ms; })});
+  const auto add = [&](const std::string& name, std::vector<double> ms) {
+    list.push_back({name, "ms", thinned(std::move(ms), shown)});
+  };
+  for (std::size_t i = 0; i < log.systems().size(); ++i)
+    add(log.systems()[i], system_column(log, i));
+  add("waiting for the GPU", column(log, [](const auto& r) { return r.device_wait_ms; }));
+  add("presenting, waiting for the window",
+      column(log, [](const auto& r) { return r.acquire_ms + r.present_ms; }));
   return list;
 }
 
@@ -342,28 +349,12 @@ ShownFrames shown_frames(const FrameLog& log) {
   return shown;
 }
 
-// Reduces a plot's values of all frames to those of the rows; a row of peaks has the largest value.
-void thin(Plot& plot, const ShownFrames& shown) {
-  if (shown.every <= 1) return;
-  for (PlotSeries& series : plot.series) {
-    std::vector<double> values;
-    for (std::size_t row = 0; row < shown.frames.size(); ++row) {
-      double value = series.values[shown.frames[row]];
-      const std::size_t end = std::min((row + 1) * shown.every, series.values.size());
-      for (std::size_t k = row * shown.every; k < end && plot.kind == PlotKind::kPeaks; ++k)
-        value = std::fmax(value, series.values[k]);
-      values.push_back(value);
-    }
-    series.values = std::move(values);
-  }
-}
-
 // Data of the rows besides the plots.
 PageRows page_rows(const FrameLog& log, const Summary& summary, const ShownFrames& shown) {
   PageRows rows;
   rows.every = std::max<std::size_t>(shown.every, 1);
-  rows.times_s = column(log, shown, [](const auto& r) { return r.time_s; });
-  rows.numbers = column(log, shown, [](const auto& r) { return r.index; });
+  rows.times_s = thinned(column(log, [](const auto& r) { return r.time_s; }), shown);
+  rows.numbers = thinned(column(log, [](const auto& r) { return r.index; }), shown);
   rows.warmup_s = summary.run.warmup_seconds;
   rows.figures = figures(log, shown);
   rows.parts = parts(log, shown);
@@ -382,7 +373,8 @@ std::string report_plots(const FrameLog& log, const Summary& s) {
   const ShownFrames shown = shown_frames(log);
   std::string html = page_tools_html(page_rows(log, s, shown));
   const auto add = [&](Plot plot) {
-    thin(plot, shown);
+    for (PlotSeries& series : plot.series)
+      series.values = thinned(std::move(series.values), shown, plot.kind == PlotKind::kPeaks);
     html += plot_html(plot);
   };
   add(frame_time_plot(log, s));

@@ -198,7 +198,4 @@ std::string to_json(const Summary& summary);
 // Table for the terminal, at most 78 columns wide, without colours.
 std::string to_text(const Summary& summary);
 
-// Writes to_json() to a file. Fails with kIo and the path.
-core::Result<void> write_summary_json(const std::filesystem::path& path, const Summary& summary);
-
 }  // namespace psygen::telemetry

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "engine/core/replace_file.hpp"
 #include "engine/telemetry/summary.hpp"
 #include "engine/telemetry/summary_fields.hpp"
 #include "engine/telemetry/verdict.hpp"
@@ -254,10 +253,6 @@ std::string to_json(const Summary& s) {
   take_reasons(json, "", reasons);
   json["reasons"] = reasons;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-core::Result<void> write_summary_json(const std::filesystem::path& path, const Summary& summary) {
-  return core::replace_file(path, to_json(summary));
 }
 
 std::vector<SummaryField> summary_fields(const Summary& summary) {

@@ -78,5 +78,16 @@ TEST(CurvePlot, EscapesAllOfItsTexts) {
   EXPECT_EQ(html.find("\"x\""), std::string::npos);
 }
 
+TEST(CurvePlot, TicksAreOneTwoOrFiveTimesAPowerOfTenAndNotTooMany) {
+  EXPECT_DOUBLE_EQ(nice_step(10, 5), 2);
+  EXPECT_DOUBLE_EQ(nice_step(10, 6), 2);
+  EXPECT_DOUBLE_EQ(nice_step(30, 12), 5);
+  EXPECT_DOUBLE_EQ(nice_step(0.06, 6), 0.01);
+  EXPECT_DOUBLE_EQ(nice_step(51, 5), 20);
+  EXPECT_GT(nice_step(0, 5), 0);
+  for (double range = 1e-3; range < 1e6; range *= 1.37)
+    EXPECT_LE(range / nice_step(range, 6), 6 + 1e-9) << range;
+}
+
 }  // namespace
 }  // namespace psygen::telemetry

@@ -225,14 +225,5 @@ TEST(Report, HasTheTimeOfEachSystemAndSeparateWaitingTimes) {
   EXPECT_NEAR(rows["parts"][8]["v"][9], log.frames()[9].device_wait_ms, 1e-3);
 }
 
-TEST(Report, IsWrittenToAFileOrReportsTheError) {
-  const TemporaryFolder folder;
-  const FrameLog log = synthetic_flight();
-  const Summary summary = summarise(log, synthetic_facts(), 1.0);
-  ASSERT_TRUE(write_report_html(folder / "report.html", log, summary));
-  EXPECT_EQ(text_of(folder / "report.html"), report_html(log, summary));
-  EXPECT_EQ(write_report_html("/dev/full", log, summary).error().code, core::ErrorCode::kIo);
-}
-
 }  // namespace
 }  // namespace psygen::telemetry

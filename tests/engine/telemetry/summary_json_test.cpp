@@ -77,13 +77,5 @@ TEST(SummaryJson, KeepsAll64BitsOfSeedsAndSizes) {
   EXPECT_EQ(j["world"]["bytes"].get<std::uint64_t>(), (1ULL << 63) + 1);
 }
 
-TEST(SummaryJson, IsWrittenToAFileOrReportsTheError) {
-  const TemporaryFolder folder;
-  const Summary s = summarise(synthetic_flight(10), synthetic_facts(), 0.0);
-  ASSERT_TRUE(write_summary_json(folder / "summary.json", s));
-  EXPECT_EQ(text_of(folder / "summary.json"), to_json(s));
-  EXPECT_EQ(write_summary_json("/dev/full", s).error().code, core::ErrorCode::kIo);
-}
-
 }  // namespace
 }  // namespace psygen::telemetry

@@ -1,4 +1,4 @@
-#include "engine/telemetry/report_plot.hpp"
+#include "engine/telemetry/page.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ Plot ramp(std::size_t count) {
   return plot;
 }
 
-TEST(ReportPlot, HasATitleTheUnitAndTheData) {
+TEST(Plot, HasATitleTheUnitAndTheData) {
   const std::string html = plot_html(ramp(100));
   EXPECT_NE(html.find("<figcaption>ramp</figcaption>"), std::string::npos);
   const auto data = data_of(html);
@@ -34,7 +34,7 @@ TEST(ReportPlot, HasATitleTheUnitAndTheData) {
   EXPECT_EQ(data["series"][0]["v"][99], 99.0);
 }
 
-TEST(ReportPlot, EscapesEveryText) {
+TEST(Plot, EscapesEveryText) {
   Plot plot = ramp(10);
   const std::string evil = "</script><script>alert(1)</script>\xff";
   plot.title = plot.unit = plot.note = plot.series[0].name = evil;
@@ -45,7 +45,7 @@ TEST(ReportPlot, EscapesEveryText) {
   EXPECT_EQ(data_of(html)["series"][0]["name"], "</script><script>alert(1)</script>\xEF\xBF\xBD");
 }
 
-TEST(ReportPlot, NonFiniteValuesAreNull) {
+TEST(Plot, NonFiniteValuesAreNull) {
   Plot plot = ramp(10);
   plot.series[0].values[4] = std::numeric_limits<double>::quiet_NaN();
   plot.series[0].values[5] = std::numeric_limits<double>::infinity();
@@ -55,7 +55,7 @@ TEST(ReportPlot, NonFiniteValuesAreNull) {
   EXPECT_EQ(data["series"][0]["v"][6], 6.0);
 }
 
-TEST(ReportPlot, StoresItsDrawingStyle) {
+TEST(Plot, StoresItsDrawingStyle) {
   Plot plot = ramp(3);
   plot.kind = PlotKind::kStacked;
   plot.top = 10;
@@ -68,20 +68,9 @@ TEST(ReportPlot, StoresItsDrawingStyle) {
   EXPECT_EQ(data["levels"], nlohmann::json({{{"label", "budget"}, {"value", 8}, {"below", true}}}));
 }
 
-TEST(ReportPlot, IsAlsoDrawnForOneFrameOrNone) {
+TEST(Plot, IsAlsoDrawnForOneFrameOrNone) {
   for (const std::size_t count : {0U, 1U})
     EXPECT_EQ(data_of(plot_html(ramp(count)))["series"][0]["v"].size(), count);
-}
-
-TEST(ReportPlot, TicksAreOneTwoOrFiveTimesAPowerOfTenAndNotTooMany) {
-  EXPECT_DOUBLE_EQ(nice_step(10, 5), 2);
-  EXPECT_DOUBLE_EQ(nice_step(10, 6), 2);
-  EXPECT_DOUBLE_EQ(nice_step(30, 12), 5);
-  EXPECT_DOUBLE_EQ(nice_step(0.06, 6), 0.01);
-  EXPECT_DOUBLE_EQ(nice_step(51, 5), 20);
-  EXPECT_GT(nice_step(0, 5), 0);
-  for (double range = 1e-3; range < 1e6; range *= 1.37)
-    EXPECT_LE(range / nice_step(range, 6), 6 + 1e-9) << range;
 }
 
 }  // namespace
