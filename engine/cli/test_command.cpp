@@ -11,15 +11,8 @@ class TestCommand final : public Command {
  public:
   explicit TestCommand(CLI::App& cli)
       : Command(cli, "test", "Run frame tests and check their budgets") {
-    CLI::App& c = *command_;
-    c.add_option("FILE", options_.files, "Frame tests: TOML files")->required();
-    c.add_option("--junit", options_.junit, "Write the results to this file as JUnit XML");
-    c.add_option("--out", options_.out, "Folder for the outputs, with one subfolder per test");
-    c.add_option("--worst", options_.worst_frames,
-                 "Number of worst frames of a failed test written as images to --out")
-        ->capture_default_str()
-        ->transform(integer_between(0, frametest::kMaxWorstFrames));
-    c.add_option("--device", options_.device, "Part of the Vulkan device's name");
+    frametest::add_options(*command_, options_);
+    command_->get_option("--worst")->transform(integer_between(0, frametest::kMaxWorstFrames));
   }
 
   int run() override {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 
 #include "engine/app/flight.hpp"
@@ -12,6 +12,7 @@
 #include "engine/core/replace_file.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/frametest/failure.hpp"
+#include "engine/program/command_line.hpp"
 #include "engine/program/program.hpp"
 #include "engine/telemetry/page.hpp"
 #include "engine/telemetry/summary_fields.hpp"
@@ -73,12 +74,6 @@ void show_failure(const FrameTest& test, std::span<const WorstFrame> worst,
   } else {
     core::log_error(fmt::format("{}: {}", result.name, page.error().message));
   }
-}
-
-bool read_worst_count(std::string_view text, int& count) {
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), count);
-  return read.ec == std::errc() && read.ptr == text.data() + text.size() && count >= 0 &&
-         count <= kMaxWorstFrames;
 }
 
 std::string suite_of(const TestResult& result) {
@@ -219,40 +214,27 @@ int run_frame_tests(const RunOptions& options, const Hooks& hooks) {
   return code;
 }
 
-namespace {
-
-int run_command_line(int argc, char** argv, const Hooks& hooks) {
-  RunOptions options;
-  bool usable = true;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view argument = argv[i];
-    if (!argument.starts_with("--")) {
-      options.files.emplace_back(argument);
-      continue;
-    }
-    const char* value = i + 1 < argc ? argv[++i] : nullptr;
-    const bool known = argument == "--junit" || argument == "--out" || argument == "--device" ||
-                       argument == "--worst";
-    usable = usable && known && value != nullptr;
-    if (!usable) break;
-    if (argument == "--worst") usable = read_worst_count(value, options.worst_frames);
-    if (argument == "--junit") options.junit = value;
-    if (argument == "--out") options.out = value;
-    if (argument == "--device") options.device = value;
-  }
-  if (!usable || options.files.empty()) {
-    core::log_error("usage: FILE... [--junit FILE] [--out DIR] [--device NAME] [--worst N]");
-    return kUsage;
-  }
-  options.stop = &program::stop_at_interrupt();
-  return run_frame_tests(options, hooks);
+void add_options(CLI::App& cli, RunOptions& options) {
+  cli.add_option("FILE", options.files, "Frame tests: TOML files")->required();
+  cli.add_option("--junit", options.junit, "Write the results to this file as JUnit XML");
+  cli.add_option("--out", options.out, "Folder for the outputs, with one subfolder per test");
+  cli.add_option("--worst", options.worst_frames,
+                 "Number of worst frames of a failed test written as images to --out")
+      ->capture_default_str();
+  cli.add_option("--device", options.device, "Part of the Vulkan device's name");
 }
-
-}  // namespace
 
 int frame_test_main(int argc, char** argv, const Hooks& hooks) {
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "";
-  return program::run(name, [&] { return run_command_line(argc, argv, hooks); });
+  return program::run(name, [&] {
+    RunOptions options;
+    CLI::App cli("Runs frame tests", name);
+    add_options(cli, options);
+    cli.get_option("--worst")->check(CLI::Range(0, kMaxWorstFrames));
+    if (const auto code = program::read_command_line(cli, argc, argv)) return *code;
+    options.stop = &program::stop_at_interrupt();
+    return run_frame_tests(options, hooks);
+  });
 }
 
 }  // namespace psygen::frametest

@@ -14,6 +14,10 @@
 #include "engine/frametest/frame_test.hpp"
 #include "engine/telemetry/summary.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace psygen::app {
 class Flight;
 }
@@ -91,11 +95,13 @@ std::string to_text(const TestResult& result);
 // Formats the results as JUnit XML: a suite for each file, a case for each budget.
 std::string to_junit(std::span<const TestResult> results);
 
+// Declares the options of a command line; `options` outlives it. The caller limits --worst to 0 …
+// kMaxWorstFrames.
+void add_options(CLI::App& cli, RunOptions& options);
 // Runs all files, prints results to stdout and errors to stderr, and writes the JUnit file. Returns
 // the exit code.
 int run_frame_tests(const RunOptions& options, const Hooks& hooks = {});
-// Complete main() of a game's frame tests: FILE... [--junit FILE] [--out DIR] [--device NAME]
-// [--worst N].
+// Complete main() of a game's frame tests, with add_options().
 int frame_test_main(int argc, char** argv, const Hooks& hooks);
 
 }  // namespace psygen::frametest

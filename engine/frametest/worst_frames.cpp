@@ -1,5 +1,5 @@
-#include "engine/frametest/worst_frames.hpp"
-
+// Finds the frames of a flight that missed a budget most: the budget's field selects a column of
+// the log.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,8 @@
 #include <functional>
 #include <limits>
 #include <string_view>
+
+#include "engine/frametest/failure.hpp"
 
 namespace psygen::frametest {
 namespace {

@@ -96,7 +96,7 @@ ONLY_IN = {
     r"^OpenImageIO/": {"engine/image"},
     r"^toml\+\+/": {"engine/world", "game"},
     r"^nlohmann/": {"engine/gltf", "engine/telemetry", "engine/captures", "engine/compare", "engine/inspect", "engine/cli"},
-    r"^CLI/": {"engine/cli", "engine/program", "game"},
+    r"^CLI/": {"engine/cli", "engine/frametest", "engine/program", "game"},
     r"^tiny_gltf": {"engine/exchange"},
     r"^draco/": {"engine/gltf"},
     r"^meshoptimizer": {"engine/gltf", "engine/handmade", "engine/scene"},

@@ -1,7 +1,7 @@
-#include "engine/frametest/worst_frames.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "engine/frametest/failure.hpp"
 
 namespace psygen::frametest {
 namespace {
