@@ -9,6 +9,7 @@
 
 namespace psygen::cli {
 
+// Names that all commands use.
 using program::exit_code_of;
 using program::fail_with;
 using program::print;

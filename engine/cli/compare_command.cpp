@@ -15,8 +15,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 #include <string_view>
@@ -34,6 +32,7 @@
 #include "engine/core/replace_file.hpp"
 #include "engine/frametest/run.hpp"
 #include "engine/telemetry/output_file.hpp"
+#include "engine/world/files/text_file.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -64,28 +63,6 @@ class CompareCommand final : public Command {
   bool json_ = false, instructions_ = false, anyway_ = false;
   std::vector<compare::RecordedRun> runs_a_, runs_b_;
 };
-
-// Null-terminated, as the system requires.
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts)
-    pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
-// Returns the environment of this process; `environment` replaces variables of the same name.
-std::vector<std::string> with_ours(std::vector<std::string> environment) {
-  const auto is_added = [&](std::string_view variable) {
-    const std::string_view name = variable.substr(0, variable.find('=') + 1);
-    return std::ranges::any_of(environment, [&](const auto& e) { return e.starts_with(name); });
-  };
-  std::vector<std::string> ours;
-  for (char** variable = environ; *variable != nullptr; ++variable)
-    if (!is_added(*variable)) ours.emplace_back(*variable);
-  ours.insert(ours.end(), environment.begin(), environment.end());
-  return ours;
-}
 
 // The words of a command line, by the shell's rules for blanks, quotes and backslashes; nothing is
 // expanded. Fails with kInvalidArgument for an open quote and without a word.
@@ -128,14 +105,15 @@ int status_of(pid_t child, const std::atomic<bool>& stop) {
   return status;
 }
 
-// Runs a program to its end and writes its output to a file; `environment` ("NAME=VALUE") is added
-// to that of this process. Returns its exit code, or 128 plus the number of the signal that ended
-// it. Fails with kIo if it cannot be started, and with kInterrupted after a signal to psygen.
-core::Result<int> run_program(std::vector<std::string> words, const std::filesystem::path& log,
-                              std::vector<std::string> environment = {}) {
+// Runs a program to its end and writes its output to a file. Returns its exit code, or 128 plus the
+// number of the signal that ended it. Fails with kIo if it cannot be started, and with kInterrupted
+// after a signal to psygen.
+core::Result<int> run_program(std::vector<std::string> words, const std::filesystem::path& log) {
   const std::atomic<bool>& stop = stop_at_interrupt();
-  std::vector<std::string> variables = with_ours(std::move(environment));
-  const std::vector<char*> arguments = pointers_to(words), values = pointers_to(variables);
+  std::vector<char*> arguments;
+  for (std::string& word : words)
+    arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
@@ -145,8 +123,8 @@ core::Result<int> run_program(std::vector<std::string> words, const std::filesys
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // a group of its own
   pid_t child = 0;
-  const int failed = posix_spawnp(&child, arguments.front(), &actions, &attributes,
-                                  arguments.data(), values.data());
+  const int failed =
+      posix_spawnp(&child, arguments.front(), &actions, &attributes, arguments.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) {
@@ -173,26 +151,15 @@ core::Result<std::vector<std::string>> work_of(const std::string& command) {
   return is_program ? words_of(command + " amplify --region 0,0,3,3 --threads 1") : words;
 }
 
-// Path of the library that replaces an instruction valgrind cannot run (countable.cpp). Empty if it
-// is not installed, which is harmless on processors that do not need it.
-std::string stand_in() {
+// Lets programs load a library that replaces an instruction valgrind cannot run (countable.cpp). If
+// it is not installed, nothing changes, which is harmless on processors that do not need it.
+void preload_stand_in() {
   void* library = dlopen("libpsygen_countable.so", RTLD_LAZY | RTLD_LOCAL);
   link_map* map = nullptr;
-  if (library == nullptr || dlinfo(library, RTLD_DI_LINKMAP, &map) != 0) return {};
-  return map->l_name;
-}
-
-std::vector<std::string> environment() {
-  const std::string library = stand_in();
-  const char* others = std::getenv("LD_PRELOAD");
-  if (library.empty()) return {};
-  return {fmt::format("LD_PRELOAD={}{}{}", library, others != nullptr ? ":" : "",
-                      others != nullptr ? others : "")};
-}
-
-std::string whole_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (library == nullptr || dlinfo(library, RTLD_DI_LINKMAP, &map) != 0) return;
+  std::string preloaded = map->l_name;
+  if (const char* others = std::getenv("LD_PRELOAD")) preloaded += ":" + std::string(others);
+  setenv("LD_PRELOAD", preloaded.c_str(), 1);
 }
 
 struct Counted {
@@ -210,7 +177,7 @@ core::Result<Counted> count(const std::string& command, const std::filesystem::p
   const auto work = work_of(command);
   if (!work) return tl::unexpected(work.error());
   words.insert(words.end(), work->begin(), work->end());
-  const auto code = run_program(words, log, environment());
+  const auto code = run_program(words, log);
   if (!code && code.error().code == core::ErrorCode::kInterrupted)
     return tl::unexpected(code.error());
   if (!code)
@@ -226,9 +193,12 @@ core::Result<Counted> count(const std::string& command, const std::filesystem::p
     return core::fail(core::ErrorCode::kInternal,
                       fmt::format("{}: exit code {} under valgrind; its output is in {}", command,
                                   *code, log.string()));
-  const auto instructions = compare::instructions_in(whole_text(profile), profile.string());
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
+  const auto instructions = compare::instructions_in(
+      world::read_text_file(profile, kMaxBytes).value_or(""), profile.string());
   if (!instructions) return tl::unexpected(instructions.error());
-  const std::string output = whole_text(log), hash(compare::hash_in(output));
+  const std::string output = world::read_text_file(log, kMaxBytes).value_or("");
+  const std::string hash(compare::hash_in(output));
   if (hash.empty())
     return core::invalid_argument(
         fmt::format("{}: prints no hash, so its result cannot be compared; its output is in {}",
@@ -404,6 +374,7 @@ int CompareCommand::compare_times() const {
 core::Result<compare::Instructions> CompareCommand::count_instructions() const {
   if (out_.empty()) return core::invalid_argument("--instructions needs --out");
   if (auto ok = telemetry::create_output_folder(out_); !ok) return tl::unexpected(ok.error());
+  preload_stand_in();
   const auto a = count(a_, out_, "a");
   if (!a) return tl::unexpected(a.error());
   const auto b = count(b_, out_, "b");

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <unordered_set>
@@ -163,11 +162,9 @@ void FlyCommand::add_flight_options() {
 void FlyCommand::add_synthesis_options() {
   CLI::App& c = *command_;
   scene::SceneSettings& scene = options_.session.scene;
-  c.add_option_function<std::string>(
-       "--paradigm",
-       [&scene](const std::string& text) { scene.paradigm = *scene::paradigm_from(text); },
-       "pla: on demand, in parallel; amplify: all meshes first; lazy: all meshes in each frame")
-      ->check(valid_if(scene::paradigm_from, "pla|amplify|lazy"))
+  add_parsed(
+      c, "--paradigm", scene.paradigm, scene::paradigm_from, "pla|amplify|lazy",
+      "pla: on demand, in parallel; amplify: all meshes first; lazy: all meshes in each frame")
       ->default_str("pla");
   c.add_option_function<std::string>(
        "--policy",
@@ -181,10 +178,8 @@ void FlyCommand::add_synthesis_options() {
        "Priority of modelers: lowest, or normal, to measure their effect on frames")
       ->check(one_of({"lowest", "normal"}))
       ->default_str("lowest");
-  c.add_option_function<std::string>(
-       "--plp", [&scene](const std::string& text) { scene.plp_mode = *scene::plp_mode_from(text); },
-       "Order of nodes: layers around the camera, or solidity (least hidden first)")
-      ->check(valid_if(scene::plp_mode_from, "layers|solidity"))
+  add_parsed(c, "--plp", scene.plp_mode, scene::plp_mode_from, "layers|solidity",
+             "Order of nodes: layers around the camera, or solidity (least hidden first)")
       ->default_str("layers");
 }
 

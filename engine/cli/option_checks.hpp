@@ -29,6 +29,16 @@ CLI::Validator valid_if(Parse parse, const std::string& description) {
       description);
 }
 
+// Adds an option whose text `parse` converts to `value`. Help shows `form`.
+template <class Value, class Parse>
+CLI::Option* add_parsed(CLI::App& app, const char* name, Value& value, Parse parse,
+                        const char* form, const char* meaning) {
+  return app
+      .add_option_function<std::string>(
+          name, [&value, parse](const std::string& text) { value = *parse(text); }, meaning)
+      ->check(valid_if(parse, form));
+}
+
 // Accepts a decimal number that spans the whole text, with or without a sign.
 template <class Number>
 CLI::Validator decimal_between(Number low, Number high, std::string_view kind) {

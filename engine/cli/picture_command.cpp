@@ -64,10 +64,8 @@ class PictureCommand final : public Command {
     options_.scene.max_error_pixels = kStillErrorPixels;
     options_.preset = kStillPreset;
     c.add_option("--out", out_, "Output file: .png")->required()->check(valid_if(png_name, "FILE"));
-    c.add_option_function<std::string>(
-         "--at", [this](const std::string& text) { at_ = *parse_place(text); },
-         "Camera position X,Z in metres of the world; default: the centre")
-        ->check(valid_if(parse_place, "X,Z"));
+    add_parsed(c, "--at", at_, parse_place, "X,Z",
+               "Camera position X,Z in metres of the world; default: the centre");
     c.add_option("--height", height_m_, "Height above ground or water, in metres")
         ->capture_default_str()
         ->check(number_between(CameraPath::kMinHeightM, CameraPath::kMaxHeightM));

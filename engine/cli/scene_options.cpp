@@ -22,16 +22,10 @@ std::vector<std::string_view> view_names() {
 }
 
 void add_picture(CLI::App& c, app::SessionOptions& options) {
-  c.add_option_function<std::string>(
-       "--size", [&options](const std::string& text) { options.size = *parse_size(text); },
-       "Image size in pixels, WIDTHxHEIGHT")
-      ->check(valid_if(parse_size, "WxH"))
+  add_parsed(c, "--size", options.size, parse_size, "WxH", "Image size in pixels, WIDTHxHEIGHT")
       ->default_str("1280x720");
-  c.add_option_function<std::string>(
-       "--preset",
-       [&options](const std::string& text) { options.preset = *render::preset_from(text); },
-       "Quality preset: low, medium, high, ultra")
-      ->check(valid_if(render::preset_from, "low|medium|high|ultra"))
+  add_parsed(c, "--preset", options.preset, render::preset_from, "low|medium|high|ultra",
+             "Quality preset: low, medium, high, ultra")
       ->default_str(options.preset ? std::string(to_string(*options.preset)) : "chosen by GPU");
   c.add_option_function<std::string>(
        "--view", [&options](const std::string& text) { options.view = *render::view_from(text); },
@@ -70,13 +64,8 @@ void add_machine(CLI::App& c, app::SessionOptions& options) {
       ->check(bytes_between(scene::Scene::kMinBudgetBytes, scene::Scene::kMaxBudgetBytes))
       ->default_str("512M");
   c.add_option("--device", options.device_name, "Part of the Vulkan device's name");
-  c.add_option_function<std::string>(
-       "--render-path",
-       [&options](const std::string& text) {
-         options.render_path = *render::render_path_from(text);
-       },
-       "Culling on the cpu or the gpu; auto: chosen by GPU")
-      ->check(valid_if(render::render_path_from, "auto|cpu|gpu"))
+  add_parsed(c, "--render-path", options.render_path, render::render_path_from, "auto|cpu|gpu",
+             "Culling on the cpu or the gpu; auto: chosen by GPU")
       ->default_str("auto");
   c.add_flag("--validation", options.validation,
              "Enable Vulkan validation; any message fails the run");
