@@ -43,8 +43,7 @@ class AmplifyCommand final : public Command {
   core::Result<amplify::Report> make_shard(amplify::Job job, const amplify::Region& region,
                                            amplify::JobFormat format,
                                            const amplify::Options& options) const;
-  int print_report(const amplify::Report& report) const;
-  int print_figures(const AmplifyStats& figures, bool stopped) const;
+  int print_figures(const AmplifyStats& figures) const;
 
   std::string world_ = kDefaultWorld;
   std::optional<amplify::Region> region_;
@@ -72,10 +71,8 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
   CLI::App& c = *command_;
   c.add_option("--world", world_, "World definition: a TOML file or the name of a shipped one")
       ->capture_default_str();
-  auto* region = c.add_option_function<std::string>(
-      "--region", [this](const std::string& text) { region_ = *amplify::parse_region(text); },
-      "Blocks X0,Z0,X1,Z1, excluding X1 and Z1; default: the whole world");
-  region->check(valid_if(amplify::parse_region, "REGION"));
+  auto* region = add_parsed(c, "--region", region_, amplify::parse_region, "REGION",
+                            "Blocks X0,Z0,X1,Z1, excluding X1 and Z1; default: the whole world");
   c.add_option("--threads", threads_, "Threads; default: one per processor")
       ->transform(integer_between(1, amplify::kMaxThreads));
   c.add_option_function<std::vector<std::string>>(
@@ -91,10 +88,10 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
   auto* out =
       c.add_option("--out", out_, "Folder for one file per block; resumes an interrupted run");
   out->excludes("--sample");
-  auto* shard = c.add_option_function<std::string>(
-      "--shard", [this](const std::string& text) { shard_ = *amplify::parse_shard(text); },
+  auto* shard = add_parsed(
+      c, "--shard", shard_, amplify::parse_shard, "I/N",
       "Synthesise only shard I of N, of equal predicted cost, and write its ledger to --out");
-  shard->check(valid_if(amplify::parse_shard, "I/N"))->needs(out);
+  shard->needs(out);
   c.add_option("--format", format_,
                "File format in --out: glb or obj; none (with --shard): only the ledger")
       ->check(one_of({"glb", "obj", amplify::kNoFiles}))
@@ -129,7 +126,12 @@ int AmplifyCommand::run() {
   if (!samples_.empty()) return print_heights(*world);
   const auto report = amplify(*world, registry);
   if (!report) return fail_with(report.error());
-  return print_report(*report);
+  AmplifyStats figures;
+  figures.report = *report;
+  const bool with_files = !out_.empty() && format_ != amplify::kNoFiles;
+  if (with_files) figures.files = {written_, skipped_};
+  if (shard_) figures.part = amplify::text_of(*shard_);
+  return print_figures(figures);
 }
 
 int AmplifyCommand::print_heights(const world::World& world) const {
@@ -192,25 +194,17 @@ core::Result<amplify::Report> AmplifyCommand::make_shard(amplify::Job job,
   return amplify::amplify_shard(job, *shard_, out_, options);
 }
 
-int AmplifyCommand::print_report(const amplify::Report& report) const {
-  AmplifyStats figures{report.totals, report.complete, {}, {}, {}, 0, 0, 0};
-  figures.times = {report.seconds, report.cpu_seconds, report.threads};
-  const bool with_files = !out_.empty() && format_ != amplify::kNoFiles;
-  if (with_files) figures.files = {written_, skipped_};
-  if (shard_) figures.part = amplify::text_of(*shard_);
-  return print_figures(figures, report.stopped);
-}
-
-int AmplifyCommand::print_figures(const AmplifyStats& figures, bool stopped) const {
+int AmplifyCommand::print_figures(const AmplifyStats& figures) const {
   const int printed = print(json_ ? json_of(figures) : text_of(figures));
-  const amplify::Totals& totals = figures.totals;
+  const amplify::Totals& totals = figures.report.totals;
   if (totals.failed > 0) {
     core::log_error(fmt::format("{} meshes failed{}; first error: {}", totals.failed,
                                 figures.files ? " (no files for their blocks)" : "",
                                 totals.first_failure));
   }
-  if (stopped) core::log_error(fmt::format("interrupted after {} blocks", totals.blocks));
-  return figures.complete ? printed : kFailed;
+  if (figures.report.stopped)
+    core::log_error(fmt::format("interrupted after {} blocks", totals.blocks));
+  return figures.report.complete ? printed : kFailed;
 }
 
 // Runs as one rank of a cluster.
@@ -253,12 +247,12 @@ int AmplifyCommand::run_rank() {
   }
   peers.finish();
   if (peers.rank() != 0) return job->report.complete ? kOk : kFailed;
-  AmplifyStats figures{job->report.totals, job->report.complete, {}, {}, {}, 0, 0, 0};
-  figures.times = {job->report.seconds, job->report.cpu_seconds, job->report.threads};
+  AmplifyStats figures;
+  figures.report = job->report;
   if (format) figures.files = {job->written, job->skipped};
   figures.ranks = peers.count();
   figures.messages = job->messages;
-  return print_figures(figures, false);
+  return print_figures(figures);
 }
 
 std::unique_ptr<Command> make_amplify_command(CLI::App& cli) {

@@ -7,17 +7,9 @@
 #include "engine/telemetry/units.hpp"
 
 namespace psygen::cli {
-namespace {
-
-double triangles_per_core_second(const AmplifyStats& figures) {
-  const double cpu_s = figures.times ? figures.times->cpu_seconds : 0;
-  return cpu_s > 0 ? static_cast<double>(figures.totals.triangles) / cpu_s : 0;
-}
-
-}  // namespace
-
 std::string text_of(const AmplifyStats& figures) {
-  const amplify::Totals& t = figures.totals;
+  const amplify::Report& r = figures.report;
+  const amplify::Totals& t = r.totals;
   std::string text;
   const auto row = [&text](std::string_view name, const std::string& value) {
     text += fmt::format("{:<31} {}\n", name, value);
@@ -30,18 +22,17 @@ std::string text_of(const AmplifyStats& figures) {
                                telemetry::count_text(static_cast<double>(t.triangles))));
   row("bytes",
       fmt::format("{}  ({})", t.bytes, telemetry::size_text(static_cast<double>(t.bytes))));
-  if (figures.times) {
-    row("seconds", fmt::format("{:.3f}", figures.times->seconds));
-    row("cpu_seconds",
-        fmt::format("{:.3f}  (threads: {})", figures.times->cpu_seconds, figures.times->threads));
+  if (r.threads > 0) {
+    const double rate = r.triangles_per_second_per_core();
+    row("seconds", fmt::format("{:.3f}", r.seconds));
+    row("cpu_seconds", fmt::format("{:.3f}  (threads: {})", r.cpu_seconds, r.threads));
     row("triangles_per_second_per_core",
-        fmt::format("{:.0f}  ({})", triangles_per_core_second(figures),
-                    telemetry::count_text(triangles_per_core_second(figures))));
+        fmt::format("{:.0f}  ({})", rate, telemetry::count_text(rate)));
   }
   if (figures.ranks > 0)
     row("ranks", fmt::format("{}  (messages: {})", figures.ranks, figures.messages));
-  row("hash", figures.complete ? fmt::format("{:016x}", t.hash.value())
-                               : std::string("– (the region is incomplete)"));
+  row("hash", r.complete ? fmt::format("{:016x}", t.hash.value())
+                         : std::string("– (the region is incomplete)"));
   if (figures.files)
     row("files",
         fmt::format("{} written, {} existed", figures.files->written, figures.files->skipped));
@@ -49,7 +40,8 @@ std::string text_of(const AmplifyStats& figures) {
 }
 
 std::string json_of(const AmplifyStats& figures) {
-  const amplify::Totals& t = figures.totals;
+  const amplify::Report& r = figures.report;
+  const amplify::Totals& t = r.totals;
   nlohmann::ordered_json json;
   if (!figures.part.empty()) json["part"] = figures.part;
   if (figures.parts > 0) json["parts"] = figures.parts;
@@ -57,20 +49,20 @@ std::string json_of(const AmplifyStats& figures) {
   json["models"] = t.models;
   json["triangles"] = t.triangles;
   json["bytes"] = t.bytes;
-  if (figures.times) {
-    json["seconds"] = figures.times->seconds;
-    json["cpu_seconds"] = figures.times->cpu_seconds;
-    json["threads"] = figures.times->threads;
-    json["triangles_per_second_per_core"] = triangles_per_core_second(figures);
+  if (r.threads > 0) {
+    json["seconds"] = r.seconds;
+    json["cpu_seconds"] = r.cpu_seconds;
+    json["threads"] = r.threads;
+    json["triangles_per_second_per_core"] = r.triangles_per_second_per_core();
   }
   if (figures.ranks > 0) {
     json["ranks"] = figures.ranks;
     json["messages"] = figures.messages;
   }
-  json["complete"] = figures.complete;
+  json["complete"] = r.complete;
   json["failed"] = t.failed;
   json["hash"] = nullptr;
-  if (figures.complete) json["hash"] = fmt::format("{:016x}", t.hash.value());
+  if (r.complete) json["hash"] = fmt::format("{:016x}", t.hash.value());
   if (figures.files) {
     json["files_written"] = figures.files->written;
     json["files_skipped"] = figures.files->skipped;

@@ -11,13 +11,7 @@ namespace psygen::cli {
 
 // The results to print. Empty members are omitted.
 struct AmplifyStats {
-  amplify::Totals totals;
-  bool complete = false;  // otherwise there is no hash
-  struct Times {
-    double seconds = 0, cpu_seconds = 0;
-    unsigned threads = 0;
-  };
-  std::optional<Times> times;
+  amplify::Report report;  // without a hash unless complete; without times if it has no threads
   struct Files {
     std::uint64_t written = 0, skipped = 0;
   };

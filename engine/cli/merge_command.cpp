@@ -24,8 +24,8 @@ class MergeCommand final : public Command {
     const auto totals = amplify::merge(*ledgers);
     if (!totals) return fail_with(totals.error());
     AmplifyStats figures;
-    figures.totals = *totals;
-    figures.complete = true;
+    figures.report.totals = *totals;
+    figures.report.complete = true;
     figures.parts = ledgers->size();
     return print(json_ ? json_of(figures) : text_of(figures));
   }
