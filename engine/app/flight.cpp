@@ -26,8 +26,6 @@
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/statistics.hpp"
-#include "engine/telemetry/frame_log.hpp"
-#include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "engine/world/files/path_file.hpp"
 #include "engine/world/world.hpp"
@@ -164,7 +162,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   telemetry::FrameRecord& record = record_;
   record = scene.record();
   const auto saved = session_->take_saved();  // by plugins
-  files_.insert(files_.end(), saved.begin(), saved.end());
+  report_.files.insert(report_.files.end(), saved.begin(), saved.end());
   if (!saved.empty() || saves_picture()) record.apart = telemetry::Apart::kPicture;
   record.has_picture = saves_picture();
   record.index = frames_;
@@ -267,19 +265,16 @@ void Flight::log_frame() {
 // Ends the flight and writes its measurements, also if it ended early.
 FlightReport Flight::land(bool whole) {
   recorded_ = false;
-  FlightReport report;
   const auto written =
       core::catch_out_of_memory("the outputs of the flight", [&]() -> core::Result<void> {
-        report.summary = telemetry::summarise(*log_, run_facts(whole), options_.warmup_seconds);
-        write_outputs(report.summary);
+        report_.summary = telemetry::summarise(*log_, run_facts(whole), options_.warmup_seconds);
+        write_outputs(report_.summary);
         return {};
       });
-  if (!written) failures_.push_back(written.error());
+  if (!written) report_.failures.push_back(written.error());
   session_->scene().end_trace();  // the flight is over
-  report.files = files_;
-  report.failures = failures_;
-  report.validation_messages = session_->renderer().validation_messages();
-  return report;
+  report_.validation_messages = session_->renderer().validation_messages();
+  return report_;
 }
 
 core::Result<FlightReport> Flight::run() {
@@ -294,7 +289,7 @@ core::Result<FlightReport> Flight::run() {
   const auto flown = core::catch_out_of_memory("the flight", [this] { return loop(); });
   FlightReport report = land(flown.has_value());
   if (!flown) {
-    for (const core::Error& failure : failures_)
+    for (const core::Error& failure : report.failures)
       core::log_error(failure.message);
     return tl::unexpected(flown.error());
   }

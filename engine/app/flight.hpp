@@ -89,8 +89,7 @@ class Flight {
   std::optional<render::Preset> wanted_preset_;  // set after the next frame
   std::uint64_t images_hash_ = 0;                // of the numbered images, in order
   std::uint64_t images_ = 0;
-  std::vector<std::filesystem::path> files_;
-  std::vector<core::Error> failures_;
+  FlightReport report_;
   bool pictures_failed_ = false;
 };
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "engine/image/image_io.hpp"
-#include "engine/render/types.hpp"
 #include "engine/world/files/resource_loader.hpp"
 #include "engine/world/world.hpp"
 

@@ -9,13 +9,11 @@
 
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/preset.hpp"
-#include "engine/render/types.hpp"
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/settings.hpp"
 #include "engine/scene/view/debug_colours.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
-#include "engine/telemetry/frame_log.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::app {

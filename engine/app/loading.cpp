@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <span>
-#include <string>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/hash.hpp"

@@ -146,9 +146,9 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
 
 void Flight::note_written(const std::filesystem::path& file, const core::Result<void>& result) {
   if (result) {
-    files_.push_back(file);
+    report_.files.push_back(file);
   } else {
-    failures_.push_back(result.error());
+    report_.failures.push_back(result.error());
   }
 }
 

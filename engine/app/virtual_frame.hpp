@@ -24,8 +24,13 @@ inline bool has_virtual_frames(const SessionOptions& options) {
 
 // Milliseconds of a frame of this size with these triangles and draws. The landscape has a render
 // scale of `resolution`.
-double virtual_frame_ms(std::uint64_t triangles, std::uint32_t draws, core::Extent size,
-                        double resolution = 1);
+inline double virtual_frame_ms(std::uint64_t triangles, std::uint32_t draws, core::Extent size,
+                               double resolution = 1) {
+  const auto width = static_cast<double>(size.width), height = static_cast<double>(size.height);
+  return kVirtualFrameMs + kVirtualTriangleMs * static_cast<double>(triangles) +
+         kVirtualDrawMs * static_cast<double>(draws) +
+         kVirtualPixelMs * width * height * resolution * resolution;
+}
 
 inline constexpr double kGapMs = 5000, kGapRatio = 20, kSuspendedSeconds = 0.05;
 
