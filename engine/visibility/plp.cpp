@@ -260,13 +260,6 @@ class Search {
   std::size_t keys_ = 0;  // the largest key plus one
 };
 
-std::uint32_t clamp_to_axis(std::int32_t corner, std::uint32_t length, std::int32_t block) {
-  // Differences wrap, so grids across the seam of the block indices work.
-  const auto offset = static_cast<std::int32_t>(static_cast<std::uint32_t>(block) -
-                                                static_cast<std::uint32_t>(corner));
-  return offset < 0 ? 0 : std::min(static_cast<std::uint32_t>(offset), length - 1);
-}
-
 }  // namespace
 
 void run_plp(const PlpInput& input, PlpResult& result) {
@@ -284,12 +277,6 @@ void run_plp(const PlpInput& input, PlpResult& result) {
   result.in_view.clear();
   for (auto* cells : {&result.visible, &result.prefetch, &result.front})
     cells->clear();
-}
-
-GridCell nearest_cell(core::BlockCoord corner, std::uint32_t width, std::uint32_t depth,
-                      core::BlockCoord block) {
-  PSYGEN_ASSERT(width > 0 && depth > 0, "the grid must not be empty");
-  return {clamp_to_axis(corner.x, width, block.x), clamp_to_axis(corner.z, depth, block.z)};
 }
 
 }  // namespace psygen::visibility

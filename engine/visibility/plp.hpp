@@ -78,14 +78,4 @@ struct PlpResult {
 // Replaces the contents of `result`. An empty grid gives empty lists.
 void run_plp(const PlpInput& input, PlpResult& result);
 
-// A cell by its steps from cell (0, 0).
-struct GridCell {
-  std::uint32_t x = 0, z = 0;
-};
-
-// The cell of `block` in a grid whose cell (0, 0) is the block `corner`, or the nearest cell if the
-// block lies outside. Requires width, depth >= 1. O(1).
-GridCell nearest_cell(core::BlockCoord corner, std::uint32_t width, std::uint32_t depth,
-                      core::BlockCoord block);
-
 }  // namespace psygen::visibility
