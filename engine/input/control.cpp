@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "engine/core/nearest_word.hpp"
 #include "engine/core/utf8.hpp"

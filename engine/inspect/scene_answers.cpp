@@ -16,7 +16,6 @@
 #include "engine/scene/frame/quality.hpp"
 #include "engine/scene/objects/components.hpp"
 #include "engine/scene/objects/effects.hpp"
-#include "engine/scene/scene.hpp"
 #include "engine/scene/settings.hpp"
 #include "engine/scene/statistics.hpp"
 #include "engine/synthesis/mesh_supply.hpp"

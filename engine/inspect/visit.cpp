@@ -12,8 +12,6 @@
 #include "engine/core/log.hpp"
 #include "engine/inspect/inspect.hpp"
 #include "engine/render/renderer.hpp"
-#include "engine/scene/facts/world_facts.hpp"
-#include "engine/scene/scene.hpp"
 #include "engine/scene/settings.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
