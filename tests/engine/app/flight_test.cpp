@@ -315,14 +315,27 @@ TEST(Flight, APathThatNeverComesNearTheWorldIsRejected) {
       << flight.error().message;
 }
 
-TEST(Flight, AStopFlagEndsTheFlightWhichStillWritesItsOutputs) {
+TEST(Flight, AStopFlagEndsTheStart) {
   std::atomic<bool> stop{true};
+  FlightOptions options = short_flight();
+  options.session.stop = &stop;
+  const auto flight = Flight::create(options);
+  ASSERT_FALSE(flight);
+  EXPECT_EQ(flight.error().code, core::ErrorCode::kInterrupted);
+}
+
+TEST(Flight, AStopFlagEndsTheFlightWhichStillWritesItsOutputs) {
+  std::atomic<bool> stop{false};
   const TemporaryFolder folder;
   FlightOptions options = short_flight();
   options.out_folder = folder / "out";
   options.session.stop = &stop;
+  options.camera = [&stop](Session& session, double) {
+    stop = true;
+    return session.home();
+  };
   const FlightReport report = fly(options);
-  EXPECT_EQ(report.summary.run.frames, 0u);
+  EXPECT_EQ(report.summary.run.frames, 1u);
   EXPECT_TRUE(std::filesystem::exists(options.out_folder / "summary.json"));
 }
 
