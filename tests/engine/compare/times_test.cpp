@@ -150,7 +150,7 @@ TEST(TimesOfFolders, RefuseCostsOfTheVirtualClock) {
 }
 
 TEST(TimesOfFolders, ConvertedRunsHaveTheSameTimes) {
-  for (const Viewer viewer : {Viewer::kMangoHud, Viewer::kCapFrameX}) {
+  for (const std::string_view viewer : kViewers) {
     const auto text = viewer_csv(viewer, kFrames, kSummary, "run");
     ASSERT_TRUE(text) << text.error().message;
     const auto capture = captures::parse(*text, "run.csv");
