@@ -86,6 +86,19 @@ std::vector<MeshData> split(const MeshData& mesh, std::uint32_t max_vertices) {
   return parts;
 }
 
+std::vector<glm::vec3> normal_sums(const MeshData& mesh) {
+  std::vector<glm::vec3> sums(mesh.positions.size(), glm::vec3(0.0F));
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const std::uint32_t* corner = &mesh.indices[i];
+    const glm::vec3 a = mesh.positions[corner[0]];
+    const glm::vec3 across =
+        glm::cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a);
+    for (int k = 0; k < 3; ++k)
+      sums[corner[k]] += across;
+  }
+  return sums;
+}
+
 void add_ellipsoid(MeshData& mesh, const glm::vec3& middle, const glm::vec3& half,
                    const glm::vec3& above, const glm::vec3& below) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());

@@ -38,6 +38,10 @@ inline constexpr std::uint32_t kMaxMeshVertices = 65535;
 // must have passed check(). Triangles keep their order. O(n).
 std::vector<MeshData> split(const MeshData& mesh, std::uint32_t max_vertices = kMaxMeshVertices);
 
+// Sums for each vertex the normals of its triangles, weighted by area and not normalised; 0 for
+// vertices that no triangle uses. All indices must be in range. O(n).
+std::vector<glm::vec3> normal_sums(const MeshData& mesh);
+
 // Adds an ellipsoid of kEllipsoidTriangles triangles with these half axes in metres (> 0). `above`
 // and `below` colour its upper side and its underside. Adds vertices with normals and colours.
 inline constexpr std::size_t kEllipsoidTriangles = 80;

@@ -2,18 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #ifdef PSYGEN_DRACO
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wextra"
-#include <draco/compression/decode.h>
-#include <draco/compression/point_cloud/point_cloud_decoder.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <draco/core/varint_decoding.h>
 #include <draco/metadata/metadata_decoder.h>
-#pragma GCC diagnostic pop
 #endif
 
 namespace psygen::gltf {
@@ -31,8 +27,8 @@ core::Result<Elements> elements_of(const Unpacked& unpacked, const std::string& 
 namespace {
 
 // Reads the counts at the beginning of the bytes, for which the decoder allocates memory (Draco
-// bitstream 2.2, sections 3 to 6).
-core::Result<void> check_counts(Source::View bytes, const Limits& limits, const std::string& name) {
+// bitstream 2.2, sections 3 to 6). Returns whether the triangles are compressed by EdgeBreaker.
+core::Result<bool> check_counts(Source::View bytes, const Limits& limits, const std::string& name) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   draco::DracoHeader header{};
@@ -49,6 +45,8 @@ core::Result<void> check_counts(Source::View bytes, const Limits& limits, const 
       !draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &ignored))
     return wrong(name + " is damaged or cut short");
   const bool edges = header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING;
+  if (!edges && header.encoder_method != draco::MESH_SEQUENTIAL_ENCODING)
+    return wrong(name + " is damaged or cut short");
   std::uint8_t traversal = 0;
   std::uint32_t first = 0, second = 0;
   if ((edges && !buffer.Decode(&traversal)) || !draco::DecodeVarint(&first, &buffer) ||
@@ -60,13 +58,52 @@ core::Result<void> check_counts(Source::View bytes, const Limits& limits, const 
                       fmt::format("{} has {} vertices and {} triangles; at most {} and {} are "
                                   "allowed",
                                   name, vertices, faces, limits.vertices, limits.indices / 3));
-  return {};
+  return edges;
 }
+
+constexpr int kMaxWidth = 4;  // components of an attribute
+
+// A decoder that checks the attributes before it allocates memory for their values.
+template <class Decoder>
+class Bounded final : public Decoder {
+ public:
+  // Decodes into `mesh`, whose attributes may have `max_bytes` bytes together.
+  core::Result<void> read(Source::View bytes, std::uint64_t max_bytes, const std::string& name,
+                          draco::Mesh& mesh) {
+    max_bytes_ = max_bytes;
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const bool ok = Decoder::Decode(draco::DecoderOptions(), &buffer, &mesh).ok();
+    if (width_ > kMaxWidth)
+      return wrong(fmt::format("{} has an attribute of {} components; at most {} are allowed", name,
+                               width_, kMaxWidth));
+    if (bytes_ > max_bytes)
+      return core::fail(core::ErrorCode::kOverBudget,
+                        fmt::format("{} has attributes of {} bytes; at most {} are allowed", name,
+                                    bytes_, max_bytes));
+    return ok ? core::Result<void>{} : wrong(name + " is damaged or cut short");
+  }
+
+ protected:
+  bool DecodeAllAttributes() override {
+    const draco::PointCloud& cloud = *this->point_cloud();
+    for (int i = 0; i < cloud.num_attributes(); ++i) {
+      const draco::PointAttribute& attribute = *cloud.attribute(i);
+      width_ = std::max(width_, int{attribute.num_components()});
+      bytes_ += static_cast<std::uint64_t>(attribute.byte_stride()) * cloud.num_points();
+    }
+    return width_ <= kMaxWidth && bytes_ <= max_bytes_ && Decoder::DecodeAllAttributes();
+  }
+
+ private:
+  std::uint64_t max_bytes_ = 0, bytes_ = 0;
+  int width_ = 0;  // of the widest attribute
+};
 
 template <class T>
 void append(const draco::PointAttribute& from, draco::PointIndex point, int width,
             std::vector<std::uint8_t>& out) {
-  T values[4] = {};
+  T values[kMaxWidth] = {};
   from.ConvertValue<T>(from.mapped_index(point), static_cast<std::int8_t>(width), values);
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(values);
   out.insert(out.end(), bytes, bytes + sizeof(T) * static_cast<std::size_t>(width));
@@ -75,7 +112,7 @@ void append(const draco::PointAttribute& from, draco::PointIndex point, int widt
 // Copies an attribute of all points with the types of its accessor.
 core::Result<Unpacked::Attribute> copy(const draco::Mesh& mesh, const draco::PointAttribute& from,
                                        const AccessorJson& accessor, const std::string& what) {
-  if (accessor.width < 1 || accessor.width > 4 || from.num_components() > 4)
+  if (accessor.width < 1 || accessor.width > kMaxWidth || from.num_components() > kMaxWidth)
     return wrong(what + " has an unknown type");
   Unpacked::Attribute out;
   out.elements.component = accessor.component;
@@ -114,12 +151,14 @@ core::Result<Unpacked> unpack_draco(Reading& reading, const PrimitiveJson& primi
   const std::string what = "KHR_draco_mesh_compression of " + name;
   const auto bytes = reading.source.of_view(primitive.draco->view, what);
   if (!bytes) return tl::unexpected(bytes.error());
-  if (auto ok = check_counts(*bytes, reading.limits, what); !ok) return tl::unexpected(ok.error());
-  draco::DecoderBuffer buffer;
-  buffer.Init(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-  const auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok()) return wrong(what + " is damaged or cut short");
-  const draco::Mesh& mesh = *decoded.value();
+  const auto edges = check_counts(*bytes, reading.limits, what);
+  if (!edges) return tl::unexpected(edges.error());
+  draco::Mesh mesh;
+  const std::uint64_t max_bytes = reading.limits.bytes;
+  const auto ok = *edges
+                      ? Bounded<draco::MeshEdgebreakerDecoder>().read(*bytes, max_bytes, what, mesh)
+                      : Bounded<draco::MeshSequentialDecoder>().read(*bytes, max_bytes, what, mesh);
+  if (!ok) return tl::unexpected(ok.error());
   if (mesh.num_points() > reading.limits.vertices)
     return core::fail(core::ErrorCode::kOverBudget,
                       fmt::format("{} has {} vertices; at most {} are allowed", what,

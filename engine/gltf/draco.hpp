@@ -26,8 +26,8 @@ struct Unpacked {
 };
 
 // The triangles of a primitive and those of its attributes that psygen reads. Fails with kParse for
-// damaged bytes, kOverBudget for more vertices or triangles than the limits, and kInvalidArgument
-// in a build without libdraco. `name` is that of the primitive.
+// damaged bytes, kOverBudget for more vertices, triangles or bytes of attributes than the limits,
+// and kInvalidArgument in a build without libdraco. `name` is that of the primitive.
 core::Result<Unpacked> unpack_draco(Reading& reading, const PrimitiveJson& primitive,
                                     const std::string& name);
 core::Result<Elements> elements_of(const Unpacked& unpacked, const std::string& attribute);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
+#include <span>
 
 #include "engine/gltf/draco.hpp"
 #include "engine/gltf/reading.hpp"
@@ -97,8 +98,9 @@ core::Result<std::vector<std::uint32_t>> read_corners(const Part& part, std::siz
                             : accessor >= 0 ? elements.count
                                             : vertices;
   const std::size_t each = part.described.mode == kTriangles ? 1 : 3;
-  if (auto ok = add_within_limit(reading.indices, each * count, reading.limits.indices, "indices");
-      !ok)
+  const std::uint64_t most = reading.limits.indices;
+  const std::uint64_t wanted = count > most ? count : each * count;  // without overflow
+  if (auto ok = add_within_limit(reading.indices, wanted, most, "indices"); !ok)
     return tl::unexpected(ok.error());
   if (part.unpacked) return part.unpacked->indices;
   std::vector<std::uint32_t> corners(count);
@@ -125,17 +127,20 @@ std::vector<std::uint32_t> triangles_of(int mode, std::vector<std::uint32_t> cor
 // The mesh that glTF requires if there are no normals: triangles that share no vertices.
 MeshData flat(const MeshData& mesh) {
   MeshData out;
-  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-    const std::uint32_t vertex = mesh.indices[i], *triangle = &mesh.indices[i / 3 * 3];
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto triangle = std::span(mesh.indices).subspan(i, 3);
     const glm::vec3 a = mesh.positions[triangle[0]];
     const glm::vec3 across =
         glm::cross(mesh.positions[triangle[1]] - a, mesh.positions[triangle[2]] - a);
     const float length = glm::length(across);
-    out.positions.push_back(mesh.positions[vertex]);
-    out.normals.push_back(length > 0 ? across / length : glm::vec3(0, 1, 0));
-    if (!mesh.uvs.empty()) out.uvs.push_back(mesh.uvs[vertex]);
-    if (!mesh.colours.empty()) out.colours.push_back(mesh.colours[vertex]);
-    out.indices.push_back(static_cast<std::uint32_t>(i));
+    const glm::vec3 normal = length > 0 ? across / length : glm::vec3(0, 1, 0);
+    for (const std::uint32_t vertex : triangle) {
+      out.indices.push_back(static_cast<std::uint32_t>(out.positions.size()));
+      out.positions.push_back(mesh.positions[vertex]);
+      out.normals.push_back(normal);
+      if (!mesh.uvs.empty()) out.uvs.push_back(mesh.uvs[vertex]);
+      if (!mesh.colours.empty()) out.colours.push_back(mesh.colours[vertex]);
+    }
   }
   return out;
 }
@@ -149,15 +154,7 @@ bool is_direction(const glm::vec3& normal) {
 // by area. Returns true if there were any.
 bool repair_normals(MeshData& mesh) {
   if (std::ranges::all_of(mesh.normals, is_direction)) return false;
-  std::vector<glm::vec3> sums(mesh.positions.size(), glm::vec3(0.0F));
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const std::uint32_t* triangle = &mesh.indices[i];
-    const glm::vec3 a = mesh.positions[triangle[0]];
-    const glm::vec3 across =
-        glm::cross(mesh.positions[triangle[1]] - a, mesh.positions[triangle[2]] - a);
-    for (int k = 0; k < 3; ++k)
-      sums[triangle[k]] += across;
-  }
+  const std::vector<glm::vec3> sums = core::normal_sums(mesh);
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
     if (!is_direction(mesh.normals[i]))
       mesh.normals[i] = is_direction(sums[i]) ? glm::normalize(sums[i]) : glm::vec3(0, 1, 0);

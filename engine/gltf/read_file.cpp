@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <exception>
 #include <iterator>
 #include <new>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/bytes.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/core/utf8.hpp"
@@ -26,12 +26,6 @@ std::string_view characters(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-std::uint32_t number_at(const Bytes& bytes, std::size_t at) {
-  std::uint32_t number = 0;
-  std::memcpy(&number, bytes.data() + at, sizeof number);
-  return number;
-}
-
 // The parts of a file: its JSON, and its first buffer if it is a .glb.
 struct Parts {
   std::string_view json;
@@ -43,31 +37,32 @@ core::Result<Parts> parts_of(const Bytes& bytes) {
   constexpr std::size_t kHeader = 12, kChunkHeader = 8;
   constexpr std::uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
   if (bytes.empty()) return wrong("the file is empty");
-  if (!characters(bytes).starts_with("glTF")) return Parts{characters(bytes), {}};
+  const std::string_view text = characters(bytes);
+  if (!text.starts_with("glTF")) return Parts{text, {}};
   if (bytes.size() < kHeader + kChunkHeader)
     return wrong("is not glTF that can be read: too short");
-  if (number_at(bytes, 4) != 2)
-    return wrong(
-        fmt::format("is a .glb of version {}; only version 2 is supported", number_at(bytes, 4)));
-  const std::size_t length = number_at(bytes, 8);
+  std::uint32_t magic = 0, version = 0, length = 0;
+  core::ByteReader(text).read(magic, version, length);
+  if (version != 2)
+    return wrong(fmt::format("is a .glb of version {}; only version 2 is supported", version));
   if (length > bytes.size())
     return wrong(
         fmt::format("the file is cut short: it has {} of its {} bytes", bytes.size(), length));
   Parts parts;
-  for (std::size_t at = kHeader, chunk = 0; at + kChunkHeader <= length; ++chunk) {
-    const std::size_t size = number_at(bytes, at);
-    const std::uint32_t type = number_at(bytes, at + 4);
-    at += kChunkHeader;
-    if (size > length - at)
+  core::ByteReader chunks(text.substr(0, length).substr(std::min<std::size_t>(length, kHeader)));
+  for (std::size_t chunk = 0; chunks.left() >= kChunkHeader; ++chunk) {
+    std::uint32_t size = 0, type = 0;
+    chunks.read(size, type);
+    if (size > chunks.left())
       return wrong(
           fmt::format("is not glTF that can be read: its part {} has {} bytes, but {} are "
                       "left",
-                      chunk, size, length - at));
-    const auto content = std::span(bytes).subspan(at, size);
+                      chunk, size, chunks.left()));
+    const std::string_view content = chunks.get_text(size);
     if (chunk == 0 && type != kJson) return wrong("is not glTF that can be read: it has no JSON");
-    if (chunk == 0) parts.json = characters(content);
-    if (chunk == 1 && type == kBinary) parts.binary = content;
-    at += size;
+    if (chunk == 0) parts.json = content;
+    if (chunk == 1 && type == kBinary)
+      parts.binary = {reinterpret_cast<const std::uint8_t*>(content.data()), content.size()};
   }
   return parts;
 }

@@ -53,19 +53,15 @@ struct Read {
 core::Result<Read<Shape>> read_shape(const world::ModelFile& wanted, image::ImageCache& shared,
                                      std::vector<std::string>& notes) {
   if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
-  try {
-    auto model = gltf::read_file(wanted.path, gltf_limits(), &shared);
-    if (!model) return tl::unexpected(model.error());
-    auto shape = shape_of(*model, *wanted.model);
-    if (!shape)
-      return core::fail(shape.error().code,
-                        fmt::format("{}: {}", wanted.path.string(), shape.error().message));
-    std::ranges::move(model->notes, std::back_inserter(notes));
-    std::ranges::move(model->missing, std::back_inserter(model->files));
-    return Read<Shape>{*std::move(shape), std::move(model->files)};
-  } catch (const std::bad_alloc&) {
-    return core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory(wanted.path.string()));
-  }
+  auto model = gltf::read_file(wanted.path, gltf_limits(), &shared);
+  if (!model) return tl::unexpected(model.error());
+  auto shape = shape_of(*model, *wanted.model);
+  if (!shape)
+    return core::fail(shape.error().code,
+                      fmt::format("{}: {}", wanted.path.string(), shape.error().message));
+  std::ranges::move(model->notes, std::back_inserter(notes));
+  std::ranges::move(model->missing, std::back_inserter(model->files));
+  return Read<Shape>{*std::move(shape), std::move(model->files)};
 }
 
 using PicturePtr = std::shared_ptr<const world::GreyPicture>;
@@ -125,7 +121,7 @@ std::optional<FileState> state_of(const fs::path& file) {
   return FileState{fs::absolute(file, error).string(), time.time_since_epoch().count(), bytes};
 }
 
-// The results of reading files that are still in use.
+// The results of reading files that are still in use. Makes each result in one thread.
 template <class Key, class Made>
 class InUse {
  public:
@@ -134,38 +130,51 @@ class InUse {
   template <class Make>
   core::Result<std::shared_ptr<const Made>> find_or(const std::optional<Key>& key,
                                                     const Make& make) {
-    if (auto known = key ? find(*key) : nullptr) return known;
+    if (!key) return make().map([](const Read<Made>& read) { return read.made; });
+    const std::shared_ptr<Entry> entry = entry_of(*key);
+    const std::lock_guard making(entry->making);
+    if (auto known = entry->made.lock(); known && entry->is_unchanged()) return known;
     auto read = make();
     if (!read) return tl::unexpected(read.error());
-    if (key) keep(*key, *read);
+    entry->keep(*read);
     return read->made;
   }
 
  private:
   struct Entry {
+    std::mutex making;  // guards the rest
     std::weak_ptr<const Made> made;
     std::vector<std::pair<fs::path, std::optional<FileState>>> named;
+
+    bool is_unchanged() const {
+      return std::ranges::all_of(
+          named, [](const auto& file) { return state_of(file.first) == file.second; });
+    }
+    void keep(const Read<Made>& read) {
+      made.reset();
+      named.clear();
+      for (const fs::path& file : read.named)
+        named.emplace_back(file, state_of(file));
+      made = read.made;
+    }
   };
 
-  std::shared_ptr<const Made> find(const Key& key) {
+  // Finds or adds the entry of a key. Drops entries that no thread has and whose result is gone.
+  std::shared_ptr<Entry> entry_of(const Key& key) {
     const std::lock_guard lock(mutex_);
-    const auto found = made_.find(key);
-    if (found == made_.end()) return nullptr;
-    const bool same = std::ranges::all_of(
-        found->second.named, [](const auto& file) { return state_of(file.first) == file.second; });
-    return same ? found->second.made.lock() : nullptr;
-  }
-  void keep(const Key& key, const Read<Made>& read) {
-    Entry entry{read.made, {}};
-    for (const fs::path& file : read.named)
-      entry.named.emplace_back(file, state_of(file));
-    const std::lock_guard lock(mutex_);
-    std::erase_if(made_, [](const auto& known) { return known.second.made.expired(); });
-    made_[key] = std::move(entry);
+    std::erase_if(entries_, [&key](const auto& known) {
+      const auto& [at, entry] = known;
+      if (at == key || entry.use_count() > 1) return false;
+      const std::unique_lock making(entry->making, std::try_to_lock);
+      return making && entry->made.expired();
+    });
+    std::shared_ptr<Entry>& entry = entries_[key];
+    if (!entry) entry = std::make_shared<Entry>();
+    return entry;
   }
 
-  std::mutex mutex_;
-  std::map<Key, Entry> made_;
+  std::mutex mutex_;  // guards entries_, but not their content
+  std::map<Key, std::shared_ptr<Entry>> entries_;
 };
 
 // The memory of the shapes of one world, each counted once.
@@ -194,9 +203,11 @@ class Files final : public world::ResourceLoader {
     world::ModelTypes types;
     std::vector<Loaded> loaded = load(wanted);
     ShapeSum sum;
+    image::ImageCache shared;
     for (std::size_t i = 0; i < loaded.size(); ++i) {
       auto& [shape, notes] = loaded[i];
-      if (shape && !sum.add(*shape)) shape = too_large(wanted[i].path);
+      // load() may stop before this model although only later ones exceed the sum.
+      if (!read_one(wanted[i], shared, sum, loaded[i]) && shape) shape = too_large(wanted[i].path);
       for (const std::string& note : notes)
         core::log_warning(note);
       types.push_back(shape.map([&](const ShapePtr& made) {
@@ -245,8 +256,7 @@ class Files final : public world::ResourceLoader {
     const auto work = [&] {
       const core::CancelScope scope(cancelled);
       for (std::size_t i = next++; i < failed; i = next++) {
-        loaded[i].shape = shape_from(wanted[i], shared, loaded[i].notes);
-        if (loaded[i].shape && sum.add(*loaded[i].shape)) continue;
+        if (read_one(wanted[i], shared, sum, loaded[i])) continue;
         std::size_t before = failed;
         while (i < before && !failed.compare_exchange_weak(before, i)) {
         }
@@ -255,6 +265,20 @@ class Files final : public world::ResourceLoader {
     const std::size_t most = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxReaders);
     core::run_in_threads(std::min(most, wanted.size()), work);
     return loaded;
+  }
+
+  // Reads a model unless it is read already, and counts its shape. Returns false if it fails or
+  // the sum is too large. Throws nothing.
+  bool read_one(const world::ModelFile& wanted, image::ImageCache& shared, ShapeSum& sum,
+                Loaded& out) const {
+    try {
+      if (out.shape && !*out.shape) out.shape = shape_from(wanted, shared, out.notes);
+      return out.shape && sum.add(*out.shape);
+    } catch (const std::bad_alloc&) {
+      out.shape =
+          core::fail(core::ErrorCode::kOutOfMemory, core::out_of_memory(wanted.path.string()));
+      return false;
+    }
   }
 
   core::Result<ShapePtr> shape_from(const world::ModelFile& wanted, image::ImageCache& shared,

@@ -252,9 +252,9 @@ Simplifier::Attributes Simplifier::step(std::uint32_t from, std::uint32_t to) co
 Simplifier::Successor Simplifier::successor(std::uint32_t vertex, std::uint32_t to) const {
   const glm::vec3 way = position(to) - vertices_[vertex].position;
   Successor best{0, 1e30F};
-  for (std::uint32_t i = first_[to]; i < first_[to + 1]; ++i) {
-    const float wrong_m2 = looks_[vertex].at(way, step(vertex, members_[i]));
-    if (wrong_m2 < best.wrong_m2) best = {members_[i], wrong_m2};
+  for (const std::uint32_t member : members(to)) {
+    const float wrong_m2 = looks_[vertex].at(way, step(vertex, member));
+    if (wrong_m2 < best.wrong_m2) best = {member, wrong_m2};
   }
   // The area, if the difference is that large, or what the range of the looks allows.
   const Looks &a = looks_[vertex], &b = looks_[best.vertex];
@@ -273,8 +273,8 @@ Simplifier::Collapse Simplifier::cost(std::uint32_t from, std::uint32_t to) cons
   const float square = std::max({a.surface.at(position(to) - position(from)) / a.weight_m2,
                                  b.surface.value / b.weight_m2, 0.0F});
   float wrong_m2 = 0;
-  for (std::uint32_t i = first_[from]; i < first_[from + 1]; ++i)
-    wrong_m2 += successor(members_[i], to).wrong_m2;
+  for (const std::uint32_t member : members(from))
+    wrong_m2 += successor(member, to).wrong_m2;
   const float cost_m = std::sqrt(square) + kLooks * std::sqrt(wrong_m2);
   return {std::isfinite(cost_m) ? cost_m : 1e30F, std::sqrt(square), to, true};
 }
@@ -324,9 +324,10 @@ Simplifier::Collapse Simplifier::best(std::uint32_t from) {
 void Simplifier::collapse(std::uint32_t from, const Collapse& how) {
   const glm::vec3 way = position(how.to) - position(from);
   std::array<std::uint32_t, kMaxMembers> successors{};
-  for (std::uint32_t i = first_[from]; i < first_[from + 1]; ++i) {
-    const std::uint32_t vertex = members_[i], to = successor(vertex, how.to).vertex;
-    successors[i - first_[from]] = to;
+  const std::span<const std::uint32_t> own = members(from);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const std::uint32_t vertex = own[i], to = successor(vertex, how.to).vertex;
+    successors[i] = to;
     looks_[vertex].move(way, step(vertex, to));
     looks_[to].add(looks_[vertex]);
   }
@@ -346,9 +347,8 @@ void Simplifier::collapse(std::uint32_t from, const Collapse& how) {
       if (place != from) {
         enqueue(place, how.cost_m);
       } else if (!vanishes) {
-        const auto* member =
-            std::find(&members_[first_[from]], &members_[first_[from + 1]], corners[k]);
-        corners[k] = successors[static_cast<std::size_t>(member - &members_[first_[from]])];
+        const auto member = std::ranges::find(own, corners[k]);
+        corners[k] = successors[static_cast<std::size_t>(member - own.begin())];
       }
     }
     if (vanishes) {
@@ -424,11 +424,10 @@ Simplifier::Match Simplifier::nearest(std::uint32_t triangle, const Goal& goal) 
 }
 
 std::uint32_t Simplifier::fitting(std::uint32_t vertex, const glm::vec3& direction) const {
-  const std::uint32_t place = place_of_[vertex];
   const auto fit = [&](std::uint32_t v) { return glm::dot(vertices_[v].normal, direction); };
-  return *std::max_element(&members_[first_[place]],
-                           &members_[first_[place]] + first_[place + 1] - first_[place],
-                           [&](std::uint32_t a, std::uint32_t b) { return fit(a) < fit(b); });
+  return *std::ranges::max_element(
+      members(place_of_[vertex]),
+      [&](std::uint32_t a, std::uint32_t b) { return fit(a) < fit(b); });
 }
 
 }  // namespace psygen::handmade

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <queue>
+#include <span>
 #include <vector>
 
 #include "engine/handmade/triangles.hpp"
@@ -111,6 +112,10 @@ class Simplifier {
   void enqueue(std::uint32_t place, float cost_m);
   std::uint32_t place_now(std::uint32_t triangle, int corner);
   void look_around(std::uint32_t place, const Goal& goal, Match& best);
+  // The vertices of a place.
+  std::span<const std::uint32_t> members(std::uint32_t place) const {
+    return std::span(members_).subspan(first_[place], first_[place + 1] - first_[place]);
+  }
   const glm::vec3& position(std::uint32_t place) const {
     return vertices_[members_[first_[place]]].position;
   }

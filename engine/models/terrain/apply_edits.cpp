@@ -86,12 +86,10 @@ double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
     dz = dx * edit.turn.y + dz * edit.turn.x;
     dx = x;
   }
-  double weight = weight_of(edit, dx, dz);
+  const double weight = weight_of(edit, dx, dz);
   const auto stamp = [&] {
-    const MapPoint point = height_in(*edit.map, 0.5 + 0.5 * dx / (edit.radius_m * edit.sides.x),
-                                     0.5 + 0.5 * dz / (edit.radius_m * edit.sides.y));
-    weight *= point.weight;
-    return point.height_m;
+    return height_in(*edit.map, 0.5 + 0.5 * dx / (edit.radius_m * edit.sides.x),
+                     0.5 + 0.5 * dz / (edit.radius_m * edit.sides.y));
   };
   switch (edit.change) {
     case GroundChange::kRaise:
@@ -99,12 +97,12 @@ double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
     case GroundChange::kFlatten:
       return height_m + weight * (edit.height_m - height_m);
     case GroundChange::kStampAdd: {
-      const double added_m = stamp();
-      return height_m + weight * added_m;
+      const MapPoint p = stamp();
+      return height_m + weight * p.weight * p.height_m;
     }
     case GroundChange::kStampSet: {
-      const double set_m = stamp();
-      return height_m + weight * (set_m - height_m);
+      const MapPoint p = stamp();
+      return height_m + weight * p.weight * (p.height_m - height_m);
     }
     case GroundChange::kRoad:
       break;

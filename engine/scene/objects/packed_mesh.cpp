@@ -20,20 +20,6 @@ core::Bounds box_of(const std::vector<glm::vec3>& positions) {
   return box;
 }
 
-std::vector<glm::vec3> normals_of(const core::MeshData& mesh) {
-  if (!mesh.normals.empty()) return mesh.normals;
-  std::vector<glm::vec3> normals(mesh.positions.size(), glm::vec3(0.0F));
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const std::uint32_t* corner = &mesh.indices[i];
-    const glm::vec3 a = mesh.positions[corner[0]];
-    const glm::vec3 across =
-        glm::cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a);
-    for (int k = 0; k < 3; ++k)
-      normals[corner[k]] += across;
-  }
-  return normals;
-}
-
 core::ModelVertex pack_vertex(const models::BoxPacker& packer, const glm::vec3& position,
                               const glm::vec3& normal, const glm::vec3& colour) {
   core::ModelVertex vertex{};
@@ -104,7 +90,8 @@ core::Result<PackedMesh> pack(const core::MeshData& mesh) {
   PackedMesh packed;
   packed.box = box_of(mesh.positions);
   const models::BoxPacker packer(packed.box);
-  const std::vector<glm::vec3> normals = normals_of(mesh);
+  const std::vector<glm::vec3> normals =
+      mesh.normals.empty() ? core::normal_sums(mesh) : mesh.normals;
   packed.vertices.reserve(mesh.positions.size());
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const glm::vec3 colour = mesh.colours.empty() ? glm::vec3(1.0F) : mesh.colours[i];

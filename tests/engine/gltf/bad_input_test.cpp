@@ -55,6 +55,17 @@ class BadGltf : public testing::Test {
   std::filesystem::path file_ = folder_ / "a.glb";
 };
 
+// Three times the count is 2 in 64 bits.
+TEST_F(BadGltf, AStripOfSoManyIndicesThatTheirTrianglesOverflowIsRejected) {
+  Sample sample = square();
+  nlohmann::json& primitive = primitive_of(sample);
+  primitive["mode"] = 5;
+  nlohmann::json& indices = sample.json["accessors"][primitive["indices"].get<std::size_t>()];
+  indices.erase("bufferView");
+  indices["count"] = UINT64_MAX / 3 + 1;
+  refuse(sample, "has more than 12582912 indices, the limit", ErrorCode::kOverBudget);
+}
+
 TEST_F(BadGltf, CutAtAnyByteIsRejected) {
   const std::string whole = square().glb();
   ASSERT_TRUE(read(whole));

@@ -8,18 +8,14 @@
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "engine/core/bytes.hpp"
 #include "engine/gltf/read_file.hpp"
 #include "tests/engine/gltf/sample.hpp"
 #include "tests/temporary_folder.hpp"
 
 #ifdef PSYGEN_DRACO
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wextra"
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
-#pragma GCC diagnostic pop
 #endif
 
 namespace psygen::gltf {
@@ -322,6 +318,31 @@ TEST_F(Compressed, DracoWithHugeCountsOrOtherAttributesIsRejectedBeforeItIsDecod
   refuse(sample, "has no compressed attribute 77");
   primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"].erase("POSITION");
   refuse(sample, "POSITION is not among the compressed attributes");
+}
+
+// 1000 triangles of 3000 points and `attributes` of `width` doubles each, without their values.
+Sample huge_by_draco(std::uint32_t attributes, std::uint8_t width) {
+  draco::EncoderBuffer buffer;
+  Sample s = packed_by_draco(grid(), draco::MESH_SEQUENTIAL_ENCODING, buffer);
+  s.binary = std::string("DRACO\2\2\1\0\0\0", 11);
+  core::put_varint(s.binary, 1000);
+  core::put_varint(s.binary, 3000);
+  core::put(s.binary, std::uint8_t{1});  // plain indices of 16 bits
+  s.binary += std::string(std::size_t{2} * 3 * 1000, '\0');
+  core::put(s.binary, std::uint8_t{1});  // decoder
+  core::put_varint(s.binary, attributes);
+  for (std::uint32_t i = 0; i < attributes; ++i)
+    core::put(s.binary, std::uint8_t{draco::GeometryAttribute::POSITION},
+              std::uint8_t{draco::DT_FLOAT64}, width, std::uint8_t{0}, std::uint8_t{0});
+  s.binary += std::string(attributes, '\0');  // plain values
+  s.json["bufferViews"][0]["byteLength"] = s.binary.size();
+  return s;
+}
+
+TEST_F(Compressed, DracoWithHugeAttributesIsRejectedBeforeTheyAreAllocated) {
+  refuse(huge_by_draco(1, 255), "has an attribute of 255 components; at most 4 are allowed");
+  refuse(huge_by_draco(3000, 4), "has attributes of 288000000 bytes", ErrorCode::kOverBudget);
+  refuse(huge_by_draco(1, 1), "is damaged or cut short");
 }
 
 #else

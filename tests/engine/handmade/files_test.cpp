@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <span>
 
@@ -53,6 +54,7 @@ turn_deg = [0, 360]
 struct World {
   TemporaryFolder folder;
   models::Registry registry = models::make_standard_registry();
+  std::deque<models::Registry> registries;
 
   World() {
     std::filesystem::create_directory(folder / "things");
@@ -69,6 +71,13 @@ struct World {
     EXPECT_FALSE(world.has_value()) << text;
     EXPECT_EQ(registry.size(), before);
     return world ? "" : world.error().message;
+  }
+  // The identity of the first model of a text. Reads it into a new registry, which keeps it in use.
+  std::uint64_t identity_of(const std::string& text) {
+    models::Registry& own = registries.emplace_back(models::make_standard_registry());
+    const auto world = world::parse_world(text, file(), own, &files());
+    EXPECT_TRUE(world) << world.error().message;
+    return world ? own[4].identity() : 0;
   }
   std::string error_with(std::string_view from, const std::string& to) {
     std::string text = std::string(kHead) + kBall + kScatter;
@@ -117,7 +126,7 @@ TEST(HandmadeFiles, StopBetweenFilesAndLevelsOnceNobodyWantsThem) {
   EXPECT_TRUE(w.read(text));
 }
 
-// The models of a pack, each with an image in a copy of its own.
+// The models of a pack, each with an image in a copy of its own, and two tables of one file.
 TEST(HandmadeFiles, ReadThePackInThreadsAsOneByOne) {
   World w;
   constexpr int kModels = 70;
@@ -145,8 +154,19 @@ TEST(HandmadeFiles, ReadThePackInThreadsAsOneByOne) {
   std::string text = kHead;
   for (const std::string& table : tables)
     text += table;
+  gltf::Sample twin = ball(60, 90);
+  twin.json["extensionsUsed"] = gltf::list("X_twin");  // noted by each read
+  gltf::write_bytes(w.folder / "things/twin.glb", twin.glb());
+  for (const char* name : {"twin_a", "twin_b"})
+    text += fmt::format("[[model]]\nname = \"{}\"\nfile = \"things/twin.glb\"\n", name);
+  ::testing::internal::CaptureStderr();
   const auto world = w.read(text);
+  const std::string notes = ::testing::internal::GetCapturedStderr();
   ASSERT_TRUE(world) << world.error().message;
+  const std::size_t note = notes.find("X_twin");
+  EXPECT_NE(note, std::string::npos) << notes;
+  EXPECT_EQ(notes.find("X_twin", note + 1), std::string::npos) << "one read, of a shared shape";
+  EXPECT_EQ(w.registry[4 + kModels].identity(), w.registry[5 + kModels].identity());
   for (int i = 0; i < kModels; ++i) {
     const models::ModelType& type = w.registry[static_cast<models::ModelIndex>(4 + i)];
     EXPECT_EQ(type.name(), fmt::format("m{}", i));
@@ -242,22 +262,14 @@ TEST(HandmadeFiles, ReadModelsAgainWhenAFileThatTheyNameChanges) {
   gltf::write_bytes(buffer, sample.binary);
   std::string text = std::string(kHead) + kBall + kScatter;
   text.replace(text.find("ball.glb"), 8, "ball.gltf");
-  const auto identity = [&](models::Registry& registry) {
-    const auto world = world::parse_world(text, w.file(), registry, &files());
-    EXPECT_TRUE(world) << world.error().message;
-    return registry[4].identity();
-  };
-  models::Registry first = models::make_standard_registry(),
-                   same = models::make_standard_registry(),
-                   other = models::make_standard_registry();
-  const std::uint64_t before = identity(first);
+  const std::uint64_t before = w.identity_of(text);
   const auto time = std::filesystem::last_write_time(buffer);
   std::swap(sample.binary.front(), sample.binary.back());  // another triangle, and a normal
   gltf::write_bytes(buffer, sample.binary);
   std::filesystem::last_write_time(buffer, time);
-  EXPECT_EQ(identity(same), before) << "size and time are the same, so it is not read again";
+  EXPECT_EQ(w.identity_of(text), before) << "size and time are the same, so it is not read again";
   std::filesystem::last_write_time(buffer, time + std::chrono::seconds(1));
-  EXPECT_NE(identity(other), before);
+  EXPECT_NE(w.identity_of(text), before);
 }
 
 TEST(HandmadeFiles, ReadModelsAgainWhenAnImageThatTheyLackedAppears) {
@@ -270,18 +282,11 @@ TEST(HandmadeFiles, ReadModelsAgainWhenAnImageThatTheyLackedAppears) {
   sample.json["textures"][0]["source"] = 0;
   sample.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
   gltf::write_bytes(w.folder / "things/ball.glb", sample.glb());
-  const auto identity = [&](models::Registry& registry) {
-    const auto world = world::parse_world(std::string(kHead) + kBall, w.file(), registry, &files());
-    EXPECT_TRUE(world) << world.error().message;
-    return registry[4].identity();
-  };
-  models::Registry first = models::make_standard_registry(),
-                   same = models::make_standard_registry(),
-                   other = models::make_standard_registry();
-  const std::uint64_t before = identity(first);
-  EXPECT_EQ(identity(same), before);
+  const std::string text = std::string(kHead) + kBall;
+  const std::uint64_t before = w.identity_of(text);
+  EXPECT_EQ(w.identity_of(text), before);
   ASSERT_TRUE(image::write_png(w.folder / "things/late.png", image::make_image(2, 2, 9, 99, 9)));
-  EXPECT_NE(identity(other), before);
+  EXPECT_NE(w.identity_of(text), before);
 }
 
 constexpr const char* kStamp = R"([[stamp]]
