@@ -1,18 +1,13 @@
 #include "engine/captures/capture.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <system_error>
 
 #include "engine/captures/readers.hpp"
+#include "engine/core/read_file.hpp"
 #include "engine/core/utf8.hpp"
 
 namespace psygen::captures {
@@ -20,32 +15,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// A file in memory, mapped for reading: captures of hours exceed what should be copied.
-class MappedFile {
- public:
-  explicit MappedFile(const std::filesystem::path& file)
-      : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~MappedFile() {
-    if (memory_ != MAP_FAILED) munmap(memory_, bytes_);
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-
-  // Maps the file's first bytes. Returns false with errno.
-  bool map(std::size_t bytes) {
-    if (descriptor_ < 0) return false;
-    memory_ = mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, descriptor_, 0);
-    bytes_ = memory_ == MAP_FAILED ? 0 : bytes;
-    return bytes_ == bytes;
-  }
-  std::string_view text() const { return {static_cast<const char*>(memory_), bytes_}; }
-
- private:
-  int descriptor_;
-  void* memory_ = MAP_FAILED;
-  std::size_t bytes_ = 0;
-};
+constexpr std::size_t kMaxBytes = std::size_t{1} << 30;  // of a file; over 10⁶ rows
 
 // Decodes UTF-16 after its byte-order mark; an odd last byte is cut.
 std::string utf8_of(std::string_view bytes, bool little_endian) {
@@ -241,7 +211,6 @@ double suspended_limit_ms(std::span<const double> frame_ms) {
 core::Result<Capture> parse(std::string_view bytes, const std::string& name) {
   std::string decoded;
   if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) {
-    constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
     if (bytes.size() > kMaxBytes)
       return core::fail(core::ErrorCode::kOverBudget,
                         fmt::format("{}: UTF-16 of at most {} bytes is read", name, kMaxBytes));
@@ -256,22 +225,9 @@ core::Result<Capture> parse(std::string_view bytes, const std::string& name) {
 }
 
 core::Result<Capture> read(const std::filesystem::path& file) {
-  constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // over 10⁷ rows
-  const auto fail = [&](core::ErrorCode code, const std::string& sentence) {
-    return core::fail(code, fmt::format("{}: {}", file.string(), sentence));
-  };
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    return fail(core::ErrorCode::kIo, error ? error.message() : "is not a regular file");
-  const std::uint64_t bytes = std::filesystem::file_size(file, error);
-  if (error) return fail(core::ErrorCode::kIo, error.message());
-  if (bytes == 0) return parse({}, file.string());
-  if (bytes > kMaxBytes)
-    return fail(core::ErrorCode::kOverBudget,
-                fmt::format("the file has {} bytes; at most {} are allowed", bytes, kMaxBytes));
-  MappedFile mapped(file);
-  if (!mapped.map(bytes)) return fail(core::ErrorCode::kIo, std::generic_category().message(errno));
-  return parse(mapped.text(), file.string());
+  const auto bytes = core::read_file(file, kMaxBytes);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file.string());
 }
 
 }  // namespace psygen::captures

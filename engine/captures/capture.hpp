@@ -34,10 +34,10 @@ struct Capture {
 };
 
 // Reads a capture. Frames that were not displayed, generated frames, other swap chains, rows
-// without a time, a cut last line, and suspended frames are left out and counted in `notes`. The
-// file must not shrink during the call. Fails with kIo; with kInvalidArgument for files without
-// frame times (summaries, rates, sampled logs) and unknown formats, naming the setting that logs
-// every frame if there is one; with kParse, naming the line, for damaged content.
+// without a time, a cut last line, and suspended frames are left out and counted in `notes`. Fails
+// with kIo; with kOverBudget for files of over 1 GiB; with kInvalidArgument for files without frame
+// times (summaries, rates, sampled logs) and unknown formats, naming the setting that logs every
+// frame if there is one; with kParse, naming the line, for damaged content.
 core::Result<Capture> read(const std::filesystem::path& file);
 
 // Reads a capture from its bytes; `name` is for messages, and tells mangoapp from MangoHud.

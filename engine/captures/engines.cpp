@@ -10,13 +10,6 @@ namespace {
 
 using Cells = std::vector<std::string_view>;
 
-// A row whose event holds commas: the number of its other cells is not known yet.
-struct Pending {
-  std::string_view text;
-  std::size_t line = 0;
-  bool ended = false;
-};
-
 // Removes the last line and returns it. Blank lines at the end are removed as well.
 std::string_view take_last_line(std::string_view& text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r'))
@@ -59,8 +52,7 @@ class Unreal {
     Line line;
     while (next_line(rest, line)) {
       if (line.number == 1 && has_first_header_) continue;
-      if (auto ok = add({line.text, line.number, line.ended}, rest.empty()); !ok)
-        return tl::unexpected(ok.error());
+      if (auto ok = add(line, rest.empty()); !ok) return tl::unexpected(ok.error());
     }
     if (auto ok = add_pending(std::max(width_, finished ? header_.size() : width_)); !ok)
       return tl::unexpected(ok.error());
@@ -96,35 +88,30 @@ class Unreal {
     return finished;
   }
 
-  core::Result<void> add(const Pending& row, bool is_last) {
-    constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
-    if (row.text.size() > kMaxLineBytes)
-      return damaged(source_, row.line, "the line is longer than 1 MiB");
+  core::Result<void> add(const Line& row, bool is_last) {
+    if (auto ok = check_length(source_, row); !ok) return ok;
     if (trimmed(row.text).empty()) return {};
     split(row.text, separator_, cells_);
     if (cells_.size() < std::max(width_, times_.front() + 1)) {
       if (is_last && !row.ended) return result_.cut = true, core::Result<void>{};
-      return damaged(source_, row.line,
+      return damaged(source_, row.number,
                      fmt::format("the line has {} cells, but {} columns are known", cells_.size(),
                                  std::max(width_, times_.front() + 1)));
     }
     const bool is_event = has_events_ && !cells_.front().empty();
     if (is_event && cells_.size() > width_) return pending_.push_back(row), core::Result<void>{};
     if (cells_.size() > most_)
-      return damaged(source_, row.line,
-                     fmt::format("the line has {} cells under a header of {}: decimal commas "
-                                 "between commas cannot be read",
-                                 cells_.size(), most_));
+      return decimal_commas(source_, row.number, fmt::format("{} cells", cells_.size()), most_);
     if (auto ok = add_pending(cells_.size()); !ok) return ok;
     split(row.text, separator_, cells_);  // add_pending() uses the cells
     width_ = cells_.size();
-    return add_times(0, row.line);
+    return add_times(0, row.number);
   }
 
   // Adds the rows with commas in their events. They have at least the cells of the rows before, and
   // at most `most`. Of several readings, the one with the shortest event counts.
   core::Result<void> add_pending(std::size_t most) {
-    for (const Pending& row : pending_) {
+    for (const Line& row : pending_) {
       split(row.text, separator_, cells_);
       if (!row.ended) {  // a cut row may have any cells
         result_.cut = true;
@@ -139,9 +126,9 @@ class Unreal {
       const std::size_t fewest = cells_.size() - std::min(cells_.size(), most);
       const std::size_t shift = std::max(fewest, std::max<std::size_t>(texts, 1) - 1);
       if (shift + std::max<std::size_t>(width_, 1) > cells_.size())
-        return damaged(source_, row.line, "the cells after the event are not numbers");
+        return damaged(source_, row.number, "the cells after the event are not numbers");
       width_ = cells_.size() - shift;
-      if (auto ok = add_times(shift, row.line); !ok) return ok;
+      if (auto ok = add_times(shift, row.number); !ok) return ok;
     }
     pending_.clear();
     return {};
@@ -157,20 +144,16 @@ class Unreal {
       if (!time) return tl::unexpected(time.error());
       sum += time->value_or(0);
     }
-    if (sum > 0) {
-      result_.capture.frame_ms.push_back(sum);
-    } else {
-      ++result_.unmeasured;
-    }
+    result_.add(sum);
     return {};
   }
 
   const Source& source_;
   Cells header_, cells_;
   std::vector<std::size_t> times_;  // columns
-  std::vector<Pending> pending_;
-  std::size_t width_ = 0;  // cells of the last row without commas in its event
-  std::size_t most_ = 0;   // cells of the header
+  std::vector<Line> pending_;  // rows whose events hold commas: their other cells are not known yet
+  std::size_t width_ = 0;      // cells of the last row without commas in its event
+  std::size_t most_ = 0;       // cells of the header
   char separator_ = ',';
   bool has_first_header_ = false, has_events_ = false;
   Collected result_;
@@ -197,11 +180,7 @@ Reading read_profile_analyzer(const Source& source, const Table& table) {
                                 [&](const Cells& cells, std::size_t line) -> core::Result<void> {
                                   const auto ms = time_in(cells[time], table, source, line);
                                   if (!ms) return tl::unexpected(ms.error());
-                                  if (*ms) {
-                                    result.capture.frame_ms.push_back(**ms);
-                                  } else {
-                                    ++result.unmeasured;
-                                  }
+                                  result.add(ms->value_or(0));
                                   return {};
                                 });
   if (!cut) return tl::unexpected(cut.error());

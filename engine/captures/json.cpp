@@ -18,7 +18,6 @@ using Json = nlohmann::json;
 using Path = std::vector<std::string>;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMaxMs = 1e9;
 
 // A number, text or flag in a file. Texts such as "NaN" are numbers that are missing.
 struct Scalar {
@@ -60,10 +59,8 @@ struct CapFrameX {
     for (std::size_t i = 0; i < times.size(); ++i) {
       if (!dropped.empty() && dropped[i]) {
         ++result.not_drawn;
-      } else if (times[i] > 0) {
-        result.capture.frame_ms.push_back(times[i]);
       } else {
-        ++result.unmeasured;
+        result.add(times[i]);
       }
     }
     times.clear();
@@ -154,11 +151,7 @@ struct UnityTests {
       if (!(ms >= 0 && ms < kMaxMs))
         return refused(source, fmt::format("{}, {}: the sample {} is no time", best->test,
                                            best->name, sample));
-      if (ms > 0) {
-        result.capture.frame_ms.push_back(ms);
-      } else {
-        ++result.unmeasured;
-      }
+      result.add(ms);
     }
     result.capture.tool = "Unity Performance Testing";
     result.capture.column = fmt::format("{} of {}", best->name, best->test);
@@ -187,6 +180,11 @@ struct Trace {
   struct Open {
     std::string name, phase, process, thread, layer;
     double ts = kNone, duration = kNone;
+
+    std::string drawing() const {
+      return layer.empty() ? fmt::format("process {}", process)
+                           : fmt::format("process {}, layer tree {}", process, layer);
+    }
   };
   Open open;
   std::map<std::string, Stream> draws, frames;
@@ -228,11 +226,8 @@ struct Trace {
     seen = seen || !event.phase.empty();
     const bool timed = event.ts > -1e18 && event.ts < 1e18;
     if (!timed) return {};
-    const std::string drawing =
-        event.layer.empty() ? fmt::format("process {}", event.process)
-                            : fmt::format("process {}, layer tree {}", event.process, event.layer);
-    if (event.name == "DrawFrame") draws[drawing].events.push_back({event.ts, 0});
-    if (event.name == "DroppedFrame") ++draws[drawing].dropped;
+    if (event.name == "DrawFrame") draws[event.drawing()].events.push_back({event.ts, 0});
+    if (event.name == "DroppedFrame") ++draws[event.drawing()].dropped;
     if (event.phase == "X" && names_a_frame(event.name)) {
       if (!(event.duration >= 0 && event.duration < 1000 * kMaxMs))
         return fmt::format("dur of {}: it is not a time", event.name);
@@ -262,11 +257,8 @@ struct Trace {
     std::ranges::stable_sort(events, {}, &Event::ts);
     for (std::size_t i = draws_frames ? 1 : 0; i < events.size(); ++i) {
       const double us = draws_frames ? events[i].ts - events[i - 1].ts : events[i].duration;
-      if (us > 0 && us * kMicrosecondMs < kMaxMs) {
-        result.capture.frame_ms.push_back(us * kMicrosecondMs);
-      } else {
-        ++result.unmeasured;
-      }
+      const double ms = us * kMicrosecondMs;
+      result.add(ms < kMaxMs ? ms : 0);
     }
     result.not_drawn = best->second.dropped;
     result.capture.tool = "Chrome trace";
@@ -310,7 +302,6 @@ class Walk final : public nlohmann::json_sax<Json> {
   bool has_benchmarks = false;           // of Godot
   std::optional<std::size_t> broken_at;  // the byte where it is not JSON
   std::string sentence;                  // about damaged content
-  std::size_t values = 0;
 
  private:
   bool keep(std::string&& why) {

@@ -150,10 +150,8 @@ class PresentMon {
         ++result.generated;
       } else if ((frame.flags & (kDropped | best->displayed)) != 0) {
         ++result.not_drawn;
-      } else if (std::isnan(frame.ms)) {
-        ++result.unmeasured;
       } else {
-        result.capture.frame_ms.push_back(frame.ms);
+        result.add(frame.ms);
       }
     }
     note_others(*best, result.capture.notes);

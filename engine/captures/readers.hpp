@@ -17,6 +17,15 @@ struct Collected {
   std::size_t not_drawn = 0, generated = 0;
   std::size_t unmeasured = 0;  // rows without a time, or with 0
   bool cut = false;            // the last line is cut
+
+  // Adds a frame; a time that is not above 0 counts as unmeasured.
+  void add(double ms) {
+    if (ms > 0) {
+      capture.frame_ms.push_back(ms);
+    } else {
+      ++unmeasured;
+    }
+  }
 };
 using Reading = core::Result<Collected>;
 

@@ -12,8 +12,7 @@
 namespace psygen::captures {
 namespace {
 
-constexpr std::size_t kMaxShownBytes = 40, kMaxLineBytes = std::size_t{1} << 20;
-constexpr double kMaxMs = 1e9;
+constexpr std::size_t kMaxShownBytes = 40;
 
 char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -52,11 +51,23 @@ tl::unexpected<core::Error> too_wide(const Source& source, const Table& table, c
     if (others.size() != cells)
       next = fmt::format(" (line {} has {})", line.number + 1, others.size());
   }
-  return damaged(source, line.number,
-                 fmt::format("the line has {} cells{} under a header of {}: decimal commas between "
-                             "commas cannot be read; export with a language that writes decimal "
-                             "points",
-                             cells, next, table.header.size()));
+  return decimal_commas(source, line.number, fmt::format("{} cells{}", cells, next),
+                        table.header.size());
+}
+
+// Parses digits, with a decimal comma unless commas separate the cells.
+std::optional<double> parsed(std::string_view cell, char separator) {
+  std::array<char, 64> digits{};
+  if (cell.size() > digits.size()) return std::nullopt;
+  std::ranges::copy(cell, digits.begin());
+  if (separator != ',' && std::ranges::count(cell, ',') == 1 &&
+      cell.find('.') == std::string_view::npos)
+    digits[cell.find(',')] = '.';
+  double value = 0;
+  const char* end = digits.data() + cell.size();
+  const auto [last, error] = std::from_chars(digits.data(), end, value);
+  if (error != std::errc() || last != end) return std::nullopt;
+  return value;
 }
 
 }  // namespace
@@ -91,6 +102,20 @@ bool next_line(std::string_view& rest, Line& line) {
   if (line.text.ends_with('\r')) line.text.remove_suffix(1);
   ++line.number;
   return true;
+}
+
+core::Result<void> check_length(const Source& source, const Line& line) {
+  if (line.text.size() > kMaxLineBytes)
+    return damaged(source, line.number, "the line is longer than 1 MiB");
+  return {};
+}
+
+tl::unexpected<core::Error> decimal_commas(const Source& source, std::size_t line,
+                                           std::string_view cells, std::size_t columns) {
+  return damaged(source, line,
+                 fmt::format("the line has {} under a header of {}: decimal commas between commas "
+                             "cannot be read; export with a language that writes decimal points",
+                             cells, columns));
 }
 
 void split(std::string_view line, char separator, std::vector<std::string_view>& cells) {
@@ -142,8 +167,7 @@ core::Result<bool> for_each_row(const Source& source, const Table& table, const 
   Line line{.text = {}, .number = table.line, .ended = false};
   std::size_t most = width.max_of_first;
   for (std::string_view rest = table.rows; next_line(rest, line);) {
-    if (line.text.size() > kMaxLineBytes)
-      return damaged(source, line.number, "the line is longer than 1 MiB");
+    if (auto ok = check_length(source, line); !ok) return tl::unexpected(ok.error());
     split(line.text, table.separator, cells);
     if (std::ranges::all_of(cells, &std::string_view::empty)) continue;
     if (cells.size() > most) return too_wide(source, table, line, rest, cells.size());
@@ -161,23 +185,15 @@ core::Result<bool> for_each_row(const Source& source, const Table& table, const 
 
 Number number_in(std::string_view cell, char separator) {
   constexpr std::array<std::string_view, 6> kMissing = {"", "NA", "N/A", "null", "-", "nan(ind)"};
-  constexpr std::size_t kMaxDigits = 64;
+  if (const auto value = parsed(cell, separator)) {
+    if (std::isfinite(*value)) return {.value = value, .missing = false};
+    return {.value = {}, .missing = true};
+  }
   const auto is_cell = [cell](std::string_view name) { return same_name(cell, name); };
   if (std::ranges::any_of(kMissing, is_cell) || is_cell("-nan(ind)") || cell.starts_with("1.#") ||
       cell.starts_with("-1.#"))
     return {.value = {}, .missing = true};
-  std::array<char, kMaxDigits> digits{};
-  if (cell.size() > digits.size()) return {};
-  std::ranges::copy(cell, digits.begin());
-  if (separator != ',' && std::ranges::count(cell, ',') == 1 &&
-      cell.find('.') == std::string_view::npos)
-    digits[cell.find(',')] = '.';
-  double value = 0;
-  const char* end = digits.data() + cell.size();
-  const auto parsed = std::from_chars(digits.data(), end, value);
-  if (parsed.ec != std::errc() || parsed.ptr != end) return {};
-  if (!std::isfinite(value)) return {.value = {}, .missing = true};
-  return {.value = value, .missing = false};
+  return {};
 }
 
 core::Result<std::optional<double>> time_in(std::string_view cell, const Table& table,

@@ -39,6 +39,12 @@ struct Line {
 };
 // Moves to the next line; false at the end of `rest`.
 bool next_line(std::string_view& rest, Line& line);
+// Fails with kParse for a line of over kMaxLineBytes.
+inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
+core::Result<void> check_length(const Source& source, const Line& line);
+// Error for a row with more `cells` ("5 cells") than the header, between commas.
+tl::unexpected<core::Error> decimal_commas(const Source& source, std::size_t line,
+                                           std::string_view cells, std::size_t columns);
 
 // Splits a line at `separator` outside of quotes. Cells lose their blanks and quotes.
 void split(std::string_view line, char separator, std::vector<std::string_view>& cells);
@@ -80,8 +86,10 @@ struct Number {
 };
 Number number_in(std::string_view cell, char separator);
 
-// Parses a time in a unit of `unit_ms`: nothing if it is not measured or 0. Fails with kParse for
-// text, negative times, and times of a million seconds or more.
+// Times of a million seconds or more are refused.
+inline constexpr double kMaxMs = 1e9;
+// Parses a time in the unit of its column: nothing if it is not measured or 0. Fails with kParse
+// for text, negative times, and times of a million seconds or more.
 core::Result<std::optional<double>> time_in(std::string_view cell, const Table& table,
                                             const Source& source, std::size_t line);
 

@@ -189,39 +189,35 @@ ExportCommand::ExportCommand(CLI::App& cli)
   c.add_option("--set", settings_,
                "name=value: a parameter of the model; may be given several times")
       ->needs(model);
-  auto* block = c.add_option_function<std::string>(
-      "--block", [this](const std::string& text) { block_ = *parse_block(text); },
-      "Block X,Z of the world, with all its models");
-  block->check(valid_if(parse_block, "X,Z"))->excludes(model);
+  auto* block = add_parsed(c, "--block", block_, parse_block, "X,Z",
+                           "Block X,Z of the world, with all its models")
+                    ->excludes(model);
   c.add_option("--world", world_, "World of the block, or of the model's species")
       ->capture_default_str();
   c.add_option("--level", level_, "Level of detail; 0 is full")->transform(integer_between(0, 31));
-  auto* region = c.add_option_function<std::string>(
-      "--region", [this](const std::string& text) { region_ = *amplify::parse_region(text); },
-      "Blocks X0,Z0,X1,Z1 of the world, excluding X1 and Z1, as one tileset for streaming");
-  region->check(valid_if(amplify::parse_region, "REGION"))->excludes(model)->excludes(block);
+  auto* region =
+      add_parsed(
+          c, "--region", region_, amplify::parse_region, "REGION",
+          "Blocks X0,Z0,X1,Z1 of the world, excluding X1 and Z1, as one tileset for streaming")
+          ->excludes(model)
+          ->excludes(block);
   c.add_option("--format", format_, "Output format of a region")
       ->check(one_of({"3dtiles", "heightmap"}))
       ->capture_default_str()
       ->needs(region);
-  c.add_option_function<std::string>(
-       "--levels", [this](const std::string& text) { levels_ = *tiles::parse_levels(text); },
-       "FINEST-COARSEST level of a region's tiles; a tile of level k has 2^k x 2^k blocks; "
-       "default: "
-       "from 0 to a single tile")
-      ->check(valid_if(tiles::parse_levels, "LEVELS"))
+  add_parsed(c, "--levels", levels_, tiles::parse_levels, "LEVELS",
+             "FINEST-COARSEST level of a region's tiles; a tile of level k has 2^k x 2^k blocks; "
+             "default: from 0 to a single tile")
       ->needs(region);
-  c.add_option_function<std::string>(
-       "--at-geo", [this](const std::string& text) { at_geo_ = *tiles::parse_geo_place(text); },
-       "LATITUDE,LONGITUDE[,HEIGHT] of a tileset's north-western corner, in degrees and metres "
-       "(WGS 84); default: none")
-      ->check(valid_if(tiles::parse_geo_place, "PLACE"))
+  add_parsed(
+      c, "--at-geo", at_geo_, tiles::parse_geo_place, "PLACE",
+      "LATITUDE,LONGITUDE[,HEIGHT] of a tileset's north-western corner, in degrees and metres "
+      "(WGS 84); default: none")
       ->needs(region);
-  c.add_option_function<std::string>(
-       "--range", [this](const std::string& text) { range_m_ = *parse_range(text); },
-       "LOW,HIGH: heights of black and white in a heightmap's heights.png, in metres; default: the "
-       "region's lowest and highest point")
-      ->check(valid_if(parse_range, "LOW,HIGH"))
+  add_parsed(
+      c, "--range", range_m_, parse_range, "LOW,HIGH",
+      "LOW,HIGH: heights of black and white in a heightmap's heights.png, in metres; default: the "
+      "region's lowest and highest point")
       ->needs(region);
   c.add_option("--threads", threads_, "Threads for a region; default: one per processor")
       ->transform(integer_between(1, amplify::kMaxThreads))

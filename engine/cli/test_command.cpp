@@ -1,6 +1,5 @@
 // `psygen test`: runs frame tests (docs/frame-tests.md).
 #include "engine/cli/commands.hpp"
-#include "engine/cli/option_checks.hpp"
 #include "engine/core/log.hpp"
 #include "engine/frametest/run.hpp"
 
@@ -12,7 +11,6 @@ class TestCommand final : public Command {
   explicit TestCommand(CLI::App& cli)
       : Command(cli, "test", "Run frame tests and check their budgets") {
     frametest::add_options(*command_, options_);
-    command_->get_option("--worst")->transform(integer_between(0, frametest::kMaxWorstFrames));
   }
 
   int run() override {

@@ -222,8 +222,7 @@ bool holds_captures(const fs::path& path) {
       continue;
     }
     has_file = true;
-    const auto capture = captures::read(each);
-    if (capture || capture.error().code == core::ErrorCode::kParse) return true;
+    if (captures::read(each)) return true;
   }
   return has_file && !has_run;
 }

@@ -21,9 +21,8 @@ struct TimesSide {
   std::vector<captures::Capture> captures;
   std::vector<std::string> skipped;
 };
-// True for a file, for a folder with a capture of another tool at any depth, even a damaged one,
-// and for a folder that has files but no run of psygen. Files beside a frames.csv belong to its
-// run.
+// True for a file, for a folder with a readable capture of another tool at any depth, and for a
+// folder that has files but no run of psygen. Files beside a frames.csv belong to its run.
 bool holds_captures(const std::filesystem::path& path);
 
 // Reads a capture, or all captures and psygen's runs in a folder at any depth, by name. Runs count

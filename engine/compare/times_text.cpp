@@ -92,10 +92,8 @@ std::string to_json(const TimesComparison& comparison) {
 
 std::string to_html(const TimesComparison& comparison) {
   std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>psygen: captures "
-      "compared</title><style>\n{}</style></head><body><main>\n<h1>Comparison of captures</h1>\n"
-      "<p class=\"lead\">{}</p>\n<section><b>Verdict: {}</b>\n",
-      telemetry::page_style(), kOnlyTimes, name_of(comparison.verdict));
+      "<h1>Comparison of captures</h1>\n<p class=\"lead\">{}</p>\n<section><b>Verdict: {}</b>\n",
+      kOnlyTimes, name_of(comparison.verdict));
   for (const std::string& reason : comparison.reasons)
     html += fmt::format("<p>{}</p>\n", escaped(reason));
   for (const std::string& warning : comparison.warnings)
@@ -113,7 +111,7 @@ std::string to_html(const TimesComparison& comparison) {
   };
   for_each_line(comparison.a, "A", add);
   for_each_line(comparison.b, "B", add);
-  return html + "</section></main></body></html>\n";
+  return telemetry::page_html("psygen: captures compared", "", html + "</section>\n");
 }
 
 }  // namespace psygen::compare

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -64,8 +65,9 @@ Result<std::thread> start_thread(Work&& work) {
 template <class Work>
 void run_in_threads(std::size_t threads, const Work& work) {
   std::vector<std::thread> helpers;
+  helpers.reserve(threads);  // nothing throws while they run
   for (std::size_t i = 1; i < threads; ++i) {
-    auto helper = start_thread(work);
+    auto helper = start_thread(std::cref(work));
     if (!helper) break;
     helpers.push_back(std::move(*helper));
   }

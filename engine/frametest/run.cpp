@@ -220,7 +220,8 @@ void add_options(CLI::App& cli, RunOptions& options) {
   cli.add_option("--out", options.out, "Folder for the outputs, with one subfolder per test");
   cli.add_option("--worst", options.worst_frames,
                  "Number of worst frames of a failed test written as images to --out")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::Range(0, kMaxWorstFrames));
   cli.add_option("--device", options.device, "Part of the Vulkan device's name");
 }
 
@@ -230,7 +231,6 @@ int frame_test_main(int argc, char** argv, const Hooks& hooks) {
     RunOptions options;
     CLI::App cli("Runs frame tests", name);
     add_options(cli, options);
-    cli.get_option("--worst")->check(CLI::Range(0, kMaxWorstFrames));
     if (const auto code = program::read_command_line(cli, argc, argv)) return *code;
     options.stop = &program::stop_at_interrupt();
     return run_frame_tests(options, hooks);

@@ -95,7 +95,7 @@ std::string to_text(const TestResult& result);
 // Formats the results as JUnit XML: a suite for each file, a case for each budget.
 std::string to_junit(std::span<const TestResult> results);
 
-// Declares the options of a command line; `options` outlives it. The caller limits --worst to 0 …
+// Declares the options of a command line; `options` outlives it. Limits --worst to 0 …
 // kMaxWorstFrames.
 void add_options(CLI::App& cli, RunOptions& options);
 // Runs all files, prints results to stdout and errors to stderr, and writes the JUnit file. Returns

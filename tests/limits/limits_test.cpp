@@ -11,7 +11,9 @@
 #include <sstream>
 
 #include "engine/amplify/ledger.hpp"
+#include "engine/captures/capture.hpp"
 #include "engine/compare/recorded_run.hpp"
+#include "engine/compare/times.hpp"
 #include "engine/frametest/frame_test.hpp"
 #include "engine/gltf/read_file.hpp"
 #include "engine/handmade/files.hpp"
@@ -61,7 +63,8 @@ std::string repeated(Count count, const std::string& text) {
 std::string numbered(Count count, const std::string& text) {
   std::string all;
   for (Count i = 0; i < count; ++i)
-    all += std::regex_replace(text, std::regex("#"), std::to_string(i));
+    for (const char c : text)
+      all += c == '#' ? std::to_string(i) : std::string(1, c);
   return all;
 }
 
@@ -151,16 +154,12 @@ Count values_in(const std::string& json) {
   return count;
 }
 
-// One triangle with this many vertices and indices.
-gltf::Sample soup(Count vertices, Count indices) {
+// One mesh of these triangles, with normals upwards.
+gltf::Sample mesh(const std::vector<glm::vec3>& positions,
+                  const std::vector<std::uint32_t>& corners) {
   gltf::Sample s;
-  std::vector<glm::vec3> positions(vertices, glm::vec3(0));
-  positions[1].x = positions[2].z = 1;
-  std::vector<std::uint32_t> corners(indices, 0);
-  for (Count i = 0; i < indices; ++i)
-    corners[i] = static_cast<std::uint32_t>(i % 3);
   nlohmann::json primitive = {{"indices", s.accessor(corners, "SCALAR", gltf::kInts)}};
-  const std::vector<glm::vec3> normals(vertices, glm::vec3(0, 1, 0));
+  const std::vector<glm::vec3> normals(positions.size(), glm::vec3(0, 1, 0));
   primitive["attributes"] = {{"POSITION", s.accessor(positions, "VEC3", gltf::kFloats)},
                              {"NORMAL", s.accessor(normals, "VEC3", gltf::kFloats)}};
   s.add("meshes", {{"primitives", gltf::list(primitive)}});
@@ -169,10 +168,19 @@ gltf::Sample soup(Count vertices, Count indices) {
   return s;
 }
 
+// One triangle with this many vertices and indices.
+gltf::Sample soup(Count vertices, Count indices) {
+  std::vector<glm::vec3> positions(vertices, glm::vec3(0));
+  positions[1].x = positions[2].z = 1;
+  std::vector<std::uint32_t> corners(indices, 0);
+  for (Count i = 0; i < indices; ++i)
+    corners[i] = static_cast<std::uint32_t>(i % 3);
+  return mesh(positions, corners);
+}
+
 constexpr Count kGridSide = 256;
 // A surface of kGridSide² vertices.
 gltf::Sample surface() {
-  gltf::Sample s;
   std::vector<glm::vec3> positions;
   std::vector<std::uint32_t> corners;
   for (std::uint32_t i = 0; i < kGridSide * kGridSide; ++i) {
@@ -182,14 +190,7 @@ gltf::Sample surface() {
     const std::uint32_t side = kGridSide;
     corners.insert(corners.end(), {i, i + side, i + 1, i + 1, i + side, i + side + 1});
   }
-  const std::vector<glm::vec3> normals(positions.size(), glm::vec3(0, 1, 0));
-  nlohmann::json primitive = {{"indices", s.accessor(corners, "SCALAR", gltf::kInts)}};
-  primitive["attributes"] = {{"POSITION", s.accessor(positions, "VEC3", gltf::kFloats)},
-                             {"NORMAL", s.accessor(normals, "VEC3", gltf::kFloats)}};
-  s.add("meshes", {{"primitives", gltf::list(primitive)}});
-  s.add("nodes", gltf::parsed(R"({"mesh": 0})"));
-  s.add("scenes", gltf::parsed(R"({"nodes": [0]})"));
-  return s;
+  return mesh(positions, corners);
 }
 
 // The bytes of one more key than `keys` need a second channel.
@@ -299,6 +300,10 @@ Outcome add_edits(Count count) {
 std::string frame_test(const std::string& name) {
   return "format = 1\nname = \"" + name +
          "\"\n[flight]\nseconds = 1\n[at_most]\nframe_ms.p99 = 5\n";
+}
+
+Outcome load_capture(const std::string& text) {
+  return outcome(captures::parse(text, "c"));
 }
 
 #if defined(PSYGEN_LIMITS_OF_SOUNDS)
@@ -584,6 +589,34 @@ const std::vector<Case>& cases() {
            return outcome(compare::read_run(folder));
          },
          1, true},
+        {"bytes of a capture of another tool",
+         [](const fs::path& folder, double n) {
+           write_zeros(folder / "c.csv", whole(n));
+           return outcome(captures::read(folder / "c.csv"));
+         },
+         1, true},
+        {"bytes of a capture's line",
+         [](const fs::path&, double n) {
+           return load_capture("Application,MsBetweenPresents\n" + in_string(whole(n) - 2) +
+                               ",5\n");
+         }},
+        {"swap chains of a capture",
+         [](const fs::path&, double n) {
+           return load_capture("Application,ProcessID,MsBetweenPresents\n" +
+                               numbered(whole(n), "a,#,5\n"));
+         }},
+        {"nesting of a capture's JSON",
+         [](const fs::path&, double n) {
+           return load_capture(R"({"Runs": [{"CaptureData": {"MsBetweenPresents": [5]}}], "x": )" +
+                               repeated(whole(n) - 1, "[") + repeated(whole(n) - 1, "]") + "}");
+         }},
+        {"captures of a side of a comparison",
+         [](const fs::path&, double n) {
+           compare::TimesSide one, many;
+           one.captures.resize(1);
+           many.captures.resize(whole(n));
+           return outcome(compare::compare_times(one, many));
+         }},
 #if defined(PSYGEN_LIMITS_OF_SAVES)
         {"bytes of a value in a save",
          [](const fs::path&, double n) {

@@ -118,6 +118,11 @@ TEST(TimesOfFolders, JoinCapturesAndRunsAndSkipFilesWithoutFrames) {
   std::ofstream(folder / "run/summary.json") << kSummary;
   std::ofstream(folder / "compare.json") << "{}";
   EXPECT_FALSE(holds_captures(folder / "")) << "only a run, and a file that is none";
+  std::ofstream(folder / "broken.json") << "{\"a\":";
+  std::ofstream(folder / "broken.csv") << "Application,MsBetweenPresents\na,-5\n";
+  EXPECT_FALSE(holds_captures(folder / "")) << "a run, and damaged files";
+  std::filesystem::remove(folder / "broken.json");
+  std::filesystem::remove(folder / "broken.csv");
   std::ofstream(folder / "a.csv") << kCapture;
   std::ofstream(folder / "a_summary.csv") << "0.1% Min FPS\n40\n";
   EXPECT_TRUE(holds_captures(folder / ""));
