@@ -71,6 +71,7 @@ std::string features_in(const std::string& flags) {
 
 std::uint64_t usable_cores() {
   cpu_set_t set;
+  CPU_ZERO(&set);
   if (sched_getaffinity(0, sizeof(set), &set) == 0)
     return static_cast<std::uint64_t>(CPU_COUNT(&set));
   return static_cast<std::uint64_t>(std::max(sysconf(_SC_NPROCESSORS_ONLN), 1L));

@@ -54,6 +54,20 @@ for refused in "packed vectors:-DGLM_FORCE_INTRINSICS -DGLM_FORCE_DEFAULT_ALIGNE
     { cat "$folder/log.txt"; exit 1; }
 done
 
+# A program tells the revision of its own repository, and whether a file had changed.
+cp -r "$consumers/revision" "$folder/revision"
+game() { git -C "$folder/revision" -c user.name=test -c user.email=test@localhost "$@"; }
+game init -q
+game add .
+game commit -q -m first
+consumers="$folder" configure revision
+for state in clean changed; do
+  cmake --build "$folder/build/revision" >/dev/null
+  told="$("$folder/build/revision/revision")"
+  [ "$told" = "$(game rev-parse --short=12 HEAD) $state" ] || { echo "the program tells: $told"; exit 1; }
+  echo "// changed" >>"$folder/revision/main.cpp"
+done
+
 configure .
 cmake --build "$folder/build" >/dev/null
 height="$(cd / && "$folder/build/consumer" "$folder/picture.png")"
