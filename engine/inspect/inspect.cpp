@@ -30,10 +30,7 @@ struct Desk {
     if (is_left) return;
     if (!server->attached()) {
       if (!server->accept()) return;
-      visit.begin([server = server.get()] {
-        server->receive();
-        return server->attached();
-      });
+      visit.begin([server = server.get()] { return !server->has_left(); });
     }
     visit.note_frame(session.scene());
     server->receive();

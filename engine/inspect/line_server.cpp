@@ -1,6 +1,7 @@
 #include "engine/inspect/line_server.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -104,6 +105,12 @@ void LineServer::drop() {
   input_ = {};
   output_ = {};
   looked_at_ = sent_ = 0;
+}
+
+bool LineServer::has_left() const {
+  pollfd end{client_.get(), POLLRDHUP, 0};
+  return !client_ ||
+         (::poll(&end, 1, 0) > 0 && (end.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0);
 }
 
 void LineServer::refuse_others() const {

@@ -33,8 +33,10 @@ class LineServer {
   bool accept();
   // Call once the client has used the protocol correctly. Clients that do not within 5 s are
   // dropped.
-  void trust() { trusted_ = true; }
+  void trust() { trusted_ = attached(); }
   void drop();
+  // True if the client has closed its end. Reads nothing.
+  bool has_left() const;
 
   // Reads received data, at most 256 KiB per call, and rejects other clients. Any error ends the
   // connection, as do silence before trust() and 10 s in which the client does not read.

@@ -305,6 +305,7 @@ TEST_F(InspectTest, AChangeEndsWithItsClientOnAVirtualClockToo) {
   greet();
   const std::string before = written();
   client_->ask(json({{"do", "set_world"}, {"text", changed_text()}}).dump());
+  client_->ask(json({{"do", "world"}}).dump());  // waits unread while the client leaves
   while (endless.cancelled == 0)
     tick();
   EXPECT_EQ(written(), before);
