@@ -97,8 +97,9 @@ void Worker::work(Shared& shared) {
   core::name_this_thread("amplify");
   if (shared.options.lowest_priority) core::lower_priority_of_this_thread();
   // User types and sinks may throw; our own code throws only when memory is exhausted.
-  const auto made = core::catch_exceptions(core::ErrorCode::kSynthesisFailed, "a block", "failed",
-                                           [&] { return make_blocks(shared); });
+  const auto made = core::catch_exceptions(
+      core::ErrorCode::kSynthesisFailed, [] { return "a block"; }, "failed",
+      [&] { return make_blocks(shared); });
   if (!made) error = made.error();
   if (error) shared.failed.store(true, std::memory_order_relaxed);
   cpu_seconds = core::thread_cpu_seconds();

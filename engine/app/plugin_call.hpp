@@ -16,7 +16,8 @@ namespace psygen::app {
 template <class F>
 core::Result<void> call_plugin(const Plugin& plugin, std::string_view hook, const F& f) {
   return core::catch_exceptions(
-      core::ErrorCode::kInternal, fmt::format("plugin {}: {}", plugin.name, hook), "threw",
+      core::ErrorCode::kInternal, [&] { return fmt::format("plugin {}: {}", plugin.name, hook); },
+      "threw",
       [&]() -> core::Result<void> {
         if constexpr (std::is_void_v<std::invoke_result_t<F>>) {
           f();

@@ -78,15 +78,14 @@ std::string out_of_memory(std::string_view what) {
   return std::string(out_of_memory(what, buffer));
 }
 
-Result<void> catch_exceptions(ErrorCode code, std::string_view subject, std::string_view verb,
-                              const std::function<Result<void>()>& f) {
+Error error_of_exception(ErrorCode code, std::string_view subject, std::string_view verb) {
   const auto threw = [&](std::string_view what) {
-    return fail(code, std::string(subject).append(" ").append(verb).append(": ").append(what));
+    return Error{code, std::string(subject).append(" ").append(verb).append(": ").append(what)};
   };
   try {
-    return f();
+    throw;
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::kOutOfMemory, out_of_memory(subject));
+    return {ErrorCode::kOutOfMemory, out_of_memory(subject)};
   } catch (const std::exception& error) {
     return threw(error.what());
   } catch (...) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <new>
 #include <span>
 #include <string>
@@ -35,10 +34,20 @@ Result<void> catch_out_of_memory(std::string_view what, const F& f) {
   }
 }
 
-// Calls code that may throw anything, such as that of users. Returns its result, or an error for an
-// exception: kOutOfMemory with out_of_memory(subject) for std::bad_alloc, else `code` with
-// "<subject> <verb>: <message of the exception>".
-Result<void> catch_exceptions(ErrorCode code, std::string_view subject, std::string_view verb,
-                              const std::function<Result<void>()>& f);
+// The error for the exception that is being handled: kOutOfMemory with out_of_memory(subject) for
+// std::bad_alloc, else `code` with "<subject> <verb>: <message of the exception>".
+Error error_of_exception(ErrorCode code, std::string_view subject, std::string_view verb);
+
+// Calls code that may throw anything, such as that of users. Returns its Result<void>, or
+// error_of_exception(). `subject` returns a text, which only an exception needs.
+template <class Subject, class F>
+Result<void> catch_exceptions(ErrorCode code, const Subject& subject, std::string_view verb,
+                              const F& f) {
+  try {
+    return f();
+  } catch (...) {
+    return tl::unexpected(error_of_exception(code, subject(), verb));
+  }
+}
 
 }  // namespace psygen::core

@@ -164,7 +164,8 @@ core::Result<Object> unpack(const models::ModelType& type, const models::Paramet
   Object object;
   // User types may throw; our own code throws only when memory is exhausted.
   return core::catch_exceptions(
-             core::ErrorCode::kSynthesisFailed, fmt::format("{} level {}", type.name(), level),
+             core::ErrorCode::kSynthesisFailed,
+             [&] { return fmt::format("{} level {}", type.name(), level); },
              "threw while it was unpacked",
              [&]() -> core::Result<void> {
                auto made = object_of(type, p, level, size, mesh, palette, skirt_m);

@@ -22,7 +22,7 @@ void add(std::atomic<T>& counter, T value) {
 template <class Work>
 void noting(Completion& c, const Work& work) {
   const auto noted = core::catch_exceptions(
-      core::ErrorCode::kSynthesisFailed, "the annotation of a mesh", "failed",
+      core::ErrorCode::kSynthesisFailed, [] { return "the annotation of a mesh"; }, "failed",
       [&]() -> core::Result<void> { return work(), core::Result<void>{}; });
   if (noted) return;
   c.ok = false;

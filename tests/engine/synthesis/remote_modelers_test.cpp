@@ -231,16 +231,23 @@ TEST_F(Planned, ReceivedMeshesAreAnnotatedHere) {
 
 TEST_F(Planned, TheCostModelLearnsNothingFromOtherMachines) {
   plan(1);
-  std::vector<Completion> there;
+  std::vector<Completion> there, here;
   EXPECT_TRUE(manager_->wait_all());
   manager_->collect(there);
-  std::erase_if(there, [](const Completion& c) { return !c.remote; });
+  ASSERT_GE(there.size(), 2U);
+  here.push_back(there.back());
+  there.pop_back();
+  for (Completion& c : there)
+    c.remote = true, c.seconds = 0.5;
+  here[0].remote = false, here[0].seconds = 0.5;
   const auto predicted_s = [&] {
     return cost_.predict_request(0, 0, cost_.work(0, parameters_[0], 0)).warm_s();
   };
   const double before = predicted_s();
   land(there, cache_, &cost_);
   EXPECT_EQ(predicted_s(), before);
+  land(here, cache_, &cost_);
+  EXPECT_GT(predicted_s(), before);
 }
 
 TEST_F(Planned, WaitingForAllMakesReturnedRequestsHere) {
