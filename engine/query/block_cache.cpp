@@ -122,14 +122,6 @@ void BlockCache::forget(core::BlockCoord block) {
   index_.erase(found);
 }
 
-std::vector<std::uint16_t> ground_of_block(const world::World& world, core::BlockCoord block) {
-  const auto size = static_cast<std::size_t>(world.terrain.integer(models::kTerrainSize));
-  std::vector<std::uint16_t> heights(size * size);
-  models::BlockGround(world::terrain_parameters(world, block), block, heights.size())
-      .heights(heights);
-  return heights;
-}
-
 std::vector<world::Placement> models_of_block(const world::World& world,
                                               const models::Registry& registry,
                                               core::BlockCoord block) {

@@ -78,14 +78,10 @@ class BlockCache {
   std::unordered_map<core::BlockCoord, Order::iterator, core::BlockCoordHash> index_;
 };
 
-// The source of ground and models, for queries and physics, which use no other one. Pure; any
-// thread.
+// The source of models, for queries and physics, which use no other one. Pure; any thread.
 
-// Returns the quantised heights of the vertices of a block's finest mesh, row by row. About 15 µs
-// for 64 x 64 vertices.
-std::vector<std::uint16_t> ground_of_block(const world::World& world, core::BlockCoord block);
-
-// Returns the models of a block by growing index. Takes as long, plus 0.1 µs for each model.
+// Returns the models of a block by growing index. Takes as long as world::ground_of_block(), plus
+// 0.1 µs for each model.
 std::vector<world::Placement> models_of_block(const world::World& world,
                                               const models::Registry& registry,
                                               core::BlockCoord block);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <tuple>
@@ -14,7 +15,6 @@
 #include "engine/core/rounding.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/models/edits.hpp"
-#include "engine/models/terrain/ground.hpp"
 #include "engine/world/edits/edit_bytes.hpp"
 #include "engine/world/placement.hpp"
 
@@ -104,8 +104,16 @@ class Judge {
   // Counts the edits of a block that changes touch; null: edits that this program cannot read.
   void count_touched(core::BlockCoord block, const DecodedEdits* edits,
                      std::optional<std::uint64_t> surface) {
+    const bool inside = now_.world && now_.world->contains(block);
+    const auto is_ground = [](const PartChange& change) {
+      return change.kind == PartKind::kGround || change.kind == PartKind::kWater;
+    };
+    const BlockState state{edits, inside,
+                           std::ranges::any_of(changes_, is_ground) &&
+                               !(inside && surface && *surface == surface_hash(*now_.world, block)),
+                           touched_removals(edits)};
     for (std::size_t i = 0; i < changes_.size(); ++i) {
-      const std::uint64_t count = touched_by(changes_[i], block, edits, surface);
+      const std::uint64_t count = touched_by(i, state);
       if (count == 0) continue;
       if (touched_[i].edits == 0) touched_[i].block = block;
       touched_[i].edits += count;
@@ -226,26 +234,41 @@ class Judge {
     return stays ? nullptr : find(PartKind::kScatter, span->part);
   }
 
+  // A block whose edits are judged.
+  struct BlockState {
+    const DecodedEdits* edits;  // null: unreadable
+    bool inside;                // the current world
+    bool has_other_surface;
+    std::vector<std::uint64_t> removals;  // that each change touches
+  };
+
+  // Counts the removed models that each change touches.
+  std::vector<std::uint64_t> touched_removals(const DecodedEdits* edits) const {
+    std::vector<std::uint64_t> counts(changes_.size(), 0);
+    if (edits == nullptr) return counts;
+    for (const models::RemovedModel& removed : edits->removed)
+      if (const PartChange* change = change_of_instance(removed.index))
+        ++counts[static_cast<std::size_t>(change - changes_.data())];
+    return counts;
+  }
+
   // The number of edits of a block that depend on a changed part.
-  std::uint64_t touched_by(const PartChange& change, core::BlockCoord block,
-                           const DecodedEdits* edits, std::optional<std::uint64_t> surface) const {
+  std::uint64_t touched_by(std::size_t index, const BlockState& state) const {
+    const PartChange& change = changes_[index];
+    const DecodedEdits* const edits = state.edits;
     const std::uint64_t all = edits != nullptr ? count_of(*edits) : 1;
-    const bool inside = now_.world && now_.world->contains(block);
     switch (change.kind) {
       case PartKind::kSeed:
       case PartKind::kBlockSize:
         return all;
       case PartKind::kExtent:
-        return inside ? 0 : all;
+        return state.inside ? 0 : all;
       case PartKind::kGround:
       case PartKind::kWater:
-        return inside && surface && *surface == surface_hash(*now_.world, block) ? 0 : all;
+        return state.has_other_surface ? all : 0;
       case PartKind::kScatter:
         if (change.is_new || edits == nullptr) return change.is_new ? 0 : all;
-        return static_cast<std::uint64_t>(
-            std::ranges::count_if(edits->removed, [&](const models::RemovedModel& removed) {
-              return change_of_instance(removed.index) == &change;
-            }));
+        return state.removals[index];
       case PartKind::kSpecies:
       case PartKind::kModel:
         if (change.is_new || edits == nullptr) return change.is_new ? 0 : all;
@@ -351,13 +374,20 @@ class Adapter {
     return {};
   }
 
+  // The judge of kept edits of a world; one for all blocks of it.
+  const Judge& judge_of(const WorldIdentity& world) {
+    for (const auto& known : kept_worlds_)
+      if (known->world == world) return known->judge;
+    kept_worlds_.push_back(std::make_unique<KeptWorld>(world, now_));
+    return kept_worlds_.back()->judge;
+  }
+
   // Leaves in `old` the edits that still do not fit. Returns true if others fit again.
   core::Result<bool> take_back(KeptEdits& old) {
     auto edits = decoded({old.block, old.edits.version, old.edits.bytes});
     if (!edits) return false;
-    const Judge judge(old.world, now_);
     std::vector<Misfit> still;
-    DecodedEdits unfit = judge.take_unfit(old.block, *edits, still);
+    DecodedEdits unfit = judge_of(old.world).take_unfit(old.block, *edits, still);
     if (edits->empty()) return false;
     auto there = block_edits(old.block);
     if (!there) return tl::unexpected(there.error());
@@ -381,10 +411,17 @@ class Adapter {
     return decoded({block, here->version, here->bytes});
   }
 
+  struct KeptWorld {
+    KeptWorld(const WorldIdentity& of, const CurrentWorld& now) : world(of), judge(world, now) {}
+    const WorldIdentity world;
+    const Judge judge;
+  };
+
   SaveTables& tables_;
   const WorldIdentity& before_;
   const CurrentWorld& now_;
   Judge judge_;
+  std::vector<std::unique_ptr<KeptWorld>> kept_worlds_;
   bool moves_ = false;  // edits that do not fit
   Adaptation result_;
 };
@@ -393,11 +430,8 @@ class Adapter {
 
 std::uint64_t surface_hash(const world::World& world, core::BlockCoord block) {
   const core::RoundToNearest rounding;
-  const models::Parameters terrain = world::terrain_parameters(world, block);
-  const auto side = static_cast<std::size_t>(terrain.integer(models::kTerrainSize));
-  const double relief_m = terrain.real(models::kTerrainReliefM);
-  std::vector<std::uint16_t> heights(side * side);
-  models::BlockGround(terrain, block, heights.size()).heights(heights);
+  const double relief_m = world.terrain.real(models::kTerrainReliefM);
+  const std::vector<std::uint16_t> heights = world::ground_of_block(world, block);
   const std::uint64_t hash =
       core::hash_bytes(std::as_bytes(std::span(heights)), std::bit_cast<std::uint64_t>(relief_m));
   const double lowest_m = *std::ranges::min_element(heights) / 65535.0 * relief_m;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "ecs/snapshot.hpp"
@@ -49,7 +50,8 @@ struct SaveGame::State {
     std::optional<Bytes> entities;
     std::optional<std::vector<KeptEdits>> kept;
     std::optional<std::uint32_t> version;
-    bool world = false;  // its identity
+    bool world = false;     // its identity
+    bool surfaces = false;  // of all blocks with edits, where `world` is set
     bool empty() const {
       return edits.empty() && values.empty() && !entities && !kept && !version && !world;
     }
@@ -72,10 +74,17 @@ core::Result<void> SaveGame::State::adapt_to_world(Accept accept) {
   WorldIdentity& now = world.identity;
   if (now.hash == found->hash && now.parts.empty()) now.parts = found->parts;
   if (*found == now) return {};
-  if (found->parts.empty() && world.world)
+  const bool has_surfaces = !found->parts.empty();
+  if (!has_surfaces && world.world)
     found->parts = parts_before_growth(*world.world, *world.registry, found->hash);
   changes = changes_between(*found, now);
   unsaved.world = true;
+  const auto moves_ground = [](const PartChange& change) {
+    using enum PartKind;
+    return change.kind == kSeed || change.kind == kBlockSize || change.kind == kExtent ||
+           change.kind == kGround || change.kind == kWater;
+  };
+  unsaved.surfaces = !has_surfaces || std::ranges::any_of(changes, moves_ground);
   if (found->hash == now.hash) return {};
   auto adapted = adapt(tables, *found, world, accept);
   if (!adapted) return tl::unexpected(adapted.error());
@@ -99,19 +108,21 @@ core::Result<std::uint32_t> SaveGame::State::version() {
                                 tables.database().file().string()));
 }
 
-// Stores the identity of the world, and the surfaces of all blocks that the file has edits of.
+// Stores the identity of the world, and if the ground may have changed, the surfaces of all blocks
+// that the file has edits of.
 core::Result<void> SaveGame::State::write_world() {
   const WorldIdentity& identity = world.identity;
   auto ok = tables.put_fact("world name", Value(identity.name));
   if (ok) ok = tables.put_fact("world hash", Value(static_cast<std::int64_t>(identity.hash)));
   if (ok) ok = tables.put_blob("world parts", encode_parts(identity.parts));
-  if (ok) ok = tables.forget_surfaces();
-  if (!ok || !world.world) return ok;
+  const bool has_changed = unsaved.surfaces || !world.world;
+  if (ok && has_changed) ok = tables.forget_surfaces();
+  if (!ok || !has_changed || !world.world) return ok;
   std::vector<core::BlockCoord> blocks;
   ok = tables.for_each_edits(
       [&](core::BlockCoord block, std::uint32_t, auto) { blocks.push_back(block); });
   for (const core::BlockCoord block : blocks) {
-    if (ok && world.world->contains(block))
+    if (ok && !unsaved.edits.contains(block) && world.world->contains(block))
       ok = tables.put_surface(block, surface_hash(*world.world, block));
   }
   return ok;

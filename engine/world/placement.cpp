@@ -212,6 +212,13 @@ models::Parameters terrain_parameters(const World& world, core::BlockCoord node,
   return p;
 }
 
+std::vector<std::uint16_t> ground_of_block(const World& world, core::BlockCoord block) {
+  const auto size = static_cast<std::size_t>(world.terrain.integer(models::kTerrainSize));
+  std::vector<std::uint16_t> heights(size * size);
+  models::BlockGround(terrain_parameters(world, block), block, heights.size()).heights(heights);
+  return heights;
+}
+
 double ground_margin(const World& world, int node_level) {
   const auto size = static_cast<int>(world.terrain.integer(models::kTerrainSize));
   const double cells = models::terrain_strides(size)[1] + 1;

@@ -91,6 +91,9 @@ void set_sun(models::Parameters& terrain, double azimuth_deg, double elevation_d
 // the edits that reach it. `node` counts nodes of this level; at level 0 it is a block.
 models::Parameters terrain_parameters(const World& world, core::BlockCoord node,
                                       int node_level = 0);
+// The quantised heights of the vertices of a block's finest mesh, row by row: the ground of
+// queries, physics and saves. About 15 µs for 64 x 64 vertices.
+std::vector<std::uint16_t> ground_of_block(const World& world, core::BlockCoord block);
 // Distance beyond a node's border up to which heights affect the node's ground mesh, in blocks.
 double ground_margin(const World& world, int node_level);
 
