@@ -11,6 +11,7 @@
 #include "engine/core/assert.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/world/files/text_file.hpp"
+#include "engine/world/shaped_ground.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -35,7 +36,8 @@ count = 20
 
 bool same_ground(const world::World& a, const world::World& b) {
   return a.seed == b.seed && a.blocks_x == b.blocks_x && a.blocks_z == b.blocks_z &&
-         a.terrain == b.terrain && a.water == b.water;
+         a.terrain == b.terrain && a.water == b.water &&
+         world::shape_hash(a) == world::shape_hash(b);
 }
 
 constexpr int kDiskDelayMs = 100;  // after the last change of the file

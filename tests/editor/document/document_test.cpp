@@ -55,6 +55,8 @@ TEST(Document, AnEditChangesTheTextAndReportsItsExtent) {
   EXPECT_EQ(opened.told, Change::kText);
   EXPECT_TRUE(good(document.set_text(document.text() + "# more\n", QStringLiteral("Comment"))));
   EXPECT_EQ(opened.told, Change::kText);
+  EXPECT_TRUE(good(document.append_table({"road"}, "points_m = [[9, 9], [60, 90]]\n")));
+  EXPECT_EQ(opened.told, Change::kGround);
   EXPECT_TRUE(good(document.set_value({"terrain", "relief_m"}, "150")));
   EXPECT_EQ(opened.told, Change::kGround);
   EXPECT_TRUE(good(document.open(opened.place.file)));
