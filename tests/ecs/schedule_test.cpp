@@ -566,6 +566,19 @@ TEST(ScheduleBundles, AResourceThatComesTwiceIsNamedWithItsBundles) {
             "the system 'twice' takes Wind twice, by itself and by itself");
 }
 
+TEST(ScheduleBundles, AQueueMayHaveOneReaderBesideItsWriter) {
+  const auto refused = [](auto system) {
+    World world;
+    EventQueue<int> queue;
+    Schedule schedule(world);
+    schedule.provide(queue);
+    schedule.add("twice", system);
+    return schedule.arrange();
+  };
+  EXPECT_NE(refused([](EventReader<int>&, EventReader<int>&) {}), "");
+  EXPECT_EQ(refused([](EventReader<int>&, EventQueue<int>&) {}), "");
+}
+
 // A schedule rejects the wrong uses of bundles at compile time; these are the conditions.
 TEST(ScheduleBundles, OnlyStructsOfReferencesAreBundles) {
   static_assert(detail::Bundle<Weather> && detail::Bundle<WeatherWork> && detail::Bundle<Mixed>);
