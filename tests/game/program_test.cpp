@@ -20,8 +20,10 @@ Outcome run_game(const std::string& arguments) {
   const psygen::TemporaryFolder folder;
   const std::string err = (folder / "err").string();
   // Leaks of drivers, which the game has unloaded when the leak checker looks, have no names.
-  const int status = std::system(
-      ("export ASAN_OPTIONS=detect_leaks=0; " PSYGEN_GAME " " + arguments + " 2>" + err).c_str());
+  const int status =
+      std::system(("export ASAN_OPTIONS=\"$ASAN_OPTIONS:detect_leaks=0\"; " PSYGEN_GAME " " +
+                   arguments + " 2>" + err)
+                      .c_str());
   std::ifstream file(err);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {std::istreambuf_iterator<char>(file), {}}};
 }
