@@ -94,7 +94,7 @@ core::Result<Statement> prepare(Database& database, std::string_view sql,
                                    sqlite3_bind_parameter_count(raw), values.size()));
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (auto ok = check_value(values[i], "SQL"); !ok) return tl::unexpected(ok.error());
-    statement.bind(static_cast<int>(i) + 1, values[i]);
+    bind_value(statement, static_cast<int>(i) + 1, values[i]);
   }
   return statement;
 }
@@ -176,7 +176,7 @@ core::Result<Rows> GameTables::query(Database& database, std::string_view sql,
   for (; code == SQLITE_ROW; code = statement->step()) {
     std::vector<Value>& row = result.rows.emplace_back();
     for (int c = 0; c < columns; ++c)
-      row.push_back(statement->value(c));
+      row.push_back(value_of(*statement, c));
   }
   if (code != SQLITE_DONE) return step_error(database, sql);
   return result;

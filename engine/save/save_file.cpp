@@ -56,7 +56,7 @@ core::Result<void> put_fact(Database& database, std::string_view name, const Val
   auto insert = database.prepare("INSERT INTO psygen_facts VALUES(?, ?)", "cannot be made");
   if (!insert) return tl::unexpected(insert.error());
   insert->bind(1, name);
-  insert->bind(2, value);
+  bind_value(*insert, 2, value);
   if (insert->step() != SQLITE_DONE) return database.error("cannot be made");
   return {};
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
-#include "engine/save/database.hpp"
+#include "engine/save/bound_value.hpp"
 #include "engine/save/world_identity.hpp"
 
 namespace psygen::save {

@@ -136,7 +136,7 @@ core::Result<Value> SaveTables::value(std::string_view name) {
   const int code = get_value_.step();
   if (code == SQLITE_DONE) return Value();
   if (code != SQLITE_ROW) return database_.error("cannot be read");
-  Value found = get_value_.value(1);
+  Value found = value_of(get_value_, 1);
   if (checksum_of(name, found) != get_value_.integer(0))
     return damaged(fmt::format("the value '{}' does not match its checksum", core::shown(name)));
   return found;
@@ -148,7 +148,7 @@ core::Result<Value> SaveTables::fact(std::string_view name) {
   const int code = get_fact_.step();
   if (code == SQLITE_DONE) return Value();
   if (code != SQLITE_ROW) return database_.error("cannot be read");
-  return get_fact_.value(0);
+  return value_of(get_fact_, 0);
 }
 
 core::Result<bool> SaveTables::with_fact(
@@ -219,14 +219,14 @@ core::Result<void> SaveTables::put_value(std::string_view name, const Value& val
   statement.bind(1, name);
   if (!erased) {
     statement.bind(2, checksum_of(name, value));
-    statement.bind(3, value);
+    bind_value(statement, 3, value);
   }
   return finish(statement);
 }
 
 core::Result<void> SaveTables::put_fact(std::string_view name, const Value& value) {
   put_fact_.bind(1, name);
-  put_fact_.bind(2, value);
+  bind_value(put_fact_, 2, value);
   return finish(put_fact_);
 }
 

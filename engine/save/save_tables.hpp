@@ -11,7 +11,7 @@
 
 #include "engine/core/coordinates.hpp"
 #include "engine/core/error.hpp"
-#include "engine/save/database.hpp"
+#include "engine/save/bound_value.hpp"
 #include "engine/save/save_game.hpp"
 
 namespace psygen::save {

@@ -40,7 +40,8 @@ MAY_KNOW = {
                      "engine/visibility", "engine/image", "engine/render", "engine/platform",
                      "engine/telemetry"},
     "engine/audio": {"engine/core"},
-    "engine/save": {"ecs", "engine/core", "engine/models", "engine/world"},
+    "engine/sqlite": {"engine/core"},
+    "engine/save": {"ecs", "engine/core", "engine/models", "engine/world", "engine/sqlite"},
     "shaders": set(),
 }
 MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/handmade", "engine/input"}
@@ -102,13 +103,13 @@ ONLY_IN = {
     r"^meshoptimizer": {"engine/gltf", "engine/handmade", "engine/scene"},
     r"^spdlog/": {"engine/core"},
     r"^(AL/|sndfile)": {"engine/audio"},
-    r"^sqlite3": {"engine/save"},
+    r"^sqlite3": {"engine/sqlite"},
     r"^mpi": {"engine/cluster"},
     r"^Q[A-Z]|^Qt": {folder for folder in MAY_KNOW if folder.startswith("editor")},
 }
 THREADS = re.compile(r"^(thread|mutex|condition_variable|shared_mutex|future)$")
 NO_THREADS = {"ecs", "engine/models", "engine/world", "engine/query", "engine/physics", "engine/visibility",
-              "engine/exchange", "engine/gltf", "engine/save"}
+              "engine/exchange", "engine/gltf", "engine/sqlite", "engine/save"}
 BUT_HERE = {"ecs/schedule.cpp"}  # the only file of these layers that starts threads
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

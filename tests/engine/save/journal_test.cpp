@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "engine/save/database.hpp"
+#include "engine/save/bound_value.hpp"
 #include "tests/engine/save/support.hpp"
 #include "tests/temporary_folder.hpp"
 

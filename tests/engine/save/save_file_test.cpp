@@ -133,7 +133,7 @@ TEST(SaveFile, NamesThatLeadNowhereAreErrors) {
     const auto save = SaveGame::open(file, testing::kWorld);
     return save ? "opened" : save.error().message;
   };
-  EXPECT_EQ(sentence(""), "the file name of the save is empty");
+  EXPECT_EQ(sentence(""), "the file name is empty");
   std::filesystem::create_symlink("loop", folder / "loop");
   EXPECT_THAT(sentence(folder / "loop/x.save"), HasSubstr("loop/x.save: Too many levels"));
   EXPECT_THAT(sentence(folder / std::string(300, 'a') / "x.save"), HasSubstr("name too long"));

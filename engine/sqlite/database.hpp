@@ -1,5 +1,6 @@
 // SQLite as values: a connection to one file, and prepared statements. The only header of the
-// project that includes SQLite; private to engine/save. Not a query builder. One thread at a time.
+// project that includes SQLite. Private to the engine: saves and histories are files of SQLite. Not
+// a query builder. One thread at a time.
 #pragma once
 
 #include <sqlite3.h>
@@ -12,9 +13,8 @@
 #include <string_view>
 
 #include "engine/core/error.hpp"
-#include "engine/save/value.hpp"
 
-namespace psygen::save {
+namespace psygen::sqlite {
 
 // A prepared statement. Indices of parameters start at 1, those of columns at 0.
 class Statement {
@@ -28,18 +28,20 @@ class Statement {
   void bind(int index, std::int64_t value) { sqlite3_bind_int64(get(), index, value); }
   void bind(int index, std::string_view text);
   void bind(int index, std::span<const std::byte> bytes);
-  void bind(int index, const Value& value);
+  void bind(int index, double value) { sqlite3_bind_double(get(), index, value); }
+  void bind_null(int index) { sqlite3_bind_null(get(), index); }
   // Runs up to the next row: SQLITE_ROW, SQLITE_DONE or an error code.
   int step() { return sqlite3_step(get()); }
   // Ends the run and clears the parameters, so that the statement can run again.
   void reset();
 
-  // True if a column has exactly this type (SQLITE_INTEGER, ...); and its content.
-  bool is(int column, int type) const { return sqlite3_column_type(get(), column) == type; }
+  // The type of a column's content (SQLITE_INTEGER, ...), a test of it, and the content.
+  int type(int column) const { return sqlite3_column_type(get(), column); }
+  bool is(int column, int type) const { return this->type(column) == type; }
   std::int64_t integer(int column) const { return sqlite3_column_int64(get(), column); }
+  double real(int column) const { return sqlite3_column_double(get(), column); }
   std::string_view text(int column) const;
   std::span<const std::byte> bytes(int column) const;
-  Value value(int column) const;
 
  private:
   std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> statement_{nullptr, &sqlite3_finalize};
@@ -83,4 +85,4 @@ class Database {
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> database_;
 };
 
-}  // namespace psygen::save
+}  // namespace psygen::sqlite

@@ -1,27 +1,9 @@
-#include "engine/save/database.hpp"
+#include "engine/sqlite/database.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tests/engine/save/support.hpp"
-
-namespace psygen::save {
+namespace psygen::sqlite {
 namespace {
-
-TEST(Database, ValuesKeepTheirTypes) {
-  auto database = Database::in_memory();
-  ASSERT_TRUE(database);
-  auto echo = database->prepare("SELECT ?", "test");
-  ASSERT_TRUE(echo);
-  const std::string with_nul("a\0b", 3);
-  for (const Value& value :
-       {Value(), Value(std::int64_t{INT64_MIN}), Value(-0.5), Value(std::string()), Value(with_nul),
-        Value(Bytes()), Value(testing::bytes_of("bytes"))}) {
-    echo->bind(1, value);
-    ASSERT_EQ(echo->step(), SQLITE_ROW);
-    EXPECT_EQ(echo->value(0), value);
-    echo->reset();
-  }
-}
 
 TEST(Database, AFullFileIsAnErrorWithAMessage) {
   auto database = Database::in_memory();
@@ -42,4 +24,4 @@ TEST(Database, WrongSqlIsAnErrorWithAMessage) {
 }
 
 }  // namespace
-}  // namespace psygen::save
+}  // namespace psygen::sqlite

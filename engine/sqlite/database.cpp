@@ -1,14 +1,13 @@
-#include "engine/save/database.hpp"
+#include "engine/sqlite/database.hpp"
 
 #include <fmt/format.h>
 
 #include <cerrno>
 #include <cstring>
-#include <type_traits>
 
 #include "engine/core/utf8.hpp"
 
-namespace psygen::save {
+namespace psygen::sqlite {
 
 void Statement::bind(int index, std::string_view text) {
   sqlite3_bind_text64(get(), index, text.data() == nullptr ? "" : text.data(), text.size(),
@@ -21,24 +20,6 @@ void Statement::bind(int index, std::span<const std::byte> bytes) {
   } else {
     sqlite3_bind_blob64(get(), index, bytes.data(), bytes.size(), SQLITE_STATIC);
   }
-}
-
-void Statement::bind(int index, const Value& value) {
-  const auto bind_one = [&](const auto& content) {
-    using Content = std::decay_t<decltype(content)>;
-    if constexpr (std::is_same_v<Content, std::monostate>) {
-      sqlite3_bind_null(get(), index);
-    } else if constexpr (std::is_same_v<Content, double>) {
-      sqlite3_bind_double(get(), index, content);
-    } else if constexpr (std::is_same_v<Content, std::string>) {
-      bind(index, std::string_view(content));
-    } else if constexpr (std::is_same_v<Content, Bytes>) {
-      bind(index, std::span<const std::byte>(content));
-    } else {
-      bind(index, content);
-    }
-  };
-  std::visit(bind_one, value);
 }
 
 void Statement::reset() {
@@ -58,25 +39,8 @@ std::span<const std::byte> Statement::bytes(int column) const {
   return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(get(), column))};
 }
 
-Value Statement::value(int column) const {
-  switch (sqlite3_column_type(get(), column)) {
-    case SQLITE_INTEGER:
-      return integer(column);
-    case SQLITE_FLOAT:
-      return sqlite3_column_double(get(), column);
-    case SQLITE_TEXT:
-      return std::string(text(column));
-    case SQLITE_BLOB: {
-      const auto content = bytes(column);
-      return Bytes(content.begin(), content.end());
-    }
-    default:
-      return std::monostate{};
-  }
-}
-
 core::Result<std::filesystem::path> absolute_path(const std::filesystem::path& file) {
-  if (file.empty()) return core::fail(core::ErrorCode::kIo, "the file name of the save is empty");
+  if (file.empty()) return core::fail(core::ErrorCode::kIo, "the file name is empty");
   std::error_code error;
   std::filesystem::path path = std::filesystem::absolute(file, error);
   if (!error) return path;
@@ -180,4 +144,4 @@ tl::unexpected<core::Error> Database::error(std::string_view action) const {
   }
 }
 
-}  // namespace psygen::save
+}  // namespace psygen::sqlite
