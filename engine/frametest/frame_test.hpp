@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -28,7 +29,8 @@ struct Budget {
 };
 
 struct FrameTest {
-  std::string name;
+  std::string name;   // also that of a folder: no path, at most 64 bytes
+  int name_line = 1;  // of the file
   // Headless; world and path are unresolved names until load_frame_test().
   app::FlightOptions flight;
   std::vector<Budget> budgets;  // in the order of the file, at least one
@@ -43,5 +45,14 @@ core::Result<FrameTest> parse_frame_test(std::string_view text,
 // Reads a file and resolves its world and path: first in the folder of the test, then among the
 // shipped files. Also fails with kIo, and with kOverBudget for files over 1 MiB.
 core::Result<FrameTest> load_frame_test(const std::filesystem::path& file);
+
+// One file of a run, and its test or the reason why there is none.
+struct TestFile {
+  std::filesystem::path file;
+  core::Result<FrameTest> test;
+};
+// Reads all files of a run. Fails with kParse if two tests have one name; the message has both
+// files and lines.
+core::Result<std::vector<TestFile>> load_frame_tests(std::span<const std::filesystem::path> files);
 
 }  // namespace psygen::frametest

@@ -162,6 +162,24 @@ void read_budgets(const Node& table, const std::string& prefix, Relation relatio
   }
 }
 
+// Returns why a text cannot be the name of a test, which is also that of a folder in --out; empty
+// if it can. The reader has refused control characters, and names of more than kMaxNameBytes bytes.
+std::string_view problem_of_name(std::string_view name) {
+  if (name.empty() || name == "." || name == "..")
+    return "the name is also used for a folder and must not be empty, . or ..";
+  if (name.find_first_of("/\\") != std::string_view::npos)
+    return "the name is also used for a folder and must not contain / or \\";
+  return {};
+}
+
+void read_name(TableReader& root, const std::filesystem::path& file, FrameTest& test) {
+  test.name = core::shown(file.stem().string(), kMaxNameBytes);
+  root.read("name", test.name, kMaxNameBytes);
+  if (const world::Member* member = root.find("name")) test.name_line = member->line;
+  if (const std::string_view problem = problem_of_name(test.name); !problem.empty())
+    root.problem(test.name_line, "name", problem);
+}
+
 core::Result<void> find(const char* kind, const std::filesystem::path& folder,
                         std::filesystem::path& file) {
   std::error_code error;
@@ -198,10 +216,7 @@ core::Result<FrameTest> parse_frame_test(std::string_view text,
   world::read_format(root, kFrameTestFormat);
   if (problems.any()) return tl::unexpected(problems.first());
   FrameTest test;
-  test.name = core::shown(file_name.stem().string(), kMaxNameBytes);
-  root.read("name", test.name, kMaxNameBytes);
-  if (test.name.find('/') != std::string::npos)
-    root.problem("name", "the name is also used for a folder and must not contain /");
+  read_name(root, file_name, test);
   test.flight.session.headless = true;
   test.flight.session.world_file = "paper";
   test.flight.session.preset = render::Preset::kLow;
@@ -232,6 +247,25 @@ core::Result<FrameTest> load_frame_test(const std::filesystem::path& file) {
     return core::fail(found.error().code,
                       fmt::format("{}: {}", file.string(), found.error().message));
   return test;
+}
+
+core::Result<std::vector<TestFile>> load_frame_tests(std::span<const std::filesystem::path> files) {
+  std::vector<TestFile> tests;
+  for (const std::filesystem::path& file : files) {
+    tests.push_back({file, load_frame_test(file)});
+    const core::Result<FrameTest>& test = tests.back().test;
+    if (!test) continue;
+    const auto same = std::ranges::find_if(
+        tests, [&](const TestFile& other) { return other.test && other.test->name == test->name; });
+    if (same + 1 != tests.end())
+      return core::fail(
+          core::ErrorCode::kParse,
+          fmt::format("{}:{}: name: the test of {}:{} is also called {}, and both would write into "
+                      "one folder; give one another name",
+                      file.string(), test->name_line, same->file.string(), same->test->name_line,
+                      test->name));
+  }
+  return tests;
 }
 
 }  // namespace psygen::frametest

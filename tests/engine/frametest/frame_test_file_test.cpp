@@ -122,5 +122,48 @@ TEST(FrameTestFile, FindsFilesInItsFolderThenShippedOnes) {
   EXPECT_EQ(load_frame_test(folder / "none.toml").error().code, core::ErrorCode::kIo);
 }
 
+TEST(FrameTestFile, RefusesNamesThatAreNoFolder) {
+  const auto named = [](const std::string& name) {
+    return refusal("format = 1\nname = \"" + name + "\"\n[at_most]\nhitches = 0\n");
+  };
+  for (const char* name : {".", ".."})
+    EXPECT_EQ(named(name),
+              "folder/a.toml:2: name: the name is also used for a folder and must not "
+              "be empty, . or ..");
+  for (const char* name : {"../walk", "/walk", "a/b", "a\\\\b"})
+    EXPECT_EQ(named(name),
+              "folder/a.toml:2: name: the name is also used for a folder and must not contain / or "
+              "\\")
+        << name;
+  for (const std::string& name : {std::string(), std::string("a\\n"), std::string(256, 'a')})
+    EXPECT_THAT(named(name), StartsWith("folder/a.toml:2: name: it must be a string of 1 to 64"));
+  const auto from_file = parse_frame_test("format = 1\n[at_most]\nhitches = 0\n", "...toml");
+  ASSERT_FALSE(from_file) << "the stem is ..";
+  EXPECT_THAT(from_file.error().message, StartsWith("...toml:1: name: the name is also used"));
+}
+
+TEST(FrameTestFile, HasANameOfItsOwnInARun) {
+  const TemporaryFolder folder;
+  const std::string text = with("", "[at_most]\nhitches = 0\n");
+  std::filesystem::create_directory(folder / "old");
+  std::ofstream(folder / "walk.toml") << text;
+  std::ofstream(folder / "old" / "walk.toml") << text;
+  std::ofstream(folder / "other.toml") << "name = \"walk\"\n" + text;
+  std::ofstream(folder / "broken.toml") << "format = 2\n";
+  const auto refused = [](std::vector<std::filesystem::path> files) {
+    const auto tests = load_frame_tests(files);
+    return tests ? std::string() : tests.error().message;
+  };
+  EXPECT_EQ(refused({folder / "walk.toml", folder / "broken.toml"}), "") << "a broken one has none";
+  EXPECT_EQ(refused({folder / "walk.toml", folder / "broken.toml", folder / "old" / "walk.toml"}),
+            (folder / "old" / "walk.toml").string() + ":1: name: the test of " +
+                (folder / "walk.toml").string() +
+                ":1 is also called walk, and both would write into one folder; give one another "
+                "name");
+  EXPECT_THAT(refused({folder / "walk.toml", folder / "other.toml"}),
+              StartsWith((folder / "other.toml").string() + ":1: name: the test of "));
+  EXPECT_THAT(refused({folder / "walk.toml", folder / "walk.toml"}), HasSubstr("also called walk"));
+}
+
 }  // namespace
 }  // namespace psygen::frametest
