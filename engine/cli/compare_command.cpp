@@ -27,6 +27,7 @@
 #include "engine/cli/option_checks.hpp"
 #include "engine/compare/compare.hpp"
 #include "engine/compare/compare_page.hpp"
+#include "engine/compare/compare_words.hpp"
 #include "engine/compare/instructions.hpp"
 #include "engine/compare/times.hpp"
 #include "engine/core/log.hpp"
@@ -50,6 +51,7 @@ class CompareCommand final : public Command {
     return anyway_ ? compare::Conditions::kAcceptOthers : compare::Conditions::kMustBeEqual;
   }
   int compare_times() const;
+  int tell(compare::Verdict verdict, const std::string& text, const compare::Words& words) const;
   core::Result<void> write(const std::string& json, const std::string& page) const;
   core::Result<void> collect();
   core::Result<void> record_batch(int batch);
@@ -62,6 +64,7 @@ class CompareCommand final : public Command {
   std::filesystem::path out_;
   std::size_t pairs_ = 8, aa_ = 0;
   bool json_ = false, instructions_ = false, anyway_ = false;
+  telemetry::PullRequestWords words_;
   std::vector<compare::RecordedRun> runs_a_, runs_b_;
 };
 
@@ -231,6 +234,18 @@ CompareCommand::CompareCommand(CLI::App& cli)
   c.add_flag("--anyway", anyway_,
              "Compare runs of different machines, devices, presets, sizes or worlds, and say so");
   c.add_flag("--json", json_, "Print the result as JSON");
+  frametest::add_words(c, words_);
+}
+
+// Prints the result, writes the words for a pull request, and returns the exit code.
+int CompareCommand::tell(compare::Verdict verdict, const std::string& text,
+                         const compare::Words& words) const {
+  const std::string commands = words_.annotations.to_stdout()
+                                   ? telemetry::to_text(words_.annotations, words.remarks)
+                                   : std::string();
+  if (const int printed = print(text + commands); printed != kOk) return printed;
+  if (auto ok = words_.write(words.markdown, words.remarks); !ok) return fail_with(ok.error());
+  return verdict == compare::Verdict::kWorse ? int{frametest::kMissed} : kOk;
 }
 
 // Runs a command once: COMMAND TEST --out FOLDER. A missed budget (3) does not count as a failure.
@@ -316,6 +331,11 @@ std::string CompareCommand::misuse() const {
 }
 
 int CompareCommand::run() {
+  if (json_ && words_.annotations.to_stdout()) {
+    core::log_error("--json and --annotations both print; give --annotations a file: github:FILE");
+    return kUsage;
+  }
+  if (auto ok = words_.check(); !ok) return fail_with(ok.error());
   if (instructions_) return compare_instructions();
   if (const std::string sentence = misuse(); !sentence.empty()) {
     core::log_error(sentence);
@@ -338,10 +358,8 @@ int CompareCommand::run() {
     const std::string page = compare::to_html(*result, runs_a_, runs_b_, {a_, b_, test_}, measured);
     if (auto ok = write(json, page); !ok) return fail_with(ok.error());
   }
-  const int printed = print(json_ ? json : compare::to_text(*result, measured));
-  return printed != kOk                                ? printed
-         : result->verdict == compare::Verdict::kWorse ? int{frametest::kMissed}
-                                                       : kOk;
+  return tell(result->verdict, json_ ? json : compare::to_text(*result, measured),
+              compare::words_of(*result, test_));
 }
 
 // Writes compare.json and compare.html to --out.
@@ -367,9 +385,8 @@ int CompareCommand::compare_times() const {
   if (!out_.empty()) {
     if (auto ok = write(json, compare::to_html(*result)); !ok) return fail_with(ok.error());
   }
-  const int printed = print(json_ ? json : compare::to_text(*result));
-  if (printed != kOk) return printed;
-  return result->verdict == compare::Verdict::kWorse ? int{frametest::kMissed} : kOk;
+  return tell(result->verdict, json_ ? json : compare::to_text(*result),
+              compare::words_of(*result));
 }
 
 core::Result<compare::Instructions> CompareCommand::count_instructions() const {
@@ -402,9 +419,8 @@ int CompareCommand::compare_instructions() const {
     core::log_error(ok.error().message);
     return kFailed;
   }
-  const int printed = print(json_ ? json : compare::to_text(*counted));
-  if (printed != kOk) return printed;
-  return counted->verdict() == compare::Verdict::kWorse ? int{frametest::kMissed} : kOk;
+  return tell(counted->verdict(), json_ ? json : compare::to_text(*counted),
+              compare::words_of(*counted));
 }
 
 std::unique_ptr<Command> make_compare_command(CLI::App& cli) {

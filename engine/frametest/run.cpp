@@ -14,7 +14,7 @@
 #include "engine/frametest/failure.hpp"
 #include "engine/program/command_line.hpp"
 #include "engine/program/program.hpp"
-#include "engine/telemetry/page.hpp"
+#include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/summary_fields.hpp"
 
 namespace psygen::frametest {
@@ -76,48 +76,22 @@ void show_failure(const FrameTest& test, std::span<const WorstFrame> worst,
   }
 }
 
-std::string suite_of(const TestResult& result) {
-  const bool skipped = result.error && result.error->code == core::ErrorCode::kNoDevice;
-  const auto missed = std::ranges::count(result.budgets, false, &BudgetResult::holds);
-  const std::string name = escaped(result.name);
-  std::string text = fmt::format(
-      "<testsuite name=\"{}\" file=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
-      "skipped=\"{}\" time=\"{:.3f}\">\n",
-      name, escaped(result.file.string()), result.error ? 1 : result.budgets.size(), missed,
-      result.error && !skipped ? 1 : 0, skipped ? 1 : 0, result.seconds);
-  if (result.error) {
-    const std::string message = escaped(result.error->message);
-    text += fmt::format("<testcase classname=\"{}\" name=\"run\"><{} message=\"{}\"/></testcase>\n",
-                        name, skipped ? "skipped" : "error", message);
+core::Result<std::vector<TestFile>> prepare(const RunOptions& options) {
+  if (!options.junit.empty()) {
+    if (auto ok = telemetry::check_output_file(options.junit); !ok)
+      return tl::unexpected(ok.error());
   }
-  for (const BudgetResult& r : result.budgets) {
-    const std::string_view relation = name_of(r.budget.relation);
-    text += fmt::format("<testcase classname=\"{}\" name=\"{} {} {}\"", name,
-                        escaped(r.budget.field), relation, escaped(limit_of(r.budget)));
-    text += r.holds ? fmt::format("><system-out>{}</system-out></testcase>\n", escaped(r.value))
-                    : fmt::format("><failure message=\"{}\"/></testcase>\n", escaped(r.value));
+  return options.words.check().and_then([&] { return load_frame_tests(options.files); });
+}
+
+core::Result<void> write_results(const RunOptions& options, std::span<const TestResult> results) {
+  if (!options.junit.empty()) {
+    if (auto ok = core::replace_file(options.junit, to_junit(results)); !ok) return ok;
   }
-  // Several CI servers show this line as an attachment of the suite.
-  if (!result.page.empty())
-    text += fmt::format("<system-out>[[ATTACHMENT|{}]]</system-out>\n",
-                        escaped(std::filesystem::absolute(result.page).string()));
-  return text + "</testsuite>\n";
+  return options.words.write(to_markdown(results), remarks_of(results));
 }
 
 }  // namespace
-
-std::string_view sign_of(Relation relation) {
-  return relation == Relation::kAtMost ? "<=" : relation == Relation::kAtLeast ? ">=" : "=";
-}
-
-std::string limit_of(const Budget& budget) {
-  const double* number = std::get_if<double>(&budget.limit);
-  return number != nullptr ? fmt::format("{:g}", *number) : std::get<std::string>(budget.limit);
-}
-
-std::string escaped(std::string_view text) {
-  return telemetry::escaped(core::shown(text));
-}
 
 core::Result<std::unique_ptr<app::Flight>> start_flight(app::FlightOptions flight,
                                                         const RunOptions& options,
@@ -159,18 +133,15 @@ std::vector<BudgetResult> judge(std::span<const Budget> budgets,
   return results;
 }
 
-TestResult run_frame_test(const std::filesystem::path& file, const RunOptions& options,
-                          const Hooks& hooks) {
+TestResult run_frame_test(const TestFile& file, const RunOptions& options, const Hooks& hooks) {
   const double start_s = core::monotonic_seconds();
   TestResult result;
-  result.file = file;
-  result.name = core::shown(file.stem().string());
-  const auto test = load_frame_test(file);
-  if (test) result.name = test->name;
-  auto flown = test.and_then([&](const FrameTest& t) { return fly(t, options, hooks); });
+  result.file = file.file;
+  result.name = file.test ? file.test->name : core::shown(file.file.stem().string());
+  auto flown = file.test.and_then([&](const FrameTest& t) { return fly(t, options, hooks); });
   if (flown) {
     result.budgets = std::move(flown->budgets);
-    if (!result.holds()) show_failure(*test, flown->worst, options, hooks, result);
+    if (!result.holds()) show_failure(*file.test, flown->worst, options, hooks, result);
   } else {
     result.error = flown.error();
   }
@@ -178,40 +149,40 @@ TestResult run_frame_test(const std::filesystem::path& file, const RunOptions& o
   return result;
 }
 
-std::string to_text(const TestResult& result) {
-  std::string text;
-  for (const BudgetResult& r : result.budgets) {
-    text += fmt::format("{}: {} {}  {} {}{}\n", result.name, r.budget.field, r.value,
-                        sign_of(r.budget.relation), limit_of(r.budget), r.holds ? "" : "  MISSED");
-  }
-  if (!result.page.empty())
-    text += fmt::format("{}: images in {}\n", result.name, result.page.string());
-  return text;
-}
-
-std::string to_junit(std::span<const TestResult> results) {
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
-  for (const TestResult& result : results)
-    text += suite_of(result);
-  return text + "</testsuites>\n";
-}
-
 int run_frame_tests(const RunOptions& options, const Hooks& hooks) {
+  const auto files = prepare(options);
+  if (!files) return program::fail_with(files.error());
   std::vector<TestResult> results;
   bool printed = true;
-  for (const std::filesystem::path& file : options.files) {
+  for (const TestFile& file : *files) {
     results.push_back(run_frame_test(file, options, hooks));
     const TestResult& result = results.back();
     printed = program::print(to_text(result)) == program::kOk && printed;
     if (result.error) core::log_error(fmt::format("{}: {}", result.name, result.error->message));
   }
-  int code = printed ? exit_code_of(results) : kFailed;
-  if (options.junit.empty()) return code;
-  if (const auto written = core::replace_file(options.junit, to_junit(results)); !written) {
-    core::log_error(written.error().message);
-    code = kFailed;
-  }
-  return code;
+  const telemetry::Annotations& annotations = options.words.annotations;
+  if (annotations.to_stdout())
+    printed = program::print(to_text(annotations, remarks_of(results))) == program::kOk && printed;
+  if (const auto written = write_results(options, results); !written)
+    return program::fail_with(written.error());
+  return printed ? exit_code_of(results) : kFailed;
+}
+
+void add_words(CLI::App& cli, telemetry::PullRequestWords& words) {
+  cli.add_option("--markdown", words.markdown,
+                 "Write the results to this file as Markdown, for a page of a pull request");
+  cli.add_option_function<std::string>(
+         "--annotations",
+         [&words](const std::string& text) {
+           words.annotations = *telemetry::annotations_from(text);
+         },
+         "Remarks at the lines of files, for a pull request; without FILE to stdout")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            const auto where = telemetry::annotations_from(text);
+            return where ? std::string() : where.error().message;
+          },
+          "github|gitlab[:FILE]"));
 }
 
 void add_options(CLI::App& cli, RunOptions& options) {
@@ -223,6 +194,7 @@ void add_options(CLI::App& cli, RunOptions& options) {
       ->capture_default_str()
       ->check(CLI::Range(0, kMaxWorstFrames));
   cli.add_option("--device", options.device, "Part of the Vulkan device's name");
+  add_words(cli, options.words);
 }
 
 int frame_test_main(int argc, char** argv, const Hooks& hooks) {

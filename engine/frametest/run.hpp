@@ -12,6 +12,7 @@
 
 #include "engine/app/session.hpp"
 #include "engine/frametest/frame_test.hpp"
+#include "engine/telemetry/remarks.hpp"
 #include "engine/telemetry/summary.hpp"
 
 namespace CLI {
@@ -43,8 +44,9 @@ struct RunOptions {
   std::vector<std::filesystem::path> files;
   std::filesystem::path out;    // has one subfolder per test; empty: outputs are not kept
   std::filesystem::path junit;  // file; empty: none
-  std::string device;           // part of a device's name; empty: the best device
-  int worst_frames = 3;         // number of frames captured of a failed test; requires `out`
+  telemetry::PullRequestWords words;
+  std::string device;    // part of a device's name; empty: the best device
+  int worst_frames = 3;  // number of frames captured of a failed test; requires `out`
   const std::atomic<bool>* stop = nullptr;  // set by any thread to end early
 };
 
@@ -88,18 +90,25 @@ core::Result<std::unique_ptr<app::Flight>> start_flight(app::FlightOptions fligh
                                                         const Hooks& hooks, app::Plugin last = {});
 
 // Runs one file.
-TestResult run_frame_test(const std::filesystem::path& file, const RunOptions& options,
-                          const Hooks& hooks = {});
+TestResult run_frame_test(const TestFile& file, const RunOptions& options, const Hooks& hooks = {});
 // Text with one line for each budget.
 std::string to_text(const TestResult& result);
-// Formats the results as JUnit XML: a suite for each file, a case for each budget.
+// Formats the results as JUnit XML: a suite for each file, a case for each budget. The cases of a
+// file have a class of their own, and share the file's time.
 std::string to_junit(std::span<const TestResult> results);
+// Markdown for a pull request: a table of the tests, and one of the budgets of each test that does
+// not hold.
+std::string to_markdown(std::span<const TestResult> results);
+// A remark for each missed budget, at its line, and for each test that could not run.
+std::vector<telemetry::Remark> remarks_of(std::span<const TestResult> results);
 
+// Declares --markdown and --annotations; `words` outlives the command line.
+void add_words(CLI::App& cli, telemetry::PullRequestWords& words);
 // Declares the options of a command line; `options` outlives it. Limits --worst to 0 …
 // kMaxWorstFrames.
 void add_options(CLI::App& cli, RunOptions& options);
-// Runs all files, prints results to stdout and errors to stderr, and writes the JUnit file. Returns
-// the exit code.
+// Reads all files, runs them, prints results to stdout and errors to stderr, and writes the files
+// of the results. Runs nothing if two tests have one name. Returns the exit code.
 int run_frame_tests(const RunOptions& options, const Hooks& hooks = {});
 // Complete main() of a game's frame tests, with add_options().
 int frame_test_main(int argc, char** argv, const Hooks& hooks);

@@ -51,4 +51,26 @@ code=0
 "$folder/build/template/my_game_frame_test" "$folder/missed.toml" >"$folder/frames.txt" 2>/dev/null || code=$?
 [ "$code" -eq 3 ] || { echo "a missed budget ended with $code instead of 3"; exit 1; }
 grep -qE '^missed: frame_ms.p99 .* <= 0  MISSED$' "$folder/frames.txt"
+# The template's workflow, on a copy in a repository of its own: its steps build the game against the installed
+# package, and tell a result that holds, and one that does not. On the wall clock any run holds, however few its frames.
+cp -r "$source/examples/template" "$folder/game"
+cd "$folder/game"
+sed -i -E 's/^frame_ms.p99 = .*/frame_ms.max = 1000000/; s/^(missing.pixels_max_percent) = .*/\1 = 100/' frames.toml
+git init -q
+git -c user.name=test -c user.email=test@localhost commit -q --allow-empty -m first
+workflow() { # CODE STEP...: the steps end with this exit code
+  local expected="$1" code=0
+  PSYGEN_PREFIX="$folder/psygen" GITHUB_STEP_SUMMARY="$folder/step.md" CMAKE_BUILD_PARALLEL_LEVEL=2 \
+    "$source/tests/tools/workflow_steps.py" .github/workflows/frame-tests.yml "${@:2}" >"$folder/log.txt" 2>&1 || code=$?
+  [ "$code" -eq "$expected" ] || { cat "$folder/log.txt"; echo "the workflow ended with $code"; exit 1; }
+}
+workflow 0 "Build the game" "Run the frame tests" "Show the summary"
+grep -qE '^\| exact \| held, 2 budgets \|' "$folder/step.md"
+[ -s frame-tests/exact/report.html ] && [ -s frame-tests/frames/report.html ] && [ -s frame-tests/junit.xml ]
+sed -i -E 's/^frame_ms.p99 = .*/frame_ms.p99 = 0.001/' exact.toml
+line="$(grep -n '^frame_ms.p99' exact.toml | cut -d: -f1)"
+workflow 3 "Run the frame tests"
+grep -q "^::error file=exact.toml,line=$line,title=exact misses frame_ms.p99::frame_ms.p99 is " "$folder/log.txt"
+workflow 0 "Show the summary"
+grep -qE '^\| exact \| missed 1 of 2 budgets \|' "$folder/step.md" && [ -s frame-tests/exact/failed.html ]
 [ -z "${KEEP_PICTURES:-}" ] || cp "$folder"/*.png "$KEEP_PICTURES"

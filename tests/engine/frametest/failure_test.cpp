@@ -113,7 +113,7 @@ TEST(Failure, AFullDiskIsAnErrorAndNotAMissedBudget) {
   std::filesystem::create_directories(options.out / "bare");
   const auto file = write_test(folder, "[equal]\nmissing.pixels_max_percent = 0\n");
   const FullDisk full(options.out / "bare", 0);
-  const TestResult result = run_frame_test(file, options);
+  const TestResult result = run_frame_test({file, load_frame_test(file)}, options);
   ASSERT_TRUE(result.error);
   EXPECT_THAT(result.error->message, HasSubstr("summary.json"));
   EXPECT_THAT(result.error->message, HasSubstr("No space left"));
@@ -128,7 +128,7 @@ TEST(Failure, StillReportsMissedBudgetsIfThePageCannotBeWritten) {
   const auto file = write_test(folder, "[equal]\nmissing.pixels_max_percent = 0\n");
   std::filesystem::create_directories(options.out / "bare");
   std::filesystem::create_directories(options.out / "bare/failed.html/in the way");
-  const TestResult result = run_frame_test(file, options);
+  const TestResult result = run_frame_test({file, load_frame_test(file)}, options);
   EXPECT_FALSE(result.error);
   EXPECT_FALSE(result.holds());
   EXPECT_TRUE(result.page.empty());

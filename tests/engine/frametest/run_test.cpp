@@ -13,11 +13,19 @@ namespace {
 using testing::HasSubstr;
 
 TestResult result_of(std::vector<BudgetResult> budgets) {
-  return {"dir/walk.toml", "walk", std::move(budgets), {}, 1.5, {}};
+  TestResult result;
+  result.file = "dir/walk.toml";
+  result.name = "walk";
+  result.seconds = 1.5;
+  result.budgets = std::move(budgets);
+  return result;
 }
 
-TestResult result_of(core::ErrorCode code) {
-  return {"dir/walk.toml", "walk", {}, core::Error{code, "it <failed> & \"more\""}, 1.5, {}};
+TestResult result_of(core::ErrorCode code, const std::string& file = "dir/walk.toml") {
+  TestResult result = result_of(std::vector<BudgetResult>());
+  result.file = file;
+  result.error = core::Error{code, "it <failed> & \"more\""};
+  return result;
 }
 
 TEST(Judge, ComparesBudgetsWithValuesAndMissesUnmeasuredOnes) {
@@ -66,14 +74,80 @@ TEST(FrameTests, ReturnTheWorstResult) {
 TEST(FrameTests, AreWrittenAsJUnit) {
   const Budget budget{"frame_ms.p99", Relation::kAtMost, 25.0, 1};
   const std::vector<TestResult> results{result_of({{budget, "24", true}, {budget, "26", false}}),
-                                        result_of(core::ErrorCode::kIo),
-                                        result_of(core::ErrorCode::kNoDevice)};
+                                        result_of(core::ErrorCode::kIo, "dir/io.toml"),
+                                        result_of(core::ErrorCode::kNoDevice, "dir/none.toml")};
   const std::string xml = to_junit(results);
+  EXPECT_THAT(xml, HasSubstr("<testsuites tests=\"4\" failures=\"1\" errors=\"1\" skipped=\"1\" "
+                             "time=\"4.500\">"));
   EXPECT_THAT(xml,
               HasSubstr("tests=\"2\" failures=\"1\" errors=\"0\" skipped=\"0\" time=\"1.500\""));
-  EXPECT_THAT(xml, HasSubstr("name=\"frame_ms.p99 at_most 25\"><failure message=\"26\"/>"));
+  EXPECT_THAT(xml, HasSubstr("name=\"frame_ms.p99 at_most 25\" time=\"0.750\"><failure "
+                             "message=\"26\"/>"));
   EXPECT_THAT(xml, HasSubstr("<error message=\"it &lt;failed&gt; &amp; &quot;more&quot;\"/>"));
   EXPECT_THAT(xml, HasSubstr("<skipped message="));
+}
+
+TEST(FrameTests, HaveDistinctClassesInJUnit) {
+  const Budget budget{"hitches", Relation::kAtMost, 0.0, 1};
+  TestResult walk = result_of({{budget, "0", true}}), dash = walk;
+  dash.name = "dash";
+  const std::string xml =
+      to_junit(std::vector{walk, dash, result_of(core::ErrorCode::kParse, "old/walk.toml")});
+  EXPECT_THAT(xml, HasSubstr("classname=\"dir/walk.toml\" name=\"hitches at_most 0\""));
+  EXPECT_THAT(xml, HasSubstr("classname=\"dash\" name=\"hitches at_most 0\""));
+  EXPECT_THAT(xml, HasSubstr("classname=\"old/walk.toml\" name=\"run\""))
+      << "a file that cannot be read may be called like another test";
+}
+
+TEST(FrameTests, AreWrittenAsMarkdown) {
+  const Budget budget{"frame_ms.p99", Relation::kAtMost, 25.0, 1};
+  TestResult dash = result_of({{budget, "20", true}});
+  dash.name = "da|sh";
+  const std::vector<TestResult> results{result_of({{budget, "24", true}, {budget, "26", false}}),
+                                        dash, result_of(core::ErrorCode::kNoDevice)};
+  EXPECT_EQ(to_markdown(results),
+            "## Frame tests\n\n"
+            "| test | result | time |\n| --- | --- | --- |\n"
+            "| walk | missed 1 of 2 budgets | 1.5 s |\n"
+            "| da\\|sh | held, 1 budget | 1.5 s |\n"
+            "| walk | skipped: it \\<failed\\> \\& \"more\" | 1.5 s |\n\n"
+            "### walk\n\n"
+            "| budget | limit | this run |  |\n| --- | --- | --- | --- |\n"
+            "| frame\\_ms.p99 | \\<= 25 | 24 | held |\n"
+            "| frame\\_ms.p99 | \\<= 25 | 26 | MISSED |\n\n");
+}
+
+TEST(FrameTests, LeaveRemarksAtTheLinesOfTheirBudgets) {
+  const Budget budget{"frame_ms.p99", Relation::kAtMost, 25.0, 12};
+  const auto remarks = remarks_of(
+      std::vector{result_of({{budget, "24", true}, {budget, "26", false}}),
+                  result_of(core::ErrorCode::kIo), result_of(core::ErrorCode::kNoDevice)});
+  ASSERT_EQ(remarks.size(), 3u);
+  EXPECT_EQ(remarks[0].title, "walk misses frame_ms.p99");
+  EXPECT_EQ(remarks[0].message, "frame_ms.p99 is 26; the budget is <= 25");
+  EXPECT_EQ(remarks[0].file, "dir/walk.toml");
+  EXPECT_EQ(remarks[0].line, 12);
+  EXPECT_EQ(remarks[1].title, "walk failed");
+  EXPECT_EQ(remarks[1].level, telemetry::RemarkLevel::kError);
+  EXPECT_EQ(remarks[2].level, telemetry::RemarkLevel::kWarning);
+}
+
+TEST(FrameTests, RunNothingIfTwoHaveOneName) {
+  const TemporaryFolder folder;
+  const char* text = "format = 1\nname = \"walk\"\n[at_most]\nhitches = 0\n";
+  std::ofstream(folder / "a.toml") << text;
+  std::ofstream(folder / "b.toml") << text;
+  Hooks hooks;
+  int flights = 0;
+  hooks.prepare = [&](app::SessionOptions&) -> core::Result<void> {
+    return ++flights, core::Result<void>{};
+  };
+  RunOptions options;
+  options.files = {folder / "a.toml", folder / "b.toml"};
+  options.out = folder / "out";
+  EXPECT_EQ(run_frame_tests(options, hooks), kFailed);
+  EXPECT_EQ(flights, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
 TEST(FrameTests, RunTheGamesHooksAndKeepTheOutputs) {
@@ -98,13 +172,16 @@ TEST(FrameTests, RunTheGamesHooksAndKeepTheOutputs) {
   options.files = {folder / "short.toml"};
   options.out = folder / "out";
   options.junit = folder / "junit.xml";
+  options.words.markdown = folder / "words.md";
+  options.words.annotations = {telemetry::Annotations::Format::kGitlab, folder / "quality.json"};
   options.worst_frames = 0;  // so the test flies only once
   EXPECT_EQ(run_frame_tests(options, hooks), kMissed) << "the last budget cannot hold";
   EXPECT_EQ(prepared, 1);
   EXPECT_EQ(started, 1);
   EXPECT_EQ(frames, 5);
   EXPECT_TRUE(std::filesystem::exists(folder / "out" / "short" / "frames.csv"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "junit.xml"));
+  for (const char* file : {"junit.xml", "words.md", "quality.json"})
+    EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
   options.device = "no such device";
   EXPECT_EQ(run_frame_tests(options, hooks), kSkipped);
 }
