@@ -283,6 +283,7 @@ core::Result<FlightReport> Flight::run() {
   const auto prepared = core::catch_out_of_memory("preparing the first view",
                                                   [this] { return session_->prepare(pose_); });
   if (!prepared) return tl::unexpected(prepared.error());
+  if (options_.reference_load) measure_reference_load();
   session_->set_now(0);
   recorded_ = true;
   load_.emplace();

@@ -68,6 +68,8 @@ class Flight {
   void tell_end(const FlightReport& report);
 
   telemetry::RunFacts run_facts(bool whole);
+  void measure_reference_load();
+  telemetry::ReferenceLoad reference_load();
   void write_outputs(const telemetry::Summary& summary);
   void note_written(const std::filesystem::path& file, const core::Result<void>& result);
 
@@ -77,6 +79,8 @@ class Flight {
   std::optional<world::CameraPath> path_;
   std::unique_ptr<telemetry::FrameLog> log_;
   std::optional<telemetry::LoadMeter> load_;  // of the recorded flight
+  std::optional<telemetry::ReferenceLoad> reference_before_;
+  telemetry::Count peak_before_bytes_;  // of resident memory, before the reference load
   platform::FlyCamera fly_camera_;
   core::CameraPose pose_;
   std::uint64_t frames_ = 0;

@@ -111,6 +111,7 @@ struct FlightOptions {
   bool loop = false;               // repeats the path
   double warmup_seconds = 1;       // excluded from all statistics
   bool hash_world = true;          // computes hash.world of the summary (about 50 ms)
+  bool reference_load = false;     // measures it before and after the flight (seconds)
 };
 
 }  // namespace psygen::app

@@ -132,6 +132,9 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
                               : telemetry::Figure::missing("the flight was stopped");
   }
   facts.peak_rss_bytes = telemetry::peak_rss_bytes();
+  if (facts.peak_rss_bytes.has_value() && peak_before_bytes_.has_value())
+    facts.peak_rss_bytes = std::max(*facts.peak_rss_bytes, *peak_before_bytes_);
+  facts.reference = reference_load();
   facts.world_hash = !options_.hash_world ? telemetry::Count::missing("switched off")
                      : whole              ? sample_hash(scene, session_->home().position.block)
                                           : telemetry::Count::missing("the flight failed");
@@ -142,6 +145,22 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
                       : images_ > 0    ? telemetry::Count(images_hash_)
                                        : telemetry::Count::missing("no images were written");
   return facts;
+}
+
+// Before the flight, when the modelers rest. The memory of the load is not that of the flight.
+void Flight::measure_reference_load() {
+  if (!session_->scene().wait_for_modelers([this] { return !session_->stopped(); })) return;
+  peak_before_bytes_ = telemetry::peak_rss_bytes();
+  reference_before_ = telemetry::measure_reference_load();
+  telemetry::forget_peak_rss();
+}
+
+// After the flight, when the modelers rest. Call it after the other facts.
+telemetry::ReferenceLoad Flight::reference_load() {
+  if (!reference_before_) return {};
+  const bool alone = session_->scene().wait_for_modelers([this] { return !session_->stopped(); });
+  return alone ? telemetry::mean_of(*reference_before_, telemetry::measure_reference_load())
+               : telemetry::ReferenceLoad();
 }
 
 void Flight::note_written(const std::filesystem::path& file, const core::Result<void>& result) {

@@ -56,4 +56,8 @@ Measured<std::uint64_t> peak_rss_bytes() {
   return Measured<std::uint64_t>::missing("/proc/self/status has no field " + name);
 }
 
+void forget_peak_rss() {
+  std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): since Linux 4.0
+}
+
 }  // namespace psygen::telemetry

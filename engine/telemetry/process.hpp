@@ -20,5 +20,7 @@ std::string shell_text(std::string_view words);
 
 // Largest resident set so far, in bytes. Missing if /proc cannot be read.
 Measured<std::uint64_t> peak_rss_bytes();
+// Makes peak_rss_bytes() count from now on. Does nothing if the kernel does not offer it.
+void forget_peak_rss();
 
 }  // namespace psygen::telemetry

@@ -215,6 +215,11 @@ std::string frame_facts(const Summary& s) {
   facts.add("triangles, median", shown(s.draw.triangles_p50, count_text));
   facts.add("draws, median", shown(s.draw.draws_p50, whole));
   facts.add("frame ÷ floor", shown(s.draw.floor_ratio, three_digits));
+  if (const ReferenceRatios ratios = reference_ratios(s); s.reference.pair.wall_s.has_value()) {
+    facts.add("processor time ÷ reference load", shown(ratios.cpu, three_digits));
+    facts.add("p50 and p99 ÷ reference load",
+              shown(ratios.frame_p50, three_digits) + ", " + shown(ratios.frame_p99, three_digits));
+  }
   return facts.end();
 }
 

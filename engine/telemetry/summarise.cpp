@@ -238,6 +238,17 @@ void summarise_synthesis(Summary& s, Frames frames, const FrameLog& log, double 
 
 }  // namespace
 
+ReferenceRatios reference_ratios(const Summary& s) {
+  const auto ratio = [](const Figure& figure, double scale, const Figure& reference) {
+    if (!reference.has_value() || !figure.has_value())
+      return Figure::missing(reference.has_value() ? figure.reason : reference.reason);
+    return Figure(*figure * scale / *reference);
+  };
+  const Figure& pair_s = s.reference.pair.wall_s;
+  return {ratio(s.load.cpu_seconds, 1, cpu_seconds_of(s.reference)),
+          ratio(s.frame_ms.p50, 1e-3, pair_s), ratio(s.frame_ms.p99, 1e-3, pair_s)};
+}
+
 Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   const Frames frames = log.frames_since(warmup_s);
   Summary s;
@@ -246,6 +257,7 @@ Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   s.machine = facts.machine;
   s.build = facts.build;
   s.load = facts.load;
+  s.reference = facts.reference;
   static_cast<RunSettings&>(s.run) = facts.run;
   s.run.warmup_seconds = warmup_s;
   summarise_run(s, frames, log);

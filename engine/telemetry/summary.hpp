@@ -11,6 +11,7 @@
 
 #include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/machine.hpp"
+#include "engine/telemetry/reference_load.hpp"
 #include "engine/telemetry/statistics.hpp"
 
 namespace psygen::telemetry {
@@ -73,6 +74,7 @@ struct RunFacts {
   MachineFacts machine;
   BuildFacts build;
   LoadFacts load;
+  ReferenceLoad reference;  // mean of before and after the run
   RunSettings run;
   std::uint64_t cache_budget_bytes = 0;
   Count cache_peak_bytes;       // if missing: the largest cache_bytes of the log
@@ -102,6 +104,12 @@ struct SystemTimes {
   Figure p50, p99;  // without waiting for the GPU or the display
 };
 
+// Figures of a run divided by those of its reference load: processor time by that of all three
+// parts, frame times by the wall time of `pair`.
+struct ReferenceRatios {
+  Figure cpu, frame_p50, frame_p99;
+};
+
 // A frame counts as too coarse if more than this percentage of its image is missing or too coarse.
 inline constexpr double kCoarsePercent = 1.0;
 
@@ -113,6 +121,7 @@ struct Summary {
   MachineFacts machine;
   BuildFacts build;
   LoadFacts load;
+  ReferenceLoad reference;
   struct : RunSettings {
     std::uint64_t frames = 0;           // of the whole run
     double seconds = 0;                 // of the whole run, on the flight's clock
@@ -185,6 +194,9 @@ struct Summary {
     Count world, types, path, images;
   } hash;
 };
+
+// Missing if one of both figures is.
+ReferenceRatios reference_ratios(const Summary& summary);
 
 // Statistics over the frames that start at `warmup_s` or later on the flight's clock. Pure.
 // O(frames log frames).

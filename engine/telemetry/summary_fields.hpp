@@ -4,9 +4,11 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
+#include "engine/core/error.hpp"
 #include "engine/telemetry/summary.hpp"
 
 namespace psygen::telemetry {
@@ -21,5 +23,10 @@ struct SummaryField {
 // All fields of a summary, in the order of summary.json. A Summary{} has the names that every run
 // has; a real run also has system_ms.NAME.p50 and .p99.
 std::vector<SummaryField> summary_fields(const Summary& summary);
+
+// The fields in the text of a summary.json; `file` is for messages. Fails with kParse for text that
+// is not JSON, and for another schema.
+core::Result<std::vector<SummaryField>> summary_fields_in(std::string_view text,
+                                                          const std::string& file);
 
 }  // namespace psygen::telemetry

@@ -91,6 +91,20 @@ Json load_json(const LoadFacts& l) {
           {"cpu_seconds", l.cpu_seconds}};
 }
 
+Json times_json(const LoadTimes& times) {
+  return {{"wall_s", times.wall_s}, {"cpu_s", times.cpu_s}};
+}
+
+Json reference_json(const Summary& s) {
+  const ReferenceRatios ratios = reference_ratios(s);
+  return {
+      {"arith", times_json(s.reference.arith)},
+      {"stream", times_json(s.reference.stream)},
+      {"pair", times_json(s.reference.pair)},
+      {"ratio",
+       {{"cpu", ratios.cpu}, {"frame_p50", ratios.frame_p50}, {"frame_p99", ratios.frame_p99}}}};
+}
+
 Json picture_json(const Summary& s) {
   const Verdict verdict = judge_quality(s);
   return {{"grade", name_of(verdict.grade)},
@@ -204,6 +218,17 @@ void flatten(const Json& json, const std::string& name, std::vector<SummaryField
   fields.push_back(std::move(field));
 }
 
+std::vector<SummaryField> fields_of(Json json) {
+  const Json reasons = json.value("reasons", Json::object());
+  json.erase("reasons");
+  std::vector<SummaryField> fields;
+  flatten(json, "", fields);
+  for (SummaryField& field : fields)
+    if (reasons.contains(field.name) && reasons[field.name].is_string())
+      field.reason = reasons[field.name].get<std::string>();
+  return fields;
+}
+
 }  // namespace
 
 std::string to_json(const Summary& s) {
@@ -215,6 +240,7 @@ std::string to_json(const Summary& s) {
       {"machine", machine_json(s.machine)},
       {"build", build_json(s.build)},
       {"load", load_json(s.load)},
+      {"reference", reference_json(s)},
       {"run", run_json(s)},
       {"frame_ms",
        {{"mean", t.mean},
@@ -256,14 +282,19 @@ std::string to_json(const Summary& s) {
 }
 
 std::vector<SummaryField> summary_fields(const Summary& summary) {
-  Json json = Json::parse(to_json(summary));
-  const Json reasons = json["reasons"];
-  json.erase("reasons");
-  std::vector<SummaryField> fields;
-  flatten(json, "", fields);
-  for (SummaryField& field : fields)
-    if (reasons.contains(field.name)) field.reason = reasons[field.name].get<std::string>();
-  return fields;
+  return fields_of(Json::parse(to_json(summary)));
+}
+
+core::Result<std::vector<SummaryField>> summary_fields_in(std::string_view text,
+                                                          const std::string& file) {
+  Json json = Json::parse(text, nullptr, false);
+  const auto refuse = [&file](std::string_view sentence) {
+    return core::fail(core::ErrorCode::kParse, fmt::format("{}: {}", file, sentence));
+  };
+  if (!json.is_object()) return refuse("it is not JSON, or is truncated");
+  if (json.value("schema", Json()) != kSummarySchema)
+    return refuse(fmt::format("schema: it must be \"{}\"", kSummarySchema));
+  return fields_of(std::move(json));
 }
 
 }  // namespace psygen::telemetry

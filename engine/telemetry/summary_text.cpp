@@ -115,6 +115,22 @@ void add_frames(Table& table, const Summary& s) {
     table.row(system.name, spread_text(system.p50, system.p99, ms_text));
 }
 
+// Figures of a run that measured a reference load, as ratios to it.
+void add_reference(Table& table, const Summary& s) {
+  const ReferenceRatios ratios = reference_ratios(s);
+  if (!s.reference.arith.wall_s.has_value()) return;
+  const auto seconds = [](double value) { return three_digits(value) + " s"; };
+  table.section("reference");
+  table.row("load", fmt::format("arithmetic {}, memory {}, all processors {}",
+                                value_or_dash(s.reference.arith.wall_s, seconds),
+                                value_or_dash(s.reference.stream.wall_s, seconds),
+                                value_or_dash(s.reference.pair.wall_s, seconds)));
+  table.row("ratios to it", fmt::format("processor time {}, frame p50 {}, p99 {}",
+                                        value_or_dash(ratios.cpu, three_digits),
+                                        value_or_dash(ratios.frame_p50, three_digits),
+                                        value_or_dash(ratios.frame_p99, three_digits)));
+}
+
 void add_streaming(Table& table, const Summary& s) {
   const auto& wait = s.missing.time_to_visible_ms;
   add_picture(table, s);
@@ -148,6 +164,7 @@ void add_streaming(Table& table, const Summary& s) {
   table.row("cost error", spread_text(error.p50, error.p95, percent_text, "p95"));
   table.section("memory");
   table.row("resident, peak", value_or_dash(s.memory.peak_rss_bytes, bytes_text));
+  add_reference(table, s);
 }
 
 }  // namespace

@@ -71,6 +71,20 @@ TEST(VirtualClock, TimesOfARealClockAreOmitted) {
     EXPECT_EQ(figure.reason, "the clock is virtual");
 }
 
+TEST(VirtualClock, AReferenceLoadChangesNoFrame) {
+  const TemporaryFolder folder;
+  FlightOptions options = virtual_flight(folder);
+  options.frames = 10;
+  telemetry::Summary without, with;
+  const std::string frames = frames_of(options, &without);
+  options.reference_load = true;
+  EXPECT_EQ(frames_of(options, &with), frames);
+  EXPECT_EQ(without.reference.pair.wall_s.reason, "not measured in this run");
+  EXPECT_GT(*with.reference.arith.cpu_s, 0);
+  EXPECT_GT(*with.reference.pair.wall_s, 0);
+  EXPECT_GT(*telemetry::reference_ratios(with).cpu, 0);
+}
+
 TEST(VirtualClock, CostsMatchTheDocumentation) {
   EXPECT_NEAR(virtual_frame_ms(40'000, 500, {640, 360}), 0.5 + 4 + 1 + 1.8432, 1e-12);
   EXPECT_NEAR(virtual_frame_ms(40'000, 500, {640, 360}, 0.5), 0.5 + 4 + 1 + 0.4608, 1e-12);

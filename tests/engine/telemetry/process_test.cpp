@@ -36,5 +36,15 @@ TEST(ProcessMemory, ThePeakGrowsWithTouchedMemoryAndNeverShrinks) {
   EXPECT_GE(*peak_rss_bytes(), before + (48 << 20));
 }
 
+TEST(ProcessMemory, APeakCanBeForgotten) {
+  const std::uint64_t before = *peak_rss_bytes();
+  {
+    std::vector<char> block(before + (64 << 20), 1);
+    EXPECT_GT(block[before % block.size()], 0);
+  }
+  forget_peak_rss();
+  EXPECT_LT(*peak_rss_bytes(), before + (48 << 20));
+}
+
 }  // namespace
 }  // namespace psygen::telemetry
