@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
+#include <sstream>
 
 #include "engine/core/log.hpp"
+#include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
 #include "game/play/land.hpp"
 
@@ -21,6 +22,7 @@ constexpr const char* kTooFar =
 constexpr double kLongestS = 1e9;  // of a game and its fires
 constexpr std::int64_t kMaxCarried = 1'000'000;
 constexpr const char* kLast = "last.txt";  // holds the seed of the last opened save
+constexpr std::uint64_t kMaxLastBytes = 64;
 
 // Returns plain numbers as the bytes of one value.
 template <class T>
@@ -147,9 +149,11 @@ std::filesystem::path save_file(const std::filesystem::path& folder, std::uint64
 
 // File times do not help here, because the system clock may have been set back.
 std::optional<std::uint64_t> last_seed(const std::filesystem::path& folder) {
+  const auto bytes = core::read_file(folder / kLast, kMaxLastBytes);
+  if (!bytes) return std::nullopt;
   std::string name;
+  if (!(std::istringstream({bytes->begin(), bytes->end()}) >> name)) return std::nullopt;
   std::error_code error;
-  if (!(std::ifstream(folder / kLast) >> name)) return std::nullopt;
   const std::uint64_t seed = seed_of(name);
   if (!std::filesystem::exists(save_file(folder, seed), error)) return std::nullopt;
   return seed;

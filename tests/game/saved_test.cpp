@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -69,6 +70,20 @@ TEST_F(Saves, TheLastSaveIsKnownAfterTheClockWasSetBack) {
   std::filesystem::remove(file());
   EXPECT_EQ(last_seed(folder_), std::nullopt);
   EXPECT_EQ(last_seed(folder_ / "none"), std::nullopt);
+}
+
+TEST_F(Saves, TheLastSaveIsUnknownIfItsNoteIsNoShortFile) {
+  auto play = begin();
+  { ASSERT_TRUE(Saved::open(file(), *play)); }
+  const std::filesystem::path note = folder_ / "last.txt";
+  std::ofstream(note) << std::string(100, '3');
+  EXPECT_EQ(last_seed(folder_), std::nullopt);
+  std::filesystem::remove(note);
+  std::filesystem::create_symlink("/dev/zero", note);
+  EXPECT_EQ(last_seed(folder_), std::nullopt) << "a device without an end";
+  std::filesystem::remove(note);
+  ASSERT_EQ(mkfifo(note.c_str(), 0600), 0);
+  EXPECT_EQ(last_seed(folder_), std::nullopt) << "a pipe that nobody writes to";
 }
 
 // A game that is quit and resumed can be finished.

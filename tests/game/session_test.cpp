@@ -1,5 +1,7 @@
 // The game in a session without a window: equal for any number of modelers, silent validation,
 // recorded input, settings, and rejected files.
+#include <sys/stat.h>
+
 #include <fstream>
 
 #include "engine/scene/objects/assets.hpp"
@@ -165,6 +167,16 @@ TEST_F(GameSession, KeepsSettingsAndReportsBrokenFilesWithoutChangingThem) {
     ASSERT_FALSE(broken) << text;
     EXPECT_NE(broken.error().message.find("settings.toml"), std::string::npos);
   }
+  // Dotted keys nest tables; a pipe without a writer never ends.
+  std::string nested = "a";
+  for (int i = 0; i < 100'000; ++i)
+    nested += ".a";
+  std::ofstream(folder_ / "settings.toml", std::ios::trunc) << nested << " = 1";
+  EXPECT_FALSE(load_settings(folder_));
+  std::filesystem::remove(folder_ / "settings.toml");
+  ASSERT_EQ(mkfifo((folder_ / "settings.toml").c_str(), 0600), 0);
+  EXPECT_FALSE(load_settings(folder_));
+  std::filesystem::remove(folder_ / "settings.toml");
   std::ofstream(folder_ / "settings.toml", std::ios::trunc)
       << "fov_deg = 1e9\nquality = -4\ntext = nan\n";
   const auto wild = load_settings(folder_);
