@@ -2,10 +2,13 @@
 
 #include <pthread.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <exception>
 #include <latch>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -13,7 +16,6 @@
 
 #ifdef __linux__
 #include <pthread.h>
-#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 #endif
@@ -66,6 +68,21 @@ UsualStacks::UsualStacks() {
 UsualStacks::~UsualStacks() {
   if (former_bytes_ > 0) set_default_stack_bytes(former_bytes_);
   stacks_mutex().unlock();
+}
+
+Result<void> widen_stacks() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_STACK, &limit) != 0) return {};
+  if (limit.rlim_cur < kThreadStackBytes && limit.rlim_cur < limit.rlim_max) {
+    rlimit wider = limit;
+    wider.rlim_cur = std::min<rlim_t>(kThreadStackBytes, limit.rlim_max);
+    if (setrlimit(RLIMIT_STACK, &wider) == 0) limit = wider;
+  }
+  if (default_stack_bytes() < kThreadStackBytes) set_default_stack_bytes(kThreadStackBytes);
+  if (limit.rlim_cur >= kMinStackBytes) return {};
+  return fail(ErrorCode::kInternal, "ulimit -s allows " + std::to_string(limit.rlim_cur >> 10) +
+                                        " KiB of stack; at least " +
+                                        std::to_string(kMinStackBytes >> 10) + " KiB are needed");
 }
 
 bool memory_left(std::uint64_t bytes) {

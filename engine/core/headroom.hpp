@@ -46,6 +46,14 @@ class UsualStacks {
   std::size_t former_bytes_ = 0;  // 0: the default is large enough
 };
 
+// Least stack of a thread that calls the engine (docs/package.md).
+inline constexpr std::size_t kMinStackBytes = std::size_t{256} << 10;
+
+// Gives the main thread, and all threads that the process starts from now on, kThreadStackBytes
+// where `ulimit -s` allows less and its hard limit permits more. Fails with kInternal if the main
+// thread is left with less than kMinStackBytes. Call it before other threads start.
+Result<void> widen_stacks();
+
 // Runs `work` on a new thread, which the caller joins. Fails with kInternal if the system grants
 // this process no thread (ulimit -u, container limits) or no memory for its stack.
 template <class Work>

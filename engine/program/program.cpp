@@ -15,6 +15,7 @@
 #include <new>
 #include <system_error>
 
+#include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/render/device/software_tuning.hpp"
@@ -93,6 +94,7 @@ int run(std::string_view name, const std::function<int()>& body) {
   install_terminate_handler();
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
+  if (const auto stacks = core::widen_stacks(); !stacks) return fail_with(stacks.error());
   // psygen throws nothing, but libraries do when memory runs out.
   try {
     return body();

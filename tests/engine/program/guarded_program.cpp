@@ -36,6 +36,13 @@ core::Result<void> write_much(const std::string& file) {
   return core::fail(core::ErrorCode::kIo, file + ": cannot be written");
 }
 
+// Fills a frame of 4 MiB on this thread and on a new one.
+void use_stack() {
+  volatile char frame[std::size_t{4} << 20];
+  for (std::size_t i = 0; i < sizeof(frame); i += 1024)
+    frame[i] = 'x';
+}
+
 const std::map<std::string, Body> kFaults{
     {"allocate", allocate},
     {"allocate in a thread",
@@ -45,6 +52,12 @@ const std::map<std::string, Body> kFaults{
      }},
     {"print", print_much},
     {"write", write_much},
+    {"use 4 MiB of stack",
+     [](const std::string&) -> core::Result<void> {
+       use_stack();
+       std::thread(use_stack).join();
+       return {};
+     }},
     {"throw",
      [](const std::string& text) -> core::Result<void> { throw std::runtime_error(text); }},
     {"throw a number", [](const std::string&) -> core::Result<void> { throw 7; }},

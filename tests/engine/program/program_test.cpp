@@ -81,6 +81,12 @@ TEST_F(ProgramTest, BrokenPipesFullDisksAndLimitsOfFilesAreErrors) {
   expect_failure(meet("write " + file, "ulimit -f 8;"), file + ": cannot be written");
 }
 
+TEST_F(ProgramTest, ASmallStackIsWidenedOrAnError) {
+  EXPECT_EQ(meet("'use 4 MiB of stack'", "ulimit -S -s 128;").status, 0);
+  expect_failure(meet("print", "ulimit -s 128;"),
+                 "ulimit -s allows 128 KiB of stack; at least 256 KiB are needed\n");
+}
+
 TEST_F(ProgramTest, ClosedStreamsAreNotReusedForFiles) {
   const std::string file = (folder_ / "small").string();
   EXPECT_EQ(meet("write " + file, "", ">&- <&-").status, 0);
