@@ -16,18 +16,29 @@ namespace {
 
 using Runs = std::span<const RecordedRun>;
 
+// The path, clock or step in which two runs differ: "different paths: X and Y"; empty if in none.
+std::string work_difference(const RecordedRun& first, const RecordedRun& other) {
+  const auto differ = [](const char* what, const auto& one, const auto& two) {
+    return fmt::format("different {}: {} and {}", what, one, two);
+  };
+  if (first.path_hash != other.path_hash && !first.path_hash.empty() && !other.path_hash.empty())
+    return differ("paths", first.path_hash, other.path_hash);
+  const auto clock = [](const RecordedRun& run) { return run.virtual_clock ? "virtual" : "wall"; };
+  if (first.virtual_clock != other.virtual_clock)
+    return differ("clocks", clock(first), clock(other));
+  if (first.fixed_step != other.fixed_step)
+    return differ("steps", first.fixed_step.value_or(0), other.fixed_step.value_or(0));
+  return {};
+}
+
 // Returns the reason why two runs cannot be compared; empty if they can.
 std::string difference(const RecordedRun& first, const RecordedRun& other) {
   const auto differ = [&](const char* what, const auto& one, const auto& two) {
     return fmt::format("{} and {} have different {}: {} and {}", first.folder, other.folder, what,
                        one, two);
   };
-  if (first.path_hash != other.path_hash && !first.path_hash.empty() && !other.path_hash.empty())
-    return differ("paths", first.path_hash, other.path_hash);
-  if (first.virtual_clock != other.virtual_clock)
-    return fmt::format("{} and {} have different clocks", first.folder, other.folder);
-  if (first.fixed_step != other.fixed_step)
-    return differ("steps", first.fixed_step.value_or(0), other.fixed_step.value_or(0));
+  if (const std::string work = work_difference(first, other); !work.empty())
+    return fmt::format("{} and {} have {}", first.folder, other.folder, work);
   // On the virtual clock without a fixed step, times depend on the compared measurements.
   if (first.virtual_clock && !first.fixed_step) return {};
   if (first.frame_ms.size() != other.frame_ms.size())
@@ -371,6 +382,19 @@ bool pictures_differ(Runs a, Runs b) {
 std::string_view name_of(Verdict verdict) {
   constexpr std::array<std::string_view, 4> kNames{"same", "worse", "better", "inconclusive"};
   return kNames[static_cast<std::size_t>(verdict)];
+}
+
+std::vector<std::string> differences_of(const RecordedRun& first, const RecordedRun& other) {
+  std::vector<std::string> found;
+  if (std::string work = work_difference(first, other); !work.empty())
+    found.push_back(std::move(work));
+  const bool fixed = first.fixed_step && first.fixed_step == other.fixed_step;
+  if (fixed && first.measured_frames != other.measured_frames)
+    found.push_back(fmt::format("different numbers of frames: {} and {}", first.measured_frames,
+                                other.measured_frames));
+  for (std::string& sentence : differences(first, other))
+    found.push_back(std::move(sentence));
+  return found;
 }
 
 core::Result<Comparison> compare(Runs a, Runs b, Conditions conditions) {

@@ -76,6 +76,11 @@ enum class Conditions : std::uint8_t { kMustBeEqual, kAcceptOthers };
 core::Result<Comparison> compare(std::span<const RecordedRun> a, std::span<const RecordedRun> b,
                                  Conditions conditions = Conditions::kMustBeEqual);
 
+// Why figures of `other` say nothing beside those of `first`, by the rule of compare(): another
+// path, clock or step, another number of frames of fixed steps, or other conditions
+// (RecordedRun::required). Phrases; none if they can be compared. Uses no frames.
+std::vector<std::string> differences_of(const RecordedRun& first, const RecordedRun& other);
+
 // False alarm rate: verdicts "worse" and "better" of comparisons of a set with itself.
 struct FalseAlarms {
   std::size_t comparisons = 0, worse = 0, better = 0, inconclusive = 0;

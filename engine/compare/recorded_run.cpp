@@ -167,6 +167,32 @@ void add_conditions(const Parsed& json, RecordedRun& run) {
   add(run.shown, "stolen time in percent", "/load/steal_percent");
 }
 
+core::Result<Parsed> summary_in(std::string_view text, const std::string& folder) {
+  const std::string file = folder + "/summary.json";
+  Parsed json = Parsed::parse(text, nullptr, false);
+  if (json.is_discarded()) return refuse_file(file, "it is not JSON, or is truncated");
+  if (member<std::string>(json, "/schema") != "psygen.summary/1")
+    return refuse_file(file, "schema: it must be \"psygen.summary/1\"");
+  return json;
+}
+
+// A run without frames and conditions.
+RecordedRun run_in(const Parsed& json, const std::string& folder) {
+  RecordedRun run;
+  run.folder = folder;
+  run.path_hash = member<std::string>(json, "/hash/path").value_or("");
+  run.images_hash = member<std::string>(json, "/hash/images").value_or("");
+  const auto count = [&json](const char* path, double most) {
+    return static_cast<std::uint64_t>(
+        std::clamp(member<double>(json, path).value_or(0), 0.0, most));
+  };
+  run.width = count("/run/width", 1e6);
+  run.height = count("/run/height", 1e6);
+  run.measured_frames = count("/run/measured_frames", 1e15);
+  run.fixed_step = member<double>(json, "/run/fixed_step");
+  return run;
+}
+
 // More than a flight of a day.
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
 
@@ -180,24 +206,22 @@ core::Result<std::string> read_text(const std::filesystem::path& file) {
 
 core::Result<RecordedRun> parse_run(std::string_view frames_csv, std::string_view summary_json,
                                     const std::string& folder) {
-  const std::string file = folder + "/summary.json";
-  const Parsed json = Parsed::parse(summary_json, nullptr, false);
-  if (json.is_discarded()) return refuse_file(file, "it is not JSON, or is truncated");
-  if (member<std::string>(json, "/schema") != "psygen.summary/1")
-    return refuse_file(file, "schema: it must be \"psygen.summary/1\"");
-  RecordedRun run;
-  run.folder = folder;
-  run.path_hash = member<std::string>(json, "/hash/path").value_or("");
-  run.images_hash = member<std::string>(json, "/hash/images").value_or("");
-  const auto pixels = [&json](const char* path) {
-    return static_cast<std::uint64_t>(std::clamp(member<double>(json, path).value_or(0), 0.0, 1e6));
-  };
-  run.width = pixels("/run/width");
-  run.height = pixels("/run/height");
-  run.fixed_step = member<double>(json, "/run/fixed_step");
-  const double warmup_s = member<double>(json, "/run/warmup_seconds").value_or(0);
+  const auto json = summary_in(summary_json, folder);
+  if (!json) return tl::unexpected(json.error());
+  RecordedRun run = run_in(*json, folder);
+  const double warmup_s = member<double>(*json, "/run/warmup_seconds").value_or(0);
   if (auto ok = parse_frames(frames_csv, warmup_s, run); !ok) return tl::unexpected(ok.error());
-  add_conditions(json, run);
+  add_conditions(*json, run);
+  return run;
+}
+
+core::Result<RecordedRun> parse_conditions(std::string_view summary_json, const std::string& folder,
+                                           bool virtual_clock) {
+  const auto json = summary_in(summary_json, folder);
+  if (!json) return tl::unexpected(json.error());
+  RecordedRun run = run_in(*json, folder);
+  run.virtual_clock = virtual_clock;
+  add_conditions(*json, run);
   return run;
 }
 

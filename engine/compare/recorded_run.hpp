@@ -37,7 +37,8 @@ struct RecordedRun {
   // Conditions that comparable runs share: world, size, and on the wall clock CPU, device, driver,
   // preset. Then those that are only shown: revision, compiler, load. "unknown" in older runs.
   std::vector<NamedText> required, shown;
-  std::optional<double> fixed_step;  // Hz
+  std::optional<double> fixed_step;   // Hz
+  std::uint64_t measured_frames = 0;  // after the warm-up, as the summary tells it
 };
 
 // Texts of the files of a run.
@@ -56,6 +57,11 @@ core::Result<RecordedRun> read_run(const std::filesystem::path& folder);
 // Parses a run from texts in memory; `folder` is for messages.
 core::Result<RecordedRun> parse_run(std::string_view frames_csv, std::string_view summary_json,
                                     const std::string& folder);
+
+// Parses the conditions of a run alone, without frames: hashes, size, step, and those that runs
+// share or show. The summary does not tell whether the clock was virtual.
+core::Result<RecordedRun> parse_conditions(std::string_view summary_json, const std::string& folder,
+                                           bool virtual_clock);
 
 // The runs in a folder: itself, or its subfolders at any depth that have a frames.csv, by name.
 // Fails with kIo if there are none.

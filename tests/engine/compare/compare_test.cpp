@@ -192,5 +192,30 @@ TEST(Compare, IsFormattedAsTextAndAsJson) {
   EXPECT_THAT(to_json(worse, nullptr), HasSubstr("\"verdict\": \"worse\""));
 }
 
+TEST(Compare, NamesWhatKeepsFiguresFromBeingCompared) {
+  RecordedRun one;
+  one.path_hash = "aa";
+  one.fixed_step = 30;
+  one.measured_frames = 90;
+  one.required = {{"size", "640x360"}, {"CPU", "old"}};
+  RecordedRun other = one;
+  EXPECT_THAT(differences_of(one, other), testing::IsEmpty());
+  other.measured_frames = 91;
+  other.required[1].text = "new";
+  EXPECT_THAT(
+      differences_of(one, other),
+      testing::ElementsAre("different numbers of frames: 90 and 91", "different CPU: old and new"));
+  one.fixed_step = other.fixed_step = std::nullopt;
+  EXPECT_THAT(differences_of(one, other), testing::ElementsAre("different CPU: old and new"))
+      << "without a step the numbers of frames differ in each run";
+  other = one;
+  other.path_hash = "bb";
+  EXPECT_THAT(differences_of(one, other), testing::ElementsAre("different paths: aa and bb"));
+  other = one;
+  other.virtual_clock = true;
+  EXPECT_THAT(differences_of(one, other),
+              testing::ElementsAre("different clocks: wall and virtual"));
+}
+
 }  // namespace
 }  // namespace psygen::compare

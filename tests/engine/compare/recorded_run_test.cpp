@@ -57,6 +57,20 @@ TEST(RecordedRun, HasTheConditionsThatItsClockNeeds) {
   EXPECT_EQ(exact->required.size(), 2U) << "on the virtual clock the machine does not matter";
 }
 
+TEST(RecordedRun, HasConditionsWithoutItsFrames) {
+  const auto run = parse_run(kHeader + kRows, kRunSummary, "dir");
+  const auto conditions = parse_conditions(kRunSummary, "dir", false);
+  ASSERT_TRUE(run && conditions);
+  EXPECT_EQ(conditions->required, run->required);
+  EXPECT_EQ(conditions->shown, run->shown);
+  EXPECT_EQ(conditions->fixed_step, 30);
+  EXPECT_TRUE(conditions->frame_ms.empty());
+  EXPECT_LT(parse_conditions(kRunSummary, "dir", true)->required.size(), run->required.size())
+      << "on the virtual clock the machine does not count";
+  EXPECT_EQ(parse_conditions("{", "dir", false).error().message,
+            "dir/summary.json: it is not JSON, or is truncated");
+}
+
 TEST(RecordedRun, ALowerRenderScaleHasALargerError) {
   const std::string header = kHeader.substr(0, kHeader.size() - 1) + ",resolution\n";
   const auto run =
