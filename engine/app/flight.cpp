@@ -60,9 +60,6 @@ void forget_real_times(telemetry::FrameRecord& record) {
   record.apart = telemetry::Apart::kNo;
 }
 
-// Files of the output folder, which exist after the flight.
-constexpr std::array kFiles{"summary.json", "report.html", "frames.csv", "trace.json"};
-
 }  // namespace
 
 core::Result<std::unique_ptr<Flight>> Flight::create(FlightOptions options) {
@@ -78,7 +75,7 @@ core::Result<void> Flight::open() {
     auto folder = telemetry::OutputFolder::open(options_.out_folder);
     if (!folder) return tl::unexpected(folder.error());
     out_.emplace(std::move(*folder));
-    for (const char* name : kFiles) {
+    for (const char* name : kFlightFiles) {
       if (auto ok = core::check_replaceable(options_.out_folder / name); !ok) return ok;
     }
   }

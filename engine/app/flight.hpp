@@ -3,6 +3,7 @@
 // themselves. Main thread only.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -16,6 +17,9 @@
 #include "engine/world/camera_path.hpp"
 
 namespace psygen::app {
+
+// Files of the output folder, which exist after the flight.
+inline constexpr std::array kFlightFiles{"summary.json", "report.html", "frames.csv", "trace.json"};
 
 // The result of a flight.
 struct FlightReport {

@@ -248,7 +248,8 @@ int CompareCommand::tell(compare::Verdict verdict, const std::string& text,
   return verdict == compare::Verdict::kWorse ? int{frametest::kMissed} : kOk;
 }
 
-// Runs a command once: COMMAND TEST --out FOLDER. A missed budget (3) does not count as a failure.
+// Runs a command once: COMMAND TEST --out FOLDER. A budget that is missed or
+// not judged (3, 5) does not count as a failure.
 core::Result<compare::RecordedRun> CompareCommand::record(
     const std::string& command, const std::filesystem::path& folder) const {
   if (auto ok = telemetry::create_output_folder(folder); !ok) return tl::unexpected(ok.error());
@@ -258,7 +259,7 @@ core::Result<compare::RecordedRun> CompareCommand::record(
   const auto log = folder / "output.txt";
   const auto code = run_program(*words, log);
   if (!code) return tl::unexpected(code.error());
-  if (*code != frametest::kHeld && *code != frametest::kMissed) {
+  if (*code != frametest::kHeld && *code != frametest::kMissed && *code != frametest::kNotJudged) {
     return core::fail(
         *code == frametest::kSkipped ? core::ErrorCode::kNoDevice : core::ErrorCode::kInternal,
         fmt::format("{}: exit code {}; its output is in {}", command, *code, log.string()));

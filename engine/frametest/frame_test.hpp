@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 namespace psygen::frametest {
 
 inline constexpr int kFrameTestFormat = 1;
+inline constexpr int kMaxRuns = 99, kMaxRetries = 9;
 
 // Relation of a value to its limit. Also the name of the file's table.
 enum class Relation : std::uint8_t { kAtMost, kAtLeast, kEqual };
@@ -26,6 +28,10 @@ struct Budget {
   Relation relation = Relation::kAtMost;
   std::variant<double, std::string> limit;  // a text only for kEqual
   int line = 0;                             // of the file
+  // The limit is this factor times the value of the base; `limit` is set when the base is read.
+  std::optional<double> of_base = {};
+  // Without a reference load, processor time must have risen too before the budget is missed.
+  bool needs_witness = true;
 };
 
 struct FrameTest {
@@ -34,6 +40,9 @@ struct FrameTest {
   // Headless; world and path are unresolved names until load_frame_test().
   app::FlightOptions flight;
   std::vector<Budget> budgets;  // in the order of the file, at least one
+  int runs = 1;                 // flights of an attempt, whose medians count
+  int retries = 0;              // further attempts if a budget that depends on load does not hold
+  std::filesystem::path base;   // folder of former runs; empty: none
 };
 
 // Parses a text. Fails with kParse, naming file, line and field, for text that is not TOML, another

@@ -7,7 +7,9 @@
 #include "engine/core/data_file.hpp"
 #include "engine/core/nearest_word.hpp"
 #include "engine/core/utf8.hpp"
+#include "engine/frametest/budget_limit.hpp"
 #include "engine/frametest/frame_test.hpp"
+#include "engine/frametest/judge.hpp"
 #include "engine/render/preset.hpp"
 #include "engine/telemetry/summary_fields.hpp"
 #include "engine/world/files/document.hpp"
@@ -101,6 +103,27 @@ void read_flight(TableReader& reader, app::FlightOptions& flight) {
     reader.problem(reader.line(), "loop", "a repeated path needs seconds or frames");
 }
 
+// [test]: how often the test flies. The base is a folder beside the file.
+void read_test(TableReader& reader, const std::filesystem::path& file, FrameTest& test) {
+  read_count(reader, "runs", {1, kMaxRuns}, test.runs);
+  read_count(reader, "retries", {0, kMaxRetries}, test.retries);
+  if (test.runs > 1) test.flight.reference_load = true;  // somebody wants to compare them
+  reader.read("reference", test.flight.reference_load);
+  std::filesystem::path base;
+  read_file_name(reader, "base", base);
+  if (!base.empty()) test.base = file.parent_path() / base;
+  reader.finish();
+}
+
+// True if other programs can change the value of a budget. Then the reference load is measured
+// unless the file says otherwise.
+bool can_change_by_load(const FrameTest& test) {
+  const bool is_virtual = test.flight.session.scene.virtual_time;
+  return std::ranges::any_of(test.budgets, [is_virtual](const Budget& budget) {
+    return depends_on_load(budget.field, is_virtual);
+  });
+}
+
 // The names of the fields of every summary, and of those that are texts.
 class KnownFields {
  public:
@@ -140,22 +163,12 @@ void read_budgets(const Node& table, const std::string& prefix, Relation relatio
     const std::string field = prefix.empty() ? member.key : prefix + "." + member.key;
     const Node& value = member.value;
     const std::string where = fmt::format("{}.{}", name_of(relation), field);
-    if (value.kind == Node::Kind::kTable) {
+    if (!is_limit(value)) {
       read_budgets(value, field, relation, known, problems, budgets);
       continue;
     }
     Budget budget{field, relation, 0.0, member.line};
-    const bool number = value.kind == Node::Kind::kInteger || value.kind == Node::Kind::kReal;
-    if (number && std::abs(value.real) <= 1e300) {
-      budget.limit = value.real;
-    } else if (value.kind == Node::Kind::kText && relation == Relation::kEqual) {
-      budget.limit = value.text;
-    } else {
-      problems.add(value.line, where,
-                   relation == Relation::kEqual ? "the limit must be a finite number or a text"
-                                                : "the limit must be a finite number");
-      continue;
-    }
+    if (!read_limit(value, where, problems, budget)) continue;
     if (const std::string problem = known.problem(budget); !problem.empty())
       problems.add(member.line, where, problem);
     budgets.push_back(std::move(budget));
@@ -226,11 +239,13 @@ core::Result<FrameTest> parse_frame_test(std::string_view text,
     if (const auto table = root.table(name_of(relation)))
       read_budgets(table->node(), "", relation, known, problems, test.budgets);
   }
+  std::ranges::stable_sort(test.budgets, {}, &Budget::line);
+  test.flight.reference_load = can_change_by_load(test);
+  if (auto table = root.table("test")) read_test(*table, file_name, test);
   root.finish();
   if (!problems.any() && test.budgets.empty())
     problems.add(1, "at_most", "a frame test needs a budget in [at_most], [at_least] or [equal]");
   if (problems.any()) return tl::unexpected(problems.first());
-  std::ranges::stable_sort(test.budgets, {}, &Budget::line);
   return test;
 }
 

@@ -1,5 +1,6 @@
 // Results of frame tests as text, JUnit XML, Markdown and remarks.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -14,8 +15,35 @@ bool is_skipped(const TestResult& result) {
   return result.error && result.error->code == core::ErrorCode::kNoDevice;
 }
 
+template <class Predicate>
+std::size_t count(const TestResult& result, const Predicate& predicate) {
+  return static_cast<std::size_t>(std::ranges::count_if(result.budgets, predicate));
+}
+
 std::size_t missed(const TestResult& result) {
-  return static_cast<std::size_t>(std::ranges::count(result.budgets, false, &BudgetResult::holds));
+  return count(result, [](const BudgetResult& r) { return r.misses(); });
+}
+
+std::size_t not_judged(const TestResult& result) {
+  return count(result, [](const BudgetResult& r) { return !r.judged; });
+}
+
+std::size_t skipped_cases(const TestResult& result) {
+  return is_skipped(result) ? 1 : not_judged(result);
+}
+
+// "24.1", "24.1 (runs 24, 24.1, 26)"
+std::string value_of(const BudgetResult& r) {
+  return r.runs.empty() ? r.value : fmt::format("{} (runs {})", r.value, fmt::join(r.runs, ", "));
+}
+
+// Sentences about a value, to follow it: ". One. Two."
+std::string notes_of(const BudgetResult& r) {
+  return r.notes.empty() ? "" : fmt::format(". {}", fmt::join(r.notes, " "));
+}
+
+std::string outcome_of(const BudgetResult& r) {
+  return r.holds ? "held" : r.judged ? "MISSED" : "not judged";
 }
 
 std::size_t cases(const TestResult& result) {
@@ -43,17 +71,20 @@ std::string suite_of(const TestResult& result, const std::string& class_name) {
     return fmt::format("<testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">", name,
                        escaped(case_name), case_s);
   };
-  std::string text = fmt::format(
-      "<testsuite name=\"{}\" file=\"{}\" {}>\n", name, escaped(result.file.string()),
-      counts(cases(result), missed(result), result.error && !skipped, skipped, result.seconds));
+  std::string text =
+      fmt::format("<testsuite name=\"{}\" file=\"{}\" {}>\n", name, escaped(result.file.string()),
+                  counts(cases(result), missed(result), result.error && !skipped,
+                         skipped_cases(result), result.seconds));
   if (result.error)
     text += fmt::format("{}<{} message=\"{}\"/></testcase>\n", start("run"),
                         skipped ? "skipped" : "error", escaped(result.error->message));
   for (const BudgetResult& r : result.budgets) {
     text += start(
         fmt::format("{} {} {}", r.budget.field, name_of(r.budget.relation), limit_of(r.budget)));
-    text += r.holds ? fmt::format("<system-out>{}</system-out></testcase>\n", escaped(r.value))
-                    : fmt::format("<failure message=\"{}\"/></testcase>\n", escaped(r.value));
+    const std::string story = escaped(value_of(r) + notes_of(r));
+    text += r.holds ? fmt::format("<system-out>{}</system-out></testcase>\n", story)
+                    : fmt::format("<{} message=\"{}\"/></testcase>\n",
+                                  r.judged ? "failure" : "skipped", story);
   }
   // Several CI servers show this line as an attachment of the suite.
   if (!result.page.empty())
@@ -65,10 +96,11 @@ std::string suite_of(const TestResult& result, const std::string& class_name) {
 std::string outcome_of(const TestResult& result) {
   if (is_skipped(result)) return "skipped: " + result.error->message;
   if (result.error) return "failed: " + result.error->message;
-  const std::size_t count = missed(result);
+  const std::size_t count = missed(result), unclear = not_judged(result);
   const std::string budgets =
       fmt::format("{} budget{}", result.budgets.size(), result.budgets.size() == 1 ? "" : "s");
-  return count == 0 ? "held, " + budgets : fmt::format("missed {} of {}", count, budgets);
+  if (count > 0) return fmt::format("missed {} of {}", count, budgets);
+  return unclear > 0 ? fmt::format("not judged, {} of {}", unclear, budgets) : "held, " + budgets;
 }
 
 std::string limit_text(const BudgetResult& r) {
@@ -83,7 +115,9 @@ std::string_view sign_of(Relation relation) {
 
 std::string limit_of(const Budget& budget) {
   const double* number = std::get_if<double>(&budget.limit);
-  return number != nullptr ? fmt::format("{:g}", *number) : std::get<std::string>(budget.limit);
+  if (number == nullptr) return std::get<std::string>(budget.limit);
+  return budget.of_base ? fmt::format("{:g} ({:g} × base)", *number, *budget.of_base)
+                        : fmt::format("{:g}", *number);
 }
 
 std::string escaped(std::string_view text) {
@@ -93,8 +127,13 @@ std::string escaped(std::string_view text) {
 std::string to_text(const TestResult& result) {
   std::string text;
   for (const BudgetResult& r : result.budgets) {
-    text += fmt::format("{}: {} {}  {}{}\n", result.name, r.budget.field, r.value, limit_text(r),
-                        r.holds ? "" : "  MISSED");
+    text +=
+        fmt::format("{}: {} {}  {}{}\n", result.name, r.budget.field, value_of(r), limit_text(r),
+                    r.holds    ? ""
+                    : r.judged ? "  MISSED"
+                               : "  NOT JUDGED");
+    for (const std::string& note : r.notes)
+      text += fmt::format("{}:   {}\n", result.name, note);
   }
   if (!result.page.empty())
     text += fmt::format("{}: images in {}\n", result.name, result.page.string());
@@ -109,7 +148,7 @@ std::string to_junit(std::span<const TestResult> results) {
     suites += suite_of(result, class_of(result, results));
     tests += cases(result);
     failures += missed(result);
-    skipped += is_skipped(result) ? 1 : 0;
+    skipped += skipped_cases(result);
     errors += result.error && !is_skipped(result) ? 1 : 0;
     seconds += result.seconds;
   }
@@ -127,8 +166,11 @@ std::string to_markdown(std::span<const TestResult> results) {
     budgets += fmt::format("### {}\n", telemetry::markdown_text(result.name));
     std::vector<telemetry::MarkdownRow> rows;
     for (const BudgetResult& r : result.budgets)
-      rows.push_back({r.budget.field, limit_text(r), r.value, r.holds ? "held" : "MISSED"});
+      rows.push_back({r.budget.field, limit_text(r), value_of(r), outcome_of(r)});
     budgets += telemetry::markdown_table({"budget", "limit", "this run", ""}, rows);
+    for (const BudgetResult& r : result.budgets)
+      for (const std::string& note : r.notes)
+        budgets += "- " + telemetry::markdown_text(r.budget.field + ": " + note) + "\n";
   }
   return "## Frame tests\n" + telemetry::markdown_table({"test", "result", "time"}, tests) +
          budgets;
@@ -146,11 +188,14 @@ std::vector<telemetry::Remark> remarks_of(std::span<const TestResult> results) {
                          .line = 1});
     for (const BudgetResult& r : result.budgets) {
       if (r.holds) continue;
-      remarks.push_back({.title = fmt::format("{} misses {}", result.name, r.budget.field),
-                         .message = fmt::format("{} is {}; the budget is {}", r.budget.field,
-                                                r.value, limit_text(r)),
-                         .file = result.file,
-                         .line = r.budget.line});
+      remarks.push_back(
+          {.level = r.judged ? telemetry::RemarkLevel::kError : telemetry::RemarkLevel::kWarning,
+           .title = fmt::format("{} {} {}", result.name, r.judged ? "misses" : "does not judge",
+                                r.budget.field),
+           .message = fmt::format("{} is {}; the budget is {}{}", r.budget.field, value_of(r),
+                                  limit_text(r), notes_of(r)),
+           .file = result.file,
+           .line = r.budget.line});
     }
   }
   return remarks;

@@ -7,11 +7,10 @@
 #include <string_view>
 
 #include "engine/app/flight.hpp"
-#include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
-#include "engine/core/utf8.hpp"
-#include "engine/frametest/failure.hpp"
+#include "engine/frametest/judge.hpp"
+#include "engine/frametest/rounds.hpp"
 #include "engine/program/command_line.hpp"
 #include "engine/program/program.hpp"
 #include "engine/telemetry/output_file.hpp"
@@ -20,68 +19,66 @@
 namespace psygen::frametest {
 namespace {
 
-bool holds_for(const Budget& budget, double value) {
-  const double* limit = std::get_if<double>(&budget.limit);
-  if (limit == nullptr) return false;
-  return budget.relation == Relation::kAtMost    ? value <= *limit
-         : budget.relation == Relation::kAtLeast ? value >= *limit
-                                                 : value == *limit;
-}
-
-BudgetResult judge_one(const Budget& budget, std::span<const telemetry::SummaryField> fields) {
-  const auto field = std::ranges::find(fields, budget.field, &telemetry::SummaryField::name);
-  if (field == fields.end()) return {budget, "the run has no such field", false};
-  if (const double* number = std::get_if<double>(&field->value))
-    return {budget, fmt::format("{:.10g}", *number), holds_for(budget, *number)};
-  if (const std::string* text = std::get_if<std::string>(&field->value)) {
-    const std::string* limit = std::get_if<std::string>(&budget.limit);
-    return {budget, *text, limit != nullptr && *limit == *text};
+// Reads the files of a run, and the bases of their tests.
+core::Result<std::vector<PreparedTest>> prepare(const RunOptions& options) {
+  for (const std::filesystem::path& file : {options.junit, options.usual}) {
+    if (file.empty()) continue;
+    if (auto ok = telemetry::check_output_file(file); !ok) return tl::unexpected(ok.error());
   }
-  return {budget, "not measured: " + field->reason, false};
+  if (auto ok = options.words.check(); !ok) return tl::unexpected(ok.error());
+  auto files = load_frame_tests(options.files);
+  if (!files) return tl::unexpected(files.error());
+  std::vector<PreparedTest> tests;
+  for (TestFile& file : *files) {
+    std::optional<Base> base;
+    if (file.test) {
+      auto found = base_for(*file.test, options);
+      if (found)
+        base = std::move(*found);
+      else
+        file.test = core::fail(found.error().code,
+                               fmt::format("{}: {}", file.file.string(), found.error().message));
+    }
+    tests.push_back({std::move(file), std::move(base)});
+  }
+  return tests;
 }
 
-struct Flown {
-  std::vector<BudgetResult> budgets;
-  std::vector<WorstFrame> worst;  // of a failed test
+// Prints a result. Returns false if stdout takes no more.
+bool tell(const TestResult& result) {
+  if (result.error) core::log_error(fmt::format("{}: {}", result.name, result.error->message));
+  return program::print(to_text(result)) == program::kOk;
+}
+
+// Results of all tests, in the order of the files.
+struct Told {
+  std::vector<TestResult> results;
+  bool printed = true;
 };
 
-core::Result<Flown> fly(FrameTest test, const RunOptions& options, const Hooks& hooks) {
-  if (!options.out.empty()) {
-    test.flight.out_folder = options.out / test.name;
-    remove_failure(test.flight.out_folder);
+// Flies each test once in a round, until none wants more, and tells results when they are final.
+Told fly_in_turn(std::span<const PreparedTest> tests, const RunOptions& options, const Hooks& hooks,
+                 UsualLoadFile& usual) {
+  std::vector<TestFlights> flights;
+  flights.reserve(tests.size());
+  for (const PreparedTest& test : tests)
+    flights.emplace_back(test, options, hooks, usual);
+  Told told{std::vector<TestResult>(tests.size()), true};
+  std::vector<bool> finished(tests.size(), false);
+  while (std::ranges::find(finished, false) != finished.end()) {
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+      if (finished[i]) continue;
+      if (flights[i].wants_more()) flights[i].fly();
+      if (flights[i].wants_more()) continue;
+      finished[i] = true;
+      told.results[i] = flights[i].finish();
+      told.printed = tell(told.results[i]) && told.printed;
+    }
   }
-  auto flight = start_flight(test.flight, options, hooks);
-  if (!flight) return tl::unexpected(flight.error());
-  auto report = (*flight)->run();
-  if (!report) return tl::unexpected(report.error());
-  if ((*flight)->session().stopped())
-    return core::fail(core::ErrorCode::kInterrupted, "the flight was stopped");
-  if (!report->failures.empty()) return tl::unexpected(report->failures.front());
-  Flown flown;
-  flown.budgets = judge(test.budgets, report->summary);
-  flown.worst = worst_frames(flown.budgets, (*flight)->log(), test.flight.warmup_seconds,
-                             static_cast<std::size_t>(options.worst_frames));
-  return flown;
-}
-
-// Reports the worst frames if outputs are kept. The verdict does not depend on it.
-void show_failure(const FrameTest& test, std::span<const WorstFrame> worst,
-                  const RunOptions& options, const Hooks& hooks, TestResult& result) {
-  if (options.out.empty() || options.worst_frames <= 0) return;
-  const auto page = write_failure(test, result, worst, options, hooks);
-  if (page) {
-    result.page = *page;
-  } else {
-    core::log_error(fmt::format("{}: {}", result.name, page.error().message));
-  }
-}
-
-core::Result<std::vector<TestFile>> prepare(const RunOptions& options) {
-  if (!options.junit.empty()) {
-    if (auto ok = telemetry::check_output_file(options.junit); !ok)
-      return tl::unexpected(ok.error());
-  }
-  return options.words.check().and_then([&] { return load_frame_tests(options.files); });
+  for (const TestFlights& each : flights)
+    for (UsualLoadFile::Run& run : each.record())
+      usual.add(std::move(run));
+  return told;
 }
 
 core::Result<void> write_results(const RunOptions& options, std::span<const TestResult> results) {
@@ -114,58 +111,53 @@ bool TestResult::holds() const {
   return !error && std::ranges::all_of(budgets, &BudgetResult::holds);
 }
 
+bool TestResult::misses() const {
+  return !error && std::ranges::any_of(budgets, &BudgetResult::misses);
+}
+
 int exit_code_of(std::span<const TestResult> results) {
   const auto any = [&](auto predicate) { return std::ranges::any_of(results, predicate); };
   const auto skipped = [](const TestResult& r) {
     return r.error && r.error->code == core::ErrorCode::kNoDevice;
   };
   if (any([&](const TestResult& r) { return r.error && !skipped(r); })) return kFailed;
-  if (any([](const TestResult& r) { return !r.error && !r.holds(); })) return kMissed;
+  if (any(&TestResult::misses)) return kMissed;
+  if (any([](const TestResult& r) { return !r.error && !r.holds(); })) return kNotJudged;
   return any(skipped) ? kSkipped : kHeld;
 }
 
 std::vector<BudgetResult> judge(std::span<const Budget> budgets,
                                 const telemetry::Summary& summary) {
-  const std::vector<telemetry::SummaryField> fields = telemetry::summary_fields(summary);
-  std::vector<BudgetResult> results;
-  for (const Budget& budget : budgets)
-    results.push_back(judge_one(budget, fields));
-  return results;
+  const RunFields fields = telemetry::summary_fields(summary);
+  return judge(budgets, Flights{.runs = {&fields, 1}});
 }
 
 TestResult run_frame_test(const TestFile& file, const RunOptions& options, const Hooks& hooks) {
-  const double start_s = core::monotonic_seconds();
-  TestResult result;
-  result.file = file.file;
-  result.name = file.test ? file.test->name : core::shown(file.file.stem().string());
-  auto flown = file.test.and_then([&](const FrameTest& t) { return fly(t, options, hooks); });
-  if (flown) {
-    result.budgets = std::move(flown->budgets);
-    if (!result.holds()) show_failure(*file.test, flown->worst, options, hooks, result);
-  } else {
-    result.error = flown.error();
-  }
-  result.seconds = core::monotonic_seconds() - start_s;
-  return result;
+  const PreparedTest test{file};
+  const UsualLoadFile usual;
+  TestFlights flights(test, options, hooks, usual);
+  while (flights.wants_more())
+    flights.fly();
+  return flights.finish();
 }
 
 int run_frame_tests(const RunOptions& options, const Hooks& hooks) {
-  const auto files = prepare(options);
-  if (!files) return program::fail_with(files.error());
-  std::vector<TestResult> results;
-  bool printed = true;
-  for (const TestFile& file : *files) {
-    results.push_back(run_frame_test(file, options, hooks));
-    const TestResult& result = results.back();
-    printed = program::print(to_text(result)) == program::kOk && printed;
-    if (result.error) core::log_error(fmt::format("{}: {}", result.name, result.error->message));
-  }
-  const telemetry::Annotations& annotations = options.words.annotations;
-  if (annotations.to_stdout())
-    printed = program::print(to_text(annotations, remarks_of(results))) == program::kOk && printed;
-  if (const auto written = write_results(options, results); !written)
-    return program::fail_with(written.error());
-  return printed ? exit_code_of(results) : kFailed;
+  const auto tests = prepare(options);
+  if (!tests) return program::fail_with(tests.error());
+  core::Result<UsualLoadFile> usual = UsualLoadFile();
+  if (!options.usual.empty()) usual = UsualLoadFile::load(options.usual);
+  if (!usual) return program::fail_with(usual.error());
+  Told told = fly_in_turn(*tests, options, hooks, *usual);
+  const int code = exit_code_of(told.results);
+  std::string last =
+      code == kNotJudged ? "not judged: no budget is missed, but the machine was too busy\n" : "";
+  if (options.words.annotations.to_stdout())
+    last += to_text(options.words.annotations, remarks_of(told.results));
+  told.printed = program::print(last) == program::kOk && told.printed;
+  auto written = write_results(options, told.results);
+  if (written && !options.usual.empty()) written = usual->save(options.usual);
+  if (!written) return program::fail_with(written.error());
+  return told.printed ? code : kFailed;
 }
 
 void add_words(CLI::App& cli, telemetry::PullRequestWords& words) {
@@ -189,6 +181,10 @@ void add_options(CLI::App& cli, RunOptions& options) {
   cli.add_option("FILE", options.files, "Frame tests: TOML files")->required();
   cli.add_option("--junit", options.junit, "Write the results to this file as JUnit XML");
   cli.add_option("--out", options.out, "Folder for the outputs, with one subfolder per test");
+  cli.add_option("--base", options.base,
+                 "Folder of former runs (their --out) to which limits are relative");
+  cli.add_option("--usual", options.usual,
+                 "File with the last runs of this machine, which scale limits; this run is added");
   cli.add_option("--worst", options.worst_frames,
                  "Number of worst frames of a failed test written as images to --out")
       ->capture_default_str()

@@ -43,6 +43,8 @@ inline constexpr int kMaxWorstFrames = 100;
 struct RunOptions {
   std::vector<std::filesystem::path> files;
   std::filesystem::path out;    // has one subfolder per test; empty: outputs are not kept
+  std::filesystem::path base;   // folder of former runs; empty: that of a test's file
+  std::filesystem::path usual;  // file with the last runs of machines (usual_load.hpp); empty: none
   std::filesystem::path junit;  // file; empty: none
   telemetry::PullRequestWords words;
   std::string device;    // part of a device's name; empty: the best device
@@ -53,8 +55,15 @@ struct RunOptions {
 // Result of one budget.
 struct BudgetResult {
   Budget budget;
-  std::string value;  // the measured value, or the reason why there is none
+  std::string
+      value;  // the measured value, or the reason why there is none; of several runs the median
   bool holds = false;
+  bool judged = true;  // false: it does not hold, but the machine was too busy to say so
+  std::vector<std::string> runs = {};   // the values of several runs, in the order of the flights
+  std::vector<std::string> notes = {};  // sentences
+
+  // The budget was judged, and does not hold.
+  bool misses() const { return judged && !holds; }
 };
 
 // Result of one test file.
@@ -66,11 +75,19 @@ struct TestResult {
   double seconds = 0;                // duration of the test
   std::filesystem::path page;        // failed.html of a failed test; empty: none
 
-  bool holds() const;  // the test ran, and every budget holds
+  bool holds() const;   // the test ran, and every budget holds
+  bool misses() const;  // the test ran, and a budget is missed
 };
 
 // Exit codes of a run of tests. CTest and Automake interpret 77 as skipped.
-enum ExitCode : int { kHeld = 0, kFailed = 1, kUsage = 2, kMissed = 3, kSkipped = 77 };
+enum ExitCode : int {
+  kHeld = 0,
+  kFailed = 1,
+  kUsage = 2,
+  kMissed = 3,
+  kNotJudged = 5,  // nothing is missed, but the machine was too busy to judge all budgets
+  kSkipped = 77
+};
 int exit_code_of(std::span<const TestResult> results);
 
 // Compares a summary with the budgets: one result for each budget. A value that was not measured
@@ -89,7 +106,7 @@ core::Result<std::unique_ptr<app::Flight>> start_flight(app::FlightOptions fligh
                                                         const RunOptions& options,
                                                         const Hooks& hooks, app::Plugin last = {});
 
-// Runs one file.
+// Runs one file, whose limits are not relative to a base.
 TestResult run_frame_test(const TestFile& file, const RunOptions& options, const Hooks& hooks = {});
 // Text with one line for each budget.
 std::string to_text(const TestResult& result);
@@ -107,8 +124,8 @@ void add_words(CLI::App& cli, telemetry::PullRequestWords& words);
 // Declares the options of a command line; `options` outlives it. Limits --worst to 0 …
 // kMaxWorstFrames.
 void add_options(CLI::App& cli, RunOptions& options);
-// Reads all files, runs them, prints results to stdout and errors to stderr, and writes the files
-// of the results. Runs nothing if two tests have one name. Returns the exit code.
+// Reads all files, flies them in turn, prints results to stdout and errors to stderr, and writes
+// the files of the results. Runs nothing if two tests have one name. Returns the exit code.
 int run_frame_tests(const RunOptions& options, const Hooks& hooks = {});
 // Complete main() of a game's frame tests, with add_options().
 int frame_test_main(int argc, char** argv, const Hooks& hooks);

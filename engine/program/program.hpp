@@ -13,7 +13,7 @@
 
 namespace psygen::program {
 
-// Exit codes. 3 is left to commands that judge (`psygen test`, `psygen compare`).
+// Exit codes. 3 and 5 are left to commands that judge (`psygen test`, `psygen compare`).
 enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kNoDevice = 4 };
 
 // Sets the process up, calls `body`, and returns its exit code, or kFailed after a message if an

@@ -15,6 +15,7 @@
 #include "engine/compare/recorded_run.hpp"
 #include "engine/compare/times.hpp"
 #include "engine/frametest/frame_test.hpp"
+#include "engine/frametest/usual_load.hpp"
 #include "engine/gltf/read_file.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/handmade/triangles.hpp"
@@ -569,6 +570,21 @@ const std::vector<Case>& cases() {
         {"bytes of a frame test's name",
          [](const fs::path&, double n) {
            return outcome(frametest::parse_frame_test(frame_test(in_string(whole(n))), "t"));
+         }},
+        {"runs of a frame test",
+         [](const fs::path&, double n) {
+           return outcome(frametest::parse_frame_test(
+               frame_test("t") + "[test]\nruns = " + std::to_string(whole(n)) + "\n", "t"));
+         }},
+        {"retries of a frame test",
+         [](const fs::path&, double n) {
+           return outcome(frametest::parse_frame_test(
+               frame_test("t") + "[test]\nretries = " + std::to_string(whole(n)) + "\n", "t"));
+         }},
+        {"bytes of a file of usual times",
+         [](const fs::path& folder, double n) {
+           write(folder / "u.jsonl", std::string(whole(n), '\n'));
+           return outcome(frametest::UsualLoadFile::load(folder / "u.jsonl"));
          }},
         {"bytes of a frame test",
          [](const fs::path& folder, double n) {

@@ -45,7 +45,7 @@ MAY_KNOW = {
     "shaders": set(),
 }
 MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/handmade", "engine/input"}
-MAY_KNOW["engine/frametest"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/program"}
+MAY_KNOW["engine/frametest"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/compare", "engine/program"}
 MAY_KNOW["engine/inspect"] = MAY_KNOW["engine/app"] | {"engine/app"}
 MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/inspect", "engine/frametest", "engine/compare", "engine/cluster", "engine/program", "engine/tiles"}
 MAY_KNOW["engine/prefab"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/gltf"}
@@ -96,7 +96,7 @@ ONLY_IN = {
     r"^imgui/": {"engine/render", "engine/app", "game"},
     r"^OpenImageIO/": {"engine/image"},
     r"^toml\+\+/": {"engine/world", "game"},
-    r"^nlohmann/": {"engine/gltf", "engine/telemetry", "engine/captures", "engine/compare", "engine/inspect", "engine/cli"},
+    r"^nlohmann/": {"engine/gltf", "engine/telemetry", "engine/captures", "engine/compare", "engine/frametest", "engine/inspect", "engine/cli"},
     r"^CLI/": {"engine/cli", "engine/frametest", "engine/program", "game"},
     r"^tiny_gltf": {"engine/exchange"},
     r"^draco/": {"engine/gltf"},

@@ -165,5 +165,81 @@ TEST(FrameTestFile, HasANameOfItsOwnInARun) {
   EXPECT_THAT(refused({folder / "walk.toml", folder / "walk.toml"}), HasSubstr("also called walk"));
 }
 
+TEST(FrameTestFile, HasRunsRetriesAndABase) {
+  const std::string budgets = "[at_most]\nframe_ms.p99 = 25\n";
+  const auto test = parse_frame_test(
+      with("", "[test]\nruns = 3\nretries = 2\nbase = \"main/out\"\n" + budgets), "dir/a.toml");
+  ASSERT_TRUE(test) << test.error().message;
+  EXPECT_EQ(test->runs, 3);
+  EXPECT_EQ(test->retries, 2);
+  EXPECT_EQ(test->base, "dir/main/out");
+  const auto plain = parse_frame_test(with("", budgets), "dir/a.toml");
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->runs, 1);
+  EXPECT_EQ(plain->retries, 0);
+  EXPECT_TRUE(plain->base.empty());
+  for (const char* key : {"runs = 0", "runs = 100", "retries = -1", "retries = 10", "base = \"\""})
+    EXPECT_THAT(refusal(with("", std::string("[test]\n") + key + "\n" + budgets)),
+                StartsWith("folder/a.toml:5: test."))
+        << key;
+  EXPECT_THAT(refusal(with("", "[test]\nrun = 3\n" + budgets)), HasSubstr("did you mean runs?"));
+}
+
+TEST(FrameTestFile, MeasuresAReferenceLoadWhereLoadCanChangeAResult) {
+  const auto measures = [](const std::string& flight, const std::string& rest) {
+    const auto test = parse_frame_test(with(flight, rest), "a.toml");
+    EXPECT_TRUE(test) << test.error().message;
+    return test && test->flight.reference_load;
+  };
+  const std::string time = "[at_most]\nframe_ms.p99 = 25\n", hash = "[equal]\nhash.world = \"x\"\n";
+  EXPECT_TRUE(measures("", time));
+  EXPECT_FALSE(measures("", hash));
+  EXPECT_FALSE(measures("clock = \"virtual\"", time));
+  EXPECT_TRUE(measures("clock = \"virtual\"", "[at_most]\nload.cpu_seconds = 2\n"));
+  EXPECT_TRUE(measures("clock = \"virtual\"", "[test]\nruns = 3\n" + time));
+  EXPECT_FALSE(measures("", "[test]\nreference = false\n" + time));
+  EXPECT_TRUE(measures("clock = \"virtual\"", "[test]\nreference = true\n" + time));
+}
+
+TEST(FrameTestFile, HasLimitsRelativeToABase) {
+  const auto factor = [](const std::string& limit) -> double {
+    const auto test =
+        parse_frame_test(with("", "[at_most]\nframe_ms.p99 = \"" + limit + "\"\n"), "a");
+    return test ? test->budgets.at(0).of_base.value_or(-1) : -2;
+  };
+  for (const char* limit : {"1.05 × base", "1.05 x base", "1.05*base", " 1.05×base"})
+    EXPECT_EQ(factor(limit), 1.05) << limit;
+  EXPECT_EQ(factor("1 × base"), 1);
+  for (const char* limit : {"base", "1.05", "1.05 base", "× base", "0 × base", "-1 × base",
+                            "1e9 × base", "nan × base", "1.05 × base!", "1.05 × bases", ""})
+    EXPECT_EQ(factor(limit), -2) << limit;
+  EXPECT_THAT(refusal(with("", "[at_most]\nframe_ms.p99 = \"fast\"\n")),
+              HasSubstr("or a text like \"1.05 × base\" with a factor from 0.01 to 100"));
+  EXPECT_THAT(refusal(with("", "[at_most]\npicture.grade = \"1 × base\"\n")),
+              HasSubstr("only [equal] can compare"));
+  const auto equal = parse_frame_test(with("", "[equal]\nworld.name = \"1 × base\"\n"), "a");
+  ASSERT_TRUE(equal);
+  EXPECT_FALSE(equal->budgets[0].of_base) << "a text is itself";
+}
+
+TEST(FrameTestFile, HasLimitsWithOptions) {
+  const auto test = parse_frame_test(
+      with("",
+           "[at_most]\nwait_ms.p99 = { limit = 3, witness = \"none\" }\nframe_ms.p99.limit = 25\n"),
+      "a");
+  ASSERT_TRUE(test) << test.error().message;
+  EXPECT_EQ(test->budgets[0].field, "wait_ms.p99");
+  EXPECT_EQ(std::get<double>(test->budgets[0].limit), 3);
+  EXPECT_FALSE(test->budgets[0].needs_witness);
+  EXPECT_EQ(test->budgets[1].field, "frame_ms.p99");
+  EXPECT_TRUE(test->budgets[1].needs_witness);
+  EXPECT_THAT(refusal(with("", "[at_most]\nwait_ms.p99 = { limit = 3, witness = \"mine\" }\n")),
+              StartsWith("folder/a.toml:5: at_most.wait_ms.p99.witness: it must be "));
+  EXPECT_THAT(refusal(with("", "[at_most]\nwait_ms.p99 = { limit = \"x\" }\n")),
+              HasSubstr("at_most.wait_ms.p99.limit: the limit must be"));
+  EXPECT_THAT(refusal(with("", "[at_most]\nwait_ms.p99 = { limit = 3, wittness = \"none\" }\n")),
+              HasSubstr("did you mean witness?"));
+}
+
 }  // namespace
 }  // namespace psygen::frametest

@@ -69,6 +69,12 @@ TEST(FrameTests, ReturnTheWorstResult) {
   EXPECT_EQ(code({missed, failed}), 1);
   EXPECT_EQ(code({held, skipped}), 77);
   EXPECT_EQ(code({skipped, missed}), 3);
+  TestResult busy = missed;
+  busy.budgets[0].judged = false;
+  EXPECT_EQ(code({held, busy}), kNotJudged);
+  EXPECT_EQ(code({busy, skipped}), kNotJudged);
+  EXPECT_EQ(code({busy, missed}), kMissed);
+  EXPECT_EQ(code({busy, failed}), kFailed);
 }
 
 TEST(FrameTests, AreWrittenAsJUnit) {
@@ -85,6 +91,35 @@ TEST(FrameTests, AreWrittenAsJUnit) {
                              "message=\"26\"/>"));
   EXPECT_THAT(xml, HasSubstr("<error message=\"it &lt;failed&gt; &amp; &quot;more&quot;\"/>"));
   EXPECT_THAT(xml, HasSubstr("<skipped message="));
+}
+
+TEST(FrameTests, TellRunsAndNotesEverywhere) {
+  BudgetResult missed{{"frame_ms.p99", Relation::kAtMost, 25.0, 12}, "26", false};
+  missed.runs = {"26", "24", "27"};
+  missed.notes = {"Processor time rose too.", "Chance: 1 %."};
+  BudgetResult busy{{"hitches", Relation::kAtMost, 0.0, 13}, "4", false, false};
+  busy.notes = {"The machine was busy."};
+  const std::vector<TestResult> results{result_of({missed, busy})};
+  EXPECT_EQ(to_text(results[0]),
+            "walk: frame_ms.p99 26 (runs 26, 24, 27)  <= 25  MISSED\n"
+            "walk:   Processor time rose too.\nwalk:   Chance: 1 %.\n"
+            "walk: hitches 4  <= 0  NOT JUDGED\nwalk:   The machine was busy.\n");
+  const std::string xml = to_junit(results);
+  EXPECT_THAT(xml, HasSubstr("tests=\"2\" failures=\"1\" errors=\"0\" skipped=\"1\""));
+  EXPECT_THAT(xml, HasSubstr("<failure message=\"26 (runs 26, 24, 27). Processor time rose too. "
+                             "Chance: 1 %.\"/>"));
+  EXPECT_THAT(xml, HasSubstr("<skipped message=\"4. The machine was busy.\"/>"));
+  const std::string markdown = to_markdown(results);
+  EXPECT_THAT(markdown, HasSubstr("| 26 (runs 26, 24, 27) | MISSED |"));
+  EXPECT_THAT(markdown, HasSubstr("| 4 | not judged |"));
+  EXPECT_THAT(markdown, HasSubstr("- frame\\_ms.p99: Processor time rose too.\n"));
+  const auto remarks = remarks_of(results);
+  EXPECT_EQ(remarks.at(0).message,
+            "frame_ms.p99 is 26 (runs 26, 24, 27); the budget is <= 25. Processor time rose too. "
+            "Chance: 1 %.");
+  EXPECT_EQ(remarks.at(1).level, telemetry::RemarkLevel::kWarning);
+  EXPECT_EQ(remarks.at(1).title, "walk does not judge hitches");
+  EXPECT_EQ(limit_of({"frame_ms.p99", Relation::kAtMost, 26.25, 1, 1.05}), "26.25 (1.05 × base)");
 }
 
 TEST(FrameTests, HaveDistinctClassesInJUnit) {

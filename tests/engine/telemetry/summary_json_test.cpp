@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/telemetry/summary.hpp"
+#include "engine/telemetry/summary_fields.hpp"
 #include "tests/engine/telemetry/synthetic_flight.hpp"
 
 namespace psygen::telemetry {
@@ -75,6 +76,22 @@ TEST(SummaryJson, KeepsAll64BitsOfSeedsAndSizes) {
   const json j = json::parse(to_json(summarise(synthetic_flight(2), facts, 0.0)));
   EXPECT_EQ(j["world"]["seed"].get<std::uint64_t>(), UINT64_MAX);
   EXPECT_EQ(j["world"]["bytes"].get<std::uint64_t>(), (1ULL << 63) + 1);
+}
+
+TEST(SummaryJson, IsReadBackAsFields) {
+  const Summary summary = summarise(synthetic_flight(50), synthetic_facts(), 0.0);
+  const auto read = summary_fields_in(to_json(summary), "summary.json");
+  ASSERT_TRUE(read) << read.error().message;
+  const std::vector<SummaryField> fields = summary_fields(summary);
+  ASSERT_EQ(read->size(), fields.size());
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    EXPECT_EQ((*read)[i].name, fields[i].name);
+    EXPECT_EQ((*read)[i].value, fields[i].value) << fields[i].name;
+    EXPECT_EQ((*read)[i].reason, fields[i].reason) << fields[i].name;
+  }
+  EXPECT_EQ(summary_fields_in("{", "s").error().message, "s: it is not JSON, or is truncated");
+  EXPECT_EQ(summary_fields_in("{\"schema\": \"psygen.summary/2\"}", "s").error().message,
+            "s: schema: it must be \"psygen.summary/1\"");
 }
 
 }  // namespace
