@@ -67,6 +67,7 @@ workflow() { # CODE STEP...: the steps end with this exit code
 workflow 0 "Build the game" "Run the frame tests" "Show the summary"
 grep -qE '^\| exact \| held, 2 budgets \|' "$folder/step.md"
 [ -s frame-tests/exact/report.html ] && [ -s frame-tests/frames/report.html ] && [ -s frame-tests/junit.xml ]
+[ "$(grep -c '"test":"frames","pair_s":[0-9]' usual.jsonl)" -eq 1 ]
 sed -i -E 's/^frame_ms.p99 = .*/frame_ms.p99 = 0.001/' exact.toml
 line="$(grep -n '^frame_ms.p99' exact.toml | cut -d: -f1)"
 workflow 3 "Run the frame tests"
