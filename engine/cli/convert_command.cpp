@@ -1,6 +1,7 @@
 // `psygen convert`: converts the frames of a recorded run for other viewers.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
 
 #include "engine/cli/commands.hpp"
@@ -8,6 +9,7 @@
 #include "engine/compare/viewer_csv.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/telemetry/output_file.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -25,8 +27,11 @@ class ConvertCommand final : public Command {
   }
 
   int run() override {
+    const std::filesystem::path run = run_;
+    const std::filesystem::path inputs[] = {run / "frames.csv", run / "summary.json"};
     const auto written =
-        compare::viewer_csv(viewer_, std::filesystem::path(run_))
+        telemetry::check_no_input(out_, inputs)
+            .and_then([&] { return compare::viewer_csv(viewer_, run); })
             .and_then([this](const std::string& text) { return core::replace_file(out_, text); });
     if (!written) return fail_with(written.error());
     core::log_info(fmt::format("wrote {}", out_));

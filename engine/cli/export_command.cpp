@@ -77,6 +77,15 @@ core::Result<exchange::Format> format_of(const std::string& file) {
   return *format;
 }
 
+// The files of a world's models. A shipped world's lie elsewhere, where nothing is written.
+std::vector<std::filesystem::path> model_files(const world::World& world,
+                                               const std::filesystem::path& world_file) {
+  std::vector<std::filesystem::path> files;
+  for (const world::HandmadeModel& model : world.models)
+    files.push_back(world_file.parent_path() / model.file);
+  return files;
+}
+
 std::vector<std::string_view> model_names(const models::Registry& registry) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < registry.size(); ++i)
@@ -245,6 +254,8 @@ int ExportCommand::run() {
     world = std::move(*loaded);
   }
   if (region_) return export_region(*world, registry);
+  const auto inputs = world ? model_files(*world, world_) : std::vector<std::filesystem::path>{};
+  if (auto ok = telemetry::check_no_input(out_, inputs); !ok) return fail_with(ok.error());
   if (auto ok = telemetry::check_output_file(out_); !ok) return fail_with(ok.error());
   const auto document =
       block_ ? block_document(*world, registry)

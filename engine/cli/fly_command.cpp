@@ -259,7 +259,11 @@ int FlyCommand::run_here() {
   reporter.name = "report";
   if (!requests_.empty()) {
     options_.session.prefill = false;  // the initial fill is a part of the recording
-    if (auto ok = telemetry::check_output_file(requests_); !ok) return code_of(ok.error());
+    const std::filesystem::path inputs[] = {options_.session.world_file, options_.path_file};
+    const auto writable = telemetry::check_no_input(requests_, inputs).and_then([this] {
+      return telemetry::check_output_file(requests_);
+    });
+    if (!writable) return code_of(writable.error());
     reporter.on_frame = [this](app::Session& session, double) {
       if (flight_->is_recorded()) recorder_.observe(session.scene());
     };

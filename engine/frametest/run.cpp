@@ -23,6 +23,8 @@ namespace {
 core::Result<std::vector<PreparedTest>> prepare(const RunOptions& options) {
   for (const std::filesystem::path& file : {options.junit, options.usual}) {
     if (file.empty()) continue;
+    if (auto ok = telemetry::check_no_input(file, options.files); !ok)
+      return tl::unexpected(ok.error());
     if (auto ok = telemetry::check_output_file(file); !ok) return tl::unexpected(ok.error());
   }
   if (auto ok = options.words.check(); !ok) return tl::unexpected(ok.error());

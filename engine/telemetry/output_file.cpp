@@ -31,6 +31,16 @@ core::Result<void> check_output_file(const std::filesystem::path& file) {
   return core::check_replaceable(file);
 }
 
+core::Result<void> check_no_input(const std::filesystem::path& file,
+                                  std::span<const std::filesystem::path> inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code missing;
+    if (std::filesystem::equivalent(file, input, missing))
+      return core::invalid_argument(file.string() + ": is read here, and is not replaced");
+  }
+  return {};
+}
+
 core::Result<OutputFolder> OutputFolder::open(const std::filesystem::path& folder) {
   if (auto ok = create_output_folder(folder); !ok) return tl::unexpected(ok.error());
   OutputFolder opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

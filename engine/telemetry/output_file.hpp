@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <utility>
 
 #include "engine/core/error.hpp"
@@ -17,6 +18,10 @@ core::Result<void> create_output_folder(const std::filesystem::path& folder);
 // Checks before a long job that its result can be written: creates the folder, and fails like
 // core::check_replaceable().
 core::Result<void> check_output_file(const std::filesystem::path& file);
+// Fails with kInvalidArgument if the output file is one of `inputs`, also under another name. Names
+// that do not exist, and empty ones, are no input.
+core::Result<void> check_no_input(const std::filesystem::path& file,
+                                  std::span<const std::filesystem::path> inputs);
 
 // The only process that writes into an output folder, until the object is destroyed.
 class OutputFolder {

@@ -28,6 +28,17 @@ TEST(Convert, WritesTheFramesOfARunForAViewer) {
   EXPECT_TRUE(read(out).starts_with("Application,"));
 }
 
+TEST(Convert, KeepsTheRunThatItReads) {
+  const TemporaryFolder folder;
+  write_run(folder / "run");
+  const std::string run = (folder / "run").string(), frames = run + "/frames.csv";
+  const std::string before = read(frames);
+  const Outcome refused = run_psygen("convert " + run + " --to mangohud --out " + frames);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_TRUE(mentions(refused.err, "is read here, and is not replaced")) << refused.err;
+  EXPECT_EQ(read(frames), before);
+}
+
 TEST(Convert, ReportsUnreadableUnwritableAndUnknownArguments) {
   const TemporaryFolder folder;
   write_run(folder / "run");

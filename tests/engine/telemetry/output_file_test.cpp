@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "engine/core/replace_file.hpp"
 #include "tests/engine/telemetry/synthetic_flight.hpp"
 
@@ -55,6 +57,23 @@ TEST(OutputFile, IsCheckedWithItsFolderBeforeTheWork) {
   EXPECT_TRUE(std::filesystem::is_directory(folder / "a/b"));
   EXPECT_FALSE(check_output_file(folder / "a/b")) << "a folder";
   EXPECT_FALSE(check_output_file("/dev/full"));
+}
+
+TEST(OutputFile, ThatIsAnInputIsRejectedUnderAnyName) {
+  const TemporaryFolder folder;
+  const std::filesystem::path input = folder / "world.toml", link = folder / "link.csv";
+  std::ofstream(input) << "format = 1";
+  std::filesystem::create_symlink(input, link);
+  std::filesystem::create_hard_link(input, folder / "other.csv");
+  const std::filesystem::path inputs[] = {"", folder / "missing", input};
+  for (const std::filesystem::path& file :
+       {input, link, folder / "other.csv", folder.path() / "." / "world.toml"}) {
+    const auto checked = check_no_input(file, inputs);
+    ASSERT_FALSE(checked) << file;
+    EXPECT_EQ(checked.error().message, file.string() + ": is read here, and is not replaced");
+  }
+  EXPECT_TRUE(check_no_input(folder / "missing", inputs));
+  EXPECT_TRUE(check_no_input(folder / "new.csv", inputs));
 }
 
 }  // namespace
