@@ -3,6 +3,7 @@
 
 usage: summary_schema.py SOURCE_DIR [--check]     --check only tells whether the file is up to date
 """
+import copy
 import json
 import pathlib
 import re
@@ -53,6 +54,13 @@ def add(schema, names, value):
     add(child, names[1:], value)
 
 
+def field_at(schema, names):
+    """The schema of a field that was added."""
+    for name in names:
+        schema = schema["properties"][name]
+    return schema
+
+
 def text_of(schema, indent=""):
     """JSON with one field on each line."""
     if not isinstance(schema, dict) or not {"properties", "additionalProperties"} & schema.keys():
@@ -74,6 +82,10 @@ def schema_of(page):
     assert len(rows) > 80, "docs/summary.md has no table of fields"
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "psygen.summary/1"}
     for name, nullable, *cells in rows:
+        if cells[0].startswith("like "):  # the same fields as another one
+            other = cells[0].split("`")[1].split(".")
+            add(schema, name.split("."), copy.deepcopy(field_at(schema, other)))
+            continue
         add(schema, name.split("."), value_of(cells[0].strip(), nullable, *(cell.strip() for cell in cells[1:])))
     schema["properties"]["schema"]["const"] = schema["title"]
     return text_of(schema) + "\n"

@@ -26,6 +26,8 @@
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/statistics.hpp"
+#include "engine/telemetry/marks.hpp"
+#include "engine/telemetry/own_figures.hpp"
 #include "engine/telemetry/progress_bar.hpp"
 #include "engine/world/files/path_file.hpp"
 #include "engine/world/world.hpp"
@@ -96,8 +98,21 @@ core::Result<void> Flight::open() {
         fmt::format("{}: the world {} is never in view: every point is "
                     "more than the view distance, {:g} m, outside the world",
                     options_.path_file.string(), world.name, view_m));
-  log_ = std::make_unique<telemetry::FrameLog>(session_->scene().system_names());
+  open_log();
   return {};
+}
+
+void Flight::open_log() {
+  scene::Scene& scene = session_->scene();
+  const std::span<const telemetry::FigureInfo> figures = scene.figures().infos();
+  log_ = std::make_unique<telemetry::FrameLog>(
+      scene.system_names(), telemetry::FrameLog::kMaxFrames,
+      std::vector<telemetry::FigureInfo>(figures.begin(), figures.end()));
+  telemetry::TraceLog& trace = *session_->trace();
+  for (const telemetry::FigureInfo& figure : figures)
+    own_counters_.push_back(trace.add_counter(
+        fmt::format("{}{}{}", figure.name, figure.unit.empty() ? "" : " in ", figure.unit)));
+  marks_track_ = trace.add_track("marks");
 }
 
 bool Flight::wants_more() const {
@@ -172,6 +187,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
     record.frame_ms = scene.input().frame_ms;
     forget_real_times(record);
   }
+  take_own();
   if (recorded_ && !session_->paused()) log_frame();
   const bool like_others = record.apart == telemetry::Apart::kNo;
   if (like_others) usual_ms_ = record.frame_ms;
@@ -241,14 +257,42 @@ core::Result<void> Flight::save_numbered_picture() {
   return {};
 }
 
+// Ends the frame of the game's figures. Real durations have no place on the virtual clock.
+void Flight::take_own() {
+  telemetry::OwnFigures& figures = session_->scene().figures();
+  figures.take(own_);
+  if (!has_virtual_frames(options_.session)) return;
+  for (std::size_t i = 0; i < own_.size(); ++i)
+    if (figures.infos()[i].kind == telemetry::FigureKind::kDuration)
+      own_[i] = std::numeric_limits<double>::quiet_NaN();
+}
+
+// Adds the game's figures of the last frame to the trace, and its marks to the log and the trace.
+void Flight::log_marks() {
+  telemetry::TraceLog& trace = *session_->trace();
+  const double end_s = core::monotonic_seconds();
+  for (std::size_t i = 0; i < own_.size(); ++i)
+    trace.add_value(own_counters_[i], end_s, own_[i]);
+  telemetry::Marks& marks = session_->scene().marks();
+  while (timed_marks_ < options_.marks.size() &&
+         options_.marks[timed_marks_].time_s <= record_.time_s)
+    marks.set(options_.marks[timed_marks_++].name);
+  for (std::string& name : marks.take()) {
+    trace.add_span(marks_track_, trace.intern(name), end_s - record_.frame_ms * 1e-3, end_s,
+                   record_.index);
+    log_->add_mark(std::move(name));
+  }
+}
+
 // Logs the last frame, and late results of earlier frames.
 void Flight::log_frame() {
   const scene::Scene& scene = session_->scene();
   if (has_virtual_frames(options_.session)) {
-    log_->add(record_);
+    log_->add(record_, {}, own_);
   } else {
-    log_->add(record_, scene.system_ms());
+    log_->add(record_, scene.system_ms(), own_);
   }
+  log_marks();
   if (const auto& gpu = scene.drawn().gpu; gpu && !has_virtual_frames(options_.session))
     log_->set_gpu_ms(gpu->frame, gpu->ms, gpu->shadows_ms);
   const scene::Statistics statistics = scene.statistics();

@@ -14,6 +14,7 @@
 #include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/summary.hpp"
+#include "engine/telemetry/trace_log.hpp"
 #include "engine/world/camera_path.hpp"
 
 namespace psygen::app {
@@ -54,6 +55,7 @@ class Flight {
  private:
   explicit Flight(FlightOptions options) : options_(std::move(options)) {}
   core::Result<void> open();
+  void open_log();
 
   core::Result<void> loop();
   core::Result<void> fly_frame(double dt_s);
@@ -63,6 +65,8 @@ class Flight {
   bool saves_picture() const;
   core::Result<void> save_numbered_picture();
   void log_frame();
+  void take_own();
+  void log_marks();
   FlightReport land(bool whole);
 
   void handle_keys();
@@ -88,8 +92,12 @@ class Flight {
   platform::FlyCamera fly_camera_;
   core::CameraPose pose_;
   std::uint64_t frames_ = 0;
-  telemetry::FrameRecord record_;  // of the last frame, completed
-  double usual_ms_ = 0;            // of the last frame that is not excluded
+  telemetry::FrameRecord record_;                         // of the last frame, completed
+  double usual_ms_ = 0;                                   // of the last frame that is not excluded
+  std::vector<double> own_;                               // the game's figures in the last frame
+  std::vector<telemetry::TraceLog::Track> own_counters_;  // of the trace, one for each figure
+  telemetry::TraceLog::Track marks_track_ = 0;            // of the trace
+  std::size_t timed_marks_ = 0;                           // of options_.marks that were set
   bool recorded_ = false;
   bool user_flies_ = false;
   Hud hud_;

@@ -15,6 +15,7 @@
 #include "engine/models/registry.hpp"
 #include "engine/render/types.hpp"
 #include "engine/scene/settings.hpp"
+#include "engine/telemetry/marks.hpp"
 
 namespace psygen::scene {
 struct Systems;
@@ -94,6 +95,12 @@ struct SessionOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
+// A mark that a flight sets by itself, in the first frame at this time or later.
+struct TimedMark {
+  std::string name;
+  double time_s = 0;  // on the flight's clock
+};
+
 // Options of a flight.
 struct FlightOptions {
   SessionOptions session;
@@ -112,6 +119,8 @@ struct FlightOptions {
   double warmup_seconds = 1;       // excluded from all statistics
   bool hash_world = true;          // computes hash.world of the summary (about 50 ms)
   bool reference_load = false;     // measures it before and after the flight (seconds)
+  std::vector<TimedMark> marks;    // in the order of time
+  std::vector<telemetry::SectionRange> sections;  // of the summary, with other names each
 };
 
 }  // namespace psygen::app

@@ -11,6 +11,8 @@
 #include "engine/scene/scene.hpp"
 #include "engine/scene/settings.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
+#include "engine/telemetry/marks.hpp"
+#include "engine/telemetry/own_figures.hpp"
 #include "engine/telemetry/process.hpp"
 #include "engine/telemetry/report.hpp"
 #include "engine/telemetry/trace_log.hpp"
@@ -141,6 +143,9 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   facts.types_hash = hash_of_types(scene.registry());
   facts.path_hash =
       path_ ? telemetry::Count(path_->hash()) : telemetry::Count::missing("the run had no path");
+  facts.sections = options_.sections;
+  facts.invalid_values = scene.figures().invalid_counts();
+  facts.ignored_marks = scene.marks().ignored();
   facts.images_hash = pictures_failed_ ? telemetry::Count::missing("an image was not written")
                       : images_ > 0    ? telemetry::Count(images_hash_)
                                        : telemetry::Count::missing("no images were written");

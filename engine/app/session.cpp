@@ -32,6 +32,7 @@
 #include "engine/scene/systems.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/telemetry/frame_log.hpp"
+#include "engine/telemetry/own_figures.hpp"
 #include "engine/telemetry/trace_log.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
@@ -61,6 +62,17 @@ core::Result<void> set_hour(const SessionOptions& options, world::World& world) 
                     options.world_file.string()));
   }
   world.sky.start_hour = *options.start_hour;
+  return {};
+}
+
+// The times of systems and the game's figures are columns of one file.
+core::Result<void> check_columns(scene::Scene& scene) {
+  for (const std::string& system : scene.system_names())
+    for (const telemetry::FigureInfo& figure : scene.figures().infos())
+      if (system + "_ms" == "figures." + figure.name)
+        return core::invalid_argument(
+            fmt::format("the figure '{}' and the system '{}' have the same column of frames.csv",
+                        figure.name, system));
   return {};
 }
 
@@ -344,7 +356,9 @@ core::Result<void> Session::add_systems() {
                      });
     claim({});
   }
-  return scene_->arrange();
+  scene_->figures().close();
+  if (auto ok = scene_->arrange(); !ok) return ok;
+  return check_columns(*scene_);
 }
 
 void Session::step_actions(input::Actions& actions) {

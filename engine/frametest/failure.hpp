@@ -24,10 +24,12 @@ struct WorstFrame {
 
 // Returns at most `count` frames after the warm-up, in the order of time: the worst of each missed
 // budget, then each budget's next. Skips frames less than half a second from a chosen one, because
-// they show the same view. Budgets without a value per frame (hash.world, memory) contribute none.
+// they show the same view. Budgets of a section have frames of that section alone. Budgets without
+// a value per frame (hash.world, memory) contribute none.
 std::vector<WorstFrame> worst_frames(std::span<const BudgetResult> budgets,
                                      const telemetry::FrameLog& log, double warmup_s,
-                                     std::size_t count);
+                                     std::size_t count,
+                                     std::span<const telemetry::SectionRange> sections = {});
 
 // Removes the failure report of an earlier run from a test's folder.
 void remove_failure(const std::filesystem::path& folder);

@@ -2,16 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/core/data_file.hpp"
-#include "engine/core/nearest_word.hpp"
 #include "engine/core/utf8.hpp"
+#include "engine/frametest/budget_fields.hpp"
 #include "engine/frametest/budget_limit.hpp"
 #include "engine/frametest/frame_test.hpp"
 #include "engine/frametest/judge.hpp"
 #include "engine/render/preset.hpp"
-#include "engine/telemetry/summary_fields.hpp"
+#include "engine/telemetry/own_figures.hpp"
 #include "engine/world/files/document.hpp"
 #include "engine/world/files/table_reader.hpp"
 #include "engine/world/files/text_file.hpp"
@@ -25,7 +26,6 @@ using world::Problems;
 using world::TableReader;
 
 constexpr std::size_t kMaxNameBytes = 64, kMaxFileNameBytes = 4096;
-constexpr const char* kSystemTimes = "system_ms.";
 
 // Reads a text with a parser that returns a core::Result.
 template <class Parse, class Value>
@@ -124,54 +124,82 @@ bool can_change_by_load(const FrameTest& test) {
   });
 }
 
-// The names of the fields of every summary, and of those that are texts.
-class KnownFields {
- public:
-  KnownFields() {
-    const telemetry::Summary nothing;
-    for (const telemetry::SummaryField& field : telemetry::summary_fields(nothing)) {
-      names_.push_back(field.name);
-      if (std::holds_alternative<std::string>(field.value)) texts_.push_back(field.name);
-    }
-  }
-  // Returns the error of a budget; empty if it is valid. The names of systems are unknown until the
-  // flight exists.
-  std::string problem(const Budget& budget) const {
-    const auto has = [&](const std::vector<std::string>& names) {
-      return std::ranges::find(names, budget.field) != names.end();
-    };
-    if (budget.field.starts_with(kSystemTimes)) {
-      const bool ends = budget.field.ends_with(".p50") || budget.field.ends_with(".p99");
-      return ends ? "" : "times of systems have only p50 and p99";
-    }
-    if (!has(names_)) {
-      return "summary.json has no such field" + core::suggestion(budget.field, names_);
-    }
-    if (budget.relation != Relation::kEqual && (has(texts_) || budget.field.starts_with("hash.")))
-      return "it is a text, which only [equal] can compare";
-    return {};
-  }
-
- private:
-  std::vector<std::string> names_, texts_;
+// What all budgets of a file share.
+struct BudgetReader {
+  const KnownFields& known;
+  Problems& problems;
+  FrameTest& test;
 };
 
 // Dotted keys are nested tables: "frame_ms.p99 = 25".
 void read_budgets(const Node& table, const std::string& prefix, Relation relation,
-                  const KnownFields& known, Problems& problems, std::vector<Budget>& budgets) {
+                  const BudgetReader& reader) {
+  Problems& problems = reader.problems;
   for (const world::Member& member : table.members) {
     const std::string field = prefix.empty() ? member.key : prefix + "." + member.key;
     const Node& value = member.value;
     const std::string where = fmt::format("{}.{}", name_of(relation), field);
     if (!is_limit(value)) {
-      read_budgets(value, field, relation, known, problems, budgets);
+      read_budgets(value, field, relation, reader);
       continue;
     }
     Budget budget{field, relation, 0.0, member.line};
     if (!read_limit(value, where, problems, budget)) continue;
-    if (const std::string problem = known.problem(budget); !problem.empty())
-      problems.add(member.line, where, problem);
-    budgets.push_back(std::move(budget));
+    const std::string problem = reader.known.problem(budget, reader.test.flight.sections);
+    if (!problem.empty()) problems.add(member.line, where, problem);
+    reader.test.budgets.push_back(std::move(budget));
+  }
+}
+
+constexpr std::array kRelations{Relation::kAtMost, Relation::kAtLeast, Relation::kEqual};
+
+constexpr const char* kNameRule =
+    "it must be 1 to 64 of a-z, 0-9 and _, with single dots between, and not \"end\"";
+
+bool is_mark(std::string_view name) {
+  return telemetry::is_own_name(name) && name != telemetry::kEndOfRun;
+}
+
+// [marks]: names with the time of the flight at which they are set.
+void read_marks(TableReader& reader, std::vector<app::TimedMark>& marks) {
+  for (const world::Member& member : reader.node().members) {
+    app::TimedMark mark{member.key, 0};
+    if (!is_mark(mark.name)) reader.problem(member.line, mark.name, kNameRule);
+    if (reader.read(mark.name, mark.time_s, {0, 86400})) marks.push_back(std::move(mark));
+  }
+  std::ranges::stable_sort(marks, {}, &app::TimedMark::time_s);
+}
+
+// [sections.NAME]: the range alone. Its budgets are read when all sections are known.
+void read_ranges(TableReader& reader, std::vector<telemetry::SectionRange>& sections) {
+  for (const world::Member& member : reader.node().members) {
+    telemetry::SectionRange section{.name = member.key, .from = member.key};
+    auto table = reader.table(section.name);
+    if (!table) continue;
+    table->read("from", section.from, kMaxNameBytes);
+    table->read("to", section.to, kMaxNameBytes);
+    // Budgets name sections in dotted keys.
+    if (!is_mark(section.name) || section.name.find('.') != std::string::npos)
+      reader.problem(member.line, section.name,
+                     "the name must be 1 to 64 of a-z, 0-9 and _, and not \"end\"");
+    if (!is_mark(section.from)) table->problem("from", kNameRule);
+    if (section.to != telemetry::kEndOfRun && !is_mark(section.to)) table->problem("to", kNameRule);
+    for (const Relation relation : kRelations)
+      (void)table->find(name_of(relation));
+    table->finish();
+    if (sections.size() == telemetry::kMaxSections)
+      reader.problem(member.line, section.name,
+                     fmt::format("a frame test has at most {} sections", telemetry::kMaxSections));
+    sections.push_back(std::move(section));
+  }
+}
+
+void read_section_budgets(TableReader& reader, const BudgetReader& budgets) {
+  for (const telemetry::SectionRange& section : budgets.test.flight.sections) {
+    auto table = reader.table(section.name);
+    for (const Relation relation : kRelations)
+      if (const auto limits = table->table(name_of(relation)))
+        read_budgets(limits->node(), "sections." + section.name, relation, budgets);
   }
 }
 
@@ -234,11 +262,16 @@ core::Result<FrameTest> parse_frame_test(std::string_view text,
   test.flight.session.world_file = "paper";
   test.flight.session.preset = render::Preset::kLow;
   if (auto flight = root.table("flight")) read_flight(*flight, test.flight);
+  if (auto marks = root.table("marks")) read_marks(*marks, test.flight.marks);
+  auto sections = root.table("sections");
+  if (sections) read_ranges(*sections, test.flight.sections);
   const KnownFields known;
-  for (const Relation relation : {Relation::kAtMost, Relation::kAtLeast, Relation::kEqual}) {
+  const BudgetReader budgets{known, problems, test};
+  for (const Relation relation : kRelations) {
     if (const auto table = root.table(name_of(relation)))
-      read_budgets(table->node(), "", relation, known, problems, test.budgets);
+      read_budgets(table->node(), "", relation, budgets);
   }
+  if (sections) read_section_budgets(*sections, budgets);
   std::ranges::stable_sort(test.budgets, {}, &Budget::line);
   test.flight.reference_load = can_change_by_load(test);
   if (auto table = root.table("test")) read_test(*table, file_name, test);

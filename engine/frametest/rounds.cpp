@@ -123,7 +123,8 @@ core::Result<void> TestFlights::fly_once() {
   const auto alone =
       judge(test_.budgets, Flights{.runs = {&runs_.back(), 1}, .virtual_clock = is_virtual});
   worst_.push_back(worst_frames(alone, (*flight)->log(), test_.flight.warmup_seconds,
-                                static_cast<std::size_t>(options_.worst_frames)));
+                                static_cast<std::size_t>(options_.worst_frames),
+                                test_.flight.sections));
   return {};
 }
 

@@ -7,9 +7,12 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string_view>
 
+#include "engine/frametest/budget_fields.hpp"
 #include "engine/frametest/failure.hpp"
+#include "engine/telemetry/summary.hpp"
 
 namespace psygen::frametest {
 namespace {
@@ -18,7 +21,7 @@ using telemetry::FrameLog;
 using telemetry::FrameRecord;
 
 constexpr double kApartSeconds = 0.5;
-constexpr std::string_view kSystemPrefix = "system_ms.";
+constexpr std::string_view kSystemPrefix = "system_ms.", kFigurePrefix = "figures.";
 
 // Value of a frame for measurements whose names begin with `prefix`. The first match counts.
 using Of = double (*)(const FrameRecord&);
@@ -91,22 +94,31 @@ struct Row {
   double value = 0;
 };
 struct Ranked {
-  std::string field;
-  std::string_view unit;
+  std::string field, unit;
   std::vector<Row> rows;
   std::size_t next = 0;
 };
 
-// `of` returns the value of row i.
-Ranked ranked(const Budget& budget, std::string_view unit, bool time, const FrameLog& log,
-              double warmup_s, const std::function<double(std::size_t)>& of) {
-  Ranked result{budget.field, unit, {}};
+// The value of row i of a log.
+struct Column {
+  std::string unit;
+  bool time = false;  // excluded frames do not count
+  std::function<double(std::size_t)> of;
+};
+
+// Rows in which a budget can be missed.
+struct Part {
+  std::size_t first, end;
+};
+
+Ranked ranked(const Budget& budget, const Column& column, const FrameLog& log, const Part& part) {
+  Ranked result{budget.field, column.unit, {}};
   const bool small_is_bad = budget.relation == Relation::kAtLeast;
-  for (std::size_t i = 0; i < log.frames().size(); ++i) {
+  for (std::size_t i = part.first; i < part.end; ++i) {
     const FrameRecord& frame = log.frames()[i];
-    const double value = of(i);
-    if (frame.time_s < warmup_s || std::isnan(value)) continue;
-    if (time && frame.apart != telemetry::Apart::kNo) continue;
+    const double value = column.of(i);
+    if (std::isnan(value)) continue;
+    if (column.time && frame.apart != telemetry::Apart::kNo) continue;
     if (value == 0 && !small_is_bad) continue;  // the frame has no defect
     result.rows.push_back({i, value});
   }
@@ -116,18 +128,34 @@ Ranked ranked(const Budget& budget, std::string_view unit, bool time, const Fram
   return result;
 }
 
-Ranked ranked(const Budget& budget, const FrameLog& log, double warmup_s) {
-  const std::string_view field = budget.field;
+// Returns the column of a field; nothing if it has no value per frame.
+std::optional<Column> column_of(std::string_view field, const FrameLog& log) {
   const auto measure = std::ranges::find_if(
       kMeasures, [&](const Measure& m) { return field.starts_with(m.prefix); });
   if (measure != kMeasures.end())
-    return ranked(budget, measure->unit, measure->time, log, warmup_s,
-                  [&](std::size_t i) { return measure->of(log.frames()[i]); });
+    return Column{std::string(measure->unit), measure->time,
+                  [&log, measure](std::size_t i) { return measure->of(log.frames()[i]); }};
   for (std::size_t s = 0; s < log.systems().size(); ++s)
     if (field.starts_with(std::string(kSystemPrefix) + log.systems()[s] + "."))
-      return ranked(budget, "ms", true, log, warmup_s,
-                    [&](std::size_t i) { return double{log.system_ms(i)[s]}; });
-  return {budget.field, {}, {}};
+      return Column{"ms", true, [&log, s](std::size_t i) { return double{log.system_ms(i)[s]}; }};
+  for (std::size_t f = 0; f < log.figures().size(); ++f) {
+    const telemetry::FigureInfo& figure = log.figures()[f];
+    if (field.starts_with(std::string(kFigurePrefix) + figure.name + "."))
+      return Column{figure.unit, figure.kind == telemetry::FigureKind::kDuration,
+                    [&log, f](std::size_t i) { return log.own(i)[f]; }};
+  }
+  return std::nullopt;
+}
+
+// The frames after the warm-up, of the budget's section if it has one.
+Part part_of(const Budget& budget, const FrameLog& log, double warmup_s,
+             std::span<const telemetry::SectionRange> sections) {
+  const std::size_t all = log.frames().size(), warm = all - log.frames_since(warmup_s).size();
+  const auto name = section_field(budget.field, sections).section;
+  const auto section = std::ranges::find(sections, name, &telemetry::SectionRange::name);
+  if (section == sections.end()) return {warm, all};
+  const auto [first, end] = find_section(log, *section).value.value_or(std::pair{warm, warm});
+  return {std::max(first, warm), std::max(end, warm)};
 }
 
 // Returns the next row that is far enough from the chosen frames.
@@ -146,10 +174,16 @@ const Row* next_of(Ranked& ranked, const FrameLog& log, std::span<const WorstFra
 }  // namespace
 
 std::vector<WorstFrame> worst_frames(std::span<const BudgetResult> budgets, const FrameLog& log,
-                                     double warmup_s, std::size_t count) {
+                                     double warmup_s, std::size_t count,
+                                     std::span<const telemetry::SectionRange> sections) {
   std::vector<Ranked> all;
-  for (const BudgetResult& result : budgets)
-    if (!result.holds) all.push_back(ranked(result.budget, log, warmup_s));
+  for (const BudgetResult& result : budgets) {
+    if (result.holds) continue;
+    const Budget& budget = result.budget;
+    const std::string_view inner = section_field(budget.field, sections).field;
+    if (const auto column = column_of(inner.empty() ? budget.field : inner, log))
+      all.push_back(ranked(budget, *column, log, part_of(budget, log, warmup_s, sections)));
+  }
   std::vector<WorstFrame> chosen;
   for (bool any = true; any && chosen.size() < count;) {
     any = false;

@@ -179,6 +179,12 @@ const render::FrameResult& Scene::drawn() const {
 const telemetry::FrameRecord& Scene::record() const {
   return state_->telemetry.record;
 }
+telemetry::OwnFigures& Scene::figures() {
+  return state_->figures;
+}
+telemetry::Marks& Scene::marks() {
+  return state_->marks;
+}
 std::span<const float> Scene::system_ms() const {
   return state_->system_ms;
 }
@@ -208,7 +214,7 @@ bool Scene::shows_replaced_world() const {
 }
 
 Systems Scene::systems() {
-  return {state_->entities, state_->tick, state_->simulation.systems};
+  return {state_->entities, state_->tick, state_->simulation.systems, state_->figures};
 }
 
 core::Result<void> Scene::arrange() {

@@ -39,6 +39,8 @@ class RemoteModelers;
 }  // namespace psygen::synthesis
 namespace psygen::telemetry {
 struct FrameRecord;
+class Marks;
+class OwnFigures;
 class TraceLog;
 }  // namespace psygen::telemetry
 namespace psygen::world {
@@ -141,6 +143,10 @@ class Scene {
   const render::FrameResult& drawn() const;
   // The record of the last tick (engine/telemetry/frame_log.hpp).
   const telemetry::FrameRecord& record() const;
+  // The game's figures (engine/telemetry/own_figures.hpp), and its marks, also a resource of all
+  // systems (engine/telemetry/marks.hpp).
+  telemetry::OwnFigures& figures();
+  telemetry::Marks& marks();
   // Milliseconds of each system in the last tick, in the order of system_names().
   std::span<const float> system_ms() const;
   // The systems of the tick in their order, then those of fixed steps as "step <name>".

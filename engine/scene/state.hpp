@@ -18,6 +18,8 @@
 #include "engine/scene/objects/assets.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/scene/telemetry_system.hpp"
+#include "engine/telemetry/marks.hpp"
+#include "engine/telemetry/own_figures.hpp"
 
 namespace psygen::scene {
 
@@ -55,6 +57,8 @@ struct State {
   ShownNodes shown;
   Tracing trace;
   Telemetry telemetry;
+  telemetry::OwnFigures figures;  // of the game
+  telemetry::Marks marks;
   std::vector<float> system_ms;  // of the last tick, in the order of system_names()
   synthesis::CalibrationReport calibration;
   // Types of earlier worlds that objects or hung modelers still use.

@@ -23,7 +23,7 @@ void build_tick(State& s) {
                  s.draws, s.assets, s.object_draws, s.light_draws, s.particle_draws, s.shown,
                  s.simulation, s.step, s.trace, s.telemetry, events.shown, events.hidden,
                  events.created, events.removed, events.ready, events.evicted, events.places_ready,
-                 events.world_changed);
+                 events.world_changed, s.marks);
   s.tick.add(kSimulationSystem, simulation_system);
   s.tick.add("input", input_system);
   s.tick.add("quality", quality_system);
@@ -47,7 +47,7 @@ void build_tick(State& s) {
   }
   s.simulation.systems.provide(s.facts, s.step, events.shown, events.hidden, events.created,
                                events.removed, events.ready, events.evicted, events.places_ready,
-                               events.world_changed);
+                               events.world_changed, s.marks);
 }
 
 void reset_counts(State& s) {

@@ -29,6 +29,17 @@ constexpr std::string_view kColumnsAfterSystems =
 // The GPU time of a frame arrives at most this many frames later.
 constexpr std::size_t kLatestFrames = 16;
 
+// The columns of own figures.
+constexpr std::string_view kOwnPrefix = "figures.";
+
+// Appends the values of row `rows`; NaN if their number is not `count`.
+template <class T>
+void add_values(std::span<const T> row, std::size_t rows, std::size_t count,
+                std::vector<T>& values) {
+  values.resize((rows + 1) * count, std::numeric_limits<T>::quiet_NaN());
+  if (row.size() == count) std::ranges::copy(row, values.end() - std::ssize(row));
+}
+
 std::string cell(const std::optional<double>& ms) {
   return ms && !std::isnan(*ms) ? fmt::format("{:.4f}", *ms) : std::string();
 }
@@ -44,7 +55,7 @@ std::string row(const FrameRecord& r, std::span<const float> system_ms) {
     std::isnan(ms) ? fmt::format_to(to, ",") : fmt::format_to(to, ",{:.4f}", ms);
   fmt::format_to(to,
                  ",{:.3f},{:.3f},{:.3f},{},{},{},{},{},{:.4f},{:.4f},{},{},{},{},{},{},{},{},{},{},"
-                 "{},{},{:.6f}\n",
+                 "{},{},{:.6f}",
                  r.error_pixels, r.memory_factor, r.resolution, r.triangles, r.draws,
                  r.nodes_in_view, r.holes, r.coarse_nodes, r.missing_pixels_percent,
                  r.too_coarse_percent, r.cache_bytes, r.cache_hits, r.cache_misses,
@@ -52,6 +63,19 @@ std::string row(const FrameRecord& r, std::span<const float> system_ms) {
                  r.requests_completed, r.models_failed, r.models_synthesised,
                  r.triangles_synthesised, r.bytes_synthesised, r.synthesis_seconds);
   return text;
+}
+
+// The cells of own figures, and that of the marks, beginning with mark number `mark`.
+std::string own_cells(const FrameLog& log, std::size_t row, std::size_t& mark) {
+  std::string text;
+  for (const double value : log.own(row))
+    std::isnan(value) ? text += ',' : text += fmt::format(",{:.10g}", value);
+  text += ',';
+  for (bool first = true; mark < log.marks().size() && log.marks()[mark].row == row; ++mark) {
+    text += (first ? "" : " ") + log.marks()[mark].name;
+    first = false;
+  }
+  return text + "\n";
 }
 
 }  // namespace
@@ -72,13 +96,16 @@ void SampleSet::add(double time_s, double value) {
   ++added_;
 }
 
-std::vector<double> SampleSet::values_since(double from_s) const {
+std::vector<double> SampleSet::values_since(double from_s, double until_s) const {
+  const auto counts = [&](const Sample& sample) {
+    return sample.time_s >= from_s && sample.time_s < until_s;
+  };
   std::vector<double> values;
   for (const Sample& sample : samples_) {
-    if (sample.time_s >= from_s) values.push_back(sample.value);
+    if (counts(sample)) values.push_back(sample.value);
   }
   const bool largest_is_missing =
-      added_ > samples_.size() && largest_.time_s >= from_s &&
+      added_ > samples_.size() && counts(largest_) &&
       std::find(values.begin(), values.end(), largest_.value) == values.end();
   if (largest_is_missing) values.push_back(largest_.value);
   return values;
@@ -94,32 +121,38 @@ std::string picture_name(std::uint64_t index) {
   return fmt::format("frame_{:05}.png", index);
 }
 
-FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames)
-    : systems_(std::move(systems)), max_frames_(max_frames) {
+FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames,
+                   std::vector<FigureInfo> figures)
+    : systems_(std::move(systems)), max_frames_(max_frames), figures_(std::move(figures)) {
   constexpr std::size_t kSmallPart = 4;  // fraction of the available memory
-  const std::size_t row_bytes = sizeof(FrameRecord) + systems_.size() * sizeof(float);
+  const std::size_t row_bytes =
+      sizeof(FrameRecord) + systems_.size() * sizeof(float) + figures_.size() * sizeof(double);
   if (core::memory_left(kSmallPart * max_frames_ * row_bytes)) {
     frames_.reserve(max_frames_);
     system_ms_.reserve(max_frames_ * systems_.size());
+    own_.reserve(max_frames_ * figures_.size());
   } else {
     core::record_failed_allocation(0);  // the log continues with fewer rows
   }
 }
 
-void FrameLog::add(const FrameRecord& record, std::span<const float> system_ms) {
+void FrameLog::add(const FrameRecord& record, std::span<const float> system_ms,
+                   std::span<const double> own) {
   if (frames_.size() < max_frames_) {
     try {
-      system_ms_.resize((frames_.size() + 1) * systems_.size(),
-                        std::numeric_limits<float>::quiet_NaN());
+      add_values(system_ms, frames_.size(), systems_.size(), system_ms_);
+      add_values(own, frames_.size(), figures_.size(), own_);
       frames_.push_back(record);
-      if (system_ms.size() == systems_.size())
-        std::ranges::copy(system_ms, system_ms_.end() - std::ssize(system_ms));
       return;
     } catch (const std::bad_alloc&) {
       max_frames_ = frames_.size();
     }
   }
   ++dropped_;
+}
+
+void FrameLog::add_mark(std::string name) {
+  if (!frames_.empty() && dropped_ == 0) marks_.push_back({frames_.size() - 1, std::move(name)});
 }
 
 void FrameLog::set_gpu_ms(std::uint64_t device_frame, double ms, double shadows_ms) {
@@ -148,9 +181,13 @@ core::Result<void> write_frames_csv(const std::filesystem::path& path, const Fra
   file.write(kColumnsBeforeSystems);
   for (const std::string& system : log.systems())
     file.write("," + system + "_ms");
-  file.write(fmt::format(",{}\n", kColumnsAfterSystems));
+  file.write(fmt::format(",{}", kColumnsAfterSystems));
+  for (const FigureInfo& figure : log.figures())
+    file.write(fmt::format(",{}{}", kOwnPrefix, figure.name));
+  file.write(",marks\n");
+  std::size_t mark = 0;
   for (std::size_t i = 0; i < log.frames().size(); ++i)
-    file.write(row(log.frames()[i], log.system_ms(i)));
+    file.write(row(log.frames()[i], log.system_ms(i)) + own_cells(log, i, mark));
   return file.commit();
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,8 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/telemetry/marks.hpp"
+#include "engine/telemetry/own_figures.hpp"
 
 namespace psygen::telemetry {
 
@@ -28,9 +31,10 @@ class SampleSet {
   void add(double time_s, double value);
   // Number of added samples, stored or not.
   std::uint64_t added_count() const { return added_; }
-  // Stored values with a time of at least `from_s`, in no particular order. If samples were
-  // dropped, the largest value of all is still included. O(capacity).
-  std::vector<double> values_since(double from_s) const;
+  // Stored values with a time of at least `from_s` and below `until_s`, in no particular order. If
+  // samples were dropped, the largest value of all is still included. O(capacity).
+  std::vector<double> values_since(double from_s,
+                                   double until_s = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Sample {
@@ -109,18 +113,25 @@ struct FrameRecord {
   double wait_ms() const { return device_wait_ms + acquire_ms + present_ms; }
 };
 
-// Rows of one run with the times of its systems, and samples of quantities without a row.
+// Rows of one run with the times of its systems and the game's own figures, and samples of
+// quantities without a row.
 class FrameLog {
  public:
-  // `systems` are the names of the systems in the order of the tick. Reserves (without touching)
-  // address space for `max_frames` rows if that is a small part of the available memory. Further
-  // frames are counted but not stored.
-  explicit FrameLog(std::vector<std::string> systems,
-                    std::size_t max_frames = std::size_t{1} << 18);
+  static constexpr std::size_t kMaxFrames = std::size_t{1} << 18;
+
+  // `systems` are the names of the systems in the order of the tick, `figures` those of the game.
+  // Reserves (without touching) address space for `max_frames` rows if that is a small part of the
+  // available memory. Further frames are counted but not stored.
+  explicit FrameLog(std::vector<std::string> systems, std::size_t max_frames = kMaxFrames,
+                    std::vector<FigureInfo> figures = {});
 
   // Appends a row. `system_ms` are the times of systems() in ms, without waiting for the GPU or the
-  // display. If their number differs from systems(), they are dropped.
-  void add(const FrameRecord& record, std::span<const float> system_ms = {});
+  // display; `own` are the values of figures(), NaN if unknown. A list of another length is
+  // dropped.
+  void add(const FrameRecord& record, std::span<const float> system_ms = {},
+           std::span<const double> own = {});
+  // Sets a mark in the last row. Ignores marks of a frame that was not stored.
+  void add_mark(std::string name);
   // Sets the GPU time of one of the last frames, which arrives later. Ignores frames that are not
   // among the last 16.
   void set_gpu_ms(std::uint64_t device_frame, double ms, double shadows_ms);
@@ -137,6 +148,13 @@ class FrameLog {
   std::span<const float> system_ms(std::size_t frame) const {
     return std::span(system_ms_).subspan(frame * systems_.size(), systems_.size());
   }
+  // The game's figures, and their values in row `frame` of frames(); NaN if unknown.
+  std::span<const FigureInfo> figures() const { return figures_; }
+  std::span<const double> own(std::size_t frame) const {
+    return std::span(own_).subspan(frame * figures_.size(), figures_.size());
+  }
+  // The marks, in the order of time.
+  std::span<const FrameMark> marks() const { return marks_; }
   // Rows of frames that start at `warmup_s` or later. Rows are in the order of time.
   std::span<const FrameRecord> frames_since(double warmup_s) const;
   // Number of frames that were counted but not stored.
@@ -150,14 +168,17 @@ class FrameLog {
   std::size_t max_frames_;
   std::vector<FrameRecord> frames_;
   std::vector<float> system_ms_;  // of each row, in the order of systems_
+  std::vector<FigureInfo> figures_;
+  std::vector<double> own_;  // of each row, in the order of figures_
+  std::vector<FrameMark> marks_;
   std::uint64_t dropped_ = 0;
   SampleSet time_to_visible_ms_;
   SampleSet cost_error_percent_;
 };
 
 // Writes frames.csv: a header line, then one line per frame, comma-separated, with a point as
-// decimal mark. System columns are named `<system>_ms`; unknown values are empty. Fails with kIo
-// and the path.
+// decimal mark. System columns are named `<system>_ms`, own figures `figures.<name>`; "marks" has
+// the names of marks with blanks between. Unknown values are empty. Fails with kIo and the path.
 core::Result<void> write_frames_csv(const std::filesystem::path& path, const FrameLog& log);
 
 }  // namespace psygen::telemetry

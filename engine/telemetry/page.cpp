@@ -117,11 +117,12 @@ std::string page_tools_html(const PageRows& rows) {
 )";
   return fmt::format(
       "{}<script type=\"application/json\" id=\"rows\">{{\"t\":{},\"n\":{},\"every\":{},"
-      "\"warmup\":{:.6g},\"times\":{},\"apart\":{{{}}},\"pictures\":{{{}}},\"figures\":[{}],"
+      "\"warmup\":{:.6g},\"times\":{},\"apart\":{{{}}},\"pictures\":{{{}}},\"marks\":{{{}}},"
+      "\"figures\":[{}],"
       "\"parts\":[{}]}}</script>\n",
       kTools, json_numbers(rows.times_s), json_numbers(rows.numbers), rows.every, rows.warmup_s,
-      rows.timed_series, texts(rows.apart), texts(rows.pictures), figures(rows.figures),
-      figures(rows.parts));
+      rows.timed_series, texts(rows.apart), texts(rows.pictures), texts(rows.marks),
+      figures(rows.figures), figures(rows.parts));
 }
 
 std::string distribution_html() {

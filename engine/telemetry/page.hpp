@@ -81,6 +81,7 @@ struct PageRows {
   std::size_t timed_series = 1;  // number of series of the first plot that are frame times
   std::map<std::size_t, std::string> apart;     // by row: reason why statistics exclude its time
   std::map<std::size_t, std::string> pictures;  // by row: a file next to the page
+  std::map<std::size_t, std::string> marks;     // by row: the name of a vertical line
   std::vector<RowFigure> figures;
   std::vector<RowFigure> parts;  // parts of a frame's time in ms: shown as bars, longest first
 };

@@ -9,11 +9,8 @@
   // Elements, with attributes and content; text is never HTML.
   function make(name, attributes = {}, ...content) {
     const svg = /^(svg|g|path|line|rect|circle|text|title)$/.test(name);
-    const element = svg ? document.createElementNS(
-                              "http" +
-                                  "://www.w3.org/2000/svg",
-                              name) :
-                          document.createElement(name);
+    const space = "http" + (svg ? "://www.w3.org/2000/svg" : "://www.w3.org/1999/xhtml");
+    const element = document.createElementNS(space, name);
     for (const [key, value] of Object.entries(attributes))
       if (value !== undefined) element.setAttribute(key, value);
     element.append(...content);
@@ -242,19 +239,24 @@
         }));
       });
     }
-    // Frames that timing statistics exclude.
+    // Frames that timing statistics exclude, and the game's marks.
     marks(svg, first, end) {
       let path = "", last = -1;
-      for (const row of Object.keys(rows.apart)) {
-        if (row < first || row >= end) continue;
+      const seen = list => Object.keys(list).filter(row => row >= first && row < end);
+      for (const row of seen(rows.apart)) {
         const x = Math.round(this.x(times[row]));
         if (x !== last) path += `M${x} ${this.bottom}v-8`;
         last = x;
       }
-      if (path)
-        svg.append(make(
-            "path", {class: "mark", d: path},
-            make("title", {}, "excluded from timing statistics")));
+      const line = (style, d, text) =>
+          svg.append(make("path", {class: style, d}, make("title", {}, text)));
+      if (path) line("mark", path, "excluded from timing statistics");
+      const marks = seen(rows.marks), name = row => marks.length < 20 ? rows.marks[row] : "";
+      for (const row of marks) {
+        const x = this.x(times[row]);
+        line("event", `M${x} ${this.high}V${this.bottom}`, rows.marks[row]);
+        svg.append(make("text", {class: "event", x: x + 3, y: this.high + 9}, name(row)));
+      }
     }
     level(svg, level, wide) {
       const y = this.y(level.value);
@@ -312,6 +314,7 @@
       const lines = [make("b", {}, nameOf(row))];
       if (rows.apart[row] !== undefined)
         lines.push(make("div", {}, "excluded: " + rows.apart[row]));
+      if (rows.marks[row] !== undefined) lines.push(make("div", {}, "mark: " + rows.marks[row]));
       for (const series of this.data.series)
         if (series.v[row] !== null)
           lines.push(make("div", {}, series.name + ": " + withUnit(series.v[row], this.data.unit)));
@@ -352,7 +355,6 @@
     range = wanted;
     draw();
   }
-
 
   // Times of series `i` of the first plot in view, after the warm-up, in ascending order.
   function timesInView(i) {
@@ -415,26 +417,19 @@
       svg.append(
           make("text", {x: x(ms), y: bottom + 17, "text-anchor": "middle"}, tick(ms, xStep)));
     const wide = (right - left) / bins;
+    const style = (counts.length > 1 ? "band " : "stack ") + "fill";
+    const edge = k => digits(low + k * (high - low) / bins);
+    const bar = (n, k, colour) => make(
+        "rect", {
+          class: style + colour,
+          x: left + k * wide + .5,
+          width: wide - 1,
+          y: y(n),
+          height: bottom - y(n)
+        },
+        make("title", {}, `${n} frame${n === 1 ? "" : "s"} of ${edge(k)} to ${edge(k + 1)} ms`));
     counts.forEach(
-        (list,
-         i) => list
-                   .forEach(
-                       (n, k) => n &&
-                           svg.append(
-                               make(
-                                   "rect", {
-                                     class: (counts.length > 1 ? "band " : "stack ") + "fill" +
-                                         series[i].colour,
-                                     x: left + k * wide + .5,
-                                     width: wide - 1,
-                                     y: y(n),
-                                     height: bottom - y(n)
-                                   },
-                                   make(
-                                       "title", {},
-                                       `${n} frame${n === 1 ? "" : "s"} of ${
-                                           digits(low + k * (high - low) / bins)} to ${
-                                           digits(low + (k + 1) * (high - low) / bins)} ms`)))));
+        (list, i) => list.forEach((n, k) => n && svg.append(bar(n, k, series[i].colour))));
     if (counts.length === 1)
       for (const [name, p, needed] of kPercentiles) {
         if (sorted[0].length < needed || !["p50", "p99"].includes(name)) continue;

@@ -264,10 +264,45 @@ std::string streaming_facts(const Summary& s) {
   return cache.end() + synthesis.end();
 }
 
+// The game's figures with their unit: p50 and p99.
+std::string own_facts(const Summary& s) {
+  if (s.figures.empty()) return "";
+  Facts facts("Figures of the game, p50 and p99");
+  for (const OwnFigureTimes& each : s.figures) {
+    std::string text = fmt::format("{} / {} {}", shown(each.p50, three_digits),
+                                   shown(each.p99, three_digits), escaped(each.info.unit));
+    if (each.invalid > 0) text += fmt::format("; {} values were not finite", each.invalid);
+    facts.add(each.info.name, text);
+  }
+  return facts.end();
+}
+
+// Marks with the time of their first frame, then sections.
+std::string section_facts(const Summary& s) {
+  if (s.marks.empty() && s.sections.empty() && s.ignored_marks == 0) return "";
+  Facts facts("Marks and sections");
+  for (const MarkFacts& mark : s.marks)
+    facts.add(mark.name, fmt::format("{:.2f} s, {} time{}", mark.time_s, mark.count,
+                                     mark.count == 1 ? "" : "s"));
+  if (s.ignored_marks > 0) facts.add("ignored marks", std::to_string(s.ignored_marks));
+  for (const Section& section : s.sections) {
+    const Summary& part = section.frames;
+    facts.add(
+        fmt::format("section {}", section.range.name),
+        section.missing.empty()
+            ? fmt::format("{} to {} s, {} frames, p50 {}, p99 {}",
+                          shown(section.start_s, three_digits), shown(section.end_s, three_digits),
+                          part.run.measured_frames, shown(part.frame_ms.p50, ms_text),
+                          shown(part.frame_ms.p99, ms_text))
+            : escaped(section.missing));
+  }
+  return facts.end();
+}
+
 // Tables of all other numbers.
 std::string report_facts(const Summary& s) {
   return "<div class=\"facts\">\n" + frame_facts(s) + world_facts(s) + run_facts(s) +
-         streaming_facts(s) + system_facts(s) + "</div>\n";
+         streaming_facts(s) + system_facts(s) + own_facts(s) + section_facts(s) + "</div>\n";
 }
 
 }  // namespace

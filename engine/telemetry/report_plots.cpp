@@ -43,6 +43,16 @@ std::vector<double> system_column(const FrameLog& log, std::size_t system) {
   return ms;
 }
 
+std::vector<double> own_column(const FrameLog& log, std::size_t figure) {
+  std::vector<double> values;
+  for (std::size_t frame = 0; frame < log.frames().size(); ++frame)
+    values.push_back(log.own(frame)[figure]);
+  return values;
+}
+
+// The first of the game's figures have plots; all others are shown for single frames.
+constexpr std::size_t kMaxOwnPlots = 16;
+
 // Adds a note about the excluded frames.
 void tell_apart(const FrameLog& log, const Summary& s, Plot& plot) {
   if (std::ranges::all_of(log.frames(), [](const auto& r) { return r.apart == Apart::kNo; }))
@@ -278,6 +288,23 @@ Plot synthesis_plot(const FrameLog& log) {
           .small = true};
 }
 
+// A plot from 0: negative values of a figure are cut off, which the note tells.
+Plot own_plot(const FrameLog& log, const Summary& s, std::size_t figure) {
+  const OwnFigureTimes& times = s.figures[figure];
+  Plot plot{
+      .title = times.info.name,
+      .unit = times.info.unit,
+      .kind = times.info.kind == FigureKind::kGauge ? PlotKind::kLine : PlotKind::kPeaks,
+      .series = {{times.info.name, 1 + static_cast<int>(figure % 8), own_column(log, figure)}},
+      .small = true};
+  const auto below = std::ranges::count_if(plot.series[0].values, [](double v) { return v < 0; });
+  if (below > 0)
+    plot.note = fmt::format("{} frames have values below 0, which the plot cuts off.", below);
+  if (times.p99.has_value() && *times.p99 > 0)
+    plot.levels = {{fmt::format("p99 {}", three_digits(*times.p99)), *times.p99, false}};
+  return plot;
+}
+
 // Frames that the rows of the plots represent. If there are too many, each is the slowest of
 // `every`.
 struct ShownFrames {
@@ -320,6 +347,9 @@ std::vector<RowFigure> figures(const FrameLog& log, const ShownFrames& shown) {
   add("requests queued", "", [](const auto& r) { return r.requests_queued; });
   add("requests rejected for lack of memory", "", [](const auto& r) { return r.requests_refused; });
   add("evicted from the cache", "", [](const auto& r) { return r.cache_evictions; });
+  for (std::size_t i = kMaxOwnPlots; i < log.figures().size(); ++i)
+    list.push_back(
+        {log.figures()[i].name, log.figures()[i].unit, thinned(own_column(log, i), shown)});
   return list;
 }
 
@@ -363,6 +393,10 @@ PageRows page_rows(const FrameLog& log, const Summary& summary, const ShownFrame
     if (record.apart != Apart::kNo) rows.apart[row] = name_of(record.apart);
     if (record.has_picture) rows.pictures[row] = picture_name(record.index);
   }
+  for (const FrameMark& mark : log.marks()) {
+    std::string& names = rows.marks[mark.row / rows.every];
+    names += (names.empty() ? "" : ", ") + mark.name;
+  }
   return rows;
 }
 
@@ -387,6 +421,8 @@ std::string report_plots(const FrameLog& log, const Summary& s) {
   add(cache_plot(log, s));
   add(modelers_plot(log, s));
   add(synthesis_plot(log));
+  for (std::size_t i = 0; i < std::min(log.figures().size(), kMaxOwnPlots); ++i)
+    add(own_plot(log, s, i));
   return html;
 }
 

@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/telemetry/statistics.hpp"
 #include "engine/telemetry/summary.hpp"
@@ -10,6 +13,7 @@ namespace {
 using Frames = std::span<const FrameRecord>;
 
 constexpr double kMinBusySeconds = 0.25;  // below it, a fraction is meaningless
+constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr const char* kVirtual = "the clock is virtual";
 constexpr const char* kNoFrames = "no frames after the warm-up";
 
@@ -105,12 +109,22 @@ void summarise_device(Summary& s, Frames frames) {
               percentile(known(frames, &FrameRecord::gpu_shadows_ms), 0.5)};
 }
 
-// Uses the timed frames among the last `measured` frames of the log.
-void summarise_systems(Summary& s, const FrameLog& log, std::size_t measured) {
+// Neighbouring rows of a log, and the flight time between them.
+struct Rows {
+  const FrameLog& log;
+  std::size_t first, end;
+  double from_s, until_s;
+
+  Frames frames() const { return log.frames().subspan(first, end - first); }
+};
+
+// Uses the timed frames.
+void summarise_systems(Summary& s, const Rows& rows) {
+  const FrameLog& log = rows.log;
   const Frames frames = log.frames();
   for (std::size_t system = 0; system < log.systems().size(); ++system) {
     std::vector<double> ms;
-    for (std::size_t i = frames.size() - measured; i < frames.size(); ++i) {
+    for (std::size_t i = rows.first; i < rows.end; ++i) {
       const float value = log.system_ms(i)[system];
       if (frames[i].apart == Apart::kNo && !std::isnan(value)) ms.push_back(double{value});
     }
@@ -159,7 +173,8 @@ void summarise_drawing(Summary& s, Frames frames) {
       total(frames, [](const auto& r) { return r.requests_refused > 0 ? 1 : 0; });
 }
 
-void summarise_missing(Summary& s, Frames frames, const FrameLog& log, double warmup_s) {
+void summarise_missing(Summary& s, const Rows& rows) {
+  const Frames frames = rows.frames();
   const auto nodes = column(
       frames, [](const auto& r) { return std::uint64_t{r.holes} + std::uint64_t{r.coarse_nodes}; });
   const auto pixels = column(frames, [](const auto& r) { return r.missing_pixels_percent; });
@@ -177,7 +192,8 @@ void summarise_missing(Summary& s, Frames frames, const FrameLog& log, double wa
   for (std::size_t i = 0; i < frames.size(); ++i)
     seconds += coarse[i] > kCoarsePercent ? length_s(frames, i) : 0.0;
   s.missing.coarse_seconds = frames.empty() ? Figure::missing(kNoFrames) : Figure(seconds);
-  const std::vector<double> waits = log.time_to_visible_ms().values_since(warmup_s);
+  const std::vector<double> waits =
+      rows.log.time_to_visible_ms().values_since(rows.from_s, rows.until_s);
   const Spread wait = spread_of(waits);
   s.missing.time_to_visible_ms = {wait.p50, wait.p99, largest(waits)};
 }
@@ -216,7 +232,9 @@ Figure busy_percent(Frames frames, std::uint32_t modelers, const Counts& counts)
   return 100 * busy_s / (real_s * modelers);
 }
 
-void summarise_synthesis(Summary& s, Frames frames, const FrameLog& log, double warmup_s) {
+void summarise_synthesis(Summary& s, const Rows& rows) {
+  const Frames frames = rows.frames();
+  const FrameLog& log = rows.log;
   auto& synthesis = s.synthesis;
   synthesis.models = total(frames, [](const auto& r) { return r.models_synthesised; });
   synthesis.triangles = total(frames, [](const auto& r) { return r.triangles_synthesised; });
@@ -232,8 +250,90 @@ void summarise_synthesis(Summary& s, Frames frames, const FrameLog& log, double 
   synthesis.triangles_per_second =
       seconds > 0 ? Figure(static_cast<double>(*synthesis.triangles) / seconds)
                   : Figure::missing("nothing was synthesised after the warm-up");
-  const std::vector<double> errors = log.cost_error_percent().values_since(warmup_s);
+  const std::vector<double> errors =
+      log.cost_error_percent().values_since(rows.from_s, rows.until_s);
   synthesis.cost_error_percent = {percentile(errors, 0.5), percentile(errors, 0.95)};
+}
+
+OwnFigureTimes own_times(const Rows& rows, std::size_t figure) {
+  OwnFigureTimes times;
+  times.info = rows.log.figures()[figure];
+  const bool duration = times.info.kind == FigureKind::kDuration;
+  std::vector<double> values;
+  for (std::size_t i = rows.first; i < rows.end; ++i) {
+    if (duration && rows.log.frames()[i].apart != Apart::kNo) continue;
+    const double value = rows.log.own(i)[figure];
+    if (!std::isnan(value)) values.push_back(value);
+  }
+  times.frames = values.size();
+  if (values.empty()) {
+    const Figure none =
+        Figure::missing(duration && are_virtual(rows.frames()) ? kVirtual : "no frame had a value");
+    times.mean = times.min = times.p50 = times.p95 = times.p99 = times.max = none;
+    return times;
+  }
+  constexpr std::array kPercentiles{0.0, 0.5, 0.95, 0.99};
+  const std::vector<Figure> p = percentiles(values, kPercentiles);
+  times.mean = mean(values);
+  times.min = p[0];
+  times.p50 = p[1];
+  times.p95 = p[2];
+  times.p99 = p[3];
+  times.max = largest(values);
+  return times;
+}
+
+// What is measured per frame.
+void summarise_rows(Summary& s, const Rows& rows, const RunFacts& facts) {
+  const Frames frames = rows.frames();
+  summarise_run(s, frames, rows.log);
+  summarise_times(s, timed(frames));
+  summarise_systems(s, rows);
+  summarise_drawing(s, frames);
+  summarise_missing(s, rows);
+  summarise_synthesis(s, rows);
+  for (std::size_t i = 0; i < rows.log.figures().size(); ++i) {
+    s.figures.push_back(own_times(rows, i));
+    if (i < facts.invalid_values.size()) s.figures.back().invalid = facts.invalid_values[i];
+  }
+}
+
+std::vector<MarkFacts> mark_facts(const FrameLog& log) {
+  std::vector<MarkFacts> marks;
+  for (const FrameMark& mark : log.marks()) {
+    auto found = std::ranges::find(marks, mark.name, &MarkFacts::name);
+    if (found == marks.end()) {
+      const FrameRecord& frame = log.frames()[mark.row];
+      found = marks.insert(found, {mark.name, 0, frame.index, frame.time_s});
+    }
+    ++found->count;
+  }
+  return marks;
+}
+
+// The section's frames after the warm-up.
+Section section_of(const FrameLog& log, const SectionRange& range, const RunFacts& facts,
+                   const Summary& whole) {
+  Section section{range, {}, {}, {}, {}};
+  section.frames.run = whole.run;
+  section.frames.device = whole.device;
+  section.frames.run.apart_frames = {};
+  const auto rows = find_section(log, range);
+  const Frames frames = log.frames();
+  const std::size_t warm = frames.size() - log.frames_since(whole.run.warmup_seconds).size();
+  const auto [from, to] = rows.value.value_or(std::pair{warm, warm});
+  const std::size_t first = std::max(from, warm), end = std::max(to, warm);
+  section.missing = rows.reason;
+  if (rows.has_value() && first == end) section.missing = "the section lies within the warm-up";
+  const auto time_s = [&](std::size_t row) {
+    return row < frames.size() ? frames[row].time_s : whole.run.seconds;
+  };
+  if (section.missing.empty()) {
+    section.start_s = time_s(first);
+    section.end_s = time_s(end);
+  }
+  summarise_rows(section.frames, {log, first, end, time_s(first), time_s(end)}, facts);
+  return section;
 }
 
 }  // namespace
@@ -249,6 +349,23 @@ ReferenceRatios reference_ratios(const Summary& s) {
           ratio(s.frame_ms.p50, 1e-3, pair_s), ratio(s.frame_ms.p99, 1e-3, pair_s)};
 }
 
+Measured<std::pair<std::size_t, std::size_t>> find_section(const FrameLog& log,
+                                                           const SectionRange& range) {
+  using Found = Measured<std::pair<std::size_t, std::size_t>>;
+  const std::span<const FrameMark> marks = log.marks();
+  const auto from = std::ranges::find(marks, range.from, &FrameMark::name);
+  if (from == marks.end())
+    return Found::missing(fmt::format("no frame has the mark '{}'", range.from));
+  if (range.to == kEndOfRun) return std::pair{from->row, log.frames().size()};
+  const auto to = std::find_if(from + 1, marks.end(), [&](const FrameMark& mark) {
+    return mark.name == range.to && mark.row > from->row;
+  });
+  if (to == marks.end())
+    return Found::missing(
+        fmt::format("no frame after the mark '{}' has the mark '{}'", range.from, range.to));
+  return std::pair{from->row, to->row};
+}
+
 Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   const Frames frames = log.frames_since(warmup_s);
   Summary s;
@@ -260,13 +377,9 @@ Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   s.reference = facts.reference;
   static_cast<RunSettings&>(s.run) = facts.run;
   s.run.warmup_seconds = warmup_s;
-  summarise_run(s, frames, log);
-  summarise_times(s, timed(frames));
-  summarise_systems(s, log, frames.size());
-  summarise_drawing(s, frames);
-  summarise_missing(s, frames, log, warmup_s);
+  const std::size_t all = log.frames().size();
+  summarise_rows(s, {log, all - frames.size(), all, warmup_s, kForever}, facts);
   summarise_cache(s, frames, log, facts);
-  summarise_synthesis(s, frames, log, warmup_s);
   s.synthesis.share_drawn = facts.share_drawn;
   s.draw.floor_ratio = facts.floor_ratio;
   s.memory.peak_rss_bytes = facts.peak_rss_bytes;
@@ -274,6 +387,10 @@ Summary summarise(const FrameLog& log, const RunFacts& facts, double warmup_s) {
   s.hash.types = facts.types_hash;
   s.hash.path = facts.path_hash;
   s.hash.images = facts.images_hash;
+  s.marks = mark_facts(log);
+  s.ignored_marks = facts.ignored_marks;
+  for (const SectionRange& range : facts.sections)
+    s.sections.push_back(section_of(log, range, facts, s));
   return s;
 }
 

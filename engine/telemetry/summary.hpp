@@ -7,10 +7,13 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/telemetry/frame_log.hpp"
 #include "engine/telemetry/machine.hpp"
+#include "engine/telemetry/marks.hpp"
+#include "engine/telemetry/own_figures.hpp"
 #include "engine/telemetry/reference_load.hpp"
 #include "engine/telemetry/statistics.hpp"
 
@@ -86,6 +89,9 @@ struct RunFacts {
   Count types_hash;  // of all model types
   Count path_hash;
   Count images_hash;
+  std::vector<SectionRange> sections;         // parts of the run with their own statistics
+  std::vector<std::uint64_t> invalid_values;  // of each own figure: values that were not finite
+  std::uint64_t ignored_marks = 0;            // Marks::ignored()
 };
 
 // Statistics of one quantity; "pNN" are percentiles.
@@ -109,6 +115,25 @@ struct SystemTimes {
 struct ReferenceRatios {
   Figure cpu, frame_p50, frame_p99;
 };
+
+// Statistics of a game's figure over the frames with a value: timed frames for durations, measured
+// ones for others.
+struct OwnFigureTimes {
+  FigureInfo info;
+  std::uint64_t frames = 0;   // with a value
+  std::uint64_t invalid = 0;  // values of the whole run that were not finite
+  Figure mean, min, p50, p95, p99, max;
+};
+
+// A mark of the game: how often it was set, and where first.
+struct MarkFacts {
+  std::string name;
+  std::uint64_t count = 0;
+  std::uint64_t frame = 0;  // FrameRecord::index
+  double time_s = 0;        // of that frame's start
+};
+
+struct Section;
 
 // A frame counts as too coarse if more than this percentage of its image is missing or too coarse.
 inline constexpr double kCoarsePercent = 1.0;
@@ -193,10 +218,26 @@ struct Summary {
   struct {
     Count world, types, path, images;
   } hash;
+  std::vector<OwnFigureTimes> figures;  // of the game, in the order of their declaration
+  std::vector<MarkFacts> marks;         // in the order of their first frames
+  std::uint64_t ignored_marks = 0;
+  std::vector<Section> sections;
 };
 
 // Missing if one of both figures is.
 ReferenceRatios reference_ratios(const Summary& summary);
+
+// Statistics of a part of a run. In `frames`, only fields that are measured per frame are filled.
+struct Section {
+  SectionRange range;
+  std::string missing;  // the reason why there are no statistics; empty: there are
+  Figure start_s, end_s;
+  Summary frames;
+};
+
+// Rows of a section in a log, or the reason why there are none: a missing mark.
+Measured<std::pair<std::size_t, std::size_t>> find_section(const FrameLog& log,
+                                                           const SectionRange& range);
 
 // Statistics over the frames that start at `warmup_s` or later on the flight's clock. Pure.
 // O(frames log frames).

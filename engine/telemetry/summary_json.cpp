@@ -204,6 +204,79 @@ Json synthesis_json(const Summary& s) {
           {"cost_error_percent", {{"p50", error.p50}, {"p95", error.p95}}}};
 }
 
+Json frame_ms_json(const FrameTimes& t) {
+  return {{"mean", t.mean}, {"p50", t.p50},   {"p95", t.p95},
+          {"p99", t.p99},   {"p999", t.p999}, {"max", t.max}};
+}
+
+Json gpu_json(const Summary& s) {
+  return {{"p50", s.gpu_ms.p50},
+          {"p99", s.gpu_ms.p99},
+          {"max", s.gpu_ms.max},
+          {"shadows_p50", s.gpu_ms.shadows_p50}};
+}
+
+Json figures_json(const std::vector<OwnFigureTimes>& figures) {
+  Json result = Json::object();
+  for (const OwnFigureTimes& each : figures)
+    result[each.info.name] = {{"unit", each.info.unit}, {"kind", name_of(each.info.kind)},
+                              {"frames", each.frames},  {"invalid", each.invalid},
+                              {"mean", each.mean},      {"min", each.min},
+                              {"p50", each.p50},        {"p95", each.p95},
+                              {"p99", each.p99},        {"max", each.max}};
+  return result;
+}
+
+Json marks_json(const std::vector<MarkFacts>& marks) {
+  Json result = Json::object();
+  for (const MarkFacts& mark : marks)
+    result[mark.name] = {
+        {"count", mark.count}, {"frame", mark.frame}, {"time_s", Figure(mark.time_s)}};
+  return result;
+}
+
+// Replaces the reason of each missing number.
+void set_reasons(Json& json, const std::string& reason) {
+  if (!json.is_object()) return;
+  if (json.contains(kReason)) json[kReason] = reason;
+  for (auto& [key, value] : json.items())
+    if (key != kReason) set_reasons(value, reason);
+}
+
+Json section_json(const Section& section) {
+  const Summary& s = section.frames;
+  Json json = {
+      {"from", section.range.from},
+      {"to", section.range.to},
+      {"start_s", section.start_s},
+      {"end_s", section.end_s},
+      {"measured_frames", Count(s.run.measured_frames)},
+      {"timed_frames", Count(s.run.timed_frames)},
+      {"frame_ms", frame_ms_json(s.frame_ms)},
+      {"low1_fps", s.low1_fps},
+      {"hitches", s.hitches},
+      {"stutter_percent", s.stutter_percent},
+      {"system_ms", systems_json(s.system_ms)},
+      {"wait_ms", wait_json(s)},
+      {"record_ms", s.record_ms},
+      {"gpu_ms", gpu_json(s)},
+      {"missing", missing_json(s)},
+      {"draw", {{"triangles_p50", s.draw.triangles_p50}, {"draws_p50", s.draw.draws_p50}}},
+      {"synthesis", {{"models", s.synthesis.models}, {"triangles", s.synthesis.triangles}}},
+      {"figures", figures_json(s.figures)}};
+  if (section.missing.empty()) return json;
+  json["measured_frames"] = json["timed_frames"] = Count();
+  set_reasons(json, section.missing);
+  return json;
+}
+
+Json sections_json(const std::vector<Section>& sections) {
+  Json result = Json::object();
+  for (const Section& section : sections)
+    result[section.range.name] = section_json(section);
+  return result;
+}
+
 void flatten(const Json& json, const std::string& name, std::vector<SummaryField>& fields) {
   if (json.is_object()) {
     for (const auto& [key, value] : json.items())
@@ -232,7 +305,6 @@ std::vector<SummaryField> fields_of(Json json) {
 }  // namespace
 
 std::string to_json(const Summary& s) {
-  const FrameTimes& t = s.frame_ms;
   Json json = {
       {"schema", kSummarySchema},
       {"world", world_json(s.world)},
@@ -242,24 +314,14 @@ std::string to_json(const Summary& s) {
       {"load", load_json(s.load)},
       {"reference", reference_json(s)},
       {"run", run_json(s)},
-      {"frame_ms",
-       {{"mean", t.mean},
-        {"p50", t.p50},
-        {"p95", t.p95},
-        {"p99", t.p99},
-        {"p999", t.p999},
-        {"max", t.max}}},
+      {"frame_ms", frame_ms_json(s.frame_ms)},
       {"low1_fps", s.low1_fps},
       {"hitches", s.hitches},
       {"stutter_percent", s.stutter_percent},
       {"system_ms", systems_json(s.system_ms)},
       {"wait_ms", wait_json(s)},
       {"record_ms", s.record_ms},
-      {"gpu_ms",
-       {{"p50", s.gpu_ms.p50},
-        {"p99", s.gpu_ms.p99},
-        {"max", s.gpu_ms.max},
-        {"shadows_p50", s.gpu_ms.shadows_p50}}},
+      {"gpu_ms", gpu_json(s)},
       {"picture", picture_json(s)},
       {"detail", detail_json(s)},
       {"missing", missing_json(s)},
@@ -274,7 +336,11 @@ std::string to_json(const Summary& s) {
        {{"world", hash_text(s.hash.world)},
         {"types", hash_text(s.hash.types)},
         {"path", hash_text(s.hash.path)},
-        {"images", hash_text(s.hash.images)}}}};
+        {"images", hash_text(s.hash.images)}}},
+      {"figures", figures_json(s.figures)},
+      {"marks", marks_json(s.marks)},
+      {"ignored_marks", s.ignored_marks},
+      {"sections", sections_json(s.sections)}};
   Json reasons = Json::object();
   take_reasons(json, "", reasons);
   json["reasons"] = reasons;

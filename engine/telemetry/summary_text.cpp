@@ -131,6 +131,24 @@ void add_reference(Table& table, const Summary& s) {
                                         value_or_dash(ratios.frame_p99, three_digits)));
 }
 
+// The game's figures, and the sections of the run.
+void add_own(Table& table, const Summary& s) {
+  table.section("figures");
+  for (const OwnFigureTimes& each : s.figures) {
+    const std::string text = spread_text(each.p50, each.p99, three_digits);
+    table.row(each.info.name, each.info.unit.empty() ? text : text + " " + each.info.unit);
+    if (each.invalid > 0) table.row("", fmt::format("{} values were not finite", each.invalid));
+  }
+  table.section("sections");
+  for (const Section& section : s.sections) {
+    const FrameTimes& ms = section.frames.frame_ms;
+    table.row(section.range.name, section.missing.empty()
+                                      ? "frame " + spread_text(ms.p50, ms.p99, ms_text)
+                                      : section.missing);
+  }
+  if (s.ignored_marks > 0) table.row("ignored marks", std::to_string(s.ignored_marks));
+}
+
 void add_streaming(Table& table, const Summary& s) {
   const auto& wait = s.missing.time_to_visible_ms;
   add_picture(table, s);
@@ -173,6 +191,7 @@ std::string to_text(const Summary& summary) {
   Table table;
   add_run(table, summary);
   add_frames(table, summary);
+  add_own(table, summary);
   add_streaming(table, summary);
   return table.take();
 }

@@ -23,6 +23,7 @@
 #include "engine/input/actions.hpp"
 #include "engine/inspect/scene_answers.hpp"
 #include "engine/models/registry.hpp"
+#include "engine/telemetry/own_figures.hpp"
 #include "engine/world/camera_path.hpp"
 #include "engine/world/edits/edits.hpp"
 #include "engine/world/files/document.hpp"
@@ -591,6 +592,29 @@ const std::vector<Case>& cases() {
            const std::string text = frame_test("t");
            write(folder / "t.toml", text + "#" + std::string(whole(n) - text.size() - 1, ' '));
            return outcome(frametest::load_frame_test(folder / "t.toml"));
+         }},
+        {"sections of a frame test",
+         [](const fs::path&, double n) {
+           return outcome(frametest::parse_frame_test(
+               frame_test("t") + numbered(whole(n), "[sections.s#]\n"), "t"));
+         }},
+        {"figures of a game",
+         [](const fs::path&, double n) {
+           telemetry::OwnFigures figures;
+           Outcome added;
+           for (Count i = 0; i < whole(n) && added; ++i)
+             added = outcome(figures.add({.name = "f" + std::to_string(i)}));
+           return added;
+         }},
+        {"bytes of a figure's name",
+         [](const fs::path&, double n) {
+           telemetry::OwnFigures figures;
+           return outcome(figures.add({.name = in_string(whole(n))}));
+         }},
+        {"bytes of a figure's unit",
+         [](const fs::path&, double n) {
+           telemetry::OwnFigures figures;
+           return outcome(figures.add({.name = "f", .unit = in_string(whole(n))}));
          }},
         {"bytes of a ledger",
          [](const fs::path& folder, double n) {

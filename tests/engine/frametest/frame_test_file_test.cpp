@@ -103,6 +103,50 @@ TEST(FrameTestFile, ReportsErrorsWithFileLineFieldAndSuggestion) {
               HasSubstr("must not contain /"));
 }
 
+TEST(FrameTestFile, ReadsMarksAndTheBudgetsOfSections) {
+  const auto test = parse_frame_test(
+      "format = 1\n[marks]\nboss = 4\nspawn = 1.5\n"
+      "[sections.boss]\nat_most.frame_ms.p99 = 12\nat_most.figures.ai.paths.p99 = 3\n"
+      "[sections.start]\nfrom = \"spawn\"\nto = \"boss\"\n[sections.start.equal]\n"
+      "missing.frames = 0\n[at_most]\nsections.boss.system_ms.cache.p99 = 1\n"
+      "figures.ai.paths.max = 9\nmarks.boss.time_s = 5\n",
+      "a.toml");
+  ASSERT_TRUE(test) << test.error().message;
+  ASSERT_EQ(test->flight.marks.size(), 2u);
+  EXPECT_EQ(test->flight.marks[0].name, "spawn") << "in the order of time";
+  ASSERT_EQ(test->flight.sections.size(), 2u);
+  EXPECT_EQ(test->flight.sections[0].from, "boss") << "the section's name";
+  EXPECT_EQ(test->flight.sections[0].to, "end");
+  EXPECT_EQ(test->flight.sections[1].to, "boss");
+  std::vector<std::string> fields;
+  for (const Budget& budget : test->budgets)
+    fields.push_back(budget.field);
+  EXPECT_THAT(fields, testing::ElementsAre(
+                          "sections.boss.frame_ms.p99", "sections.boss.figures.ai.paths.p99",
+                          "sections.start.missing.frames", "sections.boss.system_ms.cache.p99",
+                          "figures.ai.paths.max", "marks.boss.time_s"));
+}
+
+TEST(FrameTestFile, ReportsErrorsOfMarksFiguresAndSections) {
+  const auto refused = [](const std::string& tables) {
+    return refusal("format = 1\n" + tables + "[equal]\nmissing.frames = 0\n");
+  };
+  EXPECT_THAT(refused("[marks]\nBoss = 1\n"),
+              HasSubstr("a.toml:3: marks.Boss: it must be 1 to 64"));
+  EXPECT_THAT(refused("[marks]\nboss = -1\n"), HasSubstr("marks.boss: -1 is not allowed"));
+  EXPECT_THAT(refused("[sections.boss]\nfom = \"a\"\n"), HasSubstr("did you mean from?"));
+  EXPECT_THAT(refused("[sections.boss]\nto = \"A\"\n"), HasSubstr("sections.boss.to: it must be"));
+  EXPECT_THAT(refused("[sections.\"a.b\"]\nto = \"c\"\n"), HasSubstr("the name must be"));
+  EXPECT_THAT(refused("[sections.boss.at_most]\nframe_ms.p98 = 1\n"),
+              HasSubstr("at_most.sections.boss.frame_ms.p98: sections have no such field; did you "
+                        "mean frame_ms.p9"));
+  EXPECT_THAT(refused("[at_least]\nsections.boss.low1_fps = 1\n"), HasSubstr("no such section"));
+  EXPECT_THAT(refused("[at_most]\nfigures.paths = 1\n"),
+              HasSubstr("figures of the game have only"));
+  EXPECT_THAT(refused("[at_most]\nfigures.paths.p98 = 1\n"), HasSubstr("only mean, min, p50"));
+  EXPECT_THAT(refused("[at_most]\nfigures.paths.unit = 1\n"), HasSubstr("only [equal]"));
+}
+
 TEST(FrameTestFile, FindsFilesInItsFolderThenShippedOnes) {
   const TemporaryFolder folder;
   const auto write = [&](const char* name, const std::string& text) {

@@ -5,6 +5,10 @@
 
 #include <fstream>
 
+#include "ecs/ecs.hpp"
+#include "engine/scene/systems.hpp"
+#include "engine/telemetry/marks.hpp"
+#include "engine/telemetry/own_figures.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::frametest {
@@ -219,6 +223,57 @@ TEST(FrameTests, RunTheGamesHooksAndKeepTheOutputs) {
     EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
   options.device = "no such device";
   EXPECT_EQ(run_frame_tests(options, hooks), kSkipped);
+}
+
+TEST(FrameTests, JudgeTheFiguresOfAGameAndTheSectionsBetweenItsMarks) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "fight.toml")
+      << "format = 1\n[flight]\nsize = [64, 36]\nview_distance = 64\nframes = 12\nwarmup = 0\n"
+         "clock = \"virtual\"\nbudget_mib = 16\nfixed_step = 30\n[marks]\ncalm = 0.2\n"
+         "[at_most]\nfigures.wolves.max = 11\nfigures.hunt_ms.p50 = 5\nfigures.sheep.max = 1\n"
+         "[sections.fight]\nfrom = \"boss\"\nto = \"calm\"\nat_most.figures.wolves.max = 5\n"
+         "equal.measured_frames = 2\n[sections.ghost]\nat_most.frame_ms.max = 1000\n";
+  Hooks hooks;
+  hooks.prepare = [](app::SessionOptions& options) -> core::Result<void> {
+    struct Pack {
+      telemetry::OwnFigure wolves, hunt_ms;
+      int steps = 0;
+    };
+    app::Plugin plugin;
+    plugin.name = "game";
+    plugin.add_systems = [](scene::Systems& systems) -> core::Result<void> {
+      Pack& pack = systems.resource<Pack>();
+      pack.wolves = *systems.figures.add({.name = "wolves", .unit = "wolves"});
+      pack.hunt_ms =
+          *systems.figures.add({.name = "hunt_ms", .kind = telemetry::FigureKind::kDuration});
+      systems.frame.add("hunt", [](Pack& all, telemetry::Marks& marks) {
+        const telemetry::ScopedTime time(all.hunt_ms);
+        if (all.steps == 4) marks.set("boss");
+        all.wolves.report(all.steps++);
+      });
+      return {};
+    };
+    options.plugins.push_back(plugin);
+    return {};
+  };
+  RunOptions options;
+  options.worst_frames = 0;
+  const std::filesystem::path file = folder / "fight.toml";
+  const TestResult result = run_frame_test({file, load_frame_test(file)}, options, hooks);
+  ASSERT_FALSE(result.error) << result.error->message;
+  std::vector<std::string> lines;
+  for (const BudgetResult& r : result.budgets)
+    lines.push_back(r.budget.field + (r.holds ? " holds: " : " misses: ") + r.value);
+  EXPECT_THAT(
+      lines,
+      testing::ElementsAre(
+          "figures.wolves.max holds: 11",
+          "figures.hunt_ms.p50 misses: not measured: the clock is virtual",
+          "figures.sheep.max misses: the run has no such field",
+          "sections.fight.figures.wolves.max holds: 5", "sections.fight.measured_frames holds: 2",
+          "sections.ghost.frame_ms.max misses: not measured: no frame has the mark 'ghost'"));
+  EXPECT_THAT(to_text(result), HasSubstr("fight: sections.fight.figures.wolves.max 5  <= 5\n"));
+  EXPECT_THAT(to_junit(std::vector{result}), HasSubstr("sections.fight.measured_frames equal 2"));
 }
 
 }  // namespace

@@ -57,6 +57,28 @@ TEST(WorstFrames, ComeFromEachMissedBudgetInTurn) {
       << "frames without a hole are not reported";
 }
 
+TEST(WorstFrames, OfASectionOrAFigureAreThoseOfItsFrames) {
+  telemetry::FrameLog log({}, 100, {{.name = "ai.paths", .unit = "paths"}});
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    telemetry::FrameRecord record;
+    record.index = i;
+    record.time_s = static_cast<double>(i);
+    record.frame_ms = 10 - static_cast<double>(i);
+    log.add(record, {}, std::array{static_cast<double>(i == 4 ? 7 : 1)});
+    if (i == 2) log.add_mark("boss");
+    if (i == 4) log.add_mark("dead");
+  }
+  const std::vector<telemetry::SectionRange> sections{{"fight", "boss", "dead"}};
+  const auto first = [&](const char* field) {
+    return worst_frames(std::vector{missed(field)}, log, 0, 1, sections).at(0);
+  };
+  EXPECT_EQ(first("frame_ms.max").index, 0u);
+  EXPECT_EQ(first("sections.fight.frame_ms.max").index, 2u);
+  EXPECT_EQ(first("figures.ai.paths.max").index, 4u);
+  EXPECT_EQ(first("figures.ai.paths.max").why, "figures.ai.paths.max: 7 paths");
+  EXPECT_LT(first("sections.fight.figures.ai.paths.max").index, 4u);
+}
+
 TEST(WorstFrames, AreNoneIfNoFrameHasTheValue) {
   EXPECT_THAT(
       indices({missed("hash.world"), missed("memory.peak_rss_bytes")}, log_of({5, 6}), 0, 3),

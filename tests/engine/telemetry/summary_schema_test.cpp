@@ -68,6 +68,16 @@ TEST(SummarySchema, FitsACompleteFlight) {
   expect_fits(json::parse(to_json(summary)), published_schema(), "");
 }
 
+TEST(SummarySchema, FitsAFlightWithFiguresMarksAndSections) {
+  FrameLog log({"hunt"}, 10, {{.name = "ai.paths", .unit = "paths"}});
+  log.add({}, std::array{1.0F}, std::array{3.0});
+  log.add_mark("boss");
+  log.add({});
+  RunFacts facts = synthetic_facts();
+  facts.sections = {{"fight", "boss", "end"}, {"never", "ghost", "end"}};
+  expect_fits(json::parse(to_json(summarise(log, facts, 0))), published_schema(), "");
+}
+
 TEST(SummarySchema, FitsAFlightWithoutAnyValue) {
   json schema = published_schema();
   schema["properties"]["run"]["properties"]["width"]["minimum"] = 0;  // no image
