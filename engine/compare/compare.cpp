@@ -425,6 +425,9 @@ core::Result<Comparison> compare(Runs a, Runs b, Conditions conditions) {
           if (std::ranges::find(result->differences, sentence) == result->differences.end())
             result->differences.push_back(std::move(sentence));
     result->shown = {shown_of(a), shown_of(b)};
+    constexpr std::size_t kMaxRuns = 100;  // of mann_whitney()
+    result->figures = compare_figures(a.first(std::min(a.size(), kMaxRuns)),
+                                      b.first(std::min(b.size(), kMaxRuns)));
   }
   if (!result || !pictures_differ(a, b)) return result;
   result->reasons.push_back("the images differ: inspect them");

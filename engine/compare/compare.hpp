@@ -64,6 +64,7 @@ struct Comparison {
   Compared<double> rare{1, 1, 1};
   bool shows_as_much = true;  // no visible loss of B is hidden by noise
   std::vector<Batch> batches;
+  std::vector<ComparedFigure> figures;  // of the game, over all runs; they decide nothing
 };
 
 // Judges runs a[i] and b[i], which are pairs in the order of recording. The second half confirms

@@ -204,6 +204,16 @@ std::string conditions_section(const Comparison& comparison) {
   return "<section><table><tr><th></th><th>A</th><th>B</th></tr>\n" + html + "</table></section>\n";
 }
 
+// The game's figures.
+std::string figures_section(const Comparison& comparison) {
+  std::string html;
+  for (const ComparedFigure& each : comparison.figures)
+    html += fmt::format("<li>{}</li>\n", escaped(to_text(each)));
+  if (html.empty()) return {};
+  return "<section><b>Figures of the game, which decide nothing: A and B</b><ul>\n" + html +
+         "</ul></section>\n";
+}
+
 constexpr std::string_view kStyle =
     ".effects section { background:var(--card); border:1px solid var(--edge); border-radius:10px;"
     " margin-top:14px; padding:14px 16px; overflow-x:auto }\n"
@@ -250,7 +260,7 @@ std::string to_html(const Comparison& comparison, Runs a, Runs b, const Sides& s
   body += verdict_section(comparison, alarms) + "<div class=\"effects\">\n";
   for (std::size_t i = comparison.batches.size(); i-- > 0;)
     body += batch_section(comparison, i);
-  body += conditions_section(comparison) + "</div>\n" + plots(a, b);
+  body += conditions_section(comparison) + figures_section(comparison) + "</div>\n" + plots(a, b);
   const bool same = comparison.verdict == Verdict::kSame;
   return telemetry::page_html(
       fmt::format("psygen: B is {} A", same ? "the same as" : "compared with"), kStyle, body,

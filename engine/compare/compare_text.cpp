@@ -69,6 +69,8 @@ std::string to_text(const Comparison& comparison, const FalseAlarms* alarms) {
         "all pairs: the 1 % of frames that changed most {:.3f}, the slowest frames take {:.2f} and "
         "{:.2f} times their typical time\n",
         comparison.tail.ratio, comparison.rare.a, comparison.rare.b);
+  for (const ComparedFigure& figure : comparison.figures)
+    text += fmt::format("figure {}\n", to_text(figure));
   for (std::size_t side = 0; side < comparison.shown.size(); ++side) {
     std::string line;
     for (const NamedText& each : comparison.shown[side])
@@ -100,6 +102,15 @@ std::string to_json(const Comparison& comparison, const FalseAlarms* alarms) {
   json["batches"] = Json::array();
   for (const Batch& batch : comparison.batches)
     json["batches"].push_back(batch_json(batch));
+  json["figures"] = Json::object();
+  for (const ComparedFigure& each : comparison.figures) {
+    Json& figure = json["figures"][each.name] = {{"unit", each.unit}};
+    if (each.note.empty()) {
+      figure.update({{"a", finite(each.a)}, {"b", finite(each.b)}, {"p", each.p}});
+    } else {
+      figure["note"] = each.note;
+    }
+  }
   json["false_alarms"] = nullptr;
   if (alarms != nullptr)
     json["false_alarms"] = {{"comparisons", alarms->comparisons},

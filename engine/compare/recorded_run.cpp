@@ -167,6 +167,20 @@ void add_conditions(const Parsed& json, RecordedRun& run) {
   add(run.shown, "stolen time in percent", "/load/steal_percent");
 }
 
+// Leaves out what no run writes.
+std::vector<RecordedFigure> figures_in(const Parsed& json) {
+  std::vector<RecordedFigure> figures;
+  const auto found = json.find("figures");
+  if (found == json.end() || !found->is_object()) return figures;
+  for (const auto& [name, figure] : found->items()) {
+    if (!figure.is_object()) continue;
+    figures.push_back({core::shown(name, 100),
+                       core::shown(member<std::string>(figure, "/unit").value_or(""), 100),
+                       member<double>(figure, "/mean")});
+  }
+  return figures;
+}
+
 core::Result<Parsed> summary_in(std::string_view text, const std::string& folder) {
   const std::string file = folder + "/summary.json";
   Parsed json = Parsed::parse(text, nullptr, false);
@@ -190,6 +204,7 @@ RecordedRun run_in(const Parsed& json, const std::string& folder) {
   run.height = count("/run/height", 1e6);
   run.measured_frames = count("/run/measured_frames", 1e15);
   run.fixed_step = member<double>(json, "/run/fixed_step");
+  run.figures = figures_in(json);
   return run;
 }
 

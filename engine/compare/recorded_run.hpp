@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/compare/own_figures.hpp"
 #include "engine/core/error.hpp"
 
 namespace psygen::compare {
@@ -37,8 +38,9 @@ struct RecordedRun {
   // Conditions that comparable runs share: world, size, and on the wall clock CPU, device, driver,
   // preset. Then those that are only shown: revision, compiler, load. "unknown" in older runs.
   std::vector<NamedText> required, shown;
-  std::optional<double> fixed_step;   // Hz
-  std::uint64_t measured_frames = 0;  // after the warm-up, as the summary tells it
+  std::optional<double> fixed_step;     // Hz
+  std::uint64_t measured_frames = 0;    // after the warm-up, as the summary tells it
+  std::vector<RecordedFigure> figures;  // of the game
 };
 
 // Texts of the files of a run.
