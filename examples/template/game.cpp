@@ -12,6 +12,8 @@
 #include "engine/platform/window.hpp"
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/scene/systems.hpp"
+#include "engine/telemetry/marks.hpp"
 
 using namespace psygen;
 
@@ -24,6 +26,7 @@ core::Result<app::SessionOptions> Game::options() {
   if (!world) return tl::unexpected(world.error());
   app::Plugin plugin;
   plugin.name = "my game";
+  plugin.add_systems = [this](scene::Systems& systems) { return add_figures(systems); };
   plugin.on_step = [this](app::Session& session, double step_s) { step(session, step_s); };
   plugin.on_gui = [this](app::Session& session) { draw_menu(session); };
   app::SessionOptions options;
@@ -32,7 +35,16 @@ core::Result<app::SessionOptions> Game::options() {
   return options;
 }
 
+core::Result<void> Game::add_figures(scene::Systems& systems) {
+  const auto added =
+      systems.figures.add({.name = "physics_ms", .kind = telemetry::FigureKind::kDuration});
+  if (!added) return tl::unexpected(added.error());
+  physics_ms_ = *added;
+  return {};
+}
+
 core::Result<void> Game::start(app::Session& session) {
+  landed_ = false;
   if (auto added = add_actions(session.actions()); !added) return added;
   const scene::WorldFacts& facts = session.scene().facts();
   query_.emplace(facts.world, facts.registry);
@@ -76,8 +88,15 @@ void Game::step(app::Session& session, double step_s) {
   wanted.run = session.actions().state(run_).held;
   wanted.jump = session.actions().state(jump_).pressed;
   const core::WorldPosition before = physics_->state(walker_)->feet;
-  (void)physics_->tell(walker_, wanted);
-  (void)physics_->step(step_s);
+  {
+    const telemetry::ScopedTime time(physics_ms_);
+    (void)physics_->tell(walker_, wanted);
+    (void)physics_->step(step_s);
+  }
+  if (!landed_ && physics_->state(walker_)->on_ground) {
+    landed_ = true;
+    session.scene().marks().set("landed");  // a section of the frame tests begins here
+  }
   const core::WorldPosition feet = physics_->state(walker_)->feet;
   moved_ = feet.local + core::offset_m(feet.block, before, query_->world().block_size_m());
   way_m_ += std::hypot(moved_.x, moved_.z);

@@ -8,6 +8,7 @@
 #include "engine/input/actions.hpp"
 #include "engine/physics/world.hpp"
 #include "engine/query/world.hpp"
+#include "engine/telemetry/own_figures.hpp"
 
 class Game {
  public:
@@ -22,6 +23,7 @@ class Game {
   void write_hud(psygen::app::Session& session);
 
  private:
+  psygen::core::Result<void> add_figures(psygen::scene::Systems& systems);
   psygen::core::Result<void> add_actions(psygen::input::Actions& actions);
   void step(psygen::app::Session& session, double step_s);
   void draw_menu(psygen::app::Session& session);
@@ -34,5 +36,7 @@ class Game {
   double yaw_ = 0, pitch_ = 0, way_m_ = 0;
   float mouse_ = 1;  // mouse sensitivity, set in the menu
   bool menu_ = false;
+  psygen::telemetry::OwnFigure physics_ms_;  // in frames.csv, reports and budgets
+  bool landed_ = false;                      // the walker begins in the air
   psygen::input::ActionId ahead_ = 0, aside_ = 0, run_ = 0, jump_ = 0, look_x_ = 0, look_y_ = 0;
 };
