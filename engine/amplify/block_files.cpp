@@ -69,9 +69,13 @@ std::optional<std::uint64_t> sample_of(const world::World& world, const models::
     if (!bytes) return std::nullopt;
     return core::hash_bytes(std::as_bytes(std::span(*bytes)), *meshes);
   }
-  const exchange::ObjText text = exchange::obj_text(*document, "sample.mtl");
-  return core::hash_bytes(std::as_bytes(std::span(text.obj)),
-                          core::hash_bytes(std::as_bytes(std::span(text.mtl)), *meshes));
+  const auto files = exchange::obj_files(*document, exchange::obj_names("sample.obj"));
+  if (!files) return std::nullopt;
+  const std::uint64_t with_materials =
+      core::hash_bytes(std::as_bytes(std::span(files->mtl)), *meshes);
+  return core::hash_bytes(
+      std::as_bytes(std::span(files->obj)),
+      core::hash_bytes(std::as_bytes(std::span(files->colours.rgba)), with_materials));
 }
 
 }  // namespace

@@ -47,9 +47,10 @@ bool obj_is_cut_short(const std::filesystem::path& path, std::string_view docume
   const std::string first = obj_first_line(document_name);
   const auto head = first_bytes(path, first.size());
   if (!head || !agree(*head, first)) return false;
-  std::filesystem::path mtl = path;
-  mtl.replace_extension(".mtl");
-  if (is_missing_or_empty(mtl)) return true;
+  const ObjNames names = obj_names(path);
+  for (const std::string& name : {names.mtl, names.image}) {
+    if (is_missing_or_empty(path.parent_path() / name)) return true;
+  }
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   return !file.bad() && text.size() >= head->size() && text.find(kObjLastLine) == std::string::npos;

@@ -4,6 +4,7 @@
 
 #include "engine/core/replace_file.hpp"
 #include "engine/core/utf8.hpp"
+#include "engine/image/image_io.hpp"
 
 namespace psygen::exchange {
 
@@ -48,23 +49,39 @@ std::string_view name_of(Format format) {
   return format == Format::kGlb ? "glb" : "obj";
 }
 
+ObjNames obj_names(const std::filesystem::path& obj) {
+  const std::string stem = core::shown(obj.stem().string());
+  return {stem + ".mtl", stem + ".colours.png"};
+}
+
+namespace {
+
+core::Result<void> write_obj(const std::filesystem::path& path, const Document& document) {
+  const ObjNames names = obj_names(path);
+  const auto files = obj_files(document, names);
+  if (!files) return tl::unexpected(files.error());
+  const std::filesystem::path folder = path.parent_path();
+  const auto png = image::encode_png(folder / names.image, files->colours);
+  if (!png) return tl::unexpected(png.error());
+  core::FileReplacement materials(folder / names.mtl), colours(folder / names.image), objects(path);
+  materials.write(files->mtl);
+  colours.write({reinterpret_cast<const char*>(png->data()), png->size()});
+  objects.write(files->obj);
+  if (auto ok = objects.flush(); !ok) return ok;
+  if (auto ok = colours.flush(); !ok) return ok;
+  if (auto ok = materials.commit(); !ok) return ok;
+  if (auto ok = colours.commit(); !ok) return ok;
+  return objects.commit();
+}
+
+}  // namespace
+
 core::Result<void> write_scene(const std::filesystem::path& path, Format format,
                                const Document& document) {
-  if (format == Format::kGlb) {
-    const auto bytes = glb_bytes(document);
-    if (!bytes) return tl::unexpected(bytes.error());
-    return core::replace_file(path, *bytes);
-  }
-  std::filesystem::path mtl = path;
-  // One line of the OBJ names it, so a line break in its name becomes an escape.
-  mtl.replace_filename(core::shown(path.stem().string()) + ".mtl");
-  const ObjText text = obj_text(document, mtl.filename().string());
-  core::FileReplacement materials(mtl), objects(path);
-  materials.write(text.mtl);
-  objects.write(text.obj);
-  if (auto ok = objects.flush(); !ok) return ok;
-  if (auto ok = materials.commit(); !ok) return ok;
-  return objects.commit();
+  if (format == Format::kObj) return write_obj(path, document);
+  const auto bytes = glb_bytes(document);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return core::replace_file(path, *bytes);
 }
 
 }  // namespace psygen::exchange

@@ -144,22 +144,35 @@ constexpr std::uint32_t kLargest = 1U << 20;  // pixels per side
 
 // `bytes_given` is the size of the pixel data.
 template <class Picture, class Encode>
-core::Result<void> write_any(const std::filesystem::path& path, const Picture& image, bool is_sound,
-                             std::size_t bytes_given, const Encode& encode) {
+core::Result<Bytes> encode_any(const std::filesystem::path& path, const Picture& image,
+                               bool is_sound, std::size_t bytes_given, const Encode& encode) {
   if (image.width == 0 || image.height == 0 || !is_sound || image.width > kLargest ||
       image.height > kLargest) {
     return fail_at(ErrorCode::kInvalidArgument, path,
                    fmt::format("an image of {} x {} pixels with {} bytes cannot be written",
                                image.width, image.height, bytes_given));
   }
+  return without_exceptions(path, ErrorCode::kIo, [&]() -> core::Result<Bytes> {
+    return with_path(path, picture_codec().and_then(encode));
+  });
+}
+
+template <class Picture, class Encode>
+core::Result<void> write_any(const std::filesystem::path& path, const Picture& image, bool is_sound,
+                             std::size_t bytes_given, const Encode& encode) {
   return without_exceptions(path, ErrorCode::kIo, [&]() -> core::Result<void> {
-    return with_path(path, picture_codec().and_then(encode)).and_then([&](const Bytes& bytes) {
+    return encode_any(path, image, is_sound, bytes_given, encode).and_then([&](const Bytes& bytes) {
       return core::replace_file(path, bytes);
     });
   });
 }
 
 }  // namespace
+
+core::Result<Bytes> encode_png(const std::filesystem::path& name, const Image& image) {
+  return encode_any(name, image, is_valid(image), image.rgba.size(),
+                    [&](const PictureCodec* codec) { return codec->encode_png(image); });
+}
 
 core::Result<void> write_png(const std::filesystem::path& path, const Image& image) {
   return write_any(path, image, is_valid(image), image.rgba.size(),

@@ -45,6 +45,9 @@ core::Result<NumberImage> read_numbers(const std::filesystem::path& path,
 core::Result<GreyImage> read_grey(const std::filesystem::path& path,
                                   const ImageLimits& limits = {});
 
+// The bytes of a PNG file with all four channels; messages call it `name`. Fails like write_png().
+core::Result<std::vector<std::uint8_t>> encode_png(const std::filesystem::path& name,
+                                                   const Image& image);
 // Writes a temporary file next to `path`, flushes it to the disk and renames it, so `path` has the
 // old image or the new one, never a mix. Never replaces anything but a regular file. Fails with
 // kInvalidArgument (no pixels, more than 2^20 per side, or bytes that do not match the size) or

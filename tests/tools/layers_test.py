@@ -17,7 +17,7 @@ MAY_KNOW = {
     "engine/query": {"engine/core", "engine/models", "engine/world"},
     "engine/physics": {"engine/core", "engine/models", "engine/world", "engine/query"},
     "engine/synthesis": {"engine/core", "engine/models"},
-    "engine/exchange": {"engine/core", "engine/models", "engine/world"},
+    "engine/exchange": {"engine/core", "engine/image", "engine/models", "engine/world"},
     "engine/amplify": {"engine/core", "engine/models", "engine/world", "engine/synthesis",
                        "engine/exchange", "engine/telemetry"},
     "engine/cluster": {"engine/core", "engine/models", "engine/world", "engine/synthesis", "engine/exchange",

@@ -114,7 +114,7 @@ TEST(BlockFiles, TheBlocksOfAnotherWorldAreNotMixedIn) {
   const TemporaryFolder folder;
   world::World world = parsed(kSmallWorld);
   ASSERT_TRUE(make_files(world, folder.path(), Format::kObj));
-  EXPECT_EQ(folder.file_count(), 14u);  // with an .mtl for each .obj
+  EXPECT_EQ(folder.file_count(), 20u);  // with an .mtl and a .png for each .obj
   world.seed += 1;
   const auto other = make_files(world, folder.path(), Format::kObj);
   ASSERT_FALSE(other);

@@ -40,14 +40,19 @@ TEST_P(CutShort, ForeignAndMissingFilesAreNotCutShort) {
 INSTANTIATE_TEST_SUITE_P(Formats, CutShort, ::testing::Values(Format::kGlb, Format::kObj),
                          [](const auto& format) { return std::string(name_of(format.param)); });
 
-TEST(CutShortObj, NeedsItsMaterials) {
+TEST(CutShortObj, NeedsItsMaterialsAndTheirColours) {
   const TemporaryFolder folder;
   const auto obj = folder / "rock.obj", mtl = folder / "rock.mtl";
+  const auto png = folder / "rock.colours.png";
   ASSERT_TRUE(write_scene(obj, Format::kObj, {kName, {synthesised("rock", 0)}}));
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, kName));
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, "another"));
   std::ofstream(mtl, std::ios::app) << "Kd 1 0 0\n";  // an addition by the user
   std::ofstream(obj, std::ios::app) << "o mine\n";
+  EXPECT_FALSE(is_cut_short(obj, Format::kObj, kName));
+  std::filesystem::rename(png, folder / "away.png");
+  EXPECT_TRUE(is_cut_short(obj, Format::kObj, kName));
+  std::filesystem::rename(folder / "away.png", png);
   EXPECT_FALSE(is_cut_short(obj, Format::kObj, kName));
   std::filesystem::resize_file(mtl, 0);
   EXPECT_TRUE(is_cut_short(obj, Format::kObj, kName));
