@@ -6,6 +6,8 @@
 #include <span>
 #include <system_error>
 
+#include "engine/models/terrain/ground_edits.hpp"
+
 namespace psygen::world {
 namespace {
 
