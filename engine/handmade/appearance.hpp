@@ -25,6 +25,7 @@ class Appearance {
   struct Point {
     Simplifier::Goal goal;
     glm::vec3 normal{0.0F}, colour{0.0F};  // colour: 0 … 1, stored as in Vertex
+    std::uint64_t side = 0;                // of its surface
     std::uint32_t triangle = 0;
     float area_m2 = 0;
   };
@@ -42,6 +43,7 @@ class Appearance {
     void add(const Difference& other);
     bool is_wrong() const;
   };
+  class Regions;
   std::vector<Difference> differences(const std::vector<Vertex>& vertices,
                                       const std::vector<Match>& matches) const;
   std::vector<Vertex> with_fitted_colours(const std::vector<Vertex>& vertices,
