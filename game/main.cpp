@@ -5,11 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <utility>
 #include <vector>
 
 #include "engine/app/session.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/replace_file.hpp"
 #include "engine/program/command_line.hpp"
 #include "engine/program/program.hpp"
 #include "engine/render/preset.hpp"
@@ -88,7 +90,23 @@ std::string progress_of(const Play* play) {
       p.feet.block.x, p.feet.block.z, p.feet.local.x, p.feet.local.y, p.feet.local.z);
 }
 
+// Checks before the game that its outputs can be written.
+core::Result<void> check_outputs(const Arguments& a) {
+  if (!a.picture.empty() && std::filesystem::path(a.picture).extension() != ".png")
+    return core::invalid_argument(a.picture + ": the name of an image must end in .png");
+  for (const std::filesystem::path& file : {std::filesystem::path(a.picture), a.game.record}) {
+    const std::filesystem::path folder = file.parent_path();
+    std::error_code error;
+    if (!folder.empty() && !std::filesystem::is_directory(folder, error))
+      return core::fail(core::ErrorCode::kIo, file.string() + ": its folder is missing");
+    if (file.empty()) continue;
+    if (auto ok = core::check_replaceable(file); !ok) return ok;
+  }
+  return {};
+}
+
 core::Result<void> run(Arguments a) {
+  if (auto ok = check_outputs(a); !ok) return ok;
   const bool headless = a.game.headless;
   Game game(std::move(a.game));
   auto options = game.session_options();

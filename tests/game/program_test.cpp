@@ -40,6 +40,18 @@ TEST(Program, AFullOutputIsAnError) {
   EXPECT_EQ(run_game("--help >/dev/full").code, 1);
 }
 
+TEST(Program, OutputsAreCheckedBeforeTheGame) {
+  const std::string game = "--headless --autoplay 1000000 --seed 3 --no-sound ";
+  const auto expect = [&](const std::string& option, const char* message) {
+    const Outcome outcome = run_game(game + option);
+    EXPECT_EQ(outcome.code, 1) << option;
+    EXPECT_THAT(outcome.err, testing::HasSubstr(message));
+  };
+  expect("--picture last.txt", "last.txt: the name of an image must end in .png");
+  expect("--picture /nowhere/last.png", "/nowhere/last.png: its folder is missing");
+  expect("--record /dev/full", "/dev/full: is not a regular file, and is not replaced");
+}
+
 TEST(Program, SignalsDuringALoadEndItWithSuccess) {
   const psygen::TemporaryFolder folder;
   const Outcome outcome =
