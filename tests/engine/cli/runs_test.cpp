@@ -190,5 +190,57 @@ TEST(Compare, JudgesCapturesByTheirTimesAlone) {
   EXPECT_TRUE(mentions(refused.err, "log with mangoapp")) << refused.err;
 }
 
+// A run of 60 frames on the virtual clock, where every difference counts.
+void write_virtual_run(const std::filesystem::path& folder, double frame_ms) {
+  std::filesystem::create_directories(folder);
+  std::ofstream frames(folder / "frames.csv");
+  frames << "time_s,frame_ms,main_cpu_ms,apart,error_pixels,holes,missing_pixels_percent,"
+            "too_coarse_percent\n";
+  for (int i = 0; i < 60; ++i)
+    frames << i / 30.0 << ',' << frame_ms << ",,,4,0,0,0\n";
+  std::ofstream(folder / "summary.json")
+      << R"({"schema": "psygen.summary/1", "run": {"width": 64, "height": 36, "fixed_step": 30}})";
+}
+
+TEST(Compare, TellsItsVerdictOnAPullRequest) {
+  const TemporaryFolder folder;
+  write_virtual_run(folder / "a", 10);
+  write_virtual_run(folder / "b", 12);
+  const std::string sides = "compare " + (folder / "a").string() + " " + (folder / "b").string();
+  const Outcome done =
+      run_psygen(sides + " --annotations github --markdown " + (folder / "words.md").string());
+  EXPECT_EQ(done.code, 3) << done.err;
+  EXPECT_TRUE(done.out.starts_with("verdict: worse\n")) << done.out;
+  EXPECT_TRUE(mentions(done.out,
+                       "\n::error title=psygen compare%3A worse::frames take 20.00 %25 "
+                       "more\n"))
+      << done.out;
+  EXPECT_TRUE(
+      read(folder / "words.md").starts_with("## Comparison: worse\n\n- frames take 20.00 %"))
+      << read(folder / "words.md");
+  const auto quality = folder / "quality.json";
+  const Outcome json = run_psygen(sides + " --json --annotations gitlab:" + quality.string());
+  EXPECT_EQ(json.code, 3);
+  EXPECT_TRUE(json.out.starts_with("{") && json.out.ends_with("}\n")) << json.out;
+  EXPECT_TRUE(mentions(read(quality), "\"severity\": \"major\"")) << read(quality);
+  const Outcome both = run_psygen(sides + " --json --annotations github");
+  EXPECT_EQ(both.code, 2);
+  EXPECT_TRUE(mentions(both.err, "--json and --annotations both print")) << both.err;
+  EXPECT_EQ(run_psygen(sides + " --annotations teamcity").code, 2);
+}
+
+TEST(FrameTests, OfOneNameAreRefusedBeforeTheyFly) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a", "b"})
+    std::ofstream(folder / (std::string(name) + ".toml"))
+        << "format = 1\nname = \"walk\"\n[at_most]\nhitches = 0\n";
+  const Outcome refused =
+      run_psygen("test " + (folder / "a.toml").string() + " " + (folder / "b.toml").string() +
+                 " --out " + (folder / "out").string());
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_TRUE(mentions(refused.err, "b.toml:2: name: the test of ")) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
 }  // namespace
 }  // namespace psygen::cli
