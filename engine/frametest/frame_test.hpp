@@ -30,7 +30,8 @@ struct Budget {
   int line = 0;                             // of the file
   // The limit is this factor times the value of the base; `limit` is set when the base is read.
   std::optional<double> of_base = {};
-  // Without a reference load, processor time must have risen too before the budget is missed.
+  // Unless the machine is known to have been calm, processor time must have risen too before the
+  // budget is missed.
   bool needs_witness = true;
 };
 

@@ -136,7 +136,10 @@ class Judge {
     }
     const double scale = std::max(ratio, 1.0);
     const double scaled = budget_.relation == Relation::kAtMost ? limit * scale : limit / scale;
-    if (!is_wall_time(budget_.field) || !holds_for(budget_.relation, value, scaled)) return attempt;
+    if (!is_wall_time(budget_.field) || !holds_for(budget_.relation, value, scaled)) {
+      if (ratio > kCalmRatio) judge_by_processor_time(runs, attempt);
+      return attempt;
+    }
     attempt.outcome = Outcome::kHeld;
     attempt.note = fmt::format(
         "Held by the scaled limit {:.6g}: the reference load took {:.2f} times its usual time "
@@ -145,16 +148,22 @@ class Judge {
     return attempt;
   }
 
-  // Without a reference load, processor time must confirm that the program and not the machine
-  // became slower.
+  // Where the reference load is unknown or shows that the machine was slower, processor time must
+  // confirm that the program is to blame.
   void judge_by_processor_time(std::span<const RunFields> runs, Attempt& attempt) const {
     const Figure cpu_s = median_of(runs, kCpu), &usual_s = flights_.usual.cpu_s;
     if (!budget_.needs_witness || !cpu_s.has_value() || !usual_s.has_value()) return;
     if (*cpu_s >= kRisenRatio * *usual_s) return;
     attempt.outcome = Outcome::kNotJudged;
     attempt.note = fmt::format(
-        "Only the wall clock rose, and no reference load tells how busy the machine was: {}.",
-        processor_text(*cpu_s));
+        "Only the wall clock rose, and the machine may be to blame: {}, reference load {}.",
+        processor_text(*cpu_s), reference_text(runs));
+  }
+
+  std::string reference_text(std::span<const RunFields> runs) const {
+    const Figure pair_s = median_of(runs, kPairWall), &usual_s = flights_.usual.pair_s;
+    if (!pair_s.has_value() || !usual_s.has_value()) return "unknown";
+    return fmt::format("{:.2f} times its usual time", *pair_s / *usual_s);
   }
 
   std::string processor_text(double cpu_s) const {

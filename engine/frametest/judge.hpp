@@ -17,6 +17,8 @@ namespace psygen::frametest {
 // A limit of a time is scaled up to this ratio of the reference load to its usual time. Above it,
 // a missed budget is not judged.
 inline constexpr double kMaxBusyRatio = 1.5;
+// Up to this ratio the machine is calm, and the wall clock needs no witness.
+inline constexpr double kCalmRatio = 1.1;
 // Processor time rose if it is over the usual one by this ratio.
 inline constexpr double kRisenRatio = 1.05;
 

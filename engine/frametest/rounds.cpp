@@ -189,11 +189,10 @@ TestResult TestFlights::finish() {
 std::vector<UsualLoadFile::Run> TestFlights::record() const {
   std::vector<UsualLoadFile::Run> record;
   for (const RunFields& run : runs_) {
-    UsualLoadFile::Run& each = record.emplace_back();
-    each.machine = machine_;
-    each.test = test_.name;
-    each.pair_s = median_of({&run, 1}, "reference.pair.wall_s");
-    each.cpu_s = result_.holds() ? median_of({&run, 1}, "load.cpu_seconds") : telemetry::Figure();
+    UsualLoadFile::Run each{
+        machine_, test_.name, median_of({&run, 1}, "reference.pair.wall_s"), {}};
+    if (result_.holds()) each.cpu_s = median_of({&run, 1}, "load.cpu_seconds");
+    if (each.pair_s.has_value() || each.cpu_s.has_value()) record.push_back(std::move(each));
   }
   return record;
 }

@@ -38,7 +38,8 @@ class TestFlights {
   // The result, after the last flight. Repeats the flight of a missed budget to show its worst
   // frames.
   TestResult finish();
-  // The runs for the machine's record: processor time only if all budgets hold.
+  // The runs for the machine's record: processor time only if all budgets hold. A run without both
+  // figures is left out.
   std::vector<UsualLoadFile::Run> record() const;
 
  private:

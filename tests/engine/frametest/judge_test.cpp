@@ -147,12 +147,31 @@ TEST(JudgeRuns, WithoutAReferenceLoadNeedProcessorTimeAsAWitness) {
   const UsualLoad load = usual(0, 2);
   const BudgetResult waiting = judged(p99_at_most(25), {slow}, load);
   EXPECT_FALSE(waiting.judged);
-  EXPECT_THAT(waiting.notes.at(0), HasSubstr("Only the wall clock rose, and no reference load"));
+  EXPECT_THAT(waiting.notes.at(0), HasSubstr("(+2.5 %; the base), reference load unknown."));
   EXPECT_TRUE(judged(p99_at_most(25), {heavy}, load).misses());
   Budget alone = p99_at_most(25);
   alone.needs_witness = false;
   EXPECT_TRUE(judged(alone, {slow}, load).misses());
   EXPECT_TRUE(judged(p99_at_most(25), {slow}).misses()) << "nothing is known of the machine";
+}
+
+TEST(JudgeRuns, NeedProcessorTimeAsAWitnessWhereTheMachineWasSlower) {
+  const UsualLoad load = usual(0.2, 2);
+  const Measured slower{.p99_ms = 40, .cpu_s = 2, .pair_s = 0.25};
+  const BudgetResult result = judged(p99_at_most(25), {slower}, load);
+  EXPECT_FALSE(result.judged);
+  EXPECT_THAT(result.notes,
+              ElementsAre("Only the wall clock rose, and the machine may be to blame: processor "
+                          "time 2 s, usually 2 s (+0.0 %; the base), reference load 1.25 times its "
+                          "usual time."));
+  Measured heavy = slower, calm = slower;
+  heavy.cpu_s = 2.2;
+  calm.pair_s = 0.21;
+  EXPECT_TRUE(judged(p99_at_most(25), {heavy}, load).misses());
+  EXPECT_TRUE(judged(p99_at_most(25), {calm}, load).misses()) << "waiting on a calm machine";
+  Budget alone = p99_at_most(25);
+  alone.needs_witness = false;
+  EXPECT_TRUE(judged(alone, {slower}, load).misses());
 }
 
 TEST(JudgeRuns, SayWhetherProcessorTimeRoseToo) {
