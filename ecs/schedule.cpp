@@ -86,6 +86,7 @@ struct Schedule::Parts {
   std::vector<Step> steps;
   bool arranged = true;
   std::string refused;  // the first mistake of add() and provide()
+  WorkCounter work_counter = nullptr;
 
   std::mutex mutex;
   std::condition_variable changed;
@@ -150,6 +151,8 @@ struct Schedule::Parts {
     return all;
   }
 
+  std::uint64_t read_work() const { return work_counter != nullptr ? work_counter() : 0; }
+
   // An exception also ends the step.
   void run_step(std::size_t index) {
     try {
@@ -166,13 +169,16 @@ struct Schedule::Parts {
     System& system = systems[steps[index].system];
     SystemInfo& info = infos[steps[index].system];
     const double start_s = now_s();
+    const std::uint64_t start_work = read_work();
     if (steps[index].applies_commands) {
       system.commands->apply(world);
       info.last_seconds += now_s() - start_s;
+      info.last_work += read_work() - start_work;
     } else {
       system.runner->run();
       info.last_start_s = start_s;
       info.last_seconds = now_s() - start_s;
+      info.last_work = read_work() - start_work;
     }
   }
 
@@ -299,6 +305,11 @@ void Schedule::run() {
   for (System& system : parts_->systems)
     if (system.commands != nullptr) *system.commands = Commands();
   std::rethrow_exception(std::exchange(parts_->exception, nullptr));
+}
+
+void Schedule::count_work(WorkCounter read) {
+  parts_->expect_idle("count_work");
+  parts_->work_counter = read;
 }
 
 const std::string& Schedule::threw() const {

@@ -60,9 +60,13 @@ struct SystemInfo {
   WorldAccess world = WorldAccess::kNone;
   bool records_commands = false;
   RunsOn runs_on = RunsOn::kAnyThread;
-  double last_start_s = 0;  // start of its last run, on std::chrono::steady_clock
-  double last_seconds = 0;  // wall time of the last run, including its commands
+  double last_start_s = 0;      // start of its last run, on std::chrono::steady_clock
+  double last_seconds = 0;      // wall time of the last run, including its commands
+  std::uint64_t last_work = 0;  // counted in the last run, including its commands (count_work())
 };
+
+// Reads a counter that grows with the work of the calling thread: instructions, processor time.
+using WorkCounter = std::uint64_t (*)();
 
 // True if the order of two systems matters. Symmetric. O(accesses of a * accesses of b).
 bool conflict(const SystemInfo& a, const SystemInfo& b);
@@ -119,6 +123,9 @@ class Schedule {
   // ends the run: no other system starts, commands that were not applied are dropped, and run()
   // throws the exception on. threw() names the system then.
   void run();
+  // Counts the work of each system from the next run on (SystemInfo::last_work); null ends it. Not
+  // during run().
+  void count_work(WorkCounter read);
   // The system whose exception ended the last run; empty if none did.
   const std::string& threw() const;
 

@@ -13,7 +13,7 @@ packages=(
   libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev libsqlite3-dev
   libopenal-dev libsndfile1-dev libbullet-dev qt6-base-dev libxcb1-dev libopenmpi-dev openmpi-bin
   slurm-wlm munge
-  libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind gdb
+  libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind gdb linux-perf
   xvfb openbox xdotool x11-utils x11-xkb-utils chromium
 )
 # For the test in which other programs read tilesets. A newer Node.js from elsewhere works too.

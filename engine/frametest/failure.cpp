@@ -8,6 +8,7 @@
 #include "engine/core/camera.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/core/utf8.hpp"
+#include "engine/frametest/cause_report.hpp"
 #include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/scene/frame/input.hpp"
@@ -20,11 +21,6 @@ namespace {
 
 constexpr const char* kPage = "failed.html";
 constexpr std::string_view kPicturePrefix = "worst_";
-
-// True if frame k is at the same position in every flight.
-bool is_numbered(const app::FlightOptions& flight) {
-  return flight.session.scene.virtual_time || flight.fixed_step_hz > 0;
-}
 
 struct Seen {
   core::CameraPose pose;
@@ -104,10 +100,10 @@ core::Result<image::ImageDifference> fly_to(const WorstFrame& frame, const Frame
   return write_pictures(frame, **seen.picture, *expected, options.out / test.name);
 }
 
-std::string frame_html(const WorstFrame& frame,
+std::string frame_html(const WorstFrame& frame, const std::string& cause_html,
                        const core::Result<image::ImageDifference>& difference) {
-  std::string html = fmt::format("<h2>Frame {} at {:.2f} s</h2>\n<p>{}. ", frame.index,
-                                 frame.time_s, escaped(frame.why));
+  std::string html = fmt::format("<h2>Frame {} at {:.2f} s</h2>\n{}<p>{}. ", frame.index,
+                                 frame.time_s, cause_html, escaped(frame.why));
   if (!difference)
     return html + fmt::format("No images: {}</p>\n", escaped(difference.error().message));
   html += fmt::format("{:.2f} % of the pixels differ by more than {} of 255.</p>\n<div class=row>",
@@ -161,14 +157,17 @@ void remove_failure(const std::filesystem::path& folder) {
 
 core::Result<std::filesystem::path> write_failure(const FrameTest& test, const TestResult& result,
                                                   std::span<const WorstFrame> frames,
+                                                  const CauseReport& causes,
                                                   const RunOptions& options, const Hooks& hooks) {
   const std::filesystem::path page = options.out / test.name / kPage;
   constexpr std::string_view kStyle =
       ".row{display:flex;flex-wrap:wrap;gap:12px}.row figure{margin:0;flex:1 1 300px}"
       "img{width:100%;image-rendering:pixelated}td,th{text-align:left;padding:2px 16px 2px 0}";
-  std::string html = lead_html(test) + budgets_html(result);
-  for (const WorstFrame& frame : frames)
-    html += frame_html(frame, fly_to(frame, test, options, hooks));
+  std::string html = lead_html(test) + budgets_html(result) + causes.base_html;
+  for (const std::string& reason : causes.missing)
+    html += fmt::format("<p>{}</p>\n", escaped(reason));
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    html += frame_html(frames[i], causes.frames_html[i], fly_to(frames[i], test, options, hooks));
   if (frames.empty()) html += "<p>The missed budgets are not measured per frame.</p>\n";
   const std::string title = core::shown(test.name) + ": budgets missed";
   return core::replace_file(page, telemetry::page_html(title, kStyle, html)).map([&] {

@@ -16,6 +16,8 @@
 
 namespace psygen::frametest {
 
+struct CauseReport;  // cause_report.hpp
+
 struct WorstFrame {
   std::uint64_t index = 0;  // FrameRecord::index
   double time_s = 0;        // on the flight's clock
@@ -35,12 +37,13 @@ std::vector<WorstFrame> worst_frames(std::span<const BudgetResult> budgets,
 void remove_failure(const std::filesystem::path& folder);
 
 // Writes worst_NNNNN_seen.png, _expected.png and _difference.png of each frame (NNNNN is its
-// number), and failed.html with the missed budgets and the images, into options.out / test.name.
-// Returns the page. The "expected" image has the screen-space error and the memory budget of the
-// test. If an image cannot be made, the page shows the reason instead. Fails with kIo if the page
-// cannot be written.
+// number), and failed.html with the missed budgets, the causes (of the same frames) and the images,
+// into options.out / test.name. Returns the page. The "expected" image has the screen-space error
+// and the memory budget of the test. If an image cannot be made, the page shows the reason instead.
+// Fails with kIo if the page cannot be written.
 core::Result<std::filesystem::path> write_failure(const FrameTest& test, const TestResult& result,
                                                   std::span<const WorstFrame> frames,
+                                                  const CauseReport& causes,
                                                   const RunOptions& options, const Hooks& hooks);
 
 }  // namespace psygen::frametest

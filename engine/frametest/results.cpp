@@ -86,6 +86,8 @@ std::string suite_of(const TestResult& result, const std::string& class_name) {
                     : fmt::format("<{} message=\"{}\"/></testcase>\n",
                                   r.judged ? "failure" : "skipped", story);
   }
+  for (const std::string& cause : result.causes)
+    text += fmt::format("<system-out>{}</system-out>\n", escaped(cause));
   // Several CI servers show this line as an attachment of the suite.
   if (!result.page.empty())
     text += fmt::format("<system-out>[[ATTACHMENT|{}]]</system-out>\n",
@@ -135,6 +137,8 @@ std::string to_text(const TestResult& result) {
     for (const std::string& note : r.notes)
       text += fmt::format("{}:   {}\n", result.name, note);
   }
+  for (const std::string& cause : result.causes)
+    text += fmt::format("{}: {}\n", result.name, cause);
   if (!result.page.empty())
     text += fmt::format("{}: images in {}\n", result.name, result.page.string());
   return text;
@@ -171,6 +175,8 @@ std::string to_markdown(std::span<const TestResult> results) {
     for (const BudgetResult& r : result.budgets)
       for (const std::string& note : r.notes)
         budgets += "- " + telemetry::markdown_text(r.budget.field + ": " + note) + "\n";
+    for (const std::string& cause : result.causes)
+      budgets += fmt::format("- {}\n", telemetry::markdown_text(cause));
   }
   return "## Frame tests\n" + telemetry::markdown_table({"test", "result", "time"}, tests) +
          budgets;
@@ -188,12 +194,13 @@ std::vector<telemetry::Remark> remarks_of(std::span<const TestResult> results) {
                          .line = 1});
     for (const BudgetResult& r : result.budgets) {
       if (r.holds) continue;
+      const std::string cause = result.causes.empty() ? "" : ". " + result.causes.front();
       remarks.push_back(
           {.level = r.judged ? telemetry::RemarkLevel::kError : telemetry::RemarkLevel::kWarning,
            .title = fmt::format("{} {} {}", result.name, r.judged ? "misses" : "does not judge",
                                 r.budget.field),
-           .message = fmt::format("{} is {}; the budget is {}{}", r.budget.field, value_of(r),
-                                  limit_text(r), notes_of(r)),
+           .message = fmt::format("{} is {}; the budget is {}{}{}", r.budget.field, value_of(r),
+                                  limit_text(r), notes_of(r), cause),
            .file = result.file,
            .line = r.budget.line});
     }

@@ -171,7 +171,8 @@ void TestFlights::show_failure() {
     --run;
   FrameTest shown = test_;
   shown.name = folder_name(run);
-  const auto page = write_failure(shown, result_, worst_[run], options_, hooks_);
+  const CauseReport causes = causes_of(worst_[run]);
+  const auto page = write_failure(shown, result_, worst_[run], causes, options_, hooks_);
   if (page) {
     result_.page = *page;
   } else {
@@ -179,9 +180,29 @@ void TestFlights::show_failure() {
   }
 }
 
+// The profile is that of the test, not of a run.
+CauseReport TestFlights::causes_of(std::span<const WorstFrame> frames) {
+  const double flight_s = result_.seconds / static_cast<double>(runs_.size());
+  const CauseReport causes =
+      find_causes(test_, frames, base_ ? base_->folder : "", flight_s, options_, hooks_);
+  result_.causes = causes.lines;
+  return causes;
+}
+
+// Profiles a test that holds, for later runs, and compares it with the base.
+void TestFlights::keep_profile() {
+  if (options_.out.empty() || !options_.profile) return;
+  for (const std::string& reason : causes_of({}).missing)
+    core::log_warning(fmt::format("{}: {}", result_.name, reason));
+}
+
 TestResult TestFlights::finish() {
   const double start_s = core::monotonic_seconds();
-  if (!result_.error && result_.misses()) show_failure();
+  if (!result_.error && result_.misses()) {
+    show_failure();
+  } else if (!result_.error) {
+    keep_profile();
+  }
   result_.seconds += core::monotonic_seconds() - start_s;
   return result_;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/frametest/base.hpp"
+#include "engine/frametest/cause_report.hpp"
 #include "engine/frametest/failure.hpp"
 #include "engine/frametest/judge.hpp"
 #include "engine/frametest/run.hpp"
@@ -50,6 +51,8 @@ class TestFlights {
   bool flies_often() const { return test_.runs > 1 || test_.retries > 0; }
   std::string folder_name(std::size_t run) const;
   void show_failure();
+  void keep_profile();
+  CauseReport causes_of(std::span<const WorstFrame> frames);
 
   FrameTest test_;
   const std::optional<Base>& base_;

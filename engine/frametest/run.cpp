@@ -191,6 +191,8 @@ void add_options(CLI::App& cli, RunOptions& options) {
                  "Number of worst frames of a failed test written as images to --out")
       ->capture_default_str()
       ->check(CLI::Range(0, kMaxWorstFrames));
+  cli.add_flag("--profile", options.profile,
+               "Write profile.json to --out also for tests that hold: the work of each system");
   cli.add_option("--device", options.device, "Part of the Vulkan device's name");
   add_words(cli, options.words);
 }

@@ -49,6 +49,7 @@ struct RunOptions {
   telemetry::PullRequestWords words;
   std::string device;    // part of a device's name; empty: the best device
   int worst_frames = 3;  // number of frames captured of a failed test; requires `out`
+  bool profile = false;  // writes profile.json of tests that hold too; requires `out`
   const std::atomic<bool>* stop = nullptr;  // set by any thread to end early
 };
 
@@ -71,9 +72,10 @@ struct TestResult {
   std::filesystem::path file;
   std::string name;
   std::vector<BudgetResult> budgets;
-  std::optional<core::Error> error;  // the test did not run; kNoDevice: no test can run
-  double seconds = 0;                // duration of the test
-  std::filesystem::path page;        // failed.html of a failed test; empty: none
+  std::optional<core::Error> error;      // the test did not run; kNoDevice: no test can run
+  double seconds = 0;                    // duration of the test
+  std::filesystem::path page;            // failed.html of a failed test; empty: none
+  std::vector<std::string> causes = {};  // of its bad frames, each in one line
 
   bool holds() const;   // the test ran, and every budget holds
   bool misses() const;  // the test ran, and a budget is missed

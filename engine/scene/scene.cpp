@@ -188,6 +188,13 @@ telemetry::Marks& Scene::marks() {
 std::span<const float> Scene::system_ms() const {
   return state_->system_ms;
 }
+void Scene::count_work(std::uint64_t (*read)()) {
+  for (ecs::Schedule* schedule : {&state_->tick, &state_->simulation.systems})
+    schedule->count_work(read);
+}
+std::span<const std::uint64_t> Scene::system_work() const {
+  return state_->system_work;
+}
 std::vector<std::string> Scene::system_names() const {
   return scene::system_names(*state_);
 }

@@ -59,7 +59,9 @@ struct State {
   Telemetry telemetry;
   telemetry::OwnFigures figures;  // of the game
   telemetry::Marks marks;
-  std::vector<float> system_ms;  // of the last tick, in the order of system_names()
+  // Of the last tick, in the order of system_names(): times, and work if it is counted.
+  std::vector<float> system_ms;
+  std::vector<std::uint64_t> system_work;
   synthesis::CalibrationReport calibration;
   // Types of earlier worlds that objects or hung modelers still use.
   std::vector<models::Registry> retired_types;
@@ -94,9 +96,9 @@ void build_tick(State& state);
 // "step <name>".
 std::vector<std::string> system_names(const State& state);
 
-// Runs all systems once and measures each (State::system_ms). No engine system fails: work that
-// cannot be done is counted and left for the next tick. Output::error tells what ended the flight,
-// if anything; also that a game's system threw.
+// Runs all systems once and measures each (State::system_ms, system_work). No engine system fails:
+// work that cannot be done is counted and left for the next tick. Output::error tells what ended
+// the flight, if anything; also that a game's system threw.
 void tick(State& state);
 
 }  // namespace psygen::scene

@@ -112,6 +112,18 @@ void measure_systems(State& state) {
   state.system_ms.insert(state.system_ms.end(), step_ms.begin(), step_ms.end());
 }
 
+// Gathers the counted work of the systems. That of "simulation" excludes its systems.
+void gather_work(State& state) {
+  const std::vector<std::uint64_t>& step_work = state.simulation.step_work;
+  const auto steps = std::accumulate(step_work.begin(), step_work.end(), std::uint64_t{0});
+  state.system_work.clear();
+  for (const ecs::SystemInfo& system : state.tick.systems()) {
+    const std::uint64_t elsewhere = system.name == kSimulationSystem ? steps : 0;
+    state.system_work.push_back(system.last_work - std::min(elsewhere, system.last_work));
+  }
+  state.system_work.insert(state.system_work.end(), step_work.begin(), step_work.end());
+}
+
 // Runs all systems. An exception of a system becomes an error that names it.
 void run_systems(State& state) {
   const auto fail = [&state](core::ErrorCode code, const auto& describe) {
@@ -147,6 +159,7 @@ void tick(State& state) {
   if (state.settings.modelers_yield) state.supply.lower_priority();
   run_systems(state);
   measure_systems(state);
+  gather_work(state);
   if (state.trace.log != nullptr) trace_tick(state);
   ++state.clock.tick;
 }

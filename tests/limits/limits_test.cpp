@@ -14,6 +14,7 @@
 #include "engine/captures/capture.hpp"
 #include "engine/compare/recorded_run.hpp"
 #include "engine/compare/times.hpp"
+#include "engine/frametest/cause.hpp"
 #include "engine/frametest/frame_test.hpp"
 #include "engine/frametest/usual_load.hpp"
 #include "engine/gltf/read_file.hpp"
@@ -615,6 +616,12 @@ const std::vector<Case>& cases() {
          [](const fs::path&, double n) {
            telemetry::OwnFigures figures;
            return outcome(figures.add({.name = "f", .unit = in_string(whole(n))}));
+         }},
+        {"bytes of a `profile.json`",
+         [](const fs::path& folder, double n) {
+           const std::string text = frametest::to_json(frametest::ProfileSummary{});
+           write(folder / "p.json", text + std::string(whole(n) - text.size(), ' '));
+           return outcome(frametest::read_profile(folder / "p.json"));
          }},
         {"bytes of a ledger",
          [](const fs::path& folder, double n) {

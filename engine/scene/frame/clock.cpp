@@ -27,14 +27,17 @@ void simulation_system(const Clock& clock, ecs::World&, Simulation& simulation, 
     simulation.behind_s = max_s;
   }
   simulation.step_ms.assign(simulation.systems.systems().size(), 0.0F);
+  simulation.step_work.assign(simulation.step_ms.size(), 0);
   while (simulation.behind_s >= step.step_s * (1 - kEarly)) {
     simulation.behind_s = std::max(simulation.behind_s - step.step_s, 0.0);
     ++step.index;
     step.share = 0;
     simulation.systems.run();
     const auto systems = simulation.systems.systems();
-    for (std::size_t i = 0; i < systems.size(); ++i)
+    for (std::size_t i = 0; i < systems.size(); ++i) {
       simulation.step_ms[i] += static_cast<float>(systems[i].last_seconds * 1000.0);
+      simulation.step_work[i] += systems[i].last_work;
+    }
     trace_systems(systems, step.index, &Tracing::steps, trace);
   }
   step.share = std::min(simulation.behind_s / step.step_s, 1.0);

@@ -41,10 +41,12 @@ struct Simulation {
   // Maximum steps of one frame. A program that cannot keep up slows its simulation down instead of
   // stopping.
   std::uint32_t max_steps = 8;
-  double behind_s = 0;         // clock time that no step has simulated yet
-  double clock_s = 0;          // the clock at the last frame
-  double lost_s = 0;           // time dropped by frames with too many steps
-  std::vector<float> step_ms;  // of each system in this frame, summed over its steps
+  double behind_s = 0;  // clock time that no step has simulated yet
+  double clock_s = 0;   // the clock at the last frame
+  double lost_s = 0;    // time dropped by frames with too many steps
+  // Of each system in this frame, summed over its steps: its time, and its work if it is counted.
+  std::vector<float> step_ms;
+  std::vector<std::uint64_t> step_work;
 };
 
 // System: runs the fixed steps that are due. Their systems may change all entities.
