@@ -39,6 +39,7 @@ std::unique_ptr<Command> make_compare_command(CLI::App& cli);
 std::unique_ptr<Command> make_convert_command(CLI::App& cli);
 std::unique_ptr<Command> make_export_command(CLI::App& cli);
 std::unique_ptr<Command> make_fly_command(CLI::App& cli);
+std::unique_ptr<Command> make_history_command(CLI::App& cli);
 std::unique_ptr<Command> make_merge_command(CLI::App& cli);
 std::unique_ptr<Command> make_models_command(CLI::App& cli);
 std::unique_ptr<Command> make_picture_command(CLI::App& cli);

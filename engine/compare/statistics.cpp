@@ -212,6 +212,25 @@ double fisher_more(std::uint64_t a_hits, std::uint64_t a_all, std::uint64_t b_hi
   return std::min(p, 1.0);
 }
 
+std::vector<double> mann_whitney_tail(std::size_t n, std::size_t m, std::size_t most) {
+  PSYGEN_ASSERT(n > 0 && m > 0 && most <= n * m, "values");
+  // counts[j][u]: orders of i values of A and j of B with u such pairs. The last value of an order
+  // is one of B, above all i, or one of A.
+  std::vector<std::vector<double>> counts(m + 1, std::vector<double>(most + 1, 0.0));
+  for (auto& of_j : counts)
+    of_j[0] = 1;
+  for (std::size_t i = 1; i <= n; ++i)
+    for (std::size_t j = 1; j <= m; ++j)
+      for (std::size_t u = i; u <= most; ++u)
+        counts[j][u] += counts[j - 1][u - i];
+  std::vector<double>& tail = counts.back();
+  const double all = std::exp(log_choose(n + m, n));
+  double sum = 0;
+  for (double& each : tail)
+    each = (sum += each) / all;
+  return std::move(tail);
+}
+
 double mann_whitney(std::span<const double> a, std::span<const double> b) {
   PSYGEN_ASSERT(!a.empty() && !b.empty() && std::max(a.size(), b.size()) <= 100, "values");
   double above = 0;  // pairs in which b is larger, ties half
@@ -220,17 +239,7 @@ double mann_whitney(std::span<const double> a, std::span<const double> b) {
       above += y > x ? 1 : y == x ? 0.5 : 0;
   const auto pairs = static_cast<double>(a.size() * b.size());
   const auto seen = static_cast<std::size_t>(std::ceil(std::min(above, pairs - above)));
-  // counts[m][u]: orders of n values of A and m of B with u such pairs. The last value of an order
-  // is one of B, above all n, or one of A.
-  std::vector<std::vector<double>> counts(b.size() + 1, std::vector<double>(seen + 1, 0.0));
-  for (auto& of_m : counts)
-    of_m[0] = 1;
-  for (std::size_t n = 1; n <= a.size(); ++n)
-    for (std::size_t m = 1; m <= b.size(); ++m)
-      for (std::size_t u = n; u <= seen; ++u)
-        counts[m][u] += counts[m - 1][u - n];
-  const double all = std::exp(log_choose(a.size() + b.size(), a.size()));
-  return std::min(1.0, 2 * std::accumulate(counts.back().begin(), counts.back().end(), 0.0) / all);
+  return std::min(1.0, 2 * mann_whitney_tail(a.size(), b.size(), seen).back());
 }
 
 }  // namespace psygen::compare

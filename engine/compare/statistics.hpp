@@ -54,6 +54,11 @@ std::vector<double> rare_frames(const Times& runs);
 double fisher_more(std::uint64_t a_hits, std::uint64_t a_all, std::uint64_t b_hits,
                    std::uint64_t b_all);
 
+// Exact distribution of Mann and Whitney's U for sets of n and m values without ties: element u is
+// the probability that at most u of the n m pairs have the larger value in B, up to `most`.
+// Requires n and m from 1 and most <= n m. O(n m most).
+std::vector<double> mann_whitney_tail(std::size_t n, std::size_t m, std::size_t most);
+
 // Exact two-sided test of Mann and Whitney for values that are no pairs: p of values of one set
 // standing as often above those of the other. Ties count against a difference. Requires 1 to 100
 // values each. O(n² m²) for n and m values.

@@ -14,8 +14,9 @@
 namespace psygen::program {
 namespace {
 
-constexpr std::size_t kMaxShownBytes = 80;  // of an argument
-constexpr std::size_t kMaxSaidBytes = 400;  // of a message of CLI11 that includes an argument
+constexpr std::size_t kMaxShownBytes = 80;      // of an argument
+constexpr const char* kRestOfLine = "COMMAND";  // another program and its options, after "--"
+constexpr std::size_t kMaxSaidBytes = 400;      // of a message of CLI11 that includes an argument
 
 std::string in_quotes(std::string_view argument) {
   return fmt::format("'{}'", core::shown(argument, kMaxShownBytes));
@@ -37,7 +38,13 @@ std::vector<CLI::App*> commands_of(CLI::App& cli) {
 
 std::string full_name(const CLI::App& command) {
   const CLI::App* parent = command.get_parent();
-  return (parent != nullptr ? parent->get_name() + " " : "") + command.get_name();
+  return (parent != nullptr ? full_name(*parent) + " " : "") + command.get_name();
+}
+
+// The command of a command that was named last.
+CLI::App& named_command(CLI::App& cli) {
+  const auto chosen = cli.get_subcommands();
+  return chosen.empty() ? cli : named_command(*chosen.front());
 }
 
 std::string check_value(const std::string& text) {
@@ -49,16 +56,14 @@ std::string check_value(const std::string& text) {
 }
 
 // CLI11 would take the next argument as the value of "--name=" and of "--name --other".
-void refuse_missing_values(CLI::App& cli) {
-  std::vector<CLI::App*> apps = commands_of(cli);
-  apps.push_back(&cli);
-  for (CLI::App* command : apps) {
-    for (CLI::Option* option : options_of(*command)) {
-      if (option->get_items_expected_max() > 0)
-        option->transform(CLI::Validator([](std::string& text) { return check_value(text); }, ""));
-      else
-        option->disable_flag_override();
-    }
+void refuse_missing_values(CLI::App& app) {
+  for (CLI::App* command : commands_of(app))
+    refuse_missing_values(*command);
+  for (CLI::Option* option : options_of(app)) {
+    if (option->get_items_expected_max() == 0)
+      option->disable_flag_override();
+    else if (option->get_name() != kRestOfLine)
+      option->transform(CLI::Validator([](std::string& text) { return check_value(text); }, ""));
   }
 }
 
@@ -148,7 +153,11 @@ std::string sentence_of(CLI::App& cli, CLI::App& command, const CLI::ParseError&
   const auto kind = static_cast<CLI::ExitCodes>(error.get_exit_code());
   const bool has_commands = !commands_of(cli).empty();
   if (has_commands && !cli.remaining().empty()) return about_extra(cli);
-  if (has_commands && &command == &cli) return "a command is missing";
+  if (!commands_of(command).empty()) {
+    const auto rest = command.remaining();
+    if (rest.empty()) return "a command is missing";
+    if (!rest.front().starts_with('-')) return about_command(command, rest.front());
+  }
   if (kind == CLI::ExitCodes::ArgumentMismatch) return about_count(command, error);
   // A missing option may be present under a misspelt name.
   const bool wrong_value = kind == CLI::ExitCodes::ValidationError;
@@ -157,10 +166,9 @@ std::string sentence_of(CLI::App& cli, CLI::App& command, const CLI::ParseError&
 }
 
 int refuse(CLI::App& cli, const CLI::ParseError& error) {
-  const auto chosen = cli.get_subcommands();
-  CLI::App& command = chosen.empty() ? cli : *chosen.front();
+  CLI::App& command = named_command(cli);
   core::log_error(sentence_of(cli, command, error));
-  const std::string more = commands_of(cli).empty() || !chosen.empty()
+  const std::string more = commands_of(cli).empty() || &command != &cli
                                ? fmt::format("{} --help lists its options\n", full_name(command))
                                : "\n" + cli.help();
   std::fputs(more.c_str(), stderr);

@@ -6,6 +6,7 @@
 
 namespace psygen::save {
 
+// Saves use these by their plain names.
 using sqlite::absolute_path;
 using sqlite::Database;
 using sqlite::Statement;

@@ -63,6 +63,18 @@ core::Result<Database> Database::open(const std::filesystem::path& file) {
   return database;
 }
 
+core::Result<Database> Database::open_to_read(const std::filesystem::path& file) {
+  sqlite3* raw = nullptr;
+  const auto name = absolute_path(file);
+  if (!name) return tl::unexpected(name.error());
+  const int code =
+      sqlite3_open_v2(name->c_str(), &raw,
+                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
+  Database database(file, raw);
+  if (code != SQLITE_OK) return database.error("cannot be opened");
+  return database;
+}
+
 core::Result<Database> Database::open_unlocked(const std::filesystem::path& file) {
   const auto path = absolute_path(file);
   if (!path) return tl::unexpected(path.error());
@@ -135,8 +147,18 @@ tl::unexpected<core::Error> Database::error(std::string_view action) const {
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
       return sentence(kParse, "the file is damaged");
+    case SQLITE_BUSY:
+      return sentence(kIo, "another process uses the file");
+    case SQLITE_CANTOPEN: {
+      std::error_code ignored;
+      // SQLite hides the reason by another try, without making the file.
+      if (system == ENOENT && std::filesystem::exists(file_, ignored))
+        return sentence(kIo,
+                        "no file can be made beside it: the disk is full, or the folder is "
+                        "read-only");
+      [[fallthrough]];
+    }
     case SQLITE_IOERR:
-    case SQLITE_CANTOPEN:
       if (system != 0) return sentence(kIo, std::strerror(system));
       [[fallthrough]];
     default:

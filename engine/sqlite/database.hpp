@@ -56,6 +56,9 @@ class Database {
  public:
   // Opens an existing file for reading and writing, without reading it. Fails with kIo.
   static core::Result<Database> open(const std::filesystem::path& file);
+  // Opens an existing file, also a read-only one, to read it while others write. If it may, it
+  // rolls back what a crashed writer has left. Fails with kIo.
+  static core::Result<Database> open_to_read(const std::filesystem::path& file);
   // Opens an existing file read-only and as immutable: takes no lock and keeps the locks of this
   // process. Fails with kIo.
   static core::Result<Database> open_unlocked(const std::filesystem::path& file);

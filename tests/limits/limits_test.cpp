@@ -20,6 +20,10 @@
 #include "engine/gltf/read_file.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/handmade/triangles.hpp"
+#if defined(PSYGEN_LIMITS_OF_HISTORIES)
+#include "engine/history/exchange.hpp"
+#include "engine/history/store.hpp"
+#endif
 #include "engine/image/image_io.hpp"
 #include "engine/input/actions.hpp"
 #include "engine/inspect/scene_answers.hpp"
@@ -664,6 +668,22 @@ const std::vector<Case>& cases() {
            many.captures.resize(whole(n));
            return outcome(compare::compare_times(one, many));
          }},
+#if defined(PSYGEN_LIMITS_OF_HISTORIES)
+        {"bytes of a file of entries for a history",
+         [](const fs::path& folder, double n) {
+           write_zeros(folder / "h.csv", whole(n));
+           return outcome(history::read_entries(folder / "h.csv"));
+         },
+         1, true},
+        {"bytes of a text in a history",
+         [](const fs::path& folder, double n) {
+           std::filesystem::remove(folder / "h.sqlite");
+           const std::vector<history::Entry> entries = {
+               {.test = in_string(whole(n)), .figure = "f", .value = 1}};
+           auto store = history::Store::open(folder / "h.sqlite");
+           return store ? outcome(store->add(entries)) : outcome(store);
+         }},
+#endif
 #if defined(PSYGEN_LIMITS_OF_SAVES)
         {"bytes of a value in a save",
          [](const fs::path&, double n) {
@@ -736,7 +756,8 @@ TEST(LimitsPage, HasACaseForEachRowAndConstantsThatExist) {
           << row.input << ": no " << row.constant << " in " << row.file;
   }
   for (const Row& row : page.tried) {
-#if defined(PSYGEN_LIMITS_OF_SAVES) && defined(PSYGEN_LIMITS_OF_SOUNDS)
+#if defined(PSYGEN_LIMITS_OF_SAVES) && defined(PSYGEN_LIMITS_OF_SOUNDS) && \
+    defined(PSYGEN_LIMITS_OF_HISTORIES)
     EXPECT_TRUE(std::ranges::any_of(cases(), [&](const Case& c) { return c.input == row.input; }))
         << "nothing tries the row " << row.input;
 #endif

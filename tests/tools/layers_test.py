@@ -35,6 +35,7 @@ MAY_KNOW = {
     "engine/telemetry": {"engine/core"},
     "engine/captures": {"engine/core"},
     "engine/compare": {"engine/core", "engine/telemetry", "engine/captures"},
+    "engine/history": {"engine/core", "engine/telemetry", "engine/captures", "engine/compare", "engine/sqlite"},
     "engine/scene": {"ecs", "engine/core", "engine/models", "engine/world", "engine/query", "engine/physics",
                      "engine/synthesis",
                      "engine/visibility", "engine/image", "engine/render", "engine/platform",
@@ -47,7 +48,7 @@ MAY_KNOW = {
 MAY_KNOW["engine/app"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/amplify", "engine/exchange", "engine/handmade", "engine/input"}
 MAY_KNOW["engine/frametest"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/compare", "engine/program"}
 MAY_KNOW["engine/inspect"] = MAY_KNOW["engine/app"] | {"engine/app"}
-MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/inspect", "engine/frametest", "engine/compare", "engine/cluster", "engine/program", "engine/tiles"}
+MAY_KNOW["engine/cli"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/inspect", "engine/frametest", "engine/compare", "engine/history", "engine/cluster", "engine/program", "engine/tiles"}
 MAY_KNOW["engine/prefab"] = MAY_KNOW["engine/scene"] | {"engine/scene", "engine/gltf"}
 MAY_KNOW["game"] = MAY_KNOW["engine/app"] | {"engine/app", "engine/audio", "engine/program", "engine/save"}
 MAY_KNOW["editor/document"] = {"engine/core", "engine/models", "engine/world", "engine/handmade", "engine/image"}
@@ -96,7 +97,7 @@ ONLY_IN = {
     r"^imgui/": {"engine/render", "engine/app", "game"},
     r"^OpenImageIO/": {"engine/image"},
     r"^toml\+\+/": {"engine/world", "game"},
-    r"^nlohmann/": {"engine/gltf", "engine/telemetry", "engine/captures", "engine/compare", "engine/frametest", "engine/inspect", "engine/cli"},
+    r"^nlohmann/": {"engine/gltf", "engine/telemetry", "engine/captures", "engine/compare", "engine/history", "engine/frametest", "engine/inspect", "engine/cli"},
     r"^CLI/": {"engine/cli", "engine/frametest", "engine/program", "game"},
     r"^tiny_gltf": {"engine/exchange"},
     r"^draco/": {"engine/gltf"},
