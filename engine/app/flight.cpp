@@ -60,6 +60,7 @@ void forget_real_times(telemetry::FrameRecord& record) {
   record.main_cpu_ms = record.device_wait_ms = record.acquire_ms = record.present_ms = kUnknown;
   record.record_ms = kUnknown;
   record.apart = telemetry::Apart::kNo;
+  record.device_bytes.reset();
 }
 
 }  // namespace
@@ -107,7 +108,8 @@ void Flight::open_log() {
   const std::span<const telemetry::FigureInfo> figures = scene.figures().infos();
   log_ = std::make_unique<telemetry::FrameLog>(
       scene.system_names(), telemetry::FrameLog::kMaxFrames,
-      std::vector<telemetry::FigureInfo>(figures.begin(), figures.end()));
+      std::vector<telemetry::FigureInfo>(figures.begin(), figures.end()),
+      std::vector<std::string>(render::kPassNames.begin(), render::kPassNames.end()));
   telemetry::TraceLog& trace = *session_->trace();
   for (const telemetry::FigureInfo& figure : figures)
     own_counters_.push_back(trace.add_counter(
@@ -187,6 +189,7 @@ core::Result<void> Flight::fly_frame(double dt_s) {
     record.frame_ms = scene.input().frame_ms;
     forget_real_times(record);
   }
+  measure_presents();
   take_own();
   if (recorded_ && !session_->paused()) log_frame();
   const bool like_others = record.apart == telemetry::Apart::kNo;
@@ -257,6 +260,20 @@ core::Result<void> Flight::save_numbered_picture() {
   return {};
 }
 
+// Measures the time since the frame before was handed over, and the animation error as PresentMon 2
+// defines it (docs/summary.md). Both need two frames in turn that timing statistics include.
+void Flight::measure_presents() {
+  telemetry::FrameRecord& r = record_;
+  const bool counts = recorded_ && !session_->paused() && r.handed_over_s > 0 &&
+                      r.apart == telemetry::Apart::kNo && !has_virtual_frames(options_.session);
+  const auto before = std::exchange(
+      presented_, counts ? std::optional(Presented{r.handed_over_s, r.time_s}) : std::nullopt);
+  if (!counts || !before) return;
+  r.between_presents_ms = (r.handed_over_s - before->handed_over_s) * 1000.0;
+  if (options_.fixed_step_hz > 0) return;
+  r.animation_error_ms = (r.time_s - before->time_s) * 1000.0 - *r.between_presents_ms;
+}
+
 // Ends the frame of the game's figures. Real durations have no place on the virtual clock.
 void Flight::take_own() {
   telemetry::OwnFigures& figures = session_->scene().figures();
@@ -294,7 +311,9 @@ void Flight::log_frame() {
   }
   log_marks();
   if (const auto& gpu = scene.drawn().gpu; gpu && !has_virtual_frames(options_.session))
-    log_->set_gpu_ms(gpu->frame, gpu->ms, gpu->shadows_ms);
+    log_->set_gpu_ms(
+        gpu->frame, gpu->ms, gpu->shadows_ms,
+        session_->renderer().device().pass_times ? gpu->pass_ms : std::span<const double>());
   const scene::Statistics statistics = scene.statistics();
   for (const float ms : statistics.meshes.time_to_visible_ms)
     log_->add_time_to_visible(record_.time_s, ms);

@@ -65,6 +65,7 @@ class Flight {
   bool saves_picture() const;
   core::Result<void> save_numbered_picture();
   void log_frame();
+  void measure_presents();
   void take_own();
   void log_marks();
   FlightReport land(bool whole);
@@ -98,6 +99,11 @@ class Flight {
   std::vector<telemetry::TraceLog::Track> own_counters_;  // of the trace, one for each figure
   telemetry::TraceLog::Track marks_track_ = 0;            // of the trace
   std::size_t timed_marks_ = 0;                           // of options_.marks that were set
+  // The frame before, if its time can be compared with the next one's.
+  struct Presented {
+    double handed_over_s = 0, time_s = 0;
+  };
+  std::optional<Presented> presented_;
   bool recorded_ = false;
   bool user_flies_ = false;
   Hud hud_;

@@ -84,8 +84,9 @@ struct SessionOptions {
   // Frame rate held by a lower resolution and a larger screen-space error; 0: both are fixed.
   // Default: 60 in a window, 0 headless. At most 10^6.
   std::optional<double> target_hz;
-  bool prefill = true;  // fill the cache for the first pose before the first tick
-  bool trace = false;   // record spans of systems and modelers (Session::trace())
+  bool prefill = true;             // fill the cache for the first pose before the first tick
+  std::optional<bool> pass_times;  // RendererOptions::pass_times
+  bool trace = false;              // record spans of systems and modelers (Session::trace())
   scene::SceneSettings scene;
   // Remote modelers of other processes (docs/cluster.md). They serve only this session and outlive
   // it. Null: none.

@@ -91,7 +91,8 @@ telemetry::RunFacts Flight::run_facts(bool whole) {
   telemetry::RunFacts facts;
   facts.world = world_facts(scene.world(), scene.registry());
   const render::DeviceInfo& device = session_->renderer().device();
-  facts.device = {device.name, device.driver, device.api_version, device.timestamps};
+  facts.device = {device.name, device.driver, device.api_version, device.timestamps,
+                  device.pass_times};
   const core::Extent size = session_->renderer().size();
   facts.run.path = options_.path_file.stem().string();
   facts.run.paradigm = scene::to_string(session.scene.paradigm);

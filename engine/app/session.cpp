@@ -183,6 +183,7 @@ core::Result<void> Session::open_renderer(GroundPictures ground, Loading& loadin
   render_options.vsync = options_.vsync;
   render_options.path = options_.render_path;
   render_options.preset = options_.preset;
+  render_options.pass_times = options_.pass_times;
   if (window_) {
     render_options.progress = [&loading](render::Renderer& renderer, double fraction) {
       loading.update("preparing the renderer", fraction, &renderer);

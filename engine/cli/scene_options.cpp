@@ -67,6 +67,9 @@ void add_machine(CLI::App& c, app::SessionOptions& options) {
   add_parsed(c, "--render-path", options.render_path, render::render_path_from, "auto|cpu|gpu",
              "Culling on the cpu or the gpu; auto: chosen by GPU")
       ->default_str("auto");
+  c.add_flag_callback(
+      "--pass-times", [&options] { options.pass_times = true; },
+      "Measure the GPU time of each pass on software devices too, which slows them down");
   c.add_flag("--validation", options.validation,
              "Enable Vulkan validation; any message fails the run");
 }

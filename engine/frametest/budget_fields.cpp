@@ -25,6 +25,7 @@ struct NamedFields {
 const std::vector<NamedFields>& named_fields() {
   static const std::vector<NamedFields> kFields{
       {"system_ms.", "times of systems have", {"p50", "p99"}},
+      {"pass_ms.", "times of passes have", {"p50", "p99", "max"}},
       {"figures.",
        "figures of the game have",
        {"mean", "min", "p50", "p95", "p99", "max", "frames", "invalid", "unit", "kind"},

@@ -86,6 +86,7 @@ void read_session(TableReader& reader, app::SessionOptions& session) {
   if (double hour = 0; reader.read("hour", hour, {0, 24})) session.start_hour = hour;
   if (double hz = 0; reader.read("target_fps", hz, {0, 1000})) session.target_hz = hz;
   reader.read("prefill", session.prefill);
+  if (bool passes = false; reader.read("pass_times", passes)) session.pass_times = passes;
   read_scene(reader, session.scene);
 }
 

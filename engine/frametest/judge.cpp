@@ -231,10 +231,14 @@ bool depends_on_load(std::string_view field, bool virtual_clock) {
 }
 
 bool is_wall_time(std::string_view field) {
-  if (field.ends_with("low1_fps") || field == "run.real_seconds") return true;
+  const bool is_rate = field.ends_with("low1_fps") || field.ends_with("low01_fps");
+  if (is_rate || field == "run.real_seconds") return true;
   const bool is_count = field.ends_with(".frames") || field.ends_with(".invalid");
-  if (is_count || field.find("gpu_ms.") != std::string_view::npos) return false;
-  return field.find("_ms.") != std::string_view::npos;
+  const bool of_device =
+      field.find("gpu_ms.") != std::string_view::npos || field.starts_with("pass_ms.");
+  if (is_count || of_device) return false;
+  const std::size_t at = field.find("_ms");
+  return at != std::string_view::npos && (at + 3 == field.size() || field[at + 3] == '.');
 }
 
 std::vector<BudgetResult> judge(std::span<const Budget> budgets, const Flights& flights) {

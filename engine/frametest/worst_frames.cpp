@@ -21,7 +21,8 @@ using telemetry::FrameLog;
 using telemetry::FrameRecord;
 
 constexpr double kApartSeconds = 0.5;
-constexpr std::string_view kSystemPrefix = "system_ms.", kFigurePrefix = "figures.";
+constexpr std::string_view kSystemPrefix = "system_ms.", kFigurePrefix = "figures.",
+                           kPassPrefix = "pass_ms.";
 
 // Value of a frame for measurements whose names begin with `prefix`. The first match counts.
 using Of = double (*)(const FrameRecord&);
@@ -52,12 +53,24 @@ double missing_or_coarse(const FrameRecord& record) {
   return std::max(record.missing_pixels_percent, record.too_coarse_percent);
 }
 
+double animation_error(const FrameRecord& record) {
+  return std::abs(if_known<&FrameRecord::animation_error_ms>(record));
+}
+double device_bytes(const FrameRecord& record) {
+  return record.device_bytes ? static_cast<double>(*record.device_bytes)
+                             : std::numeric_limits<double>::quiet_NaN();
+}
+
 using R = FrameRecord;
 constexpr std::array kMeasures = std::to_array<Measure>({
     {"frame_ms.", "ms", its<&R::frame_ms>, true},
     {"hitches", "ms", its<&R::frame_ms>, true},
     {"stutter_percent", "ms", its<&R::frame_ms>, true},
     {"low1_fps", "frames/s", rate, true},
+    {"low01_fps", "frames/s", rate, true},
+    {"between_presents_ms.", "ms", if_known<&R::between_presents_ms>, true},
+    {"animation_error_ms.", "ms", animation_error, true},
+    {"memory.device_peak_bytes", "bytes", device_bytes},
     {"wait_ms.device", "ms", its<&R::device_wait_ms>, true},
     {"wait_ms.acquire", "ms", its<&R::acquire_ms>, true},
     {"wait_ms.present", "ms", its<&R::present_ms>, true},
@@ -138,6 +151,9 @@ std::optional<Column> column_of(std::string_view field, const FrameLog& log) {
   for (std::size_t s = 0; s < log.systems().size(); ++s)
     if (field.starts_with(std::string(kSystemPrefix) + log.systems()[s] + "."))
       return Column{"ms", true, [&log, s](std::size_t i) { return double{log.system_ms(i)[s]}; }};
+  for (std::size_t p = 0; p < log.passes().size(); ++p)
+    if (field.starts_with(std::string(kPassPrefix) + log.passes()[p] + "."))
+      return Column{"ms", true, [&log, p](std::size_t i) { return double{log.pass_ms(i)[p]}; }};
   for (std::size_t f = 0; f < log.figures().size(); ++f) {
     const telemetry::FigureInfo& figure = log.figures()[f];
     if (field.starts_with(std::string(kFigurePrefix) + figure.name + "."))

@@ -62,6 +62,7 @@ Result<void> RendererImpl::create_device() {
       .and_then([&](const DeviceCandidate& chosen) {
         return Device::create(chosen, {.windowed = windowed,
                                        .timestamps = options_.timestamps,
+                                       .pass_times = options_.pass_times,
                                        .timeout_seconds = options_.device_timeout_seconds});
       })
       .map(into(device_))

@@ -278,6 +278,8 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
   }
   out.cpu_ms += ms_since(record_start);
   out.frame = frame_value_;
+  out.handed_over_s = core::monotonic_seconds();
+  out.memory_bytes = device_->vk.memory_bytes;
   has_picture_ = has_list_ = true;
   out.presented = true;
   if (windowed) {
@@ -286,6 +288,7 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
     if (!presented) return tl::unexpected(presented.error());
     out.present = ended(present);
     out.presented = *presented;
+    out.handed_over_s = out.presented ? present.start_s : 0;
   }
   out.draws = culling_ ? counted.draws : static_cast<std::uint32_t>(list_.draws().size());
   out.triangles = culling_ ? counted.triangles : list_.triangle_count();

@@ -96,6 +96,9 @@ struct RendererOptions {
   std::function<bool(Renderer&, double)> progress;
   double device_timeout_seconds = 60;  // longest wait for the device; after that it counts as lost
   bool timestamps = true;              // FrameResult::gpu, if the device supports it
+  // GpuTime::pass_ms, if the device has timestamps. None: not on software devices, which finish all
+  // drawing at each timestamp.
+  std::optional<bool> pass_times;
   std::uint64_t texture_budget_bytes =
       256ull << 20;  // hard limit of all textures of materials and pictures
   std::array<GroundPicture, kGroundPictures> ground;  // in place of textures of the ground
@@ -111,6 +114,7 @@ struct DeviceInfo {
   bool gpu_path = false;    // RenderPath::kGpu can be used
   bool wireframe = false;   // View::kWireframe can be drawn
   bool timestamps = false;  // FrameResult::gpu is known
+  bool pass_times = false;  // GpuTime::pass_ms is known
 };
 
 // Sun, sky and air. Colours are linear radiance before `exposure`.
@@ -393,6 +397,10 @@ struct FrameInput {
   const ImDrawData* gui = nullptr;  // of an ImGui context on Renderer::font_atlas(); null: none
 };
 
+// The passes of a frame, in order.
+inline constexpr std::array<std::string_view, 8> kPassNames{
+    "shadows", "landscape", "sky", "water", "particles", "lines", "scale_up", "overlay"};
+
 // The device's own time for a frame, from the start of its first pass to the end of its last one.
 // On a software device it is time of this machine's processors, spread over its threads.
 struct GpuTime {
@@ -400,6 +408,9 @@ struct GpuTime {
   double submitted_s = 0;   // time of submission, by core::monotonic_seconds()
   double ms = 0;
   double shadows_ms = 0;  // part of `ms` for the cascades of the sun's shadow
+  // Parts of `ms`, from the end of the pass before to the end of each; 0 without
+  // DeviceInfo::pass_times.
+  std::array<double, kPassNames.size()> pass_ms{};
 };
 
 // Time during which the main thread was blocked.
@@ -428,6 +439,10 @@ struct FrameResult {
   std::optional<GpuTime> gpu;  // of the latest frame with a known time, usually four frames ago
   Apart apart = Apart::kNo;
   bool presented = false;  // windowed: shown; headless: drawn
+  // Time by core::monotonic_seconds() at which the picture was given to the window; headless: to
+  // the device. 0: it was not.
+  double handed_over_s = 0;
+  std::uint64_t memory_bytes = 0;  // of all device memory that the renderer has allocated
   // FrameInput::resolution, or 1 where the device or its memory cannot have less.
   double resolution = 1;
 

@@ -30,6 +30,8 @@ void note_drawing(const render::FrameResult& frame, telemetry::FrameRecord& reco
   record.triangles = frame.triangles;
   record.draws = frame.draws;
   record.resolution = frame.resolution;
+  record.handed_over_s = frame.handed_over_s;
+  if (frame.memory_bytes > 0) record.device_bytes = frame.memory_bytes;
 }
 
 }  // namespace

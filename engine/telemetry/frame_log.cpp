@@ -25,7 +25,8 @@ constexpr std::string_view kColumnsAfterSystems =
     "error_pixels,memory_factor,resolution,triangles,draws,nodes_in_view,holes,coarse_nodes,"
     "missing_pixels_percent,too_coarse_percent,cache_bytes,cache_hits,cache_misses,"
     "cache_evictions,cache_regenerations,requests_queued,requests_refused,requests_completed,"
-    "models_failed,models_synthesised,triangles_synthesised,bytes_synthesised,synthesis_seconds";
+    "models_failed,models_synthesised,triangles_synthesised,bytes_synthesised,synthesis_seconds,"
+    "between_presents_ms,animation_error_ms,device_bytes";
 // The GPU time of a frame arrives at most this many frames later.
 constexpr std::size_t kLatestFrames = 16;
 
@@ -62,12 +63,16 @@ std::string row(const FrameRecord& r, std::span<const float> system_ms) {
                  r.cache_evictions, r.cache_regenerations, r.requests_queued, r.requests_refused,
                  r.requests_completed, r.models_failed, r.models_synthesised,
                  r.triangles_synthesised, r.bytes_synthesised, r.synthesis_seconds);
+  fmt::format_to(to, ",{},{},{}", cell(r.between_presents_ms), cell(r.animation_error_ms),
+                 r.device_bytes ? std::to_string(*r.device_bytes) : "");
   return text;
 }
 
-// The cells of own figures, and that of the marks, beginning with mark number `mark`.
-std::string own_cells(const FrameLog& log, std::size_t row, std::size_t& mark) {
+// The cells of passes and of own figures, and that of the marks, beginning with mark number `mark`.
+std::string other_cells(const FrameLog& log, std::size_t row, std::size_t& mark) {
   std::string text;
+  for (const float ms : log.pass_ms(row))
+    std::isnan(ms) ? text += ',' : text += fmt::format(",{:.4f}", ms);
   for (const double value : log.own(row))
     std::isnan(value) ? text += ',' : text += fmt::format(",{:.10g}", value);
   text += ',';
@@ -122,15 +127,20 @@ std::string picture_name(std::uint64_t index) {
 }
 
 FrameLog::FrameLog(std::vector<std::string> systems, std::size_t max_frames,
-                   std::vector<FigureInfo> figures)
-    : systems_(std::move(systems)), max_frames_(max_frames), figures_(std::move(figures)) {
+                   std::vector<FigureInfo> figures, std::vector<std::string> passes)
+    : systems_(std::move(systems)),
+      max_frames_(max_frames),
+      figures_(std::move(figures)),
+      passes_(std::move(passes)) {
   constexpr std::size_t kSmallPart = 4;  // fraction of the available memory
-  const std::size_t row_bytes =
-      sizeof(FrameRecord) + systems_.size() * sizeof(float) + figures_.size() * sizeof(double);
+  const std::size_t row_bytes = sizeof(FrameRecord) +
+                                (systems_.size() + passes_.size()) * sizeof(float) +
+                                figures_.size() * sizeof(double);
   if (core::memory_left(kSmallPart * max_frames_ * row_bytes)) {
     frames_.reserve(max_frames_);
     system_ms_.reserve(max_frames_ * systems_.size());
     own_.reserve(max_frames_ * figures_.size());
+    pass_ms_.reserve(max_frames_ * passes_.size());
   } else {
     core::record_failed_allocation(0);  // the log continues with fewer rows
   }
@@ -142,6 +152,7 @@ void FrameLog::add(const FrameRecord& record, std::span<const float> system_ms,
     try {
       add_values(system_ms, frames_.size(), systems_.size(), system_ms_);
       add_values(own, frames_.size(), figures_.size(), own_);
+      add_values(std::span<const float>{}, frames_.size(), passes_.size(), pass_ms_);
       frames_.push_back(record);
       return;
     } catch (const std::bad_alloc&) {
@@ -155,7 +166,8 @@ void FrameLog::add_mark(std::string name) {
   if (!frames_.empty() && dropped_ == 0) marks_.push_back({frames_.size() - 1, std::move(name)});
 }
 
-void FrameLog::set_gpu_ms(std::uint64_t device_frame, double ms, double shadows_ms) {
+void FrameLog::set_gpu_ms(std::uint64_t device_frame, double ms, double shadows_ms,
+                          std::span<const double> pass_ms) {
   const std::size_t looked_at = std::min(frames_.size(), kLatestFrames);
   const auto found =
       std::find_if(frames_.rbegin(), frames_.rbegin() + static_cast<std::ptrdiff_t>(looked_at),
@@ -163,6 +175,10 @@ void FrameLog::set_gpu_ms(std::uint64_t device_frame, double ms, double shadows_
   if (found == frames_.rbegin() + static_cast<std::ptrdiff_t>(looked_at)) return;
   found->gpu_ms = ms;
   found->gpu_shadows_ms = shadows_ms;
+  if (pass_ms.size() != passes_.size()) return;
+  const auto row = frames_.rend() - found - 1;
+  std::ranges::transform(pass_ms, pass_ms_.begin() + row * std::ssize(passes_),
+                         [](double value) { return static_cast<float>(value); });
 }
 
 void FrameLog::add_cost_error(double time_s, double predicted_s, double actual_s) {
@@ -182,12 +198,14 @@ core::Result<void> write_frames_csv(const std::filesystem::path& path, const Fra
   for (const std::string& system : log.systems())
     file.write("," + system + "_ms");
   file.write(fmt::format(",{}", kColumnsAfterSystems));
+  for (const std::string& pass : log.passes())
+    file.write(fmt::format(",pass_{}_ms", pass));
   for (const FigureInfo& figure : log.figures())
     file.write(fmt::format(",{}{}", kOwnPrefix, figure.name));
   file.write(",marks\n");
   std::size_t mark = 0;
   for (std::size_t i = 0; i < log.frames().size(); ++i)
-    file.write(row(log.frames()[i], log.system_ms(i)) + own_cells(log, i, mark));
+    file.write(row(log.frames()[i], log.system_ms(i)) + other_cells(log, i, mark));
   return file.commit();
 }
 

@@ -80,6 +80,12 @@ struct FrameRecord {
   std::optional<double> gpu_ms;  // GPU time of this frame, by timestamps
   std::optional<double> gpu_shadows_ms;  // part of gpu_ms: shadow maps
   std::uint64_t device_frame = 0;        // the renderer's number of this frame; 0: none
+  // Time by core::monotonic_seconds() at which the picture was given to the window; headless: to
+  // the device; 0: it was not. Not a column. Then the time since that of the frame before, and the
+  // step of the flight's clock minus this time.
+  double handed_over_s = 0;
+  std::optional<double> between_presents_ms, animation_error_ms;
+  std::optional<std::uint64_t> device_bytes;  // of all device memory of the renderer
   Apart apart = Apart::kNo;
   bool has_picture = false;  // picture_name(index) is next to the log; not a column
 
@@ -119,11 +125,12 @@ class FrameLog {
  public:
   static constexpr std::size_t kMaxFrames = std::size_t{1} << 18;
 
-  // `systems` are the names of the systems in the order of the tick, `figures` those of the game.
+  // `systems` are the names of the systems in the order of the tick, `figures` those of the game,
+  // `passes` those of the renderer.
   // Reserves (without touching) address space for `max_frames` rows if that is a small part of the
   // available memory. Further frames are counted but not stored.
   explicit FrameLog(std::vector<std::string> systems, std::size_t max_frames = kMaxFrames,
-                    std::vector<FigureInfo> figures = {});
+                    std::vector<FigureInfo> figures = {}, std::vector<std::string> passes = {});
 
   // Appends a row. `system_ms` are the times of systems() in ms, without waiting for the GPU or the
   // display; `own` are the values of figures(), NaN if unknown. A list of another length is
@@ -134,7 +141,9 @@ class FrameLog {
   void add_mark(std::string name);
   // Sets the GPU time of one of the last frames, which arrives later. Ignores frames that are not
   // among the last 16.
-  void set_gpu_ms(std::uint64_t device_frame, double ms, double shadows_ms);
+  // `pass_ms` are the times of passes(); a list of another length is dropped.
+  void set_gpu_ms(std::uint64_t device_frame, double ms, double shadows_ms,
+                  std::span<const double> pass_ms = {});
   // Records that a node was drawn for the first time `ms` after it came into view.
   void add_time_to_visible(double time_s, double ms) { time_to_visible_ms_.add(time_s, ms); }
   // Records that a model took `actual_s` when the cost model had predicted `predicted_s`. Ignored
@@ -153,6 +162,12 @@ class FrameLog {
   std::span<const double> own(std::size_t frame) const {
     return std::span(own_).subspan(frame * figures_.size(), figures_.size());
   }
+  // The passes of the renderer, and their GPU times in row `frame` of frames(), in ms; NaN if
+  // unknown.
+  std::span<const std::string> passes() const { return passes_; }
+  std::span<const float> pass_ms(std::size_t frame) const {
+    return std::span(pass_ms_).subspan(frame * passes_.size(), passes_.size());
+  }
   // The marks, in the order of time.
   std::span<const FrameMark> marks() const { return marks_; }
   // Rows of frames that start at `warmup_s` or later. Rows are in the order of time.
@@ -170,6 +185,8 @@ class FrameLog {
   std::vector<float> system_ms_;  // of each row, in the order of systems_
   std::vector<FigureInfo> figures_;
   std::vector<double> own_;  // of each row, in the order of figures_
+  std::vector<std::string> passes_;
+  std::vector<float> pass_ms_;  // of each row, in the order of passes_
   std::vector<FrameMark> marks_;
   std::uint64_t dropped_ = 0;
   SampleSet time_to_visible_ms_;
@@ -177,8 +194,9 @@ class FrameLog {
 };
 
 // Writes frames.csv: a header line, then one line per frame, comma-separated, with a point as
-// decimal mark. System columns are named `<system>_ms`, own figures `figures.<name>`; "marks" has
-// the names of marks with blanks between. Unknown values are empty. Fails with kIo and the path.
+// decimal mark. System columns are named `<system>_ms`, passes `pass_<name>_ms`, own figures
+// `figures.<name>`; "marks" has the names of marks with blanks between. Unknown values are empty.
+// Fails with kIo and the path.
 core::Result<void> write_frames_csv(const std::filesystem::path& path, const FrameLog& log);
 
 }  // namespace psygen::telemetry

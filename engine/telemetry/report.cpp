@@ -211,6 +211,13 @@ std::string frame_facts(const Summary& s) {
   facts.add("p99.9", shown(s.frame_ms.p999, ms_text));
   facts.add("slowest", shown(s.frame_ms.max, ms_text));
   facts.add("lowest 1 %", shown(s.low1_fps, three_digits) + " frames/s");
+  facts.add("lowest 0.1 %", shown(s.low01_fps, three_digits) + " frames/s");
+  const auto both = [](const Distribution& d) {
+    return shown(d.p50, three_digits) + " / " + shown(d.p99, ms_text);
+  };
+  facts.add("between presents, p50 and p99", both(s.between_presents_ms));
+  facts.add("animation error, p50 and p99", both(s.animation_error_ms));
+  facts.add("device memory, peak", shown(s.memory.device_peak_bytes, bytes_text));
   facts.add("timed", fmt::format("{} of {} frames", s.run.timed_frames, s.run.measured_frames));
   facts.add("triangles, median", shown(s.draw.triangles_p50, count_text));
   facts.add("draws, median", shown(s.draw.draws_p50, whole));
@@ -236,6 +243,8 @@ std::string system_facts(const Summary& s) {
   facts.add("… presenting", both(s.wait_ms.present.p50, s.wait_ms.present.p99));
   facts.add("GPU", both(s.gpu_ms.p50, s.gpu_ms.p99));
   facts.add("… shadows, p50", shown(s.gpu_ms.shadows_p50, ms_text));
+  for (const PassTimes& pass : s.pass_ms)
+    if (pass.p50.has_value()) facts.add("… pass " + pass.name, both(pass.p50, pass.p99));
   return facts.end();
 }
 

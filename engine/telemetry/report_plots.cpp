@@ -288,6 +288,32 @@ Plot synthesis_plot(const FrameLog& log) {
           .small = true};
 }
 
+// Times between frames as the display gets them.
+Plot presents_plot(const FrameLog& log) {
+  Plot plot{.title = "Time between presents, and animation error (absolute)", .unit = "ms"};
+  plot.series = {
+      {"between presents", 1,
+       timed_column(log, [](const auto& r) { return r.between_presents_ms.value_or(kNothing); })},
+      {"animation error", 6, timed_column(log, [](const auto& r) {
+         return std::abs(r.animation_error_ms.value_or(kNothing));
+       })}};
+  plot.small = true;
+  return plot;
+}
+
+// GPU times of the passes.
+Plot passes_plot(const FrameLog& log, const Summary& s) {
+  Plot plot{.title = "GPU time of the passes", .unit = "ms", .kind = PlotKind::kStacked};
+  for (std::size_t pass = 0; pass < log.passes().size(); ++pass) {
+    std::vector<double> ms;
+    for (std::size_t frame = 0; frame < log.frames().size(); ++frame)
+      ms.push_back(double{log.pass_ms(frame)[pass]});
+    plot.series.push_back({log.passes()[pass], 1 + static_cast<int>(pass % 8), std::move(ms)});
+  }
+  if (s.gpu_ms.p99.has_value()) plot.top = 1.25 * *s.gpu_ms.p99;
+  return plot;
+}
+
 // A plot from 0: negative values of a figure are cut off, which the note tells.
 Plot own_plot(const FrameLog& log, const Summary& s, std::size_t figure) {
   const OwnFigureTimes& times = s.figures[figure];
@@ -338,6 +364,9 @@ std::vector<RowFigure> figures(const FrameLog& log, const ShownFrames& shown) {
     list.push_back({name, unit, thinned(column(log, field), shown)});
   };
   add("processor time of the main thread", "ms", [](const auto& r) { return r.main_cpu_ms; });
+  add("device memory", "MiB", [](const auto& r) {
+    return r.device_bytes ? static_cast<double>(*r.device_bytes) / kMebibyte : kNothing;
+  });
   add("shadows on the GPU", "ms",
       [](const auto& r) { return r.gpu_shadows_ms.value_or(kNothing); });
   add("triangles", "", [](const auto& r) { return r.triangles; });
@@ -414,8 +443,11 @@ std::string report_plots(const FrameLog& log, const Summary& s) {
   add(frame_time_plot(log, s));
   add(error_plot(log, s));
   if (s.detail.resolution_min.value.value_or(1) < 1) add(resolution_plot(log));
+  if (s.between_presents_ms.p50.has_value()) add(presents_plot(log));
   html += distribution_html();
   add(systems_plot(log, s));
+  const auto measured = [](const PassTimes& pass) { return pass.p50.has_value(); };
+  if (std::ranges::any_of(s.pass_ms, measured)) add(passes_plot(log, s));
   add(coarse_plot(log, s));
   add(missing_plot(log));
   add(cache_plot(log, s));

@@ -65,18 +65,31 @@ Figure largest(std::span<const double> values) {
   return *std::max_element(values.begin(), values.end());
 }
 
-Figure low1_fps(std::span<const double> frame_ms) {
-  const Figure p99 = percentile(frame_ms, 0.99);
-  if (!p99.has_value()) return p99;
+namespace {
+
+// 1000 / mean of the frames at or above percentile p.
+Figure low_fps(std::span<const double> frame_ms, double p) {
+  const Figure from = percentile(frame_ms, p);
+  if (!from.has_value()) return from;
   double sum = 0;
   std::size_t count = 0;
   for (const double ms : frame_ms) {
-    if (ms < *p99) continue;
+    if (ms < *from) continue;
     sum += ms;
     ++count;
   }
   if (sum <= 0) return Figure::missing("the frames took no time");
   return 1000.0 * static_cast<double>(count) / sum;
+}
+
+}  // namespace
+
+Figure low1_fps(std::span<const double> frame_ms) {
+  return low_fps(frame_ms, 0.99);
+}
+
+Figure low01_fps(std::span<const double> frame_ms) {
+  return low_fps(frame_ms, 0.999);
 }
 
 Measured<std::uint64_t> hitches(std::span<const double> frame_ms) {

@@ -50,8 +50,9 @@ std::vector<Figure> percentiles(std::span<const double> values, std::span<const 
 Figure mean(std::span<const double> values);
 Figure largest(std::span<const double> values);
 
-// 1000 / mean of the frames at or above p99, in frames per second.
+// 1000 / mean of the frames at or above p99, or p99.9, in frames per second.
 Figure low1_fps(std::span<const double> frame_ms);
+Figure low01_fps(std::span<const double> frame_ms);
 
 // Counts frames over 60 ms and over 1.5 times the previous frame. A hitch counts only if it ends at
 // least 200 ms after the end of the last counted one. Missing below 2 frames. O(N).

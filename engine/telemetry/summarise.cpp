@@ -134,6 +134,61 @@ void summarise_systems(Summary& s, const Rows& rows) {
   }
 }
 
+Distribution distribution_of(std::span<const double> values) {
+  constexpr std::array kPercentiles{0.5, 0.95, 0.99};
+  const std::vector<Figure> p = percentiles(values, kPercentiles);
+  return {mean(values), p[0], p[1], p[2], largest(values)};
+}
+
+// Times between frames as the display gets them. `frames` are the timed ones.
+void summarise_presents(Summary& s, Frames frames) {
+  const auto none = [](const char* reason) {
+    const Figure missing = Figure::missing(reason);
+    return Distribution{missing, missing, missing, missing, missing};
+  };
+  const std::vector<double> between = known(frames, &FrameRecord::between_presents_ms);
+  std::vector<double> errors = known(frames, &FrameRecord::animation_error_ms);
+  for (double& error : errors)
+    error = std::abs(error);
+  const bool is_virtual = are_virtual(frames);
+  s.between_presents_ms = is_virtual        ? none(kVirtual)
+                          : between.empty() ? none("no two frames in turn were presented")
+                                            : distribution_of(between);
+  s.animation_error_ms = is_virtual                     ? none(kVirtual)
+                         : s.run.fixed_step.has_value() ? none("the flight has a fixed step")
+                         : errors.empty() ? none("no two frames in turn were presented")
+                                          : distribution_of(errors);
+}
+
+// Uses the timed frames.
+void summarise_passes(Summary& s, const Rows& rows) {
+  const Frames frames = rows.log.frames();
+  for (std::size_t pass = 0; pass < rows.log.passes().size(); ++pass) {
+    std::vector<double> ms;
+    for (std::size_t i = rows.first; i < rows.end; ++i) {
+      const float value = rows.log.pass_ms(i)[pass];
+      if (frames[i].apart == Apart::kNo && !std::isnan(value)) ms.push_back(double{value});
+    }
+    PassTimes times{rows.log.passes()[pass], percentile(ms, 0.5), percentile(ms, 0.99),
+                    largest(ms)};
+    if (ms.empty())
+      times.p50 = times.p99 = times.max =
+          Figure::missing(are_virtual(frames)    ? kVirtual
+                          : !s.device.timestamps ? "the GPU has no timestamps"
+                          : !s.device.pass_times ? "passes were not measured (--pass-times)"
+                                                 : "no frame's time arrived");
+    s.pass_ms.push_back(std::move(times));
+  }
+}
+
+Count device_peak(Frames frames) {
+  std::optional<std::uint64_t> peak;
+  for (const FrameRecord& r : frames)
+    if (r.device_bytes) peak = std::max(peak.value_or(0), *r.device_bytes);
+  return peak ? Count(*peak)
+              : Count::missing(are_virtual(frames) ? kVirtual : "no frame was drawn");
+}
+
 // `frames` are the timed ones.
 void summarise_times(Summary& s, Frames frames) {
   const std::vector<double> ms = column(frames, [](const auto& r) { return r.frame_ms; });
@@ -141,6 +196,7 @@ void summarise_times(Summary& s, Frames frames) {
   const std::vector<Figure> p = percentiles(ms, kPercentiles);
   s.frame_ms = {mean(ms), p[0], p[1], p[2], p[3], largest(ms)};
   s.low1_fps = low1_fps(ms);
+  s.low01_fps = low01_fps(ms);
   s.hitches = hitches(ms);
   s.stutter_percent = stutter_percent(ms);
   s.wait_ms = {spread(frames, [](const auto& r) { return r.wait_ms(); }),
@@ -149,6 +205,7 @@ void summarise_times(Summary& s, Frames frames) {
                spread(frames, [](const auto& r) { return r.present_ms; })};
   s.record_ms = spread(frames, [](const auto& r) { return r.record_ms; });
   summarise_device(s, frames);
+  summarise_presents(s, frames);
 }
 
 // Statistics of drawing, over all measured frames.
@@ -289,6 +346,8 @@ void summarise_rows(Summary& s, const Rows& rows, const RunFacts& facts) {
   summarise_run(s, frames, rows.log);
   summarise_times(s, timed(frames));
   summarise_systems(s, rows);
+  summarise_passes(s, rows);
+  s.memory.device_peak_bytes = device_peak(frames);
   summarise_drawing(s, frames);
   summarise_missing(s, rows);
   summarise_synthesis(s, rows);

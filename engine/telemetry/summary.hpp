@@ -50,6 +50,7 @@ struct DeviceFacts {
   std::string driver;
   std::string api;          // "1.3.289"
   bool timestamps = false;  // it can measure its own time
+  bool pass_times = false;  // and that of each pass
 };
 
 // Options of the run.
@@ -97,6 +98,17 @@ struct RunFacts {
 // Statistics of one quantity; "pNN" are percentiles.
 struct FrameTimes {
   Figure mean, p50, p95, p99, p999, max;
+};
+
+// The same without p999.
+struct Distribution {
+  Figure mean, p50, p95, p99, max;
+};
+
+// The GPU times of one pass of the renderer.
+struct PassTimes {
+  std::string name;
+  Figure p50, p99, max;
 };
 
 // Median and 99th percentile.
@@ -168,7 +180,10 @@ struct Summary {
   struct {
     Figure p50, p99, max, shadows_p50;
   } gpu_ms;  // on the device
-  Figure low1_fps;
+  std::vector<PassTimes> pass_ms;
+  Distribution between_presents_ms;
+  Distribution animation_error_ms;  // of the absolute values
+  Figure low1_fps, low01_fps;
   Count hitches;
   Figure stutter_percent;
   std::vector<SystemTimes> system_ms;
@@ -214,6 +229,7 @@ struct Summary {
   } draw;
   struct {
     Count peak_rss_bytes;
+    Count device_peak_bytes;  // of the renderer's device memory, in the measured frames
   } memory;
   struct {
     Count world, types, path, images;

@@ -209,6 +209,17 @@ Json frame_ms_json(const FrameTimes& t) {
           {"p99", t.p99},   {"p999", t.p999}, {"max", t.max}};
 }
 
+Json distribution_json(const Distribution& d) {
+  return {{"mean", d.mean}, {"p50", d.p50}, {"p95", d.p95}, {"p99", d.p99}, {"max", d.max}};
+}
+
+Json passes_json(const std::vector<PassTimes>& passes) {
+  Json result = Json::object();
+  for (const PassTimes& pass : passes)
+    result[pass.name] = {{"p50", pass.p50}, {"p99", pass.p99}, {"max", pass.max}};
+  return result;
+}
+
 Json gpu_json(const Summary& s) {
   return {{"p50", s.gpu_ms.p50},
           {"p99", s.gpu_ms.p99},
@@ -254,12 +265,16 @@ Json section_json(const Section& section) {
       {"timed_frames", Count(s.run.timed_frames)},
       {"frame_ms", frame_ms_json(s.frame_ms)},
       {"low1_fps", s.low1_fps},
+      {"low01_fps", s.low01_fps},
       {"hitches", s.hitches},
       {"stutter_percent", s.stutter_percent},
+      {"between_presents_ms", distribution_json(s.between_presents_ms)},
+      {"animation_error_ms", distribution_json(s.animation_error_ms)},
       {"system_ms", systems_json(s.system_ms)},
       {"wait_ms", wait_json(s)},
       {"record_ms", s.record_ms},
       {"gpu_ms", gpu_json(s)},
+      {"pass_ms", passes_json(s.pass_ms)},
       {"missing", missing_json(s)},
       {"draw", {{"triangles_p50", s.draw.triangles_p50}, {"draws_p50", s.draw.draws_p50}}},
       {"synthesis", {{"models", s.synthesis.models}, {"triangles", s.synthesis.triangles}}},
@@ -316,12 +331,16 @@ std::string to_json(const Summary& s) {
       {"run", run_json(s)},
       {"frame_ms", frame_ms_json(s.frame_ms)},
       {"low1_fps", s.low1_fps},
+      {"low01_fps", s.low01_fps},
       {"hitches", s.hitches},
       {"stutter_percent", s.stutter_percent},
+      {"between_presents_ms", distribution_json(s.between_presents_ms)},
+      {"animation_error_ms", distribution_json(s.animation_error_ms)},
       {"system_ms", systems_json(s.system_ms)},
       {"wait_ms", wait_json(s)},
       {"record_ms", s.record_ms},
       {"gpu_ms", gpu_json(s)},
+      {"pass_ms", passes_json(s.pass_ms)},
       {"picture", picture_json(s)},
       {"detail", detail_json(s)},
       {"missing", missing_json(s)},
@@ -331,7 +350,9 @@ std::string to_json(const Summary& s) {
        {{"triangles_p50", s.draw.triangles_p50},
         {"draws_p50", s.draw.draws_p50},
         {"floor_ratio", s.draw.floor_ratio}}},
-      {"memory", {{"peak_rss_bytes", s.memory.peak_rss_bytes}}},
+      {"memory",
+       {{"peak_rss_bytes", s.memory.peak_rss_bytes},
+        {"device_peak_bytes", s.memory.device_peak_bytes}}},
       {"hash",
        {{"world", hash_text(s.hash.world)},
         {"types", hash_text(s.hash.types)},

@@ -102,7 +102,9 @@ void add_frames(Table& table, const Summary& s) {
   table.row("p95, p99, max", fmt::format("{}, {}, {}", value_or_dash(s.frame_ms.p95, ms_text),
                                          value_or_dash(s.frame_ms.p99, ms_text),
                                          value_or_dash(s.frame_ms.max, ms_text)));
-  table.row("lowest 1 %", value_or_dash(s.low1_fps, three_digits) + " frames/s");
+  table.row("lowest 1 %, 0.1 %",
+            fmt::format("{}, {} frames/s", value_or_dash(s.low1_fps, three_digits),
+                        value_or_dash(s.low01_fps, three_digits)));
   table.row("hitches", fmt::format("{}, {} of the time in stutter", value_or_dash(s.hitches, whole),
                                    value_or_dash(s.stutter_percent, percent_text)));
   table.row("drawn (median)",
@@ -110,6 +112,9 @@ void add_frames(Table& table, const Summary& s) {
                         value_or_dash(s.draw.draws_p50, whole)));
   table.row("waiting", spread_text(s.wait_ms.all.p50, s.wait_ms.all.p99, ms_text));
   table.row("GPU time", spread_text(s.gpu_ms.p50, s.gpu_ms.p99, ms_text));
+  const Distribution &between = s.between_presents_ms, &error = s.animation_error_ms;
+  table.row("between presents", spread_text(between.p50, between.p99, ms_text));
+  table.row("animation error", spread_text(error.p50, error.p99, ms_text));
   table.section("systems");
   for (const SystemTimes& system : s.system_ms)
     table.row(system.name, spread_text(system.p50, system.p99, ms_text));
@@ -182,6 +187,7 @@ void add_streaming(Table& table, const Summary& s) {
   table.row("cost error", spread_text(error.p50, error.p95, percent_text, "p95"));
   table.section("memory");
   table.row("resident, peak", value_or_dash(s.memory.peak_rss_bytes, bytes_text));
+  table.row("device, peak", value_or_dash(s.memory.device_peak_bytes, bytes_text));
   add_reference(table, s);
 }
 

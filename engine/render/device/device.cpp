@@ -258,6 +258,8 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
   if (options.timestamps)
     self->timestamp_mask = timestamp_mask_of(self->physical, self->queue_family);
   self->info.timestamps = self->timestamp_mask != 0;
+  self->info.pass_times =
+      self->info.timestamps && options.pass_times.value_or(!self->info.software);
   return self;
 }
 

@@ -32,9 +32,10 @@ core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& 
 
 // The options of Device::create().
 struct DeviceOptions {
-  bool windowed = false;        // it can present
-  bool timestamps = true;       // used if the queue has any
-  double timeout_seconds = 60;  // longest wait for the device; after that it counts as lost
+  bool windowed = false;                // it can present
+  bool timestamps = true;               // used if the queue has any
+  std::optional<bool> pass_times = {};  // of the passes too; none: on devices that are no software
+  double timeout_seconds = 60;          // longest wait for the device; after that it counts as lost
 };
 
 // A wait for a semaphore before these stages, or its signal after them. `value`: of a timeline.

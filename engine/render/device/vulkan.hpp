@@ -7,6 +7,7 @@
 //
 #include <volk.h>
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -47,6 +48,7 @@ struct DeviceTable : VolkDeviceTable {
   // A wait for the device has timed out. It may still use its objects, and destroying them may wait
   // for ever. So from then on they are leaked.
   mutable bool hangs = false;
+  mutable std::atomic<std::uint64_t> memory_bytes{0};  // of all UniqueMemory
 };
 
 // An owning handle of an object of a VkDevice. `Destroy` is the function of the table that destroys
@@ -82,11 +84,37 @@ class DeviceHandle {
   T handle_{};
 };
 
+// An owning handle of device memory. Counts its bytes in the table. Move-only.
+class UniqueMemory {
+ public:
+  UniqueMemory() = default;
+  UniqueMemory(const DeviceTable& vk, VkDevice device, VkDeviceMemory memory, std::uint64_t bytes)
+      : vk_(&vk), memory_(vk, device, memory), bytes_(bytes) {
+    vk.memory_bytes += bytes;
+  }
+  UniqueMemory(UniqueMemory&& other) noexcept
+      : vk_(other.vk_), memory_(std::move(other.memory_)), bytes_(std::exchange(other.bytes_, 0)) {}
+  UniqueMemory& operator=(UniqueMemory&& other) noexcept {
+    std::swap(vk_, other.vk_);
+    std::swap(memory_, other.memory_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+  }
+  ~UniqueMemory() {
+    if (bytes_ > 0) vk_->memory_bytes -= bytes_;
+  }
+  VkDeviceMemory get() const { return memory_.get(); }
+
+ private:
+  const DeviceTable* vk_ = nullptr;
+  DeviceHandle<VkDeviceMemory, &VolkDeviceTable::vkFreeMemory> memory_;
+  std::uint64_t bytes_ = 0;
+};
+
 // Owning handles of the objects that the renderer uses.
 using UniqueBuffer = DeviceHandle<VkBuffer, &VolkDeviceTable::vkDestroyBuffer>;
 using UniqueImage = DeviceHandle<VkImage, &VolkDeviceTable::vkDestroyImage>;
 using UniqueImageView = DeviceHandle<VkImageView, &VolkDeviceTable::vkDestroyImageView>;
-using UniqueMemory = DeviceHandle<VkDeviceMemory, &VolkDeviceTable::vkFreeMemory>;
 using UniqueSampler = DeviceHandle<VkSampler, &VolkDeviceTable::vkDestroySampler>;
 using UniqueSemaphore = DeviceHandle<VkSemaphore, &VolkDeviceTable::vkDestroySemaphore>;
 using UniqueCommandPool = DeviceHandle<VkCommandPool, &VolkDeviceTable::vkDestroyCommandPool>;

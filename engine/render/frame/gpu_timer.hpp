@@ -26,6 +26,9 @@ class GpuTimer {
   // Records a timestamp, outside of a rendering. kShadows may be left out. A frame without kEnd
   // is not timed.
   void mark(const Device& device, VkCommandBuffer commands, Mark mark);
+  // Records the end of pass 0, 1 … of kPassNames, also inside of a rendering. Does nothing without
+  // DeviceInfo::pass_times. A frame has all passes or none.
+  void mark_pass(const Device& device, VkCommandBuffer commands, std::uint32_t pass);
   // Call it when the frame has been submitted. `frame` is its number, `now_s` the time.
   void submitted(std::uint64_t frame, double now_s);
 
@@ -37,8 +40,10 @@ class GpuTimer {
   struct Frame {
     std::uint64_t number = 0;
     double submitted_s = 0;
-    bool timed = false, shadows = false;
+    bool timed = false, shadows = false, passes = false;
   };
+
+  void write(const Device& device, VkCommandBuffer commands, std::uint32_t query) const;
 
   UniqueQueryPool queries_;
   Buffer ticks_;

@@ -54,7 +54,7 @@ Result<UniqueMemory> allocate(const Device& device, const VkMemoryRequirements& 
                                       .memoryTypeIndex = i};
       VkDeviceMemory memory = VK_NULL_HANDLE;
       result = device.vk.vkAllocateMemory(device.handle, &info, nullptr, &memory);
-      if (result == VK_SUCCESS) return UniqueMemory(device.vk, device.handle, memory);
+      if (result == VK_SUCCESS) return UniqueMemory(device.vk, device.handle, memory, needs.size);
     }
   }
   return vulkan_failure(result,

@@ -25,6 +25,8 @@ using Passes = std::tuple<  //
     ScaleUp,                // a landscape of fewer pixels
     Overlay>;               // text and ImGui
 
+static_assert(std::tuple_size_v<Passes> == kPassNames.size(), "each pass has a name");
+
 // Calls visit(pass) for each pass, in order.
 template <class AnyPasses, class Visit>
 void for_each_pass(AnyPasses& passes, const Visit& visit) {

@@ -7,8 +7,13 @@ namespace {
 
 template <Stage kStage>
 void record_stage(const Passes& passes, const Recording& to) {
+  std::uint32_t number = 0;
   for_each_pass(passes, [&](const auto& pass) {
-    if constexpr (std::remove_cvref_t<decltype(pass)>::kStage == kStage) pass.record(to);
+    if constexpr (std::remove_cvref_t<decltype(pass)>::kStage == kStage) {
+      pass.record(to);
+      to.slot.timer().mark_pass(to.device, to.commands(), number);
+    }
+    ++number;
   });
 }
 

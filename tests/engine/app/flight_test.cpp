@@ -339,5 +339,62 @@ TEST(Flight, AStopFlagEndsTheFlightWhichStillWritesItsOutputs) {
   EXPECT_TRUE(std::filesystem::exists(options.out_folder / "summary.json"));
 }
 
+FlightOptions wall_flight() {
+  FlightOptions options = short_flight();
+  options.session.scene.virtual_time = false;
+  options.fixed_step_hz = 0;
+  options.warmup_seconds = 0;
+  options.frames = 25;
+  return options;
+}
+
+TEST(Flight, MeasuresPresentsAnimationErrorPassesAndDeviceMemory) {
+  FlightOptions options = wall_flight();
+  options.session.pass_times = true;
+  auto flight = Flight::create(options);
+  ASSERT_TRUE(flight) << flight.error().message;
+  const auto report = (*flight)->run();
+  ASSERT_TRUE(report) << report.error().message;
+  const telemetry::Summary& s = report->summary;
+  EXPECT_GT(*s.between_presents_ms.p50, 0);
+  EXPECT_GE(*s.between_presents_ms.max, *s.between_presents_ms.p50);
+  EXPECT_GE(*s.animation_error_ms.mean, 0);
+  EXPECT_GT(*s.memory.device_peak_bytes, 1u << 20);
+  ASSERT_EQ(s.pass_ms.size(), render::kPassNames.size());
+  EXPECT_EQ(s.pass_ms[1].name, "landscape");
+  EXPECT_GT(*s.pass_ms[1].p50, 0);
+  const auto frames = (*flight)->log().frames();
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const auto& r = frames[i];
+    if (!r.between_presents_ms) continue;
+    ASSERT_TRUE(r.animation_error_ms);
+    const double step_ms = (r.time_s - frames[i - 1].time_s) * 1000;
+    EXPECT_NEAR(*r.animation_error_ms, step_ms - *r.between_presents_ms, 1e-6);
+  }
+}
+
+TEST(Flight, TellsWhyPresentsAndPassesWereNotMeasured) {
+  FlightOptions options = wall_flight();
+  options.fixed_step_hz = 30;
+  options.session.pass_times = false;
+  auto flight = Flight::create(options);
+  ASSERT_TRUE(flight) << flight.error().message;
+  auto report = (*flight)->run();
+  ASSERT_TRUE(report);
+  EXPECT_GT(*report->summary.between_presents_ms.p50, 0);
+  EXPECT_EQ(report->summary.animation_error_ms.p50.reason, "the flight has a fixed step");
+  EXPECT_EQ(report->summary.pass_ms[1].p50.reason, "passes were not measured (--pass-times)");
+  options.session.scene.virtual_time = true;
+  flight = Flight::create(options);
+  ASSERT_TRUE(flight) << flight.error().message;
+  report = (*flight)->run();
+  ASSERT_TRUE(report);
+  for (const telemetry::Figure& figure :
+       {report->summary.between_presents_ms.p50, report->summary.animation_error_ms.p50,
+        report->summary.pass_ms[1].p50})
+    EXPECT_EQ(figure.reason, "the clock is virtual");
+  EXPECT_EQ(report->summary.memory.device_peak_bytes.reason, "the clock is virtual");
+}
+
 }  // namespace
 }  // namespace psygen::app

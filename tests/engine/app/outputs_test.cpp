@@ -89,7 +89,7 @@ TEST(Outputs, ALargeFileThatDoesNotFitAffectsNoSmallerOne) {
   options.session.scene.virtual_time = false;  // modelers' jobs are traced
   auto flight = Flight::create(options);
   ASSERT_TRUE(flight) << flight.error().message;
-  const FileLimit limit(12'000);
+  const FileLimit limit(20'000);
   const auto report = (*flight)->run();
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_THAT(names_of(*report, folder.path()), testing::ElementsAre("report.html", "trace.json"));

@@ -57,6 +57,22 @@ TEST(WorstFrames, ComeFromEachMissedBudgetInTurn) {
       << "frames without a hole are not reported";
 }
 
+TEST(WorstFrames, HaveTheLargestAnimationErrorOrTheLongestPass) {
+  telemetry::FrameLog log({}, 10, {}, {"sky"});
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    telemetry::FrameRecord record;
+    record.index = i;
+    record.time_s = static_cast<double>(i);
+    record.frame_ms = 1;
+    record.device_frame = i + 1;
+    record.animation_error_ms = i == 1 ? -9 : 2;
+    log.add(record);
+    log.set_gpu_ms(i + 1, 3, 0, std::array{i == 2 ? 2.5 : 1.0});
+  }
+  EXPECT_THAT(indices({missed("animation_error_ms.p99")}, log, 0, 1), ElementsAre(1));
+  EXPECT_THAT(indices({missed("pass_ms.sky.max")}, log, 0, 1), ElementsAre(2));
+}
+
 TEST(WorstFrames, OfASectionOrAFigureAreThoseOfItsFrames) {
   telemetry::FrameLog log({}, 100, {{.name = "ai.paths", .unit = "paths"}});
   for (std::uint64_t i = 0; i < 6; ++i) {

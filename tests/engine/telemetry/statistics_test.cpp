@@ -118,5 +118,14 @@ TEST(Statistics, OfFramesWithoutTimeAreMissingInsteadOfNotANumber) {
   EXPECT_FALSE(stutter_percent(nothing).has_value());
 }
 
+TEST(Low01Fps, IsTheRateOfTheSlowestThousandth) {
+  std::vector<double> ms(2000, 10);
+  ms[700] = 40;
+  ms[900] = 60;  // p99.9 lies between 10 and 40 ms
+  EXPECT_NEAR(*low01_fps(ms), 1000.0 / 50, 1e-9);
+  ms.resize(999);
+  EXPECT_EQ(low01_fps(ms).reason, "needs at least 1000 values, there are 999");
+}
+
 }  // namespace
 }  // namespace psygen::telemetry

@@ -110,5 +110,57 @@ TEST(GpuTimer, WithoutTimestampsEverythingGoesOnWithoutItsTime) {
     EXPECT_FALSE(scene.draw().gpu);
 }
 
+TEST(GpuTimer, MeasuresPassesOnRequestAsPartsOfTheFrame) {
+  for (const RenderPath path : {RenderPath::kCpu, RenderPath::kGpu}) {
+    RendererOptions options;
+    options.validation = true;
+    options.size = {320, 240};
+    options.geometry_budget_bytes = 8 << 20;
+    options.preset = Preset::kHigh;
+    options.path = path;
+    options.pass_times = true;
+    const auto made = Renderer::create(options);
+    ASSERT_TRUE(made) << made.error().message;
+    Renderer& renderer = **made;
+    ASSERT_TRUE(renderer.device().pass_times);
+    Scene scene(renderer);
+    FrameResult result;
+    for (int i = 0; i < 8; ++i)
+      result = scene.draw();
+    ASSERT_TRUE(result.gpu);
+    double sum_ms = 0;
+    for (const double ms : result.gpu->pass_ms) {
+      EXPECT_GE(ms, 0.0);
+      sum_ms += ms;
+    }
+    EXPECT_GT(result.gpu->pass_ms[1], 0.0) << kPassNames[1];
+    EXPECT_LE(sum_ms, result.gpu->ms * 1.0001);
+    EXPECT_EQ(result.gpu->pass_ms[0], result.gpu->shadows_ms) << "both end with the cascades";
+    renderer.wait_idle();
+    for (const std::string& message : renderer.validation_messages())
+      ADD_FAILURE() << message;
+  }
+}
+
+TEST(GpuTimer, DoesNotMeasurePassesOfSoftwareDevicesUnasked) {
+  const auto renderer = make(Preset::kLow, RenderPath::kCpu);
+  EXPECT_EQ(renderer->device().pass_times, !renderer->device().software);
+}
+
+TEST(FrameResult, TellsTheDeviceMemoryAndWhenTheFrameWasHandedOver) {
+  const auto renderer = make(Preset::kLow, RenderPath::kCpu);
+  Scene scene(*renderer);
+  const double start_s = core::monotonic_seconds();
+  const FrameResult first = scene.draw(), second = scene.draw();
+  EXPECT_GE(first.handed_over_s, start_s);
+  EXPECT_GT(second.handed_over_s, first.handed_over_s);
+  EXPECT_LE(second.handed_over_s, core::monotonic_seconds());
+  EXPECT_GT(second.memory_bytes, std::uint64_t{8} << 20) << "more than the geometry";
+  ASSERT_TRUE(renderer->resize({640, 480}));
+  EXPECT_GT(scene.draw().memory_bytes, second.memory_bytes) << "larger targets";
+  ASSERT_TRUE(renderer->resize({64, 48}));
+  EXPECT_LT(scene.draw().memory_bytes, second.memory_bytes) << "freed memory does not count";
+}
+
 }  // namespace
 }  // namespace psygen::render
