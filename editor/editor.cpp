@@ -8,6 +8,7 @@
 #include <cstring>
 #include <glm/trigonometric.hpp>
 #include <iterator>
+#include <memory>
 #include <string_view>
 
 #include "editor/document/qt_text.hpp"
@@ -18,6 +19,7 @@
 #include "engine/cli/commands.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/core/data_file.hpp"
+#include "engine/core/log.hpp"
 #include "engine/program/program.hpp"
 #include "engine/render/preset.hpp"
 
@@ -52,8 +54,8 @@ bool parse(QCommandLineParser& parser, const QStringList& arguments) {
   return is_good;
 }
 
-// Prints help and version, which need no display. Returns the exit code if there is no display.
-std::optional<int> require_display(int argc, char** argv) {
+// Prints help and version, which need no display. Returns what require_x11() does, or an exit code.
+tl::expected<std::shared_ptr<void>, int> require_display(int argc, char** argv) {
   // Only these words: options of Qt such as -reverse look like short options.
   const auto asks = [](const char* argument) {
     constexpr std::string_view kQuestions[] = {"-h", "--help", "--help-all", "-v", "--version"};
@@ -64,9 +66,18 @@ std::optional<int> require_display(int argc, char** argv) {
     QCommandLineParser parser;
     parse(parser, app.arguments());
   }
-  if (auto x11 = require_x11({argv, static_cast<std::size_t>(argc)}); !x11)
-    return cli::fail_with(x11.error());
-  return std::nullopt;
+  auto x11 = require_x11({argv, static_cast<std::size_t>(argc)});
+  if (!x11) return tl::unexpected(cli::fail_with(x11.error()));
+  return *x11;
+}
+
+// Qt reports by a fatal message that it cannot start, and would then abort.
+void end_at_fatal(QtMsgType type, const QMessageLogContext& context, const QString& message) {
+  if (type == QtFatalMsg) {
+    core::log_error("Qt cannot start: " + message.simplified().toStdString());
+    std::_Exit(program::kNoDevice);
+  }
+  std::fprintf(stderr, "%s\n", qPrintable(qFormatLogMessage(type, context, message)));
 }
 
 // Returns the exit code of an error, or nullopt.
@@ -93,8 +104,11 @@ int edit(int argc, char** argv, std::vector<app::Plugin> plugins) {
   QApplication::setOrganizationName("psygen");
   QApplication::setApplicationName("psygen-editor");
   QApplication::setApplicationVersion(to_qstring(core::version()));
-  if (const auto code = require_display(argc, argv)) return *code;
+  const auto display = require_display(argc, argv);
+  if (!display) return display.error();
+  const QtMessageHandler usual = qInstallMessageHandler(end_at_fatal);
   QApplication app(argc, argv);
+  qInstallMessageHandler(usual);
   Arguments arguments;
   if (const auto code = read_arguments(app, arguments)) return *code;
   apply_saved_look();

@@ -13,7 +13,7 @@
 
 namespace psygen::editor {
 
-core::Result<void> require_x11(std::span<const char* const> arguments) {
+core::Result<std::shared_ptr<void>> require_x11(std::span<const char* const> arguments) {
   if (qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM")) qputenv("QT_QPA_PLATFORM", "xcb");
   std::string_view platform = std::getenv("QT_QPA_PLATFORM");
   const char* display = nullptr;  // $DISPLAY
@@ -26,10 +26,9 @@ core::Result<void> require_x11(std::span<const char* const> arguments) {
     return core::fail(core::ErrorCode::kNoDevice,
                       "the editor needs X11, and the chosen Qt platform is \"" +
                           std::string(platform) + "\"; unset QT_QPA_PLATFORM");
-  xcb_connection_t* connection = xcb_connect(display, nullptr);
-  const bool is_open = xcb_connection_has_error(connection) == 0;
-  xcb_disconnect(connection);
-  if (is_open) return {};
+  const std::shared_ptr<xcb_connection_t> connection(xcb_connect(display, nullptr),
+                                                     &xcb_disconnect);
+  if (xcb_connection_has_error(connection.get()) == 0) return connection;
   if (display == nullptr) display = std::getenv("DISPLAY");
   return core::fail(core::ErrorCode::kNoDevice,
                     display == nullptr ? "the editor needs an X11 display, and DISPLAY is not set"

@@ -2,6 +2,7 @@
 // Vulkan objects. Main thread.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,8 +15,10 @@ namespace psygen::editor {
 
 // Fails with kNoDevice unless Qt will use X11 and the display can be opened: otherwise QApplication
 // aborts, and the view cannot draw. Chooses X11 if the user has chosen no platform. To be called
-// before QApplication, with the arguments of the program.
-core::Result<void> require_x11(std::span<const char* const> arguments);
+// before QApplication, with the arguments of the program. Keep the result until QApplication has
+// connected: some servers (Xvfb) reset when their last client leaves, and refuse new ones
+// meanwhile.
+core::Result<std::shared_ptr<void>> require_x11(std::span<const char* const> arguments);
 
 class WindowSurface final : public core::SurfaceProvider {
  public:

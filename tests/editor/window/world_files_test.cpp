@@ -202,11 +202,26 @@ TEST(StartOfTheEditor, WithoutX11ItEndsWithASentence) {
       {{}, {}, "DISPLAY is not set"},
       {{"alps"}, {{"DISPLAY", ":4242"}}, "\":4242\" cannot be opened"},
       {{}, {{"DISPLAY", display}, {"QT_QPA_PLATFORM", "offscreen"}}, "\"offscreen\""},
-      {{"-platform", "minimal"}, {{"DISPLAY", display}}, "\"minimal\""}};
+      {{"-platform", "minimal"}, {{"DISPLAY", display}}, "\"minimal\""},
+      {{}, {{"DISPLAY", display}, {"QT_QPA_PLATFORM", "xcbx"}}, "error: Qt cannot start: "}};
   for (const auto& [arguments, variables, word] : starts) {
     const Ended editor = ended(arguments, variables);
     EXPECT_EQ(editor.code, 4) << word;
     EXPECT_NE(editor.err.find(word), std::string::npos) << editor.err;
+  }
+}
+
+// Such a server resets when its last client leaves, and refuses others until it has.
+TEST(StartOfTheEditor, MayBeTheOnlyClientOfItsServer) {
+  for (int i = 0; i < 4; ++i) {
+    QProcess server;
+    server.start("Xvfb", {"-displayfd", "1", "-nolisten", "tcp"});
+    ASSERT_TRUE(server.waitForReadyRead(60'000));
+    const QString display = ":" + QString(server.readLine()).trimmed();
+    const Ended editor = ended({"--unknown"}, {{"DISPLAY", display}});
+    EXPECT_EQ(editor.code, 2) << editor.err;
+    server.terminate();
+    server.waitForFinished();
   }
 }
 
