@@ -180,6 +180,9 @@ core::Result<Model> read(const std::filesystem::path& path, const Bytes& bytes,
                       .and_then([&] { return read_nodes(reading); })
                       .and_then([&] { return read_animations(reading); });
   if (!ok) return tl::unexpected(ok.error());
+  for (const std::string& uri : source.unused_missing())
+    reading.note(fmt::format("names the file \"{}\", which is missing; nothing uses it",
+                             core::shown(uri, kMaxMessage)));
   bool visible = false;
   for (const Node& node : model.nodes)
     visible = visible || (node.mesh != kNone && !model.meshes[node.mesh].primitives.empty());

@@ -93,6 +93,29 @@ core::Result<Source::Bytes> Source::of_uri(const std::string& uri) {
   });
 }
 
+// True if nothing has asked for this file, and it could not be read.
+bool Source::lacks(const std::string& uri) const {
+  if (uri.empty() || uri.starts_with("data:")) return false;
+  const std::filesystem::path name = plain_uri(uri);
+  if (std::ranges::find(out_.missing, path_.parent_path() / name) != out_.missing.end())
+    return false;
+  const auto file = beside(path_, name);
+  std::error_code error;
+  return !file || !std::filesystem::exists(*file, error);
+}
+
+std::vector<std::string> Source::unused_missing() const {
+  constexpr std::size_t kMaxLooks = 1024;  // a look is a walk through folders
+  std::vector<std::string> uris;
+  const auto add = [&](const auto& described) {
+    for (const auto& each : std::span(described).first(std::min(described.size(), kMaxLooks)))
+      if (lacks(each.uri)) uris.push_back(each.uri);
+  };
+  add(file_.images);
+  add(file_.buffers);
+  return uris;
+}
+
 core::Result<Source::View> Source::of_buffer(int buffer, std::string_view what) {
   const auto index = index_in(buffer, file_.buffers.size(), what);
   if (!index) return tl::unexpected(index.error());

@@ -31,8 +31,12 @@ class Source {
   core::Result<View> of_view(int view, std::string_view what);
   // The bytes of a URI: base64, or a file. Fails with kIo if there is no such file.
   core::Result<Bytes> of_uri(const std::string& uri);
+  // The files of images and buffers that do not exist, or may not be read, and that nothing has
+  // asked for, among the first 1,024 of each.
+  std::vector<std::string> unused_missing() const;
 
  private:
+  bool lacks(const std::string& uri) const;
   core::Result<View> of_buffer(int buffer, std::string_view what);
   core::Result<View> part_of(int buffer, std::uint64_t offset, std::uint64_t bytes,
                              const std::string& what);

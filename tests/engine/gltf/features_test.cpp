@@ -318,7 +318,9 @@ TEST_F(Features, FilesThatNothingUsesMayBeMissing) {
   EXPECT_EQ(model.meshes[0].primitives[0].mesh.positions,
             plain.meshes[0].primitives[0].mesh.positions);
   EXPECT_EQ(model.images.size(), 1u);
-  EXPECT_THAT(model.notes, IsEmpty());
+  EXPECT_THAT(model.notes, ElementsAre(HasSubstr("\"../no.png\", which is missing"),
+                                       HasSubstr("\"no.png\", which is missing; nothing uses it"),
+                                       HasSubstr("\"no.bin\", which is missing")));
   EXPECT_THAT(model.files, ElementsAre(folder_ / "wood.png"));
   EXPECT_THAT(model.missing, IsEmpty());
 }
