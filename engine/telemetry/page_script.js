@@ -242,7 +242,7 @@
     // Frames that timing statistics exclude, and the game's marks.
     marks(svg, first, end) {
       let path = "", last = -1;
-      const seen = list => Object.keys(list).filter(row => row >= first && row < end);
+      const seen = list => Object.keys(list ?? {}).filter(row => row >= first && row < end);
       for (const row of seen(rows.apart)) {
         const x = Math.round(this.x(times[row]));
         if (x !== last) path += `M${x} ${this.bottom}v-8`;
@@ -314,7 +314,7 @@
       const lines = [make("b", {}, nameOf(row))];
       if (rows.apart[row] !== undefined)
         lines.push(make("div", {}, "excluded: " + rows.apart[row]));
-      if (rows.marks[row] !== undefined) lines.push(make("div", {}, "mark: " + rows.marks[row]));
+      if (rows.marks?.[row] !== undefined) lines.push(make("div", {}, "mark: " + rows.marks[row]));
       for (const series of this.data.series)
         if (series.v[row] !== null)
           lines.push(make("div", {}, series.name + ": " + withUnit(series.v[row], this.data.unit)));
