@@ -201,7 +201,8 @@ std::string to_text(const Cause& cause) {
       cause.unit == telemetry::WorkUnit::kInstructions ? " instructions" : " of processor time",
       work_text(first.usual, cause.unit));
   // Samples of steps tell only that the simulation ran.
-  const std::string_view system = first.name.starts_with("step ") ? "simulation" : first.name;
+  const std::string_view name = first.name;
+  const std::string_view system = name.starts_with("step ") ? "simulation" : name;
   const auto function = std::ranges::find(cause.functions, system, &WorkChange::system);
   if (function != cause.functions.end()) text += ", mostly in " + core::shown(function->name);
   return text;
