@@ -91,9 +91,10 @@ core::Result<void> check_logs(const Source& source, std::string_view first_line)
 core::Result<void> check_summaries(const Source& source, const Table& table) {
   const auto has_part = [&](std::string_view part) {
     return std::ranges::any_of(table.header, [&](std::string_view cell) {
-      return std::ranges::search(cell, part, {}, [](char c) {
-               return std::tolower(static_cast<unsigned char>(c));
-             }).begin() != cell.end();
+      const auto is_same = [](char c, char wanted) {
+        return std::tolower(static_cast<unsigned char>(c)) == wanted;
+      };
+      return std::search(cell.begin(), cell.end(), part.begin(), part.end(), is_same) != cell.end();
     });
   };
   if (table.find("0.1% Min FPS"))

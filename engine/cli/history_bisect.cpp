@@ -124,6 +124,7 @@ core::Result<std::vector<Entry>> run_commit(const BisectOptions& options, const 
 
 double median_on_scale(const history::FigureRule& rule, const std::vector<const Entry*>& entries) {
   std::vector<double> values;
+  values.reserve(entries.size());
   for (const Entry* entry : entries)
     values.push_back(rule.logarithms ? std::log(*entry->value) : *entry->value);
   return history::median(values);
@@ -131,6 +132,7 @@ double median_on_scale(const history::FigureRule& rule, const std::vector<const 
 
 std::vector<history::Observation> observations(const std::vector<const Entry*>& entries) {
   std::vector<history::Observation> result;
+  result.reserve(entries.size());
   for (const Entry* entry : entries)
     result.push_back({.value = *entry->value, .reference = entry->reference, .work = entry->work});
   return result;
@@ -145,6 +147,7 @@ int judge(const BisectOptions& options, const std::vector<Entry>& all,
   const auto good = entries_of(all, commit_of(options.good), like);
   const auto bad = entries_of(all, commit_of(options.bad), like);
   std::vector<const Entry*> now;
+  now.reserve(runs.size());
   for (const Entry& run : runs)
     now.push_back(&run);
   if (good.empty()) {
