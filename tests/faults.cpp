@@ -22,6 +22,22 @@ namespace {
 
 using psygen::next;
 
+// The functions that this file replaces. The first call looks all of them up: the thread sanitizer
+// also calls open(), at a time when dlsym() cannot free memory.
+struct Real {
+  decltype(&::open) open = next<decltype(::open)>("open");
+  decltype(&::write) write = next<decltype(::write)>("write");
+  decltype(&::fsync) fsync = next<decltype(::fsync)>("fsync");
+  decltype(&::close) close = next<decltype(::close)>("close");
+  decltype(&::rename) rename = next<decltype(::rename)>("rename");
+  decltype(&::clock_gettime) clock_gettime = next<decltype(::clock_gettime)>("clock_gettime");
+  decltype(&::pthread_create) pthread_create = next<decltype(::pthread_create)>("pthread_create");
+};
+const Real& real() {
+  static const Real functions;
+  return functions;
+}
+
 constexpr long kUnlimited = LONG_MAX;
 
 char full_folder[PATH_MAX] = "";
@@ -74,7 +90,8 @@ void fill_disk(const char* folder, long calls) {
   calls_left = calls;
 }
 
-[[maybe_unused]] const bool kFromEnvironment = [] {
+[[maybe_unused]] const bool kStarted = [] {
+  real();
   if (const char* folder = std::getenv("PSYGEN_FULL_DISK")) {
     const char* calls = std::getenv("PSYGEN_CALLS_LEFT");
     fill_disk(folder, calls != nullptr ? std::atol(calls) : 0);
@@ -119,7 +136,6 @@ WrongClock::~WrongClock() {
 extern "C" {
 
 int open(const char* path, int flags, ...) {
-  static const auto real = next<int(const char*, int, ...)>("open");
   mode_t mode = 0;
   if ((flags & O_CREAT) != 0) {
     va_list list;
@@ -128,33 +144,28 @@ int open(const char* path, int flags, ...) {
     va_end(list);
     if (disk_refuses(path)) return -1;
   }
-  return real(path, flags, mode);
+  return real().open(path, flags, mode);
 }
 ssize_t write(int file, const void* bytes, size_t count) {
-  static const auto real = next<ssize_t(int, const void*, size_t)>("write");
   // A process killed during a write leaves a partial file.
   const bool is_last = dies && calls_left.load() == 0 && is_on_disk(file);
-  if (is_last && count > 1 && real(file, bytes, count / 2) < 0) return -1;
-  return disk_refuses(file) ? -1 : real(file, bytes, count);
+  if (is_last && count > 1 && real().write(file, bytes, count / 2) < 0) return -1;
+  return disk_refuses(file) ? -1 : real().write(file, bytes, count);
 }
 int fsync(int file) {
-  static const auto real = next<int(int)>("fsync");
-  return disk_refuses(file) ? -1 : real(file);
+  return disk_refuses(file) ? -1 : real().fsync(file);
 }
 int close(int file) {
-  static const auto real = next<int(int)>("close");
   const bool refused = disk_refuses(file);
-  const int result = real(file);  // a failed close() also closes the file
+  const int result = real().close(file);  // a failed close() also closes the file
   if (refused) errno = ENOSPC;
   return refused ? -1 : result;
 }
 int rename(const char* from, const char* to) noexcept {
-  static const auto real = next<int(const char*, const char*)>("rename");
-  return disk_refuses(to) ? -1 : real(from, to);
+  return disk_refuses(to) ? -1 : real().rename(from, to);
 }
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
-  static const auto real = next<int(clockid_t, timespec*)>("clock_gettime");
-  const int result = real(clock, time);
+  const int result = real().clock_gettime(clock, time);
   const double off_s = clock == CLOCK_MONOTONIC  ? monotonic_off_s.load()
                        : clock == CLOCK_BOOTTIME ? boot_off_s.load()
                                                  : 0.0;
@@ -164,13 +175,11 @@ int clock_gettime(clockid_t clock, timespec* time) noexcept {
 }
 int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
                    void* argument) noexcept {
-  static const auto real =
-      next<int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*)>("pthread_create");
   if (threads_left.load() != kUnlimited && is_concerned(__builtin_return_address(0)) &&
       runs_out(threads_left)) {
     return EAGAIN;
   }
-  return real(thread, attributes, start, argument);
+  return real().pthread_create(thread, attributes, start, argument);
 }
 
 }  // extern "C"
