@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <link.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -30,6 +29,7 @@
 #include "engine/compare/compare_words.hpp"
 #include "engine/compare/instructions.hpp"
 #include "engine/compare/times.hpp"
+#include "engine/core/child_process.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
 #include "engine/frametest/run.hpp"
@@ -114,28 +114,10 @@ int status_of(pid_t child, const std::atomic<bool>& stop) {
 // after a signal to psygen.
 core::Result<int> run_program(std::vector<std::string> words, const std::filesystem::path& log) {
   const std::atomic<bool>& stop = stop_at_interrupt();
-  std::vector<char*> arguments;
-  for (std::string& word : words)
-    arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // a group of its own
-  pid_t child = 0;
-  const int failed =
-      posix_spawnp(&child, arguments.front(), &actions, &attributes, arguments.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) {
-    return core::fail(core::ErrorCode::kIo, fmt::format("{}: cannot run: {}", words.front(),
-                                                        std::generic_category().message(failed)));
-  }
-  const int status = status_of(child, stop);
+  const auto child =
+      core::start_child(std::move(words), {.out = log, .messages = log, .own_group = true});
+  if (!child) return tl::unexpected(child.error());
+  const int status = status_of(*child, stop);
   if (stop) return core::fail(core::ErrorCode::kInterrupted, "interrupted");
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cctype>
 #include <cerrno>
 #include <cmath>
@@ -17,6 +17,7 @@
 #include <system_error>
 
 #include "engine/cli/commands.hpp"
+#include "engine/core/child_process.hpp"
 #include "engine/core/log.hpp"
 #include "engine/history/additions.hpp"
 #include "engine/history/check.hpp"
@@ -37,21 +38,14 @@ constexpr int kGood = 0, kBad = 1, kSkip = 125, kStop = 128;
 // Runs a program with this program's streams. Returns its exit code, 128 and the number of the
 // signal that ended it, or nothing if it cannot be started.
 std::optional<int> run_program(Words words) {
-  std::vector<char*> arguments;
-  for (std::string& word : words)
-    arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  pid_t child = 0;
   std::fflush(stdout);
-  const int failed =
-      posix_spawnp(&child, arguments.front(), nullptr, nullptr, arguments.data(), environ);
-  if (failed != 0) {
-    core::log_error(
-        fmt::format("{}: cannot run: {}", words.front(), std::generic_category().message(failed)));
+  const auto child = core::start_child(std::move(words));
+  if (!child) {
+    core::log_error(child.error().message);
     return std::nullopt;
   }
   int status = 0;
-  while (waitpid(child, &status, 0) < 0)
+  while (waitpid(*child, &status, 0) < 0)
     if (errno != EINTR) return std::nullopt;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
@@ -88,13 +82,17 @@ bool is_of(const Entry& entry, const std::string& commit) {
   return entry.revision.size() >= kShortest && commit.starts_with(entry.revision);
 }
 
+bool is_usable(const Entry& entry) {
+  return history::is_usable(entry, history::rule_of(entry.figure, entry.unit));
+}
+
 // Usable entries of the judged figure and fingerprint.
 std::vector<const Entry*> entries_of(const std::vector<Entry>& all, const std::string& commit,
                                      const Entry& like) {
   std::vector<const Entry*> found;
   for (const Entry& entry : all)
     if (entry.test == like.test && entry.figure == like.figure && entry.unit == like.unit &&
-        entry.fingerprint == like.fingerprint && entry.value && is_of(entry, commit))
+        entry.fingerprint == like.fingerprint && is_of(entry, commit) && is_usable(entry))
       found.push_back(&entry);
   return found;
 }
@@ -116,7 +114,7 @@ core::Result<std::vector<Entry>> run_commit(const BisectOptions& options, const 
         {.test = options.test, .revision = "HEAD", .machine = options.machine, .figures = {}});
     if (!additions) return tl::unexpected(additions.error());
     for (const Entry& entry : additions->entries)
-      if (entry.figure == options.figure && entry.value) entries.push_back(entry);
+      if (entry.figure == options.figure && is_usable(entry)) entries.push_back(entry);
   }
   if (entries.empty()) return core::invalid_argument("the runs have no value of " + options.figure);
   return entries;
@@ -130,26 +128,22 @@ double median_on_scale(const history::FigureRule& rule, const std::vector<const 
   return history::median(values);
 }
 
-std::vector<history::Observation> observations(const std::vector<const Entry*>& entries) {
-  std::vector<history::Observation> result;
-  result.reserve(entries.size());
-  for (const Entry* entry : entries)
-    result.push_back({.value = *entry->value, .reference = entry->reference, .work = entry->work});
-  return result;
-}
-
 // Good or bad by the entries of the good commit: by the middle between them and those of the bad
 // one, if there are any, else by the gate.
 int judge(const BisectOptions& options, const std::vector<Entry>& all,
           const std::vector<Entry>& runs) {
-  const Entry& like = runs.front();
+  const std::string good_commit = commit_of(options.good);
+  // The command may fly other tests, too: the runs that GOOD has entries of count.
+  const auto known = std::ranges::find_if(
+      runs, [&](const Entry& run) { return !entries_of(all, good_commit, run).empty(); });
+  const Entry& like = known != runs.end() ? *known : runs.front();
   const auto rule = history::rule_of(like.figure, like.unit);
-  const auto good = entries_of(all, commit_of(options.good), like);
+  const auto good = entries_of(all, good_commit, like);
   const auto bad = entries_of(all, commit_of(options.bad), like);
   std::vector<const Entry*> now;
   now.reserve(runs.size());
   for (const Entry& run : runs)
-    now.push_back(&run);
+    if (run.fingerprint == like.fingerprint && run.unit == like.unit) now.push_back(&run);
   if (good.empty()) {
     core::log_error(
         fmt::format("the history has no {} of {} at {} under the conditions of this "
@@ -168,7 +162,8 @@ int judge(const BisectOptions& options, const std::vector<Entry>& all,
     return is_bad ? kBad : kGood;
   }
   history::RankTails tails;
-  const auto verdict = history::judge(rule, observations(good), observations(now), 1, tails);
+  const auto verdict =
+      history::judge(rule, history::observations_of(good), history::observations_of(now), 1, tails);
   std::printf("psygen history: %s %s: %s: %s\n", options.figure.c_str(), change.c_str(),
               std::string(history::name_of(verdict.outcome)).c_str(), verdict.reason.c_str());
   switch (verdict.outcome) {
@@ -220,6 +215,7 @@ Words judge_words(const BisectOptions& options, const std::string& good, const s
 }  // namespace
 
 int judge_bisected_commit(const BisectOptions& options) {
+  const std::atomic<bool>& stop = stop_at_interrupt();
   const auto store = history::Store::open_to_read(options.history);
   const auto all = store ? store->read() : tl::unexpected(store.error());
   if (!all) {
@@ -236,7 +232,7 @@ int judge_bisected_commit(const BisectOptions& options) {
   fs::remove_all(pattern, ignored);
   if (!runs) {
     core::log_error(runs.error().message);
-    return runs.error().code == core::ErrorCode::kNotReady ? kSkip : kStop;
+    return runs.error().code == core::ErrorCode::kNotReady && !stop ? kSkip : kStop;
   }
   return judge(options, *all, *runs);
 }
@@ -255,6 +251,7 @@ int run_bisect(const BisectOptions& options) {
       good.c_str(), bad.c_str(), options.runs,
       fmt::format("{}", fmt::join(options.command, " ")).c_str(), options.figure.c_str(),
       options.test.c_str(), good.c_str(), options.history.c_str());
+  (void)stop_at_interrupt();  // git ends at Ctrl+C; the tree is reset all the same
   if (run_program({"git", "bisect", "start", bad, good}) != 0) return kFailed;
   Words words = {"git", "bisect", "run"};
   const Words step = judge_words(options, good, bad);

@@ -46,7 +46,7 @@ class Sampler {
 
   std::filesystem::path folder_;
   pid_t child_ = -1;
-  int commands_ = -1, answers_ = -1;  // ends of pipes
+  int control_ = -1;  // socket for commands and answers
 };
 
 }  // namespace psygen::frametest
