@@ -95,10 +95,6 @@ core::Result<void> check_outputs(const Arguments& a) {
   if (!a.picture.empty() && std::filesystem::path(a.picture).extension() != ".png")
     return core::invalid_argument(a.picture + ": the name of an image must end in .png");
   for (const std::filesystem::path& file : {std::filesystem::path(a.picture), a.game.record}) {
-    const std::filesystem::path folder = file.parent_path();
-    std::error_code error;
-    if (!folder.empty() && !std::filesystem::is_directory(folder, error))
-      return core::fail(core::ErrorCode::kIo, file.string() + ": its folder is missing");
     if (file.empty()) continue;
     if (auto ok = core::check_replaceable(file); !ok) return ok;
   }

@@ -146,7 +146,10 @@ void remove_partials_of(const std::filesystem::path& folder,
 }
 
 Result<void> check_replaceable(const std::filesystem::path& path) {
-  const char* const refusal = look_at(without_links(path)).refusal;
+  const std::filesystem::path target = without_links(path), folder = target.parent_path();
+  const char* refusal = look_at(target).refusal;
+  if (refusal == nullptr && access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) != 0)
+    refusal = errno == ENOENT ? "its folder is missing" : "cannot create a file in its folder";
   if (refusal == nullptr) return {};
   return fail(ErrorCode::kIo, fmt::format("{}: {}", path.string(), refusal));
 }

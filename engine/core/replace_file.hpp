@@ -48,7 +48,8 @@ class FileReplacement {
 };
 
 // Fails with kIo, and the path, for a file that cannot be replaced: one that is not regular, is
-// read-only, or is a mount point. For a check before long work.
+// read-only, is a mount point, or lies in a folder that is missing or cannot be written. For a
+// check before long work.
 Result<void> check_replaceable(const std::filesystem::path& path);
 // Replaces the whole content. Fails like FileReplacement::commit().
 Result<void> replace_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);

@@ -85,6 +85,8 @@ TEST(ReplaceFile, IsCheckedBeforeTheContentExists) {
   const TemporaryFolder folder;
   EXPECT_TRUE(check_replaceable(folder / "new"));
   EXPECT_FALSE(check_replaceable(folder.path()));
+  EXPECT_EQ(check_replaceable(folder / "none" / "new").error().message,
+            (folder / "none" / "new").string() + ": its folder is missing");
   EXPECT_EQ(folder.file_count(), 0U);
 }
 
