@@ -231,12 +231,26 @@ std::vector<double> mann_whitney_tail(std::size_t n, std::size_t m, std::size_t 
   return std::move(tail);
 }
 
-double mann_whitney(std::span<const double> a, std::span<const double> b) {
-  PSYGEN_ASSERT(!a.empty() && !b.empty() && std::max(a.size(), b.size()) <= 100, "values");
-  double above = 0;  // pairs in which b is larger, ties half
+double median(std::span<const double> values) {
+  PSYGEN_ASSERT(!values.empty(), "a median needs a value");
+  std::vector<double> sorted(values.begin(), values.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  if (sorted.size() % 2 == 1) return *middle;
+  return (*std::max_element(sorted.begin(), middle) + *middle) / 2;
+}
+
+double pairs_above(std::span<const double> a, std::span<const double> b) {
+  double above = 0;
   for (const double x : a)
     for (const double y : b)
       above += y > x ? 1 : y == x ? 0.5 : 0;
+  return above;
+}
+
+double mann_whitney(std::span<const double> a, std::span<const double> b) {
+  PSYGEN_ASSERT(!a.empty() && !b.empty() && std::max(a.size(), b.size()) <= 100, "values");
+  const double above = pairs_above(a, b);
   const auto pairs = static_cast<double>(a.size() * b.size());
   const auto seen = static_cast<std::size_t>(std::ceil(std::min(above, pairs - above)));
   return std::min(1.0, 2 * mann_whitney_tail(a.size(), b.size(), seen).back());

@@ -64,4 +64,11 @@ std::vector<double> mann_whitney_tail(std::size_t n, std::size_t m, std::size_t 
 // values each. O(n² m²) for n and m values.
 double mann_whitney(std::span<const double> a, std::span<const double> b);
 
+// Median of distances to the median, to standard deviation of a normal distribution.
+inline constexpr double kRobust = 1.4826;
+// The median; requires a value. O(n).
+double median(std::span<const double> values);
+// Number of pairs with the larger value in b, ties half. O(n m).
+double pairs_above(std::span<const double> a, std::span<const double> b);
+
 }  // namespace psygen::compare

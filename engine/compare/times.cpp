@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 using captures::Capture;
 using telemetry::Figure;
 
-constexpr double kRobust = 1.4826;      // median of distances to standard deviation
 constexpr double kMinDeviations = 1.5;  // a change must exceed this many deviations
 
 // A psygen run as a capture.
@@ -72,12 +71,6 @@ core::Result<void> add_file(const fs::path& file, TimesSide& side) {
   return {};
 }
 
-// telemetry::percentile() needs two values.
-double median_of(std::vector<double> values) {
-  std::ranges::sort(values);
-  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
-}
-
 // The value of a figure for each capture of a side; empty if some capture has none.
 std::vector<double> values_of(std::span<const Capture> side, Figure (*figure)(const Capture&)) {
   std::vector<double> values;
@@ -126,12 +119,12 @@ void judge(const std::vector<double>& a, const std::vector<double>& b, const Rul
   for (auto* logs : {&log_a, &log_b}) {
     for (double& value : *logs)
       value = std::log(value);
-    const double median = median_of(*logs);
+    const double middle = median(*logs);
     for (const double value : *logs)
-      residuals.push_back(std::abs(value - median));
+      residuals.push_back(std::abs(value - middle));
   }
-  const double spread = kRobust * median_of(residuals);
-  const double change = median_of(log_b) - median_of(log_a);
+  const double spread = kRobust * median(residuals);
+  const double change = median(log_b) - median(log_a);
   const double unseen = deviations_seen(std::max(a.size(), b.size())) * spread;
   figure.p = mann_whitney(a, b);
   figure.unseen_percent = 100 * std::expm1(std::max(unseen, std::log(kTimesFloor)));
@@ -153,8 +146,8 @@ TimesFigure figure_of(const Rule& rule, std::span<const Capture> a, std::span<co
                      .p = {},
                      .unseen_percent = {}};
   const std::vector<double> of_a = values_of(a, rule.figure), of_b = values_of(b, rule.figure);
-  if (!of_a.empty()) figure.a = median_of(of_a);
-  if (!of_b.empty()) figure.b = median_of(of_b);
+  if (!of_a.empty()) figure.a = median(of_a);
+  if (!of_b.empty()) figure.b = median(of_b);
   if (figure.a && figure.b && *figure.a > 0) figure.ratio = *figure.b / *figure.a;
   if (rule.gates && std::min(of_a.size(), of_b.size()) >= kFewestCaptures)
     judge(of_a, of_b, rule, figure);

@@ -18,15 +18,6 @@ double RankTails::p(std::size_t n, std::size_t m, double above) {
   return std::min(1.0, 2 * found->second[u]);
 }
 
-double median(std::span<const double> values) {
-  PSYGEN_ASSERT(!values.empty(), "a median needs a value");
-  std::vector<double> sorted(values.begin(), values.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  if (sorted.size() % 2 == 1) return *middle;
-  return (*std::max_element(sorted.begin(), middle) + *middle) / 2;
-}
-
 std::vector<double> mid_ranks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -40,14 +31,6 @@ std::vector<double> mid_ranks(std::span<const double> values) {
       ranks[order[i]] = rank;
   }
   return ranks;
-}
-
-double pairs_above(std::span<const double> a, std::span<const double> b) {
-  double above = 0;
-  for (const double x : a)
-    for (const double y : b)
-      above += y > x ? 1 : y == x ? 0.5 : 0;
-  return above;
 }
 
 double rank_correlation(std::span<const double> residuals, double margin) {

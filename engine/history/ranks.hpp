@@ -9,14 +9,18 @@
 #include <utility>
 #include <vector>
 
+#include "engine/compare/statistics.hpp"
+
 namespace psygen::history {
+
+using compare::kRobust;
+using compare::median;
+using compare::pairs_above;
 
 // Runs that each side of a change needs.
 inline constexpr std::size_t kFewestRuns = 5;
 // A change has p <= 1 %, and at least 1.5 robust standard deviations of a run.
 inline constexpr double kSignificant = 0.01, kMinSpreads = 1.5;
-// Median of distances to the median, to standard deviation of a normal distribution.
-inline constexpr double kRobust = 1.4826;
 
 // Exact distributions of Mann and Whitney's U, computed once for each pair of sizes.
 class RankTails {
@@ -29,14 +33,8 @@ class RankTails {
   std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> tails_;
 };
 
-// The median; requires a value. O(n).
-double median(std::span<const double> values);
-
 // Ranks from −(n − 1)/2 to (n − 1)/2; equal values share their mean rank. O(n log n).
 std::vector<double> mid_ranks(std::span<const double> values);
-
-// Number of pairs with the larger value in b, ties half. O(n m).
-double pairs_above(std::span<const double> a, std::span<const double> b);
 
 // Lag-1 autocorrelation of the mid-ranks of residuals less `margin`, between 0 and 0.8; 0 below 20
 // values.
