@@ -9,6 +9,7 @@
 #include "engine/app/gui.hpp"
 #include "engine/app/loading.hpp"
 #include "engine/app/plugin_call.hpp"
+#include "engine/app/plugin_systems.hpp"
 #include "engine/app/virtual_frame.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/cancellation.hpp"
@@ -32,7 +33,6 @@
 #include "engine/scene/systems.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/telemetry/frame_log.hpp"
-#include "engine/telemetry/own_figures.hpp"
 #include "engine/telemetry/trace_log.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/world.hpp"
@@ -65,30 +65,10 @@ core::Result<void> set_hour(const SessionOptions& options, world::World& world) 
   return {};
 }
 
-// The times of systems and the game's figures are columns of one file.
-core::Result<void> check_columns(scene::Scene& scene) {
-  for (const std::string& system : scene.system_names())
-    for (const telemetry::FigureInfo& figure : scene.figures().infos())
-      if (system + "_ms" == "figures." + figure.name)
-        return core::invalid_argument(
-            fmt::format("the figure '{}' and the system '{}' have the same column of frames.csv",
-                        figure.name, system));
-  return {};
-}
-
-core::Result<models::Registry> make_registry(const std::vector<Plugin>& plugins) {
-  models::Registry registry = models::make_standard_registry();
-  if (auto ok = register_models(plugins, registry); !ok) return tl::unexpected(ok.error());
-  return registry;
-}
-
 }  // namespace
 
-core::Result<void> register_models(const std::vector<Plugin>& plugins, models::Registry& registry) {
-  return call_plugins(plugins, &Plugin::register_models, "register_models", registry);
-}
-
-Session::Session(SessionOptions options) : options_(std::move(options)) {}
+Session::Session(SessionOptions options)
+    : options_(std::move(options)), plugin_systems_(std::make_unique<PluginSystems>()) {}
 
 Session::~Session() = default;
 
@@ -324,42 +304,17 @@ void Session::take_events() {
   if (window_->should_close()) closed_ = true;
 }
 
-// Hooks of a step are systems: they run however the session is driven, and their cost is measured.
 core::Result<void> Session::add_systems() {
-  scene::Systems systems = scene_->systems();
   const auto simulates = [](const Plugin& plugin) {
     return plugin.add_systems != nullptr || plugin.on_step != nullptr;
   };
   if (std::ranges::any_of(options_.plugins, simulates)) {
+    const scene::Systems systems = scene_->systems();
     systems.frame.provide(actions_);
     systems.step.provide(actions_);
     systems.step.add("actions", [this](input::Actions& actions) { step_actions(actions); });
   }
-  // Gives the systems without an owner to a plugin; empty: their names need none.
-  const auto claim = [&](const std::string& owner) {
-    for (const ecs::Schedule* schedule : {&systems.frame, &systems.step}) {
-      for (const ecs::SystemInfo& system : schedule->systems())
-        owners_.try_emplace(system.name, owner);
-    }
-  };
-  claim({});
-  for (const Plugin& plugin : options_.plugins) {
-    if (plugin.add_systems) {
-      const auto ok =
-          call_plugin(plugin, "add_systems", [&] { return plugin.add_systems(systems); });
-      if (!ok) return ok;
-      claim(plugin.name);
-    }
-    if (!plugin.on_step) continue;
-    systems.step.add(plugin.name + " on_step",
-                     [this, &plugin](const scene::FixedStep& step, ecs::World&) {
-                       plugin.on_step(*this, step.step_s);
-                     });
-    claim({});
-  }
-  scene_->figures().close();
-  if (auto ok = scene_->arrange(); !ok) return ok;
-  return check_columns(*scene_);
+  return plugin_systems_->add(options_.plugins, *this);
 }
 
 void Session::step_actions(input::Actions& actions) {
@@ -449,23 +404,11 @@ core::Result<void> Session::draw_frame(const core::CameraPose& pose, double dt_s
   const auto ticked = scene.tick();
   scene.input().gui = nullptr;
   scene.set_now(scene.clock().now_s + dt_s);
-  if (!ticked) return tl::unexpected(with_plugin(ticked.error()));
+  if (!ticked) return tl::unexpected(plugin_systems_->with_plugin(ticked.error(), scene));
   if (auto ok = call_plugins(options_.plugins, &Plugin::on_frame, "on_frame", *this, dt_s); !ok)
     return ok;
   tell_governor((core::monotonic_seconds() - start_s) * 1000.0, saved_.size() > pictures);
   return {};
-}
-
-// Names the plugin whose system threw, if one did.
-core::Error Session::with_plugin(core::Error error) {
-  const scene::Systems systems = scene_->systems();
-  for (const std::string& system : {systems.step.threw(), systems.frame.threw()}) {
-    const auto owner = owners_.find(system);
-    if (owner == owners_.end() || owner->second.empty()) continue;
-    error.message = fmt::format("plugin {}: {}", owner->second, error.message);
-    break;
-  }
-  return error;
 }
 
 core::Result<image::Image> Session::picture() {

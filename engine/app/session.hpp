@@ -8,7 +8,6 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,6 +45,7 @@ namespace psygen::app {
 
 class Gui;
 class Loading;
+class PluginSystems;
 
 class Session {
  public:
@@ -164,7 +164,6 @@ class Session {
   void resize(core::Extent size);
   core::Result<void> draw_frame(const core::CameraPose& pose, double dt_s);
   core::Result<void> draw_gui(double dt_s);
-  core::Error with_plugin(core::Error error);
   void tell_governor(double tick_ms, bool took_pictures);
   core::Result<void> add_systems();
   void step_actions(input::Actions& actions);
@@ -177,8 +176,8 @@ class Session {
   std::unique_ptr<telemetry::TraceLog> trace_;
   input::Actions actions_;
   std::optional<input::Replay> replay_;
-  std::map<std::string, std::string> owners_;  // names of plugins by system; empty: the engine
-  std::optional<core::Error> failure_;         // of a tick; the session is over
+  std::unique_ptr<PluginSystems> plugin_systems_;
+  std::optional<core::Error> failure_;  // of a tick; the session is over
   std::unique_ptr<scene::Scene> scene_;
   std::unique_ptr<Gui> gui_;                // null until it is used
   platform::InputState all_input_, input_;  // the latter without input used by ImGui

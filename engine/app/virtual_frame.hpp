@@ -29,7 +29,7 @@ inline double virtual_frame_ms(std::uint64_t triangles, std::uint32_t draws, cor
   const auto width = static_cast<double>(size.width), height = static_cast<double>(size.height);
   return kVirtualFrameMs + kVirtualTriangleMs * static_cast<double>(triangles) +
          kVirtualDrawMs * static_cast<double>(draws) +
-         kVirtualPixelMs * width * height * resolution * resolution;
+         kVirtualPixelMs * (width * height * resolution * resolution);
 }
 
 inline constexpr double kGapMs = 5000, kGapRatio = 20, kSuspendedSeconds = 0.05;
