@@ -191,6 +191,8 @@ std::span<const float> Scene::system_ms() const {
 void Scene::count_work(std::uint64_t (*read)()) {
   for (ecs::Schedule* schedule : {&state_->tick, &state_->simulation.systems})
     schedule->count_work(read);
+  state_->counts_work = read != nullptr;
+  state_->system_work.clear();
 }
 std::span<const std::uint64_t> Scene::system_work() const {
   return state_->system_work;

@@ -150,7 +150,7 @@ class Scene {
   // Milliseconds of each system in the last tick, in the order of system_names().
   std::span<const float> system_ms() const;
   // Counts the work of each system from the next tick on (ecs::WorkCounter); null ends it. Then the
-  // counts of the last tick, in the order of system_names(): all 0 if nothing is counted.
+  // counts of the last tick, in the order of system_names(): none if nothing is counted.
   void count_work(std::uint64_t (*read)());
   std::span<const std::uint64_t> system_work() const;
   // The systems of the tick in their order, then those of fixed steps as "step <name>".

@@ -59,9 +59,10 @@ struct State {
   Telemetry telemetry;
   telemetry::OwnFigures figures;  // of the game
   telemetry::Marks marks;
-  // Of the last tick, in the order of system_names(): times, and work if it is counted.
+  // Of the last tick, in the order of system_names(): times, and work if it is counted; else empty.
   std::vector<float> system_ms;
   std::vector<std::uint64_t> system_work;
+  bool counts_work = false;
   synthesis::CalibrationReport calibration;
   // Types of earlier worlds that objects or hung modelers still use.
   std::vector<models::Registry> retired_types;

@@ -159,7 +159,7 @@ void tick(State& state) {
   if (state.settings.modelers_yield) state.supply.lower_priority();
   run_systems(state);
   measure_systems(state);
-  gather_work(state);
+  if (state.counts_work) gather_work(state);
   if (state.trace.log != nullptr) trace_tick(state);
   ++state.clock.tick;
 }
