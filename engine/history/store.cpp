@@ -81,11 +81,10 @@ core::Result<void> make_file(const std::filesystem::path& file) {
   return {};
 }
 
-// Limits what a file that somebody else wrote can do.
-core::Result<void> distrust(Database& database) {
+core::Result<void> configure(Database& database) {
   sqlite3_busy_timeout(database.get(), kPatienceMs);
-  sqlite3_db_config(database.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-  return database.run("PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON", kRead);
+  sqlite::distrust(database);
+  return database.run("PRAGMA cell_size_check=ON", kRead);
 }
 
 }  // namespace
@@ -114,11 +113,7 @@ core::Result<void> Store::check_format() {
   const auto size = std::filesystem::file_size(database_.file(), error);
   if (!error && size < static_cast<std::uintmax_t>(*pages * *bytes))
     return core::fail(ErrorCode::kParse, name + ": the file is damaged: its end is missing");
-  auto check = database_.prepare("PRAGMA quick_check(1)", kRead);
-  if (!check) return tl::unexpected(check.error());
-  if (check->step() != SQLITE_ROW) return database_.error(kRead);
-  if (check->text(0) != "ok") return core::fail(ErrorCode::kParse, name + ": the file is damaged");
-  return {};
+  return sqlite::check_pages(database_);
 }
 
 core::Result<void> Store::make_tables() {
@@ -143,7 +138,7 @@ core::Result<Store> Store::open(const std::filesystem::path& file) {
     if (auto ok = make_file(file); !ok) return tl::unexpected(ok.error());
   auto database = Database::open(file);
   if (!database) return tl::unexpected(database.error());
-  if (auto ok = distrust(*database); !ok) return tl::unexpected(ok.error());
+  if (auto ok = configure(*database); !ok) return tl::unexpected(ok.error());
   Store store(std::move(*database));
   const auto tables = store.number(kCountTables);
   if (!tables) return tl::unexpected(tables.error());
@@ -156,7 +151,7 @@ core::Result<Store> Store::open(const std::filesystem::path& file) {
 core::Result<Store> Store::open_to_read(const std::filesystem::path& file) {
   auto database = Database::open_to_read(file);
   if (!database) return tl::unexpected(database.error());
-  if (auto ok = distrust(*database); !ok) return tl::unexpected(ok.error());
+  if (auto ok = configure(*database); !ok) return tl::unexpected(ok.error());
   Store store(std::move(*database));
   if (auto ok = store.check_format(); !ok) return tl::unexpected(ok.error());
   return store;

@@ -130,18 +130,6 @@ core::Result<void> check_header(const Database& database) {
   return {};
 }
 
-// Sets SQLite up for a file that is not trusted.
-void distrust(const Database& database) {
-  sqlite3* raw = database.get();
-  sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-  for (const int unsafe :
-       {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW,
-        SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, SQLITE_DBCONFIG_DQS_DDL, SQLITE_DBCONFIG_DQS_DML})
-    sqlite3_db_config(raw, unsafe, 0, nullptr);
-  sqlite3_limit(raw, SQLITE_LIMIT_ATTACHED, 0);
-  sqlite3_limit(raw, SQLITE_LIMIT_SQL_LENGTH, 1 << 20);
-}
-
 // Takes the lock, which also rolls back the unfinished transaction of a killed process. Checks the
 // files that take part in it first, and the header that it has restored afterwards.
 core::Result<void> lock(Database& database) {
@@ -183,19 +171,6 @@ core::Result<void> configure(Database& database) {
       "PRAGMA cache_size=-16384; PRAGMA secure_delete=OFF; PRAGMA cell_size_check=ON;"
       "PRAGMA mmap_size=0; PRAGMA journal_mode=PERSIST; PRAGMA journal_size_limit=16777216;",
       "cannot be opened");
-}
-
-// The tables' own CHECK constraints stay out of it: their expressions may take hours.
-core::Result<void> check_pages(Database& database) {
-  if (auto ok = database.run("PRAGMA ignore_check_constraints=ON", "cannot be read"); !ok)
-    return ok;
-  auto check = database.prepare("PRAGMA quick_check(1)", "cannot be read");
-  if (!check) return tl::unexpected(check.error());
-  if (check->step() != SQLITE_ROW) return database.error("cannot be read");
-  if (check->text(0) != "ok")
-    return refuse(database.file(), "the file is damaged: its pages contradict each other");
-  check->reset();
-  return database.run("PRAGMA ignore_check_constraints=OFF", "cannot be read");
 }
 
 core::Result<void> check_regular(const std::filesystem::path& file) {

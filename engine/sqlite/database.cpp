@@ -48,16 +48,8 @@ core::Result<std::filesystem::path> absolute_path(const std::filesystem::path& f
 }
 
 core::Result<Database> Database::open(const std::filesystem::path& file) {
-  sqlite3* raw = nullptr;
-  // An absolute path, because SQLite takes names that begin with "file:" for URIs.
-  const auto name = absolute_path(file);
-  if (!name) return tl::unexpected(name.error());
-  const int code =
-      sqlite3_open_v2(name->c_str(), &raw,
-                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
-  Database database(file, raw);
-  if (code != SQLITE_OK) return database.error("cannot be opened");
-  if (sqlite3_db_readonly(raw, "main") != 0)
+  auto database = open_to_read(file);
+  if (database && sqlite3_db_readonly(database->get(), "main") != 0)
     return core::fail(core::ErrorCode::kIo,
                       fmt::format("{}: the file is read-only", file.string()));
   return database;
@@ -65,6 +57,7 @@ core::Result<Database> Database::open(const std::filesystem::path& file) {
 
 core::Result<Database> Database::open_to_read(const std::filesystem::path& file) {
   sqlite3* raw = nullptr;
+  // An absolute path, because SQLite takes names that begin with "file:" for URIs.
   const auto name = absolute_path(file);
   if (!name) return tl::unexpected(name.error());
   const int code =
@@ -164,6 +157,32 @@ tl::unexpected<core::Error> Database::error(std::string_view action) const {
     default:
       return sentence(kIo, core::shown(sqlite3_errmsg(get()), 200));
   }
+}
+
+void distrust(const Database& database) {
+  sqlite3* raw = database.get();
+  sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  for (const int unsafe :
+       {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW,
+        SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, SQLITE_DBCONFIG_DQS_DDL, SQLITE_DBCONFIG_DQS_DML})
+    sqlite3_db_config(raw, unsafe, 0, nullptr);
+  sqlite3_limit(raw, SQLITE_LIMIT_ATTACHED, 0);
+  sqlite3_limit(raw, SQLITE_LIMIT_SQL_LENGTH, 1 << 20);
+}
+
+// The tables' own CHECK constraints stay out of it: their expressions may take hours.
+core::Result<void> check_pages(Database& database) {
+  if (auto ok = database.run("PRAGMA ignore_check_constraints=ON", "cannot be read"); !ok)
+    return ok;
+  auto check = database.prepare("PRAGMA quick_check(1)", "cannot be read");
+  if (!check) return tl::unexpected(check.error());
+  if (check->step() != SQLITE_ROW) return database.error("cannot be read");
+  if (check->text(0) != "ok")
+    return core::fail(core::ErrorCode::kParse,
+                      fmt::format("{}: the file is damaged: its pages contradict each other",
+                                  database.file().string()));
+  check->reset();
+  return database.run("PRAGMA ignore_check_constraints=OFF", "cannot be read");
 }
 
 }  // namespace psygen::sqlite

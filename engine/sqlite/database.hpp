@@ -88,4 +88,11 @@ class Database {
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> database_;
 };
 
+// Sets SQLite up for a file that somebody else may have written: without triggers, views, attached
+// files and functions of its schema.
+void distrust(const Database& database);
+// Fails with kParse if the pages contradict each other, and like Database::error(). Reads the whole
+// file.
+core::Result<void> check_pages(Database& database);
+
 }  // namespace psygen::sqlite
