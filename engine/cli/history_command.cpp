@@ -2,6 +2,7 @@
 // (docs/frame-tests.md, "History").
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -56,6 +57,7 @@ class HistoryCommand final : public Command {
   int bisect();
   int judge_commit();
   core::Result<std::vector<history::Entry>> read() const;
+  core::Result<void> check_output(const fs::path& file) const;
   core::Result<void> write_page(const history::Shown& shown) const;
 
   fs::path file_ = "history.sqlite", html_, from_, to_;
@@ -198,13 +200,20 @@ int HistoryCommand::add() {
   return print(text);
 }
 
+// Outputs never replace the history.
+core::Result<void> HistoryCommand::check_output(const fs::path& file) const {
+  const std::array inputs{file_};
+  if (auto ok = telemetry::check_no_input(file, inputs); !ok) return ok;
+  return telemetry::check_output_file(file);
+}
+
 core::Result<void> HistoryCommand::write_page(const history::Shown& shown) const {
   // Reports were added by paths from the current folder.
   std::error_code error;
   const fs::path folder = fs::absolute(html_, error).parent_path();
   std::string base = fs::current_path(error).lexically_relative(folder).string();
   if (base == ".") base.clear();
-  return telemetry::check_output_file(html_).and_then(
+  return check_output(html_).and_then(
       [&] { return core::replace_file(html_, history::to_html(shown, file_.string(), base)); });
 }
 
@@ -223,7 +232,9 @@ int HistoryCommand::check() {
     core::log_error("--json and --annotations both print; give --annotations a file: github:FILE");
     return kUsage;
   }
-  if (auto ok = words_.check(); !ok) return fail_with(ok.error());
+  for (const fs::path& file : {words_.markdown, words_.annotations.file})
+    if (auto ok = file.empty() ? core::Result<void>() : check_output(file); !ok)
+      return fail_with(ok.error());
   const auto entries = read();
   if (!entries) return fail_with(entries.error());
   const auto result = history::check(*entries, check_);
@@ -239,7 +250,7 @@ int HistoryCommand::check() {
 }
 
 int HistoryCommand::rename() {
-  auto store = history::Store::open(file_);
+  auto store = history::Store::open_to_read(file_);  // makes no new one
   if (!store) return fail_with(store.error());
   const auto count = store->rename(names_[0], names_[1]);
   if (!count) return fail_with(count.error());
@@ -265,8 +276,7 @@ int HistoryCommand::export_entries() {
       history::to_text(*entries, format_ == "csv" ? history::ExchangeFormat::kCsv
                                                   : history::ExchangeFormat::kJsonLines);
   if (to_.empty()) return print(text);
-  const auto ok =
-      telemetry::check_output_file(to_).and_then([&] { return core::replace_file(to_, text); });
+  const auto ok = check_output(to_).and_then([&] { return core::replace_file(to_, text); });
   return ok ? int{kOk} : fail_with(ok.error());
 }
 

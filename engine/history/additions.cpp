@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <tuple>
 
 #include "engine/captures/capture.hpp"
@@ -296,7 +297,7 @@ core::Result<std::vector<RunFigures>> read_file(const fs::path& file, AddOptions
 }
 
 // Summaries and outputs of callgrind in a folder, at any depth.
-std::vector<fs::path> files_of_runs(const fs::path& folder) {
+core::Result<std::vector<fs::path>> files_of_runs(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> files;
   for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
@@ -305,6 +306,9 @@ std::vector<fs::path> files_of_runs(const fs::path& folder) {
     if (name == "summary.json" || name.ends_with(".callgrind") || name.starts_with("callgrind.out"))
       files.push_back(it->path());
   }
+  if (error)
+    return core::fail(core::ErrorCode::kIo,
+                      fmt::format("{}: {}", folder.string(), error.message()));
   std::ranges::sort(files);
   return files;
 }
@@ -313,10 +317,11 @@ core::Result<std::vector<RunFigures>> read_path(const fs::path& path, const AddO
                                                 std::vector<std::string>& notes) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return read_file(path, options, notes);
-  const std::vector<fs::path> files = files_of_runs(path);
-  if (files.empty()) return read_captures(path, options, notes);
+  const auto files = files_of_runs(path);
+  if (!files) return tl::unexpected(files.error());
+  if (files->empty()) return read_captures(path, options, notes);
   std::vector<RunFigures> runs;
-  for (const fs::path& file : files) {
+  for (const fs::path& file : *files) {
     AddOptions with_name = options;
     const bool is_summary = file.filename() == "summary.json";
     if (with_name.test.empty() && is_summary) with_name.test = test_of(path, file.parent_path());
@@ -403,7 +408,7 @@ core::Result<RunFigures> parse_summary(std::string_view summary_json, const std:
 core::Result<Additions> read_additions(std::span<const fs::path> paths, const AddOptions& options) {
   Additions additions;
   // By test, revision and all fingerprints of a run, in the order of the first run; then by figure.
-  std::map<std::tuple<std::string, std::string, std::string>, std::size_t> jobs;
+  std::map<std::tuple<std::string, std::string, std::set<std::string>>, std::size_t> jobs;
   std::vector<std::vector<Entry>> entries_of_jobs;
   for (const fs::path& path : paths) {
     auto runs = read_path(path, options, additions.notes);
@@ -412,8 +417,11 @@ core::Result<Additions> read_additions(std::span<const fs::path> paths, const Ad
     for (RunFigures& run : *runs) {
       if (run.entries.empty()) continue;
       const Entry& first = run.entries.front();
-      const auto [job, is_new] =
-          jobs.try_emplace({first.test, first.revision, first.fingerprint}, entries_of_jobs.size());
+      std::set<std::string> fingerprints;
+      for (const Entry& entry : run.entries)
+        fingerprints.insert(entry.fingerprint);
+      const auto [job, is_new] = jobs.try_emplace(
+          {first.test, first.revision, std::move(fingerprints)}, entries_of_jobs.size());
       if (is_new) entries_of_jobs.emplace_back();
       std::ranges::move(run.entries, std::back_inserter(entries_of_jobs[job->second]));
     }

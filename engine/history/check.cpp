@@ -15,40 +15,13 @@
 namespace psygen::history {
 namespace {
 
-constexpr std::size_t kSilentRevisions = 10;
-
-std::vector<Observation> observations(std::span<const Entry* const> entries) {
-  std::vector<Observation> result;
-  for (const Entry* entry : entries) {
-    const bool usable = entry->reference && *entry->reference > 0;
-    result.push_back({.value = *entry->value,
-                      .reference = usable ? entry->reference : std::nullopt,
-                      .work = entry->work});
-  }
-  return result;
-}
+constexpr std::ptrdiff_t kSilentRevisions = 10;
 
 double median_value(std::span<const Entry* const> entries) {
   std::vector<double> values;
   for (const Entry* entry : entries)
     values.push_back(*entry->value);
   return values.empty() ? 0 : median(values);
-}
-
-// A sentence for each kind of entry that has none of these words.
-core::Result<void> check_words(std::span<const Entry> entries,
-                               const std::vector<std::string>& words, std::string Entry::*field,
-                               const char* what) {
-  std::set<std::string> known;
-  for (const Entry& entry : entries)
-    known.insert(entry.*field);
-  const std::vector<std::string> list(known.begin(), known.end());
-  for (const std::string& word : words)
-    if (!known.contains(word))
-      return core::invalid_argument(fmt::format("the history has no {} '{}'{}", what,
-                                                core::shown(word, 200),
-                                                core::suggestion(word, list)));
-  return {};
 }
 
 core::Result<void> check_options(std::span<const Entry> entries, const CheckOptions& options) {
@@ -98,10 +71,6 @@ bool gates(const Series& series, const CheckOptions& options) {
   return std::ranges::find(options.figures, series.first->figure) != options.figures.end();
 }
 
-bool is_chosen(const std::vector<std::string>& tests, const std::string& test) {
-  return tests.empty() || std::ranges::find(tests, test) != tests.end();
-}
-
 // The revision of the last entry of each test.
 std::map<std::string, const Entry*> last_entries(std::span<const Entry> entries) {
   std::map<std::string, const Entry*> last;
@@ -135,6 +104,40 @@ void conclude(CheckResult& result) {
 
 }  // namespace
 
+std::vector<Observation> observations_of(std::span<const Entry* const> entries) {
+  std::vector<Observation> result;
+  for (const Entry* entry : entries) {
+    const bool usable = entry->reference && *entry->reference > 0;
+    result.push_back({.value = *entry->value,
+                      .reference = usable ? entry->reference : std::nullopt,
+                      .work = entry->work});
+  }
+  return result;
+}
+
+bool is_usable(const Entry& entry, const FigureRule& rule) {
+  return entry.value && (!rule.logarithms || *entry.value > 0);
+}
+
+core::Result<void> check_words(std::span<const Entry> entries,
+                               const std::vector<std::string>& words, std::string Entry::*field,
+                               const char* what) {
+  std::set<std::string> known;
+  for (const Entry& entry : entries)
+    known.insert(entry.*field);
+  const std::vector<std::string> list(known.begin(), known.end());
+  for (const std::string& word : words)
+    if (!known.contains(word))
+      return core::invalid_argument(fmt::format("the history has no {} '{}'{}", what,
+                                                core::shown(word, 200),
+                                                core::suggestion(word, list)));
+  return {};
+}
+
+bool is_chosen(const std::vector<std::string>& tests, const std::string& test) {
+  return tests.empty() || std::ranges::find(tests, test) != tests.end();
+}
+
 std::vector<Series> series_of(std::span<const Entry> entries) {
   std::map<std::tuple<std::string_view, std::string_view, std::string_view, std::string_view>,
            Series>
@@ -145,8 +148,7 @@ std::vector<Series> series_of(std::span<const Entry> entries) {
       series.first = &entry;
       series.rule = rule_of(entry.figure, entry.unit);
     }
-    const bool usable = entry.value && (!series.rule.logarithms || *entry.value > 0);
-    if (usable)
+    if (is_usable(entry, series.rule))
       series.entries.push_back(&entry);
     else
       ++series.left_out;
@@ -165,13 +167,7 @@ std::vector<ChangePoint> changes_of(const Series& series, RankTails& tails) {
       rule.has_reference && std::ranges::all_of(series.entries, [](const Entry* entry) {
         return entry->reference && *entry->reference > 0;
       });
-  std::vector<double> values;
-  for (const Entry* entry : series.entries) {
-    const double value = rule.logarithms ? std::log(*entry->value) : *entry->value;
-    const double speed = rule.more_is_worse ? 1.0 : -1.0;
-    values.push_back(ratio ? value - speed * std::log(*entry->reference) : value);
-  }
-  return change_points(values, rule.floor, tails);
+  return change_points(scaled(rule, observations_of(series.entries), ratio), rule.floor, tails);
 }
 
 std::vector<std::string> remarks_on(std::span<const Entry> entries,
@@ -193,8 +189,10 @@ std::vector<std::string> remarks_on(std::span<const Entry> entries,
                       name.first, name.second, fmt::join(all, ", ")));
   std::map<std::string_view, std::pair<std::int64_t, std::int64_t>> clocks;  // order, time
   std::set<std::string_view> wrong;
-  std::map<std::string_view, std::set<std::string_view>> silent;  // by test: revisions since
+  std::map<std::string_view, std::int64_t> last_of;  // order of a revision's last entry
   for (const Entry& entry : entries) {
+    std::int64_t& last = last_of[entry.revision];
+    last = std::max(last, entry.order);
     auto& [order, time] = clocks[entry.test];
     if (entry.order > order && entry.time < time && wrong.insert(entry.test).second)
       remarks.push_back(
@@ -204,16 +202,15 @@ std::vector<std::string> remarks_on(std::span<const Entry> entries,
     order = entry.order;
     time = entry.time;
   }
-  for (const Entry& entry : entries) {
-    for (const auto& [test, clock] : clocks)
-      if (entry.order > clock.first) silent[test].insert(entry.revision);
-  }
-  for (const auto& [test, revisions] : silent)
-    if (revisions.size() >= kSilentRevisions)
+  for (const auto& [test, clock] : clocks) {
+    const auto later = std::ranges::count_if(
+        last_of, [order = clock.first](const auto& each) { return each.second > order; });
+    if (later >= kSilentRevisions)
       remarks.push_back(
           fmt::format("{}: no run in the last {} revisions; if it was renamed: psygen "
                       "history rename {} NEW",
-                      test, revisions.size(), test));
+                      test, later, test));
+  }
   return remarks;
 }
 
@@ -243,10 +240,11 @@ core::Result<CheckResult> check(std::span<const Entry> entries, const CheckOptio
                         .fingerprint = series->first->fingerprint,
                         .gates = gates(*series, options),
                         .rule = series->rule,
-                        .verdict = judge(series->rule, observations(parts.before),
-                                         observations(parts.after), gating, tails),
-                        .before = median_value(parts.before),
-                        .after = median_value(parts.after)};
+                        .verdict = judge(series->rule, observations_of(parts.before),
+                                         observations_of(parts.after), gating, tails)};
+    // Those that were compared.
+    figure.before = median_value(std::span(parts.before).last(figure.verdict.before));
+    figure.after = median_value(std::span(parts.after).first(figure.verdict.after));
     if (options.confirm) await_second_look(figure.verdict);
     if (parts.before.empty()) figure.verdict.reason += new_fingerprint(*series, all);
     result.figures.push_back(std::move(figure));

@@ -25,6 +25,19 @@ struct Series {
   std::size_t left_out = 0;  // without a value, or 0 and below on a scale of logarithms
 };
 
+// True if series use the entry: it has a value, above 0 on a scale of logarithms.
+bool is_usable(const Entry& entry, const FigureRule& rule);
+// What the gate compares, of usable entries. A reference of 0 and below is none.
+std::vector<Observation> observations_of(std::span<const Entry* const> entries);
+
+// Fails with kInvalidArgument if no entry has one of the words in its field, which messages call
+// `what`, and suggests the nearest.
+core::Result<void> check_words(std::span<const Entry> entries,
+                               const std::vector<std::string>& words, std::string Entry::*field,
+                               const char* what);
+// True if a name is one of these, or there are none.
+bool is_chosen(const std::vector<std::string>& names, const std::string& name);
+
 // All series, by test, figure, fingerprint and unit. O(n log n).
 std::vector<Series> series_of(std::span<const Entry> entries);
 

@@ -18,19 +18,6 @@ double spreads_seen(std::size_t before) {
   return before >= 35 ? 2.7 : before >= 20 ? 2.9 : before >= 10 ? 3.1 : 4.0;
 }
 
-// The figure, or its ratio to the reference load, on the scale of the rule. Observations without a
-// reference have no ratio.
-std::vector<double> scaled(const FigureRule& rule, Observations runs, bool ratio) {
-  std::vector<double> values;
-  for (const Observation& run : runs) {
-    if (ratio && !run.reference) continue;
-    const double value = rule.logarithms ? std::log(run.value) : run.value;
-    const double speed = rule.more_is_worse ? 1.0 : -1.0;  // a rate falls on a slower machine
-    values.push_back(ratio ? value - speed * std::log(*run.reference) : value);
-  }
-  return values;
-}
-
 std::optional<double> median_work(Observations runs) {
   std::vector<double> models;
   for (const Observation& run : runs)
@@ -45,10 +32,6 @@ Observations recent(const FigureRule& rule, Observations before, RankTails& tail
   const auto changes = change_points(scaled(rule, before, false), rule.floor, tails);
   if (changes.empty()) return before;
   return before.subspan(changes.back().at);
-}
-
-std::string more_or_less(const FigureRule& rule, double effect) {
-  return change_text(rule, effect);
 }
 
 struct Look {
@@ -76,10 +59,10 @@ Look look_at(const FigureRule& rule, Observations before, Observations after, do
 
 std::string found_sentence(const FigureRule& rule, const Look& look, int looks) {
   std::string text =
-      fmt::format("{} (p {:.2g}", more_or_less(rule, look.figure.effect), look.figure.p);
+      fmt::format("{} (p {:.2g}", change_text(rule, look.figure.effect), look.figure.p);
   if (look.ratio)
     text += fmt::format("; as ratio to the reference load {}, p {:.2g}",
-                        more_or_less(rule, look.ratio->effect), look.ratio->p);
+                        change_text(rule, look.ratio->effect), look.ratio->p);
   else if (rule.has_reference)
     text += "; no reference load was recorded, so a slower machine looks the same";
   return text + (looks == 2 ? "), confirmed by a second look" : "), one look");
@@ -88,12 +71,12 @@ std::string found_sentence(const FigureRule& rule, const Look& look, int looks) 
 std::string undecided_sentence(const FigureRule& rule, const Look& look, double unseen) {
   if (look.ratio && look.figure.found != 0 && look.ratio->found == 0)
     return fmt::format("{}, but not as ratio to the reference load ({}): the machine may differ",
-                       more_or_less(rule, look.figure.effect),
-                       more_or_less(rule, look.ratio->effect));
+                       change_text(rule, look.figure.effect),
+                       change_text(rule, look.ratio->effect));
   if (look.ratio && look.figure.found == 0 && look.ratio->found != 0)
     return fmt::format("only the ratio to the reference load changed ({}; the figure {})",
-                       more_or_less(rule, look.ratio->effect),
-                       more_or_less(rule, look.figure.effect));
+                       change_text(rule, look.ratio->effect),
+                       change_text(rule, look.figure.effect));
   if (look.ratio && look.figure.found != look.ratio->found)
     return "the figure and its ratio to the reference load changed in opposite directions";
   return rule.logarithms
@@ -143,6 +126,17 @@ std::string different_work(Observations before, Observations after) {
 }
 
 }  // namespace
+
+std::vector<double> scaled(const FigureRule& rule, Observations runs, bool ratio) {
+  std::vector<double> values;
+  for (const Observation& run : runs) {
+    if (ratio && !run.reference) continue;
+    const double value = rule.logarithms ? std::log(run.value) : run.value;
+    const double speed = rule.more_is_worse ? 1.0 : -1.0;  // a rate falls on a slower machine
+    values.push_back(ratio ? value - speed * std::log(*run.reference) : value);
+  }
+  return values;
+}
 
 std::string_view name_of(Outcome outcome) {
   constexpr std::array<std::string_view, 6> kNames = {"same",      "worse",          "better",

@@ -55,6 +55,10 @@ struct GateVerdict {
   int looks = 1;
 };
 
+// The figure, or its ratio to the reference load, on the scale of the rule. Observations without a
+// reference have no ratio.
+std::vector<double> scaled(const FigureRule& rule, std::span<const Observation> runs, bool ratio);
+
 // Judges the observations `after` against those `before`, both in the order of adding. Of `before`,
 // at most the last kMaxBefore count, from the last change in them on. `figures` is the number of
 // figures that are judged at once: with 20 runs before, all together have 1 % of false alarms.

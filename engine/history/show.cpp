@@ -5,26 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "engine/core/nearest_word.hpp"
-#include "engine/core/utf8.hpp"
-
 namespace psygen::history {
 namespace {
-
-core::Result<void> check_names(const std::set<std::string>& known,
-                               const std::vector<std::string>& names, const char* what) {
-  const std::vector<std::string> list(known.begin(), known.end());
-  for (const std::string& name : names)
-    if (!known.contains(name))
-      return core::invalid_argument(fmt::format("the history has no {} '{}'{}", what,
-                                                core::shown(name, 200),
-                                                core::suggestion(name, list)));
-  return {};
-}
-
-bool is_chosen(const std::vector<std::string>& names, const std::string& name) {
-  return names.empty() || std::ranges::find(names, name) != names.end();
-}
 
 double median_of(const Series& series) {
   std::vector<double> values;
@@ -38,13 +20,8 @@ double median_of(const Series& series) {
 core::Result<Shown> analyse(std::span<const Entry> entries, const std::vector<std::string>& tests,
                             const std::vector<std::string>& figures) {
   if (entries.empty()) return core::invalid_argument("the history has no entries");
-  std::set<std::string> known_tests, known_figures;
-  for (const Entry& entry : entries) {
-    known_tests.insert(entry.test);
-    known_figures.insert(entry.figure);
-  }
-  auto ok = check_names(known_tests, tests, "test");
-  if (ok) ok = check_names(known_figures, figures, "figure");
+  auto ok = check_words(entries, tests, &Entry::test, "test");
+  if (ok) ok = check_words(entries, figures, &Entry::figure, "figure");
   if (!ok) return tl::unexpected(ok.error());
   std::vector<Series> all = series_of(entries);
   Shown shown;

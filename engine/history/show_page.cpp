@@ -47,25 +47,35 @@ std::string number_text(double value) {
   return std::abs(value) >= 1e6 ? fmt::format("{:.4g}", value) : fmt::format("{:.5g}", value);
 }
 
+bool is_web(std::string_view report) {
+  return report.starts_with("https://") || report.starts_with("http://");
+}
+
+// A page, a capture, a summary or a count; else it is the folder of a run.
+bool is_file(std::string_view name) {
+  return name.ends_with(".html") || name.ends_with(".csv") || name.ends_with(".json") ||
+         name.ends_with(".callgrind") || name.starts_with("callgrind.out");
+}
+
 // Only relative and absolute paths become links, and pages of the web; a scheme such as
 // "javascript:" does not.
 bool may_link(const std::string& report) {
   if (report.empty()) return false;
-  if (report.starts_with("https://") || report.starts_with("http://")) return true;
+  if (is_web(report)) return true;
   const std::size_t colon = report.find(':');
   return colon == std::string::npos || report.find('/') < colon;
 }
 
 // The address of a report: of a folder, that of the page in it.
 std::string link_of(const std::string& report, const std::string& base) {
-  const bool is_web = report.starts_with("http");
+  const bool web = is_web(report);
   const std::size_t slash = report.find_last_of('/') + 1;
-  const bool is_page = is_web || report.substr(slash).ends_with(".html");
-  std::string path = report.starts_with('/') || is_web || base.empty() ? "" : base + "/";
+  const bool is_page = web || is_file(std::string_view(report).substr(slash));
+  std::string path = report.starts_with('/') || web || base.empty() ? "" : base + "/";
   path += is_page ? report : report + "/report.html";
   std::string address;
   for (const char c : path) {
-    const bool special = !is_web && (c == '%' || c == '?' || c == '#');
+    const bool special = !web && (c == '%' || c == '?' || c == '#');
     address += special ? fmt::format("%{:02X}", static_cast<unsigned>(c)) : std::string(1, c);
   }
   return escaped(address);

@@ -22,6 +22,21 @@ Outcome history(const std::string& arguments, const TemporaryFolder& folder,
                     environment);
 }
 
+TEST(History, IsNotReplacedByItsOwnOutputs) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "h.sqlite").string();
+  ASSERT_EQ(history(std::string("import ") + kSeries, folder).code, 0);
+  const std::string before = read(file);
+  for (const std::string& command : std::initializer_list<std::string>{
+           "export --out " + file, "show --html " + file, "check --markdown " + file,
+           "check --annotations github:" + file}) {
+    const Outcome refused = history(command, folder);
+    EXPECT_EQ(refused.code, 1) << command;
+    EXPECT_THAT(refused.err, HasSubstr("is read here, and is not replaced")) << command;
+  }
+  EXPECT_TRUE(read(file) == before);
+}
+
 TEST(History, ImportedEntriesAreShownJudgedAndExported) {
   const TemporaryFolder folder;
   const Outcome imported = history(std::string("import ") + kSeries, folder);

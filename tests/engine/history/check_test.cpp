@@ -74,6 +74,20 @@ TEST(Check, OnlyNamedFiguresDecide) {
   EXPECT_EQ(named->outcome, Outcome::kWorse);
 }
 
+// An old change lies before the entries that are compared.
+TEST(Check, ShowsTheMediansOfTheEntriesThatItCompared) {
+  std::vector<double> values(15, 1.3);
+  values.insert(values.end(), 15, 1.0);
+  values.insert(values.end(), 5, 1.1);
+  const auto result = check(testing::series(values, "instructions", "", 30), {});
+  ASSERT_TRUE(result);
+  const JudgedFigure& figure = result->figures.at(0);
+  EXPECT_EQ(figure.verdict.outcome, Outcome::kWorse);
+  EXPECT_EQ(figure.verdict.before, 15U);
+  EXPECT_EQ(figure.before, 1.0);
+  EXPECT_EQ(figure.after, 1.1);
+}
+
 TEST(Check, OtherMachinesAreNeverComparedAndTheDifferenceIsNamed) {
   auto entries = testing::series({1, 1, 1, 1, 1, 2, 2, 2, 2, 2}, "instructions", "", 5);
   for (Entry& entry : entries)
