@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "engine/compare/recorded_run.hpp"
 #include "engine/compare/statistics.hpp"
+#include "engine/telemetry/statistics.hpp"
 
 namespace psygen::compare {
 namespace {
@@ -43,10 +43,6 @@ Side side_of(Runs runs, const RecordedFigure& figure) {
   return side;
 }
 
-double mean(std::span<const double> values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 std::string unit_text(const std::string& unit) {
   return unit.empty() ? "none" : unit;
 }
@@ -68,8 +64,8 @@ ComparedFigure compared(const RecordedFigure& figure, Runs a, Runs b) {
   const Side of_a = side_of(a, figure), of_b = side_of(b, figure);
   result.note = note_of(of_a, of_b, figure, a.size() + b.size());
   if (!result.note.empty()) return result;
-  result.a = mean(of_a.means);
-  result.b = mean(of_b.means);
+  result.a = *telemetry::mean(of_a.means);
+  result.b = *telemetry::mean(of_b.means);
   if (a.size() > 1) result.p = mann_whitney(of_a.means, of_b.means);
   return result;
 }

@@ -10,6 +10,7 @@
 #include "engine/compare/csv_rows.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/core/utf8.hpp"
+#include "engine/telemetry/summary.hpp"
 
 namespace psygen::compare {
 namespace {
@@ -185,8 +186,8 @@ core::Result<Parsed> summary_in(std::string_view text, const std::string& folder
   const std::string file = folder + "/summary.json";
   Parsed json = Parsed::parse(text, nullptr, false);
   if (json.is_discarded()) return refuse_file(file, "it is not JSON, or is truncated");
-  if (member<std::string>(json, "/schema") != "psygen.summary/1")
-    return refuse_file(file, "schema: it must be \"psygen.summary/1\"");
+  if (member<std::string>(json, "/schema") != std::string(telemetry::kSummarySchema))
+    return refuse_file(file, fmt::format("schema: it must be \"{}\"", telemetry::kSummarySchema));
   return json;
 }
 

@@ -6,9 +6,12 @@
 #include <algorithm>
 
 #include "engine/compare/compare.hpp"
+#include "engine/core/read_file.hpp"
 
 namespace psygen::frametest {
 namespace {
+
+constexpr std::uint64_t kMaxSummaryBytes = 64 << 20;
 
 core::Error refusal(const Base& base, const std::vector<std::string>& differences,
                     std::string_view of) {
@@ -45,9 +48,11 @@ core::Result<Base> load_base(const std::filesystem::path& dir, const FrameTest& 
     if (const auto differences = compare::differences_of(base.conditions, run);
         !differences.empty())
       return tl::unexpected(refusal(base, differences, run.folder + " has"));
-    const auto files = compare::read_run_files(run.folder);
-    if (!files) return tl::unexpected(files.error());
-    auto fields = telemetry::summary_fields_in(files->summary_json, run.folder + "/summary.json");
+    const std::string file = run.folder + "/summary.json";
+    const auto bytes = core::read_file(file, kMaxSummaryBytes);
+    if (!bytes) return tl::unexpected(bytes.error());
+    auto fields = telemetry::summary_fields_in(
+        {reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file);
     if (!fields) return tl::unexpected(fields.error());
     base.runs.push_back(std::move(*fields));
   }

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "engine/core/utf8.hpp"
+#include "engine/frametest/judge.hpp"
 #include "engine/frametest/sampler.hpp"
 
 namespace psygen::frametest {
@@ -39,13 +39,6 @@ double rank(std::vector<WorkChange>& changes) {
   for (WorkChange& change : changes)
     change.share = growth(change) / sum;
   return usual > 0 ? sum / usual : sum > 0 ? 1 : 0;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 struct Function {
@@ -147,7 +140,7 @@ Cause cause_of_frame(const FlightProfile& profile, std::uint64_t index, double w
     cause.systems.push_back({.name = profile.systems[s],
                              .system = {},
                              .now = shown_work(found->work[s], profile.unit),
-                             .usual = median(std::move(others))});
+                             .usual = others.empty() ? 0 : quantile_of(std::move(others), 0.5)});
   }
   cause.growth = rank(cause.systems);
   const auto frame = static_cast<std::size_t>(found - profile.frames.begin());

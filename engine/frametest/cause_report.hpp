@@ -12,6 +12,9 @@
 
 namespace psygen::frametest {
 
+// In the folder of a test.
+inline constexpr const char* kProfileFile = "profile.json";
+
 struct CauseReport {
   std::string base_html = {};                 // the comparison with the base
   std::vector<std::string> frames_html = {};  // of each frame

@@ -83,6 +83,7 @@ core::Result<image::ImageDifference> fly_to(const WorstFrame& frame, const Frame
   app::FlightOptions flight = test.flight;
   flight.images_every = 0;
   flight.hash_world = false;
+  flight.reference_load = false;
   const bool numbered = is_numbered(flight);
   flight.frames = numbered ? frame.index + 1 : 0;
   if (!numbered) flight.seconds = frame.time_s + 1e-9;

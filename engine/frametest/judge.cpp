@@ -225,17 +225,19 @@ bool depends_on_load(std::string_view field, bool virtual_clock) {
   if (virtual_clock) return false;
   constexpr std::array<std::string_view, 7> kFixed{"schema", "world.", "device.", "machine.",
                                                    "build.", "run.",   "hash."};
-  return field == "run.real_seconds" || std::ranges::none_of(kFixed, [&](std::string_view prefix) {
-           return field.starts_with(prefix);
-         });
+  constexpr std::array<std::string_view, 3> kMeasured{"run.real_seconds", "run.timed_frames",
+                                                      "run.apart_frames"};
+  const auto begins = [field](std::string_view prefix) { return field.starts_with(prefix); };
+  return std::ranges::any_of(kMeasured, begins) || std::ranges::none_of(kFixed, begins);
 }
 
 bool is_wall_time(std::string_view field) {
   const bool is_rate = field.ends_with("low1_fps") || field.ends_with("low01_fps");
   if (is_rate || field == "run.real_seconds") return true;
   const bool is_count = field.ends_with(".frames") || field.ends_with(".invalid");
-  const bool of_device =
-      field.find("gpu_ms.") != std::string_view::npos || field.starts_with("pass_ms.");
+  std::string_view inner = field;  // of a section
+  if (field.starts_with("sections.")) inner.remove_prefix(field.find('.', 9) + 1);
+  const bool of_device = inner.starts_with("gpu_ms.") || inner.starts_with("pass_ms.");
   if (is_count || of_device) return false;
   const std::size_t at = field.find("_ms");
   return at != std::string_view::npos && (at + 3 == field.size() || field[at + 3] == '.');

@@ -79,6 +79,7 @@ core::Result<Flown> fly(const FrameTest& test, const RunOptions& options, const 
   app::FlightOptions flight = test.flight;
   flight.images_every = 0;
   flight.hash_world = false;
+  flight.reference_load = false;
   auto made = start_flight(std::move(flight), options, hooks, plugin);
   if (!made) return tl::unexpected(made.error());
   const auto report = (*made)->run();

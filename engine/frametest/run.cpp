@@ -21,7 +21,8 @@ namespace {
 
 // Reads the files of a run, and the bases of their tests.
 core::Result<std::vector<PreparedTest>> prepare(const RunOptions& options) {
-  for (const std::filesystem::path& file : {options.junit, options.usual}) {
+  const std::filesystem::path& remarks = options.words.annotations.file;
+  for (const auto& file : {options.junit, options.usual, options.words.markdown, remarks}) {
     if (file.empty()) continue;
     if (auto ok = telemetry::check_no_input(file, options.files); !ok)
       return tl::unexpected(ok.error());
@@ -126,12 +127,6 @@ int exit_code_of(std::span<const TestResult> results) {
   if (any(&TestResult::misses)) return kMissed;
   if (any([](const TestResult& r) { return !r.error && !r.holds(); })) return kNotJudged;
   return any(skipped) ? kSkipped : kHeld;
-}
-
-std::vector<BudgetResult> judge(std::span<const Budget> budgets,
-                                const telemetry::Summary& summary) {
-  const RunFields fields = telemetry::summary_fields(summary);
-  return judge(budgets, Flights{.runs = {&fields, 1}});
 }
 
 TestResult run_frame_test(const TestFile& file, const RunOptions& options, const Hooks& hooks) {

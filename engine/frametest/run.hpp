@@ -92,10 +92,6 @@ enum ExitCode : int {
 };
 int exit_code_of(std::span<const TestResult> results);
 
-// Compares a summary with the budgets: one result for each budget. A value that was not measured
-// misses its budget.
-std::vector<BudgetResult> judge(std::span<const Budget> budgets, const telemetry::Summary& summary);
-
 // Text of a limit: "<=" and "25".
 std::string_view sign_of(Relation relation);
 std::string limit_of(const Budget& budget);

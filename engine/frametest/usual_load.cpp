@@ -74,7 +74,7 @@ core::Result<UsualLoadFile> UsualLoadFile::parse(std::string_view text, const st
                         fmt::format("{}:{}: this is no run of {}; remove the line, or the file to "
                                     "begin again",
                                     name, number, kSchema));
-    file.add(std::move(*run));
+    file.runs_.push_back(std::move(*run));
   }
   return file;
 }
@@ -120,7 +120,10 @@ std::string UsualLoadFile::text() const {
 }
 
 core::Result<void> UsualLoadFile::save(const std::filesystem::path& file) const {
-  return core::replace_file(file, text());
+  std::string all = text();
+  if (all.size() > kMaxBytes)  // load() refuses larger files: the oldest runs are forgotten
+    all.erase(0, all.find('\n', all.size() - kMaxBytes - 1) + 1);
+  return core::replace_file(file, all);
 }
 
 }  // namespace psygen::frametest

@@ -254,6 +254,22 @@ void set_reasons(Json& json, const std::string& reason) {
     if (key != kReason) set_reasons(value, reason);
 }
 
+// The times that a flight and each of its sections have.
+Json times_json(const Summary& s) {
+  return {{"frame_ms", frame_ms_json(s.frame_ms)},
+          {"low1_fps", s.low1_fps},
+          {"low01_fps", s.low01_fps},
+          {"hitches", s.hitches},
+          {"stutter_percent", s.stutter_percent},
+          {"between_presents_ms", distribution_json(s.between_presents_ms)},
+          {"animation_error_ms", distribution_json(s.animation_error_ms)},
+          {"system_ms", systems_json(s.system_ms)},
+          {"wait_ms", wait_json(s)},
+          {"record_ms", s.record_ms},
+          {"gpu_ms", gpu_json(s)},
+          {"pass_ms", passes_json(s.pass_ms)}};
+}
+
 Json section_json(const Section& section) {
   const Summary& s = section.frames;
   Json json = {
@@ -263,22 +279,13 @@ Json section_json(const Section& section) {
       {"end_s", section.end_s},
       {"measured_frames", Count(s.run.measured_frames)},
       {"timed_frames", Count(s.run.timed_frames)},
-      {"frame_ms", frame_ms_json(s.frame_ms)},
-      {"low1_fps", s.low1_fps},
-      {"low01_fps", s.low01_fps},
-      {"hitches", s.hitches},
-      {"stutter_percent", s.stutter_percent},
-      {"between_presents_ms", distribution_json(s.between_presents_ms)},
-      {"animation_error_ms", distribution_json(s.animation_error_ms)},
-      {"system_ms", systems_json(s.system_ms)},
-      {"wait_ms", wait_json(s)},
-      {"record_ms", s.record_ms},
-      {"gpu_ms", gpu_json(s)},
-      {"pass_ms", passes_json(s.pass_ms)},
-      {"missing", missing_json(s)},
-      {"draw", {{"triangles_p50", s.draw.triangles_p50}, {"draws_p50", s.draw.draws_p50}}},
-      {"synthesis", {{"models", s.synthesis.models}, {"triangles", s.synthesis.triangles}}},
-      {"figures", figures_json(s.figures)}};
+  };
+  json.update(times_json(s));
+  json.update(
+      {{"missing", missing_json(s)},
+       {"draw", {{"triangles_p50", s.draw.triangles_p50}, {"draws_p50", s.draw.draws_p50}}},
+       {"synthesis", {{"models", s.synthesis.models}, {"triangles", s.synthesis.triangles}}},
+       {"figures", figures_json(s.figures)}});
   if (section.missing.empty()) return json;
   json["measured_frames"] = json["timed_frames"] = Count();
   set_reasons(json, section.missing);
@@ -329,39 +336,29 @@ std::string to_json(const Summary& s) {
       {"load", load_json(s.load)},
       {"reference", reference_json(s)},
       {"run", run_json(s)},
-      {"frame_ms", frame_ms_json(s.frame_ms)},
-      {"low1_fps", s.low1_fps},
-      {"low01_fps", s.low01_fps},
-      {"hitches", s.hitches},
-      {"stutter_percent", s.stutter_percent},
-      {"between_presents_ms", distribution_json(s.between_presents_ms)},
-      {"animation_error_ms", distribution_json(s.animation_error_ms)},
-      {"system_ms", systems_json(s.system_ms)},
-      {"wait_ms", wait_json(s)},
-      {"record_ms", s.record_ms},
-      {"gpu_ms", gpu_json(s)},
-      {"pass_ms", passes_json(s.pass_ms)},
-      {"picture", picture_json(s)},
-      {"detail", detail_json(s)},
-      {"missing", missing_json(s)},
-      {"cache", cache_json(s)},
-      {"synthesis", synthesis_json(s)},
-      {"draw",
-       {{"triangles_p50", s.draw.triangles_p50},
-        {"draws_p50", s.draw.draws_p50},
-        {"floor_ratio", s.draw.floor_ratio}}},
-      {"memory",
-       {{"peak_rss_bytes", s.memory.peak_rss_bytes},
-        {"device_peak_bytes", s.memory.device_peak_bytes}}},
-      {"hash",
-       {{"world", hash_text(s.hash.world)},
-        {"types", hash_text(s.hash.types)},
-        {"path", hash_text(s.hash.path)},
-        {"images", hash_text(s.hash.images)}}},
-      {"figures", figures_json(s.figures)},
-      {"marks", marks_json(s.marks)},
-      {"ignored_marks", s.ignored_marks},
-      {"sections", sections_json(s.sections)}};
+  };
+  json.update(times_json(s));
+  json.update({{"picture", picture_json(s)},
+               {"detail", detail_json(s)},
+               {"missing", missing_json(s)},
+               {"cache", cache_json(s)},
+               {"synthesis", synthesis_json(s)},
+               {"draw",
+                {{"triangles_p50", s.draw.triangles_p50},
+                 {"draws_p50", s.draw.draws_p50},
+                 {"floor_ratio", s.draw.floor_ratio}}},
+               {"memory",
+                {{"peak_rss_bytes", s.memory.peak_rss_bytes},
+                 {"device_peak_bytes", s.memory.device_peak_bytes}}},
+               {"hash",
+                {{"world", hash_text(s.hash.world)},
+                 {"types", hash_text(s.hash.types)},
+                 {"path", hash_text(s.hash.path)},
+                 {"images", hash_text(s.hash.images)}}},
+               {"figures", figures_json(s.figures)},
+               {"marks", marks_json(s.marks)},
+               {"ignored_marks", s.ignored_marks},
+               {"sections", sections_json(s.sections)}});
   Json reasons = Json::object();
   take_reasons(json, "", reasons);
   json["reasons"] = reasons;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -205,6 +206,13 @@ Hooks burning(double from_s, double seconds) {
   return hooks;
 }
 
+// Tries perf itself, so that a broken sampler is not taken for a machine without it.
+bool perf_runs(const TemporaryFolder& folder) {
+  const std::string command = "perf record --quiet -k CLOCK_MONOTONIC -e cpu-clock -o '" +
+                              (folder / "perf.data").string() + "' -- true >/dev/null 2>&1";
+  return std::system(command.c_str()) == 0;
+}
+
 TEST(Profile, FindsTheSystemAndTheFunctionThatWorkInABadFrame) {
   const TemporaryFolder folder;
   auto test = load_frame_test(write_walk(folder, 1));
@@ -223,10 +231,15 @@ TEST(Profile, FindsTheSystemAndTheFunctionThatWorkInABadFrame) {
     EXPECT_LT(cause.systems[0].usual, 5);
   }
   EXPECT_TRUE(std::filesystem::is_empty(options.out / test->name)) << "files of perf are left";
-  if (!profile->no_samples.empty()) GTEST_SKIP() << profile->no_samples;
-  ASSERT_THAT(cause.functions, Not(IsEmpty()));
-  EXPECT_EQ(cause.functions[0].system, "burn");
-  EXPECT_THAT(to_text(cause), HasSubstr("mostly in "));
+  if (perf_runs(folder)) {
+    EXPECT_EQ(profile->no_samples, "");
+    ASSERT_THAT(cause.functions, Not(IsEmpty()));
+    EXPECT_EQ(cause.functions[0].system, "burn");
+    EXPECT_THAT(to_text(cause), HasSubstr("mostly in "));
+  } else {
+    EXPECT_THAT(profile->no_samples, HasSubstr("perf cannot sample functions: "));
+    EXPECT_THAT(cause.functions, IsEmpty());
+  }
 }
 
 TEST(Profile, RefusesFlightsWhoseFramesAreNotNumbered) {

@@ -6,9 +6,11 @@
 #include <fstream>
 
 #include "ecs/ecs.hpp"
+#include "engine/frametest/judge.hpp"
 #include "engine/scene/systems.hpp"
 #include "engine/telemetry/marks.hpp"
 #include "engine/telemetry/own_figures.hpp"
+#include "engine/telemetry/summary_fields.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::frametest {
@@ -45,7 +47,8 @@ TEST(Judge, ComparesBudgetsWithValuesAndMissesUnmeasuredOnes) {
                                     {"world.name", Relation::kEqual, "lakes", 5},
                                     {"frame_ms.p999", Relation::kAtMost, 1e9, 6},
                                     {"system_ms.none.p99", Relation::kAtMost, 1e9, 7}};
-  const auto results = judge(budgets, summary);
+  const RunFields fields = telemetry::summary_fields(summary);
+  const auto results = judge(budgets, Flights{.runs = {&fields, 1}});
   std::vector<bool> holds;
   for (const BudgetResult& r : results)
     holds.push_back(r.holds);
