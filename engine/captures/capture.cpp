@@ -121,6 +121,7 @@ Reading read_mango_hud_below(const Source& source, Line line, std::string_view r
   constexpr std::size_t kMaxLines = 16;
   std::string_view version;
   do {
+    if (auto ok = check_length(source, line); !ok) return tl::unexpected(ok.error());
     if (line.number == 2 && line.text.starts_with('v')) version = trimmed(line.text.substr(1));
     const Table table = table_at(line, rest);
     if (table.find("fps")) return read_mango_hud(source, table, version);
@@ -134,6 +135,9 @@ Reading read_table(const Source& source) {
   std::string_view rest = source.text;
   bool from_cap_frame_x = false;
   for (Line line; next_line(rest, line);) {
+    if (line.text.size() > kMaxLineBytes && contains(source.text, kUnityMark))
+      return read_unity_lines(source);
+    if (auto ok = check_length(source, line); !ok) return tl::unexpected(ok.error());
     const std::string_view text = trimmed(line.text);
     if (text.starts_with("//") || text.starts_with("\"//")) {
       from_cap_frame_x = true;

@@ -27,6 +27,7 @@ bool is_metadata(std::string_view line) {
 
 // The metadata are pairs of a name in brackets and a value.
 bool has_header_at_end(std::string_view metadata) {
+  if (metadata.size() > kMaxLineBytes) return false;
   Cells cells;
   split(metadata, separator_of(metadata), cells);
   for (std::size_t i = 0; i + 1 < cells.size(); i += 2)
@@ -72,7 +73,7 @@ class Unreal {
     if (finished) {
       rows = body;
       if (has_header_at_end(metadata)) {
-        header = take_last_line(body);
+        header = take_last_line(body).substr(0, kMaxLineBytes);
         if (!body.empty()) rows = body;
       }
     }
@@ -102,8 +103,10 @@ class Unreal {
     if (is_event && cells_.size() > width_) return pending_.push_back(row), core::Result<void>{};
     if (cells_.size() > most_)
       return decimal_commas(source_, row.number, fmt::format("{} cells", cells_.size()), most_);
-    if (auto ok = add_pending(cells_.size()); !ok) return ok;
-    split(row.text, separator_, cells_);  // add_pending() uses the cells
+    if (!pending_.empty()) {
+      if (auto ok = add_pending(cells_.size()); !ok) return ok;
+      split(row.text, separator_, cells_);  // add_pending() uses the cells
+    }
     width_ = cells_.size();
     return add_times(0, row.number);
   }

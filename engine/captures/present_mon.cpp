@@ -131,7 +131,7 @@ class PresentMon {
 
   bool measured() const { return measured_; }
 
-  // The frames of the swap chain with the most rows; of the desktop's compositor only if `dwm`.
+  // The frames of the swap chain with the most rows; never of the desktop's compositor, dwm.exe.
   Reading chosen() const {
     const Chain* best = nullptr;
     for (const Chain& chain : chains_)

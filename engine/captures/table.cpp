@@ -45,7 +45,9 @@ tl::unexpected<core::Error> too_wide(const Source& source, const Table& table, c
         source, line.number,
         fmt::format("the line has {} cells, but the header has {}", cells, table.header.size()));
   std::string next;
-  if (Line other; next_line(rest, other) && !other.text.empty()) {
+  Line other;
+  const bool is_followed = next_line(rest, other) && !other.text.empty();
+  if (is_followed && other.text.size() <= kMaxLineBytes) {
     std::vector<std::string_view> others;
     split(other.text, table.separator, others);
     if (others.size() != cells)

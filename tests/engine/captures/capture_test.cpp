@@ -98,6 +98,7 @@ TEST(Captures, ThatAreDamagedAreReadOrRefused) {
 }
 
 TEST(Captures, OfHostileLinesAreRefused) {
+  EXPECT_THAT(error_of(std::string(2 << 20, ',')), HasSubstr("longer than 1 MiB"));
   const std::string quotes(900'000, '"');
   std::string cells, event = "Text";
   for (int i = 0; i < 400'000; ++i) {
