@@ -13,8 +13,12 @@ namespace {
 
 constexpr double kMaxLight = 1e6;
 
-// Maps the number of an image in the file to its number in Model::images, or to its error.
-using Pictures = std::map<std::uint32_t, core::Result<std::uint32_t>>;
+// The number of an image in Model::images, or its error.
+struct Picture {
+  core::Result<std::uint32_t> number;
+  bool is_missing = false;  // its file does not exist
+};
+using Pictures = std::map<std::uint32_t, Picture>;  // by the number of the image in the file
 
 core::Result<image::ImagePtr> decode(Reading& reading, std::uint32_t number) {
   const ImageJson& described = reading.file.images[number];
@@ -30,11 +34,10 @@ core::Result<image::ImagePtr> decode(Reading& reading, std::uint32_t number) {
   });
 }
 
-// The number of an image in Model::images. Decodes the image at its first use.
-core::Result<std::uint32_t> image_of(Reading& reading, Pictures& pictures, int source,
-                                     const std::string& texture) {
+// Decodes the image at its first use.
+Picture image_of(Reading& reading, Pictures& pictures, int source, const std::string& texture) {
   const auto number = index_in(source, reading.file.images.size(), "source of " + texture);
-  if (!number) return number;
+  if (!number) return {number};
   if (const auto known = pictures.find(*number); known != pictures.end()) return known->second;
   const auto add = [&](image::ImagePtr picture) -> core::Result<std::uint32_t> {
     if (auto ok = add_within_limit(reading.pixel_bytes, picture->rgba.size(),
@@ -44,7 +47,10 @@ core::Result<std::uint32_t> image_of(Reading& reading, Pictures& pictures, int s
     reading.out.images.push_back(std::move(picture));
     return static_cast<std::uint32_t>(reading.out.images.size() - 1);
   };
-  return pictures.emplace(*number, decode(reading, *number).and_then(add)).first->second;
+  const std::size_t missing = reading.out.missing.size();
+  auto made = decode(reading, *number).and_then(add);
+  const bool is_missing = !made && reading.out.missing.size() > missing;
+  return pictures.emplace(*number, Picture{std::move(made), is_missing}).first->second;
 }
 
 // The number of a texture's image in Model::images; kNone if there is none, or its file does not
@@ -63,11 +69,11 @@ core::Result<std::uint32_t> picture_of(Reading& reading, Pictures& pictures, int
   for (const bool webp : {true, false}) {
     const int source = webp ? described.webp : described.source;
     if (source == kAbsent) continue;
-    const auto picture = image_of(reading, pictures, source, name);
+    const auto [picture, is_missing] = image_of(reading, pictures, source, name);
     if (picture) return picture;
     const auto [code, message] = picture.error();
     const bool is_optional = webp && code == core::ErrorCode::kParse;
-    if (code != core::ErrorCode::kIo && !is_optional) return picture;
+    if (!is_missing && !is_optional) return picture;
     reason = webp ? "EXT_texture_webp: " + message : message;
   }
   reading.note(fmt::format("{} is drawn without an image: {}", user, reason));

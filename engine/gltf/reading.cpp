@@ -38,9 +38,9 @@ std::size_t component_bytes(int component) {
 
 void Reading::note(std::string sentence) {
   constexpr std::size_t kMaxNotes = 64;
+  if (std::ranges::find(out.notes, sentence) != out.notes.end()) return;
   if (out.notes.size() == kMaxNotes - 1) sentence = "has more such features, which are not listed";
-  if (out.notes.size() < kMaxNotes && std::ranges::find(out.notes, sentence) == out.notes.end())
-    out.notes.push_back(std::move(sentence));
+  if (out.notes.size() < kMaxNotes) out.notes.push_back(std::move(sentence));
 }
 
 tl::unexpected<core::Error> wrong(std::string sentence) {

@@ -21,9 +21,9 @@ class Source {
   using Bytes = std::vector<std::uint8_t>;
   using View = std::span<const std::uint8_t>;
 
-  // `whole` are the bytes of the file, `binary` the part of them that is its first buffer; empty:
-  // none. All must outlive this object. Appends the files that it reads to `named`, and those that
-  // do not exist to `missing`.
+  // `binary` is the part of the file's bytes that is its first buffer; empty: none. All must
+  // outlive this object. Appends the files that it reads to `out.files`, and those that do not
+  // exist to `out.missing`.
   Source(const std::filesystem::path& path, const Document& file, View binary, Model& out,
          std::uint64_t left_bytes);
 

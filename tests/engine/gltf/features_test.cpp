@@ -339,6 +339,15 @@ TEST_F(Features, MaterialsWhoseImageIsMissingAreDrawnWithoutIt) {
   EXPECT_THAT(model.files, IsEmpty());
 }
 
+TEST_F(Features, AnImageThatExistsButCannotBeReadIsAnError) {
+  Sample sample = textured();
+  sample.json["images"][0]["uri"] = "no.png";
+  std::filesystem::create_directory(folder_ / "no.png");
+  const auto refused = result(sample);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::ErrorCode::kIo);
+}
+
 TEST_F(Features, NormalsWithoutADirectionComeFromTheTriangles) {
   for (const glm::vec3& bad : {glm::vec3(0), glm::vec3(NAN, 0, 0), glm::vec3(0, INFINITY, 0)}) {
     Sample sample = square();
