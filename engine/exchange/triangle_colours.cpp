@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 
 #include "engine/core/hash.hpp"
+#include "engine/models/kit/exact_math.hpp"
 
 namespace psygen::exchange {
 namespace {
@@ -16,24 +18,9 @@ float srgb_of(float linear) {
   return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
 }
 
-// sRGB to linear.
-float linear_of(std::uint32_t byte) {
-  const float root = static_cast<float>(byte) * (1.0F / 255.0F);
-  return root <= 0.04045F ? root / 12.92F : std::pow((root + 0.055F) / 1.055F, 2.4F);
-}
-
-struct LinearOfByte {
-  std::array<float, 256> values{};
-  LinearOfByte() {
-    for (std::uint32_t byte = 0; byte < values.size(); ++byte)
-      values[byte] = linear_of(byte);
-  }
-};
-
 glm::vec3 linear_of_texel(std::uint32_t texel) {
-  static const LinearOfByte table;
-  return {table.values[texel >> 16 & 0xFF], table.values[texel >> 8 & 0xFF],
-          table.values[texel & 0xFF]};
+  const std::array<float, 256>& light = models::linear_light();
+  return {light[texel >> 16 & 0xFF], light[texel >> 8 & 0xFF], light[texel & 0xFF]};
 }
 
 std::uint32_t texel_of(const glm::vec3& linear) {

@@ -81,8 +81,12 @@ core::Result<image::NumberImage> read_numbers(const fs::path& file, std::string_
 core::Result<Read<world::HeightPicture>> read_height_picture(const fs::path& file) {
   auto image = read_numbers(file, "the ground stays as it is there");
   if (!image) return tl::unexpected(image.error());
-  for (std::size_t i = 0; i < image->alpha.size(); ++i)
-    if (image->alpha[i] <= 0) image->values[i] = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t i = 0; i < image->alpha.size(); ++i) {
+    if (image->alpha[i] <= 0)
+      image->values[i] = std::numeric_limits<float>::quiet_NaN();
+    else if (image->is_premultiplied)
+      image->values[i] /= image->alpha[i];
+  }
   auto picture =
       std::make_shared<world::HeightPicture>(world::finished({.width = image->width,
                                                               .height = image->height,
@@ -159,22 +163,29 @@ class InUse {
     }
   };
 
-  // Finds or adds the entry of a key. Drops entries that no thread has and whose result is gone.
+  // Finds or adds the entry of a key. Now and then drops entries that no thread has and whose
+  // result is gone.
   std::shared_ptr<Entry> entry_of(const Key& key) {
     const std::lock_guard lock(mutex_);
-    std::erase_if(entries_, [&key](const auto& known) {
-      const auto& [at, entry] = known;
-      if (at == key || entry.use_count() > 1) return false;
-      const std::unique_lock making(entry->making, std::try_to_lock);
-      return making && entry->made.expired();
-    });
+    if (entries_.size() >= full_) {
+      std::erase_if(entries_, [&key](const auto& known) {
+        const auto& [at, entry] = known;
+        if (at == key || entry.use_count() > 1) return false;
+        const std::unique_lock making(entry->making, std::try_to_lock);
+        return making && entry->made.expired();
+      });
+      full_ = std::max(kFewEntries, 2 * entries_.size());
+    }
     std::shared_ptr<Entry>& entry = entries_[key];
     if (!entry) entry = std::make_shared<Entry>();
     return entry;
   }
 
-  std::mutex mutex_;  // guards entries_, but not their content
+  static constexpr std::size_t kFewEntries = 64;
+
+  std::mutex mutex_;  // guards entries_ and full_, but not the entries' content
   std::map<Key, std::shared_ptr<Entry>> entries_;
+  std::size_t full_ = kFewEntries;  // number of entries at which they are looked through
 };
 
 // The memory of the shapes of one world, each counted once.
@@ -344,12 +355,14 @@ FilesPtr files_with(const fs::path& world_file, MemoryPicturesPtr pictures) {
 core::Result<std::vector<fs::path>> files_named_by(const world::World& world,
                                                    const fs::path& world_file) {
   std::vector<fs::path> names;
-  const auto note = [&names](const fs::path& name) {
-    if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
+  std::set<fs::path> known, models;
+  const auto note = [&](const fs::path& name) {
+    if (!name.empty() && known.insert(name).second) names.push_back(name);
   };
   image::ImageCache shared;
   for (const world::HandmadeModel& model : world.models) {
     note(model.file);
+    if (!models.insert(model.file).second) continue;
     const fs::path file = world_file.parent_path() / model.file;
     const auto read = gltf::read_file(file, gltf_limits(), &shared);
     if (!read) return tl::unexpected(read.error());

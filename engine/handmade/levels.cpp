@@ -338,8 +338,12 @@ class Parts {
   explicit Parts(const Mesh& finest)
       : leaves_(indices_of(finest, true)), foliage_(finest.vertices, leaves_) {
     is_loose_ = foliage_.piece_count() >= kManyPieces;
-    Mesh rest{finest.vertices, is_loose_ ? indices_of(finest, false) : finest.indices};
-    if (!rest.indices.empty()) solid_.emplace(cleaned(rest.vertices, rest.indices));
+    if (!is_loose_) {
+      solid_.emplace(finest);
+      return;
+    }
+    const Indices rest = indices_of(finest, false);
+    if (!rest.empty()) solid_.emplace(cleaned(finest.vertices, rest));
   }
 
   // About as many triangles as wanted, which must be no more than the last time.

@@ -13,24 +13,10 @@ namespace {
 
 constexpr int kMaxSteps = 8;  // maximum number of samples along a side of a triangle
 
-// Linear light for each byte of sRGB.
-const std::array<float, 256>& linear_light() {
-  static const std::array<float, 256> table = [] {
-    std::array<float, 256> t{};
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      const double v = static_cast<double>(i) / 255;
-      t[i] = static_cast<float>(v <= 0.04045 ? v / 12.92
-                                             : models::exact_pow((v + 0.055) / 1.055, 2.4));
-    }
-    return t;
-  }();
-  return table;
-}
-
 // The pixel at a point of the texture: linear colour, opacity.
 glm::vec4 pixel_at(const image::Image& image, glm::vec2 uv) {
   const auto p = pixel_of(image, uv);
-  const std::array<float, 256>& light = linear_light();
+  const std::array<float, 256>& light = models::linear_light();
   return {light[p[0]], light[p[1]], light[p[2]], static_cast<float>(p[3]) / 255};
 }
 

@@ -4,6 +4,7 @@
 // error is below 1e-14 for results within 1e±30.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 namespace psygen::models {
@@ -52,6 +53,19 @@ inline double exact_sin_degrees(double degrees) {
 }
 inline double exact_cos_degrees(double degrees) {
   return exact_sin_degrees(degrees + 90);
+}
+
+// Linear light for each byte of sRGB.
+inline const std::array<float, 256>& linear_light() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> t{};
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      const double v = static_cast<double>(i) / 255;
+      t[i] = static_cast<float>(v <= 0.04045 ? v / 12.92 : exact_pow((v + 0.055) / 1.055, 2.4));
+    }
+    return t;
+  }();
+  return table;
 }
 
 }  // namespace psygen::models
