@@ -76,6 +76,8 @@ core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
   }
   const core::Result<models::MeshSize> size = size_of(key, parameters, known);
   if (!size) {
+    if (size.error().code == core::ErrorCode::kOutOfMemory)  // it may succeed later
+      return tl::unexpected<core::Error>(size.error());
     remember_failure(take_slot(key, owner, rank), size.error().message);
     return core::fail(core::ErrorCode::kSynthesisFailed, size.error().message);
   }
@@ -98,7 +100,7 @@ core::Result<MeshHandle> GeometryCache::reserve(const MeshKey& key,
   r.destination = {place->vertices, place->indices};
   count_bytes(r, 1);
   ++stats_.requested;
-  if (evicted_keys_.take(hash_of(key))) ++stats_.regenerations;
+  if (evicted_keys_.take(hash)) ++stats_.regenerations;
   return MeshHandle{slot, r.generation};
 }
 

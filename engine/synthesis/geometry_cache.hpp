@@ -163,10 +163,10 @@ class GeometryCache {
   // that may_evict() allows. Returns the existing mesh if it is requested or ready. Errors:
   // kOverBudget       no memory: nothing worse to evict
   // kNotReady           the GPU still reads the meshes evicted for this one
-  // kOutOfMemory      the allocation failed within the budget; the limit is lowered
-  // kSynthesisFailed  this key failed before (the message has the reason), or its size is
-  // unknown; not retried while it is remembered (kMaxFailures)
-  // `size`: the size by the type, if the caller knows it.
+  // kOutOfMemory      the allocation failed within the budget, and the limit is lowered; or the
+  // type had no memory to tell the size kSynthesisFailed  this key failed before (the message has
+  // the reason), or its size is unknown; not retried while it is remembered (kMaxFailures) `size`:
+  // the size by the type, if the caller knows it.
   core::Result<MeshHandle> reserve(const MeshKey& key, const models::Parameters& parameters,
                                    std::uint64_t owner, Rank rank,
                                    const std::optional<models::MeshSize>& size = {});

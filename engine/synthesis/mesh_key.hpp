@@ -67,7 +67,8 @@ inline constexpr MeshHandle kNoMesh{};
 // For std::unordered_map and other hash containers.
 template <>
 struct std::hash<psygen::synthesis::MeshKey> {
-  std::size_t operator()(const psygen::synthesis::MeshKey& key) const noexcept {
+  // Not noexcept: libstdc++ then keeps the hash in each node of a container.
+  std::size_t operator()(const psygen::synthesis::MeshKey& key) const {
     return static_cast<std::size_t>(psygen::synthesis::hash_of(key));
   }
 };

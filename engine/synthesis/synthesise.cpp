@@ -52,12 +52,9 @@ core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
   models::MeshSize size;
   try {
     size = known ? *known : type.mesh_size(p, level);
-  } catch (const std::exception& e) {
-    return core::fail(core::ErrorCode::kSynthesisFailed,
-                      named(type, level, fmt::format(" threw in mesh_size(): {}", e.what())));
   } catch (...) {
-    return core::fail(core::ErrorCode::kSynthesisFailed,
-                      named(type, level, " threw in mesh_size()"));
+    return tl::unexpected(core::error_of_exception(core::ErrorCode::kSynthesisFailed,
+                                                   named(type, level, ""), "threw in mesh_size()"));
   }
   constexpr std::uint32_t kMaxVertices = 65536, kMaxIndices = 1u << 26;
   if (size.vertex_count <= kMaxVertices && size.index_count <= kMaxIndices) return size;

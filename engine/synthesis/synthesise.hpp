@@ -26,7 +26,8 @@ SynthesisOutcome synthesise_guarded(const models::ModelType& type, const models:
                                     int level, const models::MeshView& out);
 
 // Calls type.mesh_size(), unless the caller knows the size. Fails with kSynthesisFailed if the type
-// throws, and with kOverBudget beyond 65,536 vertices (16-bit indices) or 2^26 indices.
+// throws, with kOutOfMemory without memory, and with kOverBudget beyond 65,536 vertices (16-bit
+// indices) or 2^26 indices.
 core::Result<models::MeshSize> mesh_size_guarded(const models::ModelType& type,
                                                  const models::Parameters& p, int level,
                                                  const std::optional<models::MeshSize>& known = {});
