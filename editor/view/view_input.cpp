@@ -82,6 +82,7 @@ bool ViewInput::take_for_tool(const QEvent& event, double pixel_ratio) {
         tool_events_.push_back({down ? Kind::kPress : Kind::kRelease, at, down, fine});
         return true;
       }
+      if (mouse.button() == Qt::RightButton && down) pressed_at_ = at;
       if (mouse.button() == Qt::RightButton && !down &&
           (at - pressed_at_).manhattanLength() < kClickPx)
         tool_events_.push_back({Kind::kClickRight, at, false, fine});

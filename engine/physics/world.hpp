@@ -34,6 +34,9 @@ class World {
   World& operator=(World&&) noexcept;
   ~World();
 
+  // Positions across the seam of an endless world from other objects fail with kInvalidArgument, in
+  // both add(), set_pose() and set_feet().
+
   // Adds a body. Its shape has at least one part, each of kMinSizeM … kMaxSizeM. Fails with
   // kOverBudget above Settings::max_bodies. The next step lifts a body below the ground onto it.
   core::Result<BodyId> add(const BodySettings& settings);

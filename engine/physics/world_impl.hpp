@@ -33,7 +33,8 @@ struct World::Impl {
   ~Impl();
 
   // Returns Bullet's coordinates of a position. Moves the origin there if nothing is near the
-  // present one. Fails outside a bounded world and for values that are not finite.
+  // present one. `others`: bodies and characters besides the one to place. Fails outside a bounded
+  // world, for values that are not finite, and across the seam from any others.
   core::Result<btVector3> place(const core::WorldPosition& at, std::size_t others);
   Body* find(BodyId id);
   Character* find(CharacterId id);

@@ -88,6 +88,7 @@ HeightPicture finished(HeightPicture picture) {
     return v >= 0 && v <= 65'535 && v == std::floor(v) && !std::signbit(v);
   };
   if (std::ranges::all_of(picture.values, is_whole)) {
+    picture.wholes.reserve(picture.wholes.size() + picture.values.size());
     for (const float v : std::exchange(picture.values, {}))
       picture.wholes.push_back(static_cast<std::uint16_t>(v));
   }

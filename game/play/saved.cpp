@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "engine/core/log.hpp"
-#include "engine/core/read_file.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/world/files/text_file.hpp"
 #include "game/play/land.hpp"
 
 namespace cairns {
@@ -149,10 +149,10 @@ std::filesystem::path save_file(const std::filesystem::path& folder, std::uint64
 
 // File times do not help here, because the system clock may have been set back.
 std::optional<std::uint64_t> last_seed(const std::filesystem::path& folder) {
-  const auto bytes = core::read_file(folder / kLast, kMaxLastBytes);
-  if (!bytes) return std::nullopt;
+  const auto text = world::read_text_file(folder / kLast, kMaxLastBytes);
+  if (!text) return std::nullopt;
   std::string name;
-  if (!(std::istringstream({bytes->begin(), bytes->end()}) >> name)) return std::nullopt;
+  if (!(std::istringstream(*text) >> name)) return std::nullopt;
   std::error_code error;
   const std::uint64_t seed = seed_of(name);
   if (!std::filesystem::exists(save_file(folder, seed), error)) return std::nullopt;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <tuple>
+#include <type_traits>
 
 #include "engine/render/passes/landscape.hpp"
 #include "engine/render/passes/lines.hpp"
@@ -26,6 +27,9 @@ using Passes = std::tuple<  //
     Overlay>;               // text and ImGui
 
 static_assert(std::tuple_size_v<Passes> == kPassNames.size(), "each pass has a name");
+static_assert(std::is_same_v<std::tuple_element_t<0, Passes>, Shadows> &&
+                  kPassNames[0] == "shadows",
+              "GpuTimer::Mark::kShadows is the end of pass 0");
 
 // Calls visit(pass) for each pass, in order.
 template <class AnyPasses, class Visit>
