@@ -32,6 +32,7 @@ std::vector<std::string> code_of(const std::string& cell) {
   std::vector<std::string> found;
   for (std::size_t from = cell.find('`'); from != std::string::npos; from = cell.find('`', from)) {
     const std::size_t to = cell.find('`', from + 1);
+    if (to == std::string::npos) return {};
     found.push_back(cell.substr(from + 1, to - from - 1));
     from = to + 1;
   }
@@ -65,7 +66,7 @@ Page read_page() {
       table = cells.back() == "refused with" ? &page.tried : &page.held_elsewhere;
     } else if (table != nullptr && cells.size() == 4 && !cells.front().starts_with("--")) {
       const auto constant = code_of(cells[2]), last = code_of(cells[3]);
-      if (constant.size() != 2 || last.size() != 1) {
+      if (constant.size() != 2 || last.size() != 1 || last[0].empty()) {
         ADD_FAILURE() << "not a row of limits: " << line;
         continue;
       }

@@ -104,8 +104,9 @@ def main():
     arguments = vars(parser.parse_args())
     if shutil.which("git") is None:
         sys.exit("git is missing")
-    for name in ("GIT_DIR", "GIT_WORK_TREE"):
+    for name in ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE"):
         os.environ.pop(name, None)
+    os.environ["GIT_CONFIG_GLOBAL"] = os.devnull
     with tempfile.TemporaryDirectory() as folder:
         Day(**arguments, folder=pathlib.Path(folder)).live()
 
