@@ -26,6 +26,14 @@ glm::vec3 colour_of(const Vertex& v) {
   return glm::vec3(v.colour[0], v.colour[1], v.colour[2]) / 255.0F;
 }
 
+std::vector<glm::vec3> colours_of(const std::vector<Vertex>& vertices) {
+  std::vector<glm::vec3> colours;
+  colours.reserve(vertices.size());
+  for (const Vertex& v : vertices)
+    colours.push_back(colour_of(v));
+  return colours;
+}
+
 glm::vec3 unit_or_zero(const glm::vec3& v) {
   const float length = glm::length(v);
   return length > 0 ? v / length : v;
@@ -50,9 +58,12 @@ void Appearance::Difference::add(const Difference& other) {
   colour += other.colour, normal += other.normal, area_m2 += other.area_m2;
 }
 
+bool Appearance::Difference::has_wrong_normal() const {
+  return glm::length(normal) > kWrongNormal * area_m2;
+}
+
 bool Appearance::Difference::is_wrong() const {
-  return glm::length(colour) > kWrongColour * area_m2 ||
-         glm::length(normal) > kWrongNormal * area_m2;
+  return glm::length(colour) > kWrongColour * area_m2 || has_wrong_normal();
 }
 
 Appearance::Appearance(const std::vector<Vertex>& vertices, const Indices& indices) {
@@ -91,19 +102,28 @@ Appearance::Appearance(const std::vector<Vertex>& vertices, const Indices& indic
   spacing_m_ = std::sqrt(area_m2 / static_cast<float>(points_.size()));
 }
 
+// Times the area of a point, from the colours of the vertices of a level.
+glm::vec3 Appearance::missing_colour(const std::vector<glm::vec3>& colours,
+                                     const std::vector<Match>& matches, std::size_t point) const {
+  const Match& match = matches[point];
+  glm::vec3 colour(0.0F);
+  for (int k = 0; k < 3; ++k)
+    colour += match.weights[k] * colours[match.corners[static_cast<std::size_t>(k)]];
+  return points_[point].area_m2 * (points_[point].colour - colour);
+}
+
 std::vector<Appearance::Difference> Appearance::differences(
     const std::vector<Vertex>& vertices, const std::vector<Match>& matches) const {
+  const std::vector<glm::vec3> colours = colours_of(vertices);
   std::vector<Difference> found(points_.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!matches[i].is_found) continue;
     const Point& p = points_[i];
-    glm::vec3 colour(0.0F), normal(0.0F);
-    for (int k = 0; k < 3; ++k) {
-      const Vertex& v = vertices[matches[i].corners[static_cast<std::size_t>(k)]];
-      colour += matches[i].weights[k] * colour_of(v);
-      normal += matches[i].weights[k] * v.normal;
-    }
-    found[i] = {p.area_m2 * (p.colour - colour), p.area_m2 * (p.normal - unit_or_zero(normal)),
+    glm::vec3 normal(0.0F);
+    for (int k = 0; k < 3; ++k)
+      normal +=
+          matches[i].weights[k] * vertices[matches[i].corners[static_cast<std::size_t>(k)]].normal;
+    found[i] = {missing_colour(colours, matches, i), p.area_m2 * (p.normal - unit_or_zero(normal)),
                 p.area_m2};
   }
   return found;
@@ -119,11 +139,13 @@ double Appearance::fit(std::vector<Vertex>& vertices, Simplifier& simplifier) co
     matches.push_back({{c[0], c[1], c[2]}, match.weights, match.is_found});
     if (match.is_found) error_m = std::max(error_m, static_cast<double>(match.distance_m));
   }
-  float wrong_m = wrong_size_m(differences(vertices, matches));
-  if (wrong_m > 0) {
-    const std::vector<Vertex> fitted = with_fitted_colours(vertices, matches);
-    const float left_m = wrong_size_m(differences(fitted, matches));
-    if (left_m < kClearGain * wrong_m) wrong_m = left_m, vertices = fitted;
+  const WrongSize wrong = wrong_size(differences(vertices, matches));
+  float wrong_m = wrong.any_m;
+  // Other colours leave the normals as they are.
+  if (wrong.normals_m < kClearGain * wrong_m) {
+    std::vector<Vertex> fitted = with_fitted_colours(vertices, matches);
+    const float left_m = wrong_size(differences(fitted, matches)).any_m;
+    if (left_m < kClearGain * wrong_m) wrong_m = left_m, vertices = std::move(fitted);
   }
   return std::max(error_m, static_cast<double>(wrong_m));
 }
@@ -133,19 +155,22 @@ double Appearance::fit(std::vector<Vertex>& vertices, Simplifier& simplifier) co
 std::vector<Vertex> Appearance::with_fitted_colours(const std::vector<Vertex>& vertices,
                                                     const std::vector<Match>& matches) const {
   std::vector<Vertex> fitted = vertices;
+  std::vector<glm::vec3> colours = colours_of(fitted);
   for (int turn = 0; turn < kTurns; ++turn) {
     std::vector<glm::vec4> missing(vertices.size(), glm::vec4(0.0F));  // weighted; weight
-    const std::vector<Difference> now = differences(fitted, matches);
-    for (std::size_t i = 0; i < now.size(); ++i)
-      for (int k = 0; k < 3 && matches[i].is_found; ++k)
-        missing[matches[i].corners[static_cast<std::size_t>(k)]] +=
-            matches[i].weights[k] * glm::vec4(now[i].colour, now[i].area_m2);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (!matches[i].is_found) continue;
+      const glm::vec4 here(missing_colour(colours, matches, i), points_[i].area_m2);
+      for (int k = 0; k < 3; ++k)
+        missing[matches[i].corners[static_cast<std::size_t>(k)]] += matches[i].weights[k] * here;
+    }
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       if (!(missing[i].w > 0)) continue;
-      const glm::vec3 colour = colour_of(fitted[i]) + glm::vec3(missing[i]) / missing[i].w;
+      const glm::vec3 colour = colours[i] + glm::vec3(missing[i]) / missing[i].w;
       for (int k = 0; k < 3; ++k)
         fitted[i].colour[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(
             255 * std::clamp(colour[k], darkest_[k], brightest_[k]) + 0.5F);
+      colours[i] = colour_of(fitted[i]);
     }
   }
   return fitted;
@@ -174,9 +199,9 @@ class Appearance::Regions {
     }
     return sums_[slots_[slot] - 1].second;
   }
-  bool has_wrong(float min_area_m2) const {
+  bool have_any(float min_area_m2, bool (Difference::*is_wrong)() const) const {
     return std::ranges::any_of(sums_, [&](const auto& sum) {
-      return sum.second.area_m2 > min_area_m2 && sum.second.is_wrong();
+      return sum.second.area_m2 > min_area_m2 && (sum.second.*is_wrong)();
     });
   }
 
@@ -185,9 +210,11 @@ class Appearance::Regions {
   std::vector<std::pair<std::uint64_t, Difference>> sums_;
 };
 
-// The size of the smallest squares whose mean differences are all right; 0 if all points are right.
-float Appearance::wrong_size_m(const std::vector<Difference>& differences) const {
-  if (std::ranges::none_of(differences, &Difference::is_wrong)) return 0;
+Appearance::WrongSize Appearance::wrong_size(const std::vector<Difference>& differences) const {
+  if (std::ranges::none_of(differences, &Difference::is_wrong)) return {};
+  WrongSize wrong;
+  bool are_normals_wrong = std::ranges::any_of(differences, &Difference::has_wrong_normal);
+  constexpr std::uint64_t kFactor = 0x9E3779B97F4A7C15;  // odd, with irregular bits
   float size_m = spacing_m_;
   Regions regions(points_.size());
   for (; size_m < extent_m_; size_m *= kGrowth) {
@@ -195,13 +222,20 @@ float Appearance::wrong_size_m(const std::vector<Difference>& differences) const
     for (std::size_t i = 0; i < differences.size(); ++i) {
       std::uint64_t key = points_[i].side;
       for (int k = 0; k < 3; ++k)
-        key = core::combine(
-            key, static_cast<std::uint64_t>(floored(points_[i].goal.position[k] / size_m)));
-      regions.at(key).add(differences[i]);
+        key = kFactor * key +
+              static_cast<std::uint64_t>(floored(points_[i].goal.position[k] / size_m));
+      regions.at(core::mix64(key)).add(differences[i]);
     }
-    if (!regions.has_wrong(kFilled * size_m * size_m)) break;
+    const float min_area_m2 = kFilled * size_m * size_m;
+    if (are_normals_wrong && !regions.have_any(min_area_m2, &Difference::has_wrong_normal)) {
+      are_normals_wrong = false;
+      wrong.normals_m = size_m;
+    }
+    if (!regions.have_any(min_area_m2, &Difference::is_wrong)) break;
   }
-  return std::min(size_m, extent_m_);
+  wrong.any_m = std::min(size_m, extent_m_);
+  if (are_normals_wrong) wrong.normals_m = wrong.any_m;
+  return wrong;
 }
 
 }  // namespace psygen::handmade

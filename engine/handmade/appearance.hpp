@@ -41,14 +41,21 @@ class Appearance {
     float area_m2 = 0;
 
     void add(const Difference& other);
+    bool has_wrong_normal() const;
     bool is_wrong() const;
   };
   class Regions;
   std::vector<Difference> differences(const std::vector<Vertex>& vertices,
                                       const std::vector<Match>& matches) const;
+  glm::vec3 missing_colour(const std::vector<glm::vec3>& colours, const std::vector<Match>& matches,
+                           std::size_t point) const;
   std::vector<Vertex> with_fitted_colours(const std::vector<Vertex>& vertices,
                                           const std::vector<Match>& matches) const;
-  float wrong_size_m(const std::vector<Difference>& differences) const;
+  // Sizes of the smallest squares whose mean differences are all right; 0 if all points are right.
+  struct WrongSize {
+    float any_m = 0, normals_m = 0;  // of colours and normals; of normals alone, no more than any_m
+  };
+  WrongSize wrong_size(const std::vector<Difference>& differences) const;
 
   std::vector<Point> points_;
   glm::vec3 darkest_{1.0F}, brightest_{0.0F};  // range of colours

@@ -69,7 +69,7 @@ std::vector<glm::vec3> corners_of(const core::Bounds& box) {
 // points the first in the mesh, so that the result does not depend on a sort.
 std::vector<glm::vec3> extremes_of(const Triangles& triangles) {
   constexpr std::size_t kDirections = 98;
-  std::array<float, kDirections> x{}, y{}, z{}, most{};
+  std::array<float, kDirections> x{}, y{}, z{}, along{}, most{};
   std::array<std::uint32_t, kDirections> best{};
   std::size_t directions = 0;
   for (int i = 0; i < 125; ++i) {
@@ -86,11 +86,13 @@ std::vector<glm::vec3> extremes_of(const Triangles& triangles) {
     if (seen[k]) continue;
     seen[k] = true;
     const glm::vec3 p = triangles.vertices[k].position;
-    for (std::size_t d = 0; d < kDirections; ++d) {
-      const float along = p.x * x[d] + p.y * y[d] + p.z * z[d];
-      best[d] = along > most[d] ? k : best[d];
-      most[d] = along > most[d] ? along : most[d];
-    }
+    for (std::size_t d = 0; d < kDirections; ++d)
+      along[d] = p.x * x[d] + p.y * y[d] + p.z * z[d];
+    std::uint32_t rises = 0;
+    for (std::size_t d = 0; d < kDirections; ++d)
+      rises |= along[d] > most[d] ? 1U : 0U;
+    for (std::size_t d = 0; rises != 0 && d < kDirections; ++d)
+      if (along[d] > most[d]) best[d] = k, most[d] = along[d];
   }
   std::vector<glm::vec3> points;
   for (const std::uint32_t k : best) {

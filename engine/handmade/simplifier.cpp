@@ -73,29 +73,40 @@ void Simplifier::Quadric::move(const glm::vec3& origin) {
   slope += square * origin;
 }
 
-float Simplifier::Looks::at(const glm::vec3& p, const Attributes& a) const {
-  float result = sum.at(p);
+Simplifier::Attributes Simplifier::Looks::change(const glm::vec3& p) const {
+  Attributes change;
+  for (std::size_t i = 0; i < change.size(); ++i)
+    change[i] = slopes[0][i] * p.x + slopes[1][i] * p.y + slopes[2][i] * p.z;
+  return change;
+}
+
+float Simplifier::Looks::at(float sum_there, const Attributes& change, const Attributes& a) const {
+  Attributes parts;
   for (std::size_t i = 0; i < a.size(); ++i)
-    result += a[i] * (area_m2 * a[i] - 2 * (glm::dot(slopes[i], p) + values[i]));
-  return result;
+    parts[i] = a[i] * (area_m2 * a[i] - 2 * (change[i] + values[i]));
+  return std::accumulate(parts.begin(), parts.end(), sum_there);
 }
 
 void Simplifier::Looks::add(const Looks& other) {
   sum.add(other.sum);
   area_m2 += other.area_m2;
+  for (std::size_t k = 0; k < slopes.size(); ++k)
+    for (std::size_t i = 0; i < values.size(); ++i)
+      slopes[k][i] += other.slopes[k][i];
   for (std::size_t i = 0; i < values.size(); ++i) {
-    slopes[i] += other.slopes[i], values[i] += other.values[i];
+    values[i] += other.values[i];
     low[i] = std::min(low[i], other.low[i]), high[i] = std::max(high[i], other.high[i]);
   }
 }
 
 void Simplifier::Looks::move(const glm::vec3& origin, const Attributes& a) {
-  const float value = at(origin, a);
+  const Attributes way = change(origin);
+  const float value = at(sum.at(origin), way, a);
   sum.move(origin);
   sum.value = value;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    values[i] += glm::dot(slopes[i], origin) - area_m2 * a[i];
-    sum.slope -= a[i] * slopes[i];
+    values[i] += way[i] - area_m2 * a[i];
+    sum.slope -= a[i] * glm::vec3(slopes[0][i], slopes[1][i], slopes[2][i]);
   }
 }
 
@@ -146,6 +157,9 @@ void Simplifier::join_vertices() {
   for (std::uint32_t& i : indices_)
     i = joined[i];
   places_.resize(count);
+  positions_.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i)
+    positions_.push_back(vertices_[members_[first_[i]]].position);
   around_.resize(count);
   for (std::uint32_t i = 0; i < count; ++i)
     places_[i].parent = i;
@@ -172,7 +186,8 @@ void Simplifier::add_surface() {
     for (std::size_t i = 0; i < of_a.size(); ++i) {
       const glm::vec3 gradient = (of_b[i] - of_a[i]) * along_b + (of_c[i] - of_a[i]) * along_c;
       part.sum.add(gradient, share_m2);
-      part.slopes[i] = share_m2 * gradient;
+      for (int k = 0; k < 3; ++k)
+        part.slopes[static_cast<std::size_t>(k)][i] = share_m2 * gradient[k];
       part.low[i] = std::min({of_a[i], of_b[i], of_c[i]});
       part.high[i] = std::max({of_a[i], of_b[i], of_c[i]});
     }
@@ -184,7 +199,7 @@ void Simplifier::add_surface() {
       place.weight_m2 += share_m2;
       ++place.triangles;
       around_[at].push_back(t);
-      low = glm::min(low, position(at)), high = glm::max(high, position(at));
+      low = glm::min(low, positions_[at]), high = glm::max(high, positions_[at]);
     }
   }
   slack_m_ = kSlack * glm::length(high - low);
@@ -250,10 +265,12 @@ Simplifier::Attributes Simplifier::step(std::uint32_t from, std::uint32_t to) co
 }
 
 Simplifier::Successor Simplifier::successor(std::uint32_t vertex, std::uint32_t to) const {
-  const glm::vec3 way = position(to) - vertices_[vertex].position;
+  const glm::vec3 way = positions_[to] - vertices_[vertex].position;
+  const float sum = looks_[vertex].sum.at(way);
+  const Attributes change = looks_[vertex].change(way);
   Successor best{0, 1e30F};
   for (const std::uint32_t member : members(to)) {
-    const float wrong_m2 = looks_[vertex].at(way, step(vertex, member));
+    const float wrong_m2 = looks_[vertex].at(sum, change, step(vertex, member));
     if (wrong_m2 < best.wrong_m2) best = {member, wrong_m2};
   }
   // The area, if the difference is that large, or what the range of the looks allows.
@@ -270,7 +287,7 @@ Simplifier::Successor Simplifier::successor(std::uint32_t vertex, std::uint32_t 
 
 Simplifier::Collapse Simplifier::cost(std::uint32_t from, std::uint32_t to) const {
   const Place &a = places_[from], &b = places_[to];
-  const float square = std::max({a.surface.at(position(to) - position(from)) / a.weight_m2,
+  const float square = std::max({a.surface.at(positions_[to] - positions_[from]) / a.weight_m2,
                                  b.surface.value / b.weight_m2, 0.0F});
   float wrong_m2 = 0;
   for (const std::uint32_t member : members(from))
@@ -287,8 +304,8 @@ bool Simplifier::flips(std::uint32_t from, std::uint32_t to) const {
       const auto i = static_cast<std::size_t>(k);
       const std::uint32_t place = place_at(t, k);
       vanishes = vanishes || place == to;
-      before[i] = position(place);
-      after[i] = place == from ? position(to) : before[i];
+      before[i] = positions_[place];
+      after[i] = place == from ? positions_[to] : before[i];
     }
     if (vanishes) continue;
     const glm::vec3 old = glm::cross(before[1] - before[0], before[2] - before[0]);
@@ -304,25 +321,26 @@ bool Simplifier::flips(std::uint32_t from, std::uint32_t to) const {
 
 Simplifier::Collapse Simplifier::best(std::uint32_t from) {
   if (places_[from].triangles > kMaxTriangles) return {};
-  Indices others;
+  others_.clear();
   for (const std::uint32_t t : around(from))
     for (int k = 0; k < 3; ++k)
-      if (place_at(t, k) != from) others.push_back(place_at(t, k));
-  std::ranges::sort(others);
-  others.erase(std::ranges::unique(others).begin(), others.end());
-  std::vector<Collapse> found;
-  for (const std::uint32_t to : others)
-    found.push_back(cost(from, to));
-  std::ranges::stable_sort(found, {}, &Collapse::cost_m);
-  const auto tried = std::span(found).first(std::min(found.size(), kMaxTries));
+      if (place_at(t, k) != from) others_.push_back(place_at(t, k));
+  std::ranges::sort(others_);
+  others_.erase(std::ranges::unique(others_).begin(), others_.end());
+  found_.clear();
+  for (const std::uint32_t to : others_)
+    found_.push_back(cost(from, to));
+  const auto tried = std::span(found_).first(std::min(found_.size(), kMaxTries));
+  std::ranges::partial_sort(found_, found_.begin() + std::ssize(tried), {},
+                            [](const Collapse& c) { return std::pair(c.cost_m, c.to); });
   const auto fits = [&](const Collapse& c) { return !flips(from, c.to); };
   const auto first = std::ranges::find_if(tried, fits);
-  work_ += found.size() + around_[from].size() * static_cast<std::size_t>(first - tried.begin());
+  work_ += found_.size() + around_[from].size() * static_cast<std::size_t>(first - tried.begin());
   return first == tried.end() ? Collapse{} : *first;
 }
 
 void Simplifier::collapse(std::uint32_t from, const Collapse& how) {
-  const glm::vec3 way = position(how.to) - position(from);
+  const glm::vec3 way = positions_[how.to] - positions_[from];
   std::array<std::uint32_t, kMaxMembers> successors{};
   const std::span<const std::uint32_t> own = members(from);
   for (std::size_t i = 0; i < own.size(); ++i) {
@@ -392,14 +410,23 @@ std::uint32_t Simplifier::place_now(std::uint32_t triangle, int corner) {
   return place;
 }
 
-void Simplifier::look_around(std::uint32_t place, const Goal& goal, Match& best) {
+// Compares the triangles of a place with a goal, without those of the seen places.
+void Simplifier::look_around(std::uint32_t place, std::span<const std::uint32_t> seen,
+                             const Goal& goal, Match& best) {
   const std::size_t count = std::min(around(place).size(), std::size_t{kMaxTriangles});
+  const auto is_seen = [&](std::uint32_t at) {
+    return places_[at].triangles <= kMaxTriangles && std::ranges::find(seen, at) != seen.end();
+  };
   for (const std::uint32_t t : std::span(around_[place]).first(count)) {
-    std::array<glm::dvec3, 3> corners;
-    for (int k = 0; k < 3; ++k)
-      corners[static_cast<std::size_t>(k)] = position(place_at(t, k));
+    const std::array at{place_at(t, 0), place_at(t, 1), place_at(t, 2)};
+    if (std::ranges::any_of(at, is_seen)) continue;
+    const std::array<glm::dvec3, 3> corners{positions_[at[0]], positions_[at[1]],
+                                            positions_[at[2]]};
     const glm::dvec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     if (glm::dot(across, glm::dvec3(goal.facing)) <= 0) continue;
+    const double off = glm::dot(across, glm::dvec3(goal.position) - corners[0]);
+    const auto known_m = static_cast<double>(best.distance_m);
+    if (off * off > known_m * known_m * glm::dot(across, across)) continue;  // even the plane
     const glm::dvec3 w = nearest_weights(goal.position, corners);
     const auto distance_m = static_cast<float>(glm::length(
         w.x * corners[0] + w.y * corners[1] + w.z * corners[2] - glm::dvec3(goal.position)));
@@ -416,8 +443,8 @@ Simplifier::Match Simplifier::nearest(std::uint32_t triangle, const Goal& goal) 
     for (int k = 0; k < 3 && end != seen.end(); ++k) {
       const std::uint32_t place = place_now(around, k);
       if (std::find(seen.begin(), end, place) != end) continue;
+      look_around(place, {seen.begin(), end}, goal, best);
       *end++ = place;
-      look_around(place, goal, best);
     }
     if (end == before) return best;
   }

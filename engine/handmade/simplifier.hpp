@@ -58,8 +58,9 @@ class Simplifier {
   std::uint32_t fitting(std::uint32_t vertex, const glm::vec3& direction) const;
 
  private:
-  // Relative to a colour and normal, in units of a clearly visible difference.
-  using Attributes = std::array<float, 6>;
+  // Relative to a colour and normal, in units of a clearly visible difference. The last two are 0,
+  // so that loops over all are vector instructions.
+  using Attributes = std::array<float, 8>;
 
   // A weighted sum of squares of linear functions of a position.
   struct Quadric {
@@ -84,11 +85,14 @@ class Simplifier {
   // Relative to the vertex's position and attributes.
   struct Looks {
     Quadric sum;
-    std::array<glm::vec3, 6> slopes{};
+    std::array<Attributes, 3> slopes{};  // of the attributes along x, y, z
     Attributes values{}, low{}, high{};  // low, high: range on the surface, not relative
     float area_m2 = 0;
 
-    float at(const glm::vec3& p, const Attributes& a) const;
+    // By how much the attributes change on the way to a position, times the area.
+    Attributes change(const glm::vec3& p) const;
+    // The difference at a position with this sum and change.
+    float at(float sum_there, const Attributes& change, const Attributes& a) const;
     void add(const Looks& other);
     void move(const glm::vec3& origin, const Attributes& a);
   };
@@ -111,13 +115,11 @@ class Simplifier {
   const Indices& around(std::uint32_t place);
   void enqueue(std::uint32_t place, float cost_m);
   std::uint32_t place_now(std::uint32_t triangle, int corner);
-  void look_around(std::uint32_t place, const Goal& goal, Match& best);
+  void look_around(std::uint32_t place, std::span<const std::uint32_t> seen, const Goal& goal,
+                   Match& best);
   // The vertices of a place.
   std::span<const std::uint32_t> members(std::uint32_t place) const {
     return std::span(members_).subspan(first_[place], first_[place + 1] - first_[place]);
-  }
-  const glm::vec3& position(std::uint32_t place) const {
-    return vertices_[members_[first_[place]]].position;
   }
   std::uint32_t place_at(std::uint32_t triangle, int corner) const {
     return place_of_[indices_[3 * std::size_t{triangle} + static_cast<std::size_t>(corner)]];
@@ -141,8 +143,11 @@ class Simplifier {
   std::vector<Attributes> attributes_;  // of vertices
   std::vector<Looks> looks_;            // of vertices
   std::vector<Place> places_;
-  std::vector<Indices> around_;  // triangles of places, some of which are gone
+  std::vector<glm::vec3> positions_;  // of places
+  std::vector<Indices> around_;       // triangles of places, some of which are gone
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+  Indices others_;               // used by best() alone
+  std::vector<Collapse> found_;  // the same
   std::size_t left_ = 0, work_ = 0;
   float error_m_ = 0, slack_m_ = 0;
 };

@@ -11,7 +11,8 @@
 namespace psygen::handmade {
 namespace {
 
-constexpr int kMaxSteps = 8;  // maximum number of samples along a side of a triangle
+constexpr int kMaxSteps = 8;            // maximum number of samples along a side of a triangle
+constexpr float kWhole = 8'388'608.0F;  // from here on numbers are whole, infinite or not a number
 
 // The pixel at a point of the texture: linear colour, opacity.
 glm::vec4 pixel_at(const image::Image& image, glm::vec2 uv) {
@@ -30,26 +31,21 @@ int steps_of(const image::Image& image, const glm::vec2 (&uv)[3]) {
 }
 
 struct Sum {
-  glm::vec3 drawn{0.0F}, all{0.0F};
-  float drawn_weight = 0, all_weight = 0;
+  glm::vec4 drawn{0.0F}, all{0.0F};  // colour; weight
   void add(const glm::vec4& pixel, float weight, float min_opacity) {
-    all += glm::vec3(pixel) * weight;
-    all_weight += weight;
-    if (pixel.w < min_opacity) return;
-    drawn += glm::vec3(pixel) * weight;
-    drawn_weight += weight;
+    const glm::vec4 part(glm::vec3(pixel) * weight, weight);
+    all += part;
+    if (pixel.w >= min_opacity) drawn += part;
   }
   void add(const Sum& other) {
     all += other.all;
-    all_weight += other.all_weight;
     drawn += other.drawn;
-    drawn_weight += other.drawn_weight;
   }
   // The mean here; `others`, the mean of the whole mesh, if no pixel is drawn here.
   glm::vec3 mean(const Sum& others) const {
-    if (drawn_weight > 0) return drawn / drawn_weight;
-    if (others.drawn_weight > 0) return others.drawn / others.drawn_weight;
-    return all_weight > 0 ? all / all_weight : glm::vec3(1.0F);
+    for (const glm::vec4& sum : {drawn, others.drawn, all})
+      if (sum.w > 0) return glm::vec3(sum) / sum.w;
+    return glm::vec3(1.0F);
   }
 };
 
@@ -57,9 +53,11 @@ struct Sum {
 
 std::span<const std::uint8_t, 4> pixel_of(const image::Image& image, glm::vec2 uv) {
   const auto along = [](float v, std::uint32_t size) {
-    const float part = v - std::floor(v);
-    const auto at = static_cast<std::uint32_t>(part * static_cast<float>(size));
-    return std::isfinite(part) ? std::min(at, size - 1) : 0U;
+    if (!(std::abs(v) < kWhole)) return 0U;
+    // std::floor() would be a function call.
+    const auto towards_zero = static_cast<float>(static_cast<std::int32_t>(v));
+    const float part = v - (towards_zero > v ? towards_zero - 1 : towards_zero);
+    return std::min(static_cast<std::uint32_t>(part * static_cast<float>(size)), size - 1);
   };
   return image.pixel(along(uv.x, image.width), along(uv.y, image.height));
 }
