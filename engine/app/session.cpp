@@ -87,7 +87,7 @@ core::Result<void> Session::open() {
   if (auto ok = scene::Scene::check(options_.scene); !ok) return ok;
   auto registry = make_registry(options_.plugins);
   if (!registry) return tl::unexpected(registry.error());
-  auto world = read_world(options_.world_text, *registry, options_.files.get());
+  auto world = read_world_visibly(*registry);
   if (!world) return tl::unexpected(world.error());
   auto ground = read_ground_pictures(*world, options_.world_file);
   if (!ground) return tl::unexpected(ground.error());
@@ -97,6 +97,14 @@ core::Result<void> Session::open() {
   if (auto ok = open_renderer(std::move(*ground), loading); !ok)
     return loading.closed() ? closed_early() : ok;
   return open_scene(std::move(*world), std::move(*registry), loading);
+}
+
+// Its name and size are unknown before, so there is no window yet: progress shows on a terminal.
+core::Result<world::World> Session::read_world_visibly(models::Registry& registry) const {
+  Loading loading(options_.world_file.filename().string(), nullptr, options_.stop);
+  const core::ProgressScope progress(
+      [&loading](double part) { loading.update("reading the world's files", part, nullptr); });
+  return read_world(options_.world_text, registry, options_.files.get());
 }
 
 core::Result<world::World> Session::read_world(std::optional<std::string_view> text,

@@ -1,9 +1,12 @@
 #include "engine/core/cancellation.hpp"
 
+#include <utility>
+
 namespace psygen::core {
 namespace {
 
 constinit thread_local const std::atomic<bool>* flag_of_thread = nullptr;
+constinit thread_local const ShowProgress* progress_of_thread = nullptr;
 
 }  // namespace
 
@@ -26,6 +29,19 @@ bool is_cancelled() {
 Result<void> check_cancelled() {
   if (!is_cancelled()) return {};
   return fail(ErrorCode::kInterrupted, "interrupted");
+}
+
+ProgressScope::ProgressScope(ShowProgress show)
+    : show_(std::move(show)), before_(progress_of_thread) {
+  progress_of_thread = &show_;
+}
+
+ProgressScope::~ProgressScope() {
+  progress_of_thread = before_;
+}
+
+void report_progress(double part) {
+  if (progress_of_thread != nullptr) (*progress_of_thread)(part);
 }
 
 }  // namespace psygen::core

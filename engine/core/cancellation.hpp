@@ -1,10 +1,12 @@
-// Cancellation of long work. A caller binds a flag to the thread that works for it; loops deep
-// inside the work, and libraries that know nothing of the caller, ask for it between pieces of some
-// ten milliseconds. Work that starts threads of its own binds the flag in each of them. Not for
-// loops of a frame, which have their own conditions. Any thread.
+// Cancellation and progress of long work. A caller binds a flag, and a function that shows
+// progress, to the thread that works for it; loops deep inside the work, and libraries that know
+// nothing of the caller, use them between pieces of some ten milliseconds. Work that starts threads
+// of its own binds the flag in each of them. Not for loops of a frame, which have their own
+// conditions. Any thread.
 #pragma once
 
 #include <atomic>
+#include <functional>
 
 #include "engine/core/error.hpp"
 
@@ -33,5 +35,25 @@ bool is_cancelled();
 
 // Fails with kInterrupted if is_cancelled().
 Result<void> check_cancelled();
+
+// A function that shows the part of the work that is done, 0 … 1.
+using ShowProgress = std::function<void(double part)>;
+
+// While it lives, report_progress() of this thread calls a function. Nests: the inner one replaces
+// the outer one.
+class ProgressScope {
+ public:
+  explicit ProgressScope(ShowProgress show);
+  ~ProgressScope();
+  ProgressScope(const ProgressScope&) = delete;
+  ProgressScope& operator=(const ProgressScope&) = delete;
+
+ private:
+  ShowProgress show_;
+  const ShowProgress* before_;
+};
+
+// Calls the function of the calling thread's scope, if there is one.
+void report_progress(double part);
 
 }  // namespace psygen::core

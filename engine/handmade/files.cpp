@@ -267,6 +267,8 @@ class Files final : public world::ResourceLoader {
     const auto work = [&] {
       const core::CancelScope scope(cancelled);
       for (std::size_t i = next++; i < failed; i = next++) {
+        // Only the calling thread reports.
+        core::report_progress(static_cast<double>(i) / static_cast<double>(wanted.size()));
         if (read_one(wanted[i], shared, sum, loaded[i])) continue;
         std::size_t before = failed;
         while (i < before && !failed.compare_exchange_weak(before, i)) {

@@ -354,7 +354,8 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   if (!show_stand_ins(facts, nullptr, s.meshes, s.output)) {
     if (auto ok = derive(settings, false, facts); !ok) return tl::unexpected(ok.error());
   }
-  if (auto ok = s.assets.open(facts.registry, renderer); !ok) return tl::unexpected(ok.error());
+  if (auto ok = s.assets.open(facts.registry, renderer, settings.object_budget_bytes); !ok)
+    return tl::unexpected(ok.error());
   facts.typical_bounds = typical_bounds(facts.registry, models_on(facts, {}));
   s.streaming.grids = node_grids(settings, facts);
   scene->on_preset_changed();

@@ -33,8 +33,10 @@ struct SceneSettings {
   // processor time from frames; for comparison only.
   bool modelers_yield = true;
   std::uint64_t budget_bytes = 512ull << 20;  // all geometry: resident, in flight, retired
-  double view_distance_m = 16'000;            // maximum distance of drawn objects
-  double max_error_pixels = 4.0;              // allowed screen-space error
+  // Vertices and indices of the meshes of objects that the host keeps; more is an error.
+  std::uint64_t object_budget_bytes = 1ull << 30;
+  double view_distance_m = 16'000;  // maximum distance of drawn objects
+  double max_error_pixels = 4.0;    // allowed screen-space error
   // Held by a lower resolution of the landscape, then by a larger error; 0: both are fixed.
   double target_frame_ms = 0;
   double min_resolution = 0.6;         // fraction of width and height, 0.25 … 1

@@ -13,9 +13,20 @@ namespace {
 // The owner of meshes that belong to no entity.
 constexpr std::uint64_t kNoOwner = ecs::kNullEntity.index;
 
+// The vertices and indices that the host keeps.
+std::uint64_t bytes_of(const ObjectSource& source) {
+  std::uint64_t bytes = 0;
+  for (const auto& [mesh, error_m] : source.copied)
+    bytes += mesh.vertices.size() * sizeof(mesh.vertices[0]) +
+             mesh.indices.size() * sizeof(mesh.indices[0]);
+  return bytes;
+}
+
 }  // namespace
 
-core::Result<void> Assets::open(models::Registry& registry, render::Renderer* renderer) {
+core::Result<void> Assets::open(models::Registry& registry, render::Renderer* renderer,
+                                std::uint64_t budget_bytes) {
+  budget_bytes_ = budget_bytes;
   sources_ = std::make_shared<ObjectSources>();
   renderer_ = renderer;
   registry_ = &registry;
@@ -84,6 +95,7 @@ void Assets::remove_mesh(MeshId id) {
     removed_.push_back(mesh.levels[level].key);
   mesh = {};
   --count_;
+  bytes_ -= bytes_of(*sources_->find(id.index));
   sources_->remove(id.index);
 }
 
@@ -96,7 +108,16 @@ core::Result<MeshId> Assets::add_mesh(const core::MeshData& mesh, std::string na
   source.box = packed->box;
   source.copied = object_levels(mesh, std::move(*packed), ObjectMesh::kMaxLevels);
   source.level_count = static_cast<int>(source.copied.size());
-  return add(std::move(source), copied_);
+  const std::uint64_t bytes = bytes_of(source);
+  if (bytes > budget_bytes_ - bytes_) {
+    return core::fail(
+        ErrorCode::kOverBudget,
+        fmt::format("{}: with it, the meshes of objects need {} bytes; at most {} are allowed",
+                    source.name, bytes_ + bytes, budget_bytes_));
+  }
+  auto added = add(std::move(source), copied_);
+  if (added) bytes_ += bytes;
+  return added;
 }
 
 core::Result<MeshId> Assets::add_model(std::string_view type, const models::Parameters& parameters,

@@ -46,8 +46,10 @@ struct ObjectMesh {
 class Assets {
  public:
   // Opens the assets of a scene and adds the types of object meshes to its registry. Call it once.
-  // `renderer` may be null; both must outlive the assets. Fails as Registry::add().
-  core::Result<void> open(models::Registry& registry, render::Renderer* renderer);
+  // `renderer` may be null; both must outlive the assets. `budget_bytes` limits the vertices and
+  // indices that the host keeps. Fails as Registry::add().
+  core::Result<void> open(models::Registry& registry, render::Renderer* renderer,
+                          std::uint64_t budget_bytes);
 
   // Adds the same types to the registry that will replace the one of open(). Object meshes stay,
   // under other keys. Meshes of model types keep their types, which must live on.
@@ -55,7 +57,8 @@ class Assets {
 
   // Adds a mesh from code or from a file, with LODs made from it; each object uses one by its
   // distance. Takes about 0.5 ms for 1,000 triangles: add large meshes while a game loads. `name`
-  // is for messages. Fails as scene::pack(), and with kOverBudget beyond 65,536 meshes at a time.
+  // is for messages. Fails as scene::pack(), and with kOverBudget beyond 65,536 meshes at a time
+  // or the budget of open().
   core::Result<MeshId> add_mesh(const core::MeshData& mesh, std::string name = "mesh");
   // Adds the mesh of a model type ("tree", "rock", or a plugin's), synthesised by modelers on
   // demand. `level_count` LODs from `first_level` on, of which each object uses one by its
@@ -100,6 +103,7 @@ class Assets {
   std::uint32_t textures_ = 0, materials_ = 0;  // without a renderer
   std::vector<ObjectMesh> meshes_;              // by slot
   std::size_t count_ = 0;                       // of meshes that exist
+  std::uint64_t budget_bytes_ = 0, bytes_ = 0;  // of copied meshes; bytes_: of those that exist
   std::vector<synthesis::MeshKey> removed_;     // keys that the cache may still have
 };
 

@@ -37,5 +37,20 @@ TEST(Cancellation, KeepsTheOuterFlagInScopesWithoutOne) {
   EXPECT_TRUE(is_cancelled());
 }
 
+TEST(Progress, IsReportedToTheInnermostScopeOfTheThread) {
+  double outer = -1, inner = -1;
+  report_progress(0.1);
+  const ProgressScope scope([&](double part) { outer = part; });
+  {
+    const ProgressScope other([&](double part) { inner = part; });
+    report_progress(0.2);
+  }
+  EXPECT_EQ(inner, 0.2);
+  EXPECT_EQ(outer, -1);
+  report_progress(0.3);
+  std::thread([] { report_progress(0.4); }).join();
+  EXPECT_EQ(outer, 0.3);
+}
+
 }  // namespace
 }  // namespace psygen::core

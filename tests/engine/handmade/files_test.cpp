@@ -126,6 +126,21 @@ TEST(HandmadeFiles, StopBetweenFilesAndLevelsOnceNobodyWantsThem) {
   EXPECT_TRUE(w.read(text));
 }
 
+TEST(HandmadeFiles, ReportHowMuchOfTheModelsIsRead) {
+  World w;
+  std::string text(kHead);
+  for (int i = 0; i < 40; ++i)
+    text += "[[model]]\nname = \"m" + std::to_string(i) + "\"\nfile = \"things/ball.glb\"\n";
+  std::vector<double> parts;
+  const core::ProgressScope progress([&](double part) { parts.push_back(part); });
+  const auto world = w.read(text);
+  ASSERT_TRUE(world) << world.error().message;
+  ASSERT_FALSE(parts.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(parts));
+  EXPECT_GE(parts.front(), 0);
+  EXPECT_LT(parts.back(), 1);
+}
+
 // The models of a pack, each with an image in a copy of its own, and two tables of one file.
 TEST(HandmadeFiles, ReadThePackInThreadsAsOneByOne) {
   World w;

@@ -61,6 +61,26 @@ class Objects : public testing::Test {
   MeshId mesh_;
 };
 
+TEST_F(Objects, MeshesBeyondTheBudgetOfObjectsAreRefused) {
+  SceneSettings settings = small_settings();
+  settings.object_budget_bytes = 600;  // a box_mesh() has 4 vertices and 6 indices
+  open(settings);
+  Assets& assets = state().assets;
+  std::vector<MeshId> meshes{mesh_};
+  core::Result<MeshId> mesh = assets.add_mesh(box_mesh(), "door");
+  for (; mesh && meshes.size() < 100; mesh = assets.add_mesh(box_mesh(), "door"))
+    meshes.push_back(*mesh);
+  ASSERT_FALSE(mesh);
+  EXPECT_EQ(mesh.error().code, core::ErrorCode::kOverBudget);
+  EXPECT_THAT(mesh.error().message,
+              testing::MatchesRegex("door: with it, the meshes of objects need [0-9]+ bytes; at "
+                                    "most 600 are allowed"));
+  EXPECT_EQ(meshes.size(), 600 / (4 * sizeof(core::ObjectVertex) + 6 * sizeof(std::uint16_t)));
+  assets.remove_mesh(meshes.back());
+  EXPECT_TRUE(assets.add_mesh(box_mesh(), "door"));
+  EXPECT_FALSE(assets.add_mesh(box_mesh(), "door"));
+}
+
 TEST_F(Objects, AreDrawnAtTheirPlaceUntilTheyAreDestroyed) {
   Transform transform = ahead(20);
   transform.rotation = glm::angleAxis(0.5F, glm::vec3(0, 1, 0));
