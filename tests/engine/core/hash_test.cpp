@@ -1,9 +1,15 @@
 #include "engine/core/hash.hpp"
 
 #include <gtest/gtest.h>
+#if defined(__x86_64__)
+#include <cpuid.h>
+#include <immintrin.h>
+#endif
 
 #include <array>
 #include <set>
+#include <span>
+#include <vector>
 
 namespace psygen::core {
 namespace {
@@ -13,6 +19,27 @@ TEST(Hash, Mix64IsTheFinaliserOfSplitMix64) {
   EXPECT_EQ(mix64(0), 0xE220A8397B1DCDAFull);
   EXPECT_EQ(mix64(1234567), 6457827717110365317ull);
 }
+
+#if defined(__x86_64__)
+// The states of registers in use, by bits of XCR0; bit 2: upper halves of vector registers.
+__attribute__((target("avx,xsave"))) unsigned registers_in_use_after_a_hash(
+    std::span<const std::byte> bytes) {
+  _mm256_zeroupper();
+  static_cast<void>(hash_bytes(bytes));
+  unsigned low = 0, high = 0;
+  __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(1));
+  return low;
+}
+
+TEST(Hash, LeavesNoUpperHalvesOfRegistersInUse) {
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  const bool can_tell =
+      __get_cpuid_count(0xD, 1, &a, &b, &c, &d) != 0 && (a & 4U) != 0;  // XGETBV with ECX = 1
+  if (!can_tell || __builtin_cpu_supports("avx") == 0) GTEST_SKIP() << "this CPU cannot tell";
+  const std::vector<std::byte> bytes(4096);
+  EXPECT_EQ(registers_in_use_after_a_hash(bytes) & 4U, 0U);
+}
+#endif
 
 TEST(Hash, StreamsOfDifferentBlocksIndicesAndPurposesDiffer) {
   std::set<std::uint64_t> seen;
