@@ -30,6 +30,20 @@ int steps_of(const image::Image& image, const glm::vec2 (&uv)[3]) {
   return static_cast<int>(std::clamp(0.5F * most, 1.0F, static_cast<float>(kMaxSteps)));
 }
 
+// Points inside a triangle, by the weights of its corners: its texture may have other content
+// beyond its border.
+std::vector<glm::vec3> points_of(int steps) {
+  std::vector<glm::vec3> points;
+  for (int a = 0; a < steps; ++a) {
+    for (int b = 0; a + b < steps; ++b) {
+      const float u = (static_cast<float>(a) + 1.0F / 3) / static_cast<float>(steps);
+      const float v = (static_cast<float>(b) + 1.0F / 3) / static_cast<float>(steps);
+      points.emplace_back(u, v, 1 - u - v);
+    }
+  }
+  return points;
+}
+
 struct Sum {
   glm::vec4 drawn{0.0F}, all{0.0F};  // colour; weight
   void add(const glm::vec4& pixel, float weight, float min_opacity) {
@@ -64,22 +78,20 @@ std::span<const std::uint8_t, 4> pixel_of(const image::Image& image, glm::vec2 u
 
 std::vector<glm::vec3> texture_colours(const core::MeshData& mesh, const image::Image& image,
                                        float min_opacity) {
+  static const std::array<std::vector<glm::vec3>, kMaxSteps + 1> points = [] {
+    std::array<std::vector<glm::vec3>, kMaxSteps + 1> of_steps;
+    for (int steps = 1; steps <= kMaxSteps; ++steps)
+      of_steps[static_cast<std::size_t>(steps)] = points_of(steps);
+    return of_steps;
+  }();
   std::vector<Sum> sums(mesh.positions.size());
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const std::uint32_t* corner = &mesh.indices[i];
     const glm::vec2 uv[3] = {mesh.uvs[corner[0]], mesh.uvs[corner[1]], mesh.uvs[corner[2]]};
-    const int steps = steps_of(image, uv);
-    for (int a = 0; a < steps; ++a) {
-      for (int b = 0; a + b < steps; ++b) {
-        // Inside the triangle: the texture may have other content beyond its border.
-        const float u = (static_cast<float>(a) + 1.0F / 3) / static_cast<float>(steps);
-        const float v = (static_cast<float>(b) + 1.0F / 3) / static_cast<float>(steps);
-        const float w = 1 - u - v;
-        const glm::vec4 pixel = pixel_at(image, u * uv[0] + v * uv[1] + w * uv[2]);
-        sums[corner[0]].add(pixel, u, min_opacity);
-        sums[corner[1]].add(pixel, v, min_opacity);
-        sums[corner[2]].add(pixel, w, min_opacity);
-      }
+    for (const glm::vec3& w : points[static_cast<std::size_t>(steps_of(image, uv))]) {
+      const glm::vec4 pixel = pixel_at(image, w.x * uv[0] + w.y * uv[1] + w.z * uv[2]);
+      for (int k = 0; k < 3; ++k)
+        sums[corner[k]].add(pixel, w[k], min_opacity);
     }
   }
   Sum whole;
