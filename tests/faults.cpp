@@ -22,8 +22,8 @@ namespace {
 
 using psygen::next;
 
-// The functions that this file replaces. The first call looks all of them up: the thread sanitizer
-// also calls open(), at a time when dlsym() cannot free memory.
+// The functions that this file replaces. The start looks all of them up, because dlsym() cannot
+// free memory when the thread sanitizer calls open() later.
 struct Real {
   decltype(&::open) open = next<decltype(::open)>("open");
   decltype(&::write) write = next<decltype(::write)>("write");

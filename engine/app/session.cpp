@@ -87,7 +87,7 @@ core::Result<void> Session::open() {
   if (auto ok = scene::Scene::check(options_.scene); !ok) return ok;
   auto registry = make_registry(options_.plugins);
   if (!registry) return tl::unexpected(registry.error());
-  auto world = read_world_visibly(*registry);
+  auto world = read_world_with_progress(*registry);
   if (!world) return tl::unexpected(world.error());
   auto ground = read_ground_pictures(*world, options_.world_file);
   if (!ground) return tl::unexpected(ground.error());
@@ -99,11 +99,14 @@ core::Result<void> Session::open() {
   return open_scene(std::move(*world), std::move(*registry), loading);
 }
 
-// Its name and size are unknown before, so there is no window yet: progress shows on a terminal.
-core::Result<world::World> Session::read_world_visibly(models::Registry& registry) const {
+// Shows progress on the terminal alone: the window's title needs the world's name. The bar goes
+// before the warnings about the files.
+core::Result<world::World> Session::read_world_with_progress(models::Registry& registry) const {
   Loading loading(options_.world_file.filename().string(), nullptr, options_.stop);
-  const core::ProgressScope progress(
-      [&loading](double part) { loading.update("reading the world's files", part, nullptr); });
+  const core::ProgressScope progress([&loading](double fraction) {
+    if (fraction < 1) loading.update("reading models", fraction, nullptr);
+    if (fraction >= 1) loading.finish();
+  });
   return read_world(options_.world_text, registry, options_.files.get());
 }
 

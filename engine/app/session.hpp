@@ -153,7 +153,7 @@ class Session {
  private:
   explicit Session(SessionOptions options);
   core::Result<void> open();
-  core::Result<world::World> read_world_visibly(models::Registry& registry) const;
+  core::Result<world::World> read_world_with_progress(models::Registry& registry) const;
   core::Result<world::World> read_world(std::optional<std::string_view> text,
                                         models::Registry& registry,
                                         const world::ResourceLoader* files) const;

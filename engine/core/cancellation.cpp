@@ -40,8 +40,12 @@ ProgressScope::~ProgressScope() {
   progress_of_thread = before_;
 }
 
-void report_progress(double part) {
-  if (progress_of_thread != nullptr) (*progress_of_thread)(part);
+void report_progress(double fraction) {
+  if (progress_of_thread == nullptr || !*progress_of_thread) return;
+  try {
+    (*progress_of_thread)(fraction);
+  } catch (...) {  // the work goes on without its display
+  }
 }
 
 }  // namespace psygen::core

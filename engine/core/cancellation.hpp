@@ -1,8 +1,7 @@
-// Cancellation and progress of long work. A caller binds a flag, and a function that shows
-// progress, to the thread that works for it; loops deep inside the work, and libraries that know
-// nothing of the caller, use them between pieces of some ten milliseconds. Work that starts threads
-// of its own binds the flag in each of them. Not for loops of a frame, which have their own
-// conditions. Any thread.
+// Cancellation and progress of long work. A caller binds a cancel flag and a progress callback to
+// its thread. Long loops, which know nothing of the caller, check the flag and report progress
+// about every 10 ms. Work that starts threads binds the flag in each of them; only the caller's
+// thread reports. Not for loops of a frame, which have their own conditions. Any thread.
 #pragma once
 
 #include <atomic>
@@ -36,11 +35,11 @@ bool is_cancelled();
 // Fails with kInterrupted if is_cancelled().
 Result<void> check_cancelled();
 
-// A function that shows the part of the work that is done, 0 … 1.
-using ShowProgress = std::function<void(double part)>;
+// Shows the fraction of the work that is done, 0 … 1. Its exceptions are ignored.
+using ShowProgress = std::function<void(double fraction)>;
 
-// While it lives, report_progress() of this thread calls a function. Nests: the inner one replaces
-// the outer one.
+// While it lives, report_progress() of this thread calls a function; an empty one is not called.
+// Nests: the inner scope replaces the outer one.
 class ProgressScope {
  public:
   explicit ProgressScope(ShowProgress show);
@@ -53,7 +52,7 @@ class ProgressScope {
   const ShowProgress* before_;
 };
 
-// Calls the function of the calling thread's scope, if there is one.
-void report_progress(double part);
+// Calls the function of the calling thread's scope, if there is one. Throws nothing.
+void report_progress(double fraction);
 
 }  // namespace psygen::core

@@ -51,9 +51,11 @@ class Appearance {
                            std::size_t point) const;
   std::vector<Vertex> with_fitted_colours(const std::vector<Vertex>& vertices,
                                           const std::vector<Match>& matches) const;
-  // Sizes of the smallest squares whose mean differences are all right; 0 if all points are right.
+  // Side of the smallest squares whose mean differences are all invisible; 0 if no point differs
+  // visibly.
   struct WrongSize {
-    float any_m = 0, normals_m = 0;  // of colours and normals; of normals alone, no more than any_m
+    float any_m = 0;      // of colours and normals
+    float normals_m = 0;  // of normals alone, no more than any_m
   };
   WrongSize wrong_size(const std::vector<Difference>& differences) const;
 

@@ -261,15 +261,16 @@ class Files final : public world::ResourceLoader {
   std::vector<Loaded> load(std::span<const world::ModelFile> wanted) const {
     std::vector<Loaded> loaded(wanted.size());
     image::ImageCache shared;
-    std::atomic<std::size_t> next = 0, failed = wanted.size();
+    std::atomic<std::size_t> next = 0, done = 0, failed = wanted.size();
     ShapeSum sum;
     const std::atomic<bool>* const cancelled = core::cancel_flag();
     const auto work = [&] {
       const core::CancelScope scope(cancelled);
       for (std::size_t i = next++; i < failed; i = next++) {
-        // Only the calling thread reports.
-        core::report_progress(static_cast<double>(i) / static_cast<double>(wanted.size()));
-        if (read_one(wanted[i], shared, sum, loaded[i])) continue;
+        const bool is_read = read_one(wanted[i], shared, sum, loaded[i]);
+        // Helper threads have no scope, so only the calling thread reports.
+        core::report_progress(static_cast<double>(++done) / static_cast<double>(wanted.size()));
+        if (is_read) continue;
         std::size_t before = failed;
         while (i < before && !failed.compare_exchange_weak(before, i)) {
         }
@@ -277,6 +278,7 @@ class Files final : public world::ResourceLoader {
     };
     const std::size_t most = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxReaders);
     core::run_in_threads(std::min(most, wanted.size()), work);
+    core::report_progress(1);
     return loaded;
   }
 

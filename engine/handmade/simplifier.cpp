@@ -410,7 +410,7 @@ std::uint32_t Simplifier::place_now(std::uint32_t triangle, int corner) {
   return place;
 }
 
-// Compares the triangles of a place with a goal, without those of the seen places.
+// Compares the goal with a place's triangles. Those at seen places were compared there.
 void Simplifier::look_around(std::uint32_t place, std::span<const std::uint32_t> seen,
                              const Goal& goal, Match& best) {
   const std::size_t count = std::min(around(place).size(), std::size_t{kMaxTriangles});

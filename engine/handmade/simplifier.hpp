@@ -146,8 +146,8 @@ class Simplifier {
   std::vector<glm::vec3> positions_;  // of places
   std::vector<Indices> around_;       // triangles of places, some of which are gone
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
-  Indices others_;               // used by best() alone
-  std::vector<Collapse> found_;  // the same
+  Indices others_;               // scratch of best()
+  std::vector<Collapse> found_;  // scratch of best()
   std::size_t left_ = 0, work_ = 0;
   float error_m_ = 0, slack_m_ = 0;
 };

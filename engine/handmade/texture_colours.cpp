@@ -12,7 +12,7 @@ namespace psygen::handmade {
 namespace {
 
 constexpr int kMaxSteps = 8;            // maximum number of samples along a side of a triangle
-constexpr float kWhole = 8'388'608.0F;  // from here on numbers are whole, infinite or not a number
+constexpr float kWhole = 8'388'608.0F;  // from here on, floats have no fraction
 
 // The pixel at a point of the texture: linear colour, opacity.
 glm::vec4 pixel_at(const image::Image& image, glm::vec2 uv) {
@@ -68,7 +68,7 @@ struct Sum {
 std::span<const std::uint8_t, 4> pixel_of(const image::Image& image, glm::vec2 uv) {
   const auto along = [](float v, std::uint32_t size) {
     if (!(std::abs(v) < kWhole)) return 0U;
-    // std::floor() would be a function call.
+    // Truncates: without SSE4.1, std::floor() is a function call.
     const auto towards_zero = static_cast<float>(static_cast<std::int32_t>(v));
     const float part = v - (towards_zero > v ? towards_zero - 1 : towards_zero);
     return std::min(static_cast<std::uint32_t>(part * static_cast<float>(size)), size - 1);

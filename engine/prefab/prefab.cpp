@@ -25,7 +25,18 @@ class Adder {
  public:
   Adder(const gltf::Model& model, scene::Assets& assets) : model_(model), assets_(assets) {}
 
+  // Removes its meshes again if it fails.
   core::Result<Prefab> add() {
+    auto prefab = add_all();
+    if (prefab) return prefab;
+    for (const std::vector<Object>& objects : objects_)
+      for (const Object& object : objects)
+        assets_.remove_mesh(object.mesh);
+    return prefab;
+  }
+
+ private:
+  core::Result<Prefab> add_all() {
     Prefab prefab{model_.name, model_.nodes, model_.animations, {}};
     for (const gltf::Material& material : model_.materials) {
       auto added = add_material(material);
@@ -43,7 +54,6 @@ class Adder {
     return prefab;
   }
 
- private:
   core::Result<render::TextureId> add_texture(std::uint32_t image, bool colours) {
     if (image == gltf::kNone) return render::kNoTexture;
     const auto [at, is_new] = textures_.try_emplace({image, colours}, render::kNoTexture);

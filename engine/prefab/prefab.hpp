@@ -130,8 +130,8 @@ class Library {
   // gltf::read_file() and add(). Too slow for the tick.
   core::Result<PrefabId> load(scene::Assets& assets, const std::filesystem::path& file);
   // Adds a parsed model, for example one read in another thread; the model need not be kept. Splits
-  // meshes of more than 65,535 vertices. Fails like the functions of Assets; assets added before
-  // the failure stay.
+  // meshes of more than 65,535 vertices. Fails like the functions of Assets; then its meshes
+  // are removed again, but its textures and materials stay.
   core::Result<PrefabId> add(scene::Assets& assets, const gltf::Model& model);
 
   bool exists(PrefabId prefab) const { return prefab.index < prefabs_.size(); }

@@ -13,12 +13,17 @@ namespace {
 // The owner of meshes that belong to no entity.
 constexpr std::uint64_t kNoOwner = ecs::kNullEntity.index;
 
-// The vertices and indices that the host keeps.
+// The vertices and indices of a mesh, in bytes.
+std::uint64_t bytes_of(const PackedMesh& mesh) {
+  return mesh.vertices.size() * sizeof(mesh.vertices[0]) +
+         mesh.indices.size() * sizeof(mesh.indices[0]);
+}
+
+// Those that the host keeps, of all levels.
 std::uint64_t bytes_of(const ObjectSource& source) {
   std::uint64_t bytes = 0;
-  for (const auto& [mesh, error_m] : source.copied)
-    bytes += mesh.vertices.size() * sizeof(mesh.vertices[0]) +
-             mesh.indices.size() * sizeof(mesh.indices[0]);
+  for (const ObjectLevel& level : source.copied)
+    bytes += bytes_of(level.mesh);
   return bytes;
 }
 
@@ -99,22 +104,26 @@ void Assets::remove_mesh(MeshId id) {
   sources_->remove(id.index);
 }
 
+core::Result<void> Assets::check_budget(std::string_view name, std::uint64_t bytes) const {
+  if (bytes <= budget_bytes_ - bytes_) return {};
+  return core::fail(ErrorCode::kOverBudget,
+                    fmt::format("{}: with it, the meshes of objects need at least {} bytes; "
+                                "SceneSettings::object_budget_bytes allows {}",
+                                name, bytes_ + bytes, budget_bytes_));
+}
+
 core::Result<MeshId> Assets::add_mesh(const core::MeshData& mesh, std::string name) {
   auto packed = pack(mesh);
   if (!packed)
     return core::fail(packed.error().code, fmt::format("{}: {}", name, packed.error().message));
+  if (auto ok = check_budget(name, bytes_of(*packed)); !ok) return tl::unexpected(ok.error());
   ObjectSource source;
   source.name = std::move(name);
   source.box = packed->box;
   source.copied = object_levels(mesh, std::move(*packed), ObjectMesh::kMaxLevels);
   source.level_count = static_cast<int>(source.copied.size());
   const std::uint64_t bytes = bytes_of(source);
-  if (bytes > budget_bytes_ - bytes_) {
-    return core::fail(
-        ErrorCode::kOverBudget,
-        fmt::format("{}: with it, the meshes of objects need {} bytes; at most {} are allowed",
-                    source.name, bytes_ + bytes, budget_bytes_));
-  }
+  if (auto ok = check_budget(source.name, bytes); !ok) return tl::unexpected(ok.error());
   auto added = add(std::move(source), copied_);
   if (added) bytes_ += bytes;
   return added;

@@ -95,6 +95,8 @@ class Assets {
   static std::uint32_t slot_of(MeshId mesh) { return mesh.index % ObjectSources::kMax; }
   core::Result<MeshId> add(ObjectSource source, models::ModelIndex type);
   core::Result<void> add_types(models::Registry& registry);
+  // Fails with kOverBudget if a mesh of this size would exceed the budget.
+  core::Result<void> check_budget(std::string_view name, std::uint64_t bytes) const;
 
   std::shared_ptr<ObjectSources> sources_;
   const models::Registry* registry_ = nullptr;

@@ -75,6 +75,8 @@ PackedMesh with_indices(const PackedMesh& finest, std::vector<std::uint16_t> ind
   mesh.vertices.resize(meshopt_optimizeVertexFetch(
       mesh.vertices.data(), mesh.indices.data(), mesh.indices.size(), finest.vertices.data(),
       finest.vertices.size(), sizeof(core::ObjectVertex)));
+  mesh.vertices.shrink_to_fit();
+  mesh.indices.shrink_to_fit();
   return mesh;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <thread>
 
 namespace psygen::core {
@@ -49,6 +50,13 @@ TEST(Progress, IsReportedToTheInnermostScopeOfTheThread) {
   EXPECT_EQ(outer, -1);
   report_progress(0.3);
   std::thread([] { report_progress(0.4); }).join();
+  EXPECT_EQ(outer, 0.3);
+  {
+    const ProgressScope none({});
+    report_progress(0.5);
+    const ProgressScope failing([](double) { throw std::runtime_error("no display"); });
+    EXPECT_NO_THROW(report_progress(0.6));
+  }
   EXPECT_EQ(outer, 0.3);
 }
 

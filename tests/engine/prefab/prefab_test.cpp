@@ -164,6 +164,14 @@ TEST_F(Prefabs, SplitMeshesThatAreTooLarge) {
   EXPECT_EQ(library_[*added].parts.size(), 10u);
 }
 
+TEST_F(Prefabs, LeaveNoMeshesIfTheyCannotBeAdded) {
+  gltf::Model model = two_nodes();
+  model.meshes[0].primitives[1].mesh.indices = {0, 1, 7};
+  const std::size_t before = scene_->assets().mesh_count();
+  EXPECT_FALSE(library_.add(scene_->assets(), model));
+  EXPECT_EQ(scene_->assets().mesh_count(), before);
+}
+
 TEST_F(Prefabs, WarnOfNodesThatTheirParentsShear) {
   const auto warning_of = [&](const gltf::Model& model) {
     testing::internal::CaptureStderr();

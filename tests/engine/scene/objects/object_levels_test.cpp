@@ -46,6 +46,8 @@ TEST(ObjectLevels, HaveFewerTrianglesAndLargerErrors) {
     EXPECT_GT(levels[i].error_m, 0);
     EXPECT_LT(levels[i].error_m, 2);  // of the sphere's size
     EXPECT_EQ(levels[i].mesh.box.max, levels[0].mesh.box.max);
+    EXPECT_EQ(levels[i].mesh.vertices.capacity(), levels[i].mesh.vertices.size());
+    EXPECT_EQ(levels[i].mesh.indices.capacity(), levels[i].mesh.indices.size());
   }
 }
 

@@ -73,8 +73,8 @@ TEST_F(Objects, MeshesBeyondTheBudgetOfObjectsAreRefused) {
   ASSERT_FALSE(mesh);
   EXPECT_EQ(mesh.error().code, core::ErrorCode::kOverBudget);
   EXPECT_THAT(mesh.error().message,
-              testing::MatchesRegex("door: with it, the meshes of objects need [0-9]+ bytes; at "
-                                    "most 600 are allowed"));
+              testing::MatchesRegex("door: with it, the meshes of objects need at least [0-9]+ "
+                                    "bytes; SceneSettings::object_budget_bytes allows 600"));
   EXPECT_EQ(meshes.size(), 600 / (4 * sizeof(core::ObjectVertex) + 6 * sizeof(std::uint16_t)));
   assets.remove_mesh(meshes.back());
   EXPECT_TRUE(assets.add_mesh(box_mesh(), "door"));
