@@ -23,4 +23,5 @@ export UBSAN_OPTIONS="print_stacktrace=1"
 # not_asan and not_tsan. tests/CMakeLists.txt lists the folders that a sanitizer does not build.
 cmake --preset "$preset" >/dev/null
 cmake --build --preset "$preset"
-ctest --preset "$preset" --parallel 2 "$@"
+# One more than processors: some tests wait for windows and other processes.
+ctest --preset "$preset" --parallel "$(($(nproc) + 1))" "$@"
