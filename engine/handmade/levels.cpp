@@ -211,7 +211,7 @@ Indices without_copies(const Indices& indices) {
   keys.reserve(indices.size() / 3);
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     std::array<std::uint32_t, 3> key{indices[i], indices[i + 1], indices[i + 2]};
-    std::ranges::rotate(key, std::ranges::min_element(key));
+    std::rotate(key.begin(), std::ranges::min_element(key), key.end());
     keys.push_back(key);
   }
   Indices numbers(keys.size()), kept;

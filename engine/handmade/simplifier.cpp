@@ -326,7 +326,7 @@ Simplifier::Collapse Simplifier::best(std::uint32_t from) {
     for (int k = 0; k < 3; ++k)
       if (place_at(t, k) != from) others_.push_back(place_at(t, k));
   std::ranges::sort(others_);
-  others_.erase(std::ranges::unique(others_).begin(), others_.end());
+  others_.erase(std::unique(others_.begin(), others_.end()), others_.end());
   found_.clear();
   for (const std::uint32_t to : others_)
     found_.push_back(cost(from, to));
