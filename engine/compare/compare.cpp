@@ -68,8 +68,7 @@ std::vector<NamedText> shown_of(Runs runs) {
     for (const RecordedRun& run : runs)
       if (i < run.shown.size()) values.push_back(run.shown[i].text);
     std::ranges::sort(values);
-    const auto [first, last] = std::ranges::unique(values);
-    values.erase(first, last);
+    values.erase(std::unique(values.begin(), values.end()), values.end());
     shown[i].text = values.size() > 2 ? fmt::format("{} … {}", values.front(), values.back())
                                       : fmt::format("{}", fmt::join(values, ", "));
   }

@@ -131,8 +131,7 @@ std::vector<std::size_t> places_of(Values x, double floor, RankTails& tails) {
   }
   std::ranges::sort(found);
   const auto same = [](std::size_t a, std::size_t b) { return b < a + kFewestRuns; };
-  const auto [first, last] = std::ranges::unique(found, same);
-  found.erase(first, last);
+  found.erase(std::unique(found.begin(), found.end(), same), found.end());
   return found;
 }
 

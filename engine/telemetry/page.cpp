@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
-#include <ranges>
 
 namespace psygen::telemetry {
 namespace {
@@ -13,7 +13,13 @@ namespace {
 // The texts of all elements, separated by commas.
 template <class Range, class Text>
 std::string listed(const Range& all, const Text& text) {
-  return fmt::format("{}", fmt::join(all | std::views::transform(text), ","));
+  std::string list;
+  std::string_view separator;
+  for (const auto& element : all) {
+    fmt::format_to(std::back_inserter(list), "{}{}", separator, text(element));
+    separator = ",";
+  }
+  return list;
 }
 
 // JSON for a <script> element: a quoted text that cannot start a tag.

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
-#include <ranges>
 #include <vector>
 
 #include "engine/compare/csv_rows.hpp"
@@ -30,8 +30,11 @@ std::map<std::string, std::vector<std::string>> columns_of(std::string text, int
     text.erase(0, text.find('\n') + 1);
   const std::string header = text.substr(0, text.find('\n'));
   std::vector<std::string_view> names;
-  for (const auto name : header | std::views::split(','))
-    names.emplace_back(name.begin(), name.end());
+  for (std::size_t begin = 0; begin <= header.size();) {
+    const std::size_t end = std::min(header.find(',', begin), header.size());
+    names.push_back(std::string_view(header).substr(begin, end - begin));
+    begin = end + 1;
+  }
   std::map<std::string, std::vector<std::string>> columns;
   const auto read =
       read_csv(text, "file", names, [&](CsvCells cells, const std::string&) -> core::Result<void> {

@@ -37,6 +37,12 @@ class EditBytes : public ::testing::Test, protected testing::EditedWorld {
   }
 };
 
+// Where a text begins in the bytes.
+std::vector<std::byte>::iterator find(std::vector<std::byte>& bytes, std::string_view text) {
+  const auto wanted = std::as_bytes(std::span(text));
+  return std::search(bytes.begin(), bytes.end(), wanted.begin(), wanted.end());
+}
+
 TEST_F(EditBytes, LoadingTheBlocksInAnyOrderGivesTheSameEdits) {
   std::map<core::BlockCoord, std::vector<std::byte>> stored;
   for (const core::BlockCoord block : changed_blocks({}, edits))
@@ -87,8 +93,7 @@ TEST_F(EditBytes, AParameterThatAnOlderVersionLackedHasItsDefault) {
   const models::ModelType& type = registry[*type_of(moved, registry)];
   const std::size_t last = type.parameters().size() - 1;
   std::vector<std::byte> bytes = encode_block(edits, registry, {2, 3});
-  const auto name = std::ranges::search(bytes, std::as_bytes(std::span(type.name())));
-  const auto count = name.end();
+  const auto count = find(bytes, type.name()) + std::ssize(type.name());
   ASSERT_EQ(std::to_integer<std::size_t>(*count), last + 1);
   *count = std::byte(last);
   const auto value = count + 1 + static_cast<std::ptrdiff_t>(8 * last);
@@ -105,8 +110,7 @@ TEST_F(EditBytes, AParameterThatAnOlderVersionLackedHasItsDefault) {
 // Bytes of the block with another name for the type of the moved model.
 std::vector<std::byte> renamed(std::vector<std::byte> bytes, std::string_view from,
                                std::string_view to) {
-  const auto name = std::ranges::search(bytes, std::as_bytes(std::span(from)));
-  std::ranges::copy(std::as_bytes(std::span(to)), name.begin());
+  std::ranges::copy(std::as_bytes(std::span(to)), find(bytes, from));
   return bytes;
 }
 
@@ -137,17 +141,17 @@ TEST_F(EditBytes, AModelThatItsTypeDoesNotAllowIsKeptHidden) {
   const models::PlacedModel& moved = edits.layer()->block({2, 3})->placed.front();
   const models::ModelType& type = registry[*type_of(moved, registry)];
   std::vector<std::byte> bytes = encode_block(edits, registry, {2, 3});
-  const auto name = std::ranges::search(bytes, std::as_bytes(std::span(type.name())));
+  const auto end = find(bytes, type.name()) + std::ssize(type.name());
   const std::size_t count = type.parameters().size();
-  *name.end() = std::byte(count + 1);  // as if the type had lost a parameter
-  const auto value = name.end() + 1 + static_cast<std::ptrdiff_t>(8 * count);
+  *end = std::byte(count + 1);  // as if the type had lost a parameter
+  const auto value = end + 1 + static_cast<std::ptrdiff_t>(8 * count);
   bytes.insert(value, 8, std::byte{1});
   Edits loaded;
   const auto ok = load_block(loaded, world, registry, {2, 3}, bytes);
   ASSERT_TRUE(ok) << ok.error().message;
   EXPECT_EQ(hidden_models(loaded, registry).size(), 1u);
   EXPECT_EQ(encode_block(loaded, registry, {2, 3}), bytes);
-  *name.end() = std::byte{200};
+  find(bytes, type.name())[std::ssize(type.name())] = std::byte{200};
   const auto absurd = load_block(loaded, world, registry, {2, 3}, bytes);
   ASSERT_FALSE(absurd);
   EXPECT_THAT(absurd.error().message, HasSubstr("200 parameters, but the maximum is 24"));
