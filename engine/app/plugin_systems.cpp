@@ -48,8 +48,7 @@ core::Result<void> PluginSystems::add(const std::vector<Plugin>& plugins, Sessio
   claim({});
   for (const Plugin& plugin : plugins) {
     if (plugin.add_systems) {
-      auto ok =
-          call_plugin(plugin, "add_systems", [&] { return plugin.add_systems(systems); });
+      auto ok = call_plugin(plugin, "add_systems", [&] { return plugin.add_systems(systems); });
       if (!ok) return ok;
       claim(plugin.name);
     }

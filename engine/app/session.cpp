@@ -104,8 +104,10 @@ core::Result<void> Session::open() {
 core::Result<world::World> Session::read_world_with_progress(models::Registry& registry) const {
   Loading loading(options_.world_file.filename().string(), nullptr, options_.stop);
   const core::ProgressScope progress([&loading](double fraction) {
-    if (fraction < 1) loading.update("reading models", fraction, nullptr);
-    if (fraction >= 1) loading.finish();
+    if (fraction < 1)
+      loading.update("reading models", fraction, nullptr);
+    else
+      loading.finish();
   });
   return read_world(options_.world_text, registry, options_.files.get());
 }

@@ -11,7 +11,7 @@
 namespace psygen::core {
 namespace {
 
-// What the child does between fork and exec.
+// The child takes these actions between fork and exec.
 class Actions {
  public:
   explicit Actions(const ChildOptions& options) {

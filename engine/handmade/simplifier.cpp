@@ -100,12 +100,12 @@ void Simplifier::Looks::add(const Looks& other) {
 }
 
 void Simplifier::Looks::move(const glm::vec3& origin, const Attributes& a) {
-  const Attributes way = change(origin);
-  const float value = at(sum.at(origin), way, a);
+  const Attributes changes = change(origin);
+  const float value = at(sum.at(origin), changes, a);
   sum.move(origin);
   sum.value = value;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    values[i] += way[i] - area_m2 * a[i];
+    values[i] += changes[i] - area_m2 * a[i];
     sum.slope -= a[i] * glm::vec3(slopes[0][i], slopes[1][i], slopes[2][i]);
   }
 }
@@ -426,7 +426,7 @@ void Simplifier::look_around(std::uint32_t place, std::span<const std::uint32_t>
     if (glm::dot(across, glm::dvec3(goal.facing)) <= 0) continue;
     const double off = glm::dot(across, glm::dvec3(goal.position) - corners[0]);
     const auto known_m = static_cast<double>(best.distance_m);
-    if (off * off > known_m * known_m * glm::dot(across, across)) continue;  // even the plane
+    if (off * off > known_m * known_m * glm::dot(across, across)) continue;  // its plane is farther
     const glm::dvec3 w = nearest_weights(goal.position, corners);
     const auto distance_m = static_cast<float>(glm::length(
         w.x * corners[0] + w.y * corners[1] + w.z * corners[2] - glm::dvec3(goal.position)));

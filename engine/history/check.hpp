@@ -27,7 +27,7 @@ struct Series {
 
 // True if series use the entry: it has a value, above 0 on a scale of logarithms.
 bool is_usable(const Entry& entry, const FigureRule& rule);
-// What the gate compares, of usable entries. A reference of 0 and below is none.
+// The gate compares these values of usable entries. It ignores a reference of 0 and below.
 std::vector<Observation> observations_of(std::span<const Entry* const> entries);
 
 // Fails with kInvalidArgument if no entry has one of the words in its field, which messages call

@@ -160,13 +160,14 @@ class GeometryCache {
   void begin_batch();
 
   // Reserves memory for the mesh `key`, exactly as large as its type says, and evicts ready meshes
-  // that may_evict() allows. Returns the existing mesh if it is requested or ready. Errors:
-  // kOverBudget       no memory: nothing worse to evict
-  // kNotReady           the GPU still reads the meshes evicted for this one
-  // kOutOfMemory      the allocation failed within the budget, and the limit is lowered; or the
-  // type had no memory to tell the size kSynthesisFailed  this key failed before (the message has
-  // the reason), or its size is unknown; not retried while it is remembered (kMaxFailures) `size`:
-  // the size by the type, if the caller knows it.
+  // that may_evict() allows. Returns the existing mesh if it is requested or ready. `size`: the
+  // size by the type, if the caller knows it. Errors:
+  // - kOverBudget: no memory, and nothing worse to evict;
+  // - kNotReady: the GPU still reads the meshes evicted for this one;
+  // - kOutOfMemory: the allocation failed within the budget, which lowers the limit; or the
+  //   type had no memory to tell the size;
+  // - kSynthesisFailed: this key failed before (the message has the reason), or its size is
+  //   unknown; not retried while it is remembered (kMaxFailures).
   core::Result<MeshHandle> reserve(const MeshKey& key, const models::Parameters& parameters,
                                    std::uint64_t owner, Rank rank,
                                    const std::optional<models::MeshSize>& size = {});
