@@ -1,6 +1,5 @@
 // `psygen compare`: compares two builds, or two recorded sets of runs (docs/frame-tests.md).
 #include <dlfcn.h>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <link.h>
 #include <poll.h>
@@ -18,7 +17,6 @@
 #include <random>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 

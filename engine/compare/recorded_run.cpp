@@ -212,13 +212,13 @@ RecordedRun run_in(const Parsed& json, const std::string& folder) {
 // More than a flight of a day.
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
 
+}  // namespace
+
 core::Result<std::string> read_text(const std::filesystem::path& file) {
   return core::read_file(file, kMaxBytes).map([](const std::vector<std::uint8_t>& bytes) {
     return std::string(bytes.begin(), bytes.end());
   });
 }
-
-}  // namespace
 
 core::Result<RecordedRun> parse_run(std::string_view frames_csv, std::string_view summary_json,
                                     const std::string& folder) {

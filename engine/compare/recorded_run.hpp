@@ -43,6 +43,9 @@ struct RecordedRun {
   std::vector<RecordedFigure> figures;  // of the game
 };
 
+// The text of a file of a run. Fails with kIo, and with kOverBudget above 1 GiB.
+core::Result<std::string> read_text(const std::filesystem::path& file);
+
 // Texts of the files of a run.
 struct RunFiles {
   std::string frames_csv, summary_json;

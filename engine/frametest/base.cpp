@@ -6,12 +6,9 @@
 #include <algorithm>
 
 #include "engine/compare/compare.hpp"
-#include "engine/core/read_file.hpp"
 
 namespace psygen::frametest {
 namespace {
-
-constexpr std::uint64_t kMaxSummaryBytes = 64 << 20;
 
 core::Error refusal(const Base& base, const std::vector<std::string>& differences,
                     std::string_view of) {
@@ -49,10 +46,9 @@ core::Result<Base> load_base(const std::filesystem::path& dir, const FrameTest& 
         !differences.empty())
       return tl::unexpected(refusal(base, differences, run.folder + " has"));
     const std::string file = run.folder + "/summary.json";
-    const auto bytes = core::read_file(file, kMaxSummaryBytes);
-    if (!bytes) return tl::unexpected(bytes.error());
-    auto fields = telemetry::summary_fields_in(
-        {reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file);
+    const auto summary = compare::read_text(file);
+    if (!summary) return tl::unexpected(summary.error());
+    auto fields = telemetry::summary_fields_in(*summary, file);
     if (!fields) return tl::unexpected(fields.error());
     base.runs.push_back(std::move(*fields));
   }

@@ -16,7 +16,6 @@
 #include "engine/compare/recorded_run.hpp"
 #include "engine/compare/times.hpp"
 #include "engine/core/nearest_word.hpp"
-#include "engine/core/read_file.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/history/figure_rules.hpp"
 #include "engine/history/gate.hpp"
@@ -30,7 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
 constexpr std::array kFigures = {
     "load.cpu_seconds",  "load.instructions", "frame_ms.mean",
     "frame_ms.p50",      "frame_ms.p95",      "frame_ms.p99",
@@ -38,12 +36,6 @@ constexpr std::array kFigures = {
     "gpu_ms.p50",        "missing.frames",    "missing.pixels_max_percent",
     "detail.p50_pixels", "cache.peak_bytes",  "memory.peak_rss_bytes",
     "synthesis.models",  "synthesis.seconds", "draw.triangles_p50"};
-
-core::Result<std::string> read_text(const fs::path& file) {
-  return core::read_file(file, kMaxBytes).map([](const std::vector<std::uint8_t>& bytes) {
-    return std::string(bytes.begin(), bytes.end());
-  });
-}
 
 // The member at a field's name ("frame_ms.p50"); null if there is none.
 const Json* member(const Json& json, std::string_view field) {
@@ -196,7 +188,7 @@ std::string test_of(const fs::path& given, const fs::path& folder) {
 
 core::Result<RunFigures> read_summary(const fs::path& file, AddOptions options,
                                       const std::string& report) {
-  const auto text = read_text(file);
+  const auto text = compare::read_text(file);
   if (!text) return tl::unexpected(text.error());
   auto run = parse_summary(*text, file.string(), options);
   if (!run) return run;
@@ -280,7 +272,7 @@ core::Result<std::vector<RunFigures>> read_captures(const fs::path& path, const 
 
 core::Result<std::vector<RunFigures>> read_file(const fs::path& file, AddOptions options,
                                                 std::vector<std::string>& notes) {
-  const auto text = read_text(file);
+  const auto text = compare::read_text(file);
   if (!text) return tl::unexpected(text.error());
   if (text->starts_with("# callgrind format"))
     return read_callgrind(*text, file, options).map([](RunFigures run) {
@@ -326,7 +318,7 @@ core::Result<std::vector<RunFigures>> read_path(const fs::path& path, const AddO
     const bool is_summary = file.filename() == "summary.json";
     if (with_name.test.empty() && is_summary) with_name.test = test_of(path, file.parent_path());
     auto run = is_summary ? read_summary(file, with_name, file.parent_path().string())
-                          : read_text(file).and_then([&](const std::string& text) {
+                          : compare::read_text(file).and_then([&](const std::string& text) {
                               return read_callgrind(text, file, with_name);
                             });
     if (!run) return tl::unexpected(run.error());
