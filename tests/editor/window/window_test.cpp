@@ -8,16 +8,12 @@
 
 #include "editor/panels/field_row.hpp"
 #include "tests/editor/window/window_fixture.hpp"
+#include "tests/file_content.hpp"
 
 namespace psygen::editor {
 namespace {
 
 const world::TextPath kTrees{"scatter", 0}, kCount{"scatter", 0, "count"};
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 TEST_F(EditorWindow, ADraggedSliderChangesTheImageInOneUndoStep) {
   const image::Image before = picture();
@@ -43,8 +39,8 @@ TEST_F(EditorWindow, ASavedWorldOpensAsTheSameWorld) {
   EXPECT_TRUE(window_->isWindowModified());
   ASSERT_TRUE(document().save());
   EXPECT_FALSE(window_->isWindowModified());
-  EXPECT_NE(text_of(file_).find("count = 9"), std::string::npos);
-  EXPECT_NE(text_of(file_).find("# the paper's"), std::string::npos);
+  EXPECT_NE(file_content(file_).find("count = 9"), std::string::npos);
+  EXPECT_NE(file_content(file_).find("# the paper's"), std::string::npos);
   settle();
   const world::World saved = shown();
   const int opened = opened_;

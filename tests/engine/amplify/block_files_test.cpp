@@ -7,6 +7,7 @@
 
 #include "tests/engine/amplify/throwing_type.hpp"
 #include "tests/engine/world/shipped.hpp"
+#include "tests/file_content.hpp"
 #include "tests/full_disk.hpp"
 
 namespace psygen::amplify {
@@ -38,11 +39,6 @@ core::Result<Made> make_files(const world::World& world, const std::filesystem::
   return Made{*report, (*files)->written(), (*files)->skipped()};
 }
 
-std::string content(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 TEST(BlockFiles, WritesOneFilePerBlockAndTheWorldNextToThem) {
   const TemporaryFolder folder;
   const auto made = make_files(parsed(kSmallWorld), folder.path(), Format::kGlb);
@@ -52,7 +48,7 @@ TEST(BlockFiles, WritesOneFilePerBlockAndTheWorldNextToThem) {
   for (int x = 1; x < 4; ++x) {
     for (int z = 1; z < 3; ++z) {
       const std::string name = "block_" + std::to_string(x) + "_" + std::to_string(z) + ".glb";
-      EXPECT_EQ(content(folder / name).substr(0, 4), "glTF") << name;
+      EXPECT_EQ(file_content(folder / name).substr(0, 4), "glTF") << name;
     }
   }
 }
@@ -62,15 +58,15 @@ TEST(BlockFiles, ExistingFilesAreNotWrittenAgainAndTheHashCoversAllBlocks) {
   const world::World world = parsed(kSmallWorld);
   const auto first = make_files(world, folder.path(), Format::kGlb);
   ASSERT_TRUE(first);
-  const std::string complete = content(folder / "block_2_2.glb");
+  const std::string complete = file_content(folder / "block_2_2.glb");
   std::filesystem::remove(folder / "block_2_2.glb");
   std::ofstream(folder / "block_1_1.glb") << "mine";
   const auto second = make_files(world, folder.path(), Format::kGlb);
   ASSERT_TRUE(second);
   EXPECT_EQ(second->written, 1u);
   EXPECT_EQ(second->skipped, 5u);
-  EXPECT_EQ(content(folder / "block_2_2.glb"), complete);
-  EXPECT_EQ(content(folder / "block_1_1.glb"), "mine");
+  EXPECT_EQ(file_content(folder / "block_2_2.glb"), complete);
+  EXPECT_EQ(file_content(folder / "block_1_1.glb"), "mine");
   EXPECT_EQ(second->report.totals.hash.value(), first->report.totals.hash.value());
 }
 
@@ -125,7 +121,7 @@ TEST(BlockFiles, TheBlocksOfAnotherVersionOfTheEngineAreNotMixedIn) {
   const TemporaryFolder folder;
   const world::World world = parsed(kSmallWorld);
   ASSERT_TRUE(make_files(world, folder.path(), Format::kGlb));
-  const std::string hash = content(folder / "sample_glb.hash");
+  const std::string hash = file_content(folder / "sample_glb.hash");
   ASSERT_EQ(hash.size(), 17u);
   std::filesystem::remove(folder / "block_2_2.glb");
   std::ofstream(folder / "sample_glb.hash") << "0123456789abcdef\n";
@@ -161,11 +157,11 @@ TEST(BlockFiles, TruncatedOriginFilesStillIdentifyTheBlocks) {
   const TemporaryFolder folder;
   ASSERT_TRUE(make_files(world, folder.path(), Format::kGlb));
   for (const char* file : {"world.toml", "sample_glb.hash"}) {
-    const std::string whole = content(folder / file);
+    const std::string whole = file_content(folder / file);
     std::filesystem::resize_file(folder / file, 10);
     const auto made = make_files(world, folder.path(), Format::kGlb);
     ASSERT_TRUE(made) << made.error().message;
-    EXPECT_EQ(content(folder / file), whole);
+    EXPECT_EQ(file_content(folder / file), whole);
   }
 }
 
@@ -175,14 +171,14 @@ TEST(BlockFiles, TruncatedFilesAreWrittenAgain) {
     const world::World world = parsed(kSmallWorld);
     ASSERT_TRUE(make_files(world, folder.path(), format));
     const auto file = folder / fmt::format("block_2_2.{}", name_of(format));
-    const std::string whole = content(file);
+    const std::string whole = file_content(file);
     for (const std::size_t left : {std::size_t{0}, std::size_t{9}, whole.size() - 1}) {
       std::filesystem::resize_file(file, left);
       const auto again = make_files(world, folder.path(), format);
       ASSERT_TRUE(again);
       EXPECT_EQ(again->written, 1u) << left;
       EXPECT_EQ(again->skipped, 5u) << left;
-      EXPECT_EQ(content(file), whole) << left;
+      EXPECT_EQ(file_content(file), whole) << left;
     }
   }
 }

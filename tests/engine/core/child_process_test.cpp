@@ -8,19 +8,14 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <iterator>
 
+#include "tests/file_content.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::core {
 namespace {
 
 using testing::HasSubstr;
-
-std::string content_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 // The exit code of a shell's command.
 int run(const std::string& command, const ChildOptions& options) {
@@ -38,8 +33,8 @@ TEST(ChildProcess, ReadsAndWritesTheGivenFiles) {
       run("cat; echo problem >&2; exit 3",
           {.in = folder / "in", .out = folder / "out", .messages = folder / "messages"});
   EXPECT_EQ(code, 3);
-  EXPECT_EQ(content_of(folder / "out"), "word");
-  EXPECT_EQ(content_of(folder / "messages"), "problem\n");
+  EXPECT_EQ(file_content(folder / "out"), "word");
+  EXPECT_EQ(file_content(folder / "messages"), "problem\n");
 }
 
 TEST(ChildProcess, KeepsTheOrderOfBothOutputsInOneFile) {
@@ -47,7 +42,7 @@ TEST(ChildProcess, KeepsTheOrderOfBothOutputsInOneFile) {
   const std::filesystem::path file = folder / "log";
   std::ofstream(file) << "a longer text of an earlier run";
   EXPECT_EQ(run("echo a; echo b >&2; echo c", {.out = file, .messages = file}), 0);
-  EXPECT_EQ(content_of(file), "a\nb\nc\n");
+  EXPECT_EQ(file_content(file), "a\nb\nc\n");
 }
 
 TEST(ChildProcess, GetsDescriptorsUnderTheirNumbers) {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "engine/app/flight.hpp"
@@ -16,6 +15,7 @@
 #include "engine/frametest/sampler.hpp"
 #include "engine/scene/frame/clock.hpp"
 #include "engine/scene/systems.hpp"
+#include "tests/file_content.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::frametest {
@@ -254,11 +254,6 @@ TEST(Profile, RefusesFlightsWhoseFramesAreNotNumbered) {
   EXPECT_THAT(profile.error().message, HasSubstr("fixed_step"));
 }
 
-std::string content_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
 TEST(Profile, OfABaseTellsTheSystemThatASlowerProgramSpendsItsTimeIn) {
   const TemporaryFolder folder;
   RunOptions options;
@@ -274,13 +269,13 @@ TEST(Profile, OfABaseTellsTheSystemThatASlowerProgramSpendsItsTimeIn) {
   options.out = folder / "now";
   write_walk(folder, 1e-3);
   ASSERT_EQ(run_frame_tests(options, burning(0, 10)), kMissed);
-  EXPECT_THAT(content_of(options.junit), HasSubstr("against the base: &#39;burn&#39; took"));
-  const std::string page = content_of(options.out / "walk" / "failed.html");
+  EXPECT_THAT(file_content(options.junit), HasSubstr("against the base: &#39;burn&#39; took"));
+  const std::string page = file_content(options.out / "walk" / "failed.html");
   EXPECT_THAT(page, HasSubstr("<h2>Against the base</h2>"));
   EXPECT_THAT(page, HasSubstr("<td>burn</td>"));
   std::ofstream(folder / "base" / "walk" / "profile.json") << "{";
   ASSERT_EQ(run_frame_tests(options), kMissed);
-  EXPECT_THAT(content_of(options.out / "walk" / "failed.html"),
+  EXPECT_THAT(file_content(options.out / "walk" / "failed.html"),
               HasSubstr("no comparison with the base: "));
 }
 

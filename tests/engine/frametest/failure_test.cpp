@@ -5,23 +5,18 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <iterator>
 
 #include "engine/app/flight.hpp"
 #include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "tests/faults.hpp"
+#include "tests/file_content.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::frametest {
 namespace {
 
 using testing::HasSubstr;
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 // A flight that begins with an empty cache, on the virtual clock: many meshes are missing at first.
 std::filesystem::path write_test(const TemporaryFolder& folder, const std::string& budget) {
@@ -62,11 +57,12 @@ TEST(Failure, ShowsTheWorstFrameAsDrawnAsExpectedAndTheDifference) {
   EXPECT_GT(image::compare(seen, expected).share_over, 0.05);
   EXPECT_EQ(difference, *image::picture_of_difference(expected, seen));
 
-  const std::string page = text_of(out / "failed.html");
+  const std::string page = file_content(out / "failed.html");
   for (const std::string& name : names)
     EXPECT_THAT(page, HasSubstr(name));
   EXPECT_THAT(page, HasSubstr("missing.pixels_max_percent"));
-  EXPECT_THAT(text_of(options.junit), HasSubstr("[[ATTACHMENT|" + (out / "failed.html").string()));
+  EXPECT_THAT(file_content(options.junit),
+              HasSubstr("[[ATTACHMENT|" + (out / "failed.html").string()));
 
   // The same flight, with an image of every frame.
   auto test = load_frame_test(options.files.front());
@@ -78,7 +74,7 @@ TEST(Failure, ShowsTheWorstFrameAsDrawnAsExpectedAndTheDifference) {
   ASSERT_TRUE(flown && (*flown)->run());
   const std::string number = names[2].substr(std::string("worst_").size(), 5);
   EXPECT_EQ(seen, read(folder / "images" / ("frame_" + number + ".png"))) << "not that frame";
-  EXPECT_EQ(text_of(out / "frames.csv"), text_of(folder / "images" / "frames.csv"))
+  EXPECT_EQ(file_content(out / "frames.csv"), file_content(folder / "images" / "frames.csv"))
       << "images disturbed the virtual clock";
 }
 
@@ -102,7 +98,8 @@ TEST(Failure, SaysIfNoSingleFrameHasTheValue) {
   options.files = {write_test(folder, "[equal]\nhash.world = \"0\"\n")};
   options.out = folder / "out";
   EXPECT_EQ(run_frame_tests(options), kMissed);
-  EXPECT_THAT(text_of(options.out / "bare" / "failed.html"), HasSubstr("not measured per frame"));
+  EXPECT_THAT(file_content(options.out / "bare" / "failed.html"),
+              HasSubstr("not measured per frame"));
   EXPECT_TRUE(pictures_in(options.out / "bare").empty());
 }
 

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/file_content.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::frametest {
@@ -193,8 +194,7 @@ TEST_F(Rounds, RecordTheRunsOfTheMachine) {
   add("b", text_of_test(65, "", kNeverHolds));
   options_.usual = folder_ / "usual.jsonl";
   EXPECT_EQ(run(), kMissed);
-  std::ifstream stream(options_.usual);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  const std::string text = file_content(options_.usual);
   EXPECT_EQ(std::ranges::count(text, '\n'), 2);
   EXPECT_THAT(text, HasSubstr("\"test\":\"a\",\"pair_s\":null,\"cpu_s\":"));
   EXPECT_THAT(text, testing::Not(HasSubstr("\"cpu_s\":null")));
@@ -208,16 +208,12 @@ TEST_F(Rounds, RecordTheRunsOfTheMachine) {
 
 TEST_F(Rounds, KeepTheirTestsFromTheirOutputs) {
   add("a", text_of_test(64, "", kHolds));
-  const auto text = [this] {
-    std::ifstream stream(options_.files[0]);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
-  };
-  const std::string before = text();
+  const std::string before = file_content(options_.files[0]);
   options_.words.markdown = options_.files[0];
   EXPECT_EQ(run(), kFailed);
   EXPECT_THAT(err_, HasSubstr("is read here, and is not replaced"));
   EXPECT_TRUE(widths_.empty());
-  EXPECT_EQ(text(), before);
+  EXPECT_EQ(file_content(options_.files[0]), before);
 }
 
 TEST_F(Rounds, LeaveNoProfileOfAnEarlierRunBehind) {

@@ -9,6 +9,7 @@
 
 #include "tests/engine/history/corpus.hpp"
 #include "tests/engine/save/file_faults.hpp"
+#include "tests/file_content.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace psygen::history {
@@ -20,11 +21,6 @@ using ::testing::HasSubstr;
 
 std::vector<Entry> some(std::size_t count) {
   return testing::series(std::vector<double>(count, 1.5), "instructions", "", count);
-}
-
-std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 std::size_t entries_in(const std::filesystem::path& file) {
@@ -60,11 +56,11 @@ TEST(Store, OtherFilesAreRefusedAndKept) {
   const auto file = folder / "notes.txt";
   std::ofstream(file) << "a text that is longer than the header of a database: "
                       << std::string(200, 'x');
-  const std::string before = bytes_of(file);
+  const std::string before = file_content(file);
   const auto text = Store::open(file);
   ASSERT_FALSE(text);
   EXPECT_EQ(text.error().code, core::ErrorCode::kParse);
-  EXPECT_EQ(bytes_of(file), before);
+  EXPECT_EQ(file_content(file), before);
   const auto other = folder / "other.sqlite";
   std::ofstream(other).close();
   auto database = sqlite::Database::open(other);
@@ -88,7 +84,7 @@ TEST(Store, DamagedFilesAreRefused) {
   const TemporaryFolder folder;
   const auto file = folder / "h.sqlite", damaged = folder / "damaged.sqlite";
   ASSERT_TRUE(Store::open(file)->add(testing::corpus()));
-  const std::string whole = bytes_of(file);
+  const std::string whole = file_content(file);
   for (const std::size_t size : {whole.size() / 2, whole.size() - 1, std::size_t{5000}}) {
     std::ofstream(damaged, std::ios::binary) << whole.substr(0, size);
     const auto store = Store::open_to_read(damaged);
@@ -103,7 +99,7 @@ TEST(Store, DamagedFilesAreRefused) {
   const auto store = Store::open(damaged);
   ASSERT_FALSE(store);
   EXPECT_THAT(store.error().message, HasSubstr("the file is damaged"));
-  EXPECT_EQ(bytes_of(damaged), changed);
+  EXPECT_EQ(file_content(damaged), changed);
 }
 
 TEST(Store, AFullDiskLosesNothing) {

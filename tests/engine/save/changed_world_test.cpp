@@ -21,7 +21,6 @@ namespace psygen::save {
 namespace {
 
 using ::testing::ElementsAre;
-using testing::file_content;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using world::EditKind;

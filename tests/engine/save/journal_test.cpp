@@ -13,7 +13,6 @@
 namespace psygen::save {
 namespace {
 
-using testing::file_content;
 using ::testing::HasSubstr;
 using testing::write_file;
 

@@ -35,7 +35,6 @@ extern "C" int renameat2(int from_folder, const char* from, int to_folder, const
 namespace psygen::save {
 namespace {
 
-using testing::file_content;
 using ::testing::HasSubstr;
 using testing::write_file;
 

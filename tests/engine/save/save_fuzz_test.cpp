@@ -50,7 +50,7 @@ TEST(SaveFuzz, ChangedBytesAreDetectedOrDoNotMatter) {
     ASSERT_TRUE(testing::put_generation(save, 1));
     ASSERT_TRUE(save.save());
   }
-  const std::string sound = testing::file_content(file);
+  const std::string sound = file_content(file);
   core::RandomStream random(3, 0, 0, 0, core::Purpose::kStructure);
   int refused = 0, partial = 0, whole = 0, silent_losses = 0;
   for (int round = 0; round < 1500; ++round) {
@@ -68,7 +68,7 @@ TEST(SaveFuzz, ChangedBytesAreDetectedOrDoNotMatter) {
     const auto save = SaveGame::open(file, testing::kWorld);
     if (!save) {
       expect_printable(save.error());
-      EXPECT_TRUE(testing::file_content(file) == text) << "a refused file is left as it is";
+      EXPECT_TRUE(file_content(file) == text) << "a refused file is left as it is";
     }
     if (!save) {
       ++refused;

@@ -170,7 +170,7 @@ TEST(SaveGame, ASaveOfAnotherWorldIsRejectedAndNotChanged) {
     ASSERT_TRUE(testing::put_generation(save, 1));
     ASSERT_TRUE(save.save());
   }
-  const std::string before = testing::file_content(file);
+  const std::string before = file_content(file);
   for (const char* name : {"test world", "other"}) {
     const auto save = SaveGame::open(file, {name, 0x1235});
     ASSERT_FALSE(save);
@@ -180,7 +180,7 @@ TEST(SaveGame, ASaveOfAnotherWorldIsRejectedAndNotChanged) {
                           "to '{}' with hash 0000000000001235",
                           file.string(), name));
   }
-  EXPECT_TRUE(testing::file_content(file) == before);
+  EXPECT_TRUE(file_content(file) == before);
   EXPECT_EQ(*world_of(file), testing::kWorld);
 }
 

@@ -9,13 +9,13 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <tuple>
 
 #include "ecs/fields.hpp"
 #include "engine/save/save_game.hpp"
+#include "tests/file_content.hpp"
 
 namespace psygen::save::testing {
 
@@ -40,11 +40,6 @@ inline Bytes bytes_of(std::string_view text) {
   Bytes bytes(text.size());
   std::memcpy(bytes.data(), text.data(), text.size());
   return bytes;
-}
-
-inline std::string file_content(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 inline void write_file(const std::filesystem::path& path, std::string_view content) {
