@@ -93,7 +93,7 @@ class Judge {
     for (const RunFields& run : runs)
       values.push_back(value_in(run, budget_.field));
     const auto unknown = std::ranges::find(values, false, &Value::known);
-    if (unknown != values.end()) return {Outcome::kMissed, unknown->text};
+    if (unknown != values.end()) return judge_missing(runs, unknown->text);
     const double* limit = std::get_if<double>(&budget_.limit);
     if (budget_.relation == Relation::kEqual || limit == nullptr) return judge_equality(values);
     std::vector<double> numbers;
@@ -101,6 +101,28 @@ class Judge {
       if (value.number) numbers.push_back(*value.number);
     if (numbers.size() != values.size()) return {Outcome::kMissed, values.front().text};
     return judge_number(runs, std::move(numbers), *limit);
+  }
+
+  // A busy machine can leave a run too few frames for a percentile.
+  Attempt judge_missing(std::span<const RunFields> runs, const std::string& reason) const {
+    Attempt attempt{Outcome::kMissed, reason};
+    const double ratio = reference_ratio(runs).value_or(1);
+    if (by_load_ && !flights_.virtual_clock && ratio > kMaxBusyRatio) call_busy(ratio, attempt);
+    return attempt;
+  }
+
+  void call_busy(double ratio, Attempt& attempt) const {
+    attempt.outcome = Outcome::kNotJudged;
+    attempt.note = fmt::format(
+        "The machine was busy: the reference load took {:.2f} times its usual time ({}).", ratio,
+        flights_.usual.source);
+  }
+
+  // The reference load's time over its usual time; missing if one is unknown.
+  std::optional<double> reference_ratio(std::span<const RunFields> runs) const {
+    const Figure pair_s = median_of(runs, kPairWall), &usual_s = flights_.usual.pair_s;
+    if (!pair_s.has_value() || !usual_s.has_value()) return std::nullopt;
+    return *pair_s / *usual_s;
   }
 
   // All runs must have the value.
@@ -121,49 +143,50 @@ class Judge {
     Attempt attempt{Outcome::kMissed, fmt::format("{:.10g}", value), {}, std::move(numbers)};
     if (holds_for(budget_.relation, value, limit)) attempt.outcome = Outcome::kHeld;
     if (attempt.outcome == Outcome::kHeld || !by_load_ || flights_.virtual_clock) return attempt;
-    const Figure pair_s = median_of(runs, kPairWall), &usual_s = flights_.usual.pair_s;
-    if (!pair_s.has_value() || !usual_s.has_value()) {
+    const std::optional<double> ratio = reference_ratio(runs);
+    if (!ratio) {
       judge_by_processor_time(runs, attempt);
       return attempt;
     }
-    const double ratio = *pair_s / *usual_s;
-    if (ratio > kMaxBusyRatio) {
-      attempt.outcome = Outcome::kNotJudged;
-      attempt.note = fmt::format(
-          "The machine was busy: the reference load took {:.2f} times its usual time ({}).", ratio,
-          flights_.usual.source);
+    if (*ratio > kMaxBusyRatio) {
+      call_busy(*ratio, attempt);
       return attempt;
     }
-    const double scale = std::max(ratio, 1.0);
+    const double scale = std::max(*ratio, 1.0);
     const double scaled = budget_.relation == Relation::kAtMost ? limit * scale : limit / scale;
     if (!is_wall_time(budget_.field) || !holds_for(budget_.relation, value, scaled)) {
-      if (ratio > kCalmRatio) judge_by_processor_time(runs, attempt);
+      if (!is_calm(runs, flights_.usual)) judge_by_processor_time(runs, attempt);
       return attempt;
     }
     attempt.outcome = Outcome::kHeld;
     attempt.note = fmt::format(
         "Held by the scaled limit {:.6g}: the reference load took {:.2f} times its usual time "
         "({}).",
-        scaled, ratio, flights_.usual.source);
+        scaled, *ratio, flights_.usual.source);
     return attempt;
   }
 
-  // Where the reference load is unknown or shows that the machine was slower, processor time must
-  // confirm that the program is to blame.
+  // Where the reference load is unknown, or the machine was not calm, processor time must confirm
+  // that the program is to blame.
   void judge_by_processor_time(std::span<const RunFields> runs, Attempt& attempt) const {
     const Figure cpu_s = median_of(runs, kCpu), &usual_s = flights_.usual.cpu_s;
     if (!budget_.needs_witness || !cpu_s.has_value() || !usual_s.has_value()) return;
     if (*cpu_s >= kRisenRatio * *usual_s) return;
     attempt.outcome = Outcome::kNotJudged;
     attempt.note = fmt::format(
-        "Only the wall clock rose, and the machine may be to blame: {}, reference load {}.",
-        processor_text(*cpu_s), reference_text(runs));
+        "Only the wall clock rose, and the machine may be to blame: {}, reference load {}{}.",
+        processor_text(*cpu_s), reference_text(runs), others_text(runs));
   }
 
   std::string reference_text(std::span<const RunFields> runs) const {
-    const Figure pair_s = median_of(runs, kPairWall), &usual_s = flights_.usual.pair_s;
-    if (!pair_s.has_value() || !usual_s.has_value()) return "unknown";
-    return fmt::format("{:.2f} times its usual time", *pair_s / *usual_s);
+    const std::optional<double> ratio = reference_ratio(runs);
+    return ratio ? fmt::format("{:.2f} times its usual time", *ratio) : "unknown";
+  }
+
+  static std::string others_text(std::span<const RunFields> runs) {
+    const Figure others = others_share(runs);
+    if (!others.has_value() || *others <= kCalmOthers) return "";
+    return fmt::format(", other programs used {:.0f} % of the processors", 100 * *others);
   }
 
   std::string processor_text(double cpu_s) const {
@@ -272,6 +295,22 @@ Figure median_of(std::span<const RunFields> runs, std::string_view field) {
     numbers.push_back(*value.number);
   }
   return numbers.empty() ? Figure() : Figure(quantile_of(std::move(numbers), 0.5));
+}
+
+Figure others_share(std::span<const RunFields> runs) {
+  const Figure others = median_of(runs, "load.others_cores");
+  const Figure cores = median_of(runs, "machine.cores");
+  if (!others.has_value()) return others;
+  if (!cores.has_value() || !(*cores > 0)) return Figure::missing("the processors are unknown");
+  return *others / *cores;
+}
+
+bool is_calm(std::span<const RunFields> runs, const UsualLoad& usual) {
+  const Figure pair_s = median_of(runs, kPairWall);
+  const bool slower =
+      pair_s.has_value() && usual.pair_s.has_value() && *pair_s > kCalmRatio * *usual.pair_s;
+  const Figure others = others_share(runs);
+  return !slower && !(others.has_value() && *others > kCalmOthers);
 }
 
 Figure false_alarm_chance(std::span<const double> values, Relation relation, double limit) {

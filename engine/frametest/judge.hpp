@@ -17,8 +17,9 @@ namespace psygen::frametest {
 // A limit of a time is scaled up to this ratio of the reference load to its usual time. Above it,
 // a missed budget is not judged.
 inline constexpr double kMaxBusyRatio = 1.5;
-// Up to this ratio the machine is calm, and the wall clock needs no witness.
-inline constexpr double kCalmRatio = 1.1;
+// Up to this ratio, and while other programs use at most this share of the usable processors, the
+// machine is calm, and the wall clock needs no witness.
+inline constexpr double kCalmRatio = 1.1, kCalmOthers = 0.1;
 // Processor time rose if it is over the usual one by this ratio.
 inline constexpr double kRisenRatio = 1.05;
 
@@ -51,6 +52,13 @@ double quantile_of(std::vector<double> values, double fraction);
 
 // The median of a field over runs; missing if one run has no number.
 telemetry::Figure median_of(std::span<const RunFields> runs, std::string_view field);
+
+// Share of the usable processors that other programs used during the flight, median over runs;
+// missing if one run does not tell it.
+telemetry::Figure others_share(std::span<const RunFields> runs);
+// True if the reference load took its usual time, as far as both are known, and other programs left
+// the processors alone.
+bool is_calm(std::span<const RunFields> runs, const UsualLoad& usual);
 
 // Chance that runs whose true mean is the limit scatter to a mean this far beyond it: one-sided t
 // test, of logarithms if all numbers are positive. Missing below three values.

@@ -15,6 +15,7 @@ struct Measured {
   double p99_ms = 20;
   double cpu_s = 2;
   double pair_s = 0.2;  // 0: no reference load
+  double others_cores = 0;
 };
 
 RunFields fields_of(const Measured& measured) {
@@ -23,6 +24,8 @@ RunFields fields_of(const Measured& measured) {
   summary.low1_fps = 1000 / measured.p99_ms;
   summary.missing.frames = 2u;
   summary.load.cpu_seconds = measured.cpu_s;
+  summary.load.others_cores = measured.others_cores;
+  summary.machine.cores = 4;
   if (measured.pair_s > 0) summary.reference.pair = {measured.pair_s, 2 * measured.pair_s};
   summary.world.name = "paper";
   return telemetry::summary_fields(summary);
@@ -172,6 +175,41 @@ TEST(JudgeRuns, NeedProcessorTimeAsAWitnessWhereTheMachineWasSlower) {
   Budget alone = p99_at_most(25);
   alone.needs_witness = false;
   EXPECT_TRUE(judged(alone, {slower}, load).misses());
+}
+
+TEST(JudgeRuns, NeedProcessorTimeAsAWitnessBesideOtherPrograms) {
+  const UsualLoad load = usual(0.2, 2);
+  const Measured beside{.p99_ms = 40, .cpu_s = 1.5, .pair_s = 0.21, .others_cores = 0.8};
+  const BudgetResult result = judged(p99_at_most(25), {beside}, load);
+  EXPECT_FALSE(result.judged);
+  EXPECT_THAT(result.notes.at(0), HasSubstr("1.05 times its usual time, other programs used 20 % "
+                                            "of the processors."));
+  Measured heavy = beside, alone = beside;
+  heavy.cpu_s = 2.2;
+  alone.others_cores = 0.4;
+  EXPECT_TRUE(judged(p99_at_most(25), {heavy}, load).misses());
+  EXPECT_TRUE(judged(p99_at_most(25), {alone}, load).misses()) << "a tenth of four processors";
+  const RunFields busy_run = fields_of(beside), calm_run = fields_of(alone);
+  EXPECT_FALSE(is_calm({&busy_run, 1}, load));
+  EXPECT_TRUE(is_calm({&calm_run, 1}, load));
+}
+
+TEST(JudgeRuns, AreNotJudgedIfABusyMachineLeftTooFewFrames) {
+  const auto with_few_frames = [](double pair_s) {
+    RunFields fields = fields_of({.pair_s = pair_s});
+    const auto field =
+        std::ranges::find(fields, std::string("frame_ms.p99"), &telemetry::SummaryField::name);
+    field->value = std::monostate();
+    field->reason = "needs at least 100 values, there are 97";
+    return fields;
+  };
+  const Budget budget = p99_at_most(25);
+  const auto result = [&](double pair_s) {
+    const std::vector<RunFields> runs{with_few_frames(pair_s)};
+    return judge({&budget, 1}, {runs, 1, false, usual(0.2, 2)}).at(0);
+  };
+  EXPECT_FALSE(result(0.4).judged);
+  EXPECT_TRUE(result(0.2).misses()) << "on a calm machine the flight is too short";
 }
 
 TEST(JudgeRuns, SayWhetherProcessorTimeRoseToo) {
