@@ -11,104 +11,15 @@
 #include <csignal>
 #include <cstdarg>
 #include <cstdio>
-#include <iterator>
-#include <type_traits>
 #include <utility>
 
+#include "engine/app/gui_input.hpp"
 #include "engine/platform/window.hpp"
 
 namespace psygen::app {
 namespace {
 
-using platform::Key;
-
 constexpr double kLongestFrameS = 0.25;
-
-// Keys that ImGui uses by function. Letters serve shortcuts such as Ctrl+A.
-constexpr std::pair<ImGuiKey, Key> kKeys[] = {{ImGuiKey_Tab, Key::kTab},
-                                              {ImGuiKey_LeftArrow, Key::kLeft},
-                                              {ImGuiKey_RightArrow, Key::kRight},
-                                              {ImGuiKey_UpArrow, Key::kUp},
-                                              {ImGuiKey_DownArrow, Key::kDown},
-                                              {ImGuiKey_PageUp, Key::kPageUp},
-                                              {ImGuiKey_PageDown, Key::kPageDown},
-                                              {ImGuiKey_Home, Key::kHome},
-                                              {ImGuiKey_End, Key::kEnd},
-                                              {ImGuiKey_Insert, Key::kInsert},
-                                              {ImGuiKey_Delete, Key::kDelete},
-                                              {ImGuiKey_Backspace, Key::kBackspace},
-                                              {ImGuiKey_Space, Key::kSpace},
-                                              {ImGuiKey_Enter, Key::kEnter},
-                                              {ImGuiKey_Escape, Key::kEscape},
-                                              {ImGuiKey_KeyPadEnter, Key::kKeypadEnter},
-                                              {ImGuiKey_A, Key::kA},
-                                              {ImGuiKey_C, Key::kC},
-                                              {ImGuiKey_V, Key::kV},
-                                              {ImGuiKey_X, Key::kX},
-                                              {ImGuiKey_Y, Key::kY},
-                                              {ImGuiKey_Z, Key::kZ}};
-
-// Also counts a key pressed and released within the frame.
-template <class Set>
-bool down(const Set& held, const Set& went_down, std::size_t bit) {
-  return held[bit] || went_down[bit];
-}
-
-void feed_mouse(const platform::InputState& input, ImGuiIO& io) {
-  // The order of ImGui's buttons equals ours: left, right, middle. A captured pointer has no
-  // position.
-  const auto at = [](double px) {
-    return static_cast<float>(std::isfinite(px) ? std::clamp(px, -1e6, 1e6) : -1.0);
-  };
-  io.MousePos = input.looking ? ImVec2(-1e30F, -1e30F)
-                              : ImVec2(at(input.pointer_px.x), at(input.pointer_px.y));
-  for (std::size_t i = 0; i < std::size(io.MouseDown); ++i)
-    io.MouseDown[i] = down(input.buttons_held, input.buttons_went_down, i);
-  io.MouseWheel += static_cast<float>(input.wheel);
-  io.MouseWheelH += static_cast<float>(input.wheel_x);
-}
-
-void feed_keys(const platform::InputState& input, ImGuiIO& io) {
-  for (std::size_t i = 0; i < platform::kKeys; ++i)
-    io.KeysDown[i] = down(input.held, input.went_down, i);
-  io.KeyCtrl = input.is_held(Key::kControl);
-  io.KeyShift = input.is_held(Key::kShift);
-  io.KeyAlt = input.is_held(Key::kAlt);
-  io.KeySuper = input.is_held(Key::kLeftSuper) || input.is_held(Key::kRightSuper);
-  io.AddInputCharactersUTF8(input.text.c_str());
-}
-
-// For menus without a mouse, if the game sets ImGuiConfigFlags_NavEnableGamepad.
-void feed_gamepads(const platform::InputState& input, ImGuiIO& io) {
-  using enum platform::PadButton;
-  constexpr std::pair<ImGuiNavInput_, platform::PadButton> kButtons[] = {
-      {ImGuiNavInput_Activate, kA},
-      {ImGuiNavInput_Cancel, kB},
-      {ImGuiNavInput_Menu, kX},
-      {ImGuiNavInput_Input, kY},
-      {ImGuiNavInput_DpadLeft, kLeft},
-      {ImGuiNavInput_DpadRight, kRight},
-      {ImGuiNavInput_DpadUp, kUp},
-      {ImGuiNavInput_DpadDown, kDown},
-      {ImGuiNavInput_FocusPrev, kLeftBumper},
-      {ImGuiNavInput_FocusNext, kRightBumper}};
-  std::fill(std::begin(io.NavInputs), std::end(io.NavInputs), 0.0F);
-  io.BackendFlags &= ~ImGuiBackendFlags_HasGamepad;
-  for (const platform::Gamepad& pad : input.pads) {
-    if (!pad.connected) continue;
-    io.BackendFlags |= ImGuiBackendFlags_HasGamepad;
-    for (const auto& [nav, button] : kButtons)
-      if (pad.is_held(button)) io.NavInputs[nav] = 1;
-    const float x = pad.axis(platform::PadAxis::kLeftX), y = pad.axis(platform::PadAxis::kLeftY);
-    const auto tilt = [&](ImGuiNavInput_ nav, float value) {
-      io.NavInputs[nav] = std::max(io.NavInputs[nav], value > 0.15F ? value : 0.0F);
-    };
-    tilt(ImGuiNavInput_LStickLeft, -x);
-    tilt(ImGuiNavInput_LStickRight, x);
-    tilt(ImGuiNavInput_LStickUp, y);
-    tilt(ImGuiNavInput_LStickDown, -y);
-  }
-}
 
 ImGuiStyle style_at(float scale) {
   ImGuiStyle style;
@@ -163,6 +74,30 @@ bool survives(const std::function<void()>& code) {
   return true;
 }
 
+#if IMGUI_VERSION_NUM >= 19130
+// Keeps the first of ImGui's messages, "Missing End()".
+void note_missing(ImGuiContext* context, void* first, const char* message) {
+  std::string& missing = *static_cast<std::string*>(first);
+  if (!missing.empty()) return;
+  const std::string_view call = message;
+  const bool of_window = call.ends_with(" End()") || call.ends_with(" EndChild()");
+  missing = fmt::format("{} {} '{}'", call, of_window ? "for" : "in", context->CurrentWindow->Name);
+  missing[0] = 'm';
+}
+
+// Closes all that is open in the frame, except its own fallback window. Sets `missing`, which the
+// caller of survives() owns, to the first missing call; empty: none.
+void close_all(std::string& missing) {
+  ImGuiContext& g = *ImGui::GetCurrentContext();
+  if (!g.WithinFrameScope) return;
+  g.ErrorCallback = note_missing;
+  g.ErrorCallbackUserData = &missing;
+  g.IO.ConfigErrorRecoveryEnableAssert = false;
+  ImGui::ErrorRecoveryTryToRecoverState(&g.StackSizesInNewFrame);
+  g.IO.ConfigErrorRecoveryEnableAssert = true;
+  g.ErrorCallback = nullptr;
+}
+#else
 // Keeps the first of ImGui's messages, "Recovered from missing End() for 'Menu'".
 __attribute__((format(printf, 2, 3))) void note_missing(void* first, const char* format, ...) {
   std::string& missing = *static_cast<std::string*>(first);
@@ -194,6 +129,7 @@ void close_all(std::string& missing) {
     child ? ImGui::EndChild() : ImGui::End();
   }
 }
+#endif
 
 // Ends a frame that failed.
 void abandon_frame() {
@@ -245,9 +181,7 @@ Gui::Gui(ImFontAtlas& atlas, platform::Window* window) : window_(window) {
   io.LogFilename = nullptr;
   io.BackendPlatformName = io.BackendRendererName = "psygen";
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-  static_assert(platform::kKeys <= std::extent_v<decltype(ImGuiIO::KeysDown)>);
-  for (const auto& [meaning, key] : kKeys)
-    io.KeyMap[meaning] = static_cast<int>(key);
+  prepare_input(io);
   if (window != nullptr) {
     io.ClipboardUserData = this;
     io.GetClipboardTextFn = read_clipboard;
@@ -269,9 +203,7 @@ void Gui::begin(const platform::InputState& input, core::Extent picture, float s
   io.DeltaTime = static_cast<float>(std::isfinite(dt_s) ? std::clamp(dt_s, 1e-4, kLongestFrameS)
                                                         : kLongestFrameS);
   io.FontGlobalScale = kTextPx * whole / io.Fonts->Fonts[0]->FontSize;
-  feed_mouse(input, io);
-  feed_keys(input, io);
-  feed_gamepads(input, io);
+  feed_input(input, io);
   ImGui::NewFrame();
 }
 

@@ -43,9 +43,7 @@ void Menu::open(Page next) {
 bool Menu::button(const char* label) {
   const bool clicked = ImGui::Button(label, {-1, 0});
   // ImGui's own keyboard click is the space bar.
-  const bool entered =
-      ImGui::IsItemFocused() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
-  return clicked || entered;
+  return clicked || (enter_ && ImGui::IsItemFocused());
 }
 
 Choice Menu::draw(app::Session& session, const Play* play, Settings& settings) {
@@ -53,6 +51,7 @@ Choice Menu::draw(app::Session& session, const Play* play, Settings& settings) {
   if (page != Page::kNone && !opened && goes_back(session.input()))
     open(page == Page::kSettings || page == Page::kCredits ? before_ : Page::kNone);
   if (page == Page::kNone) return Choice::kNothing;
+  enter_ = input::read(platform::Key::kEnter, session.input()).went_down;
   // Keys also reach the game, which closes pages. Text fields capture them regardless.
   ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableGamepad |
                                 ImGuiConfigFlags_NavEnableKeyboard |

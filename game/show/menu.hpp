@@ -71,7 +71,8 @@ class Menu {
   Page before_ = Page::kTitle;  // page to return to from settings and credits
   std::optional<input::BindingCapture> capture_;
   std::size_t captured_ = 0;
-  float text_ = 1;  // Settings::text
+  bool enter_ = false;  // Enter went down in this frame
+  float text_ = 1;      // Settings::text
 };
 
 }  // namespace cairns

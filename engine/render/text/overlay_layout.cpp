@@ -100,7 +100,7 @@ void add_rows(const TextLine& line, std::size_t columns, std::vector<Row>& rows)
 // Lays out panels one after the other, each where the previous ones leave room.
 class Layout {
  public:
-  Layout(const ImFontAtlas& atlas, const ImFont& font, float scale, core::Extent picture,
+  Layout(const ImFontAtlas& atlas, ImFont& font, float scale, core::Extent picture,
          std::vector<shaders::OverlayVertex>& out)
       : atlas_(atlas),
         font_(font),
@@ -187,7 +187,7 @@ class Layout {
   }
 
   const ImFontAtlas& atlas_;
-  const ImFont& font_;
+  ImFont& font_;                 // ImGui 1.91 finds glyphs in fonts that are not constant
   const float scale_, advance_;  // all characters of the font have the same advance
   const float width_, height_;   // of the picture
   Box left_{0, 0, -1e9F, 0};     // the last panel on the left
@@ -248,7 +248,6 @@ void OverlayLayout::put_hud_font() {
                   y + letter.height, from.x, from.y, to.x, to.y, letter.advance);
   }
   font.EllipsisChar = 0x2026;
-  font.DotChar = '.';
   font.BuildLookupTable();
 }
 
@@ -329,7 +328,7 @@ void OverlayLayout::lay_out(std::span<const TextPanel> panels, core::Extent pict
                             std::vector<shaders::OverlayVertex>& out) const {
   const float whole =
       std::isfinite(scale) ? std::clamp(std::round(scale), 1.0F, float{kMaxScale}) : 1.0F;
-  const ImFont& font = *fonts_->by_scale[static_cast<std::size_t>(whole) - 1];
+  ImFont& font = *fonts_->by_scale[static_cast<std::size_t>(whole) - 1];
   Layout layout(fonts_->atlas, font, whole, picture, out);
   for (const TextPanel& panel : panels)
     layout.add(panel);
