@@ -136,16 +136,21 @@ void add_tiles(const NodeTiles& tiles, std::uint32_t in_view, const models::Terr
     bool near = false;
   };
   std::array<Chosen, models::kMaxTilesPerSide * models::kMaxTilesPerSide> chosen;
-  auto end = chosen.begin();
+  auto end = chosen.begin();  // in the order of their indices
   for (int i = 0; i < count; ++i) {
     const int column = i % side, row = i / side;
     if ((in_view & bit(i)) == 0) continue;
-    *end++ = {near.fine(column, row) ? fine->fine(column, row)
-                                     : fine->coarse(column, row, near.fine_sides(column, row)),
-              is_near(tiles.box(column, row))};
+    const Chosen tile{near.fine(column, row)
+                          ? fine->fine(column, row)
+                          : fine->coarse(column, row, near.fine_sides(column, row)),
+                      is_near(tiles.box(column, row))};
+    const auto at = std::upper_bound(
+        chosen.begin(), end, tile,
+        [](const Chosen& a, const Chosen& b) { return a.part.first < b.part.first; });
+    std::move_backward(at, end, end + 1);
+    *at = tile;
+    ++end;
   }
-  std::sort(chosen.begin(), end,
-            [](const Chosen& a, const Chosen& b) { return a.part.first < b.part.first; });
   Parts parts(draw, draws);
   for (auto tile = chosen.begin(); tile != end; ++tile) {
     parts.set(&render::TerrainDraw::near, tile->near);
