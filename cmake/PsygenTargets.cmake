@@ -7,6 +7,7 @@
 include(GNUInstallDirs)
 include(PsygenRevision)
 include(PsygenUnity)
+include(PsygenVersions)
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -92,11 +93,13 @@ function(psygen_library name)
   endif()
 endfunction()
 
-# Finds packages; each item is a string of arguments to find_package().
+# Finds packages of versions that fit; each item is a string of arguments to find_package().
 function(psygen_find_packages)
   foreach(package IN LISTS ARGN)
     separate_arguments(package)
     find_package(${package} REQUIRED)
+    list(GET package 0 name)
+    psygen_check_version(${name})
   endforeach()
 endfunction()
 

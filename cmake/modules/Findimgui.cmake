@@ -1,5 +1,10 @@
 # Dear ImGui: target imgui::imgui. Debian's static library takes its fonts from libstb.
 include(${CMAKE_CURRENT_LIST_DIR}/find_one_library.cmake)
 find_one_library(imgui imgui/imgui.h)
+set(imgui_VERSION "")
+if(imgui_INCLUDE_DIR)
+  file(STRINGS "${imgui_INCLUDE_DIR}/imgui/imgui.h" imgui_VERSION REGEX "^#define +IMGUI_VERSION +")
+  string(REGEX REPLACE ".*\"([0-9.]+).*" "\\1" imgui_VERSION "${imgui_VERSION}")
+endif()
 find_package(stb REQUIRED)
 set_target_properties(imgui::imgui PROPERTIES INTERFACE_LINK_LIBRARIES stb::stb)
