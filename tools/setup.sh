@@ -1,25 +1,38 @@
 #!/usr/bin/env bash
-# Installs the packages that psygen needs on Debian 12, if they are missing.
-#   tools/setup.sh          packages to build, run and test
-#   tools/setup.sh --ci     also those of the complete check (clang-format, clang-tidy)
-#   tools/setup.sh --clang  also clang and its sanitizers, for tools/fuzz.sh and tools/builds.sh
+# Installs packages on Debian 12, Debian 13 and Ubuntu 24.04, if they are missing.
+#   tools/setup.sh           packages to build and run psygen and its game
+#   tools/setup.sh --editor  also those of the editor
+#   tools/setup.sh --test    also those of the editor, the cluster and all tests
+#   tools/setup.sh --ci      also those of the complete check (clang-format, clang-tidy, npm)
+#   tools/setup.sh --clang   those of --test, and clang with its sanitizers, for tools/fuzz.sh and tools/builds.sh
+# docs/platforms.md has the names of the packages in other distributions.
 set -euo pipefail
 
-packages=(
-  build-essential python3 cmake ninja-build ccache git pkg-config
-  libglfw3-dev libglm-dev libvulkan-dev libvulkan-volk-dev vulkan-validationlayers
-  mesa-vulkan-drivers glslc spirv-tools libopenimageio-dev libexpected-dev libcli11-dev
-  libtomlplusplus-dev nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev
-  libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev libsqlite3-dev
-  libopenal-dev libsndfile1-dev libbullet-dev qt6-base-dev libxcb1-dev libopenmpi-dev openmpi-bin
-  slurm-wlm munge
-  libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind gdb linux-perf
-  xvfb openbox xdotool x11-utils x11-xkb-utils chromium
+build=(
+  g++ cmake ninja-build git pkg-config libglfw3-dev libglm-dev libvulkan-dev libvulkan-volk-dev
+  mesa-vulkan-drivers glslc spirv-tools libopenimageio-dev libexpected-dev libcli11-dev libtomlplusplus-dev
+  nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev
+  libtinygltf-dev libmeshoptimizer-dev libdraco-dev libsqlite3-dev libopenal-dev libsndfile1-dev libbullet-dev
 )
+editor=(qt6-base-dev)
+test=(
+  python3 ccache vulkan-validationlayers libxcb1-dev libopenmpi-dev openmpi-bin slurm-wlm munge libgtest-dev
+  libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind gdb linux-perf xvfb openbox xdotool x11-utils
+  x11-xkb-utils chromium
+)
+ci=(clang-format clang-tidy)
 # For the test in which other programs read tilesets. A newer Node.js from elsewhere works too.
-command -v npm >/dev/null || packages+=(nodejs npm)
-[ "${1:-}" = "--ci" ] && packages+=(clang-format clang-tidy)
-[ "${1:-}" = "--clang" ] && packages+=(clang libclang-rt-dev)
+command -v npm >/dev/null || ci+=(nodejs npm)
+clang=(clang libclang-rt-dev)
+
+case "${1:-}" in
+  "") packages=("${build[@]}") ;;
+  --editor) packages=("${build[@]}" "${editor[@]}") ;;
+  --test) packages=("${build[@]}" "${editor[@]}" "${test[@]}") ;;
+  --ci) packages=("${build[@]}" "${editor[@]}" "${test[@]}" "${ci[@]}") ;;
+  --clang) packages=("${build[@]}" "${editor[@]}" "${test[@]}" "${clang[@]}") ;;
+  *) echo "usage: tools/setup.sh [--editor|--test|--ci|--clang]" >&2; exit 2 ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

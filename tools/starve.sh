@@ -28,7 +28,7 @@ run() { # NAME BUSY COMMAND…
   busy=()
 }
 
-tools/setup.sh
+tools/setup.sh --test
 cmake --preset "$preset" >/dev/null
 cmake --build --preset "$preset"
 run "beside four busy processes" 4

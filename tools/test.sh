@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Builds psygen and runs every test. Sets up a fresh Debian 12 first (packages through apt).
+# Builds psygen and runs every test. Sets up a fresh Debian 12 or 13 first (packages through apt).
 #   tools/test.sh [PRESET] [ctest arguments...]      PRESET: release (default), dev, asan, tsan
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-tools/setup.sh
+tools/setup.sh --test
 preset="${1:-release}"
 shift || true
 case "$preset" in
@@ -21,7 +21,7 @@ export UBSAN_OPTIONS="print_stacktrace=1"
 
 # The presets leave out tests that run for an hour (label long), and sanitizers those with the labels
 # not_asan and not_tsan. tests/CMakeLists.txt lists the folders that a sanitizer does not build.
-cmake --preset "$preset" >/dev/null
+cmake --preset "$preset" -DPSYGEN_TESTS=ON >/dev/null
 cmake --build --preset "$preset"
 # One more than processors: some tests wait for windows and other processes.
 ctest --preset "$preset" --parallel "$(($(nproc) + 1))" "$@"

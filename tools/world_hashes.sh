@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-tools/setup.sh
+tools/setup.sh --test
 [ $# -gt 0 ] || set -- 0 1
 for level in "$@"; do
   echo "== -O$level"
