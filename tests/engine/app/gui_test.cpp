@@ -107,6 +107,29 @@ TEST_F(GuiOfAPerson, TakesTheKeyboardOnlyForATextField) {
   EXPECT_STREQ(name_.data(), "h");
 }
 
+TEST_F(GuiOfAPerson, IsUsedWithAGamepad) {
+  frame();
+  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableGamepad;
+  platform::Gamepad& pad = input_.pads[3];
+  const auto tap = [&](platform::PadButton button) {
+    for (const bool down : {true, false}) {
+      pad.held.set(static_cast<std::size_t>(button), down);
+      frame();
+      frame();
+    }
+  };
+  tap(platform::PadButton::kA);
+  EXPECT_EQ(presses_, 0) << "no gamepad is connected";
+  pad.connected = true;
+  tap(platform::PadButton::kUp);  // shows the focus
+  tap(platform::PadButton::kUp);  // moves it to the button
+  tap(platform::PadButton::kA);
+  EXPECT_EQ(presses_, 1);
+  tap(platform::PadButton::kDown);
+  tap(platform::PadButton::kA);
+  EXPECT_EQ(presses_, 1) << "the text field has the focus";
+}
+
 TEST_F(GuiOfAPerson, IsDrawnAsTrianglesInsideThePicture) {
   frame();
   const ImDrawData* drawn = frame();
