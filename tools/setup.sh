@@ -14,9 +14,9 @@ build=(
   nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev
   libtinygltf-dev libmeshoptimizer-dev libdraco-dev libsqlite3-dev libopenal-dev libsndfile1-dev libbullet-dev
 )
-editor=(qt6-base-dev)
+editor=(qt6-base-dev libxcb1-dev)
 test=(
-  python3 ccache vulkan-validationlayers libxcb1-dev libopenmpi-dev openmpi-bin slurm-wlm munge libgtest-dev
+  python3 ccache vulkan-validationlayers libopenmpi-dev openmpi-bin slurm-wlm munge libgtest-dev
   libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind gdb linux-perf xvfb openbox xdotool x11-utils
   x11-xkb-utils chromium
 )
