@@ -22,6 +22,10 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/psygen-config.cmake
         DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
 install(FILES cmake/PsygenFrameTest.cmake cmake/PsygenRevision.cmake DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
 install(DIRECTORY cmake/modules DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
+install(FILES tools/gdb/psygen.py DESTINATION ${CMAKE_INSTALL_DATADIR}/psygen/gdb COMPONENT psygen_package)
+
+# The documents, and all files that they link.
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)
-install(FILES tools/gdb/psygen.py DESTINATION ${CMAKE_INSTALL_DATADIR}/psygen/gdb COMPONENT psygen_data)
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)
+install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE SECURITY.md
+        DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)
+install(FILES ecs/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/ecs COMPONENT psygen_docs)

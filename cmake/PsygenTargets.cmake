@@ -1,10 +1,12 @@
 # Compiler settings, and the functions that every folder uses:
 #   psygen_library(NAME ...)                        the library of a folder: target, headers, component
 #   psygen_executable(NAME SOURCES ... PRIVATE ...) a program in bin/ of the build folder
+#   psygen_install_program(NAME COMPONENT ...)      the program with its pages (cmake/PsygenProgram.cmake)
 # All presets but dev use CMAKE_UNITY_BUILD: the files of a target are compiled together, in a third of the
 # time. Files that repeat private names of others are compiled alone (cmake/PsygenUnity.cmake). All settings
 # apply to this project's targets only. Projects that use or contain this one keep theirs.
 include(GNUInstallDirs)
+include(PsygenProgram)
 include(PsygenRevision)
 include(PsygenUnity)
 include(PsygenVersions)

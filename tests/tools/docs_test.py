@@ -5,6 +5,7 @@ name exist. New names of the changelog exist, and old headers do not. Labels of 
 README's program is the tutorial test. Two pages have a limit of lines.
 
 usage: docs_test.py SOURCE_DIR
+       docs_test.py --installed FOLDER    only the links of all pages below the folder of installed documents
 """
 import collections
 import fnmatch
@@ -26,8 +27,8 @@ def anchors(page):
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-def dead_links(root):
-    for page in pages(root):
+def dead_links(root, pages_of=pages):
+    for page in pages_of(root):
         prose = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
         for target, anchor in re.findall(r"\]\(([^)#]*)(?:#([^)]*))?\)", prose):
             if "://" in target:
@@ -35,6 +36,8 @@ def dead_links(root):
             linked = page.parent / target if target else page
             if not linked.exists():
                 yield f"{page.name}: the link to {target} is dead"
+            elif root.resolve() not in linked.resolve().parents:
+                yield f"{page.name}: the link to {target} leaves the folder"
             elif anchor and linked.suffix == ".md" and anchor not in anchors(linked):
                 yield f"{page.name}: {linked.name} has no heading #{anchor}"
 
@@ -250,6 +253,10 @@ def other_versions(root):
 
 
 def main():
+    if sys.argv[1] == "--installed":
+        found = list(dead_links(pathlib.Path(sys.argv[2]), lambda root: sorted(root.rglob("*.md"))))
+        print("\n".join(found) or "docs: no installed link is dead")
+        return 1 if found else 0
     root = pathlib.Path(sys.argv[1])
     found = [*dead_links(root), *missing_files(root), *missing_names(root), *missing_tests(root), *renamed_names(root),
              *repeated_headings(root), *long_pages(root), *gaps(root), *program_differences(root),

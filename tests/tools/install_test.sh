@@ -33,6 +33,45 @@ installed_docs="$folder/psygen/share/doc/psygen"
 [ -s "$folder/psygen/share/psygen/gdb/psygen.py" ]
 [ -s "$installed_docs/docs/guide/../../examples/template/game.cpp" ] && [ -s "$installed_docs/docs/architecture.md" ] && [ -s "$folder/psygen/share/psygen/paths/walk27.toml" ]
 
+python3 "$source/tests/tools/docs_test.py" --installed "$installed_docs"
+
+# Each program has a manual page with its options, and completions that know them.
+share="$folder/psygen/share"
+grep -qF '\fB\-\-target\-fps\fR' "$share/man/man1/psygen.1"
+complete() { # PROGRAM WORD...: prints what bash offers for the last word
+  (source "$share/bash-completion/completions/$1"
+   PATH="$folder/psygen/bin:$PATH" COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+   "_${1//-/_}" && echo "${COMPREPLY[*]}")
+}
+expect() { # OFFERED PROGRAM WORD...
+  [ "$(cd "$folder/psygen" && complete "${@:2}")" = "$1" ] || { echo "${*:2}: bash offers $(complete "${@:2}")"; exit 1; }
+}
+expect fly psygen fl
+expect "--view --view-distance" psygen fly --view
+expect "ultra" psygen picture --preset = u
+expect check psygen history ch
+expect silver_combe psygen amplify --world silver
+expect --autoplay psygen-game --auto
+if command -v zsh >/dev/null; then # in a terminal of its own, where each tab completes a word
+  PATH="$folder/psygen/bin:$PATH" zsh -f -c 'zmodload zsh/zpty; zpty shell zsh -f -i
+    zpty -w shell "fpath=(${(q)1} \$fpath); autoload -U compinit; compinit -u -d ${(q)2}; PS1=rea\"\"dy"
+    zpty -r shell shown "*ready*"
+    zpty -w -n shell $'"'"'psygen fl\t--target\t30 --preset u\t'"'"'
+    zpty -r shell shown "*--target-fps*ultra*"' zsh "$share/zsh/site-functions" "$folder/zcompdump"
+fi
+# Desktop files, icons and AppStream data of the programs with a window.
+for program in psygen-game psygen-editor; do
+  [ -e "$folder/psygen/bin/$program" ] || continue # not built
+  (cd / && "$folder/psygen/bin/$program" --help >/dev/null)
+  [ -s "$share/man/man1/$program.1" ] && [ -s "$share/zsh/site-functions/_$program" ]
+  grep -qx "Icon=$program" "$share/applications/$program.desktop"
+  grep -q "<launchable type=\"desktop-id\">$program.desktop<" "$share/metainfo/$program.metainfo.xml"
+  [ -s "$share/icons/hicolor/scalable/apps/$program.svg" ]
+done
+# DESTDIR comes before the prefix.
+DESTDIR="$folder/root" cmake --install "$build" --prefix /usr --component psygen_tools >/dev/null
+[ -x "$folder/root/usr/bin/psygen" ]
+
 # One version: the package's and the program's.
 grep -q "set(PACKAGE_VERSION \"$("$folder/psygen/bin/psygen" --version | cut -d' ' -f2)\")" \
   "$cmake_files/psygen-config-version.cmake" || { echo "psygen --version is not the package's version"; exit 1; }
