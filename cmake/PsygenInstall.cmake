@@ -23,6 +23,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/psygen-config.cmake
 install(FILES cmake/PsygenFrameTest.cmake cmake/PsygenRevision.cmake DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
 install(DIRECTORY cmake/modules DESTINATION ${psygen_package_dir} COMPONENT psygen_package)
 install(FILES tools/gdb/psygen.py DESTINATION ${CMAKE_INSTALL_DATADIR}/psygen/gdb COMPONENT psygen_package)
+include(PsygenPkgConfig)
 
 # The documents, and all files that they link.
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT psygen_docs)

@@ -68,7 +68,7 @@ target_link_libraries(psygen_settings INTERFACE psygen_sanitizers)
 #                     find_package(psygen COMPONENTS NAME) find them; projects that use shared libraries
 #                     do not need PACKAGES.
 # With PSYGEN_INSTALL it is installed as component psygen_NAME and exported as component NAME of the
-# package, without another list.
+# package, without another list. cmake/PsygenPkgConfig.cmake makes its file for pkg-config.
 function(psygen_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE;PUBLIC_PACKAGES;PACKAGES" ${ARGN})
   psygen_find_packages(${ARG_PUBLIC_PACKAGES} ${ARG_PACKAGES})

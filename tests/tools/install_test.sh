@@ -120,6 +120,12 @@ done
 
 mkdir "$folder/elsewhere" "$folder/bin"
 mv "$folder/psygen" "$folder/elsewhere/moved here"
+# A program that pkg-config builds against the moved package finds data and modules there, too.
+flags="$(PKG_CONFIG_PATH="$(dirname "$(find "$folder/elsewhere" -name psygen-app.pc)")" \
+  pkg-config --cflags --libs psygen-app vulkan)"
+eval "${CXX:-c++} -std=c++20 -g0 '$source/tests/tools/consumer/main.cpp' $flags -o '$folder/by_pkg_config'"
+[ "$(cd / && "$folder/by_pkg_config" "$folder/by_pkg_config.png")" = "$height" ]
+cmp "$folder/picture.png" "$folder/by_pkg_config.png"
 ln -s "$folder/elsewhere/moved here/bin/psygen" "$folder/bin/psygen"
 for psygen in "$folder/elsewhere/moved here/bin/psygen" "$folder/bin/psygen"; do
   for work in "$folder" / "$folder/elsewhere/moved here/share"; do
