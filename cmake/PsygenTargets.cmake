@@ -23,9 +23,14 @@ if(PROJECT_IS_TOP_LEVEL)
   endif()
 endif()
 
-# One compiler cache for all clones: paths in it are relative to the clone.
+if(PSYGEN_REPRODUCIBLE)
+  add_compile_options(-ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
+endif()
+
+# One compiler cache for all clones: paths in it are relative to the clone. Files from a cache may name another folder
+# of a build, so that reproducible builds do without.
 find_program(PSYGEN_CCACHE ccache)
-if(PSYGEN_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+if(PSYGEN_CCACHE AND NOT PSYGEN_REPRODUCIBLE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
       CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${PSYGEN_CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
