@@ -13,9 +13,10 @@ endforeach()
 
 set(psygen_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/psygen)
 set(psygen_bin_dir ${CMAKE_INSTALL_BINDIR})
+set(psygen_module_dir ${CMAKE_INSTALL_LIBDIR}/psygen)
 set(psygen_data_dir ${CMAKE_INSTALL_DATADIR}/psygen)
 configure_package_config_file(cmake/psygen-config.cmake.in psygen-config.cmake
-  INSTALL_DESTINATION ${psygen_package_dir} PATH_VARS psygen_data_dir psygen_bin_dir)
+  INSTALL_DESTINATION ${psygen_package_dir} PATH_VARS psygen_data_dir psygen_bin_dir psygen_module_dir)
 write_basic_package_version_file(psygen-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/psygen-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/psygen-config-version.cmake

@@ -44,6 +44,12 @@ picture 09_gltf gltf
 # The game to start from, and its frame tests: one within its budgets, and one that none holds.
 "$folder/build/template/my_game" "$folder/game.png" 2>"$folder/log.txt" || { cat "$folder/log.txt"; exit 1; }
 [ "$(stat -c %s "$folder/game.png")" -gt 50000 ] || { echo "the game's picture is empty"; exit 1; }
+# The folder for players. Without psygen's package the game runs and saves an image.
+cmake --install "$folder/build/template" --prefix "$folder/for players" >/dev/null
+mv "$folder/psygen" "$folder/away"
+(cd / && "$folder/for players/my_game" "$folder/shipped.png") 2>"$folder/log.txt" || { cat "$folder/log.txt"; exit 1; }
+mv "$folder/away" "$folder/psygen"
+[ "$(stat -c %s "$folder/shipped.png")" -gt 50000 ] || { echo "the shipped game's picture is empty"; exit 1; }
 ctest --test-dir "$folder/build/template" --tests-regex '^exact$' --output-on-failure --no-tests=error
 sed -E 's/^frame_ms.p99 = .*/frame_ms.p99 = 0/; s|"(world\|walk).toml"|"'"$source"'/examples/template/\1.toml"|' \
   "$source/examples/template/exact.toml" >"$folder/missed.toml"
