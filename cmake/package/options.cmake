@@ -12,6 +12,7 @@ endif()
 if(CPACK_GENERATOR STREQUAL "TZST")
   # One archive of the programs and their data. All other components are for Debian.
   set(CPACK_ARCHIVE_COMPONENT_INSTALL ON)
+  set(CPACK_COMPONENT_INCLUDE_TOPLEVEL_DIRECTORY ON)
   set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
   set(CPACK_STRIP_FILES ON)
   list(FILTER CPACK_COMPONENTS_ALL INCLUDE REGEX "^psygen_(tools|game|editor|data|pictures|mpi)$")
