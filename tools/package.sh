@@ -6,9 +6,13 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=build/package packages="${1:-build/package/packages}"
 umask 022
-tools/setup.sh
-cmake --preset release -B "$build" -DPSYGEN_TESTS=OFF -DPSYGEN_BENCHMARKS=OFF -DPSYGEN_WERROR=OFF \
-  -DPSYGEN_REPRODUCIBLE=ON -DCMAKE_INSTALL_PREFIX=/usr >/dev/null
+tools/setup.sh --editor
+for program in python3 dpkg-shlibdeps file; do
+  command -v "$program" >/dev/null ||
+    { echo "package: $program is missing (Debian: apt-get install python3 dpkg-dev file)" >&2; exit 1; }
+done
+cmake --preset release -B "$build" -DPSYGEN_TESTS=OFF -DPSYGEN_BENCHMARKS=OFF -DPSYGEN_REPRODUCIBLE=ON \
+  -DCMAKE_INSTALL_PREFIX=/usr >/dev/null
 cmake --build "$build"
 cpack --config "$build/CPackConfig.cmake" -B "$packages"
 rm -rf "$packages/_CPack_Packages"
