@@ -6,6 +6,7 @@
 #include <langinfo.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <clocale>
 #include <cmath>
 #include <cstdlib>
@@ -44,6 +45,15 @@ std::string glfw_error() {
   const char* description = nullptr;
   glfwGetError(&description);
   return description != nullptr ? description : "the window system gave no reason";
+}
+
+// Desktops find the desktop file, and so name and icon, of a window by the name of its program.
+void name_next_window_after_program() {
+  glfwWindowHintString(GLFW_X11_CLASS_NAME, program_invocation_short_name);
+  glfwWindowHintString(GLFW_X11_INSTANCE_NAME, program_invocation_short_name);
+#ifdef GLFW_WAYLAND_APP_ID  // since GLFW 3.4
+  glfwWindowHintString(GLFW_WAYLAND_APP_ID, program_invocation_short_name);
+#endif
 }
 
 // Keys of GLFW and ours, without ranges (key_of).
@@ -264,6 +274,7 @@ core::Result<std::unique_ptr<Window>> Window::create(const WindowSettings& setti
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);  // full screen survives a change of focus
   glfwWindowHint(GLFW_VISIBLE, settings.visible ? GLFW_TRUE : GLFW_FALSE);
+  name_next_window_after_program();
   GLFWwindow* window = glfwCreateWindow(static_cast<int>(settings.size.width),
                                         static_cast<int>(settings.size.height),
                                         settings.title.c_str(), nullptr, nullptr);

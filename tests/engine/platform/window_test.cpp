@@ -126,6 +126,11 @@ TEST_F(WindowOnADisplay, ReportsTheContentScale) {
   EXPECT_NEAR(window_->content_scale(), 2.0F, 0.05F);
 }
 
+TEST_F(WindowOnADisplay, HasTheNameOfItsProgramAsClass) {
+  EXPECT_EQ(display_->output({"xprop", "-name", "psygen window test", "WM_CLASS"}),
+            "WM_CLASS(STRING) = \"psygen_test_platform\", \"psygen_test_platform\"\n");
+}
+
 TEST_F(WindowOnADisplay, HasNoPixelsWhileItIsMinimised) {
   window_->minimise();
   EXPECT_TRUE(eventually(*window_, [&](const InputState&) { return window_->minimised(); }));
