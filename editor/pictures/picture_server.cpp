@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <thread>
 
 #include "editor/pictures/export_file.hpp"
 #include "editor/pictures/model_world.hpp"
@@ -20,6 +19,7 @@
 #include "engine/app/session.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/processors.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -220,7 +220,7 @@ class PictureServer {
     options.scene.max_error_pixels = kErrorPixels;
     options.scene.fade_seconds = 0;
     // All processors, because the main thread waits meanwhile.
-    options.scene.modelers = std::max(std::thread::hardware_concurrency(), 1U);
+    options.scene.modelers = core::usable_processors();
     options.scene.watchdog_seconds = kServerWatchdogS;
     auto session = app::Session::create(std::move(options));
     if (!session) return tl::unexpected(session.error());

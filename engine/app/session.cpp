@@ -83,7 +83,7 @@ core::Result<std::unique_ptr<Session>> Session::create(SessionOptions options) {
 
 core::Result<void> Session::open() {
   const core::CancelScope scope(options_.stop);
-  if (auto ok = render::fit_software_rendering_to_threads(); !ok) return ok;
+  if (auto fits = render::fit_software_rendering(); !fits) return tl::unexpected(fits.error());
   if (auto ok = scene::Scene::check(options_.scene); !ok) return ok;
   auto registry = make_registry(options_.plugins);
   if (!registry) return tl::unexpected(registry.error());

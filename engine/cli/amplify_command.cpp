@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "engine/amplify/amplify.hpp"
@@ -21,6 +20,7 @@
 #include "engine/cluster/peers.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/processors.hpp"
 #include "engine/models/kit/simd_targets.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/telemetry/output_file.hpp"
@@ -73,7 +73,7 @@ AmplifyCommand::AmplifyCommand(CLI::App& cli)
       ->capture_default_str();
   auto* region = add_parsed(c, "--region", region_, amplify::parse_region, "REGION",
                             "Blocks X0,Z0,X1,Z1, excluding X1 and Z1; default: the whole world");
-  c.add_option("--threads", threads_, "Threads; default: one per processor")
+  c.add_option("--threads", threads_, "Threads; default: one per usable processor")
       ->transform(integer_between(1, amplify::kMaxThreads));
   c.add_option_function<std::vector<std::string>>(
        "--sample",
@@ -168,8 +168,7 @@ core::Result<amplify::Report> AmplifyCommand::amplify(const world::World& world,
     folder = std::move(*opened);
     options.make_sink = [&folder] { return folder->make_sink(); };
   }
-  options.threads =
-      threads_ > 0 ? threads_ : amplify::threads_for(std::thread::hardware_concurrency());
+  options.threads = threads_ > 0 ? threads_ : amplify::threads_for(core::usable_processors());
   options.stop = &stop_at_interrupt();
   telemetry::ProgressBar bar(telemetry::stderr_terminal(), "amplifying " + world.name,
                              static_cast<double>(region->block_count()));

@@ -8,7 +8,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "engine/amplify/amplify.hpp"
@@ -20,6 +19,7 @@
 #include "engine/cluster/peers.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/nearest_word.hpp"
+#include "engine/core/processors.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/exchange/unpack.hpp"
 #include "engine/exchange/write_document.hpp"
@@ -228,7 +228,7 @@ ExportCommand::ExportCommand(CLI::App& cli)
       "LOW,HIGH: heights of black and white in a heightmap's heights.png, in metres; default: the "
       "region's lowest and highest point")
       ->needs(region);
-  c.add_option("--threads", threads_, "Threads for a region; default: one per processor")
+  c.add_option("--threads", threads_, "Threads for a region; default: one per usable processor")
       ->transform(integer_between(1, amplify::kMaxThreads))
       ->needs(region);
   c.add_option("--out", out_, "Output file: .glb or .obj; output folder for a region")->required();
@@ -313,7 +313,7 @@ int ExportCommand::export_region(const world::World& world,
   if (auto ok = cluster::check_one_copy("export the whole region"); !ok)
     return fail_with(ok.error());
   const unsigned threads =
-      threads_ > 0 ? threads_ : amplify::threads_for(std::thread::hardware_concurrency());
+      threads_ > 0 ? threads_ : amplify::threads_for(core::usable_processors());
   if (format_ == "heightmap") return export_heightmap(world, threads);
   const auto tree = tiles::TileTree::over(*region_, levels_.value_or(all_levels(*region_)));
   if (!tree) return fail_with(tree.error());

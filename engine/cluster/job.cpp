@@ -1,7 +1,6 @@
 #include "engine/cluster/job.hpp"
 
 #include <fmt/format.h>
-#include <sched.h>
 
 #include <algorithm>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include "engine/cluster/meeting.hpp"
 #include "engine/cluster/plan.hpp"
 #include "engine/core/bytes.hpp"
+#include "engine/core/processors.hpp"
 #include "engine/core/replace_file.hpp"
 
 namespace psygen::cluster {
@@ -257,12 +257,9 @@ unsigned threads_for_rank(unsigned allowed, unsigned of_machine, unsigned ranks_
 }
 
 unsigned threads_for_rank(const Peers& peers) {
-  const unsigned of_machine = std::thread::hardware_concurrency();
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  const bool known = sched_getaffinity(0, sizeof(set), &set) == 0;
-  const unsigned allowed = known ? static_cast<unsigned>(CPU_COUNT(&set)) : of_machine;
-  return threads_for_rank(allowed, of_machine, peers.count_here());
+  return threads_for_rank(core::allowed_processors(),
+                          core::within_quota(std::thread::hardware_concurrency()),
+                          peers.count_here());
 }
 
 tl::expected<JobReport, JobError> amplify_together(const world::World& world,

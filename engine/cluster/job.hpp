@@ -39,8 +39,8 @@ tl::expected<JobReport, JobError> amplify_together(const world::World& world,
                                                    const std::filesystem::path& folder,
                                                    const amplify::Options& options, Peers& peers);
 
-// Default number of threads of a rank: the processors that the process may use or the rank's part
-// of the machine, whichever is smaller; at least 1.
+// Default number of threads of a rank: the processors that its affinity allows or the rank's part
+// of the machine (of the quota, if there is one), whichever is smaller; at least 1.
 unsigned threads_for_rank(unsigned allowed, unsigned of_machine, unsigned ranks_here);
 // The default for a rank of this process, on this machine.
 unsigned threads_for_rank(const Peers& peers);

@@ -12,7 +12,6 @@
 #include <optional>
 #include <set>
 #include <span>
-#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -22,6 +21,7 @@
 #include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
+#include "engine/core/processors.hpp"
 #include "engine/core/read_file.hpp"
 #include "engine/gltf/read_file.hpp"
 #include "engine/handmade/handmade_type.hpp"
@@ -276,8 +276,8 @@ class Files final : public world::ResourceLoader {
         }
       }
     };
-    const std::size_t most = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxReaders);
-    core::run_in_threads(std::min(most, wanted.size()), work);
+    const unsigned most = std::min(core::usable_processors(), kMaxReaders);
+    core::run_in_threads(std::min<std::size_t>(most, wanted.size()), work);
     core::report_progress(1);
     return loaded;
   }

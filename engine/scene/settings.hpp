@@ -28,7 +28,7 @@ struct SceneSettings {
   Paradigm paradigm = Paradigm::kParallelLazyAmplification;
   synthesis::Policy policy = synthesis::Policy::kDeadline;
   visibility::PlpMode plp_mode = visibility::PlpMode::kLayers;
-  std::uint32_t modelers = 0;  // threads; 0: cores − 1, at least 1; virtual time has 1
+  std::uint32_t modelers = 0;  // threads; 0: usable processors − 1, at least 1; virtual time has 1
   // True if modelers run at the lowest priority of the operating system. Otherwise they take
   // processor time from frames; for comparison only.
   bool modelers_yield = true;

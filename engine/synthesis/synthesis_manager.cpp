@@ -11,6 +11,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/processors.hpp"
 
 namespace psygen::synthesis {
 namespace {
@@ -25,7 +26,7 @@ constexpr unsigned kVirtualModelers = 1;
 
 unsigned modeler_count_for(unsigned requested) {
   if (requested > 0) return requested;
-  return std::max(std::thread::hardware_concurrency(), 2u) - 1;
+  return std::max(core::usable_processors(), 2u) - 1;
 }
 
 // A delegating constructor, so that an exception in it runs the destructor and no threads stay

@@ -23,7 +23,7 @@ namespace psygen::synthesis {
 
 // Options of the modelers.
 struct SynthesisOptions {
-  unsigned modelers = 0;               // 0: number of cores − 1, at least 1
+  unsigned modelers = 0;               // 0: core::usable_processors() − 1, at least 1
   bool hash_content = false;           // fill Completion::content_hash
   double watchdog_seconds = 10;        // a request that runs longer is abandoned; 0: never
   unsigned max_replacements = 8;       // total number of modelers started to replace hung ones

@@ -1,7 +1,6 @@
 #include "engine/telemetry/machine.hpp"
 
 #include <fmt/format.h>
-#include <sched.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
@@ -16,6 +15,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/data_file.hpp"
+#include "engine/core/processors.hpp"
 #include "engine/core/utf8.hpp"
 
 // Both are defined by the source that psygen_revision() adds to a program.
@@ -69,55 +69,6 @@ std::string features_in(const std::string& flags) {
   return text;
 }
 
-std::uint64_t usable_cores() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  if (sched_getaffinity(0, sizeof(set), &set) == 0)
-    return static_cast<std::uint64_t>(CPU_COUNT(&set));
-  return static_cast<std::uint64_t>(std::max(sysconf(_SC_NPROCESSORS_ONLN), 1L));
-}
-
-// Time over period of a quota; nothing for "max" and -1.
-std::optional<double> share_of(const std::string& quota, const std::string& period) {
-  const double time = std::strtod(quota.c_str(), nullptr),
-               whole = std::strtod(period.c_str(), nullptr);
-  if (!(time > 0) || !(whole > 0)) return std::nullopt;
-  return time / whole;
-}
-
-// The least quota of a control group and all groups around it: of version 2 (cpu.max), else of
-// version 1 (cpu.cfs_quota_us).
-std::optional<double> quota_of(const std::filesystem::path& root) {
-  std::optional<double> least;
-  const auto take = [&least](std::optional<double> quota) {
-    if (quota) least = std::min(least.value_or(*quota), *quota);
-  };
-  std::ifstream groups(root / "proc/self/cgroup");
-  for (std::string line; std::getline(groups, line);) {
-    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
-    if (second == std::string::npos) continue;
-    const std::string controllers = line.substr(first + 1, second - first - 1);
-    const bool unified = controllers.empty();
-    if (!unified && ("," + controllers + ",").find(",cpu,") == std::string::npos) continue;
-    const std::filesystem::path top = root / "sys/fs/cgroup" / (unified ? "" : controllers);
-    for (std::filesystem::path group =
-             std::filesystem::path(line.substr(second + 1)).relative_path();
-         ; group = group.parent_path()) {
-      if (unified) {
-        std::istringstream words(first_line(top / group / "cpu.max").value_or(""));
-        std::string quota, period;
-        words >> quota >> period;
-        take(share_of(quota, period));
-      } else {
-        take(share_of(first_line(top / group / "cpu.cfs_quota_us").value_or(""),
-                      first_line(top / group / "cpu.cfs_period_us").value_or("")));
-      }
-      if (group.empty()) break;
-    }
-  }
-  return least;
-}
-
 MeasuredText text_or(std::optional<std::string> text, const char* reason) {
   return text && !text->empty() ? MeasuredText(*text) : MeasuredText::missing(reason);
 }
@@ -142,8 +93,8 @@ MachineFacts machine_facts(const std::filesystem::path& root) {
   facts.cpu = text_or(cpu_value(root, {"model name", "Model", "CPU part"}), kNoCpu);
   facts.cpu_features =
       text_or(features_in(cpu_value(root, {"flags", "Features"}).value_or("")), kNoCpu);
-  facts.cores = usable_cores();
-  const auto quota = quota_of(root);
+  facts.cores = core::allowed_processors();
+  const auto quota = core::processor_quota(root);
   facts.quota_cores = quota ? Figure(*quota) : Figure::missing("no control group sets one");
   const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
   facts.memory_bytes = pages > 0 ? Measured<std::uint64_t>(static_cast<std::uint64_t>(pages) *

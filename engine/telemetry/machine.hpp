@@ -16,7 +16,7 @@ using MeasuredText = Measured<std::string>;
 struct MachineFacts {
   MeasuredText cpu;           // model name
   MeasuredText cpu_features;  // names of vector and arithmetic extensions, in order, with blanks
-  std::uint64_t cores = 1;    // processors that this process may use
+  std::uint64_t cores = 1;    // processors that the affinity allows
   Figure quota_cores;         // processors' time that control groups allow; missing if unlimited
   Measured<std::uint64_t> memory_bytes;
   MeasuredText governor;  // of the processor's frequency

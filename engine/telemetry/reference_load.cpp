@@ -10,7 +10,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/headroom.hpp"
-#include "engine/telemetry/machine.hpp"
+#include "engine/core/processors.hpp"
 
 namespace psygen::telemetry {
 namespace {
@@ -97,7 +97,7 @@ LoadTimes mean_of(const LoadTimes& a, const LoadTimes& b) {
 }  // namespace
 
 ReferenceLoad measure_reference_load(const ReferenceWork& work) {
-  const std::uint64_t threads = work.threads > 0 ? work.threads : machine_facts().cores;
+  const std::uint64_t threads = work.threads > 0 ? work.threads : core::usable_processors();
   ReferenceLoad load;
   load.arith = time_of([&work] { return arithmetic(work.steps); });
   load.stream = stream(work);

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>  // defines __GLIBC__ where there is glibc
-#include <thread>
+#include <string>
 
 #include "engine/core/headroom.hpp"
+#include "engine/core/processors.hpp"
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -27,6 +28,7 @@ constexpr std::size_t kMaxRasterThreads = 32;
 // Other threads: the driver's queue and a modeler, without which there is no picture, and two
 // threads of the driver's shader cache.
 constexpr std::size_t kMinThreads = 2, kOtherThreads = 4;
+constexpr const char* kThreadsVariable = "LP_NUM_THREADS";
 
 }  // namespace
 
@@ -52,9 +54,10 @@ void prefer_huge_pages([[maybe_unused]] std::span<std::byte> memory) {
 #endif
 }
 
-core::Result<void> fit_software_rendering_to_threads() {
-  const std::size_t processors = std::max(std::thread::hardware_concurrency(), 1u);
-  const std::size_t wanted = std::min(processors, kMaxRasterThreads) + kOtherThreads;
+core::Result<std::size_t> fit_software_rendering() {
+  const std::size_t allowed = core::allowed_processors(), usable = core::usable_processors();
+  // With one processor llvmpipe draws in the thread of its queue, unless it is told otherwise.
+  const std::size_t wanted = (usable > 1 ? std::min(usable, kMaxRasterThreads) : 0) + kOtherThreads;
   const std::size_t left = core::threads_left(wanted);
   if (left < kMinThreads) {
     return core::fail(core::ErrorCode::kInternal,
@@ -62,8 +65,10 @@ core::Result<void> fit_software_rendering_to_threads() {
                                   kMinThreads, left));
   }
   const std::size_t raster = left - std::min(left, kOtherThreads);
-  if (left < wanted) setenv("LP_NUM_THREADS", std::to_string(raster).c_str(), /*overwrite=*/0);
-  return {};
+  const char* const set = std::getenv(kThreadsVariable);
+  if (set != nullptr) return std::strtoul(set, nullptr, 10);
+  if (raster < allowed) setenv(kThreadsVariable, std::to_string(raster).c_str(), /*overwrite=*/0);
+  return raster;
 }
 
 }  // namespace psygen::render

