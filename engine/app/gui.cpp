@@ -41,17 +41,21 @@ ImGuiStyle style_at(float scale) {
 
 // Debian's ImGui checks by assert() that calls come in pairs, so a wrong pair aborts.
 thread_local sigjmp_buf* way_out = nullptr;
+struct sigaction without_trap = {};  // of aborts, before the outermost trap
 
 // While it lives, an abort of this thread jumps to `target`; those of other threads end the program
-// as always.
+// as without a trap.
 class AbortTrap {
  public:
   explicit AbortTrap(sigjmp_buf& target) : outer_(std::exchange(way_out, &target)) {
     struct sigaction jump = {};
     jump.sa_handler = [](int) {
       if (way_out != nullptr) siglongjmp(*way_out, 1);
+      sigaction(SIGABRT, &without_trap, nullptr);
+      raise(SIGABRT);  // takes effect when this function has returned
     };
     sigaction(SIGABRT, &jump, &before_);
+    if (outer_ == nullptr) without_trap = before_;
   }
   ~AbortTrap() {
     sigaction(SIGABRT, &before_, nullptr);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 namespace psygen::core {
 namespace {
@@ -78,24 +79,33 @@ Result<fs::path> data_file(const fs::path& name, const fs::path& given,
                           name.string(), looked, kVariable));
 }
 
-Result<fs::path> user_folder(UserFolder folder, const std::string& program, const fs::path& given) {
-  const bool data = folder == UserFolder::kData;
-  const char* variable = data ? "XDG_DATA_HOME" : "XDG_CONFIG_HOME";
+Result<fs::path> user_folder_path(UserFolder folder, const std::string& program,
+                                  const fs::path& given) {
+  constexpr std::pair<const char*, const char*> kPlaces[] = {{"XDG_DATA_HOME", ".local/share"},
+                                                             {"XDG_CONFIG_HOME", ".config"},
+                                                             {"XDG_STATE_HOME", ".local/state"}};
+  const auto [variable, below_home] = kPlaces[static_cast<std::size_t>(folder)];
   const char* named = std::getenv(variable);
   const char* home = std::getenv("HOME");
   fs::path found = given;
   if (found.empty() && named != nullptr && *named == '/') {
     found = fs::path(named) / program;
   } else if (found.empty() && home != nullptr && *home == '/') {
-    found = fs::path(home) / (data ? ".local/share" : ".config") / program;
+    found = fs::path(home) / below_home / program;
   }
   if (found.empty())
     return fail(ErrorCode::kIo,
                 fmt::format("no folder for {}: neither {} nor HOME is set", program, variable));
-  std::error_code error;
-  fs::create_directories(found, error);
-  if (error) return fail(ErrorCode::kIo, fmt::format("{}: {}", found.string(), error.message()));
   return found;
+}
+
+Result<fs::path> user_folder(UserFolder folder, const std::string& program, const fs::path& given) {
+  return user_folder_path(folder, program, given).and_then([](fs::path found) -> Result<fs::path> {
+    std::error_code error;
+    fs::create_directories(found, error);
+    if (error) return fail(ErrorCode::kIo, fmt::format("{}: {}", found.string(), error.message()));
+    return found;
+  });
 }
 
 std::string_view version() {

@@ -43,10 +43,13 @@ Result<std::filesystem::path> data_file(
     const std::filesystem::path& built_with = PSYGEN_DATA_FOLDER);
 
 // Purpose of a user's folder. Data: $XDG_DATA_HOME or ~/.local/share. Configuration:
-// $XDG_CONFIG_HOME or ~/.config.
-enum class UserFolder : std::uint8_t { kData, kConfig };
-// Creates and returns the program's folder for this purpose, or `given` if it is not empty. Fails
-// with kIo if it cannot be created, or if neither the variable nor HOME is set.
+// $XDG_CONFIG_HOME or ~/.config. State (reports, logs): $XDG_STATE_HOME or ~/.local/state.
+enum class UserFolder : std::uint8_t { kData, kConfig, kState };
+// Returns the program's folder for this purpose, or `given` if it is not empty. It need not exist.
+// Fails with kIo if neither the variable nor HOME is set.
+Result<std::filesystem::path> user_folder_path(UserFolder folder, const std::string& program,
+                                               const std::filesystem::path& given = {});
+// Creates and returns user_folder_path(). Also fails with kIo if it cannot be created.
 Result<std::filesystem::path> user_folder(UserFolder folder, const std::string& program,
                                           const std::filesystem::path& given = {});
 

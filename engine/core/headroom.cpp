@@ -8,6 +8,7 @@
 #include <exception>
 #include <latch>
 #include <mutex>
+#include <new>
 #include <string>
 #include <thread>
 #include <vector>
@@ -83,6 +84,19 @@ Result<void> widen_stacks() {
   return fail(ErrorCode::kInternal, "ulimit -s allows " + std::to_string(limit.rlim_cur >> 10) +
                                         " KiB of stack; at least " +
                                         std::to_string(kMinStackBytes >> 10) + " KiB are needed");
+}
+
+SignalStack::SignalStack() {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  constexpr std::size_t kBytes = std::size_t{64} << 10;
+  bytes_.reset(new (std::nothrow) std::byte[kBytes]);
+  const stack_t wanted{.ss_sp = bytes_.get(), .ss_flags = 0, .ss_size = kBytes};
+  if (bytes_ && sigaltstack(&wanted, &former_) != 0) bytes_.reset();
+#endif
+}
+
+SignalStack::~SignalStack() {
+  if (bytes_) sigaltstack(&former_, nullptr);
 }
 
 bool memory_left(std::uint64_t bytes) {

@@ -2,16 +2,20 @@
 // resource and frees it immediately. This reveals limits (ulimit -d, -v, -u, container limits on
 // threads, memory that must not be overcommitted) before a library that cannot handle them reaches
 // them. It does not see memory limits that the kernel enforces by killing. An answer holds only for
-// the moment. Also starts threads where the system may refuse, and
-// sets their priorities. POSIX. Any thread.
+// the moment. Also starts threads where the system may refuse, and sets their stacks and
+// priorities. POSIX. Any thread.
 #pragma once
+
+#include <signal.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -54,13 +58,31 @@ inline constexpr std::size_t kMinStackBytes = std::size_t{256} << 10;
 // thread is left with less than kMinStackBytes. Call it before other threads start.
 Result<void> widen_stacks();
 
+// While it lives, handlers of signals that ask for it (SA_ONSTACK) run on a stack of their own in
+// this thread, so a handler can report that the thread's stack has overflowed. Without memory for
+// it, and in builds with sanitizers, which have their own, it does nothing.
+class SignalStack {
+ public:
+  SignalStack();
+  ~SignalStack();
+  SignalStack(const SignalStack&) = delete;
+  SignalStack& operator=(const SignalStack&) = delete;
+
+ private:
+  std::unique_ptr<std::byte[]> bytes_;
+  stack_t former_{};
+};
+
 // Runs `work` on a new thread, which the caller joins. Fails with kInternal if the system grants
 // this process no thread (ulimit -u, container limits) or no memory for its stack.
 template <class Work>
 Result<std::thread> start_thread(Work&& work) {
   try {
     const UsualStacks stacks;
-    return std::thread(std::forward<Work>(work));
+    return std::thread([work = std::decay_t<Work>(std::forward<Work>(work))]() mutable {
+      const SignalStack stack;
+      work();
+    });
   } catch (const std::exception& e) {  // std::system_error or std::bad_alloc
     return fail(
         ErrorCode::kInternal,

@@ -18,6 +18,7 @@
 #include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
+#include "engine/program/crash_report.hpp"
 #include "engine/render/device/software_tuning.hpp"
 
 namespace psygen::program {
@@ -49,7 +50,7 @@ void say(std::string_view sentence) {
 }
 
 // Reports the exception that is being handled if it tells of a lack of memory or threads. Returns
-// false for others.
+// false for others, whose message is kept for the report of a crash.
 bool say_want() {
   std::array<char, 512> buffer;
   try {
@@ -58,6 +59,9 @@ bool say_want() {
     say(core::out_of_memory("", buffer));
   } catch (const std::system_error& error) {
     say(error.what());
+  } catch (const std::exception& error) {
+    note_cause_of_crash(error.what());
+    return false;
   } catch (...) {
     return false;
   }
@@ -97,6 +101,7 @@ int run(std::string_view name, const std::function<int()>& body) {
   if (const auto stacks = core::widen_stacks(); !stacks) return fail_with(stacks.error());
   // psygen throws nothing, but libraries do when memory runs out.
   try {
+    report_crashes(name);
     return body();
   } catch (const std::exception& error) {
     if (!say_want()) say(error.what());

@@ -1,8 +1,8 @@
 // The frame of main() for every program of the engine: psygen, the editor, and games. It turns what
 // ends a process without a word into messages and exit codes: closed standard streams, broken
-// pipes, `ulimit -f`, `ulimit -s`, signals, a lack of memory or threads, exceptions. Replaces
-// operator new, to name the size of a failed allocation. Not the command line (CLI11, Qt). Linux.
-// Main thread.
+// pipes, `ulimit -f`, `ulimit -s`, signals, a lack of memory or threads, exceptions. A crash leaves
+// a report (crash_report.hpp). Replaces operator new, to name the size of a failed allocation. Not
+// the command line (CLI11, Qt). Linux. Main thread.
 #pragma once
 
 #include <atomic>

@@ -4,9 +4,11 @@
 #include <imgui/imgui.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <thread>
 
 #include "engine/image/image.hpp"
 #include "engine/render/renderer.hpp"
@@ -219,6 +221,16 @@ TEST_F(GuiOfAPerson, ReportsCodeThatItsAssertionsAbort) {
   }
   ASSERT_GT(frame()->TotalVtxCount, 0) << "another context";
   EXPECT_DEATH(std::abort(), "") << "aborts elsewhere end the program";
+}
+
+TEST_F(GuiOfAPerson, LeavesAbortsOfOtherThreadsToTheHandlerOfTheProgram) {
+  const auto abort_beside = [this] {
+    std::signal(SIGABRT, [](int) { std::_Exit(7); });
+    Gui gui(overlay_.font_atlas(), nullptr);
+    gui.begin(input_, kGuiSize, 1, 1.0 / 60);
+    (void)gui.draw([] { std::thread([] { std::abort(); }).join(); });
+  };
+  EXPECT_EXIT(abort_beside(), testing::ExitedWithCode(7), "");
 }
 
 TEST(GuiInASession, ACallWithoutItsPartnerEndsTheSessionWithAnErrorThatNamesThePlugin) {

@@ -129,6 +129,13 @@ TEST(UserFolder, IsCreatedInTheConfiguredFolder) {
             folder.path() / "mine");
 }
 
+TEST(UserFolder, ItsPathIsToldWithoutCreatingIt) {
+  const TemporaryFolder folder;
+  const Variable home("HOME", folder.path().string()), state("XDG_STATE_HOME", "");
+  EXPECT_EQ(*user_folder_path(UserFolder::kState, "game"), folder.path() / ".local/state/game");
+  EXPECT_EQ(folder.file_count(), 0U);
+}
+
 TEST(UserFolder, ReportsAMissingFolder) {
   const TemporaryFolder folder;
   const Variable home("HOME", ""), data("XDG_DATA_HOME", "");

@@ -1,14 +1,20 @@
 // A program that meets one fault, named by its argument, under the guards of program::run().
 #include <atomic>
 #include <csignal>
+#include <cstdint>
+#include <cstdlib>
 #include <fstream>
+#include <latch>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/core/headroom.hpp"
+#include "engine/core/log.hpp"
 #include "engine/program/program.hpp"
 
 namespace psygen::program {
@@ -43,7 +49,60 @@ void use_stack() {
     frame[i] = 'x';
 }
 
+// Ends by a stack overflow.
+[[gnu::noinline]] int recurse(int depth) {
+  volatile char frame[4096];
+  frame[0] = static_cast<char>(depth);
+  return depth < 0 ? 0 : recurse(depth + 1) + frame[0];
+}
+
+core::Result<void> read_at_8() {
+  volatile std::uintptr_t address = 8;
+  return core::fail(core::ErrorCode::kInternal,
+                    std::to_string(*reinterpret_cast<const volatile char*>(address)));
+}
+
+// Two threads that crash at the same time.
+core::Result<void> crash_twice() {
+  std::latch both(2);
+  const auto crash = [&both] {
+    both.arrive_and_wait();
+    std::abort();
+  };
+  std::thread other(crash);
+  crash();
+  other.join();
+  return {};
+}
+
 const std::map<std::string, Body> kFaults{
+    {"read",
+     [](const std::string&) {
+       for (int i = 0; i < 100; ++i)
+         core::log_info("line " + std::to_string(i));
+       return read_at_8();
+     }},
+    {"abort", [](const std::string&) -> core::Result<void> { std::abort(); }},
+    {"abort in two threads", [](const std::string&) { return crash_twice(); }},
+    {"raise",
+     [](const std::string& number) -> core::Result<void> {
+       (void)std::raise(std::stoi(number));
+       return {};
+     }},
+    {"overflow",
+     [](const std::string&) -> core::Result<void> {
+       return core::fail(core::ErrorCode::kInternal, std::to_string(recurse(0)));
+     }},
+    {"overflow in a thread",
+     [](const std::string&) {
+       auto thread = core::start_thread([] { (void)recurse(0); });
+       return std::move(thread).map([](std::thread started) { started.join(); });
+     }},
+    {"throw in a thread",
+     [](const std::string& text) -> core::Result<void> {
+       std::thread([&text] { throw std::runtime_error(text); }).join();
+       return {};
+     }},
     {"allocate", allocate},
     {"allocate in a thread",
      [](const std::string& argument) -> core::Result<void> {
@@ -85,6 +144,8 @@ const std::map<std::string, Body> kFaults{
 }  // namespace psygen::program
 
 int main(int argc, char** argv) {
+  // A handler of the program's own, which no report replaces.
+  if (std::getenv("OWN_HANDLER") != nullptr) std::signal(SIGABRT, [](int) { std::_Exit(7); });
   return psygen::program::run("guarded", [&] {
     return psygen::program::kFaults.at(argc > 1 ? argv[1] : "")(argc > 2 ? argv[2] : "");
   });
