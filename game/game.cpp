@@ -33,12 +33,21 @@ constexpr double kTitleHeightM = 26, kTitleRadiusM = 150, kTitleTurnS = 140;
 constexpr int kPictureFrames = 2;  // frames until the rendered image has no page over it
 constexpr std::uint64_t kBudgetBytes = 256ull << 20;
 
+// The user's folder, or `given`.
+core::Result<std::filesystem::path> folder_for(core::UserFolder purpose,
+                                               const std::filesystem::path& given) {
+  return core::user_folder(purpose, "cairns", given).map_error([](const core::Error& error) {
+    return core::Error{error.code, "saved games and settings need a folder that can be written: " +
+                                       error.message + " (--folder names another one)"};
+  });
+}
+
 }  // namespace
 
 core::Result<app::SessionOptions> Game::session_options() {
-  auto saves = core::user_folder(core::UserFolder::kData, "cairns", options_.folder);
+  auto saves = folder_for(core::UserFolder::kData, options_.folder);
   if (!saves) return tl::unexpected(saves.error());
-  auto config = core::user_folder(core::UserFolder::kConfig, "cairns", options_.folder);
+  auto config = folder_for(core::UserFolder::kConfig, options_.folder);
   if (!config) return tl::unexpected(config.error());
   saves_ = *saves;
   config_ = *config;

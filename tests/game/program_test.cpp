@@ -16,14 +16,14 @@ struct Outcome {
   std::string err;
 };
 
-Outcome run_game(const std::string& arguments) {
+// `setting` precedes the program in the shell.
+Outcome run_game(const std::string& arguments, const std::string& setting = "") {
   const psygen::TemporaryFolder folder;
   const std::string err = (folder / "err").string();
   // Leaks of drivers, which the game has unloaded when the leak checker looks, have no names.
-  const int status =
-      std::system(("export ASAN_OPTIONS=\"$ASAN_OPTIONS:detect_leaks=0\"; " PSYGEN_GAME " " +
-                   arguments + " 2>" + err)
-                      .c_str());
+  const int status = std::system(("export ASAN_OPTIONS=\"$ASAN_OPTIONS:detect_leaks=0\"; " +
+                                  setting + PSYGEN_GAME " " + arguments + " 2>" + err)
+                                     .c_str());
   std::ifstream file(err);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {std::istreambuf_iterator<char>(file), {}}};
 }
@@ -50,6 +50,14 @@ TEST(Program, OutputsAreCheckedBeforeTheGame) {
   expect("--picture last.txt", "last.txt: the name of an image must end in .png");
   expect("--picture /nowhere/last.png", "/nowhere/last.png: its folder is missing");
   expect("--record /dev/full", "/dev/full: is not a regular file, and is not replaced");
+}
+
+TEST(Program, AHomeThatCannotBeWrittenIsAnErrorThatNamesARemedy) {
+  const Outcome outcome = run_game("--headless --autoplay 1 --no-sound",
+                                   "unset XDG_DATA_HOME; export HOME=/proc/none; ");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("/proc/none/.local/share/cairns: "));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("(--folder names another one)"));
 }
 
 TEST(Program, SignalsDuringALoadEndItWithSuccess) {
