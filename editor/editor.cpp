@@ -46,7 +46,7 @@ bool parse(QCommandLineParser& parser, const QStringList& arguments) {
                                "[world]");
   parser.addOptions({{"safe", "Open with synthesis paused, for a world that hangs."},
                      {"preset", "Quality: low, medium, high, ultra.", "preset"},
-                     {"device", "Part of the name of the Vulkan device.", "name"},
+                     {"device", "Vulkan device: index, UUID or part of its name.", "device"},
                      {"validation", "Enable Vulkan validation."}});
   const bool is_good = parser.parse(arguments);
   if (parser.isSet("help")) parser.showHelp(0);

@@ -53,7 +53,7 @@ std::optional<int> read(int argc, char** argv, Arguments& a) {
   cli.add_option("--height", a.game.size.height, "Height of the window or image in pixels");
   cli.add_option("--preset", a.preset,
                  "Quality: low, medium, high or ultra (default: from the settings)");
-  cli.add_option("--device", a.device, "Vulkan device whose name contains this text");
+  cli.add_option("--device", a.device, "Vulkan device: index, UUID or part of its name");
   cli.add_option("--modelers", a.game.modelers,
                  "Number of modelers (worker threads); 0: automatic");
   cli.add_option("--picture", a.picture, "Save the last frame to this PNG file");

@@ -29,7 +29,7 @@ class MessageLog;
 // One per window.
 class PictureTools final : public QObject {
  public:
-  // `device`: part of the name of the Vulkan device, or empty.
+  // `device`: render::RendererOptions::device_name.
   PictureTools(QMainWindow& window, Document& document, WorldView& view, MessageLog& messages,
                const QString& device);
 

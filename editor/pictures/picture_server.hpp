@@ -16,8 +16,8 @@ inline constexpr const char* kPicturesOption = "--render-pictures";
 
 // Serves requests until the input ends, and returns the exit code. Runs at the lowest priority, and
 // is the first process that the system kills when memory is short. Ends the process after a request
-// whose model hangs, because a single thread cannot be ended. `device_name`: part of a Vulkan
-// device's name; empty: the best one.
+// whose model hangs, because a single thread cannot be ended. `device_name`: as
+// render::RendererOptions::device_name.
 int render_pictures(std::vector<app::Plugin> plugins, std::string device_name = {});
 
 }  // namespace psygen::editor

@@ -76,7 +76,7 @@ struct SessionOptions {
   bool validation = false;
   bool fullscreen = false;               // windows only: start in full screen
   bool vsync = true;                     // windows only
-  std::string device_name;               // part of a device's name; empty: the best device
+  std::string device_name;               // index, UUID or part of the name; empty: the best device
   std::optional<render::Preset> preset;  // none: chosen by GPU
   render::RenderPath render_path = render::RenderPath::kAuto;
   render::View view = render::View::kNormal;

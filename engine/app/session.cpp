@@ -380,7 +380,7 @@ void Session::tell_governor(double tick_ms, bool took_pictures) {
                                scene.record().resolution);
   } else if (took_pictures) {
     tick_ms = 0;  // unknown
-  } else if (renderer_->device().software) {
+  } else if (renderer_->device().software()) {
     tick_ms -= drawn.acquire.ms;
   } else {
     tick_ms = std::max(tick_ms - drawn.wait_ms(), drawn.gpu ? drawn.gpu->ms : 0.0);

@@ -7,7 +7,7 @@ std::vector<std::unique_ptr<Command>> make_commands(CLI::App& cli) {
   for (const auto make :
        {make_fly_command, make_picture_command, make_models_command, make_amplify_command,
         make_merge_command, make_export_command, make_calibrate_command, make_schedule_command,
-        make_test_command, make_compare_command,
+        make_test_command, make_compare_command, make_devices_command,
 #ifdef PSYGEN_HAS_HISTORY
         make_history_command,
 #endif

@@ -63,7 +63,8 @@ void add_machine(CLI::App& c, app::SessionOptions& options) {
        "Memory budget for all geometry, e.g. 512M")
       ->check(bytes_between(scene::Scene::kMinBudgetBytes, scene::Scene::kMaxBudgetBytes))
       ->default_str("512M");
-  c.add_option("--device", options.device_name, "Part of the Vulkan device's name");
+  c.add_option("--device", options.device_name,
+               "Vulkan device: index, UUID or part of its name (psygen devices)");
   add_parsed(c, "--render-path", options.render_path, render::render_path_from, "auto|cpu|gpu",
              "Culling on the cpu or the gpu; auto: chosen by GPU")
       ->default_str("auto");

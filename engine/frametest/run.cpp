@@ -188,7 +188,7 @@ void add_options(CLI::App& cli, RunOptions& options) {
       ->check(CLI::Range(0, kMaxWorstFrames));
   cli.add_flag("--profile", options.profile,
                "Write profile.json to --out also for tests that hold: the work of each system");
-  cli.add_option("--device", options.device, "Part of the Vulkan device's name");
+  cli.add_option("--device", options.device, "Vulkan device: index, UUID or part of its name");
   add_words(cli, options.words);
 }
 

@@ -47,7 +47,7 @@ struct RunOptions {
   std::filesystem::path usual;  // file with the last runs of machines (usual_load.hpp); empty: none
   std::filesystem::path junit;  // file; empty: none
   telemetry::PullRequestWords words;
-  std::string device;    // part of a device's name; empty: the best device
+  std::string device;    // index, UUID or part of the name; empty: the best device
   int worst_frames = 3;  // number of frames captured of a failed test; requires `out`
   bool profile = false;  // writes profile.json of tests that hold too; requires `out`
   const std::atomic<bool>* stop = nullptr;  // set by any thread to end early

@@ -23,8 +23,9 @@ namespace psygen::render {
 class Renderer {
  public:
   // Creates a renderer with all pipelines; those of the landscape have drawn once. Fails with
-  // kNoDevice (no loader, no device, unknown name, or no GPU path although it is required; the
-  // message lists the existing names), kOutOfMemory, kInvalidArgument, or kInterrupted.
+  // kNoDevice (no loader, no device, a name that fits none or several, a device that lacks
+  // something, or no GPU path although it is required; the message lists the devices),
+  // kOutOfMemory, kInvalidArgument, or kInterrupted.
   static core::Result<std::unique_ptr<Renderer>> create(const RendererOptions& options);
   virtual ~Renderer() = default;
   Renderer(const Renderer&) = delete;
@@ -122,7 +123,8 @@ class Renderer {
   Renderer() = default;
 };
 
-// All usable devices, best first. Fails with kNoDevice if there are none.
+// All devices in the order of the driver, which is that of their indices, also those that lack
+// something. Fails with kNoDevice if there is no loader or no driver.
 core::Result<std::vector<DeviceInfo>> list_devices();
 
 }  // namespace psygen::render

@@ -9,6 +9,7 @@
 
 #include "engine/core/headroom.hpp"
 #include "engine/core/out_of_memory.hpp"
+#include "engine/render/device/device_choice.hpp"
 #include "engine/render/device/software_tuning.hpp"
 #include "engine/render/renderer_impl.hpp"
 
@@ -42,7 +43,7 @@ constexpr std::uint32_t kWorthPushingIndices = 48 * 3;
 
 std::uint32_t first_pushed_index_count(Submission wish, const Device& device) {
   if (wish == Submission::kPushed || device.max_multi_draw == 0) return 0;
-  const bool by_size = wish == Submission::kAuto && device.info.software;
+  const bool by_size = wish == Submission::kAuto && device.info.software();
   return by_size ? kWorthPushingIndices : UINT32_MAX;
 }
 
@@ -57,7 +58,10 @@ Result<void> RendererImpl::create_device() {
         return make_surface(*instance_, *options_.surface).map(into(surface_));
       })
       .and_then([&] {
-        return choose_device(find_devices(*instance_, surface_.get()), options_.device_name);
+        const std::vector<DeviceCandidate> found = find_devices(*instance_, surface_.get());
+        return choose_device(infos_of(found), options_.device_name).map([&](std::size_t i) {
+          return found[i];
+        });
       })
       .and_then([&](const DeviceCandidate& chosen) {
         return Device::create(chosen, {.windowed = windowed,
@@ -99,8 +103,7 @@ Result<void> RendererImpl::create_all(const Progress& progress) {
   for (std::size_t i = 0; made && i < slots_.size(); ++i)
     made = slots_[i].create(*device_, i);
   if (!made) return made;
-  const Preset preset =
-      options_.preset.value_or(device_->info.software ? Preset::kLow : Preset::kHigh);
+  const Preset preset = options_.preset.value_or(default_preset(device_->info));
   if (made = create_looks(preset, progress); !made) return made;
   idle_value_ = warm_up_value_ = frame_value_;
   if (options_.surface == nullptr) resized_ = false;
@@ -111,7 +114,7 @@ Result<void> RendererImpl::create_geometry() {
   const auto add_block = [this](std::uint64_t bytes) { return add_pool_block(bytes); };
   const std::uint64_t budget = options_.geometry_budget_bytes;
   // A heap below twice the budget is taken for the small mapped window of a device.
-  const bool writable = device_->info.software || device_->writable_bytes() / 2 >= budget;
+  const bool writable = device_->info.software() || device_->writable_bytes() / 2 >= budget;
   if (options_.upload == Upload::kDirect || (options_.upload == Upload::kAuto && writable)) {
     pool_ = std::make_unique<GeometryPool>(budget, add_block);
     return {};
@@ -127,12 +130,11 @@ Result<void> RendererImpl::create_culling() {
   if (options_.path == RenderPath::kGpu && !info.gpu_path) {
     return core::fail(
         ErrorCode::kNoDevice,
-        fmt::format("'{}' has no indirect draws with a count, which the GPU path needs",
+        fmt::format("'{}' lacks indirect draws with a count and a number, which the GPU path needs",
                     info.name));
   }
-  const bool suits = info.gpu_path && !info.software;
-  if (options_.path == RenderPath::kCpu || (options_.path == RenderPath::kAuto && !suits))
-    return {};
+  const RenderPath path = options_.path == RenderPath::kAuto ? default_path(info) : options_.path;
+  if (path == RenderPath::kCpu) return {};
   culling_ = std::make_unique<GpuCulling>();
   const VkSampleCountFlagBits samples = looks_.samples;
   const bool readable = (device_->sampled_depth_counts & samples) != 0;
@@ -141,7 +143,7 @@ Result<void> RendererImpl::create_culling() {
 
 Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
   // Does not exhaust memory that belongs to the whole process.
-  if ((staged_ || device_->info.software) &&
+  if ((staged_ || device_->info.software()) &&
       !core::memory_left(bytes + headroom_bytes(options_.size))) {
     return core::fail(ErrorCode::kOutOfMemory,
                       core::out_of_memory(fmt::format(
@@ -178,7 +180,7 @@ Result<void> RendererImpl::create_targets(core::Extent extent) {
         make_targets(*device_, colour_format_, extent, looks_.samples, looks_.reflections);
     if (!made) return tl::unexpected(made.error());
     made->host_ordered = !culling_;
-    made->keeps_order = !culling_ && device_->info.software && !made->has_samples();
+    made->keeps_order = !culling_ && device_->info.software() && !made->has_samples();
     targets.push_back(std::move(*made));
   }
   if (culling_) {
@@ -220,12 +222,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
 Result<std::vector<DeviceInfo>> list_devices() {
   Result<std::unique_ptr<Instance>> instance = Instance::create("psygen", false, nullptr);
   if (!instance) return tl::unexpected(instance.error());
-  const std::vector<DeviceCandidate> candidates = find_devices(**instance, VK_NULL_HANDLE);
-  if (candidates.empty()) return tl::unexpected(choose_device(candidates, "").error());
-  std::vector<DeviceInfo> devices;
-  for (const DeviceCandidate& candidate : candidates)
-    devices.push_back(candidate.info);
-  return devices;
+  return infos_of(find_devices(**instance, VK_NULL_HANDLE));
 }
 
 }  // namespace psygen::render

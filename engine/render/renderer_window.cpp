@@ -22,7 +22,7 @@ Result<bool> RendererImpl::settle_present() {
 // Presents the acquired image. On a software device that takes as long as drawing does, so that it
 // is done beside the next tick. Where no thread can be had, settle_present() does it.
 Result<bool> RendererImpl::present() {
-  if (!device_->info.software) return note_presented(swapchain_.present(*device_));
+  if (!device_->info.software()) return note_presented(swapchain_.present(*device_));
   presenting_ = std::async([this] { return swapchain_.present(*device_); });
   return true;
 }

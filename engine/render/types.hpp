@@ -80,13 +80,14 @@ class Renderer;
 // The options of Renderer::create().
 struct RendererOptions {
   std::string application_name = "psygen";
-  std::string device_name;  // part of the device's name; empty: the best device
+  std::string device_name;  // index, UUID or part of the name (list_devices()); empty: the best
   bool validation = false;  // Khronos layer with synchronization validation; messages are collected
   core::Extent size{1280, 720};  // of the picture; with a surface it is that of the framebuffer
   std::uint64_t geometry_budget_bytes = 512ull << 20;  // hard limit of geometry()
   core::SurfaceProvider* surface = nullptr;  // null: headless; else it must outlive the renderer
   bool vsync = false;
-  Submission submission = Submission::kAuto;  // kMultiDraw without VK_EXT_multi_draw is kPushed
+  Submission submission =
+      Submission::kAuto;  // kMultiDraw without DeviceInfo::multi_draw is kPushed
   RenderPath path = RenderPath::kAuto;
   Upload upload = Upload::kAuto;
   bool occlusion = true;  // on the GPU path: cull what was hidden in the last frame and still is
@@ -104,17 +105,28 @@ struct RendererOptions {
   std::array<GroundPicture, kGroundPictures> ground;  // in place of textures of the ground
 };
 
+// The type of a device, from the least to the most preferred.
+enum class DeviceType : std::uint8_t { kOther, kSoftware, kVirtual, kIntegrated, kDiscrete };
+
 // A device and its abilities.
 struct DeviceInfo {
   std::string name;         // "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string uuid;         // "6d657361-3232-2e33-2e36-2d3100000000"
   std::string driver;       // name and version
   std::string api_version;  // "1.3.230"
-  bool software = false;
-  bool multi_draw = false;  // many meshes in one call
-  bool gpu_path = false;    // RenderPath::kGpu can be used
-  bool wireframe = false;   // View::kWireframe can be drawn
-  bool timestamps = false;  // FrameResult::gpu is known
-  bool pass_times = false;  // GpuTime::pass_ms is known
+  DeviceType type = DeviceType::kOther;
+  std::uint64_t memory_bytes = 0;    // of all device-local heaps
+  std::vector<std::string> missing;  // needed by every renderer; empty: the device can be used
+  bool multi_draw = false;           // many meshes in one call
+  bool gpu_path = false;             // RenderPath::kGpu can be used
+  bool wireframe = false;            // View::kWireframe can be drawn
+  bool timestamps = false;           // FrameResult::gpu is known
+  bool pass_times = false;           // GpuTime::pass_ms is known
+
+  // True if it draws with the processors of the machine.
+  bool software() const { return type == DeviceType::kSoftware; }
+  // True if shaders can know the number of a draw. Otherwise every draw is pushed.
+  bool numbers_draws() const { return multi_draw || gpu_path; }
 };
 
 // Sun, sky and air. Colours are linear radiance before `exposure`.

@@ -40,7 +40,7 @@ core::Result<void> start_modelers(const synthesis::SynthesisOptions& options,
 // Hardware GPUs start at full resolution. Software devices start reduced: a lower resolution acts
 // at once and changes no shapes.
 double start_reduction(const render::Renderer* renderer, double resolution_reduction) {
-  return renderer != nullptr && !renderer->device().software ? 1 : resolution_reduction;
+  return renderer != nullptr && !renderer->device().software() ? 1 : resolution_reduction;
 }
 
 // Fails if a place, together with all requested ones, needs too much memory.

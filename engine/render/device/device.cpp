@@ -8,8 +8,6 @@
 
 namespace psygen::render {
 
-using core::ErrorCode;
-
 namespace {
 
 bool has_extension(VkPhysicalDevice physical, const char* name) {
@@ -21,7 +19,7 @@ bool has_extension(VkPhysicalDevice physical, const char* name) {
   });
 }
 
-// The features that the renderer needs, chained for a query or for creation. Not movable.
+// The features that the renderer uses, chained for a query or for creation. Not movable.
 struct FeatureChain {
   VkPhysicalDeviceMultiDrawFeaturesEXT multi_draw{
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_FEATURES_EXT};
@@ -38,15 +36,21 @@ struct FeatureChain {
   FeatureChain(const FeatureChain&) = delete;
   FeatureChain& operator=(const FeatureChain&) = delete;
 
-  bool sufficient() const {
-    return v11.shaderDrawParameters && v12.timelineSemaphore && v13.dynamicRendering &&
-           v13.synchronization2;
+  // The features without which the renderer draws nothing, and which are not there.
+  std::vector<std::string> missing() const {
+    std::vector<std::string> names;
+    if (!v12.timelineSemaphore) names.emplace_back("timelineSemaphore");
+    if (!v13.dynamicRendering) names.emplace_back("dynamicRendering");
+    if (!v13.synchronization2) names.emplace_back("synchronization2");
+    return names;
   }
 };
 
-// The GPU path needs indirect draws with their number in a buffer.
-bool offers_indirect_count(const FeatureChain& features) {
-  return features.v12.drawIndirectCount && features.base.features.multiDrawIndirect &&
+// The GPU path needs indirect draws with their number in a buffer. Its shaders, and those of
+// multi-draw, look up the data of a draw by the number of the draw.
+bool offers_gpu_path(const FeatureChain& features) {
+  return features.v11.shaderDrawParameters && features.v12.drawIndirectCount &&
+         features.base.features.multiDrawIndirect &&
          features.base.features.drawIndirectFirstInstance;
 }
 
@@ -55,7 +59,7 @@ bool offers_multi_draw(VkPhysicalDevice physical) {
   FeatureChain features;
   features.v13.pNext = &features.multi_draw;
   vkGetPhysicalDeviceFeatures2(physical, &features.base);
-  return features.multi_draw.multiDraw == VK_TRUE;
+  return features.v11.shaderDrawParameters && features.multi_draw.multiDraw;
 }
 
 std::vector<VkQueueFamilyProperties> families_of(VkPhysicalDevice physical) {
@@ -96,59 +100,93 @@ std::uint64_t timestamp_mask_of(VkPhysicalDevice physical, std::uint32_t family)
   return bits == 0 ? 0 : UINT64_MAX >> (64 - std::min(bits, 64U));
 }
 
-int rank_of(VkPhysicalDeviceType type) {
+DeviceType type_of(VkPhysicalDeviceType type) {
   switch (type) {
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-      return 4;
+      return DeviceType::kDiscrete;
     case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-      return 3;
+      return DeviceType::kIntegrated;
     case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-      return 2;
+      return DeviceType::kVirtual;
     case VK_PHYSICAL_DEVICE_TYPE_CPU:
-      return 1;
+      return DeviceType::kSoftware;
     default:
-      return 0;
+      return DeviceType::kOther;
   }
 }
 
-std::optional<DeviceCandidate> examine(const Instance& instance, VkPhysicalDevice physical,
-                                       VkSurfaceKHR surface) {
-  VkPhysicalDeviceDriverProperties driver{};
-  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+std::string version_text(std::uint32_t version) {
+  return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                     VK_API_VERSION_PATCH(version));
+}
+
+std::string uuid_text(const std::uint8_t (&bytes)[VK_UUID_SIZE]) {
+  std::string text;
+  for (std::size_t i = 0; i < VK_UUID_SIZE; ++i)
+    text += fmt::format("{}{:02x}", i >= 4 && i <= 10 && i % 2 == 0 ? "-" : "", bytes[i]);
+  return text;
+}
+
+std::uint64_t device_local_bytes(VkPhysicalDevice physical) {
+  VkPhysicalDeviceMemoryProperties memory{};
+  vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+  std::uint64_t bytes = 0;
+  for (const VkMemoryHeap& heap : std::span(memory.memoryHeaps, memory.memoryHeapCount))
+    if ((heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0) bytes += heap.size;
+  return bytes;
+}
+
+DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t& api_version) {
+  VkPhysicalDeviceDriverProperties driver{.sType =
+                                              VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+  VkPhysicalDeviceIDProperties ids{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES,
+                                   .pNext = &driver};
   VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
-                                         .pNext = &driver};
+                                         .pNext = &ids};
   vkGetPhysicalDeviceProperties2(physical, &properties);
   const VkPhysicalDeviceProperties& p = properties.properties;
-  if (p.apiVersion < VK_API_VERSION_1_3) return std::nullopt;
+  api_version = p.apiVersion;
+  return {.name = p.deviceName,
+          .uuid = uuid_text(ids.deviceUUID),
+          .driver = driver.driverInfo[0] == '\0'
+                        ? driver.driverName
+                        : fmt::format("{} {}", driver.driverName, driver.driverInfo),
+          .api_version = version_text(p.apiVersion),
+          .type = type_of(p.deviceType),
+          .memory_bytes = device_local_bytes(physical)};
+}
+
+DeviceCandidate examine(const Instance& instance, VkPhysicalDevice physical, VkSurfaceKHR surface) {
+  DeviceCandidate candidate{.physical = physical};
+  std::uint32_t api_version = 0;
+  DeviceInfo& info = candidate.info = describe(physical, api_version);
+  if (api_version < VK_API_VERSION_1_3) {  // its features cannot be asked for
+    info.missing.push_back(fmt::format("Vulkan 1.3: it has {}", info.api_version));
+    return candidate;
+  }
   FeatureChain features;
   vkGetPhysicalDeviceFeatures2(physical, &features.base);
-  if (!features.sufficient()) return std::nullopt;
-  if (surface != VK_NULL_HANDLE && !has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
-    return std::nullopt;
-  }
+  info.missing = features.missing();
+  if (surface != VK_NULL_HANDLE && !has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME))
+    info.missing.emplace_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   const std::optional<std::uint32_t> family = find_queue_family(instance, physical, surface);
-  if (!family) return std::nullopt;
-
-  DeviceCandidate candidate;
-  candidate.physical = physical;
+  if (!family) {
+    info.missing.emplace_back(surface == VK_NULL_HANDLE
+                                  ? "a queue for graphics"
+                                  : "a queue for graphics that presents to this window");
+    return candidate;
+  }
   candidate.queue_family = *family;
-  candidate.rank = rank_of(p.deviceType);
-  candidate.info.name = p.deviceName;
-  candidate.info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
-  candidate.info.api_version =
-      fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(p.apiVersion),
-                  VK_API_VERSION_MINOR(p.apiVersion), VK_API_VERSION_PATCH(p.apiVersion));
-  candidate.info.software = p.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  candidate.info.multi_draw = offers_multi_draw(physical);
-  candidate.info.gpu_path = offers_indirect_count(features) &&
-                            (families_of(physical)[*family].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
-  candidate.info.wireframe = features.base.features.fillModeNonSolid == VK_TRUE;
+  info.multi_draw = offers_multi_draw(physical);
+  info.gpu_path = offers_gpu_path(features) &&
+                  (families_of(physical)[*family].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
+  info.wireframe = features.base.features.fillModeNonSolid == VK_TRUE;
   return candidate;
 }
 
 // Enables the features that psygen needs on every device, and the optional ones that exist.
 void enable(const DeviceInfo& info, FeatureChain& features, std::vector<const char*>& extensions) {
-  features.v11.shaderDrawParameters = VK_TRUE;
+  features.v11.shaderDrawParameters = info.numbers_draws() ? VK_TRUE : VK_FALSE;
   features.v12.timelineSemaphore = VK_TRUE;
   const VkBool32 indirect = info.gpu_path ? VK_TRUE : VK_FALSE;
   features.v12.drawIndirectCount = indirect;
@@ -187,29 +225,16 @@ void read_limits(Device& device) {
 
 std::vector<DeviceCandidate> find_devices(const Instance& instance, VkSurfaceKHR surface) {
   std::vector<DeviceCandidate> found;
-  for (VkPhysicalDevice physical : instance.physical_devices()) {
-    if (auto candidate = examine(instance, physical, surface))
-      found.push_back(std::move(*candidate));
-  }
-  std::stable_sort(
-      found.begin(), found.end(),
-      [](const DeviceCandidate& a, const DeviceCandidate& b) { return a.rank > b.rank; });
+  for (VkPhysicalDevice physical : instance.physical_devices())
+    found.push_back(examine(instance, physical, surface));
   return found;
 }
 
-core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& candidates,
-                                            const std::string& name) {
-  std::string names;
-  for (const DeviceCandidate& candidate : candidates) {
-    if (candidate.info.name.find(name) != std::string::npos) return candidate;
-    names += (names.empty() ? "'" : ", '") + candidate.info.name + "'";
-  }
-  if (candidates.empty()) {
-    return core::fail(ErrorCode::kNoDevice,
-                      "no device on this machine offers Vulkan 1.3 with dynamic rendering");
-  }
-  return core::fail(ErrorCode::kNoDevice,
-                    fmt::format("no Vulkan device is called '{}'; there is {}", name, names));
+std::vector<DeviceInfo> infos_of(const std::vector<DeviceCandidate>& candidates) {
+  std::vector<DeviceInfo> infos;
+  for (const DeviceCandidate& candidate : candidates)
+    infos.push_back(candidate.info);
+  return infos;
 }
 
 VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
@@ -259,7 +284,7 @@ core::Result<std::unique_ptr<Device>> Device::create(const DeviceCandidate& cand
     self->timestamp_mask = timestamp_mask_of(self->physical, self->queue_family);
   self->info.timestamps = self->timestamp_mask != 0;
   self->info.pass_times =
-      self->info.timestamps && options.pass_times.value_or(!self->info.software);
+      self->info.timestamps && options.pass_times.value_or(!self->info.software());
   return self;
 }
 

@@ -14,21 +14,17 @@
 
 namespace psygen::render {
 
-// A physical device that has everything the renderer needs.
+// A physical device. It can be used if info.missing is empty.
 struct DeviceCandidate {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   std::uint32_t queue_family = 0;  // for graphics, and for presenting if there is a surface
-  int rank = 0;                    // higher is better: discrete, integrated, virtual, software
   DeviceInfo info;
 };
 
-// All candidates, best first. With a surface, only devices that can present to it.
+// All devices, in the order of the driver. With a surface, a device that cannot present to it lacks
+// this. device_choice.hpp chooses one by the infos alone.
 std::vector<DeviceCandidate> find_devices(const Instance& instance, VkSurfaceKHR surface);
-
-// The best candidate whose name contains `name` (any if empty). Fails with kNoDevice; the message
-// lists the existing names.
-core::Result<DeviceCandidate> choose_device(const std::vector<DeviceCandidate>& candidates,
-                                            const std::string& name);
+std::vector<DeviceInfo> infos_of(const std::vector<DeviceCandidate>& candidates);
 
 // The options of Device::create().
 struct DeviceOptions {
@@ -74,8 +70,9 @@ class Device {
   VkQueue transfer_queue = VK_NULL_HANDLE;  // `queue` if there is none only for transfers
   std::uint32_t transfer_family = 0;
   VkPhysicalDeviceMemoryProperties memory{};
-  std::uint64_t max_allocation_bytes = 0;                           // of one allocation
-  std::uint32_t max_image_side = 0;                                 // pixels
+      shared_blocks;                       // memory_block.hpp; may be expired
+  std::uint64_t max_allocation_bytes = 0;  // of one allocation
+  std::uint32_t max_image_side = 0;        // pixels
   VkSampleCountFlags sampled_depth_counts = VK_SAMPLE_COUNT_1_BIT;  // of depth read by shaders
   VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;         // of colour and depth
   std::uint32_t max_multi_draw = 0;                                 // 0: no VK_EXT_multi_draw

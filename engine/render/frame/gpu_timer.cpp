@@ -39,7 +39,7 @@ void GpuTimer::begin(const Device& device, VkCommandBuffer commands) {
         ticks_.buffer.get(), 0, sizeof(Ticks::value_type),
         VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);  // available, so it does not wait
     // Software devices write the host's memory, and would finish all drawing at a barrier.
-    if (!device.info.software) {
+    if (!device.info.software()) {
       memory_barrier(device, commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                      VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
     }

@@ -65,13 +65,14 @@ class MeshTables {
   }
 
   // For vertex layouts. Creates the pipelines of a shape, with the data of draws in their buffer
-  // (shape.vert) and pushed (the next shader), and puts each into its entries for which
-  // fits(variant).
+  // (shape.vert), if the device numbers draws, and pushed (the next shader), and puts each into its
+  // entries for which fits(variant).
   template <class Fits>
   core::Result<void> add(const PassSetup& setup, const PipelineShape& shape, MeshUse use,
                          const Fits& fits) {
     MeshTable& table = table_of(*shape.vertices, use);
     for (const bool pushed : {false, true}) {
+      if (!pushed && !setup.device.info.numbers_draws()) continue;
       if (core::Result<void> made = make(setup, shape, pushed); !made) return made;
       for (std::size_t i = 0; i < MeshVariant::kCount; ++i) {
         const MeshVariant variant = MeshVariant::at(i);

@@ -27,7 +27,7 @@ Result<void> ImpostorTextures::create(const Device& device,
   if (!sampler_.exists()) {
     // Two levels at once would cost software devices twice as much.
     const VkSamplerMipmapMode between =
-        device.info.software ? VK_SAMPLER_MIPMAP_MODE_NEAREST : VK_SAMPLER_MIPMAP_MODE_LINEAR;
+        device.info.software() ? VK_SAMPLER_MIPMAP_MODE_NEAREST : VK_SAMPLER_MIPMAP_MODE_LINEAR;
     const Result<void> made =
         make_sampler(device, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                      {.mipmapMode = between, .maxLod = VK_LOD_CLAMP_NONE})

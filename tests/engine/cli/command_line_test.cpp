@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "tests/engine/cli/psygen_process.hpp"
 #include "tests/source_file.hpp"
@@ -100,6 +101,22 @@ TEST(CommandLine, ModelsListsEveryModelWithUnitsAndRanges) {
     EXPECT_TRUE(mentions(outcome.out, words)) << words;
   }
   EXPECT_TRUE(mentions(run_psygen("models --json").out, "\"unit\""));
+}
+
+TEST(CommandLine, DevicesListsEveryDeviceAndTheOneThatIsChosen) {
+  const Outcome table = run_psygen("devices");
+  EXPECT_EQ(table.code, 0) << table.err;
+  for (const char* words : {"0  ", "(chosen by default)", "UUID", "MiB", "render path", "preset"})
+    EXPECT_TRUE(mentions(table.out, words)) << words;
+  const auto list = nlohmann::json::parse(run_psygen("devices --json").out);
+  ASSERT_FALSE(list.empty());
+  EXPECT_EQ(list[0]["index"], 0);
+  EXPECT_TRUE(mentions(table.out, list[0]["uuid"]));
+  const std::string none = "VK_ICD_FILENAMES=/nonexistent.json";
+  EXPECT_EQ(run_psygen("devices", none).code, 4);
+  const Outcome index = run_psygen("fly --headless --frames 1 --device 77");
+  EXPECT_EQ(index.code, 4) << index.err;
+  EXPECT_TRUE(mentions(index.err, "index, UUID or name '77'; there is 0 '")) << index.err;
 }
 
 TEST(CommandLine, AFileErrorReturnsOneAndNamesTheFile) {

@@ -25,15 +25,16 @@ TEST(RendererFailure, AnUnknownDeviceNameIsAnsweredWithTheNamesThereAre) {
   EXPECT_NE(renderer.error().message.find(devices->front().name), std::string::npos);
 }
 
-TEST(RendererFailure, APartOfTheNameChoosesADevice) {
+TEST(RendererFailure, TheUuidChoosesADeviceOfTheList) {
   const auto devices = list_devices();
   ASSERT_TRUE(devices) << devices.error().message;
   RendererOptions options;
   options.size = {16, 16};
-  options.device_name = devices->back().name.substr(0, 6);
+  options.device_name = devices->front().uuid;
   const auto renderer = Renderer::create(options);
   ASSERT_TRUE(renderer) << renderer.error().message;
-  EXPECT_NE((*renderer)->device().name.find(options.device_name), std::string::npos);
+  EXPECT_EQ((*renderer)->device().uuid, devices->front().uuid);
+  EXPECT_EQ((*renderer)->device().name, devices->front().name);
   EXPECT_FALSE((*renderer)->device().driver.empty());
 }
 

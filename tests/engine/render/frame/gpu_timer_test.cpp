@@ -144,7 +144,7 @@ TEST(GpuTimer, MeasuresPassesOnRequestAsPartsOfTheFrame) {
 
 TEST(GpuTimer, DoesNotMeasurePassesOfSoftwareDevicesUnasked) {
   const auto renderer = make(Preset::kLow, RenderPath::kCpu);
-  EXPECT_EQ(renderer->device().pass_times, !renderer->device().software);
+  EXPECT_EQ(renderer->device().pass_times, !renderer->device().software());
 }
 
 TEST(FrameResult, TellsTheDeviceMemoryAndWhenTheFrameWasHandedOver) {

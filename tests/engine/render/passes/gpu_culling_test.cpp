@@ -348,7 +348,7 @@ TEST(RenderPathOption, TakesTheCpuPathOnSoftwareDevicesUnlessTold) {
   ASSERT_TRUE(renderer) << renderer.error().message;
   const DeviceInfo& device = (*renderer)->device();
   EXPECT_EQ((*renderer)->path(),
-            device.software || !device.gpu_path ? RenderPath::kCpu : RenderPath::kGpu);
+            device.software() || !device.gpu_path ? RenderPath::kCpu : RenderPath::kGpu);
 }
 
 }  // namespace
