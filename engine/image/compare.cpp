@@ -16,14 +16,40 @@ int difference_of(const Image& a, const Image& b, std::size_t at) {
   return largest;
 }
 
+// Adds the mean differences of the image and of its worst tile. Both images have one size.
+void add_means(const Image& a, const Image& b, ImageDifference& result) {
+  const std::size_t columns = (a.width + kTileSide - 1) / kTileSide;
+  const std::size_t rows = (a.height + kTileSide - 1) / kTileSide;
+  std::vector<std::uint64_t> sums(columns * rows);
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+    const std::size_t x = i / 4 % a.width, y = i / 4 / a.width;
+    if (i % 4 == 3) continue;
+    sums[y / kTileSide * columns + x / kTileSide] +=
+        static_cast<std::uint64_t>(std::abs(int{a.rgba[i]} - int{b.rgba[i]}));
+  }
+  const auto side = [](std::size_t pixels, std::size_t tile) {
+    return std::min<std::size_t>(kTileSide, pixels - tile * kTileSide);
+  };
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const std::size_t pixels = side(a.width, i % columns) * side(a.height, i / columns);
+    const auto sum = static_cast<double>(sums[i]);
+    result.worst_tile = std::max(result.worst_tile, sum / static_cast<double>(3 * pixels));
+    result.mean += sum / (3.0 * a.width * a.height);
+  }
+}
+
 }  // namespace
 
 ImageDifference compare(const Image& a, const Image& b, std::uint8_t threshold) {
   PSYGEN_CHECK(is_valid(a) && is_valid(b), "the bytes of an image must match its size");
   if (a.width != b.width || a.height != b.height) {
-    return {false, 255, std::max(a.rgba.size(), b.rgba.size()) / 4, 1.0};
+    return {.max_difference = 255,
+            .pixels_over = std::max(a.rgba.size(), b.rgba.size()) / 4,
+            .share_over = 1,
+            .mean = 255,
+            .worst_tile = 255};
   }
-  ImageDifference result{true, 0, 0, 0};
+  ImageDifference result{.same_size = true};
   for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
     const int largest = difference_of(a, b, i);
     result.max_difference = std::max(result.max_difference, static_cast<std::uint8_t>(largest));
@@ -33,6 +59,7 @@ ImageDifference compare(const Image& a, const Image& b, std::uint8_t threshold) 
     result.share_over =
         static_cast<double>(result.pixels_over) / static_cast<double>(a.rgba.size() / 4);
   }
+  add_means(a, b, result);
   return result;
 }
 
@@ -59,6 +86,11 @@ core::Result<Image> picture_of_difference(const Image& expected, const Image& se
 
 bool matches_golden(const ImageDifference& difference) {
   return difference.same_size && difference.share_over <= kGoldenShareAllowed;
+}
+
+bool matches_other_driver(const ImageDifference& difference) {
+  return difference.same_size && difference.mean <= kOtherDriverMean &&
+         difference.worst_tile <= kOtherDriverTile;
 }
 
 namespace {

@@ -1,6 +1,5 @@
-// Compares images: channel by channel for golden images, by flicker, and by visual similarity. The
-// same image from another driver may differ from its golden image by 5/255 and, at edges, by more
-// on at most 0.1 % of its pixels. Pure; any thread; linear in the pixels.
+// Compares images: channel by channel for golden images, by flicker, and by visual similarity.
+// Pure; any thread; linear in the pixels.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +9,13 @@
 
 namespace psygen::image {
 
-// The allowed difference of an image from its golden image.
+// The allowed difference of an image from its golden image, on the same driver.
 inline constexpr std::uint8_t kGoldenThreshold = 5;    // of 255
 inline constexpr double kGoldenShareAllowed = 0.1e-2;  // fraction of all pixels
+// On another driver, which rounds otherwise and moves edges: mean of all channels of the image, and
+// of a tile, of 255.
+inline constexpr double kOtherDriverMean = 1, kOtherDriverTile = 8;
+inline constexpr std::uint32_t kTileSide = 16;  // pixels
 
 // The result of a comparison.
 struct ImageDifference {
@@ -20,6 +23,9 @@ struct ImageDifference {
   std::uint8_t max_difference = 0;  // largest of any channel of any pixel, 0 … 255
   std::uint64_t pixels_over = 0;    // pixels with a channel over the threshold
   double share_over = 0;            // pixels_over / all pixels, 0 … 1
+  double mean = 0;                  // of red, green and blue of all pixels, 0 … 255
+  double worst_tile =
+      0;  // the largest such mean of a tile, whole or cut at the right and lower edge
 
   // Equal in every field.
   friend bool operator==(const ImageDifference&, const ImageDifference&) = default;
@@ -31,6 +37,10 @@ ImageDifference compare(const Image& a, const Image& b, std::uint8_t threshold =
 
 // True if two images have the same size and at most 0.1 % of the pixels over the threshold.
 bool matches_golden(const ImageDifference& difference);
+
+// True if two images have the same size and differ by at most kOtherDriverMean, and in no tile by
+// more than kOtherDriverTile.
+bool matches_other_driver(const ImageDifference& difference);
 
 // Shows the differences of two valid images of one size: `expected` in dark grey, and over it, from
 // yellow to red, the pixels that differ by more than `threshold`; red from 64 on. Fails with

@@ -1,32 +1,16 @@
-// Compares images with stored ones. To accept new images after inspecting them:
-// PSYGEN_GOLDEN_UPDATE=1 ctest --preset release -R Golden
+// Golden images of sessions (tests/golden_image.hpp).
 #pragma once
 
-#include <cstdlib>
 #include <string>
 
-#include "engine/image/compare.hpp"
-#include "engine/image/image_io.hpp"
 #include "tests/engine/app/fixture.hpp"
-#include "tests/source_file.hpp"
+#include "tests/golden_image.hpp"
 
 namespace psygen::app {
 
-// Fails if `image` differs from the stored NAME.png of tests/engine/app/golden; `image` is then
-// written to the test's folder for inspection.
+// Compares with the stored NAME.png of tests/engine/app/golden.
 inline void expect_golden(const std::string& name, const image::Image& image) {
-  const auto stored =
-      std::filesystem::path(source_file("tests/engine/app/golden")) / (name + ".png");
-  if (std::getenv("PSYGEN_GOLDEN_UPDATE") != nullptr) {
-    ASSERT_TRUE(image::write_png(stored, image));
-  }
-  const auto golden = image::read_image(stored);
-  ASSERT_TRUE(golden) << golden.error().message;
-  const image::ImageDifference difference = image::compare(*golden, image);
-  if (image::matches_golden(difference)) return;
-  const auto found = std::filesystem::path(testing::TempDir()) / (name + ".png");
-  ASSERT_TRUE(image::write_png(found, image));
-  ADD_FAILURE() << "fraction of differing pixels " << difference.share_over << "; see " << found;
+  psygen::expect_golden("tests/engine/app/golden", name, image);
 }
 
 inline image::Image captured(Session& session) {

@@ -9,7 +9,7 @@ namespace {
 
 TEST(Compare, FindsNoDifferenceBetweenAnImageAndItself) {
   const Image image = noise_image(16, 16);
-  EXPECT_EQ(compare(image, image), (ImageDifference{true, 0, 0, 0.0}));
+  EXPECT_EQ(compare(image, image), (ImageDifference{.same_size = true}));
 }
 
 TEST(Compare, CountsAPixelOnceEvenIfSeveralChannelsDiffer) {
@@ -46,11 +46,29 @@ TEST(Compare, AllowsOnePixelInAThousandForAGoldenImageButNotTwo) {
   EXPECT_FALSE(matches_golden(compare(golden, image)));
 }
 
+TEST(Compare, FindsTheTileWithTheLargestMeanAlsoAtTheEdge) {
+  const Image golden = make_image(40, 20, 50, 50, 50, 255);
+  Image image = golden;
+  for (std::uint32_t x = 32; x < 40; ++x)  // a tile of 8 × 4 pixels
+    for (std::uint32_t y = 16; y < 20; ++y)
+      image.pixel(x, y)[1] = 71;
+  image.pixel(0, 0)[0] = 80;
+  const ImageDifference difference = compare(golden, image);
+  EXPECT_DOUBLE_EQ(difference.worst_tile, 7.0);
+  EXPECT_NEAR(difference.mean, (32 * 7.0 + 10) / 800, 1e-9);
+  EXPECT_FALSE(matches_golden(difference));
+  EXPECT_TRUE(matches_other_driver(difference));
+  image.pixel(32, 16)[1] = 255;
+  EXPECT_FALSE(matches_other_driver(compare(golden, image))) << "a tile is off";
+  EXPECT_FALSE(matches_other_driver(compare(golden, make_image(40, 20, 52, 52, 52, 255))));
+}
+
 TEST(Compare, NeverMatchesImagesOfDifferentSizes) {
   const ImageDifference difference = compare(make_image(4, 2), make_image(2, 4));
   EXPECT_FALSE(difference.same_size);
   EXPECT_EQ(difference.pixels_over, 8U);
   EXPECT_FALSE(matches_golden(difference));
+  EXPECT_FALSE(matches_other_driver(difference));
 }
 
 TEST(Compare, TwoImagesWithoutPixelsAreEqual) {

@@ -1,18 +1,12 @@
 // Presets and views on one small scene with water: stored pictures, and what they have in common.
-// To accept new pictures after looking at them: PSYGEN_GOLDEN_UPDATE=1 ctest --preset release -R
-// Looks
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-
 #include "engine/image/compare.hpp"
-#include "engine/image/image_io.hpp"
 #include "engine/render/preset.hpp"
 #include "shaders/shared.h"
 #include "tests/engine/render/synthetic_scene.hpp"
 #include "tests/engine/render/ways.hpp"
-#include "tests/source_file.hpp"
+#include "tests/golden_image.hpp"
 
 namespace psygen::render {
 namespace {
@@ -72,18 +66,8 @@ class Looks : public testing::Test {
     if (!picture) return {};
     return {picture->width, picture->height, std::move(picture->rgba)};
   }
-  // Compares with, or renews, the stored picture of this name.
-  static void expect_golden(const image::Image& image, std::string_view name) {
-    const auto stored = std::filesystem::path(source_file("tests/engine/render/golden")) /
-                        (std::string(name) + ".png");
-    if (std::getenv("PSYGEN_GOLDEN_UPDATE") != nullptr) {
-      std::filesystem::create_directories(stored.parent_path());
-      ASSERT_TRUE(image::write_png(stored, image));
-    }
-    const auto golden = image::read_image(stored);
-    ASSERT_TRUE(golden) << golden.error().message;
-    const auto difference = image::compare(*golden, image);
-    EXPECT_TRUE(image::matches_golden(difference)) << name << ": " << difference.share_over;
+  static void expect_golden(const image::Image& image, const std::string& name) {
+    psygen::expect_golden("tests/engine/render/golden", name, image);
   }
 
   std::unique_ptr<Renderer> renderer_;

@@ -1,16 +1,12 @@
 // Objects of a game on every path, with every preset: they look like models, but turned, scaled and
-// with materials. To accept new pictures after looking at them: PSYGEN_GOLDEN_UPDATE=1
+// with materials.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <numbers>
 
-#include "engine/image/compare.hpp"
-#include "engine/image/image_io.hpp"
 #include "tests/engine/render/on_a_path.hpp"
-#include "tests/source_file.hpp"
+#include "tests/golden_image.hpp"
 
 namespace psygen::render {
 namespace {
@@ -207,15 +203,7 @@ TEST_P(Objects, OfAllKindsLookAsTheyDid) {
   const Picture picture = draw_objects(objects);
   const image::Image image{picture.width, picture.height, picture.rgba};
   const std::string name = "objects_" + std::string(to_string(renderer_->preset()));
-  const auto stored =
-      std::filesystem::path(source_file("tests/engine/render/golden")) / (name + ".png");
-  if (std::getenv("PSYGEN_GOLDEN_UPDATE") != nullptr) {
-    ASSERT_TRUE(image::write_png(stored, image));
-  }
-  const auto golden = image::read_image(stored);
-  ASSERT_TRUE(golden) << golden.error().message;
-  const auto compared = image::compare(*golden, image);
-  EXPECT_TRUE(image::matches_golden(compared)) << name << ": " << compared.share_over;
+  expect_golden("tests/engine/render/golden", name, image);
 }
 
 INSTANTIATE_TEST_SUITE_P(OnEveryPath, Objects, in_every_way());
