@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kHugePageBytes = std::size_t{2} << 20;
 constexpr std::size_t kSmallestStepBytes = std::size_t{64} << 10;
 constexpr std::size_t kSmallestReservationBytes = std::size_t{1} << 20;
+constexpr std::size_t kLargestReservationBytes = std::size_t{64} << 30;
 
 constexpr std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
@@ -48,7 +49,8 @@ void* reserve_address_space(std::size_t bytes) {
 
 ReservedMemory::ReservedMemory(std::size_t bytes, std::size_t skew_bytes) {
   PSYGEN_ECS_ASSERT(skew_bytes % 64 == 0 && skew_bytes < 4096, "skew is 0, 64, ... 4032");
-  std::size_t wanted = std::max(std::min(bytes, fair_share_bytes()), kSmallestReservationBytes);
+  const std::size_t most = std::min(kLargestReservationBytes, fair_share_bytes());
+  std::size_t wanted = std::max(std::min(bytes, most), kSmallestReservationBytes);
   for (; mapping_ == nullptr && wanted >= kSmallestReservationBytes; wanted /= 2) {
     mapping_bytes_ = round_up(wanted + skew_bytes, kHugePageBytes) + kHugePageBytes;
     mapping_ = static_cast<std::byte*>(reserve_address_space(mapping_bytes_));

@@ -13,11 +13,11 @@ class ReservedMemory {
  public:
   // An empty range: no address, no bytes.
   ReservedMemory() = default;
-  // Reserves `bytes` of address space. If the system refuses, it tries a half, a quarter, ... down
-  // to 1 MiB. If the process's address space is limited (ulimit -v), it reserves at most a 64th of
-  // the rest. Throws std::bad_alloc if the system grants none. `skew_bytes` (a multiple of 64,
-  // below 4096) shifts the first byte, so columns that are walked together do not compete for the
-  // same cache sets.
+  // Reserves `bytes` of address space, at most 64 GiB, because QEMU takes memory for reserved pages
+  // too. If the system refuses, it tries a half, a quarter, ... down to 1 MiB. If the process's
+  // address space is limited (ulimit -v), it reserves at most a 64th of the rest. Throws
+  // std::bad_alloc if the system grants none. `skew_bytes` (a multiple of 64, below 4096) shifts
+  // the first byte, so columns that are walked together do not compete for the same cache sets.
   explicit ReservedMemory(std::size_t bytes, std::size_t skew_bytes = 0);
   // Returns memory and address space to the system.
   ~ReservedMemory();

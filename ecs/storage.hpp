@@ -26,8 +26,8 @@
 namespace psygen::ecs {
 
 // Limits of a world's size, given to World's constructor and fixed for its life. They reserve
-// address space, not memory, so raising them is cheap. A verb that would exceed a limit ends the
-// program with a message; load_snapshot rejects the snapshot instead.
+// address space, not memory, so raising them is cheap; a column has at most 64 GiB. A verb that
+// would exceed a limit ends the program with a message; load_snapshot rejects the snapshot instead.
 struct WorldLimits {
   std::size_t max_entities = std::size_t{1} << 28;        // below 2^32
   std::size_t max_rows_per_table = std::size_t{1} << 26;  // below 2^32; also per sparse component

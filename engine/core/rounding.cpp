@@ -1,6 +1,7 @@
 #include "engine/core/rounding.hpp"
 
 #include <cfenv>
+#include <cstdint>
 
 #ifdef __SSE__
 #include <xmmintrin.h>
@@ -18,6 +19,20 @@ unsigned control() {
 }
 void set_control(unsigned bits) {
   _mm_setcsr((_mm_getcsr() & ~kControl) | bits);
+}
+#elif defined(__aarch64__)
+constexpr std::uint64_t kControl = 3U << 22 | 1U << 24;  // of FPCR: rounding mode, flush to zero
+
+std::uint64_t fpcr() {
+  std::uint64_t bits = 0;
+  asm volatile("mrs %0, fpcr" : "=r"(bits));
+  return bits;
+}
+unsigned control() {
+  return static_cast<unsigned>(fpcr() & kControl);
+}
+void set_control(unsigned bits) {
+  asm volatile("msr fpcr, %0" : : "r"((fpcr() & ~kControl) | bits));
 }
 #else
 unsigned control() {

@@ -18,6 +18,8 @@ std::string_view name_of(std::int64_t bit) {
       return "avx2";
     case HWY_SSE4:
       return "sse4";
+    case HWY_NEON:
+      return "neon";
     case HWY_SCALAR:
     case HWY_EMU128:
       return "scalar";

@@ -38,7 +38,7 @@ std::string toml_range(double low, double high, bool integers) {
 std::string toml_string(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
-    if ((c >= 0 && c < ' ') || c == '\x7F') {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') {
       fmt::format_to(std::back_inserter(out), "\\u{:04X}", static_cast<unsigned>(c));
     } else {
       if (c == '"' || c == '\\') out += '\\';
