@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "engine/world/files/fields.hpp"
+#include "engine/world/files/model_fields.hpp"
 #include "engine/world/files/scatter_file.hpp"
 #include "engine/world/files/toml_values.hpp"
 
