@@ -125,7 +125,12 @@ Sample packed_by_meshopt(const Grid& g, bool as_triangles) {
   const int normals = packed_view(s, encoded(octahedra), octahedra, "ATTRIBUTES", "OCTAHEDRAL");
   // Texture coordinates as exponents and mantissas.
   std::vector<std::array<std::uint32_t, 2>> mantissas(count);
+#if MESHOPTIMIZER_VERSION < 190
   meshopt_encodeFilterExp(mantissas.data(), count, 8, 20, &g.uvs[0].x);
+#else
+  meshopt_encodeFilterExp(mantissas.data(), count, 8, 20, &g.uvs[0].x,
+                          meshopt_EncodeExpSharedVector);
+#endif
   const int uvs = packed_view(s, encoded(mantissas), mantissas, "ATTRIBUTES", "EXPONENTIAL");
   nlohmann::json primitive = {{"indices", accessor(index_view, g.indices.size(), "SCALAR", kInts)}};
   primitive["attributes"] = {{"POSITION", accessor(places, count, "VEC3", kFloats)},

@@ -69,7 +69,8 @@ inline core::Result<void> put_generation(SaveGame& save, std::int64_t generation
     }
   }
   ecs::World world;
-  for (auto& creature : world.create<Creature>(30).column<Creature>())
+  const auto created = world.create<Creature>(30);
+  for (auto& creature : created.column<Creature>())
     creature.generation = generation;
   if (auto ok = save.put_entities(world); !ok) return ok;
   if (auto ok = save.put_value("generation", generation); !ok) return ok;
