@@ -107,8 +107,16 @@ function(psygen_find_packages)
     find_package(${package} REQUIRED)
     list(GET package 0 name)
     psygen_check_version(${name})
+    psygen_note_version(${name})
   endforeach()
 endfunction()
+
+# Records the version of a package that was found, for psygen doctor.
+macro(psygen_note_version name)
+  if(NOT "${${name}_VERSION}" STREQUAL "")
+    set_property(TARGET psygen_settings APPEND PROPERTY PSYGEN_PACKAGE_VERSIONS "${name}=${${name}_VERSION}")
+  endif()
+endmacro()
 
 # Records the data that cmake/PsygenInstall.cmake writes into the package: components in the order of their
 # declaration, and for each its packages and the components that it needs, itself last.

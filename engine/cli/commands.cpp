@@ -11,7 +11,7 @@ std::vector<std::unique_ptr<Command>> make_commands(CLI::App& cli) {
 #ifdef PSYGEN_HAS_HISTORY
         make_history_command,
 #endif
-        make_convert_command})
+        make_convert_command, make_doctor_command})
     commands.push_back(make(cli));
   return commands;
 }

@@ -38,6 +38,7 @@ std::unique_ptr<Command> make_calibrate_command(CLI::App& cli);
 std::unique_ptr<Command> make_compare_command(CLI::App& cli);
 std::unique_ptr<Command> make_convert_command(CLI::App& cli);
 std::unique_ptr<Command> make_devices_command(CLI::App& cli);
+std::unique_ptr<Command> make_doctor_command(CLI::App& cli);
 std::unique_ptr<Command> make_export_command(CLI::App& cli);
 std::unique_ptr<Command> make_fly_command(CLI::App& cli);
 std::unique_ptr<Command> make_history_command(CLI::App& cli);

@@ -120,6 +120,9 @@ struct DeviceInfo {
   bool multi_draw = false;           // many meshes in one call
   bool gpu_path = false;             // RenderPath::kGpu can be used
   bool wireframe = false;            // View::kWireframe can be drawn
+  // Known only of the renderer's device:
+  std::uint64_t max_allocation_bytes = 0;
+  std::uint32_t max_image_side = 0;  // pixels
   bool timestamps = false;           // FrameResult::gpu is known
   bool pass_times = false;           // GpuTime::pass_ms is known
 
