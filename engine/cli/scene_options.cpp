@@ -93,4 +93,17 @@ void add_scene_options(CLI::App& command, app::SessionOptions& options) {
   add_machine(command, options);
 }
 
+core::Result<void> find_world(app::SessionOptions& options) {
+  return find_file(Shipped::kWorld, options.world_file.string()).map([&](auto file) {
+    options.world_file = std::move(file);
+  });
+}
+
+core::Result<void> find_path(app::FlightOptions& options) {
+  if (options.path_file.empty()) return {};
+  return find_file(Shipped::kPath, options.path_file.string()).map([&](auto file) {
+    options.path_file = std::move(file);
+  });
+}
+
 }  // namespace psygen::cli

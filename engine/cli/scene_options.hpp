@@ -11,4 +11,8 @@ namespace psygen::cli {
 // `options` outlives the command; its current values are the defaults.
 void add_scene_options(CLI::App& command, app::SessionOptions& options);
 
+// Replace the name in the options by the file that find_file() finds. An empty path stays empty.
+core::Result<void> find_world(app::SessionOptions& options);
+core::Result<void> find_path(app::FlightOptions& options);
+
 }  // namespace psygen::cli

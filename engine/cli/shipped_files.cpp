@@ -101,17 +101,4 @@ core::Result<world::World> load_world_and_files(const std::string& name,
   return world;
 }
 
-core::Result<void> find_world(app::SessionOptions& options) {
-  return find_file(Shipped::kWorld, options.world_file.string()).map([&](fs::path file) {
-    options.world_file = std::move(file);
-  });
-}
-
-core::Result<void> find_path(app::FlightOptions& options) {
-  if (options.path_file.empty()) return {};
-  return find_file(Shipped::kPath, options.path_file.string()).map([&](fs::path file) {
-    options.path_file = std::move(file);
-  });
-}
-
 }  // namespace psygen::cli

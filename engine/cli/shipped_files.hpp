@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/app/options.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::cli {
@@ -27,9 +26,5 @@ core::Result<world::World> load_world(const std::string& name, models::Registry&
 // (World::files_hash). Fails as load_world() and handmade::hash_of_files().
 core::Result<world::World> load_world_and_files(const std::string& name,
                                                 models::Registry& registry);
-
-// Replace the name in the options by the resolved file. An empty path stays empty.
-core::Result<void> find_world(app::SessionOptions& options);
-core::Result<void> find_path(app::FlightOptions& options);
 
 }  // namespace psygen::cli

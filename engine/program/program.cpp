@@ -19,7 +19,11 @@
 #include "engine/core/log.hpp"
 #include "engine/core/out_of_memory.hpp"
 #include "engine/program/crash_report.hpp"
-#include "engine/render/device/software_tuning.hpp"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#include <sys/resource.h>
+#endif
 
 namespace psygen::program {
 namespace {
@@ -37,6 +41,21 @@ void reserve_standard_streams() {
     // open() returns the lowest free descriptor, which is this stream's.
     (void)open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   }
+}
+
+// Makes the C library keep freed memory instead of returning it to the kernel page by page:
+// software rasterisers allocate and free their bins every frame. Does nothing if the process's
+// memory is limited (ulimit -d, ulimit -v), or if the C library is not glibc.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  for (const auto resource : {RLIMIT_DATA, RLIMIT_AS}) {
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY) return;
+  }
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_TOP_PAD, 64 << 20);
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+#endif
 }
 
 // Reports an error without allocating.
@@ -92,7 +111,7 @@ bool is_ignored(int signal_number) {
 
 int run(std::string_view name, const std::function<int()>& body) {
   reserve_standard_streams();
-  render::tune_allocator_for_software_rendering();  // before the first large allocation
+  keep_freed_memory();  // before the first large allocation
   name.copy(program_name.data(), program_name.size() - 1);
   core::set_log_name(name);
   install_terminate_handler();

@@ -30,7 +30,7 @@ MAY_KNOW = {
     "engine/handmade": {"engine/core", "engine/models", "engine/world", "engine/image", "engine/gltf"},
     "engine/render": {"engine/core", "engine/image", "shaders"},
     "engine/platform": {"engine/core"},
-    "engine/program": {"engine/core", "engine/render", "engine/telemetry"},
+    "engine/program": {"engine/core", "engine/telemetry"},
     "engine/input": {"engine/core", "engine/platform", "engine/world"},
     "engine/telemetry": {"engine/core"},
     "engine/captures": {"engine/core"},

@@ -4,18 +4,12 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>  // defines __GLIBC__ where there is glibc
+#include <cstdlib>
 #include <string>
 
 #include "engine/core/headroom.hpp"
 #include "engine/core/processors.hpp"
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#include <sys/resource.h>
-
-#include <initializer_list>
-#endif
 #ifdef __linux__
 #include <sys/mman.h>
 #endif
@@ -31,18 +25,6 @@ constexpr std::size_t kMinThreads = 2, kOtherThreads = 4;
 constexpr const char* kThreadsVariable = "LP_NUM_THREADS";
 
 }  // namespace
-
-void tune_allocator_for_software_rendering() {
-#ifdef __GLIBC__
-  for (const auto resource : {RLIMIT_DATA, RLIMIT_AS}) {
-    rlimit limit{};
-    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY) return;
-  }
-  mallopt(M_TRIM_THRESHOLD, 256 << 20);
-  mallopt(M_TOP_PAD, 64 << 20);
-  mallopt(M_MMAP_THRESHOLD, 64 << 20);
-#endif
-}
 
 void prefer_huge_pages([[maybe_unused]] std::span<std::byte> memory) {
 #ifdef __linux__

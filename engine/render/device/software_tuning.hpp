@@ -1,5 +1,5 @@
-// Settings of the process, its C library and the kernel for software rasterisers, where the CPU
-// both writes and reads the geometry. They affect only speed and stability, not the picture.
+// Settings of the process and the kernel for software rasterisers, where the CPU both writes and
+// reads the geometry. They affect only speed and stability, not the picture.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,6 @@
 #include "engine/core/error.hpp"
 
 namespace psygen::render {
-
-// Makes the C library keep freed memory instead of returning it to the kernel page by page, because
-// a software rasteriser allocates and frees its bins every frame. Call it first in main, before
-// other threads exist. Does nothing if the process's memory is limited (ulimit -d, ulimit -v), or
-// if the C library is not glibc.
-void tune_allocator_for_software_rendering();
 
 // Asks the kernel for pages of 2 MiB under fresh memory. The first access to a page costs a fault,
 // about 3 µs on a virtual machine, and the mesh of a tree has thirty small pages. Does nothing if

@@ -13,7 +13,7 @@
 #include <ctime>
 #include <utility>
 
-#include "engine/render/device/software_tuning.hpp"
+#include "engine/program/program.hpp"
 #include "engine/render/types.hpp"
 #include "tests/engine/render/synthetic_scene.hpp"
 
@@ -458,9 +458,10 @@ BENCHMARK(BM_terrain)
     ->ArgsProduct({{0, 1, 2}, {4, 8}});
 
 int main(int argc, char** argv) {
-  psygen::render::tune_allocator_for_software_rendering();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  return 0;
+  return psygen::program::run("psygen_bench_render", [&]() -> int {
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return psygen::program::kUsage;
+    benchmark::RunSpecifiedBenchmarks();
+    return psygen::program::kOk;
+  });
 }
