@@ -1,0 +1,132 @@
+#!/usr/bin/env bash
+# Builds psygen for other processors and systems, with other compilers and options, and runs those tests that this
+# machine can run. Prints a row for each port. A port whose tools are missing is left out, with the reason.
+#   tools/ports.sh [--record] [PORT ...]     PORT: a name below; default: all
+# --record replaces the rows of these ports in docs/platforms.md. Builds are in build/port-PORT, messages in
+# build/port-PORT.log. Exit code 1: a port failed.
+#
+# A port is a function port_NAME with "_" for "-". Its last words on descriptor 3 are the result.
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+ports=(arm64 no-renderer cxx23 lto multi-config clang-14 clang-19)
+
+# needs COMMAND ...   leaves the port out if a command is missing
+needs() {
+  local command
+  for command in "$@"; do
+    command -v "$command" >/dev/null || leave_out "$command is not installed"
+  done
+}
+leave_out() {
+  echo "left out: $1" >&3
+  exit 77
+}
+
+# configure PORT [ARGUMENTS OF CMAKE]
+configure() {
+  cmake --preset release -B "build/port-$1" -DPSYGEN_BENCHMARKS=OFF -DPSYGEN_EDITOR=OFF -DPSYGEN_INSTALL=OFF "${@:2}"
+}
+# build PORT [TARGET ...]
+build() {
+  cmake --build "build/port-$1" ${2:+--target "${@:2}"}
+}
+# run_tests PORT FOLDERS [ARGUMENTS OF CTEST]   FOLDERS: "ecs core", prefixes of the tests' names
+run_tests() {
+  local log="build/port-$1-ctest.log"
+  ctest --test-dir "build/port-$1" --output-on-failure -R "^(${2// /|})[:.]" "${@:3}" | tee "$log"
+  sed -n 's/^100% tests passed, 0 tests failed out of \([0-9]*\)$/\1 tests pass/p' "$log" >&3
+}
+# The programs, and the tests that prove the same bits: of models and of the golden hashes of worlds.
+same_bits() { # PORT [ARGUMENTS OF CMAKE]
+  configure "$@"
+  build "$1" psygen psygen-game psygen_test_amplify psygen_test_models
+  run_tests "$1" "amplify models" -E AMillion
+}
+
+# A folder with the libraries of arm64, as Debian has them. Nothing in it runs while it is made.
+arm64_root() {
+  [ -e "$PSYGEN_SYSROOT/done" ] && return
+  rm -rf "$PSYGEN_SYSROOT"
+  local packages
+  packages="$(grep -oE '\b(lib[a-z0-9.+-]+|nlohmann-json3)-dev\b' tools/setup.sh | grep -vE 'openmpi|clang' | sort -u | paste -sd,)"
+  mmdebstrap --variant=extract --architectures=arm64 --include="$packages,zlib1g-dev,fonts-dejavu-core" \
+    "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$PSYGEN_SYSROOT"
+  local link
+  find "$PSYGEN_SYSROOT" -type l -lname '/*' | while read -r link; do
+    ln -sfn "$PSYGEN_SYSROOT$(readlink "$link")" "$link"
+  done
+  # Some packages name their files by absolute paths.
+  find "$PSYGEN_SYSROOT" -name '*.cmake' -exec perl -pi -e 's{(["\s;>:])/usr/(lib|include)}{$1$ENV{PSYGEN_SYSROOT}/usr/$2}g' {} +
+  touch "$PSYGEN_SYSROOT/done"
+}
+
+how_arm64="GCC, cross-compiled; tests under QEMU (NEON and scalar)"
+port_arm64() {
+  needs aarch64-linux-gnu-g++ qemu-aarch64-static mmdebstrap
+  export PSYGEN_SYSROOT="$PWD/build/port-arm64-root"
+  arm64_root
+  configure arm64 --toolchain cmake/toolchains/arm64.cmake -DPSYGEN_MPI=OFF
+  local folders="ecs core models world query synthesis visibility amplify exchange"
+  build arm64 psygen psygen-game $(printf 'psygen_test_%s ' $folders)
+  # Left out: tests that start programs of arm64, which this kernel cannot, and tests that take hours under QEMU.
+  run_tests arm64 "$folders" -E 'DeathTest|ChildProcess|AMillion|BlockReadBack'
+}
+
+how_no_renderer="\`-DPSYGEN_RENDER=OFF\`, without Vulkan, GLFW and Dear ImGui"
+port_no_renderer() {
+  configure no-renderer -DPSYGEN_RENDER=OFF -DPSYGEN_MPI=OFF -DPSYGEN_GLSLC=/absent \
+    -DCMAKE_DISABLE_FIND_PACKAGE_{Vulkan,glfw3,imgui}=ON
+  build no-renderer
+  run_tests no-renderer "cli amplify"
+}
+
+how_cxx23="\`-DCMAKE_CXX_STANDARD=23\`"
+port_cxx23() { same_bits cxx23 -DCMAKE_CXX_STANDARD=23; }
+
+how_lto="link-time optimisation"
+port_lto() { same_bits lto -DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON; }
+
+how_multi_config="Ninja Multi-Config"
+port_multi_config() { same_bits multi-config -G "Ninja Multi-Config" -DCMAKE_DEFAULT_BUILD_TYPE=RelWithDebInfo; }
+
+how_clang_14="clang 14"
+port_clang_14() {
+  needs clang++-14
+  same_bits clang-14 -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
+}
+
+how_clang_19="clang 19"
+port_clang_19() {
+  needs clang++-19
+  same_bits clang-19 -DCMAKE_C_COMPILER=clang-19 -DCMAKE_CXX_COMPILER=clang++-19
+}
+
+record=""
+[ "${1:-}" = "--record" ] && { record=yes; shift; }
+for port in "$@"; do
+  [[ " ${ports[*]} " == *" $port "* ]] || { echo "ports: no port $port; ports are ${ports[*]}" >&2; exit 2; }
+done
+[ $# -gt 0 ] || set -- "${ports[@]}"
+
+mkdir -p build
+revision="$(git rev-parse --short HEAD 2>/dev/null || echo unknown)"
+failed=0
+echo "| port | how | result | date | revision |"
+echo "| --- | --- | --- | --- | --- |"
+for port in "$@"; do
+  name="${port//-/_}" how="how_${port//-/_}"
+  said="$( (set -e; "port_$name") 3>&1 >"build/port-$port.log" 2>&1)"
+  status=$?
+  case $status in
+    0 | 77) result="${said##*$'\n'}" ;;
+    *) result="failed" failed=1 ;;
+  esac
+  row="| $port | ${!how} | ${result:-builds} | $(date -u +%F) | $revision |"
+  echo "$row"
+  [ $status -ne 0 ] && tail -5 "build/port-$port.log" | sed 's/^/  /' >&2
+  # Rows of ports that are left out keep their last result.
+  [ -n "$record" ] && [ $status -ne 77 ] &&
+    PORT="$port" ROW="$row" perl -pi -e 's/^\| \Q$ENV{PORT}\E \|.*$/$ENV{ROW}/' docs/platforms.md
+done
+exit $failed
