@@ -4,8 +4,10 @@
 # sanitizers has none.
 #   DESKTOP   a folder with PROGRAM.desktop, PROGRAM.metainfo.xml, PROGRAM.svg (the icon) and, for types of files,
 #             PROGRAM.xml
-find_package(Python3 QUIET COMPONENTS Interpreter)
-if(NOT Python3_FOUND)
+if(PSYGEN_INSTALL)
+  find_package(Python3 QUIET COMPONENTS Interpreter)
+endif()
+if(PSYGEN_INSTALL AND NOT Python3_FOUND)
   message(STATUS "Manual pages and completions are not built: Python 3 was not found")
 endif()
 

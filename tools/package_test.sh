@@ -56,7 +56,7 @@ programs /usr/bin /usr/games
 for deb in "$root"/packages/*.deb; do
   dpkg-deb -R "$deb" "$root/newer/files"
   sed -i -E 's/^(Version: [0-9]+\.[0-9]+\.).*/\199/' "$root/newer/files/DEBIAN/control"
-  dpkg-deb -b "$root/newer/files" "$root/newer" >/dev/null
+  dpkg-deb -Znone -b "$root/newer/files" "$root/newer" >/dev/null
   rm -rf "$root/newer/files"
 done
 inside sh -c 'apt-get install -y -qq --no-install-recommends /newer/*.deb' >/dev/null
