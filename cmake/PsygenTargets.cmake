@@ -38,6 +38,12 @@ if(PSYGEN_CCACHE AND NOT PSYGEN_REPRODUCIBLE AND NOT CMAKE_CXX_COMPILER_LAUNCHER
   set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
 
+# Sources that call the operating system end in its name: NAME_posix.cpp, NAME_windows.cpp.
+set(PSYGEN_SYSTEM posix)
+if(WIN32)
+  set(PSYGEN_SYSTEM windows)
+endif()
+
 # The library of dlopen(); none if it is part of the C library (glibc 2.34).
 include(CheckFunctionExists)
 check_function_exists(dlopen PSYGEN_DLOPEN_IN_LIBC)
@@ -49,6 +55,9 @@ endif()
 # Settings of this project's own compilation. None of them reaches projects that use its libraries.
 add_library(psygen_settings INTERFACE)
 add_library(psygen::settings ALIAS psygen_settings)
+if(WIN32)
+  target_compile_definitions(psygen_settings INTERFACE _WIN32_WINNT=0x0A00 WIN32_LEAN_AND_MEAN NOMINMAX)  # Windows 10
+endif()
 # Same bits everywhere: no fused multiply-add unless the source asks for it (docs/models.md).
 target_compile_options(psygen_settings INTERFACE -ffp-contract=off)
 

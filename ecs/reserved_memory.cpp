@@ -1,15 +1,11 @@
 #include "ecs/reserved_memory.hpp"
 
-#include <sys/mman.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <new>
 #include <utility>
 
+#include "ecs/address_space.hpp"
 #include "ecs/check.hpp"
 
 namespace psygen::ecs::detail {
@@ -19,37 +15,19 @@ constexpr std::size_t kHugePageBytes = std::size_t{2} << 20;
 constexpr std::size_t kSmallestStepBytes = std::size_t{64} << 10;
 constexpr std::size_t kSmallestReservationBytes = std::size_t{1} << 20;
 constexpr std::size_t kLargestReservationBytes = std::size_t{64} << 30;
+// Of limited address space a reservation takes a small part, which leaves enough for others and the
+// rest of the program.
+constexpr std::size_t kPart = 64;
 
 constexpr std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
-}
-
-// Largest reservation when the process's address space is limited (ulimit -v): a small part of the
-// rest, which leaves enough for other reservations and the rest of the program.
-std::size_t fair_share_bytes() {
-  constexpr std::size_t kPart = 64;
-  rlimit limit{};
-  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return SIZE_MAX;
-  std::size_t pages = 0;
-  if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
-    if (std::fscanf(file, "%zu", &pages) != 1) pages = 0;
-    std::fclose(file);
-  }
-  const std::size_t used = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  return (limit.rlim_cur - std::min<std::size_t>(used, limit.rlim_cur)) / kPart;
-}
-
-void* reserve_address_space(std::size_t bytes) {
-  void* address =
-      ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  return address == MAP_FAILED ? nullptr : address;
 }
 
 }  // namespace
 
 ReservedMemory::ReservedMemory(std::size_t bytes, std::size_t skew_bytes) {
   PSYGEN_ECS_ASSERT(skew_bytes % 64 == 0 && skew_bytes < 4096, "skew is 0, 64, ... 4032");
-  const std::size_t most = std::min(kLargestReservationBytes, fair_share_bytes());
+  const std::size_t most = std::min(kLargestReservationBytes, address_space_left() / kPart);
   std::size_t wanted = std::max(std::min(bytes, most), kSmallestReservationBytes);
   for (; mapping_ == nullptr && wanted >= kSmallestReservationBytes; wanted /= 2) {
     mapping_bytes_ = round_up(wanted + skew_bytes, kHugePageBytes) + kHugePageBytes;
@@ -60,11 +38,10 @@ ReservedMemory::ReservedMemory(std::size_t bytes, std::size_t skew_bytes) {
   const std::size_t lead = round_up(address, kHugePageBytes) - address;
   data_ = mapping_ + lead + skew_bytes;
   capacity_bytes_ = mapping_bytes_ - lead - skew_bytes;
-  ::madvise(mapping_, mapping_bytes_, MADV_HUGEPAGE);  // a hint; failure changes nothing
 }
 
 ReservedMemory::~ReservedMemory() {
-  if (mapping_ != nullptr) ::munmap(mapping_, mapping_bytes_);
+  if (mapping_ != nullptr) release_address_space(mapping_, mapping_bytes_);
 }
 
 ReservedMemory::ReservedMemory(ReservedMemory&& other) noexcept {
@@ -87,9 +64,7 @@ void ReservedMemory::grow(std::size_t bytes) {
   std::byte* base = data_ - skew_bytes;
   const std::size_t usable = round_up(bytes + skew_bytes, step);
   const std::size_t clamped = std::min(usable, capacity_bytes_ + skew_bytes);
-  if (::mprotect(base, clamped, PROT_READ | PROT_WRITE) != 0) {
-    throw std::bad_alloc();
-  }
+  if (!commit_pages(base, clamped)) throw std::bad_alloc();
   committed_bytes_ = clamped - skew_bytes;
 }
 

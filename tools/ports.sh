@@ -9,7 +9,7 @@
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-ports=(arm64 no-renderer cxx23 lto multi-config clang-14 clang-19)
+ports=(arm64 mingw no-renderer cxx23 lto multi-config clang-14 clang-19)
 
 # needs COMMAND ...   leaves the port out if a command is missing
 needs() {
@@ -71,6 +71,26 @@ port_arm64() {
   build arm64 psygen psygen-game $(printf 'psygen_test_%s ' $folders)
   # Left out: tests that start programs of arm64, which this kernel cannot, and tests that take hours under QEMU.
   run_tests arm64 "$folders" -E 'DeathTest|ChildProcess|AMillion|BlockReadBack'
+}
+
+how_mingw="MinGW-w64: all sources of \`ecs\`, \`core\`, \`models\`, \`world\`, \`query\`, \`synthesis\`, \`visibility\` compile"
+port_mingw() {
+  needs x86_64-w64-mingw32-g++-posix
+  # Debian has no libraries of these packages for Windows, but their headers serve it too.
+  local headers="$PWD/build/port-mingw" name
+  mkdir -p "$headers"
+  for name in fmt glm hwy spdlog tl toml++ xxhash.h xxh_x86dispatch.h; do
+    ln -sfn "/usr/include/$name" "$headers/$name"
+  done
+  local sources
+  sources="$(git ls-files --cached --others --exclude-standard \
+    ecs/*.cpp engine/{core,models,world,query,synthesis,visibility}/'*.cpp' |
+    grep -vE '_posix\.cpp$|core/child_process\.cpp$')"
+  xargs -P "$(nproc)" -I {} x86_64-w64-mingw32-g++-posix -std=c++20 -fsyntax-only -I. -isystem "$headers" \
+    -Wall -Wextra -Wconversion -Wshadow -Werror -D_WIN32_WINNT=0x0A00 -DWIN32_LEAN_AND_MEAN -DNOMINMAX \
+    -DFMT_HEADER_ONLY -DSPDLOG_FMT_EXTERNAL '-DHWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SVE)' \
+    '-DPSYGEN_DATA_FROM_EXECUTABLE="."' '-DPSYGEN_VERSION="0"' {} <<<"$sources"
+  echo "$(wc -l <<<"$sources") sources compile" >&3
 }
 
 how_no_renderer="\`-DPSYGEN_RENDER=OFF\`, without Vulkan, GLFW and Dear ImGui"

@@ -6,8 +6,6 @@
 // priorities. POSIX. Any thread.
 #pragma once
 
-#include <signal.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -60,7 +58,7 @@ Result<void> widen_stacks();
 
 // While it lives, handlers of signals that ask for it (SA_ONSTACK) run on a stack of their own in
 // this thread, so a handler can report that the thread's stack has overflowed. Without memory for
-// it, and in builds with sanitizers, which have their own, it does nothing.
+// it, and in builds with sanitizers, which have their own, it does nothing; on Windows neither.
 class SignalStack {
  public:
   SignalStack();
@@ -69,8 +67,8 @@ class SignalStack {
   SignalStack& operator=(const SignalStack&) = delete;
 
  private:
-  std::unique_ptr<std::byte[]> bytes_;
-  stack_t former_{};
+  struct Stack;
+  std::unique_ptr<Stack> stack_;
 };
 
 // Runs `work` on a new thread, which the caller joins. Fails with kInternal if the system grants

@@ -1,15 +1,13 @@
 #include "engine/core/out_of_memory.hpp"
 
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <exception>
 #include <utility>
+
+#include "engine/core/process_memory.hpp"
 
 namespace psygen::core {
 namespace {
@@ -32,24 +30,6 @@ struct Text {
   }
 };
 
-// Memory of this process without a file behind it, in MiB; 0 if the system does not report it.
-unsigned long memory_in_use_mib() {
-  std::array<char, 256> text{};
-  const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
-  if (file < 0) return 0;
-  const ssize_t size = read(file, text.data(), text.size() - 1);
-  close(file);
-  unsigned long data_pages = 0;
-  if (size <= 0 || std::sscanf(text.data(), "%*u %*u %*u %*u %*u %lu", &data_pages) != 1) return 0;
-  return data_pages * static_cast<unsigned long>(sysconf(_SC_PAGESIZE)) / kMiB;
-}
-
-void add_limit(Text& text, decltype(RLIMIT_DATA) resource, const char* name) {
-  rlimit limit{};
-  if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
-  text.add(", %s allows %lu MiB", name, static_cast<unsigned long>(limit.rlim_cur) / kMiB);
-}
-
 }  // namespace
 
 void record_failed_allocation(std::size_t bytes) {
@@ -62,13 +42,13 @@ std::string_view out_of_memory(std::string_view what, std::span<char> buffer) {
   text.add("memory ran out (");
   const std::size_t wanted = std::exchange(refused_bytes, 0);
   if (wanted >= 10 * kMiB) {
-    text.add("%zu MiB more were wanted; ", wanted / kMiB);
+    text.add("%lu MiB more were wanted; ", static_cast<unsigned long>(wanted / kMiB));
   } else if (wanted > 0) {
-    text.add("%zu bytes more were wanted; ", wanted);
+    text.add("%lu bytes more were wanted; ", static_cast<unsigned long>(wanted));
   }
   text.add("%lu MiB are in use", memory_in_use_mib());
-  add_limit(text, RLIMIT_DATA, "ulimit -d");
-  add_limit(text, RLIMIT_AS, "ulimit -v");
+  for (const MemoryLimit& limit : memory_limits())
+    if (limit.name != nullptr) text.add(", %s allows %lu MiB", limit.name, limit.mib);
   text.add(")");
   return {buffer.data(), text.length};
 }

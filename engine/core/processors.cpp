@@ -1,6 +1,8 @@
 #include "engine/core/processors.hpp"
 
+#ifdef __linux__
 #include <sched.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -44,13 +46,14 @@ std::optional<double> quota_of_groups(const fs::path& top, fs::path group) {
 }  // namespace
 
 unsigned allowed_processors() {
+#ifdef __linux__
   cpu_set_t set;
   CPU_ZERO(&set);
   // It fails on machines with more processors than the set has.
-  const bool known = sched_getaffinity(0, sizeof(set), &set) == 0;
-  const auto count =
-      known ? static_cast<unsigned>(CPU_COUNT(&set)) : std::thread::hardware_concurrency();
-  return std::max(count, 1U);
+  if (sched_getaffinity(0, sizeof(set), &set) == 0)
+    return std::max(static_cast<unsigned>(CPU_COUNT(&set)), 1U);
+#endif
+  return std::max(std::thread::hardware_concurrency(), 1U);
 }
 
 std::optional<double> processor_quota(const fs::path& root) {

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <memory>
+#include <fstream>
 #include <string>
 
 namespace psygen::core {
@@ -23,11 +22,10 @@ Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path,
                                                       "allowed",
                                                       size, max_bytes));
   }
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
+  std::ifstream file(path, std::ios::binary);
   if (!file) return refuse(ErrorCode::kIo, "cannot be opened for reading");
   std::vector<std::uint8_t> bytes(size);
-  if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size())
+  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
     return refuse(ErrorCode::kIo, "cannot be read to its end");
   return bytes;
 }

@@ -621,10 +621,10 @@ def files_of_a_pass(tree):
 
 
 def subjects(tree):
-    """stem -> (first file, lines). A header, its source and its -inl.hpp are one subject."""
+    """stem -> (first file, lines). A header, its sources (one for each system) and its -inl.hpp are one subject."""
     found = collections.defaultdict(list)
     for name, text in tree.select(CODE, CXX):
-        found[re.sub(r"(-inl)?\.\w+$", "", name)].append((name, text.count("\n")))
+        found[re.sub(r"(-inl|_posix|_windows)?\.\w+$", "", name)].append((name, text.count("\n")))
     return {stem: (files[0][0], sum(lines for _, lines in files)) for stem, files in found.items()}
 
 

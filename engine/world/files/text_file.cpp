@@ -33,7 +33,8 @@ core::Result<std::string> read_text_file(const std::filesystem::path& file,
   if (const auto bytes = std::filesystem::file_size(file, error); !error && bytes > limit_bytes)
     return too_large();
   const auto close = [](std::FILE* f) { std::fclose(f); };
-  const std::unique_ptr<std::FILE, decltype(close)> stream(std::fopen(file.c_str(), "rb"), close);
+  const std::unique_ptr<std::FILE, decltype(close)> stream(std::fopen(file.string().c_str(), "rb"),
+                                                           close);
   if (!stream) return fail(fmt::format("cannot be opened ({})", std::strerror(errno)));
 
   std::string text;
