@@ -5,23 +5,12 @@
 # --record replaces the rows of these ports in docs/platforms.md. Builds are in build/port-PORT, messages in
 # build/port-PORT.log. Exit code 1: a port failed.
 #
-# A port is a function port_NAME with "_" for "-". Its last words on descriptor 3 are the result.
+# tools/rows.sh describes how a port is written.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. tools/rows.sh
 
-ports=(arm64 mingw no-renderer cxx23 lto multi-config clang-14 clang-19)
-
-# needs COMMAND ...   leaves the port out if a command is missing
-needs() {
-  local command
-  for command in "$@"; do
-    command -v "$command" >/dev/null || leave_out "$command is not installed"
-  done
-}
-leave_out() {
-  echo "left out: $1" >&3
-  exit 77
-}
+rows=(arm64 mingw no-renderer cxx23 lto multi-config clang-14 clang-19)
 
 # configure PORT [ARGUMENTS OF CMAKE]
 configure() {
@@ -62,7 +51,7 @@ arm64_root() {
 }
 
 how_arm64="GCC, cross-compiled; tests under QEMU (NEON and scalar)"
-port_arm64() {
+row_arm64() {
   needs aarch64-linux-gnu-g++ qemu-aarch64-static mmdebstrap
   export PSYGEN_SYSROOT="$PWD/build/port-arm64-root"
   arm64_root
@@ -74,7 +63,7 @@ port_arm64() {
 }
 
 how_mingw="MinGW-w64: all sources of \`ecs\`, \`core\`, \`models\`, \`world\`, \`query\`, \`synthesis\`, \`visibility\` compile"
-port_mingw() {
+row_mingw() {
   needs x86_64-w64-mingw32-g++-posix
   # Debian has no libraries of these packages for Windows, but their headers serve it too.
   local headers="$PWD/build/port-mingw" name
@@ -94,7 +83,7 @@ port_mingw() {
 }
 
 how_no_renderer="\`-DPSYGEN_RENDER=OFF\`, without Vulkan, GLFW and Dear ImGui"
-port_no_renderer() {
+row_no_renderer() {
   configure no-renderer -DPSYGEN_RENDER=OFF -DPSYGEN_MPI=OFF -DPSYGEN_GLSLC=/absent \
     -DCMAKE_DISABLE_FIND_PACKAGE_{Vulkan,glfw3,imgui}=ON
   build no-renderer
@@ -102,51 +91,24 @@ port_no_renderer() {
 }
 
 how_cxx23="\`-DCMAKE_CXX_STANDARD=23\`"
-port_cxx23() { same_bits cxx23 -DCMAKE_CXX_STANDARD=23; }
+row_cxx23() { same_bits cxx23 -DCMAKE_CXX_STANDARD=23; }
 
 how_lto="link-time optimisation"
-port_lto() { same_bits lto -DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON; }
+row_lto() { same_bits lto -DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON; }
 
 how_multi_config="Ninja Multi-Config"
-port_multi_config() { same_bits multi-config -G "Ninja Multi-Config" -DCMAKE_DEFAULT_BUILD_TYPE=RelWithDebInfo; }
+row_multi_config() { same_bits multi-config -G "Ninja Multi-Config" -DCMAKE_DEFAULT_BUILD_TYPE=RelWithDebInfo; }
 
 how_clang_14="clang 14"
-port_clang_14() {
+row_clang_14() {
   needs clang++-14
   same_bits clang-14 -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14
 }
 
 how_clang_19="clang 19"
-port_clang_19() {
+row_clang_19() {
   needs clang++-19
   same_bits clang-19 -DCMAKE_C_COMPILER=clang-19 -DCMAKE_CXX_COMPILER=clang++-19
 }
 
-record=""
-[ "${1:-}" = "--record" ] && { record=yes; shift; }
-for port in "$@"; do
-  [[ " ${ports[*]} " == *" $port "* ]] || { echo "ports: no port $port; ports are ${ports[*]}" >&2; exit 2; }
-done
-[ $# -gt 0 ] || set -- "${ports[@]}"
-
-mkdir -p build
-revision="$(git rev-parse --short HEAD 2>/dev/null || echo unknown)"
-failed=0
-echo "| port | how | result | date | revision |"
-echo "| --- | --- | --- | --- | --- |"
-for port in "$@"; do
-  name="${port//-/_}" how="how_${port//-/_}"
-  said="$( (set -e; "port_$name") 3>&1 >"build/port-$port.log" 2>&1)"
-  status=$?
-  case $status in
-    0 | 77) result="${said##*$'\n'}" ;;
-    *) result="failed" failed=1 ;;
-  esac
-  row="| $port | ${!how} | ${result:-builds} | $(date -u +%F) | $revision |"
-  echo "$row"
-  [ $status -ne 0 ] && tail -5 "build/port-$port.log" | sed 's/^/  /' >&2
-  # Rows of ports that are left out keep their last result.
-  [ -n "$record" ] && [ $status -ne 77 ] &&
-    PORT="$port" ROW="$row" perl -pi -e 's/^\| \Q$ENV{PORT}\E \|.*$/$ENV{ROW}/' docs/platforms.md
-done
-exit $failed
+try_rows port "$@"
