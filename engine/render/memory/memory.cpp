@@ -1,14 +1,9 @@
 #include "engine/render/memory/memory.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
-#include <initializer_list>
-#include <optional>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,49 +12,6 @@ namespace psygen::render {
 using core::Result;
 
 namespace {
-
-// The error for an allocation that no memory type of the driver allows; nothing: it is allowed.
-std::optional<core::Error> too_large(const Device& device, const VkMemoryRequirements& needs) {
-  const auto refuse = [&needs](std::string_view what, std::uint64_t bytes) {
-    return core::Error{core::ErrorCode::kOutOfMemory,
-                       fmt::format("allocating {} bytes of device memory failed: {} {} bytes at "
-                                   "once",
-                                   needs.size, what, bytes)};
-  };
-  if (device.max_allocation_bytes < needs.size)
-    return refuse("the driver allows", device.max_allocation_bytes);
-  std::uint64_t largest = 0;
-  for (std::uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
-    const std::uint32_t heap = device.memory.memoryTypes[i].heapIndex;
-    if ((needs.memoryTypeBits >> i & 1u) != 0)
-      largest = std::max(largest, device.memory.memoryHeaps[heap].size / 4);
-  }
-  if (largest < needs.size) return refuse("a quarter of the driver's largest heap allows", largest);
-  return std::nullopt;
-}
-
-// Allocates memory of the first type with one of the sets of properties in `wishes`, tried in
-// order. Skips heaps that are smaller than four times the allocation.
-Result<UniqueMemory> allocate(const Device& device, const VkMemoryRequirements& needs,
-                              std::initializer_list<VkMemoryPropertyFlags> wishes) {
-  if (auto error = too_large(device, needs)) return tl::unexpected(*std::move(error));
-  VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
-  for (const VkMemoryPropertyFlags wish : wishes) {
-    for (std::uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
-      const VkMemoryType& type = device.memory.memoryTypes[i];
-      if ((needs.memoryTypeBits >> i & 1u) == 0 || (type.propertyFlags & wish) != wish) continue;
-      if (device.memory.memoryHeaps[type.heapIndex].size / 4 < needs.size) continue;
-      const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                      .allocationSize = needs.size,
-                                      .memoryTypeIndex = i};
-      VkDeviceMemory memory = VK_NULL_HANDLE;
-      result = device.vk.vkAllocateMemory(device.handle, &info, nullptr, &memory);
-      if (result == VK_SUCCESS) return UniqueMemory(device.vk, device.handle, memory, needs.size);
-    }
-  }
-  return vulkan_failure(result,
-                        fmt::format("allocating {} bytes of device memory", needs.size).c_str());
-}
 
 constexpr VkMemoryPropertyFlags kMapped =
     VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
@@ -74,25 +26,24 @@ Result<Buffer> make_buffer(const Device& device, std::uint64_t bytes, VkBufferUs
       device.make<UniqueBuffer>(&VolkDeviceTable::vkCreateBuffer, info, "creating a buffer");
   if (!buffer) return tl::unexpected(buffer.error());
 
-  VkMemoryRequirements needs{};
-  device.vk.vkGetBufferMemoryRequirements(device.handle, buffer->get(), &needs);
+  MemoryWish wish{};
+  device.vk.vkGetBufferMemoryRequirements(device.handle, buffer->get(), &wish.needs);
   const VkMemoryPropertyFlags extra = use == MemoryUse::kWrite ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
                                                                : VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
   const bool mapped_use = use != MemoryUse::kDevice;
-  Result<UniqueMemory> memory =
-      mapped_use ? allocate(device, needs, {kMapped | extra, kMapped})
-                 : allocate(device, needs, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
+  Result<MemoryRange> memory =
+      mapped_use ? allocate(device, wish, {kMapped | extra, kMapped})
+                 : allocate(device, wish, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
   if (!memory) return tl::unexpected(memory.error());
   Buffer made{std::move(*memory), std::move(*buffer), nullptr, bytes};
-  VkResult result =
-      device.vk.vkBindBufferMemory(device.handle, made.buffer.get(), made.memory.get(), 0);
+  const VkResult result = device.vk.vkBindBufferMemory(device.handle, made.buffer.get(),
+                                                       made.memory.memory(), made.memory.offset());
   if (result != VK_SUCCESS) return vulkan_failure(result, "binding a buffer to its memory");
   if (!mapped_use) return made;
-  void* mapped = nullptr;
-  result = device.vk.vkMapMemory(device.handle, made.memory.get(), 0, VK_WHOLE_SIZE, 0, &mapped);
-  if (result != VK_SUCCESS) return vulkan_failure(result, "mapping device memory");
-  made.mapped = static_cast<std::byte*>(mapped);
-  return made;
+  return made.memory.map(device).map([&](std::byte* mapped) {
+    made.mapped = mapped;
+    return std::move(made);
+  });
 }
 
 Result<bool> grow(const Device& device, Buffer& buffer, std::uint64_t bytes,
@@ -119,13 +70,13 @@ Result<Image> make_image(const Device& device, core::Extent size, VkFormat forma
   Result<UniqueImage> image =
       device.make<UniqueImage>(&VolkDeviceTable::vkCreateImage, info, "creating an image");
   if (!image) return tl::unexpected(image.error());
-  VkMemoryRequirements needs{};
-  device.vk.vkGetImageMemoryRequirements(device.handle, image->get(), &needs);
-  Result<UniqueMemory> memory = allocate(device, needs, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
+  MemoryWish wish{.image = true};
+  device.vk.vkGetImageMemoryRequirements(device.handle, image->get(), &wish.needs);
+  Result<MemoryRange> memory = allocate(device, wish, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
   if (!memory) return tl::unexpected(memory.error());
   Image made{std::move(*memory), std::move(*image), {}};
-  const VkResult result =
-      device.vk.vkBindImageMemory(device.handle, made.image.get(), made.memory.get(), 0);
+  const VkResult result = device.vk.vkBindImageMemory(device.handle, made.image.get(),
+                                                      made.memory.memory(), made.memory.offset());
   if (result != VK_SUCCESS) return vulkan_failure(result, "binding an image to its memory");
   return make_view(device, made.image.get(), format, {aspect, 0, shape.mips, 0, shape.layers},
                    shape.array)

@@ -1,5 +1,5 @@
-// Buffers and images with their own memory, barriers, and commands that are run once. Only for a
-// few large allocations; meshes use geometry_pool.hpp. Main thread. Errors are those of
+// Buffers and images with their memory, barriers, and commands that are run once. Meshes use
+// geometry_pool.hpp. Main thread. Errors are those of
 // vulkan_error(). Private to engine/render.
 #pragma once
 
@@ -11,20 +11,21 @@
 
 #include "engine/core/surface_provider.hpp"
 #include "engine/render/device/device.hpp"
+#include "engine/render/memory/memory_block.hpp"
 
 namespace psygen::render {
 
-// A buffer bound to its own memory.
+// A buffer bound to its memory.
 struct Buffer {
-  UniqueMemory memory;  // destroyed after the buffer
+  MemoryRange memory;  // destroyed after the buffer
   UniqueBuffer buffer;
   std::byte* mapped = nullptr;  // null for MemoryUse::kDevice
   std::uint64_t bytes = 0;
 };
 
-// An image bound to its own memory, and a view of it.
+// An image bound to its memory, and a view of it.
 struct Image {
-  UniqueMemory memory;
+  MemoryRange memory;
   UniqueImage image;
   UniqueImageView view;
 };
