@@ -130,6 +130,9 @@ void FrameSets::write_draws(const Device& device, std::size_t slot, const Buffer
 void FrameSets::bind(const Device& device, VkCommandBuffer commands, std::size_t slot) const {
   device.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1,
                                     &sets_[slot], 0, nullptr);
+  constexpr std::array<std::byte, sizeof(shaders::DrawData) + sizeof(std::uint32_t)> kZeros{};
+  device.vk.vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_VERTEX_BIT, 0,
+                               kZeros.size(), kZeros.data());
 }
 
 void FrameSets::bind_textures(const Device& device, VkCommandBuffer commands,

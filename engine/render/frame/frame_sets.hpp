@@ -55,7 +55,8 @@ class FrameSets {
   void write(const Device& device, std::size_t slot, const SlotBuffers& buffers) const;
   // Names another buffer with the data of draws.
   void write_draws(const Device& device, std::size_t slot, const Buffer& draws) const;
-  // Binds set 0 of a slot, or the textures of a material as set 1.
+  // Binds set 0 of a slot and pushes zeros, because draws push only parts of push_range(). Or binds
+  // the textures of a material as set 1.
   void bind(const Device& device, VkCommandBuffer commands, std::size_t slot) const;
   void bind_textures(const Device& device, VkCommandBuffer commands,
                      VkDescriptorSet textures) const;

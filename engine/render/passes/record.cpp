@@ -26,13 +26,10 @@ void end_rendering(const Recording& to) {
 void bind_blank(const Recording& to, VkDescriptorSet textures) {
   const VkDeviceSize zero = 0;
   const VkBuffer blank = to.buffers.shared_indices;
-  const shaders::DrawData data{};
   to.sets.bind(to.device, to.commands(), to.slot.number());
   if (textures != VK_NULL_HANDLE) to.sets.bind_textures(to.device, to.commands(), textures);
   to.device.vk.vkCmdBindVertexBuffers(to.commands(), 0, 1, &blank, &zero);
   to.device.vk.vkCmdBindIndexBuffer(to.commands(), blank, 0, VK_INDEX_TYPE_UINT16);
-  to.device.vk.vkCmdPushConstants(to.commands(), to.sets.layout(), VK_SHADER_STAGE_VERTEX_BIT, 0,
-                                  sizeof(data), &data);
 }
 
 // Records a step of a pass in each kind of rendering in which its stage may be drawn.
