@@ -6,6 +6,19 @@ if(NOT PROJECT_IS_TOP_LEVEL)
 endif()
 set(PSYGEN_MAINTAINER "The psygen authors <psygen@example.org>" CACHE STRING "Maintainer of the .deb files")
 
+# Licences of psygen, and of the font and the libraries that its programs contain, as Debian has them.
+file(READ LICENSE licences)
+foreach(used fonts-dejavu-core libcli11-dev libexpected-dev libglm-dev libimgui-dev libtomlplusplus-dev libvulkan-volk-dev
+             nlohmann-json3-dev)
+  if(EXISTS /usr/share/doc/${used}/copyright)
+    file(READ /usr/share/doc/${used}/copyright more)
+    string(APPEND licences "\n\n${used}\n\n${more}")
+  endif()
+endforeach()
+set(CPACK_PSYGEN_LICENCES ${PROJECT_BINARY_DIR}/licences.txt)
+file(WRITE ${CPACK_PSYGEN_LICENCES} "${licences}")
+install(FILES ${CPACK_PSYGEN_LICENCES} DESTINATION ${CMAKE_INSTALL_DATADIR}/psygen COMPONENT psygen_data)
+
 set(CPACK_GENERATOR DEB TZST)
 set(CPACK_PACKAGE_CONTACT ${PSYGEN_MAINTAINER})
 set(CPACK_PACKAGE_FILE_NAME ${PROJECT_NAME}-${PROJECT_VERSION}-${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR})

@@ -1,26 +1,13 @@
-# cpack runs this script between installing into its own folder and packing: it adds licences, gives each .deb the files
-# that Debian's policy demands, and all files the time $SOURCE_DATE_EPOCH.
+# cpack runs this script between installing into its own folder and packing: it gives each .deb the files that Debian's
+# policy demands, and all files the time $SOURCE_DATE_EPOCH.
 set(time $ENV{SOURCE_DATE_EPOCH})
-
-# write_licences(FILE)   of psygen, and of the font and the libraries that its programs contain, as Debian has them
-function(write_licences file)
-  file(READ ${CPACK_PSYGEN_SOURCE_DIR}/LICENSE text)
-  foreach(used IN ITEMS fonts-dejavu-core libcli11-dev libexpected-dev libglm-dev libimgui-dev libtomlplusplus-dev
-                        libvulkan-volk-dev nlohmann-json3-dev)
-    if(EXISTS /usr/share/doc/${used}/copyright)
-      file(READ /usr/share/doc/${used}/copyright more)
-      string(APPEND text "\n\n${used}\n\n${more}")
-    endif()
-  endforeach()
-  file(WRITE ${file} "${text}")
-endfunction()
 
 # finish_debian(PACKAGE)   in the folder of the package
 function(finish_debian package)
   set(usr ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/${package}/usr)
   set(doc ${usr}/share/doc/${package})
-  write_licences(${doc}/copyright)
-  file(REMOVE ${usr}/share/doc/psygen/LICENSE)  # copyright has its text
+  configure_file(${CPACK_PSYGEN_LICENCES} ${doc}/copyright COPYONLY)
+  file(REMOVE ${usr}/share/doc/psygen/LICENSE ${usr}/share/psygen/licences.txt)  # copyright has their texts
   execute_process(COMMAND date -R -u -d @${time} OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE)
   file(WRITE ${doc}/changelog "psygen (${CPACK_PACKAGE_VERSION}) stable; urgency=medium
 
@@ -53,8 +40,6 @@ if(CPACK_GENERATOR STREQUAL "DEB")
   foreach(package IN LISTS packages)
     finish_debian(${package})
   endforeach()
-else()
-  write_licences(${CPACK_TEMPORARY_INSTALL_DIRECTORY}/psygen_data/${CPACK_PACKAGE_FILE_NAME}/share/doc/psygen/copyright)
 endif()
 execute_process(COMMAND find ${CPACK_TEMPORARY_INSTALL_DIRECTORY} -exec touch -h -d @${time} {} +
                 COMMAND_ERROR_IS_FATAL ANY)
