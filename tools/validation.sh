@@ -1,18 +1,13 @@
 #!/usr/bin/env bash
-# Draws everything under the newest Vulkan validation layer of this machine, with synchronisation validation and best
-# practices, and fails on any message. Takes about two minutes on two cores; build release first.
-#   tools/validation.sh [DRIVER.json]     default: the drivers that the loader finds
-# PSYGEN_LAYER: the layer's library (default: that of chromium, which is the newest of a distribution, or the system's).
+# Draws everything under the newest Vulkan validation layer, with synchronisation validation and best practices, and fails
+# on any message. Takes a minute on two cores; build release first.
+#   tools/validation.sh
+# PSYGEN_LAYER: the layer's library, 1.4 or newer (default: that of chromium, which follows every release).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-library="${PSYGEN_LAYER:-}"
-for candidate in /usr/lib/chromium /usr/lib/x86_64-linux-gnu /usr/lib/aarch64-linux-gnu /usr/lib64; do
-  [ -n "$library" ] || [ ! -e "$candidate/libVkLayer_khronos_validation.so" ] ||
-    library="$candidate/libVkLayer_khronos_validation.so"
-done
-[ -n "$library" ] || { echo "no libVkLayer_khronos_validation.so was found" >&2; exit 1; }
-[ $# = 0 ] || export VK_DRIVER_FILES="$1"
+library="${PSYGEN_LAYER:-/usr/lib/chromium/libVkLayer_khronos_validation.so}"
+[ -e "$library" ] || { echo "$library is missing; install chromium" >&2; exit 1; }
 
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
