@@ -12,9 +12,11 @@
 namespace psygen::cli {
 namespace {
 
-// Allows containers, root and fewer processors than ranks; messages go through shared memory.
+// Allows containers, root and fewer processors than ranks (Open MPI 4 and 5); messages go through
+// shared memory.
 constexpr const char* kMpi =
     "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
+    "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe "
     "OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_btl=self,vader "
     "OMPI_MCA_odls_base_sigkill_timeout=0 mpirun";
 

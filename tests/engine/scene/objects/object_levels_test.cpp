@@ -35,7 +35,7 @@ std::vector<ObjectLevel> levels_of(const core::MeshData& mesh, std::size_t most)
 }
 
 TEST(ObjectLevels, HaveFewerTrianglesAndLargerErrors) {
-  const core::MeshData mesh = sphere(24);
+  const core::MeshData mesh = sphere(48);
   const std::vector<ObjectLevel> levels = levels_of(mesh, 8);
   ASSERT_GE(levels.size(), 3U);
   EXPECT_EQ(levels[0].mesh.indices.size(), mesh.indices.size());
