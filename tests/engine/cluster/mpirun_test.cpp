@@ -69,6 +69,16 @@ class Mpirun : public AmplifyFixture {
   const std::filesystem::path sessions_;
 };
 
+// Ranks with different commands, between colons. mpirun of Debian 13 (Open MPI 5.0.7) ends with
+// SIGSEGV at any of them.
+class MpirunOfDifferentRanks : public Mpirun {
+ protected:
+  void SetUp() override {
+    if (run("-n 1 true : -n 1 true").code != 0)
+      GTEST_SKIP() << "this mpirun starts no ranks with different commands";
+  }
+};
+
 TEST_F(Mpirun, OneTwoAndFourRanksHaveTheHashAndTheFilesOfOneThread) {
   const std::string hash = hash_in(amplify("--threads 1 --json --out alone"));
   for (const int ranks : {1, 2, 4}) {
@@ -81,7 +91,7 @@ TEST_F(Mpirun, OneTwoAndFourRanksHaveTheHashAndTheFilesOfOneThread) {
   EXPECT_EQ(hash_in(run("-n 2 PSYGEN --world small.toml --json")), hash);
 }
 
-TEST_F(Mpirun, AJobWhoseRanksAreKilledAtAnyMomentCanBeResumed) {
+TEST_F(MpirunOfDifferentRanks, AJobWhoseRanksAreKilledAtAnyMomentCanBeResumed) {
   const std::string region = " --region 1,1,4,4";
   const std::string hash = hash_in(amplify("--threads 1 --json --out alone" + region));
   const FileContents whole = blocks_in("alone");
@@ -118,7 +128,7 @@ TEST_F(Mpirun, AJobWhoseRanksAreKilledAtAnyMomentCanBeResumed) {
   }
 }
 
-TEST_F(Mpirun, RanksThatDisagreeSayWhy) {
+TEST_F(MpirunOfDifferentRanks, RanksThatDisagreeSayWhy) {
   const Outcome worlds =
       run("-n 1 PSYGEN --world small.toml : -n 1 PSYGEN --world paper --region 0,0,8,4");
   EXPECT_NE(worlds.code, 0);
@@ -138,7 +148,7 @@ TEST_F(Mpirun, RanksThatDisagreeSayWhy) {
 }
 
 // The fixed share of rank 1 needs more calls than this limit.
-TEST_F(Mpirun, AFullDiskEndsTheJobWithTheFileAndTheReason) {
+TEST_F(MpirunOfDifferentRanks, AFullDiskEndsTheJobWithTheFileAndTheReason) {
   const Outcome full = run(fmt::format(
       "-n 1 PSYGEN --world small.toml --out job : -n 1 -x LD_PRELOAD={} -x PSYGEN_FULL_DISK={} "
       "-x PSYGEN_CALLS_LEFT=20 PSYGEN --world small.toml --out job",
@@ -148,7 +158,7 @@ TEST_F(Mpirun, AFullDiskEndsTheJobWithTheFileAndTheReason) {
   EXPECT_TRUE(mentions(full.err, "No space left on device")) << full.err;
 }
 
-TEST_F(Mpirun, AFlightHasTheSameImagesWhicheverRankMakesItsMeshes) {
+TEST_F(MpirunOfDifferentRanks, AFlightHasTheSameImagesWhicheverRankMakesItsMeshes) {
   std::ofstream(folder_ / "rocks.toml") << kRocks;
   const auto images_in = [](const Outcome& flight) -> std::string {
     if (flight.code != 0) return flight.err;
@@ -168,7 +178,7 @@ TEST_F(Mpirun, AFlightHasTheSameImagesWhicheverRankMakesItsMeshes) {
   EXPECT_FALSE(mentions(three.err, "remote meshes      0 meshes")) << three.err;
 }
 
-TEST_F(Mpirun, AFlightThatCannotBeDistributedSaysWhyOnce) {
+TEST_F(MpirunOfDifferentRanks, AFlightThatCannotBeDistributedSaysWhyOnce) {
   std::ofstream(folder_ / "rocks.toml") << kRocks;
   const Outcome each = run("-n 3 FLY ");
   EXPECT_NE(each.code, 0);
@@ -183,7 +193,7 @@ TEST_F(Mpirun, AFlightThatCannotBeDistributedSaysWhyOnce) {
 }
 
 // The other ranks do not wait for the one that failed.
-TEST_F(Mpirun, ARankWithoutTheWorldFailsInTheHandshakeAndOnlyTheFirstNeedsAPath) {
+TEST_F(MpirunOfDifferentRanks, ARankWithoutTheWorldFailsInTheHandshakeAndOnlyTheFirstNeedsAPath) {
   std::ofstream(folder_ / "rocks.toml") << kRocks;
   const std::string other = " : -n 1 " PSYGEN_EXECUTABLE " fly --cluster --headless ";
   const Outcome lacks = run("-n 1 FLY --cluster" + other + "--world nowhere.toml");
