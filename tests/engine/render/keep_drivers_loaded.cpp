@@ -3,6 +3,8 @@
 // test program that makes a renderer. Does nothing where a library is not installed.
 #include <dlfcn.h>
 
+#include <initializer_list>
+
 namespace {
 
 bool keep_drivers_loaded() {
