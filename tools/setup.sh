@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs packages on Debian 12, Debian 13 and Ubuntu 24.04, if they are missing.
 #   tools/setup.sh           packages to build and run psygen and its game
-#   tools/setup.sh --editor  also those of the editor
+#   tools/setup.sh --editor  also those of the editor, and of models with Draco compression
 #   tools/setup.sh --test    also those of the editor, the cluster and all tests
 #   tools/setup.sh --ci      also those of the complete check (clang-format, clang-tidy, npm)
 #   tools/setup.sh --clang   those of --test, and clang with its sanitizers, for tools/fuzz.sh and tools/builds.sh
@@ -9,16 +9,16 @@
 set -euo pipefail
 
 build=(
-  g++ cmake ninja-build git pkg-config libglfw3-dev libglm-dev libvulkan-dev libvulkan-volk-dev
-  mesa-vulkan-drivers glslc spirv-tools libopenimageio-dev libexpected-dev libcli11-dev libtomlplusplus-dev
+  g++ cmake ninja-build libglfw3-dev libglm-dev libvulkan-dev libvulkan-volk-dev
+  mesa-vulkan-drivers glslc libopenimageio-dev libexpected-dev libcli11-dev libtomlplusplus-dev
   nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev
-  libtinygltf-dev libmeshoptimizer-dev libdraco-dev libsqlite3-dev libopenal-dev libsndfile1-dev libbullet-dev
+  libtinygltf-dev libmeshoptimizer-dev libsqlite3-dev libopenal-dev libsndfile1-dev libbullet-dev
 )
-editor=(qt6-base-dev libxcb1-dev)
+editor=(qt6-base-dev libxcb1-dev pkg-config libdraco-dev)
 test=(
-  python3 ccache vulkan-validationlayers libopenmpi-dev openmpi-bin slurm-wlm munge libgtest-dev
+  git python3 ccache spirv-tools vulkan-validationlayers libopenmpi-dev openmpi-bin slurm-wlm munge libgtest-dev
   libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind gdb linux-perf xvfb openbox xdotool x11-utils
-  x11-xkb-utils chromium
+  x11-xkb-utils sway libxkbcommon-tools chromium
 )
 ci=(clang-format clang-tidy)
 # For the test in which other programs read tilesets. A newer Node.js from elsewhere works too.
