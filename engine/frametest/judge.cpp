@@ -298,7 +298,7 @@ Figure median_of(std::span<const RunFields> runs, std::string_view field) {
 }
 
 Figure others_share(std::span<const RunFields> runs) {
-  const Figure others = median_of(runs, "load.others_cores");
+  Figure others = median_of(runs, "load.others_cores");
   const Figure cores = median_of(runs, "machine.cores");
   if (!others.has_value()) return others;
   if (!cores.has_value() || !(*cores > 0)) return Figure::missing("the processors are unknown");

@@ -234,6 +234,7 @@ std::vector<DeviceCandidate> find_devices(const Instance& instance, VkSurfaceKHR
 
 std::vector<DeviceInfo> infos_of(const std::vector<DeviceCandidate>& candidates) {
   std::vector<DeviceInfo> infos;
+  infos.reserve(candidates.size());
   for (const DeviceCandidate& candidate : candidates)
     infos.push_back(candidate.info);
   return infos;
