@@ -120,7 +120,7 @@ core::Result<MeshId> Assets::add_mesh(const core::MeshData& mesh, std::string na
   ObjectSource source;
   source.name = std::move(name);
   source.box = packed->box;
-  source.copied = object_levels(mesh, std::move(*packed), ObjectMesh::kMaxLevels);
+  source.copied = object_levels(std::move(*packed), ObjectMesh::kMaxLevels);
   source.level_count = static_cast<int>(source.copied.size());
   const std::uint64_t bytes = bytes_of(source);
   if (auto ok = check_budget(source.name, bytes); !ok) return tl::unexpected(ok.error());

@@ -54,12 +54,12 @@ bool is_tangled(const std::vector<std::uint16_t>& indices, std::size_t vertices)
 
 // Of the surface of all triangles. Simplifying loose triangles removes them one by one instead of
 // making a surface coarser, so the total shrinks.
-double area_m2(const core::MeshData& mesh, const std::vector<std::uint16_t>& indices) {
+double area_m2(const std::vector<glm::vec3>& places, const std::vector<std::uint16_t>& indices) {
   double area = 0;
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    const glm::vec3& a = mesh.positions[indices[i]];
-    area += 0.5 * static_cast<double>(glm::length(glm::cross(mesh.positions[indices[i + 1]] - a,
-                                                             mesh.positions[indices[i + 2]] - a)));
+    const glm::vec3& a = places[indices[i]];
+    area += 0.5 * static_cast<double>(glm::length(
+                      glm::cross(places[indices[i + 1]] - a, places[indices[i + 2]] - a)));
   }
   return area;
 }
@@ -107,25 +107,32 @@ core::Result<PackedMesh> pack(const core::MeshData& mesh) {
   return packed;
 }
 
-std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh finest,
-                                       std::size_t most) {
+std::vector<ObjectLevel> object_levels(PackedMesh finest, std::size_t most) {
   std::vector<ObjectLevel> levels;
+  levels.reserve(most);  // `all` stays where it is
   levels.push_back({std::move(finest), 0});
-  if (is_tangled(levels[0].mesh.indices, mesh.positions.size())) return levels;
-  const float* const places = &mesh.positions.front().x;
-  const std::size_t count = mesh.positions.size(), stride = sizeof(glm::vec3);
-  const auto scale = static_cast<double>(meshopt_simplifyScale(places, count, stride));
-  const double min_area = kMinArea * area_m2(mesh, levels[0].mesh.indices);
+  const PackedMesh& all = levels[0].mesh;
+  const std::size_t count = all.vertices.size(), stride = sizeof(glm::vec3);
+  if (is_tangled(all.indices, count)) return levels;
+  // The places as they are drawn. At a seam, code often computes two that are almost equal; packed
+  // they are equal, and the simplifier sees one surface.
+  std::vector<glm::vec3> places;
+  places.reserve(count);
+  for (const core::ObjectVertex& vertex : all.vertices)
+    places.push_back(models::unpack_position(vertex.model, all.box));
+  const float* const first = &places.front().x;
+  const auto scale = static_cast<double>(meshopt_simplifyScale(first, count, stride));
+  const double min_area = kMinArea * area_m2(places, all.indices);
   // Each level comes from the one before: all together cost little more than the first.
-  std::vector<std::uint16_t> last = levels[0].mesh.indices;
+  std::vector<std::uint16_t> last = all.indices;
   while (levels.size() < most && last.size() >= kFewestIndices) {
     const std::size_t before = last.size();
     std::vector<std::uint16_t> indices(before);
     float error = 0;
-    indices.resize(meshopt_simplify(indices.data(), last.data(), before, places, count, stride,
+    indices.resize(meshopt_simplify(indices.data(), last.data(), before, first, count, stride,
                                     before / 12 * 3, std::numeric_limits<float>::max(), 0, &error));
     if (indices.size() < kMinIndices || 2 * indices.size() > before ||
-        area_m2(mesh, indices) < min_area)
+        area_m2(places, indices) < min_area)
       break;
     const double error_m = levels.back().error_m + error * scale;
     levels.push_back({with_indices(levels[0].mesh, indices), error_m});

@@ -30,9 +30,8 @@ struct ObjectLevel {
 // Makes one to `most` levels (>= 1), simplified by meshoptimizer: fewer triangles between some of
 // the same vertices. Deterministic for one version of meshoptimizer. Each has at most half the
 // triangles of the one before, about a quarter if the shape allows it, and at least half its
-// surface. The first is `finest`, packed from `mesh`. Small meshes have one level, and so do those
-// with thousands of triangles at one vertex, which take too long. O(n log n) for n triangles.
-std::vector<ObjectLevel> object_levels(const core::MeshData& mesh, PackedMesh finest,
-                                       std::size_t most);
+// surface. The first is `finest`. Small meshes have one level, and so do those with thousands of
+// triangles at one vertex, which take too long. O(n log n) for n triangles.
+std::vector<ObjectLevel> object_levels(PackedMesh finest, std::size_t most);
 
 }  // namespace psygen::scene

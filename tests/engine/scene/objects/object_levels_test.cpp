@@ -31,11 +31,11 @@ core::MeshData sphere(std::uint32_t rings) {
 std::vector<ObjectLevel> levels_of(const core::MeshData& mesh, std::size_t most) {
   auto packed = pack(mesh);
   EXPECT_TRUE(packed.has_value());
-  return object_levels(mesh, std::move(*packed), most);
+  return object_levels(std::move(*packed), most);
 }
 
 TEST(ObjectLevels, HaveFewerTrianglesAndLargerErrors) {
-  const core::MeshData mesh = sphere(48);
+  const core::MeshData mesh = sphere(24);
   const std::vector<ObjectLevel> levels = levels_of(mesh, 8);
   ASSERT_GE(levels.size(), 3U);
   EXPECT_EQ(levels[0].mesh.indices.size(), mesh.indices.size());
