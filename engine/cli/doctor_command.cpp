@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "engine/cli/commands.hpp"
+#include "engine/cli/device_json.hpp"
 #include "engine/cli/library_versions.hpp"
 #include "engine/core/data_file.hpp"
 #include "engine/core/processors.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/models/kit/simd_targets.hpp"
 #include "engine/render/device/software_tuning.hpp"
-#include "engine/render/preset.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/synthesis/synthesis_manager.hpp"
 #include "engine/telemetry/machine.hpp"
@@ -97,19 +97,13 @@ Json memory_of(const telemetry::MachineFacts& machine) {
           {"ulimit_s_bytes", limit_of(RLIMIT_STACK)}};
 }
 
+// Of the device of a renderer, of which more is known.
 Json device_of(const render::DeviceInfo& device) {
-  return {{"name", device.name},
-          {"driver", device.driver},
-          {"vulkan", device.api_version},
-          {"uuid", device.uuid},
-          {"type", device.software() ? "software" : "hardware"},
-          {"memory_bytes", device.memory_bytes},
-          {"largest_allocation_bytes", device.max_allocation_bytes},
-          {"largest_image_pixels", device.max_image_side},
-          {"multi_draw", device.multi_draw},
-          {"gpu_path", device.gpu_path},
-          {"wireframe", device.wireframe},
-          {"timestamps", device.timestamps}};
+  Json found = device_json(device);
+  found["largest_allocation_bytes"] = device.max_allocation_bytes;
+  found["largest_image_pixels"] = device.max_image_side;
+  found["timestamps"] = device.timestamps;
+  return found;
 }
 
 Json libraries() {
@@ -248,6 +242,7 @@ class DoctorCommand final : public Command {
 
   int run() override {
     const telemetry::MachineFacts machine = telemetry::machine_facts();
+    const Json set_by_user = environment();  // before fit_software_rendering() sets a variable
     const auto raster_threads = render::fit_software_rendering();
     Json found = {{"schema", "psygen.doctor/1"}, {"program", program()}};
     const core::Result<void> drawn =
@@ -258,7 +253,7 @@ class DoctorCommand final : public Command {
     found["memory"] = memory_of(machine);
     found["folders"] = folders();
     found["libraries"] = libraries();
-    found["environment"] = environment();
+    found["environment"] = set_by_user;
     found["slow"] = slow_reasons(found);
     found["draws"] = drawn.has_value();
     const int printed = print(
@@ -276,8 +271,6 @@ class DoctorCommand final : public Command {
     const auto renderer = render::Renderer::create(options);
     if (!renderer) return tl::unexpected(renderer.error());
     found["device"] = device_of((*renderer)->device());
-    found["device"]["preset"] = render::to_string((*renderer)->preset());
-    found["device"]["path"] = render::to_string((*renderer)->path());
     return (*renderer)->show({});
   }
 
