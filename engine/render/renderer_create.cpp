@@ -164,7 +164,7 @@ Result<std::byte*> RendererImpl::add_pool_block(std::uint64_t bytes) {
 }
 
 Result<void> RendererImpl::create_targets(core::Extent extent) {
-  const std::uint32_t side = device_->max_image_side;
+  const std::uint32_t side = device_->info.max_image_side;
   if (is_empty(extent) || extent.width > side || extent.height > side) {
     return core::fail(ErrorCode::kInvalidArgument,
                       fmt::format("a picture has 1 to {} pixels a side on this device, not {} x {}",

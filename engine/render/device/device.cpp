@@ -213,10 +213,8 @@ void read_limits(Device& device) {
                                          .pNext = &sizes};
   vkGetPhysicalDeviceProperties2(device.physical, &properties);
   const VkPhysicalDeviceLimits& limits = properties.properties.limits;
-  device.max_allocation_bytes = sizes.maxMemoryAllocationSize;
-  device.max_image_side = limits.maxImageDimension2D;
-  device.info.max_allocation_bytes = device.max_allocation_bytes;
-  device.info.max_image_side = device.max_image_side;
+  device.info.max_allocation_bytes = sizes.maxMemoryAllocationSize;
+  device.info.max_image_side = limits.maxImageDimension2D;
   device.sampled_depth_counts = limits.sampledImageDepthSampleCounts;
   device.sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts;
   device.max_multi_draw = multi_draw.maxMultiDrawCount;

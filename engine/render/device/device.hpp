@@ -72,10 +72,8 @@ class Device {
   VkQueue transfer_queue = VK_NULL_HANDLE;  // `queue` if there is none only for transfers
   std::uint32_t transfer_family = 0;
   VkPhysicalDeviceMemoryProperties memory{};
-  mutable std::vector<std::weak_ptr<MemoryBlock>>
-      shared_blocks;                       // memory_block.hpp; may be expired
-  std::uint64_t max_allocation_bytes = 0;  // of one allocation
-  std::uint32_t max_image_side = 0;        // pixels
+  // See memory_block.hpp. Some may have expired.
+  mutable std::vector<std::weak_ptr<MemoryBlock>> shared_blocks;
   VkSampleCountFlags sampled_depth_counts = VK_SAMPLE_COUNT_1_BIT;  // of depth read by shaders
   VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;         // of colour and depth
   std::uint32_t max_multi_draw = 0;                                 // 0: no VK_EXT_multi_draw

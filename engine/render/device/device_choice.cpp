@@ -9,18 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/utf8.hpp"
+
 namespace psygen::render {
 
 namespace {
 
 using core::ErrorCode;
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
 
 // "0 'llvmpipe', 1 'SwiftShader' (lacks timelineSemaphore)".
 std::string list_of(std::span<const DeviceInfo> devices, std::span<const std::size_t> places) {
@@ -51,12 +46,12 @@ std::vector<std::size_t> named_places(std::span<const DeviceInfo> devices, std::
     if (number.ec != std::errc() || place >= devices.size()) return {};
     return {place};
   }
-  const std::string wanted = lower_case(wish);
+  const std::string wanted = core::lower_ascii(wish);
   const auto is_whole = [&](const DeviceInfo& device) {
-    return lower_case(device.uuid) == wanted || lower_case(device.name) == wanted;
+    return core::lower_ascii(device.uuid) == wanted || core::lower_ascii(device.name) == wanted;
   };
   const auto is_part = [&](const DeviceInfo& device) {
-    return lower_case(device.name).find(wanted) != std::string::npos;
+    return core::lower_ascii(device.name).find(wanted) != std::string::npos;
   };
   const std::vector<std::size_t> whole = places_of(devices, is_whole);
   return whole.empty() ? places_of(devices, is_part) : whole;

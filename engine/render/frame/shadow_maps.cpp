@@ -24,7 +24,7 @@ Result<UniqueSampler> make_comparing_sampler(const Device& device) {
 
 Result<void> ShadowMaps::create(const Device& device, const PresetTraits& traits) {
   cascades_ = traits.cascades;
-  size_ = std::min(traits.shadow_size, device.max_image_side);
+  size_ = std::min(traits.shadow_size, device.info.max_image_side);
   const std::uint32_t layer_count = std::max(cascades_, 1U);
   Result<void> made =
       make_comparing_sampler(device)

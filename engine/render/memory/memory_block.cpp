@@ -20,8 +20,8 @@ std::optional<core::Error> too_large(const Device& device, const VkMemoryRequire
                                    "once",
                                    needs.size, what, bytes)};
   };
-  if (device.max_allocation_bytes < needs.size)
-    return refuse("the driver allows", device.max_allocation_bytes);
+  if (device.info.max_allocation_bytes < needs.size)
+    return refuse("the driver allows", device.info.max_allocation_bytes);
   std::uint64_t largest = 0;
   for (std::uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
     const std::uint32_t heap = device.memory.memoryTypes[i].heapIndex;
