@@ -21,11 +21,12 @@ void add_means(const Image& a, const Image& b, ImageDifference& result) {
   const std::size_t columns = (a.width + kTileSide - 1) / kTileSide;
   const std::size_t rows = (a.height + kTileSide - 1) / kTileSide;
   std::vector<std::uint64_t> sums(columns * rows);
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-    const std::size_t x = i / 4 % a.width, y = i / 4 / a.width;
-    if (i % 4 == 3) continue;
-    sums[y / kTileSide * columns + x / kTileSide] +=
-        static_cast<std::uint64_t>(std::abs(int{a.rgba[i]} - int{b.rgba[i]}));
+  for (std::size_t y = 0, i = 0; y < a.height; ++y) {
+    std::uint64_t* const row = &sums[y / kTileSide * columns];
+    for (std::size_t x = 0; x < a.width; ++x, i += 4)
+      for (std::size_t channel = i; channel < i + 3; ++channel)
+        row[x / kTileSide] +=
+            static_cast<std::uint64_t>(std::abs(int{a.rgba[channel]} - int{b.rgba[channel]}));
   }
   const auto side = [](std::size_t pixels, std::size_t tile) {
     return std::min<std::size_t>(kTileSide, pixels - tile * kTileSide);

@@ -24,8 +24,7 @@ struct ImageDifference {
   std::uint64_t pixels_over = 0;    // pixels with a channel over the threshold
   double share_over = 0;            // pixels_over / all pixels, 0 … 1
   double mean = 0;                  // of red, green and blue of all pixels, 0 … 255
-  double worst_tile =
-      0;  // the largest such mean of a tile, whole or cut at the right and lower edge
+  double worst_tile = 0;            // the largest mean of a tile; edges cut tiles
 
   // Equal in every field.
   friend bool operator==(const ImageDifference&, const ImageDifference&) = default;
