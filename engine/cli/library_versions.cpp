@@ -6,24 +6,18 @@
 #include <link.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <sstream>
 #include <utility>
 
+#include "engine/core/utf8.hpp"
 #include "engine/image/picture_codec.hpp"
 
 namespace psygen::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 // The file names of the libraries in this process, without links.
 std::vector<std::string> loaded_libraries() {
@@ -38,13 +32,14 @@ std::vector<std::string> loaded_libraries() {
   return names;
 }
 
-// The loaded library of a package: "glfw3" is libglfw.so.3.3. Empty for a package without one.
-std::string loaded_file(const std::string& package) {
+// The library of a package among those that are loaded: "glfw3" is libglfw.so.3.3. Empty for a
+// package without one.
+std::string file_of(const std::string& package, const std::vector<std::string>& loaded) {
   const std::string stem =
-      "lib" + lower(package.substr(0, package.find_last_not_of("0123456789") + 1));
-  for (const std::string& file : loaded_libraries())
-    if (lower(file).starts_with(stem)) return file;
-  return {};
+      "lib" + core::lower_ascii(package.substr(0, package.find_last_not_of("0123456789") + 1));
+  const auto found = std::ranges::find_if(
+      loaded, [&](const std::string& file) { return core::lower_ascii(file).starts_with(stem); });
+  return found == loaded.end() ? "" : *found;
 }
 
 // The version that a function of a loaded library tells. Empty without the function.
@@ -66,6 +61,8 @@ std::string version_of_vulkan_loader() {
 }  // namespace
 
 std::vector<LibraryVersion> library_versions() {
+  const auto codec = image::picture_codec();  // loads OpenImageIO
+  const std::vector<std::string> loaded = loaded_libraries();
   std::vector<LibraryVersion> found;
   std::istringstream packages(PSYGEN_PACKAGE_VERSIONS);  // "fmt=9.1.0 glfw3=3.3.8"
   for (std::string package; packages >> package;) {
@@ -74,14 +71,12 @@ std::vector<LibraryVersion> library_versions() {
     if (library.name == "Vulkan") library.loaded = version_of_vulkan_loader();
     if (library.name == "glfw3") library.loaded = told_version("glfwGetVersionString");
     if (library.name == "SQLite3") library.loaded = told_version("sqlite3_libversion");
-    if (library.loaded.empty()) library.loaded = loaded_file(library.name);
+    if (library.loaded.empty()) library.loaded = file_of(library.name, loaded);
     found.push_back(std::move(library));
   }
   found.push_back({"C library", {}, gnu_get_libc_version()});
-  const auto codec = image::picture_codec();
-  found.push_back({"OpenImageIO",
-                   {},
-                   codec ? loaded_file("OpenImageIO") : "not loaded: " + codec.error().message});
+  const std::string reason = codec ? "" : "not loaded: " + codec.error().message;
+  found.push_back({"OpenImageIO", {}, codec ? file_of("OpenImageIO", loaded) : reason});
   return found;
 }
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
+#include "engine/core/utf8.hpp"
 #include "engine/telemetry/statistics.hpp"
 
 namespace psygen::compare {
@@ -33,9 +33,7 @@ Capture capture_of(const RecordedRun& run) {
 }
 
 bool may_be_capture(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = core::lower_ascii(file.extension().string());
   return ending == ".csv" || ending == ".json";
 }
 

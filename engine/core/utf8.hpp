@@ -26,4 +26,7 @@ void append_utf8(std::string& text, char32_t value);
 // \x1b and \u202e. A text of more than `max_bytes` bytes is cut and ends in "...". O(bytes).
 std::string shown(std::string_view text, std::size_t max_bytes = std::string_view::npos);
 
+// Returns the text with small letters in place of the capital ones of ASCII.
+std::string lower_ascii(std::string_view text);
+
 }  // namespace psygen::core
