@@ -14,7 +14,6 @@
 #include "engine/core/out_of_memory.hpp"
 
 #ifdef __linux__
-#include <pthread.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 #endif
