@@ -24,23 +24,9 @@ class AbsentCommand : public Command {
 
 }  // namespace
 
-std::unique_ptr<Command> make_compare_command(CLI::App& cli) {
-  return std::make_unique<AbsentCommand>(cli, "compare");
-}
-std::unique_ptr<Command> make_devices_command(CLI::App& cli) {
-  return std::make_unique<AbsentCommand>(cli, "devices");
-}
-std::unique_ptr<Command> make_doctor_command(CLI::App& cli) {
-  return std::make_unique<AbsentCommand>(cli, "doctor");
-}
-std::unique_ptr<Command> make_fly_command(CLI::App& cli) {
-  return std::make_unique<AbsentCommand>(cli, "fly");
-}
-std::unique_ptr<Command> make_picture_command(CLI::App& cli) {
-  return std::make_unique<AbsentCommand>(cli, "picture");
-}
-std::unique_ptr<Command> make_test_command(CLI::App& cli) {
-  return std::make_unique<AbsentCommand>(cli, "test");
+void add_absent_commands(CLI::App& cli, std::vector<std::unique_ptr<Command>>& commands) {
+  for (const char* name : {"fly", "picture", "test", "compare", "devices", "history", "doctor"})
+    commands.push_back(std::make_unique<AbsentCommand>(cli, name));
 }
 
 }  // namespace psygen::cli

@@ -47,6 +47,8 @@ std::unique_ptr<Command> make_models_command(CLI::App& cli);
 std::unique_ptr<Command> make_picture_command(CLI::App& cli);
 std::unique_ptr<Command> make_schedule_command(CLI::App& cli);
 std::unique_ptr<Command> make_test_command(CLI::App& cli);
+// Adds the subcommands that draw to a build without the renderer. They only fail, with a message.
+void add_absent_commands(CLI::App& cli, std::vector<std::unique_ptr<Command>>& commands);
 // Adds all subcommands, in the order of the help.
 std::vector<std::unique_ptr<Command>> make_commands(CLI::App& cli);
 

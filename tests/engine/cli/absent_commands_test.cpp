@@ -7,7 +7,8 @@ namespace {
 TEST(AbsentCommands, FailWithAMessageAndAreNotInTheHelp) {
   const Outcome help = run_psygen("--help");
   EXPECT_EQ(help.code, 0) << help.err;
-  for (const std::string command : {"fly", "picture", "test", "compare", "devices", "doctor"}) {
+  for (const std::string command :
+       {"fly", "picture", "test", "compare", "devices", "history", "doctor"}) {
     for (const char* arguments : {"", " --help", " --world paper --out nowhere a b"}) {
       const Outcome outcome = run_psygen(command + arguments);
       EXPECT_EQ(outcome.code, 4) << command << arguments;
