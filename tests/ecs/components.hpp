@@ -13,6 +13,14 @@
 
 namespace psygen::ecs::test {
 
+// Limits of worlds in tests that make thousands: the default ones. QEMU never frees its tables of
+// reserved pages, so they are small in builds for other processors.
+#ifdef PSYGEN_SMALL_WORLDS
+constexpr WorldLimits kTestLimits{.max_entities = 1 << 16, .max_rows_per_table = 1 << 16};
+#else
+constexpr WorldLimits kTestLimits{};
+#endif
+
 // Plain values in columns.
 struct Position {
   float x = 0, y = 0, z = 0;

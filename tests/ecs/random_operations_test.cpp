@@ -22,9 +22,6 @@ struct Row {
   std::optional<std::vector<Entity>> children;
 };
 
-// Small, because QEMU never frees its tables of reserved pages.
-constexpr WorldLimits kLimits{.max_entities = 1 << 16, .max_rows_per_table = 1 << 16};
-
 class Machine {
  public:
   explicit Machine(std::uint32_t seed)
@@ -140,7 +137,7 @@ class Machine {
   }
 
   void check_snapshot() {
-    World twin(kLimits);
+    World twin(kTestLimits);
     twin.declare<Position, Mesh, Owner, Hidden, Edited, Children>();
     const SnapshotResult result = load_snapshot(save_snapshot(world_), twin);
     ASSERT_TRUE(result) << result.sentence;
@@ -376,7 +373,7 @@ class Machine {
   }
 
   std::mt19937 random_;
-  World world_{kLimits};
+  World world_{kTestLimits};
   ChangeReader<Mesh> reader_;
   ChangeReader<Edited> edited_reader_;
   std::map<std::uint64_t, Row> model_;

@@ -43,11 +43,8 @@ void fill(World& world, std::size_t count = 20) {
   world.get<Edited>(hidden[1])->version = 42;
 }
 
-// Small, because QEMU never frees its tables of reserved pages.
-constexpr WorldLimits kLimits{.max_entities = 1 << 16, .max_rows_per_table = 1 << 16};
-
 SnapshotStatus status_of(std::span<const std::byte> bytes) {
-  World world(kLimits);
+  World world(kTestLimits);
   declare_all(world);
   const SnapshotResult result = load_snapshot(bytes, world);
   EXPECT_EQ(result.sentence.empty(), bool(result));
@@ -376,12 +373,12 @@ TEST(Snapshot, WithAnyByteForgedIsRejectedOrASoundWorld) {
     bytes[at] = static_cast<std::byte>(i < good.size() ? 0xFF : random());
     if (i >= 2 * good.size()) bytes[random() % (bytes.size() - 8)] = std::byte(random());
     repair(bytes);
-    World world(kLimits);
+    World world(kTestLimits);
     declare_all(world);
     if (!load_snapshot(bytes, world)) continue;
     ++loaded;
     std::vector<std::byte> again = save_snapshot(world);
-    World twin(kLimits);
+    World twin(kTestLimits);
     declare_all(twin);
     ASSERT_TRUE(load_snapshot(again, twin)) << i;
     ASSERT_EQ(save_snapshot(twin), again) << i;

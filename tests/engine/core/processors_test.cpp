@@ -21,6 +21,11 @@ struct Machine {
     std::filesystem::create_directories(path.parent_path());
     std::ofstream(path) << text << '\n';
   }
+  // Of version 1.
+  void write_quota(const std::string& group, const std::string& quota) const {
+    write("sys/fs/cgroup/" + group + "/cpu.cfs_quota_us", quota);
+    write("sys/fs/cgroup/" + group + "/cpu.cfs_period_us", "100000");
+  }
   std::optional<double> quota() const { return processor_quota(root.path()); }
   unsigned within(unsigned processors) const { return within_quota(processors, root.path()); }
 
@@ -65,22 +70,18 @@ TEST(Processors, TheQuotaOfAContainerIsAtTheRootOfItsGroups) {
 
 TEST(Processors, QuotasOfVersion1AreThoseOfItsControllerOfProcessors) {
   const Machine machine("4:cpuset:/b\n3:cpuacct,cpu:/a\n2:memory:/b");
-  machine.write("sys/fs/cgroup/cpuset/b/cpu.cfs_quota_us", "1");
-  machine.write("sys/fs/cgroup/cpuset/b/cpu.cfs_period_us", "1");
-  machine.write("sys/fs/cgroup/cpu/a/cpu.cfs_quota_us", "-1");
-  machine.write("sys/fs/cgroup/cpu/a/cpu.cfs_period_us", "100000");
+  machine.write_quota("cpuset/b", "100000");
+  machine.write_quota("cpu/a", "-1");
   EXPECT_FALSE(machine.quota().has_value());
-  machine.write("sys/fs/cgroup/cpu/a/cpu.cfs_quota_us", "200000");
+  machine.write_quota("cpu/a", "200000");
   EXPECT_DOUBLE_EQ(*machine.quota(), 2);
-  machine.write("sys/fs/cgroup/cpuacct,cpu/cpu.cfs_quota_us", "100000");
-  machine.write("sys/fs/cgroup/cpuacct,cpu/cpu.cfs_period_us", "100000");
+  machine.write_quota("cpuacct,cpu", "100000");
   EXPECT_DOUBLE_EQ(*machine.quota(), 1);
 }
 
 TEST(Processors, BothVersionsCountIfASystemHasBoth) {
   const Machine machine("3:cpu:/a\n0::/b");
-  machine.write("sys/fs/cgroup/cpu/a/cpu.cfs_quota_us", "300000");
-  machine.write("sys/fs/cgroup/cpu/a/cpu.cfs_period_us", "100000");
+  machine.write_quota("cpu/a", "300000");
   EXPECT_DOUBLE_EQ(*machine.quota(), 3);
   machine.write("sys/fs/cgroup/unified/b/cpu.max", "200000 100000");
   EXPECT_DOUBLE_EQ(*machine.quota(), 2);
