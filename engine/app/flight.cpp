@@ -182,7 +182,9 @@ core::Result<void> Flight::fly_frame(double dt_s) {
   record.index = frames_;
   record.time_s = now_s;
   record.frame_ms = std::max(frame_ms, kMinFrameMs);
-  if (is_gap(frame_ms, usual_ms_, core::suspended_seconds() - asleep_s))
+  // A frame with an image waits for the GPU and the disk, however long they take.
+  if (record.apart != telemetry::Apart::kPicture &&
+      is_gap(frame_ms, usual_ms_, core::suspended_seconds() - asleep_s))
     record.apart = telemetry::Apart::kGap;
   record.main_cpu_ms = (core::thread_cpu_seconds() - cpu_start_s) * 1000.0;
   if (has_virtual_frames(options_.session)) {

@@ -93,14 +93,18 @@ TEST(Flight, AFrameInWhichAPluginCapturesAnImageIsExcluded) {
   options.out_folder = folder / "out";
   options.frames = 10;
   options.session.target_hz = 30;
+  options.session.scene.watchdog_seconds = 1e6;
   std::vector<double> governed_ms;
+  std::optional<WrongClock> clock;
   options.session.plugins.push_back(
       {.name = "photographer", .on_frame = [&](Session& session, double) {
          governed_ms.push_back(session.scene().input().frame_ms);
          if (governed_ms.size() != 6) return;
          EXPECT_TRUE(session.save_picture(options.out_folder / "picture.png"));
+         clock.emplace(100, 0);  // the disk takes 100 s
        }});
   fly(options);
+  clock.reset();
   const auto rows = read_frames(options.out_folder / "frames.csv");
   ASSERT_EQ(rows.size(), 10u);
   EXPECT_EQ(rows[4].at("apart"), "");
