@@ -14,10 +14,10 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/models/ground/stack.hpp"
 #include "engine/models/kit/quad_map.hpp"
 #include "engine/models/model_type.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/models/terrain/ground_edits.hpp"
 
 namespace psygen::models {
 
@@ -84,7 +84,7 @@ struct BlockEdits {
 
 // The whole layer. A value: copies are O(1) and independent.
 struct EditLayer {
-  GroundEdits ground;          // by position
+  GroundStack ground;          // by position; its shapes are those of the world below the layer
   QuadMap<BlockEdits> blocks;  // all edits, by the block that they belong to; keys are blocks
   std::uint32_t next_id = 1;   // of placed models and edits of the ground
   double block_m = 0;  // side of the blocks that positions refer to; 0: that of the world in use

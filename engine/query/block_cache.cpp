@@ -135,7 +135,7 @@ std::vector<world::Placement> models_of_block(const world::World& world,
 std::uint64_t edits_of_block(const world::World& world, core::BlockCoord block) {
   if (!world.edits) return 0;
   const models::BlockEdits* const edits = world.edits->block(block);
-  const std::uint64_t ground = world.edits->ground.own().hash_of(
+  const std::uint64_t ground = world.edits->ground.edits.hash_of(
       models::QuadCoord::of(block), world::ground_margin(world, 0), world.block_size_m());
   if (ground == 0 && edits == nullptr) return 0;
   return core::combine(ground, edits != nullptr ? edits->hash() : 0);

@@ -35,7 +35,7 @@ models::Parameters unedited_terrain(const World& world) {
 // True if edits may change heights in a block.
 bool has_edited_ground(const World& world, core::BlockCoord block) {
   return world.edits &&
-         world.edits->ground.own().reaches(models::QuadCoord::of(block), world.block_size_m());
+         world.edits->ground.edits.reaches(models::QuadCoord::of(block), world.block_size_m());
 }
 
 // The ground on which instances find their positions, and the ground on which they stand.

@@ -157,7 +157,8 @@ class Shaper {
     if (auto ok = core::check_cancelled(); !ok) return refused(key, ok.error());
     edit.id = layer_.next_id++;
     seal(edit);
-    if (layer_.ground.add(std::make_shared<const GroundEdit>(std::move(edit)), block_m_)) return {};
+    if (layer_.ground.shapes.add(std::make_shared<const GroundEdit>(std::move(edit)), block_m_))
+      return {};
     return too_much(key);
   }
 

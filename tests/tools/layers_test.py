@@ -68,7 +68,8 @@ MAY_KNOW["editor"] = MAY_KNOW["editor/shell"] | {"editor/shell", "engine/program
 # may be included by all of them but those of NOT_UP.
 INSIDE = {
     "engine/models/kit": set(),
-    "engine/models/terrain": {"kit"},
+    "engine/models/ground": {"kit"},
+    "engine/models/terrain": {"ground", "kit"},
     "engine/models/tree": {"kit"},
     "engine/models/rock": {"kit"},
     "engine/models/grass": {"kit"},

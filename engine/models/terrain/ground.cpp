@@ -60,7 +60,7 @@ void BlockGround::evaluate_vertices() {
   world_of(block_.z, 0, z);
   noise_memory_.emplace(vertices_ * vertices_ * sizeof(float));
   noise_ = {static_cast<float*>(noise_memory_->get()), vertices_ * vertices_};
-  shape_.evaluate(x, z, noise_, vertices_);
+  shape_.evaluate(x, z, noise_, vertices_, shape_.detail());
 }
 
 bool BlockGround::is_inside(double x, double z, int step) const {
@@ -84,7 +84,7 @@ BlockGround::Corners BlockGround::corners_of(double x, double z, int step) const
   const std::array rows{shape_.world_of(block_.z, first_z),
                         shape_.world_of(block_.z, first_z + step)};
   std::array<float, 4> noise;
-  shape_.evaluate(columns, rows, noise, 2);
+  shape_.evaluate(columns, rows, noise, 2, shape_.detail());
   for (std::size_t i = 0; i < 4; ++i)
     heights[i] = shape_.quantise(noise[i]);
   return heights;

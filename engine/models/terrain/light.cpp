@@ -72,6 +72,7 @@ struct PlannedGrid {
   LightGrid grid;
   LightAxis x, z;        // of its requested points
   std::int64_t spacing;  // in cells of the node
+  GroundDetail detail;   // of its heights
 
   std::size_t columns() const { return grid.count_x + 2 * kLightReach; }
   std::size_t rows() const { return grid.count_z + 2 * kLightReach; }
@@ -83,9 +84,6 @@ struct PlannedGrid {
   LatticeSpan lattice(const TerrainShape& shape, const LightAxis& axis) const {
     return {shape.world_of(0, (axis.first - kLightReach) * spacing),
             shape.world_of(0, (axis.last + kLightReach) * spacing)};
-  }
-  int octaves(const TerrainShape& shape) const {
-    return shape.noise.octaves_wider_than(kOctavePoints * spacing_of_noise(shape));
   }
 };
 
@@ -118,7 +116,7 @@ LightPlan::LightPlan(const TerrainShape& shape, const SunDirection& sun, std::in
     grid.sun_steps = shadows ? useful_steps(rays, spacing_m, shape.relief_m) : 0;
     grid.sky = spacing_m <= static_cast<float>(kSkyReach) * shape.relief_m;
     if (grid.sun_steps == 0 && !grid.sky && count > 0) break;
-    grids[count++] = {grid, x, z, spacing};
+    grids[count++] = {grid, x, z, spacing, shape.light_detail(static_cast<int>(g))};
     x = wide_x;
     z = wide_z;
     spacing *= kLightRatio;
@@ -138,10 +136,8 @@ class LightHeights {
     fill(planned.z, rows, planned.spacing, world_z);
     const std::span values = std::span(memory_).subspan(used_, rows * grid.stride);
     used_ += values.size();
-    // Narrower edits would be missed or hit by chance, like narrower octaves.
-    const double spacing_m = static_cast<double>(planned.spacing) * shape_.cell_m;
     shape_.evaluate({world_x.data(), columns}, {world_z.data(), rows}, values, grid.stride,
-                    planned.octaves(shape_), spacing_m);
+                    planned.detail);
     for (std::size_t r = 0; r < rows; ++r)
       std::fill_n(&values[r * grid.stride + columns], grid.stride - columns, 0.0F);
     return values.data();
@@ -190,9 +186,9 @@ double TerrainLight::work(const TerrainShape& shape, const SunDirection& sun, st
   for (std::size_t g = 0; g < plan.count; ++g) {
     const PlannedGrid& grid = plan.grids[g];
     work += shape.noise.work(grid.columns(), grid.rows(), grid.spacing_of_noise(shape),
-                             grid.octaves(shape));
+                             shape.octaves(grid.detail));
     const auto heights = static_cast<double>(grid.columns() * grid.rows());
-    work += shape.edit_work(grid.lattice(shape, grid.x), grid.lattice(shape, grid.z), heights);
+    work += shape.layer_work(grid.lattice(shape, grid.x), grid.lattice(shape, grid.z), heights);
   }
   return work;
 }

@@ -7,14 +7,14 @@
 #include <cstdint>
 #include <span>
 
+#include "engine/models/ground/stack.hpp"
 #include "engine/models/kit/packing.hpp"
 #include "engine/models/model_type.hpp"
-#include "engine/models/terrain/ground_edits.hpp"
 #include "engine/models/terrain/ridged_noise.hpp"
 
 namespace psygen::models {
 
-// The noise, the edits and the scales of one node of terrain.
+// The noise, the layers over it and the scales of one node of terrain.
 struct TerrainShape {
   RidgedNoise noise;
   int size;        // vertices per side at level 0
@@ -23,7 +23,7 @@ struct TerrainShape {
   float relief_m;  // height of the quantised value 65535; the value 0 has height 0
   float quantum;   // quantised height of noise 1
   float metres;    // height of noise 1, in metres
-  const GroundEdits* edits = nullptr;  // of the parameters; null: none. Not owned
+  const GroundStack* stack = nullptr;  // of the parameters; null: only noise. Not owned
 
   // Requires legal parameters.
   explicit TerrainShape(const Parameters& p);
@@ -34,16 +34,22 @@ struct TerrainShape {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(block * (size - 1) + i)
                                      << node_level);
   }
-  // Evaluates RidgedNoise::evaluate(), then the edits of at least this radius.
+  // Every height of the engine: the noise and all layers over it, at the lattice points
+  // (columns[i], rows[k]), values[k · stride + i], in units of the noise. Both ascend, in cells of
+  // node level 0, at most RidgedNoise::kMaxAxis. The same bits for the same point and detail.
   void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
-                std::span<float> values, std::size_t stride, int octaves = kMaxOctaves,
-                double narrowest_m = 0) const {
-    noise.evaluate(columns, rows, values, stride, octaves);
-    if (edits != nullptr) edit(columns, rows, values, stride, narrowest_m);
+                std::span<float> values, std::size_t stride, GroundDetail detail) const {
+    noise.evaluate(columns, rows, values, stride, octaves(detail));
+    if (stack != nullptr) stack->apply(scale(), columns, rows, values, stride, detail);
   }
-  // Time that edits take in evaluate() of this many heights, spread evenly over a rectangle in
-  // cells of node level 0, in units of RidgedNoise::work(). 0 without edits.
-  double edit_work(LatticeSpan x, LatticeSpan z, double heights) const;
+  // The detail of the node's meshes, and that of grid `grid` of its light.
+  GroundDetail detail() const { return GroundDetail::of_node(node_level); }
+  GroundDetail light_detail(int grid) const { return GroundDetail::of_light(node_level, grid); }
+  // The octaves that the noise has at a detail.
+  int octaves(GroundDetail detail) const;
+  // Time that the layers take in evaluate() of this many heights, spread evenly over a rectangle in
+  // cells of node level 0, in units of RidgedNoise::work(). 0 without layers.
+  double layer_work(LatticeSpan x, LatticeSpan z, double heights) const;
   // The quantised height of a value of the noise, 0 … 65535. The same bits as in the kernel.
   std::uint16_t quantise(float noise_value) const {
     return static_cast<std::uint16_t>(round_to_int(std::min(noise_value * quantum, 65535.0F)));
@@ -51,8 +57,6 @@ struct TerrainShape {
 
  private:
   GroundScale scale() const;
-  void edit(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
-            std::span<float> values, std::size_t stride, double narrowest_m) const;
 };
 
 }  // namespace psygen::models

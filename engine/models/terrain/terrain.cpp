@@ -91,7 +91,7 @@ struct ParentSamples {
                 std::int64_t block_z) {
     const Axis columns(shape, grid, block_x), rows(shape, grid, block_z);
     shape.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count}, noise,
-                   kStride);
+                   kStride, GroundDetail::of_node(shape.node_level + 1));
     view = {noise.data(), kStride, 1, 2, columns.phase, rows.phase};
   }
 
@@ -173,9 +173,9 @@ double TerrainType::steps(const Parameters& p, int level) const {
   }
   if (level == 1) work += shape.noise.work(n / 2 + 1, n / 2 + 1, 2 * grid.stride * cell);
   const std::int64_t x = p.integer(kTerrainBlockX), z = p.integer(kTerrainBlockZ);
-  work += shape.edit_work({shape.world_of(x, -1), shape.world_of(x, grid.size)},
-                          {shape.world_of(z, -1), shape.world_of(z, grid.size)},
-                          sample_count(grid, level));
+  work += shape.layer_work({shape.world_of(x, -1), shape.world_of(x, grid.size)},
+                           {shape.world_of(z, -1), shape.world_of(z, grid.size)},
+                           sample_count(grid, level));
   return work + TerrainLight::work(shape,
                                    {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)}, x, z,
                                    light_grid_of(level));
@@ -214,9 +214,9 @@ MeshAxis axis_from(const TerrainShape& shape, const TerrainGrid& grid, std::int6
 // `vertices` is a whole mesh; it is only written to. Linear in the vertices near roads.
 void mark_roads(const TerrainShape& shape, const TerrainGrid& grid, core::BlockCoord node,
                 std::byte* vertices) {
-  if (shape.edits == nullptr) return;
+  if (shape.stack == nullptr) return;
   const double block_m = (shape.size - 1) * std::ldexp(shape.cell_m, -shape.node_level);
-  const auto roads = shape.edits->roads_in(
+  const auto roads = shape.stack->roads_in(
       QuadCoord::of(node, static_cast<std::uint32_t>(shape.node_level)), block_m);
   if (roads.empty()) return;
   std::vector<std::uint8_t> marks(grid.surface_vertices());
@@ -254,7 +254,7 @@ core::Bounds TerrainType::synthesise(const Parameters& p, int level, const MeshV
   const std::span<float> noise = *scratch;
   const std::size_t stride = (columns.count + 15) / 16 * 16;  // rows start at cache lines
   shape.evaluate({columns.world.data(), columns.count}, {rows.world.data(), rows.count}, noise,
-                 stride);
+                 stride, shape.detail());
   const TerrainLight light(shape, {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)},
                            p.integer(kTerrainBlockX), p.integer(kTerrainBlockZ),
                            light_grid_of(level));
@@ -306,7 +306,7 @@ TerrainShape::TerrainShape(const Parameters& p)
       relief_m(static_cast<float>(p.real(kTerrainReliefM))),
       quantum(static_cast<float>(65535.0 / noise.max_value())),
       metres(static_cast<float>(p.real(kTerrainReliefM) / noise.max_value())),
-      edits(p.edits() != nullptr ? &p.edits()->ground : nullptr) {}
+      stack(p.edits() != nullptr ? &p.edits()->ground : nullptr) {}
 
 GroundScale TerrainShape::scale() const {
   return {.cells_per_block = size - 1,
@@ -315,15 +315,15 @@ GroundScale TerrainShape::scale() const {
           .highest = 65535.0F / quantum};
 }
 
-void TerrainShape::edit(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
-                        std::span<float> values, std::size_t stride, double narrowest_m) const {
-  edits->apply(scale(), columns, rows, values, stride, narrowest_m);
+int TerrainShape::octaves(GroundDetail detail) const {
+  return detail.light ? noise.octaves_wider_than(kOctavePoints * detail.spacing_cells())
+                      : kMaxOctaves;
 }
 
 // Measured: one edit takes 8 times as long for a height as an octave of the noise.
-double TerrainShape::edit_work(LatticeSpan x, LatticeSpan z, double heights) const {
+double TerrainShape::layer_work(LatticeSpan x, LatticeSpan z, double heights) const {
   constexpr double kWorkPerEdit = 8;
-  return edits == nullptr ? 0 : kWorkPerEdit * heights * edits->edits_per_height(scale(), x, z);
+  return stack == nullptr ? 0 : kWorkPerEdit * heights * stack->edits_per_height(scale(), x, z);
 }
 
 std::unique_ptr<ModelType> make_terrain_type() {

@@ -30,8 +30,8 @@ LayerChange::LayerChange(const world::World& world, std::shared_ptr<const models
 NodeChange LayerChange::of(const visibility::NodeCoord& node) const {
   const auto at = models::QuadCoord::of(node.coord, node.level);
   const double margin = world::ground_margin(world_, node.level);
-  const models::GroundEdits &before = before_->ground, &after = after_->ground;
-  const bool ground = !models::GroundEdits::same_in(before, after, at, margin);
+  const models::GroundStack &before = before_->ground, &after = after_->ground;
+  const bool ground = !models::GroundStack::same_in(before, after, at, margin);
   // Light reaches further than heights.
   const double block_m = world_.block_size_m();
   const bool heights = ground && (before.reaches(at, block_m) || after.reaches(at, block_m));

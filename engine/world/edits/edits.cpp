@@ -72,7 +72,7 @@ EditLayer resized(const EditLayer& layer, double block_m) {
   for (auto& [block, edits] : blocks) {
     std::ranges::sort(edits.placed, {}, &PlacedModel::id);
     std::ranges::sort(edits.ground, {}, [](const auto& edit) { return edit->id; });
-    std::erase_if(edits.ground, [&](const auto& e) { return !next.ground.add(e, block_m); });
+    std::erase_if(edits.ground, [&](const auto& e) { return !next.ground.edits.add(e, block_m); });
     next.blocks.set(QuadCoord::of(block), std::move(edits));
   }
   return next;
@@ -255,7 +255,7 @@ core::Result<EditName> Edits::edit_ground(const World& world, GroundEdit edit) {
   const auto shared = std::make_shared<const GroundEdit>(std::move(edit));
   edits.ground.push_back(shared);
   if (auto ok = check_heights(edits, at->block); !ok) return tl::unexpected(ok.error());
-  if (!layer.ground.add(shared, world.block_size_m())) {
+  if (!layer.ground.edits.add(shared, world.block_size_m())) {
     return core::fail(ErrorCode::kOverBudget,
                       fmt::format("at most {} ground edits may overlap in one place ({}); a "
                                   "heightmap can replace many of them",
@@ -285,7 +285,7 @@ core::Result<void> Edits::remove_ground(const World& world, const EditName& edit
         fmt::format("{} has no ground edit with the id {}", text_of(edit.block), edit.id));
   }
   EditLayer layer = copy(world);
-  layer.ground.remove(**at, world.block_size_m());
+  layer.ground.edits.remove(**at, world.block_size_m());
   edits.ground.erase(at);
   commit(std::move(layer), edit.block, std::move(edits));
   return {};
@@ -300,10 +300,10 @@ core::Result<void> Edits::replace_block(const World& world, core::BlockCoord blo
   const double block_m = world.block_size_m();
   if (const BlockEdits* before = layer.block(block)) {
     for (const auto& edit : before->ground)
-      layer.ground.remove(*edit, block_m);
+      layer.ground.edits.remove(*edit, block_m);
   }
   for (const auto& edit : edits.ground) {
-    if (!layer.ground.add(edit, block_m)) {
+    if (!layer.ground.edits.add(edit, block_m)) {
       return core::fail(ErrorCode::kOverBudget,
                         fmt::format("too many ground edits overlap at {}", text_of(block)));
     }

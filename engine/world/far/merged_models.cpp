@@ -421,7 +421,7 @@ models::Parameters merged_parameters(const World& world, core::BlockCoord node, 
   if (!world.edits) return p;
   const auto at = models::QuadCoord::of(node, static_cast<std::uint32_t>(node_level));
   std::uint64_t hash =
-      world.edits->ground.own().hash_of(at, ground_margin(world, node_level), world.block_size_m());
+      world.edits->ground.edits.hash_of(at, ground_margin(world, node_level), world.block_size_m());
   if (const auto* cell = world.edits->blocks.at_or_below(at); cell != nullptr)
     hash = core::combine(hash, cell->hash);
   if (hash != 0) p.set_edits(world.edits.get(), hash);

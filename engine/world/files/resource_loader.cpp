@@ -6,7 +6,7 @@
 #include <span>
 #include <system_error>
 
-#include "engine/models/terrain/ground_edits.hpp"
+#include "engine/models/ground/ground_edits.hpp"
 
 namespace psygen::world {
 namespace {

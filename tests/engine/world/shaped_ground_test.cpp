@@ -73,6 +73,27 @@ TEST(ShapedGround, WorldsWithoutItHaveTheirOldHashes) {
   EXPECT_EQ(terrain_parameters(small, {6, 3}).hash(), terrain_parameters(world, {6, 3}).hash());
 }
 
+// Hashes of mesh keys and of the meshes themselves: saves, ledgers and ranks compare them.
+TEST(ShapedGround, MeshesAndTheirKeysKeepTheirHashes) {
+  World world = shaped_world(kShapes);
+  Edits edits;
+  ASSERT_TRUE(edits.raise(world, {{2, 1}, {10, 0, 20}}, 30, 5));
+  set_edits(world, edits.layer());
+  const models::ModelType& terrain = registry()[world.terrain_model];
+  std::uint64_t keys = 0, meshes = 0;
+  for (const int level : {0, 1, 2, 4}) {
+    for (const core::BlockCoord node : {core::BlockCoord{0, 0}, {2, 1}, {3, 3}, {-1, 0}}) {
+      const models::Parameters p = terrain_parameters(world, node, level);
+      keys = core::combine(keys, models::parameters_hash(terrain, p));
+      for (const int mesh : {0, 1, 3})
+        meshes = core::combine(
+            meshes, core::hash_bytes(models::test::synthesise(terrain, p, mesh).vertex_bytes));
+    }
+  }
+  EXPECT_EQ(keys, 0x47fcd45ea2a74ac6U) << std::hex << keys;
+  EXPECT_EQ(meshes, 0xfce9c41d0a21abfU) << std::hex << meshes;
+}
+
 TEST(ShapedGround, EveryKeyOfItIsPartOfItsHash) {
   const std::uint64_t hash = shape_hash(shaped_world(kShapes));
   for (const auto& [from, to] : {std::pair{"ramp.png", "white.png"},

@@ -1,4 +1,4 @@
-#include "engine/models/terrain/ground_edits.hpp"
+#include "engine/models/ground/ground_edits.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ class EditedTerrain : public ::testing::Test {
     edit.centre = core::normalised(edit.centre, kBlockM);
     seal(edit);
     edits.push_back(std::make_shared<const GroundEdit>(edit));
-    EXPECT_TRUE(layer.ground.add(edits.back(), kBlockM));
+    EXPECT_TRUE(layer.ground.edits.add(edits.back(), kBlockM));
     return *edits.back();
   }
   static GroundEdit raised(core::WorldPosition at, double radius_m, double height_m) {
@@ -223,11 +223,11 @@ TEST_F(EditedTerrain, UndoingAnEditRestoresEveryHash) {
   const EditLayer before = layer;
   const GroundEdit last = add(any_edit(random));
   EXPECT_NE(hash_of_all(), all);
-  layer.ground.remove(last, kBlockM);
+  layer.ground.edits.remove(last, kBlockM);
   EXPECT_EQ(hash_of_all(), all);
   for (int level = 0; level < 6; ++level)
     EXPECT_EQ(hash_of(-1, 0, level), hashes[static_cast<std::size_t>(level)]);
-  EXPECT_TRUE(GroundEdits::same_in(before.ground, before.ground, QuadCoord::of({0, 0}, 3), 0.5));
+  EXPECT_TRUE(GroundStack::same_in(before.ground, before.ground, QuadCoord::of({0, 0}, 3), 0.5));
 }
 
 // Wide enough that the nodes of all levels have edits at their margins.
@@ -251,7 +251,7 @@ TEST_F(EditedTerrain, SameInNeverMissesAChangeOfTheHash) {
     const std::uint64_t hash = hash_of(x, z, level);
     add_anywhere();
     const core::BlockCoord at{static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};
-    const bool says_same = GroundEdits::same_in(
+    const bool says_same = GroundStack::same_in(
         before.ground, layer.ground, QuadCoord::of(at, static_cast<std::uint32_t>(level)),
         std::ldexp(4 / 63.0, level));
     if (says_same) {
@@ -269,7 +269,7 @@ TEST_F(EditedTerrain, TheHashDependsOnTheOrderOfTheEdits) {
   add(raised({{0, 0}, {31, 0, 31}}, 40, 10));
   const auto lifted = vertices(node(0, 0, 0), 0);
   const std::uint64_t hash = hash_of(0, 0, 0);
-  layer.ground.remove(first, kBlockM);
+  layer.ground.edits.remove(first, kBlockM);
   add(flat);  // after the hill now, which it cuts off
   const auto cut = vertices(node(0, 0, 0), 0);
   constexpr std::size_t kMiddle = 31 * 64 + 31;
@@ -287,16 +287,16 @@ TEST_F(EditedTerrain, EditsOfTwoBlocksWithTheSameIdAreTwoEdits) {
   const auto first = std::make_shared<const GroundEdit>(hill);
   const auto second = std::make_shared<const GroundEdit>(flat);
   layer = {};
-  ASSERT_TRUE(layer.ground.add(second, kBlockM));
+  ASSERT_TRUE(layer.ground.edits.add(second, kBlockM));
   const std::uint64_t alone = hash_of(0, 0, 0);
-  ASSERT_TRUE(layer.ground.add(first, kBlockM));
+  ASSERT_TRUE(layer.ground.edits.add(first, kBlockM));
   const std::uint64_t both = hash_of(0, 0, 0);
   const auto here = vertices(node(0, 0, 0), 0);
-  layer.ground.remove(hill, kBlockM);
+  layer.ground.edits.remove(hill, kBlockM);
   EXPECT_EQ(hash_of(0, 0, 0), alone);
   layer = {};
-  ASSERT_TRUE(layer.ground.add(first, kBlockM));
-  ASSERT_TRUE(layer.ground.add(second, kBlockM));
+  ASSERT_TRUE(layer.ground.edits.add(first, kBlockM));
+  ASSERT_TRUE(layer.ground.edits.add(second, kBlockM));
   EXPECT_EQ(hash_of(0, 0, 0), both);
   const auto again = vertices(node(0, 0, 0), 0);
   for (std::size_t i = 0; i < here.size(); ++i)
@@ -369,7 +369,7 @@ TEST_F(EditedTerrain, TooManyOverlappingEditsAreRejectedAndChangeNothing) {
   const std::uint64_t hash = hash_of_all();
   GroundEdit more = raised({{0, 0}, {31, 0, 31}}, 5, 0.01);
   more.id = 5000;
-  EXPECT_FALSE(layer.ground.add(std::make_shared<const GroundEdit>(more), kBlockM));
+  EXPECT_FALSE(layer.ground.edits.add(std::make_shared<const GroundEdit>(more), kBlockM));
   EXPECT_EQ(hash_of_all(), hash);
 }
 

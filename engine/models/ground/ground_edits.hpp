@@ -130,8 +130,8 @@ struct GroundCell {
   Summary summary() const;
 };
 
-// All edits of the ground of a world. They may include edits below them, which act first: all
-// functions except add() and remove() count those too.
+// Edits of the ground in the order of their action: the shapes of a world file, or those that a
+// game makes (ground/stack.hpp).
 class GroundEdits {
  public:
   // Light baked into vertices depends on an edit up to this many radii from its centre (light.hpp);
@@ -141,16 +141,9 @@ class GroundEdits {
   static constexpr std::size_t kMaxTogether = 1024;
 
   // True without edits.
-  bool empty() const { return cells_.empty() && below_.empty(); }
-
-  // Returns these edits over those of `below`, or these edits alone. O(1).
-  GroundEdits over(const GroundEdits& below) const {
-    GroundEdits both = *this;
-    both.below_ = below.cells_;
-    return both;
-  }
-  GroundEdits own() const { return over({}); }
-  bool lies_on(const GroundEdits& below) const { return below_.root() == below.cells_.root(); }
+  bool empty() const { return cells_.empty(); }
+  // True if both are copies of one value. O(1).
+  bool is(const GroundEdits& other) const { return cells_.root() == other.cells_.root(); }
 
   // Adds a sealed edit, or removes the edit with this id and block, in O(log n + kMaxTogether).
   // add() returns false, and changes nothing, if the square already has kMaxTogether edits.
@@ -158,8 +151,10 @@ class GroundEdits {
   void remove(const GroundEdit& edit, double block_m);
 
   // Hash of all edits that can change the ground mesh of a node that needs heights `margin` blocks
-  // beyond its border; 0: none. O(log n), and O(margin) for large nodes.
-  std::uint64_t hash_of(const QuadCoord& node, double margin, double block_m) const;
+  // beyond its border, combined with that of the layers below; 0: none. O(log n), and O(margin) for
+  // large nodes.
+  std::uint64_t hash_of(const QuadCoord& node, double margin, double block_m,
+                        std::uint64_t below = 0) const;
   // True if both have the same edits there. May be false although they do; O(log n) after small
   // changes.
   static bool same_in(const GroundEdits& a, const GroundEdits& b, const QuadCoord& node,
@@ -169,9 +164,12 @@ class GroundEdits {
   // Returns the pieces of roads that may reach a node, each once. O(log n + p log p) for p pieces,
   // independent of all other edits.
   std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
-  // Largest distance between the ground and a mesh of the node with vertices `spacing_m` apart,
-  // because of edits between them. An upper bound in metres; 0: no edits.
-  double error_m(const QuadCoord& node, double spacing_m, double block_m) const;
+  // The largest change of heights by the edits that overlap anywhere in a node, and the largest
+  // slope of that change. Upper bounds; 0: no edits.
+  struct Change {
+    double change_m = 0, steepness = 0;
+  };
+  Change max_change_in(const QuadCoord& node, double block_m) const;
 
   // Estimate of the edits that apply() makes on a height, as a mean over the rectangle, in units of
   // the time for a simple edit; a stamp counts as three. Up to four times too high if edits are
@@ -185,7 +183,7 @@ class GroundEdits {
              double narrowest_m = 0) const;
 
  private:
-  QuadMap<GroundCell> cells_, below_;
+  QuadMap<GroundCell> cells_;
 };
 
 // Metres from the origin of a road to a point in a block.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/models/terrain/ground_edits.hpp"
+#include "engine/models/ground/ground_edits.hpp"
 
 namespace psygen::models {
 namespace {
@@ -275,11 +275,9 @@ bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local
 void GroundEdits::apply(const GroundScale& scale, std::span<const std::int64_t> x,
                         std::span<const std::int64_t> z, std::span<float> values,
                         std::size_t stride, double narrowest_m) const {
-  for (const auto* cells : {&below_, &cells_}) {
-    if (cells->empty()) continue;
-    Application(scale, x, z, values, stride, narrowest_m)
-        .walk(cells->root(), {QuadCoord::kMaxLevel, 0, 0}, {0, x.size()}, {0, z.size()});
-  }
+  if (cells_.empty()) return;
+  Application(scale, x, z, values, stride, narrowest_m)
+      .walk(cells_.root(), {QuadCoord::kMaxLevel, 0, 0}, {0, x.size()}, {0, z.size()});
 }
 
 }  // namespace psygen::models

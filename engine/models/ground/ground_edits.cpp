@@ -1,4 +1,4 @@
-#include "engine/models/terrain/ground_edits.hpp"
+#include "engine/models/ground/ground_edits.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -247,28 +247,25 @@ void GroundEdits::remove(const GroundEdit& edit, double block_m) {
   });
 }
 
-std::uint64_t GroundEdits::hash_of(const QuadCoord& node, double margin, double block_m) const {
-  std::uint64_t hash = 0;
+std::uint64_t GroundEdits::hash_of(const QuadCoord& node, double margin, double block_m,
+                                   std::uint64_t below) const {
+  std::uint64_t hash = below;
   const Area area = area_of(node, margin);
   const auto takes_whole = [&](const Cell& cell, const Area& own) {
     const bool whole = static_cast<int>(cell.place.level) <= whole_level(node) || area.holds(own);
     if (whole) hash = core::combine(hash, cell.hash);
     return whole;
   };
-  for (const auto* cells : {&below_, &cells_})
-    each_edit(cells->root(), area, takes_whole, [&](const GroundEdit& edit) {
-      if (area_of(edit, kInfluence * edit.reach_m(), block_m).touches(area))
-        hash = core::combine(hash, edit.content);
-    });
+  each_edit(cells_.root(), area, takes_whole, [&](const GroundEdit& edit) {
+    if (area_of(edit, kInfluence * edit.reach_m(), block_m).touches(area))
+      hash = core::combine(hash, edit.content);
+  });
   return hash;
 }
 
 bool GroundEdits::same_in(const GroundEdits& a, const GroundEdits& b, const QuadCoord& node,
                           double margin) {
-  const Area area = area_of(node, margin);
-  const int whole = whole_level(node);
-  return same(a.cells_.root(), b.cells_.root(), area, whole) &&
-         same(a.below_.root(), b.below_.root(), area, whole);
+  return same(a.cells_.root(), b.cells_.root(), area_of(node, margin), whole_level(node));
 }
 
 bool GroundEdits::reaches(const QuadCoord& node, double block_m) const {
@@ -278,10 +275,9 @@ bool GroundEdits::reaches(const QuadCoord& node, double block_m) const {
     any = any || area.holds(own);
     return any;
   };
-  for (const auto* cells : {&cells_, &below_})
-    each_edit(cells->root(), area, takes_whole, [&](const GroundEdit& edit) {
-      any = any || area_of(edit, edit.reach_m(), block_m).touches(area);
-    });
+  each_edit(cells_.root(), area, takes_whole, [&](const GroundEdit& edit) {
+    any = any || area_of(edit, edit.reach_m(), block_m).touches(area);
+  });
   return any;
 }
 
@@ -289,23 +285,18 @@ std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadCoord& node, doub
   const Area area = area_of(node);
   std::vector<const GroundEdit*> roads;
   const auto lacks_roads = [](const Cell& cell, const Area&) { return !cell.summary.has_roads; };
-  for (const auto* cells : {&below_, &cells_})
-    each_edit(cells->root(), area, lacks_roads, [&](const GroundEdit& edit) {
-      if (edit.road && area_of(edit, edit.reach_m(), block_m).touches(area)) roads.push_back(&edit);
-    });
+  each_edit(cells_.root(), area, lacks_roads, [&](const GroundEdit& edit) {
+    if (edit.road && area_of(edit, edit.reach_m(), block_m).touches(area)) roads.push_back(&edit);
+  });
   std::ranges::sort(roads);  // a piece is listed in several cells
   roads.erase(std::unique(roads.begin(), roads.end()), roads.end());
   return roads;
 }
 
-double GroundEdits::error_m(const QuadCoord& node, double spacing_m, double block_m) const {
-  double change_m = 0, steepness = 0;
-  for (const auto* cells : {&below_, &cells_}) {
-    const GroundCell::Summary most = max_in(cells->root(), area_of(node), block_m);
-    change_m += double{most.change_m} + double{most.below_change_m};
-    steepness += double{most.steepness} + double{most.below_steepness};
-  }
-  return std::min(change_m, steepness * spacing_m);
+GroundEdits::Change GroundEdits::max_change_in(const QuadCoord& node, double block_m) const {
+  const GroundCell::Summary most = max_in(cells_.root(), area_of(node), block_m);
+  return {double{most.change_m} + double{most.below_change_m},
+          double{most.steepness} + double{most.below_steepness}};
 }
 
 double GroundEdits::edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const {
@@ -314,9 +305,7 @@ double GroundEdits::edits_per_height(const GroundScale& scale, LatticeSpan x, La
   };
   const Area area{block(x.first), block(z.first), block(x.last), block(z.last)};
   if (!(area.size() > 0)) return 0;
-  const double block_m = scale.block_m();
-  return (work_in(below_.root(), area, block_m) + work_in(cells_.root(), area, block_m)) /
-         area.size();
+  return work_in(cells_.root(), area, scale.block_m()) / area.size();
 }
 
 }  // namespace psygen::models

@@ -1,0 +1,47 @@
+#include "engine/models/ground/stack.hpp"
+
+#include <algorithm>
+
+namespace psygen::models {
+
+std::uint64_t GroundStack::hash_of(const QuadCoord& node, double margin, double block_m) const {
+  return edits.hash_of(node, margin, block_m, shapes.hash_of(node, margin, block_m));
+}
+
+bool GroundStack::same_in(const GroundStack& a, const GroundStack& b, const QuadCoord& node,
+                          double margin) {
+  return GroundEdits::same_in(a.edits, b.edits, node, margin) &&
+         GroundEdits::same_in(a.shapes, b.shapes, node, margin);
+}
+
+bool GroundStack::reaches(const QuadCoord& node, double block_m) const {
+  return edits.reaches(node, block_m) || shapes.reaches(node, block_m);
+}
+
+std::vector<const GroundEdit*> GroundStack::roads_in(const QuadCoord& node, double block_m) const {
+  std::vector<const GroundEdit*> roads = shapes.roads_in(node, block_m);
+  const std::vector<const GroundEdit*> own = edits.roads_in(node, block_m);
+  roads.insert(roads.end(), own.begin(), own.end());
+  return roads;
+}
+
+double GroundStack::error_m(const QuadCoord& node, double spacing_m, double block_m) const {
+  const GroundEdits::Change a = shapes.max_change_in(node, block_m);
+  const GroundEdits::Change b = edits.max_change_in(node, block_m);
+  return std::min(a.change_m + b.change_m, (a.steepness + b.steepness) * spacing_m);
+}
+
+double GroundStack::edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const {
+  return shapes.edits_per_height(scale, x, z) + edits.edits_per_height(scale, x, z);
+}
+
+void GroundStack::apply(const GroundScale& scale, std::span<const std::int64_t> x,
+                        std::span<const std::int64_t> z, std::span<float> values,
+                        std::size_t stride, GroundDetail detail) const {
+  // Narrower edits would be missed or hit by chance, like narrower octaves.
+  const double narrowest_m = detail.light ? detail.spacing_cells() * scale.cell_m : 0;
+  shapes.apply(scale, x, z, values, stride, narrowest_m);
+  edits.apply(scale, x, z, values, stride, narrowest_m);
+}
+
+}  // namespace psygen::models

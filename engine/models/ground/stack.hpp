@@ -1,0 +1,46 @@
+// The ground of a world over its noise, as a stack of layers: the shapes of the world file (stamps
+// and roads), then the edits of a running game. Every height passes the whole stack (TerrainShape).
+// A value: copies are O(1) and independent. Any thread may read a value that no thread changes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/models/ground/detail.hpp"
+#include "engine/models/ground/ground_edits.hpp"
+
+namespace psygen::models {
+
+struct GroundStack {
+  GroundEdits shapes;  // of the world file; part of the world's function
+  GroundEdits edits;   // made by hand, over the shapes
+
+  // True if the ground is only noise.
+  bool empty() const { return shapes.empty() && edits.empty(); }
+
+  // Hash of all layers that can change the ground mesh of a node that needs heights `margin` blocks
+  // beyond its border; 0: none. O(log n), and O(margin) for large nodes.
+  std::uint64_t hash_of(const QuadCoord& node, double margin, double block_m) const;
+  // True if both have the same layers there. May be false although they do; O(log n) after small
+  // changes.
+  static bool same_in(const GroundStack& a, const GroundStack& b, const QuadCoord& node,
+                      double margin);
+  // True if any layer may change heights within a node. May be true although none does.
+  bool reaches(const QuadCoord& node, double block_m) const;
+  // Returns the pieces of roads that may reach a node, each once.
+  std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
+  // Largest distance between the ground and a mesh of the node with vertices `spacing_m` apart,
+  // because of layers between them. An upper bound in metres; 0: no layers.
+  double error_m(const QuadCoord& node, double spacing_m, double block_m) const;
+  // Estimate of the time that all layers take for a height, as a mean over the rectangle, in units
+  // of the time for a simple edit. It never depends on a cache.
+  double edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
+  // Changes the heights of the noise at the lattice points (x[i], z[k]), values[k · stride + i]. x
+  // and z ascend.
+  void apply(const GroundScale& scale, std::span<const std::int64_t> x,
+             std::span<const std::int64_t> z, std::span<float> values, std::size_t stride,
+             GroundDetail detail) const;
+};
+
+}  // namespace psygen::models
