@@ -19,6 +19,7 @@
 #include "engine/scene/frame/input.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/edits/edits.hpp"
+#include "engine/world/water.hpp"
 #include "engine/world/world.hpp"
 
 namespace cairns {
@@ -353,14 +354,16 @@ core::CameraPose Game::title_camera(app::Session& session, double dt_s) {
   pose.position = position_at_offset(
       title_place_, kTitleRadiusM * glm::dvec3(std::sin(angle), 0, -std::cos(angle)),
       world.block_size_m());
-  double height_m = world.water.level_m;
+  double height_m = world::kDrySurfaceM;
   for (double ahead = -40; ahead <= 80; ahead += 20) {
     const glm::dvec3 way(std::cos(angle) * ahead, 0, std::sin(angle) * ahead);
-    if (const auto ground =
-            title_query_->ground(position_at_offset(pose.position, way, world.block_size_m())))
+    const core::WorldPosition there = position_at_offset(pose.position, way, world.block_size_m());
+    if (const auto water = world::water_surface(world, there))
+      height_m = std::max(height_m, water->surface_m);
+    if (const auto ground = title_query_->ground(there))
       height_m = std::max(height_m, ground->height_m);
   }
-  const double wanted = height_m + kTitleHeightM;
+  const double wanted = height_m > world::kDrySurfaceM ? height_m + kTitleHeightM : title_height_m_;
   title_height_m_ =
       title_height_m_ == 0 ? wanted : std::lerp(title_height_m_, wanted, std::min(0.4 * dt_s, 1.0));
   pose.position.local.y = title_height_m_;

@@ -21,7 +21,6 @@
 #include "engine/core/log.hpp"
 #include "engine/core/processors.hpp"
 #include "engine/handmade/files.hpp"
-#include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/facts/world_facts.hpp"
@@ -244,9 +243,7 @@ class PictureServer {
   static core::CameraPose pose_of(const PicturePlace& place, const world::World& world) {
     core::CameraPose pose{{{}, {place.at_m.x, 0, place.at_m.z}}, place.yaw, place.pitch};
     pose.position = core::normalised(pose.position, world.block_size_m());
-    const core::WorldPosition& at = pose.position;
-    double surface_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
-    if (world.water.exists()) surface_m = std::max(surface_m, world.water.level_m);
+    const double surface_m = world::surface_height_m(world, pose.position);
     const double height_m = place.at_m.y + (place.above_ground ? surface_m : 0);
     pose.position.local.y = std::max(height_m, surface_m + kMinEyeM);
     return pose;

@@ -55,23 +55,41 @@ World::Derived World::derived_from(const world::World& world, const models::Regi
           world::models_reach_m(world, registry), world::drawn_palette(world)};
 }
 
+core::Result<core::WorldPosition> World::on_ground(const core::WorldPosition& position) const {
+  auto at = checked(position, derived_.block_m);
+  if (at && !world_->contains(at->block))
+    return core::invalid_argument(
+        fmt::format("no ground: block ({}, {}) is outside the world", at->block.x, at->block.z));
+  return at;
+}
+
 core::Result<Ground> World::ground(const core::WorldPosition& position) {
   const core::RoundToNearest rounding;
   follow_world();
-  const auto at = checked(position, derived_.block_m);
+  const auto at = on_ground(position);
   if (!at) return tl::unexpected(at.error());
-  if (!world_->contains(at->block))
-    return core::invalid_argument(
-        fmt::format("no ground: block ({}, {}) is outside the world", at->block.x, at->block.z));
   const glm::dvec2 local(at->local.x, at->local.z);
   const models::GroundPoint point = cache_.ground(at->block).at(local);
   const world::GroundBlends blends =
       world::ground_blends(derived_.palette, static_cast<float>(point.height_m), point.normal,
                            world::pattern_place(at->block, derived_.block_m, glm::vec2(local)),
                            world::road_at(*world_, at->block, local));
-  const world::Water& water = world_->water;
-  return Ground{point.height_m, point.normal, world::main_kind(blends),
-                water.exists() ? std::max(water.level_m - point.height_m, 0.0) : 0.0};
+  const world::WaterPoint water = world::water_at(*world_, *at, point.height_m);
+  return Ground{.height_m = point.height_m,
+                .normal = point.normal,
+                .kind = world::main_kind(blends),
+                .water_depth_m = water.depth_m,
+                .surface_m = std::max(point.height_m, water.surface_m),
+                .water = water.body};
+}
+
+core::Result<world::WaterPoint> World::water(const core::WorldPosition& position) {
+  const core::RoundToNearest rounding;
+  follow_world();
+  const auto at = on_ground(position);
+  if (!at) return tl::unexpected(at.error());
+  const glm::dvec2 local(at->local.x, at->local.z);
+  return world::water_at(*world_, *at, cache_.ground(at->block).at(local).height_m);
 }
 
 // A ray from a normalised origin, with a direction of unit length.

@@ -13,6 +13,7 @@
 #include "engine/query/objects.hpp"
 #include "engine/world/ground_blends.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/water.hpp"
 
 namespace psygen::query {
 
@@ -24,6 +25,8 @@ struct Ground {
   // Water is no surface kind: its bottom has one.
   world::GroundKind kind = world::GroundKind::kGrass;
   double water_depth_m = 0;  // from the water's surface down to the ground; 0: dry
+  double surface_m = 0;      // height of the water's surface; where dry, of the ground
+  world::WaterBody water = world::kNoWater;  // the body of that water
 };
 
 // A straight ray.
@@ -94,6 +97,9 @@ class World {
   // bounded world, where there is no ground. About 50 ns in a cached block.
   core::Result<Ground> ground(const core::WorldPosition& at);
 
+  // Returns the water at a position, whose height is ignored. Fails as ground() does. As fast.
+  core::Result<world::WaterPoint> water(const core::WorldPosition& at);
+
   // Returns the first hit of a ray. It hits the ground from either side, and a collider from
   // outside. A ray that begins on the ground (within GroundGrid::kTouchM) and does not rise above
   // it hits it at distance 0. The ground has no vertical sides at the border of a bounded world.
@@ -154,6 +160,8 @@ class World {
   glm::vec2 max_reach_m() const {
     return world::with_placed_models(derived_.scattered_reach_m, *world_);
   }
+  // Returns the normalised position; fails if it has no ground.
+  core::Result<core::WorldPosition> on_ground(const core::WorldPosition& at) const;
   double seam_m(const Course& course) const;
   void cast_ground(const Course& course, Hit& hit);
   void cast_models(const Course& course, Hit& hit);

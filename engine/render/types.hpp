@@ -151,7 +151,7 @@ struct Light {
 };
 
 // A plane of water to the horizon.
-struct WaterSurface {
+struct WaterPlane {
   float level_m = 0.0F;                      // height in the world
   glm::vec3 colour{0.010F, 0.045F, 0.050F};  // linear albedo of deep water
 };
@@ -387,7 +387,7 @@ struct FrameInput {
   core::Projection projection;
   Light light;
   TerrainPalette palette;
-  std::optional<WaterSurface> water;
+  std::optional<WaterPlane> water;
   Canopy canopy;
   WorldEdge edge;
   View view = View::kNormal;

@@ -17,6 +17,7 @@
 #include "engine/models/edits.hpp"
 #include "engine/world/edits/edit_bytes.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/water.hpp"
 
 namespace psygen::save {
 namespace {
@@ -435,8 +436,9 @@ std::uint64_t surface_hash(const world::World& world, core::BlockCoord block) {
   const std::uint64_t hash =
       core::hash_bytes(std::as_bytes(std::span(heights)), std::bit_cast<std::uint64_t>(relief_m));
   const double lowest_m = *std::ranges::min_element(heights) / 65535.0 * relief_m;
-  if (!world.water.exists() || world.water.level_m <= lowest_m) return hash;
-  return core::combine(hash, std::bit_cast<std::uint64_t>(world.water.level_m));
+  const auto sea = world::water_surface(world, {block, {}});
+  if (!sea || sea->depth_m(lowest_m) <= 0) return hash;
+  return core::combine(hash, std::bit_cast<std::uint64_t>(sea->surface_m));
 }
 
 core::Result<Adaptation> adapt(SaveTables& tables, const WorldIdentity& before,

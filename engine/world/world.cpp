@@ -7,6 +7,7 @@
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/water.hpp"
 
 namespace psygen::world {
 namespace {
@@ -47,7 +48,7 @@ core::WorldPosition rebased(const core::WorldPosition& at, double from_m, double
 
 double surface_height_m(const World& world, const core::WorldPosition& at) {
   const double ground_m = models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
-  return world.water.exists() ? std::max(ground_m, world.water.level_m) : ground_m;
+  return std::max(ground_m, water_at(world, at, ground_m).surface_m);
 }
 
 void set_edits(World& world, std::shared_ptr<const models::EditLayer> edits) {

@@ -170,7 +170,7 @@ void Creatures::step_bird(Creature& c, const glm::dvec3& to_player, double hour,
   c.beat += dt * (13 + 9 * c.fear);
   const auto ground = query_->ground(c.at);
   if (!ground) return;
-  const double floor_m = std::max(ground->height_m, query_->world().water.level_m);
+  const double floor_m = ground->surface_m;
   const double climb = std::clamp((floor_m + height_m - c.at.local.y) * 0.8, -3.0, 4.0);
   c.pitch = std::atan2(climb, c.pace);
   c.at.local.y = std::max(c.at.local.y + climb * dt, floor_m + 1.5);
@@ -192,9 +192,11 @@ void Creatures::step_fish(Creature& c, const glm::dvec3& to_player, double dt) {
     c.yaw += 4 * dt;
   const auto ground = query_->ground(c.at);
   if (!ground) return;
-  const double level_m = query_->world().water.level_m;
+  const auto water = world::water_surface(query_->world(), c.at);
+  if (!water) return;
   const double depth_m = 0.35 + 0.6 * whim(c, 0, 1);
-  c.at.local.y = std::max(level_m - depth_m, std::min(ground->height_m + 0.15, level_m - 0.15));
+  c.at.local.y = std::max(water->surface_m - depth_m,
+                          std::min(ground->height_m + 0.15, water->surface_m - 0.15));
 }
 
 }  // namespace cairns

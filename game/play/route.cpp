@@ -27,7 +27,8 @@ std::optional<query::Ground> dry_ground(query::World& query, core::WorldPosition
   at = core::normalised(at, query.world().block_size_m());
   const auto ground = query.ground(at);
   if (!ground || ground->normal.y < min_up || ground->height_m > highest_m) return std::nullopt;
-  if (ground->height_m < query.world().water.level_m + kDryM) return std::nullopt;
+  const auto water = world::water_surface(query.world(), at);
+  if (water && ground->height_m < water->surface_m + kDryM) return std::nullopt;
   at.local.y = ground->height_m;
   return *ground;
 }

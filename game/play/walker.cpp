@@ -53,9 +53,9 @@ core::Result<void> Walker::put(const core::WorldPosition& feet, double yaw) {
 }
 
 double Walker::depth_m() const {
-  const auto ground = query_->ground(feet_);
-  if (!ground || ground->water_depth_m <= 0) return -1;
-  return query_->world().water.level_m - feet_.local.y;
+  const auto water = query_->water(feet_);
+  if (!water || water->is_dry()) return -1;
+  return water->surface_m - feet_.local.y;
 }
 
 bool Walker::faces_wall() const {

@@ -187,8 +187,10 @@ void Sounds::update(Play* play, const core::CameraPose& ears, double dt_s) {
     hold(wind_, clips_->wind,
          0.12 + 0.35 * height + 0.03 * std::hypot(weather.wind.x, weather.wind.z) + speed, dt_s);
     hold(rain_, clips_->rain, feet.local.y > kSnowLineM ? 0 : 0.5 * weather.wet, dt_s);
-    const double above = feet.local.y - play->world().water.level_m;
-    hold(water_, clips_->water, 0.4 * std::clamp(1 - above / 6, 0.0, 1.0), dt_s);
+    const auto water = world::water_surface(play->world(), feet);
+    const double nearness =
+        water ? std::clamp(1 - (feet.local.y - water->surface_m) / 6, 0.0, 1.0) : 0.0;
+    hold(water_, clips_->water, 0.4 * nearness, dt_s);
     const Fire* fire = play->fire_near(30);
     hold(fire_, clips_->fire, fire != nullptr ? 0.9 : 0, dt_s,
          fire != nullptr ? std::optional(fire->at) : std::nullopt);

@@ -230,6 +230,26 @@ TEST(Creatures, LiveInTheirHabitatAndFlee) {
   EXPECT_GT(fled, 0U);
 }
 
+TEST(Creatures, FishStayBelowTheSurfaceAndBirdsAboveIt) {
+  Begun game(6);
+  const double level_m = game.land->world.water.level_m;
+  game.put(game.water(2));
+  game.steps(120);
+  int fish = 0;
+  for (const Creature& c : game.play->creatures().all()) {
+    const auto ground = game.play->query().ground(c.at);
+    ASSERT_TRUE(ground);
+    if (c.kind == Kind::kFish) {
+      ++fish;
+      EXPECT_GE(c.at.local.y, level_m - 0.95);
+      EXPECT_LE(c.at.local.y, level_m - 0.15);
+    } else if (c.kind == Kind::kBird) {
+      EXPECT_GE(c.at.local.y, std::max(level_m, ground->height_m) + 1.5 - 1e-9);
+    }
+  }
+  EXPECT_GT(fish, 0);
+}
+
 TEST(Weather, DependsOnlyOnSeedAndTimeAndChangesSlowly) {
   double wettest = 0, driest = 1;
   for (int s = 0; s < 3 * 3600; ++s) {

@@ -44,9 +44,9 @@ void move_sun(const world::World& world, double time_s, render::Light& light) {
   light.haze_density = haze_density;
 }
 
-std::optional<render::WaterSurface> water_of(const world::World& world) {
+std::optional<render::WaterPlane> water_of(const world::World& world) {
   if (!world.water.exists()) return std::nullopt;
-  return render::WaterSurface{static_cast<float>(world.water.level_m), world.water.colour};
+  return render::WaterPlane{static_cast<float>(world.water.level_m), world.water.colour};
 }
 
 render::TerrainPalette palette_of(const world::World& world) {

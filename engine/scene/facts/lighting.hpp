@@ -13,7 +13,7 @@ namespace psygen::scene {
 render::Light light_of(const world::World& world, double view_distance_m, double time_s = 0);
 // Moves sun and sky of `light`, which light_of() made, to `time_s`.
 void move_sun(const world::World& world, double time_s, render::Light& light);
-std::optional<render::WaterSurface> water_of(const world::World& world);
+std::optional<render::WaterPlane> water_of(const world::World& world);
 render::TerrainPalette palette_of(const world::World& world);
 // The forests of the world in their colour from above.
 render::Canopy canopy_of(const world::World& world, const glm::vec3& albedo);

@@ -149,6 +149,28 @@ TEST(QueryWorld, GroundHasTheSurfaceKindThatIsDrawn) {
   EXPECT_GT(count[static_cast<std::size_t>(world::GroundKind::kSand)], 0);
 }
 
+TEST(QueryWorld, WaterLiesOverTheExactGround) {
+  for (const char* sea : {"", "[water]\nlevel_m = 40\n"}) {
+    const Loaded loaded = Loaded::parsed(std::string(kBounded) + sea);
+    World query(loaded.world, loaded.registry);
+    int wet = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const core::WorldPosition at{{i % 7, i % 3}, {0.021 * i, 900 - i, 0.019 * (i % 3100)}};
+      const auto ground = query.ground(at);
+      const auto water = query.water(at);
+      ASSERT_TRUE(ground && water);
+      const double level_m = loaded.world.water.level_m;
+      ASSERT_EQ(water->depth_m, std::max(level_m - ground->height_m, 0.0));
+      ASSERT_EQ(ground->water_depth_m, water->depth_m);
+      ASSERT_EQ(ground->surface_m, std::max(level_m, ground->height_m));
+      ASSERT_EQ(ground->water, water->body);
+      ASSERT_EQ(water->body, water->depth_m > 0 ? world::kSea : world::kNoWater);
+      wet += water->is_dry() ? 0 : 1;
+    }
+    EXPECT_EQ(wet > 300, *sea != 0) << wet;
+  }
+}
+
 TEST(QueryWorld, ThereIsNoGroundOutsideABoundedWorld) {
   const Loaded loaded = Loaded::parsed(kBounded);
   World query(loaded.world, loaded.registry);
@@ -160,6 +182,9 @@ TEST(QueryWorld, ThereIsNoGroundOutsideABoundedWorld) {
     ASSERT_FALSE(ground);
     EXPECT_EQ(ground.error().code, core::ErrorCode::kInvalidArgument);
     EXPECT_NE(ground.error().message.find("outside the world"), std::string::npos);
+    const auto water = query.water(at);
+    ASSERT_FALSE(water);
+    EXPECT_EQ(water.error().message, ground.error().message);
   }
 }
 

@@ -50,7 +50,7 @@ class Looks : public testing::Test {
     input_.models = {&box_, 1};
     input_.light.haze_density = 0.0004F;
     input_.block_size_m = 64;
-    input_.water = WaterSurface{3.0F, {0.01F, 0.045F, 0.05F}};
+    input_.water = WaterPlane{3.0F, {0.01F, 0.045F, 0.05F}};
   }
   void TearDown() override {
     if (!renderer_) return;

@@ -65,7 +65,7 @@ class RendererPreset : public testing::TestWithParam<RenderPath> {
       input.terrain = {&hills, 1};
       input.models = {&box, 1};
       input.block_size_m = 64;
-      input.water = WaterSurface{3.0F, {0.01F, 0.045F, 0.05F}};
+      input.water = WaterPlane{3.0F, {0.01F, 0.045F, 0.05F}};
       for (int i = 0; i < 2; ++i) {
         const auto drawn = renderer->render(input);
         EXPECT_TRUE(drawn) << drawn.error().message;

@@ -19,7 +19,7 @@ class SteadyShaders : public OneOfEach {
   void SetUp() override {
     OneOfEach::SetUp();
     if (!renderer_) return;
-    input_.water = WaterSurface{};
+    input_.water = WaterPlane{};
     input_.block_size_m = 64;
     emitter_.kind.half_extent_m = {2, 2, 0.5F};
     emitter_.origin = {0, 0, -12};

@@ -42,7 +42,7 @@ class WaterOfPresets : public testing::TestWithParam<Preset> {
     input_.terrain = {&terrain_, 1};
     input_.block_size_m = 64;
     input_.light.haze_density = 0.0F;
-    input_.water = WaterSurface{0.0F, {0.012F, 0.040F, 0.052F}};
+    input_.water = WaterPlane{0.0F, {0.012F, 0.040F, 0.052F}};
   }
   image::Image draw(Renderer& renderer) {
     const auto drawn = renderer.render(input_);
@@ -125,7 +125,7 @@ TEST_P(WaterOfPresets, MirrorsACliffWhereItHasWaves) {
   input_ = synthetic::look(height, -0.15, kPictureSize);
   input_.block_size_m = 64;
   input_.light.haze_density = 0.0F;
-  input_.water = WaterSurface{0.0F, {0.012F, 0.040F, 0.052F}};
+  input_.water = WaterPlane{0.0F, {0.012F, 0.040F, 0.052F}};
   terrain_.range = *cliff;
   terrain_.origin = {-32.0F, -height - 12.0F, -64.0F};
   terrain_.height_range_m = 32.0F;

@@ -175,6 +175,26 @@ TEST_F(ChangedWorld, GroundMattersUnderTheEditedBlocksOnly) {
   EXPECT_NE(surface_hash(under, {1, 1}), surface_hash(small_, {1, 1}));
 }
 
+TEST_F(ChangedWorld, TheSeaChangesTheSurfaceOfBlocksThatItCovers) {
+  const double relief_m = small_.terrain.real(models::kTerrainReliefM);
+  int covered = 0, dry = 0;
+  for (std::int32_t x = 0; x < 8; ++x) {
+    const auto heights = world::ground_of_block(small_, {x, 1});
+    const double lowest_m = *std::ranges::min_element(heights) / 65535.0 * relief_m;
+    for (const double level_m : {lowest_m - 1, lowest_m, lowest_m + 1}) {
+      world::World world = small_;
+      world.water.level_m = level_m;
+      const std::uint64_t without = surface_hash(small_, {x, 1});
+      const bool covers = level_m > lowest_m;
+      EXPECT_EQ(surface_hash(world, {x, 1}),
+                covers ? core::combine(without, std::bit_cast<std::uint64_t>(level_m)) : without);
+      ++(covers ? covered : dry);
+    }
+  }
+  EXPECT_EQ(covered, 8);
+  EXPECT_EQ(dry, 16);
+}
+
 TEST_F(ChangedWorld, ChangesThatTouchEditsAreNamedWithTheirPlaces) {
   EXPECT_EQ(refusal(world::testing::shaped_world(stamp_at(96, 96))),
             "the world 'small' has changed since it was saved: the ground differs under 4 edits, "

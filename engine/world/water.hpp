@@ -1,0 +1,58 @@
+// The water of a world as a field: for any place its surface, depth, flow and the body of water
+// that owns it. Every reader of water asks here. Today the sea (Water::level_m) is the only body.
+// Pure functions of the world, in any order, on any thread, without a cache; they look at no mesh.
+// Drawing is left to the renderer. docs/queries.md.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "engine/world/world.hpp"
+
+namespace psygen::world {
+
+// The name of a body of water within its world.
+using WaterBody = std::uint32_t;
+inline constexpr WaterBody kNoWater = 0, kSea = 1;
+
+// The surface of a body of water over a place, whether the ground there is lower or higher.
+struct WaterSurface {
+  double surface_m = 0;       // height in metres of the world
+  glm::vec3 normal{0, 1, 0};  // unit length, upwards
+  glm::vec2 flow_m_s{0.0F};   // velocity along x and z in metres a second; 0: still
+  float foam = 0;             // fraction of the surface that foams, 0 … 1
+  WaterBody body = kNoWater;  // never kNoWater where a function returns a surface
+  // Depth above ground of this height, in metres; 0: the ground is dry.
+  double depth_m(double ground_m) const { return surface_m > ground_m ? surface_m - ground_m : 0; }
+};
+
+// A height below all ground, also as a float: the surface of water in a dry place.
+inline constexpr double kDrySurfaceM = -1e30;
+
+// The water at a place. If the place is dry, depth and flow are 0, the body is kNoWater and
+// surface_m is kDrySurfaceM, so max(ground, surface_m) is the surface of the world anywhere.
+struct WaterPoint {
+  double surface_m = kDrySurfaceM;  // height in metres of the world
+  double depth_m = 0;               // from the surface down to the ground; 0: dry
+  glm::vec3 normal{0, 1, 0};
+  glm::vec2 flow_m_s{0.0F};  // velocity along x and z in metres a second
+  float foam = 0;            // fraction of the surface that foams, 0 … 1
+  WaterBody body = kNoWater;
+  bool is_dry() const { return body == kNoWater; }
+};
+
+// Returns the surface of the water over a place; nothing: no water reaches it at any height of the
+// ground. Ignores the position's own height, and answers outside a bounded world as inside.
+// Evaluates no ground: some nanoseconds.
+std::optional<WaterSurface> water_surface(const World& world, const core::WorldPosition& at);
+
+// Returns the water at a place whose ground has this height in metres.
+WaterPoint water_at(const World& world, const core::WorldPosition& at, double ground_m);
+
+// Returns the water at a place, over the ground of models::ground_height_m(): about 1 µs.
+// query::World::water() answers faster, for many places of a block.
+WaterPoint water_at(const World& world, const core::WorldPosition& at);
+
+}  // namespace psygen::world
