@@ -100,6 +100,10 @@ using glm::vec4;
 #define PSYGEN_WATER_STRIP (2 * (PSYGEN_WATER_RINGS + 1) + 2)
 #define PSYGEN_WATER_REACH 500000.0
 
+// Values of core::WaterVertex: depth of 255, speed of a flow of 32767 in m/s.
+#define PSYGEN_WATER_DEPTH_M 16.0
+#define PSYGEN_WATER_SPEED 8.0
+
 // The sky dome of preset low (sky_dome.vert): columns around, rows from the horizon to the top,
 // vertices of a column; and the sides of the pyramid below it (sky_below.vert).
 #define PSYGEN_DOME_COLUMNS 24

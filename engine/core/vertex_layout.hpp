@@ -31,8 +31,8 @@ struct TerrainVertex {
   std::int8_t normal_z;
   std::uint8_t sun = 255;      // unorm8: visible fraction of the sun, 255 = unshadowed
   std::uint8_t ambient = 255;  // unorm8: visible fraction of the sky, 255 = open
-  std::uint8_t cover = 0;      // unused, always 0: far forests are per draw (TerrainDraw::cover)
-  std::uint8_t road = 0;       // unorm8: fraction covered by a road
+  std::uint8_t wet = 0;        // unorm8: how wet banks and beds are
+  std::uint8_t road = 0;       // unorm8: fraction covered by a road, or by gravel beside water
 };
 static_assert(sizeof(TerrainVertex) == 12);
 // Bit 7 of TerrainVertex::grid_x.
@@ -49,6 +49,19 @@ struct ModelVertex {
   std::uint8_t material;   // 0 solid (bark, stone), 1 leaf (lit from both sides); bits below
 };
 static_assert(sizeof(ModelVertex) == 16);
+
+// A vertex of the surface of a river or lake, in the bytes of a ModelVertex: meshes of water have
+// the layout kModel, and only the renderer's water pass draws them.
+struct WaterVertex {
+  std::int16_t position[3]{};  // snorm16 within the mesh's box, as of ModelVertex
+  std::uint8_t depth = 0;      // of the water under it: (depth / 255)² · kWaterVertexDepthM
+  std::uint8_t foam = 0;       // unorm8: fraction of the surface that foams
+  std::int16_t flow[2]{};      // snorm16: velocity along x and z, in kWaterVertexSpeed m/s
+  std::int8_t slope[2]{};      // snorm8: slope of the surface along x and z
+  std::uint16_t unused = 0;
+};
+static_assert(sizeof(WaterVertex) == sizeof(ModelVertex));
+inline constexpr float kWaterVertexDepthM = 16, kWaterVertexSpeed = 8;  // m, m/s
 
 // A vertex of a game's own object: a model's vertex and its texture coordinates.
 struct ObjectVertex {
@@ -84,6 +97,7 @@ enum class SurfaceKind : std::uint8_t {
   kPlain = 0,  // vertex colours only
   kStone = 1,
   kBark = 2,
+  kWater = 4,  // a surface of WaterVertex; 3 is that of leaves in shaders
 };
 
 // Bytes per vertex of a layout.

@@ -290,8 +290,11 @@ Result<FrameResult> RendererImpl::draw_frame(const FrameInput& input, FrameSlot&
     out.presented = *presented;
     out.handed_over_s = out.presented ? present.start_s : 0;
   }
-  out.draws = culling_ ? counted.draws : static_cast<std::uint32_t>(list_.draws().size());
-  out.triangles = culling_ ? counted.triangles : list_.triangle_count();
+  const Water& water = std::get<Water>(looks_.passes);
+  out.draws = water.surface_count() +
+              (culling_ ? counted.draws : static_cast<std::uint32_t>(list_.draws().size()));
+  out.triangles =
+      water.surface_triangles() + (culling_ ? counted.triangles : list_.triangle_count());
   out.gpu = gpu_;
   return out;
 }

@@ -388,6 +388,7 @@ struct FrameInput {
   Light light;
   TerrainPalette palette;
   std::optional<WaterPlane> water;
+  glm::vec3 water_colour{0.010F, 0.045F, 0.050F};  // linear albedo of deep rivers and lakes
   Canopy canopy;
   WorldEdge edge;
   View view = View::kNormal;
@@ -397,9 +398,11 @@ struct FrameInput {
   Morph morph;
   float fade_phase = 0;     // 0 to 1, of the pattern in which draws with `fade` share their pixels
   double block_size_m = 0;  // anchors the slow pattern of the ground; 0: no pattern
-  std::span<const TerrainDraw> terrain;      // nearest first, committed ranges only
-  std::span<const MeshDraw> models;          // nearest first, committed ranges only
-  std::span<const ObjectDraw> objects;       // nearest first, committed ranges only
+  std::span<const TerrainDraw> terrain;  // nearest first, committed ranges only
+  std::span<const MeshDraw> models;      // nearest first, committed ranges only
+  std::span<const ObjectDraw> objects;   // nearest first, committed ranges only
+  // Rivers and lakes: meshes of core::WaterVertex. Only range, origin, box and sun count.
+  std::span<const MeshDraw> water_surfaces;  // farthest first, committed ranges only
   std::span<const GroundSpot> spots;         // under what stands near the camera, in any order
   std::span<const PointLight> point_lights;  // the first kMaxPointLights are used
   // Back to front; drawn over everything else of the landscape. At most kMaxEmitters are drawn.

@@ -96,7 +96,7 @@ void dive(shaders::FrameData& out) {
 
 void set_water_and_far_things(shaders::FrameData& out, const FrameInput& input) {
   const float altitude = static_cast<float>(input.pose.position.local.y);
-  const WaterPlane water = input.water.value_or(WaterPlane{kNoWaterM, glm::vec3(0.0F)});
+  const WaterPlane water = input.water.value_or(WaterPlane{kNoWaterM, input.water_colour});
   out.water = {water.colour, water.level_m - altitude};
   const float sun = std::max(out.sun_direction.y, 0.0F);
   const glm::vec3 sky = glm::mix(glm::vec3(out.horizon_colour), glm::vec3(out.zenith_colour), 0.6F);

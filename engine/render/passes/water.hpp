@@ -1,6 +1,8 @@
-// The plane of water. Drawn after the sky: it is blended over what lies under it, and over the sky
-// where nothing does. Private to engine/render.
+// The plane of water, and the surfaces of rivers and lakes. Drawn after the sky: they are blended
+// over what lies under them, and over the sky where nothing does. Private to engine/render.
 #pragma once
+
+#include <vector>
 
 #include "engine/render/passes/pass.hpp"
 
@@ -15,23 +17,36 @@ class Water {
     return feature == Feature::kLandscape || feature == Feature::kPointLights ? 1 : 0;
   }
   core::Result<void> create(const PassSetup& setup);
-  void list(const FrameInput& input, const FrameFacts&) { visible_ = input.water.has_value(); }
+  void list(const FrameInput& input, const FrameFacts& facts);
   void use(const Device& device, const FrameSlot& slot, const Targets& targets);
-  void record(const Recording& to) const {
-    if (visible_) draw(to, to.lamps);
-  }
-  void warm_up(const Recording& to, const WarmUpStep& step) const { draw(to, step.lamps); }
+  void record(const Recording& to) const;
+  void warm_up(const Recording& to, const WarmUpStep& step) const;
 
   // True if the listed frame shows water.
-  bool visible() const { return visible_; }
+  bool visible() const { return plane_ || !surfaces_.empty(); }
+  // Numbers of the surfaces of rivers and lakes in the listed frame, and of their triangles.
+  std::uint32_t surface_count() const { return static_cast<std::uint32_t>(surfaces_.size()); }
+  std::uint64_t surface_triangles() const;
 
  private:
-  void draw(const Recording& to, bool lamps) const;
+  // With and without point lights.
+  struct Pipelines {
+    UniquePipeline plain, lamplit;
+    VkPipeline of(bool lamps) const { return lamps ? lamplit.get() : plain.get(); }
+  };
+  // The surface of a river or lake.
+  struct Surface {
+    core::GeometryRange range;
+    shaders::DrawData data;
+  };
+  core::Result<void> create(const PassSetup& setup, PipelineShape shape, Pipelines& pipelines);
+  void bind(const Recording& to, VkPipeline pipeline) const;
 
   PassSet set_;  // the reflected landscape; empty if water reflects only the sky
   VkDescriptorImageInfo any_image_{};
-  UniquePipeline plain_, lamplit_;
-  bool visible_ = false;
+  Pipelines plane_pipelines_, surface_pipelines_;
+  bool plane_ = false;
+  std::vector<Surface> surfaces_;
 };
 static_assert(Pass<Water>);
 

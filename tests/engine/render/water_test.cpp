@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "engine/image/image_io.hpp"
 #include "engine/render/preset.hpp"
@@ -88,6 +91,87 @@ TEST_P(WaterOfPresets, ShowsItsDepthAndOverDeepGroundNone) {
   EXPECT_GT(row(beach, shallow), row(open_water, shallow) + 20);
   EXPECT_NEAR(row(beach, deep), row(open_water, deep), 6);
 }
+
+// A river or lake over the beach instead of the sea: a sheet at the height of the camera's foot.
+class SurfacesOfPresets : public WaterOfPresets {
+ protected:
+  // Covers 64 m × 64 m ahead, at height 0, with this depth along z: 0 near the camera.
+  std::optional<MeshDraw> sheet(Renderer& renderer, double deepest_m, double foam) {
+    constexpr int kSide = 9;
+    const auto reserved = renderer.geometry().reserve(core::VertexLayout::kModel, kSide * kSide,
+                                                      (kSide - 1) * (kSide - 1) * 6);
+    if (!reserved) return std::nullopt;
+    std::vector<core::WaterVertex> vertices;
+    std::vector<std::uint16_t> indices;
+    for (int z = 0; z < kSide; ++z) {
+      for (int x = 0; x < kSide; ++x) {
+        core::WaterVertex v;
+        const auto place = [](int i) {
+          return static_cast<std::int16_t>(std::lround(32767.0 * (2.0 * i / (kSide - 1) - 1)));
+        };
+        v.position[0] = place(x), v.position[2] = place(z);
+        const double depth_m = deepest_m * (1.0 - z / (kSide - 1.0));
+        v.depth = static_cast<std::uint8_t>(
+            std::lround(255 * std::sqrt(depth_m / double{core::kWaterVertexDepthM})));
+        v.foam = static_cast<std::uint8_t>(std::lround(255 * foam));
+        v.flow[0] = 8000;
+        vertices.push_back(v);
+      }
+    }
+    for (int z = 0; z + 1 < kSide; ++z) {
+      for (int x = 0; x + 1 < kSide; ++x) {
+        const int a = z * kSide + x;
+        for (const int i : {a, a + kSide, a + 1, a + 1, a + kSide, a + kSide + 1})
+          indices.push_back(static_cast<std::uint16_t>(i));
+      }
+    }
+    std::memcpy(reserved->vertices.data(), vertices.data(), reserved->vertices.size());
+    std::copy(indices.begin(), indices.end(), reserved->indices.begin());
+    renderer.geometry().commit(reserved->range);
+    MeshDraw draw;
+    draw.range = reserved->range;
+    draw.origin = {0.0F, -20.0F, -44.0F};
+    draw.box_half_extent = {32.0F, 0.0F, 32.0F};
+    return draw;
+  }
+};
+
+TEST_P(SurfacesOfPresets, HideDeepGroundShowShallowGroundAndLieBehindHighGround) {
+  const auto renderer = open(GetParam());
+  ASSERT_TRUE(renderer);
+  input_.water_colour = input_.water->colour;
+  input_.water.reset();
+  const image::Image dry = draw(*renderer);
+  const auto deep = sheet(*renderer, 12, 0), shallow = sheet(*renderer, 0, 0);
+  ASSERT_TRUE(deep && shallow);
+  input_.water_surfaces = {&*deep, 1};
+  const image::Image over_deep = draw(*renderer);
+  input_.water_surfaces = {&*shallow, 1};
+  const image::Image over_shallow = draw(*renderer);
+  const std::uint32_t far = row_ahead(45), before_edge = row_ahead(13);
+  EXPECT_LT(row(over_deep, far), 0.75 * row(dry, far));
+  EXPECT_NEAR(row(over_shallow, far), row(dry, far), 0.3 * row(dry, far));
+  EXPECT_GT(row(over_shallow, far), row(over_deep, far) + 20);
+  // Ground above the surface hides it.
+  EXPECT_NEAR(row(over_deep, before_edge), row(dry, before_edge), 1);
+}
+
+TEST_P(SurfacesOfPresets, FoamIsBright) {
+  const auto renderer = open(GetParam());
+  ASSERT_TRUE(renderer);
+  input_.water.reset();
+  const auto calm = sheet(*renderer, 12, 0), rapid = sheet(*renderer, 12, 1);
+  ASSERT_TRUE(calm && rapid);
+  input_.water_surfaces = {&*calm, 1};
+  const image::Image without = draw(*renderer);
+  input_.water_surfaces = {&*rapid, 1};
+  EXPECT_GT(row(draw(*renderer), row_ahead(40)), row(without, row_ahead(40)) + 60);
+}
+
+INSTANTIATE_TEST_SUITE_P(Presets, SurfacesOfPresets,
+                         testing::Values(Preset::kLow, Preset::kMedium, Preset::kHigh,
+                                         Preset::kUltra),
+                         [](const auto& of) { return std::string(to_string(of.param)); });
 
 TEST_P(WaterOfPresets, HasFoamAlongItsEdge) {
   const auto renderer = open(GetParam());
