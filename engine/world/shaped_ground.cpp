@@ -97,6 +97,10 @@ class Shaper {
     return add(std::move(edit), "centre_m");
   }
 
+  void add(const models::Erosion& erosion) {
+    layer_.ground.erosion = std::make_shared<const models::Erosion>(erosion);
+  }
+
   Shaped add(const Road& road) {
     for (const glm::dvec2& point : road.points_m) {
       if (const auto at = inside(point); !at) return refused("points_m", at.error());
@@ -351,8 +355,11 @@ std::pair<float, float> numbers_of(const Stamp& stamp) {
 tl::expected<void, ShapeError> shape_ground(World& world) {
   world.shaped.layer = nullptr;
   set_edits(world, nullptr);
-  if (world.shaped.stamps.empty() && world.shaped.roads.empty()) return {};
+  const models::Erosion& erosion = world.shaped.erosion;
+  const bool erodes = erosion.strength > 0;
+  if (!erodes && world.shaped.stamps.empty() && world.shaped.roads.empty()) return {};
   Shaper shaper(world);
+  if (erodes) shaper.add(erosion);
   if (auto ok = add_all(world.shaped.stamps, "stamp", shaper); !ok) return ok;
   if (auto ok = add_all(world.shaped.roads, "road", shaper); !ok) return ok;
   world.shaped.layer = std::make_shared<const models::EditLayer>(shaper.take());

@@ -1,5 +1,5 @@
-// Stamps (heightmaps from images) and roads (along smooth curves): the shapes that a world file
-// adds to its ground. They are part of the world's function: models find their positions on the
+// Erosion, stamps (heightmaps from images) and roads (along smooth curves): the shapes that a world
+// file gives its ground. They are part of the world's function: models find their positions on the
 // shaped ground, and edits lie over it (edits/edits.hpp). Plain values; immutable in use, any
 // thread. They read no files (files/shaped_file.hpp). docs/world-files.md.
 #pragma once
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/models/ground/erosion.hpp"
 #include "engine/models/model_type.hpp"
 #include "engine/world/mask.hpp"
 
@@ -68,14 +69,15 @@ inline constexpr std::size_t kMaxStamps = 64, kMaxRoads = 64, kMaxRoadPoints = 1
 inline constexpr double kMinRoadStepM = 1, kMaxRoadsM = 100'000;
 inline constexpr double kFarthestShapeM = 1e8;  // from the world's origin along an axis
 
-// Stamps and roads, and the layer of edits made of them.
+// Erosion, stamps and roads, and the layer made of them.
 struct ShapedGround {
+  models::Erosion erosion;  // acts first
   std::vector<Stamp> stamps;
   std::vector<Road> roads;
   // Made by shape_ground(); null: no shapes. Derived from the world, so it is not compared.
   std::shared_ptr<const models::EditLayer> layer;
   friend bool operator==(const ShapedGround& a, const ShapedGround& b) {
-    return a.stamps == b.stamps && a.roads == b.roads;
+    return a.erosion == b.erosion && a.stamps == b.stamps && a.roads == b.roads;
   }
 };
 
@@ -86,10 +88,10 @@ struct ShapeError {
   core::Error error;
 };
 
-// Builds the layer from stamps and then roads, and removes the world's edits. world.terrain must
-// already have its seed. Linear in the heights of stamps and the lengths of roads. Fails with
-// kInvalidArgument for shapes outside the world or above its height range, and with kOverBudget
-// where too many shapes overlap or all roads together are longer than kMaxRoadsM.
+// Builds the layer from the erosion, stamps and then roads, and removes the world's edits.
+// world.terrain must already have its seed. Linear in the heights of stamps and the lengths of
+// roads. Fails with kInvalidArgument for shapes outside the world or above its height range, and
+// with kOverBudget where too many shapes overlap or all roads together are longer than kMaxRoadsM.
 tl::expected<void, ShapeError> shape_ground(World& world);
 
 // A hash of all shapes; 0: there are none.

@@ -54,9 +54,9 @@ double surface_height_m(const World& world, const core::WorldPosition& at) {
 void set_edits(World& world, std::shared_ptr<const models::EditLayer> edits) {
   static const models::EditLayer none;
   const models::EditLayer& below = world.shaped.layer ? *world.shaped.layer : none;
-  if (edits && !edits->ground.shapes.is(below.ground.shapes)) {
+  if (edits && !edits->ground.has_function_of(below.ground)) {
     models::EditLayer layer = *edits;
-    layer.ground.shapes = below.ground.shapes;
+    layer.ground.take_function_of(below.ground);
     edits = std::make_shared<const models::EditLayer>(std::move(layer));
   }
   world.edits = std::move(edits);

@@ -159,6 +159,14 @@ double ErosionFilter::error_m(const ErosionFilter& other) const {
   return std::min(error, apart);
 }
 
+double ErosionFilter::usual_error_m(const ErosionFilter& other) const {
+  double depths = 0;
+  for (std::size_t o = 0; o < kernel_.octaves.size(); ++o)
+    depths += static_cast<double>(
+        std::abs(kernel_.octaves[o].depth_m - other.kernel_.octaves[o].depth_m));
+  return 0.5 * depths;
+}
+
 // The memory of one call.
 struct ErosionFilter::Lattices {
   ErosionAxis x, z;

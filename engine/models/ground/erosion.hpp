@@ -19,7 +19,7 @@ namespace psygen::models {
 
 // The erosion of a world. visit_erosion() has units, ranges and meanings.
 struct Erosion {
-  double strength = 0.5;
+  double strength = 0;
   double gully_m = 120;
   std::int64_t octaves = 5;
   double branching = 1;
@@ -39,7 +39,10 @@ struct Erosion {
 inline constexpr auto visit_erosion = [](auto& e, const auto& visit) {
   using Spec = NumberSpec;
   visit("strength", e.strength,
-        Spec{{0, 1}, {0, 1}, "", "depth of the gullies; 0: no erosion at all"});
+        Spec{{0, 1},
+             {0, 1},
+             "",
+             "depth of the gullies, about 0.5 for mountains; 0: no erosion at all"});
   visit("gully_m", e.gully_m, Spec{{4, 5000}, {20, 600}, "m", "width of the largest gullies"});
   visit("octaves", e.octaves,
         Spec{{1, kMaxErosionOctaves},
@@ -113,12 +116,16 @@ class ErosionFilter {
   double max_m() const { return max_m_; }
   // Largest difference of a height to the same erosion at another detail, wear excluded.
   double error_m(const ErosionFilter& other) const;
+  // The difference in most places, because of gullies that only one of them has.
+  double usual_error_m(const ErosionFilter& other) const;
 
   // Time of apply() for samples `spacing` cells apart, in units of RidgedNoise::work(), without
   // that of the guide's heights, which are guide_points().
   double work(std::size_t columns, std::size_t rows, double spacing) const;
   double guide_points(std::size_t columns, std::size_t rows, double spacing) const;
 
+  // Distance between lines of the guide, in cells.
+  double line_cells() const { return static_cast<double>(line_cells_); }
   // Features of the guide that are narrower than this many cells are worn away.
   double narrowest_cells() const { return narrowest_cells_; }
 

@@ -5,17 +5,18 @@
 namespace psygen::models {
 
 std::uint64_t GroundStack::hash_of(const QuadCoord& node, double margin, double block_m) const {
-  return edits.hash_of(node, margin, block_m, shapes.hash_of(node, margin, block_m));
+  const std::uint64_t eroded = erosion == nullptr ? 0 : erosion->identity();
+  return edits.hash_of(node, margin, block_m, shapes.hash_of(node, margin, block_m, eroded));
 }
 
 bool GroundStack::same_in(const GroundStack& a, const GroundStack& b, const QuadCoord& node,
                           double margin) {
-  return GroundEdits::same_in(a.edits, b.edits, node, margin) &&
+  return same_erosion(a, b) && GroundEdits::same_in(a.edits, b.edits, node, margin) &&
          GroundEdits::same_in(a.shapes, b.shapes, node, margin);
 }
 
 bool GroundStack::reaches(const QuadCoord& node, double block_m) const {
-  return edits.reaches(node, block_m) || shapes.reaches(node, block_m);
+  return erosion != nullptr || edits.reaches(node, block_m) || shapes.reaches(node, block_m);
 }
 
 std::vector<const GroundEdit*> GroundStack::roads_in(const QuadCoord& node, double block_m) const {

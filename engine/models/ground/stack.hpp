@@ -1,23 +1,35 @@
-// The ground of a world over its noise, as a stack of layers: the shapes of the world file (stamps
-// and roads), then the edits of a running game. Every height passes the whole stack (TerrainShape).
-// A value: copies are O(1) and independent. Any thread may read a value that no thread changes.
+// The ground of a world over its noise, as a stack of layers: the erosion and the shapes (stamps
+// and roads) of the world file, then the edits of a running game. Every height passes the whole
+// stack (TerrainShape). A value: copies are O(1) and independent. Any thread may read a value that
+// no thread changes.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "engine/models/ground/detail.hpp"
+#include "engine/models/ground/erosion.hpp"
 #include "engine/models/ground/ground_edits.hpp"
 
 namespace psygen::models {
 
 struct GroundStack {
-  GroundEdits shapes;  // of the world file; part of the world's function
+  std::shared_ptr<const Erosion> erosion;  // of the world file; null: none
+  GroundEdits shapes;  // of the world file; with the erosion part of the world's function
   GroundEdits edits;   // made by hand, over the shapes
 
   // True if the ground is only noise.
-  bool empty() const { return shapes.empty() && edits.empty(); }
+  bool empty() const { return erosion == nullptr && shapes.empty() && edits.empty(); }
+  // True if both have the same layers of the world file, or copies of them; and takes over those.
+  bool has_function_of(const GroundStack& other) const {
+    return same_erosion(*this, other) && shapes.is(other.shapes);
+  }
+  void take_function_of(const GroundStack& other) {
+    erosion = other.erosion;
+    shapes = other.shapes;
+  }
 
   // Hash of all layers that can change the ground mesh of a node that needs heights `margin` blocks
   // beyond its border; 0: none. O(log n), and O(margin) for large nodes.
@@ -31,16 +43,22 @@ struct GroundStack {
   // Returns the pieces of roads that may reach a node, each once.
   std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
   // Largest distance between the ground and a mesh of the node with vertices `spacing_m` apart,
-  // because of layers between them. An upper bound in metres; 0: no layers.
+  // because of shapes and edits between them. An upper bound in metres; 0: neither.
   double error_m(const QuadCoord& node, double spacing_m, double block_m) const;
-  // Estimate of the time that all layers take for a height, as a mean over the rectangle, in units
-  // of the time for a simple edit. It never depends on a cache.
+  // Estimate of the time that shapes and edits take for a height, as a mean over the rectangle, in
+  // units of the time for a simple edit. It never depends on a cache.
   double edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
-  // Changes the heights of the noise at the lattice points (x[i], z[k]), values[k · stride + i]. x
-  // and z ascend.
+  // Changes eroded heights at the lattice points (x[i], z[k]), values[k · stride + i], by shapes
+  // and edits. x and z ascend.
   void apply(const GroundScale& scale, std::span<const std::int64_t> x,
              std::span<const std::int64_t> z, std::span<float> values, std::size_t stride,
              GroundDetail detail) const;
+
+ private:
+  static bool same_erosion(const GroundStack& a, const GroundStack& b) {
+    if (a.erosion == b.erosion) return true;
+    return a.erosion != nullptr && b.erosion != nullptr && *a.erosion == *b.erosion;
+  }
 };
 
 }  // namespace psygen::models

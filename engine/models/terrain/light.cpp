@@ -188,7 +188,8 @@ double TerrainLight::work(const TerrainShape& shape, const SunDirection& sun, st
     work += shape.noise.work(grid.columns(), grid.rows(), grid.spacing_of_noise(shape),
                              shape.octaves(grid.detail));
     const auto heights = static_cast<double>(grid.columns() * grid.rows());
-    work += shape.layer_work(grid.lattice(shape, grid.x), grid.lattice(shape, grid.z), heights);
+    work += shape.layer_work(grid.lattice(shape, grid.x), grid.lattice(shape, grid.z), heights,
+                             grid.detail);
   }
   return work;
 }

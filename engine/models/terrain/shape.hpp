@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "engine/models/ground/stack.hpp"
@@ -23,6 +24,7 @@ struct TerrainShape {
   float relief_m;  // height of the quantised value 65535; the value 0 has height 0
   float quantum;   // quantised height of noise 1
   float metres;    // height of noise 1, in metres
+  std::uint64_t seed;
   const GroundStack* stack = nullptr;  // of the parameters; null: only noise. Not owned
 
   // Requires legal parameters.
@@ -40,7 +42,9 @@ struct TerrainShape {
   void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                 std::span<float> values, std::size_t stride, GroundDetail detail) const {
     noise.evaluate(columns, rows, values, stride, octaves(detail));
-    if (stack != nullptr) stack->apply(scale(), columns, rows, values, stride, detail);
+    if (stack == nullptr) return;
+    erode(columns, rows, values, stride, detail);
+    stack->apply(scale(), columns, rows, values, stride, detail);
   }
   // The detail of the node's meshes, and that of grid `grid` of its light.
   GroundDetail detail() const { return GroundDetail::of_node(node_level); }
@@ -49,7 +53,9 @@ struct TerrainShape {
   int octaves(GroundDetail detail) const;
   // Time that the layers take in evaluate() of this many heights, spread evenly over a rectangle in
   // cells of node level 0, in units of RidgedNoise::work(). 0 without layers.
-  double layer_work(LatticeSpan x, LatticeSpan z, double heights) const;
+  double layer_work(LatticeSpan x, LatticeSpan z, double heights, GroundDetail detail) const;
+  // The erosion at a detail, if there is any.
+  std::optional<ErosionFilter> filter(GroundDetail detail) const;
   // The quantised height of a value of the noise, 0 … 65535. The same bits as in the kernel.
   std::uint16_t quantise(float noise_value) const {
     return static_cast<std::uint16_t>(round_to_int(std::min(noise_value * quantum, 65535.0F)));
@@ -57,6 +63,8 @@ struct TerrainShape {
 
  private:
   GroundScale scale() const;
+  void erode(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
+             std::span<float> values, std::size_t stride, GroundDetail detail) const;
 };
 
 }  // namespace psygen::models

@@ -175,7 +175,7 @@ double TerrainType::steps(const Parameters& p, int level) const {
   const std::int64_t x = p.integer(kTerrainBlockX), z = p.integer(kTerrainBlockZ);
   work += shape.layer_work({shape.world_of(x, -1), shape.world_of(x, grid.size)},
                            {shape.world_of(z, -1), shape.world_of(z, grid.size)},
-                           sample_count(grid, level));
+                           sample_count(grid, level), shape.detail());
   return work + TerrainLight::work(shape,
                                    {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)}, x, z,
                                    light_grid_of(level));
@@ -306,6 +306,7 @@ TerrainShape::TerrainShape(const Parameters& p)
       relief_m(static_cast<float>(p.real(kTerrainReliefM))),
       quantum(static_cast<float>(65535.0 / noise.max_value())),
       metres(static_cast<float>(p.real(kTerrainReliefM) / noise.max_value())),
+      seed(static_cast<std::uint64_t>(p.integer(kTerrainSeed))),
       stack(p.edits() != nullptr ? &p.edits()->ground : nullptr) {}
 
 GroundScale TerrainShape::scale() const {
@@ -320,10 +321,60 @@ int TerrainShape::octaves(GroundDetail detail) const {
                       : kMaxOctaves;
 }
 
+namespace {
+
+// The octaves of a noise that erosion follows.
+class NoiseGuide final : public ErosionGuide {
+ public:
+  NoiseGuide(const RidgedNoise& noise, int octaves) : noise_(noise), octaves_(octaves) {}
+  int octaves(double narrowest_cells) const {
+    return std::min(octaves_, noise_.octaves_wider_than(narrowest_cells));
+  }
+  void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
+               double narrowest_cells, std::span<float> values, std::size_t stride) const override {
+    noise_.evaluate(columns, rows, values, stride, octaves(narrowest_cells));
+  }
+
+ private:
+  const RidgedNoise& noise_;
+  int octaves_;
+};
+
+}  // namespace
+
+std::optional<ErosionFilter> TerrainShape::filter(GroundDetail detail) const {
+  if (stack == nullptr || stack->erosion == nullptr) return std::nullopt;
+  const GroundScale of = scale();
+  return ErosionFilter(
+      *stack->erosion,
+      {.seed = seed, .cell_m = of.cell_m, .unit_m = of.unit_m, .highest = of.highest},
+      detail.level);
+}
+
+void TerrainShape::erode(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
+                         std::span<float> values, std::size_t stride, GroundDetail detail) const {
+  const std::optional<ErosionFilter> erosion = filter(detail);
+  if (erosion) erosion->apply(NoiseGuide(noise, octaves(detail)), columns, rows, values, stride);
+}
+
 // Measured: one edit takes 8 times as long for a height as an octave of the noise.
-double TerrainShape::layer_work(LatticeSpan x, LatticeSpan z, double heights) const {
+double TerrainShape::layer_work(LatticeSpan x, LatticeSpan z, double heights,
+                                GroundDetail detail) const {
   constexpr double kWorkPerEdit = 8;
-  return stack == nullptr ? 0 : kWorkPerEdit * heights * stack->edits_per_height(scale(), x, z);
+  if (stack == nullptr) return 0;
+  const double edits = kWorkPerEdit * heights * stack->edits_per_height(scale(), x, z);
+  const std::optional<ErosionFilter> erosion = filter(detail);
+  if (!erosion) return edits;
+  const auto side = static_cast<std::size_t>(std::sqrt(heights));
+  const double spacing =
+      static_cast<double>(x.last - x.first) / static_cast<double>(std::max<std::size_t>(side, 1));
+  const NoiseGuide guide(noise, octaves(detail));
+  const double lines = std::sqrt(erosion->guide_points(side, side, spacing));
+  const auto line_count = static_cast<std::size_t>(lines);
+  return edits + erosion->work(side, side, spacing) +
+         noise.work(line_count, line_count, erosion->line_cells(),
+                    guide.octaves(erosion->narrowest_cells())) +
+         noise.work(side, side, spacing, guide.octaves(erosion->narrowest_cells()));
 }
 
 std::unique_ptr<ModelType> make_terrain_type() {
@@ -332,6 +383,15 @@ std::unique_ptr<ModelType> make_terrain_type() {
 
 std::uint32_t terrain_surface_triangles(const Parameters& terrain, int level) {
   return grid_of(terrain, level).surface_triangles();
+}
+
+DetailErrors terrain_detail_errors_m(const Parameters& terrain, int levels) {
+  const TerrainShape shape(terrain);
+  const GroundDetail other = GroundDetail::of_node(shape.node_level + levels);
+  const std::optional<ErosionFilter> here = shape.filter(shape.detail()),
+                                     there = shape.filter(other);
+  if (!here || !there) return {};
+  return {here->error_m(*there), here->usual_error_m(*there)};
 }
 
 double terrain_block_size_m(const Parameters& terrain) {

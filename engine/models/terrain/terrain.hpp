@@ -89,6 +89,14 @@ std::unique_ptr<ModelType> make_terrain_type();
 // Triangles of a level without its skirts (7,938 for 64 vertices per side at level 0).
 std::uint32_t terrain_surface_triangles(const Parameters& terrain, int level);
 
+// Differences in metres between the heights of a node and those of nodes `levels` node levels above
+// it, because coarser nodes leave out small gullies: the largest, and a usual one. Without erosion
+// both are 0. The levels of both are at least 0.
+struct DetailErrors {
+  double bound_m = 0, usual_m = 0;
+};
+DetailErrors terrain_detail_errors_m(const Parameters& terrain, int levels);
+
 // Metres from one corner of a block to the next: (size − 1) · cell_m · 2^node_level.
 double terrain_block_size_m(const Parameters& terrain);
 

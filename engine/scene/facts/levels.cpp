@@ -118,13 +118,20 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
     level.size_m = std::ldexp(world.block_size_m(), static_cast<int>(k));
     level.mesh_level = static_cast<std::uint16_t>(mesh_level);
     level.bounds = terrain.bounds(p);
-    level.ground_bound_m = (k == 0 ? kBlockBound : kNodeBound) * terrain.level_error_m(p, 1);
+    // Morphs and neighbours meet ground of the two next coarser details.
+    const double details_m = models::terrain_detail_errors_m(p, 2).bound_m;
+    level.ground_bound_m =
+        (k == 0 ? kBlockBound : kNodeBound) * terrain.level_error_m(p, 1) + details_m;
     level.ground_error_m = k < before.size()
                                ? before[k].ground_error_m
                                : measured_ground_error_m(world, registry, static_cast<int>(k));
-    if (k > 0) level.ground_error_m = std::max(level.ground_error_m, levels[k - 1].ground_error_m);
+    if (k > 0) {
+      const double lost_m = models::terrain_detail_errors_m(p, -static_cast<int>(k)).usual_m;
+      level.ground_error_m = std::max({level.ground_error_m, levels[k - 1].ground_error_m, lost_m});
+    }
     level.error_m = level.ground_error_m;
-    level.skirt_m = kMinSkirtM + kSkirtPerBound * static_cast<float>(level.ground_bound_m);
+    level.skirt_m = kMinSkirtM + kSkirtPerBound * static_cast<float>(level.ground_bound_m) +
+                    (1 - kSkirtPerBound) * static_cast<float>(details_m);
     if (merged == nullptr || k == 0 || k > world::kMaxMergedLevel) continue;
     const auto scattered = world::scattered_bounds(*merged, static_cast<int>(k));
     level.merged = scattered.has_value();

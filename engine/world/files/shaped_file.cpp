@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "engine/world/files/fields.hpp"
 #include "engine/world/files/model_fields.hpp"
@@ -132,6 +133,13 @@ Road read_road(TableReader& reader) {
 
 ShapedGround read_shaped(TableReader& root, const Beside& beside) {
   ShapedGround shaped;
+  if (std::optional<TableReader> reader = root.table("erosion")) {
+    models::Erosion& erosion = shaped.erosion;
+    models::visit_erosion(erosion, FieldReader{*reader});
+    if (erosion.min_height_m > erosion.max_height_m)
+      reader->problem(reader->line(), "min_height_m", "it must not be above max_height_m");
+    reader->finish();
+  }
   for (TableReader& reader : root.tables("stamp", kMaxStamps))
     shaped.stamps.push_back(read_stamp(reader, beside));
   for (TableReader& reader : root.tables("road", kMaxRoads))

@@ -229,6 +229,10 @@ std::string write_world(const World& world, const models::Registry& registry) {
   write_scatters(world, registry, text);
   write_places(world, registry, text);
   write_shaped(world.shaped, text);
+  if (world.shaped.erosion != models::Erosion()) {
+    text += "\n[erosion]\n";
+    models::visit_erosion(world.shaped.erosion, FieldWriter{text});
+  }
   text += "\n[sky]\n";
   visit_sky(world.sky, FieldWriter{text});
   text += "\n[water]\n";

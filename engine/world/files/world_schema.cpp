@@ -61,6 +61,8 @@ class SchemaBuilder {
     std::vector<WorldSection> sections;
     sections.push_back(world_section());
     sections.push_back(terrain_section());
+    sections.push_back(section(SectionKind::kErosion, {"erosion"}, "Erosion"));
+    add_all(sections.back(), world_.shaped.erosion, models::Erosion{}, models::visit_erosion);
     sections.push_back(section(SectionKind::kSky, {"sky"}, "Sky"));
     const Sky usual = with_sun(Sky{}, {Sky{}.sun_azimuth_deg, world_.sky.sun_elevation_deg});
     Sky usual_here = usual;

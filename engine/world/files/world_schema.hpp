@@ -64,6 +64,7 @@ struct WorldField {
 enum class SectionKind : std::uint8_t {
   kWorld,
   kTerrain,
+  kErosion,
   kSky,
   kWater,
   kPalette,
@@ -89,10 +90,10 @@ struct WorldSection {
   std::vector<WorldSection> parts;  // for a species: kinds, rules, foliage, colours
 };
 
-// The sections of a world: World, Terrain, Sky, Water, Palette, each species, each handmade model,
-// each scatter, each place, each stamp, each road. `world` must be the result of parse_world() for
-// `text` with `registry`. Fails with kParse if the text is not TOML, and with kInvalidArgument if
-// the world belongs to another text.
+// The sections of a world: World, Terrain, Erosion, Sky, Water, Palette, each species, each
+// handmade model, each scatter, each place, each stamp, each road. `world` must be the result of
+// parse_world() for `text` with `registry`. Fails with kParse if the text is not TOML, and with
+// kInvalidArgument if the world belongs to another text.
 core::Result<std::vector<WorldSection>> world_schema(std::string_view text, const World& world,
                                                      const models::Registry& registry);
 

@@ -67,8 +67,13 @@ std::vector<float> eroded(const ErosionFilter& filter, const Mountains& ground, 
   return values;
 }
 
-Erosion everything() {
+Erosion usual() {
   Erosion e;
+  e.strength = 0.5;
+  return e;
+}
+Erosion everything() {
+  Erosion e = usual();
   e.strata = 0.7;
   e.min_height_m = 20;
   e.max_height_m = 280;
@@ -83,7 +88,7 @@ class ErosionTest : public ::testing::Test {
   core::RandomStream random{9, 0, 0, 0, core::Purpose::kParameters};
 
   Erosion random_erosion() {
-    Erosion e;
+    Erosion e = usual();
     visit_erosion(e, [&](std::string_view, auto& field, const NumberSpec& spec) {
       using Number = std::remove_reference_t<decltype(field)>;
       field = static_cast<Number>(random.next_real(spec.soft.min, spec.soft.max));
@@ -163,7 +168,7 @@ TEST_F(ErosionTest, HasTheSameBitsAtAllPlacesThatNodesOfALevelShare) {
 TEST_F(ErosionTest, StaysWithinItsBoundsForAMillionSamples) {
   double least = 0, most = 0;
   for (int trial = 0; trial < 64; ++trial) {
-    Erosion e = trial % 2 == 0 ? Erosion() : random_erosion();
+    Erosion e = trial % 2 == 0 ? usual() : random_erosion();
     e.wear = 0;
     ErosionScale scale = ground.scale();
     scale.highest = 1e6F;
@@ -185,7 +190,7 @@ TEST_F(ErosionTest, StaysWithinItsBoundsForAMillionSamples) {
 }
 
 TEST_F(ErosionTest, DiffersBetweenDetailsByNoMoreThanItSays) {
-  for (Erosion e : {Erosion(), everything(), random_erosion(), random_erosion()}) {
+  for (Erosion e : {usual(), everything(), random_erosion(), random_erosion()}) {
     e.wear = 0;
     for (int detail = 1; detail < 9; ++detail) {
       const ErosionFilter fine(e, ground.scale(), detail - 1), coarse(e, ground.scale(), detail);
@@ -203,7 +208,7 @@ TEST_F(ErosionTest, DiffersBetweenDetailsByNoMoreThanItSays) {
 
 TEST_F(ErosionTest, LeavesOutNarrowGulliesAtCoarseDetails) {
   // The mean square of second differences over neighbouring cells, on a slope.
-  Erosion e;
+  Erosion e = usual();
   e.octaves = 6;
   e.sediment_m = 0;
   double rough = 1e30;
@@ -222,7 +227,7 @@ TEST_F(ErosionTest, LeavesOutNarrowGulliesAtCoarseDetails) {
 
 TEST_F(ErosionTest, AddsNoSteepSteps) {
   // One step in a thousand exceeds 1.5 m over 1 m where the guide itself is not steeper.
-  Erosion e;
+  Erosion e = usual();
   e.wear = 0;
   ErosionScale scale = ground.scale();
   scale.highest = 1e6F;
@@ -251,7 +256,7 @@ TEST_F(ErosionTest, AddsNoSteepSteps) {
 }
 
 TEST_F(ErosionTest, RunsDownTheSlope) {
-  Erosion e;
+  Erosion e = usual();
   e.octaves = 1;
   e.wear = 0;
   const ErosionFilter filter(e, {.seed = 3, .highest = 1e6F}, 0);
@@ -291,7 +296,7 @@ TEST_F(ErosionTest, TurnsSmallGulliesTowardsWiderOnes) {
     }
     return down / across;
   };
-  Erosion straight;
+  Erosion straight = usual();
   straight.octaves = 2;
   straight.sediment_m = 0;
   straight.branching = 0;
@@ -301,7 +306,7 @@ TEST_F(ErosionTest, TurnsSmallGulliesTowardsWiderOnes) {
 }
 
 TEST_F(ErosionTest, EndsAtItsHeights) {
-  Erosion e;
+  Erosion e = usual();
   e.min_height_m = 100;
   e.max_height_m = 200;
   e.height_fade_m = 20;
@@ -340,7 +345,7 @@ TEST_F(ErosionTest, OfStrengthZeroChangesNoBit) {
 
 TEST_F(ErosionTest, OfExtremeNumbersKeepsHeightsInTheirRange) {
   for (int trial = 0; trial < 60; ++trial) {
-    Erosion e;
+    Erosion e = usual();
     visit_erosion(e, [&](std::string_view, auto& field, const NumberSpec& spec) {
       using Number = std::remove_reference_t<decltype(field)>;
       field = static_cast<Number>(random.next_integer(0, 1) == 0 ? spec.hard.min : spec.hard.max);
@@ -359,7 +364,7 @@ TEST_F(ErosionTest, OfExtremeNumbersKeepsHeightsInTheirRange) {
 }
 
 TEST_F(ErosionTest, FillsValleysAndSparesCrests) {
-  Erosion e;
+  Erosion e = usual();
   e.wear = 0;
   e.valley_floor = e.scree = 1;
   Erosion bare = e;
@@ -378,11 +383,11 @@ TEST_F(ErosionTest, FillsValleysAndSparesCrests) {
 }
 
 TEST_F(ErosionTest, IsKnownByEachOfItsNumbers) {
-  std::set<std::uint64_t> identities{Erosion().identity()};
+  std::set<std::uint64_t> identities{usual().identity()};
   std::size_t fields = 0;
-  const Erosion usual;
-  visit_erosion(usual, [&](std::string_view name, const auto&, const NumberSpec&) {
-    Erosion e;
+  const Erosion plain = usual();
+  visit_erosion(plain, [&](std::string_view name, const auto&, const NumberSpec&) {
+    Erosion e = usual();
     visit_erosion(e, [&](std::string_view other, auto& field, const NumberSpec& spec) {
       if (other != name) return;
       using Number = std::remove_reference_t<decltype(field)>;
@@ -397,10 +402,10 @@ TEST_F(ErosionTest, IsKnownByEachOfItsNumbers) {
 }
 
 TEST_F(ErosionTest, WorkGrowsWithSamplesAndOctaves) {
-  Erosion e;
+  Erosion e = usual();
   const ErosionFilter five(e, ground.scale(), 0);
   e.octaves = 2;
-  const ErosionFilter two(e, ground.scale(), 0), coarse(Erosion(), ground.scale(), 7);
+  const ErosionFilter two(e, ground.scale(), 0), coarse(usual(), ground.scale(), 7);
   EXPECT_GT(five.work(64, 64, 1), 1.5 * two.work(64, 64, 1));
   EXPECT_GT(five.work(128, 64, 1), 1.8 * five.work(64, 64, 1));
   EXPECT_LT(coarse.work(64, 64, 64), 0.3 * five.work(64, 64, 1));
