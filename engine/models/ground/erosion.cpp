@@ -40,7 +40,7 @@ double smooth(double v) {
 }
 // Returns the fraction of features of this width that a detail shows.
 double shown(double cells, int detail) {
-  return detail == 0 ? 1 : smooth(cells / (3 * std::ldexp(1.0, detail)) - 1);
+  return detail == 0 ? 1 : smooth(2 * (cells / (3 * std::ldexp(1.0, detail)) - 1));
 }
 
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) {

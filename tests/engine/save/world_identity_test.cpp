@@ -78,6 +78,16 @@ TEST(WorldIdentity, CoversStampsAndRoadsButNotEdits) {
   EXPECT_EQ(hash, identity_of(world, registry()).hash);
 }
 
+TEST(WorldIdentity, CoversErosionIfThereIsAny) {
+  const auto hash_of = [](const std::string& tables) {
+    return identity_of(world::testing::shaped_world(tables), registry()).hash;
+  };
+  const auto plain = identity_of(parsed(kSmallWorld), registry()).hash;
+  EXPECT_EQ(hash_of("[erosion]\ngully_m = 50\n"), plain);
+  EXPECT_NE(hash_of("[erosion]\nstrength = 0.5\n"), plain);
+  EXPECT_NE(hash_of("[erosion]\nstrength = 0.5\n"), hash_of("[erosion]\nstrength = 0.6\n"));
+}
+
 TEST(WorldIdentity, CoversTheWaterLevelIfThereIsWater) {
   world::World world = parsed(kSmallWorld);
   const auto hash = identity_of(world, registry()).hash;
