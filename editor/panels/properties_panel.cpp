@@ -240,6 +240,8 @@ QTreeWidgetItem* PropertiesPanel::group_of(world::SectionKind kind) {
                         : kind == world::SectionKind::kPlace   ? tr("Placed by hand")
                         : kind == world::SectionKind::kStamp   ? tr("Heightmap stamps")
                         : kind == world::SectionKind::kRoad    ? tr("Roads")
+                        : kind == world::SectionKind::kLake    ? tr("Lakes")
+                        : kind == world::SectionKind::kRiver   ? tr("Rivers")
                                                                : QString();
   if (title.isEmpty()) return nullptr;
   const auto known = tree_->findItems(title, Qt::MatchExactly);

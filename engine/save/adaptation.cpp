@@ -433,12 +433,13 @@ std::uint64_t surface_hash(const world::World& world, core::BlockCoord block) {
   const core::RoundToNearest rounding;
   const double relief_m = world.terrain.real(models::kTerrainReliefM);
   const std::vector<std::uint16_t> heights = world::ground_of_block(world, block);
-  const std::uint64_t hash =
+  std::uint64_t hash =
       core::hash_bytes(std::as_bytes(std::span(heights)), std::bit_cast<std::uint64_t>(relief_m));
   const double lowest_m = *std::ranges::min_element(heights) / 65535.0 * relief_m;
-  const auto sea = world::water_surface(world, {block, {}});
-  if (!sea || sea->depth_m(lowest_m) <= 0) return hash;
-  return core::combine(hash, std::bit_cast<std::uint64_t>(sea->surface_m));
+  const std::uint64_t bodies = world::bodies_hash_in(world, block);
+  if (bodies != 0) hash = core::combine(hash, bodies);
+  if (!world.water.exists() || world.water.level_m <= lowest_m) return hash;
+  return core::combine(hash, std::bit_cast<std::uint64_t>(world.water.level_m));
 }
 
 core::Result<Adaptation> adapt(SaveTables& tables, const WorldIdentity& before,

@@ -13,6 +13,7 @@
 #include "engine/core/hash.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/world/ground_blends.hpp"
+#include "engine/world/water.hpp"
 
 namespace psygen::save {
 namespace {
@@ -175,6 +176,8 @@ std::vector<WorldPart> parts_of(const world::World& world, const models::Registr
   });
   part(kWater, [&](Facts& f) {
     if (world.water.exists()) f.add("water", world.water.level_m);
+    if (!world.shaped.lakes.empty()) f.add("lakes", world::bodies_hash(world.shaped.lakes));
+    if (!world.shaped.rivers.empty()) f.add("rivers", world::bodies_hash(world.shaped.rivers));
   });
   for (const world::Scatter& scatter : world.scatter) {
     const std::string_view name = registry[scatter.model].name();
@@ -206,7 +209,7 @@ std::string_view text_of(PartKind kind) {
     case PartKind::kGround:
       return "the ground differs";
     case PartKind::kWater:
-      return "the water level differs";
+      return "the water differs";
     case PartKind::kPlaces:
       return "the single models of the world file differ";
     case PartKind::kLooks:

@@ -261,8 +261,8 @@ float road_at(const World& world, core::BlockCoord block, glm::dvec2 local_m) {
   double share = 0;
   for (const models::GroundEdit* edit :
        world.shaped.layer->ground.roads_in(models::QuadCoord::of(block), block_m))
-    share = std::max(share,
-                     road_share(*edit->road, from_origin_m(*edit->road, block, local_m, block_m)));
+    share = std::max(share, road_share(*edit->road, models::from_origin_m(edit->road->origin, block,
+                                                                          local_m, block_m)));
   return static_cast<float>(share);
 }
 

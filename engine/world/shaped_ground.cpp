@@ -11,6 +11,8 @@
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/spline.hpp"
+#include "engine/world/water.hpp"
+#include "engine/world/water_shapes.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
@@ -127,7 +129,21 @@ class Shaper {
     return {};
   }
 
+  // Adds a lake or a river. `make` is lake_edits or river_edits.
+  template <class Body, class Make>
+  Shaped add(const Body& body, const BodyName& name, const Make& make) {
+    auto made = make(world_, layer_, body, name);
+    if (!made) return refused(made.error().key, made.error().error);
+    for (GroundEdit& edit : made->edits) {
+      if (auto ok = add(std::move(edit), "points_m"); !ok) return ok;
+    }
+    for (std::string& warning : made->warnings)
+      warnings_.push_back(std::move(warning));
+    return {};
+  }
+
   models::EditLayer take() { return std::move(layer_); }
+  std::vector<std::string> take_warnings() { return std::move(warnings_); }
 
  private:
   core::WorldPosition position(glm::dvec2 at_m) const {
@@ -168,8 +184,9 @@ class Shaper {
 
   static tl::unexpected<ShapeError> too_much(std::string_view key) {
     return refused(
-        key, {core::ErrorCode::kOverBudget,
-              fmt::format("more than {} stamps and pieces of roads overlap there", kMaxNear)});
+        key,
+        {core::ErrorCode::kOverBudget,
+         fmt::format("more than {} stamps and pieces of roads or water overlap there", kMaxNear)});
   }
 
   // The pieces of a road. Each has the segments of other pieces that may be nearest to its points.
@@ -278,18 +295,59 @@ class Shaper {
   const World& world_;
   double block_m_, relief_m_;
   double length_m_ = 0;  // total length of all roads so far
+  std::vector<std::string> warnings_;
   models::EditLayer layer_;
 };
+
+tl::unexpected<ShapeError> wrong_at(std::string_view place, std::size_t number, ShapeError error) {
+  error.place = place, error.number = number;
+  return tl::unexpected(std::move(error));
+}
 
 // Adds all shapes of one type.
 template <class Shapes>
 Shaped add_all(const Shapes& shapes, std::string_view place, Shaper& shaper) {
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     if (auto ok = shaper.add(shapes[i]); !ok) {
-      ShapeError error = std::move(ok.error());
-      error.place = place, error.number = i;
-      return tl::unexpected(std::move(error));
+      return wrong_at(place, i, std::move(ok.error()));
     }
+  }
+  return {};
+}
+
+// Adds lakes, then rivers, each after those in which it begins or ends.
+Shaped add_water(const World& world, Shaper& shaper) {
+  const ShapedGround& shaped = world.shaped;
+  WaterBody body = kSea + 1;
+  for (std::size_t i = 0; i < shaped.lakes.size(); ++i, ++body) {
+    const BodyName name{body, fmt::format("lake {}", i + 1), false};
+    if (auto ok = shaper.add(shaped.lakes[i], name, lake_edits); !ok)
+      return wrong_at("lake", i, std::move(ok.error()));
+  }
+  double length_m = 0;
+  for (std::size_t i = 0; i < shaped.rivers.size(); ++i) {
+    length_m += chords_m(shaped.rivers[i]);
+    if (length_m > kMaxRiversM)
+      return wrong_at(
+          "river", i,
+          {{},
+           "points_m",
+           0,
+           {core::ErrorCode::kOverBudget,
+            fmt::format("all rivers together are longer than the allowed {:g} m", kMaxRiversM)}});
+  }
+  const RiverOrder rivers = river_order(world, shaped.rivers);
+  if (rivers.order.size() < shaped.rivers.size())
+    return wrong_at("river", 0,
+                    {{},
+                     "points_m",
+                     0,
+                     {core::ErrorCode::kInvalidArgument, "rivers end in each other in a circle"}});
+  for (const std::size_t i : rivers.order) {
+    const BodyName name{body + static_cast<WaterBody>(i), fmt::format("river {}", i + 1),
+                        rivers.flows_on[i]};
+    if (auto ok = shaper.add(shaped.rivers[i], name, river_edits); !ok)
+      return wrong_at("river", i, std::move(ok.error()));
   }
   return {};
 }
@@ -355,13 +413,16 @@ std::pair<float, float> numbers_of(const Stamp& stamp) {
 tl::expected<void, ShapeError> shape_ground(World& world) {
   world.shaped.layer = nullptr;
   set_edits(world, nullptr);
+  world.shaped.warnings.clear();
   const models::Erosion& erosion = world.shaped.erosion;
   const bool erodes = erosion.strength > 0;
-  if (!erodes && world.shaped.stamps.empty() && world.shaped.roads.empty()) return {};
+  if (!erodes && world.shaped.empty()) return {};
   Shaper shaper(world);
   if (erodes) shaper.add(erosion);
   if (auto ok = add_all(world.shaped.stamps, "stamp", shaper); !ok) return ok;
   if (auto ok = add_all(world.shaped.roads, "road", shaper); !ok) return ok;
+  if (auto ok = add_water(world, shaper); !ok) return ok;
+  world.shaped.warnings = shaper.take_warnings();
   world.shaped.layer = std::make_shared<const models::EditLayer>(shaper.take());
   set_edits(world, nullptr);
   return {};

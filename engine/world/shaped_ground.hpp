@@ -1,7 +1,7 @@
-// Erosion, stamps (heightmaps from images) and roads (along smooth curves): the shapes that a world
-// file gives its ground. They are part of the world's function: models find their positions on the
-// shaped ground, and edits lie over it (edits/edits.hpp). Plain values; immutable in use, any
-// thread. They read no files (files/shaped_file.hpp). docs/world-files.md.
+// Erosion, stamps (heightmaps from images), roads (along smooth curves), lakes and rivers: the
+// shapes that a world file gives its ground. They are part of the world's function: models find
+// their positions on the shaped ground, and edits lie over it (edits/edits.hpp). Plain values;
+// immutable in use, any thread. They read no files (files/shaped_file.hpp). docs/world-files.md.
 #pragma once
 
 #include <array>
@@ -20,6 +20,7 @@
 #include "engine/models/ground/erosion.hpp"
 #include "engine/models/model_type.hpp"
 #include "engine/world/mask.hpp"
+#include "engine/world/water_bodies.hpp"
 
 namespace psygen::world {
 
@@ -69,29 +70,37 @@ inline constexpr std::size_t kMaxStamps = 64, kMaxRoads = 64, kMaxRoadPoints = 1
 inline constexpr double kMinRoadStepM = 1, kMaxRoadsM = 100'000;
 inline constexpr double kFarthestShapeM = 1e8;  // from the world's origin along an axis
 
-// Erosion, stamps and roads, and the layer made of them.
+// Erosion, stamps, roads, lakes and rivers, and the layer made of them.
 struct ShapedGround {
   models::Erosion erosion;  // acts first
   std::vector<Stamp> stamps;
   std::vector<Road> roads;
+  std::vector<Lake> lakes;
+  std::vector<River> rivers;
   // Made by shape_ground(); null: no shapes. Derived from the world, so it is not compared.
   std::shared_ptr<const models::EditLayer> layer;
+  // Sentences about doubtful rivers, lakes and roads, made with the layer.
+  std::vector<std::string> warnings;
+  bool empty() const { return stamps.empty() && roads.empty() && lakes.empty() && rivers.empty(); }
+  bool has_water() const { return !lakes.empty() || !rivers.empty(); }
   friend bool operator==(const ShapedGround& a, const ShapedGround& b) {
-    return a.erosion == b.erosion && a.stamps == b.stamps && a.roads == b.roads;
+    return a.erosion == b.erosion && a.stamps == b.stamps && a.roads == b.roads &&
+           a.lakes == b.lakes && a.rivers == b.rivers;
   }
 };
 
-// An error in one key of a stamp or road.
+// An error in one key of a shape.
 struct ShapeError {
-  std::string_view place, key;  // "stamp" or "road"
+  std::string_view place, key;  // "stamp", "road", "lake" or "river"
   std::size_t number = 0;
   core::Error error;
 };
 
-// Builds the layer from the erosion, stamps and then roads, and removes the world's edits.
-// world.terrain must already have its seed. Linear in the heights of stamps and the lengths of
-// roads. Fails with kInvalidArgument for shapes outside the world or above its height range, and
-// with kOverBudget where too many shapes overlap or all roads together are longer than kMaxRoadsM.
+// Builds the layer from the erosion, stamps, then roads, lakes and rivers (water_shapes.hpp), and
+// removes the world's edits. world.terrain must already have its seed. Linear in the heights of
+// stamps, the lengths of roads and the areas of water. Fails with kInvalidArgument for shapes
+// outside the world or above its height range, and with kOverBudget where too many shapes overlap
+// or all roads or rivers together are longer than kMaxRoadsM and kMaxRiversM.
 tl::expected<void, ShapeError> shape_ground(World& world);
 
 // A hash of all shapes; 0: there are none.

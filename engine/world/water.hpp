@@ -1,5 +1,8 @@
 // The water of a world as a field: for any place its surface, depth, flow and the body of water
-// that owns it. Every reader of water asks here. Today the sea (Water::level_m) is the only body.
+// that owns it: a lake, a river (water_shapes.hpp), or the sea (Water::level_m). Every reader of
+// water asks here. Where a river and a lake meet, the one owns a place whose middle is nearer,
+// measured in its widths; then the lower one, then that of the smaller number. The sea owns every
+// other place, and those where it is higher.
 // Pure functions of the world, in any order, on any thread, without a cache; they look at no mesh.
 // Drawing is left to the renderer. docs/queries.md.
 #pragma once
@@ -8,12 +11,14 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <vector>
 
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
 
-// The name of a body of water within its world.
+// The name of a body of water within its world. Lakes of the file follow the sea in their order,
+// then its rivers; bodies that a game adds have larger names (edits/edits.hpp).
 using WaterBody = std::uint32_t;
 inline constexpr WaterBody kNoWater = 0, kSea = 1;
 
@@ -54,5 +59,11 @@ WaterPoint water_at(const World& world, const core::WorldPosition& at, double gr
 // Returns the water at a place, over the ground of models::ground_height_m(): about 1 µs.
 // query::World::water() answers faster, for many places of a block.
 WaterPoint water_at(const World& world, const core::WorldPosition& at);
+
+// A hash of the lakes and rivers of the world's function that reach a block; 0: none does.
+std::uint64_t bodies_hash_in(const World& world, core::BlockCoord block);
+// Hashes of all that a file says about lakes, and about rivers.
+std::uint64_t bodies_hash(const std::vector<Lake>& lakes);
+std::uint64_t bodies_hash(const std::vector<River>& rivers);
 
 }  // namespace psygen::world

@@ -82,7 +82,7 @@ std::vector<double> placed_per_block(const World& world, const models::Registry&
                                      std::span<const std::optional<double>> known) {
   std::vector<double> counts;
   std::vector<bool> wanted;
-  bool filtered = !world.shaped.roads.empty();
+  bool filtered = !world.shaped.roads.empty() || world.shaped.has_water();
   for (const Scatter& scatter : world.scatter) {
     const std::size_t s = counts.size();
     wanted.push_back(s >= known.size() || !known[s]);

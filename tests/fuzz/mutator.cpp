@@ -59,7 +59,7 @@ constexpr std::string_view kTokens[] = {
     "true", "false", "1979-05-27", "1979-05-27T07:32:00Z", "1979-05-27 07:32", "07:32:00.5",
     "format = 1\n", "[world]\n", "[terrain]\n", "[[scatter]]\n", "[[species]]\n",
     "[[species.kind]]\n", "[[species.rule]]\n", "[species.foliage]\n", "[species.colours]\n",
-    "[sky]\n", "[water]\n", "[palette]\n", "[path]\n", "[[point]]\n", "jump = true\n",
+    "[[river]]\n", "[[lake]]\n", "[sky]\n", "[water]\n", "[palette]\n", "[path]\n", "[[point]]\n", "jump = true\n",
     "model = \"rock\"\n", "count = 3\n", "to = \"LB*\"\n", "\xEF\xBB\xBF"};
 
 constexpr std::string_view kNumbers[] = {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "engine/core/assert.hpp"
 #include "engine/core/hash.hpp"
@@ -24,6 +25,7 @@
 #include "engine/world/files/text_snippet.hpp"
 #include "engine/world/files/world_file.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/water.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::fuzz {
@@ -94,6 +96,13 @@ bool read_as_world(const std::filesystem::path& file) {
           models::ground_height_m(world->terrain, at.block, at.local.x, at.local.z);
       PSYGEN_CHECK(height_m >= 0 && height_m < relief_m * 1.0001 + 0.001,
                    "a road has a height of the world");
+    }
+    for (const world::River& river : world->shaped.rivers) {
+      const core::WorldPosition at = core::normalised(
+          {{0, 0}, {river.points_m[0].x, 0, river.points_m[0].y}}, world->block_size_m());
+      const auto water = world::water_surface(*world, at);
+      PSYGEN_CHECK(water && std::isfinite(water->surface_m) && glm::length(water->normal) > 0.99F,
+                   "a river has a surface over its spring");
     }
   }
   return true;
@@ -349,6 +358,13 @@ cell_m = 2
 block_vertices = 33
 [terrain]
 octaves = 4
+[[lake]]
+points_m = [[200, 100], [280, 90], [260, 160]]
+shore_m = 5
+[[river]]
+points_m = [[40, 60], [150, 80], [230, 120]]
+width_m = [4, 5, 6]
+depth_m = 0.8
 [[model]]
 name = "leaf"
 file = "models/leaf.gltf"

@@ -125,6 +125,25 @@ std::string road(Count points, double step_m = 2) {
   return text.str();
 }
 
+std::string river(Count points, double step_m = 2, int z = 700) {
+  std::ostringstream text;
+  text << "[[river]]\npoints_m = [";
+  for (Count i = 0; i < points; ++i)
+    text << "[" << 100 + step_m * static_cast<double>(i) << ", " << z << "], ";
+  text << "]\n";
+  return text.str();
+}
+// A bar of 20 m.
+std::string lake(double wide_m, double z) {
+  std::ostringstream text;
+  text << "[[lake]]\npoints_m = [";
+  for (int i = 0; i < 40; ++i)
+    text << "[" << 900 + wide_m * (i <= 20 ? i : 40 - i) / 20.0 << ", " << z + (i <= 20 ? 0 : 20)
+         << "], ";
+  text << "[" << 900 << ", " << z + 20 << "]]\n";
+  return text.str();
+}
+
 world::World flat_world(const models::Registry& registry) {
   return *world::parse_world(kHead, "flat", registry);
 }
@@ -417,6 +436,30 @@ const std::vector<Case>& cases() {
            return load_tables(folder, road(2, 20'000) + road(2, 30'000) + road(2, n - 50'000));
          },
          1},
+        {"`[[lake]]` of a world",
+         [](const fs::path& folder, double n) {
+           std::string tables;
+           for (Count i = 0; i < whole(n); ++i)
+             tables += lake(40, 100 + 90 * static_cast<double>(i));
+           return load_tables(folder, tables);
+         }},
+        {"`[[river]]` of a world",
+         [](const fs::path& folder, double n) {
+           std::string tables;
+           for (Count i = 0; i < whole(n); ++i)
+             tables += river(2, 20, static_cast<int>(100 + 40 * i));
+           return load_tables(folder, tables);
+         }},
+        {"points of a river",
+         [](const fs::path& folder, double n) { return load_tables(folder, river(whole(n))); }},
+        {"length of all rivers together",
+         [](const fs::path& folder, double n) {
+           return load_tables(
+               folder, river(2, 20'000) + river(2, 30'000, 900) + river(2, n - 50'000, 1100));
+         },
+         1},
+        {"width of a lake",
+         [](const fs::path& folder, double n) { return load_tables(folder, lake(n, 900)); }, 1},
         {"side of a mask or a stamp",
          [](const fs::path& folder, double n) {
            write_grey(folder / "s.png", whole(n), 2);

@@ -81,6 +81,8 @@ double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
     const RoadEffect road = effect_of(*edit.road, {dx, dz});
     return height_m + road.weight * (road.height_m - height_m);
   }
+  if (edit.river) return shaped_by(*edit.river, height_m, {dx, dz});
+  if (edit.lake) return shaped_by(*edit.lake, height_m, {dx, dz});
   if (edit.turn != glm::dvec2(1, 0)) {  // back to the sides of the stamp
     const double x = dx * edit.turn.x - dz * edit.turn.y;
     dz = dx * edit.turn.y + dz * edit.turn.x;
@@ -105,6 +107,8 @@ double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
       return height_m + weight * p.weight * (p.height_m - height_m);
     }
     case GroundChange::kRoad:
+    case GroundChange::kRiver:
+    case GroundChange::kLake:
       break;
   }
   return height_m;
@@ -201,7 +205,7 @@ class Application {
     const core::WorldPosition& centre = edit.centre;
     columns = within(edit, x_, columns, centre.block.x, centre.local.x);
     rows = within(edit, z_, rows, centre.block.z, centre.local.z);
-    const core::WorldPosition& from = edit.road ? edit.road->origin : centre;
+    const core::WorldPosition& from = edit.origin();
     for (std::size_t k = rows.first; k < rows.end; ++k) {
       const double dz = away_m(z_[k], from.block.z, from.local.z);
       for (std::size_t i = columns.first; i < columns.end; ++i) {
@@ -252,19 +256,18 @@ double road_share(const RoadPiece& road, glm::dvec2 place_m) {
   return std::clamp((outside_m - std::sqrt(nearest2)) / kEdgeM, 0.0, 1.0);
 }
 
-glm::dvec2 from_origin_m(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
+glm::dvec2 from_origin_m(const core::WorldPosition& o, core::BlockCoord block, glm::dvec2 local_m,
                          double block_m) {
   const auto along = [block_m](std::int32_t here, std::int32_t there, double local, double origin) {
     return static_cast<double>(std::int64_t{here} - std::int64_t{there}) * block_m + local - origin;
   };
-  const core::WorldPosition& o = road.origin;
   return {along(block.x, o.block.x, local_m.x, o.local.x),
           along(block.z, o.block.z, local_m.y, o.local.z)};
 }
 
 bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
                  double block_m) {
-  const glm::dvec2 place_m = from_origin_m(road, block, local_m, block_m);
+  const glm::dvec2 place_m = from_origin_m(road.origin, block, local_m, block_m);
   const double clear_m = road.half_width_m + road.clear_m;
   for (std::size_t i = road.first; i < road.end; ++i) {
     if (foot_of(road.segments[i], place_m).away2 <= clear_m * clear_m) return true;

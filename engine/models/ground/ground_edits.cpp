@@ -64,6 +64,8 @@ std::uint64_t content_hash(const GroundEdit& edit) {
     add(now.x);
     add(now.y);
   }
+  if (edit.river) hash = core::combine(hash, content_of(*edit.river));
+  if (edit.lake) hash = core::combine(hash, content_of(*edit.lake));
   if (!edit.road) return hash;
   const RoadPiece& road = *edit.road;
   const QuadCoord origin = QuadCoord::of(road.origin.block);
@@ -77,7 +79,8 @@ std::uint64_t content_hash(const GroundEdit& edit) {
 
 // Returns the largest height change of an edit.
 float max_of(const GroundEdit& edit) {
-  if (edit.change == GroundChange::kRaise || edit.change == GroundChange::kRoad)
+  if (edit.change == GroundChange::kRaise || edit.change == GroundChange::kRoad ||
+      is_water(edit.change))
     return static_cast<float>(std::abs(edit.height_m));
   if (edit.change != GroundChange::kStampAdd) return 1e30F;  // limited by the height range
   float most = 0;
@@ -107,7 +110,14 @@ void each_place(const GroundEdit& edit, double block_m, const Visit& visit) {
 }
 
 float steepness_of(const GroundEdit& edit) {
-  const double fades_m = edit.road ? edit.road->border_m : edit.falloff * edit.radius_m;
+  double fades_m = edit.road ? edit.road->border_m : edit.falloff * edit.radius_m;
+  if (edit.river) {
+    fades_m = edit.radius_m;
+    for (const RiverPoint& point : edit.river->points)
+      fades_m = std::min({fades_m, point.bank_m, point.half_width_m});
+  } else if (edit.lake) {
+    fades_m = edit.lake->shore_m;
+  }
   double slope = kSteepest / std::max(fades_m, 1e-6);
   if (edit.map) {
     const double points = std::max(edit.map->columns / edit.sides.x, edit.map->rows / edit.sides.y);
@@ -146,6 +156,22 @@ bool same(const Cell* a, const Cell* b, const Area& area, int whole) {
   return true;
 }
 
+// Returns the edits that may reach a node, each once, for which `is_wanted`(edit). A cell
+// with `lacks`(cell, its area) has none of them.
+template <class Lacks, class IsWanted>
+std::vector<const GroundEdit*> pieces_in(const Cell* cell, const QuadCoord& node, double block_m,
+                                         const Lacks& lacks, const IsWanted& is_wanted) {
+  const Area area = area_of(node);
+  std::vector<const GroundEdit*> pieces;
+  each_edit(cell, area, lacks, [&](const GroundEdit& edit) {
+    if (is_wanted(edit) && area_of(edit, edit.reach_m(), block_m).touches(area))
+      pieces.push_back(&edit);
+  });
+  std::ranges::sort(pieces);  // a piece is listed in several cells
+  pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());
+  return pieces;
+}
+
 // Returns the largest sum of successive edits on a path from `cell` down, within an area.
 GroundCell::Summary max_in(const Cell* cell, const Area& area, double block_m) {
   GroundCell::Summary most;
@@ -167,7 +193,11 @@ GroundCell::Summary max_in(const Cell* cell, const Area& area, double block_m) {
 
 // Time that an edit takes for a height, in units of a simple edit. Measured.
 double weight_of(const GroundEdit& edit) {
-  if (edit.road) return 1 + 0.5 * static_cast<double>(edit.road->segments.size());
+  std::size_t segments = 0;
+  if (edit.road) segments = edit.road->segments.size();
+  if (edit.river) segments = edit.river->points.size() + edit.river->near.size();
+  if (edit.lake) segments = edit.lake->segments.size();
+  if (segments > 0) return 1 + 0.5 * static_cast<double>(segments);
   return is_stamp(edit.change) ? 3 : 1;
 }
 
@@ -200,6 +230,7 @@ void GroundCell::Summary::add(const Summary& quarter) {
   below_steepness = std::max(below_steepness, quarter.steepness + quarter.below_steepness);
   work_m2 += quarter.work_m2;
   has_roads = has_roads || quarter.has_roads;
+  has_water = has_water || quarter.has_water;
 }
 
 std::uint64_t GroundCell::hash() const {
@@ -216,6 +247,7 @@ GroundCell::Summary GroundCell::summary() const {
     sum.steepness += steepness_of(*edit);
     sum.work_m2 += weight_of(*edit) * 4 * edit->reach_m() * edit->reach_m();
     sum.has_roads = sum.has_roads || edit->road != nullptr;
+    sum.has_water = sum.has_water || is_water(edit->change);
   }
   return sum;
 }
@@ -282,15 +314,34 @@ bool GroundEdits::reaches(const QuadCoord& node, double block_m) const {
 }
 
 std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadCoord& node, double block_m) const {
-  const Area area = area_of(node);
-  std::vector<const GroundEdit*> roads;
   const auto lacks_roads = [](const Cell& cell, const Area&) { return !cell.summary.has_roads; };
-  each_edit(cells_.root(), area, lacks_roads, [&](const GroundEdit& edit) {
-    if (edit.road && area_of(edit, edit.reach_m(), block_m).touches(area)) roads.push_back(&edit);
+  return pieces_in(cells_.root(), node, block_m, lacks_roads,
+                   [](const GroundEdit& edit) { return edit.road != nullptr; });
+}
+
+std::vector<const GroundEdit*> GroundEdits::water_in(const QuadCoord& node, double block_m) const {
+  const auto is_dry = [](const Cell& cell, const Area&) { return !cell.summary.has_water; };
+  return pieces_in(cells_.root(), node, block_m, is_dry,
+                   [](const GroundEdit& edit) { return is_water(edit.change); });
+}
+
+std::optional<BodySurface> GroundEdits::water_over(core::BlockCoord block, glm::dvec2 local_m,
+                                                   double block_m) const {
+  if (empty() || !cells_.root()->summary.has_water) return std::nullopt;
+  const QuadCoord place = QuadCoord::of(block);
+  const double x = static_cast<double>(place.x) + local_m.x / block_m;
+  const double z = static_cast<double>(place.z) + local_m.y / block_m;
+  std::optional<BodySurface> owner;
+  const auto is_dry = [](const Cell& cell, const Area&) { return !cell.summary.has_water; };
+  each_edit(cells_.root(), {x, z, x, z}, is_dry, [&](const GroundEdit& edit) {
+    if (!is_water(edit.change) || !area_of(edit, edit.reach_m(), block_m).touches({x, z, x, z}))
+      return;
+    const glm::dvec2 place_m = from_origin_m(edit.origin(), block, local_m, block_m);
+    const auto water =
+        edit.river ? surface_of(*edit.river, place_m) : surface_of(*edit.lake, place_m);
+    if (water && (!owner || water->owns_before(*owner))) owner = water;
   });
-  std::ranges::sort(roads);  // a piece is listed in several cells
-  roads.erase(std::unique(roads.begin(), roads.end()), roads.end());
-  return roads;
+  return owner;
 }
 
 GroundEdits::Change GroundEdits::max_change_in(const QuadCoord& node, double block_m) const {

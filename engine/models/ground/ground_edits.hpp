@@ -10,11 +10,13 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "engine/core/coordinates.hpp"
+#include "engine/models/ground/water.hpp"
 #include "engine/models/kit/quad_map.hpp"
 
 namespace psygen::models {
@@ -26,7 +28,12 @@ enum class GroundChange : std::uint8_t {
   kStampAdd,  // adds the heightmap
   kStampSet,  // replaces the height by the heightmap
   kRoad,      // moves the height to the road's height
+  kRiver,     // digs the bed and the banks of a river
+  kLake,      // shapes the bed and the shore of a lake
 };
+constexpr bool is_water(GroundChange change) {
+  return change == GroundChange::kRiver || change == GroundChange::kLake;
+}
 constexpr bool is_stamp(GroundChange change) {
   return change == GroundChange::kStampAdd || change == GroundChange::kStampSet;
 }
@@ -78,19 +85,25 @@ struct GroundEdit {
   core::WorldPosition centre;  // normalised; y is not used
   double radius_m = 1;         // of the disc, or half the side of the square
   double falloff = 0.5;        // fraction of the radius over which the edit fades out; 0: a cliff
-  // kRaise: difference; kFlatten: height above 0; kRoad: largest height change.
+  // kRaise: difference; kFlatten: height above 0; kRoad, kRiver, kLake: largest height change.
   double height_m = 0;
-  std::shared_ptr<const Heightmap> map;   // of the two stamps
-  glm::dvec2 turn{1, 0};                  // of stamps: cosine and sine of a turn about +Y
-  glm::dvec2 sides{1, 1};                 // of stamps in world files: half sides over the radius
-  std::shared_ptr<const RoadPiece> road;  // of kRoad, whose square encloses the piece
-  std::uint32_t id = 0;                   // unique in the block of the centre
+  std::shared_ptr<const Heightmap> map;     // of the two stamps
+  glm::dvec2 turn{1, 0};                    // of stamps: cosine and sine of a turn about +Y
+  glm::dvec2 sides{1, 1};                   // of stamps in world files: half sides over the radius
+  std::shared_ptr<const RoadPiece> road;    // of kRoad, whose square encloses the piece
+  std::shared_ptr<const RiverPiece> river;  // of kRiver, as for roads
+  std::shared_ptr<const LakePiece> lake;    // of kLake, as for roads
+  std::uint32_t id = 0;                     // unique in the block of the centre
   // Set by seal():
   std::uint64_t content = 0;  // identifies everything above
   float max_m = 0;            // largest height change; 1e30: limited by the height range only
 
   // Half the side of the axis-aligned square around the edit.
   double reach_m() const { return radius_m * (std::abs(turn.x) + std::abs(turn.y)); }
+  // The position from which its curves count metres: of a road, a river or a lake, else the centre.
+  const core::WorldPosition& origin() const {
+    return road ? road->origin : river ? river->origin : lake ? lake->origin : centre;
+  }
   // Edits act in this order.
   std::pair<std::uint32_t, core::BlockCoord> order() const { return {id, centre.block}; }
 };
@@ -122,7 +135,7 @@ struct GroundCell {
     float below_change_m = 0, below_steepness = 0;  // largest value of one of its quarters
     double work_m2 = 0;  // of all edits in the square: their areas, weighted by the time for a
                          // height
-    bool has_roads = false;
+    bool has_roads = false, has_water = false;
     void add(const Summary& quarter);
   };
   bool empty() const { return edits.empty(); }
@@ -164,6 +177,12 @@ class GroundEdits {
   // Returns the pieces of roads that may reach a node, each once. O(log n + p log p) for p pieces,
   // independent of all other edits.
   std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
+  // The same for pieces of rivers and lakes.
+  std::vector<const GroundEdit*> water_in(const QuadCoord& node, double block_m) const;
+  // Returns the surface of the river or lake that owns a place in a block; nothing: none reaches
+  // it. O(log n + pieces around the place).
+  std::optional<BodySurface> water_over(core::BlockCoord block, glm::dvec2 local_m,
+                                        double block_m) const;
   // The largest change of heights by the edits that overlap anywhere in a node, and the largest
   // slope of that change. Upper bounds; 0: no edits.
   struct Change {
@@ -186,9 +205,9 @@ class GroundEdits {
   QuadMap<GroundCell> cells_;
 };
 
-// Metres from the origin of a road to a point in a block.
-glm::dvec2 from_origin_m(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
-                         double block_m);
+// Metres from the origin of a road, a river or a lake to a point in a block.
+glm::dvec2 from_origin_m(const core::WorldPosition& origin, core::BlockCoord block,
+                         glm::dvec2 local_m, double block_m);
 // True if a piece of a road keeps models away from a point in a block.
 bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m, double block_m);
 

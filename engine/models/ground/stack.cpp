@@ -26,6 +26,21 @@ std::vector<const GroundEdit*> GroundStack::roads_in(const QuadCoord& node, doub
   return roads;
 }
 
+std::vector<const GroundEdit*> GroundStack::water_in(const QuadCoord& node, double block_m) const {
+  std::vector<const GroundEdit*> water = shapes.water_in(node, block_m);
+  const std::vector<const GroundEdit*> own = edits.water_in(node, block_m);
+  water.insert(water.end(), own.begin(), own.end());
+  return water;
+}
+
+std::optional<BodySurface> GroundStack::water_over(core::BlockCoord block, glm::dvec2 local_m,
+                                                   double block_m) const {
+  const auto a = shapes.water_over(block, local_m, block_m);
+  const auto b = edits.water_over(block, local_m, block_m);
+  if (!a || !b) return a ? a : b;
+  return a->owns_before(*b) ? a : b;
+}
+
 double GroundStack::error_m(const QuadCoord& node, double spacing_m, double block_m) const {
   const GroundEdits::Change a = shapes.max_change_in(node, block_m);
   const GroundEdits::Change b = edits.max_change_in(node, block_m);

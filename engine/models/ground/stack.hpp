@@ -42,6 +42,12 @@ struct GroundStack {
   bool reaches(const QuadCoord& node, double block_m) const;
   // Returns the pieces of roads that may reach a node, each once.
   std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
+  // The same for pieces of rivers and lakes.
+  std::vector<const GroundEdit*> water_in(const QuadCoord& node, double block_m) const;
+  // Returns the surface of the river or lake that owns a place in a block; nothing: none reaches
+  // it. The place must be normalised. Some hundred nanoseconds.
+  std::optional<BodySurface> water_over(core::BlockCoord block, glm::dvec2 local_m,
+                                        double block_m) const;
   // Largest distance between the ground and a mesh of the node with vertices `spacing_m` apart,
   // because of shapes and edits between them. An upper bound in metres; 0: neither.
   double error_m(const QuadCoord& node, double spacing_m, double block_m) const;

@@ -126,6 +126,9 @@ core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
       return check_heightmap(edit.map.get(), relief_m, false);
     case models::GroundChange::kRoad:
       return core::invalid_argument("roads can be in world files only");
+    case models::GroundChange::kRiver:
+    case models::GroundChange::kLake:
+      return core::invalid_argument("add water by add_river and add_lake");
   }
   return core::invalid_argument("this type of ground edit does not exist");
 }

@@ -179,6 +179,39 @@ inline constexpr auto visit_road = [](auto& road, const auto& visit) {
   visit("clear_m", road.clear_m, in("m", {0, 100}, {0, 10}, "on both sides: strip without models"));
 };
 
+// The lists of a River, each one number or one for each point, and its numbers.
+inline constexpr auto visit_river_lists = [](auto& river, const auto& visit) {
+  visit("width_m", river.width_m,
+        in("m", {kMinRiverM, kMaxRiverWidthM}, {2, 60},
+           "width of the water: one number, or one for each point"));
+  visit("depth_m", river.depth_m,
+        in("m", {kMinDepthM, kMaxRiverDepthM}, {0.3, 8},
+           "depth in the middle: one number, or one for each point"));
+  visit("discharge_m3_s", river.discharge_m3_s,
+        in("m³/s", {0, kMaxDischarge}, {0.1, 500},
+           "discharge: one number, or one for each point; default: from width and depth"));
+};
+inline constexpr auto visit_river = [](auto& river, const auto& visit) {
+  visit("bank_m", river.bank_m,
+        in("m", {kMinRiverM, kMaxRiverBankM}, {2, 40},
+           "on both sides: width of the slope up to the ground"));
+  visit(
+      "smoothing_m", river.smoothing_m,
+      in("m", {0, kMaxSmoothingM}, {0, 200}, "steps of the surface are spread over this distance"));
+};
+
+// The numbers of a Lake.
+inline constexpr auto visit_lake = [](auto& lake, const auto& visit) {
+  visit("depth_m", lake.depth_m,
+        in("m", {kMinDepthM, kMaxLakeDepthM}, {1, 40}, "depth away from the shore"));
+  visit("shore_m", lake.shore_m,
+        in("m", {1, kMaxShoreM}, {2, 60}, "width of the slopes on both sides of the outline"));
+};
+inline constexpr FieldSpec kLakeRadius =
+    in("m", {1, kMaxLakeM / 2}, {10, 500}, "radius of a round lake");
+inline constexpr FieldSpec kSpill =
+    in("m", {-1e5, 1e5}, {0, 500}, "height of the surface; default: the lowest ground around it");
+
 // The numbers of a world outside of its terrain.
 inline constexpr FieldSpec kBlocks =
     in("blocks", {0, 0x1.0p31}, {0, 1024}, "number of blocks along x and z; 0: endless");

@@ -88,21 +88,32 @@ Stamp read_stamp(TableReader& reader, const Beside& beside) {
   return stamp;
 }
 
-// Points of two numbers each. Reports one problem a point.
-void read_points(TableReader& reader, std::vector<glm::dvec2>& points) {
-  const Member* member = reader.find("points_m", Presence::kRequired);
-  if (member == nullptr) return;
+// The smallest and the largest number of points of a curve.
+struct PointCount {
+  std::size_t least = 2, most = kMaxRoadPoints;
+};
+
+// True for a number. Its value may be NaN.
+bool is_a_number(const Node& n) {
+  return n.kind == Node::Kind::kReal || n.kind == Node::Kind::kInteger;
+}
+
+// Points of two numbers each. Reports one problem a point. Returns true without problems.
+bool read_points(TableReader& reader, std::vector<glm::dvec2>& points, PointCount count = {},
+                 Presence presence = Presence::kRequired) {
+  const Member* member = reader.find("points_m", presence);
+  if (member == nullptr) return false;
   const Node& node = member->value;
   const auto refuse = [&](const Node& at, std::string_view sentence) {
     reader.problem(at.line, "points_m", sentence);
+    return false;
   };
-  if (node.kind != Node::Kind::kArray || node.items.size() < 2 ||
-      node.items.size() > kMaxRoadPoints)
-    return refuse(node,
-                  fmt::format("it must be 2 to {} points, [[x, z], [x, z], …]", kMaxRoadPoints));
+  if (node.kind != Node::Kind::kArray || node.items.size() < count.least ||
+      node.items.size() > count.most)
+    return refuse(node, fmt::format("it must be {} to {} points, [[x, z], [x, z], …]", count.least,
+                                    count.most));
   const auto usable = [](const Node& n) {
-    const bool number = n.kind == Node::Kind::kReal || n.kind == Node::Kind::kInteger;
-    return number && std::abs(n.real) <= kFarthestShapeM;  // false for NaN
+    return is_a_number(n) && std::abs(n.real) <= kFarthestShapeM;  // false for NaN
   };
   for (const Node& item : node.items) {
     const bool pair = item.kind == Node::Kind::kArray && item.items.size() == 2 &&
@@ -119,6 +130,67 @@ void read_points(TableReader& reader, std::vector<glm::dvec2>& points) {
     }
     points.push_back(point);
   }
+  return true;
+}
+
+// One number, or as many numbers as there are points.
+void read_numbers(TableReader& reader, std::string_view key, std::vector<double>& numbers,
+                  const FieldSpec& spec, std::size_t points) {
+  const Member* member = reader.find(key);
+  if (member == nullptr) return;
+  const Limits limits{spec.hard.min, spec.hard.max};
+  if (member->value.kind != Node::Kind::kArray) {
+    double number = 0;
+    if (reader.read(key, number, limits)) numbers = {number};
+    return;
+  }
+  const std::vector<Node>& items = member->value.items;
+  if (items.size() != points)
+    return reader.problem(key, fmt::format("it must be one number, or one for each of the {} "
+                                           "points, not {} numbers",
+                                           points, items.size()));
+  numbers.clear();
+  for (const Node& item : items) {
+    if (!is_a_number(item) || !(item.real >= limits.low && item.real <= limits.high))
+      return reader.problem(
+          item.line, key,
+          fmt::format("number {} must be {:g} to {:g}", numbers.size(), limits.low, limits.high));
+    numbers.push_back(item.real);
+  }
+}
+
+River read_river(TableReader& reader) {
+  River river;
+  read_points(reader, river.points_m, {2, kMaxWaterPoints});
+  visit_river_lists(river, [&](std::string_view key, auto& numbers, const FieldSpec& spec) {
+    read_numbers(reader, key, numbers, spec, river.points_m.size());
+  });
+  visit_river(river, FieldReader{reader});
+  reader.finish();
+  return river;
+}
+
+Lake read_lake(TableReader& reader) {
+  Lake lake;
+  const bool has_circle = reader.find("centre_m") != nullptr || reader.find("radius_m") != nullptr;
+  if (has_circle) {
+    reader.read("centre_m", lake.centre_m, kShapePlaces, Presence::kRequired);
+    reader.read("radius_m", lake.radius_m, {kLakeRadius.hard.min, kLakeRadius.hard.max},
+                Presence::kRequired);
+    if (reader.find("points_m") != nullptr)
+      reader.problem("points_m", "a lake has an outline or a circle, not both");
+  } else if (read_points(reader, lake.points_m, {3, kMaxWaterPoints})) {
+    const glm::dvec2 last = lake.points_m.back() - lake.points_m.front();
+    if (last.x * last.x + last.y * last.y < kMinWaterStepM * kMinWaterStepM)
+      reader.problem("points_m", fmt::format("the last point must be at least {:g} m from the "
+                                             "first one, because the outline closes by itself",
+                                             kMinWaterStepM));
+  }
+  if (double spill_m = 0; reader.read("spill_m", spill_m, {kSpill.hard.min, kSpill.hard.max}))
+    lake.spill_m = spill_m;
+  visit_lake(lake, FieldReader{reader});
+  reader.finish();
+  return lake;
 }
 
 Road read_road(TableReader& reader) {
@@ -144,6 +216,10 @@ ShapedGround read_shaped(TableReader& root, const Beside& beside) {
     shaped.stamps.push_back(read_stamp(reader, beside));
   for (TableReader& reader : root.tables("road", kMaxRoads))
     shaped.roads.push_back(read_road(reader));
+  for (TableReader& reader : root.tables("lake", kMaxLakes))
+    shaped.lakes.push_back(read_lake(reader));
+  for (TableReader& reader : root.tables("river", kMaxRivers))
+    shaped.rivers.push_back(read_river(reader));
   return shaped;
 }
 
@@ -170,6 +246,31 @@ void write_shaped(const ShapedGround& shaped, std::string& text) {
     fmt::format_to(out, "\n[[road]]\npoints_m = {}\n", toml_points(road.points_m));
     visit_road(road, FieldWriter{text});
   }
+  for (const Lake& lake : shaped.lakes) {
+    text += "\n[[lake]]\n";
+    if (lake.points_m.empty())
+      fmt::format_to(out, "centre_m = [{}, {}]\nradius_m = {}\n", lake.centre_m.x, lake.centre_m.y,
+                     toml_number(lake.radius_m));
+    else
+      fmt::format_to(out, "points_m = {}\n", toml_points(lake.points_m));
+    if (lake.spill_m) fmt::format_to(out, "spill_m = {}\n", toml_number(*lake.spill_m));
+    visit_lake(lake, FieldWriter{text});
+  }
+  for (const River& river : shaped.rivers) {
+    fmt::format_to(out, "\n[[river]]\npoints_m = {}\n", toml_points(river.points_m));
+    visit_river_lists(river, [&](std::string_view key, const auto& numbers, const FieldSpec&) {
+      if (!numbers.empty()) fmt::format_to(out, "{} = {}\n", key, toml_numbers(numbers));
+    });
+    visit_river(river, FieldWriter{text});
+  }
+}
+
+std::string toml_numbers(const std::vector<double>& numbers) {
+  if (numbers.size() == 1) return toml_number(numbers.front());
+  std::vector<std::string> all;
+  for (const double number : numbers)
+    all.push_back(toml_number(number));
+  return fmt::format("[{}]", fmt::join(all, ", "));
 }
 
 std::string toml_points(const std::vector<glm::dvec2>& points) {

@@ -1,5 +1,5 @@
-// Reads and writes the [[stamp]] and [[road]] tables of a world file. Internal to world; one thread
-// per file. Format: docs/world-files.md.
+// Reads and writes the tables [[stamp]], [[road]], [[lake]] and [[river]] of a world file. Internal
+// to world; one thread per file. Format: docs/world-files.md.
 #pragma once
 
 #include <string>
@@ -19,7 +19,8 @@ void shape_world(TableReader& root, World& world);
 // Appends tables to `out` that read_shaped() reads back as equal ground.
 void write_shaped(const ShapedGround& shaped, std::string& out);
 
-// Points as TOML: [[1, 2], [3, 4]].
+// Points as TOML: [[1, 2], [3, 4]]. Numbers as TOML: 1, or [1, 2].
 std::string toml_points(const std::vector<glm::dvec2>& points);
+std::string toml_numbers(const std::vector<double>& numbers);
 
 }  // namespace psygen::world

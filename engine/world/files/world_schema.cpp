@@ -77,6 +77,8 @@ class SchemaBuilder {
     add_each(sections, "place", world_.places.all, &SchemaBuilder::place_section);
     add_each(sections, "stamp", world_.shaped.stamps, &SchemaBuilder::stamp_section);
     add_each(sections, "road", world_.shaped.roads, &SchemaBuilder::road_section);
+    add_each(sections, "lake", world_.shaped.lakes, &SchemaBuilder::lake_section);
+    add_each(sections, "river", world_.shaped.rivers, &SchemaBuilder::river_section);
     return sections;
   }
 
@@ -347,6 +349,45 @@ class SchemaBuilder {
     return made;
   }
 
+  WorldSection lake_section(const Lake& l, const TextPath& path) const {
+    WorldSection made =
+        section(SectionKind::kLake, path, fmt::format("lake {}", path.back().index + 1));
+    const bool round = l.points_m.empty();
+    add(made, "points_m", {FieldKind::kToml, round ? "" : toml_points(l.points_m), {}}, "",
+        without_limits("points of the outline: [[x, z], [x, z], [x, z]]", "m"));
+    add(made, "centre_m",
+        {FieldKind::kToml, round ? toml_vector(std::array{l.centre_m.x, l.centre_m.y}) : "", {}},
+        "", without_limits("centre of a round lake: [x, z]", "m"));
+    add(made, "radius_m", {FieldKind::kToml, round ? toml_number(l.radius_m) : "", {}}, "",
+        kLakeRadius);
+    add(made, "spill_m", {FieldKind::kToml, l.spill_m ? toml_number(*l.spill_m) : "", {}}, "",
+        kSpill);
+    add_all(made, l, Lake{}, visit_lake);
+    return made;
+  }
+
+  WorldSection river_section(const River& r, const TextPath& path) const {
+    const River usual;
+    WorldSection made =
+        section(SectionKind::kRiver, path, fmt::format("river {}", path.back().index + 1));
+    add_required(made, "points_m", {FieldKind::kToml, toml_points(r.points_m), {}},
+                 without_limits("points on the river, downstream: [[x, z], [x, z]]", "m"));
+    std::vector<std::string> defaults;
+    const auto text_of = [](const std::vector<double>& numbers) {
+      return numbers.empty() ? "" : toml_numbers(numbers);
+    };
+    visit_river_lists(usual, [&](std::string_view, const auto& numbers, const models::NumberSpec&) {
+      defaults.push_back(text_of(numbers));
+    });
+    std::size_t i = 0;
+    visit_river_lists(
+        r, [&](std::string_view key, const auto& numbers, const models::NumberSpec& spec) {
+          add(made, key, {FieldKind::kToml, text_of(numbers), {}}, defaults[i++], spec);
+        });
+    add_all(made, r, usual, visit_river);
+    return made;
+  }
+
   const TextLayout& layout_;
   const World& world_;
   const models::Registry& registry_;
@@ -363,7 +404,9 @@ core::Result<std::vector<WorldSection>> world_schema(std::string_view text, cons
       layout->item_count({"scatter"}) != world.scatter.size() ||
       layout->item_count({"place"}) != world.places.all.size() ||
       layout->item_count({"stamp"}) != world.shaped.stamps.size() ||
-      layout->item_count({"road"}) != world.shaped.roads.size())
+      layout->item_count({"road"}) != world.shaped.roads.size() ||
+      layout->item_count({"lake"}) != world.shaped.lakes.size() ||
+      layout->item_count({"river"}) != world.shaped.rivers.size())
     return core::fail(core::ErrorCode::kInvalidArgument, "the world does not belong to the text");
   return SchemaBuilder(*layout, world, registry).all();
 }

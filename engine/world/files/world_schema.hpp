@@ -78,6 +78,8 @@ enum class SectionKind : std::uint8_t {
   kPlace,
   kStamp,
   kRoad,
+  kLake,
+  kRiver,
 };
 
 // A table of the file with its fields.
@@ -91,9 +93,9 @@ struct WorldSection {
 };
 
 // The sections of a world: World, Terrain, Erosion, Sky, Water, Palette, each species, each
-// handmade model, each scatter, each place, each stamp, each road. `world` must be the result of
-// parse_world() for `text` with `registry`. Fails with kParse if the text is not TOML, and with
-// kInvalidArgument if the world belongs to another text.
+// handmade model, each scatter, each place, each stamp, each road, each lake, each river. `world`
+// must be the result of parse_world() for `text` with `registry`. Fails with kParse if the text is
+// not TOML, and with kInvalidArgument if the world belongs to another text.
 core::Result<std::vector<WorldSection>> world_schema(std::string_view text, const World& world,
                                                      const models::Registry& registry);
 

@@ -219,7 +219,7 @@ TEST_F(ChangedWorld, ChangesThatTouchEditsAreNamedWithTheirPlaces) {
                                       "subdivisions = 1\nmax_slope_deg = 80\n"))),
               HasSubstr("scatter 2 of 2 'rock' differs under 1 edit"));
   EXPECT_THAT(refusal(parsed(text + "\n[water]\nlevel_m = 59\n")),
-              HasSubstr("the water level differs under 5 edits"));
+              HasSubstr("the water differs under 5 edits"));
   EXPECT_THAT(refusal(parsed(replaced(kSmallWorld, "[8, 4]", "[5, 4]"))),
               HasSubstr("the world has another extent under 1 edit, such as in block (5, 2)"));
   EXPECT_THAT(refusal(parsed(replaced(kSmallWorld, "cell_m = 2", "cell_m = 3"))),

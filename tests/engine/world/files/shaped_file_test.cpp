@@ -30,6 +30,39 @@ TEST(ShapedFile, ReadsBackEqual) {
   EXPECT_EQ(shape_hash(*again), shape_hash(world));
 }
 
+TEST(ShapedFile, RiversAndLakesReadBackEqualAndEditorsSeeTheirKeys) {
+  const std::string tables =
+      "[[lake]]\ncentre_m = [100, 100]\nradius_m = 40\nspill_m = 30.5\n"
+      "[[lake]]\npoints_m = [[300, 60], [380, 60], [340, 130]]\ndepth_m = 2.5\n"
+      "[[river]]\npoints_m = [[300, 200], [200, 160], [100, 100]]\nwidth_m = [4, 5.5, 6]\n"
+      "depth_m = 1\ndischarge_m3_s = 3.25\nsmoothing_m = 0\n";
+  const World world = shaped_world(tables);
+  EXPECT_EQ(world.shaped.rivers[0].width_m, (std::vector<double>{4, 5.5, 6}));
+  EXPECT_EQ(world.shaped.lakes[0].spill_m, 30.5);
+  EXPECT_FALSE(world.shaped.lakes[1].spill_m);
+  const std::string text = write_world(world, registry());
+  const auto again = read_shaped_world("", text);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(*again, world);
+  EXPECT_EQ(shape_hash(*again), shape_hash(world));
+  const World other = shaped_world(replaced(tables, "3.25", "3.5"));
+  EXPECT_FALSE(other == world);
+  EXPECT_NE(shape_hash(other), shape_hash(world));
+  EXPECT_EQ(write_world(parsed(kSmallWorld), registry()).find("river"), std::string::npos);
+  const auto sections = world_schema(std::string(kSmallWorld) + tables, world, registry());
+  ASSERT_TRUE(sections) << sections.error().message;
+  const auto field = [&](std::string_view section, std::size_t i, std::string_view key) {
+    return *find_field(*sections, TextPath{section, i, key});
+  };
+  EXPECT_EQ(field("river", 0, "width_m").value, "[4, 5.5, 6]");
+  EXPECT_EQ(field("river", 0, "width_m").usual, "8");
+  EXPECT_EQ(field("river", 0, "discharge_m3_s").value, "3.25");
+  EXPECT_EQ(field("river", 0, "bank_m").usual, "6");
+  EXPECT_EQ(field("lake", 0, "radius_m").value, "40");
+  EXPECT_EQ(field("lake", 1, "radius_m").value, "");
+  EXPECT_EQ(field("lake", 1, "points_m").value, "[[300, 60], [380, 60], [340, 130]]");
+}
+
 constexpr const char* kMetres =
     "[[stamp]]\nimage = \"metres.exr\"\ncentre_m = [128, 96]\nsize_m = [64, 32]\nunit = \"m\"\n"
     "no_data = -9999\n";

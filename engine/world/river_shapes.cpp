@@ -1,0 +1,535 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "engine/core/cancellation.hpp"
+#include "engine/models/kit/exact_math.hpp"
+#include "engine/models/terrain/ground.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/world/water_curve.hpp"
+#include "engine/world/water_shapes.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::world {
+
+tl::expected<void, WaterError> check_points(const std::vector<glm::dvec2>& points,
+                                            std::size_t least) {
+  if (points.size() < least || points.size() > kMaxWaterPoints)
+    return water_error("points_m", fmt::format("it must be {} to {} points, not {}", least,
+                                               kMaxWaterPoints, points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto usable = [](double v) { return std::abs(v) <= kFarthestShapeM; };  // not NaN
+    if (!usable(points[i].x) || !usable(points[i].y))
+      return water_error("points_m", fmt::format("point {} is not finite or too far away", i));
+    if (i > 0 && length_of(points[i] - points[i - 1]) < kMinWaterStepM)
+      return water_error("points_m", fmt::format("point {} must be at least {:g} m from the "
+                                                 "previous one",
+                                                 i, kMinWaterStepM));
+  }
+  return {};
+}
+
+namespace {
+
+using models::RiverPiece;
+using models::RiverPoint;
+
+constexpr std::size_t kRiverSegments = 12;
+// Maximum number of segments of a river near one of its pieces: a river may bend but not cover an
+// area.
+constexpr std::size_t kMaxRiverNear = 1000;
+constexpr double kDeepCutM = 20;      // deeper cuts get a warning
+constexpr double kFreeboardM = 0.15;  // of the surface below the lowest ground across, at least
+constexpr double kFreeboard = 0.1;    // of the depth, in addition
+constexpr double kGentleCut = 1.2;    // width of the bank over the depth of a cut
+constexpr double kMaxBankM = 80;
+constexpr double kFastestM_S = 12;
+
+double value_at(const std::vector<double>& list, const CurvePoint& at) {
+  if (list.size() == 1) return list.front();
+  const double from = list[at.after];
+  return from + at.share * (list[std::min(at.after + 1, list.size() - 1)] - from);
+}
+
+double step_of(const World& world, const River& river) {
+  const double narrowest_m = *std::ranges::min_element(river.width_m);
+  return std::max(world.cell_m(), std::clamp(narrowest_m / 3, 1.0, 10.0));
+}
+
+// Means weighted by a tent over `reach_m` on both sides of each point. Ends continue as they are,
+// so values that never rise still never rise.
+std::vector<double> smoothed(const std::vector<CurvePoint>& curve,
+                             const std::vector<double>& values, double reach_m) {
+  if (!(reach_m > 0)) return values;
+  std::vector<double> means;
+  const double end_m = curve.back().along_m;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const double here_m = curve[i].along_m;
+    while (curve[first].along_m < here_m - reach_m)
+      ++first;
+    double sum = 0, weights = 0;
+    const auto add = [&](double at_m, double value) {
+      const double weight = 1 - std::abs(at_m - here_m) / reach_m;
+      if (weight <= 0) return;
+      sum += weight * value;
+      weights += weight;
+    };
+    for (std::size_t k = first; k < curve.size() && curve[k].along_m <= here_m + reach_m; ++k)
+      add(curve[k].along_m, values[k]);
+    const double step_m = end_m / static_cast<double>(curve.size() - 1);
+    for (double at_m = -step_m; at_m > here_m - reach_m; at_m -= step_m)
+      add(at_m, values.front());
+    for (double at_m = end_m + step_m; at_m < here_m + reach_m; at_m += step_m)
+      add(at_m, values.back());
+    means.push_back(sum / weights);
+  }
+  return means;
+}
+
+void never_rise(std::vector<double>& values) {
+  for (std::size_t i = 1; i < values.size(); ++i)
+    values[i] = std::min(values[i], values[i - 1]);
+}
+
+// Makes one river.
+class RiverMaker {
+ public:
+  RiverMaker(const World& world, const models::EditLayer& below, const River& river,
+             const BodyName& name)
+      : world_(world),
+        below_(below),
+        river_(river),
+        name_(name),
+        block_m_(world.block_size_m()),
+        terrain_(world.terrain) {
+    terrain_.set_edits(&below_, 0);
+  }
+
+  tl::expected<WaterEdits, WaterError> make() {
+    if (auto ok = check(); !ok) return tl::unexpected(ok.error());
+    measure();
+    if (auto ok = meet_others(); !ok) return tl::unexpected(ok.error());
+    lay_surface();
+    describe();
+    return cut_in_pieces();
+  }
+
+ private:
+  // Measurements at a point of the curve.
+  struct Sample {
+    double half_m = 0, depth_m = 0;
+    glm::dvec2 direction{1, 0};
+    double middle_m = 0;  // ground under the middle
+    double bound_m = 0;   // highest surface that its surroundings allow
+    bool in_lake = false;
+    bool in_river = false;
+  };
+
+  core::WorldPosition position(glm::dvec2 at_m) const {
+    return core::normalised({{0, 0}, {at_m.x, 0, at_m.y}}, block_m_);
+  }
+  double ground_m(glm::dvec2 at_m) const {
+    const core::WorldPosition at = position(at_m);
+    return models::ground_height_m(terrain_, at.block, at.local.x, at.local.z);
+  }
+  std::optional<models::BodySurface> water_over(glm::dvec2 at_m) const {
+    const core::WorldPosition at = position(at_m);
+    return below_.ground.water_over(at.block, {at.local.x, at.local.z}, block_m_);
+  }
+
+  // Refuses a list that has neither one number nor one for each point, or numbers out of range.
+  tl::expected<void, WaterError> check_list(std::string_view key, const std::vector<double>& list,
+                                            double least, double most) const {
+    if (list.size() != 1 && list.size() != river_.points_m.size())
+      return water_error(key, fmt::format("a river of {} points needs one number or as many, not "
+                                          "{}",
+                                          river_.points_m.size(), list.size()));
+    for (const double number : list) {
+      if (!(number >= least && number <= most))
+        return water_error(
+            key, fmt::format("{:g} is not allowed: it must be {:g} to {:g}", number, least, most));
+    }
+    return {};
+  }
+  // Refuses values that no file could have, too.
+  tl::expected<void, WaterError> check_values() const {
+    if (auto ok = check_points(river_.points_m, 2); !ok) return ok;
+    if (auto ok = check_list("width_m", river_.width_m, kMinRiverM, kMaxRiverWidthM); !ok)
+      return ok;
+    if (auto ok = check_list("depth_m", river_.depth_m, kMinDepthM, kMaxRiverDepthM); !ok)
+      return ok;
+    if (!river_.discharge_m3_s.empty()) {
+      if (auto ok = check_list("discharge_m3_s", river_.discharge_m3_s, 0, kMaxDischarge); !ok)
+        return ok;
+    }
+    if (!(river_.bank_m >= kMinRiverM && river_.bank_m <= kMaxRiverBankM))
+      return water_error("bank_m", fmt::format("{:g} is not allowed: it must be {:g} to {:g}",
+                                               river_.bank_m, kMinRiverM, kMaxRiverBankM));
+    if (!(river_.smoothing_m >= 0 && river_.smoothing_m <= kMaxSmoothingM))
+      return water_error("smoothing_m", fmt::format("{:g} is not allowed: it must be 0 to {:g}",
+                                                    river_.smoothing_m, kMaxSmoothingM));
+    if (const double length_m = chords_m(river_); length_m > kMaxRiversM)
+      return water_error("points_m",
+                         fmt::format("the river is {:.0f} m long, but at most {:g} m are allowed",
+                                     length_m, kMaxRiversM),
+                         core::ErrorCode::kOverBudget);
+    return {};
+  }
+
+  tl::expected<void, WaterError> check() {
+    if (auto ok = check_values(); !ok) return ok;
+    const double narrowest_m = *std::ranges::min_element(river_.width_m);
+    if (narrowest_m < 2 * world_.cell_m())
+      return water_error("width_m", fmt::format("a river {:g} m wide is narrower than two cells of "
+                                                "the ground, {:g} m",
+                                                narrowest_m, 2 * world_.cell_m()));
+    curve_ = curve_through(river_.points_m, step_of(world_, river_));
+    std::vector<glm::dvec2> line;
+    for (const CurvePoint& point : curve_) {
+      if (!world_.contains(position(point.at_m).block))
+        return water_error("points_m", fmt::format("the river leaves the world at {:.1f}, {:.1f} m",
+                                                   point.at_m.x, point.at_m.y));
+      line.push_back(point.at_m);
+    }
+    if (const auto at = self_crossing(line, false))
+      return water_error(
+          "points_m", fmt::format("the river crosses itself near {:.1f}, {:.1f} m", at->x, at->y));
+    return {};
+  }
+
+  void measure() {
+    samples_.resize(curve_.size());
+    for (std::size_t i = 0; i < curve_.size(); ++i) {
+      Sample& s = samples_[i];
+      s.half_m = value_at(river_.width_m, curve_[i]) / 2;
+      s.depth_m = value_at(river_.depth_m, curve_[i]);
+      const glm::dvec2 along =
+          curve_[std::min(i + 1, curve_.size() - 1)].at_m - curve_[i > 0 ? i - 1 : 0].at_m;
+      const double length_m = length_of(along);
+      s.direction = length_m > 0 ? along / length_m : glm::dvec2(1, 0);
+      measure_across(curve_[i].at_m, s);
+    }
+  }
+
+  // Looks at the ground across the water and a little beyond.
+  void measure_across(glm::dvec2 at_m, Sample& s) const {
+    const glm::dvec2 side{-s.direction.y, s.direction.x};
+    const double cell_m = world_.cell_m();
+    const int steps = std::clamp(static_cast<int>(std::ceil(s.half_m / (2 * cell_m))), 1, 4);
+    s.middle_m = ground_m(at_m);
+    double lowest_m = s.middle_m;
+    for (int k = -steps - 1; k <= steps + 1; ++k) {
+      if (k == 0) continue;
+      double across_m = s.half_m * k / steps;
+      if (std::abs(k) > steps) across_m = (k < 0 ? -1 : 1) * (s.half_m + 2 * cell_m);
+      lowest_m = std::min(lowest_m, ground_m(at_m + side * across_m));
+    }
+    s.bound_m = lowest_m - kFreeboardM - kFreeboard * s.depth_m;
+  }
+
+  // Finds the lakes and rivers on the way. Other rivers may only be at its ends.
+  tl::expected<void, WaterError> meet_others() {
+    const std::size_t n = curve_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto water = water_over(curve_[i].at_m);
+      if (!water || water->widths > 0.5) continue;
+      samples_[i].in_river = water->is_river;
+      samples_[i].in_lake = !water->is_river;
+      samples_[i].bound_m = water->surface_m;
+    }
+    std::size_t first = 0, end = n;
+    while (first < n && samples_[first].in_river)
+      ++first;
+    if (first == n) return water_error("points_m", "the whole river lies in another river");
+    while (samples_[end - 1].in_river)
+      --end;
+    for (std::size_t i = first; i < end; ++i) {
+      const auto at_m = river_before(i, first);
+      if (at_m)
+        return water_error(
+            "points_m", fmt::format("the river crosses another river near {:.1f}, {:.1f} m; it may "
+                                    "only begin or end in one",
+                                    at_m->x, at_m->y));
+    }
+    return {};
+  }
+  // A place in another river from behind the point before `i`, if that is not before `first`, to
+  // point `i`.
+  std::optional<glm::dvec2> river_before(std::size_t i, std::size_t first) const {
+    if (samples_[i].in_river) return curve_[i].at_m;
+    if (i == first) return std::nullopt;
+    const glm::dvec2 from_m = curve_[i - 1].at_m, way = curve_[i].at_m - from_m;
+    const int steps = static_cast<int>(std::ceil(length_of(way) / world_.cell_m()));
+    for (int k = 1; k < steps; ++k) {
+      const glm::dvec2 at_m = from_m + way * (static_cast<double>(k) / steps);
+      const auto water = water_over(at_m);
+      if (water && water->is_river && water->widths <= 0.5) return at_m;
+    }
+    return std::nullopt;
+  }
+
+  // The height of the water at each point: it never rises, and meets lakes, rivers and the sea.
+  void lay_surface() {
+    const std::size_t n = curve_.size();
+    const double sea_m =
+        world_.water.exists() ? world_.water.level_m : -std::numeric_limits<double>::infinity();
+    const double end_m = samples_.back().in_river ? samples_.back().bound_m : sea_m;
+    std::vector<double> bound(n), floor(n);
+    double highest_m = std::max(end_m, sea_m);
+    for (std::size_t i = n; i-- > 0;) {
+      if (samples_[i].in_lake) highest_m = std::max(highest_m, samples_[i].bound_m);
+      floor[i] = std::max(highest_m, 0.0);
+      bound[i] = std::max(samples_[i].bound_m, sea_m);
+    }
+    warn_of_climb(bound, floor);
+    surface_ = bound;
+    never_rise(surface_);
+    surface_ = smoothed(curve_, surface_, river_.smoothing_m);
+    for (std::size_t i = 0; i < n; ++i)
+      surface_[i] = std::max(std::min(surface_[i], bound[i]), floor[i]);
+    never_rise(surface_);
+    bed_.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+      bed_[i] = std::max(surface_[i] - samples_[i].depth_m, 0.0);
+    never_rise(bed_);
+  }
+
+  void warn_of_climb(const std::vector<double>& bound, const std::vector<double>& floor) {
+    double worst_m = 1;
+    std::optional<std::size_t> at;
+    double lowest_m = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < bound.size(); ++i) {
+      lowest_m = std::min(lowest_m, bound[i]);
+      if (floor[i] - lowest_m > worst_m) worst_m = floor[i] - lowest_m, at = i;
+    }
+    if (at)
+      warn(
+          fmt::format("the ground at {:.1f}, {:.1f} m lies {:.1f} m below the water in which it "
+                      "ends or through which it passes",
+                      curve_[*at].at_m.x, curve_[*at].at_m.y, worst_m));
+  }
+
+  void describe() {
+    const std::size_t n = curve_.size();
+    std::vector<double> banks(n);
+    std::size_t deepest = 0;
+    const auto cut_m = [&](std::size_t i) { return samples_[i].middle_m - surface_[i]; };
+    for (std::size_t i = 0; i < n; ++i) {
+      banks[i] = river_.bank_m + kGentleCut * std::max(cut_m(i) - river_.bank_m / 2, 0.0);
+      banks[i] = std::min(banks[i], std::max(river_.bank_m, kMaxBankM));
+      if (cut_m(i) > cut_m(deepest)) deepest = i;
+    }
+    if (cut_m(deepest) > kDeepCutM)
+      warn(
+          fmt::format("it cuts {:.0f} m into the ground at {:.1f}, {:.1f} m, because its course "
+                      "climbs there",
+                      cut_m(deepest), curve_[deepest].at_m.x, curve_[deepest].at_m.y));
+    banks = smoothed(curve_, banks, 3 * river_.bank_m);
+    const glm::dvec2 origin_m = curve_.front().at_m;
+    double foam = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      RiverPoint p;
+      p.at_m = curve_[i].at_m - origin_m;
+      p.direction = samples_[i].direction;
+      p.half_width_m = samples_[i].half_m;
+      p.surface_m = surface_[i];
+      p.bed_m = bed_[i];
+      p.bank_m = banks[i];
+      const std::size_t before = i > 0 ? i - 1 : 0, after = std::min(i + 1, n - 1);
+      const double run_m = curve_[after].along_m - curve_[before].along_m;
+      p.fall = run_m > 0 ? (surface_[before] - surface_[after]) / run_m : 0;
+      p.speed_m_s = speed_m_s(i);
+      // Foam begins on slopes of 4 %, is full at 40 %, and drifts 15 m downstream.
+      const double steep = std::clamp((p.fall - 0.04) / 0.36, 0.0, 1.0);
+      const double drift_m = i > 0 ? curve_[i].along_m - curve_[i - 1].along_m : 0;
+      foam = std::max(steep * steep * (3 - 2 * steep), foam - drift_m / 15);
+      p.foam = std::max(foam, 0.0);
+      points_.push_back(p);
+    }
+    warn_of_end();
+  }
+
+  double speed_m_s(std::size_t i) const {
+    const double width_m = 2 * samples_[i].half_m;
+    double discharge = 0;
+    if (!river_.discharge_m3_s.empty()) {
+      discharge = value_at(river_.discharge_m3_s, curve_[i]);
+    } else {
+      // Manning: √0.001 / 0.035 times the mean depth to the power of 2/3.
+      const double mean_m = samples_[i].depth_m * 2 / 3;
+      discharge = 0.9035 * models::exact_pow(mean_m, 2.0 / 3) * mean_m * width_m;
+    }
+    const double area_m2 = width_m * std::max(surface_[i] - bed_[i], 0.05) * 2 / 3;
+    return std::min(discharge / area_m2, kFastestM_S);
+  }
+
+  void warn_of_end() {
+    const glm::dvec2 end_m = curve_.back().at_m;
+    const Sample& last = samples_.back();
+    if (last.in_river || last.in_lake || name_.flows_on) return;
+    if (world_.water.exists() && last.middle_m <= world_.water.level_m) return;
+    const double near_m = 2 * last.half_m + 2 * world_.cell_m();
+    for (const glm::dvec2& beyond : {glm::dvec2(near_m, 0), glm::dvec2(-near_m, 0),
+                                     glm::dvec2(0, near_m), glm::dvec2(0, -near_m)}) {
+      if (!world_.contains(position(end_m + beyond).block)) return;
+    }
+    warn(
+        fmt::format("it ends on dry land at {:.1f}, {:.1f} m, not in a lake, the sea or another "
+                    "river, nor at the world's border",
+                    end_m.x, end_m.y));
+  }
+
+  void warn(std::string_view sentence) {
+    made_.warnings.push_back(fmt::format("{}: {}", name_.text, sentence));
+  }
+
+  tl::expected<WaterEdits, WaterError> cut_in_pieces() {
+    const core::WorldPosition origin = position(curve_.front().at_m);
+    const std::size_t segments = points_.size() - 1;
+    std::vector<FlatBox> boxes((segments + kRiverSegments - 1) / kRiverSegments);
+    for (std::size_t i = 0; i < segments; ++i) {
+      boxes[i / kRiverSegments].add(points_[i].at_m);
+      boxes[i / kRiverSegments].add(points_[i + 1].at_m);
+    }
+    for (std::size_t p = 0; p < boxes.size(); ++p) {
+      if (auto ok = core::check_cancelled(); !ok)
+        return tl::unexpected(WaterError{"points_m", ok.error()});
+      RiverPiece piece;
+      piece.origin = origin;
+      piece.body = name_.body;
+      piece.edge_m = 2 * world_.cell_m();
+      const std::size_t first = p * kRiverSegments;
+      const std::size_t end = std::min(first + kRiverSegments, segments);
+      for (std::size_t i = first; i <= end; ++i)
+        piece.points.push_back(points_[i]);
+      const double within_m = 2 * piece.reach_m() + 1e-6;
+      for (std::size_t q = 0; q < boxes.size(); ++q) {
+        if (q == p || !boxes[q].touches(boxes[p], within_m)) continue;
+        for (std::size_t i = q * kRiverSegments; i < std::min((q + 1) * kRiverSegments, segments);
+             ++i) {
+          FlatBox box;
+          box.add(points_[i].at_m), box.add(points_[i + 1].at_m);
+          if (box.touches(boxes[p], within_m))
+            piece.near.push_back({points_[i].at_m, points_[i + 1].at_m, q < p});
+        }
+        if (piece.near.size() > kMaxRiverNear)
+          return tl::unexpected(WaterError{
+              "points_m",
+              {core::ErrorCode::kOverBudget,
+               fmt::format("more than {} pieces of the river are close together", kMaxRiverNear)}});
+      }
+      add_piece(std::move(piece), boxes[p]);
+    }
+    return std::move(made_);
+  }
+
+  void add_piece(RiverPiece piece, const FlatBox& box) {
+    models::GroundEdit edit;
+    edit.change = models::GroundChange::kRiver;
+    edit.square = true;
+    core::WorldPosition centre = piece.origin;
+    centre.local += glm::dvec3(box.centre().x, 0, box.centre().y);
+    edit.centre = core::normalised(centre, block_m_);
+    edit.radius_m = std::max(box.size().x, box.size().y) / 2 + piece.reach_m();
+    edit.river = std::make_shared<const RiverPiece>(std::move(piece));
+    edit.height_m = max_moved_m(world_, edit, terrain_);
+    made_.edits.push_back(std::move(edit));
+  }
+
+  const World& world_;
+  const models::EditLayer& below_;
+  const River& river_;
+  const BodyName& name_;
+  double block_m_;
+  models::Parameters terrain_;
+  std::vector<CurvePoint> curve_;
+  std::vector<Sample> samples_;
+  std::vector<double> surface_, bed_;
+  std::vector<RiverPoint> points_;
+  WaterEdits made_;
+};
+
+// A river's curve with its widths.
+struct Course {
+  std::vector<CurvePoint> curve;
+  const River* river = nullptr;
+  FlatBox box;
+
+  // True if a place lies in its water.
+  bool covers(glm::dvec2 at_m) const {
+    FlatBox place;
+    place.add(at_m);
+    const double widest_m = *std::ranges::max_element(river->width_m);
+    if (!box.touches(place, widest_m)) return false;
+    for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+      const glm::dvec2 along = curve[i + 1].at_m - curve[i].at_m, to = at_m - curve[i].at_m;
+      const double length2 = along.x * along.x + along.y * along.y;
+      const double share =
+          length2 > 0 ? std::clamp((to.x * along.x + to.y * along.y) / length2, 0.0, 1.0) : 0;
+      const double half_m = (value_at(river->width_m, curve[i]) * (1 - share) +
+                             value_at(river->width_m, curve[i + 1]) * share) /
+                            2;
+      if (length_of(to - along * share) <= half_m) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace
+
+double chords_m(const River& river) {
+  double length_m = 0;
+  for (std::size_t i = 1; i < river.points_m.size(); ++i)
+    length_m += length_of(river.points_m[i] - river.points_m[i - 1]);
+  return length_m;
+}
+
+tl::expected<WaterEdits, WaterError> river_edits(const World& world, const models::EditLayer& below,
+                                                 const River& river, const BodyName& name) {
+  return RiverMaker(world, below, river, name).make();
+}
+
+RiverOrder river_order(const World& world, const std::vector<River>& rivers) {
+  std::vector<Course> courses;
+  for (const River& river : rivers) {
+    courses.push_back({curve_through(river.points_m, step_of(world, river)), &river, {}});
+    for (const CurvePoint& point : courses.back().curve)
+      courses.back().box.add(point.at_m);
+  }
+  const std::size_t n = rivers.size();
+  // A river that begins where another one ends comes after it, else one that ends in another.
+  std::vector<std::vector<bool>> after(n, std::vector<bool>(n, false));
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < n; ++k)
+      after[i][k] = i != k && courses[k].covers(rivers[i].points_m.front());
+  RiverOrder result;
+  result.flows_on.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < n; ++k) {
+      if (i == k || !courses[k].covers(rivers[i].points_m.back())) continue;
+      result.flows_on[i] = true;
+      if (!after[k][i]) after[i][k] = true;
+    }
+  }
+  std::vector<std::size_t>& order = result.order;
+  std::vector<bool> done(n, false);
+  while (order.size() < n) {
+    std::size_t next = n;
+    for (std::size_t i = 0; i < n && next == n; ++i) {
+      bool ready = !done[i];
+      for (std::size_t k = 0; ready && k < n; ++k)
+        ready = !after[i][k] || done[k];
+      if (ready) next = i;
+    }
+    if (next == n) return {};
+    done[next] = true;
+    order.push_back(next);
+  }
+  return result;
+}
+
+}  // namespace psygen::world
