@@ -40,7 +40,7 @@ void main() {
 #if defined(PSYGEN_DRAW_COLOUR)
   colour = colour_of_draw(draw.scale.w, n);
 #elif !defined(PSYGEN_SHADOW)
-  visible *= 1.0 - 0.38 * float((packed.z >> 16) & 0xFFu) * (1.0 / 255.0);  // wet ground is darker
+  visible *= 1.0 - 0.5 * float((packed.z >> 16) & 0xFFu) * (1.0 / 255.0);  // wet ground is darker
   float road = float(packed.z >> 24) * (1.0 / 255.0);
   float cover = road > 0.0 ? -road : draw.scale.w;
   vec2 plane = p.xz + frame.ground_anchor.xy;

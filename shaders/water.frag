@@ -84,7 +84,7 @@ void main() {
   float fast = clamp(length(flow) * (1.0 / 2.0), 0.0, 1.0);
   vec2 slope = slope_depth_foam.xy;
   if (waves)
-    slope += (drifting_slope(drift, 16.0) * (0.35 + fast) + drifting_slope(drift, 64.0)) * near;
+    slope += (drifting_slope(drift, 16.0) * (0.15 + 0.5 * fast) + 0.5 * drifting_slope(drift, 64.0)) * near;
   n = normalize(vec3(-slope.x, 1.0, -slope.y));
 #else
   if (waves) {

@@ -8,7 +8,7 @@ vec4 surface_blend(WaterLight water, vec3 lit, vec3 p, vec3 n, float depth, floa
   vec3 air = haze(p, kept);
   vec3 left = kept_by_water(depth);
   vec3 own = water.all + lit - frame.deep_water.rgb * (1.0 - water.mirrored) * left;
-  own = mix(own, ground_light(vec3(0.72), n, 1.0, 1.0), foam);
+  own = mix(own, ground_light(vec3(0.55), n, 1.0, 1.0), foam);
   float through = (1.0 - water.mirrored) * left.g * (1.0 - foam);
   vec3 from = shown(air), to = shown(air + max(own, 0.0) * kept);
   float bright = kept.g * (0.1 * frame.sun_colour.g + 0.2 * frame.zenith_colour.g);

@@ -29,7 +29,7 @@ void main() {
   vec3 at = vec3(snorm16(packed.x), max(float(int(packed.y << 16) >> 16) * (1.0 / 32767.0), -1.0));
   float depth = float((packed.y >> 16) & 0xFFu) * (1.0 / 255.0);
   depth *= depth * PSYGEN_WATER_DEPTH_M;
-  float foam = float(packed.y >> 24) * (1.0 / 255.0);
+  float foam = smoothstep(0.0, 1.0, float(packed.y >> 24) * (1.0 / 255.0));
   vec3 p = draw.origin.xyz + draw.scale.xyz * at;
   // Where a river or lake ends in the sea, the plane of the sea is the surface.
   bool at_sea = abs(p.y - frame.water.w) < 0.04;

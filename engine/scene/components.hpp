@@ -25,7 +25,7 @@ inline constexpr std::size_t kMaxLevels = 8;
 inline constexpr std::uint8_t kNotRanked = 0xFF;
 
 // A node of the quadtree. Its models are its children (ecs::Children): a block's trees and rocks,
-// or one merged mesh.
+// or one merged mesh; and the surface of its rivers and lakes.
 struct QuadtreeNode {
   visibility::NodeCoord at;
   float low_m = 0,
@@ -85,6 +85,7 @@ struct MeshSource {
 };
 using world::kTerrainIndex;
 inline constexpr std::uint32_t kMergedIndex = kTerrainIndex - 1;
+inline constexpr std::uint32_t kWaterIndex = kMergedIndex - 1;  // rivers and lakes of a node
 
 // The mesh that is resident and drawn. Results of synthesis are written here in batches.
 struct Mesh {
@@ -135,11 +136,12 @@ struct MeshDemand {
   bool pictured = false;           // Mesh is an impostor quad
   bool stale =
       false;  // Mesh has other parameters than MeshSource; drawn until the new mesh is ready
+  bool stale_light = false;          // it is stale, and an edit beyond it changed only its light
   std::uint8_t ranked = kNotRanked;  // group of the rank that the cache has for Mesh
   bool added =
       false;  // an edit added it to a node that may be drawn already: the node does not wait for it
 };
-static_assert(sizeof(MeshDemand) == 20);
+static_assert(sizeof(MeshDemand) == 24);
 
 // Converts an entity to the cache's name for an owner, and back.
 inline std::uint64_t owner_of(ecs::Entity entity) {

@@ -13,6 +13,7 @@
 #include "engine/core/rounding.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/models/water/water_surface.hpp"
 #include "engine/world/ground_blends.hpp"
 
 namespace psygen::world {
@@ -209,6 +210,18 @@ models::Parameters terrain_parameters(const World& world, core::BlockCoord node,
   const std::uint64_t hash =
       layer->ground.hash_of(at, ground_margin(world, node_level), world.block_size_m());
   if (hash != 0) p.set_edits(layer, hash);
+  return p;
+}
+
+std::optional<models::Parameters> water_parameters(const World& world, core::BlockCoord node,
+                                                   int node_level) {
+  const models::EditLayer* const layer = world.layer().get();
+  if (layer == nullptr) return std::nullopt;
+  const double block_m = world.block_size_m();
+  models::Parameters p = models::water_surface_parameters(node, node_level, block_m);
+  const auto at = models::QuadCoord::of(node, static_cast<std::uint32_t>(node_level));
+  p.set_edits(layer, layer->ground.hash_of(at, 0, block_m));
+  if (!models::has_water_surface(p)) return std::nullopt;
   return p;
 }
 

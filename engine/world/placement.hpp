@@ -91,6 +91,10 @@ void set_sun(models::Parameters& terrain, double azimuth_deg, double elevation_d
 // the edits that reach it. `node` counts nodes of this level; at level 0 it is a block.
 models::Parameters terrain_parameters(const World& world, core::BlockCoord node,
                                       int node_level = 0);
+// The parameters of the surface of the rivers and lakes of such a node (models::make_water_type());
+// nothing if it has none. O(log n) without water.
+std::optional<models::Parameters> water_parameters(const World& world, core::BlockCoord node,
+                                                   int node_level = 0);
 // The quantised heights of the vertices of a block's finest mesh, row by row: the ground of
 // queries, physics and saves. About 15 µs for 64 x 64 vertices.
 std::vector<std::uint16_t> ground_of_block(const World& world, core::BlockCoord block);

@@ -73,6 +73,7 @@ INSIDE = {
     "engine/models/tree": {"kit"},
     "engine/models/rock": {"kit"},
     "engine/models/grass": {"kit"},
+    "engine/models/water": {"ground", "kit"},
     "engine/world": set(),
     "engine/world/files": set(),
     "engine/world/far": set(),

@@ -72,8 +72,27 @@ bool is_in_tile(const LakePiece& lake, glm::dvec2 place_m) {
          place_m.y < lake.high_m.y;
 }
 
-// Metres from the outline of a lake: below 0 inside. Requires a place in the tile. The side of the
-// nearest segment decides, or at a corner the mean normal there.
+std::uint64_t with(std::uint64_t hash, double value) {
+  return core::combine(hash, std::bit_cast<std::uint64_t>(value));
+}
+std::uint64_t with(std::uint64_t hash, glm::dvec2 value) {
+  return with(with(hash, value.x), value.y);
+}
+std::uint64_t with(std::uint64_t hash, const core::WorldPosition& at) {
+  const QuadCoord block = QuadCoord::of(at.block);
+  return with(core::combine(hash, block.x << 32 | block.z), glm::dvec2(at.local.x, at.local.z));
+}
+
+}  // namespace
+
+double RiverPiece::reach_m() const {
+  double reach_m = 0;
+  for (const RiverPoint& point : points)
+    reach_m = std::max(reach_m, point.half_width_m + std::max(point.bank_m, edge_m));
+  return reach_m;
+}
+
+// The side of the nearest segment decides, or at a corner the mean normal there.
 double outside_m(const LakePiece& lake, glm::dvec2 place_m) {
   const LakeSegment* nearest = nullptr;
   Foot foot;
@@ -94,24 +113,9 @@ double outside_m(const LakePiece& lake, glm::dvec2 place_m) {
   return dot(place_m - at, normal) > 0 ? away_m : -away_m;
 }
 
-std::uint64_t with(std::uint64_t hash, double value) {
-  return core::combine(hash, std::bit_cast<std::uint64_t>(value));
-}
-std::uint64_t with(std::uint64_t hash, glm::dvec2 value) {
-  return with(with(hash, value.x), value.y);
-}
-std::uint64_t with(std::uint64_t hash, const core::WorldPosition& at) {
-  const QuadCoord block = QuadCoord::of(at.block);
-  return with(core::combine(hash, block.x << 32 | block.z), glm::dvec2(at.local.x, at.local.z));
-}
-
-}  // namespace
-
-double RiverPiece::reach_m() const {
-  double reach_m = 0;
-  for (const RiverPoint& point : points)
-    reach_m = std::max(reach_m, point.half_width_m + std::max(point.bank_m, edge_m));
-  return reach_m;
+double depth_of(const LakePiece& lake, double outside_m) {
+  const double in = std::clamp(-outside_m / lake.shore_m, 0.0, 1.0);
+  return lake.depth_m * in * (2 - in);
 }
 
 double shaped_by(const RiverPiece& river, double ground_m, glm::dvec2 place_m) {
@@ -138,8 +142,7 @@ double shaped_by(const LakePiece& lake, double ground_m, glm::dvec2 place_m) {
     const double wished_m = lake.level_m + kBankSlope * outside;
     return ground_m + faded(left_m, lake.shore_m) * (wished_m - ground_m);
   }
-  const double in = std::min(-outside / lake.shore_m, 1.0);
-  const double bed_m = lake.level_m - lake.depth_m * in * (2 - in);
+  const double bed_m = lake.level_m - depth_of(lake, outside);
   if (ground_m >= bed_m) return bed_m;
   return ground_m + faded(left_m, lake.shore_m) * (bed_m - ground_m);
 }

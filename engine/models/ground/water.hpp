@@ -94,6 +94,12 @@ struct BodySurface {
 std::optional<BodySurface> surface_of(const RiverPiece& river, glm::dvec2 place_m);
 std::optional<BodySurface> surface_of(const LakePiece& lake, glm::dvec2 place_m);
 
+// Metres from the outline of a lake to a place in its tile, or on the tile's border; below 0
+// inside.
+double outside_m(const LakePiece& lake, glm::dvec2 place_m);
+// The depth of the water so many metres outside the outline; 0 there, and where it ends.
+double depth_of(const LakePiece& lake, double outside_m);
+
 // True if a place lies between the banks of a river, or inside the outline of a lake.
 bool is_in_bed(const RiverPiece& river, glm::dvec2 place_m);
 bool is_in_bed(const LakePiece& lake, glm::dvec2 place_m);

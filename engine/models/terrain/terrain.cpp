@@ -209,35 +209,73 @@ MeshAxis axis_from(const TerrainShape& shape, const TerrainGrid& grid, std::int6
   return {static_cast<double>(cells) * cell_m - origin_local_m, shape.cell_m * grid.stride, grid.n};
 }
 
-// Marks the vertices that are on roads (TerrainVertex::road), so that the shader draws them as
-// road. Writes the marks of all surface vertices where roads pass the node, and no others.
-// `vertices` is a whole mesh; it is only written to. Linear in the vertices near roads.
-void mark_roads(const TerrainShape& shape, const TerrainGrid& grid, core::BlockCoord node,
-                std::byte* vertices) {
+// The bytes of TerrainVertex::road and wet of all surface vertices.
+struct GroundMarks {
+  std::vector<std::uint8_t> road, wet;
+};
+
+// Calls visit(vertex, place) for the vertices in the square of an edit; `place` is in metres from
+// its origin.
+template <class Visit>
+void each_vertex_of(const TerrainShape& shape, const TerrainGrid& grid, core::BlockCoord node,
+                    const GroundEdit& edit, const Visit& visit) {
+  const core::WorldPosition& centre = edit.centre;
+  const core::WorldPosition& origin = edit.origin();
+  const MeshAxis near_x = axis_from(shape, grid, node.x, centre.block.x, centre.local.x);
+  const MeshAxis near_z = axis_from(shape, grid, node.z, centre.block.z, centre.local.z);
+  const MeshAxis x = axis_from(shape, grid, node.x, origin.block.x, origin.local.x);
+  const MeshAxis z = axis_from(shape, grid, node.z, origin.block.z, origin.local.z);
+  for (std::int64_t k = near_z.begin(-edit.radius_m); k < near_z.end(edit.radius_m); ++k) {
+    for (std::int64_t i = near_x.begin(-edit.radius_m); i < near_x.end(edit.radius_m); ++i)
+      visit(static_cast<std::size_t>(k * grid.n + i), glm::dvec2(x.at(i), z.at(k)));
+  }
+}
+
+void raise_to(std::uint8_t& mark, double share) {
+  mark = std::max(mark, static_cast<std::uint8_t>(std::clamp(share, 0.0, 1.0) * 255 + 0.5));
+}
+
+// The strip of gravel beside a river or lake, and the wet part of it, in metres above the surface.
+constexpr double kGravelM = 1.2, kWetM = 0.5, kGravelShare = 0.55;
+
+// Marks beds and banks: gravel looks as a road does. `height_m`: of a vertex.
+template <class Height>
+void mark_water(const GroundEdit& edit, std::size_t vertex, glm::dvec2 place_m,
+                const Height& height_m, GroundMarks& marks) {
+  const auto surface =
+      edit.river ? surface_of(*edit.river, place_m) : surface_of(*edit.lake, place_m);
+  if (!surface) return;
+  const double above_m = height_m(vertex) - surface->surface_m;
+  raise_to(marks.road[vertex], kGravelShare * (1 - above_m / kGravelM));
+  raise_to(marks.wet[vertex], 1 - above_m / kWetM);
+}
+
+// Writes the marks of all surface vertices if a road, a river or a lake passes the node, so that
+// the shader draws roads, gravel and wet banks. `vertices` is a whole mesh; it is only written to.
+// Linear in the vertices near these.
+template <class Height>
+void mark_ground(const TerrainShape& shape, const TerrainGrid& grid, core::BlockCoord node,
+                 const Height& height_m, std::byte* vertices) {
   if (shape.stack == nullptr) return;
   const double block_m = (shape.size - 1) * std::ldexp(shape.cell_m, -shape.node_level);
-  const auto roads = shape.stack->roads_in(
-      QuadCoord::of(node, static_cast<std::uint32_t>(shape.node_level)), block_m);
-  if (roads.empty()) return;
-  std::vector<std::uint8_t> marks(grid.surface_vertices());
-  for (const GroundEdit* edit : roads) {
-    const core::WorldPosition& centre = edit->centre;
-    const core::WorldPosition& origin = edit->road->origin;
-    const MeshAxis near_x = axis_from(shape, grid, node.x, centre.block.x, centre.local.x);
-    const MeshAxis near_z = axis_from(shape, grid, node.z, centre.block.z, centre.local.z);
-    const MeshAxis x = axis_from(shape, grid, node.x, origin.block.x, origin.local.x);
-    const MeshAxis z = axis_from(shape, grid, node.z, origin.block.z, origin.local.z);
-    for (std::int64_t k = near_z.begin(-edit->radius_m); k < near_z.end(edit->radius_m); ++k) {
-      for (std::int64_t i = near_x.begin(-edit->radius_m); i < near_x.end(edit->radius_m); ++i) {
-        std::uint8_t& mark = marks[static_cast<std::size_t>(k * grid.n + i)];
-        const double share = road_share(*edit->road, {x.at(i), z.at(k)});
-        mark = std::max(mark, static_cast<std::uint8_t>(share * 255 + 0.5));
-      }
-    }
+  const auto at = QuadCoord::of(node, static_cast<std::uint32_t>(shape.node_level));
+  const auto roads = shape.stack->roads_in(at, block_m), water = shape.stack->water_in(at, block_m);
+  if (roads.empty() && water.empty()) return;
+  GroundMarks marks{std::vector<std::uint8_t>(grid.surface_vertices()),
+                    std::vector<std::uint8_t>(grid.surface_vertices())};
+  for (const GroundEdit* edit : roads)
+    each_vertex_of(shape, grid, node, *edit, [&](std::size_t vertex, glm::dvec2 place_m) {
+      raise_to(marks.road[vertex], road_share(*edit->road, place_m));
+    });
+  for (const GroundEdit* edit : water)
+    each_vertex_of(shape, grid, node, *edit, [&](std::size_t vertex, glm::dvec2 place_m) {
+      mark_water(*edit, vertex, place_m, height_m, marks);
+    });
+  for (std::size_t i = 0; i < grid.surface_vertices(); ++i) {
+    std::byte* const vertex = vertices + i * sizeof(core::TerrainVertex);
+    vertex[offsetof(core::TerrainVertex, road)] = static_cast<std::byte>(marks.road[i]);
+    vertex[offsetof(core::TerrainVertex, wet)] = static_cast<std::byte>(marks.wet[i]);
   }
-  for (std::size_t i = 0; i < marks.size(); ++i)
-    vertices[i * sizeof(core::TerrainVertex) + offsetof(core::TerrainVertex, road)] =
-        static_cast<std::byte>(marks[i]);
 }
 
 core::Bounds TerrainType::synthesise(const Parameters& p, int level, const MeshView& out) const {
@@ -275,10 +313,15 @@ core::Bounds TerrainType::synthesise(const Parameters& p, int level, const MeshV
        .quantum = shape.quantum,
        .slope_scale = shape.metres / static_cast<float>(2 * shape.cell_m)},
       out.vertices.data());
-  mark_roads(shape, grid,
-             {static_cast<std::int32_t>(p.integer(kTerrainBlockX)),
-              static_cast<std::int32_t>(p.integer(kTerrainBlockZ))},
-             out.vertices.data());
+  const auto n = static_cast<std::size_t>(grid.n);
+  const auto height_m = [&](std::size_t vertex) {
+    return static_cast<double>(
+        first[vertex / n * columns.step * stride + vertex % n * columns.step] * shape.metres);
+  };
+  mark_ground(shape, grid,
+              {static_cast<std::int32_t>(p.integer(kTerrainBlockX)),
+               static_cast<std::int32_t>(p.integer(kTerrainBlockZ))},
+              height_m, out.vertices.data());
   core::Bounds box = bounds(p);
   box.min.y = shape.relief_m * (static_cast<float>(heights.lowest) / 65535.0F);
   box.max.y = shape.relief_m * (static_cast<float>(heights.highest) / 65535.0F);

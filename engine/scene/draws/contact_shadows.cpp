@@ -60,7 +60,8 @@ void add_spots_near(const RenderContext& context, std::span<const ecs::Entity> e
         [&](auto rows, auto placed, auto demands, auto sources, auto meshes) {
           for (std::size_t k = 0; k < rows.size(); ++k) {
             const glm::vec3 foot = corner + placed[k].position;
-            if (demands[k].drawn_level == kNoLevel || glm::dot(foot, foot) > kReachM * kReachM)
+            if (demands[k].drawn_level == kNoLevel || glm::dot(foot, foot) > kReachM * kReachM ||
+                placed[k].surface == core::SurfaceKind::kWater)
               continue;
             add_spots(meshes[k].tight, int{sources[k].model} == grass, foot, sun, !facts.shadows,
                       spots);

@@ -58,7 +58,8 @@ struct DrawLists {
   std::vector<visibility::NodeCoord> shown_nodes;
   std::vector<render::TerrainDraw> terrain;
   std::vector<render::MeshDraw> models;
-  std::vector<synthesis::MeshHandle> meshes;  // of both
+  std::vector<render::MeshDraw> water;        // surfaces of rivers and lakes, farthest first
+  std::vector<synthesis::MeshHandle> meshes;  // of all three
   std::vector<render::GroundSpot> spots;      // contact shadows of models near the camera
   std::vector<render::Line> lines;            // bounds of drawn nodes, in the debug view of bounds
   NodeCrossFade cross_fade;

@@ -20,7 +20,7 @@ struct ModelRow {
   const MeshParts* old_parts;  // of the mesh that it replaces
 };
 
-// Calls visit(row) for all models of a node.
+// Calls visit(row) for all models of a node. Its water is none.
 template <class Visit>
 void each_model(const RenderQuery& entities, const ecs::Children& children, bool merged,
                 const Visit& visit) {
@@ -28,6 +28,7 @@ void each_model(const RenderQuery& entities, const ecs::Children& children, bool
       entities.children(children),
       [&](auto rows, auto placed, auto demands, auto meshes, auto fading) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
+          if (placed[i].surface == core::SurfaceKind::kWater) continue;
           const bool replaces = merged && fading[i].old_mesh;
           visit(ModelRow{placed[i], demands[i], meshes[i], fading[i],
                          merged ? entities.get<MeshParts>(rows[i]) : nullptr,
@@ -159,6 +160,32 @@ bool add_going_models(const ModelGround& ground, const View& view, const RenderQ
     if (add_going(ground, view, model, draws)) any = true;
   });
   return any;
+}
+
+void add_water(const ModelGround& ground, const RenderContext& context, const RenderQuery& entities,
+               const ecs::Children& children, DrawLists& draws) {
+  entities.each_of<const MeshPlacement, const MeshDemand, const Mesh>(
+      entities.children(children), [&](auto rows, auto placed, auto demands, auto meshes) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          if (placed[i].surface != core::SurfaceKind::kWater) continue;
+          if (demands[i].in_view_tick != ground.step.tick) continue;
+          const bool hole = demands[i].drawn_level == kNoLevel;
+          count_visible(context.camera,
+                        {.centre = ground.corner + placed[i].middle,
+                         .radius_m = placed[i].radius_m,
+                         .hole = hole,
+                         .awaits = demands[i].failed_levels == 0},
+                        draws.counts);
+          if (hole || !mesh_may_be_visible(meshes[i].tight, ground.corner, context.view)) continue;
+          render::MeshDraw draw;
+          draw.range = meshes[i].range;
+          draw.origin = ground.corner;
+          draw.box_centre = placed[i].box_centre;
+          draw.box_half_extent = placed[i].box_half_extent;
+          draws.water.push_back(draw);
+          draws.meshes.push_back(meshes[i].handle);
+        }
+      });
 }
 
 bool add_parts(const MeshParts& parts, const View* view, const GroundSunlight& sun, float side_m,

@@ -86,6 +86,11 @@ void add_models(const ModelGround& ground, NodeEntry entry, bool twice,
                 const RenderContext& context, const RenderQuery& entities,
                 const ecs::Children& children, DrawLists& draws);
 
+// Adds the surface of the rivers and lakes of a drawn node to DrawLists::water and meshes, and
+// counts it.
+void add_water(const ModelGround& ground, const RenderContext& context, const RenderQuery& entities,
+               const ecs::Children& children, DrawLists& draws);
+
 // Adds the models of a node that is no longer drawn. Returns true if any of them is left.
 bool add_going_models(const ModelGround& ground, const View& view, const RenderQuery& entities,
                       const ecs::Children& children, DrawLists& draws);

@@ -170,6 +170,7 @@ void draw_node(const DrawTick& tick, const RenderContext& context, const RenderQ
   if (!hole) add_ground(tick, context, node, ground, entities, entity, draws);
   add_models(ground, entry_of(draws.cross_fade, node.node), twice, context, entities,
              *entities.get<ecs::Children>(entity), draws);
+  add_water(ground, context, entities, *entities.get<ecs::Children>(entity), draws);
   if (tick.shown == render::View::kBounds) {
     add_box({corner + glm::vec3(0, at.low_m, 0),
              corner + glm::vec3(node.side_m, at.high_m, node.side_m)},
@@ -183,6 +184,7 @@ void fill_lists(const RenderContext& context, const render::Morph& morph,
   const View& view = context.view;
   draws.terrain.clear();
   draws.models.clear();
+  draws.water.clear();
   draws.meshes.clear();
   draws.lines.assign(context.input.lines.begin(), context.input.lines.end());
   draws.entities.clear();
@@ -198,6 +200,7 @@ void fill_lists(const RenderContext& context, const render::Morph& morph,
   });
   for (const std::uint32_t i : draws.shown)
     draw_node(tick, context, entities, i, draws);
+  std::ranges::reverse(draws.water);  // nodes come nearest first
   draws.fade_phase = next_phase(draws.fade_phase, tick.step);
   draws.counts.missing_pixels_percent = std::min(draws.counts.missing_pixels_percent, 100.0);
 }
@@ -223,6 +226,8 @@ void render_system(RenderContext context, SceneDraws scene, RenderQuery entities
   frame.light.time_seconds = static_cast<float>(clock.now_s);
   frame.palette = facts.palette;
   frame.water = water_of(facts.world);
+  frame.water_colour = facts.world.water.colour;
+  frame.water_surfaces = draws.water;
   frame.view = input.view;
   frame.resolution = static_cast<float>(context.quality.resolution);
   frame.block_size_m = facts.world.block_size_m();

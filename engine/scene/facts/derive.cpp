@@ -13,6 +13,7 @@
 #include "engine/core/cancellation.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/models/water/water_surface.hpp"
 #include "engine/scene/facts/levels.hpp"
 #include "engine/scene/facts/lighting.hpp"
 #include "engine/scene/facts/solidity.hpp"
@@ -209,6 +210,9 @@ core::Result<void> derive(const SceneSettings& settings, bool pictures, WorldFac
   }
   if (auto ok = core::check_cancelled(); !ok) return ok;
   if (auto ok = find_levels(settings, facts, before); !ok) return ok;
+  const auto water = facts.registry.add(models::make_water_type());
+  if (!water) return tl::unexpected(water.error());
+  facts.water_model = *water;
   return check_size(world, facts.levels, settings);
 }
 

@@ -140,13 +140,16 @@ void request(CacheTick& tick, const NodeView& node, const MeshEntity& row, const
     return;
   }
   if (!tick.request) return;
+  // New light after a distant edit waits for all other meshes.
+  const RankGroup group = demand.stale_light ? RankGroup::kPrefetch : choice.requested;
   synthesis::Want want{key,
                        &source.parameters,
                        owner_of(row.entity),
-                       rank_on(node, choice.requested, distance_m),
+                       rank_on(node, group, distance_m),
                        node.visibility.deadline_s,
-                       choice.at_once};
-  const bool awaited = demand.stale && node.level == 0 && demand.in_view_tick == tick.tick;
+                       choice.at_once && !demand.stale_light};
+  const bool awaited =
+      demand.stale && !demand.stale_light && node.level == 0 && demand.in_view_tick == tick.tick;
   if (awaited && tick.draft_s > 0) {
     tick.draft_s -= work.supply.predict(want);
     want.at_once = true;

@@ -55,6 +55,8 @@ struct Collector {
 
   void add_models(const visibility::CutNode& node) {
     const core::BlockCoord block = visibility::corner_block(node.node);
+    if (const auto water = water_placement(s.facts, node.node))
+      add(columns_of(s.facts, block, *water), 0, node.distance_m);
     NodeView view;
     view.level = node.node.level;
     if (view.level > 0) {

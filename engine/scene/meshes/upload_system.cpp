@@ -63,6 +63,7 @@ bool accept(MeshDemand& demand, std::uint8_t level, bool fresh, double now_s, Me
   if (!asked_for && demand.drawn_level != kNoLevel) return false;
   demand.drawn_level = level;
   demand.stale = !fresh;
+  demand.stale_light = demand.stale && demand.stale_light;
   demand.ranked = kNotRanked;
   if (asked_for) demand.requested_level = kNoLevel;
   if (demand.seen_s >= 0) {

@@ -42,33 +42,55 @@ void tell_created(std::span<const ecs::Entity> models, core::BlockCoord block,
                   ecs::EventQueue<ModelCreated>& created) {
   if (!created.has_readers()) return;
   std::vector<ModelCreated> events;
-  for (std::size_t i = 0; i < models.size(); ++i)
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (placements[i].index == kWaterIndex) continue;
     events.push_back({models[i], block, placements[i].index, placements[i].model});
+  }
   created.emit(events);
 }
 
-// Creates the merged mesh of a node that has one. `added`: by an edit.
-void create_merged(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
-                   std::vector<world::Placement>& scratch, ecs::World& entities, bool added) {
-  if (!has_merged(facts, at)) return;
-  scratch.assign(1, merged_placement(facts, at));
-  entities.set_children(node, create_meshes<MeshParts, ReplacedParts>(
-                                  facts, visibility::corner_block(at), scratch, entities, added));
+// Lists the meshes of a coarse node: its water and its merged mesh, by growing index.
+void list_meshes(const WorldFacts& facts, const visibility::NodeCoord& at,
+                 std::vector<world::Placement>& out) {
+  out.clear();
+  if (auto water = water_placement(facts, at)) out.push_back(*water);
+  if (has_merged(facts, at)) out.push_back(merged_placement(facts, at));
 }
 
-// Creates the models of a block, or the merged mesh of a coarser node.
+// Creates a mesh of a coarse node. `added`: by an edit.
+ecs::Entity create_mesh(const WorldFacts& facts, core::BlockCoord block,
+                        const world::Placement& placement, ecs::World& entities, bool added) {
+  const std::span<const world::Placement> one(&placement, 1);
+  return placement.index == kWaterIndex
+             ? create_meshes(facts, block, one, entities, added)[0]
+             : create_meshes<MeshParts, ReplacedParts>(facts, block, one, entities, added)[0];
+}
+
+// Lists the models of a block that a world places, and the surface of its water.
+void list_models(const WorldFacts& facts, const visibility::NodeCoord& at,
+                 std::vector<world::Placement>& out) {
+  world::place_models(facts.world, facts.registry, visibility::corner_block(at), out);
+  if (auto water = water_placement(facts, at)) out.push_back(*water);
+}
+
+// Creates the meshes of a node beside its ground: the models of a block, the merged mesh of a
+// coarser node, and water.
 void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs::Entity node,
                    std::vector<world::Placement>& scratch, ecs::World& entities,
                    ecs::EventQueue<ModelCreated>& created) {
   const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
-    world::place_models(facts.world, facts.registry, block, scratch);
+    list_models(facts, at, scratch);
     const std::span<const ecs::Entity> models = create_meshes(facts, block, scratch, entities);
     entities.set_children(node, models);
     tell_created(models, block, scratch, created);
-  } else {
-    create_merged(facts, at, node, scratch, entities, false);
+    return;
   }
+  list_meshes(facts, at, scratch);
+  std::vector<ecs::Entity> meshes;
+  for (const world::Placement& placement : scratch)
+    meshes.push_back(create_mesh(facts, block, placement, entities, false));
+  entities.set_children(node, meshes);
 }
 
 models::Parameters lit_ground(const WorldFacts& facts, const Daylight& daylight,
@@ -141,6 +163,7 @@ void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& 
     if (entities.get<MeshDemand>(model)->drawn_level != kNoLevel)
       meshes.rank(entities.get<Mesh>(model)->handle, synthesis::Rank::unwanted());
     const MeshSource& source = *entities.get<MeshSource>(model);
+    if (source.index == kWaterIndex) continue;
     events.push_back(
         {model, entities.get<MeshPlacement>(model)->block, source.index, source.model});
   }
@@ -148,14 +171,48 @@ void destroy_models(std::span<const ecs::Entity> models, synthesis::MeshSupply& 
   entities.destroy(models);
 }
 
-void destroy_merged(ecs::Entity node, synthesis::MeshSupply& meshes, ecs::World& entities) {
+// Makes parameters whose mesh did not change refer to the world's present edit layer.
+void follow_layer(const WorldFacts& facts, models::Parameters& parameters) {
+  if (parameters.edits() != nullptr)
+    parameters.set_edits(facts.world.layer().get(), parameters.edits_hash());
+}
+
+// Renews the meshes of a coarse node beside its ground after a change.
+void update_meshes(const WorldFacts& facts, const visibility::NodeCoord& at,
+                   const NodeChange& change, ecs::Entity node,
+                   std::vector<world::Placement>& scratch, const NodeWork& work) {
+  ecs::World& entities = work.entities;
+  const core::BlockCoord block = visibility::corner_block(at);
+  list_meshes(facts, at, scratch);
   const std::span<const ecs::Entity> now = entities.children(node);
-  const std::vector<ecs::Entity> gone(now.begin(), now.end());
-  for (const ecs::Entity mesh : gone)
+  const std::vector<ecs::Entity> before(now.begin(), now.end());
+  std::vector<ecs::Entity> kept, gone;
+  for (const ecs::Entity mesh : before) {
+    const std::uint32_t index = entities.get<MeshSource>(mesh)->index;
+    const auto placement = std::ranges::find(scratch, index, &world::Placement::index);
+    if (placement == scratch.end()) {
+      gone.push_back(mesh);
+      continue;
+    }
+    kept.push_back(mesh);
+    if (change.ground || change.models) {
+      place_anew(facts, block, *placement, change.world, mesh, work.supply, entities);
+    } else {
+      follow_layer(facts, entities.get<MeshSource>(mesh)->parameters);
+    }
+    scratch.erase(placement);
+  }
+  if (gone.empty() && scratch.empty()) return;
+  for (const ecs::Entity mesh : gone) {
     if (entities.get<MeshDemand>(mesh)->drawn_level != kNoLevel)
-      meshes.rank(entities.get<Mesh>(mesh)->handle, synthesis::Rank::unwanted());
+      work.supply.rank(entities.get<Mesh>(mesh)->handle, synthesis::Rank::unwanted());
+  }
   entities.destroy(gone);
-  entities.set_children(node, {});
+  for (const world::Placement& placement : scratch)
+    kept.push_back(create_mesh(facts, block, placement, entities, !change.world));
+  std::ranges::sort(kept, {},
+                    [&](ecs::Entity mesh) { return entities.get<MeshSource>(mesh)->index; });
+  entities.set_children(node, kept);
 }
 
 // Fits bounds and levels of a node's ground to the world that replaced another one.
@@ -207,19 +264,23 @@ class StayingModels {
   std::uint32_t number_ = 0;
 };
 
-void place_on(const WorldFacts& facts, core::BlockCoord block, const NodeChange& change,
+void place_on(const WorldFacts& facts, const visibility::NodeCoord& at, const NodeChange& change,
               std::vector<world::Placement>& scratch) {
-  if (change.placed) return;
-  if (change.kept == nullptr)
-    return world::place_models(facts.world, facts.registry, block, scratch);
-  world::place_models(facts.world, facts.registry, block, change.kept->wanted(), scratch);
+  if (!change.placed) {
+    if (change.kept == nullptr) return list_models(facts, at, scratch);
+    world::place_models(facts.world, facts.registry, visibility::corner_block(at),
+                        change.kept->wanted(), scratch);
+  }
+  if (auto water = water_placement(facts, at)) scratch.push_back(*water);
 }
 
 // Keeps the entities of models that stay, and their drawn meshes.
-void update_models(const WorldFacts& facts, core::BlockCoord block, const NodeChange& change,
-                   ecs::Entity node, std::vector<world::Placement>& scratch, const NodeWork& work) {
+void update_models(const WorldFacts& facts, const visibility::NodeCoord& at,
+                   const NodeChange& change, ecs::Entity node,
+                   std::vector<world::Placement>& scratch, const NodeWork& work) {
   ecs::World& entities = work.entities;
-  place_on(facts, block, change, scratch);
+  const core::BlockCoord block = visibility::corner_block(at);
+  place_on(facts, at, change, scratch);
   const std::span<const ecs::Entity> now = entities.children(node);
   std::vector<ecs::Entity> before(now.begin(), now.end()), kept, gone;
   std::vector<world::Placement> created;
@@ -261,8 +322,10 @@ void tell_removed(std::span<const ecs::Entity> nodes, const ecs::World& entities
     if (entities.get<QuadtreeNode>(node)->at.level != 0) continue;
     entities.each_of<const MeshPlacement, const MeshSource>(
         entities.children(node), [&events](auto rows, auto placed, auto sources) {
-          for (std::size_t i = 0; i < rows.size(); ++i)
+          for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (sources[i].index == kWaterIndex) continue;
             events.push_back({rows[i], placed[i].block, sources[i].index, sources[i].model});
+          }
         });
   }
   removed.emit(events);
@@ -323,32 +386,22 @@ void update_node(const WorldFacts& facts, const Daylight& daylight, ecs::Entity 
   ecs::World& entities = work.entities;
   const visibility::NodeCoord at = entities.get<QuadtreeNode>(node)->at;
   if (change.ground) {
+    MeshDemand& demand = *entities.get<MeshDemand>(node);
+    const bool shape = change.models || change.world || (demand.stale && !demand.stale_light);
     renew(lit_ground(facts, daylight, at), facts, node, work.supply, entities);
-  } else if (models::Parameters& p = entities.get<MeshSource>(node)->parameters;
-             p.edits() != nullptr) {
-    p.set_edits(facts.world.layer().get(), p.edits_hash());
+    demand.stale_light = demand.stale && !shape;
+  } else {
+    follow_layer(facts, entities.get<MeshSource>(node)->parameters);
   }
   if (change.world && change.ground) fit_ground(facts, daylight, node, entities);
-  const core::BlockCoord block = visibility::corner_block(at);
   if (at.level == 0) {
-    if (change.models) update_models(facts, block, change, node, scratch, work);
+    if (change.models) return update_models(facts, at, change, node, scratch, work);
+    // Of the meshes of a block only its water, the last one, refers to the layer.
+    if (const auto models = entities.children(node); !models.empty())
+      follow_layer(facts, entities.get<MeshSource>(models.back())->parameters);
     return;
   }
-  const std::span<const ecs::Entity> now = entities.children(node);
-  if (now.empty()) return create_merged(facts, at, node, scratch, entities, !change.world);
-  if (!has_merged(facts, at)) {  // the last placed model is gone
-    destroy_merged(node, work.supply, entities);
-    return;
-  }
-  for (const ecs::Entity model : entities.children(node)) {
-    models::Parameters& p = entities.get<MeshSource>(model)->parameters;
-    if (change.ground || change.models) {
-      place_anew(facts, block, merged_placement(facts, at), change.world, model, work.supply,
-                 entities);
-    } else if (p.edits() != nullptr) {
-      p.set_edits(facts.world.layer().get(), p.edits_hash());
-    }
-  }
+  update_meshes(facts, at, change, node, scratch, work);
 }
 
 }  // namespace psygen::scene

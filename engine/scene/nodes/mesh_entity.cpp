@@ -106,4 +106,11 @@ world::Placement merged_placement(const WorldFacts& facts, const visibility::Nod
           world::merged_parameters(facts.world, at.coord, at.level)};
 }
 
+std::optional<world::Placement> water_placement(const WorldFacts& facts,
+                                                const visibility::NodeCoord& at) {
+  const auto parameters = world::water_parameters(facts.world, at.coord, at.level);
+  if (!parameters) return std::nullopt;
+  return world::Placement{facts.water_model, kWaterIndex, glm::vec3(0.0F), *parameters};
+}
+
 }  // namespace psygen::scene

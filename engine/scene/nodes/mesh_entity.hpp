@@ -3,6 +3,7 @@
 #pragma once
 
 #include <climits>
+#include <optional>
 
 #include "engine/scene/components.hpp"
 #include "engine/scene/facts/world_facts.hpp"
@@ -45,5 +46,8 @@ MeshColumns columns_of(const WorldFacts& facts, core::BlockCoord block,
 bool has_merged(const WorldFacts& facts, const visibility::NodeCoord& at);
 // Its merged mesh.
 world::Placement merged_placement(const WorldFacts& facts, const visibility::NodeCoord& at);
+// The surface of the rivers and lakes of a node; nothing if it has none.
+std::optional<world::Placement> water_placement(const WorldFacts& facts,
+                                                const visibility::NodeCoord& at);
 
 }  // namespace psygen::scene

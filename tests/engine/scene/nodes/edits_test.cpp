@@ -314,6 +314,35 @@ TEST(Edits, ARaisedRidgeHidesTheGroundBehindIt) {
   EXPECT_EQ(scene->statistics().drawn.holes, 0u);
 }
 
+// Light is baked up to 5.5 radii from an edit: of what an edit renews, most has only other light.
+TEST(Edits, NewLightWaitsForNewHeights) {
+  const core::CameraPose pose = pose_at(256, 256);
+  const auto scene = settled_scene(pose);
+  State& s = state_of(*scene);
+  world::Edits edits;
+  expect_ok(edits.raise(s.facts.world, {{256, 255}, {31, 0, 31}}, 60, 8));
+  scene->edit(edits);
+  tick_at(*scene, pose);
+  std::size_t heights = 0, light = 0;
+  s.entities.each<const QuadtreeNode, const MeshPlacement, const LodErrors, const MeshSource,
+                  const MeshDemand>(
+      [&](auto rows, auto, auto placed, auto detail, auto source, auto demand) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          const MeshDemand& d = demand[i];
+          if (!d.stale || d.in_view_tick + 1 != s.clock.tick || d.requested_level == kNoLevel)
+            continue;
+          const auto key = key_of(placed[i], detail[i], source[i], d.requested_level);
+          const auto* record = s.supply.get(s.supply.find(key));
+          if (record == nullptr) continue;
+          EXPECT_EQ(synthesis::is_visible(record->rank.group()), !d.stale_light);
+          ++(d.stale_light ? light : heights);
+        }
+      });
+  EXPECT_GT(heights, 0U);
+  EXPECT_GT(light, 0U);
+  tick_until_fresh(*scene, pose);
+}
+
 TEST(Edits, ManyEditsWhileFlyingLeaveTheSceneConsistent) {
   auto scene = make_scene(small_settings());
   scene->settle(pose_at(256, 256));
