@@ -20,7 +20,7 @@ namespace {
 using models::LakePiece;
 using models::LakeSegment;
 
-constexpr std::size_t kTileSegments = 16;  // a tile near more segments is split, if it is not small
+constexpr std::size_t kTileSegments = 10;  // a tile near more segments is split, if it is not small
 constexpr double kSmallTile = 8;           // side of a small tile in cells
 constexpr std::size_t kMaxTiles = 4096;
 constexpr double kHighDamM = 5;  // higher dams get a warning
@@ -117,7 +117,7 @@ class LakeMaker {
         lake_.points_m.empty() ? glm::dvec2(2 * lake_.radius_m) : rough.size();
     const double widest_m = std::max(size_m.x, size_m.y);
     if (widest_m > kMaxLakeM) return too_wide(widest_m);
-    const double step_m = std::max(world_.cell_m(), std::clamp(widest_m / 80, 1.0, 10.0));
+    const double step_m = std::max(2 * world_.cell_m(), std::clamp(widest_m / 80, 3.0, 10.0));
     if (lake_.points_m.empty()) {
       constexpr double kAround = 6.283185307179586;
       const int corners = std::max(12, static_cast<int>(kAround * lake_.radius_m / step_m));
@@ -251,6 +251,7 @@ class LakeMaker {
       if (of.touches(box, margin_m() + 1.4143 * side_m)) piece.segments.push_back(segment);
     }
     if (!shapes) piece.segments.clear();
+    keep_nearest(piece.segments, box.centre(), 1.4143 * side_m);
     if (shapes && piece.segments.size() > kTileSegments && side_m > kSmallTile * world_.cell_m()) {
       const double half_m = side_m / 2;
       for (int q = 0; q < 4; ++q) {
@@ -266,6 +267,24 @@ class LakeMaker {
                          core::ErrorCode::kOverBudget);
     add_tile(std::move(piece), corner_m, corner_m + side_m);
     return {};
+  }
+
+  // Keeps the segments of which one may be nearest to a place of a square with this diagonal.
+  static void keep_nearest(std::vector<LakeSegment>& segments, glm::dvec2 centre_m,
+                           double diagonal_m) {
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (const LakeSegment& segment : segments)
+      nearest_m = std::min(nearest_m, distance_m(segment, centre_m));
+    std::erase_if(segments, [&](const LakeSegment& segment) {
+      return distance_m(segment, centre_m) > nearest_m + diagonal_m + 1e-6;
+    });
+  }
+  static double distance_m(const LakeSegment& segment, glm::dvec2 place_m) {
+    const glm::dvec2 along = segment.to_m - segment.from_m, to = place_m - segment.from_m;
+    const double length2 = along.x * along.x + along.y * along.y;
+    const double share =
+        length2 > 0 ? std::clamp((to.x * along.x + to.y * along.y) / length2, 0.0, 1.0) : 0;
+    return length_of(to - along * share);
   }
 
   // The square of the edit encloses the part of the tile that water or shore reach.
@@ -284,6 +303,7 @@ class LakeMaker {
     edit.square = true;
     edit.centre = position(low_m + half_m);
     edit.radius_m = std::max(half_m.x, half_m.y) + 1e-6;
+    seal(piece);
     edit.lake = std::make_shared<const LakePiece>(std::move(piece));
     edit.height_m = max_moved_m(world_, edit, terrain_);
     made_.edits.push_back(std::move(edit));

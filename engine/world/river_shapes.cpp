@@ -56,7 +56,7 @@ double value_at(const std::vector<double>& list, const CurvePoint& at) {
 
 double step_of(const World& world, const River& river) {
   const double narrowest_m = *std::ranges::min_element(river.width_m);
-  return std::max(world.cell_m(), std::clamp(narrowest_m / 3, 1.0, 10.0));
+  return std::max(2 * world.cell_m(), std::clamp(narrowest_m / 2, 3.0, 10.0));
 }
 
 // Means weighted by a tent over `reach_m` on both sides of each point. Ends continue as they are,
@@ -277,11 +277,12 @@ class RiverMaker {
     const std::size_t n = curve_.size();
     const double sea_m =
         world_.water.exists() ? world_.water.level_m : -std::numeric_limits<double>::infinity();
-    const double end_m = samples_.back().in_river ? samples_.back().bound_m : sea_m;
     std::vector<double> bound(n), floor(n);
-    double highest_m = std::max(end_m, sea_m);
+    double highest_m = sea_m;
+    bool at_end = true;  // from here on in another river
     for (std::size_t i = n; i-- > 0;) {
-      if (samples_[i].in_lake) highest_m = std::max(highest_m, samples_[i].bound_m);
+      at_end = at_end && samples_[i].in_river;
+      if (samples_[i].in_lake || at_end) highest_m = std::max(highest_m, samples_[i].bound_m);
       floor[i] = std::max(highest_m, 0.0);
       bound[i] = std::max(samples_[i].bound_m, sea_m);
     }
@@ -406,7 +407,8 @@ class RiverMaker {
       const std::size_t end = std::min(first + kRiverSegments, segments);
       for (std::size_t i = first; i <= end; ++i)
         piece.points.push_back(points_[i]);
-      const double within_m = 2 * piece.reach_m() + 1e-6;
+      seal(piece);
+      const double within_m = 2 * piece.reach_m + 1e-6;
       for (std::size_t q = 0; q < boxes.size(); ++q) {
         if (q == p || !boxes[q].touches(boxes[p], within_m)) continue;
         for (std::size_t i = q * kRiverSegments; i < std::min((q + 1) * kRiverSegments, segments);
@@ -434,7 +436,8 @@ class RiverMaker {
     core::WorldPosition centre = piece.origin;
     centre.local += glm::dvec3(box.centre().x, 0, box.centre().y);
     edit.centre = core::normalised(centre, block_m_);
-    edit.radius_m = std::max(box.size().x, box.size().y) / 2 + piece.reach_m();
+    seal(piece);
+    edit.radius_m = std::max(box.size().x, box.size().y) / 2 + piece.reach_m;
     edit.river = std::make_shared<const RiverPiece>(std::move(piece));
     edit.height_m = max_moved_m(world_, edit, terrain_);
     made_.edits.push_back(std::move(edit));

@@ -104,7 +104,7 @@ std::optional<glm::dvec2> self_crossing(std::span<const glm::dvec2> line, bool i
 
 double max_moved_m(const World& world, const models::GroundEdit& edit,
                    const models::Parameters& before) {
-  constexpr double kMaxLookedAt = 20'000;
+  constexpr double kMaxLookedAt = 5000;
   const double cell_m = world.cell_m(), block_m = world.block_size_m();
   const double radius_m = edit.radius_m + cell_m;
   const double vertices = 4 * radius_m * radius_m / (cell_m * cell_m);

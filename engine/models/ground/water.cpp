@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <glm/common.hpp>
 #include <limits>
 #include <tuple>
 
@@ -27,15 +28,19 @@ double faded(double left, double fades) {
 }
 
 // The nearest point of a segment: its fraction of the length, and the square of its distance.
+// `per_length2` is 1 over the square of the length of `along`.
 struct Foot {
   double share = 0, away2 = std::numeric_limits<double>::infinity();
 };
-Foot foot_of(glm::dvec2 from_m, glm::dvec2 to_m, glm::dvec2 place_m) {
-  const glm::dvec2 along = to_m - from_m, to = place_m - from_m;
-  const double length2 = dot(along, along);
-  const double share = length2 > 0 ? std::clamp(dot(to, along) / length2, 0.0, 1.0) : 0;
+Foot foot_of(glm::dvec2 from_m, glm::dvec2 along, double per_length2, glm::dvec2 place_m) {
+  const glm::dvec2 to = place_m - from_m;
+  const double share = std::clamp(dot(to, along) * per_length2, 0.0, 1.0);
   const double x = to.x - share * along.x, z = to.y - share * along.y;
   return {share, x * x + z * z};
+}
+double per_length2_of(glm::dvec2 along) {
+  const double length2 = dot(along, along);
+  return length2 > 0 ? 1 / length2 : 0;
 }
 
 double between(double from, double to, double share) {
@@ -51,16 +56,21 @@ struct RiverFoot {
   }
 };
 std::optional<RiverFoot> foot_of(const RiverPiece& river, glm::dvec2 place_m) {
+  if (!(place_m.x >= river.low_m.x && place_m.x <= river.high_m.x && place_m.y >= river.low_m.y &&
+        place_m.y <= river.high_m.y))
+    return std::nullopt;
+  const std::size_t own = river.points.size() - 1;
   std::size_t nearest = 0;
   Foot foot;
-  for (std::size_t i = 0; i + 1 < river.points.size(); ++i) {
-    const Foot of = foot_of(river.points[i].at_m, river.points[i + 1].at_m, place_m);
+  for (std::size_t i = 0; i < own; ++i) {
+    const Foot of = foot_of(river.points[i].at_m, river.along[i], river.per_length2[i], place_m);
     if (of.away2 < foot.away2) foot = of, nearest = i;
   }
-  const double reach_m = river.reach_m();
-  if (foot.away2 > reach_m * reach_m) return std::nullopt;
-  for (const RiverNeighbour& other : river.near) {
-    const double away2 = foot_of(other.from_m, other.to_m, place_m).away2;
+  if (foot.away2 > river.reach_m * river.reach_m) return std::nullopt;
+  for (std::size_t i = 0; i < river.near.size(); ++i) {
+    const RiverNeighbour& other = river.near[i];
+    const double away2 =
+        foot_of(other.from_m, river.along[own + i], river.per_length2[own + i], place_m).away2;
     if (away2 < foot.away2 || (other.is_earlier && away2 == foot.away2)) return std::nullopt;
   }
   return RiverFoot{&river.points[nearest], &river.points[nearest + 1], foot.share,
@@ -85,19 +95,13 @@ std::uint64_t with(std::uint64_t hash, const core::WorldPosition& at) {
 
 }  // namespace
 
-double RiverPiece::reach_m() const {
-  double reach_m = 0;
-  for (const RiverPoint& point : points)
-    reach_m = std::max(reach_m, point.half_width_m + std::max(point.bank_m, edge_m));
-  return reach_m;
-}
-
 // The side of the nearest segment decides, or at a corner the mean normal there.
 double outside_m(const LakePiece& lake, glm::dvec2 place_m) {
   const LakeSegment* nearest = nullptr;
   Foot foot;
   for (const LakeSegment& segment : lake.segments) {
-    const Foot of = foot_of(segment.from_m, segment.to_m, place_m);
+    const glm::dvec2 along = segment.to_m - segment.from_m;
+    const Foot of = foot_of(segment.from_m, along, segment.per_length2, place_m);
     if (of.away2 < foot.away2) foot = of, nearest = &segment;
   }
   if (nearest == nullptr) {
@@ -116,6 +120,32 @@ double outside_m(const LakePiece& lake, glm::dvec2 place_m) {
 double depth_of(const LakePiece& lake, double outside_m) {
   const double in = std::clamp(-outside_m / lake.shore_m, 0.0, 1.0);
   return lake.depth_m * in * (2 - in);
+}
+
+void seal(RiverPiece& river) {
+  constexpr double kFar = std::numeric_limits<double>::max();
+  river.reach_m = 0;
+  river.low_m = glm::dvec2(kFar), river.high_m = glm::dvec2(-kFar);
+  for (const RiverPoint& point : river.points) {
+    river.reach_m =
+        std::max(river.reach_m, point.half_width_m + std::max(point.bank_m, river.edge_m));
+    river.low_m = glm::min(river.low_m, point.at_m);
+    river.high_m = glm::max(river.high_m, point.at_m);
+  }
+  river.low_m -= river.reach_m, river.high_m += river.reach_m;
+  river.along.clear();
+  for (std::size_t i = 0; i + 1 < river.points.size(); ++i)
+    river.along.push_back(river.points[i + 1].at_m - river.points[i].at_m);
+  for (const RiverNeighbour& other : river.near)
+    river.along.push_back(other.to_m - other.from_m);
+  river.per_length2.clear();
+  for (const glm::dvec2& along : river.along)
+    river.per_length2.push_back(per_length2_of(along));
+}
+
+void seal(LakePiece& lake) {
+  for (LakeSegment& segment : lake.segments)
+    segment.per_length2 = per_length2_of(segment.to_m - segment.from_m);
 }
 
 double shaped_by(const RiverPiece& river, double ground_m, glm::dvec2 place_m) {
@@ -181,7 +211,7 @@ std::optional<BodySurface> surface_of(const LakePiece& lake, glm::dvec2 place_m)
   BodySurface water;
   water.body = lake.body;
   water.surface_m = lake.level_m;
-  water.widths = outside > 0 ? 0.5 + outside / lake.shore_m : 0;
+  water.widths = outside > 0 ? 0.5 + outside / lake.shore_m : -1;
   return water;
 }
 

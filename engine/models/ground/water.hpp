@@ -43,17 +43,19 @@ struct RiverPiece {
   double edge_m = 2;                 // the surface reaches this far beyond the water's width
   std::vector<RiverPoint> points;    // at least 2, downstream: of the piece's own segments
   std::vector<RiverNeighbour> near;  // of other pieces
-
-  // Distance from the centre line to which the piece acts.
-  double reach_m() const;
+  // Set by seal():
+  double reach_m = 0;                  // distance from the centre line to which the piece acts
+  glm::dvec2 low_m{0.0}, high_m{0.0};  // the rectangle that it reaches
+  std::vector<glm::dvec2> along;       // of own segments, then of neighbours: from end to end
+  std::vector<double> per_length2;     // 1 over the squares of their lengths; 0: a point
 };
-
 // A straight segment of a lake's outline, in metres from the lake's origin, with the outside at
 // (z, −x) of its direction. Each end has the mean of the outward normals of the segments that meet
 // there, of any length above 0.
 struct LakeSegment {
   glm::dvec2 from_m{0.0}, to_m{0.0};
   glm::dvec2 from_normal{0.0}, to_normal{0.0};
+  double per_length2 = 0;  // set by seal(): 1 over the square of its length; 0: a point
 };
 
 // A tile of a lake: the places in a rectangle without its upper sides, in metres from the lake's
@@ -70,6 +72,10 @@ struct LakePiece {
   std::vector<LakeSegment> segments;  // all that may be nearest to a place of the tile
 };
 
+// Sets the last members of a piece from the others, once these are final.
+void seal(RiverPiece& river);
+void seal(LakePiece& lake);
+
 // The height of the ground, in metres, after a river or a lake has shaped it. A river only digs; a
 // lake also raises the ground beside it, up to its level. Unchanged outside of the piece.
 double shaped_by(const RiverPiece& river, double ground_m, glm::dvec2 place_m);
@@ -83,8 +89,8 @@ struct BodySurface {
   double foam = 0;           // 0 … 1
   std::uint32_t body = 0;
   bool is_river = false;  // else a lake
-  // Distance from the middle in widths of the body: 0 in the middle of a river and everywhere on a
-  // lake, 0.5 at the border of the water.
+  // Distance from the middle in widths of the body: 0 in the middle of a river, 0.5 at the border
+  // of the water, −1 everywhere inside the outline of a lake.
   double widths = 0;
 
   // True if this body owns a place that both reach: the one that is nearer in its widths, then the

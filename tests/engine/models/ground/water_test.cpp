@@ -22,6 +22,7 @@ RiverPiece straight() {
     p.fall = 0.01;
     river.points.push_back(p);
   }
+  seal(river);
   return river;
 }
 
@@ -39,6 +40,7 @@ LakePiece square_lake() {
   for (int i = 0; i < 4; ++i)
     lake.segments.push_back(
         {corners[i], corners[(i + 1) % 4], out[(i + 3) % 4] + out[i], out[i] + out[(i + 1) % 4]});
+  seal(lake);
   return lake;
 }
 
@@ -86,6 +88,7 @@ TEST(RiverPiece, FlowsFastestInTheMiddleAndDownItsSlope) {
 TEST(RiverPiece, LeavesPlacesToNearerSegmentsOfOtherPieces) {
   RiverPiece river = straight();
   river.near.push_back({{0, 6}, {100, 6}, false});
+  seal(river);
   EXPECT_TRUE(surface_of(river, {50, 2.9}));
   EXPECT_TRUE(surface_of(river, {50, 3})) << "equally near, but this piece is upstream";
   EXPECT_FALSE(surface_of(river, {50, 3.1}));

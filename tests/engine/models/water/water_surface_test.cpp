@@ -40,6 +40,7 @@ void add_river(EditLayer& layer, int pieces) {
     edit.centre = core::normalised({{0, 0}, {middle.x, 0, middle.y}}, kBlockM);
     edit.radius_m = 24;
     edit.height_m = 10;
+    seal(*river);
     edit.river = std::move(river);
     edit.id = id++;
     seal(edit);
@@ -73,6 +74,7 @@ void add_lake(EditLayer& layer) {
   edit.centre = core::normalised({{0, 0}, {200, 0, 200}}, kBlockM);
   edit.radius_m = 60;
   edit.height_m = 30;
+  seal(*lake);
   edit.lake = std::move(lake);
   edit.id = 100;
   seal(edit);
@@ -209,6 +211,7 @@ TEST(WaterSurface, IsTheSameFarFromTheOrigin) {
   edit.centre = {kFarBlock, {20, 0, 10}};
   edit.radius_m = 20;
   edit.height_m = 5;
+  seal(*river);
   edit.river = std::move(river);
   edit.id = 1;
   seal(edit);
