@@ -170,7 +170,7 @@ double ErosionFilter::usual_error_m(const ErosionFilter& other) const {
 // The memory of one call.
 struct ErosionFilter::Lattices {
   ErosionAxis x, z;
-  alignas(64) std::array<float, kMaxErosionAxis * kMaxErosionAxis> guide, hollows, blurred;
+  alignas(64) std::array<float, kMaxErosionAxis * kMaxErosionAxis> guide;
   alignas(64) std::array<float, kMaxErosionAxis * kMaxErosionAxis> worn;
   std::array<std::int64_t, kMaxErosionAxis> line_x, line_z;
 };
@@ -214,25 +214,6 @@ bool place(const ErosionKernel& k, std::span<const std::int64_t> at,
   if (axis.lines > kMaxErosionAxis) return false;
   spread((low + 1) * line, line, axis.line, axis.share);
   return true;
-}
-
-// Blurs a field of lines once: weights 1 2 1 along both axes. The outermost lines stay.
-void blur(std::size_t columns, std::size_t rows, float* field, float* memory) {
-  constexpr std::size_t kStride = kMaxErosionAxis;
-  for (std::size_t z = 0; z < rows; ++z) {
-    const float* const from = field + z * kStride;
-    float* const to = memory + z * kStride;
-    to[0] = from[0];
-    to[columns - 1] = from[columns - 1];
-    for (std::size_t x = 1; x + 1 < columns; ++x)
-      to[x] = 0.25F * (from[x - 1] + from[x + 1]) + 0.5F * from[x];
-  }
-  for (std::size_t z = 1; z + 1 < rows; ++z) {
-    const float* const from = memory + z * kStride;
-    float* const to = field + z * kStride;
-    for (std::size_t x = 0; x < columns; ++x)
-      to[x] = 0.25F * (from[x - kStride] + from[x + kStride]) + 0.5F * from[x];
-  }
 }
 
 void fill_lines(const ErosionAxis& axis, std::int64_t cells, std::span<std::int64_t> lines) {
@@ -283,19 +264,9 @@ void ErosionFilter::erode(Lattices& m, const ErosionGuide& guide,
                    .x = &m.x,
                    .z = &m.z,
                    .guide = m.guide.data(),
+                   .passes = passes_,
                    .spacing = line,
                    .spacing_m = static_cast<float>(static_cast<double>(line_cells_) * cell_m_)};
-  if (passes_ > 0) {
-    for (std::size_t z = 0; z < m.z.lines; ++z)
-      std::copy_n(&m.guide[z * kMaxErosionAxis], m.x.lines, &m.hollows[z * kMaxErosionAxis]);
-    for (int i = 0; i < passes_; ++i)
-      blur(m.x.lines, m.z.lines, m.hollows.data(), m.blurred.data());
-    for (std::size_t z = 0; z < m.z.lines; ++z) {
-      for (std::size_t x = 0; x < m.x.lines; ++x)
-        m.hollows[z * kMaxErosionAxis + x] -= m.guide[z * kMaxErosionAxis + x];
-    }
-    call.hollows = m.hollows.data();
-  }
   if (kernel_.wear > 0) {
     guide.heights(columns, rows, narrowest_cells_, m.worn, kMaxErosionAxis);
     call.worn = m.worn.data();

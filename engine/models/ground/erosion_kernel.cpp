@@ -251,8 +251,58 @@ struct Gullies {
   }
 };
 
+// Values on the lines of the guide, with room for a vector before and behind.
+struct Field {
+  HWY_ALIGN float padded[kMaxErosionAxis * kMaxErosionAxis + 2 * kMaxLanes];
+  float* line(std::size_t z) { return padded + kMaxLanes + z * kMaxErosionAxis; }
+  const float* line(std::size_t z) const { return padded + kMaxLanes + z * kMaxErosionAxis; }
+};
+
+// The mean of three neighbours with the weights 1 2 1.
+HWY_INLINE Float mean(Float before, Float here, Float behind) {
+  return mad(set(0.25F), hn::Add(before, behind), hn::Mul(set(0.5F), here));
+}
+
+// Blurs a field once along both axes. The outermost lines stay.
+void blur(std::size_t columns, std::size_t rows, Field& field, Field& memory) {
+  const FloatTag d;
+  for (std::size_t z = 0; z < rows; ++z) {
+    const float* const from = field.line(z);
+    float* const to = memory.line(z);
+    for (std::size_t x = 0; x < columns; x += hn::Lanes(d))
+      hn::Store(mean(hn::LoadU(d, from + x - 1), hn::Load(d, from + x), hn::LoadU(d, from + x + 1)),
+                d, to + x);
+    to[0] = from[0];
+    to[columns - 1] = from[columns - 1];
+  }
+  for (std::size_t z = 1; z + 1 < rows; ++z) {
+    const float *const above = memory.line(z - 1), *const below = memory.line(z + 1);
+    for (std::size_t x = 0; x < columns; x += hn::Lanes(d))
+      hn::Store(
+          mean(hn::Load(d, above + x), hn::Load(d, memory.line(z) + x), hn::Load(d, below + x)), d,
+          field.line(z) + x);
+  }
+}
+
+// Finds the sediment: a blurred guide lies above the guide in hollows.
+void fill_hollows(const ErosionCall& call, Field& hollows, Field& memory) {
+  const FloatTag d;
+  const std::size_t columns = call.x->lines, rows = call.z->lines;
+  for (std::size_t z = 0; z < rows; ++z)
+    std::copy_n(call.guide + z * kMaxErosionAxis, columns, hollows.line(z));
+  for (int i = 0; i < call.passes; ++i)
+    blur(columns, rows, hollows, memory);
+  for (std::size_t z = 0; z < rows; ++z) {
+    float* const line = hollows.line(z);
+    const float* const guide = call.guide + z * kMaxErosionAxis;
+    for (std::size_t x = 0; x < columns; x += hn::Lanes(d))
+      hn::Store(hn::Sub(hn::Load(d, line + x), hn::LoadU(d, guide + x)), d, line + x);
+  }
+}
+
 // Working memory: the guide's lines at the columns of the samples, and all pivots.
 struct Memory {
+  Field hollows, blurred;  // sediment on the guide's lines, in metres
   HWY_ALIGN float value[kMaxErosionAxis][kMaxErosionAxis];
   HWY_ALIGN float slope[kMaxErosionAxis][kMaxErosionAxis];
   HWY_ALIGN float bend[kMaxErosionAxis][kMaxErosionAxis];
@@ -357,8 +407,8 @@ class PivotFinder {
     Guide g;
     for (std::size_t b = 0; b < 4; ++b) {
       const std::size_t line = b * kMaxErosionAxis;
-      g.add(point_on(call_.guide + line, call_.hollows == nullptr ? nullptr : call_.hollows + line,
-                     first, along_x),
+      g.add(point_on(call_.guide + line,
+                     call_.passes == 0 ? nullptr : memory_.hollows.line(0) + line, first, along_x),
             along_z, b);
     }
     return g;
@@ -426,8 +476,8 @@ void spread_lines(const ErosionCall& call, Memory& m) {
     const Int first = hn::LoadU(IntTag(), call.x->line.data() + i);
     for (std::size_t l = 0; l < call.z->lines; ++l) {
       const std::size_t line = l * kMaxErosionAxis;
-      const LinePoint p = point_on(
-          call.guide + line, call.hollows == nullptr ? nullptr : call.hollows + line, first, taps);
+      const LinePoint p =
+          point_on(call.guide + line, call.passes == 0 ? nullptr : m.hollows.line(l), first, taps);
       hn::Store(p.value, d, m.value[l] + i);
       hn::Store(p.slope, d, m.slope[l] + i);
       hn::Store(p.bend, d, m.bend[l] + i);
@@ -522,6 +572,7 @@ class RowEroder {
 
 void erode(const ErosionCall& call, float* values, std::size_t stride) {
   const Scratch<Memory> scratch;
+  if (call.passes > 0) fill_hollows(call, scratch->hollows, scratch->blurred);
   for (std::size_t o = 0; o < call.kernel->octave_count; ++o)
     PivotFinder(call, o, *scratch).run();
   spread_lines(call, *scratch);

@@ -76,9 +76,8 @@ struct ErosionCall {
   const ErosionKernel* kernel = nullptr;
   const ErosionAxis *x = nullptr, *z = nullptr;
   const float* guide = nullptr;  // heights in metres, guide[line_z · kMaxErosionAxis + line_x]
-  const float* hollows =
-      nullptr;  // metres that sediment raises hollows by, on the same lines; may be null
-  std::int64_t spacing = 0;  // between lines of the guide, in units
+  int passes = 0;                // of the blur whose excess over the guide is sediment; 0: none
+  std::int64_t spacing = 0;      // between lines of the guide, in units
   float spacing_m = 0;
   const float* worn = nullptr;  // values without narrow octaves; null: as `values`
   std::size_t worn_stride = 0;
