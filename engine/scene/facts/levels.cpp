@@ -129,6 +129,7 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
       const double lost_m = models::terrain_detail_errors_m(p, -static_cast<int>(k)).usual_m;
       level.ground_error_m = std::max({level.ground_error_m, levels[k - 1].ground_error_m, lost_m});
     }
+    if (details_m > 0) level.ground_bound_m = std::max(level.ground_bound_m, level.ground_error_m);
     level.error_m = level.ground_error_m;
     level.skirt_m = kMinSkirtM + kSkirtPerBound * static_cast<float>(level.ground_bound_m) +
                     (1 - kSkirtPerBound) * static_cast<float>(details_m);

@@ -16,9 +16,9 @@ namespace {
 using world::testing::kSmallWorld;
 using world::testing::parsed;
 
-TEST(Heightmap, HasTheHeightsOfTheGround) {
+// Expects an image of a region of a world to have the heights that queries answer.
+void expect_heights_of(const world::World& world) {
   const TemporaryFolder folder;
-  const world::World world = parsed(kSmallWorld);
   const auto report = write_heightmap(world, {2, 1, 5, 3}, folder.path(), {.threads = 3});
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->width, 3u * 32 + 1);
@@ -40,6 +40,15 @@ TEST(Heightmap, HasTheHeightsOfTheGround) {
                 (white - black) / 65535)
         << x << " " << z;
   }
+}
+
+TEST(Heightmap, HasTheHeightsOfTheGround) {
+  expect_heights_of(parsed(kSmallWorld));
+}
+
+TEST(Heightmap, HasTheHeightsOfErodedGround) {
+  const std::string eroded = std::string(kSmallWorld) + "[erosion]\nstrength = 0.8\ngully_m = 50\n";
+  expect_heights_of(parsed(eroded));
 }
 
 TEST(Heightmap, RegionsWithOneRangeJoinWithoutAStep) {

@@ -13,6 +13,7 @@
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/files/world_schema.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/world_parts.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/world/shaped_worlds.hpp"
 
@@ -119,6 +120,7 @@ TEST(ErodedGround, ChangesTheKeysOfAllMeshes) {
     EXPECT_NE(p.hash(), terrain_parameters(other, {6, 3}, level).hash());
   }
   EXPECT_NE(world_hash(world, registry()), world_hash(plain, registry()));
+  EXPECT_NE(parts_of(world, registry()).ground, parts_of(plain, registry()).ground);
 }
 
 TEST(ErodedGround, OfStrengthZeroIsThePlainWorld) {
