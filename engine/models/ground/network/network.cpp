@@ -1,0 +1,282 @@
+#include "engine/models/ground/network/network.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace psygen::models {
+namespace {
+
+using network::floor_div;
+using network::kUnitsPerCell;
+
+// Samples are served by a patch within this many spacings beyond its tile, so that the vertices
+// around a node need no second patch.
+constexpr std::int64_t kBeyond = 2;
+
+bool is_fine(GroundDetail detail) {
+  return detail.level <= 1;
+}
+
+}  // namespace
+
+core::Result<std::shared_ptr<const RiverNetwork>> RiverNetwork::create(
+    const RiverSettings& settings, const RiverFrame& frame, std::shared_ptr<NetworkStore> store) {
+  if (auto valid = check(settings, frame); !valid) return tl::unexpected(valid.error());
+  return std::shared_ptr<const RiverNetwork>(new RiverNetwork(settings, frame, std::move(store)));
+}
+
+RiverNetwork::RiverNetwork(const RiverSettings& settings, const RiverFrame& frame,
+                           std::shared_ptr<NetworkStore> store)
+    : scale_(settings, frame),
+      identity_(models::identity(settings, frame)),
+      store_(std::move(store)) {
+  // Tiles are 2^n blocks wide, so nodes of the quadtree lie in one tile each.
+  const std::int64_t block = frame.cells_per_block * kUnitsPerCell;
+  for (int k = 0; k <= settings.halvings; ++k) {
+    std::int64_t side = block;
+    while (2 * side <= 45 * scale_.spacing(k))
+      side *= 2;
+    tile_units_[static_cast<std::size_t>(k)] = side;
+  }
+}
+
+int RiverNetwork::level_of(GroundDetail detail) const {
+  int level = scale_.halvings();
+  if (is_fine(detail)) return level;
+  double spacing = static_cast<double>(scale_.spacing(level)) / static_cast<double>(kUnitsPerCell);
+  while (level > 0 && 2 * spacing <= detail.spacing_cells()) {
+    spacing *= 2;
+    --level;
+  }
+  return level;
+}
+
+network::TileKey RiverNetwork::tile_of(std::int64_t x_cells, std::int64_t z_cells,
+                                       GroundDetail detail) const {
+  const int level = level_of(detail);
+  return {level, floor_div(x_cells * kUnitsPerCell, tile_units(level)),
+          floor_div(z_cells * kUnitsPerCell, tile_units(level))};
+}
+
+std::shared_ptr<const network::RootTile> RiverNetwork::root_tile(
+    const network::TileKey& key) const {
+  const auto make = [&] { return network::make_root_tile(scale_, key); };
+  if (store_ == nullptr) return std::make_shared<const network::RootTile>(make());
+  return store_->get<network::RootTile>({identity_, {-1, key.i, key.j}}, make);
+}
+
+network::RootNodes RiverNetwork::root() const {
+  return {scale_, [this](const network::TileKey& key) { return root_tile(key); }};
+}
+
+bool RiverNetwork::ready(const network::TileKey& tile) const {
+  return store_ != nullptr && store_->has({identity_, tile});
+}
+
+std::shared_ptr<const network::Patch> RiverNetwork::patch(const network::TileKey& tile) const {
+  const auto make = [&] {
+    const std::int64_t side = tile_units(tile.level);
+    const std::int64_t beyond = kBeyond * scale_.spacing(tile.level);
+    network::RootNodes nodes = root();
+    return network::make_patch(scale_, nodes, tile.level,
+                               {tile.i * side - beyond, tile.j * side - beyond, side + 2 * beyond});
+  };
+  if (store_ == nullptr) return std::make_shared<const network::Patch>(make());
+  return store_->get<network::Patch>({identity_, tile}, make);
+}
+
+network::NodePatch RiverNetwork::nodes(int level, std::int64_t x_cells, std::int64_t z_cells,
+                                       std::int64_t side_cells) const {
+  network::RootNodes from = root();
+  return network::nodes_around(
+      scale_, from, level,
+      {x_cells * kUnitsPerCell, z_cells * kUnitsPerCell, side_cells * kUnitsPerCell},
+      scale_.spacing(level));
+}
+
+template <class Visit>
+void RiverNetwork::each_part(const Lattice& at, GroundDetail detail, const Visit& visit) const {
+  const int level = level_of(detail);
+  const std::int64_t side = tile_units(level), beyond = kBeyond * scale_.spacing(level);
+  const bool guided = is_fine(detail);
+  // One patch serves all samples if it can: that of their middle.
+  const auto middle_tile = [&](std::span<const std::int64_t> axis) {
+    return floor_div((axis.front() + axis.back()) * kUnitsPerCell / 2, side);
+  };
+  const auto served = [&](std::int64_t tile, std::span<const std::int64_t> axis) {
+    return axis.front() * kUnitsPerCell >= tile * side - beyond &&
+           axis.back() * kUnitsPerCell <= tile * side + side + beyond;
+  };
+  const std::int64_t tx = middle_tile(at.x), tz = middle_tile(at.z);
+  const bool one_x = served(tx, at.x), one_z = served(tz, at.z);
+  // The samples from `first` on that one call takes, and their tile.
+  const auto end_of = [&](std::span<const std::int64_t> axis, std::size_t first, bool one,
+                          std::int64_t& tile) {
+    if (!one) tile = floor_div(axis[first] * kUnitsPerCell, side);
+    std::size_t end = first;
+    while (end < axis.size() && end - first < network::kMaxSamples &&
+           (!guided || (axis[end] - axis[first]) * kUnitsPerCell <= network::kMaxGuidedUnits) &&
+           (one || axis[end] * kUnitsPerCell < (tile + 1) * side))
+      ++end;
+    return end;
+  };
+  std::array<std::vector<std::int32_t>, 2> units;
+  const auto relative = [&](std::span<const std::int64_t> axis, std::size_t first, std::size_t end,
+                            std::int64_t origin, std::vector<std::int32_t>& out) {
+    out.clear();
+    for (std::size_t k = first; k < end; ++k)
+      out.push_back(static_cast<std::int32_t>(axis[k] * kUnitsPerCell - origin));
+  };
+  network::TileKey key{level, tx, tz}, last{-2, 0, 0};
+  std::shared_ptr<const network::Patch> patch;
+  for (std::size_t row = 0, row_end = 0; row < at.z.size(); row = row_end) {
+    row_end = end_of(at.z, row, one_z, key.j);
+    for (std::size_t column = 0, column_end = 0; column < at.x.size(); column = column_end) {
+      column_end = end_of(at.x, column, one_x, key.i);
+      if (key != last) {
+        patch = this->patch(key);
+        last = key;
+      }
+      relative(at.x, column, column_end, patch->x, units[0]);
+      relative(at.z, row, row_end, patch->z, units[1]);
+      visit(*patch, network::Samples{units[0], units[1], guided}, column, row);
+    }
+  }
+}
+
+namespace {
+
+template <class T>
+T* offset(T* rows, std::size_t by) {
+  return rows == nullptr ? nullptr : rows + by;
+}
+// Everything but the base.
+network::CarvedRows shifted(const network::CarvedRows& rows, std::size_t by) {
+  network::CarvedRows result = rows;
+  result.height_m = offset(rows.height_m, by);
+  result.water_m = offset(rows.water_m, by);
+  result.flow_x = offset(rows.flow_x, by);
+  result.flow_z = offset(rows.flow_z, by);
+  result.body = offset(rows.body, by);
+  return result;
+}
+
+}  // namespace
+
+void RiverNetwork::base(const Lattice& at, GroundDetail detail, const BaseRows& rows) const {
+  each_part(at, detail,
+            [&](const network::Patch& patch, const network::Samples& samples, std::size_t column,
+                std::size_t row) {
+              const std::size_t by = row * rows.stride + column;
+              network::base_rows(patch, samples,
+                                 {.height_m = offset(rows.height_m, by),
+                                  .slope_x = offset(rows.slope_x, by),
+                                  .slope_z = offset(rows.slope_z, by),
+                                  .clear = offset(rows.clear, by),
+                                  .stride = rows.stride});
+            });
+}
+
+void RiverNetwork::carve(const Lattice& at, GroundDetail detail, const CarvedRows& rows) const {
+  each_part(at, detail,
+            [&](const network::Patch& patch, const network::Samples& samples, std::size_t column,
+                std::size_t row) {
+              const std::size_t by = row * rows.stride + column;
+              network::CarvedRows part = shifted(rows, by);
+              part.base_m = rows.base_m + row * rows.base_stride + column;
+              network::carve_rows(patch, samples, part);
+            });
+}
+
+void RiverNetwork::evaluate(const Lattice& at, GroundDetail detail, CarvedRows rows) const {
+  std::vector<float> base(network::kMaxSamples * network::kMaxSamples);
+  each_part(at, detail,
+            [&](const network::Patch& patch, const network::Samples& samples, std::size_t column,
+                std::size_t row) {
+              const std::size_t width = samples.x.size(), by = row * rows.stride + column;
+              network::base_rows(patch, samples, {.height_m = base.data(), .stride = width});
+              for (std::size_t r = 0; r < samples.z.size(); ++r)
+                std::copy_n(base.data() + r * width, width, rows.height_m + by + r * rows.stride);
+              network::CarvedRows part = shifted(rows, by);
+              part.base_m = base.data();
+              part.base_stride = width;
+              network::carve_rows(patch, samples, part);
+            });
+}
+
+NetworkWater RiverNetwork::water_at(const core::WorldPosition& place) const {
+  const double units_per_m = 1 / scale_.unit_m;
+  const auto units = [&](std::int32_t block, double local_m) {
+    return static_cast<std::int64_t>(block) * scale_.frame.cells_per_block * kUnitsPerCell +
+           static_cast<std::int64_t>(std::floor(local_m * units_per_m + 0.5));
+  };
+  const std::int64_t x = units(place.block.x, place.local.x);
+  const std::int64_t z = units(place.block.z, place.local.z);
+  const int level = scale_.halvings();
+  const auto found =
+      patch({level, floor_div(x, tile_units(level)), floor_div(z, tile_units(level))});
+  const auto px = static_cast<std::int32_t>(x - found->x);
+  const auto pz = static_cast<std::int32_t>(z - found->z);
+  const network::Samples at{{&px, 1}, {&pz, 1}, true};
+  float base = 0, water = 0;
+  NetworkWater result;
+  network::base_rows(*found, at, {.height_m = &base, .stride = 1});
+  float ground = base;
+  network::carve_rows(*found, at,
+                      {.base_m = &base,
+                       .base_stride = 1,
+                       .height_m = &ground,
+                       .water_m = &water,
+                       .flow_x = &result.flow_m_s.x,
+                       .flow_z = &result.flow_m_s.y,
+                       .body = &result.body,
+                       .stride = 1});
+  if (water <= ground) return {};
+  result.surface_m = water;
+  result.depth_m = water - ground;
+  return result;
+}
+
+network::HeightRange RiverNetwork::bounds() const {
+  return {0, static_cast<float>(scale_.frame.relief_m)};
+}
+
+network::HeightRange RiverNetwork::bounds(const Lattice& at, GroundDetail detail) const {
+  network::HeightRange range{1e30F, -1e30F};
+  each_part(
+      at, detail,
+      [&](const network::Patch& patch, const network::Samples& samples, std::size_t, std::size_t) {
+        const network::HeightRange part = network::range_of(patch, samples);
+        range = {std::min(range.lowest_m, part.lowest_m),
+                 std::max(range.highest_m, part.highest_m)};
+      });
+  return range;
+}
+
+float RiverNetwork::error_m(GroundDetail from, GroundDetail to) const {
+  // Measured between the ground of the finest nodes and that of coarser ones, by their number of
+  // levels, in spacings of the coarser.
+  constexpr std::array<double, 9> kSpacings{0, .7, .7, .6, .45, .3, .22, .18, .15};
+  constexpr double kGuideErrorM = 0.15;  // of interpolation
+  const auto error = [&](int level) {
+    const auto up = static_cast<std::size_t>(scale_.halvings() - level);
+    return kSpacings[up] * static_cast<double>(scale_.spacing(level)) * scale_.unit_m *
+           scale_.settings.steepness;
+  };
+  const int a = level_of(from), b = level_of(to);
+  double sum = is_fine(from) != is_fine(to) ? kGuideErrorM : 0;
+  if (a != b) sum += error(a) + error(b);
+  return static_cast<float>(std::min(sum, scale_.frame.relief_m));
+}
+
+double RiverNetwork::work(double samples, GroundDetail detail) const {
+  constexpr double kGuided = 40, kExact = 70;
+  return samples * (is_fine(detail) ? kGuided : kExact);
+}
+
+double RiverNetwork::patch_work() {
+  return 2e7;
+}
+
+}  // namespace psygen::models

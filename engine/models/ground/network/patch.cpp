@@ -1,0 +1,363 @@
+#include "engine/models/ground/network/patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "engine/models/kit/exact_math.hpp"
+
+namespace psygen::models::network {
+namespace {
+
+constexpr double kReach = 1.08;      // of a kernel, in longest edges of its node
+constexpr float kStreamGain = 1.5F;  // of a channel's kernel
+constexpr double kMaxWidthM = 150;   // of a channel
+constexpr float kWider = 1.25F;      // a channel so much wider takes in another
+constexpr double kRunoff = 0.02;     // m³/s from a km²
+
+// Channels at coarse levels are as dense as at the finest.
+std::uint32_t channel_area(const Scale& scale, int level) {
+  const int up = 2 * (scale.halvings() - level);
+  return static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(std::uint64_t{scale.channel_area} << up, 0xFFFFFFFFU));
+}
+double max_width_m(const Scale& scale, int level) {
+  return std::min(kMaxWidthM, 2.5 * static_cast<double>(scale.spacing(level)) * scale.unit_m);
+}
+
+// Adds the spots and curves of nodes to a patch.
+class Builder {
+ public:
+  Builder(const Scale& scale, const NodePatch& nodes, Patch& patch)
+      : scale_(scale),
+        n_(nodes),
+        patch_(patch),
+        channel_(channel_area(scale, nodes.level)),
+        max_m_(max_width_m(scale, nodes.level)) {}
+
+  void run() {
+    name_lakes();
+    for (std::int64_t j = n_.rect.j0 + 1; j < n_.rect.j1 - 1; ++j) {
+      for (std::int64_t i = n_.rect.i0 + 1; i < n_.rect.i1 - 1; ++i) {
+        add_spot(i, j);
+        add_curves(i, j);
+      }
+    }
+    join_arms();
+    keep_curves();
+  }
+
+ private:
+  // Guide points around the square, and its distance from the origin.
+  static constexpr std::int32_t kMargin = 4 * kGuideUnits;
+
+  static bool in_lake(const Node& n) { return n.kind == Kind::kLake; }
+  float water_m(const Node& n) const { return height_m(scale_, std::max(n.height, 0)); }
+  float width_m(std::uint32_t area) const { return channel_width_m(scale_.km2(area), max_m_); }
+  Lake lake_of(const Node& n) const { return {water_m(n), n.lake}; }
+  static std::tuple<float, std::uint32_t> key(const Lake& l) { return {l.level_m, l.body}; }
+
+  void name_lakes() {
+    std::vector<Lake>& lakes = patch_.lakes;
+    for (const Node& n : n_.nodes) {
+      if (in_lake(n)) lakes.push_back(lake_of(n));
+    }
+    const auto less = [](const Lake& a, const Lake& b) { return key(a) < key(b); };
+    const auto same = [](const Lake& a, const Lake& b) { return key(a) == key(b); };
+    std::sort(lakes.begin(), lakes.end(), less);
+    lakes.erase(std::unique(lakes.begin(), lakes.end(), same), lakes.end());
+  }
+  std::int32_t index_of(const Node& n) const {
+    const Lake lake = lake_of(n);
+    const auto less = [](const Lake& a, const Lake& b) { return key(a) < key(b); };
+    return static_cast<std::int32_t>(
+        std::lower_bound(patch_.lakes.begin(), patch_.lakes.end(), lake, less) -
+        patch_.lakes.begin());
+  }
+  std::int32_t from_origin_x(const Node& n) const {
+    return static_cast<std::int32_t>(n.x - patch_.x);
+  }
+  std::int32_t from_origin_z(const Node& n) const {
+    return static_cast<std::int32_t>(n.z - patch_.z);
+  }
+  // True if a disc touches the square.
+  bool touches(std::int32_t x, std::int32_t z, double reach) const {
+    const auto side = static_cast<std::int32_t>(patch_.square.side) + kMargin;
+    const double dx = x - std::clamp(x, -kMargin, side), dz = z - std::clamp(z, -kMargin, side);
+    return dx * dx + dz * dz < reach * reach;
+  }
+
+  void add_spot(std::int64_t i, std::int64_t j) {
+    const Node& n = n_.at(i, j);
+    double reach = 0;
+    for (int d = 0; d < 6; ++d)
+      reach = std::max(reach, kReach * distance(n, n_.beside(i, j, d)));
+    Spot s{.x = from_origin_x(n), .z = from_origin_z(n)};
+    if (!touches(s.x, s.z, reach)) return;
+    const bool land = n.kind == Kind::kLand;
+    s.height_m = height_m(scale_, n.height + (land ? lift(scale_, n_.level, n.mountain) : 0));
+    s.inverse_reach2 = static_cast<float>(1 / (reach * reach));
+    s.reach = static_cast<std::int32_t>(reach) + 1;
+    if (land)
+      s.gain += kStreamGain * static_cast<float>(std::min(n.area, channel_)) /
+                static_cast<float>(channel_);
+    if (in_lake(n)) {
+      s.depth_m = static_cast<float>(n.depth / kHeightUnits);
+      s.lake = index_of(n);
+    }
+    patch_.spots.push_back(s);
+  }
+
+  // The water in the middle of the edge from a node to its receiver. It is level with a lake or the
+  // sea from there on.
+  float middle_m(const Node& up, const Node& down) const {
+    return down.kind == Kind::kLand ? 0.5F * (water_m(up) + water_m(down)) : water_m(down);
+  }
+  void add_curves(std::int64_t i, std::int64_t j) {
+    const Node& v = n_.at(i, j);
+    Way2 out{};
+    if (v.receiver != kSink) {
+      const Node& down = n_.beside(i, j, v.receiver);
+      out = {half(v, down), middle_m(v, down)};
+    } else {
+      out.height_m = water_m(v);
+    }
+    const int widest = largest_inflow(i, j);
+    const auto begin = static_cast<std::uint32_t>(curves_.size());
+    for (int d = 0; d < 6 && widest >= 0; ++d) {
+      const Node& up = n_.beside(i, j, d);
+      if (!flows_in(up, d)) continue;
+      const std::uint32_t below = d == widest && v.receiver != kSink ? v.area : 0;
+      Curve c;
+      c.width0_m = width_m(up.area);
+      c.width1_m = width_m(std::max(up.area, below));
+      c.discharge_m3_s = static_cast<float>(kRunoff * scale_.km2(up.area));
+      add(c, v, Path{half(v, up), {}, out.place, middle_m(up, v), water_m(v), out.height_m});
+    }
+    if (curves_.size() > begin + 1)
+      arms_.push_back({begin, static_cast<std::uint32_t>(curves_.size())});
+    if (widest >= 0 || v.kind != Kind::kLand || v.receiver == kSink || v.area < channel_) return;
+    Curve c;
+    c.head = true;
+    c.width1_m = width_m(v.area);
+    c.width0_m = 0.3F * c.width1_m;
+    c.discharge_m3_s = static_cast<float>(kRunoff * scale_.km2(v.area));
+    const float from = water_m(v), middle = 0.5F * (from + out.height_m);
+    add(c, v,
+        Path{{}, {out.place[0] / 2, out.place[1] / 2}, out.place, from, middle, out.height_m});
+  }
+  bool flows_in(const Node& up, int direction) const {
+    return up.receiver == opposite(direction) && up.area >= channel_;
+  }
+  // The direction of the inflow with the largest area, or −1.
+  int largest_inflow(std::int64_t i, std::int64_t j) const {
+    int best = -1;
+    for (int d = 0; d < 6; ++d) {
+      const Node& up = n_.beside(i, j, d);
+      if (flows_in(up, d) && (best < 0 || up.area > n_.beside(i, j, best).area)) best = d;
+    }
+    return best;
+  }
+
+  using Vector = std::array<double, 2>;  // metres from a node
+  struct Way2 {
+    Vector place{};
+    float height_m = 0;
+  };
+  struct Path {
+    Vector from{}, control{}, to{};
+    float from_m, control_m, to_m;
+  };
+  Vector half(const Node& n, const Node& other) const {
+    return {static_cast<double>(other.x - n.x) * scale_.unit_m / 2,
+            static_cast<double>(other.z - n.z) * scale_.unit_m / 2};
+  }
+  void add(Curve& c, const Node& v, const Path& p) {
+    c.x = from_origin_x(v);
+    c.z = from_origin_z(v);
+    c.height_m = {p.from_m, p.control_m, p.to_m};
+    for (std::size_t k = 0; k < 2; ++k) {
+      c.turn[k] = static_cast<float>(p.control[k] - p.from[k]);
+      c.turn[2 + k] = static_cast<float>(p.to[k] - p.control[k]);
+    }
+    double far = 0;
+    for (std::size_t s = 0; s <= Curve::kChords; ++s) {
+      const double t = static_cast<double>(s) / Curve::kChords, o = 1 - t;
+      const auto at = [&](std::size_t k) {
+        return o * o * p.from[k] + 2 * o * t * p.control[k] + t * t * p.to[k];
+      };
+      c.px[s] = static_cast<float>(at(0));
+      c.pz[s] = static_cast<float>(at(1));
+      far = std::max(far, length(at(0), at(1)));
+      if (s == 0) continue;
+      const float ex = c.px[s] - c.px[s - 1], ez = c.pz[s] - c.pz[s - 1];
+      const float length2 = ex * ex + ez * ez;
+      c.inverse_length2[s - 1] = length2 > 0 ? 1 / length2 : 0;
+    }
+    const float wide = std::max(c.width0_m, c.width1_m);
+    c.reach_m = static_cast<float>(far) + wide / 2 + bank_m(wide) + 0.01F;
+    const std::uint64_t hash =
+        core::combine(static_cast<std::uint64_t>(v.x), static_cast<std::uint64_t>(v.z));
+    c.body = static_cast<std::uint32_t>(hash) | 2U;
+    curves_.push_back(c);
+  }
+
+  // The water of a curve at its parameter t.
+  static float surface_m(const Curve& c, float t) {
+    const float o = 1 - t;
+    return o * o * c.height_m[0] + 2 * o * t * c.height_m[1] + t * t * c.height_m[2];
+  }
+  static float width_m(const Curve& c, float t) {
+    return c.width0_m + t * (c.width1_m - c.width0_m);
+  }
+  struct Nearest {
+    float distance_m, t;
+  };
+  // The nearest place of curve c to point s of curve q, as metres from c's node.
+  Nearest nearest(const Curve& c, const Curve& q, std::size_t s) const {
+    const auto offset = [&](std::int32_t to, std::int32_t from) {
+      return static_cast<float>(to - from) * patch_.unit_m;
+    };
+    const float x = offset(q.x, c.x) + q.px[s], z = offset(q.z, c.z) + q.pz[s];
+    float best = 1e30F, t = 0;
+    for (std::size_t k = 0; k < Curve::kChords; ++k) {
+      const float ex = c.px[k + 1] - c.px[k], ez = c.pz[k + 1] - c.pz[k];
+      const float dx = x - c.px[k], dz = z - c.pz[k];
+      const float f = std::clamp((dx * ex + dz * ez) * c.inverse_length2[k], 0.0F, 1.0F);
+      const float qx = dx - f * ex, qz = dz - f * ez, square = qx * qx + qz * qz;
+      if (square >= best) continue;
+      best = square;
+      t = (static_cast<float>(k) + f) / Curve::kChords;
+    }
+    return {std::sqrt(best), t};
+  }
+
+  // Gives arms of one node one height from where they touch.
+  void join_arms() {
+    for (const auto& [begin, end] : arms_) {
+      for (std::uint32_t k = begin; k < end; ++k) {
+        Curve& c = curves_[k];
+        std::size_t touch = Curve::kChords;
+        for (std::uint32_t o = begin; o < end; ++o) {
+          const Curve& other = curves_[o];
+          for (std::size_t s = 0; s < touch && o != k; ++s) {
+            const Nearest n = nearest(other, c, s);
+            const float wide =
+                width_m(other, n.t) + width_m(c, static_cast<float>(s) / Curve::kChords);
+            if (n.distance_m < 0.5F * wide) touch = s;
+          }
+        }
+        const std::size_t from = std::max<std::size_t>(touch, 1) - 1;
+        c.min_m = c.height_m[2];
+        fall(c, from, c.min_m);
+      }
+    }
+  }
+  // Lowers the water of a curve so that it has a height, at most its own, at the end of `chords`.
+  // It still never rises.
+  static void fall(Curve& c, std::size_t chords, float to_m) {
+    const float t = static_cast<float>(chords) / Curve::kChords;
+    if (chords == 0) {
+      c.height_m = {to_m, to_m, to_m};
+    } else {
+      c.height_m[2] -= std::max(surface_m(c, t) - to_m, 0.0F) / (t * t);
+    }
+  }
+  static float level_m(const Curve& c, float t) { return std::max(surface_m(c, t), c.min_m); }
+
+  // Keeps the curves that reach the square, up to where they run into a wider one.
+  void keep_curves() {
+    for (const Curve& c : curves_) {
+      if (!touches(c.x, c.z, static_cast<double>(c.reach_m) / scale_.unit_m + 1)) continue;
+      Curve kept = c;
+      float lowest = 1e30F;
+      for (const Curve& wide : curves_) {
+        if (wide.width0_m < kWider * c.width0_m || (wide.x == c.x && wide.z == c.z)) continue;
+        const auto dx = static_cast<float>(wide.x - c.x), dz = static_cast<float>(wide.z - c.z);
+        const float most = (c.reach_m + wide.reach_m) / patch_.unit_m;
+        if (std::abs(dx) > most || std::abs(dz) > most) continue;
+        for (std::size_t s = 0; s < std::min<std::size_t>(kept.chords + 1, Curve::kChords); ++s) {
+          const float t = static_cast<float>(s) / Curve::kChords;
+          const Nearest n = nearest(wide, c, s);
+          const float level = level_m(wide, n.t);
+          if (n.distance_m > 0.5F * width_m(wide, n.t) || level > level_m(c, t) + 0.02F) continue;
+          lowest = s < kept.chords ? level : std::min(lowest, level);
+          kept.chords = static_cast<std::uint32_t>(s);
+          break;
+        }
+      }
+      if (kept.chords == 0) continue;
+      if (kept.chords < Curve::kChords) fall(kept, kept.chords, lowest);
+      patch_.curves.push_back(kept);
+    }
+  }
+
+  const Scale& scale_;
+  const NodePatch& n_;
+  Patch& patch_;
+  std::uint32_t channel_;
+  double max_m_;
+  std::vector<Curve> curves_;  // of all nodes
+  struct Arms {
+    std::uint32_t begin, end;
+  };
+  std::vector<Arms> arms_;  // curves of nodes with several
+};
+
+}  // namespace
+
+std::size_t Patch::bytes() const {
+  return sizeof(Patch) + spots.capacity() * sizeof(Spot) + curves.capacity() * sizeof(Curve) +
+         lakes.capacity() * sizeof(Lake);
+}
+
+float channel_width_m(double km2, double max_m) {
+  return static_cast<float>(std::min(max_m, 2.6 * exact_pow(std::max(km2, 1e-9), 0.42)));
+}
+
+float height_m(const Scale& scale, std::int32_t height) {
+  // Up to this share of the range heights stay as they are; the rest is compressed. Every step is
+  // monotone after rounding too.
+  constexpr double kKept = 0.6;
+  const double sea = scale.frame.sea_level_m;
+  const bool land = height >= 0;
+  const double range = land ? scale.frame.relief_m - sea : sea;
+  const double metres = (land ? height : -height) / kHeightUnits;
+  double y = metres;
+  if (const double t = metres / range - kKept; t > 0)
+    y = range * (kKept + (1 - kKept) * (1 - 1 / (1 + t / (1 - kKept))));
+  return static_cast<float>(land ? sea + y : sea - y);
+}
+
+std::int32_t lift(const Scale& scale, int level, float mountain) {
+  // Measured over what the rises of the finer levels add up to, by their number.
+  constexpr std::array<double, 9> kShare{0, 2.05, 1.6, 1.4, 1.25, 1.15, 1.1, 1.05, 1};
+  double rise = 0;
+  for (int k = level + 1; k <= scale.halvings(); ++k)
+    rise += scale.rise[static_cast<std::size_t>(k)] * static_cast<double>(scale.spacing(k));
+  const double share = kShare[static_cast<std::size_t>(scale.halvings() - level)];
+  const double m = static_cast<double>(mountain);
+  return static_cast<std::int32_t>(share * rise * (0.2 + 0.8 * m) * scale.unit_m * kHeightUnits);
+}
+
+Patch make_patch(const Scale& scale, RootNodes& root, int level, const Square& square) {
+  Patch patch;
+  patch.level = level;
+  patch.square = square;
+  patch.x = floor_div(square.x, kGuideUnits) * kGuideUnits;
+  patch.z = floor_div(square.z, kGuideUnits) * kGuideUnits;
+  patch.unit_m = static_cast<float>(scale.unit_m);
+  patch.sea_level_m = static_cast<float>(scale.frame.sea_level_m);
+  const double spacing = static_cast<double>(scale.spacing(level));
+  patch.shore_m = static_cast<float>(0.47 * spacing * scale.unit_m);
+  const double wide = max_width_m(scale, level);
+  const double reach =
+      std::max(kReach * kLongestEdge * spacing,
+               3 * spacing + (wide / 2 + wide / 2 + kValleyM + kBankWidths * wide) / scale.unit_m);
+  const NodePatch nodes =
+      nodes_around(scale, root, level, square, static_cast<std::int64_t>(reach) + 5 * kGuideUnits);
+  Builder(scale, nodes, patch).run();
+  return patch;
+}
+
+}  // namespace psygen::models::network

@@ -1,0 +1,100 @@
+// What the ground of one square tile needs of a river network: the nodes with the radii of their
+// kernels, the channels as curves, and the lakes. A patch is a function of its key alone, complete
+// before anybody reads it, and immutable after: any thread may read it. Several patches that cover
+// a point give it the same bits, because every spot and curve is cut by its own distance.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/models/ground/network/halving.hpp"
+
+namespace psygen::models::network {
+
+// Cells between the points of the guide. Its cubic interpolation defines the fine ground.
+constexpr std::int32_t kGuideCells = 4;
+constexpr std::int32_t kGuideUnits = kGuideCells * static_cast<std::int32_t>(kUnitsPerCell);
+
+// A node's kernel: weight gain · (1 − r²/R²)⁴ within R. Streams weigh more, so that the ground
+// falls towards them.
+struct Spot {
+  std::int32_t x = 0, z = 0;  // units from the patch's origin
+  float height_m = 0;
+  float inverse_reach2 = 0;  // 1/R², per unit²
+  float gain = 1;
+  float depth_m = 0;       // of a lake
+  std::int32_t reach = 0;  // R, units, rounded up
+  std::int32_t lake = -1;  // index in Patch::lakes
+};
+
+// A channel from the middle of an inflow towards (not through) its node to the middle of the
+// outflow: a quadratic Bézier curve whose heights are blended alike, so they never rise.
+//
+// Water that touches other water neither rises nor has a step:
+// - Arms of one node end at one height. From where two of them touch, both have that height.
+// - A channel that runs into a wider and lower one ends there, and falls to its height before.
+// - Other water that overlaps is blended (kernel.cpp), so that each middle keeps its own height.
+struct Curve {
+  static constexpr std::size_t kChords = 6;
+  std::int32_t x = 0, z = 0;       // of its node, units from the patch's origin
+  std::uint32_t chords = kChords;  // in use; fewer if the channel ends in a wider one
+  // Metres from the node.
+  std::array<float, kChords + 1> px{}, pz{};
+  std::array<float, kChords> inverse_length2{};  // 1/m²; 0: the chord has no length
+  std::array<float, 3> height_m{};               // of the water, never rising
+  float min_m = -1e30F;                          // the water is no lower
+  std::array<float, 4> turn{};  // direction x, z at the beginning and at the end, not normalised
+  float width0_m = 0, width1_m = 0;
+  float discharge_m3_s = 0;
+  float reach_m = 0;  // no point farther from the node changes
+  std::uint32_t body = 0;
+  bool head = false;  // a spring: the bed begins here
+};
+
+// A lake: all its spots share the level.
+struct Lake {
+  float level_m = 0;
+  std::uint32_t body = 0;
+};
+
+struct Patch {
+  int level = 0;
+  Square square;  // the samples that the patch serves
+  // The origin: the square's corner, rounded down to a point of the guide.
+  std::int64_t x = 0, z = 0;
+  float unit_m = 0;
+  float sea_level_m = 0;
+  float shore_m = 0;          // the ground rises by this over one share of lake
+  std::vector<Spot> spots;    // rows of the lattice, then columns
+  std::vector<Curve> curves;  // in the order of their nodes, then of directions
+  std::vector<Lake> lakes;    // ascending by level, then body
+
+  // Memory of the patch, with its lists.
+  std::size_t bytes() const;
+};
+
+// Water as wide as a river with this drainage area, at most `max_m`.
+float channel_width_m(double km2, double max_m);
+// Depth of the middle of a channel.
+constexpr float channel_depth_m(float width_m) {
+  return 0.25F + 0.07F * width_m;
+}
+// Width of the ground beside a channel that the channel lowers, and that it may raise.
+constexpr float kValleyM = 36, kLeveeM = 12, kBankWidths = 1.5F;
+constexpr float bank_m(float width_m) {
+  return kValleyM + kBankWidths * width_m;
+}
+
+// The exact monotone map from heights of the network to heights of the world. Height 0 becomes the
+// sea level, and all heights stay within the relief.
+float height_m(const Scale& scale, std::int32_t height);
+
+// Mean height of the ground of the finest level above the nodes of a level, in units of height.
+std::int32_t lift(const Scale& scale, int level, float mountain);
+
+// Makes the patch of a square.
+Patch make_patch(const Scale& scale, RootNodes& root, int level, const Square& square);
+
+}  // namespace psygen::models::network
