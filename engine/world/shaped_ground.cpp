@@ -99,6 +99,26 @@ class Shaper {
     return add(std::move(edit), "centre_m");
   }
 
+  Shaped add(models::RiverSettings network) {
+    network.seed = world_.seed;
+    const models::RiverFrame frame{
+        .cell_m = world_.cell_m(),
+        .cells_per_block = world_.terrain.integer(models::kTerrainSize) - 1,
+        .relief_m = relief_m_,
+        .sea_level_m = world_.water.level_m};
+    if (!(frame.sea_level_m > 0 && frame.sea_level_m < relief_m_))
+      return refused(
+          "root_spacing_m",
+          fmt::format("a world with [rivers] needs a sea: a level_m of [water] between 0 "
+                      "and {:g} m, the relief_m of [terrain]",
+                      relief_m_));
+    auto made =
+        models::RiverNetwork::create(network, frame, std::make_shared<models::NetworkStore>());
+    if (!made) return refused("root_spacing_m", std::move(made.error()));
+    layer_.ground.network = std::move(*made);
+    return {};
+  }
+
   void add(const models::Erosion& erosion) {
     layer_.ground.erosion = std::make_shared<const models::Erosion>(erosion);
   }
@@ -416,8 +436,14 @@ tl::expected<void, ShapeError> shape_ground(World& world) {
   world.shaped.warnings.clear();
   const models::Erosion& erosion = world.shaped.erosion;
   const bool erodes = erosion.strength > 0;
-  if (!erodes && world.shaped.empty()) return {};
+  if (!erodes && !world.shaped.network && world.shaped.empty()) return {};
   Shaper shaper(world);
+  if (world.shaped.network) {
+    if (auto ok = shaper.add(*world.shaped.network); !ok) {
+      ok.error().place = "rivers";
+      return ok;
+    }
+  }
   if (erodes) shaper.add(erosion);
   if (auto ok = add_all(world.shaped.stamps, "stamp", shaper); !ok) return ok;
   if (auto ok = add_all(world.shaped.roads, "road", shaper); !ok) return ok;

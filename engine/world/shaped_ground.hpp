@@ -11,6 +11,7 @@
 #include <glm/vec2.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/models/ground/erosion.hpp"
+#include "engine/models/ground/network/settings.hpp"
 #include "engine/models/model_type.hpp"
 #include "engine/world/mask.hpp"
 #include "engine/world/water_bodies.hpp"
@@ -70,9 +72,10 @@ inline constexpr std::size_t kMaxStamps = 64, kMaxRoads = 64, kMaxRoadPoints = 1
 inline constexpr double kMinRoadStepM = 1, kMaxRoadsM = 100'000;
 inline constexpr double kFarthestShapeM = 1e8;  // from the world's origin along an axis
 
-// Erosion, stamps, roads, lakes and rivers, and the layer made of them.
+// A river network, erosion, stamps, roads, lakes and rivers, and the layer made of them.
 struct ShapedGround {
-  models::Erosion erosion;  // acts first
+  std::optional<models::RiverSettings> network;  // land that follows rivers; none: noise
+  models::Erosion erosion;                       // acts before all shapes
   std::vector<Stamp> stamps;
   std::vector<Road> roads;
   std::vector<Lake> lakes;
@@ -84,14 +87,14 @@ struct ShapedGround {
   bool empty() const { return stamps.empty() && roads.empty() && lakes.empty() && rivers.empty(); }
   bool has_water() const { return !lakes.empty() || !rivers.empty(); }
   friend bool operator==(const ShapedGround& a, const ShapedGround& b) {
-    return a.erosion == b.erosion && a.stamps == b.stamps && a.roads == b.roads &&
-           a.lakes == b.lakes && a.rivers == b.rivers;
+    return a.network == b.network && a.erosion == b.erosion && a.stamps == b.stamps &&
+           a.roads == b.roads && a.lakes == b.lakes && a.rivers == b.rivers;
   }
 };
 
 // An error in one key of a shape.
 struct ShapeError {
-  std::string_view place, key;  // "stamp", "road", "lake" or "river"
+  std::string_view place, key;  // "stamp", "road", "lake", "river" or "rivers"
   std::size_t number = 0;
   core::Error error;
 };

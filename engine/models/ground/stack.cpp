@@ -3,20 +3,31 @@
 #include <algorithm>
 
 namespace psygen::models {
+namespace {
+
+// Bodies of a network have other names than those of world files and games.
+constexpr std::uint32_t kFirstNetworkBody = 0x80000000U;
+
+}  // namespace
 
 std::uint64_t GroundStack::hash_of(const QuadCoord& node, double margin, double block_m) const {
+  return edits.hash_of(node, margin, block_m,
+                       shapes.hash_of(node, margin, block_m, fixed_identity()));
+}
+
+std::uint64_t GroundStack::fixed_identity() const {
   const std::uint64_t eroded = erosion == nullptr ? 0 : erosion->identity();
-  return edits.hash_of(node, margin, block_m, shapes.hash_of(node, margin, block_m, eroded));
+  return network == nullptr ? eroded : core::combine(network->identity(), eroded);
 }
 
 bool GroundStack::same_in(const GroundStack& a, const GroundStack& b, const QuadCoord& node,
                           double margin) {
-  return same_erosion(a, b) && GroundEdits::same_in(a.edits, b.edits, node, margin) &&
+  return same_fixed_part(a, b) && GroundEdits::same_in(a.edits, b.edits, node, margin) &&
          GroundEdits::same_in(a.shapes, b.shapes, node, margin);
 }
 
 bool GroundStack::reaches(const QuadCoord& node, double block_m) const {
-  return erosion != nullptr || edits.reaches(node, block_m) || shapes.reaches(node, block_m);
+  return has_fixed_part() || edits.reaches(node, block_m) || shapes.reaches(node, block_m);
 }
 
 std::vector<const GroundEdit*> GroundStack::roads_in(const QuadCoord& node, double block_m) const {
@@ -37,8 +48,16 @@ std::optional<BodySurface> GroundStack::water_over(core::BlockCoord block, glm::
                                                    double block_m) const {
   const auto a = shapes.water_over(block, local_m, block_m);
   const auto b = edits.water_over(block, local_m, block_m);
-  if (!a || !b) return a ? a : b;
-  return a->owns_before(*b) ? a : b;
+  if (a && b) return a->owns_before(*b) ? a : b;
+  if (a || b || network == nullptr) return a ? a : b;
+  const NetworkWater water = network->water_at({block, {local_m.x, 0, local_m.y}});
+  constexpr std::uint32_t kNetworkSea = 1;  // the sea of the world is no body of its ground
+  if (!(water.depth_m > 0) || water.body == kNetworkSea) return std::nullopt;
+  BodySurface surface;
+  surface.surface_m = double{water.surface_m};
+  surface.flow_m_s = glm::dvec2(water.flow_m_s);
+  surface.body = kFirstNetworkBody | water.body;
+  return surface;
 }
 
 double GroundStack::error_m(const QuadCoord& node, double spacing_m, double block_m) const {

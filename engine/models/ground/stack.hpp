@@ -12,21 +12,26 @@
 #include "engine/models/ground/detail.hpp"
 #include "engine/models/ground/erosion.hpp"
 #include "engine/models/ground/ground_edits.hpp"
+#include "engine/models/ground/network/network.hpp"
 
 namespace psygen::models {
 
 struct GroundStack {
-  std::shared_ptr<const Erosion> erosion;  // of the world file; null: none
+  std::shared_ptr<const RiverNetwork> network;  // takes the place of the noise; null: none
+  std::shared_ptr<const Erosion> erosion;       // of the world file; null: none
   GroundEdits shapes;  // of the world file; with the erosion part of the world's function
   GroundEdits edits;   // made by hand, over the shapes
 
   // True if the ground is only noise.
-  bool empty() const { return erosion == nullptr && shapes.empty() && edits.empty(); }
+  bool empty() const { return !has_fixed_part() && shapes.empty() && edits.empty(); }
+  // True if it has layers that change the ground everywhere.
+  bool has_fixed_part() const { return network != nullptr || erosion != nullptr; }
   // True if both have the same layers of the world file, or copies of them; and takes over those.
   bool has_function_of(const GroundStack& other) const {
-    return same_erosion(*this, other) && shapes.is(other.shapes);
+    return same_fixed_part(*this, other) && shapes.is(other.shapes);
   }
   void take_function_of(const GroundStack& other) {
+    network = other.network;
     erosion = other.erosion;
     shapes = other.shapes;
   }
@@ -61,7 +66,12 @@ struct GroundStack {
              GroundDetail detail) const;
 
  private:
-  static bool same_erosion(const GroundStack& a, const GroundStack& b) {
+  std::uint64_t fixed_identity() const;
+  static bool same_fixed_part(const GroundStack& a, const GroundStack& b) {
+    const auto network_of = [](const GroundStack& s) {
+      return s.network ? s.network->identity() : 0;
+    };
+    if (network_of(a) != network_of(b)) return false;
     if (a.erosion == b.erosion) return true;
     return a.erosion != nullptr && b.erosion != nullptr && *a.erosion == *b.erosion;
   }

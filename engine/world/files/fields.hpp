@@ -94,6 +94,24 @@ inline constexpr auto visit_water = [](auto& water, const auto& visit) {
         in("m", {0, 1000}, {0, 20}, "height of the sand above the water level"));
 };
 
+// The fields of models::RiverSettings, but the seed, which is the world's.
+inline constexpr auto visit_rivers = [](auto& rivers, const auto& visit) {
+  visit("root_spacing_m", rivers.root_spacing_m,
+        in("m", {256, 65'536}, {1000, 16'000},
+           "distance of the largest rivers; the relief is about a quarter of it"));
+  std::int64_t halvings = rivers.halvings;
+  visit("halvings", halvings, in("", {1, 8}, {3, 8}, "levels of smaller rivers"));
+  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(rivers)>>)
+    rivers.halvings = static_cast<int>(halvings);
+  visit("channel_km2", rivers.channel_km2,
+        in("km²", {1e-4, 1000}, {0.01, 2}, "drainage area from which on a stream has a bed"));
+  visit("lake_share", rivers.lake_share,
+        in("", {0, 0.12}, {0, 0.12}, "fraction of the land under lakes"));
+  visit("mountain_share", rivers.mountain_share, fraction("mountains, of the land"));
+  visit("sea_share", rivers.sea_share, fraction("sea, of the world"));
+  visit("steepness", rivers.steepness, in("", {0.05, 3}, {0.2, 2}, "factor of all slopes"));
+};
+
 // The fields of Palette.
 inline constexpr auto visit_palette = [](auto& palette, const auto& visit) {
   visit("grass", palette.grass, fraction("meadows, linear albedo"));

@@ -212,6 +212,10 @@ ShapedGround read_shaped(TableReader& root, const Beside& beside) {
       reader->problem(reader->line(), "min_height_m", "it must not be above max_height_m");
     reader->finish();
   }
+  if (std::optional<TableReader> reader = root.table("rivers")) {
+    visit_rivers(shaped.network.emplace(), FieldReader{*reader});
+    reader->finish();
+  }
   for (TableReader& reader : root.tables("stamp", kMaxStamps))
     shaped.stamps.push_back(read_stamp(reader, beside));
   for (TableReader& reader : root.tables("road", kMaxRoads))
@@ -227,6 +231,11 @@ void shape_world(TableReader& root, World& world) {
   const auto shaped = shape_ground(world);
   if (shaped) return;
   const ShapeError& wrong = shaped.error();
+  if (wrong.place == "rivers") {
+    if (std::optional<TableReader> reader = root.table(wrong.place))
+      reader->problem(reader->line(), wrong.key, wrong.error.message);
+    return;
+  }
   root.tables(wrong.place, kMaxRoads)[wrong.number].problem(wrong.key, wrong.error.message,
                                                             wrong.error.code);
 }

@@ -245,8 +245,9 @@ std::optional<TextSpan> line_above(std::string_view text, std::size_t line_begin
   return TextSpan{before == std::string_view::npos ? 0 : before + 1, end};
 }
 
-constexpr std::string_view kSections[] = {"format", "world",   "terrain", "erosion", "species",
-                                          "model",  "scatter", "sky",     "water",   "palette"};
+constexpr std::string_view kSections[] = {"format", "world",   "terrain", "erosion",
+                                          "rivers", "species", "model",   "scatter",
+                                          "sky",    "water",   "palette"};
 constexpr std::string_view kSpeciesParts[] = {"kind", "rule", "foliage", "colours"};
 
 // The position of a table in the usual order; unknown ones come last.

@@ -233,6 +233,10 @@ std::string write_world(const World& world, const models::Registry& registry) {
     text += "\n[erosion]\n";
     models::visit_erosion(world.shaped.erosion, FieldWriter{text});
   }
+  if (world.shaped.network) {
+    text += "\n[rivers]\n";
+    visit_rivers(*world.shaped.network, FieldWriter{text});
+  }
   text += "\n[sky]\n";
   visit_sky(world.sky, FieldWriter{text});
   text += "\n[water]\n";

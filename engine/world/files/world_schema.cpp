@@ -63,6 +63,10 @@ class SchemaBuilder {
     sections.push_back(terrain_section());
     sections.push_back(section(SectionKind::kErosion, {"erosion"}, "Erosion"));
     add_all(sections.back(), world_.shaped.erosion, models::Erosion{}, models::visit_erosion);
+    if (world_.shaped.network) {
+      sections.push_back(section(SectionKind::kRivers, {"rivers"}, "Rivers"));
+      add_all(sections.back(), *world_.shaped.network, models::RiverSettings{}, visit_rivers);
+    }
     sections.push_back(section(SectionKind::kSky, {"sky"}, "Sky"));
     const Sky usual = with_sun(Sky{}, {Sky{}.sun_azimuth_deg, world_.sky.sun_elevation_deg});
     Sky usual_here = usual;

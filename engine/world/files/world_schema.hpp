@@ -65,6 +65,7 @@ enum class SectionKind : std::uint8_t {
   kWorld,
   kTerrain,
   kErosion,
+  kRivers,
   kSky,
   kWater,
   kPalette,
@@ -92,7 +93,7 @@ struct WorldSection {
   std::vector<WorldSection> parts;  // for a species: kinds, rules, foliage, colours
 };
 
-// The sections of a world: World, Terrain, Erosion, Sky, Water, Palette, each species, each
+// The sections of a world: World, Terrain, Erosion, Rivers, Sky, Water, Palette, each species, each
 // handmade model, each scatter, each place, each stamp, each road, each lake, each river. `world`
 // must be the result of parse_world() for `text` with `registry`. Fails with kParse if the text is
 // not TOML, and with kInvalidArgument if the world belongs to another text.

@@ -5,7 +5,6 @@
 
 #include "engine/models/ground/network/network.hpp"
 #include "engine/models/kit/simd_targets.hpp"
-#include "engine/synthesis/network_store.hpp"
 
 namespace psygen::synthesis {
 namespace {
@@ -21,7 +20,7 @@ std::shared_ptr<const RiverNetwork> network_of(std::shared_ptr<models::NetworkSt
 void first_question_anywhere(benchmark::State& state) {
   std::int64_t place = 0;
   for (auto _ : state) {
-    const auto network = network_of(std::make_shared<NetworkCache>());
+    const auto network = network_of(std::make_shared<models::NetworkStore>());
     place += 1'000'003;
     benchmark::DoNotOptimize(network->patch(network->tile_of(place, -place / 3, {})));
   }
@@ -30,7 +29,7 @@ BENCHMARK(first_question_anywhere)->Unit(benchmark::kMillisecond)->Iterations(50
 
 // The root is cached, patches are not.
 void patch_of_32_blocks_squared(benchmark::State& state) {
-  const auto store = std::make_shared<NetworkCache>();
+  const auto store = std::make_shared<models::NetworkStore>();
   const auto network = network_of(store);
   network->patch(network->tile_of(0, 30'000, {}));
   std::int64_t i = 0;
@@ -50,7 +49,7 @@ void ground_of_a_block(benchmark::State& state) {
   if (number >= targets.size()) return state.SkipWithError("no such instruction set");
   models::pin_simd_target(targets[number]);
   state.SetLabel(std::string(targets[number]));
-  const auto network = network_of(std::make_shared<NetworkCache>());
+  const auto network = network_of(std::make_shared<models::NetworkStore>());
   std::vector<float> height(64 * 64), water(64 * 64);
   std::vector<std::int64_t> x(64), z(64);
   std::int64_t block = 0;
@@ -74,7 +73,7 @@ BENCHMARK(ground_of_a_block)
     ->Iterations(900);
 
 void water_at_a_place(benchmark::State& state) {
-  const auto network = network_of(std::make_shared<NetworkCache>());
+  const auto network = network_of(std::make_shared<models::NetworkStore>());
   std::int32_t i = 0;
   for (auto _ : state) {
     i = (i + 1) % 900;

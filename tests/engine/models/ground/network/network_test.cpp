@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "engine/models/kit/simd_targets.hpp"
-#include "tests/engine/models/ground/network/map_store.hpp"
 
 namespace psygen::models {
 namespace {
@@ -19,7 +18,7 @@ using network::kUnitsPerCell;
 const RiverFrame kFrame{.cell_m = 1, .cells_per_block = 63, .relief_m = 2000, .sea_level_m = 200};
 
 std::shared_ptr<const RiverNetwork> network_of(const RiverSettings& settings) {
-  return *RiverNetwork::create(settings, kFrame, std::make_shared<test::MapStore>());
+  return *RiverNetwork::create(settings, kFrame, std::make_shared<NetworkStore>());
 }
 
 // All results of some samples.

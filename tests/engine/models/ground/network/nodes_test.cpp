@@ -5,7 +5,6 @@
 
 #include "engine/models/ground/network/halving.hpp"
 #include "tests/engine/models/ground/network/drainage.hpp"
-#include "tests/engine/models/ground/network/map_store.hpp"
 
 namespace psygen::models {
 namespace {
@@ -17,7 +16,7 @@ const RiverFrame kFrame{.cell_m = 1, .cells_per_block = 63, .relief_m = 2000, .s
 
 std::shared_ptr<const RiverNetwork> network_of(const RiverSettings& settings,
                                                const RiverFrame& frame = kFrame) {
-  return *RiverNetwork::create(settings, frame, std::make_shared<test::MapStore>());
+  return *RiverNetwork::create(settings, frame, std::make_shared<NetworkStore>());
 }
 
 // Land of a seed: squares of 8 km whose middle is no sea.

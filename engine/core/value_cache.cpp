@@ -1,11 +1,11 @@
-#include "engine/synthesis/network_store.hpp"
+#include "engine/core/value_cache.hpp"
 
 #include <iterator>
 #include <utility>
 
-namespace psygen::synthesis {
+namespace psygen::core {
 
-NetworkCache::Value NetworkCache::find(const Key& key) {
+ValueCache::Value ValueCache::find(const Key& key) {
   Shard& s = shard(key);
   const std::lock_guard lock(s.mutex);
   const auto it = s.places.find(key);
@@ -14,7 +14,7 @@ NetworkCache::Value NetworkCache::find(const Key& key) {
   return it->second->value;
 }
 
-NetworkCache::Value NetworkCache::publish(const Key& key, Value value, std::size_t bytes) {
+ValueCache::Value ValueCache::publish(const Key& key, Value value, std::size_t bytes) {
   if (bytes > shard_bytes_) return value;
   std::list<Entry> dropped;  // freed after the lock
   Shard& s = shard(key);
@@ -32,13 +32,13 @@ NetworkCache::Value NetworkCache::publish(const Key& key, Value value, std::size
   return value;
 }
 
-bool NetworkCache::has(const Key& key) const {
+bool ValueCache::has(const Key& key) const {
   const Shard& s = shard(key);
   const std::lock_guard lock(s.mutex);
   return s.places.contains(key);
 }
 
-std::size_t NetworkCache::bytes() const {
+std::size_t ValueCache::bytes() const {
   std::size_t sum = 0;
   for (const Shard& s : shards_) {
     const std::lock_guard lock(s.mutex);
@@ -47,4 +47,4 @@ std::size_t NetworkCache::bytes() const {
   return sum;
 }
 
-}  // namespace psygen::synthesis
+}  // namespace psygen::core

@@ -1,4 +1,4 @@
-#include "engine/synthesis/network_store.hpp"
+#include "engine/models/ground/network/store.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +9,12 @@
 
 #include "engine/models/ground/network/network.hpp"
 
-namespace psygen::synthesis {
+namespace psygen::models {
 namespace {
-
-using models::RiverNetwork;
 
 using Place = std::array<std::int64_t, 2>;
 
-std::shared_ptr<const RiverNetwork> network_of(std::shared_ptr<models::NetworkStore> store) {
+std::shared_ptr<const RiverNetwork> network_of(std::shared_ptr<NetworkStore> store) {
   return *RiverNetwork::create({.halvings = 6}, {.relief_m = 2000, .sea_level_m = 200},
                                std::move(store));
 }
@@ -36,7 +34,7 @@ std::uint64_t hash_of(const RiverNetwork& network, const Place& place) {
                        core::hash_bytes(std::as_bytes(std::span(water))));
 }
 
-TEST(NetworkCache, ChangesNoBitWithAnySizeAndThreadCount) {
+TEST(NetworkStore, ChangesNoBitWithAnySizeAndThreadCount) {
   std::vector<Place> places;
   core::RandomStream random(4, 0, 0, 0, core::Purpose::kPosition);
   while (places.size() < 12)
@@ -48,7 +46,7 @@ TEST(NetworkCache, ChangesNoBitWithAnySizeAndThreadCount) {
     expected.push_back(hash_of(*bare, place));
   for (const std::size_t bytes : {std::size_t{0}, std::size_t{1} << 20, std::size_t{64} << 20}) {
     for (const std::size_t threads : {1U, 2U, 4U}) {
-      const auto store = std::make_shared<NetworkCache>(bytes);
+      const auto store = std::make_shared<NetworkStore>(bytes);
       const auto network = network_of(store);
       std::vector<std::thread> running;
       std::vector<int> wrong(threads, 0);
@@ -69,12 +67,11 @@ TEST(NetworkCache, ChangesNoBitWithAnySizeAndThreadCount) {
   }
 }
 
-TEST(NetworkCache, DropsTheLeastRecentlyUsedValues) {
+TEST(NetworkStore, DropsTheLeastRecentlyUsedValues) {
   constexpr std::size_t kBytes = 8 * 3 * 2200;  // three root tiles in each of eight shards
-  NetworkCache store(kBytes);
+  NetworkStore store(kBytes);
   const auto get = [&](std::int64_t i) {
-    return store.get<models::network::RootTile>({1, {-1, i, 0}},
-                                                [] { return models::network::RootTile{}; });
+    return store.get<network::RootTile>({1, {-1, i, 0}}, [] { return network::RootTile{}; });
   };
   const auto first = get(0);
   EXPECT_EQ(get(0), first);
@@ -88,4 +85,4 @@ TEST(NetworkCache, DropsTheLeastRecentlyUsedValues) {
 }
 
 }  // namespace
-}  // namespace psygen::synthesis
+}  // namespace psygen::models
