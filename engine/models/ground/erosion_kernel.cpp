@@ -238,9 +238,9 @@ struct Gullies {
     const Float ridge = hn::Sqrt(mad(set(-0.5F), stripes.cosine, set(0.5F + k.ridge_softness)));
     const Float bed = hn::Sqrt(mad(set(0.5F), stripes.cosine, set(0.5F + k.bed_softness)));
     const Float profile = hn::Mul(hn::Sub(bed, ridge), set(k.profile_scale));
-    // Cliffs stay smoother.
+    // Cliffs stay a little smoother.
     const Float cliff = smooth(mad(mad(x, x, square(z)), set(0.5F), set(-0.3F)));
-    const Float part = hn::Mul(hn::Mul(open, s.steep), mad(cliff, set(-0.5F), set(1)));
+    const Float part = hn::Mul(hn::Mul(open, s.steep), mad(cliff, set(-0.2F), set(1)));
     value = mad(part, hn::Sub(profile, value), value);
     height = mad(value, set(k.octaves[octave].depth_m), height);
     const Float side = hn::Mul(hn::Mul(part, s.deep), set(-k.octaves[octave].side));
