@@ -40,6 +40,7 @@ RidgedNoise::RidgedNoise(const RidgedSettings& s)
   PSYGEN_ASSERT(s.octaves >= 1 && s.octaves <= kMaxOctaves, "octaves are within their range");
   const double deepest = s.offset - kMaxNoise;
   const double highest = std::max(s.offset * s.offset, deepest * deepest);
+  max_ridge_ = highest;
   const double ratio = exact_pow(s.lacunarity, -s.height);
   // With a gain so small that further octaves vanish in single precision, only the first is kept.
   const double square = s.gain * ratio;
@@ -67,6 +68,14 @@ RidgedNoise::RidgedNoise(const RidgedSettings& s)
     frequency *= s.lacunarity;
     amplitude *= ratio;
   }
+}
+
+double RidgedNoise::max_value(int octaves) const {
+  if (octaves >= kernel_.octave_count) return max_value_;
+  double sum = 0;
+  for (std::size_t o = 0; o < static_cast<std::size_t>(octaves); ++o)
+    sum += max_ridge_ * static_cast<double>(kernel_.octaves[o].limit);
+  return sum;
 }
 
 int RidgedNoise::octaves_wider_than(double steps) const {

@@ -33,6 +33,8 @@ class RidgedNoise {
 
   // Values lie in [0, max_value()], up to a rounding error of 1e-5 of it.
   double max_value() const { return max_value_; }
+  // The same for the sum of the first octaves only.
+  double max_value(int octaves) const;
 
   // The number of octaves, at least one, whose lattice cells are no narrower than `steps` integers.
   int octaves_wider_than(double steps) const;
@@ -54,7 +56,7 @@ class RidgedNoise {
 
  private:
   RidgedKernel kernel_;
-  double max_value_ = 0;
+  double max_value_ = 0, max_ridge_ = 0;
   double cells_per_step_, lacunarity_;
 };
 

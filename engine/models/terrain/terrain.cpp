@@ -366,7 +366,8 @@ int TerrainShape::octaves(GroundDetail detail) const {
 
 namespace {
 
-// The octaves of a noise that erosion follows.
+// The octaves of a noise that erosion follows, raised so that the land keeps its height: the other
+// octaves, which are never negative, add about the same fraction to high and low ground.
 class NoiseGuide final : public ErosionGuide {
  public:
   NoiseGuide(const RidgedNoise& noise, int octaves) : noise_(noise), octaves_(octaves) {}
@@ -375,10 +376,21 @@ class NoiseGuide final : public ErosionGuide {
   }
   void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                double narrowest_cells, std::span<float> values, std::size_t stride) const override {
-    noise_.evaluate(columns, rows, values, stride, octaves(narrowest_cells));
+    const int count = octaves(narrowest_cells);
+    noise_.evaluate(columns, rows, values, stride, count);
+    if (count == octaves_) return;
+    const double ratio = noise_.max_value(octaves_) / noise_.max_value(count);
+    const auto scale = static_cast<float>(exact_pow(ratio, kUsualFraction));
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        values[r * stride + c] *= scale;
+    }
   }
 
  private:
+  // Measured in five noises with one to four octaves: 0.4 to 0.8, and within 2 % of the height at
+  // the lowest and the highest tenth.
+  static constexpr double kUsualFraction = 0.65;
   const RidgedNoise& noise_;
   int octaves_;
 };

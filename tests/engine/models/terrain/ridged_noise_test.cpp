@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -142,6 +143,21 @@ TEST(RidgedNoise, WorkCountsSamplesAndOctavesNarrowerThanTheirSpacing) {
   EXPECT_NEAR(RidgedNoise(settings).work(64, 64, 1e7), 9 * wide, 0.01 * wide);
   settings.warp = 0.2;
   EXPECT_GT(RidgedNoise(settings).work(64, 64, 1), 5 * wide);
+}
+
+TEST(RidgedNoise, TheFirstOctavesHaveALargestValueOfTheirOwn) {
+  const RidgedNoise noise({.seed = 3, .octaves = 6, .cells_per_step = 0.03});
+  const auto axis = range(0, 1, 140);
+  std::vector<float> values(axis.size() * axis.size());
+  for (int octaves = 1; octaves <= 6; ++octaves) {
+    noise.evaluate(axis, axis, values, axis.size(), octaves);
+    const double largest = static_cast<double>(*std::ranges::max_element(values));
+    EXPECT_LE(largest, noise.max_value(octaves));
+    EXPECT_GT(largest, 0.5 * noise.max_value(octaves)) << octaves;
+    EXPECT_GT(noise.max_value(octaves), noise.max_value(octaves - 1));
+  }
+  EXPECT_NEAR(noise.max_value(6), noise.max_value(), 1e-6 * noise.max_value());
+  EXPECT_EQ(noise.max_value(99), noise.max_value());
 }
 
 TEST(RidgedNoise, WithoutGainEqualsItsFirstOctave) {
