@@ -20,7 +20,7 @@ namespace psygen::world {
 // The name of a body of water within its world. Lakes of the file follow the sea in their order,
 // then its rivers; bodies that a game adds have larger names (edits/edits.hpp).
 using WaterBody = std::uint32_t;
-inline constexpr WaterBody kNoWater = 0, kSea = 1;
+inline constexpr WaterBody kNoWater = 0, kSea = 1, kFirstAdded = 1U << 31;
 
 // The surface of a body of water over a place, whether the ground there is lower or higher.
 struct WaterSurface {

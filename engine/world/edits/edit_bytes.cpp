@@ -105,7 +105,8 @@ class BlockReader {
       GroundEdit e;
       e.id = in_.get<std::uint32_t>();
       const auto change = in_.get<std::uint8_t>();
-      if (change > static_cast<std::uint8_t>(models::GroundChange::kStampSet))
+      if (change > static_cast<std::uint8_t>(models::GroundChange::kLake) ||
+          change == static_cast<std::uint8_t>(models::GroundChange::kRoad))
         return wrong(fmt::format("{} is not a type of ground edit", change));
       e.change = static_cast<models::GroundChange>(change);
       e.square = in_.get<std::uint8_t>() != 0;
@@ -121,12 +122,51 @@ class BlockReader {
         map->heights_m = in_.get_all<float>(std::size_t{map->columns} * map->rows);
         e.map = std::move(map);
       }
+      if (e.change == models::GroundChange::kRiver) e.river = read_river();
+      if (e.change == models::GroundChange::kLake) e.lake = read_lake();
       if (in_.failed()) return {};
       if (!is_next_id(e.id, i > 0 ? edits.ground.back()->id : 0))
         return wrong("ids are not in order");
       edits.ground.push_back(std::make_shared<const GroundEdit>(std::move(e)));
     }
     return {};
+  }
+
+  template <class... Vectors>
+  void read_vectors(Vectors&... vectors) {
+    (in_.read(vectors.x, vectors.y), ...);
+  }
+
+  std::shared_ptr<const models::RiverPiece> read_river() {
+    auto river = std::make_shared<models::RiverPiece>();
+    core::WorldPosition& o = river->origin;
+    in_.read(o.block.x, o.block.z, o.local.x, o.local.z, river->body, river->edge_m);
+    river->points.resize(in_.get_count(11 * sizeof(double)));
+    for (models::RiverPoint& p : river->points) {
+      read_vectors(p.at_m, p.direction);
+      in_.read(p.half_width_m, p.surface_m, p.bed_m, p.bank_m, p.speed_m_s, p.fall, p.foam);
+    }
+    river->near.resize(in_.get_count(4 * sizeof(double) + 1));
+    for (models::RiverNeighbour& n : river->near) {
+      read_vectors(n.from_m, n.to_m);
+      n.is_earlier = in_.get<std::uint8_t>() != 0;
+    }
+    if (!river->points.empty()) models::seal(*river);
+    return river;
+  }
+
+  std::shared_ptr<const models::LakePiece> read_lake() {
+    auto lake = std::make_shared<models::LakePiece>();
+    core::WorldPosition& o = lake->origin;
+    in_.read(o.block.x, o.block.z, o.local.x, o.local.z, lake->body, lake->level_m, lake->depth_m,
+             lake->shore_m, lake->edge_m);
+    read_vectors(lake->low_m, lake->high_m);
+    lake->inside = in_.get<std::uint8_t>() != 0;
+    lake->segments.resize(in_.get_count(8 * sizeof(double)));
+    for (models::LakeSegment& s : lake->segments)
+      read_vectors(s.from_m, s.to_m, s.from_normal, s.to_normal);
+    models::seal(*lake);
+    return lake;
   }
 
   core::BlockCoord block_;
@@ -199,10 +239,43 @@ void put_placed(const PlacedModel& p, Bytes& out) {
     core::put(out, p.parameters.integer(k));
 }
 
+template <class... Vectors>
+void put_vectors(Bytes& out, const Vectors&... vectors) {
+  (core::put(out, vectors.x, vectors.y), ...);
+}
+
+void put_river(const models::RiverPiece& river, Bytes& out) {
+  const core::WorldPosition& o = river.origin;
+  core::put(out, o.block.x, o.block.z, o.local.x, o.local.z, river.body, river.edge_m,
+            static_cast<std::uint32_t>(river.points.size()));
+  for (const models::RiverPoint& p : river.points) {
+    put_vectors(out, p.at_m, p.direction);
+    core::put(out, p.half_width_m, p.surface_m, p.bed_m, p.bank_m, p.speed_m_s, p.fall, p.foam);
+  }
+  core::put(out, static_cast<std::uint32_t>(river.near.size()));
+  for (const models::RiverNeighbour& n : river.near) {
+    put_vectors(out, n.from_m, n.to_m);
+    core::put(out, static_cast<std::uint8_t>(n.is_earlier ? 1 : 0));
+  }
+}
+
+void put_lake(const models::LakePiece& lake, Bytes& out) {
+  const core::WorldPosition& o = lake.origin;
+  core::put(out, o.block.x, o.block.z, o.local.x, o.local.z, lake.body, lake.level_m, lake.depth_m,
+            lake.shore_m, lake.edge_m);
+  put_vectors(out, lake.low_m, lake.high_m);
+  core::put(out, static_cast<std::uint8_t>(lake.inside ? 1 : 0),
+            static_cast<std::uint32_t>(lake.segments.size()));
+  for (const models::LakeSegment& s : lake.segments)
+    put_vectors(out, s.from_m, s.to_m, s.from_normal, s.to_normal);
+}
+
 void put_ground(const GroundEdit& e, Bytes& out) {
   core::put(out, e.id, static_cast<std::uint8_t>(e.change),
             static_cast<std::uint8_t>(e.square ? 1 : 0), e.centre.local.x, e.centre.local.z,
             e.radius_m, e.falloff, e.height_m);
+  if (e.river) put_river(*e.river, out);
+  if (e.lake) put_lake(*e.lake, out);
   if (!is_stamp(e.change)) return;
   core::put(out, e.map->columns, e.map->rows);
   core::put_all(out, std::span<const float>(e.map->heights_m));

@@ -39,6 +39,40 @@ core::Result<void> check_heightmap(const models::Heightmap* map, double relief_m
   return {};
 }
 
+// Metres from the origin of a body of water that a piece may have.
+constexpr double kFarM = 1e6;
+bool is_near(glm::dvec2 at_m) {
+  return std::abs(at_m.x) <= kFarM && std::abs(at_m.y) <= kFarM;  // false for NaN
+}
+bool is_in(double value, double lowest, double highest) {
+  return value >= lowest && value <= highest;
+}
+
+bool is_sound(const models::RiverPiece& river, double relief_m) {
+  bool sound = river.body >= kFirstAdded && river.points.size() >= 2 && is_in(river.edge_m, 0, 1e4);
+  for (const models::RiverPoint& p : river.points) {
+    const double length2 = p.direction.x * p.direction.x + p.direction.y * p.direction.y;
+    sound = sound && is_near(p.at_m) && is_in(length2, 0.99, 1.01) &&
+            is_in(p.half_width_m, 1e-3, kMaxRiverWidthM) && is_in(p.surface_m, 0, relief_m) &&
+            is_in(p.bed_m, 0, p.surface_m) && is_in(p.bank_m, 1e-3, kMaxRiverBankM) &&
+            is_in(p.speed_m_s, 0, 100) && is_in(p.fall, 0, 1e6) && is_in(p.foam, 0, 1);
+  }
+  for (const models::RiverNeighbour& n : river.near)
+    sound = sound && is_near(n.from_m) && is_near(n.to_m);
+  return sound;
+}
+
+bool is_sound(const models::LakePiece& lake, double relief_m) {
+  bool sound = lake.body >= kFirstAdded && is_in(lake.level_m, 0, relief_m) &&
+               is_in(lake.depth_m, kMinDepthM, kMaxLakeDepthM) &&
+               is_in(lake.shore_m, kMinDepthM, kMaxShoreM) && is_in(lake.edge_m, 0, 1e4) &&
+               is_near(lake.low_m) && is_near(lake.high_m);
+  for (const models::LakeSegment& s : lake.segments)
+    sound = sound && is_near(s.from_m) && is_near(s.to_m) && is_near(s.from_normal) &&
+            is_near(s.to_normal);
+  return sound;
+}
+
 }  // namespace
 
 std::string text_of(core::BlockCoord block) {
@@ -128,7 +162,11 @@ core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
       return core::invalid_argument("roads can be in world files only");
     case models::GroundChange::kRiver:
     case models::GroundChange::kLake:
-      return core::invalid_argument("add water by add_river and add_lake");
+      if (edit.square && edit.height_m >= 0 && edit.height_m <= 2 * relief_m &&
+          (edit.river ? is_sound(*edit.river, relief_m)
+                      : edit.lake && is_sound(*edit.lake, relief_m)))
+        return {};
+      return core::invalid_argument("a piece of water has numbers out of range");
   }
   return core::invalid_argument("this type of ground edit does not exist");
 }

@@ -11,6 +11,7 @@
 
 #include "engine/world/edits/edit_checks.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/water_shapes.hpp"
 
 namespace psygen::world {
 namespace {
@@ -40,6 +41,20 @@ GroundEdit disc(models::GroundChange change, const core::WorldPosition& at, doub
   return edit;
 }
 
+// Counts the origin of a piece of water in blocks of another size.
+void rebase_water(GroundEdit& edit, double from_m, double to_m) {
+  if (edit.river) {
+    auto river = std::make_shared<models::RiverPiece>(*edit.river);
+    river->origin = rebased(river->origin, from_m, to_m);
+    edit.river = std::move(river);
+  }
+  if (edit.lake) {
+    auto lake = std::make_shared<models::LakePiece>(*edit.lake);
+    lake->origin = rebased(lake->origin, from_m, to_m);
+    edit.lake = std::move(lake);
+  }
+}
+
 // The same edits at the same places, for blocks of another size. Instances of the world's function
 // are others there, so nothing is removed. Leaves out ground edits above kMaxTogether.
 EditLayer resized(const EditLayer& layer, double block_m) {
@@ -62,6 +77,7 @@ EditLayer resized(const EditLayer& layer, double block_m) {
     for (const auto& before : edits->ground) {
       GroundEdit edit = *before;
       edit.centre = rebased(edit.centre, layer.block_m, block_m);
+      rebase_water(edit, layer.block_m, block_m);
       edit.id = id_in(edit.centre.block, edit.id);
       seal(edit);
       blocks[edit.centre.block].ground.push_back(
@@ -235,9 +251,13 @@ core::Result<void> Edits::remove_placed(const EditName& model) {
 core::Result<EditName> Edits::edit_ground(const World& world, GroundEdit edit) {
   const auto at = check_place(world, edit.centre);
   if (!at) return tl::unexpected(at.error());
+  if (is_water(edit.change))
+    return core::invalid_argument("rivers and lakes are added by add_river() and add_lake()");
   if (auto ok = check_ground(world, edit); !ok) return tl::unexpected(ok.error());
   edit.turn = {1, 0};
   edit.road.reset();
+  edit.river.reset();
+  edit.lake.reset();
   if (is_stamp(edit.change)) {
     edit.square = true;
   } else {
@@ -274,6 +294,77 @@ core::Result<EditName> Edits::raise(const World& world, const core::WorldPositio
 core::Result<EditName> Edits::flatten(const World& world, const core::WorldPosition& at,
                                       double radius_m, double height_m) {
   return edit_ground(world, disc(models::GroundChange::kFlatten, at, radius_m, height_m));
+}
+
+template <class Make>
+core::Result<AddedWater> Edits::add_water(const World& world, std::string_view type,
+                                          const Make& make) {
+  resize_blocks(world);
+  const auto first = next_id();
+  if (!first) return tl::unexpected(first.error());
+  EditLayer layer = copy(world);
+  if (world.shaped.layer) layer.ground.take_function_of(world.shaped.layer->ground);
+  const AddedWater added{kFirstAdded | *first, {}};
+  auto made = make(layer, BodyName{added.body, fmt::format("the {}", type), false});
+  if (!made)
+    return core::fail(made.error().error.code,
+                      fmt::format("the {} is not allowed: {}: {}", type, made.error().key,
+                                  made.error().error.message));
+  if (*first + made->edits.size() > kMaxEditId)
+    return core::fail(ErrorCode::kOverBudget,
+                      fmt::format("no ids are left: at most {} edits may be made", kMaxEditId));
+  std::map<core::BlockCoord, BlockEdits> changed;
+  layer.next_id = *first;
+  for (GroundEdit& edit : made->edits) {
+    const core::BlockCoord block = edit.centre.block;
+    BlockEdits& here = changed.try_emplace(block, edits_of(block)).first->second;
+    if (auto ok = check_room(here, block); !ok) return tl::unexpected(ok.error());
+    edit.id = layer.next_id++;
+    seal(edit);
+    here.ground.push_back(std::make_shared<const GroundEdit>(std::move(edit)));
+    if (!layer.ground.edits.add(here.ground.back(), world.block_size_m()))
+      return core::fail(ErrorCode::kOverBudget,
+                        fmt::format("too many ground edits overlap at {}", text_of(block)));
+  }
+  for (auto& [block, edits] : changed)
+    layer.blocks.set(QuadCoord::of(block), std::move(edits));
+  layer_ = std::make_shared<const EditLayer>(std::move(layer));
+  return AddedWater{added.body, std::move(made->warnings)};
+}
+
+core::Result<AddedWater> Edits::add_river(const World& world, const River& river) {
+  return add_water(world, "river", [&](const EditLayer& below, const BodyName& name) {
+    return river_edits(world, below, river, name);
+  });
+}
+
+core::Result<AddedWater> Edits::add_lake(const World& world, const Lake& lake) {
+  return add_water(world, "lake", [&](const EditLayer& below, const BodyName& name) {
+    return lake_edits(world, below, lake, name);
+  });
+}
+
+core::Result<void> Edits::remove_water(const World& world, WaterBody body) {
+  resize_blocks(world);
+  const auto belongs = [&](const std::shared_ptr<const GroundEdit>& edit) {
+    return (edit->river && edit->river->body == body) || (edit->lake && edit->lake->body == body);
+  };
+  EditLayer layer = copy(world);
+  std::vector<std::pair<QuadCoord, BlockEdits>> changed;
+  models::QuadMap<BlockEdits>::each_difference(
+      {}, layer.blocks, [&](const QuadCoord& at, const BlockEdits*, const BlockEdits* of_block) {
+        if (std::ranges::any_of(of_block->ground, belongs)) changed.emplace_back(at, *of_block);
+      });
+  if (changed.empty())
+    return core::invalid_argument(fmt::format("no river or lake {} was added", body));
+  for (auto& [at, edits] : changed) {
+    for (const auto& edit : edits.ground)
+      if (belongs(edit)) layer.ground.edits.remove(*edit, world.block_size_m());
+    std::erase_if(edits.ground, belongs);
+    layer.blocks.set(at, std::move(edits));
+  }
+  layer_ = layer.blocks.empty() ? nullptr : std::make_shared<const EditLayer>(std::move(layer));
+  return {};
 }
 
 core::Result<void> Edits::remove_ground(const World& world, const EditName& edit) {

@@ -1,20 +1,23 @@
 // Persistent edits of a world: remove, move and place models; raise, flatten and shape ground by
-// heightmaps. A sparse layer over the world's function. Everything that shows the world shows its
-// edits, after set_edits(world, edits.layer()), or Scene::edit() for a running scene. A value:
-// copies are O(1), and an earlier copy restores everything exactly. A change copies a path of the
-// tree and the edits of its block; an edit of the ground also copies the edits that overlap it:
-// O(log n + edits copied). Impossible edits are rejected with an error message and change nothing.
-// One thread at a time may change an object; layers that layer() returned are immutable, for any
-// thread.
+// heightmaps; add rivers and lakes. A sparse layer over the world's function. Everything that shows
+// the world shows its edits, after set_edits(world, edits.layer()), or Scene::edit() for a running
+// scene. A value: copies are O(1), and an earlier copy restores everything exactly. A change copies
+// a path of the tree and the edits of its block; an edit of the ground also copies the edits that
+// overlap it: O(log n + edits copied). Impossible edits are rejected with an error message and
+// change nothing. One thread at a time may change an object; layers that layer() returned are
+// immutable, for any thread.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/error.hpp"
 #include "engine/models/edits.hpp"
+#include "engine/world/water.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
@@ -51,6 +54,12 @@ inline constexpr std::size_t kMaxHeightsPerBlock = std::size_t{3} << 20;
 // Numbers of edits.
 struct EditCounts {
   std::uint64_t removed = 0, placed = 0, ground = 0;  // a moved model is removed and placed
+};
+
+// A river or lake that a game added, and sentences that name doubtful input.
+struct AddedWater {
+  WaterBody body = kNoWater;  // at least kFirstAdded
+  std::vector<std::string> warnings;
 };
 
 // The edits of one world.
@@ -92,6 +101,13 @@ class Edits {
                                double height_m);
   core::Result<EditName> flatten(const World& world, const core::WorldPosition& at, double radius_m,
                                  double height_m);
+  // Adds a river or a lake over the ground as it is now, and returns its name (water.hpp): it may
+  // join, or cross as a lake, all water of the world file and of earlier edits. Later edits of the
+  // ground move no water. Fails as river_edits() and lake_edits() do (water_shapes.hpp).
+  core::Result<AddedWater> add_river(const World& world, const River& river);
+  core::Result<AddedWater> add_lake(const World& world, const Lake& lake);
+  // Undoes add_river() or add_lake(). Water that joins it stays. O(edits).
+  core::Result<void> remove_water(const World& world, WaterBody body);
   // Undoes one edit of the ground and keeps all later ones.
   core::Result<void> remove_ground(const World& world, const EditName& edit);
 
@@ -102,6 +118,8 @@ class Edits {
 
  private:
   core::Result<std::uint32_t> next_id() const;
+  template <class Make>
+  core::Result<AddedWater> add_water(const World& world, std::string_view type, const Make& make);
   friend Edits fitted(const Edits&, const World&, const models::Registry&,
                       const models::EditLayer*);
   // Moves the edits into blocks of the world's size.
