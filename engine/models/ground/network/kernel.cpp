@@ -241,6 +241,7 @@ struct Beside {
   Float distance;                     // from the middle of the water, m
   Float surface, width, edge, taper;  // edge: distance from the water's edge, < 0 inside
   Float abeam;                        // 1 beside the curve … 0 beyond its ends
+  Float valley;                       // of banks: 0 at a spring … 1
   hn::Mask<FloatTag> near;            // within the reach of the banks
 };
 
@@ -284,6 +285,7 @@ HWY_INLINE Beside beside(const Curve& c, Float px, Float pz) {
   b.width = hn::Add(set(c.width0_m), hn::Mul(b.t, set(c.width1_m - c.width0_m)));
   b.edge = hn::Sub(b.distance, hn::Mul(b.width, set(0.5F)));
   b.taper = c.head ? smooth(hn::Min(hn::Add(b.t, b.t), set(1))) : set(1);
+  b.valley = c.head ? smooth(b.t) : set(1);
   b.near = hn::Lt(b.edge, hn::Add(set(kValleyM), hn::Mul(b.width, set(kBankWidths))));
   return b;
 }
@@ -474,7 +476,7 @@ class Call {
       const Beside b = beside(*c, px, pz);
       const Float bank = hn::Add(set(kLeveeM), hn::Mul(b.width, set(kBankWidths)));
       const Float s = hn::Min(hn::Max(hn::Div(b.edge, bank), hn::Zero(d)), set(1));
-      const Float here = hn::Sub(set(1), hn::Mul(hn::Sub(set(1), s), b.taper));
+      const Float here = hn::Sub(set(1), hn::Mul(hn::Sub(set(1), s), b.valley));
       clear = hn::IfThenElse(b.near, hn::Min(clear, here), clear);
     }
     const Float dry = hn::Sub(set(1), hn::Min(hn::Add(lake.share, lake.share), set(1)));
@@ -597,7 +599,7 @@ class Call {
     const Float widths = hn::Mul(b.width, set(kBankWidths));
     const auto fade = [&](float more) HWY_ATTR {
       const Float s = hn::Min(hn::Div(edge, hn::Add(set(more), widths)), set(1));
-      return hn::Mul(hn::Mul(hn::Sub(set(1), smooth(s)), b.taper), b.abeam);
+      return hn::Mul(hn::Mul(hn::Sub(set(1), smooth(s)), b.valley), b.abeam);
     };
     Bank bank;
     bank.height = hn::Add(b.surface, hn::Mul(set(0.3F), hn::Min(edge, set(1))));
@@ -674,17 +676,18 @@ Chosen choose(const Patch& patch, const Samples& samples) {
   const auto touches = [&](std::int32_t x, std::int32_t z, std::int32_t reach) {
     return x + reach >= x0 && x - reach <= x1 && z + reach >= z0 && z - reach <= z1;
   };
-  for (const Spot& s : patch.spots) {
-    if (!touches(s.x, s.z, s.reach)) continue;
+  patch.spot_bins.find({x0, z0, x1, z1}, [&](std::size_t k) {
+    const Spot& s = patch.spots[k];
+    if (!touches(s.x, s.z, s.reach)) return;
     chosen.spots.push_back(&s);
     if (s.lake >= 0) chosen.lakes.push_back(s.lake);
-  }
+  });
   std::sort(chosen.lakes.begin(), chosen.lakes.end());
   chosen.lakes.erase(std::unique(chosen.lakes.begin(), chosen.lakes.end()), chosen.lakes.end());
-  for (const Curve& c : patch.curves) {
-    if (touches(c.x, c.z, static_cast<std::int32_t>(c.reach_m / patch.unit_m) + 1))
-      chosen.curves.push_back(&c);
-  }
+  patch.curve_bins.find({x0, z0, x1, z1}, [&](std::size_t k) {
+    const Curve& c = patch.curves[k];
+    if (touches(c.x, c.z, reach_units(patch, c))) chosen.curves.push_back(&c);
+  });
   return chosen;
 }
 

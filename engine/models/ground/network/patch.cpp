@@ -45,6 +45,7 @@ class Builder {
     }
     join_arms();
     keep_curves();
+    fill_bins();
   }
 
  private:
@@ -122,11 +123,11 @@ class Builder {
     } else {
       out.height_m = water_m(v);
     }
-    const int widest = largest_inflow(i, j);
+    const int widest = largest_inflow(i, j, channel_);
     const auto begin = static_cast<std::uint32_t>(curves_.size());
     for (int d = 0; d < 6 && widest >= 0; ++d) {
       const Node& up = n_.beside(i, j, d);
-      if (!flows_in(up, d)) continue;
+      if (!flows_in(up, d, channel_)) continue;
       const std::uint32_t below = d == widest && v.receiver != kSink ? v.area : 0;
       Curve c;
       c.width0_m = width_m(up.area);
@@ -142,21 +143,44 @@ class Builder {
     c.width1_m = width_m(v.area);
     c.width0_m = 0.3F * c.width1_m;
     c.discharge_m3_s = static_cast<float>(kRunoff * scale_.km2(v.area));
-    const float from = water_m(v), middle = 0.5F * (from + out.height_m);
-    add(c, v,
-        Path{{}, {out.place[0] / 2, out.place[1] / 2}, out.place, from, middle, out.height_m});
+    // The spring lies up the valley, if there is one.
+    const int above = largest_inflow(i, j, 1);
+    Path path{{}, {out.place[0] / 2, out.place[1] / 2}, out.place, water_m(v), 0, out.height_m};
+    path.control_m = 0.5F * (path.from_m + path.to_m);
+    if (above >= 0) {
+      const Node& up = n_.beside(i, j, above);
+      path.from = half(v, up);
+      path.control = {};
+      path.from_m = middle_m(up, v);
+      path.control_m = water_m(v);
+    }
+    add(c, v, path);
   }
-  bool flows_in(const Node& up, int direction) const {
-    return up.receiver == opposite(direction) && up.area >= channel_;
+  static bool flows_in(const Node& up, int direction, std::uint32_t area) {
+    return up.receiver == opposite(direction) && up.area >= area;
   }
-  // The direction of the inflow with the largest area, or −1.
-  int largest_inflow(std::int64_t i, std::int64_t j) const {
+  // The direction of the inflow with the largest area, if it has at least this one, or −1.
+  int largest_inflow(std::int64_t i, std::int64_t j, std::uint32_t area) const {
     int best = -1;
     for (int d = 0; d < 6; ++d) {
       const Node& up = n_.beside(i, j, d);
-      if (flows_in(up, d) && (best < 0 || up.area > n_.beside(i, j, best).area)) best = d;
+      if (flows_in(up, d, area) && (best < 0 || up.area > n_.beside(i, j, best).area)) best = d;
     }
     return best;
+  }
+
+  void fill_bins() {
+    const auto side = static_cast<std::int32_t>(patch_.square.side / ReachBins::kSide) + 1;
+    const auto fill = [&](const auto& things, const auto& reach_of) {
+      ReachBins bins(things.size(), side);
+      for (std::size_t k = 0; k < things.size(); ++k) {
+        const std::int32_t x = things[k].x, z = things[k].z, reach = reach_of(things[k]);
+        bins.add(k, {x - reach, z - reach, x + reach, z + reach});
+      }
+      return bins;
+    };
+    patch_.spot_bins = fill(patch_.spots, [](const Spot& s) { return s.reach; });
+    patch_.curve_bins = fill(patch_.curves, [&](const Curve& c) { return reach_units(patch_, c); });
   }
 
   using Vector = std::array<double, 2>;  // metres from a node
@@ -308,7 +332,7 @@ class Builder {
 
 std::size_t Patch::bytes() const {
   return sizeof(Patch) + spots.capacity() * sizeof(Spot) + curves.capacity() * sizeof(Curve) +
-         lakes.capacity() * sizeof(Lake);
+         lakes.capacity() * sizeof(Lake) + spot_bins.bytes() + curve_bins.bytes();
 }
 
 float channel_width_m(double km2, double max_m) {

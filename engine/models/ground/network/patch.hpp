@@ -4,7 +4,9 @@
 // a point give it the same bits, because every spot and curve is cut by its own distance.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -59,6 +61,51 @@ struct Lake {
   std::uint32_t body = 0;
 };
 
+// The spots or curves that reach each of kSide² squares of a patch, as bits. Callers still cut each
+// by its own distance: squares differ from patch to patch.
+class ReachBins {
+ public:
+  static constexpr std::int32_t kSide = 8;
+
+  // For `count` things in squares of this side, from the patch's origin on.
+  ReachBins(std::size_t count, std::int32_t side)
+      : words_((count + 63) / 64), side_(side), bits_(words_ * kSide * kSide) {}
+  ReachBins() = default;
+  // An axis-aligned rectangle, both ends included.
+  struct Box {
+    std::int32_t x0, z0, x1, z1;
+  };
+  void add(std::size_t thing, const Box& reach) {
+    each(reach, [&](std::size_t square) {
+      bits_[square * words_ + thing / 64] |= std::uint64_t{1} << (thing % 64);
+    });
+  }
+  // Calls visit(thing), ascending, for all that may reach a box.
+  template <class Visit>
+  void find(const Box& box, const Visit& visit) const {
+    for (std::size_t w = 0; w < words_; ++w) {
+      std::uint64_t found = 0;
+      each(box, [&](std::size_t square) { found |= bits_[square * words_ + w]; });
+      for (; found != 0; found &= found - 1)
+        visit(w * 64 + static_cast<std::size_t>(std::countr_zero(found)));
+    }
+  }
+  std::size_t bytes() const { return bits_.capacity() * sizeof(std::uint64_t); }
+
+ private:
+  template <class Visit>
+  void each(const Box& box, const Visit& visit) const {
+    const auto square = [&](std::int32_t v) { return std::clamp(v / side_, 0, kSide - 1); };
+    for (std::int32_t v = square(box.z0); v <= square(box.z1); ++v) {
+      for (std::int32_t u = square(box.x0); u <= square(box.x1); ++u)
+        visit(static_cast<std::size_t>(v * kSide + u));
+    }
+  }
+  std::size_t words_ = 0;
+  std::int32_t side_ = 1;
+  std::vector<std::uint64_t> bits_;
+};
+
 struct Patch {
   int level = 0;
   Square square;  // the samples that the patch serves
@@ -70,10 +117,16 @@ struct Patch {
   std::vector<Spot> spots;    // rows of the lattice, then columns
   std::vector<Curve> curves;  // in the order of their nodes, then of directions
   std::vector<Lake> lakes;    // ascending by level, then body
+  ReachBins spot_bins, curve_bins;
 
   // Memory of the patch, with its lists.
   std::size_t bytes() const;
 };
+
+// Curve::reach_m in units, rounded up.
+inline std::int32_t reach_units(const Patch& patch, const Curve& c) {
+  return static_cast<std::int32_t>(c.reach_m / patch.unit_m) + 1;
+}
 
 // Water as wide as a river with this drainage area, at most `max_m`.
 float channel_width_m(double km2, double max_m);
