@@ -174,6 +174,12 @@ void objects_move(benchmark::State& state) {
 }
 BENCHMARK(objects_move)->ArgName("moving")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
+// By address, because Google Benchmark 1.8 deprecates references to constants.
+void consume(const auto& value) {
+  const void* address = &value;
+  benchmark::DoNotOptimize(address);
+}
+
 // The first query of a block: ground, then models, then colliders.
 enum class Part { kGround, kModels, kSolids };
 template <Part kPart>
@@ -183,9 +189,9 @@ void first_touch(benchmark::State& state) {
   std::int32_t x = 0;
   for (auto _ : state) {
     const core::BlockCoord block{++x % 500, 77};
-    if (kPart == Part::kGround) benchmark::DoNotOptimize(cache.ground(block));
-    if (kPart == Part::kModels) benchmark::DoNotOptimize(cache.models(block));
-    if (kPart == Part::kSolids) benchmark::DoNotOptimize(cache.solids(block));
+    if (kPart == Part::kGround) consume(cache.ground(block));
+    if (kPart == Part::kModels) consume(cache.models(block));
+    if (kPart == Part::kSolids) consume(cache.solids(block));
   }
 }
 BENCHMARK(first_touch<Part::kGround>)

@@ -36,6 +36,15 @@ constexpr std::array kRows = {
 };
 constexpr std::array kColumns = {"avx512", "avx2", "sse4", "scalar", "reference"};
 
+// Google Benchmark 1.8 renamed the field.
+bool has_result(const auto& run) {
+  if constexpr (requires { run.error_occurred; }) {
+    return !run.error_occurred;
+  } else {
+    return run.skipped == decltype(run.skipped){};
+  }
+}
+
 class TableReporter : public benchmark::ConsoleReporter {
  public:
   TableReporter() : benchmark::ConsoleReporter(OO_None) {}
@@ -43,7 +52,7 @@ class TableReporter : public benchmark::ConsoleReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     benchmark::ConsoleReporter::ReportRuns(runs);
     for (const Run& run : runs) {
-      if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
+      if (run.run_type != Run::RT_Iteration || !has_result(run)) continue;
       for (const auto& [name, counter] : run.counters)
         figures_[run.run_name.function_name + "|" + run.run_name.args + "|" + name].push_back(
             counter.value);
