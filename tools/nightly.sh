@@ -9,12 +9,16 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 rows=(debian-12 debian-13 ubuntu-24.04 builds packages swiftshader fuzz starve long)
 
 # A new system in build/nightly-NAME with a clone of this revision, in which the two commands of README.md run.
-distribution() { # NAME SUITE ARGUMENTS OF test.sh
+distribution() { # NAME SUITE ARCHIVE COMPONENTS KEYS PACKAGE-OF-KEYS SCRIPT-OF-OLDER-SUITES
   needs debootstrap unshare
   [ "$(id -u)" = 0 ] || leave_out "only root makes a new system"
-  local root="$PWD/build/nightly-$1"
+  [ -e "/usr/share/keyrings/$5" ] || leave_out "/usr/share/keyrings/$5 is missing (package $6)"
+  local root="$PWD/build/nightly-$1" scripts=/usr/share/debootstrap/scripts script=""
+  # An older debootstrap does not know a newer suite, but its script for older ones serves.
+  [ -e "$scripts/$2" ] || script="$scripts/$7"
   rm -rf --one-file-system "$root"
-  debootstrap --variant=minbase "$2" "$root"
+  debootstrap --force-check-gpg --keyring="/usr/share/keyrings/$5" --variant=minbase --components="$4" "$2" "$root" "$3" \
+    ${script:+"$script"}
   git clone -q . "$root/psygen"
   echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/fast" # nobody needs the system after a crash
   cp --remove-destination /etc/resolv.conf "$root/etc/resolv.conf"
@@ -24,7 +28,6 @@ distribution() { # NAME SUITE ARGUMENTS OF test.sh
     for folder in sys dev; do mount --rbind "/$folder" "$ROOT/$folder"; done
     exec chroot "$ROOT" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
       bash -ec "$0"' '
-        [ "$(. /etc/os-release && echo "$ID")" != ubuntu ] || sed -i "s/ main$/ main universe/" /etc/apt/sources.list
         apt-get update -qq
         apt-get install -y -qq --no-install-recommends ca-certificates git >/dev/null
         git config --global --add safe.directory /psygen
@@ -35,12 +38,18 @@ distribution() { # NAME SUITE ARGUMENTS OF test.sh
     "build/nightly-$1.log" >&3
   rm -rf --one-file-system "$root"
 }
+debian() { # NAME SUITE
+  distribution "$@" http://deb.debian.org/debian main debian-archive-keyring.gpg debian-archive-keyring sid
+}
 how_debian_12="a new system, GCC 12.2, Mesa 22.3"
-row_debian_12() { distribution debian-12 bookworm; }
+row_debian_12() { debian debian-12 bookworm; }
 how_debian_13="a new system, GCC 14.2, Mesa 25.0, GLFW 3.4"
-row_debian_13() { distribution debian-13 trixie; }
+row_debian_13() { debian debian-13 trixie; }
 how_ubuntu_24_04="a new system, GCC 13, Mesa 24"
-row_ubuntu_24_04() { distribution ubuntu-24.04 noble; }
+row_ubuntu_24_04() {
+  distribution ubuntu-24.04 noble http://archive.ubuntu.com/ubuntu main,universe ubuntu-archive-keyring.gpg \
+    "ubuntu-keyring, which Debian has since 13" gutsy
+}
 
 how_builds="GCC and clang, static and shared: installed, used by another project"
 row_builds() { tools/builds.sh; }
