@@ -90,7 +90,8 @@ if(TARGET psygen-editor)
   psygen_package(psygen-editor graphics "procedural worlds larger than memory - editor
 ${about}This package has the editor. Each parameter of a world has a control, the
 land follows at once, and a strip under each slider shows what values cost."
-    COMPONENTS psygen_editor DEPENDS libvulkan1 psygen "${data}" RECOMMENDS "${driver}" psygen-pictures SUGGESTS psygen-doc)
+    COMPONENTS psygen_editor DEPENDS libvulkan1 psygen "${data}" RECOMMENDS "${driver}" psygen-pictures qt6-wayland
+    SUGGESTS psygen-doc)
 endif()
 list(TRANSFORM psygen_components PREPEND psygen_ OUTPUT_VARIABLE libraries)
 psygen_package(psygen-dev libdevel "procedural worlds larger than memory - development files

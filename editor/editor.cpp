@@ -54,8 +54,9 @@ bool parse(QCommandLineParser& parser, const QStringList& arguments) {
   return is_good;
 }
 
-// Prints help and version, which need no display. Returns what require_x11() does, or an exit code.
-tl::expected<std::shared_ptr<void>, int> require_display(int argc, char** argv) {
+// Prints help and version, which need no display. Returns the display that must stay open until
+// QApplication has connected, or an exit code.
+tl::expected<std::shared_ptr<void>, int> open_display(int argc, char** argv) {
   // Only these words: options of Qt such as -reverse look like short options.
   const auto asks = [](const char* argument) {
     constexpr std::string_view kQuestions[] = {"-h", "--help", "--help-all", "-v", "--version"};
@@ -66,9 +67,9 @@ tl::expected<std::shared_ptr<void>, int> require_display(int argc, char** argv) 
     QCommandLineParser parser;
     parse(parser, app.arguments());
   }
-  auto x11 = require_x11({argv, static_cast<std::size_t>(argc)});
-  if (!x11) return tl::unexpected(cli::fail_with(x11.error()));
-  return *x11;
+  auto display = require_display({argv, static_cast<std::size_t>(argc)});
+  if (!display) return tl::unexpected(cli::fail_with(display.error()));
+  return *display;
 }
 
 // Qt reports by a fatal message that it cannot start, and would then abort.
@@ -104,7 +105,7 @@ int edit(int argc, char** argv, std::vector<app::Plugin> plugins) {
   QApplication::setOrganizationName("psygen");
   QApplication::setApplicationName("psygen-editor");
   QApplication::setApplicationVersion(to_qstring(core::version()));
-  const auto display = require_display(argc, argv);
+  const auto display = open_display(argc, argv);
   if (!display) return display.error();
   const QtMessageHandler usual = qInstallMessageHandler(end_at_fatal);
   QApplication app(argc, argv);

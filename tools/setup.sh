@@ -14,11 +14,11 @@ build=(
   nlohmann-json3-dev libspdlog-dev libfmt-dev libxxhash-dev libimgui-dev libstb-dev fonts-dejavu-core libhwy-dev
   libtinygltf-dev libmeshoptimizer-dev libsqlite3-dev libopenal-dev libsndfile1-dev libbullet-dev
 )
-editor=(qt6-base-dev libxcb1-dev pkg-config libdraco-dev)
+editor=(qt6-base-dev qt6-base-private-dev qt6-wayland libxcb1-dev pkg-config libdraco-dev)
 test=(
   git python3 ccache spirv-tools vulkan-validationlayers libopenmpi-dev openmpi-bin slurm-wlm munge libgtest-dev
   libgmock-dev libbenchmark-dev libassimp-dev doxygen valgrind gdb linux-perf xvfb openbox xdotool x11-utils
-  x11-xkb-utils sway libxkbcommon-tools chromium
+  x11-xkb-utils sway grim libxkbcommon-tools chromium
 )
 ci=(clang-format clang-tidy)
 # For the test in which other programs read tilesets. A newer Node.js from elsewhere works too.

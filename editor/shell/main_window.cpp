@@ -32,6 +32,7 @@
 #include "editor/shell/theme.hpp"
 #include "editor/shell/view_bars.hpp"
 #include "editor/shell/view_commands.hpp"
+#include "editor/shell/view_container.hpp"
 #include "editor/tools/view_tools.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/world/world.hpp"
@@ -121,8 +122,7 @@ MainWindow::~MainWindow() {
 }
 
 void MainWindow::add_view() {
-  QWidget* container = QWidget::createWindowContainer(view_, this);
-  container->setFocusPolicy(Qt::StrongFocus);
+  QWidget* container = make_view_container(*view_, this);
   container->setAccessibleName(tr("View of the world"));
   container->setMinimumSize(320, 240);
   setCentralWidget(container);

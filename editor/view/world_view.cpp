@@ -2,6 +2,7 @@
 
 #include <QGuiApplication>
 #include <QPlatformSurfaceEvent>
+#include <QScreen>
 #include <algorithm>
 #include <chrono>
 #include <glm/geometric.hpp>
@@ -20,7 +21,7 @@ namespace psygen::editor {
 namespace {
 
 // Times between frames. Idle: another program is in front.
-constexpr int kBusyMs = 0, kIdleMs = 100, kBackgroundWorkMs = 150;
+constexpr int kIdleMs = 100, kBackgroundWorkMs = 150;
 constexpr int kPreparedMs = 10;  // a frame waits for the next world at most this long
 constexpr double kMaxStepS = 0.1;
 constexpr int kLostAgainMs = 60'000;  // a device lost again within this time stays closed
@@ -30,6 +31,10 @@ constexpr int kLostAgainMs = 60'000;  // a device lost again within this time st
 WorldView::WorldView(app::SessionOptions options) : options_(std::move(options)), surface_(*this) {
   setSurfaceType(QSurface::VulkanSurface);
   connect(&timer_, &QTimer::timeout, this, &WorldView::tick);
+  // Emitted before Qt destroys the window's side of the surface.
+  connect(this, &QWindow::visibleChanged, this, [this](bool visible) {
+    if (!visible && surface_.is_on_wayland()) close();
+  });
 }
 
 WorldView::~WorldView() {
@@ -44,7 +49,7 @@ void WorldView::show_world(std::string text, std::string file, bool new_session,
   text_is_new_ = true;
   failed_ = false;
   since_text_.start();
-  if (timer_.isActive()) timer_.start(kBusyMs);  // draws the next frame at once
+  if (timer_.isActive()) timer_.start(busy_ms());  // draws the next frame at once
   if (new_session) close();
   if (!session_ && isExposed()) open();
 }
@@ -56,6 +61,7 @@ void WorldView::open() {
   options.files = handmade::files_with(file_, pictures_);
   options.surface = &surface_;
   options.size = surface_.framebuffer_size();
+  options.vsync = options.vsync && !surface_.is_on_wayland();
   text_is_new_ = false;
   auto session = app::Session::create(std::move(options));
   if (!session) {
@@ -68,7 +74,7 @@ void WorldView::open() {
   apply_camera_placement();
   Q_EMIT opened({});
   since_tick_.start();
-  timer_.start(kBusyMs);
+  timer_.start(busy_ms());
 }
 
 void WorldView::close() {
@@ -106,6 +112,13 @@ bool WorldView::event(QEvent* event) {
       break;
   }
   return QWindow::event(event);
+}
+
+// The time between frames in which something moves. Without vertical sync, the timer keeps the rate
+// of the screen.
+int WorldView::busy_ms() const {
+  if (!surface_.is_on_wayland()) return 0;
+  return static_cast<int>(1'000 / std::max(screen()->refreshRate(), 1.0));
 }
 
 // Opens a new device after the device was lost; the camera keeps its pose. Returns false if the
@@ -197,7 +210,7 @@ void WorldView::tick() {
   const bool busy = input_.busy();
   const bool yields = background_work_.any() && !moved && !busy && !since_text_.isValid();
   timer_.setInterval(yields                                      ? kBackgroundWorkMs
-                     : in_front || busy || since_text_.isValid() ? kBusyMs
+                     : in_front || busy || since_text_.isValid() ? busy_ms()
                                                                  : kIdleMs);
 }
 

@@ -118,6 +118,7 @@ class WorldView final : public QWindow {
   void close();
   bool reopen();
   void tick();
+  int busy_ms() const;
   void take_text();
   void take_prepared();
   void apply_camera_placement();

@@ -18,7 +18,31 @@
 
 namespace psygen::editor {
 
-// To be created before the QApplication. The destructor removes its folders.
+// Folders for settings and state. To be created before the QApplication; the destructor removes
+// them.
+class OwnFolders {
+ public:
+  OwnFolders()
+      : home_(std::filesystem::temp_directory_path() /
+              ("psygen_editor_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(home_);
+    for (const char* variable : {"XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME"})
+      ::setenv(variable, home_.c_str(), 1);
+  }
+  ~OwnFolders() {
+    std::error_code ignored;
+    std::filesystem::remove_all(home_, ignored);
+  }
+  OwnFolders(const OwnFolders&) = delete;
+  OwnFolders& operator=(const OwnFolders&) = delete;
+
+  const std::filesystem::path& home() const { return home_; }
+
+ private:
+  std::filesystem::path home_;
+};
+
+// A display of X11, and folders. To be created before the QApplication.
 class OwnDisplay {
  public:
   // `size` in pixels. Null, with a message on stderr, if no display can be started.
@@ -32,25 +56,13 @@ class OwnDisplay {
     ::setenv("QT_QPA_PLATFORM", "xcb", 1);
     return own;
   }
-  ~OwnDisplay() {
-    std::error_code ignored;
-    std::filesystem::remove_all(home_, ignored);
-  }
-  OwnDisplay(const OwnDisplay&) = delete;
-  OwnDisplay& operator=(const OwnDisplay&) = delete;
 
-  const std::filesystem::path& home() const { return home_; }
+  const std::filesystem::path& home() const { return folders_.home(); }
 
  private:
-  OwnDisplay()
-      : home_(std::filesystem::temp_directory_path() /
-              ("psygen_editor_" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(home_);
-    for (const char* variable : {"XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME"})
-      ::setenv(variable, home_.c_str(), 1);
-  }
+  OwnDisplay() = default;
 
-  std::filesystem::path home_;
+  OwnFolders folders_;
   std::unique_ptr<platform::VirtualDisplay> display_;
 };
 

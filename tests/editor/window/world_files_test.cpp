@@ -191,7 +191,7 @@ TEST(StartOfTheEditor, HelpAndVersionNeedNoDisplay) {
   EXPECT_EQ(ended({"-reverse"}, {{"QT_QPA_PLATFORM", "offscreen"}}).code, 4);
 }
 
-TEST(StartOfTheEditor, WithoutX11ItEndsWithASentence) {
+TEST(StartOfTheEditor, WithoutADisplayItEndsWithASentence) {
   const QString display = qEnvironmentVariable("DISPLAY");
   struct Start {
     QStringList arguments;
@@ -199,7 +199,9 @@ TEST(StartOfTheEditor, WithoutX11ItEndsWithASentence) {
     std::string word;
   };
   const std::vector<Start> starts{
-      {{}, {}, "DISPLAY is not set"},
+      {{}, {}, "neither WAYLAND_DISPLAY nor DISPLAY is set"},
+      {{}, {{"WAYLAND_DISPLAY", "wayland-4242"}}, "\"wayland-4242\" cannot be opened"},
+      {{"-platform", "wayland"}, {{"DISPLAY", display}}, "WAYLAND_DISPLAY is not set"},
       {{"alps"}, {{"DISPLAY", ":4242"}}, "\":4242\" cannot be opened"},
       {{}, {{"DISPLAY", display}, {"QT_QPA_PLATFORM", "offscreen"}}, "\"offscreen\""},
       {{"-platform", "minimal"}, {{"DISPLAY", display}}, "\"minimal\""},

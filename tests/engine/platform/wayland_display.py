@@ -12,6 +12,7 @@ virtual-keyboard-unstable-v1 and wlr-virtual-pointer-unstable-v1 that stays conn
 import array
 import glob
 import os
+import pwd
 import socket
 import struct
 import subprocess
@@ -117,7 +118,12 @@ def main():
                        "WLR_RENDERER": "pixman"}
         for variable in ("DISPLAY", "WAYLAND_DISPLAY", "SWAYSOCK"):
             os.environ.pop(variable, None)
-        sway = subprocess.Popen(["sway", "-c", configuration], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        user = {}
+        if os.getuid() == 0:  # sway 1.7 (Debian 12) refuses to run as root
+            nobody = pwd.getpwnam("nobody")
+            os.chown(folder, nobody.pw_uid, nobody.pw_gid)
+            user = {"user": nobody.pw_uid, "group": nobody.pw_gid, "extra_groups": []}
+        sway = subprocess.Popen(["sway", "-c", configuration], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **user)
         try:
             while not (sockets := glob.glob(os.path.join(folder, "sway-ipc.*.sock"))):
                 if sway.poll() is not None:

@@ -1,0 +1,58 @@
+#include "editor/shell/view_container.hpp"
+
+#include <QGuiApplication>
+#include <QKeyEvent>
+#include <QWidget>
+
+#include "editor/view/world_view.hpp"
+
+namespace psygen::editor {
+namespace {
+
+// Passes keys from the widget to the view, and focuses the widget when the user clicks the view.
+class KeyboardOfView final : public QObject {
+ public:
+  KeyboardOfView(WorldView& view, QWidget& container)
+      : QObject(&container), view_(view), container_(container) {
+    view.installEventFilter(this);
+    container.installEventFilter(this);
+  }
+
+  bool eventFilter(QObject* watched, QEvent* event) override {
+    if (watched == &view_) {
+      if (event->type() == QEvent::MouseButtonPress) container_.setFocus(Qt::MouseFocusReason);
+      return false;
+    }
+    switch (event->type()) {
+      case QEvent::KeyPress:
+      case QEvent::KeyRelease: {
+        const int key = static_cast<QKeyEvent*>(event)->key();
+        if (key == Qt::Key_Tab || key == Qt::Key_Backtab) return false;  // moves the focus
+        QCoreApplication::sendEvent(&view_, event);
+        return true;
+      }
+      case QEvent::FocusOut:
+        QCoreApplication::sendEvent(&view_, event);
+        return false;
+      case QEvent::FocusIn:
+        return true;  // Qt would activate the view, which Wayland cannot
+      default:
+        return false;
+    }
+  }
+
+ private:
+  WorldView& view_;
+  QWidget& container_;
+};
+
+}  // namespace
+
+QWidget* make_view_container(WorldView& view, QWidget* parent) {
+  QWidget* container = QWidget::createWindowContainer(&view, parent);
+  container->setFocusPolicy(Qt::StrongFocus);
+  if (QGuiApplication::platformName().startsWith("wayland")) new KeyboardOfView(view, *container);
+  return container;
+}
+
+}  // namespace psygen::editor
