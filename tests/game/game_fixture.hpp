@@ -25,6 +25,7 @@ struct Running {
     if (!session_options) return tl::unexpected(session_options.error());
     session_options->validation = validation;
     session_options->scene.view_distance_m = 2000;
+    session_options->scene.watchdog_seconds = 1e6;
     auto made = app::Session::create(std::move(*session_options));
     if (!made) return tl::unexpected(made.error());
     session = std::move(*made);

@@ -76,6 +76,7 @@ class EditorWindow : public testing::Test {
     options.session.target_hz = 0;
     options.session.validation = true;
     options.session.scene.view_distance_m = 300;
+    options.session.scene.watchdog_seconds = 1e6;  // no modeler hangs, however busy the machine is
     options.session.scene.fade_seconds = 0;
     options.session.scene.budget_bytes = 64ull << 20;
     options.document.state_folder = folder_.path() / "state";

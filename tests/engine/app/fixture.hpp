@@ -25,6 +25,7 @@ inline SessionOptions short_session() {
   options.validation = true;
   options.size = {320, 180};
   options.scene.virtual_time = true;  // results do not depend on the load of the machine
+  options.scene.watchdog_seconds = 1e6;
   options.scene.view_distance_m = 200;
   options.scene.budget_bytes = 128ull << 20;
   return options;

@@ -22,6 +22,7 @@ inline SceneSettings small_settings() {
   settings.budget_bytes = 64ull << 20;
   settings.modelers = 1;
   settings.virtual_time = true;  // tests do not depend on what the machine has left over
+  settings.watchdog_seconds = 1e6;
   settings.streaming_budget_ms = 1e9;
   settings.streaming_ticks = 1;
   return settings;
