@@ -1,0 +1,152 @@
+// A river network as the ground of a world: in files, nodes of all levels, queries, hashes, water.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/models/terrain/ground.hpp"
+#include "engine/models/terrain/terrain.hpp"
+#include "engine/world/placement.hpp"
+#include "engine/world/water.hpp"
+#include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/world/shipped.hpp"
+
+namespace psygen::world {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::parsed;
+using testing::registry;
+
+// Endless land, 200 m high, with a river valley every few hundred metres.
+constexpr const char* kRiverLand = R"(format = 1
+
+[world]
+name = "river land"
+seed = 11
+blocks = [0, 0]
+cell_m = 1
+block_vertices = 33
+
+[terrain]
+octaves = 7
+feature_m = 300
+relief_m = 200
+
+[water]
+level_m = 20
+)";
+constexpr const char* kRivers = "[rivers]\nroot_spacing_m = 1024\nhalvings = 5\nsea_share = 0.2\n";
+constexpr const char* kErosion = "[erosion]\nstrength = 0.5\ngully_m = 40\n";
+constexpr std::size_t kSide = 33;
+constexpr double kBlockM = 32;
+
+std::string river_text() {
+  return std::string(kRiverLand) + kRivers;
+}
+
+std::vector<core::TerrainVertex> mesh_of(const World& world, core::BlockCoord node, int level,
+                                         int mesh_level) {
+  return models::test::synthesise(registry()[world.terrain_model],
+                                  terrain_parameters(world, node, level), mesh_level)
+      .vertices<core::TerrainVertex>();
+}
+
+TEST(NetworkGround, AgreesAlongTheSeamsOfNodesOfALevel) {
+  for (const std::string& text : {river_text(), river_text() + kErosion}) {
+    const World world = parsed(text);
+    for (int level = 0; level < 6; ++level) {
+      for (const core::BlockCoord node : {core::BlockCoord{0, 0}, {17, -9}, {-1000, 300}}) {
+        const auto here = mesh_of(world, node, level, 0),
+                   east = mesh_of(world, {node.x + 1, node.z}, level, 0),
+                   south = mesh_of(world, {node.x, node.z + 1}, level, 0);
+        for (std::size_t k = 0; k < kSide; ++k) {
+          EXPECT_EQ(here[k * kSide + kSide - 1].height, east[k * kSide].height) << level;
+          EXPECT_EQ(here[(kSide - 1) * kSide + k].height, south[k].height) << level;
+        }
+      }
+    }
+  }
+}
+
+TEST(NetworkGround, MorphsIntoTheHeightsOfTheParent) {
+  const World world = parsed(river_text());
+  const models::TerrainGrid grid(static_cast<int>(kSide), 1);
+  const auto n = static_cast<std::size_t>(grid.n);
+  for (int level = 0; level < 4; ++level) {
+    const auto child = mesh_of(world, {2, 2}, level, 1),
+               parent = mesh_of(world, {1, 1}, level + 1, 1);
+    for (std::size_t z = 0; z < n; z += 2) {
+      for (std::size_t x = 0; x < n; x += 2)
+        ASSERT_EQ(child[z * n + x].coarse_height, parent[z / 2 * n + x / 2].height) << level;
+    }
+  }
+}
+
+TEST(NetworkGround, OfQueriesEqualsThatOfMeshes) {
+  const World world = parsed(river_text() + kErosion);
+  for (const core::BlockCoord block : {core::BlockCoord{0, 0}, {40, 7}, {-3, -90}}) {
+    const auto mesh = mesh_of(world, block, 0, 0);
+    for (std::size_t i = 0; i < kSide * kSide; i += 7) {
+      const auto x = static_cast<double>(i % kSide), z = static_cast<double>(i / kSide);
+      if (x >= kBlockM || z >= kBlockM) continue;
+      EXPECT_NEAR(models::ground_height_m(world.terrain, block, x, z),
+                  200.0 * mesh[i].height / 65535.0, 1e-9);
+    }
+  }
+}
+
+// Rivers lie at many heights, above their beds and below their banks, and flow.
+TEST(NetworkGround, HasRiversAtManyHeights) {
+  const World world = parsed(river_text());
+  std::size_t wet = 0, flowing = 0;
+  double lowest_m = 1e9, highest_m = 0;
+  for (int z = 0; z < 120; ++z) {
+    for (int x = 0; x < 120; ++x) {
+      const core::WorldPosition at = core::normalised({{0, 0}, {x * 17.0, 0, z * 17.0}}, kBlockM);
+      const WaterPoint water = water_at(world, at);
+      if (water.is_dry() || water.body == kSea) continue;
+      ++wet;
+      flowing += glm::length(water.flow_m_s) > 0.05F ? 1 : 0;
+      EXPECT_GT(water.surface_m, 20 - 1e-3) << "no river lies below the sea";
+      EXPECT_GT(water.depth_m, 0);
+      EXPECT_LT(water.depth_m, 40);
+      lowest_m = std::min(lowest_m, water.surface_m);
+      highest_m = std::max(highest_m, water.surface_m);
+    }
+  }
+  EXPECT_GT(wet, 20U);
+  EXPECT_GT(flowing, 10U);
+  EXPECT_GT(highest_m, lowest_m + 10);
+}
+
+TEST(NetworkGround, ReadsBackEqualAndChangesTheKeysOfMeshes) {
+  const World world = parsed(river_text()), plain = parsed(kRiverLand);
+  const std::string text = write_world(world, registry());
+  EXPECT_EQ(parsed(text), world);
+  EXPECT_THAT(text, HasSubstr("[rivers]"));
+  EXPECT_EQ(write_world(plain, registry()).find("[rivers]"), std::string::npos);
+  EXPECT_NE(terrain_parameters(world, {0, 0}).edits_hash(), 0U);
+  EXPECT_EQ(terrain_parameters(plain, {0, 0}).edits_hash(), 0U);
+}
+
+TEST(NetworkGround, WrongNumbersAreRejectedWithLineAndField) {
+  const auto message = [](const std::string& text) {
+    const auto world = parse_world(text, "w.toml", registry());
+    return world ? std::string("accepted") : world.error().message;
+  };
+  EXPECT_THAT(message(std::string(kRiverLand) + "[rivers]\nroot_spacing_m = 10\n"),
+              HasSubstr("root_spacing_m"));
+  EXPECT_THAT(message(std::string(kRiverLand) + "[rivers]\nlake_share = 2\n"),
+              HasSubstr("lake_share"));
+  EXPECT_THAT(message(std::string(kRiverLand) + "[rivers]\nroot_spacing_m = 256\nhalvings = 8\n"),
+              HasSubstr("nodes"));
+  std::string dry = river_text();
+  dry.replace(dry.find("level_m = 20"), 12, "shore_m = 1");
+  EXPECT_THAT(message(dry), HasSubstr("needs a sea"));
+}
+
+}  // namespace
+}  // namespace psygen::world
