@@ -532,8 +532,8 @@ class Call {
     w.body = hn::IfThenElse(hn::RebindMask(di, more), body, w.body);
   }
 
-  // One vector of samples. Banks are first raised to the water, then lowered, then all beds are
-  // cut, so no bank dams another bed.
+  // One vector of samples. Valleys are lowered first, then banks are raised to the water, so that
+  // no valley drains another channel; then all beds are cut, so that no bank dams another bed.
   void carve_vector(std::size_t r, std::size_t i, const CarvedRows& out) {
     const FloatTag d;
     const IntTag di;
@@ -550,7 +550,7 @@ class Call {
     const auto open = hn::Or(sea, lake_water);  // has no banks
 
     Water w{zero, zero, zero, zero, zero, hn::Zero(di)};
-    Float high = ground, bed = set(1e30F), px, pz;
+    Float low = ground, bed = set(1e30F), px, pz;
     bool any = false;
     for (const Curve* c : chosen_.curves) {
       if (!reaches(*c, r, i, px, pz)) continue;
@@ -558,26 +558,25 @@ class Call {
       if (hn::AllFalse(d, b.near)) continue;
       any = true;
       const Bank bank = bank_of(b);
-      const Float raised =
-          hn::Add(ground, hn::Mul(hn::Sub(bank.height, ground), hn::Mul(bank.levee, bank.levee)));
-      high = hn::IfThenElse(bank.dry, hn::Max(high, raised), high);
+      const Float lowered =
+          hn::Add(ground, hn::Mul(hn::Sub(hn::Add(bank.height, bank.rise), ground), bank.force));
+      low = hn::IfThenElse(bank.dry, hn::Min(low, lowered), low);
       bed = hn::Min(bed, bed_of(b, ground));
       if (out.water_m != nullptr) add_channel(*c, b, out.flow_x != nullptr, w);
     }
-    high = hn::IfThenElse(open, ground, high);
-    Float low = high;
+    Float high = low;
     if (any) {
       for (const Curve* c : chosen_.curves) {
         if (!reaches(*c, r, i, px, pz)) continue;
         const Beside b = beside(*c, px, pz);
         const Bank bank = bank_of(b);
-        const Float lowered =
-            hn::Add(high, hn::Mul(hn::Sub(hn::Add(bank.height, bank.rise), high), bank.force));
-        low = hn::IfThenElse(bank.dry, hn::Min(low, lowered), low);
+        const Float raised =
+            hn::Add(low, hn::Mul(hn::Sub(bank.height, low), hn::Mul(bank.levee, bank.levee)));
+        high = hn::IfThenElse(bank.dry, hn::Max(high, raised), high);
       }
-      low = hn::IfThenElse(open, ground, low);
+      high = hn::IfThenElse(open, ground, high);
     }
-    ground = hn::Min(low, bed);
+    ground = hn::Min(high, bed);
     store_few(ground, d, out.height_m + at, n);
     if (out.water_m == nullptr) return;
     const Int lake_body =
@@ -597,15 +596,15 @@ class Call {
     const FloatTag d;
     const Float edge = hn::Max(b.edge, hn::Zero(d));
     const Float widths = hn::Mul(b.width, set(kBankWidths));
-    const auto fade = [&](float more) HWY_ATTR {
+    const auto fade = [&](float more, Float grown) HWY_ATTR {
       const Float s = hn::Min(hn::Div(edge, hn::Add(set(more), widths)), set(1));
-      return hn::Mul(hn::Mul(hn::Sub(set(1), smooth(s)), b.valley), b.abeam);
+      return hn::Mul(hn::Mul(hn::Sub(set(1), smooth(s)), grown), b.abeam);
     };
     Bank bank;
     bank.height = hn::Add(b.surface, hn::Mul(set(0.3F), hn::Min(edge, set(1))));
     bank.rise = hn::Mul(set(0.12F), edge);
-    bank.force = fade(kValleyM);
-    bank.levee = fade(kLeveeM);
+    bank.force = fade(kValleyM, b.valley);
+    bank.levee = fade(kLeveeM, b.taper);
     bank.dry = hn::And(b.near, hn::Gt(b.edge, hn::Zero(d)));
     return bank;
   }

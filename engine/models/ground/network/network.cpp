@@ -97,6 +97,7 @@ network::NodePatch RiverNetwork::nodes(int level, std::int64_t x_cells, std::int
 
 template <class Visit>
 void RiverNetwork::each_part(const Lattice& at, GroundDetail detail, const Visit& visit) const {
+  if (at.x.empty() || at.z.empty()) return;
   const int level = level_of(detail);
   const std::int64_t side = tile_units(level), beyond = kBeyond * scale_.spacing(level);
   const bool guided = is_fine(detail);

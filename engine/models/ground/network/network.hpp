@@ -52,7 +52,7 @@ class RiverNetwork {
   void evaluate(const Lattice& at, GroundDetail detail, CarvedRows rows) const;
 
   // The water at a place over ground that nothing but the network shaped, at detail 0. Places are
-  // rounded to 1/64 cell; at vertices it has the bits of evaluate().
+  // finite and rounded to 1/64 cell; at vertices it has the bits of evaluate().
   NetworkWater water_at(const core::WorldPosition& place) const;
 
   // All ground of the network lies between 0 and the relief.

@@ -277,6 +277,31 @@ TEST(RiverNetwork, WaterNeverRisesDownstream) {
   EXPECT_EQ(beside.dry, 0);
 }
 
+TEST(RiverNetwork, WaterHasBanks) {
+  const auto network = network_of({.sea_share = 0.1});
+  std::size_t wet = 0, leaks = 0;  // water beside dry ground over a metre lower
+  constexpr std::size_t kSide = 400;
+  for (const Place& place : places(20, 400'000)) {
+    const auto x = range(place[0], 1, kSide), z = range(place[1], 1, kSide);
+    Result r(kSide * kSide);
+    network->evaluate({x, z}, {}, r.carved_rows(kSide));
+    const auto dry_below = [&](std::size_t at, float level_m) {
+      return r.water[at] == RiverNetwork::kDry && r.height[at] < level_m - 1;
+    };
+    for (std::size_t at = kSide; at < r.height.size() - kSide; ++at) {
+      if (r.water[at] == RiverNetwork::kDry || at % kSide == 0 || at % kSide == kSide - 1) continue;
+      ++wet;
+      const float level = r.water[at];
+      leaks += dry_below(at - 1, level) || dry_below(at + 1, level) ||
+                       dry_below(at - kSide, level) || dry_below(at + kSide, level)
+                   ? 1
+                   : 0;
+    }
+  }
+  EXPECT_GT(wet, 20'000U);
+  EXPECT_LT(leaks * 500, wet) << leaks;
+}
+
 // A chord of a curve, in metres from the patch's origin.
 struct Chord {
   double ax, az, bx, bz;
@@ -386,7 +411,7 @@ TEST(RiverNetwork, KeepsItsBits) {
             evaluate(*network, range(place[0], 5, 33), range(place[1], 5, 33), {level}).hash());
     }
   }
-  EXPECT_EQ(hash, 0x72470406891ABE45ULL);
+  EXPECT_EQ(hash, 0xE41D35C3EEBFA84CULL);
 }
 
 TEST(RiverNetwork, AtTheEndsOfItsSettingsHasFiniteGround) {
