@@ -170,6 +170,9 @@ class Builder {
   }
 
   void fill_bins() {
+    patch_.spots.shrink_to_fit();
+    patch_.curves.shrink_to_fit();
+    patch_.lakes.shrink_to_fit();
     const auto side = static_cast<std::int32_t>(patch_.square.side / ReachBins::kSide) + 1;
     const auto fill = [&](const auto& things, const auto& reach_of) {
       ReachBins bins(things.size(), side);

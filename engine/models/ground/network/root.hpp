@@ -68,8 +68,8 @@ class LandFields {
   double land_offset_ = 0, high_offset_ = 0;
 };
 
-// Finds a tile; about 3 ms. `border` is the first width tried and changes no bit.
-RootTile make_root_tile(const Scale& scale, const TileKey& key, std::int64_t border = 24);
+// Finds a tile; about 2 ms. `border` is the first width tried and changes no bit.
+RootTile make_root_tile(const Scale& scale, const TileKey& key, std::int64_t border = 40);
 
 // The nodes of the root with areas and heights, found along the rivers. Remembers them; one thread
 // at a time.
