@@ -9,6 +9,7 @@
 
 #include "engine/core/replace_file.hpp"
 #include "engine/exchange/unpack.hpp"
+#include "engine/exchange/water_object.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/world/files/text_file.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -93,6 +94,8 @@ core::Result<exchange::Document> block_document(const world::World& world,
   });
   if (error) return tl::unexpected(*error);
   if (totals.failed > 0) return core::fail(core::ErrorCode::kSynthesisFailed, totals.first_failure);
+  if (auto water = exchange::water_object(world, block))
+    document.objects.push_back(std::move(*water));
   return document;
 }
 

@@ -14,7 +14,8 @@
 
 namespace psygen::amplify {
 
-// All meshes of a block at a level of detail as a document, in metres from the block's corner.
+// All meshes of a block at a level of detail, and then the surface of its water, as a document, in
+// metres from the block's corner.
 // Fails with the error of the first mesh that fails.
 core::Result<exchange::Document> block_document(const world::World& world,
                                                 const models::Registry& registry,

@@ -13,10 +13,11 @@
 
 namespace psygen::exchange {
 
-// Materials: core::ModelVertex::material, or kGround for terrain.
-inline constexpr std::uint8_t kSolid = 0, kLeaf = 1, kGround = 255;
+// Materials: core::ModelVertex::material, or kGround for terrain, kWater for surfaces of water.
+inline constexpr std::uint8_t kSolid = 0, kLeaf = 1, kWater = 254, kGround = 255;
 // The name of a material in files.
-std::string material_name(std::uint8_t material);  // "solid", "leaf", "ground", "material_7"
+std::string material_name(
+    std::uint8_t material);  // "solid", "leaf", "water", "ground", "material_7"
 
 // The triangles of one material of an object.
 struct Part {

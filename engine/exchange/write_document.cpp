@@ -14,6 +14,8 @@ std::string material_name(std::uint8_t material) {
       return "solid";
     case kLeaf:
       return "leaf";
+    case kWater:
+      return "water";
     case kGround:
       return "ground";
     default:

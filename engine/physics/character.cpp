@@ -16,6 +16,8 @@ constexpr double kRiseAcceleration = 20;                          // m/s², of C
 constexpr double kMaxSlide = 12;  // m/s down ground that is too steep
 constexpr double kPieceM = 0.2;   // longer distances are split into pieces
 constexpr int kSlides = 4;
+constexpr double kFloats = 0.9;   // fraction of the height under water at which it floats
+constexpr double kWaterDrag = 3;  // 1/s, of vertical speed under water
 
 btVector3 along_plane(const btVector3& way, const btVector3& normal) {
   return way - normal * std::min(way.dot(normal), btScalar(0));
@@ -212,7 +214,24 @@ void Character::leave_floor() {
   floor_ = {};
 }
 
-void Character::step(double dt, double gravity, const btVector3& carried) {
+// The fraction of its height under water.
+double Character::submerged(const WaterHere& water) const {
+  return std::clamp((water.surface_m - feet_.y()) / settings_.height_m, 0.0, 1.0);
+}
+
+// Falls, or floats where `under` of its height are under water.
+void Character::fall(double dt, double gravity, double under) {
+  const bool floats = under > kFloats;
+  if (on_ground && velocity.y() <= 0 && !floats) {
+    velocity.setY(0);
+    return;
+  }
+  velocity.setY((velocity.y() - gravity * (1 - under / kFloats) * dt) /
+                (1 + kWaterDrag * under * dt));
+  if (floats && on_ground) leave_floor();
+}
+
+void Character::step(double dt, double gravity, const btVector3& carried, const WaterHere& water) {
   ride(carried);
   floor_velocity_ = carried / dt;
   feet_ += mover_.pushed_out(centre(feet_)) - centre(feet_);
@@ -222,7 +241,13 @@ void Character::step(double dt, double gravity, const btVector3& carried) {
   const double length = std::max(glm::length(input.direction), 1.0);
   const double usual = input.run ? settings_.run_speed : settings_.walk_speed;
   const glm::dvec2 wanted = input.direction * ((input.speed > 0 ? input.speed : usual) / length);
-  btVector3 change = btVector3(wanted.x, 0, wanted.y) - btVector3(velocity.x(), 0, velocity.z());
+  const double under = submerged(water);
+  // The current carries it, the more the deeper it wades.
+  const double drift = on_ground   ? std::clamp((under - 0.3) / 0.5, 0.0, 1.0)
+                       : under > 0 ? 1.0
+                                   : 0.0;
+  btVector3 change = btVector3(wanted.x, 0, wanted.y) + drift * water.flow -
+                     btVector3(velocity.x(), 0, velocity.z());
   const double most = dt * (on_ground ? kGroundAcceleration : kAirAcceleration);
   if (change.length() > most) change *= most / change.length();
   velocity += change;
@@ -239,7 +264,7 @@ void Character::step(double dt, double gravity, const btVector3& carried) {
     rising_ = velocity.y() > 0;
     if (rising_) leave_floor();
   } else {
-    velocity.setY(on_ground && velocity.y() <= 0 ? 0 : velocity.y() - gravity * dt);
+    fall(dt, gravity, under);
     rising_ = velocity.y() > 0;
   }
   if (velocity.length() > kMaxSpeed) velocity *= kMaxSpeed / velocity.length();

@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "engine/physics/buoyancy.hpp"
 #include "engine/physics/capsule_mover.hpp"
 #include "engine/physics/object_bodies.hpp"
 #include "engine/physics/terrain.hpp"
@@ -24,8 +25,8 @@ class Character {
   Character& operator=(const Character&) = delete;
 
   // Moves the character for `dt` seconds. `carried` is the displacement of the object that it
-  // stands on in this time.
-  void step(double dt, double gravity, const btVector3& carried);
+  // stands on in this time, `water` the water at its feet.
+  void step(double dt, double gravity, const btVector3& carried, const WaterHere& water);
   // Teleports the character, but not below the ground and not beyond the walls of a bounded world.
   void teleport(const btVector3& feet);
   // Adapts to a move of Bullet's origin by `by`.
@@ -58,6 +59,8 @@ class Character {
   void ride(const btVector3& carried);
   void leave_floor();
   bool is_walkable(const btVector3& normal) const { return normal.y() >= min_up_; }
+  double submerged(const WaterHere& water) const;
+  void fall(double dt, double gravity, double under);
   void publish(bool jumped_there);
 
   btDynamicsWorld& bullet_;

@@ -49,6 +49,9 @@ core::Result<World> World::create(query::World& query, const Settings& settings)
   if (!(settings.gravity >= 0 && settings.gravity <= 100))
     return core::invalid_argument(
         fmt::format("gravity must be 0 … 100 m/s², not {}", settings.gravity));
+  if (!(settings.water_kg_m3 >= 0 && settings.water_kg_m3 <= 20'000))
+    return core::invalid_argument(
+        fmt::format("the density of water must be 0 … 20,000 kg/m³, not {}", settings.water_kg_m3));
   if (settings.max_bodies > 1'000'000) return core::invalid_argument("at most 1,000,000 bodies");
   return World(std::make_unique<Impl>(query, settings));
 }

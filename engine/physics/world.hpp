@@ -16,6 +16,7 @@ namespace psygen::physics {
 
 struct Settings {
   double gravity = 9.81;            // m/s², downwards; 0 … 100
+  double water_kg_m3 = 1000;        // density of water, 0 … 20,000; 0: water has no effect
   std::size_t max_bodies = 10'000;  // characters included
   // Idle blocks are kept for this many steps, and at most this many blocks.
   std::uint32_t keep_steps = 120;

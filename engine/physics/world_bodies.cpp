@@ -60,6 +60,7 @@ core::Result<BodyId> World::add(const BodySettings& s) {
   btScalar radius;
   body.shape.get()->getBoundingSphere(centre, radius);
   body.reach_m = centre.length() + radius;
+  body.displacement = displacement_of(s.shape);
   body.before = btTransform(to_bt(*rotation), *at);
   body.motion = btDefaultMotionState(body.before);
   const bool dynamic = s.motion == Motion::kDynamic;

@@ -148,10 +148,18 @@ void World::Impl::step(double dt) {
   sync_edits();
   objects.follow(dt);
   make_surroundings(dt);
-  for (auto& [number, character] : characters)
-    character.step(dt, settings.gravity, objects.way_of(character.floor(), character.feet()));
+  const bool has_water = settings.water_kg_m3 > 0 && world::has_water(query.world());
+  for (auto& [number, character] : characters) {
+    const btVector3& feet = character.feet();
+    character.step(dt, settings.gravity, objects.way_of(character.floor(), feet),
+                   has_water ? water_at(terrain, query.world(), feet) : WaterHere());
+  }
   for (auto& [number, body] : bodies) {
     body.before = body.rigid->getWorldTransform();
+    if (body.kind == Motion::kDynamic && has_water && body.rigid->isActive())
+      float_body(*body.rigid, body.displacement,
+                 water_at(terrain, query.world(), body.before.getOrigin()), settings.water_kg_m3,
+                 settings.gravity, dt);
     if (body.kind != Motion::kKinematic) continue;
     // Bodies that rest on a kinematic one sleep only if it does.
     const bool moves = body.is_moved || body.rigid->getLinearVelocity().length2() > 0 ||

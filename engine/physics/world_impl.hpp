@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 
+#include "engine/physics/buoyancy.hpp"
 #include "engine/physics/character.hpp"
 #include "engine/physics/ground_contacts.hpp"
 #include "engine/physics/object_bodies.hpp"
@@ -22,6 +23,7 @@ struct World::Impl {
     OwnedShape shape;
     Motion kind = Motion::kDynamic;
     double reach_m = 0;  // radius of a ball around the centre that holds the shape
+    Displacement displacement;
     btDefaultMotionState motion;
     std::unique_ptr<btRigidBody> rigid;
     btTransform before;     // pose before the step

@@ -108,7 +108,7 @@ class PathFinder::Search {
     bool closed = false;
   };
   struct Ground {
-    double height_m = 0, depth_m = 0;
+    double height_m = 0, depth_m = 0, flow_m_s = 0;
     float up = 1;  // of the normal
     bool exists = false;
   };
@@ -143,9 +143,21 @@ class PathFinder::Search {
     const auto [it, is_new] = grounds_.try_emplace(name_of(c));
     if (is_new && is_inside(c)) {
       const auto found = query_.ground(middle(c));
-      if (found) it->second = {found->height_m, found->water_depth_m, found->normal.y, true};
+      if (found)
+        it->second = {.height_m = found->height_m,
+                      .depth_m = found->water_depth_m,
+                      .flow_m_s = found->water == world::kNoWater ? 0 : flow_m_s(c),
+                      .up = found->normal.y,
+                      .exists = true};
     }
     return it->second;
+  }
+
+  double flow_m_s(Cell c) {
+    const auto water = query_.water(middle(c));
+    if (!water) return 0;
+    const glm::dvec2 flow(water->flow_m_s);
+    return std::sqrt(flow.x * flow.x + flow.y * flow.y);
   }
 
   // True if a tree or a boulder is in the cell.
@@ -181,8 +193,10 @@ class PathFinder::Search {
     };
     const double slope = (level_m(to) - level_m(from)) / run;
     if (slope > settings_.steepest_up || slope < -settings_.steepest_down) return kNoWay;
-    if (to.depth_m > settings_.wade_m) return run * settings_.swim_cost;
+    if (to.depth_m > settings_.knee_m && to.flow_m_s > settings_.fastest_m_s) return kNoWay;
+    if (to.depth_m > settings_.wade_m) return settings_.swims ? run * settings_.swim_cost : kNoWay;
     if (to.up < kMinUp && slope > -kGentle) return kNoWay;
+    if (to.depth_m > 0) run *= settings_.wade_cost;
     if (solids_ && is_narrow(b)) run *= settings_.narrow_cost;
     return run * (1 + 3 * slope * slope + (slope > 0 ? slope : 0));
   }

@@ -19,6 +19,10 @@ struct PathSettings {
   double wade_m = 0.9;                            // the walker swims in deeper water
   double swim_cost = 2.5;  // cost of a metre in deep water, relative to a metre of level ground; >=
                            // 1
+  bool swims = true;       // false: deeper water than wade_m is no way
+  double fastest_m_s = 1.5;  // no way through faster currents, where deeper than knee_m
+  double knee_m = 0.3;
+  double wade_cost = 1;    // cost factor of water up to wade_m; >= 1
   double narrow_cost = 5;  // cost factor of cells with an obstacle; >= 1
   double step_m = 0.55;    // lower obstacles do not block
   double aside_m = 0.45;   // minimum distance to obstacles

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "engine/core/rounding.hpp"
+#include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::query {
@@ -145,6 +146,7 @@ core::Result<Hit> World::cast(const Ray& ray) {
   if (ray.ground) cast_ground(course, hit);
   if (ray.models) cast_models(course, hit);
   if (ray.objects) cast_objects(course, hit);
+  if (ray.water) cast_water(course, hit);
   hit.position = core::normalised(
       {origin->block, origin->local + hit.distance_m * course.direction}, derived_.block_m);
   return hit;
@@ -265,6 +267,77 @@ void World::cast_objects(const Course& course, Hit& hit) const {
   hit.normal = found->hit.normal;
   hit.from_inside = found->hit.from_inside;
   hit.object = found->name;
+}
+
+std::optional<world::WaterSurface> World::water_under(const Course& course, double t) const {
+  return world::water_surface(*world_,
+                              {course.origin.block, course.origin.local + t * course.direction});
+}
+
+// Ends a ray at a surface of water at a distance, if the ground there is lower.
+bool World::meet_water(const Course& course, double t, Hit& hit) {
+  const auto at = on_ground({course.origin.block, course.origin.local + t * course.direction});
+  const auto water = water_under(course, t);
+  if (!at || !water) return false;
+  const glm::dvec2 local(at->local.x, at->local.z);
+  if (water->depth_m(cache_.ground(at->block).at(local).height_m) <= 0) return false;
+  hit = Hit();
+  hit.kind = HitKind::kWater;
+  hit.distance_m = t;
+  hit.normal = water->normal;
+  hit.from_inside = glm::dot(glm::dvec3(water->normal), course.direction) > 0;
+  hit.block = at->block;
+  hit.water = water->body;
+  return true;
+}
+
+// The sea is a plane. Blocks with rivers and lakes are searched in steps, and the step with the
+// surface is halved.
+void World::cast_water(const Course& course, Hit& hit) {
+  const double sea_m = world_->water.level_m;
+  const double to_sea = (sea_m - course.origin.local.y) / course.direction.y;  // NaN: along it
+  if (world_->water.exists() && to_sea >= 0 && to_sea <= hit.distance_m) {
+    const auto water = water_under(course, to_sea);
+    if (water && water->body == world::kSea) meet_water(course, to_sea, hit);
+  }
+  const auto& layer = world_->layer();
+  if (!layer) return;
+  const PlaneLine plane = course.plane();
+  const double step_m = world_->cell_m() / 2;
+  std::int64_t left = kMaxBlocks;
+  // Metres of the ray above the water that is not the sea.
+  const auto above_m = [&](double t) -> std::optional<double> {
+    const auto water = water_under(course, t);
+    if (!water || water->body == world::kSea) return std::nullopt;
+    return course.height_at(t) - water->surface_m;
+  };
+  march(plane, derived_.block_m, 0, hit.distance_m,
+        [&](std::int64_t x, std::int64_t z, double from, double to) {
+          if (left-- == 0 || from > hit.distance_m) return false;
+          if (course.lowest(from, to) > derived_.relief_m) return course.direction.y < 0;
+          const BlockCoord block = moved(course.origin.block, x, z);
+          if (layer->ground.network == nullptr &&
+              layer->ground.water_in(models::QuadCoord::of(block), derived_.block_m).empty())
+            return true;
+          const double end = std::min(to, hit.distance_m);
+          std::optional<double> before = above_m(from);
+          for (double t = from; t < end;) {
+            double next = std::min(t + step_m, end), low = t;
+            const auto here = above_m(next);
+            if (before && here && (*before < 0) != (*here < 0)) {
+              double high = next;
+              for (int i = 0; i < 40; ++i) {
+                const double middle = (low + high) / 2;
+                const auto there = above_m(middle);
+                ((there && (*there < 0) == (*before < 0)) ? low : high) = middle;
+              }
+              if (meet_water(course, high, hit)) return false;
+            }
+            before = here;
+            t = next;
+          }
+          return true;
+        });
 }
 
 core::Result<std::vector<World::BlockAround>> World::blocks_within(const core::WorldPosition& at,

@@ -37,10 +37,11 @@ struct Ray {
   bool ground = true;              // targets of the ray: the ground, models with a collider,
   bool models = true;
   bool objects = true;  // and objects, of World::meet()
+  bool water = false;   // and the surface of the sea, of lakes and rivers, from above and below
 };
 
 // The kind of target that a ray hit.
-enum class HitKind : std::uint8_t { kNothing, kGround, kModel, kObject };
+enum class HitKind : std::uint8_t { kNothing, kGround, kModel, kObject, kWater };
 
 // The end of a ray.
 struct Hit {
@@ -48,13 +49,14 @@ struct Hit {
   double distance_m = 0;         // from the origin; for kNothing, the distance that was searched
   core::WorldPosition position;  // normalised
   glm::vec3 normal{0, 1, 0};     // of the surface, unit length; the ground's points upwards
-  // True if the ray came out of the ground, or began inside a collider (then distance_m is 0 and
-  // the normal points against the ray).
+  // True if the ray came out of the ground or out of the water, or began inside a collider (then
+  // distance_m is 0 and the normal points against the ray).
   bool from_inside = false;
   core::BlockCoord block;                      // of the ground or the model
   std::uint32_t index = world::kTerrainIndex;  // of the model within the block
   models::ModelIndex model = 0;                // its type, or that of the terrain
   ObjectTag object = 0;                        // of kObject (scene::entity_of() in a scene)
+  world::WaterBody water = world::kNoWater;    // of kWater
 };
 
 // A model with its position.
@@ -103,6 +105,8 @@ class World {
   // Returns the first hit of a ray. It hits the ground from either side, and a collider from
   // outside. A ray that begins on the ground (within GroundGrid::kTouchM) and does not rise above
   // it hits it at distance 0. The ground has no vertical sides at the border of a bounded world.
+  // The surface of rivers and lakes is sampled every half cell of the ground under the ray, so a
+  // ray may miss a crest of less.
   // Fails with kInvalidArgument for an origin as above, a direction that is zero or not finite, and
   // a length that is not above 0. Time grows with the number of cells under the ray where it is
   // near the ground.
@@ -166,6 +170,9 @@ class World {
   void cast_ground(const Course& course, Hit& hit);
   void cast_models(const Course& course, Hit& hit);
   void cast_objects(const Course& course, Hit& hit) const;
+  void cast_water(const Course& course, Hit& hit);
+  std::optional<world::WaterSurface> water_under(const Course& course, double t) const;
+  bool meet_water(const Course& course, double t, Hit& hit);
   void cast_block(const Course& course, glm::dvec3 corner_m, core::BlockCoord block, Hit& hit);
   core::Result<std::vector<BlockAround>> blocks_within(const core::WorldPosition& at,
                                                        double radius_m) const;

@@ -70,6 +70,8 @@ void add_limits(Facts& facts, const world::Scatter& scatter) {
   facts.add("min_height_m", scatter.min_height_m, usual.min_height_m);
   facts.add("max_height_m", scatter.max_height_m, usual.max_height_m);
   facts.add("max_slope_deg", scatter.max_slope_deg, usual.max_slope_deg);
+  facts.add("max_depth_m", scatter.max_depth_m, usual.max_depth_m);
+  facts.add("near_water_m", scatter.near_water_m, usual.near_water_m);
   if (const std::uint64_t mask = world::mask_hash(scatter.mask); mask != 0) facts.add("mask", mask);
 }
 
@@ -184,6 +186,7 @@ std::vector<WorldPart> parts_of(const world::World& world, const models::Registr
     const auto add = [&](Facts& f) {
       add_limits(f, scatter);
       if (scatter.mask.ground != 0) f.add("ground", world::placing_hash(world));
+      if (scatter.limits_depth() || scatter.needs_water()) f.add("water", world.water.level_m);
     };
     part(kScatter, add, name, scatter.count);
   }

@@ -16,6 +16,7 @@
 #include "engine/telemetry/output_file.hpp"
 #include "engine/world/ground_blends.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/water.hpp"
 
 namespace psygen::tiles {
 namespace {
@@ -25,12 +26,16 @@ constexpr float kWhite = 65535.0F;
 struct Pictures {
   image::FloatImage heights;
   std::array<image::GreyImage, world::kGroundKinds> kinds;
+  image::FloatImage depths, flows_x, flows_z;  // of water; empty in a world without water
 
-  Pictures(std::uint32_t width, std::uint32_t height) {
+  Pictures(std::uint32_t width, std::uint32_t height, bool has_water) {
     const std::size_t pixels = std::size_t{width} * height;
     heights = {width, height, std::vector<float>(pixels)};
     for (image::GreyImage& kind : kinds)
       kind = {width, height, std::vector<std::uint16_t>(pixels)};
+    if (!has_water) return;
+    for (image::FloatImage* water : {&depths, &flows_x, &flows_z})
+      *water = {width, height, std::vector<float>(pixels)};
   }
 };
 
@@ -75,6 +80,12 @@ class Painter {
           static_cast<std::uint16_t>(seen * blends[kind] * kWhite + 0.5F);
       seen *= 1 - blends[kind];
     }
+    if (pictures_.depths.values.empty()) return;
+    const world::WaterPoint water =
+        world::water_at(world_, {block, {local.x, 0, local.y}}, point.height_m);
+    pictures_.depths.values[pixel] = static_cast<float>(water.depth_m);
+    pictures_.flows_x.values[pixel] = water.flow_m_s.x;
+    pictures_.flows_z.values[pixel] = water.flow_m_s.y;
   }
 
   const world::World& world_;
@@ -125,6 +136,16 @@ core::Result<void> write_pictures(const Pictures& pictures, const std::filesyste
     const auto file = folder / fmt::format("ground_{}.png", world::kGroundNames[kind]);
     if (auto ok = image::write_png(file, pictures.kinds[kind]); !ok) return ok;
   }
+  if (pictures.depths.values.empty()) return {};
+  image::GreyImage mask{pictures.depths.width, pictures.depths.height, {}};
+  for (const float depth : pictures.depths.values)
+    mask.grey.push_back(depth > 0 ? 65'535 : 0);
+  if (auto ok = image::write_png(folder / "water_mask.png", mask); !ok) return ok;
+  for (const auto& [name, picture] : {std::pair("water_depth.exr", &pictures.depths),
+                                      std::pair("water_flow_x.exr", &pictures.flows_x),
+                                      std::pair("water_flow_z.exr", &pictures.flows_z)}) {
+    if (auto ok = image::write_exr(folder / name, *picture); !ok) return ok;
+  }
   return {};
 }
 
@@ -146,7 +167,7 @@ core::Result<HeightmapReport> write_heightmap(const world::World& world,
                     width, height, kMaxHeightmapSide, (kMaxHeightmapSide - 1) / cells));
   if (auto ok = telemetry::create_output_folder(folder); !ok) return tl::unexpected(ok.error());
   HeightmapReport report{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
-  Pictures pictures(report.width, report.height);
+  Pictures pictures(report.width, report.height, world::has_water(world));
   if (auto ok = paint_all(Painter(world, region, pictures), region, options.threads, options.stop);
       !ok)
     return tl::unexpected(ok.error());

@@ -7,6 +7,7 @@
 
 #include "engine/amplify/block_files.hpp"
 #include "engine/exchange/unpack.hpp"
+#include "engine/exchange/water_object.hpp"
 #include "engine/synthesis/synthesise.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/placement.hpp"
@@ -83,6 +84,8 @@ core::Result<exchange::Document> TileMaker::document(const TileTree& tree, const
       if (!models) return tl::unexpected(models.error());
       document.objects.push_back(std::move(*models));
     }
+    if (auto water = exchange::water_object(world_, node, level))
+      document.objects.push_back(std::move(*water));
   }
   for (exchange::Object& part : document.objects)
     std::ranges::for_each(part.parts, drop_empty_triangles);

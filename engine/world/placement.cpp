@@ -15,6 +15,7 @@
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/models/water/water_surface.hpp"
 #include "engine/world/ground_blends.hpp"
+#include "engine/world/water.hpp"
 
 namespace psygen::world {
 namespace {
@@ -111,7 +112,8 @@ void place_wanted(const World& world, const models::Registry& registry, core::Bl
 
 Scattering::Scattering(const World& world, const models::ModelType& type, const Scatter& scatter,
                        core::BlockCoord block)
-    : seed_(world.seed),
+    : world_(world),
+      seed_(world.seed),
       size_m_(static_cast<float>(world.block_size_m())),
       type_(type),
       scatter_(scatter),
@@ -124,12 +126,19 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
   if (!world.shaped.roads.empty() && world.shaped.layer)
     roads_ =
         world.shaped.layer->ground.roads_in(models::QuadCoord::of(block), world.block_size_m());
+  if (!scatter.limits_depth() && world.shaped.has_water() && world.shaped.layer)
+    has_water_ =
+        world.shaped.layer->ground.network != nullptr ||
+        !world.shaped.layer->ground.water_in(models::QuadCoord::of(block), world.block_size_m())
+             .empty();
 }
 
 // True if the limits allow this ground.
 bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const {
   if (!(ground.height_m >= scatter_.min_height_m && ground.height_m <= scatter_.max_height_m &&
         ground.normal.y >= min_up_))
+    return false;
+  if (scatter_.limits_depth() && depth_m(ground.height_m, local_m) > scatter_.max_depth_m)
     return false;
   if (!palette_) return true;
   const GroundKind kind = main_kind(
@@ -138,8 +147,43 @@ bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m
   return (scatter_.mask.ground >> static_cast<unsigned>(kind) & 1U) != 0;
 }
 
-// True if a road or a mask excludes the instance at this position.
-bool Scattering::is_left_out(std::uint32_t index, glm::dvec2 local_m) const {
+// The depth of the water of the world's function, in metres.
+double Scattering::depth_m(double ground_m, glm::dvec2 local_m) const {
+  const auto water = function_water_surface(world_, {block_, {local_m.x, 0, local_m.y}});
+  return water ? water->depth_m(ground_m) : 0;
+}
+
+// True if there is water at the position, or on one of two rings of eight places around it.
+bool Scattering::is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m,
+                               glm::dvec2 local_m) const {
+  constexpr double kDiagonal = 0.70710678118654752;
+  constexpr std::array<glm::dvec2, 8> kWays{{{1, 0},
+                                             {kDiagonal, kDiagonal},
+                                             {0, 1},
+                                             {-kDiagonal, kDiagonal},
+                                             {-1, 0},
+                                             {-kDiagonal, -kDiagonal},
+                                             {0, -1},
+                                             {kDiagonal, -kDiagonal}}};
+  const auto is_wet = [&](glm::dvec2 at_m) {
+    return depth_m(ground.at(corner_m + at_m).height_m, at_m) > 0;
+  };
+  if (is_wet(local_m)) return true;
+  for (const double share : {1.0, 0.5}) {
+    for (const glm::dvec2& way : kWays) {
+      if (is_wet(local_m + way * (share * scatter_.near_water_m))) return true;
+    }
+  }
+  return false;
+}
+
+// True if a road, water or a mask excludes the instance at this position.
+bool Scattering::is_left_out(std::uint32_t index, glm::dvec2 local_m, double ground_m) const {
+  if (has_water_) {
+    const auto water =
+        world_.shaped.layer->ground.water_over(block_, local_m, static_cast<double>(size_m_));
+    if (water && (water->widths <= 0.5 || water->surface_m > ground_m)) return true;
+  }
   for (const models::GroundEdit* road : roads_) {
     if (keeps_clear(*road->road, block_, local_m, static_cast<double>(size_m_))) return true;
   }
@@ -160,7 +204,8 @@ std::optional<Scattering::Foothold> Scattering::place(const models::BlockGround&
     const double x = draw_coordinate(random, size_m_), z = draw_coordinate(random, size_m_);
     const models::GroundPoint point = ground.at(corner_m + glm::dvec2(x, z));
     if (scatter_.has_filter() && !may_stand(point, {x, z})) continue;
-    if (is_left_out(index, {x, z})) return std::nullopt;
+    if (scatter_.needs_water() && !is_near_water(ground, corner_m, {x, z})) continue;
+    if (is_left_out(index, {x, z}, point.height_m)) return std::nullopt;
     return Foothold{{x, point.height_m, z}, point.normal};
   }
   return std::nullopt;

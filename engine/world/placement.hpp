@@ -55,8 +55,8 @@ class Scattering {
     glm::vec3 normal{0, 1, 0};  // of the ground
   };
   // The first allowed position that instance `index` of the block tries. Nothing if no position is
-  // allowed, or if a mask or a road excludes the one found. `ground` is the ground of the block, or
-  // of a larger node in which the block's corner is at `corner_m`.
+  // allowed, or if a mask, a road or water excludes the one found. `ground` is the ground of the
+  // block, or of a larger node in which the block's corner is at `corner_m`.
   std::optional<Foothold> place(const models::BlockGround& ground, std::uint32_t index,
                                 glm::dvec2 corner_m = {0, 0}) const;
   // The parameters of instance `index` on ground with this normal. Types with the parameters
@@ -65,8 +65,12 @@ class Scattering {
 
  private:
   bool may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const;
-  bool is_left_out(std::uint32_t index, glm::dvec2 local_m) const;
+  bool is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m,
+                     glm::dvec2 local_m) const;
+  double depth_m(double ground_m, glm::dvec2 local_m) const;
+  bool is_left_out(std::uint32_t index, glm::dvec2 local_m, double ground_m) const;
 
+  const World& world_;
   std::uint64_t seed_;
   float size_m_;
   const models::ModelType& type_;
@@ -77,6 +81,7 @@ class Scattering {
   float min_up_;
   std::optional<Palette> palette_;                // set if the mask selects kinds of ground
   std::vector<const models::GroundEdit*> roads_;  // roads that may cross the block
+  bool has_water_ = false;  // rivers and lakes may cross it, and no instance stands in them
   SlopeParameters slope_;
 };
 
@@ -102,7 +107,7 @@ std::vector<std::uint16_t> ground_of_block(const World& world, core::BlockCoord 
 double ground_margin(const World& world, int node_level);
 
 // An upper bound of the placements of one block without edits: the sum of all counts. Exact for
-// worlds in which no scatter has a filter and no road crosses the block.
+// worlds in which no scatter has a filter and no road or water crosses the block.
 std::size_t models_per_block(const World& world);
 
 // Replaces `out` by the placements of `block`, by ascending index. An instance that finds no

@@ -162,6 +162,24 @@ class Shaper {
     return {};
   }
 
+  // Warns where a road leads into water: it has no bridge.
+  void check_roads() {
+    for (std::size_t i = 0; i < world_.shaped.roads.size(); ++i) {
+      const Road& road = world_.shaped.roads[i];
+      const auto line = road_line(road, road.width_m, [](glm::dvec2) { return 0.0; });
+      for (const RoadPoint& point : line) {
+        const core::WorldPosition at = position(point.at_m);
+        const auto water = layer_.ground.water_over(at.block, {at.local.x, at.local.z}, block_m_);
+        if (!water || water->widths > 0.5) continue;
+        warnings_.push_back(
+            fmt::format("road {}: it leads into {} at {:.1f}, {:.1f} m, and has no "
+                        "bridge there",
+                        i + 1, text_of(*water), point.at_m.x, point.at_m.y));
+        break;
+      }
+    }
+  }
+
   models::EditLayer take() { return std::move(layer_); }
   std::vector<std::string> take_warnings() { return std::move(warnings_); }
 
@@ -174,6 +192,13 @@ class Shaper {
     if (world_.contains(at.block)) return at;
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("{:g}, {:g} m is outside the world", at_m.x, at_m.y));
+  }
+
+  std::string text_of(const models::BodySurface& water) const {
+    if (water.body >= kFirstAdded) return "water of the river network";
+    const std::size_t lakes = world_.shaped.lakes.size(), number = water.body - kSea;
+    return water.is_river ? fmt::format("river {}", number - lakes)
+                          : fmt::format("lake {}", number);
   }
 
   static std::shared_ptr<const models::Heightmap> map_of(const Stamp& stamp) {
@@ -448,6 +473,7 @@ tl::expected<void, ShapeError> shape_ground(World& world) {
   if (auto ok = add_all(world.shaped.stamps, "stamp", shaper); !ok) return ok;
   if (auto ok = add_all(world.shaped.roads, "road", shaper); !ok) return ok;
   if (auto ok = add_water(world, shaper); !ok) return ok;
+  if (world.shaped.has_water()) shaper.check_roads();
   world.shaped.warnings = shaper.take_warnings();
   world.shaped.layer = std::make_shared<const models::EditLayer>(shaper.take());
   set_edits(world, nullptr);

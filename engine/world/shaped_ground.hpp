@@ -85,7 +85,8 @@ struct ShapedGround {
   // Sentences about doubtful rivers, lakes and roads, made with the layer.
   std::vector<std::string> warnings;
   bool empty() const { return stamps.empty() && roads.empty() && lakes.empty() && rivers.empty(); }
-  bool has_water() const { return !lakes.empty() || !rivers.empty(); }
+  // True if it may have water above the sea.
+  bool has_water() const { return network || !lakes.empty() || !rivers.empty(); }
   friend bool operator==(const ShapedGround& a, const ShapedGround& b) {
     return a.network == b.network && a.erosion == b.erosion && a.stamps == b.stamps &&
            a.roads == b.roads && a.lakes == b.lakes && a.rivers == b.rivers;

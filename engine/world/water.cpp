@@ -22,12 +22,12 @@ std::uint64_t with_points(std::uint64_t hash, const std::vector<glm::dvec2>& poi
   return hash;
 }
 
-}  // namespace
-
-std::optional<WaterSurface> water_surface(const World& world, const core::WorldPosition& at) {
+// The surface over a place, of a layer's rivers and lakes and of the sea.
+std::optional<WaterSurface> surface_over(const World& world, const models::EditLayer* layer,
+                                         const core::WorldPosition& at) {
   const core::RoundToNearest rounding;
   const bool has_sea = world.water.exists();
-  if (const auto& layer = world.layer()) {
+  if (layer != nullptr) {
     const double block_m = world.block_size_m();
     const core::WorldPosition place = core::normalised(at, block_m);
     const auto body =
@@ -48,6 +48,21 @@ std::optional<WaterSurface> water_surface(const World& world, const core::WorldP
   sea.surface_m = world.water.level_m;
   sea.body = kSea;
   return sea;
+}
+
+}  // namespace
+
+bool has_water(const World& world) {
+  return world.water.exists() || (world.layer() && world.layer()->ground.has_water());
+}
+
+std::optional<WaterSurface> water_surface(const World& world, const core::WorldPosition& at) {
+  return surface_over(world, world.layer().get(), at);
+}
+
+std::optional<WaterSurface> function_water_surface(const World& world,
+                                                   const core::WorldPosition& at) {
+  return surface_over(world, world.shaped.layer.get(), at);
 }
 
 std::uint64_t bodies_hash_in(const World& world, core::BlockCoord block) {

@@ -18,7 +18,8 @@
 namespace psygen::world {
 
 // The name of a body of water within its world. Lakes of the file follow the sea in their order,
-// then its rivers; bodies that a game adds have larger names (edits/edits.hpp).
+// then its rivers; bodies that a game adds have larger names (edits/edits.hpp), those of a river
+// network the largest, with two highest bits set.
 using WaterBody = std::uint32_t;
 inline constexpr WaterBody kNoWater = 0, kSea = 1, kFirstAdded = 1U << 31;
 
@@ -48,10 +49,17 @@ struct WaterPoint {
   bool is_dry() const { return body == kNoWater; }
 };
 
+// True if the world may have water anywhere. O(1).
+bool has_water(const World& world);
+
 // Returns the surface of the water over a place; nothing: no water reaches it at any height of the
 // ground. Ignores the position's own height, and answers outside a bounded world as inside.
 // Evaluates no ground: some nanoseconds.
 std::optional<WaterSurface> water_surface(const World& world, const core::WorldPosition& at);
+
+// The same without the edits of the world: that of its function.
+std::optional<WaterSurface> function_water_surface(const World& world,
+                                                   const core::WorldPosition& at);
 
 // Returns the water at a place whose ground has this height in metres.
 WaterPoint water_at(const World& world, const core::WorldPosition& at, double ground_m);

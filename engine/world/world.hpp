@@ -57,12 +57,20 @@ struct Scatter {
   double min_height_m = -std::numeric_limits<double>::infinity();
   double max_height_m = std::numeric_limits<double>::infinity();
   double max_slope_deg = 90;  // of the ground, from the horizontal
-  ScatterMask mask;           // further restriction within these limits
+  // Limits of the water of the world's function: the depth at the instance, and the distance to
+  // water in the plane. Without a maximum depth, instances stand in the sea but in no river or
+  // lake.
+  double max_depth_m = std::numeric_limits<double>::infinity();
+  double near_water_m = std::numeric_limits<double>::infinity();
+  ScatterMask mask;  // further restriction within these limits
+  bool limits_depth() const { return max_depth_m < std::numeric_limits<double>::infinity(); }
+  bool needs_water() const { return near_water_m < std::numeric_limits<double>::infinity(); }
   // True if any limit or mask excludes ground.
   bool has_filter() const {
     return mask.thins() || mask.ground != 0 ||
            min_height_m > -std::numeric_limits<double>::infinity() ||
-           max_height_m < std::numeric_limits<double>::infinity() || max_slope_deg < 90;
+           max_height_m < std::numeric_limits<double>::infinity() || max_slope_deg < 90 ||
+           limits_depth() || needs_water();
   }
   friend bool operator==(const Scatter&, const Scatter&) = default;
 };

@@ -26,13 +26,16 @@ std::uint64_t hash_of_ground(const World& world, const models::Registry& registr
   return hash;
 }
 
-// `first`: the index of the scatter's first instance in a block.
+// `first`: the index of the scatter's first instance in a block; `level_m`: of the sea.
 std::uint64_t hash_of_places(const models::ModelType& type, const Scatter& scatter,
-                             std::uint32_t first, std::uint64_t ground) {
+                             std::uint32_t first, std::uint64_t ground, double level_m) {
   std::uint64_t hash = core::hash_bytes(std::as_bytes(std::span(type.name())), ground);
   hash = core::combine(core::combine(hash, first), scatter.count);
   for (const double limit : {scatter.min_height_m, scatter.max_height_m, scatter.max_slope_deg})
     hash = with_real(hash, limit);
+  if (scatter.limits_depth() || scatter.needs_water())
+    for (const double limit : {scatter.max_depth_m, scatter.near_water_m, level_m})
+      hash = with_real(hash, limit);
   return core::combine(hash, mask_hash(scatter.mask));
 }
 
@@ -55,7 +58,8 @@ WorldParts parts_of(const World& world, const models::Registry& registry) {
   parts.ground = hash_of_ground(world, registry);
   std::uint32_t first = 0;
   for (const Scatter& scatter : world.scatter) {
-    parts.places.push_back(hash_of_places(registry[scatter.model], scatter, first, parts.ground));
+    parts.places.push_back(
+        hash_of_places(registry[scatter.model], scatter, first, parts.ground, world.water.level_m));
     parts.models.push_back(hash_of_models(world, registry, scatter, first));
     first += scatter.count;
   }

@@ -19,6 +19,20 @@ constexpr double kMorningHour = 7;
 constexpr double kBuriedM = 0.5, kSameM = 0.01;
 constexpr int kTargetSteps = 6, kSeenSteps = 30;
 
+// True if a river or lake is in the cell of the map around a position, though not in its middle.
+bool has_river(query::World& query, const core::WorldPosition& middle) {
+  if (!query.world().shaped.has_water()) return false;
+  constexpr int kPlaces = 8;
+  for (int i = 0; i < kPlaces * kPlaces; ++i) {
+    core::WorldPosition at = middle;
+    at.local.x += ((i % kPlaces + 0.5) / kPlaces - 0.5) * kMapCellM;
+    at.local.z += ((i / kPlaces + 0.5) / kPlaces - 0.5) * kMapCellM;
+    const auto water = query.water(at);
+    if (water && !water->is_dry() && water->body != world::kSea) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Play::Play(const world::World& world, const models::Registry& registry)
@@ -294,9 +308,11 @@ void Play::see(std::int32_t x, std::int32_t z) {
   if (!is_new) return;
   core::WorldPosition middle;
   middle.local = {(x + 0.5) * kMapCellM, 0, (z + 0.5) * kMapCellM};
-  const auto ground = query_.ground(core::normalised(middle, block_m()));
-  if (ground)
-    cell->second = ground->water_depth_m > 0 ? kMapWater : static_cast<std::uint8_t>(ground->kind);
+  const core::WorldPosition at = core::normalised(middle, block_m());
+  const auto ground = query_.ground(at);
+  if (!ground) return;
+  const bool is_wet = ground->water_depth_m > 0 || has_river(query_, at);
+  cell->second = is_wet ? kMapWater : static_cast<std::uint8_t>(ground->kind);
 }
 
 void Play::see_around() {

@@ -127,6 +127,9 @@ Clips make_clips() {
     return 1.0F + 0.8F * std::sin(1.8F * t) * std::sin(1.1F * t);
   };
   made.water = clip(looped(shaped(noise(7, 150, 900, 3), lapping), 1));
+  made.stream = clip(looped(
+      shaped(noise(6, 300, 4200, 5), [](float t) { return 0.9F + 0.15F * std::sin(7.3F * t); }),
+      0.8));
   made.fire = fire_sound();
   made.music = music_sound(1);
   made.splash = clip(shaped(noise(0.9, 250, 3500, 8), [](float t) {
@@ -191,6 +194,7 @@ void Sounds::update(Play* play, const core::CameraPose& ears, double dt_s) {
     const double nearness =
         water ? std::clamp(1 - (feet.local.y - water->surface_m) / 6, 0.0, 1.0) : 0.0;
     hold(water_, clips_->water, 0.4 * nearness, dt_s);
+    flow(*play, dt_s);
     const Fire* fire = play->fire_near(30);
     hold(fire_, clips_->fire, fire != nullptr ? 0.9 : 0, dt_s,
          fire != nullptr ? std::optional(fire->at) : std::nullopt);
@@ -199,9 +203,22 @@ void Sounds::update(Play* play, const core::CameraPose& ears, double dt_s) {
     hold(wind_, clips_->wind, kTitleWind, dt_s);
     hold(rain_, clips_->rain, 0, dt_s);
     hold(water_, clips_->water, 0, dt_s);
+    hold(stream_, clips_->stream, 0, dt_s);
     hold(fire_, clips_->fire, 0, dt_s);
   }
   audio_.update(ears, dt_s);
+}
+
+// Rivers and falls sound from where they are loudest.
+void Sounds::flow(Play& play, double dt_s) {
+  constexpr double kBetweenS = 0.25;
+  until_look_s_ -= dt_s;
+  if (until_look_s_ <= 0) {
+    until_look_s_ = kBetweenS;
+    heard_ = loudest_stream(play.query(), play.progress().feet);
+  }
+  hold(stream_, clips_->stream, heard_ ? heard_->gain : 0, dt_s,
+       heard_ ? std::optional(heard_->at) : std::nullopt);
 }
 
 // Birds sing at their positions, most often in the morning.

@@ -10,6 +10,7 @@
 
 #include "engine/audio/audio.hpp"
 #include "game/play/play.hpp"
+#include "game/play/streams.hpp"
 
 namespace cairns {
 
@@ -17,7 +18,7 @@ using ClipPtr = std::shared_ptr<const audio::Clip>;
 
 // All clips of the game. The first four are loops; the music is a minute of slow chords.
 struct Clips {
-  ClipPtr wind, rain, water, fire, music, splash, chop, fall, stone, chime;
+  ClipPtr wind, rain, water, stream, fire, music, splash, chop, fall, stone, chime;
   std::array<ClipPtr, 3> steps, birds;  // steps from snow to rock
 };
 
@@ -42,10 +43,13 @@ class Sounds {
   };
   void hold(Loop& loop, const ClipPtr& clip, double gain, double dt_s,
             const std::optional<core::WorldPosition>& at = {});
+  void flow(Play& play, double dt_s);
   void sing(Play& play, double dt_s);
 
   audio::Audio audio_;
-  Loop wind_, rain_, water_, fire_;
+  Loop wind_, rain_, water_, stream_, fire_;
+  std::optional<Stream> heard_;  // the loudest stream at the last look
+  double until_look_s_ = 0;
   std::future<Clips> coming_;   // from a worker thread
   std::optional<Clips> clips_;  // empty until generated
   double until_song_s_ = 4;

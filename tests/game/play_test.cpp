@@ -7,6 +7,8 @@
 #include <set>
 
 #include "game/play/cairn_type.hpp"
+#include "game/play/streams.hpp"
+#include "tests/engine/world/river_world.hpp"
 
 namespace cairns {
 namespace {
@@ -248,6 +250,25 @@ TEST(Creatures, FishStayBelowTheSurfaceAndBirdsAboveIt) {
     }
   }
   EXPECT_GT(fish, 0);
+}
+
+TEST(Streams, AreHeardNearRiversAndLoudestAtFalls) {
+  namespace land = psygen::world::testing;
+  const world::World& world = land::river_world();
+  query::World query(world, land::registry());
+  const auto heard = [&](double x, double z) {
+    core::WorldPosition at = land::position_in(world, {x, z});
+    at.local.y = query.ground(at)->surface_m;
+    return loudest_stream(query, at);
+  };
+  EXPECT_FALSE(heard(1000, 1000));
+  EXPECT_FALSE(heard(1540, 1750)) << "the sea does not flow";
+  const auto beside = heard(1905, 1722), away = heard(1905, 1742);
+  ASSERT_TRUE(beside && away);
+  EXPECT_GT(beside->gain, 2 * away->gain);
+  EXPECT_LE(beside->gain, 1);
+  EXPECT_EQ(query.water(beside->at)->body, land::kTheRiver);
+  EXPECT_NEAR(beside->at.local.y, query.water(beside->at)->surface_m, 1e-9);
 }
 
 TEST(Weather, DependsOnlyOnSeedAndTimeAndChangesSlowly) {

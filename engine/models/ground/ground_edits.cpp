@@ -327,7 +327,7 @@ std::vector<const GroundEdit*> GroundEdits::water_in(const QuadCoord& node, doub
 
 std::optional<BodySurface> GroundEdits::water_over(core::BlockCoord block, glm::dvec2 local_m,
                                                    double block_m) const {
-  if (empty() || !cells_.root()->summary.has_water) return std::nullopt;
+  if (!has_water()) return std::nullopt;
   const QuadCoord place = QuadCoord::of(block);
   const double x = static_cast<double>(place.x) + local_m.x / block_m;
   const double z = static_cast<double>(place.z) + local_m.y / block_m;

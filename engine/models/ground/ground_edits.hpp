@@ -177,6 +177,8 @@ class GroundEdits {
   // Returns the pieces of roads that may reach a node, each once. O(log n + p log p) for p pieces,
   // independent of all other edits.
   std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
+  // True if there is any river or lake. O(1).
+  bool has_water() const { return !empty() && cells_.root()->summary.has_water; }
   // The same for pieces of rivers and lakes.
   std::vector<const GroundEdit*> water_in(const QuadCoord& node, double block_m) const;
   // Returns the surface of the river or lake that owns a place in a block; nothing: none reaches

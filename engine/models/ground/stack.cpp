@@ -5,8 +5,8 @@
 namespace psygen::models {
 namespace {
 
-// Bodies of a network have other names than those of world files and games.
-constexpr std::uint32_t kFirstNetworkBody = 0x80000000U;
+// Bodies of a network have other names than those of world files and of games, which begin at 2^31.
+constexpr std::uint32_t kFirstNetworkBody = 0xC0000000U;
 
 }  // namespace
 
@@ -56,7 +56,7 @@ std::optional<BodySurface> GroundStack::water_over(core::BlockCoord block, glm::
   BodySurface surface;
   surface.surface_m = double{water.surface_m};
   surface.flow_m_s = glm::dvec2(water.flow_m_s);
-  surface.body = kFirstNetworkBody | water.body;
+  surface.body = kFirstNetworkBody | (water.body & ~kFirstNetworkBody);
   return surface;
 }
 

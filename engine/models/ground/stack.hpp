@@ -47,7 +47,9 @@ struct GroundStack {
   bool reaches(const QuadCoord& node, double block_m) const;
   // Returns the pieces of roads that may reach a node, each once.
   std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
-  // The same for pieces of rivers and lakes.
+  // True if there is any river or lake. O(1).
+  bool has_water() const { return network != nullptr || shapes.has_water() || edits.has_water(); }
+  // The same for pieces of rivers and lakes made by hand; a network has none.
   std::vector<const GroundEdit*> water_in(const QuadCoord& node, double block_m) const;
   // Returns the surface of the river or lake that owns a place in a block; nothing: none reaches
   // it. The place must be normalised. Some hundred nanoseconds.

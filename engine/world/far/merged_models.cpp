@@ -384,6 +384,11 @@ std::uint64_t merged_identity(const World& world, const models::Registry& regist
     add_real(s.min_height_m);
     add_real(s.max_height_m);
     add_real(s.max_slope_deg);
+    if (s.limits_depth() || s.needs_water()) {
+      add_real(s.max_depth_m);
+      add_real(s.near_water_m);
+      add_real(world.water.level_m);
+    }
     if (const std::uint64_t mask = mask_hash(s.mask); mask != 0) add(mask);
   }
   if (const std::uint64_t shape = shape_hash(world); shape != 0) add(shape);

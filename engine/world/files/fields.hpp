@@ -153,6 +153,11 @@ inline constexpr auto visit_place = [](auto& scatter, const auto& visit) {
   visit("max_height_m", scatter.max_height_m, ground_height("highest ground with instances"));
   visit("max_slope_deg", scatter.max_slope_deg,
         in("degrees", {0, 90}, {0, 90}, "steepest ground with instances"));
+  visit(
+      "max_depth_m", scatter.max_depth_m,
+      in("m", {0, 1e4}, {0, 5}, "deepest water with instances; default: none in rivers and lakes"));
+  visit("near_water_m", scatter.near_water_m,
+        in("m", {0.1, 1000}, {1, 50}, "instances stand at most this far from water"));
 };
 
 // The numbers of a ScatterMask.

@@ -216,6 +216,8 @@ void write_scatters(const World& world, const models::Registry& registry, std::s
       fmt::format_to(out, "max_height_m = {}\n", scatter.max_height_m);
     if (scatter.max_slope_deg < 90)
       fmt::format_to(out, "max_slope_deg = {}\n", scatter.max_slope_deg);
+    if (scatter.limits_depth()) fmt::format_to(out, "max_depth_m = {}\n", scatter.max_depth_m);
+    if (scatter.needs_water()) fmt::format_to(out, "near_water_m = {}\n", scatter.near_water_m);
     write_mask(scatter.mask, text);
     for (std::size_t i = 0; i < scatter.ranges.size(); ++i) {
       const models::ParameterSpec& spec = type.parameters()[i];

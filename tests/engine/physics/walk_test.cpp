@@ -34,7 +34,7 @@ TEST_P(Walk, OfKilometresNeitherFallsThroughTheGroundNorGetsStuck) {
       const CharacterState s = *scene.physics.state(*id);
       ASSERT_GE(s.feet.local.y, scene.ground_m(s.feet) - 1e-5);
       // On the ground or a model, or falling, but never far above.
-      ASSERT_LE(s.feet.local.y, scene.ground_m(s.feet) + 25);
+      ASSERT_LE(s.feet.local.y, scene.query.ground(s.feet)->surface_m + 25);
     }
     const core::WorldPosition now = scene.physics.state(*id)->feet;
     const glm::dvec3 way =

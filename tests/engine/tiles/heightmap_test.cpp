@@ -7,6 +7,7 @@
 #include "engine/image/image_io.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/placement.hpp"
+#include "tests/engine/world/river_world.hpp"
 #include "tests/engine/world/shipped.hpp"
 #include "tests/full_disk.hpp"
 
@@ -78,6 +79,29 @@ TEST(Heightmap, RejectsARangeThatLeavesHeightsOut) {
   EXPECT_EQ(written.error().code, core::ErrorCode::kInvalidArgument);
   EXPECT_NE(written.error().message.find("beyond the range 0 to 1 m"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder / "a/heights.png"));
+}
+
+TEST(Heightmap, HasMasksOfWaterWhereTheWorldHasWater) {
+  const TemporaryFolder folder;
+  const world::World& world = world::testing::river_world();
+  ASSERT_TRUE(write_heightmap(world, {26, 26, 28, 27}, folder / "wet", {}));
+  const auto mask = image::read_grey(folder / "wet/water_mask.png");
+  ASSERT_TRUE(mask) << mask.error().message;
+  int wet = 0;
+  for (std::uint32_t z = 0; z < mask->height; ++z) {
+    for (std::uint32_t x = 0; x < mask->width; ++x) {
+      const core::WorldPosition at =
+          core::normalised({{26, 26}, {1.0 * x, 0, 1.0 * z}}, world.block_size_m());
+      const bool is_wet = !world::water_at(world, at).is_dry();
+      ASSERT_EQ(mask->grey[std::size_t{z} * mask->width + x], is_wet ? 65'535 : 0);
+      wet += is_wet ? 1 : 0;
+    }
+  }
+  EXPECT_GT(wet, 1000);
+  for (const char* name : {"water_depth.exr", "water_flow_x.exr", "water_flow_z.exr"})
+    EXPECT_TRUE(contents_of(folder / "wet").contains(name)) << name;
+  ASSERT_TRUE(write_heightmap(parsed(kSmallWorld), {0, 0, 1, 1}, folder / "dry", {}));
+  EXPECT_FALSE(contents_of(folder / "dry").contains("water_mask.png"));
 }
 
 TEST(Heightmap, MasksAddUpToWhite) {

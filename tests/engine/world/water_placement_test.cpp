@@ -1,0 +1,129 @@
+// Instances in and beside water.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/engine/world/river_world.hpp"
+
+namespace psygen::world {
+namespace {
+
+using testing::kBrookLand;
+using testing::parsed;
+using testing::position_in;
+using testing::registry;
+using testing::river_text;
+
+constexpr const char* kRocks = "[[scatter]]\nmodel = \"rock\"\ncount = 300\n";
+
+// Calls visit(position in the world, water there) for all instances of some blocks by the water.
+template <class Visit>
+std::size_t each_instance(const World& world, const Visit& visit) {
+  std::size_t count = 0;
+  std::vector<Placement> placements;
+  for (std::int32_t z = 25; z < 28; ++z) {
+    for (std::int32_t x = 24; x < 32; ++x) {
+      place_models(world, registry(), {x, z}, placements);
+      for (const Placement& p : placements) {
+        const core::WorldPosition at{{x, z}, glm::dvec3(p.position)};
+        visit(at, water_at(world, at));
+        ++count;
+      }
+    }
+  }
+  return count;
+}
+
+TEST(WaterPlacement, NothingGrowsInRiversAndLakesButAsBeforeInTheSea) {
+  const World before = parsed(std::string(kBrookLand) + kRocks);
+  const World world = parsed(river_text() + kRocks);
+  std::size_t in_sea = 0, in_bodies = 0, sea_before = 0;
+  const std::size_t all = each_instance(world, [&](const auto&, const WaterPoint& water) {
+    in_bodies += !water.is_dry() && water.body != kSea && water.depth_m > 1e-5 ? 1 : 0;
+    in_sea += water.body == kSea ? 1 : 0;
+  });
+  const std::size_t all_before = each_instance(
+      before, [&](const auto&, const WaterPoint& water) { sea_before += water.is_dry() ? 0 : 1; });
+  EXPECT_EQ(all_before, 24U * 300);
+  EXPECT_LT(all, all_before - 200);
+  EXPECT_GT(in_sea, 1000U);
+  EXPECT_GE(sea_before, in_sea);
+  EXPECT_EQ(in_bodies, 0U);
+}
+
+TEST(WaterPlacement, InstancesThatRemainKeepTheirPlaces) {
+  const World before = parsed(std::string(kBrookLand) + kRocks);
+  const World world = parsed(river_text() + kRocks);
+  std::vector<Placement> was, is;
+  place_models(before, registry(), {28, 26}, was);
+  place_models(world, registry(), {28, 26}, is);
+  EXPECT_LT(is.size(), was.size());
+  for (const Placement& p : is) {
+    const auto same = std::ranges::find(was, p.index, &Placement::index);
+    ASSERT_NE(same, was.end());
+    EXPECT_EQ(same->position.x, p.position.x);
+    EXPECT_EQ(same->position.z, p.position.z);
+    EXPECT_EQ(same->parameters, p.parameters);
+  }
+}
+
+TEST(WaterPlacement, MaxDepthLetsInstancesStandInShallowWaterOfAnyBody) {
+  const World world = parsed(river_text() + kRocks + "max_depth_m = 0.5\n");
+  std::size_t shallow = 0, in_bodies = 0;
+  each_instance(world, [&](const auto&, const WaterPoint& water) {
+    ASSERT_LE(water.depth_m, 0.5 + 1e-6);
+    shallow += water.is_dry() ? 0 : 1;
+    in_bodies += !water.is_dry() && water.body != kSea ? 1 : 0;
+  });
+  EXPECT_GT(shallow, 100U);
+  EXPECT_GT(in_bodies, 20U);
+}
+
+TEST(WaterPlacement, NearWaterKeepsInstancesAtTheShore) {
+  const World world = parsed(river_text() + kRocks + "near_water_m = 6\nmax_depth_m = 0\n");
+  std::size_t far = 0;
+  const std::size_t all =
+      each_instance(world, [&](const core::WorldPosition& at, const auto& here) {
+        ASSERT_TRUE(here.is_dry());
+        bool near = false;
+        for (int i = 0; i < 72 * 12 && !near; ++i) {
+          core::WorldPosition beside = at;
+          const double angle = (i % 72) * 5 * 3.14159265358979 / 180, away = 0.5 * (i / 72 + 1);
+          beside.local.x += away * std::cos(angle);
+          beside.local.z += away * std::sin(angle);
+          near = !water_at(world, core::normalised(beside, 64)).is_dry();
+        }
+        far += near ? 0 : 1;
+      });
+  EXPECT_LE(far, 3U) << "at the very border of the rounding";
+  EXPECT_GT(all, 1000U);
+  EXPECT_LT(all, 24U * 300 / 2 + 3000);
+}
+
+TEST(WaterPlacement, KeysReadBackEqual) {
+  const World world =
+      parsed(std::string(kBrookLand) + kRocks + "near_water_m = 6.5\nmax_depth_m = 0.25\n");
+  EXPECT_EQ(world.scatter[0].near_water_m, 6.5);
+  EXPECT_EQ(world.scatter[0].max_depth_m, 0.25);
+  EXPECT_TRUE(world.scatter[0].has_filter());
+  const std::string text = write_world(world, registry());
+  EXPECT_EQ(parsed(text), world);
+  EXPECT_EQ(write_world(parsed(std::string(kBrookLand) + kRocks), registry()).find("max_depth_m"),
+            std::string::npos);
+}
+
+TEST(WaterPlacement, ARoadIntoWaterGetsAWarning) {
+  const World world =
+      parsed(river_text() + "[[road]]\npoints_m = [[1860, 1650], [1866, 1700], [1880, 1760]]\n");
+  ASSERT_EQ(world.shaped.warnings.size(), 1U);
+  EXPECT_EQ(world.shaped.warnings[0].find("road 1: it leads into river 1 at 186"), 0U)
+      << world.shaped.warnings[0];
+  const World at_lake =
+      parsed(river_text() + "[[road]]\npoints_m = [[1740, 1780], [1740, 1690], [1750, 1590]]\n");
+  ASSERT_EQ(at_lake.shaped.warnings.size(), 1U);
+  EXPECT_EQ(at_lake.shaped.warnings[0].find("road 1: it leads into lake 1"), 0U);
+}
+
+}  // namespace
+}  // namespace psygen::world
