@@ -244,6 +244,23 @@ void add(const WaterNode& node, const Strip& strip, SurfaceWriter& to) {
   }
 }
 
+// Writes the part of a ring of four places, in turn, where `beyond` is at most 0: it is below 0 in
+// the water, and 0 at its border. add_point(i, j, share): a vertex between places i and j.
+template <class AddPoint>
+void add_ring(const std::array<double, 4>& beyond, const AddPoint& add_point, SurfaceWriter& to) {
+  std::array<std::uint32_t, 8> ring;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t j = (i + 1) % 4;
+    const double a = beyond[i], b = beyond[j];
+    if (a <= 0) ring[count++] = add_point(i, i, 0.0);
+    if ((a <= 0) != (b <= 0)) ring[count++] = add_point(i, j, a / (a - b));
+  }
+  for (std::size_t i = 1; i + 1 < count; ++i)
+    to.triangle(ring[0], ring[i], ring[i + 1]);
+}
+constexpr std::array<std::array<std::size_t, 2>, 4> kCorners{{{0, 0}, {0, 1}, {1, 1}, {1, 0}}};
+
 // Writes the part of a tile within the lake: each square of its cells, cut by the border of the
 // water.
 void add(const WaterNode& node, const Tile& tile, SurfaceWriter& to) {
@@ -259,31 +276,207 @@ void add(const WaterNode& node, const Tile& tile, SurfaceWriter& to) {
     for (std::size_t x = 0; x < side; ++x)
       outside[z * side + x] = outside_m(lake, place_m(x, z)) - lake.edge_m;
   }
-  const auto add_point = [&](glm::dvec2 at_m, double beyond_m) {
-    SurfacePoint surface;
-    surface.at_m = {corner_to_m.x + at_m.x, lake.level_m, corner_to_m.y + at_m.y};
-    surface.depth_m = depth_of(lake, beyond_m + lake.edge_m);
-    return to.add(surface);
-  };
-  constexpr std::array<std::array<std::size_t, 2>, 4> kCorners{{{0, 0}, {0, 1}, {1, 1}, {1, 0}}};
   for (std::size_t z = 0; z + 1 < side; ++z) {
     for (std::size_t x = 0; x + 1 < side; ++x) {
-      std::array<std::uint32_t, 8> ring;
-      std::size_t count = 0;
+      std::array<double, 4> beyond;
+      std::array<glm::dvec2, 4> places;
       for (std::size_t c = 0; c < 4; ++c) {
-        const auto [ax, az] = kCorners[c];
-        const auto [bx, bz] = kCorners[(c + 1) % 4];
-        const double a = outside[(z + az) * side + x + ax], b = outside[(z + bz) * side + x + bx];
-        const glm::dvec2 from = place_m(x + ax, z + az), next = place_m(x + bx, z + bz);
-        if (a <= 0) ring[count++] = add_point(from, a);
-        if ((a <= 0) != (b <= 0))
-          ring[count++] = add_point(from + (next - from) * (a / (a - b)), 0);
+        beyond[c] = outside[(z + kCorners[c][1]) * side + x + kCorners[c][0]];
+        places[c] = place_m(x + kCorners[c][0], z + kCorners[c][1]);
       }
-      for (std::size_t i = 1; i + 1 < count; ++i)
-        to.triangle(ring[0], ring[i], ring[i + 1]);
+      add_ring(
+          beyond,
+          [&](std::size_t i, std::size_t j, double share) {
+            const glm::dvec2 at_m = corner_to_m + places[i] + (places[j] - places[i]) * share;
+            SurfacePoint surface;
+            surface.at_m = {at_m.x, lake.level_m, at_m.y};
+            surface.depth_m =
+                depth_of(lake, beyond[i] + (beyond[j] - beyond[i]) * share + lake.edge_m);
+            return to.add(surface);
+          },
+          to);
     }
   }
 }
+
+// Nodes above this level show no rivers and lakes of a network: they are smaller than pixels there.
+constexpr int kMaxNetworkLevel = 8;
+// Vertices along a side of a node, for the lakes of a network.
+constexpr std::size_t kLakeSide = 17;
+
+// The channels of a network whose nodes lie in a node of the quadtree.
+class NetworkSurface {
+ public:
+  NetworkSurface(const WaterNode& node, const RiverNetwork& network)
+      : node_(node),
+        network_(network),
+        detail_(GroundDetail::of_node(node.level)),
+        cells_(network.frame().cells_per_block),
+        x0_(std::int64_t{node.block.x} * cells_),
+        z0_(std::int64_t{node.block.z} * cells_),
+        side_(cells_ << node.level) {}
+
+  void add_channels(SurfaceWriter& to) const {
+    constexpr auto kUnits = network::kUnitsPerCell;
+    for (std::int64_t z = z0_, next_z = 0; z < z0_ + side_; z = next_z) {
+      for (std::int64_t x = x0_, next_x = 0; x < x0_ + side_; x = next_x) {
+        const auto patch = network_.patch(network_.tile_of(x, z, detail_));
+        const auto end_of = [&](std::int64_t corner, std::int64_t from, std::int64_t end) {
+          const std::int64_t served = (corner + patch->square.side) / kUnits;
+          return std::min(std::max(served, from + 1), end);
+        };
+        next_x = end_of(patch->square.x, x, x0_ + side_);
+        next_z = end_of(patch->square.z, z, z0_ + side_);
+        for (const network::Curve& curve : patch->curves) {
+          const std::int64_t at_x = patch->x + curve.x, at_z = patch->z + curve.z;
+          if (at_x < x * kUnits || at_x >= next_x * kUnits || at_z < z * kUnits ||
+              at_z >= next_z * kUnits)
+            continue;
+          add(curve, {metres(at_x - x0_ * kUnits), metres(at_z - z0_ * kUnits)}, to);
+        }
+      }
+    }
+  }
+
+  void add_lakes(SurfaceWriter& to) const {
+    std::array<std::int64_t, kLakeSide> xs, zs;
+    for (std::size_t i = 0; i < kLakeSide; ++i) {
+      const std::int64_t away = side_ * static_cast<std::int64_t>(i) / (kLakeSide - 1);
+      xs[i] = x0_ + away;
+      zs[i] = z0_ + away;
+    }
+    constexpr std::size_t kCount = kLakeSide * kLakeSide;
+    std::vector<float> rows(4 * kCount);
+    float *const height = rows.data(), *const water = height + kCount, *const flow_x = water + kCount,
+                 *const flow_z = flow_x + kCount;
+    std::vector<std::uint32_t> body(kCount);
+    network_.evaluate({xs, zs}, detail_,
+                      {.height_m = height,
+                       .water_m = water,
+                       .flow_x = flow_x,
+                       .flow_z = flow_z,
+                       .body = body.data(),
+                       .stride = kLakeSide});
+    const auto is_lake = [&](std::size_t i) {
+      return water[i] > height[i] && flow_x[i] == 0 && flow_z[i] == 0 &&
+             water[i] > static_cast<float>(network_.frame().sea_level_m) + 0.01F;
+    };
+    for (std::size_t z = 0; z + 1 < kLakeSide; ++z) {
+      for (std::size_t x = 0; x + 1 < kLakeSide; ++x) {
+        std::array<std::size_t, 4> at;
+        double level_m = -1;
+        for (std::size_t c = 0; c < 4; ++c) {
+          at[c] = (z + kCorners[c][1]) * kLakeSide + x + kCorners[c][0];
+          if (is_lake(at[c])) level_m = std::max(level_m, double{water[at[c]]});
+        }
+        if (level_m < 0) continue;
+        std::array<double, 4> beyond;
+        for (std::size_t c = 0; c < 4; ++c) {
+          const double above_m = double{height[at[c]]} - level_m;
+          beyond[c] = is_lake(at[c]) ? std::min(above_m, 0.0) : std::max(above_m, 0.2);
+        }
+        add_ring(
+            beyond,
+            [&](std::size_t i, std::size_t j, double share) {
+              const auto along = [&](std::size_t axis) {
+                const auto& lines = axis == 0 ? xs : zs;
+                const auto line = [&](std::size_t c) {
+                  const std::int64_t first = axis == 0 ? x0_ : z0_;
+                  const std::size_t k = (axis == 0 ? x : z) + kCorners[c][axis];
+                  return static_cast<double>(lines[k] - first) * network_.frame().cell_m;
+                };
+                return line(i) + (line(j) - line(i)) * share;
+              };
+              SurfacePoint surface;
+              surface.at_m = {along(0), level_m, along(1)};
+              surface.depth_m = -(beyond[i] + (beyond[j] - beyond[i]) * share);
+              return to.add(surface);
+            },
+            to);
+      }
+    }
+  }
+
+ private:
+  double metres(std::int64_t units) const {
+    return static_cast<double>(units) / network::kUnitsPerCell * network_.frame().cell_m;
+  }
+
+  // `origin_m`: the curve's node, from the node's corner.
+  void add(const network::Curve& curve, glm::dvec2 origin_m, SurfaceWriter& to) const {
+    if (double{curve.width1_m} < kThinnest * node_.cell_m() || curve.chords == 0) return;
+    if (to.vertices() > kMaxVertices) return;
+    const std::span<const double> across = across_of(node_.level);
+    std::uint32_t before = 0;
+    for (std::size_t i = 0; i <= curve.chords; ++i) {
+      const std::uint32_t row = to.vertices();
+      for (const double place : across)
+        to.add(point(curve, i, place, origin_m));
+      for (std::uint32_t k = 0; i > 0 && k + 1 < across.size(); ++k) {
+        to.triangle(before + k, row + k, before + k + 1);
+        to.triangle(before + k + 1, row + k, row + k + 1);
+      }
+      before = row;
+    }
+  }
+
+  static double height_m(const network::Curve& curve, double t) {
+    const auto& h = curve.height_m;
+    const double bent = (1 - t) * (1 - t) * double{h[0]} + 2 * t * (1 - t) * double{h[1]} +
+                        t * t * double{h[2]};
+    return std::max(bent, double{curve.min_m});
+  }
+
+  SurfacePoint point(const network::Curve& curve, std::size_t i, double across,
+                     glm::dvec2 origin_m) const {
+    const double t = static_cast<double>(i) / network::Curve::kChords;
+    const std::size_t from = i > 0 ? i - 1 : 0, next = std::min<std::size_t>(i + 1, curve.chords);
+    const glm::dvec2 chord(double{curve.px[next] - curve.px[from]},
+                           double{curve.pz[next] - curve.pz[from]});
+    const double length_m = std::max(std::sqrt(chord.x * chord.x + chord.y * chord.y), 1e-3);
+    const glm::dvec2 direction = chord / length_m, aside(-direction.y, direction.x);
+    double width_m = double{curve.width0_m} + t * double{curve.width1_m - curve.width0_m};
+    if (curve.head) width_m *= std::min(0.3 + t, 1.0);
+    const bool beyond = std::abs(across) >= kBeyond;
+    const double edge_m = node_.level == 0 ? 2 : 0.1 * node_.cell_m();
+    const double out_m = beyond ? (across > 0 ? 1 : -1) * (0.5 * width_m + edge_m)
+                                : across * 0.5 * width_m;
+    const glm::dvec2 middle_m =
+        origin_m + glm::dvec2(double{curve.px[i]}, double{curve.pz[i]});
+    const glm::dvec2 at_m = middle_m + aside * out_m;
+    const double inner = beyond ? 0 : 1 - across * across;
+    const double depth_m = double{network::channel_depth_m(static_cast<float>(width_m))};
+    const double fall =
+        (height_m(curve, static_cast<double>(from) / network::Curve::kChords) -
+         height_m(curve, static_cast<double>(next) / network::Curve::kChords)) /
+        length_m;
+    const double steep = std::clamp((fall - 0.04) / 0.36, 0.0, 1.0);
+    const double speed = double{curve.discharge_m3_s} / std::max(0.67 * width_m * depth_m, 0.05);
+    SurfacePoint surface;
+    surface.at_m = {at_m.x, surface_m(curve, t, middle_m), at_m.y};
+    surface.depth_m = depth_m * inner;
+    surface.foam = steep * steep * (3 - 2 * steep);
+    surface.flow_m_s = direction * (std::min(speed, 6.0) * std::max(inner, 0.2));
+    surface.slope = direction * -fall;
+    return surface;
+  }
+
+  // Where water of several channels meets, that of the finest level is blended.
+  double surface_m(const network::Curve& curve, double t, glm::dvec2 middle_m) const {
+    if (node_.level == 0) {
+      const core::WorldPosition at =
+          core::normalised({node_.block, {middle_m.x, 0, middle_m.y}}, node_.block_m);
+      const NetworkWater water = network_.water_at(at);
+      if (water.depth_m > 0) return double{water.surface_m};
+    }
+    return height_m(curve, t);
+  }
+
+  const WaterNode& node_;
+  const RiverNetwork& network_;
+  GroundDetail detail_;
+  std::int64_t cells_, x0_, z0_, side_;  // x0_, z0_: of the node's corner
+};
 
 void add_all(const WaterNode& node, SurfaceWriter& to) {
   const Surfaces all = surfaces_of(node);
@@ -291,6 +484,11 @@ void add_all(const WaterNode& node, SurfaceWriter& to) {
     add(node, strip, to);
   for (const Tile& tile : all.tiles)
     add(node, tile, to);
+  if (node.ground == nullptr || node.ground->network == nullptr || node.level > kMaxNetworkLevel)
+    return;
+  const NetworkSurface network(node, *node.ground->network);
+  network.add_channels(to);
+  network.add_lakes(to);
 }
 
 // The mesh of these parameters, without writing it.

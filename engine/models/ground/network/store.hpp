@@ -19,7 +19,7 @@ class NetworkStore {
     network::TileKey tile;
   };
 
-  // Root tiles take 2 KiB each, patches about 100 KiB; 0 bytes keep nothing.
+  // Root tiles take 2 KiB each, patches about 115 KiB; 0 bytes keep nothing.
   explicit NetworkStore(std::size_t bytes = std::size_t{56} << 20) : cache_(bytes) {}
 
   // True if a value is kept. It may be dropped at once.
