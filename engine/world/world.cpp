@@ -31,6 +31,12 @@ MeanSize mean_size(const World& world, const models::Registry& registry, const S
   return {sum.triangles / kSizeSamples, sum.bytes / kSizeSamples};
 }
 
+// The next block along x, or one before where the world ends.
+core::BlockCoord beside(const World& world, core::BlockCoord block) {
+  const bool ends = world.blocks_x > 0 && block.x + 1 >= world.blocks_x;
+  return {ends ? std::max(block.x - 1, 0) : block.x + 1, block.z};
+}
+
 }  // namespace
 
 double World::block_size_m() const {
@@ -93,13 +99,19 @@ std::vector<double> placed_per_block(const World& world, const models::Registry&
   for (std::size_t s = 0; s < counts.size(); ++s)
     counts[s] = wanted[s] ? 0 : counts[s];
   std::vector<Placement> placements;
+  // The land of a river network takes milliseconds for each place far from others.
+  constexpr std::uint32_t kTogether = 16;
+  core::BlockCoord last;
   for (std::uint32_t k = 0; k < kSizeBlocks; ++k) {
     core::RandomStream random(world.seed, 0, 0, k, core::Purpose::kStructure);
     const auto coordinate = [&random](std::int64_t blocks) {
       return static_cast<std::int32_t>(random.next_integer(0, (blocks == 0 ? 65536 : blocks) - 1));
     };
-    const std::int32_t x = coordinate(world.blocks_x), z = coordinate(world.blocks_z);
-    place_models(world, registry, {x, z}, wanted, placements);
+    core::BlockCoord block{coordinate(world.blocks_x), 0};
+    block.z = coordinate(world.blocks_z);
+    if (world.shaped.network && k % kTogether != 0) block = beside(world, last);
+    last = block;
+    place_models(world, registry, block, wanted, placements);
     for (const Placement& placement : placements) {
       if (placement.index >= kPlacedIndex) continue;
       std::size_t s = 0;

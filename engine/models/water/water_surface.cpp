@@ -332,7 +332,7 @@ class NetworkSurface {
           if (at_x < x * kUnits || at_x >= next_x * kUnits || at_z < z * kUnits ||
               at_z >= next_z * kUnits)
             continue;
-          add(curve, {metres(at_x - x0_ * kUnits), metres(at_z - z0_ * kUnits)}, to);
+          add(*patch, curve, {metres(at_x - x0_ * kUnits), metres(at_z - z0_ * kUnits)}, to);
         }
       }
     }
@@ -347,8 +347,8 @@ class NetworkSurface {
     }
     constexpr std::size_t kCount = kLakeSide * kLakeSide;
     std::vector<float> rows(4 * kCount);
-    float *const height = rows.data(), *const water = height + kCount, *const flow_x = water + kCount,
-                 *const flow_z = flow_x + kCount;
+    float *const height = rows.data(), *const water = height + kCount,
+                 *const flow_x = water + kCount, *const flow_z = flow_x + kCount;
     std::vector<std::uint32_t> body(kCount);
     network_.evaluate({xs, zs}, detail_,
                       {.height_m = height,
@@ -403,7 +403,8 @@ class NetworkSurface {
   }
 
   // `origin_m`: the curve's node, from the node's corner.
-  void add(const network::Curve& curve, glm::dvec2 origin_m, SurfaceWriter& to) const {
+  void add(const network::Patch& patch, const network::Curve& curve, glm::dvec2 origin_m,
+           SurfaceWriter& to) const {
     if (double{curve.width1_m} < kThinnest * node_.cell_m() || curve.chords == 0) return;
     if (to.vertices() > kMaxVertices) return;
     const std::span<const double> across = across_of(node_.level);
@@ -412,7 +413,8 @@ class NetworkSurface {
       const std::uint32_t row = to.vertices();
       for (const double place : across)
         to.add(point(curve, i, place, origin_m));
-      for (std::uint32_t k = 0; i > 0 && k + 1 < across.size(); ++k) {
+      const bool drawn = i > 0 && !is_in_lake(patch, curve, i);
+      for (std::uint32_t k = 0; drawn && k + 1 < across.size(); ++k) {
         to.triangle(before + k, row + k, before + k + 1);
         to.triangle(before + k + 1, row + k, row + k + 1);
       }
@@ -420,10 +422,22 @@ class NetworkSurface {
     }
   }
 
+  // True for a chord whose ends both lie on a lake, or on the sea.
+  bool is_in_lake(const network::Patch& patch, const network::Curve& curve, std::size_t i) const {
+    constexpr double kEqualM = 0.01;
+    const double from_m = height_m(curve, static_cast<double>(i - 1) / network::Curve::kChords);
+    const double to_m = height_m(curve, static_cast<double>(i) / network::Curve::kChords);
+    if (from_m > to_m + kEqualM) return false;
+    return to_m < network_.frame().sea_level_m + kEqualM ||
+           std::ranges::any_of(patch.lakes, [&](const network::Lake& lake) {
+             return std::abs(double{lake.level_m} - to_m) < kEqualM;
+           });
+  }
+
   static double height_m(const network::Curve& curve, double t) {
     const auto& h = curve.height_m;
-    const double bent = (1 - t) * (1 - t) * double{h[0]} + 2 * t * (1 - t) * double{h[1]} +
-                        t * t * double{h[2]};
+    const double bent =
+        (1 - t) * (1 - t) * double{h[0]} + 2 * t * (1 - t) * double{h[1]} + t * t * double{h[2]};
     return std::max(bent, double{curve.min_m});
   }
 
@@ -439,17 +453,15 @@ class NetworkSurface {
     if (curve.head) width_m *= std::min(0.3 + t, 1.0);
     const bool beyond = std::abs(across) >= kBeyond;
     const double edge_m = node_.level == 0 ? 2 : 0.1 * node_.cell_m();
-    const double out_m = beyond ? (across > 0 ? 1 : -1) * (0.5 * width_m + edge_m)
-                                : across * 0.5 * width_m;
-    const glm::dvec2 middle_m =
-        origin_m + glm::dvec2(double{curve.px[i]}, double{curve.pz[i]});
+    const double out_m =
+        beyond ? (across > 0 ? 1 : -1) * (0.5 * width_m + edge_m) : across * 0.5 * width_m;
+    const glm::dvec2 middle_m = origin_m + glm::dvec2(double{curve.px[i]}, double{curve.pz[i]});
     const glm::dvec2 at_m = middle_m + aside * out_m;
     const double inner = beyond ? 0 : 1 - across * across;
     const double depth_m = double{network::channel_depth_m(static_cast<float>(width_m))};
-    const double fall =
-        (height_m(curve, static_cast<double>(from) / network::Curve::kChords) -
-         height_m(curve, static_cast<double>(next) / network::Curve::kChords)) /
-        length_m;
+    const double fall = (height_m(curve, static_cast<double>(from) / network::Curve::kChords) -
+                         height_m(curve, static_cast<double>(next) / network::Curve::kChords)) /
+                        length_m;
     const double steep = std::clamp((fall - 0.04) / 0.36, 0.0, 1.0);
     const double speed = double{curve.discharge_m3_s} / std::max(0.67 * width_m * depth_m, 0.05);
     SurfacePoint surface;

@@ -243,7 +243,8 @@ std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
   for (std::size_t k = 0; k < facts.levels.size(); ++k) {
     for (std::size_t i = 0; i < kNodesPerLevel; ++i) {
       const auto level = static_cast<std::uint8_t>(k);
-      const visibility::NodeCoord node = visibility::node_of(any_block(facts.world, random), level);
+      const visibility::NodeCoord node =
+          visibility::node_of(any_block(facts.world, random, level), level);
       samples.push_back({facts.world.terrain_model, node_terrain(facts.world, node)});
       if (facts.levels[k].merged)
         samples.push_back({facts.merged_model, world::merged_parameters(node.coord, level)});

@@ -9,6 +9,7 @@
 
 #include "engine/core/hash.hpp"
 #include "engine/core/vertex_layout.hpp"
+#include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/visibility/quadtree.hpp"
 #include "engine/world/far/merged_models.hpp"
@@ -69,7 +70,33 @@ models::Parameters node_terrain(const world::World& world, const visibility::Nod
   return world::terrain_parameters(world, node.coord, node.level);
 }
 
-core::BlockCoord any_block(const world::World& world, core::RandomStream& random) {
+namespace {
+
+// A block on land, for samples of worlds where each place far from others takes milliseconds.
+core::BlockCoord block_on_land(const world::World& world) {
+  constexpr std::int32_t kTries = 24, kStep = 64;
+  for (std::int32_t i = 0; i < kTries; ++i) {
+    const core::BlockCoord block = nearest_block(world, {i * kStep, i * kStep / 2});
+    if (models::ground_height_m(world.terrain, block, 0, 0) > world.water.level_m) return block;
+  }
+  return nearest_block(world, {});
+}
+
+}  // namespace
+
+core::BlockCoord any_block(const world::World& world, core::RandomStream& random,
+                           std::uint32_t level) {
+  if (world.shaped.network) {
+    constexpr std::int64_t kNodes = 4;
+    const core::BlockCoord land = block_on_land(world);
+    const auto beside = [&](std::int32_t first) {
+      return static_cast<std::int32_t>(
+          static_cast<std::uint32_t>(first) +
+          (static_cast<std::uint32_t>(random.next_integer(0, kNodes - 1)) << level));
+    };
+    const std::int32_t x = beside(land.x);
+    return nearest_block(world, {x, beside(land.z)});
+  }
   constexpr std::int64_t kEndlessReach = 4096;
   const auto index = [&](std::int64_t blocks) {
     return static_cast<std::int32_t>(blocks > 0
@@ -242,7 +269,8 @@ double measured_ground_error_m(const world::World& world, const models::Registry
   std::vector<std::uint16_t> distances;
   for (int i = 0; i < kNodes; ++i) {
     const visibility::NodeCoord node =
-        visibility::node_of(any_block(world, random), static_cast<std::uint8_t>(node_level));
+        visibility::node_of(any_block(world, random, static_cast<std::uint32_t>(node_level)),
+                            static_cast<std::uint8_t>(node_level));
     const models::Parameters p = node_terrain(world, node);
     const models::MeshSize size = terrain.mesh_size(p, 0);
     vertices.resize(size.vertex_count * sizeof(core::TerrainVertex));

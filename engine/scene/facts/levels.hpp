@@ -52,8 +52,11 @@ models::Parameters node_terrain(const world::World& world, const visibility::Nod
 // The block of the world nearest to `block`; `block` itself if it exists.
 core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block);
 
-// A block anywhere in the world; in an endless one within some thousand blocks of its origin.
-core::BlockCoord any_block(const world::World& world, core::RandomStream& random);
+// A block anywhere in the world; in an endless one within some thousand blocks of its origin. In a
+// world of a river network it belongs to one of 4 × 4 neighbouring nodes of a level: land far from
+// others takes milliseconds to make.
+core::BlockCoord any_block(const world::World& world, core::RandomStream& random,
+                           std::uint32_t level = 0);
 
 // True if any block of the node exists.
 bool contains(const world::World& world, const visibility::NodeCoord& node);
