@@ -53,6 +53,11 @@ core::Result<exchange::Object> object_of(const world::World& world,
   return object;
 }
 
+void add_water(const world::World& world, core::BlockCoord block, exchange::Document& document) {
+  if (auto water = exchange::water_object(world, block))
+    document.objects.push_back(std::move(*water));
+}
+
 // This many bytes of a truncated text identify its origin.
 constexpr std::size_t kTelling = 8;
 
@@ -94,8 +99,7 @@ core::Result<exchange::Document> block_document(const world::World& world,
   });
   if (error) return tl::unexpected(*error);
   if (totals.failed > 0) return core::fail(core::ErrorCode::kSynthesisFailed, totals.first_failure);
-  if (auto water = exchange::water_object(world, block))
-    document.objects.push_back(std::move(*water));
+  add_water(world, block, document);
   return document;
 }
 
@@ -134,6 +138,7 @@ class BlockFolder::Sink final : public BlockSink {
   core::Result<void> finish(core::BlockCoord block) override {
     if (error_) return tl::unexpected(*error_);
     document_.name = name_of(block);
+    add_water(folder_.world_, block, document_);
     const auto written = exchange::write_scene(folder_.file_of(block), folder_.format_, document_);
     document_.objects.clear();
     if (written) folder_.written_.fetch_add(1, std::memory_order_relaxed);
