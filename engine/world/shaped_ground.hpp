@@ -19,8 +19,8 @@
 
 #include "engine/core/error.hpp"
 #include "engine/models/ground/erosion.hpp"
-#include "engine/models/ground/network/settings.hpp"
 #include "engine/models/model_type.hpp"
+#include "engine/models/network/settings.hpp"
 #include "engine/world/mask.hpp"
 #include "engine/world/water_bodies.hpp"
 

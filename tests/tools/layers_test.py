@@ -68,12 +68,13 @@ MAY_KNOW["editor"] = MAY_KNOW["editor/shell"] | {"editor/shell", "engine/program
 # may be included by all of them but those of NOT_UP.
 INSIDE = {
     "engine/models/kit": set(),
-    "engine/models/ground": {"kit"},
-    "engine/models/terrain": {"ground", "kit"},
+    "engine/models/network": {"kit"},
+    "engine/models/ground": {"network", "kit"},
+    "engine/models/terrain": {"ground", "network", "kit"},
     "engine/models/tree": {"kit"},
     "engine/models/rock": {"kit"},
     "engine/models/grass": {"kit"},
-    "engine/models/water": {"ground", "kit"},
+    "engine/models/water": {"ground", "network", "kit"},
     "engine/world": set(),
     "engine/world/files": set(),
     "engine/world/far": set(),

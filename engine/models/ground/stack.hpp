@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "engine/models/ground/detail.hpp"
 #include "engine/models/ground/erosion.hpp"
 #include "engine/models/ground/ground_edits.hpp"
-#include "engine/models/ground/network/network.hpp"
+#include "engine/models/kit/ground_detail.hpp"
+#include "engine/models/network/network.hpp"
 
 namespace psygen::models {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <span>
 
-#include "engine/models/ground/network/network.hpp"
 #include "engine/models/kit/scratch.hpp"
+#include "engine/models/network/network.hpp"
 #include "engine/models/terrain/shape.hpp"
 
 namespace psygen::models {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "engine/models/ground/network/network.hpp"
 #include "engine/models/kit/simd_targets.hpp"
+#include "engine/models/network/network.hpp"
 
 namespace psygen::synthesis {
 namespace {

@@ -1,5 +1,5 @@
 // The ground and the water of river networks.
-#include "engine/models/ground/network/network.hpp"
+#include "engine/models/network/network.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/models/ground/network/halving.hpp"
+#include "engine/models/network/halving.hpp"
 
 #include <limits>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "engine/models/ground/network/network.hpp"
+#include "engine/models/network/network.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,10 +10,9 @@
 #include <span>
 
 #include "engine/core/coordinates.hpp"
-#include "engine/models/ground/detail.hpp"
-#include "engine/models/ground/ground_edits.hpp"
-#include "engine/models/ground/network/kernel.hpp"
-#include "engine/models/ground/network/store.hpp"
+#include "engine/models/kit/ground_detail.hpp"
+#include "engine/models/network/kernel.hpp"
+#include "engine/models/network/store.hpp"
 
 namespace psygen::models {
 

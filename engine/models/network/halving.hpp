@@ -4,8 +4,8 @@
 // triangle can fold. Pure functions; any thread; about 0.2 µs a node.
 #pragma once
 
-#include "engine/models/ground/network/lattice.hpp"
-#include "engine/models/ground/network/root.hpp"
+#include "engine/models/network/lattice.hpp"
+#include "engine/models/network/root.hpp"
 
 namespace psygen::models::network {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/core/hash.hpp"
-#include "engine/models/ground/network/settings.hpp"
+#include "engine/models/network/settings.hpp"
 
 namespace psygen::models::network {
 

@@ -11,7 +11,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/models/ground/network/halving.hpp"
+#include "engine/models/network/halving.hpp"
 
 namespace psygen::models::network {
 

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "engine/core/value_cache.hpp"
-#include "engine/models/ground/network/patch.hpp"
-#include "engine/models/ground/network/root.hpp"
+#include "engine/models/network/patch.hpp"
+#include "engine/models/network/root.hpp"
 
 namespace psygen::models {
 

@@ -1,6 +1,6 @@
 // Spots are few per call, so each spot runs over rows of points, in the order of the lattice.
 // Points outside its reach gain +0, which changes no bit. Channels run over vectors of samples.
-#include "engine/models/ground/network/kernel.hpp"
+#include "engine/models/network/kernel.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -9,7 +9,7 @@
 #include "engine/models/kit/scratch.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "engine/models/ground/network/kernel.cpp"
+#define HWY_TARGET_INCLUDE "engine/models/network/kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -1,4 +1,4 @@
-#include "engine/models/ground/network/settings.hpp"
+#include "engine/models/network/settings.hpp"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <vector>
 
-#include "engine/models/ground/network/network.hpp"
+#include "engine/models/network/network.hpp"
 
 namespace psygen::models::test {
 

@@ -1,4 +1,4 @@
-#include "engine/models/ground/network/store.hpp"
+#include "engine/models/network/store.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "engine/models/ground/network/network.hpp"
+#include "engine/models/network/network.hpp"
 
 namespace psygen::models {
 namespace {

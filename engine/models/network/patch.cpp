@@ -1,4 +1,4 @@
-#include "engine/models/ground/network/patch.hpp"
+#include "engine/models/network/patch.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "engine/models/ground/network/root.hpp"
+#include "engine/models/network/root.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -10,7 +10,7 @@
 #include <memory>
 #include <unordered_map>
 
-#include "engine/models/ground/network/lattice.hpp"
+#include "engine/models/network/lattice.hpp"
 
 namespace psygen::models::network {
 

@@ -3,8 +3,8 @@
 
 #include <unordered_map>
 
-#include "engine/models/ground/network/halving.hpp"
-#include "tests/engine/models/ground/network/drainage.hpp"
+#include "engine/models/network/halving.hpp"
+#include "tests/engine/models/network/drainage.hpp"
 
 namespace psygen::models {
 namespace {

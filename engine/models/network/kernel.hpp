@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/models/ground/network/patch.hpp"
+#include "engine/models/network/patch.hpp"
 
 namespace psygen::models::network {
 
