@@ -24,7 +24,7 @@ bool can_create_in(const std::filesystem::path& folder);
 int create_file(const std::filesystem::path& file);
 // Gives a new file the owner, if this user may, and the permissions of the one that it replaces.
 void keep_owner_and_mode(int file, const ExistingFile& before);
-// Writes some of the bytes and returns their number, or -1.
+// Writes some of the bytes and returns their number, or -1. Async-signal-safe.
 std::ptrdiff_t write_some(int file, std::string_view bytes);
 // Writes the system's buffers of the file to the disk.
 bool flush_file(int file);

@@ -3,7 +3,6 @@
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include <mutex>
 #include <string>
 
+#include "engine/core/file_calls.hpp"
 #include "engine/core/utf8.hpp"
 
 namespace psygen::core {
@@ -24,7 +24,8 @@ class KeptLines final : public spdlog::sinks::base_sink<std::mutex> {
     const std::size_t end = next_.load(std::memory_order_acquire);
     for (std::size_t i = end - std::min(end, kKeptLogLines); i < end; ++i) {
       const Line& line = lines_[i % kKeptLogLines];
-      if (write(descriptor, line.text.data(), line.bytes) != static_cast<ssize_t>(line.bytes))
+      if (write_some(descriptor, {line.text.data(), line.bytes}) !=
+          static_cast<std::ptrdiff_t>(line.bytes))
         return false;
     }
     return true;
