@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <tuple>
 
 #include "tests/engine/render/on_a_path.hpp"
@@ -37,10 +38,16 @@ class Fading : public OnAPath {
     draw.fade = fade;
     return draw;
   }
-  static std::size_t different(const Picture& a, const Picture& b) {
+  // Pixels of which a byte differs by more than `by`.
+  static std::size_t different(const Picture& a, const Picture& b, int by = 0) {
+    const auto differs = [by](std::uint8_t x, std::uint8_t y) { return std::abs(x - y) > by; };
     std::size_t pixels = 0;
     for (std::size_t i = 0; i < a.rgba.size(); i += 4)
-      pixels += std::equal(&a.rgba[i], &a.rgba[i] + 4, &b.rgba[i]) ? 0 : 1;
+      for (std::size_t c = 0; c < 4; ++c)
+        if (differs(a.rgba[i + c], b.rgba[i + c])) {
+          ++pixels;
+          break;
+        }
     return pixels;
   }
 
@@ -112,18 +119,21 @@ TEST_P(Fading, ThePatternMovesWithItsPhaseAndIsTheSameForTheSamePhase) {
   EXPECT_EQ(draw(half).rgba, first.rgba);
 }
 
-// Also of its shadow.
+// Also of its shadow, whose soft edge spreads a hint over many pixels. How many of them change by a
+// few of 255 depends on the driver's steps between texels (lavapipe 22.3: 1,362, 25.0: 2,108).
 TEST_P(Fading, AHintOfAnotherMeshChangesAHintOfThePicture) {
+  constexpr int kVisible = 8;  // of 255
   const std::array whole{mesh(0, 1)};
   const Picture before = draw(whole);
   meshes_[1].box_half_extent = {2.6F, 4.6F, 2.6F};
   const std::array larger{mesh(1, 1)};
-  const std::size_t all = different(draw(larger), before);
+  const std::size_t all = different(draw(larger), before, kVisible);
+  ASSERT_GT(all, 1000u);
   const std::array hint{mesh(1, 0.02F), mesh(0, -0.02F)};
-  EXPECT_LT(different(draw(hint), before), all / 5);
+  EXPECT_LT(different(draw(hint), before, kVisible), all / 5);
   const std::array nearly{mesh(1, 0.98F), mesh(0, -0.98F)};
   const Picture almost = draw(nearly);
-  EXPECT_LT(different(almost, draw(larger)), all / 5);
+  EXPECT_LT(different(almost, draw(larger), kVisible), all / 5);
 }
 
 TEST_P(Fading, ViewsForUnderstandingFadeToo) {
