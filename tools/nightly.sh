@@ -43,7 +43,7 @@ debian() { # NAME SUITE
 }
 how_debian_12="a new system, GCC 12.2, Mesa 22.3"
 row_debian_12() { debian debian-12 bookworm; }
-how_debian_13="a new system, GCC 14.2, Mesa 25.0, GLFW 3.4"
+how_debian_13="a new system, GCC 14.2, Mesa 25.0, GLFW 3.4, Qt 6.8"
 row_debian_13() { debian debian-13 trixie; }
 how_ubuntu_24_04="a new system, GCC 13, Mesa 24"
 row_ubuntu_24_04() {
