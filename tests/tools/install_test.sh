@@ -143,4 +143,4 @@ VK_ICD_FILENAMES=/nonexistent.json "$psygen" fly --headless --path combe 2>"$fol
 "$psygen" export --world silver_combe --block 3,-4 --level 2 --out block.glb 2>/dev/null
 [ -s block.glb ]
 if "$psygen" amplify --world silver_comb 2>"$folder/amplify.txt"; then exit 1; fi
-grep -q "moved here/share/psygen/worlds.*silver_combe, thorn_country; did you mean silver_combe?" "$folder/amplify.txt"
+grep -q "moved here/share/psygen/worlds.*silver_combe, thorn_country, watershed; did you mean silver_combe?" "$folder/amplify.txt"

@@ -52,7 +52,7 @@ TEST(ShippedFiles, AMissingFileIsReportedWithSearchedFoldersAndShippedNames) {
          {std::string("papre: no such file; looked in ") + folder.path().string(),
           std::string("/share/psygen/worlds"),
           std::string("ember_pass, endless, five_species, frost_isle, lakes, paper, silver_combe, "
-                      "thorn_country"),
+                      "thorn_country, watershed"),
           std::string("did you mean paper?")})
       EXPECT_TRUE(mentions(world.err, words)) << command << "\n" << world.err;
   }
