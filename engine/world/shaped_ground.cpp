@@ -99,19 +99,24 @@ class Shaper {
     return add(std::move(edit), "centre_m");
   }
 
+  // The network that fits the world: its finest nodes are 16 to 512 cells apart, and its coast lies
+  // within the relief.
   Shaped add(models::RiverSettings network) {
+    constexpr double kMinCells = 16, kMaxCells = 512, kMinCoast = 0.02, kMaxCoast = 0.9;
     network.seed = world_.seed;
+    const auto node_cells = [&] {
+      return std::ldexp(network.root_spacing_m, -network.halvings) / world_.cell_m();
+    };
+    while (network.halvings > 1 && node_cells() < kMinCells)
+      --network.halvings;
+    while (network.halvings < 8 && node_cells() > kMaxCells)
+      ++network.halvings;
     const models::RiverFrame frame{
         .cell_m = world_.cell_m(),
         .cells_per_block = world_.terrain.integer(models::kTerrainSize) - 1,
         .relief_m = relief_m_,
-        .sea_level_m = world_.water.level_m};
-    if (!(frame.sea_level_m > 0 && frame.sea_level_m < relief_m_))
-      return refused(
-          "root_spacing_m",
-          fmt::format("a world with [rivers] needs a sea: a level_m of [water] between 0 "
-                      "and {:g} m, the relief_m of [terrain]",
-                      relief_m_));
+        .sea_level_m =
+            std::clamp(world_.water.level_m, kMinCoast * relief_m_, kMaxCoast * relief_m_)};
     auto made =
         models::RiverNetwork::create(network, frame, std::make_shared<models::NetworkStore>());
     if (!made) return refused("root_spacing_m", std::move(made.error()));

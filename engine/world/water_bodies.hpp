@@ -7,6 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/core/coordinates.hpp"
+
 namespace psygen::world {
 
 // A river along a natural cubic spline through its points, downstream. Lists have one number for

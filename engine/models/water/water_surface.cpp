@@ -467,7 +467,9 @@ class NetworkSurface {
     SurfacePoint surface;
     surface.at_m = {at_m.x, surface_m(curve, t, middle_m), at_m.y};
     surface.depth_m = depth_m * inner;
-    surface.foam = steep * steep * (3 - 2 * steep);
+    // A thin stream is a white line of little width, not a fall.
+    const double broad = std::clamp((width_m - 0.5) / 4, 0.15, 1.0);
+    surface.foam = broad * steep * steep * (3 - 2 * steep);
     surface.flow_m_s = direction * (std::min(speed, 6.0) * std::max(inner, 0.2));
     surface.slope = direction * -fall;
     return surface;

@@ -22,6 +22,7 @@ Parameters water_surface_parameters(core::BlockCoord node, int node_level, doubl
 // water.
 bool has_water_surface(const Parameters& p);
 
+// The type of these meshes. Pure, any thread.
 std::unique_ptr<ModelType> make_water_type();
 
 }  // namespace psygen::models

@@ -19,6 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 using testing::parsed;
 using testing::registry;
+using testing::replaced;
 
 // Endless land, 200 m high, with a river valley every few hundred metres.
 constexpr const char* kRiverLand = R"(format = 1
@@ -141,11 +142,22 @@ TEST(NetworkGround, WrongNumbersAreRejectedWithLineAndField) {
               HasSubstr("root_spacing_m"));
   EXPECT_THAT(message(std::string(kRiverLand) + "[rivers]\nlake_share = 2\n"),
               HasSubstr("lake_share"));
-  EXPECT_THAT(message(std::string(kRiverLand) + "[rivers]\nroot_spacing_m = 256\nhalvings = 8\n"),
-              HasSubstr("nodes"));
+  std::string coarse = std::string(kRiverLand) + "[rivers]\nroot_spacing_m = 256\n";
+  coarse.replace(coarse.find("cell_m = 1"), 10, "cell_m = 50");
+  EXPECT_THAT(message(coarse), HasSubstr("nodes"));
+}
+
+// Sliders move through all of these.
+TEST(NetworkGround, FitsEveryHeightOfTheSeaAndEverySpacing) {
   std::string dry = river_text();
   dry.replace(dry.find("level_m = 20"), 12, "shore_m = 1");
-  EXPECT_THAT(message(dry), HasSubstr("needs a sea"));
+  for (const std::string& text : {dry, replaced(river_text(), "level_m = 20", "level_m = 5000"),
+                                  replaced(river_text(), "halvings = 5", "halvings = 8"),
+                                  replaced(river_text(), "root_spacing_m = 1024\nhalvings = 5",
+                                           "root_spacing_m = 65536\nhalvings = 1")}) {
+    const World world = parsed(text);
+    EXPECT_EQ(mesh_of(world, {3, 1}, 0, 0)[32].height, mesh_of(world, {4, 1}, 0, 0)[0].height);
+  }
 }
 
 }  // namespace
