@@ -357,9 +357,17 @@ class NetworkSurface {
                        .flow_z = flow_z,
                        .body = body.data(),
                        .stride = kLakeSide});
+    // Channels run through lakes, at their level.
+    const auto patch = network_.patch(network_.tile_of(x0_ + side_ / 2, z0_ + side_ / 2, detail_));
     const auto is_lake = [&](std::size_t i) {
-      return water[i] > height[i] && flow_x[i] == 0 && flow_z[i] == 0 &&
-             water[i] > static_cast<float>(network_.frame().sea_level_m) + 0.01F;
+      constexpr float kEqualM = 0.02F;
+      if (!(water[i] > height[i]) ||
+          water[i] < static_cast<float>(network_.frame().sea_level_m) + kEqualM)
+        return false;
+      return (flow_x[i] == 0 && flow_z[i] == 0) ||
+             std::ranges::any_of(patch->lakes, [&](const network::Lake& lake) {
+               return std::abs(lake.level_m - water[i]) < kEqualM;
+             });
     };
     for (std::size_t z = 0; z + 1 < kLakeSide; ++z) {
       for (std::size_t x = 0; x + 1 < kLakeSide; ++x) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -221,6 +222,47 @@ TEST(WaterSurface, IsTheSameFarFromTheOrigin) {
   const core::Bounds box = make_water_type()->bounds(p);
   EXPECT_NEAR(box.min.x, 10, 1e-4);
   EXPECT_NEAR(box.max.x, 30, 1e-4);
+}
+
+// True if a triangle of a surface lies over a place.
+bool covers(const Surface& s, glm::dvec2 at) {
+  const auto side = [&](const glm::dvec3& a, const glm::dvec3& b) {
+    return (b.x - a.x) * (at.y - a.z) - (b.z - a.z) * (at.x - a.x);
+  };
+  for (std::size_t i = 0; i + 2 < s.indices.size(); i += 3) {
+    const glm::dvec3 &a = s.places[s.indices[i]], &b = s.places[s.indices[i + 1]],
+                     &c = s.places[s.indices[i + 2]];
+    const double u = side(a, b), v = side(b, c), w = side(c, a);
+    if ((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0)) return true;
+  }
+  return false;
+}
+
+// Rivers, and lakes with the channels that run through them.
+TEST(WaterSurface, CoversTheWaterOfANetwork) {
+  EditLayer layer;
+  layer.ground.network = *RiverNetwork::create(
+      {.seed = 11, .root_spacing_m = 1024, .halvings = 5, .sea_share = 0.2},
+      {.cell_m = 1, .cells_per_block = 64, .relief_m = 200, .sea_level_m = 20},
+      std::make_shared<NetworkStore>());
+  std::size_t wet = 0, covered = 0;
+  for (int z = 0; z < 12; ++z) {
+    for (int x = 0; x < 12; ++x) {
+      std::vector<Surface> near;
+      for (int k = 0; k < 9; ++k)
+        near.push_back(surface_of_node(layer, {x + k % 3 - 1, z + k / 3 - 1}, 0));
+      for (int i = 0; i < 64; ++i) {
+        const glm::dvec2 local(3.5 + 8 * (i % 8), 3.5 + 8 * (i / 8));
+        const NetworkWater water = layer.ground.network->water_at({{x, z}, {local.x, 0, local.y}});
+        if (water.depth_m < 0.2F || water.surface_m < 20.1F) continue;
+        ++wet;
+        covered += std::ranges::any_of(
+            near, [&](const Surface& s) { return covers(s, local + glm::dvec2(x, z) * kBlockM); });
+      }
+    }
+  }
+  EXPECT_GT(wet, 60U);
+  EXPECT_GE(static_cast<double>(covered), 0.97 * static_cast<double>(wet)) << wet;
 }
 
 }  // namespace
