@@ -50,8 +50,11 @@ done
 check tests $bin/psygen_test_render --gtest_filter="$tests"
 for preset in low high; do
   for path in cpu gpu; do
-    check "flight, preset $preset, path $path" $bin/psygen fly --headless --path walk27 --frames 20 --fixed-step 10 \
-      --size 320x180 --preset $preset --render-path $path --validation --out "$work/out"
+    for way in "--path walk27" "--world watershed"; do
+      # shellcheck disable=SC2086
+      check "flight, $way, preset $preset, path $path" $bin/psygen fly --headless $way --frames 20 --fixed-step 10 \
+        --size 320x180 --preset $preset --render-path $path --validation --out "$work/out"
+    done
   done
 done
 Xvfb -displayfd 1 -screen 0 640x480x24 >"$work/display" 2>/dev/null &

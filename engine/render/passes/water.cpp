@@ -55,7 +55,7 @@ void Water::list(const FrameInput& input, const FrameFacts&) {
   plane_ = input.water.has_value();
   surfaces_.clear();
   for (const MeshDraw& draw : input.water_surfaces)
-    surfaces_.push_back({draw.range, data_of(draw)});
+    surfaces_.push_back({draw.range, {data_of(draw)}});
 }
 
 std::uint64_t Water::surface_triangles() const {
@@ -98,7 +98,7 @@ void Water::record(const Recording& to) const {
       bound = buffer;
     }
     to.device.vk.vkCmdPushConstants(to.commands(), layout, VK_SHADER_STAGE_VERTEX_BIT, 0,
-                                    sizeof surface.data, &surface.data);
+                                    sizeof surface.pushed, &surface.pushed);
     to.device.vk.vkCmdDrawIndexed(to.commands(), surface.range.index_count, 1,
                                   surface.range.first_index,
                                   static_cast<std::int32_t>(surface.range.first_vertex), 0);

@@ -37,7 +37,11 @@ class Water {
   // The surface of a river or lake.
   struct Surface {
     core::GeometryRange range;
-    shaders::DrawData data;
+    // The whole range of push constants (draw.glsl): culling on the device pushes others before.
+    struct Pushed {
+      shaders::DrawData data;
+      std::uint32_t cascade = 0;
+    } pushed;
   };
   core::Result<void> create(const PassSetup& setup, PipelineShape shape, Pipelines& pipelines);
   void bind(const Recording& to, VkPipeline pipeline) const;
