@@ -289,6 +289,8 @@ core::Result<void> Scene::check(const SceneSettings& settings) {
     return core::invalid_argument("the maximum error factor must be between 1 and 100");
   if (!within(settings.fade_seconds, 0, 60))
     return core::invalid_argument("fades must take between 0 and 60 seconds");
+  if (!within(settings.calibration_seconds, 0, 3600))
+    return core::invalid_argument("calibration must take between 0 and 3600 seconds");
   if (!within(settings.step_hz, 1, 10'000))
     return core::invalid_argument("the simulation must have between 1 and 10000 steps a second");
   if (settings.streaming_ticks < 1)
@@ -366,9 +368,10 @@ core::Result<std::unique_ptr<Scene>> Scene::create(world::World world, models::R
   s.supply.open(facts.registry, *s.memory, settings.budget_bytes);
   s.supply.set_edits(facts.world.layer());
   if (!settings.virtual_time) {
-    s.calibration = s.supply.calibrate(cost_samples(facts), [&](double fraction) {
-      if (progress) (void)progress("calibrating", fraction);
-    });
+    s.calibration =
+        s.supply.calibrate(cost_samples(facts), settings.calibration_seconds, [&](double fraction) {
+          if (progress) (void)progress("calibrating", fraction);
+        });
   }
   synthesis::SynthesisOptions options;
   options.modelers = s.settings.modelers;

@@ -77,10 +77,10 @@ core::Result<PreparedWorld> prepare_world(world::World world, models::Registry r
 // One world with its entities, its meshes and its tick.
 class Scene {
  public:
-  // Starts the modelers and calibrates the cost model (below 0.5 s). `world` may have edits.
-  // `renderer`, `trace` and `remote` (further modelers, not with virtual time) may be null and must
-  // outlive the scene. Fails as check(), and with kOverBudget for a view with too many nodes and
-  // models (facts/derive.hpp).
+  // Starts the modelers and calibrates the cost model (SceneSettings::calibration_seconds). `world`
+  // may have edits. `renderer`, `trace` and `remote` (further modelers, not with virtual time) may
+  // be null and must outlive the scene. Fails as check(), and with kOverBudget for a view with too
+  // many nodes and models (facts/derive.hpp).
   static core::Result<std::unique_ptr<Scene>> create(world::World world, models::Registry registry,
                                                      const SceneSettings& settings,
                                                      render::Renderer* renderer,

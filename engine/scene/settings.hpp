@@ -45,6 +45,7 @@ struct SceneSettings {
   double fade_seconds = 0.25;          // duration of fades; 0: no fades
   bool levels_of_detail = true;        // false: full detail everywhere, as in the paper
   bool occlusion = true;               // horizon culling behind ridges
+  double calibration_seconds = 0.4;    // maximum at the start, whether or not all was measured
   double watchdog_seconds = 10;        // requests that take longer are abandoned
   double main_thread_budget_ms = 2.0;  // per tick, for missing meshes in view
   double plan_seconds_ahead = 0.05;    // synthesis time per modeler in one plan

@@ -36,9 +36,9 @@ void MeshSupply::open(const models::Registry& registry, core::GeometryMemory& me
   cost_ = std::make_unique<CostModel>(registry);
 }
 
-CalibrationReport MeshSupply::calibrate(std::span<const CostSample> samples,
+CalibrationReport MeshSupply::calibrate(std::span<const CostSample> samples, double seconds_limit,
                                         const std::function<void(double)>& progress) {
-  return cost_->calibrate(samples, {}, progress);
+  return cost_->calibrate(samples, {.seconds_limit = seconds_limit}, progress);
 }
 
 unsigned MeshSupply::start_modelers(const SynthesisOptions& options) {

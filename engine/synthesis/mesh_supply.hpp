@@ -51,7 +51,7 @@ class MeshSupply {
   void open(const models::Registry& registry, core::GeometryMemory& memory,
             std::uint64_t budget_bytes);
   // Measures the model types on this machine; see CostModel::calibrate().
-  CalibrationReport calibrate(std::span<const CostSample> samples,
+  CalibrationReport calibrate(std::span<const CostSample> samples, double seconds_limit,
                               const std::function<void(double)>& progress);
   // Starts the modelers that the system has threads for; returns their number. Call once.
   unsigned start_modelers(const SynthesisOptions& options);

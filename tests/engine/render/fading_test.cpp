@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <tuple>
 
@@ -40,15 +41,20 @@ class Fading : public OnAPath {
   }
   // Pixels of which a byte differs by more than `by`.
   static std::size_t different(const Picture& a, const Picture& b, int by = 0) {
-    const auto differs = [by](std::uint8_t x, std::uint8_t y) { return std::abs(x - y) > by; };
     std::size_t pixels = 0;
     for (std::size_t i = 0; i < a.rgba.size(); i += 4)
-      for (std::size_t c = 0; c < 4; ++c)
-        if (differs(a.rgba[i + c], b.rgba[i + c])) {
-          ++pixels;
-          break;
-        }
+      pixels += std::equal(&a.rgba[i], &a.rgba[i] + 4, &b.rgba[i],
+                           [by](int x, int y) { return std::abs(x - y) <= by; })
+                    ? 0
+                    : 1;
     return pixels;
+  }
+  // Sum of the differences of all bytes.
+  static std::uint64_t difference(const Picture& a, const Picture& b) {
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i)
+      sum += static_cast<std::uint64_t>(std::abs(a.rgba[i] - b.rgba[i]));
+    return sum;
   }
 
   std::array<MeshDraw, 3> meshes_;  // two at the same place, one beside and behind them
@@ -119,21 +125,28 @@ TEST_P(Fading, ThePatternMovesWithItsPhaseAndIsTheSameForTheSamePhase) {
   EXPECT_EQ(draw(half).rgba, first.rgba);
 }
 
-// Also of its shadow, whose soft edge spreads a hint over many pixels. How many of them change by a
-// few of 255 depends on the driver's steps between texels (lavapipe 22.3: 1,362, 25.0: 2,108).
+// Also of its shadow, whose soft edge spreads a hint thinly over many pixels: over 1,362 or 2,108,
+// depending on the driver's steps between texels. Those by more than thin of 255 are few there
+// too, and all changes together are small everywhere (measured: 2 %, with shadows 4 to 5 %).
 TEST_P(Fading, AHintOfAnotherMeshChangesAHintOfThePicture) {
-  constexpr int kVisible = 8;  // of 255
+  const bool has_shadows = std::get<2>(GetParam()) >= Preset::kHigh;
+  const int thin = has_shadows ? 8 : 0;
   const std::array whole{mesh(0, 1)};
   const Picture before = draw(whole);
   meshes_[1].box_half_extent = {2.6F, 4.6F, 2.6F};
   const std::array larger{mesh(1, 1)};
-  const std::size_t all = different(draw(larger), before, kVisible);
-  ASSERT_GT(all, 1000u);
+  const Picture after = draw(larger);
+  const std::size_t pixels = different(after, before, thin);
+  const std::uint64_t all = difference(after, before);
+  ASSERT_GT(pixels, 1000u);
   const std::array hint{mesh(1, 0.02F), mesh(0, -0.02F)};
-  EXPECT_LT(different(draw(hint), before, kVisible), all / 5);
+  const Picture begun = draw(hint);
+  EXPECT_LT(different(begun, before, thin), pixels / 5);
+  EXPECT_LT(difference(begun, before), all / 12);
   const std::array nearly{mesh(1, 0.98F), mesh(0, -0.98F)};
   const Picture almost = draw(nearly);
-  EXPECT_LT(different(almost, draw(larger), kVisible), all / 5);
+  EXPECT_LT(different(almost, after, thin), pixels / 5);
+  EXPECT_LT(difference(almost, after), all / 12);
 }
 
 TEST_P(Fading, ViewsForUnderstandingFadeToo) {

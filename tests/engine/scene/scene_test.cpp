@@ -437,6 +437,9 @@ TEST(Scene, InvalidSettingsAreRejected) {
   settings.fade_seconds = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(refused(settings));
   settings = small_settings();
+  settings.calibration_seconds = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(refused(settings));
+  settings = small_settings();
   settings.modelers = 100000;
   EXPECT_TRUE(refused(settings));
   settings = small_settings();
