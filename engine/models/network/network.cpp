@@ -255,7 +255,7 @@ network::HeightRange RiverNetwork::bounds(const Lattice& at, GroundDetail detail
   return range;
 }
 
-float RiverNetwork::error_m(GroundDetail from, GroundDetail to) const {
+double RiverNetwork::unlimited_error_m(GroundDetail from, GroundDetail to) const {
   // Measured between the ground of the finest nodes and that of coarser ones, by their number of
   // levels, in spacings of the coarser.
   constexpr std::array<double, 9> kSpacings{0, .7, .7, .6, .45, .3, .22, .18, .15};
@@ -268,7 +268,16 @@ float RiverNetwork::error_m(GroundDetail from, GroundDetail to) const {
   const int a = level_of(from), b = level_of(to);
   double sum = is_fine(from) != is_fine(to) ? kGuideErrorM : 0;
   if (a != b) sum += error(a) + error(b);
-  return static_cast<float>(std::min(sum, scale_.frame.relief_m));
+  return sum;
+}
+
+float RiverNetwork::error_m(GroundDetail from, GroundDetail to) const {
+  return static_cast<float>(std::min(unlimited_error_m(from, to), scale_.frame.relief_m));
+}
+
+float RiverNetwork::usual_error_m(GroundDetail from, GroundDetail to) const {
+  constexpr double kUsual = 0.2;  // of the error of mountains; measured: 0.1 to 0.2
+  return static_cast<float>(std::min(kUsual * unlimited_error_m(from, to), scale_.frame.relief_m));
 }
 
 double RiverNetwork::work(double samples, GroundDetail detail) const {
@@ -276,8 +285,11 @@ double RiverNetwork::work(double samples, GroundDetail detail) const {
   return samples * (is_fine(detail) ? kGuided : kExact);
 }
 
-double RiverNetwork::patch_work() {
-  return 2e7;
+double RiverNetwork::patch_work(double side_cells, GroundDetail detail) const {
+  constexpr double kPatch = 2e7;
+  const double tiles = side_cells * static_cast<double>(network::kUnitsPerCell) /
+                       static_cast<double>(tile_units(level_of(detail)));
+  return kPatch * tiles * tiles;
 }
 
 }  // namespace psygen::models

@@ -59,14 +59,15 @@ class RiverNetwork {
   // Bounds of a square of cells from its patch, which is made if it is missing; about five times as
   // wide as the truth.
   network::HeightRange bounds(const Lattice& at, GroundDetail detail) const;
-  // Distance in metres that 99.9 % of places in mountains stay below between the grounds of two
-  // details, by a measured table.
+  // Distances in metres between the grounds of two details that 99.9 % of places in mountains stay
+  // below, and 95 % of all places. By measured tables.
   float error_m(GroundDetail from, GroundDetail to) const;
+  float usual_error_m(GroundDetail from, GroundDetail to) const;
   // Estimated time of evaluate() with a warm patch, in units of RidgedNoise::work().
   double work(double samples, GroundDetail detail) const;
-  // Estimated time of a patch, in the same units, for callers that spread it over the blocks of its
-  // tile, whether or not the store has it.
-  static double patch_work();
+  // The part of the estimated time of patches that a square of so many cells a side takes, in the
+  // same units, whether or not the store has them.
+  double patch_work(double side_cells, GroundDetail detail) const;
 
   // The level of the nodes that a detail reads: the coarsest that vertices of it can tell.
   int level_of(GroundDetail detail) const;
@@ -85,6 +86,7 @@ class RiverNetwork {
   std::shared_ptr<const network::RootTile> root_tile(const network::TileKey& key) const;
   network::RootNodes root() const;
   std::int64_t tile_units(int level) const { return tile_units_[static_cast<std::size_t>(level)]; }
+  double unlimited_error_m(GroundDetail from, GroundDetail to) const;
   // Calls visit(patch, samples, first column, first row) for parts of a lattice.
   template <class Visit>
   void each_part(const Lattice& at, GroundDetail detail, const Visit& visit) const;

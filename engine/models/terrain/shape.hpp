@@ -40,16 +40,7 @@ struct TerrainShape {
   // (columns[i], rows[k]), values[k · stride + i], in units of the noise. Both ascend, in cells of
   // node level 0, at most RidgedNoise::kMaxAxis. The same bits for the same point and detail.
   void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
-                std::span<float> values, std::size_t stride, GroundDetail detail) const {
-    if (stack != nullptr && stack->network != nullptr) {
-      evaluate_network(columns, rows, values, stride, detail);
-    } else {
-      noise.evaluate(columns, rows, values, stride, octaves(detail));
-      if (stack == nullptr) return;
-      erode(columns, rows, values, stride, detail);
-    }
-    stack->apply(scale(), columns, rows, values, stride, detail);
-  }
+                std::span<float> values, std::size_t stride, GroundDetail detail) const;
   // The detail of the node's meshes, and that of grid `grid` of its light.
   GroundDetail detail() const { return GroundDetail::of_node(node_level); }
   GroundDetail light_detail(int grid) const { return GroundDetail::of_light(node_level, grid); }
@@ -67,11 +58,8 @@ struct TerrainShape {
 
  private:
   GroundScale scale() const;
-  // The ground of a river network with detail and erosion (network_ground.cpp).
   void evaluate_network(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                         std::span<float> values, std::size_t stride, GroundDetail detail) const;
-  void erode(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
-             std::span<float> values, std::size_t stride, GroundDetail detail) const;
 };
 
 }  // namespace psygen::models

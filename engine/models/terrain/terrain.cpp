@@ -76,10 +76,6 @@ std::size_t light_grid_of(int level) {
   return level < 2 ? 0 : 1;
 }
 
-double cell_of(const Parameters& p) {
-  return std::ldexp(p.real(kTerrainCellM), static_cast<int>(p.integer(kTerrainNodeLevel)));
-}
-
 // The samples of the parent's mesh of level 1 under a node's mesh of level 1: every second of the
 // node's own vertices, and the next one beyond if the parent has none at the node's border.
 struct ParentSamples {
@@ -328,109 +324,7 @@ core::Bounds TerrainType::synthesise(const Parameters& p, int level, const MeshV
   return box;
 }
 
-RidgedSettings settings_of(const Parameters& p) {
-  return {.seed = static_cast<std::uint64_t>(p.integer(kTerrainSeed)),
-          .height = p.real(kTerrainHeight),
-          .lacunarity = p.real(kTerrainLacunarity),
-          .octaves = static_cast<int>(p.integer(kTerrainOctaves)),
-          .offset = p.real(kTerrainOffset),
-          .gain = p.real(kTerrainGain),
-          .cells_per_step = p.real(kTerrainCellM) / p.real(kTerrainFeatureM),
-          .warp = p.real(kTerrainWarp)};
-}
-
 }  // namespace
-
-TerrainShape::TerrainShape(const Parameters& p)
-    : noise(settings_of(p)),
-      size(static_cast<int>(p.integer(kTerrainSize))),
-      node_level(static_cast<int>(p.integer(kTerrainNodeLevel))),
-      cell_m(cell_of(p)),
-      relief_m(static_cast<float>(p.real(kTerrainReliefM))),
-      quantum(static_cast<float>(65535.0 / noise.max_value())),
-      metres(static_cast<float>(p.real(kTerrainReliefM) / noise.max_value())),
-      seed(static_cast<std::uint64_t>(p.integer(kTerrainSeed))),
-      stack(p.edits() != nullptr ? &p.edits()->ground : nullptr) {}
-
-GroundScale TerrainShape::scale() const {
-  return {.cells_per_block = size - 1,
-          .cell_m = std::ldexp(cell_m, -node_level),
-          .unit_m = metres,
-          .highest = 65535.0F / quantum};
-}
-
-int TerrainShape::octaves(GroundDetail detail) const {
-  return detail.light ? noise.octaves_wider_than(kOctavePoints * detail.spacing_cells())
-                      : kMaxOctaves;
-}
-
-namespace {
-
-// The octaves of a noise that erosion follows, raised so that the land keeps its height: the other
-// octaves, which are never negative, add about the same fraction to high and low ground.
-class NoiseGuide final : public ErosionGuide {
- public:
-  NoiseGuide(const RidgedNoise& noise, int octaves) : noise_(noise), octaves_(octaves) {}
-  int octaves(double narrowest_cells) const {
-    return std::min(octaves_, noise_.octaves_wider_than(narrowest_cells));
-  }
-  void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
-               double narrowest_cells, std::span<float> values, std::size_t stride) const override {
-    const int count = octaves(narrowest_cells);
-    noise_.evaluate(columns, rows, values, stride, count);
-    if (count == octaves_) return;
-    const double ratio = noise_.max_value(octaves_) / noise_.max_value(count);
-    const auto scale = static_cast<float>(exact_pow(ratio, kUsualFraction));
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      for (std::size_t c = 0; c < columns.size(); ++c)
-        values[r * stride + c] *= scale;
-    }
-  }
-
- private:
-  // Measured in five noises with one to four octaves: 0.4 to 0.8, and within 2 % of the height at
-  // the lowest and the highest tenth.
-  static constexpr double kUsualFraction = 0.65;
-  const RidgedNoise& noise_;
-  int octaves_;
-};
-
-}  // namespace
-
-std::optional<ErosionFilter> TerrainShape::filter(GroundDetail detail) const {
-  if (stack == nullptr || stack->erosion == nullptr) return std::nullopt;
-  const GroundScale of = scale();
-  return ErosionFilter(
-      *stack->erosion,
-      {.seed = seed, .cell_m = of.cell_m, .unit_m = of.unit_m, .highest = of.highest},
-      detail.level);
-}
-
-void TerrainShape::erode(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
-                         std::span<float> values, std::size_t stride, GroundDetail detail) const {
-  const std::optional<ErosionFilter> erosion = filter(detail);
-  if (erosion) erosion->apply(NoiseGuide(noise, octaves(detail)), columns, rows, values, stride);
-}
-
-// Measured: one edit takes 8 times as long for a height as an octave of the noise.
-double TerrainShape::layer_work(LatticeSpan x, LatticeSpan z, double heights,
-                                GroundDetail detail) const {
-  constexpr double kWorkPerEdit = 8;
-  if (stack == nullptr) return 0;
-  const double edits = kWorkPerEdit * heights * stack->edits_per_height(scale(), x, z);
-  const std::optional<ErosionFilter> erosion = filter(detail);
-  if (!erosion) return edits;
-  const auto side = static_cast<std::size_t>(std::sqrt(heights));
-  const double spacing =
-      static_cast<double>(x.last - x.first) / static_cast<double>(std::max<std::size_t>(side, 1));
-  const NoiseGuide guide(noise, octaves(detail));
-  const double lines = std::sqrt(erosion->guide_points(side, side, spacing));
-  const auto line_count = static_cast<std::size_t>(lines);
-  return edits + erosion->work(side, side, spacing) +
-         noise.work(line_count, line_count, erosion->line_cells(),
-                    guide.octaves(erosion->narrowest_cells())) +
-         noise.work(side, side, spacing, guide.octaves(erosion->narrowest_cells()));
-}
 
 std::unique_ptr<ModelType> make_terrain_type() {
   return std::make_unique<TerrainType>();
@@ -440,17 +334,10 @@ std::uint32_t terrain_surface_triangles(const Parameters& terrain, int level) {
   return grid_of(terrain, level).surface_triangles();
 }
 
-DetailErrors terrain_detail_errors_m(const Parameters& terrain, int levels) {
-  const TerrainShape shape(terrain);
-  const GroundDetail other = GroundDetail::of_node(shape.node_level + levels);
-  const std::optional<ErosionFilter> here = shape.filter(shape.detail()),
-                                     there = shape.filter(other);
-  if (!here || !there) return {};
-  return {here->error_m(*there), here->usual_error_m(*there)};
-}
-
 double terrain_block_size_m(const Parameters& terrain) {
-  return static_cast<double>(terrain.integer(kTerrainSize) - 1) * cell_of(terrain);
+  return static_cast<double>(terrain.integer(kTerrainSize) - 1) *
+         std::ldexp(terrain.real(kTerrainCellM),
+                    static_cast<int>(terrain.integer(kTerrainNodeLevel)));
 }
 
 }  // namespace psygen::models

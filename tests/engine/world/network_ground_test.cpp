@@ -72,6 +72,45 @@ TEST(NetworkGround, AgreesAlongTheSeamsOfNodesOfALevel) {
   }
 }
 
+// A neighbour of any size draws the same border from another detail; skirts hide what is between.
+TEST(NetworkGround, OfOtherDetailsStaysWithinTheErrorsOfNodes) {
+  const World world = parsed(river_text());
+  double widest_m = 0;
+  for (int level = 0; level < 8; ++level) {
+    std::vector<double> apart_m;
+    models::DetailErrors errors;
+    for (const core::BlockCoord node : {core::BlockCoord{0, 0}, {5, -3}, {-40, 12}}) {
+      errors = models::terrain_detail_errors_m(terrain_parameters(world, node, level), 2);
+      const auto fine = mesh_of(world, node, level, 0);
+      const auto coarse = mesh_of(world, {node.x >> 2, node.z >> 2}, level + 2, 0);
+      const std::size_t step = (kSide - 1) / 4;
+      const auto first = [&](std::int32_t of) { return static_cast<std::size_t>(of & 3) * step; };
+      for (std::size_t k = 0; k <= step; ++k) {
+        for (std::size_t i = 0; i <= step; ++i)
+          apart_m.push_back(
+              std::abs(int{fine[4 * (k * kSide + i)].height} -
+                       int{coarse[(first(node.z) + k) * kSide + first(node.x) + i].height}) /
+              65535.0 * world.terrain.real(models::kTerrainReliefM));
+      }
+    }
+    std::ranges::sort(apart_m);
+    const double usual_m = apart_m[apart_m.size() * 95 / 100];
+    EXPECT_LE(apart_m.back(), errors.bound_m + 0.01) << level;
+    EXPECT_LE(usual_m, errors.usual_m + 0.01) << level;
+    widest_m = std::max(widest_m, apart_m.back());
+  }
+  EXPECT_GT(widest_m, 20);
+}
+
+TEST(NetworkGround, CostsMoreThanNoise) {
+  const World network = parsed(river_text()), noise = parsed(kRiverLand);
+  const models::ModelType& terrain = registry()[network.terrain_model];
+  for (int level = 0; level < 8; ++level) {
+    const double steps = terrain.steps(terrain_parameters(network, {0, 0}, level), 0);
+    EXPECT_GT(steps, 3 * terrain.steps(terrain_parameters(noise, {0, 0}, level), 0)) << level;
+  }
+}
+
 TEST(NetworkGround, MorphsIntoTheHeightsOfTheParent) {
   const World world = parsed(river_text());
   const models::TerrainGrid grid(static_cast<int>(kSide), 1);

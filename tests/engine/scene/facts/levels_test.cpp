@@ -62,22 +62,38 @@ TEST(NodeLevels, TheirSidesDoubleAndTheirErrorsGrow) {
   }
 }
 
+// Returns by how much the skirts of changed ground are deeper than those of plain ground, by level.
+std::vector<float> deeper_skirts(const world::World& plain, const world::World& changed) {
+  const auto before = levels_of(plain, SceneSettings{}),
+             levels = levels_of(changed, SceneSettings{});
+  EXPECT_EQ(before.size(), levels.size());
+  std::vector<float> deeper;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const models::Parameters p = node_terrain(changed, {{}, static_cast<std::uint8_t>(k)});
+    const double details_m = models::terrain_detail_errors_m(p, 2).bound_m;
+    deeper.push_back(levels[k].skirt_m - before[k].skirt_m);
+    EXPECT_GE(static_cast<double>(deeper[k]), details_m - 0.01) << k;
+    EXPECT_GE(levels[k].ground_bound_m, levels[k].ground_error_m) << k;
+    EXPECT_GT(static_cast<double>(levels[k].skirt_m), 0.8 * levels[k].ground_error_m) << k;
+  }
+  return deeper;
+}
+
 TEST(NodeLevels, OfErodedGroundHaveSkirtsForNeighboursWithFewerGullies) {
   const world::World plain = world_of(0, 0);
   world::World eroded = plain;
   eroded.shaped.erosion.strength = 0.6;
   ASSERT_TRUE(world::shape_ground(eroded));
-  const auto before = levels_of(plain, SceneSettings{}),
-             levels = levels_of(eroded, SceneSettings{});
-  ASSERT_EQ(before.size(), levels.size());
-  for (std::size_t k = 0; k < levels.size(); ++k) {
-    const models::Parameters p = node_terrain(eroded, {{}, static_cast<std::uint8_t>(k)});
-    const double details_m = models::terrain_detail_errors_m(p, 2).bound_m;
-    EXPECT_GE(static_cast<double>(levels[k].skirt_m - before[k].skirt_m), details_m - 0.01) << k;
-    EXPECT_GE(levels[k].ground_bound_m, levels[k].ground_error_m) << k;
-    EXPECT_GT(static_cast<double>(levels[k].skirt_m), 0.8 * levels[k].ground_error_m) << k;
-  }
-  EXPECT_GT(levels[3].skirt_m, before[3].skirt_m + 5);
+  EXPECT_GT(deeper_skirts(plain, eroded)[3], 5);
+}
+
+TEST(NodeLevels, OfRiverNetworksHaveSkirtsForNeighboursWithFewerRivers) {
+  const world::World plain = world_of(0, 0);
+  world::World network = plain;
+  network.shaped.network.emplace();
+  ASSERT_TRUE(world::shape_ground(network));
+  const std::vector<float> deeper = deeper_skirts(plain, network);
+  EXPECT_GT(deeper.back(), 20);
 }
 
 TEST(NodeLevels, ANodeExistsIfAnyOfItsBlocksDoes) {
