@@ -3,6 +3,8 @@
 #include <limits>
 #include <utility>
 
+#include "engine/core/assert.hpp"
+
 namespace psygen::models::network {
 namespace {
 
@@ -342,8 +344,9 @@ NodePatch halve(const Scale& scale, LandFields& fields, const NodePatch& coarse,
   return cropped(f, want);
 }
 
-NodePatch nodes_around(const Scale& scale, RootNodes& root, int level, const Square& square,
-                       std::int64_t margin) {
+NodePatch nodes_around(const Scale& scale, RootNodes& root, int level, const Surroundings& around,
+                       int finest) {
+  const auto& [square, margin] = around;
   const std::int64_t s0 = scale.spacing0, row = s0 / 8 * 7;
   const std::int64_t j0 = floor_div(square.z - margin, row) - 11,
                      j1 = floor_div(square.z + square.side + margin, row) + 12;
@@ -354,21 +357,26 @@ NodePatch nodes_around(const Scale& scale, RootNodes& root, int level, const Squ
     for (std::int64_t i = i0; i < i1; ++i)
       p.at(i, j) = root.node(i, j);
   }
+  return nodes_from(scale, root, std::move(p), level, around, finest);
+}
+
+NodePatch nodes_from(const Scale& scale, RootNodes& root, NodePatch p, int level,
+                     const Surroundings& around, int finest) {
   // Descendants stay within kLargestShift of their triangle, whose edges are shorter than
   // kLongestEdge.
-  const auto around = [&](int k) {
-    return margin + static_cast<std::int64_t>((kLargestShift + kLongestEdge) *
-                                              static_cast<double>(scale.spacing(k)));
+  const auto tight = [&] {
+    const auto beyond = static_cast<std::int64_t>((kLargestShift + kLongestEdge) *
+                                                  static_cast<double>(scale.spacing(p.level)));
+    return reaching(p, around.square, around.margin + beyond);
   };
-  Rect tight = reaching(p, square, around(0));
-  for (int k = 1; k <= level; ++k) {
+  while (p.level < level) {
+    const Rect near = tight();
     // coarse_for() of these fits into those of the level above.
     constexpr std::array<std::int64_t, 4> kRings{2, 5, 6, 7};
-    const std::int64_t rings = kRings[static_cast<std::size_t>(std::min(level - k, 3))];
-    const Rect want =
-        Rect{2 * tight.i0, 2 * tight.j0, 2 * tight.i1 - 1, 2 * tight.j1 - 1}.grown(rings);
+    const std::int64_t rings = kRings[static_cast<std::size_t>(std::min(finest - p.level - 1, 3))];
+    const Rect want = Rect{2 * near.i0, 2 * near.j0, 2 * near.i1 - 1, 2 * near.j1 - 1}.grown(rings);
+    PSYGEN_CHECK(p.rect.covers(coarse_for(want)), "the coarser nodes suffice");
     p = halve(scale, root.fields(), p, want);
-    tight = reaching(p, square, around(k));
   }
   return p;
 }

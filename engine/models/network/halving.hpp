@@ -25,9 +25,19 @@ struct Square {
   std::int64_t x = 0, z = 0, side = 0;
 };
 
-// Makes all nodes of a level within `margin` units of a square, with at least one ring of nodes
-// around them.
-NodePatch nodes_around(const Scale& scale, RootNodes& root, int level, const Square& square,
-                       std::int64_t margin);
+// A square whose nodes are wanted, those within `margin` units included.
+struct Surroundings {
+  Square square;
+  std::int64_t margin = 0;
+};
+
+// Makes all nodes of a level in a square and its margin, with at least one ring of nodes around
+// them, or as many as nodes_from() needs to make those of level `finest`.
+NodePatch nodes_around(const Scale& scale, RootNodes& root, int level, const Surroundings& around,
+                       int finest);
+// The same from nodes of a coarser level, made with this finest level for a square and margin that
+// hold these. An assertion fails if they do not suffice, also in release.
+NodePatch nodes_from(const Scale& scale, RootNodes& root, NodePatch coarse, int level,
+                     const Surroundings& around, int finest);
 
 }  // namespace psygen::models::network

@@ -37,6 +37,9 @@ constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) {
 struct Rect {
   std::int64_t i0 = 0, j0 = 0, i1 = 0, j1 = 0;
   constexpr Rect grown(std::int64_t by) const { return {i0 - by, j0 - by, i1 + by, j1 + by}; }
+  constexpr bool covers(const Rect& o) const {
+    return i0 <= o.i0 && j0 <= o.j0 && o.i1 <= i1 && o.j1 <= j1;
+  }
   constexpr std::int64_t width() const { return i1 - i0; }
   constexpr std::int64_t height() const { return j1 - j0; }
   friend constexpr bool operator==(const Rect&, const Rect&) = default;
@@ -117,6 +120,7 @@ struct NodePatch {
       : level(of_level), rect(r), nodes(static_cast<std::size_t>(r.width() * r.height())) {}
   Node& at(std::int64_t i, std::int64_t j) { return nodes[index(i, j)]; }
   const Node& at(std::int64_t i, std::int64_t j) const { return nodes[index(i, j)]; }
+  std::size_t bytes() const { return sizeof *this + nodes.capacity() * sizeof(Node); }
   // The neighbour of (i, j) in a direction.
   const Node& beside(std::int64_t i, std::int64_t j, int direction) const {
     const auto d = static_cast<std::size_t>(direction);

@@ -13,6 +13,8 @@ using network::kUnitsPerCell;
 // Samples are served by a patch within this many spacings beyond its tile, so that the vertices
 // around a node need no second patch.
 constexpr std::int64_t kBeyond = 2;
+// A patch begins with the nodes of the tile this many levels coarser around it.
+constexpr int kSharedLevels = 2;
 
 bool is_fine(GroundDetail detail) {
   return detail.level <= 1;
@@ -74,13 +76,33 @@ bool RiverNetwork::ready(const network::TileKey& tile) const {
   return store_ != nullptr && store_->has({identity_, tile});
 }
 
+network::Square RiverNetwork::square_of(const network::TileKey& tile) const {
+  const std::int64_t side = tile_units(tile.level), beyond = kBeyond * scale_.spacing(tile.level);
+  return {tile.i * side - beyond, tile.j * side - beyond, side + 2 * beyond};
+}
+
+// The nodes of a tile and those around it. Tiles share the nodes that the store keeps of the wide
+// tile around them.
+network::NodePatch RiverNetwork::nodes_of(const network::TileKey& tile) const {
+  network::RootNodes from = root();
+  const auto around = [this](const network::TileKey& of) {
+    return network::surroundings_of(scale_, of.level, square_of(of));
+  };
+  const int shared = tile.level - kSharedLevels;
+  if (store_ == nullptr || shared < 1)
+    return network::nodes_around(scale_, from, tile.level, around(tile), tile.level);
+  const std::int64_t ratio = tile_units(shared) / tile_units(tile.level);
+  const network::TileKey wide{shared, floor_div(tile.i, ratio), floor_div(tile.j, ratio)};
+  const auto nodes = store_->get<network::NodePatch>(
+      {identity_, {-2 - shared, wide.i, wide.j}},
+      [&] { return network::nodes_around(scale_, from, shared, around(wide), tile.level); });
+  return network::nodes_from(scale_, from, *nodes, tile.level, around(tile), tile.level);
+}
+
 std::shared_ptr<const network::Patch> RiverNetwork::patch(const network::TileKey& tile) const {
   const auto make = [&] {
-    const std::int64_t side = tile_units(tile.level);
-    const std::int64_t beyond = kBeyond * scale_.spacing(tile.level);
-    network::RootNodes nodes = root();
-    return network::make_patch(scale_, nodes, tile.level,
-                               {tile.i * side - beyond, tile.j * side - beyond, side + 2 * beyond});
+    const network::Square square = square_of(tile);
+    return network::make_patch(scale_, nodes_of(tile), square);
   };
   if (store_ == nullptr) return std::make_shared<const network::Patch>(make());
   return store_->get<network::Patch>({identity_, tile}, make);
@@ -89,10 +111,9 @@ std::shared_ptr<const network::Patch> RiverNetwork::patch(const network::TileKey
 network::NodePatch RiverNetwork::nodes(int level, std::int64_t x_cells, std::int64_t z_cells,
                                        std::int64_t side_cells) const {
   network::RootNodes from = root();
-  return network::nodes_around(
-      scale_, from, level,
-      {x_cells * kUnitsPerCell, z_cells * kUnitsPerCell, side_cells * kUnitsPerCell},
-      scale_.spacing(level));
+  const network::Square square{x_cells * kUnitsPerCell, z_cells * kUnitsPerCell,
+                               side_cells * kUnitsPerCell};
+  return network::nodes_around(scale_, from, level, {square, scale_.spacing(level)}, level);
 }
 
 template <class Visit>

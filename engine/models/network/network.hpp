@@ -1,7 +1,7 @@
 // A river network as ground: rivers first, and land that follows them. Heights and water are pure
 // functions of the settings, the frame and the place, with the same bits on every CPU, from any
 // thread, in any order and batch, and whatever the store keeps. Immutable; any thread. A patch that
-// is not in the store costs about 5 ms, nothing cached 20 ms. Makes no erosion and no detail: these
+// is not in the store costs about 2 ms, nothing cached 16 ms. Makes no erosion and no detail: these
 // act between base() and carve().
 #pragma once
 
@@ -85,6 +85,8 @@ class RiverNetwork {
                std::shared_ptr<NetworkStore> store);
   std::shared_ptr<const network::RootTile> root_tile(const network::TileKey& key) const;
   network::RootNodes root() const;
+  network::Square square_of(const network::TileKey& tile) const;
+  network::NodePatch nodes_of(const network::TileKey& tile) const;
   std::int64_t tile_units(int level) const { return tile_units_[static_cast<std::size_t>(level)]; }
   double unlimited_error_m(GroundDetail from, GroundDetail to) const;
   // Calls visit(patch, samples, first column, first row) for parts of a lattice.

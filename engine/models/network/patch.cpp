@@ -367,22 +367,25 @@ std::int32_t lift(const Scale& scale, int level, float mountain) {
   return static_cast<std::int32_t>(share * rise * (0.2 + 0.8 * m) * scale.unit_m * kHeightUnits);
 }
 
-Patch make_patch(const Scale& scale, RootNodes& root, int level, const Square& square) {
+Surroundings surroundings_of(const Scale& scale, int level, const Square& square) {
+  const double spacing = static_cast<double>(scale.spacing(level));
+  const double wide = max_width_m(scale, level);
+  const double reach =
+      std::max(kReach * kLongestEdge * spacing,
+               3 * spacing + (wide / 2 + wide / 2 + kValleyM + kBankWidths * wide) / scale.unit_m);
+  return {square, static_cast<std::int64_t>(reach) + 5 * kGuideUnits};
+}
+
+Patch make_patch(const Scale& scale, const NodePatch& nodes, const Square& square) {
   Patch patch;
-  patch.level = level;
+  patch.level = nodes.level;
   patch.square = square;
   patch.x = floor_div(square.x, kGuideUnits) * kGuideUnits;
   patch.z = floor_div(square.z, kGuideUnits) * kGuideUnits;
   patch.unit_m = static_cast<float>(scale.unit_m);
   patch.sea_level_m = static_cast<float>(scale.frame.sea_level_m);
-  const double spacing = static_cast<double>(scale.spacing(level));
-  patch.shore_m = static_cast<float>(0.47 * spacing * scale.unit_m);
-  const double wide = max_width_m(scale, level);
-  const double reach =
-      std::max(kReach * kLongestEdge * spacing,
-               3 * spacing + (wide / 2 + wide / 2 + kValleyM + kBankWidths * wide) / scale.unit_m);
-  const NodePatch nodes =
-      nodes_around(scale, root, level, square, static_cast<std::int64_t>(reach) + 5 * kGuideUnits);
+  patch.shore_m =
+      static_cast<float>(0.47 * static_cast<double>(scale.spacing(nodes.level)) * scale.unit_m);
   Builder(scale, nodes, patch).run();
   return patch;
 }

@@ -147,7 +147,9 @@ float height_m(const Scale& scale, std::int32_t height);
 // Mean height of the ground of the finest level above the nodes of a level, in units of height.
 std::int32_t lift(const Scale& scale, int level, float mountain);
 
-// Makes the patch of a square.
-Patch make_patch(const Scale& scale, RootNodes& root, int level, const Square& square);
+// The square of a patch, and how far beyond it nodes of a level shape its ground.
+Surroundings surroundings_of(const Scale& scale, int level, const Square& square);
+// Makes the patch of a square from the nodes of its level in surroundings_of().
+Patch make_patch(const Scale& scale, const NodePatch& nodes, const Square& square);
 
 }  // namespace psygen::models::network

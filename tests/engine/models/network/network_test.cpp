@@ -89,7 +89,11 @@ Result through(const RiverNetwork& network, const network::Square& square, std::
   network::RootNodes root(scale, [&](const network::TileKey& key) {
     return std::make_shared<const network::RootTile>(network::make_root_tile(scale, key, border));
   });
-  const network::Patch patch = network::make_patch(scale, root, level, square);
+  const network::Patch patch = network::make_patch(
+      scale,
+      network::nodes_around(scale, root, level, network::surroundings_of(scale, level, square),
+                            level),
+      square);
   const auto relative = [](const std::vector<std::int64_t>& axis, std::int64_t origin) {
     std::vector<std::int32_t> units;
     for (const std::int64_t v : axis)
