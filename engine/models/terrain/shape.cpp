@@ -62,14 +62,16 @@ GroundDetail detail_of_width(double narrowest_cells) {
   return detail.level > 1 ? detail : GroundDetail{};
 }
 
-// The land of a river network before its channels, in units of the noise.
+// The land of a river network before its channels, in units of the noise. It is never finer than
+// the detail that is eroded: finer nodes would have wide samples read a patch each.
 class NetworkGuide final : public ErosionGuide {
  public:
-  NetworkGuide(const RiverNetwork& network, float unit_m) : network_(network), unit_m_(unit_m) {}
+  NetworkGuide(const RiverNetwork& network, float unit_m, GroundDetail detail)
+      : network_(network), unit_m_(unit_m), level_(detail.level) {}
   void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                double narrowest_cells, std::span<float> values, std::size_t stride) const override {
-    network_.base({columns, rows}, detail_of_width(narrowest_cells),
-                  {.height_m = values.data(), .stride = stride});
+    const int level = std::max(level_, detail_of_width(narrowest_cells).level);
+    network_.base({columns, rows}, {.level = level}, {.height_m = values.data(), .stride = stride});
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t c = 0; c < columns.size(); ++c)
         values[r * stride + c] /= unit_m_;
@@ -79,6 +81,7 @@ class NetworkGuide final : public ErosionGuide {
  private:
   const RiverNetwork& network_;
   float unit_m_;
+  int level_;
 };
 
 // Octaves of the noise that are narrower than a network's nodes are detail on its land, with this
@@ -168,7 +171,7 @@ void TerrainShape::evaluate_network(std::span<const std::int64_t> columns,
   }
   if (const std::optional<ErosionFilter> erosion = filter(detail)) {
     std::copy(fine.begin(), fine.end(), other.begin());
-    erosion->apply(NetworkGuide(network, metres), columns, rows, other, width);
+    erosion->apply(NetworkGuide(network, metres, detail), columns, rows, other, width);
     for (std::size_t i = 0; i < count; ++i)
       fine[i] += (other[i] - fine[i]) * clear[i];
   }
