@@ -29,12 +29,25 @@ glm::dvec2 metres(std::uint32_t x, std::uint32_t z, double block_size_m) {
 
 }  // namespace
 
+bool has_costly_heights(const World& world) {
+  return world.shaped.layer && world.shaped.layer->ground.has_fixed_part();
+}
+
+int tile_level(const World& world, int node_level) {
+  if (node_level <= 2) return 0;
+  return node_level - (has_costly_heights(world) ? 1 : 2);
+}
+
+std::uint32_t ground_tiles(const World& world, int node_level) {
+  return 1U << (2 * (node_level - tile_level(world, node_level)));
+}
+
 int node_mesh_level(const World& world) {
   return models::terrain_surface_triangles(world.terrain, 1) >= kFewestTriangles ? 1 : 0;
 }
 
 NodeWalk::NodeWalk(const World& world, core::BlockCoord node, int node_level)
-    : world_(world), node_(node), level_(node_level), tile_(tile_level(node_level)) {}
+    : world_(world), node_(node), level_(node_level), tile_(tile_level(world, node_level)) {}
 
 NodeBlock NodeWalk::block(std::uint32_t ordinal) const {
   const std::uint32_t x = even_bits(ordinal), z = even_bits(ordinal >> 1);

@@ -21,15 +21,15 @@ struct NodeBlock {
   glm::dvec2 in_node_m{0.0}, in_tile_m{0.0};
 };
 
+// True if an erosion or a network makes heights cost about ten times as much as those of the noise.
+bool has_costly_heights(const World& world);
+
 // Node level of the tiles of a node. Nodes of levels 1 and 2 have the terrain's own lattice (such
 // as 1 m). From there on the spacing doubles with each level, so no node has more than 16 tiles.
-constexpr int tile_level(int node_level) {
-  return node_level <= 2 ? 0 : node_level - 2;
-}
+// With costly heights nodes from level 3 on have four tiles, the grounds of the nodes below.
+int tile_level(const World& world, int node_level);
 // Number of tiles of a node, 1 … 16.
-constexpr std::uint32_t ground_tiles(int node_level) {
-  return 1U << (2 * (node_level - tile_level(node_level)));
-}
+std::uint32_t ground_tiles(const World& world, int node_level);
 
 // The level of detail of the terrain that nodes of level 1 and above draw.
 int node_mesh_level(const World& world);

@@ -14,8 +14,18 @@
 namespace psygen::world {
 namespace {
 
-TEST(NodeWalk, VisitsEveryBlockOfANodeOnce) {
-  const World world = testing::parsed(testing::kSmallWorld);
+class NodeWalkOver : public ::testing::TestWithParam<const char*> {
+ protected:
+  const World world_ = testing::parsed(std::string(testing::kSmallWorld) + GetParam());
+};
+INSTANTIATE_TEST_SUITE_P(Ground, NodeWalkOver,
+                         ::testing::Values("", "\n[erosion]\nstrength = 0.5\ngully_m = 30\n"),
+                         [](const auto& ground) {
+                           return *ground.param == 0 ? "plain" : "eroded";
+                         });
+
+TEST_P(NodeWalkOver, VisitsEveryBlockOfANodeOnce) {
+  const World& world = world_;
   for (int level = 1; level <= 5; ++level) {
     const NodeWalk walk(world, {-3, 2}, level);
     std::set<core::BlockCoord> blocks;
@@ -29,13 +39,13 @@ TEST(NodeWalk, VisitsEveryBlockOfANodeOnce) {
       EXPECT_GE(block.coord.z, 2 * side);
       EXPECT_LT(block.coord.z, 3 * side);
       EXPECT_EQ(block.in_node_m.x, (block.coord.x + 3 * side) * world.block_size_m());
-      EXPECT_LT(block.in_tile_m.x, std::ldexp(world.block_size_m(), tile_level(level)));
+      EXPECT_LT(block.in_tile_m.x, std::ldexp(world.block_size_m(), tile_level(world, level)));
       tiles += walk.starts_tile(i) ? 1 : 0;
       EXPECT_EQ(walk.starts_tile(i), block.in_tile_m == glm::dvec2(0));
     }
     EXPECT_EQ(blocks.size(), static_cast<std::size_t>(side * side));
-    EXPECT_EQ(tiles, ground_tiles(level));
-    EXPECT_LE(tiles, 16U);
+    EXPECT_EQ(tiles, ground_tiles(world, level));
+    EXPECT_LE(tiles, has_costly_heights(world) && level > 2 ? 4U : 16U);
   }
 }
 
@@ -71,7 +81,7 @@ double height_of_mesh(const models::test::Mesh& mesh, const models::TerrainGrid&
 }
 
 TEST(NodeWalk, FindsTheGroundThatIsDrawn) {
-  for (const char* file : {"paper.toml", "silver_combe.toml"}) {
+  for (const char* file : {"paper.toml", "silver_combe.toml", "watershed.toml"}) {
     models::Registry registry = models::make_standard_registry();
     const auto world = load_world(testing::game_file("worlds") / file, registry);
     ASSERT_TRUE(world);
