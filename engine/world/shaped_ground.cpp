@@ -185,7 +185,12 @@ class Shaper {
     }
   }
 
-  models::EditLayer take() { return std::move(layer_); }
+  models::EditLayer take() {
+    constexpr std::size_t kHeightBytes = std::size_t{16} << 20;  // 2,000 blocks
+    if (layer_.ground.has_fixed_part())
+      layer_.ground.heights = std::make_shared<core::ValueCache>(kHeightBytes);
+    return std::move(layer_);
+  }
   std::vector<std::string> take_warnings() { return std::move(warnings_); }
 
  private:

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/value_cache.hpp"
 #include "engine/models/ground/erosion.hpp"
 #include "engine/models/ground/ground_edits.hpp"
 #include "engine/models/kit/ground_detail.hpp"
@@ -21,6 +22,9 @@ struct GroundStack {
   std::shared_ptr<const Erosion> erosion;       // of the world file; null: none
   GroundEdits shapes;  // of the world file; with the erosion part of the world's function
   GroundEdits edits;   // made by hand, over the shapes
+  // Keeps the heights of blocks with a fixed part (terrain/ground.hpp); null: nothing does. It
+  // changes no height.
+  std::shared_ptr<core::ValueCache> heights;
 
   // True if the ground is only noise.
   bool empty() const { return !has_fixed_part() && shapes.empty() && edits.empty(); }
@@ -34,6 +38,7 @@ struct GroundStack {
     network = other.network;
     erosion = other.erosion;
     shapes = other.shapes;
+    heights = other.heights;
   }
 
   // Hash of all layers that can change the ground mesh of a node that needs heights `margin` blocks

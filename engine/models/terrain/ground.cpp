@@ -1,11 +1,14 @@
 #include "engine/models/terrain/ground.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "engine/core/assert.hpp"
 #include "engine/core/rounding.hpp"
+#include "engine/core/value_cache.hpp"
 #include "engine/core/vertex_layout.hpp"
+#include "engine/models/kit/scratch.hpp"
 
 namespace psygen::models {
 namespace {
@@ -13,6 +16,29 @@ namespace {
 // This many vertices of a grid take about as long as one single point, which spends its time on
 // finding the lattices.
 constexpr std::size_t kVerticesPerPoint = 128;
+
+// The vertices of a block that a cache keeps.
+struct KeptHeights {
+  std::vector<std::uint16_t> heights;
+  std::size_t bytes() const { return sizeof *this + heights.size() * sizeof heights[0]; }
+};
+
+// Names the heights of a block: the terrain without its place and its sun, and all layers that
+// reach the block's vertices.
+core::ValueCache::Key key_of(Parameters terrain, const TerrainShape& shape,
+                             core::BlockCoord block) {
+  for (const TerrainParameter placed :
+       {kTerrainBlockX, kTerrainBlockZ, kTerrainSunAzimuth, kTerrainSunElevation})
+    terrain.set_integer(placed, 0);
+  terrain.set_edits(nullptr, 0);
+  const auto level = static_cast<std::uint32_t>(shape.node_level);
+  const double cells = shape.size - 1,
+               block_m = cells * std::ldexp(shape.cell_m, -shape.node_level);
+  const double margin = std::ldexp(1 / cells, shape.node_level);  // of a vertex on the border
+  return {terrain.hash(), shape.stack->hash_of(QuadCoord::of(block, level), margin, block_m),
+          static_cast<std::uint64_t>(std::int64_t{block.x}),
+          static_cast<std::uint64_t>(std::int64_t{block.z})};
+}
 
 std::uint16_t height_in_mesh(std::span<const std::byte> mesh, std::size_t vertex) {
   core::TerrainVertex v;
@@ -31,7 +57,15 @@ glm::vec3 unit_normal(double slope_x, double slope_z) {
 BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block, std::size_t questions)
     : shape_(terrain), block_(block) {
   const auto size = static_cast<std::size_t>(shape_.size);
-  if (questions * kVerticesPerPoint >= size * size) evaluate_vertices();
+  if (questions * kVerticesPerPoint < size * size) return;
+  vertices_ = size;
+  core::ValueCache* const cache = shape_.stack != nullptr && shape_.stack->has_fixed_part()
+                                      ? shape_.stack->heights.get()
+                                      : nullptr;
+  const auto make = [this] { return KeptHeights{quantised_vertices()}; };
+  const auto kept = cache != nullptr ? cache->get<KeptHeights>(key_of(terrain, shape_, block), make)
+                                     : std::make_shared<const KeptHeights>(make());
+  heights_ = {kept, &kept->heights};
 }
 
 BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block,
@@ -51,16 +85,19 @@ void BlockGround::world_of(std::int32_t block_index, std::int64_t first,
     out[i] = shape_.world_of(block_index, first + static_cast<std::int64_t>(i));
 }
 
-void BlockGround::evaluate_vertices() {
+std::vector<std::uint16_t> BlockGround::quantised_vertices() const {
   const core::RoundToNearest rounding;
-  vertices_ = static_cast<std::size_t>(shape_.size);
   std::array<std::int64_t, kMaxTerrainSize> columns, rows;
   const std::span x = std::span(columns).first(vertices_), z = std::span(rows).first(vertices_);
   world_of(block_.x, 0, x);
   world_of(block_.z, 0, z);
-  noise_memory_.emplace(vertices_ * vertices_ * sizeof(float));
-  noise_ = {static_cast<float*>(noise_memory_->get()), vertices_ * vertices_};
-  shape_.evaluate(x, z, noise_, vertices_, shape_.detail());
+  const ScratchMemory memory(vertices_ * vertices_ * sizeof(float));
+  const std::span noise(static_cast<float*>(memory.get()), vertices_ * vertices_);
+  shape_.evaluate(x, z, noise, vertices_, shape_.detail());
+  std::vector<std::uint16_t> heights(noise.size());
+  std::ranges::transform(noise, heights.begin(),
+                         [this](float value) { return shape_.quantise(value); });
+  return heights;
 }
 
 bool BlockGround::is_inside(double x, double z, int step) const {
@@ -75,7 +112,7 @@ BlockGround::Corners BlockGround::corners_of(double x, double z, int step) const
     const auto aside = static_cast<std::size_t>(step), below = aside * vertices_;
     const std::array at{first, first + aside, first + below, first + below + aside};
     for (std::size_t i = 0; i < 4; ++i)
-      heights[i] = mesh_.empty() ? shape_.quantise(noise_[at[i]]) : height_in_mesh(mesh_, at[i]);
+      heights[i] = mesh_.empty() ? (*heights_)[at[i]] : height_in_mesh(mesh_, at[i]);
     return heights;
   }
   const auto first_x = static_cast<std::int64_t>(x), first_z = static_cast<std::int64_t>(z);
@@ -95,7 +132,7 @@ void BlockGround::heights(std::span<std::uint16_t> out) const {
                "all heights are known, and there is room for each");
   const core::RoundToNearest rounding;
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = mesh_.empty() ? shape_.quantise(noise_[i]) : height_in_mesh(mesh_, i);
+    out[i] = mesh_.empty() ? (*heights_)[i] : height_in_mesh(mesh_, i);
 }
 
 GroundPoint BlockGround::at(glm::dvec2 local_xz, int stride) const {

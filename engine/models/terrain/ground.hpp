@@ -1,7 +1,8 @@
 // The ground of one block for many queries, such as the base points of all models on it. If there
 // are enough queries, it evaluates the heights of all vertices of the block together, in the time
-// of ten single points. The results have the same bits either way, and equal those of
-// sample_ground() (terrain.hpp). It makes no mesh.
+// of ten single points; or finds them in the cache of the ground (GroundStack::heights). The
+// results have the same bits either way, and equal those of sample_ground() (terrain.hpp). It makes
+// no mesh.
 #pragma once
 
 #include <array>
@@ -9,10 +10,10 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
+#include <memory>
 #include <span>
+#include <vector>
 
-#include "engine/models/kit/scratch.hpp"
 #include "engine/models/terrain/grid.hpp"
 #include "engine/models/terrain/shape.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -48,7 +49,7 @@ class BlockGround {
   // Quantised heights at (x, z), (x + step, z), (x, z + step), (x + step, z + step).
   using Corners = std::array<std::uint16_t, 4>;
 
-  void evaluate_vertices();
+  std::vector<std::uint16_t> quantised_vertices() const;
   void world_of(std::int32_t block_index, std::int64_t first, std::span<std::int64_t> out) const;
   bool is_inside(double x, double z, int step) const;
   Corners corners_of(double x, double z, int step) const;
@@ -56,9 +57,8 @@ class BlockGround {
   TerrainShape shape_;
   core::BlockCoord block_;
   std::size_t vertices_ = 0;         // per side, with known heights; 0: none
-  std::span<const std::byte> mesh_;  // empty: the heights are in noise_
-  std::optional<ScratchMemory> noise_memory_;
-  std::span<float> noise_;  // of the vertices, if they were evaluated
+  std::span<const std::byte> mesh_;  // empty: the heights are in heights_
+  std::shared_ptr<const std::vector<std::uint16_t>> heights_;  // if they were evaluated
 };
 
 }  // namespace psygen::models

@@ -8,6 +8,7 @@
 
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/world/edits/edits.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/water.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
@@ -139,6 +140,50 @@ TEST(NetworkGround, OfQueriesEqualsThatOfMeshes) {
 }
 
 // Rivers lie at many heights, above their beds and below their banks, and flow.
+// All heights of a node, asked for as placement does.
+std::vector<std::uint16_t> heights_of(const World& world, core::BlockCoord node, int level = 0) {
+  std::vector<std::uint16_t> heights(kSide * kSide);
+  models::BlockGround(terrain_parameters(world, node, level), node, heights.size())
+      .heights(heights);
+  return heights;
+}
+
+TEST(NetworkGround, HasTheSameHeightsWithAndWithoutKeptOnes) {
+  const World keeping = parsed(river_text() + kErosion);
+  ASSERT_NE(keeping.shaped.layer->ground.heights, nullptr);
+  World forgetting = keeping;
+  models::EditLayer layer = *keeping.shaped.layer;
+  layer.ground.heights = nullptr;
+  forgetting.shaped.layer = std::make_shared<const models::EditLayer>(layer);
+  for (const int level : {0, 1, 4}) {
+    for (const core::BlockCoord node : {core::BlockCoord{3, -2}, {4, -2}, {-7, 100}}) {
+      const auto expected = heights_of(forgetting, node, level);
+      EXPECT_EQ(heights_of(keeping, node, level), expected);
+      EXPECT_EQ(heights_of(keeping, node, level), expected);
+    }
+  }
+  // Another sun finds the same heights.
+  const std::size_t bytes = keeping.shaped.layer->ground.heights->bytes();
+  World evening = keeping;
+  set_sun(evening.terrain, 250, 8);
+  EXPECT_EQ(heights_of(evening, {3, -2}), heights_of(keeping, {3, -2}));
+  EXPECT_EQ(keeping.shaped.layer->ground.heights->bytes(), bytes);
+}
+
+TEST(NetworkGround, KeepsNoHeightsOverAnEdit) {
+  World world = parsed(river_text() + kErosion);
+  const auto before = heights_of(world, {3, -2}), beside = heights_of(world, {2, -2});
+  Edits edits;
+  ASSERT_TRUE(edits.raise(world, {{3, -2}, {1, 0, 16}}, 2, 3));  // reaches the border's vertices
+  set_edits(world, edits.layer());
+  EXPECT_NE(heights_of(world, {3, -2}), before);
+  const auto raised = heights_of(world, {2, -2});
+  EXPECT_NE(raised, beside);
+  EXPECT_EQ(raised[16 * kSide + kSide - 1], heights_of(world, {3, -2})[16 * kSide]);
+  set_edits(world, nullptr);
+  EXPECT_EQ(heights_of(world, {3, -2}), before);
+}
+
 TEST(NetworkGround, HasRiversAtManyHeights) {
   const World world = parsed(river_text());
   std::size_t wet = 0, flowing = 0;
