@@ -56,7 +56,7 @@ void upload_everything(State& s) {
 // Returns false if `go_on` stopped it.
 bool create_all_nodes(State& s, const std::function<bool()>& go_on) {
   do {
-    streaming_system(s.streaming_context(), s.streaming, s.node_work());
+    streaming_system(s.streaming_context(), s.streaming, s.patches, s.node_work());
     if (!go_on()) return false;
   } while (!s.streaming.missing.empty());
   return true;
@@ -78,7 +78,7 @@ void tick_without_drawing(State& s, const core::CameraPose& pose,
   s.rules = rules_of(s.settings, true);
   s.pressure.awaited = 0;  // nothing is drawn
   begin_tick(s);
-  streaming_system(s.streaming_context(), s.streaming, s.node_work());
+  streaming_system(s.streaming_context(), s.streaming, s.patches, s.node_work());
   visibility_system(s.frame(), s.camera, s.facts, s.streaming, VisibilityQuery(s.entities), s.view);
   cache_system(s.streaming_context(), {s.streaming, s.view}, s.assets, CacheQuery(s.entities),
                s.cache_work());

@@ -43,6 +43,7 @@ struct State {
   Daylight daylight;
   PendingEdits pending_edits;
   Streaming streaming;
+  GroundPatches patches;
   View view;
   std::unique_ptr<core::GeometryMemory> heap;  // the null device's memory; unused with a renderer
   core::GeometryMemory* memory = nullptr;
@@ -74,8 +75,10 @@ struct State {
     return {frame(), input, camera, quality, facts, streaming, view};
   }
   NodeWork node_work() { return {entities, supply, events.created, events.removed}; }
-  CacheWork cache_work() { return {supply, meshes, pressure, events.evicted, events.places_ready}; }
-  UploadWork upload_work() { return {supply, meshes, output, events.ready}; }
+  CacheWork cache_work() {
+    return {supply, meshes, patches, pressure, events.evicted, events.places_ready};
+  }
+  UploadWork upload_work() { return {supply, meshes, patches, output, events.ready}; }
 };
 
 // The values behind a scene.

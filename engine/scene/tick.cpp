@@ -19,9 +19,9 @@ constexpr std::string_view kRenderSystem = "render", kSimulationSystem = "simula
 void build_tick(State& s) {
   Events& events = s.events;
   s.tick.provide(s.settings, s.rules, s.facts, s.input, s.clock, s.camera, s.pressure, s.quality,
-                 s.daylight, s.pending_edits, s.streaming, s.view, s.output, s.supply, s.meshes,
-                 s.draws, s.assets, s.object_draws, s.light_draws, s.particle_draws, s.shown,
-                 s.simulation, s.step, s.trace, s.telemetry, events.shown, events.hidden,
+                 s.daylight, s.pending_edits, s.streaming, s.patches, s.view, s.output, s.supply,
+                 s.meshes, s.draws, s.assets, s.object_draws, s.light_draws, s.particle_draws,
+                 s.shown, s.simulation, s.step, s.trace, s.telemetry, events.shown, events.hidden,
                  events.created, events.removed, events.ready, events.evicted, events.places_ready,
                  events.world_changed, s.marks);
   s.tick.add(kSimulationSystem, simulation_system);

@@ -254,8 +254,7 @@ void ErosionFilter::erode(Lattices& m, const ErosionGuide& guide,
   fill_lines(m.x, line_cells_, m.line_x);
   fill_lines(m.z, line_cells_, m.line_z);
   const std::span line_x(m.line_x.data(), m.x.lines), line_z(m.line_z.data(), m.z.lines);
-  const double lines_show = 2 * static_cast<double>(line_cells_);
-  guide.heights(line_x, line_z, std::max(narrowest_cells_, lines_show), m.guide, kMaxErosionAxis);
+  guide.heights(line_x, line_z, lines_show_cells(), m.guide, kMaxErosionAxis);
   for (std::size_t z = 0; z < m.z.lines; ++z) {
     for (std::size_t x = 0; x < m.x.lines; ++x)
       m.guide[z * kMaxErosionAxis + x] *= kernel_.unit_m;
@@ -291,10 +290,20 @@ double ErosionFilter::work(std::size_t columns, std::size_t rows, double spacing
   return work + kBlur * passes_ * guide_points(columns, rows, spacing);
 }
 
-double ErosionFilter::guide_points(std::size_t columns, std::size_t rows, double spacing) const {
+// Three cells of each octave: its pivots need those of the wider octaves around them.
+double ErosionFilter::pivot_margin_cells() const {
   double margin = 0;
   for (std::size_t o = 0; o < kernel_.octave_count; ++o)
     margin += 3 * static_cast<double>(kernel_.octaves[o].size) / kErosionUnits;
+  return margin;
+}
+
+double ErosionFilter::guide_margin_cells() const {
+  return pivot_margin_cells() + (passes_ + 3) * static_cast<double>(line_cells_);
+}
+
+double ErosionFilter::guide_points(std::size_t columns, std::size_t rows, double spacing) const {
+  const double margin = pivot_margin_cells();
   const auto lines = [&](std::size_t count) {
     return (static_cast<double>(count) * spacing + margin) / static_cast<double>(line_cells_) + 4 +
            2 * passes_;

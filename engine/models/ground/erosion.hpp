@@ -8,6 +8,7 @@
 // Skovbo Johansen 2026). Here the stripes of a cell are straight, which bounds the steepness.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -128,9 +129,15 @@ class ErosionFilter {
   double line_cells() const { return static_cast<double>(line_cells_); }
   // Features of the guide that are narrower than this many cells are worn away.
   double narrowest_cells() const { return narrowest_cells_; }
+  // Lines leave out features narrower than this, and lie at most so far beyond the samples.
+  double lines_show_cells() const {
+    return std::max(narrowest_cells_, 2 * static_cast<double>(line_cells_));
+  }
+  double guide_margin_cells() const;
 
  private:
   struct Lattices;
+  double pivot_margin_cells() const;
   void erode(Lattices& memory, const ErosionGuide& guide, std::span<const std::int64_t> columns,
              std::span<const std::int64_t> rows, std::span<float> values, std::size_t stride) const;
 

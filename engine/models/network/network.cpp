@@ -61,6 +61,16 @@ network::TileKey RiverNetwork::tile_of(std::int64_t x_cells, std::int64_t z_cell
           floor_div(z_cells * kUnitsPerCell, tile_units(level))};
 }
 
+void RiverNetwork::each_tile(CellRange x, CellRange z, GroundDetail detail,
+                             const std::function<void(const network::TileKey&)>& visit) const {
+  const network::TileKey first = tile_of(x.first, z.first, detail);
+  const network::TileKey last = tile_of(x.last, z.last, detail);
+  for (std::int64_t j = first.j; j <= last.j; ++j) {
+    for (std::int64_t i = first.i; i <= last.i; ++i)
+      visit({first.level, i, j});
+  }
+}
+
 std::shared_ptr<const network::RootTile> RiverNetwork::root_tile(
     const network::TileKey& key) const {
   const auto make = [&] { return network::make_root_tile(scale_, key); };

@@ -5,6 +5,7 @@
 // act between base() and carve().
 #pragma once
 
+#include <functional>
 #include <glm/vec2.hpp>
 #include <memory>
 #include <span>
@@ -28,6 +29,9 @@ class RiverNetwork {
   // Lattice points in cells of node level 0, ascending.
   struct Lattice {
     std::span<const std::int64_t> x, z;
+  };
+  struct CellRange {
+    std::int64_t first = 0, last = 0;
   };
   using BaseRows = network::BaseRows;
   using CarvedRows = network::CarvedRows;
@@ -73,6 +77,9 @@ class RiverNetwork {
   int level_of(GroundDetail detail) const;
   // The tile whose patch serves the samples around a place.
   network::TileKey tile_of(std::int64_t x_cells, std::int64_t z_cells, GroundDetail detail) const;
+  // Calls visit(tile) for every tile that holds a part of a rectangle of cells, ends included.
+  void each_tile(CellRange x, CellRange z, GroundDetail detail,
+                 const std::function<void(const network::TileKey&)>& visit) const;
   bool ready(const network::TileKey& tile) const;
   // The patch of a tile, from the store or made.
   std::shared_ptr<const network::Patch> patch(const network::TileKey& tile) const;

@@ -179,6 +179,17 @@ TerrainLight::TerrainLight(const TerrainShape& shape, const SunDirection& sun, s
   if (sun.is_down()) sun_.fill(0);
 }
 
+void TerrainLight::each_grid(
+    const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x, std::int64_t block_z,
+    std::size_t finest,
+    const std::function<void(LatticeSpan x, LatticeSpan z, GroundDetail detail)>& visit) {
+  const LightPlan plan(shape, sun, block_x, block_z, finest);
+  for (std::size_t g = 0; g < plan.count; ++g) {
+    const PlannedGrid& grid = plan.grids[g];
+    visit(grid.lattice(shape, grid.x), grid.lattice(shape, grid.z), grid.detail);
+  }
+}
+
 double TerrainLight::work(const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x,
                           std::int64_t block_z, std::size_t finest) {
   const LightPlan plan(shape, sun, block_x, block_z, finest);

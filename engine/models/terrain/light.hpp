@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "engine/models/terrain/grid.hpp"
 #include "engine/models/terrain/kernel.hpp"
@@ -46,6 +47,12 @@ class TerrainLight {
 
   // The light for pack_terrain(). Points into this object.
   LightSamples samples() const;
+
+  // Calls visit(x, z, detail) with the heights that each grid reads, in cells of node level 0.
+  static void each_grid(
+      const TerrainShape& shape, const SunDirection& sun, std::int64_t block_x,
+      std::int64_t block_z, std::size_t finest,
+      const std::function<void(LatticeSpan x, LatticeSpan z, GroundDetail detail)>& visit);
 
   // Part of the constructor's time for heights, of noise and edits, in units of
   // RidgedNoise::work().

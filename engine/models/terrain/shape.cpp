@@ -62,16 +62,21 @@ GroundDetail detail_of_width(double narrowest_cells) {
   return detail.level > 1 ? detail : GroundDetail{};
 }
 
-// The land of a river network before its channels, in units of the noise. It is never finer than
-// the detail that is eroded: finer nodes would have wide samples read a patch each.
+// The detail of a guide without features narrower than this, for ground of a detail. It is never
+// the finer one: finer nodes would have wide samples read a patch each.
+GroundDetail guide_detail(GroundDetail of_ground, double narrowest_cells) {
+  return {.level = std::max(of_ground.level, detail_of_width(narrowest_cells).level)};
+}
+
+// The land of a river network before its channels, in units of the noise.
 class NetworkGuide final : public ErosionGuide {
  public:
   NetworkGuide(const RiverNetwork& network, float unit_m, GroundDetail detail)
-      : network_(network), unit_m_(unit_m), level_(detail.level) {}
+      : network_(network), unit_m_(unit_m), detail_(detail) {}
   void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                double narrowest_cells, std::span<float> values, std::size_t stride) const override {
-    const int level = std::max(level_, detail_of_width(narrowest_cells).level);
-    network_.base({columns, rows}, {.level = level}, {.height_m = values.data(), .stride = stride});
+    network_.base({columns, rows}, guide_detail(detail_, narrowest_cells),
+                  {.height_m = values.data(), .stride = stride});
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t c = 0; c < columns.size(); ++c)
         values[r * stride + c] /= unit_m_;
@@ -81,7 +86,7 @@ class NetworkGuide final : public ErosionGuide {
  private:
   const RiverNetwork& network_;
   float unit_m_;
-  int level_;
+  GroundDetail detail_;
 };
 
 // Octaves of the noise that are narrower than a network's nodes are detail on its land, with this
@@ -185,6 +190,18 @@ void TerrainShape::evaluate_network(std::span<const std::int64_t> columns,
     for (std::size_t c = 0; c < width; ++c)
       values[r * stride + c] = std::clamp(fine[r * width + c] / metres, 0.0F, highest);
   }
+}
+
+void TerrainShape::each_patch(LatticeSpan x, LatticeSpan z, GroundDetail detail,
+                              const std::function<void(const network::TileKey&)>& visit) const {
+  if (stack == nullptr || stack->network == nullptr) return;
+  stack->network->each_tile({x.first, x.last}, {z.first, z.last}, detail, visit);
+  const std::optional<ErosionFilter> erosion = filter(detail);
+  if (!erosion) return;
+  const auto wide = static_cast<std::int64_t>(erosion->guide_margin_cells());
+  for (const double narrowest : {erosion->narrowest_cells(), erosion->lines_show_cells()})
+    stack->network->each_tile({x.first - wide, x.last + wide}, {z.first - wide, z.last + wide},
+                              guide_detail(detail, narrowest), visit);
 }
 
 // Measured: one edit takes 8 times as long for a height as an octave of the noise.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -49,6 +50,10 @@ struct TerrainShape {
   // Time that the layers take in evaluate() of this many heights, spread evenly over a rectangle in
   // cells of node level 0, in units of RidgedNoise::work(). 0 without layers.
   double layer_work(LatticeSpan x, LatticeSpan z, double heights, GroundDetail detail) const;
+  // Calls visit(tile) for the patches of the network that evaluate() may read for heights in a
+  // rectangle, in cells of node level 0; some more than once.
+  void each_patch(LatticeSpan x, LatticeSpan z, GroundDetail detail,
+                  const std::function<void(const network::TileKey&)>& visit) const;
   // The erosion at a detail, if there is any.
   std::optional<ErosionFilter> filter(GroundDetail detail) const;
   // The quantised height of a value of the noise, 0 … 65535. The same bits as in the kernel.

@@ -12,6 +12,7 @@
 
 #include "engine/core/cancellation.hpp"
 #include "engine/core/hash.hpp"
+#include "engine/models/terrain/ground_patch.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/models/water/water_surface.hpp"
 #include "engine/scene/facts/levels.hpp"
@@ -213,6 +214,11 @@ core::Result<void> derive(const SceneSettings& settings, bool pictures, WorldFac
   const auto water = facts.registry.add(models::make_water_type());
   if (!water) return tl::unexpected(water.error());
   facts.water_model = *water;
+  if (world.shaped.layer && world.shaped.layer->ground.network) {
+    const auto patch = facts.registry.add(models::make_ground_patch_type());
+    if (!patch) return tl::unexpected(patch.error());
+    facts.patch_model = *patch;
+  }
   return check_size(world, facts.levels, settings);
 }
 

@@ -52,6 +52,7 @@ struct WorldFacts {
   std::vector<NodeLevel> levels;              // of the quadtree, finest first
   models::ModelIndex merged_model = 0;        // type of merged meshes; 0: none
   models::ModelIndex water_model = 0;         // type of surfaces of rivers and lakes
+  models::ModelIndex patch_model = 0;         // type of patches of a river network; 0: no network
   std::vector<models::TerrainGrid> grids;     // one for each level of the terrain type
   std::optional<models::TerrainTiles> tiles;  // of blocks' finest meshes; none without levels
   // Typical bounds of each model type: the part of its conservative bounds that its meshes usually

@@ -424,11 +424,12 @@ void visit_all(const StreamingContext& context, const View& view, const CacheQue
 
 void cache_system(StreamingContext context, VisibleNodes nodes, const Assets& assets,
                   CacheQuery entities, CacheWork work) {
-  auto& [supply, meshes, pressure, evicted, places_ready] = work;
+  auto& [supply, meshes, patches, pressure, evicted, places_ready] = work;
   const Rules& rules = context.frame.rules;
   if (!rules.keep) forget_last_frame(entities, supply);
   supply.begin_wants();
   assets.want_all(supply);
+  patches.want_all(context.facts, supply);
   // A draft shows the impostors of the replaced world.
   if (!context.quality.draft) want_pictures(context.facts, meshes, supply);
   meshes.found.clear();

@@ -46,6 +46,7 @@ struct SceneMeshes {
 struct CacheWork {
   synthesis::MeshSupply& supply;
   SceneMeshes& meshes;
+  GroundPatches& patches;
   MemoryPressure& pressure;
   ecs::EventQueue<MeshEvicted>& evicted;
   ecs::EventQueue<PlaceReady>& places_ready;
@@ -55,6 +56,7 @@ struct CacheWork {
 struct UploadWork {
   synthesis::MeshSupply& supply;
   SceneMeshes& meshes;
+  GroundPatches& patches;
   Output& output;
   ecs::EventQueue<MeshReady>& ready;
 };

@@ -198,7 +198,7 @@ void synthesis_system(FrameContext frame, synthesis::MeshSupply& supply, SceneMe
 
 void upload_system(FrameContext frame, const WorldFacts& facts, UploadQuery entities,
                    UploadWork work) {
-  auto& [supply, meshes, output, ready] = work;
+  auto& [supply, meshes, patches, output, ready] = work;
   std::vector<ecs::Landing<Mesh>> landings;
   const auto offer = [&](ecs::Entity entity, synthesis::MeshHandle handle,
                          const synthesis::MeshRecord& record) {
@@ -214,7 +214,7 @@ void upload_system(FrameContext frame, const WorldFacts& facts, UploadQuery enti
       supply.land(frame.rules.wait ? UINT64_MAX : frame.settings.upload_budget_bytes);
   meshes.counts.bytes_synthesised = landed.bytes;
   for (const synthesis::Completion& job : landed.completions) {
-    if (take_picture(job, facts, work)) continue;
+    if (take_picture(job, facts, work) || patches.take(job, facts, supply)) continue;
     if (!job.ok) note_failure(job, entities, meshes);
     const synthesis::MeshRecord* record = supply.ready(job.handle);
     if (record == nullptr) continue;

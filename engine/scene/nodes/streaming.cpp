@@ -7,6 +7,7 @@
 #include "engine/core/clock.hpp"
 #include "engine/scene/facts/levels.hpp"
 #include "engine/scene/facts/world_facts.hpp"
+#include "engine/world/far/node_walk.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -17,6 +18,10 @@ constexpr double kRelistedChange = 0.05;
 constexpr std::size_t kFewestCreated = 3;
 // Cost of creating one entity on a virtual clock: about its time on a present-day core.
 constexpr double kEntitySeconds = 0.5e-6;
+// Nodes that wait for patches of a river network, of those that a tick looks at.
+constexpr std::size_t kMaxWaiting = 64;
+// Time for the heights of a block, where they cost more than its entities.
+constexpr double kHeightsSeconds = 0.15e-3;
 // More missing nodes mean that the camera has jumped: then a tick creates as many as time allows.
 constexpr std::size_t kLeapt = 256;
 
@@ -116,7 +121,8 @@ void spread_missing(const SceneSettings& settings, Streaming& streaming) {
 
 }  // namespace
 
-void streaming_system(StreamingContext context, Streaming& streaming, NodeWork work) {
+void streaming_system(StreamingContext context, Streaming& streaming, GroundPatches& patches,
+                      NodeWork work) {
   const SceneSettings& settings = context.frame.settings;
   const Rules& rules = context.frame.rules;
   const WorldFacts& facts = context.facts;
@@ -147,20 +153,35 @@ void streaming_system(StreamingContext context, Streaming& streaming, NodeWork w
   std::vector<world::Placement> scratch;
   std::size_t created = 0;
   // Nodes of the coarsest level stand in for all others. Without them there is a hole.
+  const auto stands_in = [&](const visibility::NodeCoord& node) {
+    return node.level + std::size_t{1} == facts.levels.size();
+  };
   const auto may_wait = [&](const visibility::NodeCoord& node) {
     const bool late = !rules.wait && spent.seconds() * 1000.0 > settings.streaming_budget_ms;
-    return node.level + std::size_t{1} < facts.levels.size() && (created >= count || late);
+    return !stands_in(node) && (created >= count || late);
   };
+  // Only modelers make patches; a frame that waits for all meshes has none before it.
+  const bool patient = rules.request && !rules.wait;
+  patches.begin(facts);
+  std::vector<visibility::NodeCoord> waiting;  // the most important first
+  const double heights_s = world::has_costly_heights(facts.world) ? kHeightsSeconds : 0;
   while (!streaming.missing.empty() && !may_wait(streaming.missing.back())) {
+    const visibility::NodeCoord at = streaming.missing.back();
+    streaming.missing.pop_back();
+    if (patient && !stands_in(at) && !patches.ready(facts, at)) {
+      waiting.push_back(at);
+      if (waiting.size() == kMaxWaiting && !all) break;
+      continue;
+    }
     const std::size_t before = work.entities.size();
-    const visibility::NodeCoord& at = streaming.missing.back();
     streaming.grids[at.level].entity_of(at.coord) =
         create_node(settings, facts, context.daylight, at, scratch, work);
-    spent.charge(kEntitySeconds * static_cast<double>(work.entities.size() - before));
-    streaming.missing.pop_back();
+    spent.charge(kEntitySeconds * static_cast<double>(work.entities.size() - before) +
+                 (at.level == 0 ? heights_s : 0));
     ++streaming.counts.created;
     ++created;
   }
+  streaming.missing.insert(streaming.missing.end(), waiting.rbegin(), waiting.rend());
   if (streaming.missing.empty()) streaming.spread_ticks = 1;
 }
 

@@ -12,6 +12,7 @@
 #include "engine/scene/frame/quality.hpp"
 #include "engine/scene/nodes/daylight.hpp"
 #include "engine/scene/nodes/entities.hpp"
+#include "engine/scene/nodes/ground_patches.hpp"
 #include "engine/scene/nodes/ground_sunlight.hpp"
 #include "engine/scene/statistics.hpp"
 #include "engine/visibility/quadtree.hpp"
@@ -82,8 +83,10 @@ struct StreamingContext {
   const Daylight& daylight;
 };
 
-// System: creates and destroys nodes with their models around the camera.
-void streaming_system(StreamingContext context, Streaming& streaming, NodeWork work);
+// System: creates and destroys nodes with their models around the camera. Nodes wait for the
+// patches that their ground reads.
+void streaming_system(StreamingContext context, Streaming& streaming, GroundPatches& patches,
+                      NodeWork work);
 
 // The fraction of sunlight at a position: that of the finest node there, or 1 without a node.
 // `entities`: a query that reads GroundSunlight.

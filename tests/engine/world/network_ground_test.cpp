@@ -6,48 +6,31 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/models/network/store.hpp"
 #include "engine/models/terrain/ground.hpp"
+#include "engine/models/terrain/ground_patch.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/edits/edits.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/water.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/world/network_world.hpp"
 #include "tests/engine/world/shipped.hpp"
 
 namespace psygen::world {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::kNetwork;
+using testing::kNetworkErosion;
+using testing::kNetworkLand;
+using testing::network_text;
 using testing::parsed;
 using testing::registry;
 using testing::replaced;
 
-// Endless land, 200 m high, with a river valley every few hundred metres.
-constexpr const char* kRiverLand = R"(format = 1
-
-[world]
-name = "river land"
-seed = 11
-blocks = [0, 0]
-cell_m = 1
-block_vertices = 33
-
-[terrain]
-octaves = 7
-feature_m = 300
-relief_m = 200
-
-[water]
-level_m = 20
-)";
-constexpr const char* kRivers = "[rivers]\nroot_spacing_m = 1024\nhalvings = 5\nsea_share = 0.2\n";
-constexpr const char* kErosion = "[erosion]\nstrength = 0.5\ngully_m = 40\n";
 constexpr std::size_t kSide = 33;
 constexpr double kBlockM = 32;
-
-std::string river_text() {
-  return std::string(kRiverLand) + kRivers;
-}
 
 std::vector<core::TerrainVertex> mesh_of(const World& world, core::BlockCoord node, int level,
                                          int mesh_level) {
@@ -57,7 +40,7 @@ std::vector<core::TerrainVertex> mesh_of(const World& world, core::BlockCoord no
 }
 
 TEST(NetworkGround, AgreesAlongTheSeamsOfNodesOfALevel) {
-  for (const std::string& text : {river_text(), river_text() + kErosion}) {
+  for (const std::string& text : {network_text(), network_text() + kNetworkErosion}) {
     const World world = parsed(text);
     for (int level = 0; level < 6; ++level) {
       for (const core::BlockCoord node : {core::BlockCoord{0, 0}, {17, -9}, {-1000, 300}}) {
@@ -75,7 +58,7 @@ TEST(NetworkGround, AgreesAlongTheSeamsOfNodesOfALevel) {
 
 // A neighbour of any size draws the same border from another detail; skirts hide what is between.
 TEST(NetworkGround, OfOtherDetailsStaysWithinTheErrorsOfNodes) {
-  const World world = parsed(river_text());
+  const World world = parsed(network_text());
   double widest_m = 0;
   for (int level = 0; level < 8; ++level) {
     std::vector<double> apart_m;
@@ -104,7 +87,7 @@ TEST(NetworkGround, OfOtherDetailsStaysWithinTheErrorsOfNodes) {
 }
 
 TEST(NetworkGround, CostsMoreThanNoise) {
-  const World network = parsed(river_text()), noise = parsed(kRiverLand);
+  const World network = parsed(network_text()), noise = parsed(kNetworkLand);
   const models::ModelType& terrain = registry()[network.terrain_model];
   for (int level = 0; level < 8; ++level) {
     const double steps = terrain.steps(terrain_parameters(network, {0, 0}, level), 0);
@@ -113,7 +96,7 @@ TEST(NetworkGround, CostsMoreThanNoise) {
 }
 
 TEST(NetworkGround, MorphsIntoTheHeightsOfTheParent) {
-  const World world = parsed(river_text());
+  const World world = parsed(network_text());
   const models::TerrainGrid grid(static_cast<int>(kSide), 1);
   const auto n = static_cast<std::size_t>(grid.n);
   for (int level = 0; level < 4; ++level) {
@@ -127,7 +110,7 @@ TEST(NetworkGround, MorphsIntoTheHeightsOfTheParent) {
 }
 
 TEST(NetworkGround, OfQueriesEqualsThatOfMeshes) {
-  const World world = parsed(river_text() + kErosion);
+  const World world = parsed(network_text() + kNetworkErosion);
   for (const core::BlockCoord block : {core::BlockCoord{0, 0}, {40, 7}, {-3, -90}}) {
     const auto mesh = mesh_of(world, block, 0, 0);
     for (std::size_t i = 0; i < kSide * kSide; i += 7) {
@@ -148,8 +131,35 @@ std::vector<std::uint16_t> heights_of(const World& world, core::BlockCoord node,
   return heights;
 }
 
+// Whatever asks for the ground of a node finds its patches in the store.
+TEST(NetworkGround, OfANodeReadsOnlyItsPatches) {
+  World world = parsed(network_text() + kNetworkErosion);
+  set_sun(world.terrain, 100, 12);  // far hills hide it
+  for (const int level : {0, 1, 3, 6, 8}) {
+    for (const core::BlockCoord node : {core::BlockCoord{3, -2}, {-8, 15}, {31, 32}}) {
+      models::EditLayer layer = *world.shaped.layer;
+      const models::RiverNetwork& before = *layer.ground.network;
+      const auto store = std::make_shared<models::NetworkStore>(std::size_t{1} << 30);
+      const auto network = *models::RiverNetwork::create(before.settings(), before.frame(), store);
+      layer.ground.network = network;
+      layer.ground.heights = nullptr;
+      world.shaped.layer = std::make_shared<const models::EditLayer>(layer);
+      const models::Parameters terrain = terrain_parameters(world, node, level);
+      for (const models::network::TileKey& tile : models::ground_patches(terrain))
+        static_cast<void>(network->patch(tile));
+      const std::size_t bytes = store->bytes();
+      static_cast<void>(mesh_of(world, node, level, 0));
+      static_cast<void>(mesh_of(world, node, level, 1));
+      static_cast<void>(heights_of(world, node, level));
+      static_cast<void>(water_parameters(world, node, level));
+      EXPECT_EQ(store->bytes(), bytes)
+          << "node " << node.x << ' ' << node.z << " of level " << level;
+    }
+  }
+}
+
 TEST(NetworkGround, HasTheSameHeightsWithAndWithoutKeptOnes) {
-  const World keeping = parsed(river_text() + kErosion);
+  const World keeping = parsed(network_text() + kNetworkErosion);
   ASSERT_NE(keeping.shaped.layer->ground.heights, nullptr);
   World forgetting = keeping;
   models::EditLayer layer = *keeping.shaped.layer;
@@ -171,7 +181,7 @@ TEST(NetworkGround, HasTheSameHeightsWithAndWithoutKeptOnes) {
 }
 
 TEST(NetworkGround, KeepsNoHeightsOverAnEdit) {
-  World world = parsed(river_text() + kErosion);
+  World world = parsed(network_text() + kNetworkErosion);
   const auto before = heights_of(world, {3, -2}), beside = heights_of(world, {2, -2});
   Edits edits;
   ASSERT_TRUE(edits.raise(world, {{3, -2}, {1, 0, 16}}, 2, 3));  // reaches the border's vertices
@@ -185,7 +195,7 @@ TEST(NetworkGround, KeepsNoHeightsOverAnEdit) {
 }
 
 TEST(NetworkGround, HasRiversAtManyHeights) {
-  const World world = parsed(river_text());
+  const World world = parsed(network_text());
   std::size_t wet = 0, flowing = 0;
   double lowest_m = 1e9, highest_m = 0;
   for (int z = 0; z < 120; ++z) {
@@ -208,7 +218,7 @@ TEST(NetworkGround, HasRiversAtManyHeights) {
 }
 
 TEST(NetworkGround, ReadsBackEqualAndChangesTheKeysOfMeshes) {
-  const World world = parsed(river_text()), plain = parsed(kRiverLand);
+  const World world = parsed(network_text()), plain = parsed(kNetworkLand);
   const std::string text = write_world(world, registry());
   EXPECT_EQ(parsed(text), world);
   EXPECT_THAT(text, HasSubstr("[rivers]"));
@@ -222,22 +232,22 @@ TEST(NetworkGround, WrongNumbersAreRejectedWithLineAndField) {
     const auto world = parse_world(text, "w.toml", registry());
     return world ? std::string("accepted") : world.error().message;
   };
-  EXPECT_THAT(message(std::string(kRiverLand) + "[rivers]\nroot_spacing_m = 10\n"),
+  EXPECT_THAT(message(std::string(kNetworkLand) + "[rivers]\nroot_spacing_m = 10\n"),
               HasSubstr("root_spacing_m"));
-  EXPECT_THAT(message(std::string(kRiverLand) + "[rivers]\nlake_share = 2\n"),
+  EXPECT_THAT(message(std::string(kNetworkLand) + "[rivers]\nlake_share = 2\n"),
               HasSubstr("lake_share"));
-  std::string coarse = std::string(kRiverLand) + "[rivers]\nroot_spacing_m = 256\n";
+  std::string coarse = std::string(kNetworkLand) + "[rivers]\nroot_spacing_m = 256\n";
   coarse.replace(coarse.find("cell_m = 1"), 10, "cell_m = 50");
   EXPECT_THAT(message(coarse), HasSubstr("nodes"));
 }
 
 // Sliders move through all of these.
 TEST(NetworkGround, FitsEveryHeightOfTheSeaAndEverySpacing) {
-  std::string dry = river_text();
+  std::string dry = network_text();
   dry.replace(dry.find("level_m = 20"), 12, "shore_m = 1");
-  for (const std::string& text : {dry, replaced(river_text(), "level_m = 20", "level_m = 5000"),
-                                  replaced(river_text(), "halvings = 5", "halvings = 8"),
-                                  replaced(river_text(), "root_spacing_m = 1024\nhalvings = 5",
+  for (const std::string& text : {dry, replaced(network_text(), "level_m = 20", "level_m = 5000"),
+                                  replaced(network_text(), "halvings = 5", "halvings = 8"),
+                                  replaced(network_text(), "root_spacing_m = 1024\nhalvings = 5",
                                            "root_spacing_m = 65536\nhalvings = 1")}) {
     const World world = parsed(text);
     EXPECT_EQ(mesh_of(world, {3, 1}, 0, 0)[32].height, mesh_of(world, {4, 1}, 0, 0)[0].height);

@@ -1,0 +1,134 @@
+// Nodes of a network world wait for patches that modelers make.
+#include "engine/scene/nodes/ground_patches.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "engine/models/edits.hpp"
+#include "engine/models/network/network.hpp"
+#include "engine/scene/facts/levels.hpp"
+#include "tests/engine/scene/fixture.hpp"
+#include "tests/engine/world/network_world.hpp"
+#include "tests/engine/world/shipped.hpp"
+
+namespace psygen::scene {
+namespace {
+
+using world::testing::network_text;
+using world::testing::parsed;
+
+std::unique_ptr<Scene> network_scene(const world::World& world) {
+  SceneSettings settings = small_settings();
+  settings.view_distance_m = 1000;
+  return make_scene(world, settings, models::make_standard_registry());
+}
+
+// The nodes of a scene, finest first, without those of the coarsest level, which never wait.
+std::vector<visibility::NodeCoord> nodes_of_scene(Scene& scene) {
+  const State& s = state_of(scene);
+  std::vector<visibility::NodeCoord> nodes;
+  s.entities.each<const QuadtreeNode>([&](auto rows, auto of_nodes) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (of_nodes[i].at.level + 1U < s.facts.levels.size()) nodes.push_back(of_nodes[i].at);
+    }
+  });
+  return nodes;
+}
+
+// True if the store has every patch that the ground of a node reads.
+bool has_patches(const world::World& world, const visibility::NodeCoord& node) {
+  const models::RiverNetwork& network = *world.layer()->ground.network;
+  return std::ranges::all_of(models::ground_patches(node_terrain(world, node)),
+                             [&](const auto& tile) { return network.ready(tile); });
+}
+
+constexpr int kTicks = 600;
+
+TEST(GroundPatches, AreMadeBeforeTheNodesThatReadThem) {
+  const world::World world = parsed(network_text());
+  const auto scene = network_scene(world);
+  const State& s = state_of(*scene);
+  for (const core::CameraPose& pose : {pose_at(0, 0), pose_at(4000, -3000)}) {
+    tick_at(*scene, pose);
+    EXPECT_TRUE(nodes_of_scene(*scene).empty()) << "no patch is made here yet";
+    std::size_t waited = 0;
+    for (int ticks = 0; ticks < kTicks && !s.streaming.missing.empty(); ++ticks) {
+      std::vector<visibility::NodeCoord> lacking;
+      for (const visibility::NodeCoord& node : s.streaming.missing) {
+        if (!has_patches(world, node)) lacking.push_back(node);
+      }
+      waited += lacking.size();
+      tick_at(*scene, pose);
+      for (const visibility::NodeCoord& node : nodes_of_scene(*scene))
+        EXPECT_EQ(std::ranges::count(lacking, node), 0);
+    }
+    EXPECT_GT(waited, 0U);
+    EXPECT_TRUE(s.streaming.missing.empty());
+    EXPECT_GT(nodes_of_scene(*scene).size(), 100U);
+  }
+}
+
+// How many nodes each tick creates over land that the store may already have.
+std::vector<std::uint32_t> created_in(const world::World& world) {
+  const auto scene = network_scene(world);
+  std::vector<std::uint32_t> created;
+  for (int i = 0; i < 120; ++i) {
+    tick_at(*scene, i < 60 ? pose_at(7, 7) : pose_at(900, -40));
+    created.push_back(scene->statistics().nodes.created);
+  }
+  return created;
+}
+
+TEST(GroundPatches, TheStoreDoesNotDecideWhenNodesAppear) {
+  const world::World world = parsed(network_text());
+  const std::vector<std::uint32_t> cold = created_in(world);
+  EXPECT_GT(std::ranges::count_if(cold, [](std::uint32_t n) { return n > 0; }), 5);
+  EXPECT_EQ(created_in(world), cold) << "with a store that has all patches";
+}
+
+TEST(GroundPatches, AChangeOfTheWorldLeavesNoNodeWaiting) {
+  const std::string text = network_text();
+  const auto scene = network_scene(parsed(text));
+  const State& s = state_of(*scene);
+  const auto with = [&text](const char* from, const char* to) {
+    return world::testing::replaced(text, from, to);
+  };
+  for (const std::string& next :
+       {with("level_m = 20", "level_m = 21"), with("seed = 11", "seed = 12"),
+        with("octaves = 7", "octaves = 6"), std::string(world::testing::kNetworkLand)}) {
+    tick_at(*scene, pose_at(5, 5));
+    EXPECT_GT(s.streaming.missing.size() + nodes_of_scene(*scene).size(), 0U);
+    ASSERT_TRUE(scene->set_world(parsed(next), models::make_standard_registry()));
+    for (int i = 0; i < kTicks && (i == 0 || !s.streaming.missing.empty()); ++i)
+      tick_at(*scene, pose_at(5, 5));
+    EXPECT_TRUE(s.streaming.missing.empty()) << next;
+    EXPECT_GT(nodes_of_scene(*scene).size(), 100U);
+  }
+}
+
+TEST(GroundPatches, PrefillMakesAllOfThem) {
+  const world::World world = parsed(network_text());
+  const auto scene = network_scene(world);
+  EXPECT_GT(scene->settle(pose_at(3, 3)), 0U);
+  EXPECT_TRUE(state_of(*scene).streaming.missing.empty());
+  for (const visibility::NodeCoord& node : nodes_of_scene(*scene))
+    EXPECT_TRUE(has_patches(world, node));
+}
+
+TEST(GroundPatches, ParadigmsWithoutModelersDoNotWait) {
+  const world::World world = parsed(network_text());
+  SceneSettings settings = small_settings();
+  for (const Paradigm paradigm : {Paradigm::kLazyEvaluation, Paradigm::kDataAmplification}) {
+    settings.paradigm = paradigm;
+    const auto scene = make_scene(world, settings, models::make_standard_registry());
+    if (paradigm == Paradigm::kDataAmplification) {
+      EXPECT_TRUE(scene->amplify(pose_at(3, 3)));
+    }
+    tick_at(*scene, pose_at(3, 3));
+    EXPECT_TRUE(state_of(*scene).streaming.missing.empty());
+    EXPECT_EQ(scene->statistics().drawn.holes, 0U);
+  }
+}
+
+}  // namespace
+}  // namespace psygen::scene
