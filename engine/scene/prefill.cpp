@@ -82,7 +82,7 @@ void tick_without_drawing(State& s, const core::CameraPose& pose,
   visibility_system(s.frame(), s.camera, s.facts, s.streaming, VisibilityQuery(s.entities), s.view);
   cache_system(s.streaming_context(), {s.streaming, s.view}, s.assets, CacheQuery(s.entities),
                s.cache_work());
-  s.supply.wait(go_on);
+  s.supply.help(go_on);
   synthesis_system(s.frame(), s.supply, s.meshes, s.trace);
   upload_system(s.frame(), s.facts, UploadQuery(s.entities), s.upload_work());
   objects_system(s.render_context(), ObjectQuery(s.entities), {s.supply, s.assets, s.object_draws});
@@ -158,7 +158,7 @@ core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const P
     s.supply.plan(std::span(all).subspan(first, count),
                   {std::numeric_limits<double>::infinity(), UINT32_MAX},
                   synthesis::Policy::kLongest);
-    s.supply.wait(go_on);
+    s.supply.help(go_on);
     reset_counts(s);
     upload_everything(s);
     done += s.meshes.counts.models_synthesised;

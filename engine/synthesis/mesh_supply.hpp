@@ -130,6 +130,8 @@ class MeshSupply {
   // Waiting and statistics ----------------------------------------------------------------------
   // Blocks until every request is finished or abandoned; see SynthesisManager::wait_all().
   bool wait(const std::function<bool()>& go_on = {}) { return manager_->wait_all(go_on); }
+  // The same, and this thread makes meshes meanwhile.
+  bool help(const std::function<bool()>& go_on = {}) { return manager_->wait_all(go_on, true); }
   // Number of planned requests that are not finished.
   std::uint64_t outstanding() const { return manager_->outstanding(); }
   // Abandoned requests whose modelers hang.

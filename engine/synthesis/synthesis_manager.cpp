@@ -17,6 +17,8 @@ namespace psygen::synthesis {
 namespace {
 // Interval at which a blocked main thread runs the watchdog.
 constexpr std::chrono::milliseconds kWatchdogPeriod{20};
+// A waiting thread that makes meshes asks as often whether it should go on.
+constexpr double kAskedSeconds = 0.02;
 constexpr std::chrono::microseconds kExitPeriod{100};
 
 // A virtual clock has one modeler, however many threads execute its requests: their number must
@@ -259,26 +261,50 @@ std::uint64_t SynthesisManager::outstanding_in_threads() const {
   return published_ - done;
 }
 
-bool SynthesisManager::wait_all(const std::function<bool()>& go_on) {
-  if (!virtual_) return wait_for_threads(go_on);
+bool SynthesisManager::wait_all(const std::function<bool()>& go_on, bool helps) {
+  if (!virtual_) return wait_for_threads(go_on, helps);
   return execute_jobs(virtual_->finish_all(virtual_clock_()));
 }
 
-bool SynthesisManager::wait_for_threads(const std::function<bool()>& go_on) {
+bool SynthesisManager::wait_for_threads(const std::function<bool()>& go_on, bool helps) {
   workshop_->waiting.store(true, std::memory_order_seq_cst);
   bool all = true;
+  double asked_s = workshop_->clock();
   while (outstanding_in_threads() > 0 || publish_returned()) {
     if (local_count() == 0) {
       all = false;
       break;
     }
-    if (await_finished() && go_on && !go_on()) {
+    helps = helps && make_next_here();
+    const bool waited = !helps && await_finished();
+    const double now_s = workshop_->clock();
+    if (!waited && now_s < asked_s + kAskedSeconds) continue;
+    if (!waited) run_watchdog();
+    asked_s = now_s;
+    if (go_on && !go_on()) {
       all = false;
       break;
     }
   }
   workshop_->waiting.store(false, std::memory_order_seq_cst);
   return all;
+}
+
+// Makes the next request in this thread. False if there is none, or if its type may run only in
+// modelers: they get it in the next plan.
+bool SynthesisManager::make_next_here() {
+  if (own_reader_ == nullptr) own_reader_ = workshop_->board.add_reader();
+  Request request;
+  std::uint64_t retries = 0;
+  if (!workshop_->board.claim(*own_reader_, request, retries)) return false;
+  if ((*workshop_->registry)[request.key.model].may_run_on_main_thread()) {
+    execute_here(request);
+    ++buried_finished_;
+    return true;
+  }
+  ++reclaimed_;
+  returned_.push_back(std::move(request));
+  return false;
 }
 
 // Waits briefly until the modelers find no more work. Returns false if all was finished before.

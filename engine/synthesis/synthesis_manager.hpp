@@ -113,8 +113,9 @@ class SynthesisManager {
   // during the call. For tools, tests and the lazy paradigm; the tick never calls it. Returns false
   // if no local modeler is left to finish them (remote ones may still work), or once `go_on`
   // returns false. `go_on` is called about 50 times a second, but never with a virtual clock, which
-  // waits for nothing.
-  bool wait_all(const std::function<bool()>& go_on = {});
+  // waits for nothing. `helps`: the calling thread makes meshes of types that may run on a main
+  // thread meanwhile.
+  bool wait_all(const std::function<bool()>& go_on = {}, bool helps = false);
   // Requires an empty plan. Blocks until all claimed requests are finished or abandoned, remote
   // ones included. Returns requests that remote modelers returned; no modeler makes them any more.
   std::vector<Request> quiesce();
@@ -146,8 +147,9 @@ class SynthesisManager {
   void publish_to_threads(std::vector<Request>&& plan);
   void drain();
   void drain_threads(std::vector<Completion>& out);
-  bool wait_for_threads(const std::function<bool()>& go_on = {});
+  bool wait_for_threads(const std::function<bool()>& go_on = {}, bool helps = false);
   bool await_finished();
+  bool make_next_here();
   std::uint64_t outstanding_in_threads() const;
   bool execute_jobs(const std::vector<VirtualModelers::Job>& jobs);
   core::Result<void> start_modeler(RemoteSlot place = {});
@@ -166,6 +168,7 @@ class SynthesisManager {
   std::optional<VirtualModelers> virtual_;
   std::function<double()> virtual_clock_;
   RemoteModelers* remote_ = nullptr;
+  std::shared_ptr<PlanQueue::Reader> own_reader_;  // of make_next_here()
   Modeler here_{kMainThreadModeler, nullptr};
   double watchdog_seconds_;
   unsigned replacements_left_;

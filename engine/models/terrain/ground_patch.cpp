@@ -34,6 +34,7 @@ class GroundPatchType final : public ModelType {
   double step_seconds() const override { return 2e-3; }
   double log2_cost(const Parameters&) const override { return 0; }
   bool is_seen_from_far() const override { return false; }
+  bool may_run_on_main_thread() const override { return true; }
   core::Bounds synthesise(const Parameters& p, int, const MeshView& out) const override {
     if (p.edits() != nullptr && p.edits()->ground.network != nullptr)
       static_cast<void>(p.edits()->ground.network->patch(

@@ -528,6 +528,7 @@ class WaterType final : public ModelType {
   std::string_view doc() const override { return "surface of the rivers and lakes of a node"; }
   std::span<const ParameterSpec> parameters() const override { return kSchema; }
   int level_count() const override { return 1; }
+  bool may_run_on_main_thread() const override { return true; }
   double level_error_m(const Parameters&, int) const override { return 0; }
   core::SurfaceKind surface() const override { return core::SurfaceKind::kWater; }
   core::Bounds bounds(const Parameters& p) const override { return counted(p).tight(); }

@@ -15,6 +15,8 @@ using models::network::TileKey;
 
 // More are forgotten at once, and requested again where they are needed.
 constexpr std::size_t kMaxKnown = 1 << 16;
+// Before all meshes except those that a frame lacks, which a main thread may make; never a patch.
+constexpr auto kGroup = synthesis::RankGroup::kDrawn;
 
 const models::RiverNetwork* network_of(const world::World& world) {
   return world.layer() != nullptr ? world.layer()->ground.network.get() : nullptr;
@@ -61,8 +63,7 @@ void GroundPatches::want_all(const WorldFacts& facts, synthesis::MeshSupply& sup
       continue;
     }
     requested_.emplace(key.parameters_hash, tile);
-    supply.want({key, &p, owner_of(ecs::kNullEntity),
-                 synthesis::Rank::by_layer(synthesis::RankGroup::kVisibleCoarse, 0, 0.0F)});
+    supply.want({key, &p, owner_of(ecs::kNullEntity), synthesis::Rank::by_layer(kGroup, 0, 0.0F)});
   }
 }
 

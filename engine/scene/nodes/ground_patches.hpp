@@ -23,7 +23,7 @@ class GroundPatches {
   void begin(const WorldFacts& facts);
   // True if all patches of a node are made, or if the world has no network; wants the others.
   bool ready(const WorldFacts& facts, const visibility::NodeCoord& at);
-  // Wants them as requests, before all meshes. Part of the cache system.
+  // Wants them as requests. Part of the cache system.
   void want_all(const WorldFacts& facts, synthesis::MeshSupply& supply);
   // Takes a finished request. False if it was for something else. Part of the upload system.
   bool take(const synthesis::Completion& job, const WorldFacts& facts,

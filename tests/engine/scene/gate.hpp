@@ -15,6 +15,9 @@ namespace psygen::scene {
 // Lets modelers through one by one.
 class Gate {
  public:
+  // `for_modelers_only`: the main thread must not make the meshes that wait here.
+  explicit Gate(bool for_modelers_only = false) : for_modelers_only_(for_modelers_only) {}
+  bool for_modelers_only() const { return for_modelers_only_; }
   void pass() {
     std::unique_lock lock(mutex_);
     ++waiting_;
@@ -51,6 +54,7 @@ class Gate {
     opened_.notify_all();
   }
 
+  const bool for_modelers_only_;
   std::mutex mutex_;
   std::condition_variable opened_;
   bool open_ = true;
@@ -67,7 +71,9 @@ class SlowType final : public ForwardingType {
     if (std::this_thread::get_id() != main_thread_) gate_.pass();
     return of().synthesise(p, level, out);
   }
-  bool may_run_on_main_thread() const override { return of().may_run_on_main_thread(); }
+  bool may_run_on_main_thread() const override {
+    return !gate_.for_modelers_only() && of().may_run_on_main_thread();
+  }
 
  private:
   Gate& gate_;
@@ -112,7 +118,8 @@ inline SceneSettings gated_settings() {
 
 // slow_scene() with its gate, which opens when the modelers end.
 struct GatedScene {
-  explicit GatedScene(const SceneSettings& settings) : scene(slow_scene(settings, gate)) {}
+  explicit GatedScene(const SceneSettings& settings, bool for_modelers_only = false)
+      : gate(for_modelers_only), scene(slow_scene(settings, gate)) {}
   ~GatedScene() { gate.set_open(true); }
   // Waits until the only modeler has made this many of the meshes that wait at the gate, and those
   // between them, or is idle.

@@ -23,7 +23,7 @@ class Prefilling : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(Prefilling, ReportsProgressWhileModelersWork) {
-  GatedScene gated(settings());
+  GatedScene gated(settings(), true);
   gated.gate.set_open(false);
   int waiting = 0;
   double last = 0;
@@ -40,7 +40,7 @@ TEST_P(Prefilling, ReportsProgressWhileModelersWork) {
 }
 
 TEST_P(Prefilling, StopsOnRequestWhileModelersWork) {
-  GatedScene gated(settings());
+  GatedScene gated(settings(), true);
   gated.gate.set_open(false);
   prefill(*gated.scene, [&](std::string_view, double) { return !gated.gate.blocks(); });
   EXPECT_TRUE(gated.gate.blocks());

@@ -6,7 +6,9 @@
 #endif
 
 #include <algorithm>
+#include <atomic>
 #include <map>
+#include <thread>
 
 #include "engine/synthesis/content_hash.hpp"
 #include "engine/synthesis/synthesise.hpp"
@@ -94,6 +96,54 @@ TEST(SynthesisManager, OneToEightModelersAndAnyOrderMakeTheSameWorld) {
     EXPECT_EQ(done.size(), 200u);
     EXPECT_EQ(world_hash(done), serial.value()) << modelers;
   }
+}
+
+TEST(SynthesisManager, AThreadThatWaitsCanMakeMeshes) {
+  Gate gate;
+  std::atomic<int> here{0}, elsewhere{0};
+  const auto count = [&, self = std::this_thread::get_id()](const models::Parameters&, int) {
+    ++(std::this_thread::get_id() == self ? here : elsewhere);
+  };
+  models::Registry registry = registry_of(std::make_unique<ScriptedModel>(
+      "wild", [&gate](const models::Parameters&, int) { gate.wait(); }));
+  ASSERT_TRUE(registry.add(std::make_unique<ScriptedModel>("tame", count)));
+  Jobs jobs(registry);
+  std::vector<Request> plan{jobs.make(0, 0)};
+  for (std::uint32_t i = 1; i <= 50; ++i)
+    plan.push_back(jobs.make(i, 1));
+  SynthesisManager manager(registry, with(1));
+  manager.publish(std::move(plan));
+  gate.await(1);  // the only modeler is busy
+  const auto go_on = [&] {
+    gate.open();
+    return true;
+  };
+  EXPECT_TRUE(manager.wait_all(go_on, true));
+  EXPECT_EQ(here, 50);
+  EXPECT_EQ(elsewhere, 0);
+  EXPECT_EQ(manager.outstanding(), 0u);
+  std::vector<Completion> done;
+  EXPECT_EQ(manager.collect(done), 51u);
+  EXPECT_TRUE(std::ranges::all_of(done, &Completion::ok));
+}
+
+TEST(SynthesisManager, AThreadThatWaitsMakesNoMeshThatMayHang) {
+  std::atomic<int> here{0}, elsewhere{0};
+  const auto count = [&, self = std::this_thread::get_id()](const models::Parameters&, int) {
+    ++(std::this_thread::get_id() == self ? here : elsewhere);
+  };
+  const models::Registry registry = registry_of(std::make_unique<ScriptedModel>("wild", count));
+  Jobs jobs(registry);
+  SynthesisManager manager(registry, with(2));
+  for (std::uint32_t round = 0; round < 20; ++round) {
+    manager.publish(jobs.make_many(100 * round, 100));
+    EXPECT_TRUE(manager.wait_all({}, true));
+    EXPECT_EQ(manager.outstanding(), 0u);
+    std::vector<Completion> done;
+    EXPECT_EQ(manager.collect(done), 100u);
+  }
+  EXPECT_EQ(here, 0);
+  EXPECT_EQ(elsewhere, 2000);
 }
 
 TEST(SynthesisManager, ContinuesWithTheModelersThatThreadsAllow) {
