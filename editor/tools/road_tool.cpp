@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "editor/document/qt_text.hpp"
+#include "engine/world/curve.hpp"
 #include "engine/world/files/text_edit.hpp"
 #include "engine/world/files/toml_values.hpp"
 #include "engine/world/shaped_ground.hpp"
@@ -148,7 +149,7 @@ const ToolMarks& RoadTool::marks() {
     ToolMarks::Line& line = marks_.lines.emplace_back();
     std::vector<std::size_t>& parts = parts_.emplace_back();
     line.colour = shown_.road == i ? kChosenRoadColour : kRoadColour;
-    const double step_m = std::max(kMinStepM, world::chords_m(roads[i]) * kStepFraction);
+    const double step_m = std::max(kMinStepM, world::chords_m(roads[i].points_m) * kStepFraction);
     for (const world::RoadPoint& point :
          world::road_line(roads[i], step_m, [](glm::dvec2) { return 0.0; })) {
       line.points_m.push_back(point.at_m);

@@ -27,7 +27,7 @@ glm::vec3 lifted(const core::WorldPosition& at, const core::WorldPosition& eye, 
 }  // namespace
 
 core::WorldPosition on_surface(glm::dvec2 at_m, const world::World& world) {
-  core::WorldPosition at = core::normalised({{0, 0}, {at_m.x, 0, at_m.y}}, world.block_size_m());
+  core::WorldPosition at = world.position(at_m);
   at.local.y = world::surface_height_m(world, at);
   return at;
 }

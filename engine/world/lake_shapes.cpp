@@ -10,7 +10,8 @@
 #include "engine/models/kit/exact_math.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/world/water_curve.hpp"
+#include "engine/world/curve.hpp"
+#include "engine/world/moved_ground.hpp"
 #include "engine/world/water_shapes.hpp"
 #include "engine/world/world.hpp"
 
@@ -79,9 +80,7 @@ class LakeMaker {
   std::string_view key() const { return lake_.points_m.empty() ? "radius_m" : "points_m"; }
   double edge_m() const { return 2 * world_.cell_m(); }
   double margin_m() const { return std::max(lake_.shore_m, edge_m()); }
-  core::WorldPosition position(glm::dvec2 at_m) const {
-    return core::normalised({{0, 0}, {at_m.x, 0, at_m.y}}, block_m_);
-  }
+  core::WorldPosition position(glm::dvec2 at_m) const { return world_.position(at_m); }
 
   // Refuses values that no file could have, too.
   Done check_values() {

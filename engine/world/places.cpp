@@ -34,8 +34,7 @@ void sort_places(World& world, const models::Registry& registry) {
   std::map<core::BlockCoord, models::BlockEdits> blocks;
   std::uint32_t id = 0;
   for (const Place& place : world.places.all) {
-    const core::WorldPosition at =
-        core::normalised({{0, 0}, {place.at_m.x, 0, place.at_m.y}}, size_m);
+    const core::WorldPosition at = world.position(place.at_m);
     blocks[at.block].placed.push_back(
         placed_model(place, registry[place.model], ++id, at, static_cast<float>(size_m)));
   }

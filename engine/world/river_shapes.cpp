@@ -9,7 +9,8 @@
 #include "engine/models/kit/exact_math.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/world/water_curve.hpp"
+#include "engine/world/curve.hpp"
+#include "engine/world/moved_ground.hpp"
 #include "engine/world/water_shapes.hpp"
 #include "engine/world/world.hpp"
 
@@ -51,7 +52,7 @@ constexpr double kFastestM_S = 12;
 double value_at(const std::vector<double>& list, const CurvePoint& at) {
   if (list.size() == 1) return list.front();
   const double from = list[at.after];
-  return from + at.share * (list[std::min(at.after + 1, list.size() - 1)] - from);
+  return at.share > 0 ? from + at.share * (list[at.after + 1] - from) : from;
 }
 
 double step_of(const World& world, const River& river) {
@@ -129,9 +130,7 @@ class RiverMaker {
     bool in_river = false;
   };
 
-  core::WorldPosition position(glm::dvec2 at_m) const {
-    return core::normalised({{0, 0}, {at_m.x, 0, at_m.y}}, block_m_);
-  }
+  core::WorldPosition position(glm::dvec2 at_m) const { return world_.position(at_m); }
   double ground_m(glm::dvec2 at_m) const {
     const core::WorldPosition at = position(at_m);
     return models::ground_height_m(terrain_, at.block, at.local.x, at.local.z);
@@ -172,7 +171,7 @@ class RiverMaker {
     if (!(river_.smoothing_m >= 0 && river_.smoothing_m <= kMaxSmoothingM))
       return water_error("smoothing_m", fmt::format("{:g} is not allowed: it must be 0 to {:g}",
                                                     river_.smoothing_m, kMaxSmoothingM));
-    if (const double length_m = chords_m(river_); length_m > kMaxRiversM)
+    if (const double length_m = chords_m(river_.points_m); length_m > kMaxRiversM)
       return water_error("points_m",
                          fmt::format("the river is {:.0f} m long, but at most {:g} m are allowed",
                                      length_m, kMaxRiversM),
@@ -483,13 +482,6 @@ struct Course {
 };
 
 }  // namespace
-
-double chords_m(const River& river) {
-  double length_m = 0;
-  for (std::size_t i = 1; i < river.points_m.size(); ++i)
-    length_m += length_of(river.points_m[i] - river.points_m[i - 1]);
-  return length_m;
-}
 
 tl::expected<WaterEdits, WaterError> river_edits(const World& world, const models::EditLayer& below,
                                                  const River& river, const BodyName& name) {

@@ -10,7 +10,8 @@
 #include "engine/models/kit/exact_math.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/world/spline.hpp"
+#include "engine/world/curve.hpp"
+#include "engine/world/moved_ground.hpp"
 #include "engine/world/water.hpp"
 #include "engine/world/water_shapes.hpp"
 #include "engine/world/world.hpp"
@@ -23,29 +24,14 @@ using models::GroundEdit;
 using models::RoadPiece;
 using models::RoadSegment;
 
-// Maximum number of segments of a piece. As many heights are sampled to find how far it moves them.
+// Maximum number of segments of a piece.
 constexpr std::size_t kPieceSegments = 12;
-constexpr double kMaxLookedAt = 40'000;
 // Maximum number of segments of a road near one of its pieces: a road may cross itself but not
 // cover an area.
 constexpr std::size_t kMaxNear = 1000;
 
-struct Box {
-  glm::dvec2 least{1e300}, most{-1e300};
-  void add(glm::dvec2 point) {
-    least = {std::min(least.x, point.x), std::min(least.y, point.y)};
-    most = {std::max(most.x, point.x), std::max(most.y, point.y)};
-  }
-  bool touches(const Box& o, double within_m) const {
-    return least.x - within_m <= o.most.x && o.least.x - within_m <= most.x &&
-           least.y - within_m <= o.most.y && o.least.y - within_m <= most.y;
-  }
-  glm::dvec2 centre() const { return (least + most) * 0.5; }
-  double half_side() const { return std::max(most.x - least.x, most.y - least.y) * 0.5; }
-};
-
-Box box_of(const RoadSegment& segment) {
-  Box box;
+FlatBox box_of(const RoadSegment& segment) {
+  FlatBox box;
   box.add(segment.from_m);
   box.add(segment.to_m);
   return box;
@@ -132,7 +118,7 @@ class Shaper {
     for (const glm::dvec2& point : road.points_m) {
       if (const auto at = inside(point); !at) return refused("points_m", at.error());
     }
-    length_m_ += chords_m(road);
+    length_m_ += chords_m(road.points_m);
     if (length_m_ > kMaxRoadsM)
       return refused("points_m", {core::ErrorCode::kOverBudget,
                                   fmt::format("all roads together are longer than the "
@@ -194,9 +180,7 @@ class Shaper {
   std::vector<std::string> take_warnings() { return std::move(warnings_); }
 
  private:
-  core::WorldPosition position(glm::dvec2 at_m) const {
-    return core::normalised({{0, 0}, {at_m.x, 0, at_m.y}}, block_m_);
-  }
+  core::WorldPosition position(glm::dvec2 at_m) const { return world_.position(at_m); }
   core::Result<core::WorldPosition> inside(glm::dvec2 at_m) const {
     const core::WorldPosition at = position(at_m);
     if (world_.contains(at.block)) return at;
@@ -252,7 +236,7 @@ class Shaper {
     for (std::size_t i = 1; i < line.size(); ++i)
       segments.push_back(
           {line[i - 1].at_m - from, line[i].at_m - from, line[i - 1].height_m, line[i].height_m});
-    std::vector<Box> boxes;
+    std::vector<FlatBox> boxes;
     for (std::size_t i = 0; i < segments.size(); ++i) {
       if (i % kPieceSegments == 0) boxes.emplace_back();
       boxes.back().add(segments[i].from_m);
@@ -280,7 +264,7 @@ class Shaper {
   }
 
   Shaped add_piece(RoadPiece piece, const models::Parameters& before) {
-    Box box;
+    FlatBox box;
     for (std::size_t i = piece.first; i < piece.end; ++i) {
       box.add(piece.segments[i].from_m);
       box.add(piece.segments[i].to_m);
@@ -292,59 +276,10 @@ class Shaper {
     centre.local.x += box.centre().x;
     centre.local.z += box.centre().y;
     edit.centre = core::normalised(centre, block_m_);
-    edit.radius_m = box.half_side() + piece.reach_m();
-    edit.height_m = max_moved(piece, edit, before);
+    edit.radius_m = std::max(box.size().x, box.size().y) / 2 + piece.reach_m();
     edit.road = std::make_shared<const RoadPiece>(std::move(piece));
+    edit.height_m = max_moved_m(world_, edit, before);
     return add(std::move(edit), "points_m");
-  }
-
-  // The largest distance by which a piece moves a vertex of the finest ground.
-  double max_moved(const RoadPiece& piece, const GroundEdit& edit,
-                   const models::Parameters& before) const {
-    const double cell_m = world_.cell_m(), radius_m = edit.radius_m + cell_m;
-    if (4 * radius_m * radius_m / (cell_m * cell_m) > kMaxLookedAt) return relief_m_;
-    const core::WorldPosition& centre = edit.centre;
-    const auto block_at = [&](double local_m) {
-      return static_cast<std::int64_t>(std::floor(local_m / block_m_));
-    };
-    double most = 0;
-    for (std::int64_t z = block_at(centre.local.z - radius_m);
-         z <= block_at(centre.local.z + radius_m); ++z) {
-      for (std::int64_t x = block_at(centre.local.x - radius_m);
-           x <= block_at(centre.local.x + radius_m); ++x)
-        most = std::max(most, max_moved(piece, edit, core::moved(centre.block, x, z), before));
-    }
-    return most;
-  }
-
-  double max_moved(const RoadPiece& piece, const GroundEdit& edit, core::BlockCoord block,
-                   const models::Parameters& before) const {
-    const auto last = world_.terrain.integer(models::kTerrainSize) - 1;
-    const models::BlockGround ground(before, block, static_cast<std::size_t>(last * last));
-    const glm::dvec3 corner = core::offset_m(block, piece.origin, block_m_);
-    const glm::dvec3 away = core::offset_m(block, edit.centre, block_m_);
-    // Indices of the vertices in the square of the edit, along one axis.
-    const auto first_of = [&](double from_m) {
-      return std::clamp<std::int64_t>(
-          static_cast<std::int64_t>(std::floor((-from_m - edit.radius_m) / world_.cell_m())), 0,
-          last);
-    };
-    const auto last_of = [&](double from_m) {
-      return std::clamp<std::int64_t>(
-          static_cast<std::int64_t>(std::ceil((-from_m + edit.radius_m) / world_.cell_m())), 0,
-          last);
-    };
-    double most = 0;
-    for (std::int64_t z = first_of(away.z); z <= last_of(away.z); ++z) {
-      for (std::int64_t x = first_of(away.x); x <= last_of(away.x); ++x) {
-        const glm::dvec2 local_m =
-            glm::dvec2(static_cast<double>(x), static_cast<double>(z)) * world_.cell_m();
-        const models::RoadEffect road = effect_of(piece, local_m + glm::dvec2(corner.x, corner.z));
-        if (road.weight <= 0) continue;
-        most = std::max(most, std::abs(road.height_m - ground.at(local_m).height_m));
-      }
-    }
-    return most;
   }
 
   const World& world_;
@@ -381,7 +316,7 @@ Shaped add_water(const World& world, Shaper& shaper) {
   }
   double length_m = 0;
   for (std::size_t i = 0; i < shaped.rivers.size(); ++i) {
-    length_m += chords_m(shaped.rivers[i]);
+    length_m += chords_m(shaped.rivers[i].points_m);
     if (length_m > kMaxRiversM)
       return wrong_at(
           "river", i,
@@ -405,19 +340,6 @@ Shaped add_water(const World& world, Shaper& shaper) {
       return wrong_at("river", i, std::move(ok.error()));
   }
   return {};
-}
-
-double apart_m(glm::dvec2 a, glm::dvec2 b) {
-  const double x = b.x - a.x, z = b.y - a.y;
-  return std::sqrt(x * x + z * z);
-}
-
-// Lengths of the straight lines from the first point to each.
-std::vector<double> chords_to(const Road& road) {
-  std::vector<double> chords{0};
-  for (std::size_t i = 1; i < road.points_m.size(); ++i)
-    chords.push_back(chords.back() + apart_m(road.points_m[i - 1], road.points_m[i]));
-  return chords;
 }
 
 // Averages the heights, weighted by a tent over `smoothing_m` on both sides, or less at the ends.
@@ -496,32 +418,11 @@ std::uint64_t shape_hash(const World& world) {
                                             world.block_size_m());
 }
 
-double chords_m(const Road& road) {
-  return chords_to(road).back();
-}
-
 std::vector<RoadPoint> road_line(const Road& road, double step_m,
                                  const std::function<double(glm::dvec2)>& height_at) {
-  const std::vector<double> chords = chords_to(road);
-  std::vector<double> x, z;
-  for (const glm::dvec2& point : road.points_m) {
-    x.push_back(point.x);
-    z.push_back(point.y);
-  }
-  const Spline east(chords, x), south(chords, z);
-  std::vector<RoadPoint> line{{road.points_m.front(), 0, 0}};
-  for (std::size_t i = 1; i < chords.size(); ++i) {
-    const double chord_m = chords[i] - chords[i - 1];
-    const auto steps = static_cast<int>(std::ceil(chord_m / step_m));
-    for (int k = 1; k <= steps; ++k) {
-      const double at = k < steps ? chords[i - 1] + chord_m * k / steps : chords[i];
-      const glm::dvec2 place_m{east.value(at), south.value(at)};
-      const double along_m = line.back().along_m + apart_m(line.back().at_m, place_m);
-      line.push_back({place_m, along_m, 0, k < steps ? i - 1 : i});
-    }
-  }
-  for (RoadPoint& point : line)
-    point.height_m = height_at(point.at_m);
+  std::vector<RoadPoint> line;
+  for (const CurvePoint& point : curve_through(road.points_m, step_m))
+    line.push_back({point.at_m, point.along_m, height_at(point.at_m), point.after});
   // Two passes with a tent make a smooth bell.
   smooth(line, road.smoothing_m / 2);
   smooth(line, road.smoothing_m / 2);

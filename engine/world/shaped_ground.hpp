@@ -122,9 +122,6 @@ struct RoadPoint {
   std::size_t after = 0;  // index of the last control point up to here
 };
 
-// The total length of the straight lines between a road's points.
-double chords_m(const Road& road);
-
 // The centre line of a road as short straight segments: a natural cubic spline through its points
 // with smoothed ground heights. The same bits on every machine. Its points are about `step_m`
 // apart. `height_at` returns the height of the ground. Heights are weighted means of the ground up

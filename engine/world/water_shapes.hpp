@@ -70,7 +70,4 @@ RiverOrder river_order(const World& world, const std::vector<River>& rivers);
 tl::expected<void, WaterError> check_points(const std::vector<glm::dvec2>& points,
                                             std::size_t least);
 
-// A river's length along the straight lines between its points.
-double chords_m(const River& river);
-
 }  // namespace psygen::world

@@ -191,6 +191,10 @@ struct World {
 
   double block_size_m() const;  // metres along one side of a block
   double cell_m() const;        // distance of neighbouring terrain vertices
+  // The position of a place, x and z in metres from the corner of block (0, 0), at height 0.
+  core::WorldPosition position(glm::dvec2 at_m) const {
+    return core::normalised({{0, 0}, {at_m.x, 0, at_m.y}}, block_size_m());
+  }
   // True if a block exists; true if the world is endless along any axis.
   bool contains(core::BlockCoord block) const;
   bool is_endless() const { return blocks_x == 0 || blocks_z == 0; }

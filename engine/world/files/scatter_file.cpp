@@ -141,9 +141,7 @@ void read_place(TableReader& reader, const models::Registry& registry, const Wor
   if (model < 0) return;
   place.model = static_cast<models::ModelIndex>(model);
   if (reader.read("at_m", place.at_m, kPlacePoints, Presence::kRequired)) {
-    const core::WorldPosition at =
-        core::normalised({{0, 0}, {place.at_m.x, 0, place.at_m.y}}, world.block_size_m());
-    if (!world.contains(at.block))
+    if (!world.contains(world.position(place.at_m).block))
       reader.problem("at_m",
                      fmt::format("{:g}, {:g} m is outside the world", place.at_m.x, place.at_m.y));
   }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "engine/world/curve.hpp"
 #include "tests/engine/world/river_world.hpp"
 
 namespace psygen::world {

@@ -7,7 +7,9 @@
 #include <future>
 #include <glm/geometric.hpp>
 
+#include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
+#include "engine/world/curve.hpp"
 #include "tests/engine/world/river_world.hpp"
 
 namespace psygen::world {

@@ -7,7 +7,6 @@
 #include "engine/models/terrain/ground.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/water.hpp"
-#include "engine/world/water_curve.hpp"
 #include "tests/engine/world/shipped.hpp"
 
 namespace psygen::world::testing {

@@ -1,18 +1,16 @@
-// Curves of rivers and shores of lakes as short straight segments. The same bits on every machine.
-// Pure functions. Internal to world.
+// Curves of roads and rivers and shores of lakes as short straight segments. The same bits on every
+// machine. Pure functions.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <glm/vec2.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "engine/models/edits.hpp"
-
 namespace psygen::world {
-
-struct World;
 
 inline double length_of(glm::dvec2 v) {
   return std::sqrt(v.x * v.x + v.y * v.y);
@@ -38,8 +36,11 @@ struct CurvePoint {
   glm::dvec2 at_m{0.0};
   double along_m = 0;     // distance from the start, along the segments
   std::size_t after = 0;  // index of the last control point up to here
-  double share = 0;       // of the way to the next control point, 0 … 1
+  double share = 0;       // of the way to the next control point: 0 up to below 1
 };
+
+// The length of the straight lines from each point to the next.
+double chords_m(std::span<const glm::dvec2> points);
 
 // A natural cubic spline through at least two points; and one through at least three points that
 // closes smoothly, whose last point is the one before the first. Points are about `step_m` apart.
@@ -49,10 +50,5 @@ std::vector<glm::dvec2> closed_curve_through(std::span<const glm::dvec2> points,
 // Returns a place where a line of straight segments crosses or touches itself; nothing: it does
 // not. With `is_closed`, a segment leads from the last point to the first.
 std::optional<glm::dvec2> self_crossing(std::span<const glm::dvec2> line, bool is_closed);
-
-// Returns the largest distance, in metres, by which a piece of water moves the ground of `before`.
-// Looks at all vertices in small edits, and at some in large ones, with a reserve.
-double max_moved_m(const World& world, const models::GroundEdit& edit,
-                   const models::Parameters& before);
 
 }  // namespace psygen::world

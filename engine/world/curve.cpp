@@ -1,12 +1,9 @@
-#include "engine/world/water_curve.hpp"
+#include "engine/world/curve.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/models/terrain/ground.hpp"
-#include "engine/models/terrain/terrain.hpp"
 #include "engine/world/spline.hpp"
-#include "engine/world/world.hpp"
 
 namespace psygen::world {
 namespace {
@@ -28,15 +25,14 @@ struct PlaneSpline {
   }
   glm::dvec2 at(double chord) const { return {east.value(chord), south.value(chord)}; }
 
-  // Calls visit(place, share) from behind point i − 1 to point i.
+  // Calls visit(place, share) for places from behind point i to point i + 1, which has the share 1.
   template <class Visit>
   void walk(std::size_t i, double step_m, const Visit& visit) const {
-    const double chord_m = chords[i] - chords[i - 1];
+    const double chord_m = chords[i + 1] - chords[i];
     const auto steps = std::max(1, static_cast<int>(std::ceil(chord_m / step_m)));
-    for (int k = 1; k <= steps; ++k) {
-      const double share = static_cast<double>(k) / steps;
-      visit(at(k < steps ? chords[i - 1] + chord_m * share : chords[i]), share);
-    }
+    for (int k = 1; k < steps; ++k)
+      visit(at(chords[i] + chord_m * k / steps), static_cast<double>(k) / steps);
+    visit(at(chords[i + 1]), 1.0);
   }
 };
 
@@ -56,14 +52,25 @@ bool meet(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
 
 }  // namespace
 
+double chords_m(std::span<const glm::dvec2> points) {
+  double length_m = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    length_m += length_of(points[i] - points[i - 1]);
+  return length_m;
+}
+
 std::vector<CurvePoint> curve_through(std::span<const glm::dvec2> points, double step_m) {
   const PlaneSpline spline(points);
   std::vector<CurvePoint> curve{{points.front(), 0, 0, 0}};
-  for (std::size_t i = 1; i < points.size(); ++i)
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     spline.walk(i, step_m, [&](glm::dvec2 at_m, double share) {
       const double along_m = curve.back().along_m + length_of(at_m - curve.back().at_m);
-      curve.push_back({at_m, along_m, i - 1, share});
+      if (share < 1)
+        curve.push_back({at_m, along_m, i, share});
+      else
+        curve.push_back({at_m, along_m, i + 1, 0});
     });
+  }
   return curve;
 }
 
@@ -75,7 +82,7 @@ std::vector<glm::dvec2> closed_curve_through(std::span<const glm::dvec2> points,
     turns.push_back(points[(i + n * more - more) % n]);
   const PlaneSpline spline(turns);
   std::vector<glm::dvec2> curve;
-  for (std::size_t i = more + 1; i <= more + n; ++i)
+  for (std::size_t i = more; i < more + n; ++i)
     spline.walk(i, step_m, [&](glm::dvec2 at_m, double) { curve.push_back(at_m); });
   return curve;
 }
@@ -100,54 +107,6 @@ std::optional<glm::dvec2> self_crossing(std::span<const glm::dvec2> line, bool i
     }
   }
   return std::nullopt;
-}
-
-double max_moved_m(const World& world, const models::GroundEdit& edit,
-                   const models::Parameters& before) {
-  constexpr double kMaxLookedAt = 5000;
-  const double cell_m = world.cell_m(), block_m = world.block_size_m();
-  const double radius_m = edit.radius_m + cell_m;
-  const double vertices = 4 * radius_m * radius_m / (cell_m * cell_m);
-  const auto step = static_cast<std::int64_t>(std::ceil(std::sqrt(vertices / kMaxLookedAt)));
-  const auto last = world.terrain.integer(models::kTerrainSize) - 1;
-  const auto block_at = [&](double local_m) {
-    return static_cast<std::int64_t>(std::floor(local_m / block_m));
-  };
-  // Vertices in the square of the edit, along one axis of a block `away_m` from its centre.
-  const auto first_of = [&](double away_m) {
-    return std::clamp<std::int64_t>(
-        static_cast<std::int64_t>(std::floor((-away_m - edit.radius_m) / cell_m)), 0, last);
-  };
-  const auto last_of = [&](double away_m) {
-    return std::clamp<std::int64_t>(
-        static_cast<std::int64_t>(std::ceil((-away_m + edit.radius_m) / cell_m)), 0, last);
-  };
-  const core::WorldPosition& centre = edit.centre;
-  double most = 0;
-  for (std::int64_t z = block_at(centre.local.z - radius_m);
-       z <= block_at(centre.local.z + radius_m); ++z) {
-    for (std::int64_t x = block_at(centre.local.x - radius_m);
-         x <= block_at(centre.local.x + radius_m); ++x) {
-      const core::BlockCoord block = core::moved(centre.block, x, z);
-      const glm::dvec3 away = core::offset_m(block, centre, block_m);
-      const std::int64_t x0 = first_of(away.x), x1 = last_of(away.x);
-      const std::int64_t z0 = first_of(away.z), z1 = last_of(away.z);
-      const auto questions = ((x1 - x0) / step + 1) * ((z1 - z0) / step + 1);
-      const models::BlockGround ground(before, block, static_cast<std::size_t>(questions));
-      for (std::int64_t k = z0; k <= z1; k += step) {
-        for (std::int64_t i = x0; i <= x1; i += step) {
-          const glm::dvec2 local_m =
-              glm::dvec2(static_cast<double>(i), static_cast<double>(k)) * cell_m;
-          const glm::dvec2 place_m = models::from_origin_m(edit.origin(), block, local_m, block_m);
-          const double ground_m = ground.at(local_m).height_m;
-          const double shaped_m = edit.river ? shaped_by(*edit.river, ground_m, place_m)
-                                             : shaped_by(*edit.lake, ground_m, place_m);
-          most = std::max(most, std::abs(shaped_m - ground_m));
-        }
-      }
-    }
-  }
-  return step > 1 ? 1.1 * most + 0.5 : most;
 }
 
 }  // namespace psygen::world
