@@ -150,8 +150,7 @@ const ToolMarks& RoadTool::marks() {
     std::vector<std::size_t>& parts = parts_.emplace_back();
     line.colour = shown_.road == i ? kChosenRoadColour : kRoadColour;
     const double step_m = std::max(kMinStepM, world::chords_m(roads[i].points_m) * kStepFraction);
-    for (const world::RoadPoint& point :
-         world::road_line(roads[i], step_m, [](glm::dvec2) { return 0.0; })) {
+    for (const world::CurvePoint& point : world::curve_through(roads[i].points_m, step_m)) {
       line.points_m.push_back(point.at_m);
       parts.push_back(point.after);
     }

@@ -8,10 +8,9 @@
 #include "engine/core/cancellation.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/kit/exact_math.hpp"
-#include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/curve.hpp"
-#include "engine/world/moved_ground.hpp"
+#include "engine/world/road_shapes.hpp"
 #include "engine/world/water.hpp"
 #include "engine/world/water_shapes.hpp"
 #include "engine/world/world.hpp"
@@ -21,21 +20,6 @@ namespace {
 
 using models::GroundChange;
 using models::GroundEdit;
-using models::RoadPiece;
-using models::RoadSegment;
-
-// Maximum number of segments of a piece.
-constexpr std::size_t kPieceSegments = 12;
-// Maximum number of segments of a road near one of its pieces: a road may cross itself but not
-// cover an area.
-constexpr std::size_t kMaxNear = 1000;
-
-FlatBox box_of(const RoadSegment& segment) {
-  FlatBox box;
-  box.add(segment.from_m);
-  box.add(segment.to_m);
-  return box;
-}
 
 tl::unexpected<ShapeError> refused(std::string_view key, core::Error error) {
   return tl::unexpected(ShapeError{{}, key, 0, std::move(error)});
@@ -124,20 +108,9 @@ class Shaper {
                                   fmt::format("all roads together are longer than the "
                                               "allowed {:g} m",
                                               kMaxRoadsM)});
-    models::Parameters terrain = world_.terrain;
-    const models::EditLayer before = layer_;
-    terrain.set_edits(&before, 0);
-    const double step_m = std::max(world_.cell_m(), std::clamp(road.width_m / 3, 1.0, 10.0));
-    const auto line = road_line(road, step_m, [&](glm::dvec2 at_m) {
-      const core::WorldPosition at = position(at_m);
-      return models::ground_height_m(terrain, at.block, at.local.x, at.local.z);
-    });
-    std::vector<RoadPiece> pieces = pieces_of(road, line);
-    for (RoadPiece& piece : pieces) {
-      if (piece.segments.size() > kMaxNear) return too_much("points_m");
-      if (auto ok = add_piece(std::move(piece), terrain); !ok) return ok;
-    }
-    return {};
+    auto edits = road_edits(world_, layer_, road);
+    if (!edits) return refused("points_m", std::move(edits.error()));
+    return add(std::move(*edits));
   }
 
   // Adds a lake or a river. `make` is lake_edits or river_edits.
@@ -145,9 +118,7 @@ class Shaper {
   Shaped add(const Body& body, const BodyName& name, const Make& make) {
     auto made = make(world_, layer_, body, name);
     if (!made) return refused(made.error().key, made.error().error);
-    for (GroundEdit& edit : made->edits) {
-      if (auto ok = add(std::move(edit), "points_m"); !ok) return ok;
-    }
+    if (auto ok = add(std::move(made->edits)); !ok) return ok;
     for (std::string& warning : made->warnings)
       warnings_.push_back(std::move(warning));
     return {};
@@ -157,8 +128,7 @@ class Shaper {
   void check_roads() {
     for (std::size_t i = 0; i < world_.shaped.roads.size(); ++i) {
       const Road& road = world_.shaped.roads[i];
-      const auto line = road_line(road, road.width_m, [](glm::dvec2) { return 0.0; });
-      for (const RoadPoint& point : line) {
+      for (const CurvePoint& point : curve_through(road.points_m, road.width_m)) {
         const core::WorldPosition at = position(point.at_m);
         const auto water = layer_.ground.water_over(at.block, {at.local.x, at.local.z}, block_m_);
         if (!water || water->widths > 0.5) continue;
@@ -212,74 +182,23 @@ class Shaper {
     return map;
   }
 
+  // Adds the pieces of a road, a lake or a river.
+  Shaped add(std::vector<GroundEdit> pieces) {
+    for (GroundEdit& piece : pieces) {
+      if (auto ok = add(std::move(piece), "points_m"); !ok) return ok;
+    }
+    return {};
+  }
   Shaped add(GroundEdit edit, std::string_view key) {
     if (auto ok = core::check_cancelled(); !ok) return refused(key, ok.error());
     edit.id = layer_.next_id++;
     seal(edit);
     if (layer_.ground.shapes.add(std::make_shared<const GroundEdit>(std::move(edit)), block_m_))
       return {};
-    return too_much(key);
-  }
-
-  static tl::unexpected<ShapeError> too_much(std::string_view key) {
-    return refused(
-        key,
-        {core::ErrorCode::kOverBudget,
-         fmt::format("more than {} stamps and pieces of roads or water overlap there", kMaxNear)});
-  }
-
-  // The pieces of a road. Each has the segments of other pieces that may be nearest to its points.
-  std::vector<RoadPiece> pieces_of(const Road& road, const std::vector<RoadPoint>& line) const {
-    const core::WorldPosition origin = position(line.front().at_m);
-    const glm::dvec2 from = line.front().at_m;
-    std::vector<RoadSegment> segments;
-    for (std::size_t i = 1; i < line.size(); ++i)
-      segments.push_back(
-          {line[i - 1].at_m - from, line[i].at_m - from, line[i - 1].height_m, line[i].height_m});
-    std::vector<FlatBox> boxes;
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-      if (i % kPieceSegments == 0) boxes.emplace_back();
-      boxes.back().add(segments[i].from_m);
-      boxes.back().add(segments[i].to_m);
-    }
-    const double within_m = 2 * (road.width_m / 2 + road.border_m) + 1e-6;
-    std::vector<RoadPiece> pieces;
-    for (std::size_t p = 0; p < boxes.size(); ++p) {
-      RoadPiece piece{origin, road.width_m / 2, road.border_m, road.clear_m, {}, 0, 0};
-      for (std::size_t q = 0; q < boxes.size(); ++q) {
-        if (q == p) piece.first = piece.segments.size();
-        if (!boxes[q].touches(boxes[p], within_m)) continue;
-        const std::size_t end = std::min((q + 1) * kPieceSegments, segments.size());
-        for (std::size_t i = q * kPieceSegments; i < end; ++i) {
-          if (q == p || box_of(segments[i]).touches(boxes[p], within_m))
-            piece.segments.push_back(segments[i]);
-        }
-        if (piece.segments.size() > kMaxNear) break;
-        if (q == p) piece.end = piece.segments.size();
-      }
-      pieces.push_back(std::move(piece));
-      if (pieces.back().segments.size() > kMaxNear) break;
-    }
-    return pieces;
-  }
-
-  Shaped add_piece(RoadPiece piece, const models::Parameters& before) {
-    FlatBox box;
-    for (std::size_t i = piece.first; i < piece.end; ++i) {
-      box.add(piece.segments[i].from_m);
-      box.add(piece.segments[i].to_m);
-    }
-    GroundEdit edit;
-    edit.change = GroundChange::kRoad;
-    edit.square = true;
-    core::WorldPosition centre = piece.origin;
-    centre.local.x += box.centre().x;
-    centre.local.z += box.centre().y;
-    edit.centre = core::normalised(centre, block_m_);
-    edit.radius_m = std::max(box.size().x, box.size().y) / 2 + piece.reach_m();
-    edit.road = std::make_shared<const RoadPiece>(std::move(piece));
-    edit.height_m = max_moved_m(world_, edit, before);
-    return add(std::move(edit), "points_m");
+    return refused(key,
+                   {core::ErrorCode::kOverBudget,
+                    fmt::format("more than {} stamps and pieces of roads or water overlap there",
+                                models::GroundEdits::kMaxTogether)});
   }
 
   const World& world_;
@@ -342,30 +261,6 @@ Shaped add_water(const World& world, Shaper& shaper) {
   return {};
 }
 
-// Averages the heights, weighted by a tent over `smoothing_m` on both sides, or less at the ends.
-void smooth(std::vector<RoadPoint>& line, double smoothing_m) {
-  std::vector<double> means;
-  const double end_m = line.back().along_m;
-  std::size_t first = 0;
-  for (const RoadPoint& point : line) {
-    const double wide_m = std::min({smoothing_m, point.along_m, end_m - point.along_m});
-    while (first > 0 && line[first - 1].along_m > point.along_m - wide_m)
-      --first;
-    while (line[first].along_m < point.along_m - wide_m)
-      ++first;
-    double sum = 0, weights = 0;
-    for (std::size_t i = first; i < line.size() && line[i].along_m <= point.along_m + wide_m; ++i) {
-      const double away = std::abs(line[i].along_m - point.along_m);
-      const double weight = wide_m > 0 ? 1 - away / wide_m : 1;
-      sum += weight * line[i].height_m;
-      weights += weight;
-    }
-    means.push_back(weights > 0 ? sum / weights : point.height_m);
-  }
-  for (std::size_t i = 0; i < line.size(); ++i)
-    line[i].height_m = means[i];
-}
-
 }  // namespace
 
 bool operator==(const Stamp& a, const Stamp& b) {
@@ -416,17 +311,6 @@ std::uint64_t shape_hash(const World& world) {
   if (!world.shaped.layer) return 0;
   return world.shaped.layer->ground.hash_of({models::QuadCoord::kMaxLevel, 0, 0}, 0,
                                             world.block_size_m());
-}
-
-std::vector<RoadPoint> road_line(const Road& road, double step_m,
-                                 const std::function<double(glm::dvec2)>& height_at) {
-  std::vector<RoadPoint> line;
-  for (const CurvePoint& point : curve_through(road.points_m, step_m))
-    line.push_back({point.at_m, point.along_m, height_at(point.at_m), point.after});
-  // Two passes with a tent make a smooth bell.
-  smooth(line, road.smoothing_m / 2);
-  smooth(line, road.smoothing_m / 2);
-  return line;
 }
 
 }  // namespace psygen::world

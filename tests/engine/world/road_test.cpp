@@ -8,7 +8,7 @@
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/placement.hpp"
-#include "engine/world/shaped_ground.hpp"
+#include "engine/world/road_shapes.hpp"
 #include "tests/engine/models/mesh_helpers.hpp"
 #include "tests/engine/world/shaped_worlds.hpp"
 

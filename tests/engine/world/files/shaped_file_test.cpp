@@ -198,13 +198,13 @@ TEST(ShapedFile, BadRoadsAreRejectedWithLineAndField) {
   EXPECT_THAT(with(points + "]"), HasSubstr("longer than the allowed 100000 m"));
 }
 
-TEST(ShapedFile, TooManyOverlappingShapesAreRejected) {
+TEST(ShapedFile, ARoadThatCoversAnAreaIsRejected) {
   std::string points = "[[10, 10]";
   for (int i = 1; i < 1000; ++i)
     points += i % 2 == 0 ? ", [10, 10]" : ", [90, 60]";
   std::string tables;
   const std::string road = "[[road]]\npoints_m = " + points + "]\nwidth_m = 0.5\n";
-  EXPECT_THAT(shape_error(road), HasSubstr("overlap there"));
+  EXPECT_THAT(shape_error(road), HasSubstr("more than 1000 pieces of the road"));
 }
 
 }  // namespace
