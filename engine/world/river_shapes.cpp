@@ -11,6 +11,7 @@
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/curve.hpp"
 #include "engine/world/moved_ground.hpp"
+#include "engine/world/river_course.hpp"
 #include "engine/world/water_shapes.hpp"
 #include "engine/world/world.hpp"
 
@@ -48,17 +49,6 @@ constexpr double kFreeboard = 0.1;    // of the depth, in addition
 constexpr double kGentleCut = 1.2;    // width of the bank over the depth of a cut
 constexpr double kMaxBankM = 80;
 constexpr double kFastestM_S = 12;
-
-double value_at(const std::vector<double>& list, const CurvePoint& at) {
-  if (list.size() == 1) return list.front();
-  const double from = list[at.after];
-  return at.share > 0 ? from + at.share * (list[at.after + 1] - from) : from;
-}
-
-double step_of(const World& world, const River& river) {
-  const double narrowest_m = *std::ranges::min_element(river.width_m);
-  return std::max(2 * world.cell_m(), std::clamp(narrowest_m / 2, 3.0, 10.0));
-}
 
 // Means weighted by a tent over `reach_m` on both sides of each point. Ends continue as they are,
 // so values that never rise still never rise.
@@ -186,7 +176,7 @@ class RiverMaker {
       return water_error("width_m", fmt::format("a river {:g} m wide is narrower than two cells of "
                                                 "the ground, {:g} m",
                                                 narrowest_m, 2 * world_.cell_m()));
-    curve_ = curve_through(river_.points_m, step_of(world_, river_));
+    curve_ = river_curve(world_, river_);
     std::vector<glm::dvec2> line;
     for (const CurvePoint& point : curve_) {
       if (!world_.contains(position(point.at_m).block))
@@ -455,76 +445,11 @@ class RiverMaker {
   WaterEdits made_;
 };
 
-// A river's curve with its widths.
-struct Course {
-  std::vector<CurvePoint> curve;
-  const River* river = nullptr;
-  FlatBox box;
-
-  // True if a place lies in its water.
-  bool covers(glm::dvec2 at_m) const {
-    FlatBox place;
-    place.add(at_m);
-    const double widest_m = *std::ranges::max_element(river->width_m);
-    if (!box.touches(place, widest_m)) return false;
-    for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
-      const glm::dvec2 along = curve[i + 1].at_m - curve[i].at_m, to = at_m - curve[i].at_m;
-      const double length2 = along.x * along.x + along.y * along.y;
-      const double share =
-          length2 > 0 ? std::clamp((to.x * along.x + to.y * along.y) / length2, 0.0, 1.0) : 0;
-      const double half_m = (value_at(river->width_m, curve[i]) * (1 - share) +
-                             value_at(river->width_m, curve[i + 1]) * share) /
-                            2;
-      if (length_of(to - along * share) <= half_m) return true;
-    }
-    return false;
-  }
-};
-
 }  // namespace
 
 tl::expected<WaterEdits, WaterError> river_edits(const World& world, const models::EditLayer& below,
                                                  const River& river, const BodyName& name) {
   return RiverMaker(world, below, river, name).make();
-}
-
-RiverOrder river_order(const World& world, const std::vector<River>& rivers) {
-  std::vector<Course> courses;
-  for (const River& river : rivers) {
-    courses.push_back({curve_through(river.points_m, step_of(world, river)), &river, {}});
-    for (const CurvePoint& point : courses.back().curve)
-      courses.back().box.add(point.at_m);
-  }
-  const std::size_t n = rivers.size();
-  // A river that begins where another one ends comes after it, else one that ends in another.
-  std::vector<std::vector<bool>> after(n, std::vector<bool>(n, false));
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < n; ++k)
-      after[i][k] = i != k && courses[k].covers(rivers[i].points_m.front());
-  RiverOrder result;
-  result.flows_on.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < n; ++k) {
-      if (i == k || !courses[k].covers(rivers[i].points_m.back())) continue;
-      result.flows_on[i] = true;
-      if (!after[k][i]) after[i][k] = true;
-    }
-  }
-  std::vector<std::size_t>& order = result.order;
-  std::vector<bool> done(n, false);
-  while (order.size() < n) {
-    std::size_t next = n;
-    for (std::size_t i = 0; i < n && next == n; ++i) {
-      bool ready = !done[i];
-      for (std::size_t k = 0; ready && k < n; ++k)
-        ready = !after[i][k] || done[k];
-      if (ready) next = i;
-    }
-    if (next == n) return {};
-    done[next] = true;
-    order.push_back(next);
-  }
-  return result;
 }
 
 }  // namespace psygen::world

@@ -10,6 +10,7 @@
 #include "engine/models/kit/exact_math.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/curve.hpp"
+#include "engine/world/river_course.hpp"
 #include "engine/world/road_shapes.hpp"
 #include "engine/world/water.hpp"
 #include "engine/world/water_shapes.hpp"

@@ -100,10 +100,11 @@ struct ShapeError {
 };
 
 // Builds the layer from the erosion, stamps, then roads, lakes and rivers (water_shapes.hpp), and
-// removes the world's edits. world.terrain must already have its seed. Linear in the heights of
-// stamps, the lengths of roads and the areas of water. Fails with kInvalidArgument for shapes
-// outside the world or above its height range, and with kOverBudget where too many shapes overlap
-// or all roads or rivers together are longer than kMaxRoadsM and kMaxRiversM.
+// removes the world's edits. world.terrain must already have its seed, and shapes have values that
+// a file may have. Linear in the heights of stamps, the lengths of roads and the areas of water.
+// Fails with kInvalidArgument for shapes outside the world or above its height range, and with
+// kOverBudget where too many shapes overlap or all roads or rivers together are longer than
+// kMaxRoadsM and kMaxRiversM.
 tl::expected<void, ShapeError> shape_ground(World& world);
 
 // A hash of all shapes; 0: there are none.

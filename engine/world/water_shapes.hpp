@@ -57,14 +57,6 @@ tl::expected<WaterEdits, WaterError> river_edits(const World& world, const model
 tl::expected<WaterEdits, WaterError> lake_edits(const World& world, const models::EditLayer& below,
                                                 const Lake& lake, const BodyName& name);
 
-// The order in which rivers must be made, so that every river is there when another one begins or
-// ends in it; else that of the list. Empty if rivers end in each other.
-struct RiverOrder {
-  std::vector<std::size_t> order;
-  std::vector<bool> flows_on;  // by river: it ends in another one
-};
-RiverOrder river_order(const World& world, const std::vector<River>& rivers);
-
 // Fails for fewer points than `least`, or more than kMaxWaterPoints; for points that are not finite
 // or too far away, and for those that are closer than kMinWaterStepM to the previous one.
 tl::expected<void, WaterError> check_points(const std::vector<glm::dvec2>& points,

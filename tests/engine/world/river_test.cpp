@@ -9,7 +9,7 @@
 
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
-#include "engine/world/curve.hpp"
+#include "engine/world/river_course.hpp"
 #include "tests/engine/world/river_world.hpp"
 
 namespace psygen::world {
@@ -38,11 +38,6 @@ using testing::river_world;
 struct Middle {
   glm::dvec2 at_m{0.0}, direction{1, 0};
 };
-std::vector<CurvePoint> curve_of(const World& world, const River& river) {
-  const double narrowest_m = *std::ranges::min_element(river.width_m);
-  return curve_through(river.points_m,
-                       std::max(2 * world.cell_m(), std::clamp(narrowest_m / 2, 3.0, 10.0)));
-}
 Middle middle_of(const std::vector<CurvePoint>& curve, double share) {
   const double at = share * static_cast<double>(curve.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(at), curve.size() - 2);
@@ -67,7 +62,7 @@ TEST(River, NeverRisesDownstreamAndLiesAboveItsBed) {
   const World& world = river_world();
   core::RandomStream random(5, 0, 0, 0, core::Purpose::kPosition);
   for (std::size_t r = 0; r < world.shaped.rivers.size(); ++r) {
-    const auto curve = curve_of(world, world.shaped.rivers[r]);
+    const auto curve = river_curve(world, world.shaped.rivers[r]);
     std::vector<std::pair<double, WaterPoint>> samples;
     for (int i = 0; i < 50'000; ++i) {
       const double share = random.next_unit();
@@ -115,7 +110,7 @@ TEST(River, BedsNeverRiseByData) {
 TEST(River, LeadsFromItsSpringThroughTheLakeIntoTheSea) {
   const World& world = river_world();
   EXPECT_THAT(world.shaped.warnings, IsEmpty());
-  const auto curve = curve_of(world, world.shaped.rivers[0]);
+  const auto curve = river_curve(world, world.shaped.rivers[0]);
   std::vector<WaterBody> bodies;
   for (int i = 0; i <= 2000; ++i) {
     const WaterPoint water = water_at(world, position_in(world, middle_of(curve, i / 2000.0).at_m));
@@ -131,7 +126,7 @@ TEST(River, LeadsFromItsSpringThroughTheLakeIntoTheSea) {
 
 TEST(River, TheBrookJoinsTheRiverAtItsSurface) {
   const World& world = river_world();
-  const auto brook = curve_of(world, world.shaped.rivers[1]);
+  const auto brook = river_curve(world, world.shaped.rivers[1]);
   const WaterPoint join = water_at(world, position_in(world, brook.back().at_m));
   EXPECT_EQ(join.body, kTheRiver);
   double last_m = 0;
@@ -153,7 +148,7 @@ TEST(River, TheBrookJoinsTheRiverAtItsSurface) {
 TEST(River, FlowsDownstreamWithItsDischarge) {
   const World world = parsed(std::string(kBrookLand) +
                              replaced(kRiverTable, "bank_m = 8", "bank_m = 8\ndischarge_m3_s = 3"));
-  const auto curve = curve_of(world, world.shaped.rivers[0]);
+  const auto curve = river_curve(world, world.shaped.rivers[0]);
   int measured = 0;
   for (double share = 0.05; share < 0.75; share += 0.01) {
     const Middle middle = middle_of(curve, share);
@@ -176,7 +171,7 @@ TEST(River, FlowsDownstreamWithItsDischarge) {
 
 TEST(River, FoamsWhereItFallsAndItsNormalLeansDownstream) {
   const World& world = river_world();
-  const auto curve = curve_of(world, world.shaped.rivers[0]);
+  const auto curve = river_curve(world, world.shaped.rivers[0]);
   float most = 0, least = 1;
   double steepest = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -243,7 +238,7 @@ TEST(River, ShapesTheSameGroundInNeighbouringBlocksAndCoarseNodes) {
 TEST(River, DigsItsBedAndLeavesTheGroundBeyondItsBanks) {
   const World& world = river_world();
   const World base = parsed(kBrookLand);
-  const auto curve = curve_of(world, world.shaped.rivers[1]);
+  const auto curve = river_curve(world, world.shaped.rivers[1]);
   for (double share = 0.1; share < 0.8; share += 0.01) {
     const Middle middle = middle_of(curve, share);
     const glm::dvec2 side{-middle.direction.y, middle.direction.x};

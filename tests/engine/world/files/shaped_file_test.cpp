@@ -202,7 +202,6 @@ TEST(ShapedFile, ARoadThatCoversAnAreaIsRejected) {
   std::string points = "[[10, 10]";
   for (int i = 1; i < 1000; ++i)
     points += i % 2 == 0 ? ", [10, 10]" : ", [90, 60]";
-  std::string tables;
   const std::string road = "[[road]]\npoints_m = " + points + "]\nwidth_m = 0.5\n";
   EXPECT_THAT(shape_error(road), HasSubstr("more than 1000 pieces of the road"));
 }
