@@ -45,9 +45,8 @@ bool meet(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const double of_a = cross(d - c, a - c), of_b = cross(d - c, b - c);
   const auto opposite = [](double p, double q) { return (p <= 0 && q >= 0) || (p >= 0 && q <= 0); };
   if (!opposite(of_c, of_d) || !opposite(of_a, of_b)) return false;
-  FlatBox one, other;
-  one.add(a), one.add(b), other.add(c), other.add(d);
-  return one.touches(other);  // matters for segments of one straight line
+  // Matters for segments of one straight line.
+  return FlatBox::around(a, b).touches(FlatBox::around(c, d));
 }
 
 }  // namespace

@@ -16,9 +16,19 @@ inline double length_of(glm::dvec2 v) {
   return std::sqrt(v.x * v.x + v.y * v.y);
 }
 
+// The place nearest to `at_m` on a straight segment, as a fraction of its length.
+inline double nearest_share(glm::dvec2 from_m, glm::dvec2 to_m, glm::dvec2 at_m) {
+  const glm::dvec2 along = to_m - from_m, to = at_m - from_m;
+  const double length2 = along.x * along.x + along.y * along.y;
+  return length2 > 0 ? std::clamp((to.x * along.x + to.y * along.y) / length2, 0.0, 1.0) : 0;
+}
+
 // An axis-aligned rectangle, empty at first.
 struct FlatBox {
   glm::dvec2 low{1e300}, high{-1e300};
+  static FlatBox around(glm::dvec2 a, glm::dvec2 b) {
+    return {{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}};
+  }
   void add(glm::dvec2 point) {
     low = {std::min(low.x, point.x), std::min(low.y, point.y)};
     high = {std::max(high.x, point.x), std::max(high.y, point.y)};

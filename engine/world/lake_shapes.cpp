@@ -8,10 +8,9 @@
 
 #include "engine/core/cancellation.hpp"
 #include "engine/models/kit/exact_math.hpp"
-#include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/curve.hpp"
-#include "engine/world/moved_ground.hpp"
+#include "engine/world/ground_below.hpp"
 #include "engine/world/water_shapes.hpp"
 #include "engine/world/world.hpp"
 
@@ -51,13 +50,10 @@ class LakeMaker {
   LakeMaker(const World& world, const models::EditLayer& below, const Lake& lake,
             const BodyName& name)
       : world_(world),
-        below_(below),
+        below_(world, below),
         lake_(lake),
         name_(name),
-        block_m_(world.block_size_m()),
-        terrain_(world.terrain) {
-    terrain_.set_edits(&below_, 0);
-  }
+        block_m_(world.block_size_m()) {}
 
   tl::expected<WaterEdits, WaterError> make() {
     for (const auto step :
@@ -80,7 +76,6 @@ class LakeMaker {
   std::string_view key() const { return lake_.points_m.empty() ? "radius_m" : "points_m"; }
   double edge_m() const { return 2 * world_.cell_m(); }
   double margin_m() const { return std::max(lake_.shore_m, edge_m()); }
-  core::WorldPosition position(glm::dvec2 at_m) const { return world_.position(at_m); }
 
   // Refuses values that no file could have, too.
   Done check_values() {
@@ -91,18 +86,15 @@ class LakeMaker {
                                                    "the first one, because the outline closes by "
                                                    "itself",
                                                    kMinWaterStepM));
-    } else if (!(lake_.radius_m > 0 && lake_.radius_m <= kMaxLakeM / 2)) {
-      return water_error("radius_m", fmt::format("{:g} is not allowed: it must be above 0, and at "
-                                                 "most {:g}",
-                                                 lake_.radius_m, kMaxLakeM / 2));
+    } else if (auto in_range = check_range("radius_m", lake_.radius_m, 1, kMaxLakeM / 2);
+               !in_range) {
+      return in_range;
     } else if (auto ok = check_points({lake_.centre_m}, 1); !ok) {
       return water_error("centre_m", "the centre is not finite or too far away");
     }
     for (const auto& [name, value, most] : {std::tuple("depth_m", lake_.depth_m, kMaxLakeDepthM),
                                             std::tuple("shore_m", lake_.shore_m, kMaxShoreM)}) {
-      if (!(value >= kMinDepthM && value <= most))
-        return water_error(name, fmt::format("{:g} is not allowed: it must be {:g} to {:g}", value,
-                                             kMinDepthM, most));
+      if (auto ok = check_range(name, value, kMinDepthM, most); !ok) return ok;
     }
     return {};
   }
@@ -155,7 +147,7 @@ class LakeMaker {
     for (const glm::dvec2& point : line_) {
       for (const double x : {-margin_m(), margin_m()}) {
         for (const double z : {-margin_m(), margin_m()}) {
-          if (!world_.contains(position(point + glm::dvec2(x, z)).block))
+          if (!world_.contains(world_.position(point + glm::dvec2(x, z)).block))
             return water_error(key(), fmt::format("the lake with its shore leaves the world near "
                                                   "{:.1f}, {:.1f} m",
                                                   point.x, point.y));
@@ -177,8 +169,7 @@ class LakeMaker {
     double lowest_m = std::numeric_limits<double>::infinity();
     glm::dvec2 lowest_at{0.0};
     for (const glm::dvec2& point : line_) {
-      const core::WorldPosition at = position(point);
-      const double ground_m = models::ground_height_m(terrain_, at.block, at.local.x, at.local.z);
+      const double ground_m = below_.ground_m(point);
       if (ground_m < lowest_m) lowest_m = ground_m, lowest_at = point;
     }
     level_m_ = lake_.spill_m.value_or(lowest_m);
@@ -210,9 +201,8 @@ class LakeMaker {
       }
     }
     for (const glm::dvec2& at_m : places) {
-      const core::WorldPosition at = position(at_m);
-      const auto water = below_.ground.water_over(at.block, {at.local.x, at.local.z}, block_m_);
-      if (!water || water->is_river || water->widths > 0.5) continue;
+      const auto water = below_.water_over(at_m);
+      if (!water || water->is_river) continue;
       return water_error(key(), fmt::format("the lake overlaps another lake near {:.1f}, {:.1f} m",
                                             at_m.x, at_m.y));
     }
@@ -239,12 +229,10 @@ class LakeMaker {
     LakePiece piece;
     piece.low_m = corner_m - line_[0];
     piece.high_m = corner_m + side_m - line_[0];
-    FlatBox box;
-    box.add(piece.low_m), box.add(piece.high_m);
+    const FlatBox box = FlatBox::around(piece.low_m, piece.high_m);
     bool shapes = false;
     for (const LakeSegment& segment : near) {
-      FlatBox of;
-      of.add(segment.from_m), of.add(segment.to_m);
+      const FlatBox of = FlatBox::around(segment.from_m, segment.to_m);
       shapes = shapes || of.touches(box, margin_m());
       // Every place of the tile finds its nearest segment among these.
       if (of.touches(box, margin_m() + 1.4143 * side_m)) piece.segments.push_back(segment);
@@ -279,11 +267,8 @@ class LakeMaker {
     });
   }
   static double distance_m(const LakeSegment& segment, glm::dvec2 place_m) {
-    const glm::dvec2 along = segment.to_m - segment.from_m, to = place_m - segment.from_m;
-    const double length2 = along.x * along.x + along.y * along.y;
-    const double share =
-        length2 > 0 ? std::clamp((to.x * along.x + to.y * along.y) / length2, 0.0, 1.0) : 0;
-    return length_of(to - along * share);
+    const double share = nearest_share(segment.from_m, segment.to_m, place_m);
+    return length_of(place_m - segment.from_m - (segment.to_m - segment.from_m) * share);
   }
 
   // The square of the edit encloses the part of the tile that water or shore reach.
@@ -291,7 +276,7 @@ class LakeMaker {
     low_m = glm::max(low_m, box_.low - margin_m());
     high_m = glm::max(glm::min(high_m, box_.high + margin_m()), low_m);
     const glm::dvec2 half_m = (high_m - low_m) / 2.0;
-    piece.origin = position(line_[0]);
+    piece.origin = world_.position(line_[0]);
     piece.body = name_.body;
     piece.level_m = level_m_;
     piece.depth_m = lake_.depth_m;
@@ -300,20 +285,19 @@ class LakeMaker {
     models::GroundEdit edit;
     edit.change = models::GroundChange::kLake;
     edit.square = true;
-    edit.centre = position(low_m + half_m);
+    edit.centre = world_.position(low_m + half_m);
     edit.radius_m = std::max(half_m.x, half_m.y) + 1e-6;
     seal(piece);
     edit.lake = std::make_shared<const LakePiece>(std::move(piece));
-    edit.height_m = max_moved_m(world_, edit, terrain_);
+    edit.height_m = below_.max_moved_m(edit);
     made_.edits.push_back(std::move(edit));
   }
 
   const World& world_;
-  const models::EditLayer& below_;
+  GroundBelow below_;
   const Lake& lake_;
   const BodyName& name_;
   double block_m_;
-  models::Parameters terrain_;
   std::vector<glm::dvec2> line_;  // in metres of the world
   FlatBox box_;
   std::vector<LakeSegment> outline_;  // in metres from its first point

@@ -18,19 +18,14 @@ class Course {
 
   // True if a place lies in its water.
   bool covers(glm::dvec2 at_m) const {
-    FlatBox place;
-    place.add(at_m);
     const double widest_m = *std::ranges::max_element(river_.width_m);
-    if (!box_.touches(place, widest_m)) return false;
+    if (!box_.touches(FlatBox::around(at_m, at_m), widest_m)) return false;
     for (std::size_t i = 0; i + 1 < curve_.size(); ++i) {
-      const glm::dvec2 along = curve_[i + 1].at_m - curve_[i].at_m, to = at_m - curve_[i].at_m;
-      const double length2 = along.x * along.x + along.y * along.y;
-      const double share =
-          length2 > 0 ? std::clamp((to.x * along.x + to.y * along.y) / length2, 0.0, 1.0) : 0;
-      const double half_m = (value_at(river_.width_m, curve_[i]) * (1 - share) +
-                             value_at(river_.width_m, curve_[i + 1]) * share) /
-                            2;
-      if (length_of(to - along * share) <= half_m) return true;
+      const CurvePoint &from = curve_[i], &to = curve_[i + 1];
+      const double share = nearest_share(from.at_m, to.at_m, at_m);
+      const double width_m =
+          value_at(river_.width_m, from) * (1 - share) + value_at(river_.width_m, to) * share;
+      if (length_of(at_m - from.at_m - (to.at_m - from.at_m) * share) <= width_m / 2) return true;
     }
     return false;
   }

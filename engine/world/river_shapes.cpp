@@ -7,15 +7,20 @@
 
 #include "engine/core/cancellation.hpp"
 #include "engine/models/kit/exact_math.hpp"
-#include "engine/models/terrain/ground.hpp"
-#include "engine/models/terrain/terrain.hpp"
 #include "engine/world/curve.hpp"
-#include "engine/world/moved_ground.hpp"
+#include "engine/world/ground_below.hpp"
 #include "engine/world/river_course.hpp"
 #include "engine/world/water_shapes.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
+
+tl::expected<void, WaterError> check_range(std::string_view key, double value, double least,
+                                           double most) {
+  if (value >= least && value <= most) return {};
+  return water_error(
+      key, fmt::format("{:g} is not allowed: it must be {:g} to {:g}", value, least, most));
+}
 
 tl::expected<void, WaterError> check_points(const std::vector<glm::dvec2>& points,
                                             std::size_t least) {
@@ -91,14 +96,7 @@ class RiverMaker {
  public:
   RiverMaker(const World& world, const models::EditLayer& below, const River& river,
              const BodyName& name)
-      : world_(world),
-        below_(below),
-        river_(river),
-        name_(name),
-        block_m_(world.block_size_m()),
-        terrain_(world.terrain) {
-    terrain_.set_edits(&below_, 0);
-  }
+      : world_(world), below_(world, below), river_(river), name_(name) {}
 
   tl::expected<WaterEdits, WaterError> make() {
     if (auto ok = check(); !ok) return tl::unexpected(ok.error());
@@ -120,16 +118,6 @@ class RiverMaker {
     bool in_river = false;
   };
 
-  core::WorldPosition position(glm::dvec2 at_m) const { return world_.position(at_m); }
-  double ground_m(glm::dvec2 at_m) const {
-    const core::WorldPosition at = position(at_m);
-    return models::ground_height_m(terrain_, at.block, at.local.x, at.local.z);
-  }
-  std::optional<models::BodySurface> water_over(glm::dvec2 at_m) const {
-    const core::WorldPosition at = position(at_m);
-    return below_.ground.water_over(at.block, {at.local.x, at.local.z}, block_m_);
-  }
-
   // Refuses a list that has neither one number nor one for each point, or numbers out of range.
   tl::expected<void, WaterError> check_list(std::string_view key, const std::vector<double>& list,
                                             double least, double most) const {
@@ -138,9 +126,7 @@ class RiverMaker {
                                           "{}",
                                           river_.points_m.size(), list.size()));
     for (const double number : list) {
-      if (!(number >= least && number <= most))
-        return water_error(
-            key, fmt::format("{:g} is not allowed: it must be {:g} to {:g}", number, least, most));
+      if (auto ok = check_range(key, number, least, most); !ok) return ok;
     }
     return {};
   }
@@ -155,12 +141,8 @@ class RiverMaker {
       if (auto ok = check_list("discharge_m3_s", river_.discharge_m3_s, 0, kMaxDischarge); !ok)
         return ok;
     }
-    if (!(river_.bank_m >= kMinRiverM && river_.bank_m <= kMaxRiverBankM))
-      return water_error("bank_m", fmt::format("{:g} is not allowed: it must be {:g} to {:g}",
-                                               river_.bank_m, kMinRiverM, kMaxRiverBankM));
-    if (!(river_.smoothing_m >= 0 && river_.smoothing_m <= kMaxSmoothingM))
-      return water_error("smoothing_m", fmt::format("{:g} is not allowed: it must be 0 to {:g}",
-                                                    river_.smoothing_m, kMaxSmoothingM));
+    if (auto ok = check_range("bank_m", river_.bank_m, kMinRiverM, kMaxRiverBankM); !ok) return ok;
+    if (auto ok = check_range("smoothing_m", river_.smoothing_m, 0, kMaxSmoothingM); !ok) return ok;
     if (const double length_m = chords_m(river_.points_m); length_m > kMaxRiversM)
       return water_error("points_m",
                          fmt::format("the river is {:.0f} m long, but at most {:g} m are allowed",
@@ -179,7 +161,7 @@ class RiverMaker {
     curve_ = river_curve(world_, river_);
     std::vector<glm::dvec2> line;
     for (const CurvePoint& point : curve_) {
-      if (!world_.contains(position(point.at_m).block))
+      if (!world_.contains(world_.position(point.at_m).block))
         return water_error("points_m", fmt::format("the river leaves the world at {:.1f}, {:.1f} m",
                                                    point.at_m.x, point.at_m.y));
       line.push_back(point.at_m);
@@ -209,13 +191,13 @@ class RiverMaker {
     const glm::dvec2 side{-s.direction.y, s.direction.x};
     const double cell_m = world_.cell_m();
     const int steps = std::clamp(static_cast<int>(std::ceil(s.half_m / (2 * cell_m))), 1, 4);
-    s.middle_m = ground_m(at_m);
+    s.middle_m = below_.ground_m(at_m);
     double lowest_m = s.middle_m;
     for (int k = -steps - 1; k <= steps + 1; ++k) {
       if (k == 0) continue;
       double across_m = s.half_m * k / steps;
       if (std::abs(k) > steps) across_m = (k < 0 ? -1 : 1) * (s.half_m + 2 * cell_m);
-      lowest_m = std::min(lowest_m, ground_m(at_m + side * across_m));
+      lowest_m = std::min(lowest_m, below_.ground_m(at_m + side * across_m));
     }
     s.bound_m = lowest_m - kFreeboardM - kFreeboard * s.depth_m;
   }
@@ -224,8 +206,8 @@ class RiverMaker {
   tl::expected<void, WaterError> meet_others() {
     const std::size_t n = curve_.size();
     for (std::size_t i = 0; i < n; ++i) {
-      const auto water = water_over(curve_[i].at_m);
-      if (!water || water->widths > 0.5) continue;
+      const auto water = below_.water_over(curve_[i].at_m);
+      if (!water) continue;
       samples_[i].in_river = water->is_river;
       samples_[i].in_lake = !water->is_river;
       samples_[i].bound_m = water->surface_m;
@@ -255,8 +237,8 @@ class RiverMaker {
     const int steps = static_cast<int>(std::ceil(length_of(way) / world_.cell_m()));
     for (int k = 1; k < steps; ++k) {
       const glm::dvec2 at_m = from_m + way * (static_cast<double>(k) / steps);
-      const auto water = water_over(at_m);
-      if (water && water->is_river && water->widths <= 0.5) return at_m;
+      const auto water = below_.water_over(at_m);
+      if (water && water->is_river) return at_m;
     }
     return std::nullopt;
   }
@@ -298,9 +280,9 @@ class RiverMaker {
     }
     if (at)
       warn(
-          fmt::format("the ground at {:.1f}, {:.1f} m lies {:.1f} m below the water in which it "
-                      "ends or through which it passes",
-                      curve_[*at].at_m.x, curve_[*at].at_m.y, worst_m));
+          "the ground at {:.1f}, {:.1f} m lies {:.1f} m below the water in which it ends or "
+          "through which it passes",
+          curve_[*at].at_m.x, curve_[*at].at_m.y, worst_m);
   }
 
   void describe() {
@@ -314,10 +296,8 @@ class RiverMaker {
       if (cut_m(i) > cut_m(deepest)) deepest = i;
     }
     if (cut_m(deepest) > kDeepCutM)
-      warn(
-          fmt::format("it cuts {:.0f} m into the ground at {:.1f}, {:.1f} m, because its course "
-                      "climbs there",
-                      cut_m(deepest), curve_[deepest].at_m.x, curve_[deepest].at_m.y));
+      warn("it cuts {:.0f} m into the ground at {:.1f}, {:.1f} m, because its course climbs there",
+           cut_m(deepest), curve_[deepest].at_m.x, curve_[deepest].at_m.y);
     banks = smoothed(curve_, banks, 3 * river_.bank_m);
     const glm::dvec2 origin_m = curve_.front().at_m;
     double foam = 0;
@@ -365,20 +345,21 @@ class RiverMaker {
     const double near_m = 2 * last.half_m + 2 * world_.cell_m();
     for (const glm::dvec2& beyond : {glm::dvec2(near_m, 0), glm::dvec2(-near_m, 0),
                                      glm::dvec2(0, near_m), glm::dvec2(0, -near_m)}) {
-      if (!world_.contains(position(end_m + beyond).block)) return;
+      if (!world_.contains(world_.position(end_m + beyond).block)) return;
     }
     warn(
-        fmt::format("it ends on dry land at {:.1f}, {:.1f} m, not in a lake, the sea or another "
-                    "river, nor at the world's border",
-                    end_m.x, end_m.y));
+        "it ends on dry land at {:.1f}, {:.1f} m, not in a lake, the sea or another river, nor at "
+        "the world's border",
+        end_m.x, end_m.y);
   }
 
-  void warn(std::string_view sentence) {
-    made_.warnings.push_back(fmt::format("{}: {}", name_.text, sentence));
+  template <class... Values>
+  void warn(fmt::format_string<Values&...> sentence, Values&&... values) {
+    made_.warnings.push_back(name_.text + ": " + fmt::format(sentence, values...));
   }
 
   tl::expected<WaterEdits, WaterError> cut_in_pieces() {
-    const core::WorldPosition origin = position(curve_.front().at_m);
+    const core::WorldPosition origin = world_.position(curve_.front().at_m);
     const std::size_t segments = points_.size() - 1;
     std::vector<FlatBox> boxes((segments + kRiverSegments - 1) / kRiverSegments);
     for (std::size_t i = 0; i < segments; ++i) {
@@ -402,9 +383,7 @@ class RiverMaker {
         if (q == p || !boxes[q].touches(boxes[p], within_m)) continue;
         for (std::size_t i = q * kRiverSegments; i < std::min((q + 1) * kRiverSegments, segments);
              ++i) {
-          FlatBox box;
-          box.add(points_[i].at_m), box.add(points_[i + 1].at_m);
-          if (box.touches(boxes[p], within_m))
+          if (FlatBox::around(points_[i].at_m, points_[i + 1].at_m).touches(boxes[p], within_m))
             piece.near.push_back({points_[i].at_m, points_[i + 1].at_m, q < p});
         }
         if (piece.near.size() > kMaxRiverNear)
@@ -419,25 +398,18 @@ class RiverMaker {
   }
 
   void add_piece(RiverPiece piece, const FlatBox& box) {
-    models::GroundEdit edit;
-    edit.change = models::GroundChange::kRiver;
-    edit.square = true;
-    core::WorldPosition centre = piece.origin;
-    centre.local += glm::dvec3(box.centre().x, 0, box.centre().y);
-    edit.centre = core::normalised(centre, block_m_);
     seal(piece);
-    edit.radius_m = std::max(box.size().x, box.size().y) / 2 + piece.reach_m;
+    models::GroundEdit edit = below_.square_around(box, piece.origin, piece.reach_m);
+    edit.change = models::GroundChange::kRiver;
     edit.river = std::make_shared<const RiverPiece>(std::move(piece));
-    edit.height_m = max_moved_m(world_, edit, terrain_);
+    edit.height_m = below_.max_moved_m(edit);
     made_.edits.push_back(std::move(edit));
   }
 
   const World& world_;
-  const models::EditLayer& below_;
+  GroundBelow below_;
   const River& river_;
   const BodyName& name_;
-  double block_m_;
-  models::Parameters terrain_;
   std::vector<CurvePoint> curve_;
   std::vector<Sample> samples_;
   std::vector<double> surface_, bed_;

@@ -7,9 +7,8 @@
 #include <memory>
 
 #include "engine/core/cancellation.hpp"
-#include "engine/models/terrain/ground.hpp"
 #include "engine/world/curve.hpp"
-#include "engine/world/moved_ground.hpp"
+#include "engine/world/ground_below.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
@@ -74,29 +73,13 @@ struct Segments {
       if (!boxes[q].touches(boxes[p], within_m)) continue;
       const std::size_t end = std::min((q + 1) * kPieceSegments, all.size());
       for (std::size_t i = q * kPieceSegments; i < end; ++i) {
-        FlatBox box;
-        box.add(all[i].from_m), box.add(all[i].to_m);
-        if (q == p || box.touches(boxes[p], within_m)) piece.segments.push_back(all[i]);
+        if (q == p || FlatBox::around(all[i].from_m, all[i].to_m).touches(boxes[p], within_m))
+          piece.segments.push_back(all[i]);
       }
       if (q == p) piece.end = piece.segments.size();
     }
   }
 };
-
-// The edit of a piece whose own segments lie in `box`.
-GroundEdit edit_of(RoadPiece piece, const FlatBox& box, const World& world,
-                   const models::Parameters& before) {
-  GroundEdit edit;
-  edit.change = models::GroundChange::kRoad;
-  edit.square = true;
-  core::WorldPosition centre = piece.origin;
-  centre.local += glm::dvec3(box.centre().x, 0, box.centre().y);
-  edit.centre = core::normalised(centre, world.block_size_m());
-  edit.radius_m = std::max(box.size().x, box.size().y) / 2 + piece.reach_m();
-  edit.road = std::make_shared<const RoadPiece>(std::move(piece));
-  edit.height_m = max_moved_m(world, edit, before);
-  return edit;
-}
 
 }  // namespace
 
@@ -113,13 +96,10 @@ std::vector<RoadPoint> road_line(const Road& road, double step_m,
 
 core::Result<std::vector<GroundEdit>> road_edits(const World& world, const models::EditLayer& below,
                                                  const Road& road) {
-  models::Parameters terrain = world.terrain;
-  terrain.set_edits(&below, 0);
+  const GroundBelow ground(world, below);
   const double step_m = std::max(world.cell_m(), std::clamp(road.width_m / 3, 1.0, 10.0));
-  const Segments segments(road_line(road, step_m, [&](glm::dvec2 at_m) {
-    const core::WorldPosition at = world.position(at_m);
-    return models::ground_height_m(terrain, at.block, at.local.x, at.local.z);
-  }));
+  const Segments segments(
+      road_line(road, step_m, [&](glm::dvec2 at_m) { return ground.ground_m(at_m); }));
   std::vector<GroundEdit> edits;
   for (std::size_t p = 0; p < segments.boxes.size(); ++p) {
     if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
@@ -133,7 +113,11 @@ core::Result<std::vector<GroundEdit>> road_edits(const World& world, const model
       return core::fail(
           core::ErrorCode::kOverBudget,
           fmt::format("more than {} pieces of the road are close together", kMaxNear));
-    edits.push_back(edit_of(std::move(piece), segments.boxes[p], world, terrain));
+    GroundEdit edit = ground.square_around(segments.boxes[p], piece.origin, piece.reach_m());
+    edit.change = models::GroundChange::kRoad;
+    edit.road = std::make_shared<const RoadPiece>(std::move(piece));
+    edit.height_m = ground.max_moved_m(edit);
+    edits.push_back(std::move(edit));
   }
   return edits;
 }

@@ -10,6 +10,7 @@
 #include "engine/models/kit/exact_math.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/curve.hpp"
+#include "engine/world/ground_below.hpp"
 #include "engine/world/river_course.hpp"
 #include "engine/world/road_shapes.hpp"
 #include "engine/world/water.hpp"
@@ -103,12 +104,6 @@ class Shaper {
     for (const glm::dvec2& point : road.points_m) {
       if (const auto at = inside(point); !at) return refused("points_m", at.error());
     }
-    length_m_ += chords_m(road.points_m);
-    if (length_m_ > kMaxRoadsM)
-      return refused("points_m", {core::ErrorCode::kOverBudget,
-                                  fmt::format("all roads together are longer than the "
-                                              "allowed {:g} m",
-                                              kMaxRoadsM)});
     auto edits = road_edits(world_, layer_, road);
     if (!edits) return refused("points_m", std::move(edits.error()));
     return add(std::move(*edits));
@@ -127,12 +122,12 @@ class Shaper {
 
   // Warns where a road leads into water: it has no bridge.
   void check_roads() {
+    const GroundBelow shaped(world_, layer_);
     for (std::size_t i = 0; i < world_.shaped.roads.size(); ++i) {
       const Road& road = world_.shaped.roads[i];
       for (const CurvePoint& point : curve_through(road.points_m, road.width_m)) {
-        const core::WorldPosition at = position(point.at_m);
-        const auto water = layer_.ground.water_over(at.block, {at.local.x, at.local.z}, block_m_);
-        if (!water || water->widths > 0.5) continue;
+        const auto water = shaped.water_over(point.at_m);
+        if (!water) continue;
         warnings_.push_back(
             fmt::format("road {}: it leads into {} at {:.1f}, {:.1f} m, and has no "
                         "bridge there",
@@ -151,9 +146,8 @@ class Shaper {
   std::vector<std::string> take_warnings() { return std::move(warnings_); }
 
  private:
-  core::WorldPosition position(glm::dvec2 at_m) const { return world_.position(at_m); }
   core::Result<core::WorldPosition> inside(glm::dvec2 at_m) const {
-    const core::WorldPosition at = position(at_m);
+    const core::WorldPosition at = world_.position(at_m);
     if (world_.contains(at.block)) return at;
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("{:g}, {:g} m is outside the world", at_m.x, at_m.y));
@@ -204,23 +198,37 @@ class Shaper {
 
   const World& world_;
   double block_m_, relief_m_;
-  double length_m_ = 0;  // total length of all roads so far
   std::vector<std::string> warnings_;
   models::EditLayer layer_;
 };
 
-tl::unexpected<ShapeError> wrong_at(std::string_view place, std::size_t number, ShapeError error) {
-  error.place = place, error.number = number;
-  return tl::unexpected(std::move(error));
+// Adds the place to the error of a shape.
+Shaped wrong_at(std::string_view place, std::size_t number, Shaped failed) {
+  failed.error().place = place, failed.error().number = number;
+  return failed;
 }
 
 // Adds all shapes of one type.
 template <class Shapes>
 Shaped add_all(const Shapes& shapes, std::string_view place, Shaper& shaper) {
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    if (auto ok = shaper.add(shapes[i]); !ok) {
-      return wrong_at(place, i, std::move(ok.error()));
-    }
+    if (auto ok = shaper.add(shapes[i]); !ok) return wrong_at(place, i, std::move(ok));
+  }
+  return {};
+}
+
+// Fails if all roads or rivers together are longer than `max_m`.
+template <class Curves>
+Shaped check_lengths(const Curves& curves, std::string_view place, double max_m) {
+  double length_m = 0;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    length_m += chords_m(curves[i].points_m);
+    if (length_m > max_m)
+      return wrong_at(
+          place, i,
+          refused("points_m", {core::ErrorCode::kOverBudget,
+                               fmt::format("all {}s together are longer than the allowed {:g} m",
+                                           place, max_m)}));
   }
   return {};
 }
@@ -232,32 +240,16 @@ Shaped add_water(const World& world, Shaper& shaper) {
   for (std::size_t i = 0; i < shaped.lakes.size(); ++i, ++body) {
     const BodyName name{body, fmt::format("lake {}", i + 1), false};
     if (auto ok = shaper.add(shaped.lakes[i], name, lake_edits); !ok)
-      return wrong_at("lake", i, std::move(ok.error()));
-  }
-  double length_m = 0;
-  for (std::size_t i = 0; i < shaped.rivers.size(); ++i) {
-    length_m += chords_m(shaped.rivers[i].points_m);
-    if (length_m > kMaxRiversM)
-      return wrong_at(
-          "river", i,
-          {{},
-           "points_m",
-           0,
-           {core::ErrorCode::kOverBudget,
-            fmt::format("all rivers together are longer than the allowed {:g} m", kMaxRiversM)}});
+      return wrong_at("lake", i, std::move(ok));
   }
   const RiverOrder rivers = river_order(world, shaped.rivers);
   if (rivers.order.size() < shaped.rivers.size())
-    return wrong_at("river", 0,
-                    {{},
-                     "points_m",
-                     0,
-                     {core::ErrorCode::kInvalidArgument, "rivers end in each other in a circle"}});
+    return wrong_at("river", 0, refused("points_m", "rivers end in each other in a circle"));
   for (const std::size_t i : rivers.order) {
     const BodyName name{body + static_cast<WaterBody>(i), fmt::format("river {}", i + 1),
                         rivers.flows_on[i]};
     if (auto ok = shaper.add(shaped.rivers[i], name, river_edits); !ok)
-      return wrong_at("river", i, std::move(ok.error()));
+      return wrong_at("river", i, std::move(ok));
   }
   return {};
 }
@@ -292,13 +284,13 @@ tl::expected<void, ShapeError> shape_ground(World& world) {
   if (!erodes && !world.shaped.network && world.shaped.empty()) return {};
   Shaper shaper(world);
   if (world.shaped.network) {
-    if (auto ok = shaper.add(*world.shaped.network); !ok) {
-      ok.error().place = "rivers";
-      return ok;
-    }
+    if (auto ok = shaper.add(*world.shaped.network); !ok)
+      return wrong_at("rivers", 0, std::move(ok));
   }
   if (erodes) shaper.add(erosion);
   if (auto ok = add_all(world.shaped.stamps, "stamp", shaper); !ok) return ok;
+  if (auto ok = check_lengths(world.shaped.roads, "road", kMaxRoadsM); !ok) return ok;
+  if (auto ok = check_lengths(world.shaped.rivers, "river", kMaxRiversM); !ok) return ok;
   if (auto ok = add_all(world.shaped.roads, "road", shaper); !ok) return ok;
   if (auto ok = add_water(world, shaper); !ok) return ok;
   if (world.shaped.has_water()) shaper.check_roads();

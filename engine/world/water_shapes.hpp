@@ -57,6 +57,9 @@ tl::expected<WaterEdits, WaterError> river_edits(const World& world, const model
 tl::expected<WaterEdits, WaterError> lake_edits(const World& world, const models::EditLayer& below,
                                                 const Lake& lake, const BodyName& name);
 
+// Fails for a value of a key outside of its range, or NaN.
+tl::expected<void, WaterError> check_range(std::string_view key, double value, double least,
+                                           double most);
 // Fails for fewer points than `least`, or more than kMaxWaterPoints; for points that are not finite
 // or too far away, and for those that are closer than kMinWaterStepM to the previous one.
 tl::expected<void, WaterError> check_points(const std::vector<glm::dvec2>& points,

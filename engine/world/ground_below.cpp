@@ -1,4 +1,4 @@
-#include "engine/world/moved_ground.hpp"
+#include "engine/world/ground_below.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,16 +29,44 @@ double moved_m(const models::GroundEdit& edit, glm::dvec2 place_m, const Ground&
 
 }  // namespace
 
-double max_moved_m(const World& world, const models::GroundEdit& edit,
-                   const models::Parameters& before) {
-  const double cell_m = world.cell_m(), block_m = world.block_size_m();
+GroundBelow::GroundBelow(const World& world, const models::EditLayer& layer)
+    : world_(world), layer_(layer), terrain_(world.terrain) {
+  terrain_.set_edits(&layer_, 0);
+}
+
+double GroundBelow::ground_m(glm::dvec2 at_m) const {
+  const core::WorldPosition at = world_.position(at_m);
+  return models::ground_height_m(terrain_, at.block, at.local.x, at.local.z);
+}
+
+std::optional<models::BodySurface> GroundBelow::water_over(glm::dvec2 at_m) const {
+  const core::WorldPosition at = world_.position(at_m);
+  const auto water =
+      layer_.ground.water_over(at.block, {at.local.x, at.local.z}, world_.block_size_m());
+  return water && water->widths <= 0.5 ? water : std::nullopt;
+}
+
+models::GroundEdit GroundBelow::square_around(const FlatBox& box, const core::WorldPosition& origin,
+                                              double reach_m) const {
+  models::GroundEdit edit;
+  edit.square = true;
+  core::WorldPosition centre = origin;
+  centre.local += glm::dvec3(box.centre().x, 0, box.centre().y);
+  edit.centre = core::normalised(centre, world_.block_size_m());
+  edit.radius_m = std::max(box.size().x, box.size().y) / 2 + reach_m;
+  return edit;
+}
+
+double GroundBelow::max_moved_m(const models::GroundEdit& edit) const {
+  const double cell_m = world_.cell_m(), block_m = world_.block_size_m();
+  const double relief_m = world_.terrain.real(models::kTerrainReliefM);
   const double radius_m = edit.radius_m + cell_m;
   const double vertices = 4 * radius_m * radius_m / (cell_m * cell_m);
-  if (edit.road && vertices > kMaxOfRoad) return world.terrain.real(models::kTerrainReliefM);
+  if (edit.road && vertices > kMaxOfRoad) return relief_m;
   const auto step = edit.road
                         ? std::int64_t{1}
                         : static_cast<std::int64_t>(std::ceil(std::sqrt(vertices / kMaxOfWater)));
-  const auto last = world.terrain.integer(models::kTerrainSize) - 1;
+  const auto last = world_.terrain.integer(models::kTerrainSize) - 1;
   const auto block_at = [&](double local_m) {
     return static_cast<std::int64_t>(std::floor(local_m / block_m));
   };
@@ -62,7 +90,7 @@ double max_moved_m(const World& world, const models::GroundEdit& edit,
       const std::int64_t x0 = first_of(away.x), x1 = last_of(away.x);
       const std::int64_t z0 = first_of(away.z), z1 = last_of(away.z);
       const auto questions = ((x1 - x0) / step + 1) * ((z1 - z0) / step + 1);
-      const models::BlockGround ground(before, block, static_cast<std::size_t>(questions));
+      const models::BlockGround ground(terrain_, block, static_cast<std::size_t>(questions));
       for (std::int64_t k = z0; k <= z1; k += step) {
         for (std::int64_t i = x0; i <= x1; i += step) {
           const glm::dvec2 local_m =
@@ -74,7 +102,7 @@ double max_moved_m(const World& world, const models::GroundEdit& edit,
       }
     }
   }
-  return step > 1 ? 1.1 * most + 0.5 : most;
+  return step > 1 ? std::min(1.1 * most + 0.5, relief_m) : most;
 }
 
 }  // namespace psygen::world
