@@ -41,18 +41,13 @@ GroundEdit disc(models::GroundChange change, const core::WorldPosition& at, doub
   return edit;
 }
 
-// Counts the origin of a piece of water in blocks of another size.
-void rebase_water(GroundEdit& edit, double from_m, double to_m) {
-  if (edit.river) {
-    auto river = std::make_shared<models::RiverPiece>(*edit.river);
-    river->origin = rebased(river->origin, from_m, to_m);
-    edit.river = std::move(river);
-  }
-  if (edit.lake) {
-    auto lake = std::make_shared<models::LakePiece>(*edit.lake);
-    lake->origin = rebased(lake->origin, from_m, to_m);
-    edit.lake = std::move(lake);
-  }
+// Counts the origin of a piece of water, which may be null, in blocks of another size.
+template <class Piece>
+void rebase_piece(std::shared_ptr<const Piece>& piece, double from_m, double to_m) {
+  if (!piece) return;
+  auto moved = std::make_shared<Piece>(*piece);
+  moved->origin = rebased(moved->origin, from_m, to_m);
+  piece = std::move(moved);
 }
 
 // The same edits at the same places, for blocks of another size. Instances of the world's function
@@ -77,7 +72,8 @@ EditLayer resized(const EditLayer& layer, double block_m) {
     for (const auto& before : edits->ground) {
       GroundEdit edit = *before;
       edit.centre = rebased(edit.centre, layer.block_m, block_m);
-      rebase_water(edit, layer.block_m, block_m);
+      rebase_piece(edit.river, layer.block_m, block_m);
+      rebase_piece(edit.lake, layer.block_m, block_m);
       edit.id = id_in(edit.centre.block, edit.id);
       seal(edit);
       blocks[edit.centre.block].ground.push_back(
