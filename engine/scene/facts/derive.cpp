@@ -245,12 +245,12 @@ std::vector<core::Bounds> typical_bounds(const models::Registry& registry,
 
 std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
   core::RandomStream random(0, 0, 0, 0, core::Purpose::kParameters);
+  const SampleBlocks blocks(facts.world);
   std::vector<synthesis::CostSample> samples;
   for (std::size_t k = 0; k < facts.levels.size(); ++k) {
     for (std::size_t i = 0; i < kNodesPerLevel; ++i) {
       const auto level = static_cast<std::uint8_t>(k);
-      const visibility::NodeCoord node =
-          visibility::node_of(any_block(facts.world, random, level), level);
+      const visibility::NodeCoord node = visibility::node_of(blocks.next(random, level), level);
       samples.push_back({facts.world.terrain_model, node_terrain(facts.world, node)});
       if (facts.levels[k].merged)
         samples.push_back({facts.merged_model, world::merged_parameters(node.coord, level)});
@@ -258,7 +258,7 @@ std::vector<synthesis::CostSample> cost_samples(const WorldFacts& facts) {
   }
   ModelSamples models(facts);
   for (int i = 0; i < kMaxBlocks && !models.complete(); ++i)
-    models.take(any_block(facts.world, random), samples);
+    models.take(blocks.next(random), samples);
   return samples;
 }
 

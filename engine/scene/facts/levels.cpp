@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "engine/core/hash.hpp"
@@ -64,15 +65,6 @@ void add_distances(std::span<const core::TerrainVertex> vertices,
   }
 }
 
-}  // namespace
-
-models::Parameters node_terrain(const world::World& world, const visibility::NodeCoord& node) {
-  return world::terrain_parameters(world, node.coord, node.level);
-}
-
-namespace {
-
-// A block on land, for samples of worlds where each place far from others takes milliseconds.
 core::BlockCoord block_on_land(const world::World& world) {
   constexpr std::int32_t kTries = 24, kStep = 64;
   for (std::int32_t i = 0; i < kTries; ++i) {
@@ -84,18 +76,23 @@ core::BlockCoord block_on_land(const world::World& world) {
 
 }  // namespace
 
-core::BlockCoord any_block(const world::World& world, core::RandomStream& random,
-                           std::uint32_t level) {
-  if (world.shaped.network) {
+models::Parameters node_terrain(const world::World& world, const visibility::NodeCoord& node) {
+  return world::terrain_parameters(world, node.coord, node.level);
+}
+
+SampleBlocks::SampleBlocks(const world::World& world)
+    : world_(world), land_(world.shaped.network ? block_on_land(world) : core::BlockCoord{}) {}
+
+core::BlockCoord SampleBlocks::next(core::RandomStream& random, std::uint32_t level) const {
+  if (world_.shaped.network) {
     constexpr std::int64_t kNodes = 4;
-    const core::BlockCoord land = block_on_land(world);
     const auto beside = [&](std::int32_t first) {
       return static_cast<std::int32_t>(
           static_cast<std::uint32_t>(first) +
           (static_cast<std::uint32_t>(random.next_integer(0, kNodes - 1)) << level));
     };
-    const std::int32_t x = beside(land.x);
-    return nearest_block(world, {x, beside(land.z)});
+    const std::int32_t x = beside(land_.x);
+    return nearest_block(world_, {x, beside(land_.z)});
   }
   constexpr std::int64_t kEndlessReach = 4096;
   const auto index = [&](std::int64_t blocks) {
@@ -103,8 +100,8 @@ core::BlockCoord any_block(const world::World& world, core::RandomStream& random
                                          ? random.next_integer(0, blocks - 1)
                                          : random.next_integer(-kEndlessReach, kEndlessReach));
   };
-  const std::int32_t x = index(world.blocks_x);
-  return {x, index(world.blocks_z)};
+  const std::int32_t x = index(world_.blocks_x);
+  return {x, index(world_.blocks_z)};
 }
 
 core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block) {
@@ -139,6 +136,7 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
   const models::ModelType& terrain = registry[world.terrain_model];
   const int mesh_level = settings.levels_of_detail ? world::node_mesh_level(world) : 0;
   std::vector<NodeLevel> levels(static_cast<std::size_t>(count_of_levels(world, settings)));
+  std::optional<SampleBlocks> blocks;
   for (std::size_t k = 0; k < levels.size(); ++k) {
     NodeLevel& level = levels[k];
     const models::Parameters p = node_terrain(world, {{}, static_cast<std::uint8_t>(k)});
@@ -149,9 +147,10 @@ std::vector<NodeLevel> node_levels(const world::World& world, const models::Regi
     const double details_m = models::terrain_detail_errors_m(p, 2).bound_m;
     level.ground_bound_m =
         (k == 0 ? kBlockBound : kNodeBound) * terrain.level_error_m(p, 1) + details_m;
+    if (k >= before.size() && !blocks) blocks.emplace(world);
     level.ground_error_m = k < before.size()
                                ? before[k].ground_error_m
-                               : measured_ground_error_m(world, registry, static_cast<int>(k));
+                               : measured_ground_error_m(*blocks, registry, static_cast<int>(k));
     if (k > 0) {
       const double lost_m = models::terrain_detail_errors_m(p, -static_cast<int>(k)).usual_m;
       level.ground_error_m = std::max({level.ground_error_m, levels[k - 1].ground_error_m, lost_m});
@@ -259,8 +258,9 @@ std::uint32_t largest_radius(const world::World& world, std::span<const NodeLeve
   return static_cast<std::uint32_t>(std::min(radius, most));
 }
 
-double measured_ground_error_m(const world::World& world, const models::Registry& registry,
+double measured_ground_error_m(const SampleBlocks& blocks, const models::Registry& registry,
                                int node_level) {
+  const world::World& world = blocks.world();
   const models::ModelType& terrain = registry[world.terrain_model];
   core::RandomStream random(world.seed, 0, 0, static_cast<std::uint32_t>(node_level),
                             core::Purpose::kParameters);
@@ -269,7 +269,7 @@ double measured_ground_error_m(const world::World& world, const models::Registry
   std::vector<std::uint16_t> distances;
   for (int i = 0; i < kNodes; ++i) {
     const visibility::NodeCoord node =
-        visibility::node_of(any_block(world, random, static_cast<std::uint32_t>(node_level)),
+        visibility::node_of(blocks.next(random, static_cast<std::uint32_t>(node_level)),
                             static_cast<std::uint8_t>(node_level));
     const models::Parameters p = node_terrain(world, node);
     const models::MeshSize size = terrain.mesh_size(p, 0);

@@ -52,11 +52,22 @@ models::Parameters node_terrain(const world::World& world, const visibility::Nod
 // The block of the world nearest to `block`; `block` itself if it exists.
 core::BlockCoord nearest_block(const world::World& world, core::BlockCoord block);
 
-// A block anywhere in the world; in an endless one within some thousand blocks of its origin. In a
-// world of a river network it belongs to one of 4 × 4 neighbouring nodes of a level: land far from
-// others takes milliseconds to make.
-core::BlockCoord any_block(const world::World& world, core::RandomStream& random,
-                           std::uint32_t level = 0);
+// Random blocks of a world, for samples. In a world of a river network they lie around one place on
+// land, because land far from other land takes milliseconds to make. Immutable, any thread.
+class SampleBlocks {
+ public:
+  // Finds that place by up to 24 heights. `world` must outlive it unchanged.
+  explicit SampleBlocks(const world::World& world);
+
+  // A block anywhere in the world; in an endless one within some thousand blocks of its origin. In
+  // a world of a river network it belongs to one of 4 × 4 neighbouring nodes of a level.
+  core::BlockCoord next(core::RandomStream& random, std::uint32_t level = 0) const;
+  const world::World& world() const { return world_; }
+
+ private:
+  const world::World& world_;
+  core::BlockCoord land_;
+};
 
 // True if any block of the node exists.
 bool contains(const world::World& world, const visibility::NodeCoord& node);
@@ -103,7 +114,7 @@ std::uint32_t largest_radius(const world::World& world, std::span<const NodeLeve
 // ridges lie beyond it. The bound that follows from the parameters (ModelType::level_error_m) is
 // several times as large where cells are small, because octaves seldom add up. Synthesises 16
 // nodes. Pure: the same for a world everywhere.
-double measured_ground_error_m(const world::World& world, const models::Registry& registry,
+double measured_ground_error_m(const SampleBlocks& blocks, const models::Registry& registry,
                                int node_level);
 
 }  // namespace psygen::scene

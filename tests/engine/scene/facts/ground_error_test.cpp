@@ -38,7 +38,7 @@ double share_within(const world::World& world, const visibility::NodeCoord& node
 TEST(GroundError, HoldsForNearlyAllVerticesOfOtherNodes) {
   const world::World world = paper_world(standard_types());
   for (const int level : {0, 2, 5}) {
-    const double error_m = measured_ground_error_m(world, standard_types(), level);
+    const double error_m = measured_ground_error_m(SampleBlocks(world), standard_types(), level);
     double within = 0;
     constexpr int kNodes = 30;
     for (int i = 0; i < kNodes; ++i) {
@@ -52,13 +52,14 @@ TEST(GroundError, HoldsForNearlyAllVerticesOfOtherNodes) {
 
 TEST(GroundError, GrowsWithTheHeightRangeAndIsZeroForFlatGround) {
   world::World world = paper_world(standard_types());
-  const double usual_m = measured_ground_error_m(world, standard_types(), 1);
+  const double usual_m = measured_ground_error_m(SampleBlocks(world), standard_types(), 1);
   EXPECT_GT(usual_m, 0);
   const double relief_m = world.terrain.real(models::kTerrainReliefM);
   world.terrain.set_real(models::kTerrainReliefM, 2 * relief_m);
-  EXPECT_NEAR(measured_ground_error_m(world, standard_types(), 1), 2 * usual_m, 0.1 * usual_m);
+  EXPECT_NEAR(measured_ground_error_m(SampleBlocks(world), standard_types(), 1), 2 * usual_m,
+              0.1 * usual_m);
   world.terrain.set_real(models::kTerrainReliefM, 1);
-  EXPECT_LT(measured_ground_error_m(world, standard_types(), 1), 0.1 * usual_m);
+  EXPECT_LT(measured_ground_error_m(SampleBlocks(world), standard_types(), 1), 0.1 * usual_m);
 }
 
 }  // namespace

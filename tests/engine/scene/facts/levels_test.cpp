@@ -1,5 +1,9 @@
 #include "engine/scene/facts/levels.hpp"
 
+#include <algorithm>
+#include <set>
+
+#include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "tests/engine/scene/fixture.hpp"
@@ -94,6 +98,33 @@ TEST(NodeLevels, OfRiverNetworksHaveSkirtsForNeighboursWithFewerRivers) {
   ASSERT_TRUE(world::shape_ground(network));
   const std::vector<float> deeper = deeper_skirts(plain, network);
   EXPECT_GT(deeper.back(), 20);
+}
+
+// The nodes of a level that 100 samples of a world belong to.
+std::set<core::BlockCoord> sampled_nodes(const world::World& world, std::uint8_t level) {
+  const SampleBlocks blocks(world);
+  core::RandomStream random(1, 0, 0, 0, core::Purpose::kParameters);
+  std::set<core::BlockCoord> nodes;
+  for (int i = 0; i < 100; ++i)
+    nodes.insert(visibility::node_of(blocks.next(random, level), level).coord);
+  return nodes;
+}
+
+TEST(SampleBlocks, OfARiverNetworkLieTogetherOnLand) {
+  world::World world = world_of(0, 0);
+  EXPECT_GT(sampled_nodes(world, 2).size(), 90U);
+  world.water.level_m = 0.4 * world.terrain.real(models::kTerrainReliefM);
+  world.shaped.network.emplace().sea_share = 0.6;
+  ASSERT_TRUE(world::shape_ground(world));
+  for (const std::uint8_t level : {std::uint8_t{0}, std::uint8_t{2}, std::uint8_t{5}})
+    EXPECT_EQ(sampled_nodes(world, level).size(), 16U) << int{level};
+  core::RandomStream random(1, 0, 0, 0, core::Purpose::kParameters);
+  const SampleBlocks blocks(world);
+  double highest_m = 0;
+  for (int i = 0; i < 20; ++i)
+    highest_m =
+        std::max(highest_m, models::ground_height_m(world.terrain, blocks.next(random), 0, 0));
+  EXPECT_GT(highest_m, world.water.level_m);
 }
 
 TEST(NodeLevels, ANodeExistsIfAnyOfItsBlocksDoes) {
