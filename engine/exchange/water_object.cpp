@@ -31,7 +31,6 @@ void add_cell(const std::array<Corner, 4>& corners, glm::dvec2 at_m, double side
     part.positions.emplace_back(at_m.x + static_cast<double>(i & 1) * side_m, height_m,
                                 at_m.y + static_cast<double>(i >> 1) * side_m);
     part.normals.push_back(corner.water ? corner.water->normal : glm::vec3(0, 1, 0));
-    part.colours.emplace_back(0.0F);
   }
   for (const std::uint32_t i : {0U, 2U, 1U, 1U, 2U, 3U})
     part.indices.push_back(first + i);
@@ -81,7 +80,7 @@ std::optional<Object> water_object(const world::World& world, core::BlockCoord n
       }
     }
   }
-  std::ranges::fill(part.colours, world.water.colour);
+  part.colours.assign(part.positions.size(), world.water.colour);
   Object object;
   object.name = "water";
   object.parts.push_back(std::move(part));
