@@ -313,11 +313,17 @@ void World::cast_water(const Course& course, Hit& hit) {
   };
   march(plane, derived_.block_m, 0, hit.distance_m,
         [&](std::int64_t x, std::int64_t z, double from, double to) {
-          if (left-- == 0 || from > hit.distance_m) return false;
+          if (from >= hit.distance_m) return false;
+          if (left-- == 0) {
+            hit = Hit();
+            hit.distance_m = from;
+            return false;
+          }
           if (course.lowest(from, to) > derived_.relief_m) return course.direction.y < 0;
           const BlockCoord block = moved(course.origin.block, x, z);
-          if (layer->ground.network == nullptr &&
-              layer->ground.water_in(models::QuadCoord::of(block), derived_.block_m).empty())
+          if (!world_->contains(block) ||
+              (layer->ground.network == nullptr &&
+               layer->ground.water_in(models::QuadCoord::of(block), derived_.block_m).empty()))
             return true;
           const double end = std::min(to, hit.distance_m);
           std::optional<double> before = above_m(from);

@@ -87,6 +87,22 @@ TEST_F(WaterQuery, ASlantingRayEndsOnTheNearestSurface) {
   EXPECT_GT(rivers, 5);
 }
 
+TEST(EndlessWater, ARayEndsAfterTheMaximumNumberOfBlocks) {
+  const Loaded loaded = Loaded::parsed(
+      world::testing::replaced(river_text(), "blocks = [48, 48]", "blocks = [0, 0]"));
+  World query(loaded.world, loaded.registry);
+  const double end_m = static_cast<double>(World::kMaxBlocks) * 64;
+  const auto hit = query.cast({.origin = {{0, 0}, {1, 100, 1}},
+                               .direction = {1, -1e-5, 0},
+                               .longest_m = std::numeric_limits<double>::infinity(),
+                               .ground = false,
+                               .models = false,
+                               .water = true});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->kind, HitKind::kNothing);
+  EXPECT_NEAR(hit->distance_m, end_m, 64);
+}
+
 TEST_F(WaterQuery, AWorldWithoutWaterHasNoneToHit) {
   const Loaded dry = Loaded::parsed(testing::kBounded);
   World query(dry.world, dry.registry);
