@@ -64,7 +64,6 @@ bool ViewInput::take_for_tool(const QEvent& event, double pixel_ratio) {
   using Kind = ToolEvent::Kind;
   switch (event.type()) {
     case QEvent::MouseButtonPress:
-    case QEvent::MouseButtonDblClick:
     case QEvent::MouseButtonRelease:
     case QEvent::MouseMove: {
       const auto& mouse = static_cast<const QMouseEvent&>(event);
