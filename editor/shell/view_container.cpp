@@ -1,6 +1,5 @@
 #include "editor/shell/view_container.hpp"
 
-#include <QGuiApplication>
 #include <QKeyEvent>
 #include <QWidget>
 
@@ -51,7 +50,7 @@ class KeyboardOfView final : public QObject {
 QWidget* make_view_container(WorldView& view, QWidget* parent) {
   QWidget* container = QWidget::createWindowContainer(&view, parent);
   container->setFocusPolicy(Qt::StrongFocus);
-  if (QGuiApplication::platformName().startsWith("wayland")) new KeyboardOfView(view, *container);
+  if (runs_on_wayland()) new KeyboardOfView(view, *container);
   return container;
 }
 

@@ -9,7 +9,6 @@
 #include <QGuiApplication>
 #include <QWindow>
 #include <bit>
-#include <cstdlib>
 #include <filesystem>
 #include <string_view>
 #ifdef PSYGEN_EDITOR_WAYLAND
@@ -21,12 +20,7 @@ namespace {
 
 // The value of a variable of the environment; empty if it is not set.
 std::string variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? std::string() : value;
-}
-
-bool runs_on_wayland() {
-  return QGuiApplication::platformName().startsWith("wayland");
+  return qgetenv(name).toStdString();
 }
 
 // True if this build can draw into windows of Wayland and the compositor's socket exists.
@@ -94,10 +88,15 @@ core::Result<std::uint64_t> create_on_wayland([[maybe_unused]] VkInstance vulkan
 
 }  // namespace
 
+bool runs_on_wayland() {
+  return QGuiApplication::platformName().startsWith("wayland");
+}
+
 core::Result<std::shared_ptr<void>> require_display(std::span<const char* const> arguments) {
   if (qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM"))
     qputenv("QT_QPA_PLATFORM", has_compositor() ? "wayland;xcb" : "xcb");
-  std::string_view platform = std::getenv("QT_QPA_PLATFORM");
+  const std::string chosen = variable("QT_QPA_PLATFORM");
+  std::string_view platform = chosen;
   const char* display = nullptr;  // $DISPLAY
   for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
     const std::string_view option = arguments[i];
@@ -108,11 +107,12 @@ core::Result<std::shared_ptr<void>> require_display(std::span<const char* const>
     return core::fail(core::ErrorCode::kNoDevice,
                       "the editor needs Wayland or X11, and the chosen Qt platform is \"" +
                           std::string(platform) + "\"; unset QT_QPA_PLATFORM");
-  if (platform.starts_with("wayland") && has_compositor()) return nullptr;
   // Qt tries the platforms of a list in turn.
-  const bool may_use_x11 = platform.find("xcb") != std::string_view::npos;
-  const auto connection = may_use_x11 ? connect_to_x11(display) : nullptr;
-  if (connection) return connection;
+  const auto may_use = [&](std::string_view name) { return platform.find(name) != platform.npos; };
+  if (platform.starts_with("wayland") && has_compositor()) return nullptr;
+  const bool may_use_x11 = may_use("xcb");
+  if (const auto connection = may_use_x11 ? connect_to_x11(display) : nullptr) return connection;
+  if (may_use("wayland") && has_compositor()) return nullptr;
   return tl::unexpected(no_display(may_use_x11, display));
 }
 
@@ -133,10 +133,6 @@ core::Result<std::uint64_t> WindowSurface::create_surface(void* instance) {
   info.connection = x11->connection();
   info.window = static_cast<xcb_window_t>(window_.winId());
   return create_with<PFN_vkCreateXcbSurfaceKHR>("vkCreateXcbSurfaceKHR", vulkan, info, "X11");
-}
-
-bool WindowSurface::is_on_wayland() const {
-  return runs_on_wayland();
 }
 
 core::Extent WindowSurface::framebuffer_size() const {

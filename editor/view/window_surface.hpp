@@ -20,6 +20,10 @@ namespace psygen::editor {
 // refuse new ones meanwhile.
 core::Result<std::shared_ptr<void>> require_display(std::span<const char* const> arguments);
 
+// True if QApplication runs on Wayland. There, Qt destroys its side of a surface when it hides the
+// window, and presenting with vertical sync blocks while the compositor does not show the window.
+bool runs_on_wayland();
+
 class WindowSurface final : public core::SurfaceProvider {
  public:
   // The window has the surface type VulkanSurface, and outlives this.
@@ -30,9 +34,6 @@ class WindowSurface final : public core::SurfaceProvider {
   core::Result<std::uint64_t> create_surface(void* instance) override;
   // In device pixels; 0 × 0 while the window is hidden.
   core::Extent framebuffer_size() const override;
-  // On Wayland, Qt destroys its side of the surface when it hides the window, and presenting with
-  // vertical sync blocks while the compositor does not show the window.
-  bool is_on_wayland() const;
 
  private:
   QWindow& window_;

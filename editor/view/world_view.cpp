@@ -33,7 +33,7 @@ WorldView::WorldView(app::SessionOptions options) : options_(std::move(options))
   connect(&timer_, &QTimer::timeout, this, &WorldView::tick);
   // Emitted before Qt destroys the window's side of the surface.
   connect(this, &QWindow::visibleChanged, this, [this](bool visible) {
-    if (!visible && surface_.is_on_wayland()) close();
+    if (!visible && runs_on_wayland()) close();
   });
 }
 
@@ -61,7 +61,7 @@ void WorldView::open() {
   options.files = handmade::files_with(file_, pictures_);
   options.surface = &surface_;
   options.size = surface_.framebuffer_size();
-  options.vsync = options.vsync && !surface_.is_on_wayland();
+  options.vsync = options.vsync && !runs_on_wayland();
   text_is_new_ = false;
   auto session = app::Session::create(std::move(options));
   if (!session) {
@@ -117,7 +117,7 @@ bool WorldView::event(QEvent* event) {
 // The time between frames in which something moves. Without vertical sync, the timer keeps the rate
 // of the screen.
 int WorldView::busy_ms() const {
-  if (!surface_.is_on_wayland()) return 0;
+  if (!runs_on_wayland()) return 0;
   return static_cast<int>(1'000 / std::max(screen()->refreshRate(), 1.0));
 }
 
