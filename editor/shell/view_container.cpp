@@ -9,10 +9,11 @@ namespace psygen::editor {
 namespace {
 
 // Passes keys from the widget to the view, and focuses the widget when the user clicks the view.
+// Ends with the view, because the widget may lose the focus while it deletes the view.
 class KeyboardOfView final : public QObject {
  public:
   KeyboardOfView(WorldView& view, QWidget& container)
-      : QObject(&container), view_(view), container_(container) {
+      : QObject(&view), view_(view), container_(container) {
     view.installEventFilter(this);
     container.installEventFilter(this);
   }
