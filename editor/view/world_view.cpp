@@ -51,7 +51,7 @@ void WorldView::show_world(std::string text, std::string file, bool new_session,
   since_text_.start();
   if (timer_.isActive()) timer_.start(busy_ms());  // draws the next frame at once
   if (new_session) close();
-  if (!session_ && isExposed()) open();
+  if (!session_ && is_shown()) open();
 }
 
 void WorldView::open() {
@@ -95,9 +95,9 @@ bool WorldView::event(QEvent* event) {
   switch (event->type()) {
     case QEvent::Expose:
       // After the event, because opening a session is slow.
-      if (isExposed() && !session_ && !failed_ && !text_.empty())
+      if (is_shown() && !session_ && !failed_ && !text_.empty())
         QTimer::singleShot(0, this, [this] {
-          if (!session_ && isExposed()) open();
+          if (!session_ && is_shown()) open();
         });
       break;
     case QEvent::FocusOut:
@@ -171,7 +171,7 @@ void WorldView::take_prepared() {
 }
 
 void WorldView::tick() {
-  if (!session_ || !isExposed()) return;
+  if (!session_ || !is_shown()) return;
   const double dt_s = std::min(static_cast<double>(since_tick_.nsecsElapsed()) * 1e-9, kMaxStepS);
   since_tick_.start();
   take_prepared();

@@ -114,6 +114,8 @@ class WorldView final : public QWindow {
   bool event(QEvent* event) override;
 
  private:
+  // A hidden window of Wayland stays exposed until the next event.
+  bool is_shown() const { return isVisible() && isExposed(); }
   void open();
   void close();
   bool reopen();
