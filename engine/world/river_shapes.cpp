@@ -313,10 +313,8 @@ class RiverMaker {
       const double run_m = curve_[after].along_m - curve_[before].along_m;
       p.fall = run_m > 0 ? (surface_[before] - surface_[after]) / run_m : 0;
       p.speed_m_s = speed_m_s(i);
-      // Foam begins on slopes of 4 %, is full at 40 %, and drifts 15 m downstream.
-      const double steep = std::clamp((p.fall - 0.04) / 0.36, 0.0, 1.0);
       const double drift_m = i > 0 ? curve_[i].along_m - curve_[i - 1].along_m : 0;
-      foam = std::max(steep * steep * (3 - 2 * steep), foam - drift_m / 15);
+      foam = std::max(models::foam_of_fall(p.fall), foam - drift_m / 15);  // drifts 15 m
       p.foam = std::max(foam, 0.0);
       points_.push_back(p);
     }

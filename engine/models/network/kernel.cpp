@@ -290,6 +290,11 @@ HWY_INLINE Beside beside(const Curve& c, Float px, Float pz) {
   return b;
 }
 
+// The vectors of channel_depth_m().
+HWY_INLINE Float depth_of(const Beside& b) {
+  return hn::Add(set(kBedM), hn::Mul(b.width, set(kBedWidths)));
+}
+
 // One call: the chosen spots and curves at its samples.
 class Call {
  public:
@@ -510,7 +515,7 @@ class Call {
                             hn::Set(di, static_cast<std::int32_t>(c.body)), w.body);
     if (!flow) return;
     // Discharge over cross-section, fastest in the middle.
-    const Float deep = hn::Add(set(0.25F), hn::Mul(b.width, set(0.07F)));
+    const Float deep = depth_of(b);
     const Float mean = hn::Div(set(2.25F * c.discharge_m3_s), hn::Mul(b.width, deep));
     const Float speed = hn::Mul(hn::Min(mean, set(6)), inside);
     const Float o = hn::Sub(set(1), b.t);
@@ -612,7 +617,7 @@ class Call {
   static Float bed_of(const Beside& b, Float ground) {
     const FloatTag d;
     const Float share = hn::Div(hn::Add(b.distance, b.distance), b.width);
-    const Float deep = hn::Add(set(0.25F), hn::Mul(b.width, set(0.07F)));
+    const Float deep = depth_of(b);
     const Float bowl = hn::Mul(deep, hn::Sub(set(1), hn::Mul(share, share)));
     const Float bed = hn::Sub(b.surface, bowl);
     const Float middle = hn::Sub(b.surface, deep);

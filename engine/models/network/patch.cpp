@@ -25,6 +25,12 @@ double max_width_m(const Scale& scale, int level) {
   return std::min(kMaxWidthM, 2.5 * static_cast<double>(scale.spacing(level)) * scale.unit_m);
 }
 
+// Height of the water of a curve without its least height.
+float bent_m(const Curve& c, float t) {
+  const float o = 1 - t;
+  return o * o * c.height_m[0] + 2 * o * t * c.height_m[1] + t * t * c.height_m[2];
+}
+
 // Adds the spots and curves of nodes to a patch.
 class Builder {
  public:
@@ -229,11 +235,6 @@ class Builder {
     curves_.push_back(c);
   }
 
-  // The water of a curve at its parameter t.
-  static float surface_m(const Curve& c, float t) {
-    const float o = 1 - t;
-    return o * o * c.height_m[0] + 2 * o * t * c.height_m[1] + t * t * c.height_m[2];
-  }
   static float width_m(const Curve& c, float t) {
     return c.width0_m + t * (c.width1_m - c.width0_m);
   }
@@ -287,10 +288,9 @@ class Builder {
     if (chords == 0) {
       c.height_m = {to_m, to_m, to_m};
     } else {
-      c.height_m[2] -= std::max(surface_m(c, t) - to_m, 0.0F) / (t * t);
+      c.height_m[2] -= std::max(bent_m(c, t) - to_m, 0.0F) / (t * t);
     }
   }
-  static float level_m(const Curve& c, float t) { return std::max(surface_m(c, t), c.min_m); }
 
   // Keeps the curves that reach the square, up to where they run into a wider one.
   void keep_curves() {
@@ -336,6 +336,10 @@ class Builder {
 std::size_t Patch::bytes() const {
   return sizeof(Patch) + spots.capacity() * sizeof(Spot) + curves.capacity() * sizeof(Curve) +
          lakes.capacity() * sizeof(Lake) + spot_bins.bytes() + curve_bins.bytes();
+}
+
+float level_m(const Curve& c, float t) {
+  return std::max(bent_m(c, t), c.min_m);
 }
 
 float channel_width_m(double km2, double max_m) {

@@ -130,10 +130,13 @@ inline std::int32_t reach_units(const Patch& patch, const Curve& c) {
 
 // Water as wide as a river with this drainage area, at most `max_m`.
 float channel_width_m(double km2, double max_m);
-// Depth of the middle of a channel.
+// Depth of the middle of a channel, in metres and in widths.
+constexpr float kBedM = 0.25F, kBedWidths = 0.07F;
 constexpr float channel_depth_m(float width_m) {
-  return 0.25F + 0.07F * width_m;
+  return kBedM + kBedWidths * width_m;
 }
+// Height of the water of a curve, in metres; t: its parameter, 0 … 1.
+float level_m(const Curve& c, float t);
 // Width of the ground beside a channel that the channel lowers, and that it may raise.
 constexpr float kValleyM = 36, kLeveeM = 12, kBankWidths = 1.5F;
 constexpr float bank_m(float width_m) {

@@ -433,8 +433,7 @@ class NetworkSurface {
   // True for a chord whose ends both lie on a lake, or on the sea.
   bool is_in_lake(const network::Patch& patch, const network::Curve& curve, std::size_t i) const {
     constexpr double kEqualM = 0.01;
-    const double from_m = height_m(curve, static_cast<double>(i - 1) / network::Curve::kChords);
-    const double to_m = height_m(curve, static_cast<double>(i) / network::Curve::kChords);
+    const double from_m = level_m(curve, i - 1), to_m = level_m(curve, i);
     if (from_m > to_m + kEqualM) return false;
     return to_m < network_.frame().sea_level_m + kEqualM ||
            std::ranges::any_of(patch.lakes, [&](const network::Lake& lake) {
@@ -442,11 +441,9 @@ class NetworkSurface {
            });
   }
 
-  static double height_m(const network::Curve& curve, double t) {
-    const auto& h = curve.height_m;
-    const double bent =
-        (1 - t) * (1 - t) * double{h[0]} + 2 * t * (1 - t) * double{h[1]} + t * t * double{h[2]};
-    return std::max(bent, double{curve.min_m});
+  // The water at the end of a chord.
+  static double level_m(const network::Curve& curve, std::size_t i) {
+    return double{network::level_m(curve, static_cast<float>(i) / network::Curve::kChords)};
   }
 
   SurfacePoint point(const network::Curve& curve, std::size_t i, double across,
@@ -467,31 +464,28 @@ class NetworkSurface {
     const glm::dvec2 at_m = middle_m + aside * out_m;
     const double inner = beyond ? 0 : 1 - across * across;
     const double depth_m = double{network::channel_depth_m(static_cast<float>(width_m))};
-    const double fall = (height_m(curve, static_cast<double>(from) / network::Curve::kChords) -
-                         height_m(curve, static_cast<double>(next) / network::Curve::kChords)) /
-                        length_m;
-    const double steep = std::clamp((fall - 0.04) / 0.36, 0.0, 1.0);
+    const double fall = (level_m(curve, from) - level_m(curve, next)) / length_m;
     const double speed = double{curve.discharge_m3_s} / std::max(0.67 * width_m * depth_m, 0.05);
     SurfacePoint surface;
-    surface.at_m = {at_m.x, surface_m(curve, t, middle_m), at_m.y};
+    surface.at_m = {at_m.x, surface_m(curve, i, middle_m), at_m.y};
     surface.depth_m = depth_m * inner;
     // A thin stream is a white line of little width, not a fall.
     const double broad = std::clamp((width_m - 0.5) / 4, 0.15, 1.0);
-    surface.foam = broad * steep * steep * (3 - 2 * steep);
+    surface.foam = broad * foam_of_fall(fall);
     surface.flow_m_s = direction * (std::min(speed, 6.0) * std::max(inner, 0.2));
     surface.slope = direction * -fall;
     return surface;
   }
 
   // Where water of several channels meets, that of the finest level is blended.
-  double surface_m(const network::Curve& curve, double t, glm::dvec2 middle_m) const {
+  double surface_m(const network::Curve& curve, std::size_t i, glm::dvec2 middle_m) const {
     if (node_.level == 0) {
       const core::WorldPosition at =
           core::normalised({node_.block, {middle_m.x, 0, middle_m.y}}, node_.block_m);
       const NetworkWater water = network_.water_at(at);
       if (water.depth_m > 0) return double{water.surface_m};
     }
-    return height_m(curve, t);
+    return level_m(curve, i);
   }
 
   const WaterNode& node_;
