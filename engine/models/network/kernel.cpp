@@ -589,7 +589,7 @@ class Call {
     add_still(lake_water, lake.level, lake_body, w);
     const auto alone = hn::Eq(w.weight, zero);
     const auto flooded = hn::And(alone, hn::Lt(ground, sea_level));
-    add_still(hn::Or(sea, flooded), sea_level, hn::Set(di, 1), w);
+    add_still(hn::Or(sea, flooded), sea_level, hn::Set(di, std::int32_t{kSeaBody}), w);
     write_water(w, ground, at, n, out);
   }
 
@@ -674,24 +674,16 @@ HWY_EXPORT(carve_on_target);
 // Chooses what reaches the samples, in the patch's order. More than that would change no bit.
 Chosen choose(const Patch& patch, const Samples& samples) {
   Chosen chosen;
-  const std::int32_t around = samples.guided ? 3 * kGuideUnits : 0;
-  const std::int32_t x0 = samples.x.front() - around, x1 = samples.x.back() + around;
-  const std::int32_t z0 = samples.z.front() - around, z1 = samples.z.back() + around;
-  const auto touches = [&](std::int32_t x, std::int32_t z, std::int32_t reach) {
-    return x + reach >= x0 && x - reach <= x1 && z + reach >= z0 && z - reach <= z1;
-  };
-  patch.spot_bins.find({x0, z0, x1, z1}, [&](std::size_t k) {
-    const Spot& s = patch.spots[k];
-    if (!touches(s.x, s.z, s.reach)) return;
+  const Box box =
+      Box{samples.x.front(), samples.z.front(), samples.x.back(), samples.z.back()}.grown(
+          samples.guided ? kGuideReach : 0);
+  patch.each_spot(box, [&](const Spot& s) {
     chosen.spots.push_back(&s);
     if (s.lake >= 0) chosen.lakes.push_back(s.lake);
   });
   std::sort(chosen.lakes.begin(), chosen.lakes.end());
   chosen.lakes.erase(std::unique(chosen.lakes.begin(), chosen.lakes.end()), chosen.lakes.end());
-  patch.curve_bins.find({x0, z0, x1, z1}, [&](std::size_t k) {
-    const Curve& c = patch.curves[k];
-    if (touches(c.x, c.z, reach_units(patch, c))) chosen.curves.push_back(&c);
-  });
+  patch.each_curve(box, [&](const Curve& c) { chosen.curves.push_back(&c); });
   return chosen;
 }
 

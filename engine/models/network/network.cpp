@@ -126,26 +126,83 @@ network::NodePatch RiverNetwork::nodes(int level, std::int64_t x_cells, std::int
   return network::nodes_around(scale_, from, level, {square, scale_.spacing(level)}, level);
 }
 
+std::optional<std::int64_t> RiverNetwork::serving_tile(int level, std::int64_t first,
+                                                       std::int64_t last) const {
+  const std::int64_t side = tile_units(level), beyond = kBeyond * scale_.spacing(level);
+  const std::int64_t tile = floor_div((first + last) / 2, side);
+  if (first < tile * side - beyond || last > (tile + 1) * side + beyond) return std::nullopt;
+  return tile;
+}
+
+RiverNetwork::Cells RiverNetwork::square_of(core::BlockCoord corner, int level) const {
+  const std::int64_t cells = scale_.frame.cells_per_block;
+  return {corner.x * cells, corner.z * cells, cells << level};
+}
+
+std::vector<RiverNetwork::Span> RiverNetwork::spans_of(int level, std::int64_t first_cell,
+                                                       std::int64_t cells) const {
+  const std::int64_t first = first_cell * kUnitsPerCell, end = first + cells * kUnitsPerCell;
+  if (const auto tile = serving_tile(level, first, end)) return {{*tile, first, end}};
+  std::vector<Span> spans;
+  const std::int64_t side = tile_units(level), beyond = kBeyond * scale_.spacing(level);
+  for (std::int64_t at = first; at < end; at = spans.back().end) {
+    const std::int64_t tile = floor_div(at, side);
+    spans.push_back({tile, at, std::min((tile + 1) * side + beyond, end)});
+  }
+  return spans;
+}
+
+RiverNetwork::Part RiverNetwork::part_of(int level, const Span& x, const Span& z) const {
+  Part part{patch({level, x.tile, z.tile}), {}};
+  const network::Patch& of = *part.patch;
+  const auto unit = [](std::int64_t at, std::int64_t origin) {
+    return static_cast<std::int32_t>(at - origin);
+  };
+  part.box = {unit(x.first, of.x), unit(z.first, of.z), unit(x.end, of.x) - 1,
+              unit(z.end, of.z) - 1};
+  return part;
+}
+
+std::vector<RiverNetwork::Part> RiverNetwork::parts_of(const Cells& cells,
+                                                       GroundDetail detail) const {
+  const int level = level_of(detail);
+  const std::vector<Span> columns = spans_of(level, cells.x, cells.side);
+  std::vector<Part> parts;
+  for (const Span& z : spans_of(level, cells.z, cells.side)) {
+    for (const Span& x : columns)
+      parts.push_back(part_of(level, x, z));
+  }
+  return parts;
+}
+
+bool RiverNetwork::may_have_water(const Cells& cells) const {
+  constexpr std::size_t kMaxPatches = 4;
+  const int level = scale_.halvings();
+  const std::vector<Span> columns = spans_of(level, cells.x, cells.side);
+  const std::vector<Span> rows = spans_of(level, cells.z, cells.side);
+  if (columns.size() * rows.size() > kMaxPatches) return true;
+  return std::ranges::any_of(rows, [&](const Span& z) {
+    return std::ranges::any_of(columns, [&](const Span& x) {
+      const Part part = part_of(level, x, z);
+      return part.patch->may_have_water(part.box.grown(1));
+    });
+  });
+}
+
 template <class Visit>
 void RiverNetwork::each_part(const Lattice& at, GroundDetail detail, const Visit& visit) const {
   if (at.x.empty() || at.z.empty()) return;
   const int level = level_of(detail);
-  const std::int64_t side = tile_units(level), beyond = kBeyond * scale_.spacing(level);
+  const std::int64_t side = tile_units(level);
   const bool guided = is_fine(detail);
-  // One patch serves all samples if it can: that of their middle.
-  const auto middle_tile = [&](std::span<const std::int64_t> axis) {
-    return floor_div((axis.front() + axis.back()) * kUnitsPerCell / 2, side);
+  const auto one_tile = [&](std::span<const std::int64_t> axis) {
+    return serving_tile(level, axis.front() * kUnitsPerCell, axis.back() * kUnitsPerCell);
   };
-  const auto served = [&](std::int64_t tile, std::span<const std::int64_t> axis) {
-    return axis.front() * kUnitsPerCell >= tile * side - beyond &&
-           axis.back() * kUnitsPerCell <= tile * side + side + beyond;
-  };
-  const std::int64_t tx = middle_tile(at.x), tz = middle_tile(at.z);
-  const bool one_x = served(tx, at.x), one_z = served(tz, at.z);
+  const auto one_x = one_tile(at.x), one_z = one_tile(at.z);
   // The samples from `first` on that one call takes, and their tile.
-  const auto end_of = [&](std::span<const std::int64_t> axis, std::size_t first, bool one,
-                          std::int64_t& tile) {
-    if (!one) tile = floor_div(axis[first] * kUnitsPerCell, side);
+  const auto end_of = [&](std::span<const std::int64_t> axis, std::size_t first,
+                          std::optional<std::int64_t> one, std::int64_t& tile) {
+    tile = one ? *one : floor_div(axis[first] * kUnitsPerCell, side);
     std::size_t end = first;
     while (end < axis.size() && end - first < network::kMaxSamples &&
            (!guided || (axis[end] - axis[first]) * kUnitsPerCell <= network::kMaxGuidedUnits) &&
@@ -160,7 +217,7 @@ void RiverNetwork::each_part(const Lattice& at, GroundDetail detail, const Visit
     for (std::size_t k = first; k < end; ++k)
       out.push_back(static_cast<std::int32_t>(axis[k] * kUnitsPerCell - origin));
   };
-  network::TileKey key{level, tx, tz}, last{-2, 0, 0};
+  network::TileKey key{level, 0, 0}, last{-2, 0, 0};
   std::shared_ptr<const network::Patch> patch;
   for (std::size_t row = 0, row_end = 0; row < at.z.size(); row = row_end) {
     row_end = end_of(at.z, row, one_z, key.j);
@@ -237,7 +294,7 @@ void RiverNetwork::evaluate(const Lattice& at, GroundDetail detail, CarvedRows r
             });
 }
 
-NetworkWater RiverNetwork::water_at(const core::WorldPosition& place) const {
+RiverNetwork::PatchPlace RiverNetwork::in_patch(const core::WorldPosition& place) const {
   const double units_per_m = 1 / scale_.unit_m;
   const auto units = [&](std::int32_t block, double local_m) {
     return static_cast<std::int64_t>(block) * scale_.frame.cells_per_block * kUnitsPerCell +
@@ -246,16 +303,19 @@ NetworkWater RiverNetwork::water_at(const core::WorldPosition& place) const {
   const std::int64_t x = units(place.block.x, place.local.x);
   const std::int64_t z = units(place.block.z, place.local.z);
   const int level = scale_.halvings();
-  const auto found =
-      patch({level, floor_div(x, tile_units(level)), floor_div(z, tile_units(level))});
+  auto found = patch({level, floor_div(x, tile_units(level)), floor_div(z, tile_units(level))});
   const auto px = static_cast<std::int32_t>(x - found->x);
   const auto pz = static_cast<std::int32_t>(z - found->z);
-  const network::Samples at{{&px, 1}, {&pz, 1}, true};
+  return {std::move(found), px, pz};
+}
+
+NetworkWater RiverNetwork::water_at(const PatchPlace& place) {
+  const network::Samples at{{&place.x, 1}, {&place.z, 1}, true};
   float base = 0, water = 0;
   NetworkWater result;
-  network::base_rows(*found, at, {.height_m = &base, .stride = 1});
+  network::base_rows(*place.patch, at, {.height_m = &base, .stride = 1});
   float ground = base;
-  network::carve_rows(*found, at,
+  network::carve_rows(*place.patch, at,
                       {.base_m = &base,
                        .base_stride = 1,
                        .height_m = &ground,
@@ -268,6 +328,18 @@ NetworkWater RiverNetwork::water_at(const core::WorldPosition& place) const {
   result.surface_m = water;
   result.depth_m = water - ground;
   return result;
+}
+
+NetworkWater RiverNetwork::water_at(const core::WorldPosition& place) const {
+  return water_at(in_patch(place));
+}
+
+std::optional<NetworkWater> RiverNetwork::inland_water_at(const core::WorldPosition& place) const {
+  const PatchPlace at = in_patch(place);
+  if (!at.patch->may_have_water({at.x, at.z, at.x, at.z})) return std::nullopt;
+  const NetworkWater water = water_at(at);
+  if (!(water.depth_m > 0) || water.body == network::kSeaBody) return std::nullopt;
+  return water;
 }
 
 network::HeightRange RiverNetwork::bounds() const {

@@ -8,7 +8,9 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <memory>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "engine/core/coordinates.hpp"
 #include "engine/models/kit/ground_detail.hpp"
@@ -21,7 +23,7 @@ namespace psygen::models {
 struct NetworkWater {
   float surface_m = 0, depth_m = 0;
   glm::vec2 flow_m_s{0.0F};
-  std::uint32_t body = 0;  // 1: the sea
+  std::uint32_t body = 0;  // a lake, a channel, or network::kSeaBody
 };
 
 class RiverNetwork {
@@ -32,6 +34,16 @@ class RiverNetwork {
   };
   struct CellRange {
     std::int64_t first = 0, last = 0;
+  };
+  // A square of cells of node level 0, from its first vertex on.
+  struct Cells {
+    std::int64_t x = 0, z = 0, side = 0;
+    Cells grown(std::int64_t by) const { return {x - by, z - by, side + 2 * by}; }
+  };
+  // A part of a square: units, and a patch that serves them.
+  struct Part {
+    std::shared_ptr<const network::Patch> patch;
+    network::Box box;
   };
   using BaseRows = network::BaseRows;
   using CarvedRows = network::CarvedRows;
@@ -57,6 +69,12 @@ class RiverNetwork {
   // The water at a place over ground that nothing but the network shaped, at detail 0. Places are
   // finite and rounded to 1/64 cell; at vertices it has the bits of evaluate().
   NetworkWater water_at(const core::WorldPosition& place) const;
+  // The same without the sea: nothing where no river and no lake is. Dry places take a tenth of
+  // the time.
+  std::optional<NetworkWater> inland_water_at(const core::WorldPosition& place) const;
+  // False if inland_water_at() has nothing at any place in a square, its border included. May be
+  // true although it has nothing; always for squares over more than four patches.
+  bool may_have_water(const Cells& cells) const;
 
   // All ground of the network lies between 0 and the relief.
   network::HeightRange bounds() const;
@@ -80,6 +98,11 @@ class RiverNetwork {
   // Calls visit(tile) for every tile that holds a part of a rectangle of cells, ends included.
   void each_tile(CellRange x, CellRange z, GroundDetail detail,
                  const std::function<void(const network::TileKey&)>& visit) const;
+  // The cells of a square of 2^level blocks a side with this block at its corner.
+  Cells square_of(core::BlockCoord corner, int level) const;
+  // A square in parts, row by row: one if a patch serves it all. Every unit lies in one part,
+  // without the far borders of the square. Makes patches that are missing.
+  std::vector<Part> parts_of(const Cells& cells, GroundDetail detail) const;
   bool ready(const network::TileKey& tile) const;
   // The patch of a tile, from the store or made.
   std::shared_ptr<const network::Patch> patch(const network::TileKey& tile) const;
@@ -96,6 +119,22 @@ class RiverNetwork {
   network::NodePatch nodes_of(const network::TileKey& tile) const;
   std::int64_t tile_units(int level) const { return tile_units_[static_cast<std::size_t>(level)]; }
   double unlimited_error_m(GroundDetail from, GroundDetail to) const;
+  // The tile along an axis whose patch serves all units from `first` to `last`, if one does: that
+  // of their middle.
+  std::optional<std::int64_t> serving_tile(int level, std::int64_t first, std::int64_t last) const;
+  // A range of units along an axis, without its end, and the tile whose patch serves it.
+  struct Span {
+    std::int64_t tile, first, end;
+  };
+  std::vector<Span> spans_of(int level, std::int64_t first_cell, std::int64_t cells) const;
+  Part part_of(int level, const Span& x, const Span& z) const;
+  // A place in units from the origin of its patch.
+  struct PatchPlace {
+    std::shared_ptr<const network::Patch> patch;
+    std::int32_t x, z;
+  };
+  PatchPlace in_patch(const core::WorldPosition& place) const;
+  static NetworkWater water_at(const PatchPlace& place);
   // Calls visit(patch, samples, first column, first row) for parts of a lattice.
   template <class Visit>
   void each_part(const Lattice& at, GroundDetail detail, const Visit& visit) const;

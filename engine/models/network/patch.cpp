@@ -111,6 +111,7 @@ class Builder {
     if (in_lake(n)) {
       s.depth_m = static_cast<float>(n.depth / kHeightUnits);
       s.lake = index_of(n);
+      patch_.lake_spots.push_back(static_cast<std::uint32_t>(patch_.spots.size()));
     }
     patch_.spots.push_back(s);
   }
@@ -177,19 +178,20 @@ class Builder {
 
   void fill_bins() {
     patch_.spots.shrink_to_fit();
+    patch_.lake_spots.shrink_to_fit();
     patch_.curves.shrink_to_fit();
     patch_.lakes.shrink_to_fit();
     const auto side = static_cast<std::int32_t>(patch_.square.side / ReachBins::kSide) + 1;
-    const auto fill = [&](const auto& things, const auto& reach_of) {
+    const auto fill = [&](const auto& things) {
       ReachBins bins(things.size(), side);
       for (std::size_t k = 0; k < things.size(); ++k) {
-        const std::int32_t x = things[k].x, z = things[k].z, reach = reach_of(things[k]);
-        bins.add(k, {x - reach, z - reach, x + reach, z + reach});
+        const std::int32_t x = things[k].x, z = things[k].z;
+        bins.add(k, Box{x, z, x, z}.grown(patch_.reach_units(things[k])));
       }
       return bins;
     };
-    patch_.spot_bins = fill(patch_.spots, [](const Spot& s) { return s.reach; });
-    patch_.curve_bins = fill(patch_.curves, [&](const Curve& c) { return reach_units(patch_, c); });
+    patch_.spot_bins = fill(patch_.spots);
+    patch_.curve_bins = fill(patch_.curves);
   }
 
   using Vector = std::array<double, 2>;  // metres from a node
@@ -333,9 +335,35 @@ class Builder {
 
 }  // namespace
 
+bool Patch::may_have_lake(const Box& box) const {
+  const Box read = box.grown(kGuideReach);
+  return std::ranges::any_of(lake_spots, [&](std::uint32_t k) { return reaches(spots[k], read); });
+}
+
+bool Patch::may_have_water(const Box& box) const {
+  bool any = may_have_lake(box);
+  each_curve(box, [&](const Curve& c) {
+    const auto metres = [&](std::int32_t v, std::int32_t of) {
+      return static_cast<float>(v - of) * unit_m;
+    };
+    const float x0 = metres(box.x0, c.x), x1 = metres(box.x1, c.x);
+    const float z0 = metres(box.z0, c.z), z1 = metres(box.z1, c.z);
+    // With room for rounding.
+    const float side_m = std::max(c.width0_m, c.width1_m) / 2 + 0.01F + 1e-5F * c.reach_m;
+    for (std::size_t s = 0; s < c.chords && !any; ++s) {
+      const auto [left, right] = std::minmax(c.px[s], c.px[s + 1]);
+      const auto [near, far] = std::minmax(c.pz[s], c.pz[s + 1]);
+      any =
+          left - side_m <= x1 && right + side_m >= x0 && near - side_m <= z1 && far + side_m >= z0;
+    }
+  });
+  return any;
+}
+
 std::size_t Patch::bytes() const {
   return sizeof(Patch) + spots.capacity() * sizeof(Spot) + curves.capacity() * sizeof(Curve) +
-         lakes.capacity() * sizeof(Lake) + spot_bins.bytes() + curve_bins.bytes();
+         lake_spots.capacity() * sizeof(std::uint32_t) + lakes.capacity() * sizeof(Lake) +
+         spot_bins.bytes() + curve_bins.bytes();
 }
 
 float level_m(const Curve& c, float t) {

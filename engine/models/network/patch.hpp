@@ -15,9 +15,11 @@
 
 namespace psygen::models::network {
 
-// Cells between the points of the guide. Its cubic interpolation defines the fine ground.
+// Cells between the points of the guide. Its cubic interpolation defines the fine ground. Places
+// read points of the guide up to kGuideReach away.
 constexpr std::int32_t kGuideCells = 4;
 constexpr std::int32_t kGuideUnits = kGuideCells * static_cast<std::int32_t>(kUnitsPerCell);
+constexpr std::int32_t kGuideReach = 3 * kGuideUnits;
 
 // A node's kernel: weight gain · (1 − r²/R²)⁴ within R. Streams weigh more, so that the ground
 // falls towards them.
@@ -55,14 +57,26 @@ struct Curve {
   bool head = false;  // a spring: the bed begins here
 };
 
+// The sea among the names of bodies of water.
+constexpr std::uint32_t kSeaBody = 1;
 // A lake: all its spots share the level.
 struct Lake {
   float level_m = 0;
   std::uint32_t body = 0;
 };
 
-// The spots or curves that reach each of kSide² squares of a patch, as bits. Callers still cut each
-// by its own distance: squares differ from patch to patch.
+// An axis-aligned rectangle of units from a patch's origin, both ends included.
+struct Box {
+  std::int32_t x0 = 0, z0 = 0, x1 = 0, z1 = 0;
+
+  Box grown(std::int32_t by) const { return {x0 - by, z0 - by, x1 + by, z1 + by}; }
+  bool holds(std::int32_t x, std::int32_t z) const {
+    return x >= x0 && x <= x1 && z >= z0 && z <= z1;
+  }
+};
+
+// The spots or curves that reach each of kSide² squares of a patch, as bits. Squares differ from
+// patch to patch, so only Patch reads them: it cuts each by its own distance.
 class ReachBins {
  public:
   static constexpr std::int32_t kSide = 8;
@@ -71,10 +85,6 @@ class ReachBins {
   ReachBins(std::size_t count, std::int32_t side)
       : words_((count + 63) / 64), side_(side), bits_(words_ * kSide * kSide) {}
   ReachBins() = default;
-  // An axis-aligned rectangle, both ends included.
-  struct Box {
-    std::int32_t x0, z0, x1, z1;
-  };
   void add(std::size_t thing, const Box& reach) {
     each(reach, [&](std::size_t square) {
       bits_[square * words_ + thing / 64] |= std::uint64_t{1} << (thing % 64);
@@ -113,20 +123,45 @@ struct Patch {
   std::int64_t x = 0, z = 0;
   float unit_m = 0;
   float sea_level_m = 0;
-  float shore_m = 0;          // the ground rises by this over one share of lake
-  std::vector<Spot> spots;    // rows of the lattice, then columns
-  std::vector<Curve> curves;  // in the order of their nodes, then of directions
-  std::vector<Lake> lakes;    // ascending by level, then body
+  float shore_m = 0;                      // the ground rises by this over one share of lake
+  std::vector<Spot> spots;                // rows of the lattice, then columns
+  std::vector<std::uint32_t> lake_spots;  // indices of those that have a lake, ascending
+  std::vector<Curve> curves;              // in the order of their nodes, then of directions
+  std::vector<Lake> lakes;                // ascending by level, then body
   ReachBins spot_bins, curve_bins;
 
+  // Call visit(spot) or visit(curve) for all that reach a box, in the order of their lists. Every
+  // patch that covers the box has the same ones, in the same order.
+  template <class Visit>
+  void each_spot(const Box& box, const Visit& visit) const {
+    spot_bins.find(box, [&](std::size_t k) {
+      if (reaches(spots[k], box)) visit(spots[k]);
+    });
+  }
+  template <class Visit>
+  void each_curve(const Box& box, const Visit& visit) const {
+    curve_bins.find(box, [&](std::size_t k) {
+      if (reaches(curves[k], box)) visit(curves[k]);
+    });
+  }
+  // False if no lake covers any place of a box: no spot of one reaches the points of the guide that
+  // these places read.
+  bool may_have_lake(const Box& box) const;
+  // False if neither a lake nor a channel covers any place of a box.
+  bool may_have_water(const Box& box) const;
+
+  // The reach of a spot or a curve in units, rounded up; and true if it reaches a box.
+  static std::int32_t reach_units(const Spot& s) { return s.reach; }
+  std::int32_t reach_units(const Curve& c) const {
+    return static_cast<std::int32_t>(c.reach_m / unit_m) + 1;
+  }
+  template <class Thing>
+  bool reaches(const Thing& thing, const Box& box) const {
+    return box.grown(reach_units(thing)).holds(thing.x, thing.z);
+  }
   // Memory of the patch, with its lists.
   std::size_t bytes() const;
 };
-
-// Curve::reach_m in units, rounded up.
-inline std::int32_t reach_units(const Patch& patch, const Curve& c) {
-  return static_cast<std::int32_t>(c.reach_m / patch.unit_m) + 1;
-}
 
 // Water as wide as a river with this drainage area, at most `max_m`.
 float channel_width_m(double km2, double max_m);

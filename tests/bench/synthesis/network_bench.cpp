@@ -72,16 +72,30 @@ BENCHMARK(ground_of_a_block)
     ->Unit(benchmark::kMicrosecond)
     ->Iterations(900);
 
-void water_at_a_place(benchmark::State& state) {
+template <class Ask>
+void ask_of_places(benchmark::State& state, const Ask& ask) {
   const auto network = network_of(std::make_shared<models::NetworkStore>());
   std::int32_t i = 0;
   for (auto _ : state) {
     i = (i + 1) % 900;
     const core::WorldPosition at{{i % 30, 480 + i / 30}, {i % 63 + 0.3, 0, i % 59 + 0.7}};
-    benchmark::DoNotOptimize(network->water_at(at));
+    benchmark::DoNotOptimize(ask(*network, at));
   }
 }
+void water_at_a_place(benchmark::State& state) {
+  ask_of_places(state, [](const RiverNetwork& n, const auto& at) { return n.water_at(at); });
+}
 BENCHMARK(water_at_a_place);
+void inland_water_at_a_place(benchmark::State& state) {
+  ask_of_places(state, [](const RiverNetwork& n, const auto& at) { return n.inland_water_at(at); });
+}
+BENCHMARK(inland_water_at_a_place);
+void inland_water_in_a_block(benchmark::State& state) {
+  ask_of_places(state, [](const RiverNetwork& n, const auto& at) {
+    return n.may_have_water(n.square_of(at.block, 0));
+  });
+}
+BENCHMARK(inland_water_in_a_block);
 
 }  // namespace
 }  // namespace psygen::synthesis

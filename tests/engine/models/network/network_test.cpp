@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -182,6 +183,82 @@ TEST(RiverNetwork, AnswersForOnePlaceAsForRows) {
     }
   }
   EXPECT_GT(wet, 300U);
+}
+
+core::WorldPosition position_of(double x, double z) {
+  const double size = static_cast<double>(kFrame.cells_per_block);
+  return core::normalised({{0, 0}, {x, 0, z}}, size);
+}
+
+TEST(RiverNetwork, KnowsSquaresAndPlacesWithoutInlandWater) {
+  std::size_t dry_squares = 0, free = 0, wet = 0, sea = 0;
+  for (const RiverSettings& settings :
+       {RiverSettings{.sea_share = 0.2},
+        RiverSettings{.seed = 5, .root_spacing_m = 2048, .halvings = 5, .lake_share = 0.12}}) {
+    const auto network = network_of(settings);
+    for (const Place& place : places(150, 300'000)) {
+      const bool may = network->may_have_water({place[0], place[1], 63});
+      std::size_t wet_here = 0;
+      for (std::int64_t i = 0; i < 22 * 22; ++i) {
+        const core::WorldPosition at = position_of(static_cast<double>(place[0] + 3 * (i % 22)),
+                                                   static_cast<double>(place[1] + 3 * (i / 22)));
+        const NetworkWater water = network->water_at(at);
+        const auto inland = network->inland_water_at(at);
+        const bool is_sea = water.body == network::kSeaBody && water.depth_m > 0;
+        ASSERT_EQ(inland.has_value(), water.depth_m > 0 && !is_sea);
+        sea += is_sea ? 1 : 0;
+        if (!inland) continue;
+        ++wet_here;
+        ASSERT_EQ(inland->surface_m, water.surface_m);
+        ASSERT_EQ(inland->depth_m, water.depth_m);
+        ASSERT_EQ(inland->flow_m_s, water.flow_m_s);
+        ASSERT_EQ(inland->body, water.body);
+      }
+      wet += wet_here;
+      ASSERT_TRUE(may || wet_here == 0) << place[0] << " " << place[1];
+      dry_squares += wet_here == 0 ? 1 : 0;
+      free += may ? 0 : 1;
+    }
+  }
+  EXPECT_GT(wet, 500U);
+  EXPECT_GT(sea, 500U);
+  EXPECT_GT(10 * free, 8 * dry_squares) << free << " of " << dry_squares;
+}
+
+TEST(RiverNetwork, PartsCoverEverySquareOnce) {
+  // Patches of the root have 128 blocks a side; a node of level 9 has 512.
+  const RiverSettings small{.root_spacing_m = 256, .halvings = 4};
+  for (const auto& [settings, alone] :
+       {std::pair{RiverSettings{}, true}, std::pair{small, false}}) {
+    const auto network = network_of(settings);
+    std::size_t most = 0;
+    for (const int level : {0, 1, 4, 9}) {
+      for (const core::BlockCoord corner :
+           {core::BlockCoord{0, 0}, {-512, 1024}, {12800, -25600}}) {
+        const RiverNetwork::Cells square = network->square_of(corner, level);
+        EXPECT_EQ(square.side, 63 << level);
+        EXPECT_EQ(square.x, std::int64_t{corner.x} * 63);
+        const auto parts = network->parts_of(square, GroundDetail::of_node(level));
+        most = std::max(most, parts.size());
+        std::int64_t units2 = 0;
+        std::vector<Place> corners;
+        for (const auto& [patch, box] : parts) {
+          EXPECT_TRUE(box.x0 >= patch->square.x - patch->x && box.z0 >= patch->square.z - patch->z);
+          EXPECT_LE(box.x1 + patch->x, patch->square.x + patch->square.side);
+          EXPECT_LE(box.z1 + patch->z, patch->square.z + patch->square.side);
+          units2 += (std::int64_t{box.x1} - box.x0 + 1) * (std::int64_t{box.z1} - box.z0 + 1);
+          corners.push_back({patch->x + box.x0, patch->z + box.z0});
+        }
+        EXPECT_EQ(units2, square.side * square.side * kUnitsPerCell * kUnitsPerCell);
+        EXPECT_EQ(corners.front(), (Place{square.x * kUnitsPerCell, square.z * kUnitsPerCell}));
+        EXPECT_TRUE(std::ranges::is_sorted(corners, {}, [](const Place& c) {
+          return std::pair{c[1], c[0]};
+        }));
+        EXPECT_EQ(std::ranges::adjacent_find(corners), corners.end());
+      }
+    }
+    EXPECT_EQ(most == 1, alone) << most;
+  }
 }
 
 TEST(RiverNetwork, HasTheSameBitsOnEveryInstructionSet) {
