@@ -1,7 +1,7 @@
 // The surface of the rivers and lakes of a node, as a mesh of core::WaterVertex: strips along
-// rivers, and tiles of lakes. It is made from the pieces in the ground's layers (ground/water.hpp),
-// so it is a pure function of its parameters. Each strip and each tile belongs to the node that has
-// its middle; neighbouring ones share their ends.
+// rivers, and tiles of lakes. It is made from the pieces in the ground's layers (ground/water.hpp)
+// and from the river network, so it is a pure function of its parameters. Each strip and each tile
+// belongs to the node that has its middle; neighbouring ones share their ends.
 #pragma once
 
 #include <memory>
