@@ -172,12 +172,22 @@ class Application {
             static_cast<std::size_t>(last - at.begin())};
   }
 
+  // An edit with the samples that it reaches.
+  struct Act {
+    const GroundEdit* edit;
+    Range columns, rows;
+  };
   void act(Range columns, Range rows) {
-    if (active_.empty()) return;
-    ordered_ = active_;
-    std::ranges::sort(ordered_, {}, &GroundEdit::order);
-    for (const GroundEdit* edit : ordered_)
-      act(*edit, columns, rows);
+    ordered_.clear();
+    for (const GroundEdit* edit : active_) {
+      const core::WorldPosition& centre = edit->centre;
+      const Act act{edit, within(*edit, x_, columns, centre.block.x, centre.local.x),
+                    within(*edit, z_, rows, centre.block.z, centre.local.z)};
+      if (!act.columns.empty() && !act.rows.empty()) ordered_.push_back(act);
+    }
+    std::ranges::sort(ordered_, {}, [](const Act& act) { return act.edit->order(); });
+    for (const Act& act : ordered_)
+      apply(*act.edit, act.columns, act.rows);
   }
 
   // Metres from the centre of an edit to a lattice point, along one axis. Exact, with the same bits
@@ -201,10 +211,7 @@ class Application {
             range.first + static_cast<std::size_t>(end - all.begin())};
   }
 
-  void act(const GroundEdit& edit, Range columns, Range rows) {
-    const core::WorldPosition& centre = edit.centre;
-    columns = within(edit, x_, columns, centre.block.x, centre.local.x);
-    rows = within(edit, z_, rows, centre.block.z, centre.local.z);
+  void apply(const GroundEdit& edit, Range columns, Range rows) {
     const core::WorldPosition& from = edit.origin();
     for (std::size_t k = rows.first; k < rows.end; ++k) {
       const double dz = away_m(z_[k], from.block.z, from.local.z);
@@ -222,7 +229,8 @@ class Application {
   std::span<float> values_;
   std::size_t stride_;
   double narrowest_m_;
-  std::vector<const GroundEdit*> active_, ordered_;
+  std::vector<const GroundEdit*> active_;
+  std::vector<Act> ordered_;
 };
 
 }  // namespace
